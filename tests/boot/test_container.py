@@ -83,7 +83,7 @@ class Everyday(Contained):
                 network.connect(network.team, network.box_address, 80, 20.0).close()
                 tried += 1
 
-    def test_from_inside_its_unit_it_may_do_no_more_than_it_must(self):
+    def test_sandbox_of_the_unit_holds(self):
         # A container's systemd may load no filter of addresses into the kernel.
         refused = inside_unit.check(self, self.shell, but={"connect to 203.0.113.1"})
         note("container, refused from inside adit.service", f"{refused} attempts")
@@ -104,7 +104,7 @@ class Everyday(Contained):
         self.flows("/state/update", {"poses": [POSE]})
         self.flows("/map/update", messages.map_update(maps.made_grid(20, 20), "r1", time.time(), JSON))
 
-    def test_a_state_folder_that_cannot_be_written_to(self):
+    def test_unwritable_state_directory(self):
         """A file system of its own, that is read-only as after an error of the disk, then full, with room in the ledger's files."""
         self.shell(f"""systemctl stop adit.service; cp -a {STATE} /run/was
             mount -t tmpfs -o size=32m,mode=0700 tmpfs {STATE}; cp -aT /run/was {STATE}; mount -o remount,ro {STATE}
@@ -144,7 +144,7 @@ class Everyday(Contained):
         each = all(any(light in lit for lit in seen) and any(light not in lit for lit in seen) for light in lights)
         return each and all("health" in lit for lit in seen)
 
-    def test_exchanged_cables_show_on_the_lights_and_heal_by_themselves(self):
+    def test_exchanged_cables_show_on_the_lights_and_heal(self):
         """No page is to be had then, and nothing else tells whoever stands at the box."""
         self.wait_for_lights()
         self.stage.network.exchange_cables()
@@ -186,7 +186,7 @@ class Everyday(Contained):
         held = self.box.ask("GET /adit/settings", session, token=None)[1]
         self.asked("POST /adit/settings", {"settings": {**held["settings"], "clock": clock}, "base": held["tag"]})
 
-    def test_ntp_is_spoken_on_team0_alone_where_the_settings_ask_for_it(self):
+    def test_ntp_runs_only_on_team0_and_only_by_setting(self):
         """Nobody in a container may set the clock: all else is as on a box."""
         network = self.stage.network
         for unit in ("adit-clock.service", "adit-clock.path"):
@@ -242,7 +242,7 @@ class Everyday(Contained):
         self.addCleanup(server.stop)
         return server
 
-    def test_a_lease_of_a_real_dhcp_server_is_taken_renewed_lost_and_taken_again(self):
+    def test_dhcp_lease_is_obtained_renewed_lost_and_obtained_again(self):
         network = self.stage.network
         ear = eavesdropper.Eavesdropper(network, network.post)
         self.addCleanup(ear.close)
@@ -314,7 +314,7 @@ class Everyday(Contained):
         self.asked("POST /adit/spare/resume")
         programs.wait_until(self.box.knows_the_run, "it to go on", 60)
 
-    def test_settings_reports_and_journal_are_kept_over_a_start(self):
+    def test_settings_reports_and_journal_survive_a_boot(self):
         self.box.stop()
         self.stage.network.cable_the_box()
         self.box.start()

@@ -28,16 +28,16 @@ class FirstStart(Story):
         self.assertEqual(got, status, said)
         return said
 
-    def test_it_answers_at_the_factory_address_and_asks_for_a_first_password(self):
+    def test_it_answers_at_the_factory_address_and_wants_a_password(self):
         self.box.wait_for_answer()
         note("first start, from power to the first answer on team0", self.box.start_took)
         said = self.asked("GET /adit/session")
         self.assertEqual((said["role"], said["first_start"], said["set_up_open"]), (None, True, False))
 
-    def test_the_lights_say_that_somebody_has_to_set_it_up(self):
+    def test_lights_show_that_set_up_is_needed(self):
         leds.wait_for(self.box, health="on", scoring="fast", mapping="fast", attention="fast")
 
-    def test_the_root_is_read_only_and_the_state_has_the_rest_of_the_card(self):
+    def test_root_is_read_only_and_the_state_fills_the_card(self):
         self.box.console.wait_for_shell()
         self.assertNotEqual(self.box.console.run("touch /etc/x")[0], 0)
         self.assertNotEqual(self.box.console.run("touch /usr/x")[0], 0)
@@ -48,7 +48,7 @@ class FirstStart(Story):
         self.box.console.ask("systemctl start adit-trim.service")
         self.assertRegex(self.box.console.ask("journalctl -q -o cat -u adit-trim.service"), r"/var: \d+ bytes .*trimmed")
 
-    def test_without_the_button_nobody_sets_a_password_who_has_not_the_code(self):
+    def test_without_the_button_a_password_needs_the_code(self):
         self.asked("POST /adit/password", {"role": "operator", "password": PASSWORD}, status=403)
         self.asked("POST /adit/password", {"role": "operator", "code": "00000000", "password": PASSWORD}, status=403)
 
@@ -57,7 +57,7 @@ class FirstStart(Story):
         self.box.press(4.5)
         self.box.wait_until(lambda: self.asked("GET /adit/session")["set_up_open"], "set-up to be open")
 
-    def test_three_seconds_of_the_button_open_set_up_and_a_password_is_set(self):
+    def test_press_of_three_seconds_opens_set_up(self):
         self.open_set_up()
         self.asked("POST /adit/password", {"role": "operator", "password": PASSWORD})
         said = self.asked("GET /adit/session")
@@ -82,7 +82,7 @@ class FirstStart(Story):
             self.asked("GET /adit/settings")["settings"]["command_post"]["scoring"]["address"], hosts.SCORING
         )
 
-    def test_darpa0_gets_an_address_that_stays_once_it_is_confirmed(self):
+    def test_darpa0_keeps_a_confirmed_address(self):
         self.asked("POST /adit/network", stage.NUMBERS)
         self.box.wait_until(lambda: self.asked("GET /adit/network")["pending"], "the change to be tried")
         self.box.wait_until(lambda: self.has_address(hosts.BOX_DARPA), "darpa0 to have its address")
@@ -99,10 +99,10 @@ class FirstStart(Story):
     def has_address(self, address):
         return address in [each["address"] for each in self.asked("GET /adit/network")["command_post"]["addresses"]]
 
-    def test_the_lights_say_that_all_is_well(self):
+    def test_lights_show_that_all_is_well(self):
         leds.wait_for(self.box, health="on", scoring="on", attention="off")
 
-    def test_a_run_scores_and_nothing_that_reaches_the_command_post_breaks_the_icd(self):
+    def test_run_scores_and_no_message_violates_the_icd(self):
         status, said = self.box.ask("POST /api/artifact_reports", body=REPORT, timeout=60)  # a true one
         self.assertEqual((status, said["score_change"]), (201, 1), said)
         status, said = self.stage.robots(20, "--robots", "2", "--seed", "7")
@@ -119,16 +119,16 @@ class FirstStart(Story):
 
         self.box.wait_until(flash, "all lights to flash after a press")
 
-    def test_where_the_kernel_lies_is_shown_to_nobody(self):
+    def test_kernel_addresses_are_hidden(self):
         self.assertEqual(self.box.console.ask("cat /proc/sys/kernel/kptr_restrict").split(), ["2"])
 
-    def test_memory_that_is_in_use(self):
+    def test_memory_in_use_is_bounded(self):
         self.box.wait_until(lambda: self.box.console.run("systemctl is-active rauc.service")[0] != 0, "RAUC's service to be gone")
         used = self.box.console.ask("free -m | grep Mem").split()[2]
         note("RAM in use, after a run", f"{used} MB of {self.box.memory}")
         self.assertLessEqual(int(used), 64)
 
-    def test_the_team_finds_it_by_name_and_the_command_post_does_not(self):
+    def test_only_the_team_finds_it_by_name(self):
         network = self.stage.network
         self.box.wait_until(
             lambda: network.box_address in mdns_addresses(network, network.team, network.team_address),
@@ -136,14 +136,14 @@ class FirstStart(Story):
         )
         self.assertEqual(mdns_addresses(network, network.post, hosts.SCORING), set())
 
-    def test_nothing_listens_to_the_command_post(self):
+    def test_no_port_is_open_to_the_command_post(self):
         network = self.stage.network
         self.assertEqual(
             network.open_ports(network.team, network.box_address, [22, 80, 8000], 60), [80, 8000], "this way it does"
         )
         self.assertEqual(network.open_ports(network.post, hosts.BOX_DARPA, PORTS_NOBODY_MAY_OPEN), [])
 
-    def test_nor_is_the_teams_side_to_be_had_by_the_command_posts_cable(self):
+    def test_team_address_is_unreachable_from_the_command_post(self):
         network = self.stage.network
         hosts.ip("-n", network.post, "route", "add", network.box_address, "via", hosts.BOX_DARPA)
         self.assertEqual(network.open_ports(network.post, network.box_address, [80, 8000]), [])
@@ -162,11 +162,11 @@ class FirstStart(Story):
         )
         note("healed after the cable was put back in", self.box.took(began))
 
-    def test_all_this_time_darpa0_heard_arp_and_tcp_to_the_endpoints_alone(self):
+    def test_darpa0_carried_only_arp_and_tcp_to_the_endpoints(self):
         self.assertGreater(self.stage.ear.count(), 100)
         self.assertEqual(self.stage.ear.strangers(*stage.ENDPOINTS), [])
 
-    def test_ten_seconds_of_the_button_forget_all_but_the_reports(self):
+    def test_press_of_ten_seconds_resets_all_but_the_reports(self):
         reports = [(each["number"], each["state"]) for each in self.box.reports()]
         self.assertGreater(len(reports), 0)
         self.box.press(12.0)

@@ -18,12 +18,12 @@ class Greeting(Story):
         stage.disk.put("adit/secrets/label.code", CODE + "\n")
         stage.box.power_on()
 
-    def test_the_console_shows_where_the_page_is_and_the_code(self):
+    def test_console_shows_the_address_of_the_page_and_the_code(self):
         shown = self.box.console.wait_for(rb"no password is set yet.*?asks for: (\d+)\s", 400)  # to its last digit
         self.assertIn(f"http://{cables.FACTORY_ADDRESS}".encode(), shown[0])
         self.assertEqual(shown[1].decode(), CODE)
 
-    def test_that_code_sets_the_first_password_there(self):
+    def test_code_sets_the_first_password(self):
         asked = lambda body: self.box.insist("POST /adit/password", {"Content-Type": "application/json"}, body, token=None, timeout=20)
         self.assertEqual(asked({"role": "operator", "code": "12345678", "password": PASSWORD})[0], 403)
         self.assertEqual(asked({"role": "operator", "code": CODE, "password": PASSWORD})[0], 200)

@@ -93,7 +93,7 @@ class Overloaded(Contained):
         self.addCleanup(self.box.run, "systemctl", "kill", "-s", "KILL", "crowd")
         return count
 
-    def test_nothing_dies_and_nothing_pretends(self):
+    def test_no_process_ends_and_no_light_is_wrong(self):
         before, robots = self.ends(), self.explores()
         programs.wait_until(lambda: len(self.box.ask("GET /adit/run")[1]["activities"]) >= 8, "all robots to be heard", 60)
         count, operator = self.crowd(), Operator(self.stage)

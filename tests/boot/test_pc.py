@@ -39,11 +39,11 @@ class Pc(Updating, Story):
         self.box.console.wait_for_shell()
         self.assertEqual(self.box.console.ask("ls /sys/class/net").split(), ["darpa0", "lo", "team0"])
 
-    def test_from_inside_its_unit_it_may_do_no_more_than_it_must(self):
+    def test_sandbox_of_the_unit_holds(self):
         refused = inside_unit.check(self, self.box.console.ask)
         note("PC: refused from inside adit.service", f"{refused} attempts")
 
-    def test_its_memory_is_bounded_as_its_board_says(self):
+    def test_memory_has_the_limit_of_the_board(self):
         """In the kernel, not only in the unit."""
         ask = self.box.console.ask
         most = int(ask("cat /sys/fs/cgroup/system.slice/adit.service/memory.max"))
@@ -52,7 +52,7 @@ class Pc(Updating, Story):
         self.assertAlmostEqual(most / total, int(said[1]) / 100, delta=0.05)
         note("PC: adit.service, of its memory", f"{most >> 20} of {total >> 20} MiB")
 
-    def test_no_update_is_installed_while_two_disks_hold_an_adit(self):
+    def test_update_is_rejected_while_two_disks_hold_an_adit(self):
         self.box.plug_stick(boards.PC.image())
         self.box.wait_until(lambda: self.box.console.run(f"cat {NOTICE}")[0] == 0, "it to be noticed")
         self.box.wait_until(lambda: self.stands()["managed"], "adit-update to have told what runs")
@@ -69,7 +69,7 @@ class Pc(Updating, Story):
         counts = self.counts()
         self.assertEqual((counts["ORDER"], counts["B_OK"], counts["B_TRY"]), ("B A", "1", "0"))
 
-    def test_grub_counts_a_start_of_it(self):
+    def test_grub_counts_its_start(self):
         self.restart()
         self.box.console.wait_for(rb"Adit: slot b", 180)
         self.box.wait_until(lambda: self.stands()["slot"] == "B", "slot B to answer", 300)

@@ -40,7 +40,7 @@ class PowerCuts(Story):
         )
         cls.chance = dice(SEED)
 
-    def test_a_cut_in_the_first_start_leaves_a_box_that_starts(self):
+    def test_box_starts_after_a_cut_in_the_first_start(self):
         lost = 0
         for after in (4.0, 8.0):
             self.box.power_on()
@@ -80,7 +80,7 @@ class PowerCuts(Story):
             f"starts of {min(starts):.1f} to {max(starts):.1f} s of the host's processors",
         )
 
-    def test_what_the_journal_has_on_the_disk_at_once_is_kept(self):
+    def test_critical_journal_records_survive_a_cut(self):
         """Of what is critical that is promised, of the rest but for its last seconds (journald.conf.d). Here the rest would be written after
         an hour. journalctl shows a record before it is on the disk: what the disk was told is looked at."""
         count, mark = "journalctl --list-boots -q --no-pager | wc -l", "Here it was"

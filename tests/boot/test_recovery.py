@@ -38,13 +38,13 @@ class Recovery(Story):
         type(self).before, type(self).when = self.pid(), self.box.moment()
         self.box.console.type(f"kill -{how} {self.before}")
 
-    def test_a_card_that_was_prepared_in_a_reader_sets_the_box_up(self):
+    def test_prepared_card_sets_the_box_up(self):
         self.stage.start().began()
         note("first start of a prepared card, from power to the first answer on team0", self.box.start_took)
         self.box.console.wait_for_shell()
         self.assertEqual(self.box.ask("GET /adit/settings")[1]["tokens"]["scoring"], True)
 
-    def test_after_a_kill_the_lights_are_dark_or_say_fault(self):
+    def test_lights_are_dark_or_show_a_fault_after_a_kill(self):
         leds.wait_for(self.box, health="on", scoring="on", mapping="on")
         self.box.console.ask(f"mkdir {LATER} && printf '[Service]\\nRestartSec=600\\n' >{LATER}/later.conf")
         self.box.console.reload()
@@ -70,19 +70,19 @@ class Recovery(Story):
         self.box.console.type("echo c > /proc/sysrq-trigger")
         self.restarts("a kernel panic")
 
-    def test_and_what_that_start_cost(self):
+    def test_and_that_start_stays_within_its_figures(self):
         self.box.console.wait_for_shell()
         figures.of_a_later_start(self.box)
         self.assertLessEqual(figures.memory_in_use(self.box), 64)
 
-    def test_what_has_to_be_there_before_any_address_was_there_before_systemd(self):
+    def test_firewall_and_addresses_are_set_before_systemd(self):
         for unit in "adit-nftables", "adit-network-start":
             said = self.box.console.ask(f"systemctl show -P ConditionResult -P ActiveState {unit}").split()
             self.assertEqual(said, ["inactive", "no"])
         self.assertIn("chain from_team", self.box.console.ask("nft list table inet adit"))
         self.box.console.ask("systemctl is-active adit-devices.service; test -e /dev/watchdog0 -a -e /dev/disk/by-partlabel/adit-env")
 
-    def test_no_unit_may_more_than_it_needs(self):
+    def test_units_have_only_the_rights_they_need(self):
         seen = list(figures.exposures(self.box))
         self.assertIn("adit.service", [unit for unit, *_ in seen])
         self.assertEqual([], [each for each in seen if each[1] > each[2]])
@@ -92,7 +92,7 @@ class Recovery(Story):
         self.box.console.type("echo c > /proc/sysrq-trigger")
         self.restarts("a kernel that hangs")
 
-    def test_a_slot_whose_initrd_hangs_is_reset_by_the_hardware_watchdog_and_left(self):
+    def test_hanging_initrd_is_reset_by_the_watchdog_and_its_slot_left(self):
         self.box.console.wait_for_shell()
         for command in HANG:
             self.box.console.ask(command)
@@ -102,7 +102,7 @@ class Recovery(Story):
         self.box.console.wait_for(rb"Adit: slot b.*Starting kernel.*Adit: slot a", 400, heard)
         self.box.wait_until(self.box.answers, "the good slot to answer", 400)
 
-    def test_a_start_that_systemd_gives_up_is_tried_again(self):
+    def test_boot_that_systemd_gives_up_is_retried(self):
         self.box.cut_power()
         self.stage.disk.put("adit/boot.env", "adit_cmdline=adit.console systemd.unit=emergency.target\n")
         self.box.power_on()

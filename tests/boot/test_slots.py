@@ -198,7 +198,7 @@ class Slots:
     def starts(self, times):
         return "".join(self.machine.start() for _ in range(times))
 
-    def test_a_proven_slot_has_ten_tries_and_then_the_other_is_started(self):
+    def test_proven_slot_has_ten_tries_before_the_other(self):
         self.machine.rauc("a", primary=True)
         self.machine.rauc("a", primary=False)
         self.assertEqual(self.starts(1), "a")
@@ -222,14 +222,14 @@ class Slots:
         # Where the only slot has no try left it is tried again at once, by one more start of the boot loader.
         self.assertEqual([self.machine.start() for _ in range(5)], ["a", "a", "a", AGAIN, "a"])
 
-    def test_a_good_slot_decides_by_its_own_script_and_one_that_hangs_is_left_until_the_slot_is_good_again(self):
+    def test_good_slot_runs_its_script_unless_it_hung(self):
         self.machine.fill("a", HANGS)
         self.machine.spend("b", 8)
         for _ in range(2):
             self.machine.rauc("a", primary=False)
             self.assertEqual(self.starts(2), "xa")
 
-    def test_a_script_that_is_broken_ends_in_another_start_without_it(self):
+    def test_broken_script_is_skipped_at_the_next_start(self):
         self.machine.spend("b", 8)
         for decision in BROKEN:
             with self.subTest(decision[:20]):
@@ -237,7 +237,7 @@ class Slots:
                 self.machine.rauc("a", primary=False)
                 self.assertEqual([self.machine.start() for _ in range(2)], [AGAIN, "a"])
 
-    def test_the_script_of_a_slot_that_is_written_or_on_trial_does_not_run(self):
+    def test_script_of_a_slot_in_writing_or_on_trial_does_not_run(self):
         self.machine.fill("b", HANGS)
         self.machine.rauc("b", primary=True)
         self.machine.rauc("b", primary=False)
@@ -247,7 +247,7 @@ class Slots:
         self.machine.rauc("b", primary=True)
         self.assertEqual(self.machine.start(), "b")
 
-    def test_an_environment_that_is_none_starts_the_first_without_the_slots_scripts(self):
+    def test_invalid_environment_starts_the_first_slot_without_scripts(self):
         for slot in "ab":
             self.machine.fill(slot, HANGS)
         self.machine.lose(*self.sectors)
@@ -279,12 +279,12 @@ class BoardsLoaders(unittest.TestCase):
         machine.spend("a", 8)
         self.assertEqual("".join(machine.start() for _ in starts), starts)
 
-    def test_what_mainline_sets_starts_the_slots_and_counts(self):
+    def test_mainline_environment_starts_the_slots_and_counts(self):
         for board in "rock-pi-e", "espressobin":
             with self.subTest(board):
                 self.start_with(boards.environment_of(board), "aab")
 
-    def test_what_the_readme_has_an_espressobin_of_the_factory_told_starts_the_slots_and_counts(self):
+    def test_espressobin_readme_starts_the_slots_and_counts(self):
         text = (TOP / "board/espressobin/README.md").read_text()
         told = re.findall(r"^setenv (\w+) (?:'(.*)'|(\S+))$", text, re.M)
         self.assertEqual({name for name, *_ in told}, {"bootcmd", "scriptaddr", "kernel_addr_r", "ramdisk_addr_r", "fdt_addr_r"})
@@ -294,7 +294,7 @@ class BoardsLoaders(unittest.TestCase):
 class Grub(Slots, unittest.TestCase):
     board, kind, sectors, one_used = boards.PC, Pc, (1, 3), b"A_TRY=1"
 
-    def test_where_the_first_counts_are_lost_it_goes_on_by_the_second(self):
+    def test_second_copy_of_the_counts_is_used_if_the_first_is_lost(self):
         """And counts in them: one that does not come up is not started for ever."""
         self.machine.rauc("b", primary=True)
         self.machine.rauc("b", primary=False)

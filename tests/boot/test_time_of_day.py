@@ -37,7 +37,7 @@ class TimeOfDay(Dials, Story):
         self.box.wait_until(lambda: len(self.stage.post.requests("/state/update")) > before, "the state to arrive")
         return self.stage.post.requests("/state/update")[-1]["message"]["header"]["stamp"]
 
-    def test_the_command_posts_date_is_taken_where_nobody_knows_better(self):
+    def test_date_of_the_command_post_sets_an_unset_clock(self):
         self.stage.start()
         self.assertGreater(self.box.run_view()["now"], EARLIEST, "its battery is empty: it began in 2020, or as it was built")
         self.stage.began()
@@ -53,12 +53,12 @@ class TimeOfDay(Dials, Story):
         self.assertAlmostEqual(stamp - self.stamp, 0, delta=600, msg="no stamp goes by it")
         type(self).stamp = stamp
 
-    def test_no_command_post_overrules_him(self):
+    def test_command_post_does_not_overrule_the_operator(self):
         self.stage.began()
         self.assertEqual(self.clock()["source"], "operator")
         self.assert_close(self.clock()["now"], DAYS)
 
-    def test_an_ntp_server_of_the_team_sets_and_keeps_it(self):
+    def test_ntp_server_of_the_team_sets_and_keeps_it(self):
         self.server = ntp.Server(self.stage.network.team, self.stage.network.team_address, ahead=100 * 86400.0)
         type(self).addClassCleanup(self.server.close)
         self.box.save(lambda settings: settings.update(clock={"ntp_server": self.stage.network.team_address, "serve_ntp": True}))
@@ -70,7 +70,7 @@ class TimeOfDay(Dials, Story):
         status, said = self.box.ask("POST /adit/clock", body={"time": time.time()})
         self.assertEqual(status, 409, said)
 
-    def test_and_the_team_has_its_time_from_the_box(self):
+    def test_box_serves_its_time_to_the_team(self):
         # As soon as chronyd itself has heard the server again: until then it goes by what was set (10).
         told = []
         self.box.wait_until(lambda: told.append(ntp.asked_of(self.stage.network.team, self.stage.network.box_address))
@@ -79,7 +79,7 @@ class TimeOfDay(Dials, Story):
         self.assert_close(told[1], 100 * 86400.0)
         self.assertIsNone(ntp.asked_of(self.stage.network.post, hosts.BOX_DARPA), "the Command Post's side")
 
-    def test_after_a_power_cut_it_goes_on_from_the_last_time_known(self):
+    def test_clock_continues_from_the_last_known_time_after_a_power_cut(self):
         time.sleep(11)  # it is kept every ten seconds
         known = self.box.run_view()["now"]
         self.stage.post.stop()
@@ -93,5 +93,5 @@ class TimeOfDay(Dials, Story):
         self.assertIn("last_known", log)
         self.assertLess(log.index("last_known"), log.index("=ntp"))
 
-    def test_units_are_as_they_should_be(self):
+    def test_units_are_in_their_expected_states(self):
         self.assertEqual(self.box.console.ask("systemctl --failed --plain --no-legend --no-pager"), "")

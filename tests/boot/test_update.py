@@ -39,14 +39,14 @@ class Updates(Updating, Story):
         status, said = self.box.ask("POST /api/artifact_reports", body=REPORT, timeout=60)
         self.assertEqual(status, 201, said)
 
-    def test_a_newer_one_on_a_stick_is_offered_and_not_installed_by_itself(self):
+    def test_newer_version_on_a_stick_is_offered_but_not_installed(self):
         newer = bundle(self.folder, NEWER)
         self.box.plug_stick(stick(self.folder, newer))
         self.box.wait_until(lambda: self.stands()["stick"], "what is on the stick to be offered")
         self.assertEqual(self.stands()["stick"], {"name": newer.name, "version": NEWER})
         self.assertEqual((self.stands()["doing"], self.stands()["last"]), (None, None))
 
-    def test_a_second_stick_is_looked_at_beside_it(self):
+    def test_second_stick_is_read_beside_it(self):
         folder = self.folder / "second"
         folder.mkdir()
         self.box.plug_stick(stick(folder, bundle(folder, EVEN_NEWER)), "second")
@@ -58,7 +58,7 @@ class Updates(Updating, Story):
         self.box.pull_stick("second")
         self.box.wait_until(lambda: self.offered() == NEWER, "what is on the first one to be offered again")
 
-    def test_it_is_installed_in_the_other_slot_and_stays_once_it_was_healthy(self):
+    def test_healthy_update_in_the_other_slot_stays(self):
         self.install(lambda: self.assertEqual(self.box.ask("POST /adit/update/stick", body={})[0], 200), NEWER)
         self.box.pull_stick()
         self.box.wait_until(lambda: not self.stands()["stick"], "the stick to be gone")
@@ -66,11 +66,11 @@ class Updates(Updating, Story):
         self.settled("good", NEWER, within=600)
         self.assertEqual((self.stands()["version"], self.stands()["slot"]), (NEWER, "B"))
 
-    def test_settings_tokens_and_reports_came_along(self):
+    def test_settings_tokens_and_reports_are_kept(self):
         self.assertEqual([each["state"] for each in self.box.reports()], ["answered"])
         self.stage.began()
 
-    def test_one_that_does_not_come_up_is_left_after_three_starts(self):
+    def test_update_that_does_not_start_is_left_after_three_tries(self):
         broken = bundle(self.folder, BROKEN, without="usr/lib/systemd/systemd")
         took = self.install(lambda: self.send(broken), BROKEN)
         note(f"update of {broken.stat().st_size / 1e6:.0f} MB sent and installed", took)
@@ -82,6 +82,6 @@ class Updates(Updating, Story):
         order = self.box.console.ask("fw_printenv -n BOOT_ORDER")
         self.assertEqual(order.split(), ["B"], "it is never started again")
 
-    def test_and_all_is_as_it_was(self):
+    def test_reports_are_unchanged_after_it(self):
         self.assertEqual([each["state"] for each in self.box.reports()], ["answered"])
         self.stage.began()

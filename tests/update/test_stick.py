@@ -11,7 +11,7 @@ class AStick(OnABox):
     def put(self, name, *words, stick="sda1", **more):
         shutil.copy(self.bundles.make(*words, **more), self.box.folder / "sticks" / stick / name)
 
-    def test_with_updates_offers_the_newest_that_fits(self):
+    def test_newest_fitting_update_is_offered(self):
         self.put("adit-one.raucb", "0.2.0")
         self.put("adit-two.raucb", "0.10.0")
         self.put("adit-three.raucb", "9.0.0", board="adit-other")
@@ -25,14 +25,14 @@ class AStick(OnABox):
         self.assertEqual((status["last"]["stage"], status["last"]["version"], status["refusal"]), ("installed", "0.10.0", ""))
         self.assertTrue((self.box.folder / "sticks/sda1/adit-two.raucb").exists())
 
-    def test_with_many_is_read_from_the_newest_of_this_board_on(self):
+    def test_newest_updates_of_this_board_are_read_first(self):
         for minor in range(2, 12):
             self.put(f"{raucs.BOARD}-0.{minor}.0.raucb", f"0.{minor}.0")
         for number in range(8):
             (self.box.folder / f"sticks/sda1/adit-a-board-9.{number}.0.raucb").write_bytes(b"of another board")
         self.assertEqual(self.box.update()["stick"], {"name": f"{raucs.BOARD}-0.11.0.raucb", "version": "0.11.0"})
 
-    def test_beside_another_and_with_two_partitions_is_looked_at_like_one(self):
+    def test_several_sticks_and_partitions_are_read_like_one(self):
         for stick in ("sda2", "sdb1"):
             (self.box.folder / "sticks" / stick).mkdir()
         self.put("adit-one.raucb", "0.2.0")
@@ -42,7 +42,7 @@ class AStick(OnABox):
         self.box.ask("stick")
         self.assertEqual(self.box.update()["last"]["version"], "0.3.0", "of two files that are called alike, the one offered")
 
-    def test_with_a_name_that_is_no_text_says_so(self):
+    def test_file_name_outside_ascii_is_reported(self):
         shutil.copy(self.newer, os.fsencode(self.box.folder / "sticks/sda1") + b"/adit-\xff.raucb")
         status = self.box.update()
         self.assertIsNone(status["stick"])
@@ -50,12 +50,12 @@ class AStick(OnABox):
         self.put("adit-good.raucb", "0.3.0")
         self.assertEqual(self.box.update()["stick"]["version"], "0.3.0")
 
-    def test_that_is_full_of_files_says_so(self):
+    def test_stick_full_of_files_is_reported(self):
         for number in range(4097):
             (self.box.folder / f"sticks/sda1/photo-{number}").touch()
         self.assertEqual(self.box.update()["stick_trouble"], "sda1: holds more than 4096 files")
 
-    def test_without_one_that_fits_says_why(self):
+    def test_stick_without_a_fitting_update_is_explained(self):
         self.put("adit-old.raucb", "0.0.1")
         status = self.box.update()
         self.assertIsNone(status["stick"])
@@ -64,6 +64,6 @@ class AStick(OnABox):
         self.expect_refused(self.box.update(), "the update is older")
         self.expect_untouched()
 
-    def test_that_is_gone_is_said(self):
+    def test_removed_stick_is_reported(self):
         self.box.ask("stick")
         self.expect_refused(self.box.update(), "no stick has an update")

@@ -31,14 +31,14 @@ class Stray(OnB):
         super().setUp()
         self.back_to_a()
 
-    def test_it_is_told_from_start_to_start_until_the_operator_decides(self):
+    def test_unexpected_slot_is_reported_at_each_start_until_the_operator_decides(self):
         for _ in range(2):
             status = self.box.update()
             self.assertTrue(status["stray"])
             self.assertEqual((status["trial"], status["last"]["stage"]), (False, "good"))
             self.good()  # this slot is healthy too, and its tries are counted from none again
 
-    def test_the_operator_goes_back_and_the_slot_has_all_its_tries(self):
+    def test_going_back_gives_the_slot_all_its_tries(self):
         self.box.ask("back")
         self.assertEqual(self.box.update()["refusal"], "")
         self.assertEqual(self.box.calls.read_text().splitlines()[-1], "reboot")
@@ -47,7 +47,7 @@ class Stray(OnB):
         self.runs("B", "0.2.0")
         self.assertEqual(self.box.update()["stray"], "")
 
-    def test_or_stays_and_nothing_more_is_told_of_it(self):
+    def test_staying_ends_the_report(self):
         self.box.ask("stay")
         status = self.box.update()
         self.assertEqual((status["stray"], status["refusal"]), ("", ""))
@@ -57,14 +57,14 @@ class Stray(OnB):
         self.runs("B", "0.2.0")  # and now that one is the stray
         self.assertTrue(self.box.update()["stray"])
 
-    def test_where_the_proven_slot_runs_there_is_nowhere_to_go_back_to(self):
+    def test_expected_slot_cannot_go_back(self):
         self.runs("B", "0.2.0")
         for what in "back", "stay":
             self.box.ask(what)
             self.assertIn("no unexpected slot", self.box.update()["refusal"])
         self.assertNotIn("reboot", self.box.calls.read_text())
 
-    def test_while_the_record_cannot_be_read_it_is_told_until_the_operator_decides(self):
+    def test_unreadable_record_is_reported_until_the_operator_decides(self):
         (self.box.folder / "state/proven.json").write_text('{"format": 1, "slot": 7')
         self.good()  # which does not make it the good one
         self.assertIn("may not be the last good one: cannot read the slot that was good last", self.box.update()["stray"])
@@ -90,20 +90,20 @@ class Overwritten(OnB):
         self.good()
         self.assertEqual((self.proven(), self.box.update()["stray"]), ("A", ""))
 
-    def test_by_an_update_that_is_left(self):
+    def test_update_that_is_left(self):
         self.assertEqual(self.box.install(self.bundles.make("0.3.0"))["stray"], "")
         self.box.began_before()
         self.back_to_a()
         self.assertEqual(self.box.update()["last"]["stage"], "left")
         self.expect_nowhere_to_go_back_to()
 
-    def test_by_one_that_the_power_cut_off(self):
+    def test_update_cut_off_by_power(self):
         self.cut_off()
         self.runs("A", "0.1.0")
         self.assertEqual(self.box.update()["last"]["stage"], "interrupted")
         self.expect_nowhere_to_go_back_to()
 
-    def test_by_one_that_proves_good(self):
+    def test_update_that_proves_good(self):
         self.box.install(self.bundles.make("0.3.0"))
         self.box.began_before()
         self.runs("B", "0.3.0")
@@ -119,7 +119,7 @@ class NeverWritten(OnB):
         configuration.write_text(f"{configuration.read_text()}\n[handlers]\npre-install={no}\n")
         self.box.start("B")
 
-    def test_a_slot_that_an_update_did_not_reach_is_no_trial_of_it(self):
+    def test_slot_that_an_update_did_not_reach_is_not_on_trial(self):
         self.refuse_all()
         self.assertEqual(self.box.install(self.bundles.make("0.3.0"))["last"]["stage"], "failed")
         self.box.began_before()
@@ -131,7 +131,7 @@ class NeverWritten(OnB):
             self.good()
             self.assertEqual(self.proven(), "B")
 
-    def test_nor_is_another_that_waits_there_for_a_restart_taken_for_it(self):
+    def test_earlier_update_awaiting_a_restart_is_not_taken_for_a_failed_one(self):
         self.assertEqual(self.box.install(self.bundles.make("0.3.0"))["last"]["stage"], "installed")
         self.refuse_all()
         refused = self.box.install(self.bundles.make("0.4.0"))

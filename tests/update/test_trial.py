@@ -29,7 +29,7 @@ class OnTrial(OnABox):
         since = int((time.clock_gettime(time.CLOCK_MONOTONIC) - seconds) * 1e6)
         self.box.properties.write_text(f"ActiveState=active\nActiveEnterTimestampMonotonic={since}\n")
 
-    def test_the_new_slot_is_good_after_a_minute_of_health(self):
+    def test_new_slot_is_good_after_a_minute_of_health(self):
         self.box.start("B")
         self.set("BOOT_B_LEFT", "2")  # the boot loader counts
         self.assertTrue(self.box.update()["trial"])
@@ -44,14 +44,14 @@ class OnTrial(OnABox):
         self.assertEqual((status["trial"], status["last"]["stage"], status["last"]["version"]), (False, "good", "0.2.0"))
         self.assertNotIn("reboot", self.box.calls.read_text())
 
-    def test_a_slot_that_does_not_come_up_healthy_in_time_ends_in_a_restart(self):
+    def test_late_slot_ends_in_a_restart(self):
         self.box.start("B")
         self.ready_for(5)
         self.assertTrue(self.watch(60, "--within", "3"))
         self.assertEqual(self.box.calls.read_text().splitlines()[-1], "reboot")
         self.assertEqual(self.box.update()["last"]["stage"], "installed")
 
-    def test_nothing_else_is_installed_meanwhile(self):
+    def test_another_update_is_rejected_during_a_trial(self):
         self.box.start("B")
         status = self.box.install(self.bundles.make("0.3.0"))
         self.expect_refused(status, "0.2.0 is on trial")
@@ -60,7 +60,7 @@ class OnTrial(OnABox):
         self.set("BOOT_B_LEFT", "0")
         self.runs("A", "0.1.0")
 
-    def test_a_slot_that_was_left_is_not_tried_again_and_says_so(self):
+    def test_left_slot_is_reported_and_not_tried_again(self):
         self.is_left()
         for _ in range(2):  # and says so from then on
             status = self.box.update()
@@ -70,7 +70,7 @@ class OnTrial(OnABox):
         self.assertEqual(self.box.install(self.newer)["last"]["stage"], "installed")  # the operator may try it again
         self.assertEqual(self.box.boot_loader(), {"BOOT_ORDER": "B A", "BOOT_A_LEFT": raucs.ON_TRIAL, "BOOT_B_LEFT": raucs.ON_TRIAL})
 
-    def test_a_slot_that_was_left_and_runs_all_the_same_is_on_trial_again(self):
+    def test_left_slot_that_runs_is_on_trial_again(self):
         """The boot loader's counts were lost, or somebody at the console has it so."""
         self.is_left()
         self.assertEqual(self.box.update()["last"]["stage"], "left")
@@ -85,7 +85,7 @@ class OnTrial(OnABox):
         self.assertEqual(self.box.update()["last"]["stage"], "left")
         self.assertEqual(self.box.boot_loader()["BOOT_ORDER"], "A")
 
-    def test_a_slot_that_was_good_once_is_good_as_soon_as_the_service_is_ready(self):
+    def test_proven_slot_is_good_once_the_service_is_ready(self):
         self.box.start("B")
         self.ready_for(60)
         self.assertTrue(self.watch(60))
@@ -101,7 +101,7 @@ class OnTrial(OnABox):
 
 
 class ACutOfThePower(OnABox):
-    def test_in_the_middle_of_the_writing_leaves_what_runs_and_what_is_next(self):
+    def test_cut_while_writing_keeps_the_running_and_the_next_slot(self):
         self.cut_off()
         self.box.start("A")
         status = self.box.update()
@@ -112,7 +112,7 @@ class ACutOfThePower(OnABox):
         self.assertEqual((loader["BOOT_ORDER"].split()[0], loader["BOOT_A_LEFT"], loader["BOOT_B_LEFT"]), ("A", raucs.PROVEN, "0"))
         self.assertEqual(self.box.install(self.newer)["last"]["stage"], "installed")
 
-    def test_after_its_end_and_before_the_note_of_it_leaves_the_slot_on_trial(self):
+    def test_cut_before_the_record_leaves_the_slot_on_trial(self):
         self.box.install(self.newer)
         for stage, why in (("installing", ""), ("interrupted", "install it again"), ("failed", "took longer")):
             self.box.began_before(stage=stage, why=why)
@@ -123,7 +123,7 @@ class ACutOfThePower(OnABox):
 
 
 class Busy(OnABox):
-    def test_an_answer_that_lacks_a_part_as_rauc_was_at_work_is_none(self):
+    def test_incomplete_answer_of_a_busy_rauc_is_ignored(self):
         """RAUC 1.8 ends well where it only warns: its work ended after it was asked what is next, and before it was asked for the slots."""
         self.box.install(self.newer)
         path = self.box.folder / "state/last.json"
@@ -164,14 +164,14 @@ class Killed(OnABox):
         self.assertEqual((status["last"]["stage"], status["last"]["why"]), ("installed", ""))
         self.assertEqual(self.box.boot_loader()["BOOT_ORDER"], "B A")
 
-    def test_adit_update_waits_for_its_end_once_it_is_restarted(self):
+    def test_restarted_adit_update_waits_for_rauc(self):
         with self.begin() as process:
             self.wait_for_rauc()
             process.kill()
         with self.begin() as process:
             self.expect_it_waits_for_raucs_end_and_tells_it(process)
 
-    def test_raucs_client_as_it_is_after_too_long_is_no_end_of_it(self):
+    def test_end_of_the_rauc_client_is_not_the_end_of_rauc(self):
         with self.begin() as process:
             self.wait_for_rauc()
             subprocess.run(["pkill", "-KILL", "-P", str(process.pid)], check=True)

@@ -14,12 +14,12 @@ from on_a_box import OnABox
 
 
 class Installed(OnABox):
-    def test_at_first_it_tells_what_the_box_is(self):
+    def test_status_shows_the_box_at_first(self):
         status = self.box.status()
         self.assertEqual(status["running"], {"compatible": raucs.BOARD, "version": "0.1.0", "slot": "A", "other": "B"})
         self.assertEqual((status["trouble"], status["last"]["stage"], status["stick"]), ("", "", None))
 
-    def test_a_newer_version_goes_into_the_other_slot_and_is_next(self):
+    def test_newer_version_goes_into_the_other_slot_and_is_next(self):
         status = self.box.install(self.newer)
         self.assertEqual((status["refusal"], status["last"]["stage"]), ("", "installed"), status)
         self.assertEqual((status["last"]["version"], status["last"]["slot"], status["trial"]), ("0.2.0", "B", False))
@@ -32,13 +32,13 @@ class Installed(OnABox):
         self.assertEqual(self.box.boot_loader(), {"BOOT_ORDER": "B A", "BOOT_A_LEFT": raucs.PROVEN, "BOOT_B_LEFT": raucs.ON_TRIAL})
         self.assertEqual(list((self.box.folder / "wanted").iterdir()), [])
 
-    def test_the_same_version_only_where_that_is_said(self):
+    def test_same_version_only_if_confirmed(self):
         same = self.bundles.make("0.1.0")
         self.expect_refused(self.box.install(same), "0.1.0 is already running")
         self.expect_untouched()
         self.assertEqual(self.box.install(same, again=True)["last"]["stage"], "installed")
 
-    def test_progress_is_told_while_it_goes(self):
+    def test_progress_is_shown(self):
         big = self.bundles.make("0.3.0", root_size=(4 << 20) - 4096)
         seen = set()
 
@@ -59,14 +59,14 @@ class Installed(OnABox):
         self.assertTrue(is_seen(), seen)
         self.assertEqual(self.box.status()["doing"], "")
 
-    def test_a_restart_is_systemds(self):
+    def test_restart_is_left_to_systemd(self):
         self.box.ask("restart")
         self.assertEqual(self.box.update()["doing"], "restarting")
         self.assertEqual(self.box.calls.read_text(), "reboot\n")
 
 
 class Refused(OnABox):
-    def test_a_restart_that_systemd_refuses(self):
+    def test_restart_rejected_by_systemd(self):
         raucs.script(self.box.folder / "bin/systemctl", "echo no bus >&2; exit 1\n")
         self.box.ask("restart")
         self.expect_refused(self.box.update(), "cannot restart the machine: systemctl reboot: no bus (exit status 1)")
@@ -80,7 +80,7 @@ class Refused(OnABox):
             self.expect_refused(self.box.install(self.bundles.make(version), again=True), f"the update is older ({version})")
         self.expect_untouched()
 
-    def test_a_version_that_is_none(self):
+    def test_invalid_version(self):
         self.expect_refused(self.box.install(self.bundles.make("newest")), "cannot read the update's version")
         self.expect_untouched()
 
@@ -89,7 +89,7 @@ class Refused(OnABox):
         self.expect_refused(self.box.install(other), "signature verification failed")
         self.expect_untouched()
 
-    def test_what_is_no_whole_bundle(self):
+    def test_incomplete_bundle(self):
         whole = self.newer.read_bytes()
         unsigned = self.scratch / "unsigned"
         subprocess.run(["mksquashfs", self.newer.parent / "in", unsigned, "-quiet", "-no-progress"], check=True,
@@ -108,7 +108,7 @@ class Refused(OnABox):
                 self.expect_refused(status, sentence)
                 self.expect_untouched()
 
-    def test_a_changed_byte_leaves_what_runs_and_what_is_next_alone(self):
+    def test_changed_byte_keeps_the_running_and_the_next_slot(self):
         path = self.scratch / "changed"
         content = bytearray(self.newer.read_bytes())
         content[len(content) // 2] ^= 1
@@ -119,7 +119,7 @@ class Refused(OnABox):
         self.assertEqual((now["root-a"], now["boot-a"]), (self.before["root-a"], self.before["boot-a"]))
         self.assertEqual(self.box.boot_loader()["BOOT_ORDER"], "A B")
 
-    def test_what_does_not_fit_the_slot(self):
+    def test_bundle_larger_than_the_slot(self):
         path = self.box.slots["root-b"]
         device = subprocess.run(["losetup", "--show", "-f", path], check=True, capture_output=True).stdout.decode().strip()
         self.addCleanup(subprocess.run, ["losetup", "-d", device], check=True)
@@ -133,7 +133,7 @@ class Refused(OnABox):
         loader = self.box.boot_loader()
         self.assertEqual((loader["BOOT_ORDER"].split()[0], loader["BOOT_A_LEFT"]), ("A", raucs.PROVEN))
 
-    def test_what_is_no_plain_file_is_taken_away(self):
+    def test_other_than_a_regular_file_is_deleted(self):
         path = self.box.folder / "wanted/update.raucb"
         for make, sentence in ((lambda: path.symlink_to(self.newer), "Too many levels"),
                                (lambda: os.mkfifo(path), "is not a regular file"), (path.mkdir, "is not a regular file"),
@@ -146,7 +146,7 @@ class Refused(OnABox):
         self.expect_untouched()
         self.assertTrue(self.newer.exists())
 
-    def test_a_file_that_somebody_still_writes_to(self):
+    def test_file_still_being_written(self):
         path = self.box.folder / "wanted/update.raucb"
         shutil.copy(self.newer, path)
         with open(path, "ab"):
@@ -154,13 +154,13 @@ class Refused(OnABox):
             self.expect_refused(self.box.update(), "another program is writing to it")
         self.expect_untouched()
 
-    def test_a_request_that_is_none(self):
+    def test_invalid_request(self):
         for text in ("", "{}", "[]", '{"format": 1, "nonce": "x", "what": "install", "again": false}', "x" * 100_000):
             (self.box.folder / "wanted/update.json").write_text(text)
             self.assertEqual(self.box.update()["nonce"], "")
         self.assertEqual(list((self.box.folder / "wanted").iterdir()), [])
 
-    def test_a_request_that_cannot_be_taken_away_ends_in_trouble_and_not_in_a_circle(self):
+    def test_undeletable_request_ends_in_trouble_not_in_a_loop(self):
         request = self.box.folder / "wanted/update.json"
         request.mkdir()
         subprocess.run(["mount", "-t", "tmpfs", "none", request], check=True)
@@ -173,7 +173,7 @@ class Refused(OnABox):
         self.assertEqual(self.box.update()["trouble"], "", "once it can be taken away")
         self.assertEqual(self.box.install(self.newer)["last"]["stage"], "installed")
 
-    def test_what_was_asked_before_the_machine_was_started_again(self):
+    def test_request_from_before_the_boot(self):
         shutil.rmtree(self.box.folder / "status")
         (self.box.folder / "status").mkdir()
         shutil.copy(self.newer, self.box.folder / "wanted/update.raucb")
@@ -182,7 +182,7 @@ class Refused(OnABox):
         self.assertEqual(list((self.box.folder / "wanted").iterdir()), [])
         self.expect_untouched()
 
-    def test_all_where_rauc_does_not_run(self):
+    def test_everything_if_rauc_does_not_run(self):
         self.box.halt()
         status = self.box.install(self.newer)
         self.assertIn("RAUC does not run here", status["trouble"])
@@ -190,7 +190,7 @@ class Refused(OnABox):
 
 
 class AHindrance(OnABox):
-    def test_is_told_as_it_stands_and_nothing_is_installed_until_it_is_gone(self):
+    def test_is_shown_and_prevents_updates_until_it_is_gone(self):
         hindrance = self.box.folder / "hindrance"
         hindrance.write_text("2 disks hold an Adit: take one out\nmore\n")
         self.assertEqual(self.box.install(self.bundles.make())["refusal"], "2 disks hold an Adit: take one out")
@@ -204,7 +204,7 @@ class AHindrance(OnABox):
 
 
 class AlwaysTrue(unittest.TestCase):
-    def test_a_damaged_record_of_the_last_update_is_told(self):
+    def test_damaged_record_of_the_last_update_is_reported(self):
         raucs.needs_rauc()
         with tempfile.TemporaryDirectory() as folder:
             box = raucs.Box(raucs.Bundles(pathlib.Path(folder)))

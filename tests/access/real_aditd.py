@@ -101,7 +101,7 @@ class Login(unittest.TestCase):
             self.assertEqual(box.set_first()[0], 200)
         return box
 
-    def test_the_first_start_asks_for_the_code_that_the_console_tells(self):
+    def test_first_start_requires_the_code_on_the_console(self):
         box = self.box(first=False)
         self.assertEqual(box.ask("GET /adit/session")[1], {"role": None, "csrf": None, "first_start": True,
                                                              "set_up_open": False})
@@ -124,7 +124,7 @@ class Login(unittest.TestCase):
         self.assertEqual(box.ask("GET /adit/session")[1]["first_start"], False)
         self.assertEqual(box.ask("GET /adit/run", **box.log_in())[0], 200)
 
-    def test_a_fifo_in_place_of_a_file_holds_no_start_up(self):
+    def test_fifo_in_place_of_a_file_does_not_block_the_start(self):
         box = self.box(first=False)
         box.stop()
         for name in ("settings.json", "settings.json.before", "secrets/team.token", "access.json", "devices.json",
@@ -145,13 +145,13 @@ class Login(unittest.TestCase):
                 if elsewhere.exists():
                     elsewhere.rename(file)
 
-    def test_the_code_of_the_label_is_not_told(self):
+    def test_code_of_the_label_is_not_printed(self):
         box = self.box(first=False, label="31415926")
         self.assertFalse((box.state / "first-start.code").exists())
         self.assertNotIn("31415926", box.said())
         self.assertEqual(box.set_first(code="31415926")[0], 200)
 
-    def test_passwords_are_kept_hashed_and_for_aditd_alone_and_are_in_no_log(self):
+    def test_passwords_are_hashed_private_and_not_logged(self):
         box = self.box()
         by_operator = box.log_in()
         box.ask("POST /adit/login", {"password": "an untrue password"})

@@ -64,7 +64,7 @@ class Button(unittest.TestCase):
     def set_password(self, password=NEW):
         return self.box.ask("POST /adit/password", {"role": "operator", "password": password})[0]
 
-    def test_three_seconds_open_set_up_for_whoever_forgot_the_password(self):
+    def test_press_of_three_seconds_opens_set_up(self):
         box = self.start_box()
         self.write(b"press\n")
         time.sleep(2.8)
@@ -98,7 +98,7 @@ class Button(unittest.TestCase):
         self.assertIn("set-up opened at the box", box.said())
         self.assertNotIn(NEW, box.said())
 
-    def test_ten_seconds_reset_the_box_after_a_warning_and_keep_the_reports(self):
+    def test_press_of_ten_seconds_resets_all_but_the_reports(self):
         box = self.start_box()
         self.assertEqual(box.ask("POST /adit/reports", REPORT, **self.me)[0], 202)
         self.assertEqual(box.ask("POST /adit/tokens", {"name": "team", "token": "team-from-the-page"}, **self.me)[0], 200)

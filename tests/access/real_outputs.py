@@ -185,7 +185,7 @@ class Outputs(unittest.TestCase):
                 queries = [each["name"] for each in said.get("parameters", []) if each["in"] == "query"]
                 yield method.upper(), [filled] + [f"{filled}?{name}={urllib.parse.quote(TYPED)}" for name in queries]
 
-    def test_no_route_shows_one_to_anybody(self):
+    def test_no_route_shows_a_secret(self):
         asked = set()
         for role, headers in self.as_each_role():
             for method, targets in self.routes():
@@ -203,15 +203,15 @@ class Outputs(unittest.TestCase):
                            ("viewer", "/adit/settings/export"), ("script", "/adit/map")):
             self.assertIn((role, "GET", path, 200), asked)
 
-    def test_what_was_typed_is_shown_struck(self):
+    def test_typed_secrets_are_redacted(self):
         self.assertIn(f"no state for {STRUCK}", json.dumps(self.box.ask("GET /adit/run", **self.script)[1]))
 
-    def test_what_goes_to_the_command_post_is_as_it_was_sent(self):
+    def test_messages_to_the_command_post_are_not_redacted(self):
         heard = wait_until(lambda: self.post.heard("/markers/update"), "markers to go up")
         sent = b"".join(gzip.decompress(body) if body[:2] == b"\x1f\x8b" else body for _, body in heard)
         self.assertIn(SCORING.encode(), sent)
 
-    def test_log_console_and_process_show_none(self):
+    def test_log_console_and_process_show_no_secret(self):
         self.shows_none("the log", self.box.log.read_bytes())
         process = pathlib.Path(f"/proc/{self.box.process.pid}")
         for file in ("cmdline", "environ", "comm", "status"):
@@ -219,7 +219,7 @@ class Outputs(unittest.TestCase):
         for task in (process / "task").iterdir():
             self.shows_none("a thread's name", (task / "comm").read_bytes())
 
-    def test_what_is_wrong_with_settings_quotes_none(self):
+    def test_errors_of_settings_quote_no_secret(self):
         with tempfile.TemporaryDirectory(prefix="adit-outputs-") as folder:
             settings = pathlib.Path(folder) / "settings.json"
             for word in (SCORING, MAPPING, TEAM, CODE):
@@ -235,11 +235,11 @@ class Outputs(unittest.TestCase):
         metrics = self.box.ask("GET /metrics", **self.script)[1].decode()
         self.assertGreaterEqual(float(re.search(r"^adit_wrong_tokens_total (\S+)$", metrics, re.M).group(1)), 26)
 
-    def test_the_services_leave_no_core(self):
+    def test_services_leave_no_core_dump(self):
         for unit in HERE.glob("services/*.service"):
             text = unit.read_text()
             if re.search(r"^ExecStart=\S*/adit", text, re.M):
                 self.assertIn("\nLimitCORE=0\n", text, unit.name)
 
-    def test_nobody_else_may_read_what_it_keeps(self):
+    def test_stored_files_are_private(self):
         self.assertEqual(self.box.state.stat().st_mode & 0o077, 0)

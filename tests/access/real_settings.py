@@ -90,7 +90,7 @@ class SetUp(unittest.TestCase):
             settings.update(more)
         self.change(edit)
 
-    def test_a_change_moves_the_box_and_whoever_is_logged_in_stays_so(self):
+    def test_change_of_port_keeps_sessions(self):
         port, old = free_port(), self.box.port
         changes = self.change(lambda settings: settings["team"]["listen"][0].update(port=port))
         self.assertEqual(changes, [{"path": "team.listen[0].port", "from": 0, "to": port}])
@@ -115,7 +115,7 @@ class SetUp(unittest.TestCase):
         self.box.start()
         self.assertEqual(self.box.ask("GET /adit/run", **self.me)[0], 401, "who logged out stays so, too")
 
-    def test_a_change_in_the_middle_of_a_run_keeps_the_picture_and_the_rate_and_posts_no_report_twice(self):
+    def test_change_during_a_run_keeps_picture_and_rate_and_repeats_no_report(self):
         post = self.post_office()
         self.course("A", post)
         self.applied("POST /adit/course", {"name": "A"})
@@ -130,7 +130,7 @@ class SetUp(unittest.TestCase):
         self.assertGreaterEqual(second - first, 0.5, "a second, less what the first one's note of it took")
         self.assertEqual(self.alarms(), set())
 
-    def test_the_first_change_is_reverted_to_what_the_box_was_given_also_over_a_power_cut(self):
+    def test_first_change_is_reverted_to_given_settings_after_a_power_cut(self):
         self.box.stop()
         given = json.loads((self.box.folder / "settings.json").read_text())
         with contextlib.closing(socket.create_server(("127.0.0.1", 0))) as taken:
@@ -142,7 +142,7 @@ class SetUp(unittest.TestCase):
         self.assertFalse(self.settings()["saved"])
         self.assertFalse((self.box.state / "settings.json").exists())
 
-    def test_a_file_that_cannot_be_read_opens_nothing_and_puts_the_box_on_standby_until_it_can(self):
+    def test_unreadable_file_puts_the_box_on_standby_until_it_is_readable(self):
         self.change(lambda settings: settings["reports"].update(near_metres=7))
         for name, what in (("settings.json", "the saved settings or tokens"), ("access.json", "the passwords"),
                            ("stamps", "the last time stamps")):
@@ -161,7 +161,7 @@ class SetUp(unittest.TestCase):
             wait_until(lambda: self.is_applied() and not self.alarms(), "the end of the standby")
         self.assertEqual(self.settings()["settings"]["reports"]["near_metres"], 7)
 
-    def test_a_ledger_that_cannot_be_read_is_waited_for_until_the_operator_begins_another(self):
+    def test_unreadable_ledger_is_awaited_until_the_operator_replaces_it(self):
         ledger, elsewhere = self.box.state / "ledger", self.box.state / "elsewhere"
         lost = {"ledger_damaged", "report_lost:1", "report_lost:1000", "run_unreliable"}
         self.assertEqual(self.box.ask("POST /adit/reports", REPORT, **self.me)[:2], (202, {"report": 1}))
@@ -184,7 +184,7 @@ class SetUp(unittest.TestCase):
             self.assertEqual(self.alarms(), lost if begins_another else set())
         self.assertEqual(self.box.ask("POST /adit/reports", REPORT, **self.me)[:2], (202, {"report": 1001}))
 
-    def test_an_alias_goes_on_as_the_robots_name_and_an_unknown_robot_is_taken_and_told_of(self):
+    def test_alias_becomes_the_name_and_an_unknown_robot_is_accepted_and_reported(self):
         post = self.post_office()
         robots = [{"name": "ugv1", "alias": "husky-number-1"}, {"name": "ugv2", "alias": ""}]
         self.course("A", post, robots=robots)

@@ -87,7 +87,7 @@ class Sticks(unittest.TestCase):
 
 
 class Stick(Sticks):
-    def test_has_the_export_whole_and_may_be_pulled_out(self):
+    def test_export_is_complete_and_the_stick_may_be_removed(self):
         image = self.plug()
         self.put({"photo": b"of a cave"})
         status = self.write()
@@ -100,41 +100,41 @@ class Stick(Sticks):
         self.assertEqual((self.place() / NAME).read_bytes(), EXPORT)
         self.assertEqual({each.name for each in self.place().iterdir()} - {"lost+found"}, {NAME, "photo"})
 
-    def test_has_it_in_place_of_the_one_of_that_name(self):
+    def test_export_replaces_one_of_the_same_name(self):
         self.plug()
         self.write()
         later = EXPORT[:-4] + b"last"
         self.assertEqual(self.write(later)["written"], NAME)
         self.assertEqual((self.place() / NAME).read_bytes(), later)
 
-    def test_without_room_is_left_as_it_was(self):
+    def test_stick_without_room_is_unchanged(self):
         self.plug(size=3 << 20)
         self.put({"photo": bytes(1 << 20)})
         before = set(os.listdir(self.place()))
         self.expect_refused(self.write(EXPORT + bytes(4 << 20)), "the stick has room for", "but the export has")
         self.assertEqual((self.calls.read_text(), set(os.listdir(self.place()))), ("", before))
 
-    def test_that_fills_up_meanwhile_is_left_as_it_was(self):
+    def test_stick_that_fills_up_is_unchanged(self):
         self.plug(size=8 << 20)
         self.hook('[ "$1" != rw ] || dd if=/dev/zero of="$2/filler" bs=64k 2>/dev/null || true\n')
         self.expect_refused(self.write(), "the stick is full")
         self.assertTrue(self.is_read_only())
         self.assertFalse({NAME, PART} & set(os.listdir(self.place())))
 
-    def test_that_is_write_protected_says_so(self):
+    def test_write_protected_stick_is_reported(self):
         self.plug()
         (self.folder / "block/sda1/ro").write_text("1\n")
         self.assertEqual(self.run_it()["hindrance"], "the stick is write-protected")
         self.expect_refused(self.write(), "the stick is write-protected")
         self.assertEqual(self.calls.read_text(), "")
 
-    def test_that_takes_no_write_though_it_said_nothing_is_told_of(self):
+    def test_stick_that_turns_read_only_is_reported(self):
         self.plug()
         self.hook('[ "$1" != rw ] || mount -o remount,ro "$2"\n')
         self.expect_refused(self.write(), "the stick is write-protected, or its file system is damaged")
         self.assertTrue(self.is_read_only())
 
-    def test_that_the_box_cannot_read_says_what_was_expected(self):
+    def test_unreadable_file_system_is_reported_with_the_expected_ones(self):
         self.plug()
         run("umount", self.place())
         (self.folder / "sda1.img").write_bytes(bytes(1 << 20))
@@ -142,11 +142,11 @@ class Stick(Sticks):
         self.assertIn("expected FAT32 or ext4", self.run_it()["hindrance"])
         self.expect_refused(self.write(), "the box cannot read the stick's file system")
 
-    def test_that_is_not_in_is_missed(self):
+    def test_missing_stick_is_reported(self):
         self.expect_refused(self.write(), "there is no stick in the box")
         self.expect_refused(self.ask("take"), "no stick has this export")
 
-    def test_among_more_than_can_be_listed_is_not_missed(self):
+    def test_export_beyond_the_list_is_found(self):
         for i in range(257):
             self.place(f"old{i}").mkdir(parents=True)
         why = "cannot list the sticks"
@@ -154,13 +154,13 @@ class Stick(Sticks):
         self.expect_refused(self.ask("take"), why)
         self.assertIn(why, self.run_it()["hindrance"])
 
-    def test_beside_another_is_not_guessed(self):
+    def test_several_sticks_are_rejected(self):
         self.plug()
         self.plug("sdb1")
         self.expect_refused(self.write(), "more than one stick")
         self.assertEqual(self.calls.read_text(), "")
 
-    def test_that_is_in_use_is_told_of_and_left_alone(self):
+    def test_stick_in_use_is_reported_and_unchanged(self):
         self.plug()
         self.put({"adit-box-1.0.0.raucb": bytes(100)})
         with open(self.place() / "adit-box-1.0.0.raucb", "rb"):  # as adit-update reads it
@@ -169,7 +169,7 @@ class Stick(Sticks):
         self.assertEqual(self.write()["written"], NAME)
         self.assertTrue((self.place() / "adit-box-1.0.0.raucb").exists())
 
-    def test_that_is_pulled_out_at_any_moment_is_missed(self):
+    def test_stick_removed_at_any_time_is_reported(self):
         out = f"rm -r {self.folder}/block/sda1 {self.folder}/dev/sda1; umount --lazy"
         for moment in ("rw", "ro"):
             with self.subTest(moment):
@@ -179,14 +179,14 @@ class Stick(Sticks):
                 self.assertEqual(self.run_it()["hindrance"], "there is no stick in the box")
                 (self.folder / "hook").unlink()
 
-    def test_that_keeps_other_bytes_is_found_out(self):
+    def test_stick_that_stores_other_bytes_is_detected(self):
         """A stick that lies: what is read back counts."""
         self.plug()
         lies = f'[ "$1" != ro ] || {{ umount "$2"; mount -o loop,rw {self.folder}/dev/sda1 "$2"; printf x >>"$2/{NAME}"; mount -o remount,ro "$2"; }}\n'
         self.hook(lies)
         self.expect_refused(self.write(), "the export on the stick differs from the written bytes")
 
-    def test_that_fails_while_it_is_written_is_told_of(self):
+    def test_write_error_is_reported(self):
         """Every write beyond what its medium takes comes to nothing, as with one that dies."""
         small = self.folder / "small"
         small.mkdir()
@@ -200,7 +200,7 @@ class Stick(Sticks):
         self.mount_stick()
         self.assertNotEqual(self.write(EXPORT + EXPORT)["refusal"], "")
 
-    def test_is_read_only_again_after_a_kill(self):
+    def test_stick_is_read_only_again_after_a_kill(self):
         self.plug()
         self.hook(f'[ "$1" != rw ] || {{ rm {self.folder}/hook; kill -9 $(ps -o ppid= $PPID); }}\n')
         (self.folder / "wanted/stick.adit-spare").write_bytes(EXPORT)
@@ -214,7 +214,7 @@ class Stick(Sticks):
         self.assertTrue(self.is_read_only())
         self.assertEqual(self.write()["written"], NAME)
 
-    def test_gives_the_export_that_is_asked_for(self):
+    def test_requested_export_is_read(self):
         self.plug()
         other = "export (1).adit-spare"
         self.put({NAME: EXPORT, other: EXPORT + b"other", "._" + NAME: b"of a Mac", "adit-spare.txt": b"a note"})
@@ -222,7 +222,7 @@ class Stick(Sticks):
         self.assertEqual(self.ask("take", other)["refusal"], "")
         self.assertEqual((self.folder / "status/export.adit-spare").read_bytes(), EXPORT + b"other")
 
-    def test_that_somebody_prepared_leads_nowhere(self):
+    def test_hostile_stick_leads_nowhere(self):
         self.plug()
         secret = self.folder / "secret"
         secret.write_bytes(EXPORT)
@@ -248,12 +248,12 @@ class Stick(Sticks):
                 self.expect_refused(self.ask("take", f"{name}.adit-spare"), why)
         self.assertFalse((self.folder / "status/export.adit-spare").exists())
 
-    def test_shows_no_more_than_eight(self):
+    def test_at_most_eight_exports_are_listed(self):
         self.plug()
         self.put({f"adit-10.0.0.1-202611{day}T000000Z.adit-spare": EXPORT[:100] for day in range(10, 22)})
         self.assertEqual(self.run_it()["exports"][::7], [f"adit-10.0.0.1-202611{day}T000000Z.adit-spare" for day in (21, 14)])
 
-    def test_is_written_nothing_that_is_no_export(self):
+    def test_other_files_are_not_written(self):
         self.plug()
         for export, why in ((b"#!/bin/sh", "the file is not an export from Adit"), (EXPORT + bytes(9 << 20), "larger than an export may be")):
             self.expect_refused(self.write(export), why)
@@ -264,7 +264,7 @@ class Stick(Sticks):
         self.expect_refused(self.ask("write"), "stick.adit-spare")  # there is none
         self.assertEqual(self.calls.read_text(), "")
 
-    def test_is_not_written_what_was_asked_before_the_machine_started(self):
+    def test_request_from_before_the_boot_is_dropped(self):
         self.plug()
         (self.folder / "status/status.json").unlink()
         (self.folder / "wanted/stick.adit-spare").write_bytes(EXPORT)
@@ -277,7 +277,7 @@ class FatStick(Stick):
     """As sticks are; what only a file system of Linux can hold is left out."""
 
     kind = "vfat"
-    test_that_somebody_prepared_leads_nowhere = test_that_fails_while_it_is_written_is_told_of = None
+    test_hostile_stick_leads_nowhere = test_write_error_is_reported = None
 
     @classmethod
     def setUpClass(cls):

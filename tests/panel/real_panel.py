@@ -18,14 +18,14 @@ class Watching(Running):
         super().setUp()
         self.panel = self.begin_panel()
 
-    def test_whoever_connected_last_is_heard(self):
+    def test_last_connection_counts(self):
         first = self.connect("lit 1000")
         self.shows("1000")
         self.connect("lit 0100")
         self.shows("0100")
         self.assertEqual(first.recv(64), b"", "the first is let go of")
 
-    def test_hostile_bytes_end_their_connection_and_nothing_else(self):
+    def test_hostile_bytes_end_only_their_connection(self):
         for message in (b"\xff\x00\xfe", b"lit 9999", b"lit", b"panel {", b"panel " + b"[" * 1000, b"x" * 100000, b"end\n", b"lit 1111\0",
                         b'panel {"name":"s","title":"S","panel":{"chip":"../../etc","health":"\\u0000"}}'):
             client = self.connect("lit 1110")
@@ -40,7 +40,7 @@ class Watching(Running):
         self.assertIsNone(self.panel.poll())
         self.assertLessEqual(self.said().count("unknown message from aditd"), 9, "once for each that had told something before")
 
-    def test_a_flood_keeps_neither_the_lights_nor_the_next_one(self):
+    def test_flood_blocks_neither_lights_nor_the_next_connection(self):
         """Frames faster than they can be lit, and then silence."""
         client = self.connect()
         for each in range(20000):
@@ -49,14 +49,14 @@ class Watching(Running):
         self.connect("lit 1100")
         self.shows("1100")
 
-    def test_the_button_is_told_of(self):
+    def test_button_is_reported(self):
         client = self.connect("lit 1110")
         self.shows("1110")
         for word, told in (("press", b"button 1"), ("release", b"button 0")) * 2:
             self.press(word)
             self.assertEqual(client.recv(64), told)
 
-    def test_lines_that_cannot_be_had_are_told_and_simulated(self):
+    def test_unavailable_lines_are_reported_and_simulated(self):
         client = self.connect("lit 1110")
         self.shows("1110")
         client.send(b'panel {"name":"s","title":"S","panel":{"chip":"no-such-chip","health":"H","button":"B"}}')
@@ -68,7 +68,7 @@ class Watching(Running):
 
 
 class Starting(Running):
-    def test_a_board_counts_before_what_is_told(self):
+    def test_board_takes_precedence_over_a_message(self):
         board = self.folder / "board.json"
         board.write_text('{"name": "b", "title": "B", "panel": {"chip": "no-such-chip", "health": "H"}}')
         self.begin_panel("--board", board)
@@ -80,13 +80,13 @@ class Starting(Running):
         self.shows("1000")
         self.assertNotIn("another-chip", self.said())
 
-    def test_a_board_that_is_wrong_is_told(self):
+    def test_invalid_board_is_reported(self):
         board = self.folder / "board.json"
         board.write_text('{"name": "b", "title": "B", "panle": {}}')
         self.begin_panel("--board", board)
         self.wait_until(lambda: "board.json: panle: no such key; did you mean panel?" in self.said(), "the key to be told")
 
-    def test_what_keeps_it_from_starting_is_told(self):
+    def test_failed_start_is_explained(self):
         for words, code, why in (((), 1, "--socket is missing"), (("--socket", "/nowhere/socket"), 1, "/nowhere/socket: No such file"),
                                  (("--socket", "/" + "x" * 200), 1, "File name too long"), (("fault",), 2, "unknown word 'fault'")):
             done = subprocess.run([running.adit_panel, *words], capture_output=True, text=True, timeout=PATIENCE)
@@ -97,12 +97,12 @@ class Starting(Running):
 class WithAditd(Running):
     """What is killed, stopped, hangs, or is started in another order."""
 
-    def test_the_panel_first(self):
+    def test_panel_starts_first(self):
         self.begin_panel()
         self.begin_aditd()
         self.is_at_work()
 
-    def test_aditd_first(self):
+    def test_aditd_starts_first(self):
         self.begin_aditd()
         self.wait_until(lambda: "listening address" in self.said(), "aditd to start")
         self.begin_panel()
@@ -133,7 +133,7 @@ class WithAditd(Running):
         self.begin_aditd()
         self.is_at_work()
 
-    def test_a_panel_that_dies_or_hangs_takes_nothing_with_it(self):
+    def test_panel_that_ends_or_hangs_does_not_affect_aditd(self):
         panel = self.begin_panel()
         served = self.begin_aditd()
         for how in (signal.SIGKILL, signal.SIGTERM, signal.SIGSTOP):
@@ -163,7 +163,7 @@ class WithAditd(Running):
         yield
         obstacle.rmdir()
 
-    def test_lights_that_cannot_be_set_are_told_to_aditd_and_set_again(self):
+    def test_failed_lights_are_reported_to_aditd_and_retried(self):
         self.begin_panel()
         self.begin_aditd()
         self.is_at_work()

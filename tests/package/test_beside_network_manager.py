@@ -49,7 +49,7 @@ class BesideNetworkManager(Story):
         """The factory's, and sooner or later a link-local one."""
         return [address for address in self.stage.addresses("team0") if not address.startswith("169.254.")] == ["10.0.0.1/24"]
 
-    def test_its_ports_are_taken_from_it_as_it_runs(self):
+    def test_ports_are_taken_from_a_running_network_manager(self):
         # As netplan leaves it where its renderer is networkd, which runs: by the name from before, and with a low number.
         self.box.shell(f"""mkdir -p $(dirname {NETPLAN})
             printf '[Match]\\nName={pc.PORTS["command_post"]}\\n[Network]\\nAddress=172.29.0.5/24\\nLinkLocalAddressing=ipv6\\n' >{NETPLAN}
@@ -58,17 +58,17 @@ class BesideNetworkManager(Story):
         self.box.apt(f"install {NOW}", team=pc.PORTS["team"], command_post=pc.PORTS["command_post"])
         self.is_adits_alone()
 
-    def test_neither_a_restart_nor_a_connection_of_before_gives_them_back(self):
+    def test_restart_and_old_connections_do_not_return_the_ports(self):
         self.box.shell("systemctl restart NetworkManager")
         programs.wait_until(lambda: self.stage.managed(pc.OFFICE) == "connected", "NetworkManager to be there again", 60)
         self.assertNotEqual(self.box.run("nmcli", "-w", "5", "connection", "up", pc.PORTS["command_post"]).returncode, 0)
         self.is_adits_alone()
 
-    def test_restarted_with_it_they_are_named_again(self):
+    def test_ports_are_named_again_after_a_restart(self):
         self.box.shell("systemctl restart adit-interfaces systemd-networkd")
         self.is_adits_alone()
 
-    def test_removed_and_purged_it_leaves_them_to_it(self):
+    def test_purge_returns_the_ports_to_network_manager(self):
         self.box.apt("purge adit")
         for port in pc.PORTS.values():
             programs.wait_until(lambda port=port: self.stage.managed(port) not in ("unmanaged", "not there"), f"NetworkManager to have {port} again", 60)

@@ -49,7 +49,7 @@ class Packages(Story):
             self.assertEqual(self.box.shell(f"ip -4 -o address show dev {port}"), "")
             self.assertIn("MULTICAST", self.box.shell(f"ip -o link show dev {port}"))
 
-    def test_without_interfaces_it_is_installed_and_does_nothing(self):
+    def test_without_interfaces_it_does_nothing(self):
         said = self.box.apt(f"install {BEFORE}")
         self.assertIn("Adit does not start before /etc/adit/interfaces names its two interfaces", said)
         for unit in ("adit.service", "adit.socket", "adit-network-start", "adit-network-watch", "adit-nftables", "systemd-networkd"):
@@ -59,7 +59,7 @@ class Packages(Story):
         for port in pc.PORTS.values():
             self.assertIn(port, self.box.shell("ip -o link"))
 
-    def test_what_cannot_be_its_interfaces_is_told(self):
+    def test_unusable_interfaces_are_reported(self):
         for team, command_post, why in ((pc.PORTS["team"], pc.PORTS["team"], "command_post: is the same interface as team"),
                                         (pc.PORTS["team"], "enp9s0", "command_post: there is no interface enp9s0 yet"),
                                         ("a/b", "enp2s0", "team: expected the name of an interface or its MAC address, got 'a/b'")):
@@ -72,7 +72,7 @@ class Packages(Story):
             self.assertEqual("team: /etc/network/interfaces also configures enp1s0; remove it there" in said, name != "eth0", said)
         self.box.shell("rm -r /etc/network")
 
-    def test_a_file_that_is_wrong_takes_no_port_and_opens_no_door(self):
+    def test_invalid_file_takes_no_interface_and_opens_no_port(self):
         for command_post in pc.PORTS["team"], "enp9s0":  # which is the other one, and which is not there
             self.box.shell(f"""printf 'team=enp8s0\ncommand_post={command_post}\nteem=x\n' >{INTERFACES}
                 systemctl start adit-interfaces || systemctl start adit.socket adit-nftables || true""")
@@ -82,14 +82,14 @@ class Packages(Story):
             /usr/lib/adit/interfaces free""")
         self.assertEqual(self.box.shell("nft list ruleset"), "")
 
-    def test_what_a_newcomer_reads_is_there(self):
+    def test_documents_are_installed(self):
         self.box.shell("""cd /usr/share/doc/adit; grep -q '<title>Adit: the card' card.html
             grep -q 'class Client' examples/client.py; test -s examples/README.md -a -s examples/refusals.md -a -s examples/client.hpp
             zgrep -q 'adit-rehearsal demo' README.Debian*
             zgrep -qF '/usr/share/doc/adit/NEWS.md.gz' changelog.gz; zgrep -q '^## ' NEWS.md.gz""")
         self.assertEqual(self.box.shell("cd /usr/share/doc/adit; zgrep -hE '\\]\\([^()]*/' NEWS.md.gz examples/*.md || true"), "", "leads nowhere")
 
-    def test_named_its_two_ports_it_serves_the_page_on_the_teams_alone(self):
+    def test_with_two_interfaces_it_serves_the_page_on_the_team_side(self):
         self.box.shell(f"""echo 'adit adit/team string {pc.PORTS["team"]}' | debconf-set-selections
             echo 'adit adit/command-post string {pc.PORTS["command_post"]}' | debconf-set-selections
             DEBIAN_FRONTEND=noninteractive dpkg-reconfigure adit""")
@@ -98,11 +98,11 @@ class Packages(Story):
         self.assertIn("team0", self.box.shell(f"ip -o link show dev {pc.PORTS['team']}"), "its name from before is good, too")
         self.assertEqual(self.box.shell("systemctl --failed --plain --no-legend --no-pager"), "")
 
-    def test_the_third_port_is_as_it_was(self):
+    def test_third_interface_is_unchanged(self):
         self.assertEqual(self.stage.office(), self.stage.office_before)
         self.assertIn("refused", self.box.shell("(exec 3<>/dev/tcp/172.20.0.1/9) || true"))  # so it was heard there
 
-    def test_whoever_names_none_has_both_back_and_may_name_them_again(self):
+    def test_naming_no_interface_returns_both(self):
         """As in a dialog; without one, the answers are those of the file."""
         none = r"""sed -i 's|^\(adit/[a-z-]*=\).*|\1""|'"""
         self.box.shell(f'DEBIAN_FRONTEND=editor VISUAL="{none}" EDITOR="{none}" dpkg-reconfigure adit </dev/null'.replace('""', r'\"\"'))
@@ -142,7 +142,7 @@ class Packages(Story):
         self.stage.network.pull_cable(False)
         programs.wait_until(lambda: "cable is unplugged" not in self.box.shell("adit status", good=False), "the alarm to go", 60)
 
-    def test_another_machine_with_its_address_is_told_by_whoever_may_do_no_more(self):
+    def test_address_conflict_is_reported_with_minimal_rights(self):
         pid = self.box.shell("systemctl show -p MainPID --value adit-network-watch.service").strip()
         rights = dict(line.split(":\t", 1) for line in self.box.shell(f"cat /proc/{pid}/status").splitlines() if ":\t" in line)
         self.assertEqual({rights[name] for name in ("CapEff", "CapPrm", "CapBnd")}, {f"{1 << CAP_NET_RAW:016x}"})
@@ -164,7 +164,7 @@ class Packages(Story):
                 entered += 1
         return entered, tried
 
-    def test_the_networks_services_have_no_way_to_the_first_process(self):
+    def test_network_services_cannot_reach_systemd(self):
         """From copies of the units, and from one without their sandbox, which has."""
         self.box.shell("""cd /run/systemd/system; printf '[Service]\nType=oneshot\nExecStart=true\n' >adit-tried.service
             echo 'systemctl start adit-tried.service && exit 1; curl -sm 5 --unix-socket /run/systemd/private http://x; [ $? = 7 ]' >/run/adit-try.sh""")
@@ -175,7 +175,7 @@ class Packages(Story):
                 [ $(systemctl start adit-try.service; echo $?) = {int(not keeps)} ] || {{ journalctl -u adit-try | tail; exit 1; }}""")
         self.box.shell("rm /run/systemd/system/adit-tried.service /run/systemd/system/adit-try.service; systemctl daemon-reload; systemctl reset-failed")
 
-    def test_an_upgrade_turns_nobody_away_lets_nobody_in_and_keeps_all(self):
+    def test_upgrade_rejects_no_client_opens_no_port_and_keeps_all(self):
         """Reports are posted all the while, again where a connection was open as the older aditd ended: each is recorded once."""
         self.box.shell(f"sed -i '1i # asked {OFFICE_KEEPER}' {INTERFACES}")
         named = self.box.shell(f"cat {INTERFACES}")
@@ -200,7 +200,7 @@ class Packages(Story):
             self.assertEqual(len(self.stage.post.recorded(report)), 1)
         self.assertEqual(len(self.stage.post.recorded(REPORT)), 1)
 
-    def test_rules_that_cannot_be_loaded_leave_those_from_before_and_a_notice(self):
+    def test_unloadable_rules_keep_the_old_ones_and_leave_a_notice(self):
         rules, notice, servers = "/usr/share/adit/nftables.conf", "/run/adit-notices/firewall", "nft list set inet adit ntp_servers"
         self.box.shell(f"""nft add element inet adit ntp_servers '{{ 10.0.0.77 }}'; nft list ruleset >/root/loaded
             mv {rules} /root/; echo 'table inet adit {{' >{rules}; ! systemctl restart adit-nftables
@@ -209,21 +209,21 @@ class Packages(Story):
             nft list ruleset | diff /root/loaded -; test ! -e {notice}; {servers} | grep -q 10.0.0.77
             systemctl stop adit-nftables; nft list ruleset | diff /root/loaded -; systemctl start adit-nftables""")
 
-    def test_an_upgrade_that_was_cut_off_is_finished(self):
+    def test_interrupted_upgrade_is_completed(self):
         self.box.shell(f"dpkg --unpack {NOW}")
         self.assertTrue(self.box.answers(), "meanwhile the one that runs goes on")
         self.box.shell("DEBIAN_FRONTEND=noninteractive dpkg --configure -a")
         programs.wait_until(self.box.knows_the_run, "the box to know the run", 60)
         self.assertEqual(self.box.shell("dpkg --audit"), "")
 
-    def test_the_file_that_somebody_took_away_is_not_made_again(self):
+    def test_deleted_file_is_not_created_again(self):
         self.box.shell(f"mv {INTERFACES} /root/")
         said = self.box.apt(f"install --reinstall {NOW}")
         self.assertIn("Adit does not start before /etc/adit/interfaces names its two interfaces", said)
         self.box.shell(f"test ! -e {INTERFACES}; mv /root/interfaces {INTERFACES}; DEBIAN_FRONTEND=noninteractive dpkg-reconfigure adit")
         programs.wait_until(self.box.knows_the_run, "the box to know the run", 60)
 
-    def test_what_is_older_is_refused(self):
+    def test_older_version_is_rejected(self):
         version = self.box.version()
         said = self.box.apt(f"--allow-downgrades install {BEFORE}", good=False)
         self.assertIn(f"adit 0.0.9 is older than {version}, which is installed", said)
@@ -239,7 +239,7 @@ class Packages(Story):
         self.assertIn("/tmp/mine is there, and not a demo's", said)
         self.box.apt("purge adit-rehearsal")
 
-    def test_removed_it_leaves_its_state_and_nothing_that_runs(self):
+    def test_removal_keeps_the_state_and_stops_everything(self):
         self.box.apt("remove adit")
         for unit in ("adit.service", "adit.socket", "adit-network-start", "adit-network-watch", "adit-nftables"):
             self.assertFalse(self.box.is_active(unit), unit)
@@ -248,13 +248,13 @@ class Packages(Story):
         self.the_ports_are_the_machines()
         self.box.shell(f"test -s {STATE}/ledger/log-* -a -s {INTERFACES}")
 
-    def test_installed_again_it_goes_on(self):
+    def test_reinstallation_continues(self):
         self.box.apt(f"install {NOW}")
         programs.wait_until(self.box.answers, "the page to answer", 60)
         programs.wait_until(self.box.knows_the_run, "the box to know the run", 60)
         self.assertEqual(self.box.reports()[0]["state"], "answered")
 
-    def test_purged_it_keeps_the_ledger_unless_told(self):
+    def test_purge_keeps_the_ledger_unless_requested(self):
         said = self.box.apt("purge adit")
         self.assertIn(f"the ledger of reports is kept: {STATE}", said)
         self.assertEqual(self.box.shell(f"ls {STATE}").split(), ["ledger"])

@@ -30,7 +30,7 @@ def cloud(*dates):
 
 
 class Markers(unittest.TestCase):
-    def test_the_scene_is_compared_with_what_the_robots_have(self):
+    def test_scene_is_compared_with_that_of_the_robots(self):
         with CommandPost() as post:
             two = {"markers": [marker(ns=ns, id=1)["markers"][0] for ns in ("R1/path", "R2/path")]}
             self.assertEqual(post.mapping_request("POST", "/markers/update", two).status_code, 200)
@@ -62,7 +62,7 @@ class Arrivals(unittest.TestCase):
         (arrived,) = self.post.record()["maps"]
         return arrived
 
-    def test_the_age_of_a_grid_is_that_of_its_newest_date(self):
+    def test_age_of_a_grid_is_that_of_its_newest_date(self):
         self.assertEqual(self.post.map(row(now_ms() - 60_000)).status_code, 200)
         arrived = self.only()
         self.assertEqual((arrived["robot"], arrived["kind"], arrived["maps"]), ("X1", "grid", 1))
@@ -71,7 +71,7 @@ class Arrivals(unittest.TestCase):
             self.assertLess(arrived[name], 600)  # a busy machine takes its time
         self.assertIsNone(arrived["share"])
 
-    def test_a_cloud_is_as_old_as_its_newest_point_and_no_point_counts_twice(self):
+    def test_age_of_a_cloud_is_that_of_its_newest_point_and_points_count_once(self):
         old, new = now_ms() - 3_600_000, now_ms() - 60_000
         whole = (old, old, new)
         data = cloud(*whole)["msg"]["data"]
@@ -87,7 +87,7 @@ class Arrivals(unittest.TestCase):
         self.assertIn("75.0%", answer.json()["table"])
         self.assertIn("75.0%", self.post.stop()[1])
 
-    def test_a_place_counts_once_however_many_points_it_has(self):
+    def test_place_with_many_points_counts_once(self):
         posted = now_ms()
         near = cloud(posted, posted, posted)  # a metre apart
         self.post.map_cbor(near)
@@ -96,17 +96,17 @@ class Arrivals(unittest.TestCase):
         self.assertIn("75.0%", self.post.tell("posted", [told]).json()["table"])
         self.assertEqual(self.only()["places"], 0.75)
 
-    def test_cells_count_once_wherever_they_come_from(self):
+    def test_cells_of_several_maps_count_once(self):
         posted = now_ms()
         self.post.map(row(posted))            # 18 known cells of 0.2 m
         self.post.map(row(posted, left=1.0))  # five cells on: five more
         self.assertEqual(self.only()["arrived"], 23)
 
-    def test_a_map_without_a_date_is_none_of_them(self):
+    def test_map_without_a_date_is_ignored(self):
         self.post.map(grid())
         self.assertEqual(self.post.record()["maps"], [])
 
-    def test_what_was_posted_is_told_in_full(self):
+    def test_incomplete_list_of_posted_maps_is_rejected(self):
         whole = {"robot": "X1", "kind": "grid", "amount": 1, "newest": 1}
         for name in whole:
             answer = self.post.tell("posted", [{key: value for key, value in whole.items() if key != name}])

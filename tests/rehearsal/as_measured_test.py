@@ -86,7 +86,7 @@ class Mapping(unittest.TestCase):
             answer = post.map(grid(), Content_Type="text/plain")
             self.assertEqual((answer.status_code, answer.json()), (422, "Unknown Content-Type"))
 
-    def test_what_it_takes_though_the_icd_forbids_it_is_a_violation(self):
+    def test_forbidden_but_accepted_messages_are_violations(self):
         with CommandPost("--as-measured") as post:
             self.assertEqual(post.map(grid()).status_code, 200)
             self.assertEqual(post.map(changed(grid(), name=DROP)).status_code, 422)
@@ -104,7 +104,7 @@ class Mapping(unittest.TestCase):
                 answer = post.mapping_request(method, path)
                 self.assertEqual((answer.status_code, answer.content), (501, b""))
 
-    def test_clouds_have_one_timer_and_are_taken_all_the_same(self):
+    def test_clouds_share_a_timer_and_are_accepted_early(self):
         with CommandPost("--as-measured", rate=None) as post:
             answers = []
 
@@ -122,7 +122,7 @@ class Mapping(unittest.TestCase):
             tries = len(answers) // 2
             self.assertEqual(counts, {"A": tries + 1, "B": tries, "X1": 3})
 
-    def test_a_cloud_counts_from_when_it_was_decoded(self):
+    def test_rate_of_clouds_counts_from_their_decoding(self):
         large = cloud(data=bytes(24) * 150_000)  # 38 Mbit: 0.8 s on the link
         for counts, status in (((), 429), (("--counts", "starts"), 200)):
             with self.subTest(counts), CommandPost("--as-measured", "--link", "50", *counts, rate=None) as post:
@@ -136,7 +136,7 @@ class Mapping(unittest.TestCase):
                     time.sleep(2)
                 self.assertEqual(answer.status_code, status)
 
-    def test_after_a_4xx_it_closes_though_it_promised_not_to(self):
+    def test_it_closes_after_a_4xx_despite_keep_alive(self):
         with CommandPost("--as-measured") as post:
             with raw_map(post, b"no CBOR") as stream:
                 status, headers, _ = read_answer(stream)
@@ -157,7 +157,7 @@ class Mapping(unittest.TestCase):
             stream.sendall(body)
             self.assertEqual(read_answer(stream)[0], 200)
 
-    def test_gzip_with_anything_after_its_member_hangs_that_connection_alone(self):
+    def test_gzip_with_trailing_data_hangs_only_its_connection(self):
         packed = gzip.compress(bytes(6))
         with CommandPost("--as-measured") as post:
             for data in (packed + packed, packed + b"\0"):
@@ -169,7 +169,7 @@ class Mapping(unittest.TestCase):
             self.assertEqual(record["violation_count"], 2)
             self.assertIn({"uri": "/map/update", "status": 0, "count": 2}, record["requests"])
 
-    def test_what_kills_it_is_named_and_ends_the_endpoint(self):
+    def test_fatal_message_is_named_and_ends_the_endpoint(self):
         table = [
             ("msg.point_step: expected at least 1, got 0", cloud(point_step=0)),
             ("msg.fields[2]: ends at byte 13 of a point of 12", changed(cloud(), msg__fields__2__offset=9)),
@@ -193,7 +193,7 @@ class Mapping(unittest.TestCase):
 
 
 class Scoring(unittest.TestCase):
-    def test_its_clocks_stand_and_its_run_is_named_alike_throughout(self):
+    def test_clocks_and_run_name_are_constant(self):
         with CommandPost("--as-measured") as post:
             for _ in range(2):
                 self.assertEqual(post.status().json()["run_clock"], 25.98)
@@ -245,7 +245,7 @@ class Scoring(unittest.TestCase):
             answer = post.report(changed(REPORT, y=DROP))
             self.assertEqual((answer.status_code, answer.json()), (422, "Missing field: 'y'"))
 
-    def test_html_where_it_has_no_answer(self):
+    def test_html_if_it_has_no_answer(self):
         with CommandPost("--as-measured") as post:
             for answer, status in ((post.scoring_request("GET", "/nowhere"), 404),
                                    (post.report(changed(REPORT, type=5)), 500)):
@@ -260,7 +260,7 @@ class Scoring(unittest.TestCase):
             self.assertIn("authorization", answer.headers["Access-Control-Allow-Headers"])
             self.assertEqual(post.status(Origin="http://station").headers["Access-Control-Allow-Origin"], "*")
 
-    def test_no_rate_limit_unless_one_is_asked_for(self):
+    def test_no_rate_limit_unless_requested(self):
         with CommandPost("--as-measured", rate=None) as post:
             self.assertEqual([post.report(REPORT).status_code for _ in range(5)], [201] * 5)
         with CommandPost("--as-measured", rate=1) as post:

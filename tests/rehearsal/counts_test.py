@@ -52,7 +52,7 @@ class Counts(unittest.TestCase):
             time.sleep(INTERVAL)
             self.assertEqual(posted(stream)[0], 200)
 
-    def test_another_word_is_refused(self):
+    def test_another_word_is_rejected(self):
         with CommandPost() as post:
             done = subprocess.run([*post.command, "--counts", "never"], capture_output=True, text=True, timeout=30,
                                   check=False)

@@ -95,7 +95,7 @@ class Demo(unittest.TestCase):
         self.assertNotIn(done.returncode, (0, 130), done.stdout)
         return done.stderr
 
-    def test_in_a_small_window_the_page_and_its_password_stay_in_sight(self):
+    def test_small_window_shows_the_page_and_its_password(self):
         window = self.window(24, 80)
         for rows, columns in (24, 80), (16, 50):
             window.resize(rows, columns)
@@ -129,14 +129,14 @@ class Demo(unittest.TestCase):
         process.wait(patient(60))
         self.assertTrue(self.nothing_runs())
 
-    def test_stopped_while_it_starts_it_leaves_nothing(self):
+    def test_stop_during_start_leaves_no_process(self):
         window = self.window(24, 80)
         wait_until((self.folder / "adit-rehearsal.log").exists, "its first program")
         window.process.send_signal(signal.SIGINT)
         wait_until(lambda: (window.read(), window.process.poll() is not None)[1], "its end")
         self.assertTrue(self.nothing_runs())
 
-    def test_in_the_background_of_a_script_sigterm_ends_it(self):
+    def test_sigterm_ends_it_in_the_background(self):
         command = f"{shlex.join([str(DEMO), '--directory', str(self.folder)])} & echo $!; wait"  # bash: it ignores SIGINT
         script = subprocess.Popen(["bash", "-c", command], stdout=subprocess.PIPE, text=True)
         self.addCleanup(script.stdout.close)
@@ -148,14 +148,14 @@ class Demo(unittest.TestCase):
         self.assertIn("Kept in", script.stdout.read())
         self.assertTrue(self.nothing_runs())
 
-    def test_where_it_listens_is_where_the_page_is(self):
+    def test_page_is_at_the_listening_address(self):
         process = subprocess.Popen([DEMO, "--directory", self.folder, "--listen", "127.0.0.2"], stdin=subprocess.DEVNULL,
                                    stdout=subprocess.PIPE, text=True)
         self.addCleanup(process.stdout.close)
         self.addCleanup(self.end, process)
         self.assertRegex(next(line for line in process.stdout if line.strip()), r"The page:     http://127\.0\.0\.2:80\d\d/\n")
 
-    def test_what_is_wrong_is_told(self):
+    def test_wrong_options_are_named(self):
         for words, why in ((("--for", "soon"), "--for wants whole seconds, not 'soon'"), (("--for",), "--for wants a value"),
                            (("--fast",), "unknown word '--fast'"), (("fast",), "unknown word 'fast'"),
                            (("--robots", "many"), "--robots"), (("--listen", "here"), "team.listen[0].address: expected an IPv4")):

@@ -11,7 +11,7 @@ from faulted import REPORT, REPORT_BYTES, recorded
 
 
 class Telling(unittest.TestCase):
-    def test_faults_wait_in_the_order_they_were_told_until_they_are_cleared(self):
+    def test_faults_are_queued_in_order_until_cleared(self):
         with CommandPost("--fault", "reports:ok", "--fault", "status:remaining=-1", "--fault-rate",
                          "mapping:answer-after=2.5=0.25") as post:
             post.faults(reports=["record-then-drop", "429=3"], mapping=[])
@@ -27,7 +27,7 @@ class Telling(unittest.TestCase):
             self.assertEqual(post.status().json()["remaining_reports"], 45)
             self.assertEqual(post.report(REPORT).status_code, 201)
 
-    def test_what_is_not_understood_is_named_and_nothing_of_it_waits(self):
+    def test_invalid_orders_are_named_and_queue_nothing(self):
         table = [
             ({"reports": ["drop", "record-then-dorp"]}, "reports[1]: no such fault: 'record-then-dorp'"),
             ({"report": ["drop"]}, "no such aim: 'report'; there are reports, status, mapping, clock"),
@@ -65,7 +65,7 @@ class Telling(unittest.TestCase):
             self.assertEqual(post.request(post.control, "POST", "/faults", b"{", {}).status_code, 400)
             self.assertEqual(post.request(post.control, "PUT", "/faults", {}, {}).status_code, 404)
 
-    def test_the_command_line_is_read_as_strictly(self):
+    def test_command_line_is_as_strict(self):
         table = [
             (["--fault", "reports:dorp"], "--fault: reports: no such fault: 'dorp'"),
             (["--fault", "drop"], "--fault: expected an aim and a fault"),
@@ -102,7 +102,7 @@ class Telling(unittest.TestCase):
         for status, least, most in ((500, 10, 40), (429, 10, 40), (201, 15, 50)):
             self.assertTrue(least <= first.count(status) <= most, f"{status} x {first.count(status)}")
 
-    def test_what_is_drawn_lasts_as_long_as_what_is_told(self):
+    def test_random_faults_last_as_long_as_ordered_ones(self):
         with CommandPost("--fault-rate", "reports:429=3=0.2", "--seed", "5", "--reports", "200") as post:
             statuses = [post.report(REPORT).status_code for _ in range(60)]
         while statuses[-1] == 429:
@@ -115,19 +115,19 @@ class Telling(unittest.TestCase):
         self.assertIn(500, statuses)
         self.assertEqual(set(statuses[statuses.index(500):]), {500})
 
-    def test_what_is_drawn_for_a_robot_happens_to_no_other(self):
+    def test_random_faults_of_a_robot_spare_the_others(self):
         with CommandPost("--fault-rate", "mapping:500,robot=ugv1=1") as post:
             statuses = [post.mapping_request("POST", "/state/update", state(name)).status_code
                         for name in ("uav1", "ugv1", "uav1", "ugv1")]
         self.assertEqual(statuses, [200, 500, 200, 500])
 
-    def test_what_was_told_comes_before_what_is_random(self):
+    def test_ordered_faults_come_before_random_ones(self):
         with CommandPost("--fault-rate", "status:500=1", "--fault", "status:ok") as post:
             self.assertEqual([post.status().status_code for _ in range(3)], [200, 500, 500])
 
 
 class Process(unittest.TestCase):
-    def test_one_that_waits_does_not_hold_up_a_stop(self):
+    def test_delayed_answer_does_not_delay_a_stop(self):
         with CommandPost() as post:
             post.faults(reports=["record-after=60", "answer-after=60"])
             streams = [connect(post.scoring) for _ in range(2)]
@@ -144,7 +144,7 @@ class Process(unittest.TestCase):
             for stream in streams:
                 stream.close()
 
-    def test_faults_are_in_what_is_printed(self):
+    def test_faults_are_printed(self):
         with CommandPost("--verbose", "--fault", "reports:other-sender,500") as post:
             post.report(REPORT)
             post.report(REPORT)

@@ -19,7 +19,7 @@ class Times(OneRequest):
         self.assertEqual(set(statuses[:-1]), {429})
         self.assertEqual(self.post.faults_left()["reports"], [])
 
-    def test_a_storm_lasts_for_as_many_requests_as_were_said(self):
+    def test_storm_lasts_for_its_number_of_requests(self):
         self.post.faults(reports=["429=3,retry-after=2"])
         answers = []
         for left in (["429=2,retry-after=2"], ["429,retry-after=2"], [], []):
@@ -52,7 +52,7 @@ class Times(OneRequest):
         self.assertEqual((status, recorded(self.post)), (201, 1))
         self.assertIn(b'"report_status":"scored"', body)
 
-    def test_record_after_records_though_the_client_is_gone(self):
+    def test_record_after_records_even_if_the_client_is_gone(self):
         self.post.faults(reports=["record-after=1.5"])
         begun = time.monotonic()
         with connect(self.post.scoring) as stream:
@@ -75,14 +75,14 @@ class Times(OneRequest):
         self.assertEqual((recorded(self.post), self.post.record()["remaining_reports"]), (3, 41))
         self.assertEqual([line["rehearsed_fault"] for line in self.post.lines()], faults)
 
-    def test_requests_that_were_sent_at_once_meet_their_own_faults(self):
+    def test_pipelined_requests_meet_their_own_faults(self):
         self.post.faults(status=["500", "answer-after=0.1", "drop"])
         received, end = exchange(self.post.scoring, STATUS_BYTES * 4)
         self.assertEqual((received.count(b"HTTP/1.1 500"), received.count(b"HTTP/1.1 200"), end), (1, 1, "closed"))
 
 
 class TheRun(OneRequest):
-    def test_a_wrong_count_lasts_and_is_wrong_in_the_answer_alone(self):
+    def test_wrong_count_lasts_and_is_only_in_answers(self):
         self.post.faults(status=["ok", "remaining=+2"])
         seen = [self.post.status().json()["remaining_reports"] for _ in range(3)]
         self.assertEqual(seen, [45, 47, 47])
@@ -97,7 +97,7 @@ class TheRun(OneRequest):
         self.post.faults(status=["remaining=+0"])
         self.assertEqual([self.post.status().json()["remaining_reports"] for _ in range(2)], [43, 43])
 
-    def test_clocks_stand_from_then_on_and_in_the_answers_alone(self):
+    def test_constant_clocks_last_and_are_only_in_answers(self):
         self.post.faults(clock=["constant"])
         for _ in range(2):
             self.assertEqual(self.post.status().json()["run_clock"], 25.98)

@@ -12,7 +12,7 @@ from patience import wait_until
 
 
 class OneFault(OneRequest):
-    def test_how_the_connection_ends_and_whether_the_report_is_recorded(self):
+    def test_faults_end_the_connection_and_record_or_not(self):
         table = [("record-then-drop", 1, "closed"), ("drop", 0, "closed"),
                  ("reset", 1, "reset"), ("reset-unrecorded", 0, "reset")]
         for fault, count, end in table:
@@ -36,14 +36,14 @@ class OneFault(OneRequest):
         self.assertTrue(body.startswith(b'{"url":'))
         self.assertEqual(recorded(self.post), 1)
 
-    def test_garbage_is_no_http(self):
+    def test_garbage_is_not_http(self):
         self.post.faults(reports=["garbage"])
         received, end = exchange(self.post.scoring)
         self.assertEqual((end, recorded(self.post)), ("closed", 1))
         self.assertGreater(len(received), 8)
         self.assertFalse(received.startswith(b"HTTP/"))
 
-    def test_refusals_are_not_recorded(self):
+    def test_rejections_are_not_recorded(self):
         for fault, status in (("401", 401), ("429", 429)):
             with self.subTest(fault):
                 self.post.faults(reports=[fault])
@@ -63,7 +63,7 @@ class OneFault(OneRequest):
                 self.assertIn("<html", answer.text)
                 self.assertEqual((recorded(self.post), self.fault_of_last_line()), (count, fault))
 
-    def test_a_page_of_html_is_nobodys_record(self):
+    def test_html_pages_are_not_recorded(self):
         for status in (200, 302, 400, 422):
             with self.subTest(status):
                 self.post.faults(reports=[f"html-{status}"])
@@ -73,7 +73,7 @@ class OneFault(OneRequest):
                 self.assertIn(b"Log in to the network", received)
                 self.assertEqual(recorded(self.post), 0)
 
-    def test_what_would_end_a_trusting_client_is_recorded_and_said(self):
+    def test_answers_that_would_crash_a_client_are_sent_and_recorded(self):
         table = {"length-huge": b"Content-Length: 30000000000\r\n", "chunk-huge": b"\r\n6fc23ac00\r\n",
                  "header-flood": b"X-Flood: ", "endless-body": b"[0,0,", "1xx-flood": b"HTTP/1.1 100 Continue\r\n\r\nHTTP",
                  "json-deep": b"[[[["}
@@ -84,7 +84,7 @@ class OneFault(OneRequest):
                 self.assertIn(part, received)
                 self.assertEqual(recorded(self.post), number)
 
-    def test_the_record_and_the_transcript_have_each_report_that_a_status_counts(self):
+    def test_record_and_transcript_have_each_counted_report(self):
         allotment = self.post.status().json()["remaining_reports"]
         for number in range(1, 6):
             self.post.faults(reports=["endless-body"])  # 4 MiB take a while to make
@@ -102,20 +102,20 @@ class OneFault(OneRequest):
             else:
                 self.assertEqual(json.loads(line["answer"])["remaining_reports"], allotment - written)
 
-    def test_a_fault_may_be_of_one_robots_messages(self):
+    def test_fault_may_be_limited_to_one_robot(self):
         self.post.faults(reports=["500,robot=Backpack"])
         self.assertEqual(self.post.report({**REPORT, "type": "Rope"}).status_code, 201)
         self.assertEqual(self.post.faults_left()["reports"], ["500,robot=Backpack"])
         self.assertEqual(self.post.report({**REPORT, "type": "Backpack"}).status_code, 500)
         self.assertEqual(self.post.faults_left()["reports"], [])
 
-    def test_what_the_judge_refuses_is_not_recorded_whatever_the_fault(self):
+    def test_invalid_reports_are_not_recorded_with_any_fault(self):
         self.post.faults(reports=["record-then-drop"])
         self.assertEqual(exchange(self.post.scoring, REPORT_BYTES.replace(b"Drill", b"Spoon")), (b"", "closed"))
         record = self.post.record()
         self.assertEqual((record["report_count"], record["violation_count"]), (0, 1))
 
-    def test_a_request_that_is_none_takes_no_fault(self):
+    def test_invalid_request_takes_no_fault(self):
         self.post.faults(reports=["drop"])
         exchange(self.post.scoring, b"hello\r\n\r\n")
         self.assertEqual(self.post.scoring_request("GET", "/nowhere").status_code, 404)
@@ -123,7 +123,7 @@ class OneFault(OneRequest):
 
 
 class Aims(unittest.TestCase):
-    def test_each_aim_has_a_queue_of_its_own(self):
+    def test_each_aim_has_its_own_queue(self):
         with CommandPost() as post:
             post.faults(reports=["ok", "429"], status=["500"], mapping=["401", "500-recorded"])
             self.assertEqual(post.status().status_code, 500)
@@ -160,7 +160,7 @@ class Aims(unittest.TestCase):
             self.assertEqual([post.map(grid()).status_code for _ in range(2)], [200, 200])
             self.assertEqual([part["count"] for part in post.record()["accepted"] if part["kind"] == "grid"], [1])
 
-    def test_as_measured_the_refusals_are_those_of_its_servers(self):
+    def test_rejections_as_measured_are_those_of_its_servers(self):
         with CommandPost("--as-measured") as post:
             post.faults(reports=["401", "429"], mapping=["401", "429"])
             answer = post.scoring_request("POST", "/api/artifact_reports/", REPORT)

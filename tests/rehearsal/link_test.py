@@ -16,7 +16,7 @@ class Link(unittest.TestCase):
             self.assertEqual(answers, [200, 200])
             self.assertGreater(time.monotonic() - began, 0.9)
 
-    def test_what_it_takes_is_waited_for_by_the_sender(self):
+    def test_sender_waits_for_the_link(self):
         """Little is taken before it has come in: else a client would take a map for sent."""
         message = cloud(data=POINTS * 100_000)
         with CommandPost("--link", "1") as post, ThreadPoolExecutor() as pool:

@@ -32,7 +32,7 @@ class NewRun(unittest.TestCase):
             with self.subTest(first), CommandPost("--run", first) as post:
                 self.assertEqual(post.tell("new-run").json()["run"], then)
 
-    def test_may_be_told_its_id_its_team_and_to_wait(self):
+    def test_accepts_id_team_and_a_later_start(self):
         with CommandPost() as post:
             answer = post.tell("new-run", {"run": "7.1", "team": "Other", "started": False})
             self.assertEqual(answer.json(), {"state": "not started", "run": "7.1", "team": "Other"})
@@ -44,7 +44,7 @@ class NewRun(unittest.TestCase):
             record = post.record()
             self.assertEqual((record["run"], record["team"], record["state"]), ("7.1", "Other", "running"))
 
-    def test_what_is_not_understood_changes_nothing(self):
+    def test_invalid_order_changes_nothing(self):
         with CommandPost() as post:
             for body, sentence in (({"id": "2"}, "no such member: 'id'"), ({"run": 2}, "run: expected a text"),
                                    ({"team": ""}, "team: expected a text"), ([], "expected an object"),
@@ -65,7 +65,7 @@ class OtherSender(unittest.TestCase):
             self.assertNotEqual(answers[0].json()["y"], answers[1].json()["y"])
             self.assertEqual(post.status().json()["remaining_reports"], 43)
 
-    def test_with_a_report_of_its_own_it_takes_the_artifact(self):
+    def test_with_its_own_report_it_scores_the_artifact(self):
         with CommandPost(artifacts=ARTIFACTS) as post:
             self.assertEqual(post.tell("other-sender", REPORT).json()["score_change"], 1)
             self.assertEqual(post.report(REPORT).json()["score_change"], 0)
@@ -74,7 +74,7 @@ class OtherSender(unittest.TestCase):
                 self.assertEqual(post.tell("other-sender", body).status_code, 422)
             self.assertEqual(post.record()["report_count"], 2)
 
-    def test_is_ruled_on_as_anybody_is(self):
+    def test_follows_the_rules_of_the_run(self):
         with CommandPost("--not-started") as post:
             self.assertEqual(post.tell("other-sender").json()["report_status"], "run not started")
             post.tell("start")
@@ -84,7 +84,7 @@ class OtherSender(unittest.TestCase):
 
 
 class Record(unittest.TestCase):
-    def test_has_each_report_with_what_it_takes_to_count_it(self):
+    def test_has_each_report_with_its_result(self):
         with CommandPost("--run", "3", artifacts=ARTIFACTS, transcript=True) as post:
             post.status()
             post.report(REPORT)

@@ -8,7 +8,7 @@ REPORT = {"x": 1.0, "y": 2.0, "z": 3.0, "type": "Drill"}
 
 
 class Slash(unittest.TestCase):
-    def test_without_it_each_uri_is_redirected_and_nothing_is_recorded(self):
+    def test_without_it_each_uri_is_redirected_unrecorded(self):
         for manner in ((), ("--as-measured",)):
             with self.subTest(manner), CommandPost("--slash", *manner, transcript=True) as post:
                 here = f"http://{post.scoring}"
@@ -32,7 +32,7 @@ class Slash(unittest.TestCase):
                 self.assertEqual([(line["uri"], line["status"], line["message"]) for line in reports],
                                  [("/api/artifact_reports", 301, REPORT), ("/api/artifact_reports/", 201, REPORT)])
 
-    def test_a_report_that_is_sent_on_twice_is_recorded_twice(self):
+    def test_redirected_report_sent_twice_is_recorded_twice(self):
         with CommandPost("--slash") as post:
             for _ in range(2):
                 lost = post.scoring_request("POST", "/api/artifact_reports", REPORT, allow_redirects=False)
@@ -41,13 +41,13 @@ class Slash(unittest.TestCase):
                                                "Content-Type": "application/json"}).status_code, 201)
             self.assertEqual([report["x"] for report in post.record()["reports"]], [REPORT["x"]] * 2)
 
-    def test_a_fault_befalls_no_request_that_is_redirected(self):
+    def test_redirected_requests_take_no_fault(self):
         with CommandPost("--slash", "--fault", "reports:500") as post:
             self.assertEqual(post.scoring_request("POST", "/api/artifact_reports", REPORT, allow_redirects=False).status_code, 301)
             self.assertEqual(post.scoring_request("POST", "/api/artifact_reports/", REPORT).status_code, 500)
             self.assertEqual(post.scoring_request("POST", "/api/artifact_reports/", REPORT).status_code, 201)
 
-    def test_what_is_no_uri_of_the_icd_is_unknown_with_and_without_it(self):
+    def test_other_uris_are_unknown_with_and_without_it(self):
         with CommandPost("--slash") as post:
             for path in ("/api", "/api/", "/api/status//", "/map/update"):
                 self.assertEqual(post.scoring_request("GET", path, allow_redirects=False).status_code,

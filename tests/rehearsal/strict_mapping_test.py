@@ -33,7 +33,7 @@ class Taken(unittest.TestCase):
         taken = {(part["kind"], part["robot"]): part["count"] for part in self.post.record()["accepted"]}
         self.assertEqual(taken, {("grid", "X1"): 4, ("cloud", "X2"): 4})
 
-    def test_what_the_icd_makes_optional_may_be_absent(self):
+    def test_optional_members_may_be_absent(self):
         for body in (changed(grid(), name=DROP), changed(grid(), name=""), changed(grid(), msg__header=DROP),
                      changed(grid(), msg__compression=DROP), changed(grid(), msg__header__stamp=DROP),
                      changed(cloud(), msg__origin=DROP), changed(cloud(), msg__is_bigendian=DROP)):
@@ -42,12 +42,12 @@ class Taken(unittest.TestCase):
         for name in ("header", "ns", "id", "lifetime", "text"):
             self.expect_taken("/markers/update", marker(**{name: DROP}))
 
-    def test_members_that_the_icd_does_not_have_are_let_be(self):
+    def test_unknown_members_are_ignored(self):
         for rows in ({"msg__height": 1}, {"msg__height": 2, "msg__width": 1, "msg__row_step": 12}):
             body = changed(cloud(), msg__is_dense=True, msg__header__seq=4, **rows)
             self.assertEqual(self.post.map(body).status_code, 200)
 
-    def test_a_quaternion_is_of_length_1_but_for_noise(self):
+    def test_quaternion_has_length_1_within_noise(self):
         for length in (0.999999, 1, 1.000001):
             self.assertEqual(self.post.map(changed(grid(), msg__info__origin__orientation__w=length)).status_code, 200)
 
@@ -62,7 +62,7 @@ class Taken(unittest.TestCase):
         self.assertEqual(taken, {("pose", "X1"): 2, ("pose", "X2"): 2, ("pose", "A_long_one"): 2,
                                  ("marker", "artifacts"): 8})
 
-    def test_colors_count_only_where_a_marker_has_a_use_for_them(self):
+    def test_colors_are_checked_only_for_markers_that_use_them(self):
         for kind in (0, 1, 2, 3, 9, 10):
             self.expect_taken("/markers/update", marker(type=kind, colors=[COLOR]))
         for kind in (4, 5, 6, 7, 8, 11):
@@ -78,7 +78,7 @@ class Taken(unittest.TestCase):
         self.assertEqual(half[:1], b"\xa3")
         self.assertEqual(self.post.map(indefinite, **CBOR).text, "null")
 
-    def test_equal_stamps_are_no_step_backward(self):
+    def test_equal_stamps_are_no_step_back(self):
         for stamp in (5, 5, 5.5):
             self.assertEqual(self.post.map(changed(grid(), msg__header__stamp=stamp)).status_code, 200)
 
@@ -238,7 +238,7 @@ class Refused(unittest.TestCase):
                                      (status, "application/json"))
                     self.assertNotIn("WWW-Authenticate", answer.headers)
 
-    def test_what_breaks_the_icd_and_harms_nothing_is_taken_and_told(self):
+    def test_harmless_violations_are_accepted_and_recorded(self):
         unseen = {"r": 1, "g": 0.5, "b": 0, "a": 0}
         red, point = {"r": 1, "g": 0, "b": 0, "a": 1}, {"x": 0, "y": 0, "z": 0}
         table = [
@@ -265,14 +265,14 @@ class Refused(unittest.TestCase):
                         told += [sentence] if sentence else []
                         self.assertEqual([each["sentence"] for each in post.record()["violations"]], told)
 
-    def test_what_decides_is_not_lost_behind_what_does_not(self):
+    def test_serious_violation_counts_after_many_harmless_ones(self):
         with CommandPost() as post:
             unseen = marker(color={"r": 1, "g": 0, "b": 0, "a": 0})["markers"] * 30
             bad = marker(color={"r": 2, "g": 0, "b": 0, "a": 1})["markers"]
             answer = post.mapping_request("POST", "/markers/update", {"markers": [*unseen, *bad]})
             self.assertEqual((answer.status_code, answer.json()), (422, "markers[30].color.r: expected 0 to 1 (ICD 6.6)"))
 
-    def test_stamps_that_run_backward_are_refused_per_uri(self):
+    def test_stamps_that_go_back_are_rejected_per_uri(self):
         with CommandPost() as post:
             def stamped(stamp):
                 return post.map(changed(grid(), msg__header__stamp=stamp))

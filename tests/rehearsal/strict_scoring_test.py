@@ -135,7 +135,7 @@ class Refusals(unittest.TestCase):
             self.assertEqual(report().status_code, 201, "one that was refused does not count")
             self.assertEqual(post.record()["report_count"], sum(answer.status_code == 201 for answer in answers))
 
-    def test_more_than_one_a_second_over_statuses_and_reports_is_429_if_there_is_one_limit(self):
+    def test_common_limit_over_statuses_and_reports_is_429(self):
         def report():
             return post.report(REPORT)
 

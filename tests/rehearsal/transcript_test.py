@@ -104,7 +104,7 @@ class Transcript(unittest.TestCase):
                 self.assertEqual(list(struct.iter_unpack("<fffHbbb", body)),
                                  [(x, y, z, ring, *rest) for ring, x, y, z, *rest in points])
 
-    def test_names_from_the_wire_are_tamed(self):
+    def test_hostile_names_are_escaped(self):
         with CommandPost("--as-measured", transcript=True) as post:
             for name in ("../../x", "/etc/passwd", "a" * 500, "", "\u0000\n\u2028", "."):
                 self.assertEqual(post.map(changed(grid(), name=name)).status_code, 200)
@@ -115,7 +115,7 @@ class Transcript(unittest.TestCase):
                 self.assertRegex(file, r"^00000\d-\w{1,32}\.(pgm|yaml)$")
             self.assertEqual(post.lines()[0]["message"]["name"], "../../x")
 
-    def test_what_was_refused_has_a_line_and_no_picture(self):
+    def test_rejected_map_has_a_line_but_no_picture(self):
         self.post.map(grid(cells=bytes(5)))
         self.post.map_cbor(grid(cells=bytes(5), cbor=True))
         first, second = self.post.lines()
@@ -124,7 +124,7 @@ class Transcript(unittest.TestCase):
         self.assertEqual(first["violations"], ["msg.data: expected 3 x 2 = 6 bytes, got 5"])
         self.assertEqual(glob.glob(self.path("grids/*")), [])
 
-    def test_over_the_budget_there_are_lines_alone(self):
+    def test_over_the_budget_there_are_only_lines(self):
         with CommandPost("--transcript-mb", "1", transcript=True) as post:
             for _ in range(3):
                 self.assertEqual(post.map(grid(bytes(600_000), 1000, 600, compression="gzip")).status_code, 200)
@@ -132,7 +132,7 @@ class Transcript(unittest.TestCase):
             self.assertEqual(names, ["grids/000001-X1.pgm", None, None])
             self.assertEqual(len(os.listdir(os.path.join(post.transcript, "grids"))), 2)
 
-    def test_a_line_stays_short_whatever_is_in_a_message(self):
+    def test_line_of_a_large_message_is_short(self):
         long = {**state("X1"), "extra": "x" * 100_000, "list": [0] * 100_000, "bytes": bytes(100_000)}
         self.post.mapping_request("POST", "/state/update", cbor2.dumps(long), CBOR)
         many = {"markers": marker()["markers"] * 5000}
@@ -143,7 +143,7 @@ class Transcript(unittest.TestCase):
             **state("X1"), "extra": {"characters": 100_000}, "list": {"elements": 100_000}, "bytes": {"bytes": 100_000}})
         self.assertEqual(list(second["message"]), ["characters"])
 
-    def test_a_second_start_goes_on_where_the_first_ended(self):
+    def test_second_start_continues_the_first(self):
         self.post.map(grid())
         self.post.stop()
         self.post.__enter__()
@@ -151,7 +151,7 @@ class Transcript(unittest.TestCase):
         self.assertEqual([line["number"] for line in self.post.lines()], [1, 2])
         self.assertEqual(len(glob.glob(self.path("grids/*.pgm"))), 2)
 
-    def test_the_origin_is_kept_apart_from_the_points(self):
+    def test_origin_is_stored_apart_from_the_points(self):
         self.assertEqual(self.post.map(cloud()).status_code, 200)
         header, body = read_pcd(self.path("clouds/000001-X2.pcd"))
         self.assertEqual(body, POINTS)

@@ -38,7 +38,7 @@ class Http(unittest.TestCase):
             self.assertEqual(received.count(b"HTTP/1.1 200 OK\r\n"), 2)
             self.assertIn(b"Connection: close", received)
 
-    def test_each_answer_tells_the_time_of_day(self):
+    def test_each_answer_has_a_date(self):
         with CommandPost() as post:
             for request in (STATUS, STATUS.replace(b"Authorization", b"Nobody"), STATUS.replace(b"status", b"nothing")):
                 with connect(post.scoring) as stream:
@@ -70,7 +70,7 @@ class Http(unittest.TestCase):
         with CommandPost() as post:
             self.assertEqual(post.map_cbor(cloud(data=data, cbor=True)).status_code, 200)
 
-    def test_no_memory_is_taken_for_a_length_that_is_only_announced(self):
+    def test_announced_length_allocates_no_memory(self):
         def data_of(post):
             with open(f"/proc/{post.process.pid}/status", encoding="ascii") as file:
                 return next(int(line.split()[1]) * 1024 for line in file if line.startswith("VmData:"))
@@ -89,7 +89,7 @@ class Http(unittest.TestCase):
                     self.assertIn(read_answer(stream)[0], (400, 413))
             self.assertEqual(post.map(grid()).status_code, 200)
 
-    def test_what_is_no_http_is_answered_and_closed(self):
+    def test_malformed_http_is_answered_and_closed(self):
         table = [(400, b"hello\r\n\r\n"), (400, b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03\r\n\r\n"),
                  (400, b"GET /api/status HTTP/9.9\r\n\r\n"), (400, b"GET  HTTP/1.1\r\n\r\n"),
                  (400, STATUS[:-2] + b"Content-Length: x\r\n\r\n"),
@@ -104,7 +104,7 @@ class Http(unittest.TestCase):
                     self.assertIsInstance(json.loads(answer[2]), str)
                     self.assertEqual(stream.recv(1), b"")
 
-    def test_a_field_that_is_missing_or_given_twice_is_a_violation(self):
+    def test_missing_and_repeated_fields_are_violations(self):
         host, token = b"Host: here\r\n", b"Authorization: Bearer " + SCORING_TOKEN.encode() + b"\r\n"
         table = [("Host: missing (RFC 9112 3.2)", STATUS.replace(host, b"")),
                  ("Host: given twice (RFC 9110 5.3)", STATUS.replace(host, host * 2)),
@@ -120,7 +120,7 @@ class Http(unittest.TestCase):
             stream.sendall(STATUS.replace(host, b"").replace(b"HTTP/1.1", b"HTTP/1.0"))
             self.assertEqual(read_answer(stream)[0], 200)
 
-    def test_a_request_that_breaks_off_is_noted_and_not_answered(self):
+    def test_aborted_request_is_recorded_but_not_answered(self):
         with CommandPost() as post:
             with connect(post.mapping) as stream:
                 stream.sendall(map_header("Content-Length: 100") + b"\xa3")
@@ -134,7 +134,7 @@ class Http(unittest.TestCase):
             stream.sendall(STATUS.replace(b"/api/status", b"http://command-post/api/status?verbose=1"))
             self.assertEqual(read_answer(stream)[0], 200)
 
-    def test_nothing_of_random_bytes_brings_it_down(self):
+    def test_random_bytes_do_not_crash_it(self):
         chance = random.Random(20210401)
         messages = [cbor2.dumps(message) for message in (grid(cbor=True, compression="gzip"), cloud(cbor=True),
                                                          state("X1", "X2"), marker())]
@@ -173,7 +173,7 @@ class Http(unittest.TestCase):
 
 
 class Process(unittest.TestCase):
-    def test_stops_without_patience_whatever_is_under_way(self):
+    def test_stops_at_once_during_requests(self):
         for how in (signal.SIGTERM, signal.SIGINT):
             with CommandPost() as post:
                 open_streams = [connect(post.scoring), connect(post.mapping)]
@@ -197,7 +197,7 @@ class Process(unittest.TestCase):
             self.assertIn("reports: 1, score 0, 44 remaining\n", lines)
             self.assertEqual(post.status().status_code, 200)
 
-    def test_verbose_prints_a_line_for_each_request_and_never_a_token(self):
+    def test_verbose_prints_each_request_but_no_token(self):
         with CommandPost("--verbose") as post:
             post.map(grid(name="X1"))
             post.mapping_request("POST", "/map/update", grid(), {"Authorization": "Bearer wrong-token-123"})
@@ -208,7 +208,7 @@ class Process(unittest.TestCase):
                 for token in (MAPPING_TOKEN, SCORING_TOKEN, "wrong-token-123"):
                     self.assertNotIn(token, text)
 
-    def test_wrong_use_is_said_and_exits_2(self):
+    def test_wrong_use_is_explained_and_exits_2(self):
         with CommandPost() as post:
             good = post.command[1:]
             bad_csv = post.write("bad.csv", "type,x,y,z\nDrill,1,2,3\nSpoon,1,2,3\n")

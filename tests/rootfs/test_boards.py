@@ -14,7 +14,7 @@ class Folders(unittest.TestCase):
                 self.assertIn(folder.name, BOARDS)
                 self.assertRegex(folder.name, r"^[A-Za-z0-9_-]+$")
 
-    def test_a_board_says_what_it_is_and_how_it_boots(self):
+    def test_board_conf_is_complete(self):
         for board in BOARDS:
             with self.subTest(board):
                 for name in "title", "architecture", "kernel_package", "bootloader", "console", "initrd_modules", "modules":
@@ -22,7 +22,7 @@ class Folders(unittest.TestCase):
                 self.assertRegex(conf(board, "memory_max")[0], r"^[1-9]\d%$")
                 self.assertTrue((TOP / "board" / board / "README.md").exists())
 
-    def test_what_the_box_reads_is_the_same_board_with_all_lines_of_a_panel_or_none(self):
+    def test_board_json_matches_and_has_all_panel_lines_or_none(self):
         for board in BOARDS:
             with self.subTest(board):
                 data = json.loads((TOP / "board" / board / "board.json").read_text())
@@ -32,7 +32,7 @@ class Folders(unittest.TestCase):
                     self.assertEqual(set(panel), {"chip", "active_low", "button_active_low", *GROUP})
                     self.assertEqual(len({panel[light] for light in GROUP}), len(GROUP))
 
-    def test_the_ports_are_named_by_path_and_not_by_the_order_in_which_they_are_found(self):
+    def test_ports_are_named_by_path(self):
         for board in BOARDS:
             with self.subTest(board):
                 links = sorted((TOP / "board" / board).glob("*.link"))
@@ -60,7 +60,7 @@ class Wiring(unittest.TestCase):
         found = re.findall(r"^(\S+) +(\d+) +ADIT_(\w+) *(?:# (.*))?$", (TOP / "board" / board / "lines").read_text(), re.M)
         return {name.lower(): (node, int(line), comment) for node, line, name, comment in found}
 
-    def test_each_row_of_a_table_names_a_source_that_is_listed(self):
+    def test_each_row_names_a_listed_source(self):
         for board, text, panel in self.wired():
             with self.subTest(board):
                 self.assertEqual(set(panel), set(GROUP))
@@ -69,7 +69,7 @@ class Wiring(unittest.TestCase):
                     sources = set(re.findall(r"\[[A-Z]\]", row))
                     self.assertTrue(sources and sources <= listed, row)
 
-    def test_a_line_is_the_same_in_the_table_the_picture_and_the_device_tree(self):
+    def test_table_picture_and_device_tree_agree(self):
         for board, _, panel in self.wired():
             picture = (TOP / "board" / board / "board.svg").read_text()
             lines = self.lines(board)
@@ -100,7 +100,7 @@ class Loaders(unittest.TestCase):
         words = [re.sub(r"^(?:(?:if|elif|then|do|else) )+", "", piece.strip()).split(" ")[0] for piece in pieces]
         return {word for word in words if word} - self.SHELL
 
-    def test_the_scripts_use_only_what_the_boot_loaders_of_2017_know(self):
+    def test_scripts_use_only_commands_of_2017(self):
         self.assertEqual(self.commands() - {"${devtype}"}, KNOWN)
         text = "".join((TOP / script).read_text() for script in self.SCRIPTS)
         for imported in some(re.findall(r"env import -[ct] (.*)", text)):  # address and size: a name after them would be taken for no size

@@ -21,19 +21,19 @@ class Card(unittest.TestCase):
             path.touch()
         return not subprocess.run(["sh", "-euc", '. "$1"; card_is_empty "$2"', "sh", CARD, self.folder], check=False).returncode
 
-    def test_without_a_folder_it_is(self):
+    def test_empty_without_a_directory(self):
         self.assertTrue(self.is_empty())
         self.assertTrue(self.is_empty("EFI/BOOT/grub.cfg"))
 
-    def test_with_what_adit_import_left_it_is(self):
+    def test_empty_with_imported_files(self):
         (self.folder / "adit/secrets").mkdir(parents=True)
         self.assertTrue(self.is_empty("adit/boot.env", "adit/taken.txt", "adit/settings.json.taken", "adit/network.json.taken"))
 
-    def test_with_anything_to_take_it_is_not(self):
+    def test_not_empty_with_a_file_to_import(self):
         for file in ("settings.json", "network.json", "SETTINGS.JSON", "secrets/label.code", "secrets/scoring.token", "settings.json.txt"):
             with self.subTest(file):
                 self.setUp()
                 self.assertFalse(self.is_empty("adit/boot.env", f"adit/{file}"))
 
-    def test_a_token_that_is_still_to_be_wiped_keeps_it_from_being_so(self):
+    def test_not_empty_with_a_token_to_wipe(self):
         self.assertFalse(self.is_empty("adit/secrets/scoring.token.taken"))

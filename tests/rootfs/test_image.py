@@ -47,7 +47,7 @@ class Parts(unittest.TestCase):
                 self.assertLessEqual(ends, {*ids, "SPDXRef-DOCUMENT"})
                 self.assertLessEqual(set(ids), ends)
 
-    def test_each_part_has_a_version_and_says_its_licence_or_that_it_does_not(self):
+    def test_each_part_has_a_version_and_a_licence_entry(self):
         for board in BOARDS:
             known = {each["licenseId"] for each in parts_of(board)["hasExtractedLicensingInfos"]}
             for package in parts_of(board)["packages"]:
@@ -58,7 +58,7 @@ class Parts(unittest.TestCase):
                         self.assertRegex(package["checksums"][0]["checksumValue"], r"^[0-9a-f]{64}$")
                         self.assertIn("source package", package["sourceInfo"])
 
-    def test_kernel_loader_busybox_and_adit_are_on_it_and_what_is_not_in_the_image_is_not(self):
+    def test_list_has_the_boot_parts_and_only_installed_packages(self):
         for board in BOARDS:
             with self.subTest(board):
                 names = {package["name"] for package in parts_of(board)["packages"]}
@@ -98,7 +98,7 @@ class Root(unittest.TestCase):
                 slot = [IMAGES / board / "work/root.squashfs", *(IMAGES / board / "work/slot").rglob("*")]
                 self.assertLessEqual(sum(path.stat().st_size for path in slot if path.is_file()), 100_000_000)
 
-    def test_nothing_runs_with_the_rights_of_another_and_no_package_manager_is_there(self):
+    def test_no_setuid_files_and_no_package_manager(self):
         for board in BOARDS:
             root = IMAGES / board / "work/root"
             with self.subTest(board):
@@ -108,7 +108,7 @@ class Root(unittest.TestCase):
                 for program in "apt", "apt-get", "dpkg", "sudo", "su", "login", "sshd", "passwd":
                     self.assertFalse(list(root.glob(f"usr/*bin/{program}")))
 
-    def test_what_only_tls_and_downloads_need_is_not_there(self):
+    def test_libraries_for_tls_and_downloads_are_absent(self):
         """chronyd has libnettle's checksums, which TLS would have, too."""
         for board in BOARDS:
             there = {path.name.partition(".so")[0] for path in (IMAGES / board / "work/root").rglob("lib*.so*")}
@@ -116,7 +116,7 @@ class Root(unittest.TestCase):
                 self.assertEqual(there & {"libhogweed", "libp11-kit", "libkrb5", "libldap-2", "libssh2", "libnghttp2"}, set())
                 self.assertLessEqual({"libgcc_s", "libidn2"}, there, "opened by name")
 
-    def test_the_programs_of_a_board_like_this_machine_find_each_function(self):
+    def test_programs_of_a_like_board_resolve_each_function(self):
         """Those of the stand-ins, too: linked as they are at their start, with nothing left for later."""
         alike = (board for board in BOARDS if conf(board, "architecture") == [ARCHITECTURE])
         for board in some(alike, f"no image of a board of {ARCHITECTURE} was built here"):
@@ -127,7 +127,7 @@ class Root(unittest.TestCase):
                                           env={"LD_BIND_NOW": "1", "PATH": "/usr/sbin:/usr/bin"})
                     self.assertEqual((said.returncode, said.stderr), (0, ""), said)
 
-    def test_every_library_that_is_asked_for_is_there(self):
+    def test_each_required_library_exists(self):
         for board in BOARDS:
             root = IMAGES / board / "work/root"
             there = {path.name for path in root.rglob("*.so*")}
@@ -136,7 +136,7 @@ class Root(unittest.TestCase):
                 said = subprocess.run(["readelf", "-d", *files], capture_output=True, text=True).stdout
                 self.assertLessEqual(set(re.findall(r"\(NEEDED\).*\[(.*)\]", said)), there)
 
-    def test_every_program_that_a_unit_starts_is_there(self):
+    def test_each_program_of_a_unit_exists(self):
         for board in BOARDS:
             root = IMAGES / board / "work/root"
             for unit in some(root.glob("usr/lib/systemd/system/**/*")):
@@ -149,7 +149,7 @@ class Root(unittest.TestCase):
 
 
 class Loaders(unittest.TestCase):
-    def test_the_loader_in_the_image_knows_each_command_and_has_the_environment(self):
+    def test_loader_has_each_command_and_the_environment(self):
         packages = IMAGES.glob("debian-arm64/*/u-boot-rockchip_*.deb")
         package, *_ = some(packages, "u-boot-rockchip was not fetched here: the image of an arm64 board does")
         file = "./usr/lib/u-boot/rock-pi-e-rk3328/u-boot-nodtb.bin"
@@ -161,7 +161,7 @@ class Loaders(unittest.TestCase):
             if not line.startswith("#"):
                 self.assertRegex(loader, re.escape(line.encode()) + b" ?\0")
 
-    def test_what_is_loaded_does_not_overlap(self):
+    def test_loaded_parts_do_not_overlap(self):
         boards = (board for board in BOARDS if (TOP / "board" / board / "u-boot.env").exists())
         for board in some(boards, "no image of a board with U-Boot was built here"):
             slot = IMAGES / board / "work/slot"
@@ -182,7 +182,7 @@ class Loaders(unittest.TestCase):
 
 
 class Drivers(unittest.TestCase):
-    def test_each_device_that_is_needed_has_a_driver_in_the_image_or_in_the_kernel(self):
+    def test_each_required_device_has_a_driver(self):
         for board, dtb in self.device_trees():
             root = IMAGES / board / "work/root"
             modules = next(root.glob("usr/lib/modules/*"))
@@ -196,7 +196,7 @@ class Drivers(unittest.TestCase):
                     builtin = any(b"\0" + name.encode() + b"\0" in kernel for name in names)
                     self.assertTrue(module or builtin or names[0].startswith("ethernet-phy-id"))
 
-    def test_what_finds_the_root_is_in_the_initrd(self):
+    def test_initrd_has_the_modules_for_the_root(self):
         for board in BOARDS:
             with self.subTest(board):
                 order = (IMAGES / board / "work/initrd.modules").read_text()
@@ -204,7 +204,7 @@ class Drivers(unittest.TestCase):
                 for module in [*conf(board, "initrd_modules"), "squashfs"]:
                     self.assertRegex(order + builtin, "/" + re.sub("[-_]", "[-_]", module) + r"\.ko")
 
-    def test_the_lines_of_the_panel_have_their_names_in_the_device_tree(self):
+    def test_panel_lines_are_named_in_the_device_tree(self):
         for board, dtb in self.device_trees():
             panel = json.loads((TOP / "board" / board / "board.json").read_text()).get("panel")
             if not panel:
@@ -213,7 +213,7 @@ class Drivers(unittest.TestCase):
             with self.subTest(board):
                 self.assertLessEqual({panel[light] for light in GROUP}, names)
 
-    def test_the_ports_are_where_the_device_tree_has_them(self):
+    def test_ports_match_the_device_tree(self):
         for board, dtb in self.device_trees():
             tree = nodes(dtb)
             for link in some((TOP / "board" / board).glob("*.link")):

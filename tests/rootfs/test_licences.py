@@ -17,16 +17,16 @@ class Expressions(unittest.TestCase):
             with self.subTest(debian):
                 self.assertEqual(identifier(debian), spdx)
 
-    def test_what_spdx_does_not_know_is_no_name_of_its(self):
+    def test_unknown_names_are_not_spdx_names(self):
         for name in "GPL", "public-domain", "GPL-2+ with OpenSSL exception", "":
             with self.subTest(name):
                 self.assertIsNone(identifier(name))
 
-    def test_all_licences_of_a_package_hold_and_each_is_named_once(self):
+    def test_licences_of_a_package_are_joined_once_each(self):
         text = HEAD + "Files: *\nLicense: GPL-2+\n\nFiles: lib/*\nLicense: Expat\n\nFiles: doc/*\nLicense: MIT\n"
         self.assertEqual(Licences().expression(text), "MIT AND GPL-2.0-or-later")
 
-    def test_a_choice_is_a_choice(self):
+    def test_choice_stays_a_choice(self):
         self.assertEqual(Licences().expression(HEAD + "Files: *\nLicense: GPL-2 or Expat\n"), "(GPL-2.0-only OR MIT)")
 
     def test_an_unknown_licence_comes_with_its_text(self):
@@ -35,6 +35,6 @@ class Expressions(unittest.TestCase):
         self.assertEqual(licences.expression(text), "LicenseRef-debian-Beer-ware")
         self.assertIn("Buy me one.", licences.extracted["LicenseRef-debian-Beer-ware"]["extractedText"])
 
-    def test_prose_is_not_guessed_at(self):
+    def test_prose_is_not_interpreted(self):
         self.assertEqual(Licences().expression("This is free software; see the GPL.\n"), "NOASSERTION")
         self.assertEqual(Licences().expression(""), "NOASSERTION")

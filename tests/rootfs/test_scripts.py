@@ -52,12 +52,12 @@ class GrubsEnvironment(Scripts):
         self.assertEqual(done.returncode, 0, done.stderr)
         return dict(line.split("=", 1) for line in done.stdout.splitlines())
 
-    def test_what_is_set_is_listed_and_the_rest_is_kept(self):
+    def test_set_values_are_listed_and_others_kept(self):
         self.set("A_TRY=2")
         self.set("A_TRY=0", "ORDER=B A")
         self.assertEqual(self.listed(), {**DEFAULTS, "ORDER": "B A", "B_MOST": "3"})
 
-    def test_a_slot_has_three_tries_once_it_is_to_be_started_first_and_ten_once_it_is_good(self):
+    def test_new_slot_has_three_tries_and_a_good_one_ten(self):
         self.set("ORDER=B A", "B_OK=1", "B_TRY=0")  # as RAUC has it
         self.set("B_TRY=2")
         listed = self.listed()
@@ -66,14 +66,14 @@ class GrubsEnvironment(Scripts):
         listed = self.listed()
         self.assertEqual((listed["A_MOST"], listed["B_MOST"]), ("9", "10"))
 
-    def test_it_writes_two_sectors_and_not_a_byte_beside_them(self):
+    def test_exactly_two_sectors_are_written(self):
         self.set("B_TRY=3")
         first, second, rest = self.written()
         self.assertEqual((first, rest), (second, self.rest))
         self.assertTrue(first.startswith(FIRST))
         self.assertEqual(first.rstrip(b"#")[-1:], b"\n")
 
-    def test_where_the_first_is_lost_the_second_is_read_and_both_are_written_again(self):
+    def test_second_copy_is_used_if_the_first_is_lost_and_both_are_rewritten(self):
         self.set("ORDER=B A", "A_OK=0", "B_TRY=0")
         first, second, _ = self.written()
         self.write(b"\xff" * SECTOR, second)
@@ -82,21 +82,21 @@ class GrubsEnvironment(Scripts):
         self.assertEqual(self.written()[:2], (self.written()[0],) * 2)
         self.assertEqual(self.listed()["A_OK"], "0")
 
-    def test_the_first_is_read_where_grub_has_counted_in_it_alone(self):
+    def test_first_copy_is_used_if_only_grub_changed_it(self):
         self.set("A_TRY=0")
         first, second, _ = self.written()
         self.write(first.replace(b"A_TRY=0", b"A_TRY=4"), second)
         self.assertEqual(self.listed()["A_TRY"], "4")
 
     @unittest.skipUnless(shutil.which("grub-editenv"), "no grub-editenv here")
-    def test_grubs_own_program_reads_it(self):
+    def test_grub_editenv_reads_it(self):
         self.set("ORDER=B A", "B_TRY=1")
         alone = self.folder / "grubenv"
         alone.write_bytes(self.partition.read_bytes()[SECTOR:2 * SECTOR])
         said = self.call("grub-editenv", alone, "list").stdout
         self.assertEqual(dict(line.split("=", 1) for line in said.splitlines()), {**DEFAULTS, "ORDER": "B A", "B_TRY": "1", "B_MOST": "3"})
 
-    def test_one_that_cannot_be_read_is_made_again_with_what_grub_goes_by(self):
+    def test_damaged_environment_is_replaced_by_the_defaults(self):
         for damaged in bytes(SECTOR), b"\xff" * SECTOR, b"#" * SECTOR, FIRST[:9] + bytes(SECTOR - 9):
             with self.subTest(damaged[:12]):
                 self.write(damaged, damaged)
@@ -104,7 +104,7 @@ class GrubsEnvironment(Scripts):
         self.set("A_TRY=1")
         self.assertEqual(self.listed(), {**DEFAULTS, "A_TRY": "1"})
 
-    def test_what_it_does_not_understand_changes_nothing(self):
+    def test_invalid_words_change_nothing(self):
         self.set("A_TRY=1")
         before = self.partition.read_bytes()
         for words in (["set", "A_TRY"], ["set", "A_TRY=$x"], ["set", "A_TRY=1\n2"], ["set", "A_TRY=2", "=1"], ["set", "A=1=2"],
@@ -115,7 +115,7 @@ class GrubsEnvironment(Scripts):
                 self.assertTrue(done.stderr.startswith("grub-editenv: "), done.stderr)
                 self.assertEqual(self.partition.read_bytes(), before)
 
-    def test_a_partition_that_is_not_there_is_an_error_and_is_not_made(self):
+    def test_missing_partition_is_an_error_and_is_not_created(self):
         self.partition.unlink()
         for words in ["list"], ["set", "A_TRY=1"]:
             self.assertIn("there is no", self.edit(*words).stderr)
@@ -133,14 +133,14 @@ class TwoDisks(Scripts):
         done = self.call(TOP / "rootfs/overlay/usr/lib/adit/disks", sysfs, notice)
         return done.returncode, notice.read_text() if notice.exists() else None
 
-    def test_two_that_hold_an_adit_are_told_until_one_is_gone(self):
+    def test_two_disks_with_an_adit_are_reported_until_one_is_removed(self):
         self.assertEqual(self.held_by("sda"), (0, None))
         status, notice = self.held_by("sda", "sdb")
         self.assertEqual(status, 1)
         self.assertRegex(notice, "^2 disks hold an Adit: .*\n$")
         self.assertEqual(self.held_by("sda"), (0, None))
 
-    def test_rauc_asks_before_it_installs_and_udev_as_disks_come_and_go(self):
+    def test_rauc_and_udev_run_the_check(self):
         self.assertIn("\npre-install=/usr/lib/adit/disks\n", (TOP / "rootfs/rauc.conf.in").read_text())
         self.assertIn('RUN+="/usr/lib/adit/disks"', (TOP / "rootfs/overlay/usr/lib/udev/rules.d/70-adit-disks.rules").read_text())
 
@@ -170,7 +170,7 @@ class Greeting(Scripts):
                   PATH=f"{self.folder}/bin:/usr/bin:/bin")
         return [(devices / name).read_text() for name in consoles.split()]
 
-    def test_each_console_shows_where_the_page_is_and_the_code(self):
+    def test_each_console_shows_the_address_of_the_page_and_the_code(self):
         screen, serial = self.shown(addresses=("169.254.47.111", "10.0.0.1", "192.168.7.11"))
         self.assertEqual(screen, serial)
         self.assertRegex(screen, r"(?s)10\.0\.0\.1.*192\.168\.7\.11.*169\.254\.47\.111", "the link-local one is the last resort")
@@ -178,18 +178,18 @@ class Greeting(Scripts):
             self.assertEqual(screen.count(words), 1, screen)
         self.assertNotIn("\n\n", screen.replace("\r", "").strip())
 
-    def test_a_serial_line_shows_it_each_minute_to_whoever_comes_later(self):
+    def test_serial_console_repeats_it_each_minute(self):
         consoles = self.shown(consoles="tty0 ttyS2 ttyMV0 ttyAMA0", seconds=125)
         self.assertEqual([said.count("12345678") for said in consoles], [1, 3, 3, 3])
 
-    def test_where_no_code_is_written_it_says_so(self):
+    def test_missing_code_is_shown(self):
         self.assertIn("no code yet", self.shown(code=None)[0])
 
-    def test_passwords_that_aditd_cannot_read_are_none(self):
+    def test_unreadable_passwords_count_as_unset(self):
         """It asks for a code again, and writes one."""
         self.assertIn("12345678", self.shown(passwords='{"version":1,"oper')[0])
 
-    def test_nothing_is_shown_once_a_password_is_set(self):
+    def test_greeting_ends_once_a_password_is_set(self):
         self.assertEqual(self.shown(code=None, passwords="{}"), ["", ""])
 
 
@@ -215,12 +215,12 @@ class SetUp(Scripts):
         done = self.call(self.folder / "setup", "lint", PATH=f"{self.folder}/bin:/usr/sbin:/usr/bin:/sbin:/bin")
         return done, [line.split()[0] for line in (self.folder / "calls").read_text().splitlines()]
 
-    def test_it_waits_for_another_apt_and_says_so_once(self):
+    def test_it_waits_for_another_apt_and_reports_it_once(self):
         done, calls = self.set_up(LOCKED, LOCKED)
         self.assertEqual((done.returncode, calls), (0, ["update", "update", "update", "-o"]))
         self.assertEqual(done.stdout.count("waits for another apt"), 1)
 
-    def test_any_other_fault_ends_it_with_what_apt_said(self):
+    def test_another_error_of_apt_ends_it_and_is_shown(self):
         done, calls = self.set_up("E: Could not resolve the mirror")
         self.assertEqual((done.returncode, calls), (1, ["update"]))
         self.assertIn("Could not resolve", done.stderr)
@@ -252,7 +252,7 @@ class Options(Scripts):
         self.assertEqual(done.returncode, 0, done.stderr)
         return (self.folder / "told").read_text().split()
 
-    def test_the_version_is_one_that_a_box_can_compare(self):
+    def test_version_is_comparable(self):
         good = "1.2.3", "0.0.0", "1.2.3-rc.1", "1.2.3-0a", "1.2.3--", "1.2.3+5.01", "1.2.3-rc.1+b-2"
         self.assertEqual(self.told(*(word for version in good for word in ("--version", version)))[0], good[-1], "each is checked")
         for version in ("", "1.2", "1.2.3~rc1", "1.2.3.4", "01.2.3", "1.2.3+a+b", "1.2.3-01", "1.2.3-", "1.2.3-a..b", "v1.2.3", "1.2.3-a_b",
@@ -262,15 +262,15 @@ class Options(Scripts):
                 self.assertEqual(done.returncode, 2)
                 self.assertIn("--version wants", done.stderr)
 
-    def test_the_version_is_that_of_the_tree_unless_it_is_said(self):
+    def test_version_defaults_to_that_of_the_tree(self):
         self.assertEqual(self.told()[0], "0.1.0")
         (self.folder / "CMakeLists.txt").write_text('project(adit DESCRIPTION "no version")\n')
         done = self.call(self.folder / "toolchain/image", "--programs", "programs", "one")
         self.assertEqual((done.returncode, done.stdout), (1, ""))
 
-    def test_the_box_takes_updates_for_the_keyring_that_the_user_sets(self):
+    def test_keyring_of_the_user_is_used(self):
         self.assertEqual(self.told(ADIT_SIGNING_CERT="one.pem")[1], "both.pem")
 
-    def test_or_else_for_the_certificate_that_updates_are_signed_for(self):
+    def test_keyring_defaults_to_the_signing_certificate(self):
         self.assertEqual(self.told(keyring="", ADIT_SIGNING_CERT="one.pem")[1], "one.pem")
         self.assertEqual(self.told(keyring="", ADIT_SIGNING_CERT="")[1], "build/image/keys/cert.pem")

@@ -110,12 +110,12 @@ class State(Script):
         self.assertEqual([line.split()[-2:] for line in self.called("mount")], [[device, "/var"]])
         self.assertEqual(self.called("e2fsck"), [])
 
-    def test_the_first_start_takes_what_it_made_and_no_boot_area_of_an_emmc(self):
+    def test_first_boot_uses_the_new_partition_not_an_emmc_boot_area(self):
         self.assertEqual(self.run_it(), "")
         self.is_state("/dev/mmcblk0p7")
         self.assertEqual(self.called("systemd-growfs"), ["systemd-growfs /var"])
 
-    def test_a_later_start_takes_the_one_of_its_label_and_makes_none(self):
+    def test_later_boot_uses_the_labelled_partition(self):
         self.has_state()
         self.assertEqual(self.run_it(), "")
         self.is_state("/dev/mmcblk0p7")
@@ -129,13 +129,13 @@ class State(Script):
         self.is_state("/dev/mmcblk0p7")
         self.assertEqual(len(self.called("systemd-repart") + self.called("systemd-growfs")), 2)
 
-    def test_somebodys_partition_without_a_label_is_not_touched(self):
+    def test_foreign_partition_without_a_label_is_untouched(self):
         self.partition(8, 1_000_000)
         self.room(2_000_000)
         self.assertEqual(self.run_it(), "")
         self.is_state("/dev/mmcblk0p7")
 
-    def test_without_room_it_works_from_memory_and_says_so(self):
+    def test_without_room_the_state_is_in_memory_with_a_notice(self):
         self.partition(8, 1_000_000)
         self.room(0)
         self.program("systemd-repart", "exit 1\n")
@@ -143,7 +143,7 @@ class State(Script):
         self.assertEqual(self.called("e2fsck"), [])
         self.assertTrue(self.called("mount")[0].endswith("tmpfs /var"))
 
-    def test_one_on_which_the_kernel_found_errors_is_repaired_before_it_is_mounted(self):
+    def test_file_system_with_errors_is_repaired_before_mounting(self):
         self.has_state()
         for flags in (ERRORS, VALID | ERRORS):
             with self.subTest(flags):
@@ -152,7 +152,7 @@ class State(Script):
                 self.assertEqual(self.called("e2fsck mount"), [*REPAIRED, *MOUNTED])
                 (self.folder / "called").unlink()
 
-    def test_one_that_cannot_be_mounted_is_repaired_and_mounted(self):
+    def test_unmountable_file_system_is_repaired_and_mounted(self):
         self.has_state()
         self.program("mount", 'grep -q ^e2fsck "${0%/*}/../called" || { echo "mount: bad superblock" >&2; exit 1; }\n')
         for unreadable in (False, True):
@@ -163,7 +163,7 @@ class State(Script):
                 self.assertEqual(self.called("e2fsck mount"), [*MOUNTED, *REPAIRED, *MOUNTED])
                 (self.folder / "called").unlink()
 
-    def test_one_that_can_be_repaired_by_force_alone(self):
+    def test_file_system_that_needs_a_forced_repair(self):
         self.state_is(ERRORS)
         self.program("e2fsck", '[ "$1" = -f ] || exit 4\n')
         self.assertEqual(self.run_it(), "")
@@ -176,23 +176,23 @@ class State(Script):
         self.program("e2fsck", f"for _ in $(seq 500); do {fed}; sleep 0.01; done\nexit 8\n")
         self.assertEqual(self.run_it(), "")
 
-    def test_one_beyond_repair_is_left_as_it_is(self):
+    def test_irreparable_file_system_is_unchanged(self):
         self.state_is(ERRORS)
         self.program("e2fsck", "exit 8\n")
         self.assertIn("it cannot be repaired", self.run_it())
         self.assertTrue(self.called("mount")[0].endswith("tmpfs /var"))
         self.assertIn("tmp", self.left("var"), "in memory")
 
-    def test_a_new_one_has_the_folders_that_the_system_expects(self):
+    def test_new_file_system_has_the_expected_directories(self):
         self.assertEqual(self.run_it(), "")
         var = self.left("var")
         self.assertEqual({name: var[name] for name in FOLDERS}, FOLDERS)
 
-    def test_a_cut_between_two_folders_is_made_good(self):
+    def test_directories_are_completed_after_a_cut(self):
         self.assertEqual(self.run_it("mkdir -p /var/cache /var/lib/rauc"), "")
         self.assertEqual({name: self.left("var")[name] for name in FOLDERS}, FOLDERS)
 
-    def test_what_a_service_left_behind_is_gone_and_the_rest_is_as_it_was(self):
+    def test_leftovers_of_a_service_are_deleted_and_the_rest_is_kept(self):
         self.has_state()
         self.assertEqual(self.run_it("mkdir -p /var/tmp/systemd-private-1/tmp /var/tmp/systemd-private-2 /var/lib/adit"), "")
         self.assertEqual(set(self.left("var")), {"", "lib", "lib/adit", "tmp"})
@@ -215,7 +215,7 @@ class Early(Script):
         self.assertEqual({name.partition("/")[2] for name in self.left("run") if name.startswith("adit-early/")}, set(services))
         return (self.folder / "called").read_text().splitlines()
 
-    def test_both_services_are_left_out_for_it_has_done_their_work(self):
+    def test_both_services_are_skipped_afterwards(self):
         self.assertEqual(self.leaves_out("adit-nftables", "adit-network-start"), [FIREWALL, ADDRESSES])
         self.assertEqual((self.left("run")["systemd/network"], self.left("var")["lib/adit-network"]), ("755", "755"))
 
@@ -226,11 +226,11 @@ class Early(Script):
             condition = (TOP / f"rootfs/overlay/usr/lib/systemd/system/{unit}.service.d/early.conf").read_text()
             self.assertIn("ConditionPathExists=!/run/adit-early/%N\n", condition)
 
-    def test_what_fails_here_is_left_to_its_service(self):
+    def test_failures_are_left_to_the_service(self):
         self.program("nft", "exit 1\n")
         self.assertEqual(self.leaves_out("adit-network-start"), [FIREWALL, ADDRESSES])
         self.program("adit-network", "exit 1\n")
         self.leaves_out()
 
-    def test_a_card_may_bring_other_addresses_and_nobody_is_ahead_of_it(self):
+    def test_card_with_addresses_comes_first(self):
         self.assertEqual(self.leaves_out("adit-nftables", card=":"), [FIREWALL])

@@ -40,7 +40,7 @@ class Tracker(unittest.TestCase):
         self.assertNotIn("Rebuild", said)
         self.assertIn("not packages of Debian: boost", said)
 
-    def test_a_remote_entry_is_refused_unless_its_own_line_excuses_it(self):
+    def test_remote_entry_is_rejected_unless_excused(self):
         for exposed in "", "excuse openssl CVE-2026-2 other\n", "excuse openssl * all\n", "excuse foo CVE-2026-1 other\n":
             status, said, why = self.one(scope="remote", exposed=exposed)
             self.assertEqual(status, 1, exposed)
@@ -51,13 +51,13 @@ class Tracker(unittest.TestCase):
         self.assertIn("| Adit has no such server. |", said)
         self.assertRegex(said, r"1 open entry on .*\. Rebuild by 20")
 
-    def test_an_unknown_scope_counts_as_remote_for_a_part_that_faces_the_network(self):
+    def test_unknown_scope_counts_as_remote_for_network_parts(self):
         self.assertEqual(self.one("foo")[0], 1)
         self.assertEqual(self.one("foo", exposed="faces foo bytes\nexcuse foo * not used\n")[0], 0)
         self.assertEqual(self.one("foo", scope="local")[0], 0)
         self.assertEqual(self.one("bar")[0], 0)
 
-    def test_an_entry_is_open_up_to_the_fixed_version_of_its_source(self):
+    def test_entry_is_open_before_the_fixed_version(self):
         for source, fixed, status in (("foo", "1.2-4", 1), ("foo", "1.2-3", 0), ("foo", "0", 0), ("bar", "1:9.5-3", 1), ("bar", "1:9.5-2", 0),
                                       ("linux", "6.1.192-3", 1), ("linux", "6.1.192-2", 0)):
             with self.subTest(source=source, fixed=fixed):
@@ -66,7 +66,7 @@ class Tracker(unittest.TestCase):
         self.assertEqual(self.one(releases={"bookworm": {"status": "undetermined"}}, scope="remote")[0], 1)
         self.assertEqual(self.one(releases={"bookworm": {"status": "open", "urgency": "unimportant"}}, scope="remote")[0], 0)
 
-    def test_data_that_cannot_be_right_is_refused(self):
+    def test_implausible_data_is_rejected(self):
         for found in {"linux": None}, {"foo": {"CVE-2026-1": {}}}, {"foo": {"CVE-2026-1": {"releases": {"bookworm": {}}}}}:
             self.assertEqual(self.check(found)[0], 1, found)
         for exposed in "face foo bytes\n", "excuse foo CVE-2026-1\n", "excuse foo all reason\n":

@@ -85,7 +85,7 @@ class Offers(unittest.TestCase):
                     said = {word for line in lines for dash in ("", "-") for word in LISTERS[shell](line + dash)}
                     self.assertLessEqual(known, said | {"--help"}, f"{shell}: {name} {command}")
 
-    def test_no_option_that_is_refused(self):
+    def test_exactly_the_accepted_options_are_offered(self):
         """Nor is one left out that is taken: what is offered is asked of the real program."""
         about = {row.word: row.value for row in program("adit").help.options}
         for command, told in program("adit").commands.items():
@@ -101,7 +101,7 @@ class Offers(unittest.TestCase):
                     alone = command == "update" and option in ("--anyway", "--again")  # these want another beside them
                     self.assertEqual("does not take" not in said or alone, option in offered, f"adit {words} {option}: {said}")
 
-    def test_each_value_that_is_offered_is_taken(self):
+    def test_each_offered_value_is_accepted(self):
         for name in ("adit-robots", "adit-rehearsal"):
             for row in program(name).help.options if name in PROGRAMS else []:
                 for choice in row.choices:

@@ -26,7 +26,7 @@ class ManPages(unittest.TestCase):
         self.assertEqual(len(found), 1, name)
         return found[0]
 
-    def test_there_is_one_of_each_program_and_one_of_the_settings(self):
+    def test_each_program_and_the_settings_have_a_page(self):
         names = [page.name for page in pages()]
         for name in ("adit.1", "aditd.8", "adit-settings.5", *(f"{each}.1" for each in PROGRAMS if each in ("adit-rehearsal", "adit-robots"))):
             self.assertIn(name, names)
@@ -64,20 +64,20 @@ class ManPages(unittest.TestCase):
         review = next(key for key in keys if key["path"] == "reports.review")
         self.assertIn(f'{review["meaning"]} Allowed: "off", "duplicates" or "all". Default: "off".', text)
 
-    def test_groff_complains_of_nothing(self):
+    def test_groff_reports_no_fault(self):
         for page in pages():
             told = subprocess.run(["groff", "-man", "-ww", "-Tutf8", "-z", page], capture_output=True, text=True).stderr
             self.assertEqual(told, "", page.name)
 
     @unittest.skipUnless(shutil.which("mandoc"), "there is no mandoc here")
-    def test_mandoc_complains_of_nothing(self):
+    def test_mandoc_reports_no_fault(self):
         for page in pages():
             told = subprocess.run(["mandoc", "-T", "lint", "-W", "warning", page], capture_output=True, text=True).stdout
             self.assertEqual(told, "", page.name)
 
 
 class Versions(unittest.TestCase):
-    def test_each_program_tells_its_own(self):
+    def test_each_program_shows_its_version(self):
         told = {name: subprocess.run([BIN / name, "--version"], check=True, capture_output=True, text=True).stdout for name in PROGRAMS}
         version = told["aditd"].split()[1]
         self.assertRegex(version, r"^\d+\.\d+\.\d+$")

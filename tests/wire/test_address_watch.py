@@ -38,7 +38,7 @@ class AddressWatch(unittest.TestCase):
         """Whom the box has asked for on darpa0."""
         return [frame.arp[1] for frame in self.heard.frames if frame.is_arp and frame.arp[0] == neighbour.NOBODY]
 
-    def test_a_host_that_speaks_from_our_address_has_taken_it(self):
+    def test_host_that_uses_our_address_is_a_conflict(self):
         other = self.other()
         other.take(hosts.BOX_DARPA)
         self.is_taken(hosts.BOX_DARPA, other.mac)
@@ -48,7 +48,7 @@ class AddressWatch(unittest.TestCase):
         self.assertEqual(self.watch.said().count("another machine uses the box's address"), 1, self.watch.said())
         self.assertEqual(self.watch.said().count("no other machine uses"), 1, self.watch.said())
 
-    def test_one_that_a_cable_brings_is_found(self):
+    def test_conflict_after_a_cable_is_plugged_is_found(self):
         wait_until(lambda: self.asked().count(SECOND) >= 3, "the first questions to be over")
         self.network.pull_cable()
         asked = self.asked().count(SECOND)
@@ -58,7 +58,7 @@ class AddressWatch(unittest.TestCase):
         self.is_taken(SECOND, other.mac)
         wait_until(lambda: self.asked().count(SECOND) >= asked + 3, "more questions than were left of the first")
 
-    def test_an_interface_goes_and_comes_again(self):
+    def test_interface_disappears_and_returns(self):
         hosts.ip("-n", self.network.team, "link", "delete", "eth0")
         other = self.other()
         other.take(hosts.BOX_DARPA)

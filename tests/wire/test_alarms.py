@@ -10,7 +10,7 @@ from programs import wait_until
 
 
 class Alarms(WithAlarms):
-    def test_a_run_in_which_all_is_well_has_none(self):
+    def test_good_run_has_no_alarms(self):
         stage = self.stage()
         robot = self.robot(stage, "r1")
         self.send_map(stage, "r1")

@@ -192,7 +192,7 @@ class Answered(unittest.TestCase):
         self.look()
         return not any(self.lost(kind, those) for kind, those in accepted.items())
 
-    def test_arrives_whatever_ends_the_service_at_that_instant(self):
+    def test_answered_messages_survive_each_kind_of_end(self):
         chance, bodies = random.Random(SEED), self.bodies
         counts = dict.fromkeys(("map", "state", "markers", "report"), 0)
         losses = []

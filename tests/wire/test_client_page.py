@@ -40,7 +40,7 @@ class ClientPage(unittest.TestCase):
         cls.text = PAGE.read_text()
         cls.blocks = BLOCK.findall(cls.text)
 
-    def test_each_command_and_each_line_of_python_is_answered_so(self):
+    def test_commands_and_python_lines_give_the_shown_answers(self):
         """In the page's order, on one stage: each goes on from what those before it did."""
         with Stage(**{**QUICK, "reports__answer_within_ms": 20000}) as stage:
             began(stage)
@@ -74,7 +74,7 @@ class ClientPage(unittest.TestCase):
         self.assertGreater(len(lines), 10)
         self.assertEqual([line for line in lines if line not in example], [])
 
-    def test_each_refusal_is_made(self):
+    def test_each_rejection_is_produced(self):
         text, tables = REFUSALS.read_text(), refused.table()
         start = text.index("\n| ") + 1  # the tables end the page
         if os.environ.get("ADIT_WRITE"):
@@ -82,7 +82,7 @@ class ClientPage(unittest.TestCase):
         else:
             self.assertEqual(text[start:], tables)
 
-    def test_what_is_not_made_here_is_in_the_code(self):
+    def test_other_rejections_are_in_the_code(self):
         code = "".join(path.read_text() for path in (SOURCE / "firmware").rglob("*.cpp"))
         code = re.sub(r'"\s*\n?\s*"', "", code)
         for _, _, sentence in refused.ELSEWHERE:

@@ -86,7 +86,7 @@ class Clients(unittest.TestCase):
                 self.assertEqual((status, json.loads(said)["current_team"]), (ANSWERED, "adit"))
                 self.assertEqual(stage.post.violations(), [])
 
-    def test_what_is_refused_is_not_tried_again(self):
+    def test_rejected_report_is_not_retried(self):
         with Stage(**QUICK) as stage:
             for name in CLIENTS:
                 with self.subTest(name):
@@ -96,7 +96,7 @@ class Clients(unittest.TestCase):
                     self.assertEqual(Run(self, stage, name, ["report", "nan", 2, 3, "Drill"]).ended()[0], REFUSED)
             self.assertEqual(stage.post.recorded(), [])
 
-    def test_what_the_operator_decides(self):
+    def test_operator_withdraws_a_report(self):
         for name in CLIENTS:
             with self.subTest(name), Stage(**QUICK, reports__review="all") as stage:
                 began(stage)
@@ -115,7 +115,7 @@ class Bare(unittest.TestCase):
                           "mapping": (hosts.MAPPING, programs.MAPPING_TOKEN)}[at]
         return Run(self, stage, name, [*given, "--bare"], stage.network.post, f"http://{address}:{port}", token)
 
-    def test_a_report_whose_answer_is_lost_is_never_sent_again(self):
+    def test_report_with_a_lost_answer_is_not_resent(self):
         with Stage(post_options=("--rate", "0")) as stage:
             for number, fault in enumerate(("record-then-drop", "drop", "500-recorded", "half-answer", "garbage", "html-200", "html-302"), 1):
                 for offset, name in enumerate(CLIENTS):
@@ -128,7 +128,7 @@ class Bare(unittest.TestCase):
                         self.assertEqual(len(stage.post.recorded(made)), 0 if fault in NOT_RECORDED else 1)
             self.assertEqual(len([1 for each in stage.post.requests("/api/artifact_reports") if each["message"]]), 14)
 
-    def test_a_report_that_never_left_or_came_too_soon_is_sent_again(self):
+    def test_unsent_and_throttled_reports_are_resent(self):
         for at, name in enumerate(CLIENTS):
             with self.subTest(name), Stage() as stage:
                 run = self.run_there(stage, name, words(report(1)), port=9000 + at)
@@ -141,7 +141,7 @@ class Bare(unittest.TestCase):
                 finally:
                     post.stop()
 
-    def test_updates_at_the_rate_that_it_takes(self):
+    def test_updates_follow_the_rate_limit(self):
         with Stage(post_options=("--rate", "1")) as stage:
             for name in CLIENTS:
                 for what in UPDATES:

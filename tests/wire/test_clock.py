@@ -75,7 +75,7 @@ class Clock(unittest.TestCase):
         wait_until(lambda: len(self.stage.post.requests("/state/update")) > before, "the state to arrive")
         return self.stage.post.requests("/state/update")[-1]["message"]["header"]["stamp"]
 
-    def test_goes_on_from_the_last_time_known_and_no_stamp_goes_back(self):
+    def test_time_continues_after_a_power_cut_and_stamps_never_go_back(self):
         first = self.post_state()
         self.lose_power(first + DAYS)
         self.assertGreaterEqual(self.stage.box.ask("GET /adit/run")[1]["now"], first + DAYS)
@@ -85,7 +85,7 @@ class Clock(unittest.TestCase):
         now = self.stage.box.ask("GET /adit/run")[1]["now"]
         self.assertAlmostEqual(now, time.time(), delta=60, msg="the machine's clock went on")
 
-    def test_asks_for_the_operators_time_and_tells_what_became_of_it(self):
+    def test_operators_time_is_requested_and_its_outcome_shown(self):
         self.assertEqual(self.set_clock()["source"], "none")
         wait_until(lambda: self.clock()["managed"], "adit-clock to be known")
         alarms = {alarm["id"] for alarm in self.stage.box.ask("GET /adit/run")[1]["alarms"]}
@@ -137,7 +137,7 @@ class Step(unittest.TestCase):
         times |= {f"session {i}": row["seen"] for i, row in enumerate(box.ask("GET /adit/sessions")[1])}
         return {name: self.view()["now"] - at for name, at in times.items() if at is not None}
 
-    def test_no_age_and_no_session_goes_by_it_and_the_ledger_neither(self):
+    def test_ages_sessions_and_ledger_survive_a_clock_step(self):
         box = self.stage.box
         box.ask("POST /adit/password", body={"role": "operator", "code": self.code(), "password": PASSWORD}, token=None)
         session = log_in(box, PASSWORD)

@@ -84,7 +84,7 @@ class InDoubt(Case):
         wait_until(lambda: f"report_in_doubt:{number}" in stage.box.alarms(), "the report to be in doubt")
         return number
 
-    def test_is_sent_again_only_where_it_is_meant(self):
+    def test_is_resent_only_if_confirmed(self):
         with self.stage(reports__answer_within_ms=2000) as stage:
             number = self.in_doubt(stage)
             refused = adit(stage, "reports", "send", str(number))
@@ -138,7 +138,7 @@ class Watching(Case):
             self.assertEqual(watch.wait(programs.patient(30)), 0)
 
 class ForScripts(Case):
-    def test_all_that_is_shown_is_json_too(self):
+    def test_everything_shown_is_also_json(self):
         with self.stage() as stage:
             is_taken(stage, REPORT)
             file = str(stage.box.settings)
@@ -158,7 +158,7 @@ class ForScripts(Case):
 class Letters(Case):
     """A name that is not of ASCII, from a robot's message to the log and to `adit`."""
 
-    def test_are_read_as_they_were_written(self):
+    def test_read_back_the_same(self):
         with self.stage() as stage:
             name = "Höhle-洞"
             status, _ = stage.box.ask("POST /state/update", {"Content-Type": "application/json"}, body={

@@ -135,7 +135,7 @@ class Fidelity(Delivered):
                     update = messages.map_update(source, "replay", self.seconds, style)
                     self.same_map(self.deliver("/map/update", update, style), update, source.data, source.head())
 
-    def test_any_of_the_teams_tokens_is_good(self):
+    def test_any_token_is_accepted(self):
         for token in (programs.TEAM_TOKEN, programs.SCORING_TOKEN, programs.MAPPING_TOKEN):
             answer = messages.post(self.session, self.stage.box.url, "/state/update", {"poses": [{"name": "r1", **POSE}]}, JSON, token)
             self.assertEqual(answer.status_code, 200)
@@ -207,7 +207,7 @@ class Fidelity(Delivered):
         for stamp, after in zip(stamps, (0, 0.75, 1.75, 2.75), strict=True):
             self.assertAlmostEqual(stamp - stamps[0], after, places=5)
 
-    def test_an_empty_frame_is_none(self):
+    def test_an_empty_frame_counts_as_absent(self):
         for header in ({"frame_id": ""}, {"frame_id": None}, {}, None):
             for style in (JSON, CBOR):
                 with self.subTest(header=header, style=str(style)):
@@ -221,7 +221,7 @@ class Fidelity(Delivered):
                     arrived = self.deliver("/map/update", grid, style)["msg"]
                     self.assertEqual(arrived["header"]["frame_id"], "darpa")
 
-    def test_a_tag_that_changes_a_meaning_is_named_and_refused(self):
+    def test_a_tag_that_changes_a_meaning_is_named_and_rejected(self):
         for tag in OTHER_TAGS:
             for at, value in (("x", cbor2.CBORTag(tag, 5)), ("z", cbor2.CBORTag(1, cbor2.CBORTag(tag, b"\x05")))):
                 update = {"poses": [{"name": "r1", "position": {**POSITION, at: value}, "orientation": TURNED}]}

@@ -20,7 +20,7 @@ def large_marker(points, colors):
 
 
 class LargeMarkers(Delivered):
-    def test_the_largest_marker_there_can_be_goes_up(self):
+    def test_largest_marker_is_delivered(self):
         marker = large_marker(100_000, 100_000)
         for style in (test_fidelity.CBOR, test_fidelity.CBOR_IN_GZIP):
             with self.subTest(str(style)):
@@ -29,7 +29,7 @@ class LargeMarkers(Delivered):
                 many = {"elements": 100_000}
                 self.same(arrived, [{**marker, "points": many, "colors": many}])
 
-    def test_a_large_one_outlives_the_service(self):
+    def test_large_marker_survives_a_restart(self):
         self.stage.post.will(mapping=["500,for=60"])
         marker = {"markers": [large_marker(60_000, 0)]}
         answer = messages.post(self.session, self.stage.box.url, "/markers/update", marker, test_fidelity.CBOR)

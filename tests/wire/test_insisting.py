@@ -36,17 +36,17 @@ class TheOperator(unittest.TestCase):
         time.sleep(0.1)
         self.assertEqual(list(operator.waiting()), [1])
 
-    def test_takes_it_that_the_box_found_out_first(self):
+    def test_accepts_that_the_box_found_out_first(self):
         for then in ({"state": "settled", "changed": 12.0}, {"changed": 12.0}):  # and in doubt again
             operator = self.operator(then, (409, "no"))
             operator.looks()
             self.assertEqual(operator.judged, {}, "that was not his word")
 
-    def test_does_not_take_a_refusal_of_what_he_saw(self):
+    def test_fails_if_the_box_rejects_the_shown_action(self):
         with self.assertRaisesRegex(AssertionError, "409"):
             self.operator({}, (409, "no")).looks()
 
-    def test_does_not_take_another_failure(self):
+    def test_fails_on_another_error(self):
         with self.assertRaisesRegex(AssertionError, "500"):
             self.operator({"state": "settled"}, (500, "no")).looks()
 
@@ -64,12 +64,12 @@ class TheLastAnswers(unittest.TestCase):
         answer = types.SimpleNamespace(status_code=status) if status else None
         return Posted({"x": x, "y": 0.0}, answer=answer, life=life)
 
-    def test_are_one_of_each_life_by_the_order_of_the_sendings(self):
+    def test_are_one_per_process_in_order_of_sending(self):
         recorded = [{"x": x, "y": 0.0} for x in (1.0, 2.0, 4.0, 3.0, 5.0)]
         posted = [self.posted(1.0, 0), self.posted(2.0, 1), self.posted(3.0, 1), self.posted(4.0, 1), self.posted(5.0, 2)]
         self.assertEqual(last_answers(posted, recorded), [(1.0, 0.0), (3.0, 0.0), (5.0, 0.0)])
 
-    def test_are_not_those_that_nobody_was_told(self):
+    def test_exclude_unanswered_reports(self):
         recorded = [{"x": x, "y": 0.0} for x in (1.0, 2.0, 3.0)]
         posted = [self.posted(1.0, 0), self.posted(2.0, 0, status=409), self.posted(3.0, 0, status=None)]
         self.assertEqual(last_answers(posted, recorded), [(1.0, 0.0)])

@@ -82,7 +82,7 @@ class Memory(unittest.TestCase):
     def peak(self, stage):
         return self.resident(stage, "VmHWM")
 
-    def test_many_maps_that_are_refused_are_not_stored(self):
+    def test_many_rejected_maps_are_not_stored(self):
         with Stage() as stage, concurrent.futures.ThreadPoolExecutor(24) as clients:
             if self.peak(stage) > REST // 2:
                 self.skipTest("a sanitizer's own memory is counted, too")
@@ -101,7 +101,7 @@ class Memory(unittest.TestCase):
             print(f"at most {peak >> 20} MiB", end=" ", flush=True)
             self.assertLess(peak, REST)
 
-    def test_a_large_message_of_markers_is_nowhere_as_a_tree(self):
+    def test_large_message_of_markers_is_not_parsed_into_a_tree(self):
         with Stage() as stage:
             if self.peak(stage) > REST // 2:
                 self.skipTest("a sanitizer's own memory is counted, too")

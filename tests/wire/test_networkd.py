@@ -44,7 +44,7 @@ class WithNetworkd(Change):
         self.ends()
         wait_until(lambda: sorted(self.box.addresses("darpa0")) == three, "all three addresses again")
 
-    def test_a_confirmation_disturbs_nothing(self):
+    def test_confirmation_causes_no_reload(self):
         self.box.put("endpoints.json", endpoints=["10.100.1.200", "10.100.2.201", "172.20.0.1"])
         nonce = self.box.want(team="192.168.8.11", post="10.100.1.10", gateway="10.100.1.200")
         self.has(NEW)
@@ -60,7 +60,7 @@ class WithNetworkd(Change):
         self.assertEqual(seen(), "")
         self.assertEqual(self.box.addresses("team0"), [NEW])
 
-    def test_a_pulled_cable_costs_no_address(self):
+    def test_pulled_cable_keeps_the_addresses(self):
         self.confirm_first()
         self.has("10.100.1.10/24", "darpa0")
         with self.monitored() as seen:

@@ -42,7 +42,7 @@ class Ends(unittest.TestCase):
         wait_until(lambda: sendings(stage) == 1 or stage.post.control("GET /faults")["reports"] == [],
                    "the report to arrive")
 
-    def test_a_kill_while_an_answer_is_awaited_is_found_out_after_it(self):
+    def test_outcome_is_found_after_a_kill_while_sending(self):
         for fault, ends in ((SILENCE, "settled"), (DEAF, "answered")):
             with self.subTest(fault), Stage(**PATIENT) as stage:
                 began(stage).post.will(fault)
@@ -55,7 +55,7 @@ class Ends(unittest.TestCase):
                 self.assertEqual(submit(stage).status_code, 201)
                 self.assertEqual(len(stage.post.recorded()), 1)
 
-    def test_sigterm_does_not_wait_for_a_report_under_way(self):
+    def test_sigterm_does_not_wait_for_a_report_in_flight(self):
         with Stage(**PATIENT) as stage:
             began(stage).post.will(SILENCE)
             with concurrent.futures.ThreadPoolExecutor(1) as client:
@@ -64,14 +64,14 @@ class Ends(unittest.TestCase):
                 self.assertEqual(stage.box.stop(), 0)
                 self.assertEqual(waiting.result().status_code, 504)
 
-    def test_a_client_that_waits_is_told_when_the_service_stops(self):
+    def test_waiting_client_is_answered_when_the_service_stops(self):
         with Stage(post_options=None) as stage, concurrent.futures.ThreadPoolExecutor(1) as client:
             waiting = client.submit(submit, stage)
             wait_until(lambda: stage.box.on_disk() == ["queued"], "the report to be on disk")
             self.assertEqual(stage.box.stop(), 0)
             self.assertEqual((waiting.result().status_code, waiting.result().headers["Adit-Report"]), (503, "1"))
 
-    def test_a_report_that_comes_while_the_service_stops_is_refused_and_never_sent(self):
+    def test_report_during_a_stop_is_rejected_and_not_sent(self):
         # A status that is in flight when the Command Post stops would keep the report waiting.
         with (Stage(**PATIENT | {"command_post__rates__status_hz": 0.01}) as stage, requests.Session() as kept,
               concurrent.futures.ThreadPoolExecutor(2) as clients):

@@ -126,7 +126,7 @@ class Messages(Delivered):
 
 
 class Frames(unittest.TestCase):
-    def test_what_is_of_another_frame_is_not_sent_and_said(self):
+    def test_messages_of_another_frame_are_logged_and_not_sent(self):
         for version in (ros_1, ros_2):
             with self.assertLogs("rosout.adit") as said:
                 self.assertIsNone(ROBOT.map(grid(version, "odom")))

@@ -54,7 +54,7 @@ class Service(unittest.TestCase):
         for word in words:
             self.assertIn(word, said)
 
-    def test_says_ready_how_it_is_and_when_it_stops(self):
+    def test_notifies_systemd_of_start_state_and_stop(self):
         process = self.start()
         self.assertIn("STATUS=", self.heard("READY=1"))
         process.send_signal(signal.SIGTERM)
@@ -83,12 +83,12 @@ class Service(unittest.TestCase):
         self.write_settings(comand_post={}, team={"listen": [{"address": "nowhere", "port": 70000}]})
         self.refuses("comand_post", "team.listen[0].address", "team.listen[0].port")
 
-    def test_starts_without_a_token_and_says_which_is_missing(self):
+    def test_starts_without_a_token_and_names_it(self):
         (self.folder / "secrets" / "scoring.token").unlink()
         self.start()
         self.assertIn("The scoring token is missing", self.heard("READY=1"))
 
-    def test_sets_a_damaged_ledger_aside_and_shows_it(self):
+    def test_replaces_a_damaged_ledger_and_shows_it(self):
         ledger = self.folder / "state" / "ledger"
         ledger.mkdir()
         (ledger / "log-00000001.0123456789abcdef").write_bytes(b"no ledger at all" * 100)

@@ -121,7 +121,7 @@ class Sockets(unittest.TestCase):
         with self.assertRaises(ConnectionRefusedError):
             socket.create_connection(("127.0.0.1", port), 2).close()
 
-    def test_serves_the_socket_units_instead_of_opening_its_own(self):
+    def test_serves_socket_units_instead_of_its_own(self):
         door = listening()
         port = door.getsockname()[1]
         manager = self.started(settings(("127.0.0.1", port)), door)
@@ -129,13 +129,13 @@ class Sockets(unittest.TestCase):
         self.assertEqual(manager.log().count("listening "), 1)
         self.assertEqual(manager.store, [], "systemd has it already")
 
-    def test_serves_the_socket_units_even_where_the_settings_name_none_of_them(self):
+    def test_serves_socket_units_that_the_settings_do_not_name(self):
         door, own = listening(), free_port()
         self.started(settings(("127.0.0.1", own)), door)
         for port in (door.getsockname()[1], own):
             self.assertEqual(ask(port)[0], 200)
 
-    def test_has_systemd_keep_its_own_and_takes_them_back(self):
+    def test_stores_its_sockets_in_systemd_and_restores_them(self):
         port = free_port()
         manager = self.started(settings(("127.0.0.1", port), ("127.0.0.1", 0)))
         programs.wait_until(lambda: len(manager.store) == 2, "two sockets to keep")
@@ -147,7 +147,7 @@ class Sockets(unittest.TestCase):
             self.assertEqual([ask(port)[0], ask(drawn)[0]], [200, 200])
             self.assertEqual([name for name, _ in manager.store], names, "it gave none twice")
 
-    def test_lets_go_of_what_the_settings_no_longer_name(self):
+    def test_closes_sockets_that_the_settings_no_longer_name(self):
         gone, stays = free_port(), free_port()
         manager = self.started(settings(("127.0.0.1", gone), ("127.0.0.1", stays)))
         programs.wait_until(lambda: len(manager.store) == 2, "two sockets to keep")
@@ -160,7 +160,7 @@ class Sockets(unittest.TestCase):
         self.assertEqual(ask(stays, address="127.0.0.2")[0], 200)
         programs.wait_until(lambda: [name for name, _ in manager.store] == [f"listen--0.0.0.0-{stays}"], "the other one")
 
-    def test_an_address_that_is_not_there_yet_is_waited_for_where_there_is_a_door(self):
+    def test_missing_address_is_awaited_if_another_socket_listens(self):
         door = listening()
         document = settings(("127.0.0.1", door.getsockname()[1]), ("192.0.2.1", free_port()))
         self.started(document, door)
@@ -170,14 +170,14 @@ class Sockets(unittest.TestCase):
         self.assertEqual(manager.process.wait(programs.patient(30)), 1)
         self.assertIn("Cannot assign requested address", manager.log())
 
-    def test_a_kept_descriptor_that_is_no_socket_is_thrown_away(self):
+    def test_stored_descriptor_that_is_no_socket_is_closed(self):
         manager = self.manager()
         manager.store.append(("listen--127.0.0.1-0", socket.socket(socket.AF_INET, socket.SOCK_DGRAM)))
         manager.ready(manager.start(settings(("127.0.0.1", 0))))
         self.assertIn("unusable socket", manager.log())
         programs.wait_until(lambda: [s.type for _, s in manager.store] == [socket.SOCK_STREAM], "a better one")
 
-    def test_a_restart_turns_nobody_away(self):
+    def test_restart_rejects_no_client(self):
         """At 200 connections a second. Whoever was already taken in when the process was killed is cut off with it."""
         for number in (signal.SIGTERM, signal.SIGKILL):
             door = listening()
@@ -215,7 +215,7 @@ class Sockets(unittest.TestCase):
                            ("reset", {"password": PASSWORD})):
             self.assertEqual(ask(port, "POST", f"/adit/{path}", body)[0], 200)
 
-    def test_a_reset_starts_the_same_process_again_and_turns_nobody_away(self):
+    def test_reset_restarts_the_process_and_rejects_no_client(self):
         manager, port, own = self.resettable()
         process = pathlib.Path(f"/proc/{manager.process.pid}")
 
@@ -296,7 +296,7 @@ class TeamPort(unittest.TestCase):
         programs.wait_until(lambda: self.is_answered(8000), "an answer at the new port")
         self.assertIsNone(self.manager.process.poll())
 
-    def test_ends_aditd_where_only_systemd_can_listen_there(self):
+    def test_ends_aditd_if_only_systemd_can_listen_there(self):
         self.manager.doors.append(self.door())
         self.manager.ready(self.manager.start(self.settings()))
         self.assertTrue(self.is_answered(80) and self.is_answered(8000))

@@ -77,7 +77,7 @@ class Spare(WithAlarms):
     def swap(self, **overrides):
         return began(self.enterContext(Swap(**{**QUICK, **overrides})))
 
-    def test_what_is_known_there_is_known_here(self):
+    def test_spare_knows_all_reports_of_the_first_box(self):
         stage = self.swap()
         answers = [submit(stage, another(number)) for number in range(1, 4)]
         stage.swap()
@@ -90,7 +90,7 @@ class Spare(WithAlarms):
         self.assertEqual(stage.box.ask("GET /adit/settings")[1]["settings"]["reports"]["near_metres"], 5, "the first box's")
         self.assertEqual(stage.post.violations(), [])
 
-    def test_the_first_box_is_cut_off_at_the_very_instant_of_an_answer(self):
+    def test_first_box_is_cut_off_during_an_answer(self):
         for fault in ("record-then-drop", "drop"):
             with self.subTest(fault), Swap(**QUICK) as stage:
                 began(stage)
@@ -103,7 +103,7 @@ class Spare(WithAlarms):
                 self.assertIn(submit(stage).status_code, (201,))
                 self.assertTrue(stage.all_recorded([REPORT, another(9)]))
 
-    def test_a_box_that_rests_says_so_and_takes_and_sends_nothing(self):
+    def test_standby_box_shows_it_and_accepts_and_sends_nothing(self):
         stage = self.swap()
         self.assertEqual(submit(stage).status_code, 201)
         asked = len(stage.post.requests())

@@ -106,7 +106,7 @@ class Trial(Tried):
         return [[one for one in all_of_it[:number + 1] if one[0] == each[0]][-3:]
                 for number, each in enumerate(all_of_it) if each[3] == 429]
 
-    def test_the_endpoints_of_the_run_are_tried_without_throttling_it(self):
+    def test_endpoints_of_the_run_are_tested_without_throttling_it(self):
         with self.a_run():
             for _ in range(4):
                 view, steps = self.tried()
@@ -135,7 +135,7 @@ class Trial(Tried):
         address = {"scoring": hosts.SCORING, "mapping": hosts.MAPPING}
         return {name: {"address": address[name], "port": OTHER_PORT, "token": tokens.get(name)} for name in address}
 
-    def test_another_command_post_is_tried_beside_the_run(self):
+    def test_another_command_post_is_tested_beside_the_run(self):
         other = self.other_post()
         with self.a_run():
             view, steps = self.tried(**self.there())
@@ -156,7 +156,7 @@ class Trial(Tried):
 class ThatWantsASlash(Tried):
     POST = ("--slash",)
 
-    def test_gets_all_of_it_and_each_report_once(self):
+    def test_receives_everything_and_each_report_once(self):
         _, steps = self.tried()
         for name in ("scoring token", "mapping token"):
             self.assertEqual(steps[name]["state"], "good", steps)

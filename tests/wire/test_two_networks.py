@@ -122,7 +122,7 @@ class TwoNetworks(Appliance):
         time.sleep(1)
         self.assert_silent_else()
 
-    def test_nobody_on_the_command_posts_side_gets_an_answer(self):
+    def test_no_host_on_the_command_post_side_gets_an_answer(self):
         wait_until(self.connected, "the Command Post")
         first = len(self.heard.frames)
         capture.scan(self.network.post, hosts.SCORING, hosts.BOX_DARPA, PORTS)
@@ -168,7 +168,7 @@ class AsItComes(Appliance):
 
     post_address = ()
 
-    def test_nothing_at_all_leaves_by_darpa0(self):
+    def test_no_frame_leaves_by_darpa0(self):
         wait_until(lambda: self.aditd.ask("GET /adit/run")[1]["endpoints"][0]["trouble"], "the Command Post to be missed")
         time.sleep(3)
         self.assertEqual(self.heard.since(0), [])
@@ -183,7 +183,7 @@ class Overlapping(Appliance):
         self.network.box_address, self.network.team_address = "10.100.1.11", "10.100.1.12"
         super().start_the_box()
 
-    def test_each_finds_its_way(self):
+    def test_each_message_takes_its_own_network(self):
         wait_until(self.connected, "the Command Post")
         self.send_state()
         wait_until(lambda: self.post.requests("/state/update"), "the state")

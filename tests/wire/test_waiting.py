@@ -63,7 +63,7 @@ class Waiting(unittest.TestCase):
         answer = requests.get(stage.box.url + "/api/status", timeout=30, headers=messages.headers(Style()))
         self.assertEqual(answer.status_code, 200)
 
-    def test_nothing_listens_towards_the_command_post(self):
+    def test_no_port_is_open_to_the_command_post(self):
         stage = self.stage()
         for address in (hosts.BOX_DARPA, stage.network.box_address):
             stage.network.start(stage.network.post, "ip", "route", "replace", "default", "via", hosts.BOX_DARPA).wait()

@@ -54,7 +54,7 @@ class WholeBox(Change):
     def shown(self):
         return self.stage.box.ask("GET /adit/network")[1]
 
-    def test_a_change_is_checked_tried_and_confirmed_from_the_new_address(self):
+    def test_change_is_checked_applied_and_confirmed_from_the_new_address(self):
         self.assertTrue(self.shown()["managed"], self.shown())
         wanted = self.box.numbers(team="192.168.8.11")
         _, verdict = self.post("/adit/network/check", wanted)
@@ -85,14 +85,14 @@ class WholeBox(Change):
     def states(self, steps):
         return {name: step["state"] for name, step in steps.items()}
 
-    def test_the_test_finds_nothing_wrong_and_spends_no_report(self):
+    def test_self_test_passes_and_uses_no_report(self):
         steps = self.steps()
         self.assertEqual({name: state for name, state in self.states(steps).items() if state == "bad"}, {}, steps)
         for name in ("link", "address", "cables", "reach", "token"):
             self.assertEqual((steps[f"scoring {name}"]["state"], steps[f"mapping {name}"]["state"]), ("good", "good"), steps)
         self.assertEqual(self.stage.post.recorded(), [])
 
-    def test_the_test_finds_a_conflict_and_a_server_that_is_gone(self):
+    def test_self_test_finds_a_conflict_and_a_missing_server(self):
         hosts.ip("-n", self.network.post, "address", "add", "10.100.1.10/24", "dev", "eth0")
         steps = self.steps()
         self.assertEqual(steps["scoring address"]["state"], "bad", steps)

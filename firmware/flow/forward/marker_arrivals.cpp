@@ -33,8 +33,7 @@ MarkerArrivals::MarkerArrivals(loop::Loop& loop, loop::Workers& workers, journal
       queue_(queue),
       record_(record),
       came_(std::move(came)),
-      next_turn_(
-          loop.timer([this] { go(is_in_part() ? &MarkerArrivals::add_part : &MarkerArrivals::begin); })) {}
+      next_turn_(loop.timer([this] { go(next_step()); })) {}
 
 void MarkerArrivals::take(icd::MarkersUpdate update, std::size_t bytes_received, Done done) {
   arrivals_.push_back(
@@ -44,6 +43,11 @@ void MarkerArrivals::take(icd::MarkersUpdate update, std::size_t bytes_received,
 
 void MarkerArrivals::go(Step step) noexcept {
   if ((this->*step)(arrivals_.front())) end();
+}
+
+MarkerArrivals::Step MarkerArrivals::next_step() const {
+  if (!is_in_part()) return &MarkerArrivals::begin;
+  return arrivals_.front().records.empty() ? &MarkerArrivals::add_part : &MarkerArrivals::keep;
 }
 
 bool MarkerArrivals::fail(Arrival& arrival, icd::Refusal why) {
@@ -103,11 +107,15 @@ void MarkerArrivals::make_records(const Arrival& arrival) {
 
 bool MarkerArrivals::keep(Arrival& arrival) {
   if (arrival.records.empty()) return fail(arrival, no_memory());
-  if (const auto kept = journal_.accepted_markers(arrival.records); !kept) {
+  if (const auto kept = journal_.accepted_markers(std::span(&arrival.records[arrival.stored], 1)); !kept) {
     return fail(arrival, {icd::Status::ServiceUnavailable,
                           "not accepted: it cannot be stored: " + kept.error() + "; send it again later"});
   }
   arrival.is_kept = true;
+  if (++arrival.stored < arrival.records.size()) {
+    next_turn_.call_at(loop_.now());
+    return false;
+  }
   arrival.records = {};
   record_.accepted({Kind::Markers, ""}, arrival.bytes_received, loop_.wall_now());
   if (arrival.update->markers.size() <= kPart) return add_part(arrival);

@@ -18,7 +18,7 @@
 namespace adit::forward {
 
 /// Markers updates on their way into the queue, one at a time and whole: first the journal, then the queue.
-/// For large updates a worker makes the records, and the queue takes several turns of the loop.
+/// For large updates a worker makes the records, and both take several turns of the loop.
 class MarkerArrivals {
  public:
   /// 429: the queue is full; 503: it cannot be stored. A full queue still accepts changes of queued markers.
@@ -34,7 +34,8 @@ class MarkerArrivals {
 
   void take(icd::MarkersUpdate update, std::size_t bytes_received, Done done);
 
-  /// True while an update is in the journal and only partly in the queue. Do not send then.
+  /// True while an update is in the journal, perhaps not yet whole, and not yet whole in the queue. Do not
+  /// send then.
   bool is_in_part() const { return !empty() && arrivals_.front().is_kept; }
   bool empty() const { return arrivals_.empty(); }
 
@@ -45,7 +46,8 @@ class MarkerArrivals {
     Done done;
     icd::Checked<void> outcome = {};
     std::vector<std::string> records = {};                                // of the journal
-    bool is_kept = false;                                                 // in the journal
+    std::size_t stored = 0;                                               // of these
+    bool is_kept = false;                                                 // at least in part, in the journal
     std::size_t added = 0;                                                // markers in the queue
     queues::MarkerChanges::Place last = queues::QueuedUpdates::kNowhere;  // place of the last one
   };
@@ -53,6 +55,7 @@ class MarkerArrivals {
   using Step = bool (MarkerArrivals::*)(Arrival&);
 
   void go(Step step) noexcept;
+  Step next_step() const;
   bool begin(Arrival& arrival);
   /// The queue has no room for the whole update. True: some of its markers can be accepted.
   bool takes_some(Arrival& arrival);

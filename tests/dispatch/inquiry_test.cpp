@@ -9,8 +9,8 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-Inquiry::Instant at(double s) {
-  return Inquiry::Instant{} + milliseconds(static_cast<std::int64_t>(s * 1000));
+Instant at(double s) {
+  return Instant{} + milliseconds(static_cast<std::int64_t>(s * 1000));
 }
 
 /// An answer was lost at 0 s, with a run clock at 500 s that goes on.

@@ -49,7 +49,7 @@ TEST_F(ReportBookTest, HasNoReportThatTheDiskRefused) {
 
 TEST_F(ReportBookTest, TakesNoStepThatIsNotInTheTable) {
   add();
-  EXPECT_FALSE(book_.move({1, ReportEvent::Found}, 0));
+  EXPECT_FALSE(book_.move({1, ReportEvent::Found}, {}));
   EXPECT_EQ(book_.at(1).state, Queued);
   EXPECT_EQ(output_.writes, 1);
 }
@@ -87,7 +87,7 @@ TEST_P(ReportBookOnAFullDisk, TakesOnlyTheStepsThatHaveHappenedAnyway) {
   report.state = GetParam().from;
   book.open({report});
   output.full = true;
-  EXPECT_EQ(book.move({1, GetParam().event}, 0), GetParam().taken);
+  EXPECT_EQ(book.move({1, GetParam().event}, {}), GetParam().taken);
   const ReportState to = transition(GetParam().from, GetParam().event)->to;
   EXPECT_EQ(book.at(1).state, GetParam().taken ? to : GetParam().from);
   EXPECT_EQ(book.catch_up(), !GetParam().taken);
@@ -105,10 +105,10 @@ TEST_F(ReportBookTest, WritesWhatHasHappenedBeforeALaterStep) {
   add({ReportEvent::Chosen});
   add();
   output_.full = true;
-  EXPECT_TRUE(book_.move({1, ReportEvent::Recorded}, 0));
-  EXPECT_FALSE(book_.move({2, ReportEvent::Chosen}, 0));
+  EXPECT_TRUE(book_.move({1, ReportEvent::Recorded}, {}));
+  EXPECT_FALSE(book_.move({2, ReportEvent::Chosen}, {}));
   output_.full = false;
-  EXPECT_TRUE(book_.move({2, ReportEvent::Chosen}, 0));
+  EXPECT_TRUE(book_.move({2, ReportEvent::Chosen}, {}));
   EXPECT_EQ(output_.ledger.at(1).state, Answered);
   EXPECT_EQ(output_.writes, 3) << "with it";
 }
@@ -129,10 +129,10 @@ TEST_F(ReportBookTest, TakesTheStepsOfSeveralReportsInOneWriteOrNone) {
   book_.open(all);
   const std::array steps = {ReportBook::Step{1, ReportEvent::Found}, ReportBook::Step{2, ReportEvent::Found}};
   output_.full = true;
-  EXPECT_FALSE(book_.move(steps, 0));
+  EXPECT_FALSE(book_.move(steps, {}));
   EXPECT_THAT(book_.doubts(0), testing::SizeIs(2));
   output_.full = false;
-  EXPECT_TRUE(book_.move(steps, 0));
+  EXPECT_TRUE(book_.move(steps, {}));
   EXPECT_EQ(output_.writes, 1);
   EXPECT_THAT(book_.doubts(0), IsEmpty());
 }
@@ -157,12 +157,12 @@ TEST_F(ReportBookTest, FlushesAnAnswerSoonOnlyWhereItCouldBeFoundOutAgain) {
     all[0] = {.number = 1, .state = Sending};
     if (known) all[0].before = icd::RunStatus{};
     book_.open(all);
-    EXPECT_TRUE(book_.move({1, ReportEvent::Recorded}, 0));
+    EXPECT_TRUE(book_.move({1, ReportEvent::Recorded}, {}));
     EXPECT_EQ(output_.last_flush, known ? Flush::Soon : Flush::Now);
   }
   add({ReportEvent::Chosen});
   EXPECT_EQ(output_.last_flush, Flush::Now);
-  EXPECT_TRUE(book_.move({2, ReportEvent::Lost}, 0));
+  EXPECT_TRUE(book_.move({2, ReportEvent::Lost}, {}));
   EXPECT_EQ(output_.last_flush, Flush::Now);
 }
 
@@ -176,7 +176,7 @@ TEST_F(ReportBookTest, KnowsWhatWaitsAndWhatIsInDoubtInTheOrderOfSending) {
   EXPECT_THAT(book_.waiting(), ElementsAre(4));
   EXPECT_THAT(book_.doubts(2), ElementsAre(&book_.at(2), &book_.at(1)));
   EXPECT_THAT(book_.doubts(1), ElementsAre(&book_.at(3)));
-  EXPECT_TRUE(book_.move({2, ReportEvent::Missing}, 0));
+  EXPECT_TRUE(book_.move({2, ReportEvent::Missing}, {}));
   EXPECT_THAT(book_.waiting(), ElementsAre(2, 4));
   EXPECT_EQ(book_.find(5), nullptr);
 }

@@ -174,12 +174,12 @@ TEST(AReport, ThatKeepsKillingTheAnswerIsHeldForTheOperatorAtLast) {
   rules.answer_within = std::chrono::minutes(5);
   Scene scene(rules);
   const ClientId client = scene.post();
-  for (std::int64_t tries = 1; tries <= Reports::kMostTries; ++tries) {
+  for (std::int64_t tries = 1; tries <= Doubts::kMostTries; ++tries) {
     EXPECT_EQ(scene.state(1), Sending) << tries;
     scene.answer(answer_of(500));
     EXPECT_EQ(scene.report(1).tries, tries);
     scene.keep_hearing(10, 20, 0);
-    EXPECT_EQ(scene.send_next(), tries < Reports::kMostTries ? 1 : 0);
+    EXPECT_EQ(scene.send_next(), tries < Doubts::kMostTries ? 1 : 0);
   }
   EXPECT_EQ(scene.state(1), Held);
   EXPECT_EQ(scene.report(1).note, "sent 5 times without an answer, and not recorded");

@@ -14,8 +14,7 @@ using testing::IsEmpty;
 class RunAccountTest : public testing::Test {
  protected:
   Time at(double s) const {
-    return {RunAccount::Instant{} + std::chrono::milliseconds(static_cast<std::int64_t>(s * 1000)),
-            Scene::kEpoch + s};
+    return {Instant{} + std::chrono::milliseconds(static_cast<std::int64_t>(s * 1000)), Scene::kEpoch + s};
   }
   Time time() const { return at(now_); }
   icd::RunStatus status(std::int64_t remaining, std::int64_t score) const {

@@ -86,7 +86,7 @@ class Scene {
   const Reports& reports() const { return *reports_; }
   RecordingActions& output() { return output_; }
   Time time() const {
-    return {Reports::Instant(std::chrono::milliseconds(static_cast<std::int64_t>(now_ * 1000))),
+    return {Instant(std::chrono::milliseconds(static_cast<std::int64_t>(now_ * 1000))),
             kEpoch + now_ + clock_set_by_};
   }
   double now() const { return now_; }
@@ -110,7 +110,7 @@ class Scene {
   /// The settings name another place, and the program goes on.
   void move_to(const std::string& post) {
     auto next = std::make_unique<Reports>(rules_, output_);
-    next->open(all_reports(), all_runs(), time(), post, *reports_);
+    next->open(all_reports(), all_runs(), time(), post, reports_.get());
     reports_ = std::move(next);
   }
 

@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include "dispatch/scene.hpp"
+
 namespace adit::dispatch {
 namespace {
 
@@ -9,18 +11,30 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::Pair;
 
-WaitingClients::Instant at_second(int s) {
-  return WaitingClients::Instant{} + std::chrono::seconds(s);
+Instant at_second(int s) {
+  return Instant{} + std::chrono::seconds(s);
 }
 
 class WaitingClientsTest : public testing::Test {
  protected:
   WaitingClientsTest() {
+    book_.open({{.number = 7, .state = ReportState::Sending}, {.number = 8}, {.number = 9}});
     clients_.add(1, 7, at_second(20));
     clients_.add(2, 8, at_second(21));
     clients_.add(3, 7, at_second(22));
   }
-  WaitingClients clients_;
+  /// Each client that was told since the last call, and its report.
+  std::vector<std::pair<ClientId, std::int64_t>> told() {
+    std::vector<std::pair<ClientId, std::int64_t>> all;
+    for (const auto& [client, answers] : std::exchange(output_.told, {})) {
+      for (const auto& answer : answers) all.emplace_back(client, answer.number);
+    }
+    return all;
+  }
+  RecordingActions output_;
+  ReportBook book_{output_};
+  RunAccount account_{book_};
+  WaitingClients clients_{book_, account_, output_};
 };
 
 TEST_F(WaitingClientsTest, KnowWhichReportEachOfThemWaitsFor) {
@@ -28,16 +42,20 @@ TEST_F(WaitingClientsTest, KnowWhichReportEachOfThemWaitsFor) {
   EXPECT_EQ(clients_.awaited_by(4), std::nullopt);
 }
 
-TEST_F(WaitingClientsTest, AreTakenOnceByTheirReport) {
-  EXPECT_THAT(clients_.take(7), ElementsAre(1, 3));
-  EXPECT_THAT(clients_.take(7), IsEmpty());
-  EXPECT_THAT(clients_.take(9), IsEmpty());
+TEST_F(WaitingClientsTest, AreToldOnceOfTheirReport) {
+  clients_.tell_all(7);
+  EXPECT_THAT(told(), ElementsAre(Pair(1, 7), Pair(3, 7)));
+  clients_.tell_all(7);
+  clients_.tell_all(9);
+  EXPECT_THAT(told(), IsEmpty());
 }
 
-TEST_F(WaitingClientsTest, AreTakenOnceTheirTimeIsUp) {
+TEST_F(WaitingClientsTest, AreToldOnceTheirTimeIsUp) {
   EXPECT_EQ(clients_.next_deadline(), at_second(20));
-  EXPECT_THAT(clients_.take_late(at_second(19)), IsEmpty());
-  EXPECT_THAT(clients_.take_late(at_second(21)), ElementsAre(Pair(1, 7), Pair(2, 8)));
+  clients_.tick(at_second(19));
+  EXPECT_THAT(told(), IsEmpty());
+  clients_.tick(at_second(21));
+  EXPECT_THAT(told(), ElementsAre(Pair(1, 7), Pair(2, 8)));
   EXPECT_EQ(clients_.next_deadline(), at_second(22));
 }
 
@@ -46,17 +64,29 @@ TEST_F(WaitingClientsTest, MayWaitLessLongThanEarlierOnes) {
   EXPECT_EQ(clients_.next_deadline(), at_second(5));
 }
 
-TEST_F(WaitingClientsTest, AreTakenButForThoseOfOneReport) {
-  EXPECT_THAT(clients_.take_but(7), ElementsAre(Pair(2, 8)));
-  EXPECT_THAT(clients_.take_but(std::nullopt), ElementsAre(Pair(1, 7), Pair(3, 7)));
+TEST_F(WaitingClientsTest, AreDismissedButForThoseOfTheReportInFlight) {
+  clients_.dismiss(false);
+  EXPECT_THAT(told(), ElementsAre(Pair(2, 8)));
+  clients_.dismiss(true);
+  EXPECT_THAT(told(), ElementsAre(Pair(1, 7), Pair(3, 7)));
   EXPECT_EQ(clients_.next_deadline(), std::nullopt);
 }
 
 TEST_F(WaitingClientsTest, KeepTheirTimeWhereTheyAreHandedOverToAnotherReport) {
-  clients_.hand_over(7, 8);
+  clients_.hand_over(7, book_.at(8));
   EXPECT_EQ(clients_.next_deadline(), at_second(20));
-  EXPECT_THAT(clients_.take(7), IsEmpty());
-  EXPECT_THAT(clients_.take(8), ElementsAre(1, 2, 3));
+  clients_.tell_all(7);
+  EXPECT_THAT(told(), IsEmpty());
+  clients_.tell_all(8);
+  EXPECT_THAT(told(), ElementsAre(Pair(1, 8), Pair(2, 8), Pair(3, 8)));
+}
+
+TEST_F(WaitingClientsTest, HandOverTheTimeOfTheLastPost) {
+  clients_.posted(8, at_second(5));
+  clients_.posted(9, at_second(1));
+  clients_.hand_over(8, book_.at(9));
+  EXPECT_TRUE(clients_.is_young(book_.at(9), at_second(14)));
+  EXPECT_FALSE(clients_.is_young(book_.at(9), at_second(15)));
 }
 
 }  // namespace

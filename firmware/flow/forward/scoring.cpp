@@ -76,7 +76,7 @@ void Scoring::start() {
 void Scoring::open_reports() {
   auto next = std::make_unique<dispatch::Reports>(rules_of(settings_.reports), output_);
   next->clock_stepped(clocks_.clock_step());
-  next->open(ledger_.reports(), ledger_.runs(), time(), stopping_ ? "" : channel_.address(), *reports_);
+  next->open(ledger_.reports(), ledger_.runs(), time(), stopping_ ? "" : channel_.address(), reports_.get());
   reports_ = std::move(next);
 }
 

@@ -70,7 +70,7 @@ bool Inquiry::stands_still(double run_clock, Instant now) const {
   return elapsed > kTooShort && run_clock - first_clock_ < elapsed.count() * kRuns;
 }
 
-Inquiry::Instant Inquiry::next_ask(Instant now) const {
+Instant Inquiry::next_ask(Instant now) const {
   if (!asked_) return now;
   return *asked_ + (is_pending(now) ? policy_.doubt_for / 10 : policy_.doubt_for);
 }

@@ -1,11 +1,9 @@
 #pragma once
 
-#include <chrono>
-#include <cstdint>
 #include <optional>
 #include <string>
 
-#include "icd/run_status.hpp"
+#include "dispatch/report.hpp"
 
 namespace adit::dispatch {
 
@@ -45,7 +43,6 @@ struct InquiryPolicy {
 /// Decides from repeated statuses whether the reports in doubt were recorded.
 class Inquiry {
  public:
-  using Instant = std::chrono::steady_clock::time_point;
   static constexpr std::int64_t kRecordedAsks = 2;  // successive statuses that must say "recorded"
 
   Inquiry(const InquiryPolicy& policy, Instant lost) : policy_(policy), lost_(lost) {}

@@ -12,8 +12,10 @@
 
 namespace adit::dispatch {
 
+using Instant = std::chrono::steady_clock::time_point;
+
 struct Time {
-  std::chrono::steady_clock::time_point now;
+  Instant now;
   double stamp = 0;  // seconds since 1970
 };
 

@@ -52,22 +52,27 @@ std::int64_t ReportBook::add(Report report, std::span<const ReportEvent> events,
   return write(steps, false) ? report.number : 0;
 }
 
-bool ReportBook::move(std::span<const Step> steps, double stamp) {
+bool ReportBook::move(std::span<const Step> steps, Time time) {
+  if (steps.empty()) return true;
   std::vector<Report> moved;
+  std::vector<ReportAction> actions;
   bool happened = false;
   bool soon = true;
   for (const Step& step : steps) {
     Report& report = moved.emplace_back(reports_.at(step.number));
     const ReportTransition* const row = transition(report.state, step.event);
     if (row == nullptr) return false;
+    actions.push_back(row->action);
     report.state = row->to;
     report.note = step.note;
-    report.changed = stamp;
+    report.changed = time.stamp;
     if (step.edit) step.edit(report);
     happened = happened || has_happened(step.event);
     soon = soon && can_be_found_out(report, step.event);
   }
-  return write(moved, happened, soon ? Flush::Soon : Flush::Now);
+  if (!write(moved, happened, soon ? Flush::Soon : Flush::Now)) return false;
+  for (std::size_t i = 0; follow_ && i < moved.size(); ++i) follow_(moved[i].number, actions[i], time);
+  return true;
 }
 
 bool ReportBook::catch_up() {
@@ -144,6 +149,7 @@ void ReportBook::put(Report report) {
       numbers.erase(number);
     }
   };
+  keep(sending_, state == ReportState::Sending);
   keep(waiting_, state == ReportState::Queued);
   keep(in_doubt_, state == ReportState::InDoubt);
   keep(open_, !is_final(state));

@@ -8,6 +8,7 @@
 #include <set>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "dispatch/output.hpp"
@@ -28,8 +29,12 @@ class ReportBook {
     Edit edit = nullptr;
   };
 
+  /// Carries out the action of a step that move() has taken.
+  using Follow = std::function<void(std::int64_t number, ReportAction action, Time time)>;
+
   /// `output` outlives this.
-  explicit ReportBook(Output& output) : output_(output) {}
+  explicit ReportBook(Output& output, Follow follow = nullptr)
+      : output_(output), follow_(std::move(follow)) {}
 
   void open(std::vector<Report> all);
 
@@ -40,11 +45,12 @@ class ReportBook {
   std::int64_t add(Report report, std::span<const ReportEvent> events, const std::string& note,
                    const Edit& edit = nullptr, std::span<const Report> before = {});
 
-  /// Applies steps of different reports in one write. False: no step was applied, because the table lacks one
-  /// or the write failed. If a step is an act of the Command Post or the network, all are applied even if the
-  /// write fails, and are written later. The ledger then has "sending", which a restart reads as in doubt.
-  bool move(std::span<const Step> steps, double stamp);
-  bool move(const Step& step, double stamp) { return move({&step, 1}, stamp); }
+  /// Applies steps of different reports in one write, and follows their actions. False: no step was applied,
+  /// because the table lacks one or the write failed. If a step is an act of the Command Post or the network,
+  /// all are applied even if the write fails, and are written later. The ledger then has "sending", which a
+  /// restart reads as in doubt.
+  bool move(std::span<const Step> steps, Time time);
+  bool move(const Step& step, Time time) { return move({&step, 1}, time); }
   /// Changes reports but not their states, in one write. False: the write failed, no report changed.
   bool note(std::span<const Report> noted) { return noted.empty() || write(noted, false); }
   /// Writes the run and its reports in one write. A failed write is repeated later.
@@ -58,6 +64,8 @@ class ReportBook {
   const std::map<std::int64_t, Report>& all() const { return reports_; }
   /// Same reports (same_report.hpp) in all runs, oldest first.
   std::vector<const Report*> same_as(const icd::ArtifactReport& report) const;
+  /// The report in flight, or null.
+  const Report* sending() const { return sending_.empty() ? nullptr : &at(*sending_.begin()); }
   /// Queued, oldest first.
   const std::set<std::int64_t>& waiting() const { return waiting_; }
   /// Unfinished, oldest first.
@@ -72,9 +80,11 @@ class ReportBook {
   void put(Report report);
 
   Output& output_;
+  Follow follow_;
   std::map<std::int64_t, Report> reports_;
   std::multimap<double, std::int64_t> by_x_;  // report numbers
   std::array<std::size_t, std::size(kStateWords)> counts_{};
+  std::set<std::int64_t> sending_;
   std::set<std::int64_t> waiting_;
   std::set<std::int64_t> open_;
   std::set<std::int64_t> in_doubt_;

@@ -28,40 +28,41 @@ Reports::Outcome Reports::send(std::int64_t number, Time time) {
     return cannot(*report, "to send it again, resubmit it");
   }
   if (report->is_lost()) return cannot(*report, kLost);
-  if (undo_.contains(number)) {
+  if (review_.awaits_undo(number)) {
     return end_undo(number, kSent, time) ? Outcome(number) : std::unexpected(kDisk);
   }
   const bool decided = report->state == ReportState::InDoubt;
-  if (const Report* const other = decided ? nullptr : twin(*report); other != nullptr) {
+  if (const Report* const other = decided ? nullptr : review_.twin(*report); other != nullptr) {
     return cannot(*report,
                   icd::sentence("report ", other->number, " is the same and is ", shown_name_of(other->state),
                                 " in this run; to send it again, resubmit that report"));
   }
-  if (decided && !blur_doubts(number, time)) return std::unexpected(kDisk);
-  const bool moved = step(number, ReportEvent::Released, kSent, time, [&](Report& sent) {
-    sent.asked = true;
-    sent.same_as = 0;
-    sent.tries = 0;
-    sent.run = meant_run().number;
-  });
+  if (decided && !doubts_.blur(number, time)) return std::unexpected(kDisk);
+  const bool moved = book_.move({number, ReportEvent::Released, kSent,
+                                 [&](Report& sent) {
+                                   sent.asked = true;
+                                   sent.same_as = 0;
+                                   sent.tries = 0;
+                                   sent.run = meant_run().number;
+                                 }},
+                                time);
   if (!moved) return std::unexpected(kDisk);
-  if (decided) ask_for_others(time);
+  if (decided) doubts_.ask_for_others(time);
   return number;
 }
 
 Reports::Outcome Reports::hold(std::int64_t number, Time time) {
   const Report* const report = book_.find(number);
   if (report == nullptr) return no_such(number);
-  const bool waits = undo_.contains(number);
+  const bool waits = review_.awaits_undo(number);
   const ReportEvent event = waits ? ReportEvent::Held : ReportEvent::HeldBack;
   if (transition(report->state, event) == nullptr || (report->state == ReportState::Held && !waits)) {
     return cannot(*report, report->state == ReportState::Held ? "it is held already"
                            : is_final(report->state)          ? "only a queued report can be held"
                                                               : "it may have been sent already");
   }
-  if (!step(number, event, "the operator held it", time)) return std::unexpected(kDisk);
-  undo_.erase(number);
-  unchecked_.erase(number);  // the operator decides
+  if (!book_.move({number, event, "the operator held it"}, time)) return std::unexpected(kDisk);
+  review_.decided(number);
   return number;
 }
 
@@ -74,10 +75,9 @@ Reports::Outcome Reports::withdraw(std::int64_t number, Time time) {
                                ? "its sending has begun, so it cannot be undone"
                                : "it may have been recorded; send it, or settle it");
   }
-  const char* const why = undo_.contains(number) ? "the operator undid it" : "";
-  if (!step(number, ReportEvent::Withdrawn, why, time)) return std::unexpected(kDisk);
-  undo_.erase(number);
-  unchecked_.erase(number);
+  const char* const why = review_.awaits_undo(number) ? "the operator undid it" : "";
+  if (!book_.move({number, ReportEvent::Withdrawn, why}, time)) return std::unexpected(kDisk);
+  review_.decided(number);
   return number;
 }
 
@@ -87,10 +87,10 @@ Reports::Outcome Reports::settle(std::int64_t number, Time time) {
   if (transition(report->state, ReportEvent::Settled) == nullptr) {
     return cannot(*report, "only a report in doubt can be settled");
   }
-  const bool done =
-      blur_doubts(number, time) && step(number, ReportEvent::Settled, "the operator settled it", time);
+  const bool done = doubts_.blur(number, time) &&
+                    book_.move({number, ReportEvent::Settled, "the operator settled it"}, time);
   if (!done) return std::unexpected(kDisk);
-  ask_for_others(time);
+  doubts_.ask_for_others(time);
   return number;
 }
 
@@ -110,7 +110,7 @@ Reports::Outcome Reports::correct(std::int64_t number, const icd::ArtifactReport
               .run = meant_run().number,
               .asked = true};
   if (!next.report.robot) next.report.robot = report->report.robot;
-  if (const Report* const other = twin(next); other != nullptr) {
+  if (const Report* const other = review_.twin(next); other != nullptr) {
     return cannot(*report, icd::sentence("report ", other->number, " is the same as the correction and is ",
                                          shown_name_of(other->state), " in this run"));
   }
@@ -120,11 +120,10 @@ Reports::Outcome Reports::correct(std::int64_t number, const icd::ArtifactReport
   corrected.note = icd::sentence("the operator corrected it: report ", next.number, ", ", described(to));
   corrected.run = next.run;
   corrected.same_as = next.number;
-  const std::int64_t made = add(std::move(next), hold_for_undo(), false, time, {&corrected, 1});
+  const std::int64_t made = add(std::move(next), review_.hold_for_undo(), false, time, {&corrected, 1});
   if (made == 0) return std::unexpected(kDisk);
-  hand_clients_over(number, book_.at(made));
-  undo_.erase(number);
-  unchecked_.erase(number);
+  clients_.hand_over(number, book_.at(made));
+  review_.decided(number);
   return made;
 }
 
@@ -133,17 +132,15 @@ Reports::Outcome Reports::resubmit(std::int64_t number, Time time) {
   if (report == nullptr) return no_such(number);
   if (!is_final(report->state)) return cannot(*report, "it is not finished yet");
   if (report->is_lost()) return cannot(*report, kLost);
-  for (const Report* const other : same_in_run(report->report)) {
+  for (const Report* const other : review_.same_in_run(report->report)) {
     if (other->asked && !is_final(other->state)) return other->number;  // pressed twice, sent once
   }
   Report again{.report = report->report, .sender = "operator", .received = time.stamp, .changed = time.stamp};
   again.note = icd::sentence("report ", number, " again");
   again.run = meant_run().number;
   again.asked = true;
-  const std::int64_t made = book_.add(std::move(again), {}, "");
-  if (made == 0) return std::unexpected(kDisk);
-  taken_at_[made] = time.now;
-  return made;
+  const std::int64_t made = add(std::move(again), {}, false, time);
+  return made != 0 ? Outcome(made) : std::unexpected(kDisk);
 }
 
 }  // namespace adit::dispatch

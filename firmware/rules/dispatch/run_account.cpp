@@ -27,6 +27,23 @@ void RunAccount::open(std::vector<Run> all, std::int64_t latest, const std::stri
   book_.write(run());  // before its reports: without an address they would count as the next Command Post's
 }
 
+bool RunAccount::is_of_run(const Report& report) const {
+  return report.run == meant_run().number || report.state == ReportState::Sending;
+}
+
+bool RunAccount::is_unclaimed(const Report& report) const {
+  return report.run == run().number && report.state == ReportState::Answered &&
+         report.changed < run().began && run().id.empty();
+}
+
+std::vector<std::int64_t> RunAccount::waiting_at(const std::string& post) const {
+  std::vector<std::int64_t> there;
+  for (const std::int64_t number : book_.waiting()) {
+    if (runs_.is_at(book_.at(number).run, post)) there.push_back(number);
+  }
+  return there;
+}
+
 std::optional<icd::RunStatus> RunAccount::expected(Instant now) const {
   if (!known_ || odd_ || unscored_ || !run().unreliable.empty()) return std::nullopt;
   icd::RunStatus status = known_->status;
@@ -92,6 +109,7 @@ std::int64_t RunAccount::announce(const std::string& why, const std::string& pos
   runs_.begin({.began = time.stamp, .why = why, .heard = time.stamp, .post = post});
   const Run next = run();
   runs_.take_up(present);
+  runs_.will_be(next.number);
   book_.write(run());  // first, so that the other run is never the last on disk
   book_.write(next);
   written_ = time.stamp;

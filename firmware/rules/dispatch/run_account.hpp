@@ -17,7 +17,6 @@ namespace adit::dispatch {
 /// The present run and its expected status: the last one, less the effect of Adit's own reports.
 class RunAccount {
  public:
-  using Instant = std::chrono::steady_clock::time_point;
   static constexpr std::chrono::seconds kFresh{15};  // a status proves the run at least so long
   static constexpr double kWriteEvery = 150;         // seconds between writes for the run clock alone
 
@@ -35,6 +34,15 @@ class RunAccount {
   /// answered later may belong to the next run.
   double status_at() const { return status_at_; }
   const Runs& runs() const { return runs_; }
+  /// The run of a report that is posted now: run(), or the run of will_be().
+  const Run& meant_run() const { return runs_.meant(); }
+  /// True for reports of meant_run(), and for the one in flight, which a later run may record.
+  bool is_of_run(const Report& report) const;
+  /// Answered before the run was noticed, and its name is not known: it may be of the earlier run.
+  bool is_unclaimed(const Report& report) const;
+  /// Queued reports for the Command Post at `post`, oldest first.
+  std::vector<std::int64_t> waiting_at(const std::string& post) const;
+  std::vector<std::int64_t> waiting_here() const { return waiting_at(run().post); }
   /// `spacing`: between requests. A status proves the run until the next can arrive.
   void paced(Instant::duration spacing);
   bool is_fresh(Instant now) const { return heard_ && now - *heard_ <= fresh_; }
@@ -57,7 +65,9 @@ class RunAccount {
   /// be, or 0.
   void begin(const std::string& why, std::int64_t may_be, const std::optional<icd::RunStatus>& status,
              std::span<const Report> steps, Time time);
-  /// Writes a run at `post` that will be the present one, so that a restart finds it. Returns its number.
+  /// Run `number` will be the present one. 0: no change is due.
+  void will_be(std::int64_t number) { runs_.will_be(number); }
+  /// The same for a new run at `post`, which it writes so that a restart finds it. Returns its number.
   std::int64_t announce(const std::string& why, const std::string& post, Time time);
   void take_up(std::int64_t number, std::span<const Report> steps, Time time);
   /// The present run and the runs between are the same run as `number`. `number` becomes the present run, and

@@ -18,6 +18,10 @@ class Runs {
 
   const Run& present() const { return runs_.at(present_); }
   Run& present() { return runs_.at(present_); }
+  /// The run of a report that is posted now: present(), or the run of will_be().
+  const Run& meant() const { return runs_.at(will_be_ != 0 ? will_be_ : present_); }
+  /// Run `number` will be the present one. 0: no change is due.
+  void will_be(std::int64_t number) { will_be_ = number; }
   const Run* find(std::int64_t number) const;
   const std::map<std::int64_t, Run>& all() const { return runs_; }
 
@@ -45,6 +49,7 @@ class Runs {
 
   std::map<std::int64_t, Run> runs_{{1, Run{}}};
   std::int64_t present_ = 1;
+  std::int64_t will_be_ = 0;
 };
 
 }  // namespace adit::dispatch

@@ -1,13 +1,12 @@
 #pragma once
 
-#include <chrono>
 #include <cstddef>
 #include <optional>
 #include <span>
 
-namespace adit::dispatch {
+#include "dispatch/report.hpp"
 
-using Instant = std::chrono::steady_clock::time_point;
+namespace adit::dispatch {
 
 /// One of several message kinds on a connection.
 struct Candidate {

@@ -45,7 +45,7 @@ World::~World() = default;
 // Time.
 
 Time World::time() const {
-  return {Reports::Instant(std::chrono::nanoseconds(static_cast<std::int64_t>(now_ * 1e9))), kEpoch + now_};
+  return {Instant(std::chrono::nanoseconds(static_cast<std::int64_t>(now_ * 1e9))), kEpoch + now_};
 }
 
 void World::later(Seconds delay, std::function<void()> happen, bool of_process) {

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dispatch/report_review.hpp"
+
+namespace adit::dispatch {
+
+/// Decides reports in doubt: asks for the run's status until an Inquiry has the result, or the operator
+/// decides.
+class Doubts {
+ public:
+  using Reports = std::vector<const Report*>;
+
+  static constexpr std::int64_t kMostTries = 5;  // losses until a report is held
+
+  /// All outlive this.
+  Doubts(const InquiryPolicy& policy, ReportBook& book, RunAccount& account, const ReportReview& review)
+      : policy_(policy), book_(book), account_(account), review_(review) {}
+
+  /// In doubt in the present run, in the order of sending.
+  Reports all() const { return book_.doubts(account_.run().number); }
+  /// Starts again, for all() doubts. Call it if one is added or leaves, or with another run.
+  void begin(Instant now);
+  /// A report came into doubt.
+  void lost(Instant now);
+  /// A status that was requested at `asked`. Returns the steps that it decides: of all reports in doubt, or
+  /// none.
+  std::vector<ReportBook::Step> hear(const icd::RunStatus& status, Instant asked, Time time);
+  void failed(Time time);
+
+  /// Notes the state of the inquiry in `doubts`. `seen`: what the last status showed.
+  void explain(const Reports& doubts, const std::string& seen, Time time);
+  /// Call it before the operator's decision about `decided` is written: forgets the expected counts of other
+  /// doubts, which no longer show the result, so that a power cut between leaves no wrong evidence. False:
+  /// the write failed.
+  bool blur(std::int64_t decided, Time time);
+  /// After the operator's decision.
+  void ask_for_others(Time time);
+
+  /// True if the report is in doubt and Adit still asks about it.
+  bool is_asking(const Report& report) const;
+  /// Other reports must wait.
+  bool is_pending(Instant now) const { return inquiry_ && inquiry_->is_pending(now); }
+  /// When to request the run's status. nullopt: no doubt needs it.
+  std::optional<Instant> next_ask(Instant now) const;
+
+ private:
+  ReportBook::Step found(const Report& doubt, const Evidence& evidence) const;
+  ReportBook::Step missing(const Report& doubt, const Evidence& evidence) const;
+
+  const InquiryPolicy& policy_;
+  ReportBook& book_;
+  RunAccount& account_;
+  const ReportReview& review_;
+  std::optional<Inquiry> inquiry_;  // covers all()
+};
+
+}  // namespace adit::dispatch

@@ -35,7 +35,7 @@ class DamagedMap : public WithLettingPost {
     const auto found = record_.rows().find({Kind::Grid, "first"});
     return found == record_.rows().end() ? api::ActivityRow{} : found->second;
   }
-  static constexpr std::uint64_t kOne = Maps::kFirstNumber + 1, kOther = Maps::kFirstNumber + 2;
+  static constexpr std::uint64_t kOne = MapStore::kFirstNumber + 1, kOther = MapStore::kFirstNumber + 2;
 };
 
 TEST_F(DamagedMap, IsToldAndRejectedMessagesAndTheNextOneGoes) {

@@ -40,13 +40,8 @@ Maps::Maps(loop::Loop& loop, loop::Workers& workers, loop::Writer& writer, spool
            RejectedStore& rejected, std::mt19937_64& random, journal::Journal& journal,
            std::function<void(icd::MapUpdate)> taken)
     : loop_(loop),
-      workers_(workers),
-      writer_(writer),
-      while_alive_(&writer, [](loop::Writer*) {}),
-      spool_(spool),
       settings_(settings),
       record_(record),
-      journal_(journal),
       rejected_(rejected),
       taken_(std::move(taken)),
       channel_(loop, "mapping",
@@ -54,19 +49,21 @@ Maps::Maps(loop::Loop& loop, loop::Workers& workers, loop::Writer& writer, spool
                               pace::map_bytes_per_second(settings.command_post.budget_mbit))),
       pace_(icd::Uri::MapUpdate, settings.command_post.rates.map_hz, random, journal),
       wake_(loop.timer([this] { pump(); })),
-      slot_(pace::map_bytes_per_second(settings.command_post.budget_mbit)),
       queue_(settings.queues.merge_bytes),
-      trouble_(spool.trouble()) {
+      store_(writer, spool),
+      accepted_(
+          loop, workers, settings, record, journal, queue_, store_, [this] { pump(); },
+          [this](const queues::QueuedMap& back) { return prepared_.contain(back); }),
+      prepared_(loop, workers, settings, record, journal, queue_, store_,
+                [this](bool is_done) { packed(is_done); }) {
   take_settings();
   queue_.canvases().lead_to(channel_.address());
 }
 
 void Maps::carry_on(const journal::Carried& carried, bool ran_before) {
-  carry_on_grids(carried, ran_before);
+  accepted_.carry_on(carried, ran_before);
   pace_.carry_on(carried, loop_.now());
-  if (const auto last = carried.stamps().find(icd::Uri::MapUpdate); last != carried.stamps().end()) {
-    stamps_.carry_on(last->second);
-  }
+  prepared_.carry_on(carried);
 }
 
 void Maps::take_settings() {
@@ -74,12 +71,12 @@ void Maps::take_settings() {
   queue_.merge_at_most(settings_.queues.merge_bytes);
   queue_.clouds_are(settings::by_robot(settings_.robots, &settings::Robot::clouds));
   queue_.precisions_are(settings::by_robot(settings_.robots, &settings::Robot::precision));
-  points_.edges_are(settings::by_robot(settings_.robots, &settings::Robot::voxel_metres));
+  prepared_.points().edges_are(settings::by_robot(settings_.robots, &settings::Robot::voxel_metres));
 }
 
 void Maps::settings_changed() {
   take_settings();
-  slot_.allow(pace::map_bytes_per_second(settings_.command_post.budget_mbit));
+  prepared_.slot().allow(pace::map_bytes_per_second(settings_.command_post.budget_mbit));
   pace_.allow(settings_.command_post.rates.map_hz, loop_.now());
   pump();
 }
@@ -87,7 +84,7 @@ void Maps::settings_changed() {
 void Maps::endpoint_changed(std::optional<icd::BearerToken> token) {
   const settings::CommandPost& post = settings_.command_post;
   channel_.lead_to(way_to_mapping(post, std::move(token), pace::map_bytes_per_second(post.budget_mbit)));
-  points_.forget();
+  prepared_.points().forget();
   channel_.give_up();
   pump();
 }
@@ -99,17 +96,17 @@ void Maps::pump() noexcept {
     ahead_ = {};
     leads_elsewhere();
   }
-  if (stopping_ || preparing_ || !channel_.has_token()) return;
+  if (stopping_ || prepared_.is_packing() || !channel_.has_token()) return;
   go_on();
 }
 
 void Maps::go_on() {
   const loop::Instant now = loop_.now();
-  Place& next = channel_.busy() ? following_ : prepared_;
+  const bool follows = channel_.busy();
+  const Place& next = follows ? prepared_.following() : prepared_.first();
   if (next && next->is_under_way) return;
-  if (next && !points_.hold(next->packed.left_out)) next->packed = {};
-  if (next && next->packed.body.empty()) return pack(next);
-  if (next && channel_.busy()) return go_ahead(now);
+  if (next && !prepared_.is_packed(*next)) return prepared_.pack(next, pace_.spacing());
+  if (next && follows) return go_ahead(now);
   if (next) {
     if (now >= starts()) return send(next);
     wake_.call_at(starts());
@@ -117,8 +114,14 @@ void Maps::go_on() {
   }
   if (queue_.count() == 0) return;
   const loop::Instant begin = begins_to_pack(now);
-  if (now >= begin) return prepare(next);
+  if (now >= begin) return prepared_.prepare(follows, pace_.spacing(), channel_.delivers());
   wake_.call_at(begin);
+}
+
+void Maps::packed(bool is_done) {
+  if (is_done) return pump();
+  pace_.failed(loop_.now());
+  wake_.call_at(pace_.ready());
 }
 
 /// Of the next map, whose last byte is held back.
@@ -131,12 +134,12 @@ loop::Instant Maps::starts() const {
 /// No packing while the link is down.
 loop::Instant Maps::begins_to_pack(loop::Instant now) const {
   loop::Instant free = now;
-  if (channel_.busy() && !prepared_->arrived) {
+  if (channel_.busy() && !prepared_.first()->arrived) {
     if (!channel_.connected()) return now + kLookAtConnecting;
-    const std::size_t size = prepared_->packed.body.size();
-    free += slot_.transfer(size - std::min(size, channel_.sent_of_it()));
+    const std::size_t size = prepared_.first()->packed.body.size();
+    free += prepared_.slot().transfer(size - std::min(size, channel_.sent_of_it()));
   }
-  const loop::Instant begin = std::max(starts(), free) - slot_.lead();
+  const loop::Instant begin = std::max(starts(), free) - prepared_.slot().lead();
   return begin <= now ? begin : std::max(begin, now + kLookAtSending);
 }
 
@@ -167,18 +170,12 @@ void Maps::classify(const Place& sent, const uplink::Outcome& outcome) {
   again(sent);
 }
 
-/// The next one may be in flight already.
-void Maps::leaves(const Place& sent) {
-  if (sent == following_) return following_.reset();
-  if (sent == prepared_) prepared_ = std::exchange(following_, nullptr);
-}
-
 void Maps::taken(const Place& sent, const uplink::Answered& answered) {
   pace_.taken(answered.sent, loop_.now());
-  slot_.left(sent->packed.body.size(), answered.sent, sent->last_byte_not_before);
-  if (!points_.hold(sent->packed.left_out)) return goes_whole(sent, answered.status);
+  prepared_.slot().left(sent->packed.body.size(), answered.sent, sent->last_byte_not_before);
+  if (!prepared_.points().hold(sent->packed.left_out)) return goes_whole(sent, answered.status);
   ahead_.taken(sent->went_ahead);
-  leaves(sent);
+  prepared_.leaves(sent);
   icd::MapUpdate& map = sent->waiting.map;
   const std::size_t updates = sent->waiting.updates.size();
   if (sent->waiting.again) map.header().stamp = sent->waiting.again;
@@ -189,8 +186,14 @@ void Maps::taken(const Place& sent, const uplink::Answered& answered) {
   queue_.carried(queues::Sender::of(map), sent->packed.body.size());
   record_.forwarded(traffic_of(map), updates, sent->packed.body.size(), answered.status, loop_.wall_now());
   if (!map.is_grid()) record_.rounded_to(traffic_of(map), sent->packed.precision);
-  points_taken(*sent);
+  prepared_.points_taken(*sent);
   taken_(std::move(map));
+}
+
+/// Delivered, but the points left out were forgotten since.
+void Maps::goes_whole(const Place& sent, int status) {
+  record_.forwarded(traffic_of(sent->waiting.map), 0, sent->packed.body.size(), status, loop_.wall_now());
+  again(sent);
 }
 
 void Maps::verdict(const Place& sent, const uplink::Answered& answered) {
@@ -221,20 +224,9 @@ void Maps::verdict(const Place& sent, const uplink::Answered& answered) {
   }
 }
 
-/// Newer first: old cells never follow newer ones.
 void Maps::again(const Place& sent) {
   ahead_.failed(sent->went_ahead || channel_.busy());
-  if (sent == prepared_) put_back(following_);
-  if (Place* const place = place_of(sent)) put_back(*place);
-  if (!prepared_) prepared_ = std::exchange(following_, nullptr);
-}
-
-/// Except one in flight.
-void Maps::put_back(Place& prepared) {
-  if (!prepared || prepared->is_under_way) return;
-  const auto replaced = queue_.put_back(prepared->waiting);
-  prepared.reset();
-  forget(replaced);
+  prepared_.again(sent);
 }
 
 /// Parts of a merged or stitched map are tried separately.
@@ -246,16 +238,39 @@ void Maps::give_up(const Place& sent, int status, const std::string& sentence) {
   if (waiting.parts.empty()) {
     rejected_.add(waiting.map, status, sentence, waiting.map.data.bytes.size(),
                   {.let_go = [this, numbers = waiting.updates] { forget(numbers); }});
-    return leaves(sent);
+    return prepared_.leaves(sent);
   }
-  if (sent == prepared_) put_back(following_);
+  if (sent == prepared_.first()) prepared_.put_back_following();
   queue_.put_back_apart(waiting);
-  leaves(sent);
+  prepared_.leaves(sent);
 }
 
-bool Maps::is_said_by_what_goes(const queues::QueuedMap& back) const {
-  return (prepared_ && queues::replaces(prepared_->waiting, back)) ||
-         (following_ && queues::replaces(following_->waiting, back));
+/// False if maps go to another Command Post, whose statuses Adit does not read.
+bool Maps::is_heard_from() const {
+  return channel_.address() == address_text(settings_.command_post.mapping);
+}
+
+void Maps::heard() {
+  if (!is_heard_from()) return;
+  std::vector<const icd::MapUpdate*> under_way;
+  for (const Place& place : {prepared_.first(), prepared_.following()}) {
+    if (place) under_way.push_back(&place->waiting.map);
+  }
+  queue_.canvases().heard(under_way);
+}
+
+void Maps::change_run(dispatch::NextMap next) {
+  prepared_.points().forget();
+  prepared_.pack_again();
+  queues::Canvases& canvases = queue_.canvases();
+  if (next == dispatch::NextMap::Empty && is_heard_from()) return canvases.begin_run();
+  if (next == dispatch::NextMap::Earlier) return canvases.take_up_run();
+  canvases.change_run();
+}
+
+void Maps::leads_elsewhere() {
+  queue_.canvases().lead_to(channel_.address());
+  prepared_.pack_again();
 }
 
 void Maps::link_is_back() {
@@ -265,28 +280,20 @@ void Maps::link_is_back() {
 }
 
 bool Maps::stop() {
-  stopping_ = true;
+  stand_by();
   return !channel_.busy();
 }
 
 std::size_t Maps::waiting(const Traffic& traffic) const {
-  return queue_.count(sender_of(traffic)) + prepared_of(traffic).size();
+  return queue_.count(sender_of(traffic)) + prepared_.of(traffic).size();
 }
 
 std::optional<loop::Instant> Maps::waits_since(const Traffic& traffic) const {
   std::optional<loop::Instant> oldest = queue_.oldest(sender_of(traffic));
-  for (const Prepared* prepared : prepared_of(traffic)) {
+  for (const PreparedMap* prepared : prepared_.of(traffic)) {
     oldest = std::min(oldest.value_or(prepared->waiting.accepted), prepared->waiting.accepted);
   }
   return oldest;
-}
-
-std::vector<const Maps::Prepared*> Maps::prepared_of(const Traffic& traffic) const {
-  std::vector<const Prepared*> all;
-  for (const Prepared* each : {prepared_.get(), following_.get()}) {
-    if (each != nullptr && traffic_of(each->waiting.map) == traffic) all.push_back(each);
-  }
-  return all;
 }
 
 }  // namespace adit::forward

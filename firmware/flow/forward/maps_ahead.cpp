@@ -26,30 +26,30 @@ loop::Duration reading_takes(const icd::MapUpdate& map) {
 /// Once the one that is under way has arrived; it is looked for when the next may start, and not before.
 void Maps::go_ahead(loop::Instant now) {
   if (!may_go_ahead(now)) return;
-  const std::size_t size = prepared_->packed.body.size(), left = size - std::min(size, channel_.sent_of_it());
-  if (!prepared_->arrived && left > 0)
-    return wake_.call_at(now + std::max<loop::Duration>(slot_.transfer(left) / 2, kLookAtLeaving));
+  PreparedMap& first = *prepared_.first();
+  const std::size_t size = first.packed.body.size(), left = size - std::min(size, channel_.sent_of_it());
+  if (!first.arrived && left > 0)
+    return wake_.call_at(now + std::max<loop::Duration>(prepared_.slot().transfer(left) / 2, kLookAtLeaving));
   if (now < starts() - kGetReady) return wake_.call_at(starts() - kGetReady);
   channel_.get_ready();
-  const auto arrived = prepared_->arrived ? std::nullopt : channel_.has_arrived();
+  const auto arrived = first.arrived ? std::nullopt : channel_.has_arrived();
   if (arrived) {
-    prepared_->arrived = arrived->last;
+    first.arrived = arrived->last;
     pace_.left(*arrived);
   }
   loop::Instant begin = starts();
-  if (prepared_->arrived)
-    begin = std::max(begin, *prepared_->arrived + reading_takes(prepared_->waiting.map));
-  if (prepared_->arrived && channel_.can_go_ahead() && now >= begin) return send(following_);
+  if (first.arrived) begin = std::max(begin, *first.arrived + reading_takes(first.waiting.map));
+  if (first.arrived && channel_.can_go_ahead() && now >= begin) return send(prepared_.following());
   wake_.call_at(std::max(begin, now + kLookForEnd));
 }
 
 /// If not, the answer to the one that is under way is awaited.
 bool Maps::may_go_ahead(loop::Instant now) const {
-  const queues::Ahead::Before before{.map = prepared_->waiting,
-                                     .arrived = prepared_->arrived.value_or(now),
-                                     .went_ahead = prepared_->went_ahead};
-  return prepared_->is_under_way && pace_.may_go_ahead(now) &&
-         ahead_.may_go(following_->waiting, before, now);
+  const PreparedMap& first = *prepared_.first();
+  const queues::Ahead::Before before{
+      .map = first.waiting, .arrived = first.arrived.value_or(now), .went_ahead = first.went_ahead};
+  return first.is_under_way && pace_.may_go_ahead(now) &&
+         ahead_.may_go(prepared_.following()->waiting, before, now);
 }
 
 }  // namespace adit::forward

@@ -1,0 +1,192 @@
+#include "forward/accepted_maps.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "host/log.hpp"
+#include "icd/sentence.hpp"
+#include "pack/has_all_points.hpp"
+
+namespace adit::forward {
+namespace {
+
+icd::Stamp stamp_of(const icd::MapUpdate& map) {
+  return map.header().stamp.value_or(0);
+}
+
+}  // namespace
+
+/// After a power cut the areas of earlier grids are unknown. The record that begins grids shows it.
+void AcceptedMaps::carry_on(const journal::Carried& carried, bool ran_before) {
+  queues::Canvases::Posted posted = carried.grids().value_or(queues::Canvases::Posted{});
+  if (!carried.grids()) {
+    const auto everywhere = queues::Extent::everywhere();
+    const auto told =
+        ran_before ? journal_.grids_posted(queues::Canvases::kAnyName, everywhere) : journal_.grids_begin();
+    if (ran_before || !told) posted[queues::Canvases::kAnyName] = everywhere;
+    are_grids_told_ = told.has_value();
+  }
+  queue_.canvases().carry_on(std::move(posted));
+}
+
+/// Journals posted areas, so that later processes know the cells that were never sent. False: not journaled,
+/// do not accept the grid. If the start could not read the journal, it is left for the next process.
+bool AcceptedMaps::is_told(const icd::MapUpdate& update) {
+  if (!update.is_grid()) return true;
+  if (!are_grids_told_) {
+    const auto everywhere = queues::Extent::everywhere();
+    are_grids_told_ = journal_.grids_posted(queues::Canvases::kAnyName, everywhere).has_value();
+    if (!are_grids_told_) return false;
+  }
+  const auto grows = queue_.canvases().grows(update);
+  if (!grows) return true;
+  if (!journal_.grids_posted(grows->first, grows->second)) return false;
+  queue_.canvases().grown(*grows);
+  return true;
+}
+
+/// A full queue accepts replacing maps. If it is full by number alone, it accepts merging maps.
+bool AcceptedMaps::has_room_for(const icd::MapUpdate& update, bool replaces) const {
+  const std::size_t waiting = queue_.bytes() + store_.bytes();
+  const std::size_t count = queue_.count() + store_.count();
+  if (!replaces && count >= kMostMaps && (count >= kMostWithJoined || !queue_.joins(update))) return false;
+  return replaces || waiting == 0 || waiting + update.data.bytes.size() <= settings_.queues.map_bytes;
+}
+
+void AcceptedMaps::take(icd::MapUpdate update, std::size_t bytes_received,
+                        std::shared_ptr<spool::MapFile> file, std::function<void(icd::Checked<void>)> done) {
+  const bool replaces = queue_.replaces_any(update);
+  const auto refuse = [&](icd::Refusal why) {
+    store_.discard(std::move(file));
+    done(std::unexpected(std::move(why)));
+  };
+  if (!has_room_for(update, replaces)) {
+    record_.no_room(traffic_of(update), loop_.wall_now());
+    return refuse(
+        {icd::Status::TooManyRequests, icd::sentence("the queue is full: ", queue_.count() + store_.count(),
+                                                     " maps, ", (queue_.bytes() + store_.bytes()) / 1000000,
+                                                     " MB; this map was not accepted, send it again later")});
+  }
+  if (!is_told(update)) return refuse(not_stored());
+  // Newer grids and whole clouds need room beside the old one.
+  const bool is_whole =
+      update.is_grid() || queue_.clouds_of(queues::Sender::of(update)) == queues::Clouds::Whole;
+  const std::uint64_t of_its_own = is_whole ? update.data.bytes.size() : 0;
+  const std::uint64_t spare =
+      replaces ? 0 : std::max<std::uint64_t>(queue_.largest_replaceable(), of_its_own);
+  store_.store(std::move(update), std::move(file), spare, /*again=*/false,
+               [this, bytes_received, done = std::move(done)](MapStore::Stored& stored) {
+                 this->stored(stored, bytes_received, done);
+               });
+}
+
+/// Queued now; the sender may know.
+void AcceptedMaps::stored(MapStore::Stored& stored, std::size_t bytes_received,
+                          const std::function<void(icd::Checked<void>)>& done) {
+  if (stored.has_no_valid_point) {
+    record_.no_valid_point(traffic_of(*stored.map), bytes_received, loop_.wall_now());
+    store_.forget({&stored.number, 1});
+    return done({});
+  }
+  if (!stored.map) return done(std::unexpected(std::move(stored.map.error())));
+  const Traffic traffic = traffic_of(*stored.map);
+  record_.accepted(traffic, bytes_received, loop_.wall_now());
+  tell_clouds(*stored.map);
+  const auto replaced = queue_.add(stored.number, std::move(*stored.map), loop_.now());
+  record_.replaced(traffic, replaced.size());
+  store_.forget(replaced);
+  done({});
+  compare();
+  queued_();
+}
+
+void AcceptedMaps::restore(spool::Spool::Kept kept) {
+  store_.read_trouble();
+  for (auto& [number, map] : kept) restore(number, std::move(map));
+}
+
+void AcceptedMaps::restore(std::uint64_t number, icd::MapUpdate update) {
+  const bool again = store_.restored(number);
+  const icd::Stamp stamp = update.header().stamp.value_or(loop_.stamp_now());
+  record_.accepted(traffic_of(update), update.data.bytes.size(), time_of(loop_, stamp));
+  if (again) {
+    store_.forget(queue_.put_back(waiting_again(number, std::move(update), stamp)));
+  } else {
+    tell_clouds(update);
+    queue_.restore(number, std::move(update), loop_.now());
+  }
+  compare();
+  queued_();
+}
+
+void AcceptedMaps::tell_clouds(const icd::MapUpdate& update) {
+  const queues::Clouds clouds = queue_.clouds_of(queues::Sender::of(update));
+  if (clouds != queues::Clouds::Auto) record_.clouds_are(traffic_of(update), clouds);
+}
+
+/// It must not follow a newer map that contains it.
+void AcceptedMaps::send_again(icd::MapUpdate update, std::function<bool(bool kept)> done) {
+  const icd::Stamp again = stamp_of(update);
+  const queues::QueuedMap back = waiting_again(store_.next_again(), update, again);
+  if (queue_.is_replaced(back) || is_sent_(back)) {
+    done(true);
+    return;
+  }
+  update.header().stamp = loop_.stamp_now();
+  store_.store(
+      std::move(update), nullptr, 0, /*again=*/true,
+      [this, again, done = std::move(done)](MapStore::Stored& stored) { stored_again(stored, again, done); });
+}
+
+void AcceptedMaps::stored_again(MapStore::Stored& stored, icd::Stamp again,
+                                const std::function<bool(bool kept)>& done) {
+  const bool is_wanted = done(stored.map.has_value());
+  if (!stored.map) {
+    return host::log(host::Level::Error, "cannot send a rejected map again",
+                     {{"why", stored.map.error().sentence}});
+  }
+  queues::QueuedMap back = waiting_again(stored.number, std::move(*stored.map), again);
+  if (!is_wanted || is_sent_(back)) return store_.forget({&stored.number, 1});
+  store_.must_check(stored.number);  // perhaps rejected by an earlier process
+  store_.forget(queue_.put_back(std::move(back)));
+  queued_();
+}
+
+queues::QueuedMap AcceptedMaps::waiting_again(std::uint64_t number, icd::MapUpdate update,
+                                              icd::Stamp again) const {
+  return {
+      .map = std::move(update), .accepted = loop_.now(), .updates = {number}, .alone = true, .again = again};
+}
+
+/// One pair at a time, to save memory. Both stay queued and may be sent.
+void AcceptedMaps::compare() {
+  if (comparing_ || stopping_) return;
+  auto next = queue_.to_compare();
+  if (!next) return;
+  struct Comparison {
+    queues::Successive two;
+    bool has_all = false;
+  };
+  const auto it = std::make_shared<Comparison>(Comparison{*std::move(next)});
+  workers_.submit(
+      loop::Urgency::OnTheWay,
+      [it] { it->has_all = pack::has_all_points(it->two.newer, it->two.older, it->two.point_step); },
+      [this, it] { compared(it->two, it->has_all); });
+  comparing_ = true;
+}
+
+void AcceptedMaps::compared(const queues::Successive& two, bool has_all) {
+  comparing_ = false;
+  const Traffic traffic{Kind::Cloud, two.sender.name ? two.sender.name->text() : ""};
+  if (has_all) {
+    const auto replaced = queue_.replace(two);
+    record_.replaced(traffic, replaced.size());
+    store_.forget(replaced);
+  } else {
+    queue_.keep_both(two);
+  }
+  record_.clouds_are(traffic, has_all ? queues::Clouds::Whole : queues::Clouds::Parts);
+  compare();
+}
+
+}  // namespace adit::forward

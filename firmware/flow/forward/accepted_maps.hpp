@@ -1,0 +1,69 @@
+#pragma once
+
+#include "forward/map_store.hpp"
+#include "forward/record.hpp"
+#include "journal/journal.hpp"
+#include "queues/map_queue.hpp"
+#include "settings/settings.hpp"
+
+namespace adit::forward {
+
+/// Accepts maps: decides whether there is room for a map, and queues it once it is stored. A worker then
+/// finds queued clouds that newer ones contain.
+class AcceptedMaps {
+ public:
+  /// Each map has a mapped file (vm.max_map_count is 65,530). Beyond kMostMaps only maps that merge with
+  /// queued ones are accepted.
+  static constexpr std::size_t kMostMaps = 20'000, kMostWithJoined = 40'000;
+
+  /// `queued`: called after each change of `queue`. `is_sent`: true if a prepared map contains this one,
+  /// which the operator sends again. All outlive this.
+  AcceptedMaps(loop::Loop& loop, loop::Workers& workers, const settings::Settings& settings, Record& record,
+               journal::Journal& journal, queues::MapQueue& queue, MapStore& store,
+               std::function<void()> queued, std::function<bool(const queues::QueuedMap&)> is_sent)
+      : loop_(loop),
+        workers_(workers),
+        settings_(settings),
+        record_(record),
+        journal_(journal),
+        queue_(queue),
+        store_(store),
+        queued_(std::move(queued)),
+        is_sent_(std::move(is_sent)) {}
+
+  /// Maps::carry_on(), restore(), take() and send_again().
+  void carry_on(const journal::Carried& carried, bool ran_before);
+  void restore(spool::Spool::Kept kept);
+  void take(icd::MapUpdate update, std::size_t bytes_received, std::shared_ptr<spool::MapFile> file,
+            std::function<void(icd::Checked<void>)> done);
+  void send_again(icd::MapUpdate update, std::function<bool(bool kept)> done);
+  /// Compares no more clouds.
+  void stop() { stopping_ = true; }
+
+ private:
+  void restore(std::uint64_t number, icd::MapUpdate update);
+  bool has_room_for(const icd::MapUpdate& update, bool replaces) const;
+  bool is_told(const icd::MapUpdate& update);
+  void stored(MapStore::Stored& stored, std::size_t bytes_received,
+              const std::function<void(icd::Checked<void>)>& done);
+  void stored_again(MapStore::Stored& stored, icd::Stamp again, const std::function<bool(bool kept)>& done);
+  void tell_clouds(const icd::MapUpdate& update);  // kind of clouds by the settings
+  queues::QueuedMap waiting_again(std::uint64_t number, icd::MapUpdate update, icd::Stamp again) const;
+  void compare();
+  void compared(const queues::Successive& two, bool has_all);
+
+  loop::Loop& loop_;
+  loop::Workers& workers_;
+  const settings::Settings& settings_;
+  Record& record_;
+  journal::Journal& journal_;
+  queues::MapQueue& queue_;
+  MapStore& store_;
+  std::function<void()> queued_;
+  std::function<bool(const queues::QueuedMap&)> is_sent_;
+  bool are_grids_told_ = true;  // the journal has the areas of grids
+  bool comparing_ = false;      // a worker compares two clouds
+  bool stopping_ = false;
+};
+
+}  // namespace adit::forward

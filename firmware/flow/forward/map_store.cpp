@@ -1,0 +1,115 @@
+#include "forward/map_store.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "host/log.hpp"
+#include "pack/pack.hpp"
+
+namespace adit::forward {
+namespace {
+
+/// In this thread, with the file.
+icd::Checked<icd::MapUpdate> without_data(icd::MapUpdate map, std::shared_ptr<spool::MapFile> file) {
+  map.data = {};
+  file.reset();
+  return map;
+}
+
+}  // namespace
+
+icd::Refusal not_stored() {
+  return {icd::Status::ServiceUnavailable, "Adit cannot store this map; send it again later"};
+}
+
+MapStore::MapStore(loop::Writer& writer, spool::Spool& spool)
+    : writer_(writer),
+      while_alive_(&writer, [](loop::Writer*) {}),
+      spool_(spool),
+      trouble_(spool.trouble()) {}
+
+std::shared_ptr<intake::MapArrival> MapStore::arrives(std::function<std::uint64_t()> spare,
+                                                      MapArrival::Take take) {
+  return std::make_shared<MapArrival>(while_alive_, spool_, std::move(spare), std::move(take));
+}
+
+void MapStore::store(icd::MapUpdate update, std::shared_ptr<spool::MapFile> file, std::uint64_t spare,
+                     bool again, std::function<void(Stored& stored)> done) {
+  /// The writer's until it is stored.
+  struct Job {
+    icd::MapUpdate update;
+    std::shared_ptr<spool::MapFile> file;
+    Stored stored;
+  };
+  const std::size_t size = update.data.bytes.size();
+  const auto job = std::make_shared<Job>(Job{std::move(update), std::move(file), {}});
+  // Lower numbers for older maps: later processes follow them.
+  job->stored.number = again && again_numbers_ < kFirstNumber - 1 ? ++again_numbers_ : ++numbers_;
+  job->stored.map = std::unexpected(not_stored());
+  writer_.submit(
+      [&spool = spool_, job, spare, again] {
+        Stored& stored = job->stored;
+        stored.has_no_valid_point = !again && pack::has_only_invalid_points(job->update);
+        stored.map = stored.has_no_valid_point
+                         ? without_data(std::move(job->update), std::move(job->file))
+                         : spool.keep(stored.number, std::move(job->update), spare, std::move(job->file));
+      },
+      [this, job, size, again, done = std::move(done)] {
+        --count_;
+        bytes_ -= size;
+        Stored& stored = job->stored;
+        if (!again && !stored.has_no_valid_point) {
+          const std::string before = std::exchange(trouble_, stored.map ? "" : stored.map.error().sentence);
+          if (!stored.map && before.empty())
+            host::log(host::Level::Error, "cannot store a map", {{"why", trouble_}});
+        }
+        done(stored);
+      });
+  ++count_;
+  bytes_ += size;
+}
+
+void MapStore::discard(std::shared_ptr<spool::MapFile> file) {
+  if (file) writer_.submit([file = std::move(file)]() mutable { file.reset(); }, [] {});
+}
+
+void MapStore::forget(std::span<const std::uint64_t> numbers) {
+  if (numbers.empty()) return;
+  writer_.submit(
+      [&spool = spool_, gone = std::vector(numbers.begin(), numbers.end())] {
+        for (const std::uint64_t number : gone) spool.forget(number);
+      },
+      [] {});
+}
+
+void MapStore::set_aside(std::vector<Damaged> damaged) {
+  for (const Damaged& each : damaged) unchecked_.erase(each.number);
+  writer_.submit(
+      [&spool = spool_, damaged = std::move(damaged)] {
+        for (const Damaged& each : damaged) spool.set_aside(each.number, each.why);
+      },
+      [] {});
+}
+
+bool MapStore::restored(std::uint64_t number) {
+  const bool again = number < kFirstNumber;
+  std::uint64_t& last = again ? again_numbers_ : numbers_;
+  last = std::max(last, number);
+  must_check(number);
+  return again;
+}
+
+std::vector<std::uint64_t> MapStore::work_begins(const queues::QueuedMap& waiting) {
+  std::vector<std::uint64_t> numbers;
+  queues::add_own_numbers(numbers, waiting);
+  spool_.work_begins(numbers);
+  std::erase_if(numbers, [this](std::uint64_t number) { return !unchecked_.contains(number); });
+  return numbers;
+}
+
+void MapStore::work_ends(std::span<const std::uint64_t> checked) {
+  spool_.work_ends();
+  for (const std::uint64_t number : checked) unchecked_.erase(number);
+}
+
+}  // namespace adit::forward

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "forward/map_arrival.hpp"
+#include "queues/map_queue.hpp"
+
+namespace adit::forward {
+
+/// Maps in the spool: the writer stores a map before Adit accepts it, and deletes it once it is delivered,
+/// replaced or rejected. On the loop.
+class MapStore {
+ public:
+  /// Maps with lower numbers are sent again by the operator. They are older than all others.
+  static constexpr std::uint64_t kFirstNumber = 1u << 20;
+
+  struct Stored {
+    std::uint64_t number = 0;
+    bool has_no_valid_point = false;   // `map` has no data and no file
+    icd::Checked<icd::MapUpdate> map;  // with its data in the file; or why it could not be stored
+  };
+  /// A map with damaged data.
+  struct Damaged {
+    std::uint64_t number = 0;
+    std::string why;
+  };
+
+  /// `spool` outlives the writer.
+  MapStore(loop::Writer& writer, spool::Spool& spool);
+
+  /// `spare`: bytes to leave free. The arrival may outlive this.
+  std::shared_ptr<intake::MapArrival> arrives(std::function<std::uint64_t()> spare, MapArrival::Take take);
+  /// Stores `update` and leaves `spare` bytes free. `file`: with its data, or null. `again`: the operator
+  /// sends it again.
+  void store(icd::MapUpdate update, std::shared_ptr<spool::MapFile> file, std::uint64_t spare, bool again,
+             std::function<void(Stored& stored)> done);
+  /// Closes the file of a map that is not accepted; null: none.
+  void discard(std::shared_ptr<spool::MapFile> file);
+  void forget(std::span<const std::uint64_t> numbers);
+  /// Renames the damaged files.
+  void set_aside(std::vector<Damaged> damaged);
+
+  /// An earlier process stored map `number`: its data is unchecked. True: the operator sends it again.
+  bool restored(std::uint64_t number);
+  /// Has the data checked by the next work on the map.
+  void must_check(std::uint64_t number) { unchecked_.insert(number); }
+  /// The number of the next map that the operator sends again.
+  std::uint64_t next_again() const { return again_numbers_ + 1; }
+  /// A worker begins to pack `waiting`. Returns its unchecked maps.
+  std::vector<std::uint64_t> work_begins(const queues::QueuedMap& waiting);
+  /// The data of `checked` is good.
+  void work_ends(std::span<const std::uint64_t> checked);
+
+  /// Maps that are being stored, and their bytes.
+  std::size_t count() const { return count_; }
+  std::size_t bytes() const { return bytes_; }
+  /// Why the last map could not be stored, or "".
+  const std::string& trouble() const { return trouble_; }
+  void read_trouble() { trouble_ = spool_.trouble(); }
+
+ private:
+  loop::Writer& writer_;
+  const std::shared_ptr<loop::Writer> while_alive_;  // the same, for arrivals that outlive this
+  spool::Spool& spool_;
+  std::uint64_t numbers_ = kFirstNumber, again_numbers_ = 0;
+  std::size_t count_ = 0, bytes_ = 0;
+  std::string trouble_;
+  std::set<std::uint64_t> unchecked_;
+};
+
+/// For maps that cannot be stored.
+icd::Refusal not_stored();
+
+}  // namespace adit::forward

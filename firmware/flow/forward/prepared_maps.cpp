@@ -1,0 +1,215 @@
+#include "forward/prepared_maps.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "codec/read.hpp"
+#include "host/log.hpp"
+#include "pace/budget.hpp"
+
+namespace adit::forward {
+namespace {
+
+/// The damaged maps among the `unread` ones in `waiting`.
+std::vector<MapStore::Damaged> damaged_in(const queues::QueuedMap& waiting,
+                                          const std::vector<std::uint64_t>& unread) {
+  std::vector<MapStore::Damaged> damaged;
+  const auto look_at = [&](const queues::QueuedMap& one) {
+    if (std::ranges::find(unread, one.updates.back()) == unread.end()) return;
+    if (auto checked = codec::check_data(one.map); !checked)
+      damaged.push_back({one.updates.back(), std::move(checked.error().sentence)});
+  };
+  if (waiting.parts.empty()) look_at(waiting);
+  for (const queues::QueuedMap& part : waiting.parts) look_at(part);
+  return damaged;
+}
+
+}  // namespace
+
+PreparedMaps::PreparedMaps(loop::Loop& loop, loop::Workers& workers, const settings::Settings& settings,
+                           Record& record, journal::Journal& journal, queues::MapQueue& queue,
+                           MapStore& store, std::function<void(bool is_done)> packed)
+    : loop_(loop),
+      workers_(workers),
+      settings_(settings),
+      record_(record),
+      journal_(journal),
+      queue_(queue),
+      store_(store),
+      packed_(std::move(packed)),
+      slot_(pace::map_bytes_per_second(settings.command_post.budget_mbit)) {}
+
+void PreparedMaps::carry_on(const journal::Carried& carried) {
+  if (const auto last = carried.stamps().find(icd::Uri::MapUpdate); last != carried.stamps().end()) {
+    stamps_.carry_on(last->second);
+  }
+}
+
+std::vector<const PreparedMap*> PreparedMaps::of(const Traffic& traffic) const {
+  std::vector<const PreparedMap*> all;
+  for (const PreparedMap* each : {first_.get(), following_.get()}) {
+    if (each != nullptr && traffic_of(each->waiting.map) == traffic) all.push_back(each);
+  }
+  return all;
+}
+
+bool PreparedMaps::contain(const queues::QueuedMap& back) const {
+  return (first_ && queues::replaces(first_->waiting, back)) ||
+         (following_ && queues::replaces(following_->waiting, back));
+}
+
+void PreparedMaps::prepare(bool follows, loop::Duration spacing, std::uint64_t delivers) {
+  slot_.link_delivers(delivers);
+  queue_.a_message_holds(slot_.points_within(spacing));
+  auto waiting = queue_.take(loop_.now());
+  if (!waiting) return;
+  Place& place = follows ? following_ : first_;
+  place = std::make_shared<PreparedMap>(PreparedMap{.waiting = std::move(*waiting)});
+  pack(place, spacing);
+}
+
+void PreparedMaps::pack(const Place& prepared, loop::Duration spacing) {
+  icd::Header& header = prepared->waiting.map.header();
+  header.stamp = stamps_.next(header.stamp.value_or(loop_.stamp_now()));
+  journal_.stamped(icd::Uri::MapUpdate, *header.stamp);
+  const loop::Instant began = loop_.now();
+  const auto leaving_out = std::make_shared<LeavingOut>(points_.leaving_out(prepared->waiting.map));
+  const Packing packing{settings_.command_post.arrange_clouds, slot_.hurry(spacing)};
+  const auto unread = store_.work_begins(prepared->waiting);
+  workers_.submit(
+      loop::Urgency::OnTheWay,
+      [prepared, leaving_out, packing, unread, &loop = loop_] {
+        const loop::Instant begins = loop.now();
+        prepared->damaged = damaged_in(prepared->waiting, unread);
+        if (!prepared->damaged.empty()) return;
+        prepared->packed = packed(prepared->waiting, std::move(*leaving_out), packing);
+        prepared->packing_took = loop.now() - begins;
+        if (!prepared->packed.body.empty() || prepared->packed.left_out.is_all) return;
+        std::vector<std::uint64_t> numbers;
+        queues::add_own_numbers(numbers, prepared->waiting);
+        prepared->damaged = damaged_in(prepared->waiting, numbers);
+      },
+      [this, began, prepared, unread] {
+        is_packing_ = false;
+        const bool is_good = prepared->damaged.empty();
+        store_.work_ends(is_good ? unread : std::vector<std::uint64_t>());
+        if (is_good) slot_.packing_took(loop_.now() - began);
+        work_done(prepared);
+        packed_(true);
+      },
+      [this, prepared] { work_failed(prepared); });
+  is_packing_ = true;
+}
+
+bool PreparedMaps::is_packed(PreparedMap& prepared) const {
+  if (!points_.hold(prepared.packed.left_out)) prepared.packed = {};
+  return !prepared.packed.body.empty();
+}
+
+/// Null where it went back into the queue meanwhile.
+PreparedMaps::Place* PreparedMaps::place_of(const Place& prepared) {
+  if (prepared == first_) return &first_;
+  return prepared == following_ ? &following_ : nullptr;
+}
+
+/// Records the damaged maps as failed and renames their files. The other parts are queued again, each alone.
+void PreparedMaps::is_damaged(Place& place) {
+  const auto it = place;
+  queues::QueuedMap rest = it->waiting;
+  std::vector<std::uint64_t> gone;
+  for (const MapStore::Damaged& each : it->damaged) gone.push_back(each.number);
+  const auto is_gone = [&](std::uint64_t number) { return std::ranges::find(gone, number) != gone.end(); };
+  std::erase_if(rest.parts, [&](const queues::QueuedMap& part) { return is_gone(part.updates.back()); });
+  std::erase_if(rest.updates, is_gone);
+  store_.set_aside(it->damaged);
+  if (!rest.parts.empty()) queue_.put_back_apart(std::move(rest));
+  place.reset();  // nothing of what is damaged is tried again
+  for (const MapStore::Damaged& each : it->damaged) {
+    record_.not_taken(traffic_of(it->waiting.map), NotTaken::Failed, 0,
+                      "its stored copy is damaged: " + each.why);
+  }
+  store_.forget(gone);
+}
+
+/// What cannot be stitched goes as it came, each part by itself.
+void PreparedMaps::work_done(const Place& prepared) {
+  const LeftOut& left_out = prepared->packed.left_out;
+  if (prepared->damaged.empty()) {
+    const Packed& packed = prepared->packed;
+    slot_.worker_took(prepared->packing_took, packed.expected);
+    slot_.packed(packed.points_size, packed.full_size, packed.precision);
+  }
+  Place* const place = place_of(prepared);
+  if (place == nullptr) return;
+  if (!prepared->damaged.empty()) return is_damaged(*place);
+  if (left_out.is_all) return is_there(*place);
+  if (prepared->packed.drawn) queue_.canvases().lay(prepared->waiting.map.name, *prepared->packed.drawn);
+  prepared->packed.drawn.reset();
+  if (!prepared->packed.body.empty()) {
+    if (prepared->packed.stitched.raw_size > 0)
+      prepared->waiting.map.data = std::move(prepared->packed.stitched);
+    return;
+  }
+  host::log(host::Level::Warning, "cannot join grids: their data is damaged");
+  queue_.put_back_apart(prepared->waiting);
+  place->reset();
+}
+
+/// All points were accepted before. If that was forgotten, the cloud is packed again.
+void PreparedMaps::is_there(Place& place) {
+  const LeftOut& left_out = place->packed.left_out;
+  if (!points_.hold(left_out)) return;
+  const auto there = std::exchange(place, nullptr);
+  const Traffic traffic = traffic_of(there->waiting.map);
+  record_.left_out(traffic, there->packed.left_out.points);
+  record_.replaced(traffic, there->waiting.updates.size());
+  store_.forget(there->waiting.updates);
+}
+
+void PreparedMaps::work_failed(const Place& prepared) {
+  is_packing_ = false;
+  store_.work_ends({});
+  prepared->packed = {};
+  if (Place* const place = place_of(prepared)) {
+    record_.not_taken(traffic_of(prepared->waiting.map), NotTaken::Failed, 0, "it could not be compressed");
+    put_back(*place);
+  }
+  packed_(false);
+}
+
+void PreparedMaps::leaves(const Place& sent) {
+  if (sent == following_) return following_.reset();
+  if (sent == first_) first_ = std::exchange(following_, nullptr);
+}
+
+void PreparedMaps::again(const Place& sent) {
+  if (sent == first_) put_back(following_);
+  if (Place* const place = place_of(sent)) put_back(*place);
+  if (!first_) first_ = std::exchange(following_, nullptr);
+}
+
+/// Except one in flight.
+void PreparedMaps::put_back(Place& prepared) {
+  if (!prepared || prepared->is_under_way) return;
+  const auto replaced = queue_.put_back(prepared->waiting);
+  prepared.reset();
+  store_.forget(replaced);
+}
+
+void PreparedMaps::pack_again() {
+  put_back(following_);
+  put_back(first_);
+}
+
+void PreparedMaps::points_taken(PreparedMap& sent) {
+  icd::MapUpdate& map = sent.waiting.map;
+  LeftOut& left_out = sent.packed.left_out;
+  record_.left_out(traffic_of(map), left_out.points);
+  if (left_out.sent) {
+    left_out.sent->header() = map.header();
+    map = *std::exchange(left_out.sent, std::nullopt);
+  }
+  points_.taken(map, std::move(left_out));
+}
+
+}  // namespace adit::forward

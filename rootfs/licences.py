@@ -1,9 +1,12 @@
-"""Reads what a Debian package says of its licences (DEP-5) as an SPDX expression."""
+"""Reads the copyright file of a Debian package (DEP-5, or prose) as an SPDX expression."""
+import itertools
 import re
 
 SPDX = {"expat": "MIT", "mit": "MIT", "isc": "ISC", "zlib": "Zlib", "apache-2.0": "Apache-2.0", "bsd-2-clause": "BSD-2-Clause",
         "bsd-3-clause": "BSD-3-Clause", "bsd-4-clause": "BSD-4-Clause", "cc0": "CC0-1.0", "cc0-1.0": "CC0-1.0", "mpl-2.0": "MPL-2.0",
-        "openssl": "OpenSSL", "boehm-gc": "Boehm-GC", "unlicense": "Unlicense", "curl": "curl"}
+        "openssl": "OpenSSL", "artistic": "Artistic-1.0-Perl", "boehm-gc": "Boehm-GC", "unlicense": "Unlicense", "curl": "curl"}
+
+LEAST_TEXT = 50  # characters; a shorter one is a name or a pointer: "Public domain.", "See the note above."
 
 
 def identifier(name: str) -> str | None:
@@ -24,7 +27,7 @@ def stanzas(text: str):
         name = None
         for line in block.splitlines():
             if line[:1] in " \t" and name:
-                fields[name] += "\n" + line.strip()
+                fields[name] += "\n" + line.strip().removeprefix(".")
             elif match := re.match(r"([A-Za-z-]+):\s*(.*)", line):
                 name = match[1].lower()
                 fields[name] = match[2]
@@ -36,29 +39,46 @@ class Licences:
 
     def __init__(self) -> None:
         self.extracted: dict[str, dict[str, str]] = {}
+        self.terms: set[str] = set()  # of all expressions
 
     def reference(self, name: str, text: str) -> str:
-        ref = "LicenseRef-debian-" + re.sub(r"[^A-Za-z0-9.-]+", "-", name.strip()).strip("-")
-        known = self.extracted.setdefault(ref, {"licenseId": ref, "name": name.strip(), "extractedText": ""})
-        known["extractedText"] = known["extractedText"] or text.strip()
-        return ref
+        """Another text of the same name has a reference of its own."""
+        base = "LicenseRef-debian-" + re.sub(r"[^A-Za-z0-9.-]+", "-", name).strip("-")
+        for ref in itertools.chain([base], (f"{base}-text-{number}" for number in itertools.count(2))):
+            licence = {"licenseId": ref, "name": name, "extractedText": text}
+            if self.extracted.setdefault(ref, licence) == licence:
+                return ref
 
-    def expression(self, copyright_text: str) -> str:
-        """NOASSERTION for a file that is prose."""
-        if not re.match(r"\s*Format(-Specification)?:", copyright_text):
-            return "NOASSERTION"
-        parts = list(stanzas(copyright_text))
-        texts = {p["license"].split("\n")[0].strip(): p["license"] for p in parts if "license" in p and "files" not in p}
-        names = sorted({p["license"].split("\n")[0].strip().rstrip(",") for p in parts if "license" in p and "files" in p} - {""})
-        return " AND ".join(dict.fromkeys(self.term(name, texts) for name in names)) or "NOASSERTION"
+    def expression(self, package: str, copyright_text: str) -> str:
+        """Of a package's copyright file. If the file is prose, the whole file is the text of one licence."""
+        whole = copyright_text.strip()
+        if not whole:
+            raise ValueError(f"{package}: no copyright file")
+        parts = list(stanzas(whole)) if re.match(r"Format(-Specification)?:", whole) else []
+        texts: dict[str, dict[str, None]] = {}  # by name, without repetition
+        for part in parts:
+            name, _, text = part.get("license", "").partition("\n")
+            texts.setdefault(self.key(name), {})[text.strip()] = None
+        names = sorted({part["license"].split("\n")[0].strip().rstrip(",") for part in parts if "license" in part and "files" in part} - {""})
 
-    def term(self, name: str, texts: dict[str, str]) -> str:
-        choices = re.split(r"\s*,?\s+(?:or|\|)\s+", name)
-        terms = []
-        for choice in choices:
-            ands = [self.one(each, texts) for each in re.split(r"\s*,?\s+and\s+", choice)]
-            terms.append(" AND ".join(ands) if len(ands) == 1 or len(choices) == 1 else f"({' AND '.join(ands)})")
-        return terms[0] if len(terms) == 1 else f"({' OR '.join(terms)})"
+        def text_of(*names: str) -> str:
+            """The first text that says more than a name does, or the whole file."""
+            found = ("\n\n".join(texts.get(self.key(name), ())).strip() for name in names)
+            return next((text for text in found if len(text) >= LEAST_TEXT), whole)
 
-    def one(self, name: str, texts: dict[str, str]) -> str:
-        return identifier(name) or self.reference(name, texts.get(name, name))
+        terms = [term for name in names for term in self.terms_of(name, text_of)] or [self.reference(package, whole)]
+        self.terms.update(terms)
+        return " AND ".join(dict.fromkeys(terms))
+
+    def terms_of(self, name: str, text_of) -> list[str]:
+        """Of one name of a copyright file, such as "GPL-2+ or Expat". All of the terms hold."""
+        choices = [[identifier(one) or self.reference(one.strip(), text_of(one, name)) for one in re.split(r"\s*,?\s+and\s+", choice)]
+                   for choice in re.split(r"\s*,?\s+(?:or|\|)\s+", name)]
+        if len(choices) == 1:
+            return choices[0]
+        return ["(" + " OR ".join(ands[0] if len(ands) == 1 else "(" + " AND ".join(ands) + ")" for ands in choices) + ")"]
+
+    @staticmethod
+    def key(name: str) -> str:
+        """Of a licence's name, however it is spelt."""
+        return " ".join(name.lower().replace("_", "-").rstrip(", ").split())

@@ -62,12 +62,13 @@ def main():
     refuses_who_cannot_sign()
     if "--refusals" in sys.argv:
         return
-    status, said = release("--programs", BUILD, VERSION, "generic-x86_64")
+    status, said = release("--no-sources", "--programs", BUILD, VERSION, "generic-x86_64")
     assert status == 0, said
     readme = (FOLDER / "README.md").read_text()
     check = re.search(r"```\n(.*?)```", readme, re.S)[1]
     shell(check)
     assert re.search(r"\n    sha256 Fingerprint=(\w\w:){31}\w\w\n", readme) and "a key of one checkout alone" in readme, readme
+    assert re.search(r"\n\| linux \| \[6\.[^]]+\]\(https://snapshot\.debian\.org/package/linux/6\.[^)]+/\) \| `linux_6\..*\.dsc` \|\n", readme), readme
     assert (FOLDER / "CHANGES.md").read_text().startswith(f"# Adit {VERSION}\n")
     listed = {line.split()[1] for line in (FOLDER / "SHA256SUMS").read_text().splitlines()}
     present = {str(path.relative_to(FOLDER)) for path in FOLDER.rglob("*") if path.is_file()}

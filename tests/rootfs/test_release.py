@@ -38,6 +38,7 @@ def refuses_who_cannot_sign():
     with tempfile.TemporaryDirectory() as folder:
         (key, certificate), (other, _), (old, at_its_end) = pair(folder, "team"), pair(folder, "other"), pair(folder, "old", days="1")
         short, of_short = pair(folder, "short", kind=["ed25519"])
+        team = {"ADIT_SIGNING_KEY": key, "ADIT_SIGNING_CERT": certificate, "ADIT_APT_KEY": "0" * 40, "ADIT_MAINTAINER": "Team <team@adit.invalid>"}
         for signer, why in (({"ADIT_SIGNING_KEY": key}, "belong together"), ({"ADIT_SIGNING_CERT": certificate}, "belong together"),
                             ({"ADIT_SIGNING_KEY": f"{folder}/none", "ADIT_SIGNING_CERT": certificate}, "is no private key"),
                             ({"ADIT_SIGNING_KEY": other, "ADIT_SIGNING_CERT": certificate}, "is not the key of the certificate"),
@@ -45,6 +46,8 @@ def refuses_who_cannot_sign():
                             ({"ADIT_SIGNING_KEY": short, "ADIT_SIGNING_CERT": of_short}, "cannot sign by SHA-256"),
                             ({"ADIT_SIGNING_KEY": key, "ADIT_SIGNING_CERT": certificate}, "ADIT_APT_KEY is not"),
                             ({"ADIT_SIGNING_KEY": key, "ADIT_SIGNING_CERT": certificate, "ADIT_APT_KEY": "0" * 40}, "ADIT_MAINTAINER is not"),
+                            (team, "ADIT_STANDBY_CERT is not"),
+                            (team | {"ADIT_STANDBY_CERT": certificate}, "expected the certificate of another key"),
                             ({"ADIT_APT_KEY": "nobody@adit.invalid"}, "expected a fingerprint"),
                             ({"ADIT_APT_KEY": "0" * 40}, "GnuPG cannot sign by the key")):
             status, said = release("--programs", BUILD, VERSION, "generic-x86_64", **signer)

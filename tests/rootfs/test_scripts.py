@@ -241,20 +241,33 @@ class Options(Scripts):
         (self.folder / "programs/CMakeCache.txt").touch()
         for path in "toolchain/setup", "rootfs/debian", "rootfs/disk", "rootfs/bundle":
             self.program(path, "")
-        self.program("rootfs/slot", 'echo "$2 $ADIT_KEYRING" >told; touch "$5/parts.spdx.json"\n')
+        self.program("rootfs/slot", 'echo "$2" >told; cp "$ADIT_KEYRING" keyring; touch "$5/parts.spdx.json"\n')
 
     def program(self, path, does):
         (self.folder / path).write_text("#!/bin/sh\n" + does)
         (self.folder / path).chmod(0o755)
 
-    def told(self, *options, keyring="both.pem", **environment):
-        done = self.call(self.folder / "toolchain/image", *options, "--programs", "programs", "one", ADIT_KEYRING=keyring, **environment)
+    def told(self, *options):
+        done = self.call(self.folder / "toolchain/image", *options, "--programs", "programs", "one")
         self.assertEqual(done.returncode, 0, done.stderr)
-        return (self.folder / "told").read_text().split()
+        return (self.folder / "told").read_text().strip()
+
+    def certificate(self, name, days="30"):
+        """Of a new key; with days of -1 it has ended."""
+        path = self.folder / f"{name}.pem"
+        key = ["-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:P-256", "-nodes", "-keyout", "key", "-subj", f"/CN={name}"]
+        self.assertEqual(self.call("openssl", "req", "-x509", *key, "-out", path).returncode, 0)
+        self.assertEqual(self.call("openssl", "x509", "-in", path, "-signkey", "key", "-days", days, "-out", path).returncode, 0)
+        return path
+
+    def keyring(self, signing="", standby=""):
+        """What the box accepts, or why toolchain/image ends."""
+        done = self.call(self.folder / "toolchain/image", "--programs", "programs", "one", ADIT_SIGNING_CERT=str(signing), ADIT_STANDBY_CERT=str(standby))
+        return (self.folder / "keyring").read_text() if done.returncode == 0 else done.stderr
 
     def test_version_is_comparable(self):
         good = "1.2.3", "0.0.0", "1.2.3-rc.1", "1.2.3-0a", "1.2.3--", "1.2.3+5.01", "1.2.3-rc.1+b-2"
-        self.assertEqual(self.told(*(word for version in good for word in ("--version", version)))[0], good[-1], "each is checked")
+        self.assertEqual(self.told(*(word for version in good for word in ("--version", version))), good[-1], "each is checked")
         for version in ("", "1.2", "1.2.3~rc1", "1.2.3.4", "01.2.3", "1.2.3+a+b", "1.2.3-01", "1.2.3-", "1.2.3-a..b", "v1.2.3", "1.2.3-a_b",
                         "1.2.3-" + "a" * 60):
             with self.subTest(version):
@@ -262,15 +275,26 @@ class Options(Scripts):
                 self.assertEqual(done.returncode, 2)
                 self.assertIn("--version wants", done.stderr)
 
-    def test_version_defaults_to_that_of_the_tree(self):
-        self.assertEqual(self.told()[0], "0.1.0")
+    def test_the_version_is_that_of_the_tree_unless_it_is_said(self):
+        self.assertEqual(self.told(), "0.1.0")
         (self.folder / "CMakeLists.txt").write_text('project(adit DESCRIPTION "no version")\n')
         done = self.call(self.folder / "toolchain/image", "--programs", "programs", "one")
         self.assertEqual((done.returncode, done.stdout), (1, ""))
 
-    def test_keyring_of_the_user_is_used(self):
-        self.assertEqual(self.told(ADIT_SIGNING_CERT="one.pem")[1], "both.pem")
+    def test_the_box_accepts_the_certificate_that_updates_are_signed_for_and_the_standby(self):
+        signing, standby = self.certificate("signing"), self.certificate("standby")
+        self.assertEqual(self.keyring(signing), signing.read_text())
+        self.assertEqual(self.keyring(signing, standby), signing.read_text() + standby.read_text())
+        self.assertEqual(self.keyring(), (self.folder / "build/image/keys/cert.pem").read_text())
+        self.assertEqual(self.keyring(standby=standby), (self.folder / "build/image/keys/cert.pem").read_text() + standby.read_text())
 
-    def test_keyring_defaults_to_the_signing_certificate(self):
-        self.assertEqual(self.told(keyring="", ADIT_SIGNING_CERT="one.pem")[1], "one.pem")
-        self.assertEqual(self.told(keyring="", ADIT_SIGNING_CERT="")[1], "build/image/keys/cert.pem")
+    def test_no_box_gets_a_certificate_that_has_ended_or_a_standby_that_is_none(self):
+        good, ended = self.certificate("good"), self.certificate("ended", days="-1")
+        (self.folder / "two.pem").write_text(good.read_text() * 2)
+        (self.folder / "damaged.pem").write_text(good.read_text().replace("\n", "\nA", 2))
+        for signing, standby, why in ((good, ended, "ended.pem: the certificate has ended"), (ended, good, "ended.pem: the certificate has ended"),
+                                      (good, good, "another key"), (good, "two.pem", "two.pem: expected one"), (good, "key", "key: expected one"),
+                                      (good, "none.pem", "none.pem"), (good, "damaged.pem", "damaged.pem")):
+            with self.subTest(why):
+                self.assertIn(why, self.keyring(signing, standby))
+                self.assertFalse((self.folder / "keyring").exists())

@@ -4,6 +4,7 @@ U-Boot leaves it, and a stand-in for systemctl."""
 import json
 import os
 import pathlib
+import re
 import secrets
 import shutil
 import subprocess
@@ -12,6 +13,7 @@ import unittest
 
 from patience import patient, wait_until
 
+SOURCE = pathlib.Path(os.environ["ADIT_SOURCE"])
 ADIT_UPDATE = os.path.join(os.environ["ADIT_BIN"], "adit-update")
 BOARD = "adit-test-board"
 ROOT_SIZE, BOOT_SIZE = 3 << 20, 1 << 20
@@ -40,13 +42,18 @@ def script(path, text):
     path.chmod(0o755)
 
 
-class Keys:
-    """Of whoever makes releases."""
+def run_at(at, *command, **environment):
+    """Runs a command with the time of day that date(1) understands by `at`."""
+    subprocess.run([*([] if at == "now" else ["faketime", at]), *command], check=True, capture_output=True, env=os.environ | environment)
 
-    def __init__(self, folder, name):
+
+class Keys:
+    """Of whoever makes releases, with a certificate for a year from `at` on."""
+
+    def __init__(self, folder, name, at="now"):
         self.key, self.cert = folder / f"{name}.key", folder / f"{name}.pem"
-        subprocess.run(["openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-days", "3650", "-subj", f"/CN={name}",
-                        "-keyout", self.key, "-out", self.cert], check=True, capture_output=True)
+        run_at(at, "openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-days", "365", "-subj", f"/CN={name}",
+               "-keyout", self.key, "-out", self.cert)
 
 
 class Bundles:
@@ -56,7 +63,7 @@ class Bundles:
         self.folder = folder
         self.keys = Keys(folder, "release")
 
-    def make(self, version="0.2.0", board=BOARD, keys=None, root_size=ROOT_SIZE, form=FORMAT):
+    def make(self, version="0.2.0", board=BOARD, keys=None, root_size=ROOT_SIZE, form=FORMAT, at="now"):
         keys = keys or self.keys
         work = pathlib.Path(tempfile.mkdtemp(dir=self.folder))
         (work / "in").mkdir()
@@ -65,8 +72,7 @@ class Bundles:
         (work / "in/manifest.raucm").write_text(
             f"[update]\ncompatible={board}\nversion={version}\nbuild=test\n\n[bundle]\nformat={form}\n\n"
             "[image.rootfs]\nfilename=root.img\n\n[image.boot]\nfilename=boot.img\n")
-        subprocess.run(["rauc", "bundle", f"--cert={keys.cert}", f"--key={keys.key}", work / "in", work / "x.raucb"],
-                       check=True, capture_output=True)
+        run_at(at, "rauc", "bundle", f"--cert={keys.cert}", f"--key={keys.key}", work / "in", work / "x.raucb")
         return work / "x.raucb"
 
 
@@ -85,7 +91,8 @@ class Box:
         self.properties.write_text("ActiveState=activating\n")
         (self.folder / "os-release").write_text(f'ID=adit\nVERSION_ID="{version}"\nNAME=Adit\n')
         self._boot_loader()
-        self._configuration(bundles)
+        self._configuration()
+        self.accept(bundles.keys)
         self._programs()
         self.bus = self._start_bus()
         self.service = None
@@ -100,7 +107,13 @@ class Box:
         subprocess.run(["mkenvimage", "-s", "512", "-o", self.folder / "env", self.folder / "env.txt"], check=True)
         (self.folder / "fw_env.config").write_text(f"{self.folder}/env 0x0 0x200\n")
 
-    def _configuration(self, bundles):
+    def accept(self, release, standby=None, at="now"):
+        """The keyring of an image that was made `at`."""
+        run_at(at, SOURCE / "toolchain/image-key", "--keyring", self.folder / "keyring.pem", ADIT_SIGNING_CERT=str(release.cert),
+               ADIT_STANDBY_CERT=str(standby.cert) if standby else "")
+
+    def _configuration(self):
+        keyring = re.search(r"^\[keyring\]\n.*?(?=\n\n)", (SOURCE / "rootfs/rauc.conf.in").read_text(), re.M | re.S)[0]
         slots = "".join(f"[slot.{kind}.{number}]\ndevice={self.slots[f'{part}-{letter}']}\n" + extra.format(number=number) + "\n"
                         for number, letter in ((0, "a"), (1, "b"))
                         for kind, part, extra in (("rootfs", "root", f"bootname={letter.upper()}\n"),
@@ -108,7 +121,7 @@ class Box:
         (self.folder / "system.conf").write_text(
             f"[system]\ncompatible={BOARD}\nbootloader=uboot\nboot-attempts=10\nboot-attempts-primary=3\nbundle-formats={FORMAT}\nmountprefix={self.folder}/mount\n"
             f"statusfile={self.folder}/rauc.status\nactivate-installed=true\n\n"
-            f"[keyring]\npath={bundles.keys.cert}\nuse-bundle-signing-time=true\n\n{slots}")
+            f"{keyring.replace('/etc/rauc', str(self.folder))}\n\n{slots}")
 
     def _programs(self):
         bin_folder = self.folder / "bin"

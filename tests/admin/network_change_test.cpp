@@ -145,19 +145,20 @@ TEST_F(NetworkChangeTest, TellsThatTheCommandPostSideHasNoAddress) {
 class AddressConflictsTest : public NetworkChangeTest {
  protected:
   /// As adit-network --watch does.
-  void watch_tells(const std::vector<network::TakenAddress>& taken,
-                   const std::vector<network::TakenAddress>& exchanged = {}) {
-    std::ofstream(folder / network::kTakenFile) << codec::write_file(network::Taken{taken, exchanged});
+  void watch_tells(const std::vector<network::AddressConflict>& taken,
+                   const std::vector<network::AddressConflict>& exchanged = {}) {
+    std::ofstream(folder / network::kTakenFile)
+        << codec::write_file(network::AddressConflicts{taken, exchanged});
     time.pass(host::kFresh);
   }
-  network::TakenAddress on(const char* interface, const char* address, loop::Duration ago = {}) {
+  network::AddressConflict on(const char* interface, const char* address, loop::Duration ago = {}) {
     return {interface, address, "02:00:00:00:00:07",
             std::chrono::floor<std::chrono::milliseconds>(loop.now() - ago)};
   }
   /// Side by side with its address.
   std::vector<std::string> taken() const {
     std::vector<std::string> all;
-    for (const alarms::TakenAddress& each : change.fact().taken)
+    for (const alarms::AddressConflict& each : change.fact().taken)
       all.push_back((each.is_team ? "team " : "command post ") + each.interface + " " + each.address);
     return all;
   }

@@ -56,12 +56,12 @@ TEST(Board, RemembersTheLastEndedAlarms) {
   Board board;
   board.take({kSilent}, 100);
   board.take({}, 111);
-  EXPECT_THAT(board.over(), ElementsAre(Over{.id = "robot_silent:uav5",
-                                             .severity = Severity::Bad,
-                                             .side = Side::Robot,
-                                             .was = "uav5 was silent",
-                                             .since = 70,
-                                             .until = 111}));
+  EXPECT_THAT(board.over(), ElementsAre(EndedAlarm{.id = "robot_silent:uav5",
+                                                   .severity = Severity::Bad,
+                                                   .side = Side::Robot,
+                                                   .was = "uav5 was silent",
+                                                   .since = 70,
+                                                   .until = 111}));
   for (int i = 0; i < 50; ++i) {
     board.take({kHeld}, 200 + 2 * i);
     board.take({}, 201 + 2 * i);

@@ -26,10 +26,10 @@ Facts named() {
   return facts;
 }
 
-void both_have(Facts& facts, PostTrouble trouble) {
+void both_have(Facts& facts, EndpointTrouble trouble) {
   for (Endpoint& endpoint : facts.endpoints) {
     endpoint.trouble = trouble;
-    endpoint.said = trouble == PostTrouble::Failing ? "500" : "no route to host";
+    endpoint.said = trouble == EndpointTrouble::Failing ? "500" : "no route to host";
   }
 }
 
@@ -40,9 +40,9 @@ void robots_and_queue(std::vector<Facts>& days) {
   days.back().streams.back().no_room = 1;
   days.back().unknown_robots = {"NAME"};
   days.back().known_robots = {"uav1"};
-  days.back().crowds = {{Crowd::Is::NoRoom, "ADDRESS"},
-                        {Crowd::Is::WrongToken, "ADDRESS"},
-                        {Crowd::Is::Unauthenticated, "ADDRESS"}};
+  days.back().crowds = {{CrowdFact::Is::NoRoom, "ADDRESS"},
+                        {CrowdFact::Is::WrongToken, "ADDRESS"},
+                        {CrowdFact::Is::Unauthenticated, "ADDRESS"}};
   days.back().shut_out = true;
   days.push_back(well(6));
   for (auto& [name, robot] : days.back().robots) robot.silent = true;
@@ -96,7 +96,7 @@ void the_network(std::vector<Facts>& days) {
   network.no_address = true;
   network.taken = {{true, "team0", "ADDRESS", "another machine"}};
   days.push_back(named());
-  for (Endpoint& endpoint : days.back().endpoints) endpoint.trouble = PostTrouble::Unreachable;
+  for (Endpoint& endpoint : days.back().endpoints) endpoint.trouble = EndpointTrouble::Unreachable;
   days.back().network.exchanged = {"ADDRESS", "team0", "darpa0"};
   for (const std::optional<bool> carrier : {std::optional(false), std::optional<bool>()}) {
     days.push_back(named());
@@ -107,9 +107,9 @@ void the_network(std::vector<Facts>& days) {
 /// Each of the headlines once, with what is said by its side.
 std::vector<Condition> all() {
   std::vector<Facts> days;
-  for (const auto trouble :
-       {PostTrouble::NoToken, PostTrouble::Unreachable, PostTrouble::Foreign, PostTrouble::Refusing,
-        PostTrouble::Silent, PostTrouble::Failing, PostTrouble::Throttling}) {
+  for (const auto trouble : {EndpointTrouble::NoToken, EndpointTrouble::Unreachable, EndpointTrouble::Foreign,
+                             EndpointTrouble::Refusing, EndpointTrouble::Silent, EndpointTrouble::Failing,
+                             EndpointTrouble::Throttling}) {
     days.push_back(named());
     both_have(days.back(), trouble);
   }

@@ -26,13 +26,13 @@ struct ConditionCase {
   void (*make)(Facts&);
 };
 
-void down(Facts& facts, PostTrouble trouble, std::size_t endpoint) {
+void down(Facts& facts, EndpointTrouble trouble, std::size_t endpoint) {
   facts.endpoints[endpoint].trouble = trouble;
   facts.endpoints[endpoint].since = kNow - 20;
   facts.endpoints[endpoint].said = "Connection refused";
 }
 
-template <PostTrouble trouble>
+template <EndpointTrouble trouble>
 void both_down(Facts& facts) {
   down(facts, trouble, 0);
   down(facts, trouble, 1);
@@ -45,23 +45,23 @@ void report(Facts& facts) {
 
 const ConditionCase kConditionCases[] = {
     {"command_post_unreachable", Bad, Side::CommandPost, "Command Post is unreachable", "Connection refused",
-     both_down<PostTrouble::Unreachable>},
+     both_down<EndpointTrouble::Unreachable>},
     {"command_post_silent", Bad, Side::CommandPost, "Command Post is silent", "10.100.1.200:8000 and",
-     both_down<PostTrouble::Silent>},
+     both_down<EndpointTrouble::Silent>},
     {"command_post_refusing", Bad, Side::CommandPost, "Both tokens are rejected", "is the course right?",
-     both_down<PostTrouble::Refusing>},
+     both_down<EndpointTrouble::Refusing>},
     {"command_post_refusing", Bad, Side::CommandPost, "The scoring token is rejected", "is the course right?",
-     [](Facts& facts) { down(facts, PostTrouble::Refusing, 0); }},
+     [](Facts& facts) { down(facts, EndpointTrouble::Refusing, 0); }},
     {"command_post_foreign", Bad, Side::CommandPost, "The server is not a Command Post", "(mapping)",
-     [](Facts& facts) { down(facts, PostTrouble::Foreign, 1); }},
+     [](Facts& facts) { down(facts, EndpointTrouble::Foreign, 1); }},
     {"command_post_failing", Bad, Side::CommandPost, "Mapping is failing", "every request",
-     [](Facts& facts) { down(facts, PostTrouble::Failing, 1); }},
+     [](Facts& facts) { down(facts, EndpointTrouble::Failing, 1); }},
     {"command_post_throttling", Wait, Side::CommandPost, "Mapping is throttling", "429",
-     [](Facts& facts) { down(facts, PostTrouble::Throttling, 1); }},
+     [](Facts& facts) { down(facts, EndpointTrouble::Throttling, 1); }},
     {"no_token:scoring", Bad, Side::Box, "The scoring token is missing", "reports stay queued",
-     [](Facts& facts) { down(facts, PostTrouble::NoToken, 0); }},
+     [](Facts& facts) { down(facts, EndpointTrouble::NoToken, 0); }},
     {"no_token:mapping", Bad, Side::Box, "The mapping token is missing",
-     "maps, states and markers stay queued", [](Facts& facts) { down(facts, PostTrouble::NoToken, 1); }},
+     "maps, states and markers stay queued", [](Facts& facts) { down(facts, EndpointTrouble::NoToken, 1); }},
     {"no_token:team", Bad, Side::Box, "The team token is missing", "rejects every robot",
      [](Facts& facts) { facts.shut_out = true; }},
     {"robot_silent:uav2", Bad, Side::Robot, "uav2 is silent", "a message every 2 s",
@@ -82,11 +82,11 @@ const ConditionCase kConditionCases[] = {
        facts.known_robots = {"uav1", "uav2"};
      }},
     {"clients_refused", Bad, Side::Robot, "Clients are rejected", "10.0.0.9",
-     [](Facts& facts) { facts.crowds = {{Crowd::Is::NoRoom, "10.0.0.9"}}; }},
+     [](Facts& facts) { facts.crowds = {{CrowdFact::Is::NoRoom, "10.0.0.9"}}; }},
     {"wrong_tokens", Ask, Side::Robot, "Wrong tokens are in use", "10.0.0.9",
-     [](Facts& facts) { facts.crowds = {{Crowd::Is::WrongToken, "10.0.0.9"}}; }},
+     [](Facts& facts) { facts.crowds = {{CrowdFact::Is::WrongToken, "10.0.0.9"}}; }},
     {"unauthenticated", Wait, Side::Robot, "Too many clients are anonymous", "10.0.0.9",
-     [](Facts& facts) { facts.crowds = {{Crowd::Is::Unauthenticated, "10.0.0.9"}}; }},
+     [](Facts& facts) { facts.crowds = {{CrowdFact::Is::Unauthenticated, "10.0.0.9"}}; }},
     {"report_held:7", Ask, Side::Box, "Report 7 is held", "it may be the same", report<ReportFact::Is::Held>},
     {"report_in_doubt:7", Ask, Side::CommandPost, "Report 7 is in doubt", "",
      report<ReportFact::Is::InDoubt>},
@@ -218,7 +218,7 @@ Facts busy() {
 
 TEST(Causes, HideTheirConsequences) {
   Facts facts = busy();
-  both_down<PostTrouble::Silent>(facts);
+  both_down<EndpointTrouble::Silent>(facts);
   const auto found = conditions_of(facts);
   ASSERT_THAT(ids_of(found), ElementsAre("command_post_silent"));
   EXPECT_EQ(found[0].hides, 22u) << "20 maps and 2 reports";
@@ -226,7 +226,7 @@ TEST(Causes, HideTheirConsequences) {
 
 TEST(Causes, PreferTheCableToTheEndpoint) {
   Facts facts = busy();
-  both_down<PostTrouble::Unreachable>(facts);
+  both_down<EndpointTrouble::Unreachable>(facts);
   facts.cables[1].carrier = false;
   const auto found = conditions_of(facts);
   ASSERT_THAT(ids_of(found), ElementsAre("cable_out:command_post"));
@@ -234,7 +234,8 @@ TEST(Causes, PreferTheCableToTheEndpoint) {
 }
 
 TEST(Causes, PreferExchangedCablesToEndpointsAndRobots) {
-  for (const auto trouble : {PostTrouble::Unreachable, PostTrouble::Silent, PostTrouble::NoToken}) {
+  for (const auto trouble :
+       {EndpointTrouble::Unreachable, EndpointTrouble::Silent, EndpointTrouble::NoToken}) {
     Facts facts = busy();
     for (auto& [name, robot] : facts.robots) robot = {.gap = 1, .quiet = 60, .silent = true};
     facts.network.exchanged = {"10.100.1.200", "team0", "darpa0"};
@@ -249,11 +250,11 @@ TEST(Causes, PreferExchangedCablesToEndpointsAndRobots) {
 }
 
 TEST(Causes, ExcludeExchangedCablesWhileAnEndpointAnswers) {
-  for (const auto trouble : {PostTrouble::None, PostTrouble::Refusing, PostTrouble::Foreign,
-                             PostTrouble::Failing, PostTrouble::Throttling}) {
+  for (const auto trouble : {EndpointTrouble::None, EndpointTrouble::Refusing, EndpointTrouble::Foreign,
+                             EndpointTrouble::Failing, EndpointTrouble::Throttling}) {
     Facts facts = well();
     facts.network.exchanged = {"10.100.1.200", "team0", "darpa0"};
-    down(facts, PostTrouble::Unreachable, 0);
+    down(facts, EndpointTrouble::Unreachable, 0);
     facts.endpoints[1].trouble = trouble;
     EXPECT_EQ(find(conditions_of(facts), "cables_exchanged").id, "");
   }
@@ -261,17 +262,17 @@ TEST(Causes, ExcludeExchangedCablesWhileAnEndpointAnswers) {
 
 TEST(Causes, OfOneEndpointDoNotHideTheOther) {
   Facts facts = busy();
-  down(facts, PostTrouble::Unreachable, 0);
+  down(facts, EndpointTrouble::Unreachable, 0);
   EXPECT_THAT(ids_of(conditions_of(facts)), ElementsAre("command_post_unreachable", "maps_behind"));
   facts = busy();
-  down(facts, PostTrouble::Failing, 1);
+  down(facts, EndpointTrouble::Failing, 1);
   EXPECT_THAT(ids_of(conditions_of(facts)),
               ElementsAre("command_post_failing", "report_in_doubt:1", "report_in_doubt:2"));
 }
 
 TEST(Causes, DoNotHideDecisionsOfTheOperator) {
   Facts facts = well();
-  both_down<PostTrouble::Silent>(facts);
+  both_down<EndpointTrouble::Silent>(facts);
   facts.cables[1].carrier = false;
   report<ReportFact::Is::InDoubt>(facts);
   facts.messages_rejected = 1;
@@ -282,7 +283,7 @@ TEST(Causes, DoNotHideDecisionsOfTheOperator) {
 
 TEST(Causes, ThrottlingHidesNothing) {
   Facts facts = well();
-  down(facts, PostTrouble::Throttling, 1);
+  down(facts, EndpointTrouble::Throttling, 1);
   facts.streams[0].behind = 30;
   EXPECT_THAT(ids_of(conditions_of(facts)), ElementsAre("command_post_throttling", "map_behind:uav1"));
 }
@@ -290,7 +291,7 @@ TEST(Causes, ThrottlingHidesNothing) {
 TEST(Robots, AreNotBlamedWhileTheEndpointIsDown) {
   Facts facts = well(20);
   for (auto& [name, robot] : facts.robots) robot = {.gap = 1, .quiet = 60, .silent = true};
-  both_down<PostTrouble::Unreachable>(facts);
+  both_down<EndpointTrouble::Unreachable>(facts);
   const auto found = conditions_of(facts);
   ASSERT_THAT(ids_of(found), ElementsAre("command_post_unreachable"));
   EXPECT_EQ(found[0].hides, 20u);

@@ -59,16 +59,16 @@ TEST(Verdict, TellsThatMapsAreLate) {
 
 TEST(Verdict, TellsThatNoMapArrivesDuringAnOutage) {
   Facts facts = well(20);
-  facts.endpoints[1].trouble = PostTrouble::Silent;
+  facts.endpoints[1].trouble = EndpointTrouble::Silent;
   facts.endpoints[1].since = kNow - 72;
   EXPECT_EQ(verdict_of(facts), (Verdict{Level::Bad, "No map arrives", "for 1:12; the box keeps all maps"}));
-  facts.endpoints[1].trouble = PostTrouble::Throttling;
+  facts.endpoints[1].trouble = EndpointTrouble::Throttling;
   EXPECT_EQ(verdict_of(facts).level, Level::Good) << "it takes them all the same";
 }
 
 TEST(Verdict, HasNoDurationIfTheTokenIsMissing) {
   Facts facts = well(3);
-  facts.endpoints[1].trouble = PostTrouble::NoToken;
+  facts.endpoints[1].trouble = EndpointTrouble::NoToken;
   EXPECT_EQ(verdict_of(facts),
             (Verdict{Level::Bad, "No map arrives", "the mapping token is missing; the box keeps all maps"}));
 }
@@ -108,7 +108,7 @@ class StandingTest : public testing::Test {
   Facts facts_ = well(1);
   Stream& stream_ = facts_.streams.front();
   Robot& robot_ = facts_.robots.begin()->second;
-  PostTrouble& mapping_ = facts_.endpoints[1].trouble;
+  EndpointTrouble& mapping_ = facts_.endpoints[1].trouble;
 };
 
 TEST_F(StandingTest, IsThatOfTheStreamWithoutOtherFaults) {
@@ -118,8 +118,9 @@ TEST_F(StandingTest, IsThatOfTheStreamWithoutOtherFaults) {
 }
 
 TEST_F(StandingTest, BlamesNoRobotWhileMappingIsDown) {
-  for (const PostTrouble trouble : {PostTrouble::NoToken, PostTrouble::Unreachable, PostTrouble::Foreign,
-                                    PostTrouble::Refusing, PostTrouble::Silent, PostTrouble::Failing}) {
+  for (const EndpointTrouble trouble :
+       {EndpointTrouble::NoToken, EndpointTrouble::Unreachable, EndpointTrouble::Foreign,
+        EndpointTrouble::Refusing, EndpointTrouble::Silent, EndpointTrouble::Failing}) {
     mapping_ = trouble;
     stream_ = {.kind = "grid", .robot = stream_.robot, .behind = 200, .forwarded = 200};
     expect(Arrival::NotArriving, Level::Quiet);
@@ -156,9 +157,9 @@ TEST_F(StandingTest, BlamesNoRobotJustAfterAnOutage) {
 
 TEST_F(StandingTest, BlamesTheRobotDuringScoringOutageOrThrottling) {
   stream_.behind = 200;
-  facts_.endpoints[0].trouble = PostTrouble::Unreachable;
+  facts_.endpoints[0].trouble = EndpointTrouble::Unreachable;
   expect(Arrival::NotArriving, Level::Bad);
-  mapping_ = PostTrouble::Throttling;
+  mapping_ = EndpointTrouble::Throttling;
   expect(Arrival::NotArriving, Level::Bad);
 }
 

@@ -236,9 +236,9 @@ TEST(Bytes, OfTheSession) {
                                                   .own = true}}),
             R"([{"number":3,"role":"operator","address":"10.0.0.7","agent":"curl","made":940.0,)"
             R"("seen":941.5,"own":true}])");
-  EXPECT_EQ(codec::to_json(WhoAsks{.role = std::nullopt, .csrf = "", .first_start = true}),
+  EXPECT_EQ(codec::to_json(SessionView{.role = std::nullopt, .csrf = "", .first_start = true}),
             R"({"role":null,"csrf":null,"first_start":true,"set_up_open":false})");
-  EXPECT_EQ(codec::to_json(WhoAsks{.role = access::Role::Viewer, .csrf = "c", .set_up_open = true}),
+  EXPECT_EQ(codec::to_json(SessionView{.role = access::Role::Viewer, .csrf = "c", .set_up_open = true}),
             R"({"role":"viewer","csrf":"c","first_start":false,"set_up_open":true})");
 }
 

@@ -181,7 +181,7 @@ inline std::string header(const intake::Answer& answer, std::string_view name) {
 
 /// Hands requests on to a handler that is made later.
 struct Forward final : intake::Handler {
-  intake::Shown shown(const intake::RequestHead& head) override { return to->shown(head); }
+  intake::Credentials shown(const intake::RequestHead& head) override { return to->shown(head); }
   std::unique_ptr<intake::BodySink> open(const intake::RequestHead& head,
                                          std::shared_ptr<intake::Responder> responder,
                                          std::shared_ptr<intake::Flow> flow) override {

@@ -8,7 +8,7 @@ namespace adit::api {
 
 struct NoFinerMap final : FinerMap {
   std::optional<picture::Finer> finer(const picture::Layer&, std::uint64_t) const override { return {}; }
-  void tile(const picture::Layer&, const picture::TileAt&, Done done) override { done(nullptr); }
+  void tile(const picture::Layer&, const picture::TileIndex&, Done done) override { done(nullptr); }
 };
 
 }  // namespace adit::api

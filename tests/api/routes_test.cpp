@@ -46,7 +46,7 @@ struct Asked : Page {
   }
 };
 
-bool is_for(const Route& route, Who least) {
+bool is_for(const Route& route, RouteAccess least) {
   return route.who >= least;
 }
 
@@ -58,17 +58,17 @@ struct Visitor {
 };
 constexpr const char *kOperator = "correct horse", *kViewer = "look, do not touch";
 int only_anybody(const Route& route) {
-  return is_for(route, Who::OperatorOrSetUp) ? 401 : 0;
+  return is_for(route, RouteAccess::OperatorOrSetUp) ? 401 : 0;
 }
 int only_viewers(const Route& route) {
-  const bool for_operators = route.who == Who::Operator || route.who == Who::OperatorOrSetUp;
+  const bool for_operators = route.who == RouteAccess::Operator || route.who == RouteAccess::OperatorOrSetUp;
   return for_operators ? 403 : 0;
 }
 int nothing_by_cookie_alone(const Route& route) {
-  return is_for(route, Who::OperatorOrSetUp) && route.method == "POST" ? 403 : 0;
+  return is_for(route, RouteAccess::OperatorOrSetUp) && route.method == "POST" ? 403 : 0;
 }
 int only_what_is_open(const Route& route) {
-  return route.who == Who::Open ? 0 : 403;
+  return route.who == RouteAccess::Open ? 0 : 403;
 }
 const Visitor kVisitors[] = {
     {"nobody", [](Asked&) { return Headers{}; }, only_anybody},
@@ -144,9 +144,9 @@ TEST(Routes, OpenOnlyThePasswordDuringSetUp) {
       page.keys.set_up = !first_start;
       if (first_start) page.keys.operator_.reset();
       const int status = page.status_of(route, {});
-      EXPECT_EQ(status == 401, is_for(route, Who::Viewer)) << name_of(route);
+      EXPECT_EQ(status == 401, is_for(route, RouteAccess::Viewer)) << name_of(route);
       EXPECT_EQ(page.status_of(route, {{"Origin", "http://evil.example"}}),
-                route.who == Who::Open ? status : 403);
+                route.who == RouteAccess::Open ? status : 403);
     }
   }
 }
@@ -167,7 +167,7 @@ TEST(Routes, RejectOtherMethodsWithAnAllowHeader) {
       EXPECT_EQ(json::parse(answer.body), "expected " + first);
       for (const auto& [name, value] : answer.headers) EXPECT_FALSE(name.starts_with("Access-Control"));
     }
-    const bool for_anybody = route.who < Who::OperatorOrSetUp;
+    const bool for_anybody = route.who < RouteAccess::OperatorOrSetUp;
     EXPECT_EQ(page.request("DELETE", path_of(route), {}).status,
               for_anybody ? Status::MethodNotAllowed : Status::Unauthorized)
         << route.path;
@@ -225,9 +225,10 @@ TEST(Description, HasTheRightsAndParametersOfEachRoute) {
   EXPECT_EQ(operations, routes().size());
   for (const Route& route : routes()) {
     const json operation = whole["paths"][std::string(route.path)][route.method == "GET" ? "get" : "post"];
-    const std::string role = route.who == Who::Viewer ? "viewer" : "operator";
-    EXPECT_EQ(operation.value("x-adit-role", ""), route.who < Who::OperatorOrSetUp ? "" : role) << route.path;
-    EXPECT_EQ(operation.contains("security"), route.who < Who::OperatorOrSetUp) << route.path;
+    const std::string role = route.who == RouteAccess::Viewer ? "viewer" : "operator";
+    EXPECT_EQ(operation.value("x-adit-role", ""), route.who < RouteAccess::OperatorOrSetUp ? "" : role)
+        << route.path;
+    EXPECT_EQ(operation.contains("security"), route.who < RouteAccess::OperatorOrSetUp) << route.path;
     EXPECT_EQ(operation.contains("requestBody"), route.method == "POST") << route.path;
     if (operation.contains("requestBody")) {
       EXPECT_TRUE(operation["requestBody"]["content"].contains(std::string(route.body.type))) << route.path;

@@ -68,7 +68,7 @@ const struct {
   std::vector<alarms::Stream> streams;
   const char* standing;
   bool silent = false;
-  alarms::PostTrouble mapping = alarms::PostTrouble::None;
+  alarms::EndpointTrouble mapping = alarms::EndpointTrouble::None;
 } kStandings[] = {
     {"worst kind, oldest map",
      {of("grid", 3), of("cloud", 40, 200, 33), of("state", 99)},
@@ -79,7 +79,7 @@ const struct {
     {"a map never delivered", {of("grid", {}), of("cloud", 4)}, "wait, waiting, map never"},
     {"no map", {of("state", 4)}, "good, up to date, 4 s"},
     {"nothing heard: as old as its last pose", {}, "bad, silent, silent, 34 s", true},
-    {"nothing heard while the endpoint is down", {}, "", true, alarms::PostTrouble::Silent},
+    {"nothing heard while the endpoint is down", {}, "", true, alarms::EndpointTrouble::Silent},
 };
 
 TEST(RunView, ShowsTheStandingOfARobot) {
@@ -112,7 +112,7 @@ std::string standing_of(const EndpointRow& row, const alarms::Facts& facts = {})
 }
 
 TEST(RunView, ShowsTheStandingOfAnEndpoint) {
-  using enum alarms::PostTrouble;
+  using enum alarms::EndpointTrouble;
   EndpointRow row{.name = "mapping"};
   EXPECT_EQ(standing_of(row), "wait not connected");
   row.connected = true, row.trouble = "t";
@@ -130,7 +130,7 @@ TEST(RunView, ShowsTheStandingOfAnEndpoint) {
   EXPECT_EQ(standing_of(row, {.cables = {{true, "team0", false}}}), "good connected");
   EXPECT_EQ(standing_of(row, {.cables = {{false, "darpa0", false}}}), "bad cable out");
   EXPECT_EQ(standing_of(row, {.network = {.no_address = true}}), "bad no address");
-  EXPECT_EQ(standing_of(row, {.network = {.exchanged = alarms::ExchangedAddress{}}}), "bad cables exchanged");
+  EXPECT_EQ(standing_of(row, {.network = {.exchanged = alarms::SwappedAddress{}}}), "bad cables exchanged");
 }
 
 TEST(RunViewJson, WritesAbsentValuesAsNull) {

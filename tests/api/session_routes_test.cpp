@@ -148,9 +148,9 @@ TEST_F(GuessedAtTest, AdmitAKnownDevice) {
 
 TEST_F(GuessedAtTest, ReserveRoomForAKnownDevice) {
   const std::string device = device_after_login();
-  EXPECT_EQ(api.shown(FakeHead("POST", "/adit/login", {{"Cookie", device}})), intake::Shown::Enough);
+  EXPECT_EQ(api.shown(FakeHead("POST", "/adit/login", {{"Cookie", device}})), intake::Credentials::Enough);
   EXPECT_EQ(api.shown(FakeHead("POST", "/adit/login", {{"Cookie", "adit-device=guessed"}})),
-            intake::Shown::Nothing);
+            intake::Credentials::Nothing);
 }
 
 TEST_F(GuessedAtTest, AdmitTheClientThatPressedTheButton) {

@@ -136,7 +136,7 @@ TEST_F(ApplierTest, AcceptsAConfirmationThatCameWhileBusy) {
   want(network::kLeastWithin);
   Life life(options);
   ASSERT_TRUE(status().pending);
-  folder.put("word", codec::write_file(network::Word{kNonce, network::Word::What::Confirm}));
+  folder.put("word", codec::write_file(network::Decision{kNonce, network::Decision::What::Confirm}));
   ask(network::kEndpointsFile, by_gateway);
   life.loop.run();
   EXPECT_EQ(status().ended, network::Ended::Confirmed) << status().why;
@@ -147,7 +147,7 @@ TEST_F(ApplierTest, AcceptsAConfirmationThatCameBeforeStop) {
   EXPECT_TRUE(runs_well());
   want();
   Life life(options);
-  ask(network::kWordFile, network::Word{kNonce, network::Word::What::Confirm});
+  ask(network::kWordFile, network::Decision{kNonce, network::Decision::What::Confirm});
   life.applier.stop();
   EXPECT_EQ(status().ended, network::Ended::Confirmed);
 }
@@ -189,7 +189,7 @@ TEST_F(NetworkdFailureTest, WhileAChangeIsRevertedBeforeAStop) {
   {
     Life life(options);
     break_networkd();
-    ask(network::kWordFile, network::Word{kNonce, network::Word::What::Revert});
+    ask(network::kWordFile, network::Decision{kNonce, network::Decision::What::Revert});
     life.loop.turn(std::chrono::seconds(5));
     EXPECT_TRUE(status().pending);
     life.applier.stop();

@@ -4,7 +4,7 @@
 #include <random>
 
 #include "archive/a_run.hpp"
-#include "archive/told.hpp"
+#include "archive/run_records.hpp"
 
 namespace adit::archive {
 namespace {
@@ -30,7 +30,7 @@ class Damage : public testing::Test {
   }
   /// Tells the file, and counts the tiles that came back; each is as it was, or absent.
   std::size_t sound(const std::string& bytes) {
-    Told told(picture::Mosaic::kBudget);
+    RunRecords told(picture::Mosaic::kBudget);
     told.tell(bytes, 1);
     std::size_t count = 0;
     for (const auto& [key, of] : told.files()) {
@@ -62,7 +62,7 @@ TEST_F(Damage, OfTheHeadLosesItsTiles) {
   std::string damaged = file;
   damaged[20] ^= 1;
   EXPECT_EQ(sound(damaged), 0U);
-  Told told(picture::Mosaic::kBudget);
+  RunRecords told(picture::Mosaic::kBudget);
   told.tell(file, 1);
   told.tell(damaged, 2);  // a later file of the same run
   EXPECT_EQ(told.files().size(), tiles);
@@ -78,7 +78,7 @@ TEST_F(Damage, ByACutLeavesEarlierRecords) {
 }
 
 TEST_F(Damage, IsCountedWithoutATornEnd) {
-  Told torn(0), damaged(0);
+  RunRecords torn(0), damaged(0);
   torn.tell(file.substr(0, file.size() - 1), 1);
   EXPECT_EQ(torn.damaged(), 0u);
   file.back() ^= 1;
@@ -108,7 +108,7 @@ TEST_F(Damage, WithARightChecksumIsRejected) {
 }
 
 TEST_F(Damage, RecordsOfAnotherRunAreIgnored) {
-  Told told(picture::Mosaic::kBudget);
+  RunRecords told(picture::Mosaic::kBudget);
   told.tell(record_of(Head{.run = 9, .began = 1}), 1);
   told.tell(file, 2);
   EXPECT_TRUE(told.files().empty());
@@ -119,7 +119,7 @@ TEST_F(Damage, AClockStepWrittenTwiceCountsOnce) {
   constexpr std::uint64_t kLines = 0;
   const std::string step = record_of(Step{.seconds = 50, .when = 7});
   const std::string later = record_of(Step{.seconds = 50, .when = 8});
-  Told told(picture::Mosaic::kBudget);
+  RunRecords told(picture::Mosaic::kBudget);
   told.tell(file + step + step, kLines);
   EXPECT_EQ(told.tracks()[0].poses[0].at, 1051);
   told.tell(record_of(run.head) + step + later, kLines);

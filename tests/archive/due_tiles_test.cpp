@@ -7,10 +7,10 @@
 namespace adit::archive {
 namespace {
 
-using picture::TileAt;
+using picture::TileIndex;
 
-std::vector<TileAt> places(const std::vector<TileKey>& keys) {
-  std::vector<TileAt> places;
+std::vector<TileIndex> places(const std::vector<TileKey>& keys) {
+  std::vector<TileIndex> places;
   for (const auto& [layer, at] : keys) places.push_back(at);
   return places;
 }
@@ -33,8 +33,8 @@ TEST_F(DueTilesTest, AreTheChangedOnesOnceEach) {
   EXPECT_TRUE(due.at(2000).empty());
   run.draw(1, 1);
   due.look(run.easel.mosaic);
-  EXPECT_THAT(places(due.at(2000)), testing::Contains(TileAt{0, 1, 0}));
-  EXPECT_THAT(places(due.at(2000)), testing::Not(testing::Contains(TileAt{0, 0, 0})));
+  EXPECT_THAT(places(due.at(2000)), testing::Contains(TileIndex{0, 1, 0}));
+  EXPECT_THAT(places(due.at(2000)), testing::Not(testing::Contains(TileIndex{0, 0, 0})));
 }
 
 TEST_F(DueTilesTest, OfCoarserLevelsAreDueLater) {
@@ -45,8 +45,8 @@ TEST_F(DueTilesTest, OfCoarserLevelsAreDueLater) {
   run.easel.draw(picture::grid_at(0, 0, 1, 0.25, {0}));
   due.look(run.easel.mosaic);
   EXPECT_TRUE(due.at(1003).empty());
-  EXPECT_THAT(places(due.at(1005)), testing::ElementsAre(TileAt{0, 0, 0}));
-  EXPECT_THAT(places(due.at(1100)), testing::Contains(TileAt{1, 0, 0}));
+  EXPECT_THAT(places(due.at(1005)), testing::ElementsAre(TileIndex{0, 0, 0}));
+  EXPECT_THAT(places(due.at(1100)), testing::Contains(TileIndex{1, 0, 0}));
 }
 
 TEST_F(DueTilesTest, NeverWrittenComeFirstThenTheOldest) {
@@ -57,11 +57,11 @@ TEST_F(DueTilesTest, NeverWrittenComeFirstThenTheOldest) {
   due.done(1, 1);
   for (int i = 0; i < 3; ++i) run.easel.draw(picture::grid_at(64.0 * i, 0, 1, 0.25, {100}));
   due.look(run.easel.mosaic);
-  std::vector<TileAt> finest;
-  for (const TileAt& at : places(due.at(1500))) {
+  std::vector<TileIndex> finest;
+  for (const TileIndex& at : places(due.at(1500))) {
     if (at.level == 0) finest.push_back(at);
   }
-  EXPECT_THAT(finest, testing::ElementsAre(TileAt{0, 2, 0}, TileAt{0, 1, 0}, TileAt{0, 0, 0}));
+  EXPECT_THAT(finest, testing::ElementsAre(TileIndex{0, 2, 0}, TileIndex{0, 1, 0}, TileIndex{0, 0, 0}));
 }
 
 TEST_F(DueTilesTest, AreDueAgainAfterAFailedWrite) {
@@ -79,7 +79,7 @@ TEST_F(DueTilesTest, ChangedDuringTheWriteAreDueAgain) {
   run.easel.draw(picture::grid_at(0, 0, 1, 0.25, {0}));
   due.look(run.easel.mosaic);
   due.done(1, 1);
-  EXPECT_THAT(places(due.at(2000)), testing::Contains(TileAt{0, 0, 0}));
+  EXPECT_THAT(places(due.at(2000)), testing::Contains(TileIndex{0, 0, 0}));
 }
 
 TEST_F(DueTilesTest, OfAFileToDeleteAreWrittenAgainFirst) {
@@ -98,8 +98,8 @@ TEST_F(DueTilesTest, WrittenBeforeARestartAreNotDue) {
   std::map<TileKey, std::uint64_t> files;
   files[{run.easel.layer, {0, 0, 0}}] = 4;
   due.begin(run.easel.mosaic, files);
-  EXPECT_THAT(places(due.at(5000)), testing::Not(testing::Contains(TileAt{0, 0, 0})));
-  EXPECT_THAT(places(due.at(5000)), testing::Contains(TileAt{0, 1, 0}));
+  EXPECT_THAT(places(due.at(5000)), testing::Not(testing::Contains(TileIndex{0, 0, 0})));
+  EXPECT_THAT(places(due.at(5000)), testing::Contains(TileIndex{0, 1, 0}));
   EXPECT_FALSE(due.leave(4));
 }
 

@@ -38,10 +38,10 @@ TEST_F(RunFolderTest, StaysWithinItsSizeAndKeepsTheNewest) {
     most = std::max(most, written->bytes);
   }
   EXPECT_LT(most, kMost + kMost / 4);
-  Told told(picture::Mosaic::kBudget);
+  RunRecords told(picture::Mosaic::kBudget);
   EXPECT_TRUE(read_run(folder.path(), told, [] { return false; }));
   for (int i = 0; i < 100; ++i) {
-    const picture::TileAt at{0, i, 0};
+    const picture::TileIndex at{0, i, 0};
     EXPECT_EQ(told.picture().tile(run.easel.layer, at, {}).tile->crc,
               run.easel.mosaic.tile(run.easel.layer, at, {}).tile->crc);
   }
@@ -68,7 +68,7 @@ TEST_F(RunFolderTest, AppendsNothingToAFileOfUnknownSize) {
 TEST_F(RunFolderTest, WritesTheHeadIntoAFileLeftEmptyByACrash) {
   std::ofstream(folder / "map-00000001");
   ASSERT_TRUE(RunFolder(folder.path(), run.head).write(tiles(0), kMost));
-  Told told(picture::Mosaic::kBudget);
+  RunRecords told(picture::Mosaic::kBudget);
   ASSERT_TRUE(read_run(folder.path(), told, [] { return false; }));
   ASSERT_TRUE(told.head());
   EXPECT_EQ(told.files().begin()->second, 1U);

@@ -27,10 +27,10 @@ const host::Secrets kSecrets = {.tokens = {{"scoring", token("common-scoring")},
                                            {"mapping", token("common-mapping")},
                                            {"course.B.scoring", token("own-scoring")}}};
 
-Tried good(const api::Candidate& candidate, const settings::Settings& beside = written()) {
+TestTarget good(const api::Candidate& candidate, const settings::Settings& beside = written()) {
   const auto tried = tried_of(candidate, beside, kSecrets);
   EXPECT_TRUE(tried) << tried.error().sentence;
-  return tried.value_or(Tried{});
+  return tried.value_or(TestTarget{});
 }
 settings::Settings with_course_b() {
   settings::Settings settings = written();
@@ -46,21 +46,21 @@ std::string why_not(const api::Candidate& candidate) {
 }
 
 TEST(TestCandidate, EmptyMeansTheSettingsInUse) {
-  const Tried plain = good({});
+  const TestTarget plain = good({});
   EXPECT_EQ(plain.post.scoring, (Address{"10.100.1.200", 8000}));
   EXPECT_EQ(plain.scoring->reveal(), "common-scoring");
-  const Tried course = good({}, with_course_b());
+  const TestTarget course = good({}, with_course_b());
   EXPECT_EQ(course.post.mapping, (Address{"10.100.2.201", 8000}));
   EXPECT_EQ(course.scoring->reveal(), "own-scoring");
   EXPECT_EQ(course.mapping->reveal(), "common-mapping");
 }
 
 TEST(TestCandidate, CourseHasItsAddressesAndTokens) {
-  const Tried there = good({.course = "B", .scoring = {}, .mapping = {}});
+  const TestTarget there = good({.course = "B", .scoring = {}, .mapping = {}});
   EXPECT_EQ(there.post.scoring, (Address{"10.100.2.200", 8000}));
   EXPECT_EQ(there.scoring->reveal(), "own-scoring");
   EXPECT_EQ(there.post.course, "B");
-  const Tried back = good({.course = "", .scoring = {}, .mapping = {}}, with_course_b());
+  const TestTarget back = good({.course = "", .scoring = {}, .mapping = {}}, with_course_b());
   EXPECT_EQ(back.post.scoring, (Address{"10.100.1.200", 8000}));
   EXPECT_EQ(back.scoring->reveal(), "common-scoring");
   EXPECT_THAT(why_not({.course = "C", .scoring = {}, .mapping = {}}),
@@ -72,7 +72,7 @@ TEST(TestCandidate, TypedValuesReplaceTheSettings) {
   typed.scoring = {.address = "10.100.3.200", .port = {}, .token = token("typed-scoring")};
   typed.mapping = {.address = {}, .port = 9000, .token = {}};
   for (const settings::Settings& beside : {written(), with_course_b()}) {
-    const Tried tried = good(typed, beside);
+    const TestTarget tried = good(typed, beside);
     EXPECT_EQ(tried.post.scoring, (Address{"10.100.3.200", 8000}));
     EXPECT_EQ(tried.post.mapping.port, 9000);
     EXPECT_EQ(tried.scoring->reveal(), "typed-scoring");

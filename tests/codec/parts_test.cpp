@@ -21,10 +21,10 @@ json state_of(int poses) {
 }
 
 template <class Message>
-using PartsReader = icd::Checked<InParts<Message>> (*)(const Document&, const icd::Rules&);
+using PartsReader = icd::Checked<CheckedParts<Message>> (*)(const Document&, const icd::Rules&);
 
 template <class Message>
-icd::Checked<InParts<Message>> read(PartsReader<Message> reader, const json& message) {
+icd::Checked<CheckedParts<Message>> read(PartsReader<Message> reader, const json& message) {
   const auto document = decode({.format = Format::Json}, Split::Nothing, test::as_json(message));
   if (!document) return std::unexpected(document.error());
   return reader(*document, {});

@@ -130,7 +130,7 @@ class Scene {
                  .can_be_undone = true},
                 reports_->sending() == nullptr);
   }
-  ClientId post(const Posted& posted, bool may_send) {
+  ClientId post(const PostedReport& posted, bool may_send) {
     reports_->take(posted, ++last_client_, may_send, time());
     return last_client_;
   }

@@ -37,7 +37,7 @@ class TakingOverTest : public testing::Test {
   static void take_over(Scene& from, Scene& to, const std::optional<icd::RunStatus>& expected) {
     const TakeOver taken = dispatch::take_over(books_of(to), books_of(from),
                                                {.expected = expected, .stamp = to.time().stamp, .ahead = 0});
-    for (const TakenOver& each : taken.reports) {
+    for (const TakenOverReport& each : taken.reports) {
       const auto here = to.output().ledger.find(each.report.number);
       const double received = here == to.output().ledger.end() ? each.report.received : here->second.received;
       EXPECT_EQ(received, each.report.received) << "a number is never another's";
@@ -230,7 +230,7 @@ TEST_F(TakingOverTest, AClockThatIsAnotherMakesNoNewRun) {
   spare.set_box_clock_forward(7200);
   const TakeOver taken = dispatch::take_over(books_of(spare), books_of(first),
                                              {.stamp = spare.time().stamp, .ahead = 7200 - 40});
-  for (const TakenOver& each : taken.reports) spare.output().ledger[each.report.number] = each.report;
+  for (const TakenOverReport& each : taken.reports) spare.output().ledger[each.report.number] = each.report;
   for (const dispatch::Run& run : taken.runs) spare.output().runs[run.number] = run;
   spare.restart();
   spare.hear(19, 0, 145);
@@ -260,7 +260,8 @@ class World {
     Books here, there = books_of(first_);
     const TakeOver taken = dispatch::take_over(
         here, there, {.expected = chance(2) ? expected : std::nullopt, .stamp = spare_.time().stamp});
-    for (const TakenOver& each : taken.reports) spare_.output().ledger[each.report.number] = each.report;
+    for (const TakenOverReport& each : taken.reports)
+      spare_.output().ledger[each.report.number] = each.report;
     for (const Run& run : taken.runs) spare_.output().runs[run.number] = run;
     spare_.restart();
     for (int second = 0; second < 90; ++second) live_at_spare();

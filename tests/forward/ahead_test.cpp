@@ -14,7 +14,7 @@ class MapAhead : public WithLettingPost {
  protected:
   /// The Command Post has taken enough maps to be trusted.
   void has_answered_well() {
-    for (int i = 0; i < queues::Ahead::kWell; ++i) {
+    for (int i = 0; i < queues::Pipelining::kWell; ++i) {
       post_.answer("200 OK");
       take(grid_of("first", 10));
       ASSERT_TRUE(are_gone());
@@ -38,7 +38,7 @@ class MapAhead : public WithLettingPost {
     if (!loop::turn_until(loop_, [&] { return post_.came().size() > before_; })) return false;
     const std::uint64_t sent = maps_->channel().bytes_sent();
     take(next);
-    const loop::Instant late = loop_.now() + queues::Ahead::kLate;
+    const loop::Instant late = loop_.now() + queues::Pipelining::kLate;
     return loop::turn_until(loop_,
                             [&] { return maps_->channel().bytes_sent() > sent || loop_.now() > late; }) &&
            maps_->channel().bytes_sent() > sent;

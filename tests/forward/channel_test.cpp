@@ -24,7 +24,7 @@ class ChannelTest : public testing::Test {
     peer_.emplace([answer](uplink::Wire& wire) { wire.read_request(), wire.write(answer); });
     auto channel = std::make_unique<Channel>(
         loop_, "mapping",
-        Way{peer_->endpoint(), icd::BearerToken::parse("a-token"), std::chrono::seconds{20}});
+        EndpointAccess{peer_->endpoint(), icd::BearerToken::parse("a-token"), std::chrono::seconds{20}});
     bool done = false;
     channel->send(uri, "", {}, [&done](const uplink::Outcome&) { done = true; });
     EXPECT_TRUE(loop::turn_until(loop_, [&] { return done; }));

@@ -14,7 +14,7 @@
 namespace adit::forward {
 namespace {
 
-using picture::TileAt;
+using picture::TileIndex;
 
 icd::MapUpdate grid(const std::string& robot, double x, std::uint32_t side, std::uint8_t value,
                     double resolution = 0.05) {
@@ -31,21 +31,21 @@ class FineTilesTest : public testing::Test {
  protected:
   using Answer = std::optional<icd::Checked<picture::Tile>>;
 
-  std::shared_ptr<Answer> asked(const std::string& robot, const TileAt& at) {
+  std::shared_ptr<Answer> asked(const std::string& robot, const TileIndex& at) {
     auto answer = std::make_shared<Answer>();
     picture.finer().tile({robot, picture::Kind::Grid}, at,
                          [answer](auto tile) { *answer = std::move(tile); });
     return answer;
   }
   /// Null where there is none.
-  picture::Tile tile(const std::string& robot, const TileAt& at) {
+  picture::Tile tile(const std::string& robot, const TileIndex& at) {
     const auto answer = asked(robot, at);
     EXPECT_TRUE(loop::turn_until(loop, [&] { return answer->has_value(); }));
     EXPECT_TRUE(*answer && **answer);
     return *answer && **answer ? ***answer : nullptr;
   }
   /// Of the lower left pixel.
-  int index(const std::string& robot, const TileAt& at) {
+  int index(const std::string& robot, const TileIndex& at) {
     const auto its = tile(robot, at);
     if (its == nullptr) return -1;
     picture::Pixels pixels{};

@@ -19,7 +19,7 @@
 namespace adit::forward {
 namespace {
 
-using picture::TileAt;
+using picture::TileIndex;
 
 icd::MapUpdate grid(const char* robot, double x, std::uint32_t width, std::uint8_t value) {
   icd::OccupancyGrid grid;
@@ -41,7 +41,7 @@ icd::MapUpdate cloud(const char* robot, std::size_t points) {
 
 class MapPictureTest : public testing::Test {
  protected:
-  bool drawn(const char* robot, const TileAt& at, picture::Kind kind = picture::Kind::Grid) const {
+  bool drawn(const char* robot, const TileIndex& at, picture::Kind kind = picture::Kind::Grid) const {
     return picture.mosaic().tile({robot, kind}, at, {}).tile != nullptr;
   }
 

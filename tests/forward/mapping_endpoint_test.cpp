@@ -6,7 +6,7 @@
 
 #include "../uplink/peer.hpp"
 #include "forward/around.hpp"
-#include "forward/as_forwarded.hpp"
+#include "forward/delivered_scene.hpp"
 #include "forward/maps.hpp"
 #include "forward/telemetry.hpp"
 #include "loop/turn_until.hpp"
@@ -67,8 +67,8 @@ TEST_F(MappingEndpoint, IsLeftAtOnceByAMap) {
 }
 
 TEST_F(MappingEndpoint, IsLeftAtOnceByAState) {
-  AsForwarded as_forwarded;
-  Telemetry news(loop_, workers_, settings_, token_, record_, rejected_, random_, journal_, as_forwarded);
+  DeliveredScene delivered;
+  Telemetry news(loop_, workers_, settings_, token_, record_, rejected_, random_, journal_, delivered);
   ASSERT_TRUE(news.take({{.name = *icd::RobotName::parse("r1"), .pose = {}, .stamp = 1.0}}, 10));
   EXPECT_TRUE(is_left_at_once(news));
 }
@@ -88,8 +88,8 @@ TEST_F(MappingEndpoint, ThatWantsASlashGetsEachMapOnceTheFirstWasRedirected) {
 TEST_F(MappingEndpoint, ThatWantsASlashGetsEachStateOnceTheFirstWasRedirected) {
   settings_.command_post.mapping = with_slash_.address();
   settings_.command_post.rates.state_hz = 1000;
-  AsForwarded as_forwarded;
-  Telemetry news(loop_, workers_, settings_, token_, record_, rejected_, random_, journal_, as_forwarded);
+  DeliveredScene delivered;
+  Telemetry news(loop_, workers_, settings_, token_, record_, rejected_, random_, journal_, delivered);
   for (const int arrived : {1, 2}) {
     ASSERT_TRUE(news.take({{.name = *icd::RobotName::parse("r1"), .pose = {}, .stamp = 1.0 * arrived}}, 10));
     EXPECT_TRUE(loop::turn_until(loop_, [&] { return with_slash_.came == arrived; }));

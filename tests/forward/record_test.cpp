@@ -15,7 +15,7 @@ TEST(Record, TellsWhatBecameOfEachRobotsMaps) {
   record.rounded_to(kCloudOfR1, queues::Precision::EightMillimetres);
   record.forwarded(kCloudOfR1, 2, 900, 200, 12.0);
   record.accepted({Kind::Grid, "r1"}, 5, 13.0);
-  record.not_taken({Kind::Grid, "r1"}, NotTaken::Throttled, 429, "too frequent");
+  record.not_taken({Kind::Grid, "r1"}, DeliveryFailure::Throttled, 429, "too frequent");
 
   ASSERT_EQ(record.rows().size(), 2u);
   const api::ActivityRow &grid = record.rows().at({Kind::Grid, "r1"}), &cloud = record.rows().at(kCloudOfR1);
@@ -38,7 +38,7 @@ TEST(Record, TellsWhatBecameOfEachRobotsMaps) {
 
 TEST(Record, ForgetsAnOldSentenceOnceAMessageIsTaken) {
   Record record([] {});
-  record.not_taken(kCloudOfR1, NotTaken::Failed, 0, "connection reset");
+  record.not_taken(kCloudOfR1, DeliveryFailure::Failed, 0, "connection reset");
   record.forwarded(kCloudOfR1, 1, 10, 200, 1.0);
   EXPECT_EQ(record.rows().at(kCloudOfR1).last_sentence, "");
   EXPECT_EQ(record.rows().at(kCloudOfR1).failed, 1u);

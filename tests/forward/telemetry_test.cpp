@@ -50,7 +50,7 @@ struct Life {
         workers(loop, 1),
         journal(loop, folder + "/journal"),
         rejected(loop, writer, folder + "/rejected"),
-        news(loop, workers, settings, std::move(token), record, rejected, random, journal, as_forwarded) {
+        news(loop, workers, settings, std::move(token), record, rejected, random, journal, delivered) {
     const journal::Carried carried = journal.read();
     journal.begin({.boot = "b", .at = loop.now(), .stamp = loop.stamp_now()});
     news.carry_on(carried);
@@ -70,7 +70,7 @@ struct Life {
   loop::Workers workers;
   journal::Journal journal;
   RejectedStore rejected;
-  AsForwarded as_forwarded;
+  DeliveredScene delivered;
   Telemetry news;
 };
 
@@ -120,7 +120,7 @@ TEST_F(NewsTest, LeavesNoPoseThatWasTakenToTheNextLife) {
   TelemetryPost post(true);
   auto life = life_before(post.peer);
   ASSERT_TRUE(life->news.take(pose("r1", 1), 10));
-  ASSERT_TRUE(comes(*life, [&] { return !life->as_forwarded.robots().empty(); }));
+  ASSERT_TRUE(comes(*life, [&] { return !life->delivered.robots().empty(); }));
   life.reset();
   life = life_without_a_token();
   EXPECT_EQ(life->news.waiting(Kind::State), 0u);
@@ -141,7 +141,7 @@ TEST_F(NewsTest, SendsAPoseOfTheLifeBeforeOnce) {
   });
   ASSERT_TRUE(life_without_a_token()->news.take(pose("r1", 1), 10));
   const auto life = life_before(peer);
-  ASSERT_TRUE(comes(*life, [&] { return life->as_forwarded.robots().size() == 1; }));
+  ASSERT_TRUE(comes(*life, [&] { return life->delivered.robots().size() == 1; }));
   ASSERT_TRUE(life->news.take(pose("r2", 2), 10));
   ASSERT_TRUE(comes(*life, [&] { return of_r2 == 1; }));
   EXPECT_EQ(of_r1, 1);
@@ -207,7 +207,7 @@ TEST_F(NewsTest, SetsAsideADeleteAllThatAloneFails) {
   ASSERT_TRUE(
       comes(*life, [&] { return !life->rejected.rows().empty() && left().markers().markers.empty(); }));
   EXPECT_EQ(life->rejected.rows().size(), 1u);
-  EXPECT_EQ(life->as_forwarded.markers().changes(0).markers.size(), 2u);
+  EXPECT_EQ(life->delivered.markers().changes(0).markers.size(), 2u);
 }
 
 TEST_F(NewsTest, HoldsADeleteAllWhereEverythingFails) {
@@ -263,14 +263,14 @@ TEST_F(NewsTest, CountsNoPoseAsForwardedThatOnlyGoesAlongWithAnothersNews) {
   ASSERT_TRUE(life->news.take(pose("r1", 1), 10));
   ASSERT_TRUE(comes(*life, [&] { return forwarded(silent) == 1; }));
   const auto last = life->record.rows().at(silent).last_forwarded;
-  const api::Time seen = life->as_forwarded.robots().at(0).at.value();
+  const api::Time seen = life->delivered.robots().at(0).at.value();
   for (std::uint64_t i = 1; i <= 3; ++i) {
     ASSERT_TRUE(life->news.take(pose("r2", static_cast<double>(i)), 10));
     ASSERT_TRUE(comes(*life, [&] { return forwarded(other) == i; }));
   }
   EXPECT_EQ(forwarded(silent), 1u);
   EXPECT_EQ(life->record.rows().at(silent).last_forwarded, last);
-  EXPECT_EQ(life->as_forwarded.robots().at(0).at, seen);
+  EXPECT_EQ(life->delivered.robots().at(0).at, seen);
 }
 
 /// Nor as failed, throttled or refused.

@@ -83,8 +83,8 @@ void require_settles(const codec::Value& value) {
 /// same where nothing is refused; where something is, each refusal has its sentence. What is taken can be
 /// written.
 template <class Message, class Write>
-void require_parts(const icd::Checked<codec::InParts<Message>>& parts, const icd::Checked<Message>& whole,
-                   Write write) {
+void require_parts(const icd::Checked<codec::CheckedParts<Message>>& parts,
+                   const icd::Checked<Message>& whole, Write write) {
   const bool all_good = parts && parts->refused.count == 0;
   require(whole.has_value() == all_good);
   if (!parts) {

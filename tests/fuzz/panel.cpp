@@ -9,7 +9,7 @@ void try_panel(Input text) {
     return std::visit([](const auto& each) { return panel::message_of(each); }, message);
   };
   settles(text, panel::parse_message, write);
-  if (const auto said = panel::parse_said(text))
+  if (const auto said = panel::parse_report(text))
     require(std::visit([](const auto& each) { return panel::message_of(each); }, *said) == text);
 }
 

@@ -15,7 +15,7 @@ using testing::IsEmpty;
 constexpr loop::Instant kFirst{100h};
 
 auto of(const char* address) {
-  return Field(&alarms::Crowd::address, address);
+  return Field(&alarms::CrowdFact::address, address);
 }
 
 TEST(Crowding, IsEmptyAtFirst) {
@@ -39,7 +39,8 @@ TEST(Crowding, NamesTheBusiestAddressWhileItLasts) {
 TEST(Crowding, ReportsWrongTokens) {
   Crowding crowding;
   for (int i = 0; i < 1786; ++i) crowding.ended(Ended::WrongToken, "10.0.0.7", kFirst);
-  EXPECT_THAT(crowding.crowds(kFirst), ElementsAre(Field(&alarms::Crowd::is, alarms::Crowd::Is::WrongToken)));
+  EXPECT_THAT(crowding.crowds(kFirst),
+              ElementsAre(Field(&alarms::CrowdFact::is, alarms::CrowdFact::Is::WrongToken)));
   const auto lines = crowding.to_log(kFirst);
   ASSERT_EQ(lines.size(), 1u);
   EXPECT_EQ(lines.front().times, 1786u);

@@ -9,7 +9,7 @@ namespace adit::intake {
 /// Answers 404 to everything.
 class NotFound final : public Handler {
  public:
-  Shown shown(const RequestHead&) override { return Shown::Nothing; }
+  Credentials shown(const RequestHead&) override { return Credentials::Nothing; }
   std::unique_ptr<BodySink> open(const RequestHead&, std::shared_ptr<Responder> responder,
                                  std::shared_ptr<Flow>) override {
     responder->answer(error_answer(icd::Status::NotFound, "there is nothing here"));

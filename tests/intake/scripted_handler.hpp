@@ -29,10 +29,12 @@ class ScriptedHandler final : public Handler {
   std::atomic<int> ends = 0, gone = 0, exchanges = 0;
   bool asks_token = false;  // any that does not begin with "wrong"
 
-  Shown shown(const RequestHead& head) override {
-    if (!asks_token) return Shown::Enough;
+  Credentials shown(const RequestHead& head) override {
+    if (!asks_token) return Credentials::Enough;
     const std::string_view token = icd::token_in(head.header("Authorization"));
-    return token.empty() ? Shown::Nothing : token.starts_with("wrong") ? Shown::WrongToken : Shown::Token;
+    return token.empty()                ? Credentials::Nothing
+           : token.starts_with("wrong") ? Credentials::WrongToken
+                                        : Credentials::Token;
   }
 
   std::unique_ptr<BodySink> open(const RequestHead& head, std::shared_ptr<Responder> responder,

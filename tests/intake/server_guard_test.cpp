@@ -15,7 +15,7 @@ namespace {
 /// Throws where the path says: /open, /body, /end; drops its responder at /drop; answers anywhere else.
 class ThrowingHandler final : public Handler {
  public:
-  Shown shown(const RequestHead&) override { return Shown::Enough; }
+  Credentials shown(const RequestHead&) override { return Credentials::Enough; }
   std::unique_ptr<BodySink> open(const RequestHead& head, std::shared_ptr<Responder> responder,
                                  std::shared_ptr<Flow>) override {
     const std::string path(head.path());

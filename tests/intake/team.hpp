@@ -156,7 +156,7 @@ class Team {
   /// Makes workers and routes on the loop, at the first request.
   struct Front final : Handler {
     explicit Front(Team& owner) : team(owner) {}
-    Shown shown(const RequestHead& head) override { return routes->shown(head); }
+    Credentials shown(const RequestHead& head) override { return routes->shown(head); }
     std::unique_ptr<BodySink> open(const RequestHead& head, std::shared_ptr<Responder> responder,
                                    std::shared_ptr<Flow> flow) override {
       return routes->open(head, std::move(responder), std::move(flow));

@@ -14,7 +14,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 /// Remembers what it was told, and fails as it is told. What could not be applied may be in use all the same.
-struct FakeHands final : Hands {
+struct FakeNumbersSetter final : NumbersSetter {
   std::expected<void, std::string> apply(const Numbers& all) override {
     in_use = host_text(all.team);
     return did("apply " + in_use, fail_apply);
@@ -52,9 +52,9 @@ class ChangeTest : public testing::Test {
 
   void want(const std::string& team = kNew) { change.want({nonce, seconds(90), numbers(team)}, at(0)); }
   static Instant at(double s) { return Instant(milliseconds(static_cast<std::int64_t>(1e6 + s * 1000))); }
-  void confirm(double s) { change.hear({nonce, Word::What::Confirm}, at(s)); }
+  void confirm(double s) { change.hear({nonce, Decision::What::Confirm}, at(s)); }
 
-  FakeHands hands;
+  FakeNumbersSetter hands;
   Change change{hands, numbers()};
 };
 
@@ -109,15 +109,15 @@ TEST_F(ChangeTest, AcceptsAConfirmationReadLate) {
 
 TEST_F(ChangeTest, IsConfirmedOnlyByItsNonce) {
   want();
-  change.hear({other, Word::What::Confirm}, at(1));
-  change.hear({other, Word::What::Revert}, at(1));
+  change.hear({other, Decision::What::Confirm}, at(1));
+  change.hear({other, Decision::What::Revert}, at(1));
   EXPECT_TRUE(change.status().pending);
   EXPECT_EQ(hands.done.size(), 1u);
 }
 
 TEST_F(ChangeTest, IsRevertedOnRequest) {
   want();
-  change.hear({nonce, Word::What::Revert}, at(1));
+  change.hear({nonce, Decision::What::Revert}, at(1));
   EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "revert"));
   EXPECT_EQ(change.status().ended, Ended::Reverted);
   EXPECT_EQ(change.status().ended_nonce, nonce);
@@ -209,7 +209,7 @@ TEST_F(ChangeTest, MayFollowAnother) {
 }
 
 TEST(FirstChange, IsRevertedToNothing) {
-  FakeHands hands;
+  FakeNumbersSetter hands;
   Change change(hands, std::nullopt);
   change.interrupted();
   EXPECT_EQ(change.status().ended, Ended::Reverted);
@@ -249,7 +249,7 @@ TEST(Changes, LeaveNoUnconfirmedAddressInUse) {
     return (random >> 33) % most;
   };
   for (int round = 0; round < 2000; ++round) {
-    FakeHands hands;
+    FakeNumbersSetter hands;
     Change change(hands, numbers());
     std::string confirmed = "192.168.7.11/24";
     Instant now{};
@@ -266,13 +266,13 @@ TEST(Changes, LeaveNoUnconfirmedAddressInUse) {
           change.want({nonce, seconds(1), numbers(team)}, now);
           break;
         case 1:
-          change.hear({nonce, Word::What::Confirm}, now);
+          change.hear({nonce, Decision::What::Confirm}, now);
           if (is_open && before->nonce == nonce && !hands.fail_keep) {
             confirmed = host_text(before->wanted.team);
           }
           break;
         case 2:
-          change.hear({nonce, Word::What::Revert}, now);
+          change.hear({nonce, Decision::What::Revert}, now);
           break;
         default:
           change.tick(now);

@@ -21,8 +21,8 @@ TEST(NetworkMessages, ReadBackTheSame) {
   EXPECT_EQ(wanted->nonce, kNonce);
   EXPECT_EQ(wanted->confirm_within.count(), 90000);
   EXPECT_EQ(wanted->numbers, numbers());
-  for (const auto what : {Word::What::Confirm, Word::What::Revert}) {
-    const auto word = codec::read_file<Word>(codec::write_file(Word{kNonce, what}));
+  for (const auto what : {Decision::What::Confirm, Decision::What::Revert}) {
+    const auto word = codec::read_file<Decision>(codec::write_file(Decision{kNonce, what}));
     ASSERT_TRUE(word);
     EXPECT_EQ(word->what, what);
   }
@@ -58,14 +58,14 @@ TEST(NetworkMessages, HaveTheWholeStatus) {
 }
 
 TEST(NetworkMessages, HaveAddressConflicts) {
-  Taken taken;
-  EXPECT_EQ(codec::read_file<Taken>(codec::write_file(taken)), taken);
+  AddressConflicts taken;
+  EXPECT_EQ(codec::read_file<AddressConflicts>(codec::write_file(taken)), taken);
   taken.addresses.push_back(
       {"team0", "10.0.0.1", "02:00:5e:10:00:01", Instant(std::chrono::milliseconds(5))});
-  EXPECT_EQ(codec::read_file<Taken>(codec::write_file(taken)), taken);
+  EXPECT_EQ(codec::read_file<AddressConflicts>(codec::write_file(taken)), taken);
   taken.exchanged.push_back(
       {"team0", "10.100.1.200", "02:00:5e:10:00:02", Instant(std::chrono::milliseconds(6))});
-  EXPECT_EQ(codec::read_file<Taken>(codec::write_file(taken)), taken);
+  EXPECT_EQ(codec::read_file<AddressConflicts>(codec::write_file(taken)), taken);
   const std::tuple<const char*, json, const char*> cases[] = {
       {"address", "10.0.0.1; rm", "taken[0].address: expected an IPv4 address"},
       {"address", "", "taken[0].address"},
@@ -81,12 +81,12 @@ TEST(NetworkMessages, HaveAddressConflicts) {
   for (const auto& [name, value, why] : cases) {
     json bad = json::parse(codec::write_file(taken));
     bad["taken"][0][name] = value;
-    const auto result = codec::read_file<Taken>(bad.dump());
+    const auto result = codec::read_file<AddressConflicts>(bad.dump());
     ASSERT_FALSE(result) << bad;
     EXPECT_THAT(result.error(), HasSubstr(why));
   }
   taken.addresses.resize(kMostTaken + 1, taken.addresses.front());
-  EXPECT_THAT(codec::read_file<Taken>(codec::write_file(taken)).error(),
+  EXPECT_THAT(codec::read_file<AddressConflicts>(codec::write_file(taken)).error(),
               HasSubstr("taken: expected at most 32"));
 }
 
@@ -130,7 +130,7 @@ TEST(NetworkMessages, AreRejectedIfHostile) {
   }
   for (const char* text : {"", "{", "[]", "null", "7", "{\"format\":1}", "\xff\xfe"}) {
     EXPECT_FALSE(codec::read_file<Wanted>(text)) << text;
-    EXPECT_FALSE(codec::read_file<Word>(text)) << text;
+    EXPECT_FALSE(codec::read_file<Decision>(text)) << text;
     EXPECT_FALSE(codec::read_file<Probe>(text)) << text;
     EXPECT_FALSE(codec::read_file<Endpoints>(text)) << text;
     EXPECT_FALSE(codec::read_file<Forget>(text)) << text;
@@ -138,8 +138,8 @@ TEST(NetworkMessages, AreRejectedIfHostile) {
     EXPECT_FALSE(codec::read_file<Probed>(text)) << text;
     EXPECT_FALSE(read_kept(text)) << text;
   }
-  EXPECT_FALSE(codec::read_file<Word>(R"({"format":1,"nonce":")" + kNonce + R"(","word":"maybe"})"));
-  EXPECT_FALSE(codec::read_file<Word>(R"({"format":1,"nonce":"x","word":"revert"})"));
+  EXPECT_FALSE(codec::read_file<Decision>(R"({"format":1,"nonce":")" + kNonce + R"(","word":"maybe"})"));
+  EXPECT_FALSE(codec::read_file<Decision>(R"({"format":1,"nonce":"x","word":"revert"})"));
   EXPECT_FALSE(codec::read_file<Forget>(R"({"format":1,"nonce":"x"})"));
   EXPECT_FALSE(codec::read_file<Probe>(R"({"format":1,"nonce":")" + kNonce + R"(","sought":"adit.local"})"));
 }

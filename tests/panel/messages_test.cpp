@@ -12,12 +12,12 @@ std::string error_of(std::string_view text) {
 
 TEST(Messages, ReadBackTheSame) {
   const Lit lit{true, false, false, true};
-  EXPECT_EQ(message_of(ToLight{lit}), "lit 1001");
+  EXPECT_EQ(message_of(LightRequest{lit}), "lit 1001");
   const auto light = parse_message("lit 1001");
-  ASSERT_TRUE(light && std::holds_alternative<ToLight>(*light));
-  EXPECT_EQ(std::get<ToLight>(*light).lit, lit);
-  const auto end = parse_message(message_of(ToEnd{}));
-  EXPECT_TRUE(end && std::holds_alternative<ToEnd>(*end));
+  ASSERT_TRUE(light && std::holds_alternative<LightRequest>(*light));
+  EXPECT_EQ(std::get<LightRequest>(*light).lit, lit);
+  const auto end = parse_message(message_of(EndRequest{}));
+  EXPECT_TRUE(end && std::holds_alternative<EndRequest>(*end));
 }
 
 TEST(Messages, CarryEachMemberOfAPanel) {
@@ -30,10 +30,10 @@ TEST(Messages, CarryEachMemberOfAPanel) {
   panel.button = std::string("B");
   panel.active_low = true;
   panel.button_active_low = false;
-  const auto parsed = parse_message(message_of(ToUse{panel}));
+  const auto parsed = parse_message(message_of(LinesRequest{panel}));
   ASSERT_TRUE(parsed) << parsed.error();
-  const settings::Panel& read = std::get<ToUse>(*parsed).panel;
-  EXPECT_EQ(message_of(ToUse{read}), message_of(ToUse{panel}));
+  const settings::Panel& read = std::get<LinesRequest>(*parsed).panel;
+  EXPECT_EQ(message_of(LinesRequest{read}), message_of(LinesRequest{panel}));
   EXPECT_EQ(read.chip, panel.chip);
   EXPECT_EQ(read.attention, panel.attention);
   EXPECT_EQ(read.button, panel.button);
@@ -42,9 +42,9 @@ TEST(Messages, CarryEachMemberOfAPanel) {
 }
 
 TEST(Messages, CarryASimulatedPanel) {
-  const auto parsed = parse_message(message_of(ToUse{}));
+  const auto parsed = parse_message(message_of(LinesRequest{}));
   ASSERT_TRUE(parsed) << parsed.error();
-  EXPECT_TRUE(std::get<ToUse>(*parsed).panel.is_simulated());
+  EXPECT_TRUE(std::get<LinesRequest>(*parsed).panel.is_simulated());
 }
 
 /// The longest that the settings allow: a chip of 255 characters would be cut.
@@ -52,7 +52,7 @@ TEST(Messages, StayWithinTheirLimit) {
   settings::Panel panel;
   panel.chip = std::string(255, 'c');
   panel.health = panel.scoring = panel.mapping = panel.attention = panel.button = std::string(31, 'h');
-  EXPECT_LE(message_of(ToUse{panel}).size(), kLongestMessage);
+  EXPECT_LE(message_of(LinesRequest{panel}).size(), kLongestMessage);
 }
 
 TEST(Messages, InvalidAreRejectedWithAReason) {
@@ -72,31 +72,31 @@ TEST(Messages, InvalidAreRejectedWithAReason) {
 TEST(Messages, OfTheOtherDirectionReadBackTheSame) {
   for (const std::string_view text :
        {"button 1", "button 0", "button gone", "lights 1", "lights 0 panel: line H: No such device"}) {
-    const auto said = parse_said(text);
+    const auto said = parse_report(text);
     ASSERT_TRUE(said) << text;
     EXPECT_EQ(std::visit([](const auto& each) { return message_of(each); }, *said), text);
   }
-  EXPECT_EQ(parse_said("button gone"), Said(ButtonIs{std::nullopt}));
-  EXPECT_EQ(parse_said("button 1"), Said(ButtonIs{true}));
-  EXPECT_EQ(parse_said("lights 1"), Said(LightsAre{}));
+  EXPECT_EQ(parse_report("button gone"), PanelReport(ButtonState{std::nullopt}));
+  EXPECT_EQ(parse_report("button 1"), PanelReport(ButtonState{true}));
+  EXPECT_EQ(parse_report("lights 1"), PanelReport(LightsState{}));
 }
 
 TEST(Messages, OfTheOtherDirectionAreRejectedIfInvalid) {
-  const std::string longest(LightsAre::kLongest, 'x');
-  EXPECT_TRUE(parse_said("lights 0 " + longest));
+  const std::string longest(LightsState::kLongest, 'x');
+  EXPECT_TRUE(parse_report("lights 0 " + longest));
   for (const std::string& text :
        {std::string(), std::string("button"), std::string("button 2"), std::string("button 1 "),
         std::string("press"), std::string("lights"), std::string("lights 0"), std::string("lights 0 "),
         std::string("lights 1 x"), std::string("lights 0 a\nb"), std::string("lights 0 \xff"),
         "lights 0 " + longest + "x"}) {
-    EXPECT_EQ(parse_said(text), std::nullopt) << text;
+    EXPECT_EQ(parse_report(text), std::nullopt) << text;
   }
 }
 
 TEST(Messages, TruncateALongTrouble) {
-  EXPECT_EQ(message_of(LightsAre{"a\tb\xff"}), "lights 0 a?b?");
-  EXPECT_EQ(message_of(LightsAre{std::string(5000, 'x')}),
-            "lights 0 " + std::string(LightsAre::kLongest, 'x'));
+  EXPECT_EQ(message_of(LightsState{"a\tb\xff"}), "lights 0 a?b?");
+  EXPECT_EQ(message_of(LightsState{std::string(5000, 'x')}),
+            "lights 0 " + std::string(LightsState::kLongest, 'x'));
 }
 
 }  // namespace

@@ -94,7 +94,7 @@ TEST(Cloud, IsDrawnTheSameInAnyLayoutAndCompression) {
       const auto map = laid_out(layout, points);
       easel.draw(compressed ? gzipped(map) : map);
       for (int tile = 0; tile < 16; ++tile) {
-        const TileAt at{0, tile % 4 - 2, tile / 4 - 2};
+        const TileIndex at{0, tile % 4 - 2, tile / 4 - 2};
         ASSERT_EQ(easel.pixels(at), plain.pixels(at)) << layout.what;
       }
     }

@@ -86,7 +86,7 @@ TEST(CoveredArea, CountsChangedPlacesOnly) {
   area.update(area.changes(easel.mosaic));
   EXPECT_THAT(area.changes(easel.mosaic).places, IsEmpty());
   easel.draw(square("ugv1", 10, 0, 8));
-  EXPECT_THAT(area.changes(easel.mosaic).places, ElementsAre(Pair(TileAt{0, 0, 0}, testing::SizeIs(1))));
+  EXPECT_THAT(area.changes(easel.mosaic).places, ElementsAre(Pair(TileIndex{0, 0, 0}, testing::SizeIs(1))));
 }
 
 /// Against a set of pixels, whatever the robots map and whenever the area is counted.

@@ -16,10 +16,10 @@ class FineLevels : public testing::Test {
     easel.draw(map);
     grids.take(forwarded_grid(map), ++number);
   }
-  Tile tile(const TileAt& at) {
-    const TileAt over = coarser(at);
+  Tile tile(const TileIndex& at) {
+    const TileIndex over = coarser(at);
     if (over != drawn_over_ || drawn_number_ != number) {
-      TileAt base = at;
+      TileIndex base = at;
       while (base.level < 0) base = coarser(base);
       drawn_over_ = over, drawn_number_ = number;
       drawn_ = draw_fine_from_base(at, grids.in(easel.layer, area_of(over)),
@@ -29,7 +29,7 @@ class FineLevels : public testing::Test {
   }
   /// The index at a pixel of a finer level; -1: there is no finer tile.
   int pixel(int level, int x, int y) {
-    const TileAt at{level, x >> 8, y >> 8};
+    const TileIndex at{level, x >> 8, y >> 8};
     if (at != looked_at_ || looked_number_ != number) {
       looked_at_ = at, looked_number_ = number;
       looked_ = tile(at);
@@ -49,7 +49,7 @@ class FineLevels : public testing::Test {
  private:
   Packer packer_;
   FineBlock drawn_;  // the last one, of...
-  TileAt drawn_over_{1, 0, 0}, looked_at_{1, 0, 0};
+  TileIndex drawn_over_{1, 0, 0}, looked_at_{1, 0, 0};
   std::uint64_t drawn_number_ = 0, looked_number_ = 0;
   Tile looked_;
   Pixels pixels_{};
@@ -181,7 +181,7 @@ TEST_F(FineLevels, HostileGridsEndInTime) {
       for (const double yaw : {0.0, 0.3}) {
         const std::vector one{
             forwarded_grid(grid_of(100, resolution, {{x, -x / 2, x}, turned_by(yaw)}, cells))};
-        for (const TileAt& at : {TileAt{-1, 0, 0}, TileAt{-2, 0, 0}, TileAt{-2, -3200, 3199}}) {
+        for (const TileIndex& at : {TileIndex{-1, 0, 0}, TileIndex{-2, 0, 0}, TileIndex{-2, -3200, 3199}}) {
           draw_fine_from_base(at, one, nullptr);
         }
       }
@@ -190,9 +190,9 @@ TEST_F(FineLevels, HostileGridsEndInTime) {
 }
 
 TEST(TilesOfFinerLevels, LieInTilesOfTheNextCoarserLevel) {
-  EXPECT_EQ(coarser({-1, 4, -1}), (TileAt{0, 0, -1}));
-  EXPECT_EQ(coarser({-1, 5, -5}), (TileAt{0, 1, -1}));
-  EXPECT_EQ(coarser({-2, -6, 0}), (TileAt{-1, -2, 0}));
+  EXPECT_EQ(coarser({-1, 4, -1}), (TileIndex{0, 0, -1}));
+  EXPECT_EQ(coarser({-1, 5, -5}), (TileIndex{0, 1, -1}));
+  EXPECT_EQ(coarser({-2, -6, 0}), (TileIndex{-1, -2, 0}));
   EXPECT_EQ(place_in_block({-1, 0, -1}), 20U);
   EXPECT_EQ(place_in_block({-2, -6, 0}), 4U);
   EXPECT_TRUE(is_in_world({-1, 639, -640}));

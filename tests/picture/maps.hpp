@@ -77,7 +77,7 @@ class Easel {
     return *std::move(drawing);
   }
 
-  Pixels pixels(const TileAt& at, std::optional<double> stamp = {}) {
+  Pixels pixels(const TileIndex& at, std::optional<double> stamp = {}) {
     Pixels pixels{};
     if (const auto shown = mosaic.tile(layer, at, stamp); shown.tile) packer_.unpack(*shown.tile, pixels);
     return pixels;
@@ -85,7 +85,7 @@ class Easel {
 
   /// The index at a pixel of a level, counted from the frame's origin.
   int pixel(int level, int x, int y, std::optional<double> stamp = {}) {
-    const TileAt at{level, x >> 8, y >> 8};
+    const TileIndex at{level, x >> 8, y >> 8};
     if (!(at == looked_at_) || stamp != looked_when_ || mosaic.version() != looked_version_) {
       looked_ = pixels(at, stamp);
       looked_at_ = at, looked_when_ = stamp, looked_version_ = mosaic.version();
@@ -106,7 +106,7 @@ class Easel {
  private:
   Packer packer_;
   Pixels looked_{};
-  TileAt looked_at_{-1, 0, 0};
+  TileIndex looked_at_{-1, 0, 0};
   std::optional<double> looked_when_;
   std::uint64_t looked_version_ = 0;
 };

@@ -88,9 +88,9 @@ TEST(Mosaic, ListsTilesChangedSinceAVersion) {
   easel.draw(grid_at(64, 0, 1, 0.25, {100}));
   const auto layers = easel.mosaic.layers(before);
   ASSERT_EQ(layers.size(), 1U);
-  std::vector<TileAt> changed;
+  std::vector<TileIndex> changed;
   for (const TileView& tile : layers[0].tiles) changed.push_back(tile.at);
-  EXPECT_THAT(changed, testing::ElementsAre(TileAt{0, 1, 0}, TileAt{1, 0, 0}, TileAt{2, 0, 0}));
+  EXPECT_THAT(changed, testing::ElementsAre(TileIndex{0, 1, 0}, TileIndex{1, 0, 0}, TileIndex{2, 0, 0}));
   EXPECT_EQ(layers[0].tiles[0].first, 1002);
   EXPECT_EQ(layers[0].tiles[1].first, 1001);
   EXPECT_EQ(layers[0].tiles[1].stamp, 1002);

@@ -5,7 +5,7 @@
 
 #include "admin/accounts.hpp"
 #include "admin/acknowledged_file.hpp"
-#include "admin/taking_over.hpp"
+#include "admin/takeover.hpp"
 #include "host/log.hpp"
 #include "host/root_program.hpp"
 #include "host/service.hpp"
@@ -42,7 +42,7 @@ std::expected<bool, std::string> FactoryReset::finish() {
        {runtime_ + '/' + SessionKeeper::kFile, state_ + '/' + AcknowledgedFile::kFile,
         state_ + '/' + Accounts::kDevicesFile, state_ + '/' + Accounts::kCodeFile,
         state_ + '/' + Accounts::kFile, state_ + '/' + Accounts::kFile + host::kDamaged,
-        state_ + '/' + TakingOver::kFile, begun()}) {
+        state_ + '/' + Takeover::kFile, begun()}) {
     ADIT_TRY(host::remove_file(file));
   }
   host::log(host::Level::Notice, "factory reset: settings, tokens, passwords and sessions deleted");

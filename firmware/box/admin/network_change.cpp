@@ -39,8 +39,8 @@ void NetworkChange::read_taken() const {
   const loop::Instant now = loop_.now();
   if (taken_read_at_ && now < *taken_read_at_ + host::kFresh) return;
   taken_read_at_ = now;
-  auto read = host::read_row<network::Taken>(taken_file_);
-  if (read) taken_ = std::move(*read).value_or(network::Taken{});
+  auto read = host::read_row<network::AddressConflicts>(taken_file_);
+  if (read) taken_ = std::move(*read).value_or(network::AddressConflicts{});
   const std::string trouble = read ? "" : std::move(read.error());
   if (std::exchange(taken_trouble_, trouble) != trouble && !trouble.empty())
     host::log(host::Level::Error, "cannot read which addresses another machine uses", {{"why", trouble}});
@@ -161,7 +161,7 @@ icd::Checked<void> NetworkChange::confirm(const std::string& local) {
   const auto waits = pending();
   if (!waits) return conflict("there is no change to confirm");
   if (auto may = check_confirmable(waits->wanted, local); !may) return may;
-  return say(network::Word::What::Confirm, *waits);
+  return say(network::Decision::What::Confirm, *waits);
 }
 
 /// An address from DHCP or a link-local one is not known in advance. Any address but the old one confirms
@@ -213,11 +213,11 @@ std::expected<std::string, std::string> NetworkChange::next_hop(const settings::
 icd::Checked<void> NetworkChange::revert() {
   const auto waits = pending();
   if (!waits) return conflict("there is no change to revert");
-  return say(network::Word::What::Revert, *waits);
+  return say(network::Decision::What::Revert, *waits);
 }
 
-icd::Checked<void> NetworkChange::say(network::Word::What what, const network::Pending& pending) const {
-  if (const auto asked = adit_network_.leave(network::kWordFile, network::Word{pending.nonce, what});
+icd::Checked<void> NetworkChange::say(network::Decision::What what, const network::Pending& pending) const {
+  if (const auto asked = adit_network_.leave(network::kWordFile, network::Decision{pending.nonce, what});
       !asked) {
     return conflict("cannot tell adit-network: " + asked.error());
   }
@@ -225,17 +225,18 @@ icd::Checked<void> NetworkChange::say(network::Word::What what, const network::P
 }
 
 /// The interface's first conflict.
-std::optional<alarms::TakenAddress> NetworkChange::taken(const std::string& interface, bool is_team) const {
-  for (const network::TakenAddress& each : taken_.addresses) {
+std::optional<alarms::AddressConflict> NetworkChange::taken(const std::string& interface,
+                                                            bool is_team) const {
+  for (const network::AddressConflict& each : taken_.addresses) {
     if (each.interface != interface || loop_.now() >= each.seen + network::kTakenFor) continue;
-    return alarms::TakenAddress{
+    return alarms::AddressConflict{
         .is_team = is_team, .interface = interface, .address = each.address, .mac = each.mac};
   }
   return std::nullopt;
 }
 
 /// The first one that is an endpoint of the settings or its gateway.
-std::optional<alarms::ExchangedAddress> NetworkChange::exchanged() const {
+std::optional<alarms::SwappedAddress> NetworkChange::exchanged() const {
   const auto scoring = next_hop(settings_.command_post.scoring),
              mapping = next_hop(settings_.command_post.mapping);
   std::string trouble;
@@ -243,11 +244,11 @@ std::optional<alarms::ExchangedAddress> NetworkChange::exchanged() const {
   if (!mapping) trouble = mapping.error();
   if (std::exchange(hop_trouble_, trouble) != trouble && !trouble.empty())
     host::log(host::Level::Error, "cannot check at which port the Command Post is", {{"why", trouble}});
-  for (const network::TakenAddress& each : taken_.exchanged) {
+  for (const network::AddressConflict& each : taken_.exchanged) {
     if (loop_.now() >= each.seen + network::kTakenFor) continue;
     if (each.interface != settings_.team.interface || (each.address != scoring && each.address != mapping))
       continue;
-    return alarms::ExchangedAddress{
+    return alarms::SwappedAddress{
         .address = each.address, .found_on = each.interface, .sought_on = settings_.command_post.interface};
   }
   return std::nullopt;

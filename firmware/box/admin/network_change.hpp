@@ -49,8 +49,8 @@ class NetworkChange final : public api::Network {
   /// stay for network::kTakenFor.
   void read_taken() const;
   void lead_to_endpoints();
-  std::optional<alarms::ExchangedAddress> exchanged() const;
-  std::optional<alarms::TakenAddress> taken(const std::string& interface, bool is_team) const;
+  std::optional<alarms::SwappedAddress> exchanged() const;
+  std::optional<alarms::AddressConflict> taken(const std::string& interface, bool is_team) const;
   /// Why changes are impossible here, or "".
   std::string hindrance() const;
   std::string page_at(const network::Numbers& numbers) const;
@@ -60,13 +60,13 @@ class NetworkChange final : public api::Network {
   std::expected<std::optional<network::Numbers>, std::string> present() const;
   /// Accepts `local` if a change to `wanted` may be confirmed from that address.
   icd::Checked<void> check_confirmable(const network::Numbers& wanted, const std::string& local) const;
-  icd::Checked<void> say(network::Word::What what, const network::Pending& pending) const;
+  icd::Checked<void> say(network::Decision::What what, const network::Pending& pending) const;
 
   loop::Loop& loop_;
   const settings::Settings& settings_;
   host::RootProgram<network::Status>& adit_network_;
   const std::string taken_file_;
-  mutable network::Taken taken_;
+  mutable network::AddressConflicts taken_;
   mutable std::string taken_trouble_, hop_trouble_;  // the last read errors, logged once
   mutable std::optional<loop::Instant> taken_read_at_;
   network::Wanted wanted_;  // last request

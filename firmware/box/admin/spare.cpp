@@ -18,7 +18,7 @@ using icd::Status;
 
 }  // namespace
 
-Spare::Spare(loop::Loop& loop, loop::Workers& workers, TakingOver& taking_over, std::string state_folder,
+Spare::Spare(loop::Loop& loop, loop::Workers& workers, Takeover& taking_over, std::string state_folder,
              const std::string& status_folder, const std::string& stuck, Asked asked)
     : loop_(loop),
       workers_(workers),

@@ -7,7 +7,7 @@
 
 #include "admin/spare_file.hpp"
 #include "admin/spare_stick.hpp"
-#include "admin/taking_over.hpp"
+#include "admin/takeover.hpp"
 #include "api/spare.hpp"
 #include "loop/loop.hpp"
 #include "loop/workers.hpp"
@@ -31,7 +31,7 @@ class Spare final : public api::Spare {
   /// `status_folder`: of adit-spare. `stuck`: why the box is a standby in spite of its file (an unfinished
   /// takeover, unreadable settings), or "". `workers`: for jobs of 0.1 s. `loop`, `workers` and `taking_over`
   /// must outlive this object.
-  Spare(loop::Loop& loop, loop::Workers& workers, TakingOver& taking_over, std::string state_folder,
+  Spare(loop::Loop& loop, loop::Workers& workers, Takeover& taking_over, std::string state_folder,
         const std::string& status_folder, const std::string& stuck, Asked asked);
 
   /// Why the box is a standby, or "".
@@ -64,7 +64,7 @@ class Spare final : public api::Spare {
 
   loop::Loop& loop_;
   loop::Workers& workers_;
-  TakingOver& taking_over_;
+  Takeover& taking_over_;
   std::string state_;
   SpareStick stick_;
   std::string stuck_, unread_;

@@ -35,8 +35,8 @@ std::optional<icd::BearerToken> token_of(const char* name, const Endpoint& typed
 
 }  // namespace
 
-icd::Checked<Tried> tried_of(const api::Candidate& candidate, const settings::Settings& written,
-                             const host::Secrets& secrets) {
+icd::Checked<TestTarget> tried_of(const api::Candidate& candidate, const settings::Settings& written,
+                                  const host::Secrets& secrets) {
   settings::Settings next = written;
   if (candidate.course) next.command_post.course = *candidate.course;
   const auto known = settings::parse(settings::value_of(next));  // checks the course
@@ -48,7 +48,7 @@ icd::Checked<Tried> tried_of(const api::Candidate& candidate, const settings::Se
   put(candidate.mapping, next.command_post.mapping);
   const auto checked = settings::parse(settings::value_of(next));
   if (!checked) return std::unexpected(unfit(checked.error()));
-  Tried tried{.post = checked->command_post, .scoring = {}, .mapping = {}};
+  TestTarget tried{.post = checked->command_post, .scoring = {}, .mapping = {}};
   tried.scoring = token_of("scoring", candidate.scoring, in_use, secrets, tried.typed);
   tried.mapping = token_of("mapping", candidate.mapping, in_use, secrets, tried.typed);
   return tried;

@@ -11,7 +11,7 @@
 namespace adit::box {
 
 /// Endpoints and tokens of a Test.
-struct Tried {
+struct TestTarget {
   settings::CommandPost post;  // addresses to test, and their course
   std::optional<icd::BearerToken> scoring, mapping;
   icd::Redaction typed = icd::Redaction();  // tokens that are not stored
@@ -19,7 +19,7 @@ struct Tried {
 
 /// The written settings with the candidate, checked as if it were saved. Refused with 422 by the candidate's
 /// members: "scoring.address: ...".
-icd::Checked<Tried> tried_of(const api::Candidate& candidate, const settings::Settings& written,
-                             const host::Secrets& secrets);
+icd::Checked<TestTarget> tried_of(const api::Candidate& candidate, const settings::Settings& written,
+                                  const host::Secrets& secrets);
 
 }  // namespace adit::box

@@ -36,7 +36,7 @@ icd::ChunkedBytes empty_object() {
 }  // namespace
 
 SelfTest::SelfTest(loop::Loop& loop, const settings::Settings& settings,
-                   std::function<icd::Checked<Tried>(const api::Candidate&)> tried, Turns turns,
+                   std::function<icd::Checked<TestTarget>(const api::Candidate&)> tried, Turns turns,
                    host::RootProgram<network::Status>& adit_network, const admin::NetworkChange& network,
                    std::function<void()> changed)
     : loop_(loop),

@@ -39,7 +39,7 @@ class SelfTest final : public api::SelfTest {
   /// `settings`: in use. `tried`: tried_of() with the written settings. `changed`: after each step. All
   /// outlive this.
   SelfTest(loop::Loop& loop, const settings::Settings& settings,
-           std::function<icd::Checked<Tried>(const api::Candidate&)> tried, Turns turns,
+           std::function<icd::Checked<TestTarget>(const api::Candidate&)> tried, Turns turns,
            host::RootProgram<network::Status>& adit_network, const admin::NetworkChange& network,
            std::function<void()> changed);
 
@@ -82,9 +82,9 @@ class SelfTest final : public api::SelfTest {
 
   loop::Loop& loop_;
   const settings::Settings& settings_;
-  std::function<icd::Checked<Tried>(const api::Candidate&)> tried_of_;
+  std::function<icd::Checked<TestTarget>(const api::Candidate&)> tried_of_;
   Turns turns_;
-  Tried tried_;  // fixed during a test
+  TestTarget tried_;  // fixed during a test
   std::vector<steps::Asked> asked_;
   host::RootProgram<network::Status>& adit_network_;
   const admin::NetworkChange& network_;

@@ -56,7 +56,7 @@ class Api final : public intake::Handler {
   Api(loop::Loop& loop, const Served& served, std::vector<icd::BearerToken> tokens,
       icd::Redaction redaction = icd::Redaction());
 
-  intake::Shown shown(const intake::RequestHead& head) override { return entrance_.shown(head); }
+  intake::Credentials shown(const intake::RequestHead& head) override { return entrance_.shown(head); }
   std::unique_ptr<intake::BodySink> open(const intake::RequestHead& head,
                                          std::shared_ptr<intake::Responder> asked_by,
                                          std::shared_ptr<intake::Flow> flow) override;

@@ -4,7 +4,7 @@ namespace adit::codec {
 
 /// An object with a member for each field.
 template <>
-struct KindOf<api::LogFields> : OnlyWritten {
+struct KindOf<api::LogFields> : WriteOnly {
   static Value write(const api::LogFields& fields) {
     Value::Object object;
     for (const auto& [name, value] : fields) object.emplace_back(name, Value{value});

@@ -22,14 +22,14 @@ std::uint64_t session_of(const access::Visitor& visitor) {
 
 }  // namespace
 
-icd::Checked<Asker> Entrance::admit(const intake::RequestHead& head, Who who) {
-  if (who == Who::Open) return Asker{};
+icd::Checked<Asker> Entrance::admit(const intake::RequestHead& head, RouteAccess who) {
+  if (who == RouteAccess::Open) return Asker{};
   const auto request = request_of(head);
-  const auto role = who == Who::Viewer ? access::Role::Viewer : access::Role::Operator;
+  const auto role = who == RouteAccess::Viewer ? access::Role::Viewer : access::Role::Operator;
   const auto visitor = access::admit(request, role, tokens_, sessions(), loop_.now());
   if (visitor) return Asker{.admitted = true, .session = session_of(*visitor)};
-  const bool for_anybody =
-      who == Who::OwnPage || (who == Who::OperatorOrSetUp && (keys_.first_start() || keys_.set_up_open()));
+  const bool for_anybody = who == RouteAccess::OwnPage || (who == RouteAccess::OperatorOrSetUp &&
+                                                           (keys_.first_start() || keys_.set_up_open()));
   if (!for_anybody) return std::unexpected(visitor.error());
   ADIT_TRY(access::check_whence(request));
   const auto known = this->who(head);
@@ -40,13 +40,13 @@ std::optional<access::Visitor> Entrance::who(const intake::RequestHead& head) {
   return access::who(request_of(head), tokens_, sessions(), loop_.now());
 }
 
-intake::Shown Entrance::shown(const intake::RequestHead& head) {
+intake::Credentials Entrance::shown(const intake::RequestHead& head) {
   const auto visitor = who(head);
   if (!head.header("Authorization").empty())
-    return visitor ? intake::Shown::Token : intake::Shown::WrongToken;
-  if (visitor) return intake::Shown::Enough;
+    return visitor ? intake::Credentials::Token : intake::Credentials::WrongToken;
+  if (visitor) return intake::Credentials::Enough;
   // A known device has room for a login, however many clients guess passwords.
-  return device(head) == nullptr ? intake::Shown::Nothing : intake::Shown::Enough;
+  return device(head) == nullptr ? intake::Credentials::Nothing : intake::Credentials::Enough;
 }
 
 const access::Device* Entrance::device(const intake::RequestHead& head) {

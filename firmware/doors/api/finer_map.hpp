@@ -19,7 +19,7 @@ class FinerMap {
   virtual std::optional<picture::Finer> finer(const picture::Layer& layer, std::uint64_t since) const = 0;
   /// Draws the tile if necessary, then calls `done`, perhaps at once. `at` must be in the world. Null: no
   /// finer data there. Error: too many requests are queued.
-  virtual void tile(const picture::Layer& layer, const picture::TileAt& at, Done done) = 0;
+  virtual void tile(const picture::Layer& layer, const picture::TileIndex& at, Done done) = 0;
 };
 
 }  // namespace adit::api

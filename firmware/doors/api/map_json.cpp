@@ -14,9 +14,9 @@ using picture::LayerView;
 using picture::TileView;
 
 constexpr Member kTileMembers[] = {
-    member<&TileView::at, &picture::TileAt::level>("level"),
-    member<&TileView::at, &picture::TileAt::x>("x"),
-    member<&TileView::at, &picture::TileAt::y>("y"),
+    member<&TileView::at, &picture::TileIndex::level>("level"),
+    member<&TileView::at, &picture::TileIndex::x>("x"),
+    member<&TileView::at, &picture::TileIndex::y>("y"),
     member<&TileView::first>("first", "seconds since 1970"),
     member<&TileView::stamp>("stamp", "seconds since 1970"),
     member<&TileView::version>("version"),
@@ -51,14 +51,14 @@ template <>
 struct KindOf<picture::Heights> : KindOfRow<picture::Heights, api::kHeights> {};
 
 template <>
-struct KindOf<picture::Kind> : OnlyWritten {
+struct KindOf<picture::Kind> : WriteOnly {
   static Value write(picture::Kind kind) { return {kind == picture::Kind::Grid ? "grid" : "cloud"}; }
   static constexpr Schema schema = KindOf<std::string>::schema;
 };
 
 /// In CSS form: "#c8d2da".
 template <>
-struct KindOf<picture::Colour> : OnlyWritten {
+struct KindOf<picture::Colour> : WriteOnly {
   static Value write(const picture::Colour& colour) {
     return {"#" + icd::hex(std::array{colour.red, colour.green, colour.blue})};
   }

@@ -14,7 +14,7 @@ namespace adit::api {
 /// A request for a tile: place, colours, and the client's cached state.
 struct TileAsked {
   picture::Layer layer;
-  picture::TileAt at;
+  picture::TileIndex at;
   std::optional<double> stamp, low, high;
   std::optional<picture::Colour> from, to;  // for free or lowest, and for occupied or highest
   std::string has;                          // If-None-Match

@@ -35,7 +35,7 @@ using Handlers = std::tuple<PageRoutes*, SessionRoutes*, RunRoutes*, MapRoutes*,
                             SpareRoutes*, Clock*, Network*, SelfTest*, Spare*, Updates*>;
 
 /// Clients that may use a route. A script with a token is an operator.
-enum class Who : std::uint8_t {
+enum class RouteAccess : std::uint8_t {
   Open,             // any client from any page: holds no data of the team
   OwnPage,          // any client, but not from another site's page
   OperatorOrSetUp,  // an operator; at the first start, and while set-up is open, as OwnPage
@@ -79,7 +79,7 @@ struct Handle {
 struct Route {
   std::string_view method;  // GET includes HEAD
   std::string_view path;  // "/adit/reports/{number}/send"; a parameter has at least one character and no '/'
-  Who who = Who::Operator;
+  RouteAccess who = RouteAccess::Operator;
   Body body;
   Handle handle;
 };

@@ -20,7 +20,7 @@
 namespace adit::api {
 namespace {
 
-using enum Who;
+using enum RouteAccess;
 
 template <std::size_t most>
 constexpr Body kJson{"application/json", most};
@@ -53,12 +53,12 @@ icd::Checked<double> time_in(const std::string& body) {
 /// them. For the body: its name in openapi.json's `bodies`. Then tag and summary. For the answer: its
 /// meaning, and a schema, [schema], one of `answers` or a Content-Type, after its status if that is not 200.
 /// Then the refusals beyond those of `who` and the body, and the `parameters` of path and query.
-consteval Route get(std::string_view path, Who who, Handle handle, std::string_view, std::string_view,
+consteval Route get(std::string_view path, RouteAccess who, Handle handle, std::string_view, std::string_view,
                     std::string_view, std::string_view, std::string_view = {}, std::string_view = {}) {
   return {"GET", path, who, {}, handle};
 }
 
-consteval Route post(std::string_view path, Who who, Body body, Handle handle, std::string_view,
+consteval Route post(std::string_view path, RouteAccess who, Body body, Handle handle, std::string_view,
                      std::string_view, std::string_view, std::string_view, std::string_view,
                      std::string_view = {}, std::string_view = {}) {
   return {"POST", path, who, body, handle};
@@ -83,7 +83,7 @@ constexpr Route kRoutes[] = {
     get("/adit/openapi.json", Open, by<&PageRoutes::description>(), "box", "This description.",
         "OpenAPI 3.1.", "Description"),
     get("/adit/session", OwnPage, by<&SessionRoutes::session>(), "login",
-        "The user of this session; needs no login.", "The user.", "WhoAsks"),
+        "The user of this session; needs no login.", "The user.", "SessionView"),
     post("/adit/login", OwnPage, kJson<4096>, by<&SessionRoutes::log_in>(), "Login", "login",
          "Log in with a password. The answer sets the cookie adit.", "Logged in.", "LoggedIn", "400 409 429"),
     post("/adit/password", OperatorOrSetUp, kJson<4096>, by<&SessionRoutes::change_password>(), "NewPassword",
@@ -322,14 +322,14 @@ std::span<const Route> routes() {
 
 Match match(const intake::RequestHead& head) {
   Match match;
-  if (only_reads(head)) match.who = Who::Viewer;
+  if (only_reads(head)) match.who = RouteAccess::Viewer;
   for (const Route& route : kRoutes) {
     auto parameters = parameters_in(route.path, head.path());
     if (!parameters) continue;
     allow(match.allowed, route.method);
     const bool fits = route.method == "GET" ? only_reads(head) : route.method == head.method();
     if (fits) return {&route, std::move(*parameters), {}, route.who};
-    if (route.who < Who::OperatorOrSetUp) match.who = route.who;  // its clients may learn its methods
+    if (route.who < RouteAccess::OperatorOrSetUp) match.who = route.who;  // its clients may learn its methods
   }
   return match;
 }

@@ -15,11 +15,11 @@ std::span<const Route> routes();
 
 /// A request's place in the table.
 struct Match {
-  const Route* route = nullptr;         // null: no such path or method
-  std::vector<std::string> parameters;  // of the path, in order
-  std::string allowed;                  // methods of the path (RFC 9110 10.2.1): "GET, HEAD"; "": no such
-                                        // path
-  Who who = Who::Operator;              // clients that may use it, or learn that there is no route
+  const Route* route = nullptr;             // null: no such path or method
+  std::vector<std::string> parameters;      // of the path, in order
+  std::string allowed;                      // methods of the path (RFC 9110 10.2.1): "GET, HEAD"; "": no such
+                                            // path
+  RouteAccess who = RouteAccess::Operator;  // clients that may use it, or learn that there is no route
 };
 Match match(const intake::RequestHead& head);
 

@@ -194,7 +194,7 @@ struct RunView {
   std::uint64_t map_version = 0, marker_version = 0;
   alarms::Verdict verdict;
   std::vector<alarms::Alarm> alarms;
-  std::vector<alarms::Over> alarms_over;
+  std::vector<alarms::EndedAlarm> alarms_over;
 
   static const codec::Row kRow;
 };

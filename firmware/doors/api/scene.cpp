@@ -54,7 +54,7 @@ template <>
 struct KindOf<api::Gone> : KindOfRow<api::Gone, api::kGone> {};
 
 template <>
-struct KindOf<std::vector<icd::Color>> : OnlyWritten {
+struct KindOf<std::vector<icd::Color>> : WriteOnly {
   static Value write(const std::vector<icd::Color>& colors) {
     Value::Array array;
     array.reserve(colors.size());
@@ -67,7 +67,7 @@ struct KindOf<std::vector<icd::Color>> : OnlyWritten {
 
 /// x, y, x, y, ...
 template <>
-struct KindOf<std::vector<api::FlatPoint>> : OnlyWritten {
+struct KindOf<std::vector<api::FlatPoint>> : WriteOnly {
   static Value write(const std::vector<api::FlatPoint>& points) {
     Value::Array array;
     array.reserve(2 * points.size());
@@ -83,7 +83,7 @@ struct KindOf<std::vector<api::FlatPoint>> : OnlyWritten {
 
 /// Five numbers, because a track has thousands of poses.
 template <>
-struct KindOf<api::TrackPose> : OnlyWritten {
+struct KindOf<api::TrackPose> : WriteOnly {
   static Value write(const api::TrackPose& pose) {
     return {Value::Array{api::rounded(pose.at), api::rounded(pose.position.x), api::rounded(pose.position.y),
                          api::rounded(pose.position.z), api::rounded(pose.heading)}};

@@ -57,10 +57,10 @@ std::string text_in(const codec::Field& object, std::string_view name) {
 intake::Answer SessionRoutes::session(const intake::RequestHead& head) {
   const auto visitor = entrance_.who(head);
   const auto* const session = visitor ? visitor->session : nullptr;
-  return fresh(WhoAsks{.role = visitor ? std::optional(visitor->role) : std::nullopt,
-                       .csrf = session != nullptr ? std::string(session->csrf.reveal()) : std::string(),
-                       .first_start = keys_.first_start(),
-                       .set_up_open = keys_.set_up_open()});
+  return fresh(SessionView{.role = visitor ? std::optional(visitor->role) : std::nullopt,
+                           .csrf = session != nullptr ? std::string(session->csrf.reveal()) : std::string(),
+                           .first_start = keys_.first_start(),
+                           .set_up_open = keys_.set_up_open()});
 }
 
 intake::Answer SessionRoutes::sessions(const Call& call) {

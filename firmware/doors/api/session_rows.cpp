@@ -3,7 +3,7 @@
 namespace adit::codec {
 
 template <>
-struct KindOf<access::Role> : OnlyWritten {
+struct KindOf<access::Role> : WriteOnly {
   static Value write(access::Role role) { return {std::string(name_of(role))}; }
   static constexpr Schema schema = {
       .type = "string", .more = R"("enum":["operator","viewer"])", .name = "Role"};
@@ -28,19 +28,20 @@ constexpr Member kSession[] = {
 };
 
 constexpr Member kWhoAsks[] = {
-    member<&WhoAsks::role>("role"),
-    member<&WhoAsks::csrf>(
+    member<&SessionView::role>("role"),
+    member<&SessionView::csrf>(
         "csrf", "value of the header Adit-CSRF for requests with the cookie; null without a session")
         .as(codec::kTextOrNull),
-    member<&WhoAsks::first_start>("first_start", "whether no password is set yet, so that the code sets one"),
-    member<&WhoAsks::set_up_open>("set_up_open",
-                                  "whether the operator's password can be set without the present one, "
-                                  "because the box's button opened set-up"),
+    member<&SessionView::first_start>("first_start",
+                                      "whether no password is set yet, so that the code sets one"),
+    member<&SessionView::set_up_open>("set_up_open",
+                                      "whether the operator's password can be set without the present one, "
+                                      "because the box's button opened set-up"),
 };
 
 }  // namespace
 
 constexpr codec::Row SessionRow::kRow = {"Session", kSession};
-constexpr codec::Row WhoAsks::kRow = {"WhoAsks", kWhoAsks};
+constexpr codec::Row SessionView::kRow = {"SessionView", kWhoAsks};
 
 }  // namespace adit::api

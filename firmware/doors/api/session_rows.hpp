@@ -22,7 +22,7 @@ struct SessionRow {
 };
 
 /// The first question of a page.
-struct WhoAsks {
+struct SessionView {
   std::optional<access::Role> role;  // nullopt: not logged in
   std::string csrf;                  // "": none
   bool first_start = false, set_up_open = false;

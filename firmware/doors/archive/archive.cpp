@@ -28,7 +28,7 @@ namespace {
 
 /// Skips unreadable files and damaged records of a run. Reports them in the log and in the run's own list of
 /// attention.
-void tell_all(const RunsFolder& runs, const std::string& key, Told& told,
+void tell_all(const RunsFolder& runs, const std::string& key, RunRecords& told,
               const std::function<bool()>& enough) {
   const auto all_read = read_run(runs.folder_of(key), told, enough);
   if (all_read && told.damaged() == 0) return;
@@ -46,7 +46,7 @@ struct Archive::Opening {
   Head head;
   std::expected<std::string, std::string> key = std::unexpected("no memory");
   std::shared_ptr<RunFolder> folder;
-  std::optional<Told> told;
+  std::optional<RunRecords> told;
 };
 
 void Archive::begin(const Head& head, GoOn go_on) {
@@ -84,7 +84,7 @@ void Archive::opened(Opening& opening) {
   if (!opening.told) opening.told.emplace(0);
   head_ = opening.head;
   has_folder(opening);
-  Told& told = *opening.told;
+  RunRecords& told = *opening.told;
   told.move(std::exchange(moved_, 0));
   samples_ = std::move(told.samples());
   attention_.go_on(samples_.since(0).attention);
@@ -204,7 +204,7 @@ std::shared_ptr<api::KeptRun> kept_run(const RunsFolder& runs, const std::string
   if (!known) host::log(host::Level::Warning, "cannot read a stored run", {{"why", known.error()}});
   if (!known || !*known) return nullptr;
   const api::RunRow& facts = **known;
-  Told told(Archive::kLookedAt);
+  RunRecords told(Archive::kLookedAt);
   tell_all(runs, key, told, enough);
   return std::make_shared<api::KeptRun>(api::KeptRun{as_told(facts, present), std::move(told.picture()),
                                                      told.tracks(), told.samples().since(0)});

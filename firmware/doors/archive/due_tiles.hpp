@@ -11,7 +11,7 @@
 namespace adit::archive {
 
 /// Identifies a tile of the map.
-using TileKey = std::pair<picture::Layer, picture::TileAt>;
+using TileKey = std::pair<picture::Layer, picture::TileIndex>;
 
 /// Decides which tiles to write next: changed ones, each at most once per interval_of() its level. The
 /// interval keeps coarse tiles, which change with every fine one below, from displacing fine ones. Order:

@@ -133,7 +133,7 @@ void RunFolder::remove_first(std::uint64_t file) {
   if (tiles_.first() == file) (void)tiles_.remove_first();  // otherwise a later write removes it
 }
 
-std::expected<void, std::string> read_run(const std::string& folder, Told& told,
+std::expected<void, std::string> read_run(const std::string& folder, RunRecords& told,
                                           const std::function<bool()>& enough) {
   std::expected<void, std::string> all_read;
   for (const char* prefix : {kLines, kTiles}) {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "api/kept_runs.hpp"
+#include "archive/run_records.hpp"
 #include "archive/said.hpp"
-#include "archive/told.hpp"
 #include "loop/file_descriptor.hpp"
 
 namespace adit::archive {
@@ -84,7 +84,7 @@ class RunFolder {
 
 /// Reads a run's files into `told` until `enough` returns true. An error names the first unreadable file; all
 /// others are read.
-std::expected<void, std::string> read_run(const std::string& folder, Told& told,
+std::expected<void, std::string> read_run(const std::string& folder, RunRecords& told,
                                           const std::function<bool()>& enough);
 /// Whether the run has no files. Error: it cannot be read.
 std::expected<bool, std::string> is_blank(const std::string& folder);

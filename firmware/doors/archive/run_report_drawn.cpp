@@ -72,7 +72,7 @@ Sheet sheet_of(const picture::Area& shown) {
   return sheet;
 }
 
-std::string image(const picture::Packed& tile, picture::Kind kind, const picture::TileAt& at,
+std::string image(const picture::Packed& tile, picture::Kind kind, const picture::TileIndex& at,
                   const Sheet& sheet) {
   const picture::Area area = picture::area_of(at);
   const std::string png = kind == picture::Kind::Grid ? picture::write_png(tile, picture::grid_palette())

@@ -69,7 +69,7 @@ std::expected<std::optional<api::RunRow>, std::string> RunsFolder::facts_of(cons
     }
   }
   if (!row) {
-    Told told(0);
+    RunRecords told(0);
     const auto rest_read = read_run(folder, told, [&told] { return told.head().has_value(); });
     if (all_read) all_read = rest_read;
     if (!told.head() && !all_read) return std::unexpected(all_read.error());

@@ -32,8 +32,8 @@ template <>
 inline constexpr auto store::kMembers<picture::Layer> =
     std::tuple(&picture::Layer::robot, &picture::Layer::kind);
 template <>
-inline constexpr auto store::kMembers<picture::TileAt> =
-    std::tuple(&picture::TileAt::level, &picture::TileAt::x, &picture::TileAt::y);
+inline constexpr auto store::kMembers<picture::TileIndex> =
+    std::tuple(&picture::TileIndex::level, &picture::TileIndex::x, &picture::TileIndex::y);
 template <>
 inline constexpr auto store::kMembers<picture::LayerView> =
     std::tuple(&picture::LayerView::layer, &picture::LayerView::first, &picture::LayerView::last,

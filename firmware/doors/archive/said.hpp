@@ -33,7 +33,7 @@ struct Head {
 /// A state of a tile. picture::Packer checks the stored crc.
 struct TileState {
   picture::Layer layer;
-  picture::TileAt at = {};
+  picture::TileIndex at = {};
   double stamp = 0;
   picture::Tile tile = {};  // null: blank
 };

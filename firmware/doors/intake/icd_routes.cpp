@@ -98,12 +98,12 @@ IcdRoutes::IcdRoutes(IcdOptions options, Desk& desk, loop::Workers& workers, Han
       small_(std::make_shared<UploadBudget>(options_.small_bytes)),
       without_room_(std::make_shared<UploadBudget>(MapUpload::kWithoutRoom)) {}
 
-Shown IcdRoutes::shown(const RequestHead& head) {
+Credentials IcdRoutes::shown(const RequestHead& head) {
   if (!icd::uri_of(head.path())) return other_.shown(head);
   // A preflight has no token.
-  if (head.method() == "OPTIONS") return options_.asks_token ? Shown::Nothing : Shown::Enough;
-  if (is_free(head)) return Shown::Enough;
-  return has_token(head) ? Shown::Token : Shown::WrongToken;
+  if (head.method() == "OPTIONS") return options_.asks_token ? Credentials::Nothing : Credentials::Enough;
+  if (is_free(head)) return Credentials::Enough;
+  return has_token(head) ? Credentials::Token : Credentials::WrongToken;
 }
 
 bool IcdRoutes::has_token(const RequestHead& head) const {

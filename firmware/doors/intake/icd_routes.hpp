@@ -11,8 +11,8 @@
 #include "icd/bearer_token.hpp"
 #include "icd/rules.hpp"
 #include "intake/desk.hpp"
-#include "intake/one_at_a_time.hpp"
 #include "intake/server.hpp"
+#include "intake/turn_queue.hpp"
 #include "intake/upload.hpp"
 #include "loop/workers.hpp"
 
@@ -48,7 +48,7 @@ class IcdRoutes final : public Handler {
  public:
   IcdRoutes(IcdOptions options, Desk& desk, loop::Workers& workers, Handler& other);
 
-  Shown shown(const RequestHead& head) override;
+  Credentials shown(const RequestHead& head) override;
   std::unique_ptr<BodySink> open(const RequestHead& head, std::shared_ptr<Responder> responder,
                                  std::shared_ptr<Flow> flow) override;
 
@@ -77,7 +77,7 @@ class IcdRoutes final : public Handler {
   std::shared_ptr<UploadBudget> markers_;
   std::shared_ptr<UploadBudget> small_;         // for states and reports
   std::shared_ptr<UploadBudget> without_room_;  // for maps that cannot be stored
-  std::shared_ptr<OneAtATime> large_markers_ = std::make_shared<OneAtATime>();
+  std::shared_ptr<TurnQueue> large_markers_ = std::make_shared<TurnQueue>();
   std::shared_ptr<Upload::UnderWay> under_way_ = std::make_shared<Upload::UnderWay>();
   bool stopping_ = false;
 };

@@ -14,7 +14,7 @@ namespace adit::intake {
 namespace {
 
 using Body = std::vector<std::uint8_t>;
-using Parts = icd::Checked<codec::InParts<icd::MarkersUpdate>>;
+using Parts = icd::Checked<codec::CheckedParts<icd::MarkersUpdate>>;
 
 /// The loop decodes updates up to kAtOnce itself, in less than a millisecond.
 constexpr codec::Limits kAtOnce = {.text_bytes = 32u << 10, .values = kSmallValues},
@@ -49,7 +49,7 @@ Parts read_large(codec::BodyKind kind, const icd::Rules& rules, Body& body) {
 class MarkersUpload::State final : public Taking, public std::enable_shared_from_this<State> {
  public:
   State(Visit visit, codec::BodyKind kind, const icd::Rules& rules, loop::Workers& workers,
-        std::shared_ptr<UploadBudget> budget, const std::shared_ptr<OneAtATime>& turns)
+        std::shared_ptr<UploadBudget> budget, const std::shared_ptr<TurnQueue>& turns)
       : Taking(std::move(visit), std::move(budget)),
         kind_(kind),
         rules_(rules),
@@ -99,7 +99,7 @@ class MarkersUpload::State final : public Taking, public std::enable_shared_from
   codec::BodyKind kind_;
   icd::Rules rules_;
   loop::Workers& workers_;
-  std::weak_ptr<OneAtATime> turns_;            // its turns hold this object
+  std::weak_ptr<TurnQueue> turns_;             // its turns hold this object
   Body body_;                                  // as received
   std::optional<codec::BodyDecoder> at_once_;  // nullopt: a worker decodes the update
 };
@@ -180,7 +180,7 @@ void MarkersUpload::State::read_large_one() {
 
 MarkersUpload::MarkersUpload(Visit visit, codec::BodyKind kind, const icd::Rules& rules,
                              loop::Workers& workers, std::shared_ptr<UploadBudget> budget,
-                             const std::shared_ptr<OneAtATime>& turns, std::shared_ptr<UnderWay> under_way)
+                             const std::shared_ptr<TurnQueue>& turns, std::shared_ptr<UnderWay> under_way)
     : WorkerUpload(std::make_shared<State>(std::move(visit), kind, rules, workers, std::move(budget), turns),
                    std::move(under_way)) {}
 

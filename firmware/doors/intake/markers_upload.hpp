@@ -4,7 +4,7 @@
 
 #include "codec/body_decoder.hpp"
 #include "icd/rules.hpp"
-#include "intake/one_at_a_time.hpp"
+#include "intake/turn_queue.hpp"
 #include "intake/worker_upload.hpp"
 #include "loop/workers.hpp"
 
@@ -28,7 +28,7 @@ class MarkersUpload final : public WorkerUpload {
   static constexpr std::size_t kMostValues = 1'000'000;
 
   MarkersUpload(Visit visit, codec::BodyKind kind, const icd::Rules& rules, loop::Workers& workers,
-                std::shared_ptr<UploadBudget> budget, const std::shared_ptr<OneAtATime>& turns,
+                std::shared_ptr<UploadBudget> budget, const std::shared_ptr<TurnQueue>& turns,
                 std::shared_ptr<UnderWay> under_way);
 
  private:

@@ -246,8 +246,8 @@ void Server::Impl::begin_request(Client& client) {
     request->refuse_head("request target: expected a path of UTF-8, percent-encoded");
   } else {
     request->begin(std::move(head), std::move(*target), client.gate().framing());
-    const Shown shown = turnstile_.shown(request->head());
-    const bool known = shown == Shown::Token || shown == Shown::Enough;
+    const Credentials shown = turnstile_.shown(request->head());
+    const bool known = shown == Credentials::Token || shown == Credentials::Enough;
     const bool has_room = !known || client.is_known() || make_room_for(client);
     client.is_known(known && has_room);
     if (has_room) return request->open(turnstile_);

@@ -113,7 +113,7 @@ class Flow {
 };
 
 /// The credentials of a request.
-enum class Shown : std::uint8_t {
+enum class Credentials : std::uint8_t {
   Nothing,     // unauthenticated
   WrongToken,  // a wrong token, or no token although it is required
   Token,       // a right token
@@ -126,7 +126,7 @@ class Handler {
   virtual ~Handler() = default;
   /// Called before open(). An authenticated client (Token, Enough) has room however many unauthenticated
   /// clients there are, and has the time that a slow radio needs.
-  virtual Shown shown(const RequestHead& head) = 0;
+  virtual Credentials shown(const RequestHead& head) = 0;
   /// Called when the head is whole. May answer at once. Then the body is read and ignored up to a limit, or
   /// the connection is closed. Null is allowed only after an answer.
   virtual std::unique_ptr<BodySink> open(const RequestHead& head, std::shared_ptr<Responder> responder,

@@ -10,7 +10,7 @@ namespace adit::intake {
 /// Gives the accepted parts of a state or of markers to the desk. If the desk accepts them, the answer is
 /// about the rejected parts.
 template <class Message>
-void take_parts(const Visit& visit, icd::Checked<codec::InParts<Message>> read) {
+void take_parts(const Visit& visit, icd::Checked<codec::CheckedParts<Message>> read) {
   if (!read) return visit.refuse(read.error());
   auto taken = visit.desk.take(std::move(read->message), visit.sender);
   if (taken && read->refused.count > 0) taken = std::unexpected(read->refused.refusal());

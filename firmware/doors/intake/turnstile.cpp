@@ -70,18 +70,18 @@ Answer not_looked_at() {
 
 }  // namespace
 
-Shown Turnstile::shown(const RequestHead& head) {
+Credentials Turnstile::shown(const RequestHead& head) {
   verdict_ = {};
-  const Shown shown = handler_.shown(head);
-  if (shown == Shown::Token) {
+  const Credentials shown = handler_.shown(head);
+  if (shown == Credentials::Token) {
     verdict_ = guesses_.right(head.peer(), loop_.now());
-  } else if (shown == Shown::WrongToken) {
+  } else if (shown == Credentials::WrongToken) {
     const std::string_view token = icd::token_in(head.header("Authorization"));
     verdict_ = guesses_.wrong(head.peer(), token, loop_.now());
   }
   if (verdict_.looked == Looked::Right) return shown;
   wrong_(head.peer());
-  return Shown::WrongToken;
+  return Credentials::WrongToken;
 }
 
 std::unique_ptr<BodySink> Turnstile::open(const RequestHead& head, std::shared_ptr<Responder> responder,

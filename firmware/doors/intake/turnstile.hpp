@@ -22,7 +22,7 @@ class Turnstile final : public Handler {
       : loop_(loop), handler_(handler), guesses_(guesses), late_(late), wrong_(std::move(wrong)) {}
 
   /// Called once for each request, just before open().
-  Shown shown(const RequestHead& head) override;
+  Credentials shown(const RequestHead& head) override;
   std::unique_ptr<BodySink> open(const RequestHead& head, std::shared_ptr<Responder> responder,
                                  std::shared_ptr<Flow> flow) override;
 

@@ -105,7 +105,7 @@ store::Result<std::string> Book::record(std::span<const Report> steps, const Run
 store::Result<std::string> Book::record(const dispatch::TakeOver& taken, const Book& there) const {
   Reports reports;
   Runs runs;
-  for (const dispatch::TakenOver& each : taken.reports) {
+  for (const dispatch::TakenOverReport& each : taken.reports) {
     const bool is_new = each.there != 0;
     const auto& from = is_new ? there.reports_ : reports_;
     const auto before = from.find(is_new ? each.there : each.report.number);

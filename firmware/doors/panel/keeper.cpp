@@ -16,7 +16,7 @@ namespace {
 constexpr int kHeardAtOnce = 64;  // messages at once, so that a flood of messages cannot delay the lights
 
 bool same(const settings::Panel& one, const settings::Panel& other) {
-  return message_of(ToUse{one}) == message_of(ToUse{other});
+  return message_of(LinesRequest{one}) == message_of(LinesRequest{other});
 }
 
 }  // namespace
@@ -42,7 +42,7 @@ void Keeper::accept() {
   client_ = std::move(*caller);
   words_ = loop_.watch(client_.get(), EPOLLIN, [this](std::uint32_t) { hear(); });
   is_for_him_ = !pressed_.value_or(false);
-  told_button_ = ButtonIs{false};
+  told_button_ = ButtonState{false};
   told_lights_ = {};
   watched_.came(loop_.now());
   show();
@@ -81,16 +81,16 @@ void Keeper::take(std::string_view message) {
   lose();
 }
 
-void Keeper::take(const ToLight& message) {
+void Keeper::take(const LightRequest& message) {
   watched_.lights(message.lit, loop_.now());
   complained_ = false;
 }
 
-void Keeper::take(const ToEnd&) {
+void Keeper::take(const EndRequest&) {
   watched_.ends(loop_.now());
 }
 
-void Keeper::take(const ToUse& message) {
+void Keeper::take(const LinesRequest& message) {
   if (!knows_board_ && !(used_ && same(*used_, message.panel))) use(message.panel);
 }
 
@@ -134,8 +134,8 @@ void Keeper::log_button(const std::expected<bool, std::string>& level) {
 }
 
 /// A press that began before aditd connected counts as not pressed until it is released.
-ButtonIs Keeper::button_for_him() const {
-  return pressed_ ? ButtonIs{*pressed_ && is_for_him_} : ButtonIs{};
+ButtonState Keeper::button_for_him() const {
+  return pressed_ ? ButtonState{*pressed_ && is_for_him_} : ButtonState{};
 }
 
 /// Also reads a held button, because a chip that has vanished reports no release and aditd counts the time
@@ -164,9 +164,9 @@ void Keeper::paint() {
 }
 
 void Keeper::tell_what_is_new() {
-  if (const ButtonIs button = button_for_him(); client_ && std::exchange(told_button_, button) != button)
+  if (const ButtonState button = button_for_him(); client_ && std::exchange(told_button_, button) != button)
     tell(message_of(button));
-  if (const LightsAre lights{painter_.trouble()}; client_ && std::exchange(told_lights_, lights) != lights)
+  if (const LightsState lights{painter_.trouble()}; client_ && std::exchange(told_lights_, lights) != lights)
     tell(message_of(lights));
 }
 

@@ -35,15 +35,15 @@ class Keeper {
   void accept();
   void hear();
   void take(std::string_view message);
-  void take(const ToLight& message);
-  void take(const ToEnd& message);
-  void take(const ToUse& message);
+  void take(const LightRequest& message);
+  void take(const EndRequest& message);
+  void take(const LinesRequest& message);
   void lose();
   void use(const settings::Panel& panel);
   void watch_button();
   void look_at_button();
   void log_button(const std::expected<bool, std::string>& level);
-  ButtonIs button_for_him() const;
+  ButtonState button_for_him() const;
   void show();
   void paint();
   void tell_what_is_new();
@@ -58,8 +58,8 @@ class Keeper {
   std::unique_ptr<ButtonLine> button_;   // null: there is none
   std::optional<bool> pressed_ = false;  // the line's level; nullopt: it cannot be read
   bool is_for_him_ = false;              // the press began after the present aditd connected
-  ButtonIs told_button_{false};          // the last report to aditd
-  LightsAre told_lights_;                // the last report to aditd
+  ButtonState told_button_{false};       // the last report to aditd
+  LightsState told_lights_;              // the last report to aditd
   bool complained_ = false;              // a wrong message of aditd was logged
   bool button_broken_ = false;           // the button cannot be read; this was logged
   loop::FileDescriptor listening_, client_;

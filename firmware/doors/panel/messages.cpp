@@ -25,7 +25,7 @@ std::string member(std::string_view name, bool is) {
 }
 
 std::expected<Message, std::string> parse_lit(std::string_view bits) {
-  ToLight message;
+  LightRequest message;
   if (bits.size() != kLights.size()) return std::unexpected("lit: expected a digit for each light");
   for (const Light light : kLights) {
     const char bit = bits[index_of(light)];
@@ -39,22 +39,22 @@ std::expected<Message, std::string> parse_panel(std::string_view json) {
   auto board = settings::parse_board(json);
   if (!board) return std::unexpected("panel: " + settings::sentence_of(board.error()));
   if (!board->panel) return std::unexpected("panel: missing");
-  return ToUse{std::move(*board->panel)};
+  return LinesRequest{std::move(*board->panel)};
 }
 
 }  // namespace
 
-std::string message_of(const ToLight& message) {
+std::string message_of(const LightRequest& message) {
   std::string text(kLit);
   for (const bool lit : message.lit) text.push_back(lit ? '1' : '0');
   return text;
 }
 
-std::string message_of(const ToEnd&) {
+std::string message_of(const EndRequest&) {
   return std::string(kEnd);
 }
 
-std::string message_of(const ToUse& message) {
+std::string message_of(const LinesRequest& message) {
   const settings::Panel& panel = message.panel;
   std::string json = R"({"name":"settings","title":"settings","panel":{)";
   json += member("chip", panel.chip) + ',' + member("health", panel.health) + ',';
@@ -65,35 +65,35 @@ std::string message_of(const ToUse& message) {
 }
 
 std::expected<Message, std::string> parse_message(std::string_view text) {
-  if (text == kEnd) return ToEnd{};
+  if (text == kEnd) return EndRequest{};
   if (text.starts_with(kLit)) return parse_lit(text.substr(kLit.size()));
   if (text.size() > kLongestMessage) return std::unexpected("the message is too long");
   if (text.starts_with(kPanel)) return parse_panel(text.substr(kPanel.size()));
   return std::unexpected("unknown message");
 }
 
-std::string message_of(const ButtonIs& said) {
+std::string message_of(const ButtonState& said) {
   if (!said.pressed) return std::string(kGone);
   return std::string(*said.pressed ? kPressed : kLetGo);
 }
 
-std::string message_of(const LightsAre& said) {
+std::string message_of(const LightsState& said) {
   if (said.trouble.empty()) return std::string(kWell);
-  std::string why = said.trouble.substr(0, LightsAre::kLongest);
+  std::string why = said.trouble.substr(0, LightsState::kLongest);
   std::ranges::replace_if(why, [](char c) { return !is_printable(c); }, '?');
   return std::string(kTrouble) + why;
 }
 
-std::optional<Said> parse_said(std::string_view text) {
-  if (text == kPressed) return ButtonIs{true};
-  if (text == kLetGo) return ButtonIs{false};
-  if (text == kGone) return ButtonIs{};
-  if (text == kWell) return LightsAre{};
+std::optional<PanelReport> parse_report(std::string_view text) {
+  if (text == kPressed) return ButtonState{true};
+  if (text == kLetGo) return ButtonState{false};
+  if (text == kGone) return ButtonState{};
+  if (text == kWell) return LightsState{};
   if (!text.starts_with(kTrouble)) return std::nullopt;
   const std::string_view why = text.substr(kTrouble.size());
-  if (why.empty() || why.size() > LightsAre::kLongest || !std::ranges::all_of(why, is_printable))
+  if (why.empty() || why.size() > LightsState::kLongest || !std::ranges::all_of(why, is_printable))
     return std::nullopt;
-  return LightsAre{std::string(why)};
+  return LightsState{std::string(why)};
 }
 
 }  // namespace adit::panel

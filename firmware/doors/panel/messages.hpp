@@ -15,41 +15,41 @@ namespace adit::panel {
 inline constexpr std::size_t kLongestMessage = 1024;
 
 /// "lit 1100": aditd is well and wants these lights. Sent at each change and repeatedly.
-struct ToLight {
+struct LightRequest {
   Lit lit{};
 };
 /// "end": aditd ends by itself. The lights become dark.
-struct ToEnd {};
+struct EndRequest {};
 /// "panel {...}": the lines from the settings, in the format of a board's file, with all members.
-struct ToUse {
+struct LinesRequest {
   settings::Panel panel;
 };
-using Message = std::variant<ToLight, ToEnd, ToUse>;
+using Message = std::variant<LightRequest, EndRequest, LinesRequest>;
 
-std::string message_of(const ToLight& message);
-std::string message_of(const ToEnd& message);
-std::string message_of(const ToUse& message);
+std::string message_of(const LightRequest& message);
+std::string message_of(const EndRequest& message);
+std::string message_of(const LinesRequest& message);
 /// Parses a message of the three kinds. An error says what is wrong.
 std::expected<Message, std::string> parse_message(std::string_view text);
 
 /// From adit-panel: "button 1", pressed; "button 0", not pressed; "button gone", it cannot be read and a
 /// press is cancelled.
-struct ButtonIs {
+struct ButtonState {
   std::optional<bool> pressed;  // nullopt: it cannot be read
-  friend bool operator==(const ButtonIs&, const ButtonIs&) = default;
+  friend bool operator==(const ButtonState&, const ButtonState&) = default;
 };
 /// "lights 1": the lights are as requested; "lights 0 panel: line H...": they cannot be set, and why.
-struct LightsAre {
+struct LightsState {
   static constexpr std::size_t kLongest = 500;  // characters of `trouble`, all printable ASCII
   std::string trouble;                          // or ""
-  friend bool operator==(const LightsAre&, const LightsAre&) = default;
+  friend bool operator==(const LightsState&, const LightsState&) = default;
 };
-using Said = std::variant<ButtonIs, LightsAre>;
+using PanelReport = std::variant<ButtonState, LightsState>;
 
-std::string message_of(const ButtonIs& said);
+std::string message_of(const ButtonState& said);
 /// Shortens `trouble` to kLongest and replaces other characters by "?".
-std::string message_of(const LightsAre& said);
+std::string message_of(const LightsState& said);
 /// nullopt: unknown message.
-std::optional<Said> parse_said(std::string_view text);
+std::optional<PanelReport> parse_report(std::string_view text);
 
 }  // namespace adit::panel

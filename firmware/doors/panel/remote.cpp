@@ -65,7 +65,7 @@ class Connection {
         lose();
         break;
       }
-      if (const auto said = parse_said({bytes.data(), static_cast<std::size_t>(size)}))
+      if (const auto said = parse_report({bytes.data(), static_cast<std::size_t>(size)}))
         std::visit([this](const auto& each) { take(each); }, *said);
     }
     if (std::exchange(was_lost_, false) || !pressed_)
@@ -77,11 +77,11 @@ class Connection {
   int descriptor() const { return epoll_.get(); }
 
  private:
-  void take(const ButtonIs& said) {
+  void take(const ButtonState& said) {
     pressed_ = said.pressed;
     if (!pressed_) was_lost_ = true;
   }
-  void take(const LightsAre& said) { trouble_ = said.trouble; }
+  void take(const LightsState& said) { trouble_ = said.trouble; }
 
   bool connect() {
     auto fd = connected_to(socket_);
@@ -126,12 +126,12 @@ class RemoteLines final : public Lines {
   /// Sends the end only after a first set(): a program that ends before has failed to start.
   ~RemoteLines() override {
     if (is_started_) [[maybe_unused]]
-      const auto told = connection_->tell(message_of(ToEnd{}));
+      const auto told = connection_->tell(message_of(EndRequest{}));
   }
 
   std::expected<void, std::string> set(const Lit& lit) override {
     is_started_ = true;
-    if (auto told = connection_->tell(message_of(ToLight{lit})); !told) return told;
+    if (auto told = connection_->tell(message_of(LightRequest{lit})); !told) return told;
     return connection_->lights();
   }
   bool is_watched() const override { return true; }
@@ -162,7 +162,7 @@ std::expected<Held, std::string> remote(const std::string& socket, const setting
                                         loop::FileDescriptor announced) {
   loop::FileDescriptor epoll(epoll_create1(EPOLL_CLOEXEC));
   if (!epoll) return std::unexpected(unreachable(socket, errno));
-  auto connection = std::make_shared<Connection>(socket, message_of(ToUse{settings}), std::move(epoll),
+  auto connection = std::make_shared<Connection>(socket, message_of(LinesRequest{settings}), std::move(epoll),
                                                  std::move(announced));
   return Held{std::make_unique<RemoteLines>(connection), std::make_unique<RemoteButton>(connection)};
 }

@@ -42,11 +42,11 @@ bool comes_from_another(const uplink::Outcome& outcome, dispatch::Body body) {
 
 }  // namespace
 
-Channel::Channel(loop::Loop& loop, const char* name, Way way) : loop_(loop), name_(name) {
+Channel::Channel(loop::Loop& loop, const char* name, EndpointAccess way) : loop_(loop), name_(name) {
   take(std::move(way));
 }
 
-bool Channel::leads_elsewhere(const Way& way) const {
+bool Channel::leads_elsewhere(const EndpointAccess& way) const {
   return address_text({way.endpoint.address, way.endpoint.port}) != address_ || !icd::same(way.token, token_);
 }
 
@@ -78,7 +78,7 @@ bool Channel::turns() {
   return true;
 }
 
-void Channel::take(Way way) {
+void Channel::take(EndpointAccess way) {
   connection_.reset();
   address_ = address_text({way.endpoint.address, way.endpoint.port});
   token_ = way.token;
@@ -171,13 +171,14 @@ std::string Channel::trouble() const {
   return connected() ? "" : connection_->trouble();
 }
 
-Way way_to_scoring(const settings::CommandPost& command_post, std::optional<icd::BearerToken> token) {
+EndpointAccess access_to_scoring(const settings::CommandPost& command_post,
+                                 std::optional<icd::BearerToken> token) {
   return {endpoint_of(command_post, command_post.scoring, 0), std::move(token),
           command_post.timeouts.scoring_answer};
 }
 
-Way way_to_mapping(const settings::CommandPost& command_post, std::optional<icd::BearerToken> token,
-                   std::uint64_t bytes_per_second) {
+EndpointAccess access_to_mapping(const settings::CommandPost& command_post,
+                                 std::optional<icd::BearerToken> token, std::uint64_t bytes_per_second) {
   return {endpoint_of(command_post, command_post.mapping, bytes_per_second), std::move(token),
           command_post.timeouts.mapping_answer};
 }

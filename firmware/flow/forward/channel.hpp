@@ -13,7 +13,7 @@
 
 namespace adit::forward {
 
-struct Way {
+struct EndpointAccess {
   uplink::Endpoint endpoint;
   std::optional<icd::BearerToken> token;
   std::chrono::milliseconds answer_within;
@@ -27,10 +27,10 @@ struct Way {
 class Channel {
  public:
   /// `name`: "scoring" or "mapping".
-  Channel(loop::Loop& loop, const char* name, Way way);
+  Channel(loop::Loop& loop, const char* name, EndpointAccess way);
 
   /// Changes the way by a new connection, after the requests in flight.
-  void lead_to(Way way) { next_ = std::move(way); }
+  void lead_to(EndpointAccess way) { next_ = std::move(way); }
   /// If the next way has another address or token, ends requests in flight as InDoubt. Only for messages that
   /// may be sent twice.
   void give_up();
@@ -89,8 +89,8 @@ class Channel {
     bool has_slash;
     std::function<void(uplink::Outcome)> done;
   };
-  void take(Way way);
-  bool leads_elsewhere(const Way& way) const;
+  void take(EndpointAccess way);
+  bool leads_elsewhere(const EndpointAccess& way) const;
   void ended(const std::shared_ptr<UnderWay>& request, uplink::Outcome outcome);
   void note(const UnderWay& request, const uplink::Outcome& outcome);
   void learn_path(const UnderWay& request, const uplink::Answered& answered);
@@ -103,7 +103,7 @@ class Channel {
   std::chrono::milliseconds answer_within_{};
   bool keeps_warm_ = false;
   bool wants_slash_ = false;  // at the end of each path
-  std::optional<Way> next_;
+  std::optional<EndpointAccess> next_;
   std::vector<std::shared_ptr<UnderWay>> under_way_;  // at most two, oldest first
   loop::Instant heard_{};
   std::uint64_t finished_bytes_ = 0, ended_ = 0, throttled_ = 0, foreign_ = 0;
@@ -116,9 +116,10 @@ class Channel {
 };
 
 /// Maps are paced within the link's budget.
-Way way_to_scoring(const settings::CommandPost& command_post, std::optional<icd::BearerToken> token);
-Way way_to_mapping(const settings::CommandPost& command_post, std::optional<icd::BearerToken> token,
-                   std::uint64_t bytes_per_second = 0);
+EndpointAccess access_to_scoring(const settings::CommandPost& command_post,
+                                 std::optional<icd::BearerToken> token);
+EndpointAccess access_to_mapping(const settings::CommandPost& command_post,
+                                 std::optional<icd::BearerToken> token, std::uint64_t bytes_per_second = 0);
 uplink::Endpoint endpoint_of(const settings::CommandPost& command_post, const settings::Address& address,
                              std::uint64_t bytes_per_second);
 

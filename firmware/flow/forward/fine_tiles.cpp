@@ -9,7 +9,7 @@ namespace adit::forward {
 namespace {
 
 /// The base tile around it.
-picture::TileAt base_of(picture::TileAt at) {
+picture::TileIndex base_of(picture::TileIndex at) {
   while (at.level < 0) at = picture::coarser(at);
   return at;
 }
@@ -48,7 +48,7 @@ const picture::FineBlock* FineTiles::found(const Place& place, const Of& of) {
   return &found->second.tiles;
 }
 
-void FineTiles::tile(const picture::Layer& layer, const picture::TileAt& at, Done done) {
+void FineTiles::tile(const picture::Layer& layer, const picture::TileIndex& at, Done done) {
   const Place place{layer, picture::coarser(at)};
   const Of now = of(place);
   const auto finer = grids_.finer(layer, 0);

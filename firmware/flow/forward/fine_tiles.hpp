@@ -33,14 +33,14 @@ class FineTiles final : public api::FinerMap {
   std::optional<picture::Finer> finer(const picture::Layer& layer, std::uint64_t since) const override {
     return grids_.finer(layer, since);
   }
-  void tile(const picture::Layer& layer, const picture::TileAt& at, Done done) override;
+  void tile(const picture::Layer& layer, const picture::TileIndex& at, Done done) override;
   std::size_t bytes() const { return grids_.bytes() + drawn_bytes_; }
 
  private:
   /// A block, by the coarser tile that it replaces.
   struct Place {
     picture::Layer layer;
-    picture::TileAt over;
+    picture::TileIndex over;
     friend auto operator<=>(const Place&, const Place&) = default;
   };
   /// The source of a block.
@@ -56,7 +56,7 @@ class FineTiles final : public api::FinerMap {
     std::uint64_t used = 0;  // order of use
   };
   struct Asker {
-    picture::TileAt at;
+    picture::TileIndex at;
     Done done;
   };
   struct Job;

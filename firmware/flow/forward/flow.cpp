@@ -130,7 +130,7 @@ void Flow::picture_the_run() {
   archive_.end_run(seen());
   maps_.change_run(next_map(before, run));
   telemetry_.change_run();
-  as_forwarded_.begin_run(loop_.wall_now());
+  delivered_.begin_run(loop_.wall_now());
   picture_.begin_run();
   keep_the_run();
 }

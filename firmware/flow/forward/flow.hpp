@@ -11,8 +11,8 @@
 
 #include "api/source.hpp"
 #include "archive/archive.hpp"
-#include "forward/as_forwarded.hpp"
 #include "forward/clocks.hpp"
+#include "forward/delivered_scene.hpp"
 #include "forward/ending.hpp"
 #include "forward/map_picture.hpp"
 #include "forward/maps.hpp"
@@ -134,7 +134,7 @@ class Flow final : public intake::Desk {
   void keep(const journal::Heard& heard) { journal_.heard(heard); }
   const RejectedStore& rejected() const { return rejected_; }
   const Record& record() const { return record_; }
-  const AsForwarded& as_forwarded() const { return as_forwarded_; }
+  const DeliveredScene& delivered() const { return delivered_; }
   const picture::Mosaic& picture() const { return picture_.mosaic(); }
   api::FinerMap& finer() { return picture_.finer(); }
   api::CoveredMap& covered() { return picture_.covered(); }
@@ -194,7 +194,7 @@ class Flow final : public intake::Desk {
   Scoring scoring_;
   MapPicture picture_;
   Maps maps_;
-  AsForwarded as_forwarded_;
+  DeliveredScene delivered_;
   Telemetry telemetry_;
   Meter meter_;
   std::int64_t pictured_run_ = 0;  // 0: not set

@@ -15,7 +15,7 @@ void Flow::keep_the_run() {
   picture_.hold();
   archive_.begin({.run = run.number, .began = run.began, .post = run.post},
                  [this](picture::Mosaic picture, std::vector<api::Track> tracks) -> const picture::Mosaic& {
-                   as_forwarded_.go_on_from(std::move(tracks));
+                   delivered_.go_on_from(std::move(tracks));
                    picture_.go_on_from(std::move(picture));
                    return picture_.mosaic();
                  });
@@ -25,7 +25,7 @@ archive::Seen Flow::seen() const {
   return {.now = loop_.wall_now(),
           .stamp = loop_.stamp_now(),
           .picture = picture_.mosaic(),
-          .tracks = [this](api::Time since) { return as_forwarded_.tracks().since(since); },
+          .tracks = [this](api::Time since) { return delivered_.tracks().since(since); },
           .sample = [this] { return sample(); },
           .facts = [this] { return facts(); }};
 }
@@ -54,7 +54,7 @@ archive::Sample Flow::sample() const {
 api::RunRow Flow::facts() const {
   const dispatch::Run& run = reports().run();
   std::set<std::string> robots;
-  for (const api::RobotRow& robot : as_forwarded_.robots()) robots.insert(robot.name);
+  for (const api::RobotRow& robot : delivered_.robots()) robots.insert(robot.name);
   for (const auto& [traffic, row] : record_.rows()) robots.insert(traffic.robot);
   robots.erase("");
   api::RunRow facts{.run = run.number,

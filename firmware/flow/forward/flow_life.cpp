@@ -49,7 +49,7 @@ Flow::Flow(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& s
       maps_(loop, workers_, writer_, spool_, settings, tokens_.mapping, record_, rejected_, random_, journal_,
             [this](icd::MapUpdate map) { picture_.forwarded(std::move(map)); }),
       telemetry_(loop, workers_, settings, tokens_.mapping, record_, rejected_, random_, journal_,
-                 as_forwarded_),
+                 delivered_),
       archive_(loop, folders.state),
       drained_(loop.timer([this] { drain(); })) {
   archive_.limit(limits_of(settings));
@@ -155,7 +155,7 @@ KnownTimes Flow::known_times() const {
 void Flow::wall_was_set(double seconds) {
   clocks_.wall_was_set();
   record_.move(seconds);
-  as_forwarded_.move(seconds);
+  delivered_.move(seconds);
   picture_.move(seconds);
   archive_.move(seconds);
 }

@@ -45,8 +45,8 @@ Maps::Maps(loop::Loop& loop, loop::Workers& workers, loop::Writer& writer, spool
       rejected_(rejected),
       taken_(std::move(taken)),
       channel_(loop, "mapping",
-               way_to_mapping(settings.command_post, std::move(token),
-                              pace::map_bytes_per_second(settings.command_post.budget_mbit))),
+               access_to_mapping(settings.command_post, std::move(token),
+                                 pace::map_bytes_per_second(settings.command_post.budget_mbit))),
       pace_(icd::Uri::MapUpdate, settings.command_post.rates.map_hz, random, journal),
       wake_(loop.timer([this] { pump(); })),
       queue_(settings.queues.merge_bytes),
@@ -83,7 +83,7 @@ void Maps::settings_changed() {
 
 void Maps::endpoint_changed(std::optional<icd::BearerToken> token) {
   const settings::CommandPost& post = settings_.command_post;
-  channel_.lead_to(way_to_mapping(post, std::move(token), pace::map_bytes_per_second(post.budget_mbit)));
+  channel_.lead_to(access_to_mapping(post, std::move(token), pace::map_bytes_per_second(post.budget_mbit)));
   prepared_.points().forget();
   channel_.give_up();
   pump();
@@ -166,7 +166,7 @@ void Maps::answered(const Place& sent, const uplink::Outcome& outcome) {
 void Maps::classify(const Place& sent, const uplink::Outcome& outcome) {
   if (const auto* answer = std::get_if<uplink::Answered>(&outcome)) return verdict(sent, *answer);
   pace_.failed(outcome, loop_.now());
-  record_.not_taken(traffic_of(sent->waiting.map), NotTaken::Failed, 0, sentence_of(outcome));
+  record_.not_taken(traffic_of(sent->waiting.map), DeliveryFailure::Failed, 0, sentence_of(outcome));
   again(sent);
 }
 
@@ -205,7 +205,7 @@ void Maps::verdict(const Place& sent, const uplink::Answered& answered) {
       return taken(sent, answered);
     case MappingVerdict::Throttled:
       pace_.throttled(now, answered.retry_after);
-      record_.not_taken(traffic, NotTaken::Throttled, answered.status, sentence);
+      record_.not_taken(traffic, DeliveryFailure::Throttled, answered.status, sentence);
       return again(sent);
     case MappingVerdict::Refused:
       pace_.taken(answered.sent, now);
@@ -215,11 +215,11 @@ void Maps::verdict(const Place& sent, const uplink::Answered& answered) {
       if (blame_.failed(whose(sent->waiting.map), sent->waiting.trial, now) == queues::Blame::Next::Reject)
         return give_up(sent, answered.status,
                        sentence + " (other maps were delivered, this map failed repeatedly)");
-      record_.not_taken(traffic, NotTaken::Failed, answered.status, sentence);
+      record_.not_taken(traffic, DeliveryFailure::Failed, answered.status, sentence);
       return again(sent);
     case MappingVerdict::Failing:
       pace_.lost(now);
-      record_.not_taken(traffic, NotTaken::Failed, answered.status, sentence);
+      record_.not_taken(traffic, DeliveryFailure::Failed, answered.status, sentence);
       return again(sent);
   }
 }
@@ -233,7 +233,7 @@ void Maps::again(const Place& sent) {
 void Maps::give_up(const Place& sent, int status, const std::string& sentence) {
   ahead_.failed(false);
   queues::QueuedMap& waiting = sent->waiting;
-  record_.not_taken(traffic_of(waiting.map), NotTaken::Refused, status, sentence);
+  record_.not_taken(traffic_of(waiting.map), DeliveryFailure::Refused, status, sentence);
   if (waiting.again) waiting.map.header().stamp = waiting.again;
   if (waiting.parts.empty()) {
     rejected_.add(waiting.map, status, sentence, waiting.map.data.bytes.size(),

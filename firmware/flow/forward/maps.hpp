@@ -10,14 +10,14 @@
 #include "forward/prepared_maps.hpp"
 #include "forward/rejected.hpp"
 #include "forward/uri_pace.hpp"
-#include "queues/ahead.hpp"
+#include "queues/pipelining.hpp"
 
 namespace adit::forward {
 
 /// Maps to the mapping endpoint. The writer stores a map before Adit accepts it. A worker packs one map while
 /// another is sent. They go one at a time on a connection of their own, within the link's budget. If the
 /// Command Post answers well, a map starts when the one before has arrived, without its answer
-/// (queues::Ahead). Two maps never share a second of the Command Post's limit.
+/// (queues::Pipelining). Two maps never share a second of the Command Post's limit.
 ///
 /// Each of two maps in flight ends separately. A failed one returns to the queue, and no other starts before
 /// both have ended. A 429 does not count for maps sent before it (pace::RateLimit). Stamps rise in the order
@@ -118,7 +118,7 @@ class Maps {
   MapStore store_;
   AcceptedMaps accepted_;
   PreparedMaps prepared_;
-  queues::Ahead ahead_;
+  queues::Pipelining ahead_;
   queues::Blame blame_;
   bool stopping_ = false;
 };

@@ -125,7 +125,7 @@ void PreparedMaps::is_damaged(Place& place) {
   if (!rest.parts.empty()) queue_.put_back_apart(std::move(rest));
   place.reset();  // nothing of what is damaged is tried again
   for (const MapStore::Damaged& each : it->damaged) {
-    record_.not_taken(traffic_of(it->waiting.map), NotTaken::Failed, 0,
+    record_.not_taken(traffic_of(it->waiting.map), DeliveryFailure::Failed, 0,
                       "its stored copy is damaged: " + each.why);
   }
   store_.forget(gone);
@@ -171,7 +171,8 @@ void PreparedMaps::work_failed(const Place& prepared) {
   store_.work_ends({});
   prepared->packed = {};
   if (Place* const place = place_of(prepared)) {
-    record_.not_taken(traffic_of(prepared->waiting.map), NotTaken::Failed, 0, "it could not be compressed");
+    record_.not_taken(traffic_of(prepared->waiting.map), DeliveryFailure::Failed, 0,
+                      "it could not be compressed");
     put_back(*place);
   }
   packed_(false);

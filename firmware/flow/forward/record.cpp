@@ -91,11 +91,11 @@ void Record::forwarded(const Traffic& traffic, std::size_t updates, std::size_t 
   changed_();
 }
 
-void Record::not_taken(const Traffic& traffic, NotTaken how, int status, const std::string& sentence) {
+void Record::not_taken(const Traffic& traffic, DeliveryFailure how, int status, const std::string& sentence) {
   api::ActivityRow& activity = row(traffic);
-  if (how == NotTaken::Throttled) ++activity.throttled;
-  if (how == NotTaken::Failed) ++activity.failed;
-  if (how == NotTaken::Refused) ++activity.refused_upstream;
+  if (how == DeliveryFailure::Throttled) ++activity.throttled;
+  if (how == DeliveryFailure::Failed) ++activity.failed;
+  if (how == DeliveryFailure::Refused) ++activity.refused_upstream;
   activity.last_status = status;
   activity.last_sentence = sentence;
   changed_();

@@ -25,7 +25,7 @@ namespace adit::forward {
 enum class Kind : std::uint8_t { Grid, Cloud, State, Markers };
 
 /// Throttled and Failed messages are retried.
-enum class NotTaken : std::uint8_t { Throttled, Failed, Refused };
+enum class DeliveryFailure : std::uint8_t { Throttled, Failed, Refused };
 
 /// Kinds whose times survive a restart, in the API's words; the first ones of Kind.
 inline constexpr std::string_view kHeardKinds[] = {"grid", "cloud", "state"};
@@ -75,7 +75,7 @@ class Record {
   /// A message of `bytes` was delivered for `updates` accepted ones.
   void forwarded(const Traffic& traffic, std::size_t updates, std::size_t bytes, int status, api::Time now);
   /// `status` 0: no status came.
-  void not_taken(const Traffic& traffic, NotTaken how, int status, const std::string& sentence);
+  void not_taken(const Traffic& traffic, DeliveryFailure how, int status, const std::string& sentence);
 
   void refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusal& refusal, api::Time now);
 

@@ -59,7 +59,7 @@ Scoring::Scoring(loop::Loop& loop, ledger::Ledger& ledger, const settings::Setti
       output_(loop, ledger),
       clocks_(clocks),
       reports_(std::make_unique<dispatch::Reports>(rules_of(settings.reports), output_)),
-      channel_(loop, "scoring", way_to_scoring(settings.command_post, std::move(token))),
+      channel_(loop, "scoring", access_to_scoring(settings.command_post, std::move(token))),
       pace_(settings.command_post.rates, random, journal),
       wake_(loop.timer([this] { pump(); })),
       poll_(loop.timer([this] { poll(); })),
@@ -87,7 +87,7 @@ void Scoring::settings_changed() {
 }
 
 void Scoring::endpoint_changed(std::optional<icd::BearerToken> token) {
-  channel_.lead_to(way_to_scoring(settings_.command_post, std::move(token)));
+  channel_.lead_to(access_to_scoring(settings_.command_post, std::move(token)));
   if (channel_.busy()) reports_->will_move(address_text(settings_.command_post.scoring), time());
   pump();
 }
@@ -114,7 +114,7 @@ void Scoring::take(const icd::ArtifactReport& report, const intake::Sender& send
        output_.add(std::move(responder)));
 }
 
-void Scoring::take(const dispatch::Posted& posted, dispatch::ClientId client) noexcept {
+void Scoring::take(const dispatch::PostedReport& posted, dispatch::ClientId client) noexcept {
   const bool may_send = !channel_.busy() && channel_.connected() && pace_.report_ready() <= loop_.now();
   if (reports_->take(posted, client, may_send, time())) send(*reports_->sending());
   watch_deadlines();
@@ -143,13 +143,13 @@ void Scoring::status(std::shared_ptr<intake::Responder> responder) {
 
 /// No report goes first, and the pace allows it in time.
 bool Scoring::may_ask_soon(loop::Instant now) const {
-  const dispatch::Wish wish = reports_->wish(time());
+  const dispatch::NextRequests wish = reports_->wish(time());
   return !channel_.busy() && !wish.report && pace_.status_ready(wish.in_doubt) <= now + kAskerWaits;
 }
 
 /// It may be older if only reports delay a request, because the Command Post answers them.
 std::optional<intake::Answer> Scoring::known_status() const {
-  const dispatch::Wish wish = reports_->wish(time());
+  const dispatch::NextRequests wish = reports_->wish(time());
   const bool reports_go_first =
       reports_->sending() != nullptr ? channel_.connected() : wish.report && !wish.status;
   return known_status_.answer(loop_.now(),
@@ -180,7 +180,7 @@ void Scoring::pump() noexcept {
   const dispatch::Time at = time();
   const loop::Instant now = at.now;
   reports_->paced(pace_.spacing());
-  const dispatch::Wish wish = reports_->wish(at);
+  const dispatch::NextRequests wish = reports_->wish(at);
   if (!is_free(wish, now)) return;
   std::array<dispatch::Candidate, 2> candidates;
   if (wish.report) candidates[0] = {now, pace_.report_ready()};
@@ -196,7 +196,7 @@ void Scoring::pump() noexcept {
 }
 
 /// False: a request is in flight. A status that no report needs gives way to a report after a while.
-bool Scoring::is_free(const dispatch::Wish& wish, loop::Instant now) {
+bool Scoring::is_free(const dispatch::NextRequests& wish, loop::Instant now) {
   if (!channel_.busy()) return true;
   if (!asked_status_ || asked_status_->decides || !wish.report) return false;
   const loop::Instant gives_way = std::max(asked_status_->at + kGivesWayAfter, pace_.report_ready());

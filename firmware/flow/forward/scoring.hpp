@@ -104,10 +104,10 @@ class Scoring {
   dispatch::Time time() const { return {loop_.now(), loop_.stamp_now()}; }
   void open_reports();
   void endpoint_turned();
-  void take(const dispatch::Posted& posted, dispatch::ClientId client) noexcept;
+  void take(const dispatch::PostedReport& posted, dispatch::ClientId client) noexcept;
   void poll();
   void pump() noexcept;
-  bool is_free(const dispatch::Wish& wish, loop::Instant now);
+  bool is_free(const dispatch::NextRequests& wish, loop::Instant now);
   void send(const dispatch::Report& report);
   void send_next();
   void report_answered(const uplink::Outcome& outcome);

@@ -26,14 +26,14 @@ queues::MarkerBounds bounds_of(const settings::Queues& queues) {
 
 Telemetry::Telemetry(loop::Loop& loop, loop::Workers& workers, const settings::Settings& settings,
                      std::optional<icd::BearerToken> token, Record& record, RejectedStore& rejected,
-                     std::mt19937_64& random, journal::Journal& journal, AsForwarded& as_forwarded)
+                     std::mt19937_64& random, journal::Journal& journal, DeliveredScene& delivered)
     : loop_(loop),
       settings_(settings),
       record_(record),
       rejected_(rejected),
       journal_(journal),
-      as_forwarded_(as_forwarded),
-      channel_(loop, "mapping", way_to_mapping(settings.command_post, std::move(token))),
+      delivered_(delivered),
+      channel_(loop, "mapping", access_to_mapping(settings.command_post, std::move(token))),
       state_pace_(icd::Uri::StateUpdate, settings.command_post.rates.state_hz, random, journal),
       markers_pace_(icd::Uri::MarkersUpdate, settings.command_post.rates.markers_hz, random, journal),
       wake_(loop.timer([this] { pump(); })),
@@ -67,7 +67,7 @@ void Telemetry::settings_changed() {
 }
 
 void Telemetry::endpoint_changed(std::optional<icd::BearerToken> token) {
-  channel_.lead_to(way_to_mapping(settings_.command_post, std::move(token)));
+  channel_.lead_to(access_to_mapping(settings_.command_post, std::move(token)));
   channel_.give_up();
   pump();
 }

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "forward/as_forwarded.hpp"
 #include "forward/channel.hpp"
+#include "forward/delivered_scene.hpp"
 #include "forward/marker_arrivals.hpp"
 #include "forward/record.hpp"
 #include "forward/rejected.hpp"
@@ -24,10 +24,10 @@ namespace adit::forward {
 /// States and markers to the mapping endpoint on one connection, oldest first.
 class Telemetry {
  public:
-  /// `as_forwarded` gets delivered messages. Until then the journal has them.
+  /// `delivered` gets delivered messages. Until then the journal has them.
   Telemetry(loop::Loop& loop, loop::Workers& workers, const settings::Settings& settings,
             std::optional<icd::BearerToken> token, Record& record, RejectedStore& rejected,
-            std::mt19937_64& random, journal::Journal& journal, AsForwarded& as_forwarded);
+            std::mt19937_64& random, journal::Journal& journal, DeliveredScene& delivered);
 
   /// Restores the messages of earlier processes.
   void carry_on(const journal::Carried& carried);
@@ -110,7 +110,7 @@ class Telemetry {
                 const uplink::Outcome& outcome);
   void passed(const queues::QueuedState& state);
   void passed(const queues::QueuedMarkers& markers);
-  /// Passes accepted messages to as_forwarded_.
+  /// Passes accepted messages to delivered_.
   void show(const Shared<queues::QueuedState>& state);
   void show(const Shared<queues::QueuedMarkers>& markers);
   /// Call before sending. True: the markers were too many for one turn, and the turn is over.
@@ -137,7 +137,7 @@ class Telemetry {
   Record& record_;
   RejectedStore& rejected_;
   journal::Journal& journal_;
-  AsForwarded& as_forwarded_;
+  DeliveredScene& delivered_;
   Channel channel_;
   UriPace state_pace_, markers_pace_;
   loop::Source wake_;

@@ -20,9 +20,9 @@ constexpr std::size_t kShown = 500;
 constexpr std::size_t kMostTrials = 1000;
 
 /// For verdicts other than Taken.
-NotTaken why_not(MappingVerdict verdict) {
-  if (verdict == MappingVerdict::Throttled) return NotTaken::Throttled;
-  return verdict == MappingVerdict::Refused ? NotTaken::Refused : NotTaken::Failed;
+DeliveryFailure why_not(MappingVerdict verdict) {
+  if (verdict == MappingVerdict::Throttled) return DeliveryFailure::Throttled;
+  return verdict == MappingVerdict::Refused ? DeliveryFailure::Refused : DeliveryFailure::Failed;
 }
 
 }  // namespace
@@ -94,7 +94,7 @@ void Telemetry::passed(const queues::QueuedMarkers& markers) {
 }
 
 void Telemetry::show(const Shared<queues::QueuedState>& state) {
-  as_forwarded_.forwarded(state->news, loop_.wall_now());
+  delivered_.forwarded(state->news, loop_.wall_now());
 }
 
 void Telemetry::show(const Shared<queues::QueuedMarkers>& markers) {
@@ -105,7 +105,7 @@ void Telemetry::show(const Shared<queues::QueuedMarkers>& markers) {
 bool Telemetry::show_some() {
   const std::span<const icd::Marker> all = to_show_->update.markers;
   const auto some = all.subspan(shown_, std::min(all.size() - shown_, kShown));
-  as_forwarded_.forwarded(some, loop_.wall_now());
+  delivered_.forwarded(some, loop_.wall_now());
   shown_ += some.size();
   if (shown_ == all.size()) to_show_.reset();
   return some.size() < all.size();

@@ -54,16 +54,17 @@ struct RefusedParts {
 
 /// The good parts of a message, and the refused ones.
 template <class Message>
-struct InParts {
+struct CheckedParts {
   Message message;
   RefusedParts refused;
 };
 
 /// ICD 6.5, 6.6. Read a state by poses, and markers one by one, so that one sender's error does not hide the
 /// others' parts. Error: the message around them is invalid, or all parts are.
-icd::Checked<InParts<icd::StateUpdate>> read_state_parts(const Document& document, const icd::Rules& rules);
-icd::Checked<InParts<icd::MarkersUpdate>> read_markers_parts(const Document& document,
-                                                             const icd::Rules& rules);
+icd::Checked<CheckedParts<icd::StateUpdate>> read_state_parts(const Document& document,
+                                                              const icd::Rules& rules);
+icd::Checked<CheckedParts<icd::MarkersUpdate>> read_markers_parts(const Document& document,
+                                                                  const icd::Rules& rules);
 
 /// ICD 6.5. If a robot is named twice, its last pose counts.
 icd::Checked<icd::StateUpdate> read_state_update(const Document& document, const icd::Rules& rules);

@@ -60,13 +60,13 @@ void read_each(const Field& list, RefusedParts& refused, Read read, Keep keep) {
 
 /// Refuses a message without good parts. Otherwise returns it with its refused parts.
 template <class Message>
-icd::Checked<InParts<Message>> sorted(Reading& reading, Message message, RefusedParts refused) {
+icd::Checked<CheckedParts<Message>> sorted(Reading& reading, Message message, RefusedParts refused) {
   if (!reading.refused() && refused.count > 0 && refused.others == 0) reading.refuse(refused.refusal());
-  return reading.outcome(InParts<Message>{std::move(message), std::move(refused)});
+  return reading.outcome(CheckedParts<Message>{std::move(message), std::move(refused)});
 }
 
 template <class Message>
-icd::Checked<Message> whole(icd::Checked<InParts<Message>> parts) {
+icd::Checked<Message> whole(icd::Checked<CheckedParts<Message>> parts) {
   if (!parts) return std::unexpected(std::move(parts.error()));
   parts->refused.others = 0;  // no part is accepted
   if (parts->refused.count > 0) return std::unexpected(parts->refused.refusal());
@@ -89,7 +89,8 @@ icd::Refusal RefusedParts::refusal() const {
   return {icd::Status::UnprocessableEntity, std::move(sentence), count, setting};
 }
 
-icd::Checked<InParts<icd::StateUpdate>> read_state_parts(const Document& document, const icd::Rules& rules) {
+icd::Checked<CheckedParts<icd::StateUpdate>> read_state_parts(const Document& document,
+                                                              const icd::Rules& rules) {
   Reading reading;
   icd::StateUpdate update;
   RefusedParts refused;
@@ -102,8 +103,8 @@ icd::Checked<InParts<icd::StateUpdate>> read_state_parts(const Document& documen
   return sorted(reading, std::move(update), std::move(refused));
 }
 
-icd::Checked<InParts<icd::MarkersUpdate>> read_markers_parts(const Document& document,
-                                                             const icd::Rules& rules) {
+icd::Checked<CheckedParts<icd::MarkersUpdate>> read_markers_parts(const Document& document,
+                                                                  const icd::Rules& rules) {
   Reading reading;
   icd::MarkersUpdate update;
   RefusedParts refused;

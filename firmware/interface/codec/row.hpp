@@ -243,7 +243,7 @@ struct KindOf<Enum> : Equal {
 };
 
 /// For types that are never read.
-struct OnlyWritten {
+struct WriteOnly {
   static void read(const Field& field, auto& /*value*/) { field.refuse("it is only written"); }
 };
 

@@ -17,18 +17,18 @@ namespace {
 
 using host::Level;
 
-static_assert(2 * Takers::kMost <= network::kMostTaken);
+static_assert(2 * ConflictDetector::kMost <= network::kMostTaken);
 
 /// The addresses to watch.
 std::vector<std::uint32_t> addresses_of(const std::vector<settings::Subnet>& own) {
   std::vector<std::uint32_t> all;
   all.reserve(own.size());
   for (const settings::Subnet& each : own) all.push_back(each.address);
-  all.resize(std::min(all.size(), Takers::kMost));
+  all.resize(std::min(all.size(), ConflictDetector::kMost));
   return all;
 }
 
-network::TakenAddress row_of(const std::string& interface, const Takers::Taken& taken) {
+network::AddressConflict row_of(const std::string& interface, const ConflictDetector::Conflict& taken) {
   return {.interface = interface,
           .address = settings::ipv4_text(taken.address),
           .mac = text_of(taken.by),
@@ -52,7 +52,7 @@ std::expected<void, std::string> AddressWatch::start() {
     if (!host::take_link_changes(kernel_)) changed_.wait_for(0);
     look();
   });
-  (void)ADIT_TRY(file_.tell(network::Taken{}));
+  (void)ADIT_TRY(file_.tell(network::AddressConflicts{}));
   look();
   return {};
 }
@@ -142,7 +142,7 @@ void AddressWatch::work() {
     ask(side, side.takers.take_due(now));
     say(side, now);
   }
-  const Exchanged::Due due = exchanged_.take_due(now);
+  const SwappedCables::Due due = exchanged_.take_due(now);
   ask(team(), due.at_team);
   ask(post(), due.at_post);
   std::optional<Instant> next;
@@ -171,7 +171,7 @@ void AddressWatch::ask(const Side& side, const std::vector<std::uint32_t>& addre
 void AddressWatch::say(Side& side, Instant now) {
   const auto taken = side.takers.taken();
   const auto is_taken = [&taken](std::uint32_t address) {
-    return std::ranges::find(taken, address, &Takers::Taken::address) != taken.end();
+    return std::ranges::find(taken, address, &ConflictDetector::Conflict::address) != taken.end();
   };
   if (!side.said.empty() && std::ranges::none_of(side.said, is_taken)) {
     side.said.clear();
@@ -180,7 +180,7 @@ void AddressWatch::say(Side& side, Instant now) {
   }
   if (taken.empty() || !side.said.empty() || (side.said_at && now < *side.said_at + kBetweenLines)) return;
   side.said_at = now;
-  for (const Takers::Taken& each : taken) side.said.push_back(each.address);
+  for (const ConflictDetector::Conflict& each : taken) side.said.push_back(each.address);
   host::log(Level::Warning, "another machine uses the box's address",
             {{"interface", side.interface},
              {"address", settings::ipv4_text(taken.front().address)},
@@ -194,13 +194,13 @@ void AddressWatch::tell(Instant now) {
   if (!is_written || *is_written) written_at_ = now;
 }
 
-network::Taken AddressWatch::taken(Instant now) const {
-  network::Taken all;
+network::AddressConflicts AddressWatch::taken(Instant now) const {
+  network::AddressConflicts all;
   for (const Side& side : sides_) {
-    for (const Takers::Taken& each : side.takers.taken())
+    for (const ConflictDetector::Conflict& each : side.takers.taken())
       all.addresses.push_back(row_of(side.interface, each));
   }
-  for (const Takers::Taken& each : exchanged_.found(now))
+  for (const ConflictDetector::Conflict& each : exchanged_.found(now))
     all.exchanged.push_back(row_of(sides_.front().interface, each));
   return all;
 }

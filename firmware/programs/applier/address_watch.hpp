@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "applier/arp_socket.hpp"
-#include "applier/exchanged.hpp"
+#include "applier/conflict_detector.hpp"
 #include "applier/options.hpp"
-#include "applier/takers.hpp"
+#include "applier/swapped_cables.hpp"
 #include "host/root_program.hpp"
 #include "loop/file_descriptor.hpp"
 #include "loop/loop.hpp"
@@ -36,14 +36,14 @@ class AddressWatch {
   std::expected<void, std::string> start();
 
  private:
-  using Instant = Takers::Instant;
+  using Instant = ConflictDetector::Instant;
 
   struct Side {
     std::string interface;
     unsigned index = 0;  // of the interface listened on; 0: not listening
     bool carrier = false;
     std::string trouble = {};  // why it cannot listen, or ""
-    Takers takers = {};
+    ConflictDetector takers = {};
     std::optional<Instant> rests_until = {};
     std::optional<Instant> said_at = {};   // last log line
     std::vector<std::uint32_t> said = {};  // addresses logged as in conflict
@@ -64,11 +64,11 @@ class AddressWatch {
   static void ask(const Side& side, const std::vector<std::uint32_t>& addresses);
   static void say(Side& side, Instant now);
   void tell(Instant now);
-  network::Taken taken(Instant now) const;
+  network::AddressConflicts taken(Instant now) const;
 
   loop::Loop& loop_;
   std::array<Side, 2> sides_;
-  Exchanged exchanged_;
+  SwappedCables exchanged_;
   ToldStatus told_;
   host::StatusFile file_;
   std::optional<Instant> written_at_;

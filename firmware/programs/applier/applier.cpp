@@ -118,7 +118,7 @@ void Applier::take_wanted() {
 }
 
 void Applier::take_word() {
-  if (const auto word = asked<network::Word>(network::kWordFile)) change_->hear(*word, loop_.now());
+  if (const auto word = asked<network::Decision>(network::kWordFile)) change_->hear(*word, loop_.now());
 }
 
 void Applier::take_probe() {

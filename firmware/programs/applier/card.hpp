@@ -13,7 +13,7 @@
 namespace adit::applier {
 
 /// Files for the box that a user put on the boot partition. All have passed their checks.
-struct Brought {
+struct CardContents {
   std::optional<settings::Settings> settings;
   std::optional<network::Numbers> numbers;
   std::map<std::string, icd::BearerToken> tokens;  // by file name: "scoring.token", or kCardCode
@@ -23,7 +23,7 @@ struct Brought {
 
 /// The result of reading a card.
 struct Found {
-  Brought brought;
+  CardContents brought;
   std::vector<std::string> errors;      // "adit/settings.json: team.listen[0].port: ..."; if any, no file is
                                         // accepted
   std::vector<std::string> left_alone;  // names of ignored files

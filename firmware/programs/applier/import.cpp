@@ -119,7 +119,7 @@ void wipe_taken(UntrustedFolder& card) {
 }
 
 /// Renames the settings last. Without them, the next start could not accept the remaining files unchanged.
-void leave(UntrustedFolder& card, const Brought& brought) {
+void leave(UntrustedFolder& card, const CardContents& brought) {
   if (auto secrets = card.folder(kCardSecrets); secrets && *secrets) {
     for (const auto& [file, token] : brought.tokens) rename_taken(**secrets, file);
   }
@@ -176,7 +176,7 @@ settings::Settings Import::in_force() const {
   return saved ? std::move(saved->settings) : settings::Settings{};
 }
 
-Done Import::save(const Brought& brought) {
+Done Import::save(const CardContents& brought) {
   auto state = ADIT_TRY(open_state(options_.state));
   ADIT_TRY(save_tokens(state, brought));
   if (brought.numbers) {
@@ -188,7 +188,7 @@ Done Import::save(const Brought& brought) {
   return brought.settings ? save_settings(state, *brought.settings) : Done{};
 }
 
-Done Import::save_tokens(UntrustedFolder& state, const Brought& brought) {
+Done Import::save_tokens(UntrustedFolder& state, const CardContents& brought) {
   if (brought.tokens.empty()) return {};
   const std::string path = state.path_by_descriptor() + '/' + settings::kSecretsFolder;
   if (mkdir(path.c_str(), kFolderOfOurs) != 0 && errno != EEXIST) {

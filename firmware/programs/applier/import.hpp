@@ -26,8 +26,8 @@ class Import {
 
  private:
   settings::Settings in_force() const;
-  std::expected<void, std::string> save(const Brought& brought);
-  std::expected<void, std::string> save_tokens(host::UntrustedFolder& state, const Brought& brought);
+  std::expected<void, std::string> save(const CardContents& brought);
+  std::expected<void, std::string> save_tokens(host::UntrustedFolder& state, const CardContents& brought);
   std::expected<void, std::string> save_settings(host::UntrustedFolder& state,
                                                  const settings::Settings& settings);
 

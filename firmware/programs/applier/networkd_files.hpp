@@ -36,7 +36,7 @@ class Reload {
 
 /// The numbers as files of systemd-networkd. An interface with unchanged numbers is left alone. An address
 /// that another machine has is rejected.
-class NetworkdFiles final : public network::Hands {
+class NetworkdFiles final : public network::NumbersSetter {
  public:
   using Prober = decltype(&probe);
 

@@ -28,7 +28,7 @@ Result<Outcome> list_reports(const Call& call) {
   std::ranges::reverse(rows);  // newest first
   const auto all = static_cast<std::int64_t>(rows.size()), shown = std::min(all, options.last.value_or(all));
   rows.resize(static_cast<std::size_t>(shown));
-  const NotListed rest{.older = static_cast<std::size_t>(all - shown), .of_other_runs = others};
+  const OmittedReports rest{.older = static_cast<std::size_t>(all - shown), .of_other_runs = others};
   return said(call, codec::to_json(rows), reports_text(rows, rest, run.row.now, call.console.colour), exit);
 }
 

@@ -14,7 +14,7 @@ std::string counted(std::size_t count, const char* one, const char* several) {
   return count == 0 ? "" : std::to_string(count) + (count == 1 ? one : several);
 }
 
-std::string not_listed(const NotListed& rest) {
+std::string not_listed(const OmittedReports& rest) {
   return counted(rest.older, " older report is not listed\n", " older reports are not listed\n") +
          counted(rest.of_other_runs, " report of another run is not listed: adit reports --run all\n",
                  " reports of other runs are not listed: adit reports --run all\n");
@@ -95,8 +95,8 @@ std::string gained_by(const api::ReportRow& report) {
   return text.append(std::to_string(*report.score_change));
 }
 
-std::string reports_text(const std::vector<api::ReportRow>& reports, const NotListed& rest, api::Time now,
-                         bool colour) {
+std::string reports_text(const std::vector<api::ReportRow>& reports, const OmittedReports& rest,
+                         api::Time now, bool colour) {
   if (reports.empty())
     return (rest.of_other_runs == 0 ? "No reports so far.\n" : "No reports in this run so far.\n") +
            not_listed(rest);

@@ -26,14 +26,14 @@ std::string gained_by(const api::ReportRow& report);
 std::vector<std::string_view> verbs_for(const api::ReportRow& report);
 
 /// Reports that `adit reports` leaves out.
-struct NotListed {
+struct OmittedReports {
   std::size_t older = 0;  // than those of --last
   std::size_t of_other_runs = 0;
 };
 
 /// The output of `adit reports`.
-std::string reports_text(const std::vector<api::ReportRow>& reports, const NotListed& rest, api::Time now,
-                         bool colour);
+std::string reports_text(const std::vector<api::ReportRow>& reports, const OmittedReports& rest,
+                         api::Time now, bool colour);
 
 /// The output of `adit reports show`.
 std::string report_text(const api::ReportDetail& detail, bool colour);

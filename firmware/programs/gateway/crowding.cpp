@@ -13,9 +13,9 @@ void Crowding::ended(intake::Ended why, const std::string& address, loop::Instan
     ++kind.by_address[address];
 }
 
-std::vector<alarms::Crowd> Crowding::crowds(loop::Instant now) const {
-  using Is = alarms::Crowd::Is;
-  std::vector<alarms::Crowd> crowds;
+std::vector<alarms::CrowdFact> Crowding::crowds(loop::Instant now) const {
+  using Is = alarms::CrowdFact::Is;
+  std::vector<alarms::CrowdFact> crowds;
   for (const intake::Ended why : kTold) {
     if (at(why).count == 0 || now - at(why).last >= kRecent) continue;
     const Is is = why == intake::Ended::NoRoom       ? Is::NoRoom

@@ -27,7 +27,7 @@ class Crowding {
   void ended(intake::Ended why, const std::string& address, loop::Instant now);
   std::uint64_t count(intake::Ended why) const { return at(why).count; }
   /// Of the last kRecent.
-  std::vector<alarms::Crowd> crowds(loop::Instant now) const;
+  std::vector<alarms::CrowdFact> crowds(loop::Instant now) const;
   /// Lines that are due.
   std::vector<Line> to_log(loop::Instant now);
 

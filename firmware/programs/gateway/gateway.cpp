@@ -27,7 +27,7 @@ constexpr std::chrono::seconds kAnswerLeaves{1};
 bool can_be_read(const std::string& state_folder) {
   for (const char* const name :
        {admin::Accounts::kFile, admin::Accounts::kCodeFile, forward::StampFloor::kFile,
-        admin::TakingOver::kFile, admin::FactoryReset::kFile, admin::SpareFile::kName}) {
+        admin::Takeover::kFile, admin::FactoryReset::kFile, admin::SpareFile::kName}) {
     const auto file = host::slurp(state_folder + '/' + name, spare::kLargestExport);
     if (!file && file.error() != ENOENT) return false;
   }

@@ -27,14 +27,14 @@ Overview::Overview(const Rooms& rooms, loop::Writer& writer)
     : rooms_(rooms), roster_(rooms.settings.robots), acknowledged_(rooms.parts.options.state, writer) {}
 
 void Overview::carry_on() {
-  lookout_.carry_on(rooms_.flow, rooms_.loop.stamp_now());
+  observed_.carry_on(rooms_.flow, rooms_.loop.stamp_now());
   board_.remember(acknowledged_.read(), rooms_.loop.wall_now());
 }
 
 void Overview::look() {
   notices_ = box::read_notices(rooms_.parts.options.notices);
   const auto activities = rooms_.flow.activities();
-  lookout_.look(rooms_.flow, rooms_.settings, activities, rooms_.loop.stamp_now(), rooms_.loop.wall_now());
+  observed_.look(rooms_.flow, rooms_.settings, activities, rooms_.loop.stamp_now(), rooms_.loop.wall_now());
   const alarms::Facts found = facts(activities);
   conditions_ = alarms::conditions_of(found);
   looked_at_ = found.now;
@@ -66,8 +66,8 @@ void Overview::ended(intake::Ended why, const std::string& address) {
 }
 
 void Overview::settings_changed(const settings::Restarts& restarts) {
-  if (restarts.scoring) lookout_.forget_scoring();
-  if (restarts.mapping) lookout_.forget_mapping();
+  if (restarts.scoring) observed_.forget_scoring();
+  if (restarts.mapping) observed_.forget_mapping();
   roster_.set_up(rooms_.settings.robots);
 }
 
@@ -82,9 +82,9 @@ std::vector<api::EndpointRow> Overview::endpoints() const {
   const forward::Channel& telemetry = rooms_.flow.telemetry().channel();
   const forward::Channel& latest = maps.heard() > telemetry.heard() ? maps : telemetry;
   const settings::CommandPost& command_post = rooms_.settings.command_post;
-  const auto seen = lookout_.endpoints(rooms_.flow, command_post, rooms_.loop.stamp_now());
+  const auto seen = observed_.endpoints(rooms_.flow, command_post, rooms_.loop.stamp_now());
   const auto trouble = [](std::string said, const alarms::Endpoint& endpoint) {
-    return said.empty() && endpoint.trouble == alarms::PostTrouble::Silent ? "no answer" : said;
+    return said.empty() && endpoint.trouble == alarms::EndpointTrouble::Silent ? "no answer" : said;
   };
   return {{.name = "scoring",
            .address = forward::address_text(command_post.scoring),
@@ -117,7 +117,7 @@ api::RunView Overview::view() const {
                     .run_id = rooms_.flow.reports().run().id,
                     .run_seconds = rooms_.settings.runs.length_seconds,
                     .endpoints = endpoints(),
-                    .robots = rooms_.flow.as_forwarded().robots(),
+                    .robots = rooms_.flow.delivered().robots(),
                     .reports = latest_rows(rooms_.flow.reports(), kMostReportRows, answers_),
                     .near_metres = rooms_.settings.reports.near_metres,
                     .activities = rooms_.flow.activities(),
@@ -133,7 +133,7 @@ api::RunView Overview::view() const {
                     .sent_mbit = rooms_.flow.sent_mbit(),
                     .queued_bytes = rooms_.flow.maps().queued_bytes(),
                     .map_version = rooms_.flow.picture().version(),
-                    .marker_version = rooms_.flow.as_forwarded().markers().version(),
+                    .marker_version = rooms_.flow.delivered().markers().version(),
                     .verdict = {},
                     .alarms = {},
                     .alarms_over = board_.over()};

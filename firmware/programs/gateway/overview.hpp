@@ -19,7 +19,7 @@
 #include "forward/flow.hpp"
 #include "gateway/crowding.hpp"
 #include "gateway/listeners.hpp"
-#include "gateway/lookout.hpp"
+#include "gateway/observed_facts.hpp"
 #include "gateway/parts.hpp"
 #include "gateway/report_rows.hpp"
 #include "gateway/roster.hpp"
@@ -79,10 +79,10 @@ class Overview final : public api::Source {
   std::optional<api::ReportDetail> report(std::int64_t number) const override;
   const picture::Mosaic& map() const override { return rooms_.flow.picture(); }
   api::MarkerChanges markers(std::uint64_t since) const override {
-    return rooms_.flow.as_forwarded().markers().changes(since);
+    return rooms_.flow.delivered().markers().changes(since);
   }
   std::vector<api::Track> tracks(api::Time since) const override {
-    return rooms_.flow.as_forwarded().tracks().since(since);
+    return rooms_.flow.delivered().tracks().since(since);
   }
 
  private:
@@ -95,7 +95,7 @@ class Overview final : public api::Source {
   const Rooms rooms_;
   Roster roster_;
   Crowding crowding_;
-  Lookout lookout_;
+  ObservedFacts observed_;
   alarms::Board board_;
   std::vector<alarms::Condition> conditions_;  // as of looked_at_
   double looked_at_ = 0;                       // alarms::Facts::now

@@ -18,11 +18,11 @@ alarms::Facts Overview::facts(const std::vector<api::ActivityRow>& activities) c
 
 void Overview::add_flow(alarms::Facts& facts) const {
   const double steady = rooms_.loop.stamp_now();
-  facts.endpoints = lookout_.endpoints(rooms_.flow, rooms_.settings.command_post, steady);
+  facts.endpoints = observed_.endpoints(rooms_.flow, rooms_.settings.command_post, steady);
   for (alarms::Endpoint& each : facts.endpoints) {
     if (each.since != 0) each.since += facts.now - steady;  // 0: unknown
   }
-  facts.robots = lookout_.robots(rooms_.settings.alarms, steady);
+  facts.robots = observed_.robots(rooms_.settings.alarms, steady);
   facts.turn = static_cast<double>(std::ranges::count_if(facts.streams, &alarms::Stream::is_map)) /
                rooms_.settings.command_post.rates.map_hz;
   facts.unknown_robots = roster_.unknown(rooms_.loop.now());
@@ -32,7 +32,7 @@ void Overview::add_flow(alarms::Facts& facts) const {
                    rooms_.parts.loaded.secrets.tokens.empty();
   facts.queued = rooms_.flow.maps().queued_bytes();
   facts.queue_room = rooms_.settings.queues.map_bytes;
-  facts.queue_grows = lookout_.queue_grows(steady);
+  facts.queue_grows = observed_.queue_grows(steady);
 }
 
 void Overview::add_reports(alarms::Facts& facts) const {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "admin/store.hpp"
-#include "admin/taking_over.hpp"
+#include "admin/takeover.hpp"
 #include "gateway/listen_sockets.hpp"
 #include "gateway/options.hpp"
 #include "host/disk.hpp"
@@ -18,11 +18,11 @@ namespace adit::gateway {
 
 /// Checked parts of a gateway.
 struct Parts {
-  const Options& options;          // outlives the gateway
-  admin::Store& store;             // outlives the gateway
-  admin::FactoryReset& reset;      // outlives the gateway
-  admin::TakingOver& taking_over;  // outlives the gateway
-  ListenSockets& sockets;          // outlives the gateway
+  const Options& options;        // outlives the gateway
+  admin::Store& store;           // outlives the gateway
+  admin::FactoryReset& reset;    // outlives the gateway
+  admin::Takeover& taking_over;  // outlives the gateway
+  ListenSockets& sockets;        // outlives the gateway
   admin::Store::Loaded loaded;
   std::string trouble;    // why other settings are in use than wanted, or ""
   std::string put_aside;  // queued messages put aside, and why; or ""

@@ -6,7 +6,7 @@
 
 #include "admin/factory_reset.hpp"
 #include "admin/store.hpp"
-#include "admin/taking_over.hpp"
+#include "admin/takeover.hpp"
 #include "gateway/file_return.hpp"
 #include "gateway/gateway.hpp"
 #include "gateway/listen_sockets.hpp"
@@ -47,7 +47,7 @@ class Service {
   char* const* const arguments_;
   admin::Store store_;
   admin::FactoryReset reset_;
-  admin::TakingOver taking_over_;
+  admin::Takeover taking_over_;
   ListenSockets sockets_;
   loop::Loop loop_;
   loop::FileDescriptor announced_;  // to adit-panel, until the lights are opened

@@ -43,12 +43,12 @@ constexpr Member kAlarm[] = {
 };
 
 constexpr Member kOver[] = {
-    member<&Over::id>("id"),
-    member<&Over::severity>("severity").one_of(kSeverityWords),
-    member<&Over::side>("side").one_of(kSideWords),
-    member<&Over::was>("was", "what it was"),
-    member<&Over::since>("since", kSeconds),
-    member<&Over::until>("until", kSeconds),
+    member<&EndedAlarm::id>("id"),
+    member<&EndedAlarm::severity>("severity").one_of(kSeverityWords),
+    member<&EndedAlarm::side>("side").one_of(kSideWords),
+    member<&EndedAlarm::was>("was", "what it was"),
+    member<&EndedAlarm::since>("since", kSeconds),
+    member<&EndedAlarm::until>("until", kSeconds),
 };
 
 constexpr std::string_view kById[] = {"id"}, kByIdAndEnd[] = {"id", "until"};
@@ -74,6 +74,6 @@ std::string capital(std::string text) {
 
 constexpr codec::Row Action::kRow = {"", kAction};
 constexpr codec::Row Alarm::kRow = {"Alarm", kAlarm, "A fault, a warning, or a decision to make.", kById};
-constexpr codec::Row Over::kRow = {"AlarmOver", kOver, "An alarm that went.", kByIdAndEnd};
+constexpr codec::Row EndedAlarm::kRow = {"AlarmOver", kOver, "An alarm that went.", kByIdAndEnd};
 
 }  // namespace adit::alarms

@@ -90,7 +90,7 @@ struct Alarm {
 };
 
 /// An alarm that has ended.
-struct Over {
+struct EndedAlarm {
   std::string id = {};
   Severity severity = Severity::Bad;
   Side side = Side::Box;
@@ -98,7 +98,7 @@ struct Over {
   double since = 0, until = 0;  // seconds since 1970
 
   static const codec::Row kRow;
-  friend bool operator==(const Over&, const Over&) = default;
+  friend bool operator==(const EndedAlarm&, const EndedAlarm&) = default;
 };
 
 }  // namespace adit::alarms

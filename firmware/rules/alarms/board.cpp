@@ -10,7 +10,7 @@ bool Board::is_worse(const Condition& condition, const Known& known) {
   return condition.severity < known.seen.severity || condition.degree > known.seen.degree;
 }
 
-Over Board::over(const Known& known, double now) {
+EndedAlarm Board::over(const Known& known, double now) {
   const Condition& condition = known.condition;
   return {.id = condition.id,
           .severity = condition.severity,
@@ -94,7 +94,7 @@ void Board::move(double seconds) {
   }
   for (Acknowledged& before : before_) before.at += seconds;
   waits_until_ += seconds;
-  for (Over& over : over_) {
+  for (EndedAlarm& over : over_) {
     over.since += seconds;
     over.until += seconds;
   }

@@ -33,7 +33,7 @@ class Board {
   /// The conditions as alarms: by severity, then the oldest first.
   std::vector<Alarm> shown(const std::vector<Condition>& conditions, double now) const;
   /// Newest first.
-  std::vector<Over> over() const { return {over_.begin(), over_.end()}; }
+  std::vector<EndedAlarm> over() const { return {over_.begin(), over_.end()}; }
 
  private:
   struct Known {
@@ -45,10 +45,10 @@ class Board {
   static bool is_worse(const Condition& condition, const Known& known);
   static void see(Known& known, double now);
   void take_up_before(const std::vector<Condition>& conditions, double now);
-  static Over over(const Known& known, double now);
+  static EndedAlarm over(const Known& known, double now);
 
   std::map<std::string, Known> known_;
-  std::deque<Over> over_;
+  std::deque<EndedAlarm> over_;
   std::vector<Acknowledged> before_;  // alarms that have not returned yet
   double waits_until_ = 0;
 };

@@ -52,8 +52,8 @@ void find_cables(const Facts& facts, Found& found) {
 
 /// Whether packets from the endpoint arrive, by the state of its connections.
 bool is_heard(const Endpoint& endpoint) {
-  return endpoint.trouble != PostTrouble::NoToken && endpoint.trouble != PostTrouble::Unreachable &&
-         endpoint.trouble != PostTrouble::Silent;
+  return endpoint.trouble != EndpointTrouble::NoToken && endpoint.trouble != EndpointTrouble::Unreachable &&
+         endpoint.trouble != EndpointTrouble::Silent;
 }
 
 void find_exchanged_cables(const Facts& facts, Found& found) {
@@ -75,7 +75,7 @@ void find_addresses(const Facts& facts, Found& found) {
                      .why = "set an address in the Command Post's subnet",
                      .action = kOpenNetwork});
   }
-  for (const TakenAddress& taken : network.taken) {
+  for (const AddressConflict& taken : network.taken) {
     const std::string side = side_of(taken.is_team);
     found.push_back({.id = "address_taken:" + side,
                      .side = Side::Network,

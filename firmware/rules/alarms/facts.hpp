@@ -11,7 +11,7 @@
 namespace adit::alarms {
 
 /// Fault of an endpoint or of the way to it, the worst first.
-enum class PostTrouble : std::uint8_t {
+enum class EndpointTrouble : std::uint8_t {
   NoToken,      // no token is set; Adit does not connect
   Unreachable,  // no connection
   Foreign,      // another kind of server answers
@@ -25,7 +25,7 @@ enum class PostTrouble : std::uint8_t {
 struct Endpoint {
   std::string name = {};  // "scoring"
   std::string address = {};
-  PostTrouble trouble = PostTrouble::None;
+  EndpointTrouble trouble = EndpointTrouble::None;
   double since = 0;                     // start of the trouble, as Facts::now
   std::string said = {};                // detail from the connection or the Command Post
   std::optional<double> well_for = {};  // seconds since the endpoint accepts again; nullopt: it has not been
@@ -57,21 +57,21 @@ struct Robot {
   bool silent = false;
 };
 
-struct Crowd {
+struct CrowdFact {
   enum class Is : std::uint8_t { NoRoom, WrongToken, Unauthenticated };
   Is is = Is::NoRoom;
   std::string address = {};  // of most of these clients
 };
 
 /// An address conflict.
-struct TakenAddress {
+struct AddressConflict {
   bool is_team = false;
   std::string interface = {}, address = {};
   std::string mac = {};  // of the other machine
 };
 
 /// An address of the Command Post that answers at the team's port instead of its own.
-struct ExchangedAddress {
+struct SwappedAddress {
   std::string address = {};
   std::string found_on = {}, sought_on = {};  // interfaces
 };
@@ -80,8 +80,8 @@ struct NetworkFact {
   std::optional<double> confirm_within = {};  // seconds left to confirm a change
   std::string page = {};                      // address for the confirmation
   bool no_address = false;                    // on the Command Post's side
-  std::vector<TakenAddress> taken = {};       // at most one for each side
-  std::optional<ExchangedAddress> exchanged = {};
+  std::vector<AddressConflict> taken = {};    // at most one for each side
+  std::optional<SwappedAddress> exchanged = {};
 };
 
 struct Disk {
@@ -109,7 +109,7 @@ struct Facts {
   std::vector<Stream> streams = {};
   double turn = 0;  // seconds in which each queued map has its turn
   std::vector<std::string> unknown_robots = {}, known_robots = {};
-  std::vector<Crowd> crowds = {};
+  std::vector<CrowdFact> crowds = {};
   bool shut_out = false;  // a token is required, but none is set
 
   std::size_t queued = 0, queue_room = 0;  // bytes

@@ -15,7 +15,7 @@ const Action kTest{"Open test", "/setup#test"};
 
 /// The same trouble of one endpoint or of both.
 struct Trouble {
-  PostTrouble is = PostTrouble::None;
+  EndpointTrouble is = EndpointTrouble::None;
   double since = 0;
   std::vector<const Endpoint*> endpoints = {};
 
@@ -31,7 +31,7 @@ struct Trouble {
 
 Condition of_trouble(const Trouble& trouble, std::string name) {
   return {.id = std::move(name),
-          .severity = trouble.is == PostTrouble::Throttling ? Severity::Wait : Severity::Bad,
+          .severity = trouble.is == EndpointTrouble::Throttling ? Severity::Wait : Severity::Bad,
           .side = Side::CommandPost,
           .subject = trouble.both() ? "" : trouble.first().name,
           .since = trouble.since,
@@ -41,7 +41,7 @@ Condition of_trouble(const Trouble& trouble, std::string name) {
 
 void find_missing_tokens(const Facts& facts, Found& found) {
   for (const Endpoint& endpoint : facts.endpoints) {
-    if (endpoint.trouble != PostTrouble::NoToken) continue;
+    if (endpoint.trouble != EndpointTrouble::NoToken) continue;
     const bool scoring = endpoint.name == "scoring";
     found.push_back({.id = "no_token:" + endpoint.name,
                      .side = Side::Box,
@@ -89,16 +89,16 @@ void say_throttling(const Trouble& trouble, Condition& condition) {
 }
 
 constexpr struct {
-  PostTrouble is;
+  EndpointTrouble is;
   const char* id;
   void (*say)(const Trouble&, Condition&);
 } kTroubles[] = {
-    {PostTrouble::Unreachable, "command_post_unreachable", say_unreachable},
-    {PostTrouble::Foreign, "command_post_foreign", say_foreign},
-    {PostTrouble::Refusing, "command_post_refusing", say_refusing},
-    {PostTrouble::Silent, "command_post_silent", say_silent},
-    {PostTrouble::Failing, "command_post_failing", say_failing},
-    {PostTrouble::Throttling, "command_post_throttling", say_throttling},
+    {EndpointTrouble::Unreachable, "command_post_unreachable", say_unreachable},
+    {EndpointTrouble::Foreign, "command_post_foreign", say_foreign},
+    {EndpointTrouble::Refusing, "command_post_refusing", say_refusing},
+    {EndpointTrouble::Silent, "command_post_silent", say_silent},
+    {EndpointTrouble::Failing, "command_post_failing", say_failing},
+    {EndpointTrouble::Throttling, "command_post_throttling", say_throttling},
 };
 
 }  // namespace

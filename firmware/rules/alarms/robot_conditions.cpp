@@ -144,15 +144,15 @@ void find_unknown(const Facts& facts, Found& found) {
 }
 
 void find_crowds(const Facts& facts, Found& found) {
-  for (const Crowd& crowd : facts.crowds) {
+  for (const CrowdFact& crowd : facts.crowds) {
     const std::string most = "most of them from " + crowd.address;
-    if (crowd.is == Crowd::Is::NoRoom) {
+    if (crowd.is == CrowdFact::Is::NoRoom) {
       found.push_back({.id = "clients_refused",
                        .side = Side::Robot,
                        .headline = {"Clients", "rejected", true},
                        .why = "too many requests at once, " + most,
                        .action = {"Open set-up", "/setup?setting=team.connections#all"}});
-    } else if (crowd.is == Crowd::Is::WrongToken) {
+    } else if (crowd.is == CrowdFact::Is::WrongToken) {
       found.push_back({.id = "wrong_tokens",
                        .severity = Severity::Ask,
                        .side = Side::Robot,

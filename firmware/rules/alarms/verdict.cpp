@@ -14,7 +14,7 @@ const Endpoint* mapping(const Facts& facts) {
   return found == facts.endpoints.end() ? nullptr : &*found;
 }
 
-/// Whether the status concerns the endpoint or its token rather than the message (PostWatch).
+/// Whether the status concerns the endpoint or its token rather than the message (EndpointWatch).
 bool is_of_endpoint(int status) {
   return status == 401 || status == 403 || status == 404 || status == 405 || status == 407;
 }
@@ -115,7 +115,7 @@ std::vector<std::string> unheard(const Facts& facts) {
 
 const Endpoint* stopped(const Facts& facts) {
   const Endpoint* const endpoint = mapping(facts);
-  return endpoint != nullptr && endpoint->trouble < PostTrouble::Throttling ? endpoint : nullptr;
+  return endpoint != nullptr && endpoint->trouble < EndpointTrouble::Throttling ? endpoint : nullptr;
 }
 
 std::optional<double> waited(const Stream& stream, const Facts& facts) {
@@ -141,7 +141,7 @@ constexpr codec::Row Verdict::kRow = {"Verdict", kVerdict, "Is my map arriving?"
 Verdict verdict_of(const Facts& facts) {
   const auto all = maps_of(facts);
   if (const Endpoint* endpoint = stopped(facts); endpoint != nullptr && !all.empty()) {
-    const std::string why = endpoint->trouble == PostTrouble::NoToken
+    const std::string why = endpoint->trouble == EndpointTrouble::NoToken
                                 ? "the mapping token is missing"
                                 : "for " + clock_text(facts.now - endpoint->since);
     return {Level::Bad, "No map arrives", why + "; the box keeps all maps"};

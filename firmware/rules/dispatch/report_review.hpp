@@ -20,7 +20,7 @@ struct ReportRules {
   double near_metres = 5;  // same type and so near: a near duplicate
   InquiryPolicy policy;
   std::size_t most_waiting = 1000;
-  std::chrono::seconds undo{0};  // how long a report waits for an undo, if Posted::can_be_undone
+  std::chrono::seconds undo{0};  // how long a report waits for an undo, if PostedReport::can_be_undone
 };
 
 /// Why the operator must release a report. Empty: no reason.

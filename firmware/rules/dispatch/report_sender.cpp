@@ -40,9 +40,9 @@ std::optional<std::int64_t> ReportSender::next(Instant now) const {
   return std::nullopt;
 }
 
-Wish ReportSender::wish(Time time) const {
+NextRequests ReportSender::wish(Time time) const {
   if (book_.sending() != nullptr) return {};
-  Wish wish;
+  NextRequests wish;
   wish.status = doubts_.next_ask(time.now);
   wish.in_doubt = wish.status.has_value();
   if (account_.waiting_here().empty()) return wish;

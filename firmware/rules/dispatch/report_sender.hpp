@@ -14,7 +14,7 @@ struct HttpAnswer {
 };
 
 /// Next requests to the Command Post.
-struct Wish {
+struct NextRequests {
   bool report = false;  // a queued report may be sent
   /// When to request the run's status. nullopt: not needed.
   std::optional<Instant> status;
@@ -38,7 +38,7 @@ class ReportSender {
   /// doubt.
   void open(Time time);
 
-  Wish wish(Time time) const;
+  NextRequests wish(Time time) const;
   /// Reports::choose().
   const Report* choose(Time time);
   /// True if a report that is posted now may be sent at once.

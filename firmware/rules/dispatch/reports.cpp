@@ -49,7 +49,7 @@ void Reports::follow(std::int64_t number, ReportAction action, Time time) {
   }
 }
 
-bool Reports::take(const Posted& posted, ClientId client, bool may_send, Time time) {
+bool Reports::take(const PostedReport& posted, ClientId client, bool may_send, Time time) {
   Report report{
       .report = posted.report, .sender = posted.sender, .received = time.stamp, .changed = time.stamp};
   report.run = meant_run().number;

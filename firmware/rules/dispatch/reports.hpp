@@ -12,7 +12,7 @@
 
 namespace adit::dispatch {
 
-struct Posted {
+struct PostedReport {
   icd::ArtifactReport report;
   std::string sender;     // client's address
   bool resubmit = false;  // a new report, even if it repeats a finished one
@@ -49,9 +49,9 @@ class Reports {
 
   /// Accepts a report. Output answers the client now or later. `may_send`: no request is in flight and the
   /// rate limit allows one. True: the report is on disk as sending(); send it.
-  bool take(const Posted& posted, ClientId client, bool may_send, Time time);
+  bool take(const PostedReport& posted, ClientId client, bool may_send, Time time);
 
-  Wish wish(Time time) const { return sender_.wish(time); }
+  NextRequests wish(Time time) const { return sender_.wish(time); }
   /// The first queued report that may be sent, on disk as sending(). Null: no such report, or the write
   /// failed.
   const Report* choose(Time time) { return sender_.choose(time); }

@@ -266,7 +266,7 @@ class TakingOver {
     Report next = own;
     if (is_of_own && own_is_another_) {
       step(next, ReportState::Held, "the run of the first box goes on");
-    } else if (const TakenOver* const same = taken_like(own); same != nullptr && !own.asked) {
+    } else if (const TakenOverReport* const same = taken_like(own); same != nullptr && !own.asked) {
       next.run = present_;
       next.same_as = same->report.number;
       step(next, ReportState::Held,
@@ -278,8 +278,8 @@ class TakingOver {
     result_.reports.push_back({.report = std::move(next), .there = 0, .has_stepped = true});
   }
 
-  const TakenOver* taken_like(const Report& own) const {
-    const auto is_like = [&](const TakenOver& taken) {
+  const TakenOverReport* taken_like(const Report& own) const {
+    const auto is_like = [&](const TakenOverReport& taken) {
       return taken.there != 0 && taken.report.run == present_ &&
              (stands(taken.report) || taken.report.is_corrected()) &&
              is_same(taken.report.report, own.report);

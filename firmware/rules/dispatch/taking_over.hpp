@@ -15,7 +15,7 @@ struct Books {
   std::vector<Run> runs;
 };
 
-struct TakenOver {
+struct TakenOverReport {
   Report report;
   std::int64_t there = 0;   // number at the first box; 0: known here
   bool has_stepped = true;  // it differs from its source, so its history has one more step
@@ -23,7 +23,7 @@ struct TakenOver {
 
 /// The changes that a spare writes in one transaction when it takes over.
 struct TakeOver {
-  std::vector<TakenOver> reports;
+  std::vector<TakenOverReport> reports;
   std::vector<Run> runs;
 };
 

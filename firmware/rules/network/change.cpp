@@ -25,9 +25,9 @@ void Change::want(const Wanted& wanted, Instant now) {
   }
 }
 
-void Change::hear(const Word& word, Instant now) {
+void Change::hear(const Decision& word, Instant now) {
   if (!status_.pending || word.nonce != status_.pending->nonce || try_at_) return;
-  if (word.what == Word::What::Revert) return revert("a user reverted the change", now);
+  if (word.what == Decision::What::Revert) return revert("a user reverted the change", now);
   const Numbers numbers = status_.pending->wanted;
   if (const auto kept = hands_.keep(numbers); !kept) {
     return revert("the change was confirmed, but could not be stored: " + kept.error(), now);

@@ -11,9 +11,9 @@
 namespace adit::network {
 
 /// The actions of a Change on the machine.
-class Hands {
+class NumbersSetter {
  public:
-  virtual ~Hands() = default;
+  virtual ~NumbersSetter() = default;
   /// Uses the numbers until the next boot or the next revert().
   virtual std::expected<void, std::string> apply(const Numbers& numbers) = 0;
   /// Uses and stores the numbers.
@@ -34,7 +34,7 @@ class Change {
   static constexpr std::chrono::seconds kTryAgain{2};
 
   /// `hands` must outlive this object. `kept`: the numbers that were confirmed last, or the factory numbers.
-  Change(Hands& hands, const std::optional<Numbers>& kept) : hands_(hands) { status_.kept = kept; }
+  Change(NumbersSetter& hands, const std::optional<Numbers>& kept) : hands_(hands) { status_.kept = kept; }
 
   void set_interfaces(std::string team, std::string command_post) {
     status_.team_interface = std::move(team);
@@ -47,7 +47,7 @@ class Change {
   void want(const Wanted& wanted, Instant now);
   /// Confirms or reverts the pending change. Call before tick(): a late caller may hold a word that came in
   /// time.
-  void hear(const Word& word, Instant now);
+  void hear(const Decision& word, Instant now);
   /// Forgets all addresses and ends a pending change. Error: not done, or not in effect yet.
   std::expected<void, std::string> forget(Instant now);
   void tick(Instant now);
@@ -64,7 +64,7 @@ class Change {
   void try_to_revert(Instant now);
   void end(Ended how, std::string why);
 
-  Hands& hands_;
+  NumbersSetter& hands_;
   Status status_;
   std::string why_;  // reason of the revert
   int tries_ = 0;

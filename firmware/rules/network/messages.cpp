@@ -34,8 +34,8 @@ struct KindOf<network::Instant> {
 
 namespace adit::network {
 
-static constexpr std::string_view kWordWords[] = {"confirm", "revert"};  // in the order of Word::What
-static constexpr auto& words_of(Word::What /*of*/) {
+static constexpr std::string_view kWordWords[] = {"confirm", "revert"};  // in the order of Decision::What
+static constexpr auto& words_of(Decision::What /*of*/) {
   return kWordWords;
 }
 
@@ -68,11 +68,11 @@ bool is_mac(std::string_view text) {
 }
 void read_taken(const Field& list, void* addresses) {
   if (list.size() > kMostTaken) return list.refuse("expected at most ", kMostTaken);
-  codec::kind_of<std::vector<TakenAddress>>.read(list, addresses);
+  codec::kind_of<std::vector<AddressConflict>>.read(list, addresses);
 }
-constexpr codec::Kind kTaken = {.write = codec::kind_of<std::vector<TakenAddress>>.write,
+constexpr codec::Kind kTaken = {.write = codec::kind_of<std::vector<AddressConflict>>.write,
                                 .read = read_taken,
-                                .schema = codec::kind_of<std::vector<TakenAddress>>.schema};
+                                .schema = codec::kind_of<std::vector<AddressConflict>>.schema};
 
 codec::Value write_addresses(const void* addresses) {
   codec::Value::Array list;
@@ -114,8 +114,8 @@ constexpr Member kWantedMembers[] = {
     member<&Wanted::numbers>("numbers"),
 };
 constexpr Member kWordMembers[] = {
-    member<&Word::nonce>("nonce").as(codec::kNonce),
-    member<&Word::what>("word"),
+    member<&Decision::nonce>("nonce").as(codec::kNonce),
+    member<&Decision::what>("word"),
 };
 constexpr Member kProbeMembers[] = {
     member<&Probe::nonce>("nonce").as(codec::kNonce),
@@ -150,14 +150,14 @@ constexpr Member kProbedMembers[] = {
 };
 
 constexpr Member kTakenAddressMembers[] = {
-    member<&TakenAddress::interface>("interface"),
-    member<&TakenAddress::address>("address").as(codec::kCheckedText<is_address, kExpectedAddress>),
-    member<&TakenAddress::mac>("mac").as(codec::kCheckedText<is_mac, kExpectedMac>),
-    member<&TakenAddress::seen>("seen_ms").from(0),
+    member<&AddressConflict::interface>("interface"),
+    member<&AddressConflict::address>("address").as(codec::kCheckedText<is_address, kExpectedAddress>),
+    member<&AddressConflict::mac>("mac").as(codec::kCheckedText<is_mac, kExpectedMac>),
+    member<&AddressConflict::seen>("seen_ms").from(0),
 };
 constexpr Member kTakenMembers[] = {
-    member<&Taken::addresses>("taken").as(kTaken),
-    member<&Taken::exchanged>("exchanged").as(kTaken),
+    member<&AddressConflicts::addresses>("taken").as(kTaken),
+    member<&AddressConflicts::exchanged>("exchanged").as(kTaken),
 };
 
 /// The file of the stored numbers.
@@ -173,15 +173,15 @@ constexpr Row Kept::kRow = {"", kKeptMembers};
 constexpr codec::Kind kAddressOrNone = codec::kCheckedText<is_address_or_none, kExpectedAddressOrNone>;
 
 constexpr Row Wanted::kRow = {"", kWantedMembers};
-constexpr Row Word::kRow = {"", kWordMembers};
+constexpr Row Decision::kRow = {"", kWordMembers};
 constexpr Row Probe::kRow = {"", kProbeMembers};
 constexpr Row Endpoints::kRow = {"", kEndpointsMembers};
 constexpr Row Forget::kRow = {"", kForgetMembers};
 constexpr Row Pending::kRow = {"", kPendingMembers};
 constexpr Row Status::kRow = {"", kStatusMembers};
 constexpr Row Probed::kRow = {"", kProbedMembers};
-constexpr Row TakenAddress::kRow = {"", kTakenAddressMembers};
-constexpr Row Taken::kRow = {"", kTakenMembers};
+constexpr Row AddressConflict::kRow = {"", kTakenAddressMembers};
+constexpr Row AddressConflicts::kRow = {"", kTakenMembers};
 
 std::string write_kept(const Numbers& numbers) {
   return codec::write_file(Kept{numbers});

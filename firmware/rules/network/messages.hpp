@@ -42,7 +42,7 @@ struct Wanted {
 };
 
 /// The operator's answer to a pending change.
-struct Word {
+struct Decision {
   enum class What : std::uint8_t { Confirm, Revert };
   std::string nonce;  // of the change
   What what = What::Revert;
@@ -116,22 +116,22 @@ struct Probed {
 };
 
 /// An address conflict: another machine uses an address of the box (RFC 5227 2.4).
-struct TakenAddress {
+struct AddressConflict {
   std::string interface = "", address = "";
   std::string mac = "";  // of the other machine: "02:00:5e:10:00:01"
   Instant seen = {};     // last time
   static const codec::Row kRow;
-  friend bool operator==(const TakenAddress&, const TakenAddress&) = default;
+  friend bool operator==(const AddressConflict&, const AddressConflict&) = default;
 };
 /// Time for which a conflict is reported after it was last seen.
 inline constexpr std::chrono::seconds kTakenFor{20};
 
-struct Taken {
-  std::vector<TakenAddress> addresses = {};  // at most kMostTaken
+struct AddressConflicts {
+  std::vector<AddressConflict> addresses = {};  // at most kMostTaken
   /// The Command Post's addresses that answer at the team's port instead of their own; at most kMostTaken.
-  std::vector<TakenAddress> exchanged = {};
+  std::vector<AddressConflict> exchanged = {};
   static const codec::Row kRow;
-  friend bool operator==(const Taken&, const Taken&) = default;
+  friend bool operator==(const AddressConflicts&, const AddressConflicts&) = default;
 };
 inline constexpr std::size_t kMostTaken = 32;
 

@@ -17,13 +17,13 @@ constexpr Member kHostMembers[] = {
     member<&Subnet::prefix>("prefix"),
 };
 
-struct StaticAddress : codec::OnlyWritten {
+struct StaticAddress : codec::WriteOnly {
   static Value write(const Numbers& numbers) {
     return numbers.mode == Mode::Static ? AddressText::write(numbers.team.address) : Value{};
   }
   static constexpr Schema schema = AddressText::schema;
 };
-struct StaticPrefix : codec::OnlyWritten {
+struct StaticPrefix : codec::WriteOnly {
   static Value write(const Numbers& numbers) {
     return numbers.mode == Mode::Static ? codec::json(numbers.team.prefix) : Value{};
   }

@@ -30,7 +30,7 @@ class CoveredArea {
  public:
   /// Tiles of places that changed, and facts for the result.
   struct Changes {
-    std::map<TileAt, std::vector<std::pair<std::string, Tile>>> places;
+    std::map<TileIndex, std::vector<std::pair<std::string, Tile>>> places;
     std::uint64_t version = 0;
     bool is_whole = true;
   };
@@ -47,7 +47,7 @@ class CoveredArea {
     std::uint32_t all = 0;
     std::vector<std::pair<std::string, std::uint32_t>> of;
   };
-  std::map<TileAt, Counts> places_;
+  std::map<TileIndex, Counts> places_;
   std::uint64_t version_ = 0;
   bool is_whole_ = true;
 };

@@ -19,7 +19,7 @@ constexpr int kSmall = kSide / kStep;
 using Small = std::array<std::uint8_t, kSmall * kSmall>;  // a tile at the scale of the next coarser level
 
 /// Changed tiles by the coarser tile that contains them.
-using Changed = std::map<TileAt, std::vector<std::pair<TileAt, Small>>>;
+using Changed = std::map<TileIndex, std::vector<std::pair<TileIndex, Small>>>;
 
 Small reduced(const Pixels& pixels) {
   Small small{};
@@ -35,7 +35,7 @@ Small reduced(const Pixels& pixels) {
 }
 
 /// Copies a part to its place in the coarser tile.
-void paste(const TileAt& part, const Small& small, Pixels& pixels) {
+void paste(const TileIndex& part, const Small& small, Pixels& pixels) {
   const int x = (part.x & (kStep - 1)) * kSmall, y = (part.y & (kStep - 1)) * kSmall;
   for (int row = 0; row < kSmall; ++row) {  // the part's top row is its last one in y
     std::copy_n(small.data() + static_cast<std::size_t>(row) * kSmall, kSmall,
@@ -49,7 +49,7 @@ class Layers {
   Layers(const Canvas& before, Drawing& drawing) : before_(before), drawing_(drawing) {}
 
   template <class Change>
-  void change(const TileAt& at, Changed& changed, Change change) {
+  void change(const TileIndex& at, Changed& changed, Change change) {
     const auto found = before_.tiles.find(at);
     if (found == before_.tiles.end()) {
       was_.fill(0);

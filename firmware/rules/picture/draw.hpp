@@ -17,8 +17,8 @@ namespace adit::picture {
 
 /// The present tiles of a layer, to draw on. Tiles never change, so a worker may read them.
 struct Canvas {
-  std::uint64_t run = 0;         // the mosaic's run to which it belongs
-  std::map<TileAt, Tile> tiles;  // never null
+  std::uint64_t run = 0;            // the mosaic's run to which it belongs
+  std::map<TileIndex, Tile> tiles;  // never null
 };
 
 /// Heights above z = 0 of "darpa", in metres.
@@ -30,9 +30,9 @@ struct Heights {
 /// The changes that a map makes to the picture of its layer.
 struct Drawing {
   Layer layer;
-  std::uint64_t run = 0;                       // the canvas's
-  std::vector<std::pair<TileAt, Tile>> tiles;  // the changed tiles of all levels; never null
-  std::optional<Area> area;                    // the known part of the map, to a pixel of the base
+  std::uint64_t run = 0;                          // the canvas's
+  std::vector<std::pair<TileIndex, Tile>> tiles;  // the changed tiles of all levels; never null
+  std::optional<Area> area;                       // the known part of the map, to a pixel of the base
   std::optional<Heights> heights;  // of a cloud, without the lowest and highest hundredth of its pixels
   std::size_t left_out = 0;        // cells, points or pixels outside the world or over a limit below
 };

@@ -15,7 +15,7 @@ constexpr std::size_t kStride = std::size_t{kSide} * kFineStep;  // pixels along
 using Block = std::vector<std::uint8_t>;
 
 /// Offset of a tile's upper left pixel in its block.
-std::size_t corner_of(const TileAt& at) {
+std::size_t corner_of(const TileIndex& at) {
   const std::size_t place = place_in_block(at);
   const std::size_t column = place % kFineStep, row = kFineStep - 1 - place / kFineStep;
   return (row * kStride + column) * kSide;
@@ -60,7 +60,7 @@ void fill_blanks(const Pixels& under, Block& block) {
   }
 }
 
-Pixels cut(const Block& block, const TileAt& at) {
+Pixels cut(const Block& block, const TileIndex& at) {
   Pixels pixels;
   const std::uint8_t* from = block.data() + corner_of(at);
   for (std::size_t row = 0; row < kSide; ++row) {
@@ -69,14 +69,14 @@ Pixels cut(const Block& block, const TileAt& at) {
   return pixels;
 }
 
-TileAt tile_of_block(const TileAt& over, std::size_t place) {
+TileIndex tile_of_block(const TileIndex& over, std::size_t place) {
   const int number = static_cast<int>(place);
   return {over.level - 1, over.x * kFineStep + number % kFineStep, over.y * kFineStep + number / kFineStep};
 }
 
 }  // namespace
 
-FineBlock draw_fine(const TileAt& over, std::span<const std::shared_ptr<const ForwardedGrid>> grids,
+FineBlock draw_fine(const TileIndex& over, std::span<const std::shared_ptr<const ForwardedGrid>> grids,
                     const Tile& under, const Between& between) {
   FineBlock tiles;
   Block block(kStride * kStride);
@@ -95,16 +95,17 @@ FineBlock draw_fine(const TileAt& over, std::span<const std::shared_ptr<const Fo
     fill_blanks(pixels, block);
   }
   for (std::size_t place = 0; place < tiles.size(); ++place) {
-    const TileAt at = tile_of_block(over, place);
+    const TileIndex at = tile_of_block(over, place);
     const auto lies_there = [area = area_of(at)](const auto& grid) { return touch(grid->area, area); };
     if (std::ranges::any_of(grids, lies_there)) tiles[place] = packer.pack(cut(block, at));
   }
   return tiles;
 }
 
-FineBlock draw_fine_from_base(const TileAt& at, std::span<const std::shared_ptr<const ForwardedGrid>> grids,
-                              const Tile& base, const Between& between) {
-  const TileAt over = coarser(at);
+FineBlock draw_fine_from_base(const TileIndex& at,
+                              std::span<const std::shared_ptr<const ForwardedGrid>> grids, const Tile& base,
+                              const Between& between) {
+  const TileIndex over = coarser(at);
   if (over.level == 0) return draw_fine(over, grids, base, between);
   const FineBlock coarse = draw_fine_from_base(over, grids, base, between);
   return draw_fine(over, grids, coarse[place_in_block(over)], between);

@@ -15,8 +15,8 @@ namespace adit::picture {
 using FineBlock = std::array<Tile, std::size_t{kFineStep} * kFineStep>;
 
 /// A tile's index in the block of its coarser tile.
-inline std::size_t place_in_block(const TileAt& at) {
-  const TileAt over = coarser(at);
+inline std::size_t place_in_block(const TileIndex& at) {
+  const TileIndex over = coarser(at);
   return static_cast<std::size_t>((at.y - over.y * kFineStep) * kFineStep + at.x - over.x * kFineStep);
 }
 
@@ -26,12 +26,12 @@ inline std::size_t place_in_block(const TileAt& at) {
 ///
 /// The time grows with the grids, so call it on a worker. A damaged grid is drawn as far as it can be read.
 FineBlock draw_fine(
-    const TileAt& over, std::span<const std::shared_ptr<const ForwardedGrid>> grids, const Tile& under,
+    const TileIndex& over, std::span<const std::shared_ptr<const ForwardedGrid>> grids, const Tile& under,
     const Between& between = [] {});
 
 /// Draws the block that contains `at`, level by level from the base.
 FineBlock draw_fine_from_base(
-    const TileAt& at, std::span<const std::shared_ptr<const ForwardedGrid>> grids, const Tile& base,
+    const TileIndex& at, std::span<const std::shared_ptr<const ForwardedGrid>> grids, const Tile& base,
     const Between& between = [] {});
 
 }  // namespace adit::picture

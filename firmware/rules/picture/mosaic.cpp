@@ -107,7 +107,7 @@ void Mosaic::move(double seconds) {
   }
 }
 
-void Mosaic::put(State& state, const TileAt& at, Tile tile, double stamp) {
+void Mosaic::put(State& state, const TileIndex& at, Tile tile, double stamp) {
   History& history = state.tiles[at];
   if (!history.empty()) newest_bytes_ -= cost_of(history.newest());
   bytes_ -= history.cost();
@@ -129,7 +129,7 @@ void Mosaic::keep_to_budget() {
   }
 }
 
-Mosaic::Shown Mosaic::tile(const Layer& layer, const TileAt& at, std::optional<double> stamp) const {
+Mosaic::Shown Mosaic::tile(const Layer& layer, const TileIndex& at, std::optional<double> stamp) const {
   const auto state = layers_.find(layer);
   if (state == layers_.end()) return {};
   const auto found = state->second.tiles.find(at);
@@ -140,9 +140,9 @@ Mosaic::Shown Mosaic::tile(const Layer& layer, const TileAt& at, std::optional<d
   return {version->tile, version == &history.newest(), version->stamp, history.end_of(*version)};
 }
 
-std::map<TileAt, std::vector<std::pair<std::string, const History*>>> Mosaic::grid_places(
+std::map<TileIndex, std::vector<std::pair<std::string, const History*>>> Mosaic::grid_places(
     std::uint64_t since) const {
-  std::map<TileAt, std::vector<std::pair<std::string, const History*>>> places;
+  std::map<TileIndex, std::vector<std::pair<std::string, const History*>>> places;
   const auto for_each = [&](auto visit) {
     for (const auto& [layer, state] : layers_) {
       if (layer.kind != Kind::Grid) continue;
@@ -152,10 +152,10 @@ std::map<TileAt, std::vector<std::pair<std::string, const History*>>> Mosaic::gr
       }
     }
   };
-  for_each([&](const std::string&, const TileAt& at, const History& history) {
+  for_each([&](const std::string&, const TileIndex& at, const History& history) {
     if (history.newest().number > since) places[at];
   });
-  for_each([&](const std::string& robot, const TileAt& at, const History& history) {
+  for_each([&](const std::string& robot, const TileIndex& at, const History& history) {
     if (const auto place = places.find(at); place != places.end())
       place->second.emplace_back(robot, &history);
   });

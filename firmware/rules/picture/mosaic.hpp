@@ -15,7 +15,7 @@ namespace adit::picture {
 
 /// One tile of a layer.
 struct TileView {
-  TileAt at;
+  TileIndex at;
   double first = 0;           // time of its first drawing
   double stamp = 0;           // time of its last drawing
   std::uint64_t version = 0;  // of its newest state
@@ -78,7 +78,7 @@ class Mosaic {
 
   /// Restores a state of a tile from before a restart. Call it in the order of the tile's states. False if
   /// the order is violated or there is no room.
-  bool take_up(const Layer& layer, const TileAt& at, Tile tile, double stamp);
+  bool take_up(const Layer& layer, const TileIndex& at, Tile tile, double stamp);
   /// Restores the data of a layer, except its tiles.
   void take_up(const LayerView& view);
   void was_wiped(double stamp) { wiped_ = stamp; }
@@ -93,11 +93,11 @@ class Mosaic {
     double stamp = 0;             // the start of this state
     std::optional<double> until;  // when the next state followed; nullopt: it is the newest
   };
-  Shown tile(const Layer& layer, const TileAt& at, std::optional<double> stamp) const;
+  Shown tile(const Layer& layer, const TileIndex& at, std::optional<double> stamp) const;
 
   /// Tiles of grids in the base, by place and robot. Only places with a tile that changed after version
   /// `since`. Valid until the next change.
-  std::map<TileAt, std::vector<std::pair<std::string, const History*>>> grid_places(
+  std::map<TileIndex, std::vector<std::pair<std::string, const History*>>> grid_places(
       std::uint64_t since) const;
   /// False if a grid of this run, or a part of a robot's last one, is not in the picture.
   bool has_all_grids() const;
@@ -117,13 +117,13 @@ class Mosaic {
  private:
   struct State {
     LayerView view;  // without its tiles
-    std::map<TileAt, History> tiles;
+    std::map<TileIndex, History> tiles;
   };
   State* state_of(const Layer& layer, double stamp);
   double begin_change(double stamp);
-  void take_up(State& state, const TileAt& at, const History& earlier, double stamp);
+  void take_up(State& state, const TileIndex& at, const History& earlier, double stamp);
   bool has_room(const State& state, const Drawing& drawing) const;
-  void put(State& state, const TileAt& at, Tile tile, double stamp);
+  void put(State& state, const TileIndex& at, Tile tile, double stamp);
   void keep_to_budget();
 
   std::size_t budget_;

@@ -6,7 +6,7 @@
 
 namespace adit::picture {
 
-bool Mosaic::take_up(const Layer& layer, const TileAt& at, Tile tile, double stamp) {
+bool Mosaic::take_up(const Layer& layer, const TileIndex& at, Tile tile, double stamp) {
   State* state = state_of(layer, stamp);
   if (state == nullptr) return false;
   const auto found = state->tiles.find(at);
@@ -55,7 +55,7 @@ void Mosaic::take_up(Mosaic earlier, double stamp) {
 
 /// The history of a tile that exists here is not extended: a wiped tile has states of another run, and no
 /// state can be inserted before them.
-void Mosaic::take_up(State& state, const TileAt& at, const History& earlier, double stamp) {
+void Mosaic::take_up(State& state, const TileIndex& at, const History& earlier, double stamp) {
   const auto found = state.tiles.find(at);
   if (found != state.tiles.end()) {
     if (!found->second.newest().tile) put(state, at, earlier.newest().tile, stamp);

@@ -29,7 +29,7 @@ class Sheet {
   static constexpr std::size_t kMostTiles = 512;  // about 2 square kilometres
 
   struct Part {
-    TileAt at;
+    TileIndex at;
     std::unique_ptr<Pixels> pixels;
   };
 

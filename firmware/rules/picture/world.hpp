@@ -49,20 +49,20 @@ inline Layer layer_of(const icd::MapUpdate& map) {
 }
 
 /// The tile that covers x to x + 1 and y to y + 1, in units of kSide pixels of its level.
-struct TileAt {
+struct TileIndex {
   int level = 0, x = 0, y = 0;
-  friend auto operator<=>(const TileAt&, const TileAt&) = default;
+  friend auto operator<=>(const TileIndex&, const TileIndex&) = default;
 };
 
 /// The tile of the next coarser level that contains this one.
-inline TileAt coarser(const TileAt& at) {
+inline TileIndex coarser(const TileIndex& at) {
   const int step = at.level < 0 ? kFineStep : kStep;
   const auto down = [step](int number) { return (number - (number < 0 ? step - 1 : 0)) / step; };
   return {at.level + 1, down(at.x), down(at.y)};
 }
 
 /// True if a part of it lies in the drawn world.
-inline bool is_in_world(const TileAt& at) {
+inline bool is_in_world(const TileIndex& at) {
   if (at.level < kFinest || at.level >= kLevels) return false;
   const double reach = kWorldMetres / (metres_per_pixel(at.level) * kSide);
   const auto inside = [reach](int number) { return number >= -reach && number < reach; };
@@ -80,7 +80,7 @@ inline bool touch(const Area& a, const Area& b) {
   return a.left < b.right && b.left < a.right && a.bottom < b.top && b.bottom < a.top;
 }
 
-inline Area area_of(const TileAt& at) {
+inline Area area_of(const TileIndex& at) {
   const double metres = metres_per_pixel(at.level) * kSide;
   return {at.x * metres, at.y * metres, (at.x + 1) * metres, (at.y + 1) * metres};
 }

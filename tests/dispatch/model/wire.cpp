@@ -16,7 +16,7 @@ constexpr Seconds kRoundTrip = 0.02;
 
 void World::pump() {
   if (busy_) return;
-  const Wish wish = reports_->wish(time());
+  const NextRequests wish = reports_->wish(time());
   if (wish.report && now_ >= report_ready_) {
     if (const Report* const report = reports_->choose(time())) transmit(*report);
     return;

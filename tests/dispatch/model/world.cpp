@@ -146,7 +146,7 @@ void World::post(std::size_t who) {
       },
       false);
   const bool may_send = !busy_ && now_ >= report_ready_ && chance() < 0.5;
-  Posted posted;
+  PostedReport posted;
   posted.report.type = "Drill";
   posted.report.position.x = client.key;
   posted.sender = "robot";

@@ -1,4 +1,4 @@
-#include "applier/takers.hpp"
+#include "applier/conflict_detector.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -8,11 +8,12 @@
 namespace adit::applier {
 namespace {
 
-constexpr std::size_t kFirstAsks = Takers::kFirstGaps.size() + 1;
+constexpr std::size_t kFirstAsks = ConflictDetector::kFirstGaps.size() + 1;
 
 }  // namespace
 
-void Takers::set_own(const std::vector<std::uint32_t>& addresses, std::vector<Mac> macs, Instant now) {
+void ConflictDetector::set_own(const std::vector<std::uint32_t>& addresses, std::vector<Mac> macs,
+                               Instant now) {
   macs_ = std::move(macs);
   std::vector<Own> next;
   for (const std::uint32_t address : addresses) {
@@ -24,14 +25,14 @@ void Takers::set_own(const std::vector<std::uint32_t>& addresses, std::vector<Ma
   own_ = std::move(next);
 }
 
-void Takers::ask_again(Instant now) {
+void ConflictDetector::ask_again(Instant now) {
   for (Own& own : own_) {
     own.first_asks = kFirstAsks;
     own.ask_at = now;
   }
 }
 
-void Takers::hear(const ArpPacket& packet, Instant now) {
+void ConflictDetector::hear(const ArpPacket& packet, Instant now) {
   if (std::ranges::find(macs_, packet.sender) != macs_.end()) return;
   for (Own& own : own_) {
     if (packet.from == own.address) {
@@ -44,20 +45,20 @@ void Takers::hear(const ArpPacket& packet, Instant now) {
 }
 
 /// Of several machines, reports the first until it falls silent.
-void Takers::note(Own& own, const Mac& by, Instant now) {
+void ConflictDetector::note(Own& own, const Mac& by, Instant now) {
   if (!own.taken || now >= own.by_seen + network::kTakenFor)
-    own.taken = Taken{.address = own.address, .by = by, .since = now};
+    own.taken = Conflict{.address = own.address, .by = by, .since = now};
   own.taken->seen = now;
   if (own.taken->by == by) own.by_seen = now;
   ask_soon(own, now);
 }
 
-void Takers::ask_soon(Own& own, Instant now) {
+void ConflictDetector::ask_soon(Own& own, Instant now) {
   const Instant soon = own.asked_at ? std::max(now, *own.asked_at + kBetween) : now;
   own.ask_at = own.ask_at ? std::min(*own.ask_at, soon) : soon;
 }
 
-std::vector<std::uint32_t> Takers::take_due(Instant now) {
+std::vector<std::uint32_t> ConflictDetector::take_due(Instant now) {
   std::vector<std::uint32_t> due;
   for (Own& own : own_) {
     if (own.taken && now >= own.taken->seen + network::kTakenFor) own.taken.reset();
@@ -72,7 +73,7 @@ std::vector<std::uint32_t> Takers::take_due(Instant now) {
   return due;
 }
 
-std::optional<Takers::Instant> Takers::wake() const {
+std::optional<ConflictDetector::Instant> ConflictDetector::wake() const {
   std::optional<Instant> first;
   const auto at = [&first](Instant when) { first = first ? std::min(*first, when) : when; };
   for (const Own& own : own_) {
@@ -82,8 +83,8 @@ std::optional<Takers::Instant> Takers::wake() const {
   return first;
 }
 
-std::vector<Takers::Taken> Takers::taken() const {
-  std::vector<Taken> all;
+std::vector<ConflictDetector::Conflict> ConflictDetector::taken() const {
+  std::vector<Conflict> all;
   for (const Own& own : own_) {
     if (own.taken) all.push_back(*own.taken);
   }

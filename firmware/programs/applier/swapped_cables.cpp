@@ -1,4 +1,4 @@
-#include "applier/exchanged.hpp"
+#include "applier/swapped_cables.hpp"
 
 #include <sys/epoll.h>
 #include <sys/inotify.h>
@@ -23,7 +23,7 @@ std::vector<std::uint32_t> sought_in(const network::Status& status, const std::v
   std::ranges::sort(all);
   const auto twice = std::ranges::unique(all);
   all.erase(twice.begin(), twice.end());
-  all.resize(std::min(all.size(), Takers::kMost));
+  all.resize(std::min(all.size(), ConflictDetector::kMost));
   return all;
 }
 
@@ -52,8 +52,8 @@ network::Status ToldStatus::read() const {
   return file.told<network::Status>().value_or(network::Status{});
 }
 
-void Exchanged::set_sought(const std::vector<std::uint32_t>& addresses, const std::vector<Mac>& macs,
-                           Instant now) {
+void SwappedCables::set_sought(const std::vector<std::uint32_t>& addresses, const std::vector<Mac>& macs,
+                               Instant now) {
   at_team_.set_own(addresses, macs, now);
   macs_ = macs;
   std::vector<AtPost> next;
@@ -64,24 +64,24 @@ void Exchanged::set_sought(const std::vector<std::uint32_t>& addresses, const st
   at_post_ = std::move(next);
 }
 
-void Exchanged::hear_at_post(const ArpPacket& packet, Instant now) {
+void SwappedCables::hear_at_post(const ArpPacket& packet, Instant now) {
   if (std::ranges::find(macs_, packet.sender) != macs_.end()) return;
   const auto heard = std::ranges::find(at_post_, packet.from, &AtPost::address);
   if (heard != at_post_.end()) heard->seen = now;
 }
 
-Exchanged::Due Exchanged::take_due(Instant now) {
+SwappedCables::Due SwappedCables::take_due(Instant now) {
   Due due{.at_team = at_team_.take_due(now), .at_post = {}};
   const auto taken = at_team_.taken();
   std::ranges::copy_if(due.at_team, std::back_inserter(due.at_post), [&taken](std::uint32_t address) {
-    return std::ranges::find(taken, address, &Takers::Taken::address) != taken.end();
+    return std::ranges::find(taken, address, &ConflictDetector::Conflict::address) != taken.end();
   });
   return due;
 }
 
-std::vector<Takers::Taken> Exchanged::found(Instant now) const {
+std::vector<ConflictDetector::Conflict> SwappedCables::found(Instant now) const {
   auto found = at_team_.taken();
-  std::erase_if(found, [&](const Takers::Taken& each) {
+  std::erase_if(found, [&](const ConflictDetector::Conflict& each) {
     const auto at_post = std::ranges::find(at_post_, each.address, &AtPost::address);
     const bool is_there =
         at_post != at_post_.end() && at_post->seen && now < *at_post->seen + network::kTakenFor;

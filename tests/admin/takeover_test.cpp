@@ -1,4 +1,4 @@
-#include "admin/taking_over.hpp"
+#include "admin/takeover.hpp"
 
 #include <gmock/gmock.h>
 
@@ -26,9 +26,9 @@ dispatch::Report answered(std::int64_t number) {
   return report;
 }
 
-class TakingOverTest : public testing::Test {
+class TakeoverTest : public testing::Test {
  protected:
-  TakingOverTest() { given_.put("settings.json", kSettings); }
+  TakeoverTest() { given_.put("settings.json", kSettings); }
 
   /// What a box with two reports hands on.
   spare::Content content(std::size_t reports = 2) const {
@@ -54,16 +54,16 @@ class TakingOverTest : public testing::Test {
 
   host::Folder given_, state_;
   Store store_{given_ / "settings.json", given_.path(), state_.path()};
-  TakingOver taking_over_{store_, state_.path()};
+  Takeover taking_over_{store_, state_.path()};
   loop::Loop loop_;
 };
 
-TEST_F(TakingOverTest, DoesNothingUnlessBegun) {
+TEST_F(TakeoverTest, DoesNothingUnlessBegun) {
   EXPECT_EQ(taking_over_.finish(loop_), false);
   EXPECT_FALSE(fs::exists(state_ / "ledger"));
 }
 
-TEST_F(TakingOverTest, ImportsReportsSettingsTokensAndStampsOnce) {
+TEST_F(TakeoverTest, ImportsReportsSettingsTokensAndStampsOnce) {
   store_.save_token("mapping", icd::BearerToken::parse("the-spare-s-own"));
   ASSERT_TRUE(taking_over_.begin(spare::write(content())));
   EXPECT_FALSE(fs::exists(state_ / "ledger")) << "nothing is changed while others use it";
@@ -80,7 +80,7 @@ TEST_F(TakingOverTest, ImportsReportsSettingsTokensAndStampsOnce) {
   EXPECT_FALSE(fs::exists(state_ / "../../escaped.token"));
 }
 
-TEST_F(TakingOverTest, RecordsTheSizeOfTheOldLedger) {
+TEST_F(TakeoverTest, RecordsTheSizeOfTheOldLedger) {
   const dispatch::Report report = answered(1);
   auto here = ledger::Ledger::open(state_.path());
   ASSERT_TRUE(here->write({&report, 1}));
@@ -93,7 +93,7 @@ TEST_F(TakingOverTest, RecordsTheSizeOfTheOldLedger) {
   EXPECT_EQ(kept->ledger.log, 1U);
 }
 
-TEST_F(TakingOverTest, RepeatsAfterAPowerCut) {
+TEST_F(TakeoverTest, RepeatsAfterAPowerCut) {
   const std::string text = spare::write(content());
   for (int cut = 0; cut < 3; ++cut) {
     ASSERT_TRUE(taking_over_.begin(text));
@@ -102,14 +102,14 @@ TEST_F(TakingOverTest, RepeatsAfterAPowerCut) {
   }
 }
 
-TEST_F(TakingOverTest, EndsStandby) {
+TEST_F(TakeoverTest, EndsStandby) {
   ASSERT_TRUE((SpareFile{.box = "b", .rest = Rest{.code = "1", .since = 5}}.write(state_.path())));
   ASSERT_TRUE(taking_over_.begin(spare::write(content())));
   ASSERT_EQ(taking_over_.finish(loop_), true);
   EXPECT_FALSE(SpareFile::read(state_.path())->rest);
 }
 
-TEST_F(TakingOverTest, RejectsAnInvalidLedger) {
+TEST_F(TakeoverTest, RejectsAnInvalidLedger) {
   spare::Content other = content();
   other.ledger = "no ledger";
   ASSERT_TRUE(taking_over_.begin(spare::write(other)));
@@ -123,7 +123,7 @@ TEST_F(TakingOverTest, RejectsAnInvalidLedger) {
 
 /// What the Command Post said last at the first box is as old here as it was there, however the two clocks
 /// stand to each other: silence that nobody saw makes no new run.
-TEST_F(TakingOverTest, FailsWhileUsedExportsCannotBeRead) {
+TEST_F(TakeoverTest, FailsWhileUsedExportsCannotBeRead) {
   ASSERT_TRUE(taking_over_.begin(spare::write(content())));
   fs::create_directory(fs::path(state_.path()) / SpareFile::kName);
   EXPECT_FALSE(taking_over_.finish(loop_));
@@ -132,7 +132,7 @@ TEST_F(TakingOverTest, FailsWhileUsedExportsCannotBeRead) {
   EXPECT_THAT(reports(), SizeIs(2));
 }
 
-TEST_F(TakingOverTest, CountsTheSwapTimeOnlyIfBothClocksAreSet) {
+TEST_F(TakeoverTest, CountsTheSwapTimeOnlyIfBothClocksAreSet) {
   for (const bool are_told : {false, true}) {
     const host::Folder folder;
     auto there = ledger::Ledger::open(folder.path());
@@ -153,7 +153,7 @@ TEST_F(TakingOverTest, CountsTheSwapTimeOnlyIfBothClocksAreSet) {
   }
 }
 
-TEST_F(TakingOverTest, FailsWhileStampsCannotBeRead) {
+TEST_F(TakeoverTest, FailsWhileStampsCannotBeRead) {
   const std::string file = state_ / forward::StampFloor::kFile;
   ASSERT_EQ(mkfifo(file.c_str(), 0600), 0);
   ASSERT_TRUE(taking_over_.begin(spare::write(content())));
@@ -161,13 +161,13 @@ TEST_F(TakingOverTest, FailsWhileStampsCannotBeRead) {
   EXPECT_TRUE(fs::is_fifo(file));
 }
 
-TEST_F(TakingOverTest, TellsWhyItsRequestCannotBeRead) {
-  fs::create_directory(state_ / TakingOver::kFile);
+TEST_F(TakeoverTest, TellsWhyItsRequestCannotBeRead) {
+  fs::create_directory(state_ / Takeover::kFile);
   EXPECT_FALSE(taking_over_.finish(loop_));
-  EXPECT_EQ(taking_over_.unread(), (state_ / TakingOver::kFile) + ": is not a regular file");
+  EXPECT_EQ(taking_over_.unread(), (state_ / Takeover::kFile) + ": is not a regular file");
 }
 
-TEST_F(TakingOverTest, KeepsSettingsOfThisMachine) {
+TEST_F(TakeoverTest, KeepsSettingsOfThisMachine) {
   spare::Content other = content();
   other.settings =
       R"({"version":1,"command_post":{"scoring":{"address":"10.100.2.200","port":8000},)"
@@ -188,7 +188,7 @@ TEST_F(TakingOverTest, KeepsSettingsOfThisMachine) {
 }
 
 /// The settings of this box and the first one's, without a team interface.
-class WithoutTeamInterfaceTest : public TakingOverTest {
+class WithoutTeamInterfaceTest : public TakeoverTest {
  protected:
   static std::string settings(const std::string& command_post, const std::string& listen) {
     return R"({"version":1,"command_post":{"scoring":{"address":"127.0.0.1","port":)" + command_post +
@@ -220,13 +220,13 @@ TEST_F(WithoutTeamInterfaceTest, RejectsSettingsThatPostToItself) {
   EXPECT_EQ(store_.load()->settings.team.listen.front().port, 8001);
 }
 
-TEST_F(TakingOverTest, NamesOmittedSettings) {
+TEST_F(TakeoverTest, NamesOmittedSettings) {
   spare::Content other = content();
   other.settings.insert(other.settings.find("\"version\""), "\"later\": 1, ");
   EXPECT_EQ(taking_over_.check(other)->passed_over, std::vector<std::string>{"later"});
 }
 
-TEST_F(TakingOverTest, RejectsUnusableSettings) {
+TEST_F(TakeoverTest, RejectsUnusableSettings) {
   spare::Content other = content();
   other.settings = R"({"version": 9})";
   const auto checked = taking_over_.check(other);

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "applier/takers.hpp"
+#include "applier/conflict_detector.hpp"
 #include "loop/file_descriptor.hpp"
 #include "loop/loop.hpp"
 #include "network/messages.hpp"
@@ -13,8 +13,8 @@
 namespace adit::applier {
 
 /// Addresses that answer on the link for the Command Post's endpoints: the endpoints or their gateway.
-/// Sorted, without duplicates, at most Takers::kMost. `own`: the box's addresses on that side, used if
-/// adit-network has none. Addresses in a subnet of `team` are left out, because a robot may have them.
+/// Sorted, without duplicates, at most ConflictDetector::kMost. `own`: the box's addresses on that side, used
+/// if adit-network has none. Addresses in a subnet of `team` are left out, because a robot may have them.
 std::vector<std::uint32_t> sought_in(const network::Status& status, const std::vector<settings::Subnet>& own,
                                      const std::vector<settings::Subnet>& team);
 
@@ -42,9 +42,9 @@ class ToldStatus {
 
 /// Detects exchanged cables by ARP: addresses of the Command Post answer at the team's port and not at their
 /// own. Requests at the Command Post's own port are sent only after an answer at the team's port.
-class Exchanged {
+class SwappedCables {
  public:
-  using Instant = Takers::Instant;
+  using Instant = ConflictDetector::Instant;
 
   /// Least time between the first and the last sighting, so that one forged packet proves nothing.
   static constexpr std::chrono::seconds kSure{4};
@@ -64,7 +64,7 @@ class Exchanged {
   std::optional<Instant> wake() const { return at_team_.wake(); }
 
   /// The Command Post's addresses seen at the team's port alone.
-  std::vector<Takers::Taken> found(Instant now) const;
+  std::vector<ConflictDetector::Conflict> found(Instant now) const;
 
  private:
   /// An address and its last sighting at its own port.
@@ -73,7 +73,7 @@ class Exchanged {
     std::optional<Instant> seen = {};
   };
 
-  Takers at_team_;
+  ConflictDetector at_team_;
   std::vector<AtPost> at_post_;
   std::vector<Mac> macs_;
 };

@@ -14,13 +14,13 @@ namespace adit::admin {
 
 /// Takeover from another box's export, safe against a power cut. begin() stores the export; the next finish()
 /// executes it, and a later finish() completes an interrupted one.
-class TakingOver {
+class Takeover {
  public:
   /// The export, with the other box's tokens; removed at the end.
   static constexpr const char* kFile = "take-over";
 
   /// `store` must outlive this object.
-  TakingOver(Store& store, std::string state_folder) : store_(store), state_(std::move(state_folder)) {}
+  Takeover(Store& store, std::string state_folder) : store_(store), state_(std::move(state_folder)) {}
 
   /// The export's settings. Error: the takeover is impossible. Does not change the box.
   std::expected<settings::Saved, std::string> check(const spare::Content& content) const;

@@ -1,4 +1,4 @@
-#include "forward/as_forwarded.hpp"
+#include "forward/delivered_scene.hpp"
 
 #include <gmock/gmock.h>
 
@@ -18,8 +18,8 @@ std::vector<icd::NamedPose> state(const std::string& robot, double x, icd::Quate
   return {{*icd::RobotName::parse(robot), {{x, 2, 3}, orientation}}};
 }
 
-TEST(AsForwarded, HasEachRobotWhereItWasLast) {
-  AsForwarded all;
+TEST(DeliveredScene, HasEachRobotWhereItWasLast) {
+  DeliveredScene all;
   all.forwarded(state("b", 1), 100);
   all.forwarded(state("a", 5, {0, 0, M_SQRT1_2, M_SQRT1_2}), 101);
   all.forwarded(state("b", 4), 102);
@@ -32,8 +32,8 @@ TEST(AsForwarded, HasEachRobotWhereItWasLast) {
   EXPECT_THAT(all.tracks().since(0), SizeIs(2));
 }
 
-TEST(AsForwarded, ShowsARunFromItsBeginning) {
-  AsForwarded all;
+TEST(DeliveredScene, ShowsARunFromItsBeginning) {
+  DeliveredScene all;
   all.forwarded(state("a", 1), 100);
   all.forwarded(std::vector{icd::Marker{}}, 100);
   all.begin_run(200);
@@ -42,9 +42,9 @@ TEST(AsForwarded, ShowsARunFromItsBeginning) {
   EXPECT_THAT(all.markers().changes(0).markers, IsEmpty());
 }
 
-TEST(AsForwarded, WasAsLongAgoAsItWasWhereverTheClockIsSet) {
+TEST(DeliveredScene, WasAsLongAgoAsItWasWhereverTheClockIsSet) {
   for (const double step : {3e8, -3e8}) {
-    AsForwarded all;
+    DeliveredScene all;
     all.forwarded(state("a", 1), 1e9);
     all.forwarded(std::vector{icd::Marker{}}, 1e9);
     all.move(step);
@@ -54,22 +54,22 @@ TEST(AsForwarded, WasAsLongAgoAsItWasWhereverTheClockIsSet) {
   }
 }
 
-TEST(AsForwarded, HasRoomForSoManyRobots) {
-  AsForwarded all;
+TEST(DeliveredScene, HasRoomForSoManyRobots) {
+  DeliveredScene all;
   for (int i = 0; i < 150; ++i) all.forwarded(state(icd::sentence("r", i), i), 100);
-  EXPECT_THAT(all.robots(), SizeIs(AsForwarded::kMostRobots));
-  EXPECT_THAT(all.tracks().since(0), SizeIs(AsForwarded::kMostRobots));
+  EXPECT_THAT(all.robots(), SizeIs(DeliveredScene::kMostRobots));
+  EXPECT_THAT(all.tracks().since(0), SizeIs(DeliveredScene::kMostRobots));
 }
 
-TEST(AsForwarded, ForgetsTheRobotThatWasSilentForLongestForOneMore) {
-  AsForwarded all;
+TEST(DeliveredScene, ForgetsTheRobotThatWasSilentForLongestForOneMore) {
+  DeliveredScene all;
   all.forwarded(state("ours", 1), 99);
   for (int i = 0; i < 300; ++i) {
     all.forwarded(state(icd::sentence("r", i), i), 100 + i);
     if (i % 50 == 0) all.forwarded(state("ours", i), 100 + i);
   }
   const auto robots = all.robots();
-  EXPECT_THAT(robots, SizeIs(AsForwarded::kMostRobots));
+  EXPECT_THAT(robots, SizeIs(DeliveredScene::kMostRobots));
   EXPECT_EQ(std::ranges::count(robots, "ours", &api::RobotRow::name), 1);
   EXPECT_EQ(std::ranges::count(robots, "r0", &api::RobotRow::name), 0);
 }

@@ -1,17 +1,17 @@
-#include "alarms/post_watch.hpp"
+#include "alarms/endpoint_watch.hpp"
 
 #include <gtest/gtest.h>
 
 namespace adit::alarms {
 namespace {
 
-using enum PostTrouble;
+using enum EndpointTrouble;
 
 /// One or two connections of an endpoint, looked at each second.
-class PostWatchTest : public testing::Test {
+class EndpointWatchTest : public testing::Test {
  protected:
-  explicit PostWatchTest(std::size_t ways = 1) : seen_(ways) {
-    for (Seen& each : seen_) each.connected = true;
+  explicit EndpointWatchTest(std::size_t ways = 1) : seen_(ways) {
+    for (ConnectionSample& each : seen_) each.connected = true;
     lasts(1);
   }
   void lasts(int seconds) {
@@ -19,7 +19,7 @@ class PostWatchTest : public testing::Test {
   }
   /// Each second a request is answered so.
   void answers(int status, int seconds, std::size_t way = 0) {
-    Seen& seen = seen_.at(way);
+    ConnectionSample& seen = seen_.at(way);
     for (int i = 0; i < seconds; ++i) {
       ++seen.ended;
       if (status == 429) ++seen.throttled;
@@ -29,19 +29,19 @@ class PostWatchTest : public testing::Test {
       lasts(1);
     }
   }
-  PostTrouble trouble() const { return watch_.endpoint(now_).trouble; }
+  EndpointTrouble trouble() const { return watch_.endpoint(now_).trouble; }
 
-  PostWatch watch_;
-  std::vector<Seen> seen_;
+  EndpointWatch watch_;
+  std::vector<ConnectionSample> seen_;
   double now_ = 1000;
 };
 
-TEST_F(PostWatchTest, AnsweringEndpointHasNoTrouble) {
+TEST_F(EndpointWatchTest, AnsweringEndpointHasNoTrouble) {
   answers(200, 20);
   EXPECT_EQ(trouble(), None);
 }
 
-TEST_F(PostWatchTest, EndpointWithoutAnswersIsSilent) {
+TEST_F(EndpointWatchTest, EndpointWithoutAnswersIsSilent) {
   answers(200, 3);
   seen_[0].busy = true;
   lasts(14);
@@ -53,7 +53,7 @@ TEST_F(PostWatchTest, EndpointWithoutAnswersIsSilent) {
   EXPECT_EQ(trouble(), None);
 }
 
-TEST_F(PostWatchTest, TellsHowLongTheEndpointHasRecovered) {
+TEST_F(EndpointWatchTest, TellsHowLongTheEndpointHasRecovered) {
   answers(200, 3);
   EXPECT_EQ(watch_.endpoint(now_).well_for, std::nullopt) << "it always took all";
   answers(500, 8);
@@ -69,7 +69,7 @@ TEST_F(PostWatchTest, TellsHowLongTheEndpointHasRecovered) {
   EXPECT_EQ(watch_.endpoint(now_).well_for, 3) << "another place takes what waited for the one before";
 }
 
-TEST_F(PostWatchTest, EndpointStaysSilentWhileRequestsTimeOut) {
+TEST_F(EndpointWatchTest, EndpointStaysSilentWhileRequestsTimeOut) {
   for (int i = 0; i < 4; ++i) {
     seen_[0].busy = true;
     seen_[0].sent += 300;
@@ -86,7 +86,7 @@ TEST_F(PostWatchTest, EndpointStaysSilentWhileRequestsTimeOut) {
   EXPECT_EQ(trouble(), None);
 }
 
-TEST_F(PostWatchTest, EndpointIsNotSilentDuringAnUpload) {
+TEST_F(EndpointWatchTest, EndpointIsNotSilentDuringAnUpload) {
   seen_[0].busy = true;
   for (int i = 0; i < 60; ++i) {
     seen_[0].sent += 10'000;
@@ -97,7 +97,7 @@ TEST_F(PostWatchTest, EndpointIsNotSilentDuringAnUpload) {
   EXPECT_EQ(trouble(), Silent);
 }
 
-TEST_F(PostWatchTest, EndpointWithoutConnectionIsUnreachable) {
+TEST_F(EndpointWatchTest, EndpointWithoutConnectionIsUnreachable) {
   seen_[0].connected = false;
   seen_[0].said = "connecting to 10.100.1.200:8000: Connection refused";
   lasts(2);
@@ -111,7 +111,7 @@ TEST_F(PostWatchTest, EndpointWithoutConnectionIsUnreachable) {
   EXPECT_EQ(trouble(), None);
 }
 
-TEST_F(PostWatchTest, EndpointThatClosesAfterErrorsIsFailing) {
+TEST_F(EndpointWatchTest, EndpointThatClosesAfterErrorsIsFailing) {
   for (int i = 0; i < 4; ++i) {
     answers(500, 1);
     seen_[0].connected = false;
@@ -120,13 +120,13 @@ TEST_F(PostWatchTest, EndpointThatClosesAfterErrorsIsFailing) {
   EXPECT_EQ(trouble(), Failing) << "it is reached each time";
 }
 
-TEST_F(PostWatchTest, IdleConnectionIsNoTrouble) {
+TEST_F(EndpointWatchTest, IdleConnectionIsNoTrouble) {
   seen_[0].connected = false;
   lasts(60);
   EXPECT_EQ(trouble(), None) << "nothing was to be sent";
 }
 
-TEST_F(PostWatchTest, DistinguishesRefusingAndForeignEndpoints) {
+TEST_F(EndpointWatchTest, DistinguishesRefusingAndForeignEndpoints) {
   answers(401, 1);
   EXPECT_EQ(trouble(), Refusing);
   answers(403, 1);
@@ -139,7 +139,7 @@ TEST_F(PostWatchTest, DistinguishesRefusingAndForeignEndpoints) {
   EXPECT_EQ(trouble(), None);
 }
 
-TEST_F(PostWatchTest, EndpointWithOnlyErrorAnswersIsFailing) {
+TEST_F(EndpointWatchTest, EndpointWithOnlyErrorAnswersIsFailing) {
   answers(500, 7);
   EXPECT_EQ(trouble(), Failing);
   EXPECT_EQ(watch_.endpoint(now_).said, "it answered 500");
@@ -147,12 +147,12 @@ TEST_F(PostWatchTest, EndpointWithOnlyErrorAnswersIsFailing) {
   EXPECT_EQ(trouble(), None);
 }
 
-TEST_F(PostWatchTest, EndpointThatRejectsMessagesIsNotFailing) {
+TEST_F(EndpointWatchTest, EndpointThatRejectsMessagesIsNotFailing) {
   answers(422, 20);
   EXPECT_EQ(trouble(), None) << "that is the message's fault";
 }
 
-TEST_F(PostWatchTest, SeveralThrottledAnswersAreTrouble) {
+TEST_F(EndpointWatchTest, SeveralThrottledAnswersAreTrouble) {
   answers(429, 2);
   EXPECT_EQ(trouble(), None) << "now and then it is how Adit finds the rate";
   answers(429, 1);
@@ -161,16 +161,16 @@ TEST_F(PostWatchTest, SeveralThrottledAnswersAreTrouble) {
   EXPECT_EQ(trouble(), None);
 }
 
-TEST_F(PostWatchTest, ForgetsTheFormerEndpoint) {
+TEST_F(EndpointWatchTest, ForgetsTheFormerEndpoint) {
   answers(500, 20);
   watch_.forget();
   lasts(1);
   EXPECT_EQ(trouble(), None);
 }
 
-class TwoConnections : public PostWatchTest {
+class TwoConnections : public EndpointWatchTest {
  protected:
-  TwoConnections() : PostWatchTest(2) {}
+  TwoConnections() : EndpointWatchTest(2) {}
 };
 
 TEST_F(TwoConnections, OneFailingConnectionIsNoTroubleOfTheEndpoint) {

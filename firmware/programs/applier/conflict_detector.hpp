@@ -14,7 +14,7 @@ namespace adit::applier {
 /// 5227 2.4). Decides when to ask: after an address or a cable comes, after another machine probes for an
 /// address, and repeatedly during a conflict. Stores one machine for each address and limits the rate of
 /// requests, so a flood of packets uses no more memory or bandwidth.
-class Takers {
+class ConflictDetector {
  public:
   using Instant = std::chrono::steady_clock::time_point;
 
@@ -26,11 +26,11 @@ class Takers {
   static constexpr std::chrono::seconds kBetween{5};  // least gap between requests for one address
 
   /// An address that another machine uses.
-  struct Taken {
+  struct Conflict {
     std::uint32_t address = 0;
     Mac by{};  // the first machine, while it is heard
     Instant since{}, seen{};
-    friend bool operator==(const Taken&, const Taken&) = default;
+    friend bool operator==(const Conflict&, const Conflict&) = default;
   };
 
   /// `addresses`: those that no other machine may have. `macs`: of this machine.
@@ -43,14 +43,14 @@ class Takers {
   /// Time of the next take_due().
   std::optional<Instant> wake() const;
 
-  std::vector<Taken> taken() const;
+  std::vector<Conflict> taken() const;
 
  private:
   struct Own {
     std::uint32_t address = 0;
     std::size_t first_asks = 0;  // first requests left
     std::optional<Instant> ask_at = {}, asked_at = {};
-    std::optional<Taken> taken = {};
+    std::optional<Conflict> taken = {};
     Instant by_seen{};  // last packet of taken->by
   };
   static void note(Own& own, const Mac& by, Instant now);

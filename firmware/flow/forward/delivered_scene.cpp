@@ -1,10 +1,10 @@
-#include "forward/as_forwarded.hpp"
+#include "forward/delivered_scene.hpp"
 
 #include <algorithm>
 
 namespace adit::forward {
 
-void AsForwarded::forwarded(std::span<const icd::NamedPose> poses, api::Time now) {
+void DeliveredScene::forwarded(std::span<const icd::NamedPose> poses, api::Time now) {
   for (const icd::NamedPose& named : poses) {
     const std::string& name = named.name.text();
     if (robots_.size() >= kMostRobots && !robots_.contains(name)) forget_the_oldest();
@@ -14,19 +14,19 @@ void AsForwarded::forwarded(std::span<const icd::NamedPose> poses, api::Time now
   }
 }
 
-void AsForwarded::forget_the_oldest() {
+void DeliveredScene::forget_the_oldest() {
   const auto oldest = std::ranges::min_element(robots_, {}, [](const auto& item) { return item.second.at; });
   tracks_.forget(oldest->first);
   robots_.erase(oldest);
 }
 
-void AsForwarded::begin_run(api::Time now) {
+void DeliveredScene::begin_run(api::Time now) {
   markers_.wipe(now);
   tracks_.wipe();
   before_.clear();
 }
 
-void AsForwarded::move(double seconds) {
+void DeliveredScene::move(double seconds) {
   for (auto& [name, robot] : robots_) {
     if (robot.at) *robot.at += seconds;
   }
@@ -35,7 +35,7 @@ void AsForwarded::move(double seconds) {
   markers_.move(seconds);
 }
 
-void AsForwarded::go_on_from(std::vector<api::Track> earlier) {
+void DeliveredScene::go_on_from(std::vector<api::Track> earlier) {
   for (const api::Track& track : earlier) {
     if (!track.poses.empty()) before_[track.robot] = track.poses.back().at;
   }
@@ -49,7 +49,7 @@ void AsForwarded::go_on_from(std::vector<api::Track> earlier) {
   tracks_.go_on_from(earlier);
 }
 
-std::vector<api::RobotRow> AsForwarded::robots() const {
+std::vector<api::RobotRow> DeliveredScene::robots() const {
   std::vector<api::RobotRow> rows;
   rows.reserve(robots_.size());
   for (const auto& [name, row] : robots_) rows.push_back(row);

@@ -11,7 +11,7 @@
 namespace adit::alarms {
 
 /// State of one connection to the Command Post.
-struct Seen {
+struct ConnectionSample {
   bool connected = false;
   bool busy = false;            // waiting for an answer
   std::uint64_t ended = 0;      // requests that ended, with any result
@@ -23,7 +23,7 @@ struct Seen {
 };
 
 /// Finds the trouble of one endpoint from all its connections, and its start.
-class PostWatch {
+class EndpointWatch {
  public:
   static constexpr double kUnreachableAfter = 3;  // seconds
   static constexpr double kSilentAfter =
@@ -35,27 +35,27 @@ class PostWatch {
   static constexpr std::size_t kThrottled = 3;  // answers of 429 within kThrottledWithin
 
   /// Call each second with the same connections in the same order. `now`: monotonic seconds.
-  void look(const std::vector<Seen>& seen, double now);
+  void look(const std::vector<ConnectionSample>& seen, double now);
   /// Call if the endpoint's address or token has changed.
   void forget();
   /// The trouble; the caller sets Endpoint::name and address.
   Endpoint endpoint(double now) const;
 
  private:
-  struct Way {
-    Seen seen = {};
+  struct ConnectionState {
+    ConnectionSample seen = {};
     std::optional<double> well = {};     // last good answer
     std::optional<double> waits = {};    // start of the wait for an answer
     std::optional<double> without = {};  // start of the time without a connection
     std::optional<double> failing = {};  // start of errors as the only answers
     std::optional<double> barred = {};   // start of answers 401, 403, or from another server
   };
-  void look(Way& way, const Seen& seen, double now);
-  bool is_well_elsewhere(const Way& way, double since, double now) const;
-  Endpoint trouble_of(const Way& way, double now) const;
+  void look(ConnectionState& way, const ConnectionSample& seen, double now);
+  bool is_well_elsewhere(const ConnectionState& way, double since, double now) const;
+  Endpoint trouble_of(const ConnectionState& way, double now) const;
   Endpoint throttling(double now) const;
 
-  std::vector<Way> ways_;
+  std::vector<ConnectionState> ways_;
   bool is_stopped_ = false;           // at the last look
   std::optional<double> well_since_;  // end of the last stop
   std::deque<double> throttled_;      // times of the last kThrottled answers of 429

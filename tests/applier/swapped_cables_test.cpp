@@ -1,4 +1,4 @@
-#include "applier/exchanged.hpp"
+#include "applier/swapped_cables.hpp"
 
 #include <gmock/gmock.h>
 
@@ -25,7 +25,7 @@ class ExchangedCablesTest : public testing::Test {
   /// So long, with whoever is there answering what he is asked.
   void pass(seconds time, bool is_at_team, bool is_at_post) {
     for (const auto until = now + time; now < until; now += seconds(1)) {
-      const Exchanged::Due due = exchanged.take_due(now);
+      const SwappedCables::Due due = exchanged.take_due(now);
       asked_at_post += due.at_post.size();
       for (const std::uint32_t address : due.at_team) {
         if (is_at_team) exchanged.hear_at_team(from(address), now);
@@ -37,12 +37,12 @@ class ExchangedCablesTest : public testing::Test {
   }
   std::vector<std::uint32_t> found() const {
     std::vector<std::uint32_t> all;
-    for (const Takers::Taken& each : exchanged.found(now)) all.push_back(each.address);
+    for (const ConflictDetector::Conflict& each : exchanged.found(now)) all.push_back(each.address);
     return all;
   }
 
-  Exchanged::Instant now{std::chrono::hours(1)};
-  Exchanged exchanged;
+  SwappedCables::Instant now{std::chrono::hours(1)};
+  SwappedCables exchanged;
   std::size_t asked_at_post = 0;
 };
 
@@ -98,7 +98,8 @@ TEST_F(ExchangedCablesTest, LimitProbesAtTheCommandPostPort) {
     exchanged.hear_at_team(from(kScoring), now);
     asked_at_post += exchanged.take_due(now).at_post.size();
   }
-  EXPECT_LE(asked_at_post, static_cast<std::size_t>(std::chrono::minutes(1) / Takers::kBetween) + 1);
+  EXPECT_LE(asked_at_post,
+            static_cast<std::size_t>(std::chrono::minutes(1) / ConflictDetector::kBetween) + 1);
 }
 
 settings::Subnet subnet(const char* text) {
@@ -137,7 +138,7 @@ TEST(SoughtAddresses, AreBounded) {
   many.endpoints.addresses.clear();
   for (std::uint32_t i = 0; i < network::kMostEndpoints; ++i)
     many.endpoints.addresses.push_back(0x0a640120 + i);
-  EXPECT_EQ(sought_in(many, {}, {}).size(), Takers::kMost);
+  EXPECT_EQ(sought_in(many, {}, {}).size(), ConflictDetector::kMost);
 }
 
 }  // namespace

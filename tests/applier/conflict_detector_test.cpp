@@ -1,4 +1,4 @@
-#include "applier/takers.hpp"
+#include "applier/conflict_detector.hpp"
 
 #include <gmock/gmock.h>
 #include <linux/filter.h>
@@ -43,8 +43,8 @@ class AddressConflictsTest : public testing::Test {
   AddressConflictsTest() {
     takers.set_own({kAddress, kAnother}, {kOwn, kOwnOther}, now);
     takers.take_due(now);
-    for (const seconds gap : Takers::kFirstGaps) takers.take_due(now += gap);
-    now += Takers::kBetween;
+    for (const seconds gap : ConflictDetector::kFirstGaps) takers.take_due(now += gap);
+    now += ConflictDetector::kBetween;
   }
 
   void hear(const Bytes& bytes) {
@@ -53,12 +53,12 @@ class AddressConflictsTest : public testing::Test {
   /// Address and MAC address of what is taken.
   std::vector<std::pair<std::uint32_t, Mac>> taken() const {
     std::vector<std::pair<std::uint32_t, Mac>> all;
-    for (const Takers::Taken& each : takers.taken()) all.emplace_back(each.address, each.by);
+    for (const ConflictDetector::Conflict& each : takers.taken()) all.emplace_back(each.address, each.by);
     return all;
   }
 
-  Takers::Instant now{std::chrono::hours(1)};
-  Takers takers;
+  ConflictDetector::Instant now{std::chrono::hours(1)};
+  ConflictDetector takers;
 };
 
 TEST_F(AddressConflictsTest, AreOtherMachinesThatUseTheAddress) {
@@ -125,11 +125,11 @@ TEST_F(AddressConflictsTest, AreForgottenWithTheAddress) {
 }
 
 TEST_F(AddressConflictsTest, AreProbedForANewAddressOnly) {
-  Takers fresh;
+  ConflictDetector fresh;
   EXPECT_EQ(fresh.wake(), std::nullopt);
   fresh.set_own({kAddress}, {kOwn}, now);
   EXPECT_THAT(fresh.take_due(now), ElementsAre(kAddress));
-  for (const seconds gap : Takers::kFirstGaps) {
+  for (const seconds gap : ConflictDetector::kFirstGaps) {
     EXPECT_THAT(fresh.take_due(now), IsEmpty());
     now += gap;
     EXPECT_EQ(fresh.wake(), now);
@@ -143,7 +143,7 @@ TEST_F(AddressConflictsTest, AreProbedForANewAddressOnly) {
 }
 
 TEST_F(AddressConflictsTest, AreNotLostBetweenTheFirstProbes) {
-  Takers fresh;
+  ConflictDetector fresh;
   const auto began = now;
   fresh.set_own({kAddress}, {kOwn}, now);
   const auto all = read_arp(packet(kAnswers, kFirst, kAddress, kElsewhere));
@@ -191,11 +191,11 @@ TEST_F(AddressConflictsTest, AreBoundedAndProbedSeldom) {
     now += std::chrono::milliseconds(1);
   }
   EXPECT_EQ(takers.taken().size(), 1u);
-  EXPECT_LE(asked, static_cast<std::size_t>((now - began) / Takers::kBetween) + 1);
+  EXPECT_LE(asked, static_cast<std::size_t>((now - began) / ConflictDetector::kBetween) + 1);
   std::vector<std::uint32_t> many(1000);
   std::iota(many.begin(), many.end(), 0x0c000000u);
   takers.set_own(many, {kOwn}, now);
-  EXPECT_EQ(takers.take_due(now).size(), Takers::kMost);
+  EXPECT_EQ(takers.take_due(now).size(), ConflictDetector::kMost);
 }
 
 /// The kernel's own judgement, on a socket that anybody may have.
@@ -249,7 +249,7 @@ TEST_F(ArpFilter, PassesNothingWithoutAnAddress) {
 }
 
 TEST_F(ArpFilter, HoldsAllWatchedAddresses) {
-  std::vector<std::uint32_t> many(2 * Takers::kMost);  // the box's own, and the Command Post's
+  std::vector<std::uint32_t> many(2 * ConflictDetector::kMost);  // the box's own, and the Command Post's
   std::iota(many.begin(), many.end(), 0x0c000000u);
   set(many);
   EXPECT_TRUE(is_heard(packet(kAnswers, kFirst, many.back(), kElsewhere)));

@@ -1,4 +1,4 @@
-#include "queues/ahead.hpp"
+#include "queues/pipelining.hpp"
 
 #include <gtest/gtest.h>
 
@@ -20,17 +20,17 @@ const QueuedMap kGrid = waits(grid_update("r1", grid(0, 0, 10, 10)));
 const QueuedMap kCloud = waits(cloud_update("r1", {1}));
 
 /// At a Command Post that has taken so many.
-Ahead after(int taken) {
-  Ahead ahead;
+Pipelining after(int taken) {
+  Pipelining ahead;
   for (int i = 0; i < taken; ++i) ahead.taken(false);
   return ahead;
 }
 
-bool may_go(const Ahead& ahead, double now = 1, bool went_ahead = false) {
+bool may_go(const Pipelining& ahead, double now = 1, bool went_ahead = false) {
   return ahead.may_go(kGrid, {.map = kCloud, .arrived = at(1), .went_ahead = went_ahead}, at(now));
 }
 
-TEST(Ahead, AllowedIfTheOrderDoesNotMatter) {
+TEST(Pipelining, AllowedIfTheOrderDoesNotMatter) {
   const QueuedMap other_grid = waits(grid_update("r2", grid(0, 0, 10, 10)));
   const QueuedMap merged = waits(cloud_update("", {1}));
   const struct {
@@ -50,54 +50,54 @@ TEST(Ahead, AllowedIfTheOrderDoesNotMatter) {
   }
 }
 
-TEST(Ahead, AllowedAfterSeveralDeliveriesInARow) {
-  EXPECT_FALSE(may_go(after(Ahead::kWell - 1)));
-  Ahead ahead = after(Ahead::kWell);
+TEST(Pipelining, AllowedAfterSeveralDeliveriesInARow) {
+  EXPECT_FALSE(may_go(after(Pipelining::kWell - 1)));
+  Pipelining ahead = after(Pipelining::kWell);
   EXPECT_TRUE(may_go(ahead));
   ahead.failed(false);
   EXPECT_FALSE(may_go(ahead));
-  for (int i = 0; i < Ahead::kWell; ++i) ahead.taken(false);
+  for (int i = 0; i < Pipelining::kWell; ++i) ahead.taken(false);
   EXPECT_TRUE(may_go(ahead));
 }
 
-TEST(Ahead, AllowedWhileTheAnswerIsNotLate) {
-  const double late = std::chrono::duration<double>(Ahead::kLate).count();
-  EXPECT_TRUE(may_go(after(Ahead::kWell), 1 + late));
-  EXPECT_FALSE(may_go(after(Ahead::kWell), 1.001 + late));
+TEST(Pipelining, AllowedWhileTheAnswerIsNotLate) {
+  const double late = std::chrono::duration<double>(Pipelining::kLate).count();
+  EXPECT_TRUE(may_go(after(Pipelining::kWell), 1 + late));
+  EXPECT_FALSE(may_go(after(Pipelining::kWell), 1.001 + late));
 }
 
-TEST(Ahead, SecondAllowedAfterOneAheadWasDelivered) {
-  Ahead ahead = after(Ahead::kWell);
+TEST(Pipelining, SecondAllowedAfterOneAheadWasDelivered) {
+  Pipelining ahead = after(Pipelining::kWell);
   EXPECT_FALSE(may_go(ahead, 1, true)) << "a trial";
   ahead.taken(true);
   EXPECT_TRUE(may_go(ahead, 1, true));
   ahead.failed(true);
-  for (int i = 0; i < Ahead::kMostWell; ++i) ahead.taken(false);
+  for (int i = 0; i < Pipelining::kMostWell; ++i) ahead.taken(false);
   EXPECT_FALSE(may_go(ahead, 1, true)) << "a trial again";
   EXPECT_TRUE(may_go(ahead));
 }
 
-TEST(Ahead, ForbiddenForAMapThatFailedBefore) {
+TEST(Pipelining, ForbiddenForAMapThatFailedBefore) {
   QueuedMap failed = kGrid;
   failed.trial.failures = 1;
-  const Ahead ahead = after(Ahead::kWell);
+  const Pipelining ahead = after(Pipelining::kWell);
   EXPECT_FALSE(ahead.may_go(failed, {.map = kCloud, .arrived = at(1), .went_ahead = false}, at(1)));
   EXPECT_FALSE(ahead.may_go(kCloud, {.map = failed, .arrived = at(1), .went_ahead = false}, at(1)));
 }
 
-TEST(Ahead, BacksOffIfTwoInFlightFail) {
-  Ahead ahead;
-  for (int tried = 0, taken_between = Ahead::kWell; tried < 10; ++tried) {
+TEST(Pipelining, BacksOffIfTwoInFlightFail) {
+  Pipelining ahead;
+  for (int tried = 0, taken_between = Pipelining::kWell; tried < 10; ++tried) {
     int taken = 0;
     for (; !may_go(ahead); ++taken) ahead.taken(false);
     EXPECT_EQ(taken, taken_between);
     ahead.failed(true);
-    taken_between = std::min(2 * taken_between, Ahead::kMostWell);
+    taken_between = std::min(2 * taken_between, Pipelining::kMostWell);
   }
-  for (int i = 0; i < Ahead::kMostWell; ++i) ahead.taken(false);
+  for (int i = 0; i < Pipelining::kMostWell; ++i) ahead.taken(false);
   ahead.taken(true);
   ahead.failed(false);
-  for (int i = 0; i < Ahead::kWell; ++i) ahead.taken(false);
+  for (int i = 0; i < Pipelining::kWell; ++i) ahead.taken(false);
   EXPECT_TRUE(may_go(ahead)) << "one was taken";
 }
 

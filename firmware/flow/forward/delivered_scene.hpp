@@ -14,7 +14,7 @@
 namespace adit::forward {
 
 /// Robots and markers as the Command Post has them, without queued messages.
-class AsForwarded {
+class DeliveredScene {
  public:
   static constexpr std::size_t kMostRobots = 100;  // the latest ones
 

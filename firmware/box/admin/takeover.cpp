@@ -1,4 +1,4 @@
-#include "admin/taking_over.hpp"
+#include "admin/takeover.hpp"
 
 #include <algorithm>
 #include <cerrno>
@@ -53,11 +53,11 @@ void keep_hardware(settings::Settings& here, settings::Settings& taken) {
 
 }  // namespace
 
-std::expected<void, std::string> TakingOver::begin(const std::string& content) {
+std::expected<void, std::string> Takeover::begin(const std::string& content) {
   return host::write_file(begun(), content, host::kOursAlone);
 }
 
-std::expected<bool, std::string> TakingOver::finish(const loop::Loop& loop) {
+std::expected<bool, std::string> Takeover::finish(const loop::Loop& loop) {
   const auto file = host::slurp(begun(), spare::kLargestExport);
   if (!file && file.error() == ENOENT) return false;
   if (!file) return std::unexpected(unread_ = host::trouble(begun(), file.error()));
@@ -71,7 +71,7 @@ std::expected<bool, std::string> TakingOver::finish(const loop::Loop& loop) {
 }
 
 /// Every step can be repeated. The last step records the first box, which finishes the takeover.
-std::expected<void, std::string> TakingOver::take(const spare::Content& content, const loop::Loop& loop) {
+std::expected<void, std::string> Takeover::take(const spare::Content& content, const loop::Loop& loop) {
   forward::StampFloor stamps(state_);
   const auto kept = ADIT_TRY(stamps.read());
   const double least = std::ceil(std::max(content.about.stamps, kept.least));  // the stored form
@@ -88,7 +88,7 @@ std::expected<void, std::string> TakingOver::take(const spare::Content& content,
   return note(content.about);
 }
 
-std::expected<settings::Saved, std::string> TakingOver::check(const spare::Content& content) const {
+std::expected<settings::Saved, std::string> Takeover::check(const spare::Content& content) const {
   auto saved = settings::parse_saved(content.settings);
   if (!saved)
     return std::unexpected("this box cannot use the export's settings: " +
@@ -98,13 +98,13 @@ std::expected<settings::Saved, std::string> TakingOver::check(const spare::Conte
   return *std::move(saved);
 }
 
-std::expected<void, std::string> TakingOver::abandon() {
+std::expected<void, std::string> Takeover::abandon() {
   return host::remove_file(begun());
 }
 
-std::expected<void, std::string> TakingOver::take_ledger(const spare::Content& content,
-                                                         const dispatch::Handover& handover,
-                                                         const ledger::Known& known) {
+std::expected<void, std::string> Takeover::take_ledger(const spare::Content& content,
+                                                       const dispatch::Handover& handover,
+                                                       const ledger::Known& known) {
   auto here = ledger::Ledger::open(state_, known);
   if (!here) return std::unexpected("this box's ledger: " + here.error().what);
   if (auto taken = here->take_over(content.ledger, handover); !taken)
@@ -112,7 +112,7 @@ std::expected<void, std::string> TakingOver::take_ledger(const spare::Content& c
   return {};
 }
 
-std::expected<void, std::string> TakingOver::take_settings(const spare::Content& content) {
+std::expected<void, std::string> Takeover::take_settings(const spare::Content& content) {
   auto saved = settings::parse_saved(content.settings);
   if (!saved) return std::unexpected("the first box's settings: " + settings::sentence_of(saved.error()));
   auto here = store_.load();
@@ -128,7 +128,7 @@ std::expected<void, std::string> TakingOver::take_settings(const spare::Content&
   return store_.save(saved->settings);
 }
 
-std::expected<void, std::string> TakingOver::note(const spare::About& about) {
+std::expected<void, std::string> Takeover::note(const spare::About& about) {
   auto file = ADIT_TRY(SpareFile::read(state_));
   file.rest.reset();
   std::erase_if(file.taken, [&about](const TakenFrom& each) { return each.box == about.box; });

@@ -2,8 +2,8 @@
 
 #include <vector>
 
+#include "alarms/endpoint_watch.hpp"
 #include "alarms/habits.hpp"
-#include "alarms/post_watch.hpp"
 #include "forward/flow.hpp"
 #include "settings/settings.hpp"
 
@@ -11,7 +11,7 @@ namespace adit::gateway {
 
 /// Facts that need observation over time: the endpoints' answers, the robots' intervals, the growth of the
 /// queue. `now`: seconds of the stamp clock, which never steps.
-class Lookout {
+class ObservedFacts {
  public:
   /// Call once a second. `time`: time of day.
   void look(forward::Flow& flow, const settings::Settings& settings,
@@ -29,7 +29,7 @@ class Lookout {
   bool queue_grows(double now) const { return growth_.grows(now); }
 
  private:
-  alarms::PostWatch scoring_, mapping_;
+  alarms::EndpointWatch scoring_, mapping_;
   alarms::Habits habits_;
   alarms::Growth growth_;
   std::map<std::string, std::uint64_t> told_;  // accepted and forwarded messages at the last save

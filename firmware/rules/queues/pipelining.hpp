@@ -18,7 +18,7 @@ namespace adit::queues {
 ///
 /// After each failure with two maps in flight, twice as many maps have to be accepted in a row. A Command
 /// Post that cannot handle two maps therefore mostly gets one at a time.
-class Ahead {
+class Pipelining {
  public:
   static constexpr int kWell = 2, kMostWell = 128;
   static constexpr std::chrono::milliseconds kLate{500};

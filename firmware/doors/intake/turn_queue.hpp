@@ -10,7 +10,7 @@ namespace adit::intake {
 
 /// Gives turns for work that needs too much memory to be done twice at once. Addresses take turns; each
 /// address has its turns in order of arrival. For the loop only.
-class OneAtATime {
+class TurnQueue {
  public:
   /// Calls `begin` when its turn comes, maybe at once. The caller ends the turn with end().
   void wait(const std::string& address, std::function<void()> begin) {

@@ -1,4 +1,4 @@
-#include "alarms/post_watch.hpp"
+#include "alarms/endpoint_watch.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -6,7 +6,7 @@
 namespace adit::alarms {
 namespace {
 
-bool is_barred(const Seen& seen) {
+bool is_barred(const ConnectionSample& seen) {
   return seen.foreign || seen.status == 401 || seen.status == 403;
 }
 
@@ -22,7 +22,7 @@ void begin(std::optional<double>& since, bool so, double now) {
 
 }  // namespace
 
-void PostWatch::look(Way& way, const Seen& seen, double now) {
+void EndpointWatch::look(ConnectionState& way, const ConnectionSample& seen, double now) {
   const bool ended = seen.ended != way.seen.ended;
   const bool answered = ended && seen.status != 0;
   const bool moved = seen.sent != way.seen.sent;
@@ -44,7 +44,7 @@ void PostWatch::look(Way& way, const Seen& seen, double now) {
   way.seen = seen;
 }
 
-void PostWatch::look(const std::vector<Seen>& seen, double now) {
+void EndpointWatch::look(const std::vector<ConnectionSample>& seen, double now) {
   if (ways_.size() != seen.size()) {
     ways_.assign(seen.size(), {});
     for (std::size_t i = 0; i < seen.size(); ++i) {
@@ -53,54 +53,54 @@ void PostWatch::look(const std::vector<Seen>& seen, double now) {
     }
   }
   for (std::size_t i = 0; i < seen.size(); ++i) look(ways_[i], seen[i], now);
-  const bool was_stopped = std::exchange(is_stopped_, endpoint(now).trouble < PostTrouble::Throttling);
+  const bool was_stopped = std::exchange(is_stopped_, endpoint(now).trouble < EndpointTrouble::Throttling);
   if (was_stopped && !is_stopped_) well_since_ = now;
 }
 
-void PostWatch::forget() {
+void EndpointWatch::forget() {
   ways_.clear();
   throttled_.clear();
   is_stopped_ = true;  // so that messages queued for the old address count as late, not as failed
 }
 
 /// Whether another connection had a good answer within kStillWell, and not before `since` less a second.
-bool PostWatch::is_well_elsewhere(const Way& way, double since, double now) const {
-  return std::ranges::any_of(ways_, [&](const Way& other) {
+bool EndpointWatch::is_well_elsewhere(const ConnectionState& way, double since, double now) const {
+  return std::ranges::any_of(ways_, [&](const ConnectionState& other) {
     return &other != &way && other.well && *other.well > std::min(since, now) - 1 &&
            now - *other.well < kStillWell;
   });
 }
 
-Endpoint PostWatch::trouble_of(const Way& way, double now) const {
-  const Seen& seen = way.seen;
+Endpoint EndpointWatch::trouble_of(const ConnectionState& way, double now) const {
+  const ConnectionSample& seen = way.seen;
   const auto lasts = [&](const std::optional<double>& since, double seconds) {
     return since && now - *since >= seconds && !is_well_elsewhere(way, *since, now);
   };
   if (lasts(way.without, kUnreachableAfter))
-    return {.trouble = PostTrouble::Unreachable, .since = *way.without, .said = seen.said};
+    return {.trouble = EndpointTrouble::Unreachable, .since = *way.without, .said = seen.said};
   if (lasts(way.barred, 0)) {
-    return {.trouble = seen.foreign ? PostTrouble::Foreign : PostTrouble::Refusing,
+    return {.trouble = seen.foreign ? EndpointTrouble::Foreign : EndpointTrouble::Refusing,
             .since = *way.barred,
             .said = seen.said};
   }
-  if (lasts(way.waits, kSilentAfter)) return {.trouble = PostTrouble::Silent, .since = *way.waits};
+  if (lasts(way.waits, kSilentAfter)) return {.trouble = EndpointTrouble::Silent, .since = *way.waits};
   if (lasts(way.failing, kFailingAfter))
-    return {.trouble = PostTrouble::Failing, .since = *way.failing, .said = seen.said};
+    return {.trouble = EndpointTrouble::Failing, .since = *way.failing, .said = seen.said};
   return {};
 }
 
-Endpoint PostWatch::throttling(double now) const {
+Endpoint EndpointWatch::throttling(double now) const {
   if (throttled_.size() < kThrottled || now - throttled_.front() > kThrottledWithin) return {};
-  return {.trouble = PostTrouble::Throttling, .since = throttled_.front()};
+  return {.trouble = EndpointTrouble::Throttling, .since = throttled_.front()};
 }
 
-Endpoint PostWatch::endpoint(double now) const {
+Endpoint EndpointWatch::endpoint(double now) const {
   Endpoint worst = throttling(now);
-  for (const Way& way : ways_) {
+  for (const ConnectionState& way : ways_) {
     const Endpoint trouble = trouble_of(way, now);
     if (trouble.trouble < worst.trouble) worst = trouble;
   }
-  if (well_since_ && worst.trouble >= PostTrouble::Throttling) worst.well_for = now - *well_since_;
+  if (well_since_ && worst.trouble >= EndpointTrouble::Throttling) worst.well_for = now - *well_since_;
   return worst;
 }
 

@@ -1,4 +1,4 @@
-#include "gateway/lookout.hpp"
+#include "gateway/observed_facts.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -7,7 +7,7 @@
 namespace adit::gateway {
 namespace {
 
-alarms::Seen seen(const forward::Channel& channel) {
+alarms::ConnectionSample seen(const forward::Channel& channel) {
   return {.connected = channel.connected(),
           .busy = channel.busy(),
           .ended = channel.ended(),
@@ -20,7 +20,7 @@ alarms::Seen seen(const forward::Channel& channel) {
 
 alarms::Endpoint named(const char* name, const settings::Address& address, const forward::Channel& channel,
                        alarms::Endpoint endpoint) {
-  if (!channel.has_token()) endpoint = {.trouble = alarms::PostTrouble::NoToken};
+  if (!channel.has_token()) endpoint = {.trouble = alarms::EndpointTrouble::NoToken};
   endpoint.name = name;
   endpoint.address = forward::address_text(address);
   return endpoint;
@@ -54,7 +54,7 @@ std::map<std::string, OfRobot> of_robots(const std::vector<api::ActivityRow>& ac
 
 }  // namespace
 
-void Lookout::carry_on(const forward::Flow& flow, double now) {
+void ObservedFacts::carry_on(const forward::Flow& flow, double now) {
   const auto all = of_robots(flow.activities(), now, now);
   for (const auto& [robot, heard] : flow.heard_before()) {
     const auto its = all.find(robot);
@@ -65,8 +65,8 @@ void Lookout::carry_on(const forward::Flow& flow, double now) {
   }
 }
 
-void Lookout::look(forward::Flow& flow, const settings::Settings& settings,
-                   const std::vector<api::ActivityRow>& activities, double now, api::Time time) {
+void ObservedFacts::look(forward::Flow& flow, const settings::Settings& settings,
+                         const std::vector<api::ActivityRow>& activities, double now, api::Time time) {
   scoring_.look({seen(flow.scoring().channel())}, now);
   mapping_.look({seen(flow.maps().channel()), seen(flow.telemetry().channel())}, now);
   for (auto& [robot, its] : of_robots(activities, now, time)) {
@@ -80,20 +80,20 @@ void Lookout::look(forward::Flow& flow, const settings::Settings& settings,
     }
     flow.keep(its.heard);
   }
-  for (const auto& [robot, at] : flow.as_forwarded().before()) {
+  for (const auto& [robot, at] : flow.delivered().before()) {
     if (time - at < alarms::Habits::Rules{}.away) habits_.expect(robot, now);
   }
   growth_.look(flow.maps().queued_bytes(), settings.queues.map_bytes, now);
 }
 
-std::vector<alarms::Endpoint> Lookout::endpoints(const forward::Flow& flow,
-                                                 const settings::CommandPost& command_post,
-                                                 double now) const {
+std::vector<alarms::Endpoint> ObservedFacts::endpoints(const forward::Flow& flow,
+                                                       const settings::CommandPost& command_post,
+                                                       double now) const {
   return {named("scoring", command_post.scoring, flow.scoring().channel(), scoring_.endpoint(now)),
           named("mapping", command_post.mapping, flow.maps().channel(), mapping_.endpoint(now))};
 }
 
-std::map<std::string, alarms::Robot> Lookout::robots(const settings::Alarms& rules, double now) const {
+std::map<std::string, alarms::Robot> ObservedFacts::robots(const settings::Alarms& rules, double now) const {
   const double least = std::chrono::duration<double>(rules.silent_for).count();
   return habits_.robots({.least = least, .times = rules.silent_times}, now);
 }

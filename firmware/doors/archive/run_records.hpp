@@ -19,12 +19,12 @@
 namespace adit::archive {
 
 /// The sum of a run's records. Accepts any bytes and skips data that is not a record of this run.
-class Told {
+class RunRecords {
  public:
   static constexpr std::size_t kMostPoses = 100'000;
 
   /// `budget`: most bytes of the map.
-  explicit Told(std::size_t budget) : picture_(budget) {}
+  explicit RunRecords(std::size_t budget) : picture_(budget) {}
 
   /// Adds one file. `file`: number of a tile file, or 0 for a line file.
   void tell(std::string_view bytes, std::uint64_t file);

@@ -60,7 +60,8 @@ class Expressions(unittest.TestCase):
         self.assertEqual(self.texts(), {"LicenseRef-debian-Free": TEXT, "LicenseRef-debian-Free-text-2": TEXT * 2})
 
     def test_a_file_that_is_prose_is_a_licence_as_a_whole(self):
-        for text in "This is free software; see the GPL.", HEAD.strip() + "\n\nLicense: GPL-2\n None of the files.":
+        for text in ("This is free software; see the GPL.", "Most files are Expat's.\n\nFiles: x\nLicense: GPL-2",
+                     HEAD.strip() + "\n\nLicense: GPL-2\n None of the files."):
             self.setUp()
             self.assertEqual(self.licences.expression("libx1", text + "\n"), "LicenseRef-debian-libx1")
             self.assertEqual(self.texts(), {"LicenseRef-debian-libx1": text})

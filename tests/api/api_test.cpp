@@ -19,7 +19,8 @@
 namespace adit::api {
 namespace {
 
-/// The path of the first file that a page names so: `attribute` is `rel="stylesheet"` or `type="module"`.
+/// The path of the first file that an HTML page names with `attribute`: `rel="stylesheet"` or
+/// `type="module"`.
 std::string named_in(const std::string& html, const std::string& attribute) {
   std::smatch found;
   const std::regex tag("<[^>]*" + attribute + "[^>]*>"), file(R"re((?:href|src)="([^"]+)")re");
@@ -89,7 +90,7 @@ TEST_F(PageTest, ServesEmbeddedFilesPackedOrInflated) {
     EXPECT_EQ(header(packed, "Content-Encoding"), "gzip") << path;
     EXPECT_EQ(packed.body, file.packed) << path;
     EXPECT_EQ(gunzipped(packed.body), plain.body) << path;
-    EXPECT_NE(header(plain, "ETag"), header(packed, "ETag")) << "other bytes: " << path;
+    EXPECT_NE(header(plain, "ETag"), header(packed, "ETag")) << path;
     for (const auto* answer : {&plain, &packed}) EXPECT_EQ(header(*answer, "Vary"), "Accept-Encoding");
     EXPECT_NE(content_type_of(file), "application/octet-stream") << path;
   }
@@ -103,7 +104,7 @@ TEST_F(PageTest, SendsAFileAgainOnlyIfItChanged) {
   EXPECT_EQ(again.body, "");
   EXPECT_EQ(header(again, "ETag"), header(first, "ETag"));
   EXPECT_EQ(get_packed("/", header(packed, "ETag")).body, "");
-  EXPECT_EQ(get_packed("/", header(first, "ETag")).body, packed.body) << "it has the other bytes";
+  EXPECT_EQ(get_packed("/", header(first, "ETag")).body, packed.body) << "the ETag belongs to other bytes";
   EXPECT_EQ(get_file("/", "W/\"old\", " + header(first, "ETag")).body, "");
   EXPECT_EQ(get_file("/", "\"old\"").body, first.body);
 }
@@ -124,7 +125,7 @@ TEST_F(PageTest, PacksLongAnswersForClientsThatAcceptGzip) {
   EXPECT_EQ(header(packed, "Content-Encoding"), "gzip");
   EXPECT_EQ(header(packed, "Cache-Control"), "no-store");
   EXPECT_EQ(gunzipped(packed.body), plain.body);
-  EXPECT_EQ(header(get_packed("/adit/session"), "Content-Encoding"), "") << "it is short";
+  EXPECT_EQ(header(get_packed("/adit/session"), "Content-Encoding"), "") << "a short body is not compressed";
 }
 
 TEST(AcceptsGzip, FollowsTheCodingAndItsWeight) {
@@ -152,7 +153,7 @@ TEST_F(PageTest, HasNoInlineScriptOrStyle) {
   EXPECT_EQ(html.find("<style"), std::string::npos);
   EXPECT_EQ(html.find(" style="), std::string::npos);
   EXPECT_EQ(html.find("<script>"), std::string::npos);
-  EXPECT_EQ(html.find("http"), std::string::npos) << "every byte is served by the box itself";
+  EXPECT_EQ(html.find("http"), std::string::npos) << "the page loads only from the box";
 }
 
 TEST_F(PageTest, AnswersUnknownPathsWithAJsonString) {
@@ -183,7 +184,7 @@ TEST_F(PageTest, GivesTheRunAsUncachedJson) {
   EXPECT_EQ(answer.body, codec::to_json(source.now));
 }
 
-/// Tokens that are set while the page is open, too.
+/// Includes tokens that are set while the page is open.
 TEST_F(PageTest, RedactsTokensInPatches) {
   source.now = *scene("calm", 1000, 0);
   open("GET", "/adit/events", {kByToken}, std::nullopt);
@@ -238,7 +239,7 @@ TEST(PageOnAServer, ServesABrowser) {
   });
   EXPECT_TRUE(client.wait_for("\"score\":8"));
   served.on_loop([&] { forward.to = nullptr, api.reset(); });
-  EXPECT_TRUE(client.wait_for("\r\n0\r\n\r\n")) << "the stream ends with the page";
+  EXPECT_TRUE(client.wait_for("\r\n0\r\n\r\n")) << "the stream did not end";
 }
 
 }  // namespace

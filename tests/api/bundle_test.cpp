@@ -57,7 +57,7 @@ TEST(CutTo, SplitsNoCharacter) {
 
 TEST(Bundle, StaysWithinItsLimitIfNothingCanBePacked) {
   std::mt19937_64 random(1);
-  std::string noise(70'000, '\0');  // more than gzip looks back
+  std::string noise(70'000, '\0');  // longer than gzip's window
   for (char& byte : noise) byte = static_cast<char>(random());
   std::vector<BundleFile> files;
   for (const char* name : {"log.txt", "reports.json", "run.json"}) {
@@ -70,7 +70,7 @@ TEST(Bundle, StaysWithinItsLimitIfNothingCanBePacked) {
   EXPECT_GT(bundle.size(), kMostBundle - 100'000);
 }
 
-/// A temporary folder of one test.
+/// A temporary directory of one test.
 struct Folder {
   Folder() {
     std::string name = testing::TempDir() + "ustar.XXXXXX";
@@ -85,7 +85,7 @@ std::string read(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// What tar itself makes of an archive, in `folder`.
+/// Unpacks an archive with tar into `folder`.
 int unpack(const Folder& folder, const icd::ChunkedBytes& archive) {
   const std::string bytes = archive.to_string();
   std::ofstream(folder.path / "a.tar", std::ios::binary) << bytes;

@@ -1,5 +1,4 @@
-// The JSON of the API's rows, byte for byte: names, order and forms of numbers are what scripts and pages
-// know.
+// The JSON of the API's rows, byte for byte. Scripts and pages depend on names, order and number formats.
 #include <gmock/gmock.h>
 
 #include "api/box.hpp"

@@ -5,7 +5,7 @@
 
 namespace adit::api {
 
-/// Counts the source's picture at once.
+/// Returns the covered area of the source's picture synchronously.
 struct CountedMap final : CoveredMap {
   explicit CountedMap(const Source& shown) : source(shown) {}
   void covered(Done done) override {

@@ -58,7 +58,7 @@ struct FakeSource final : Source {
   mutable int asked = 0;
 };
 
-/// Does as it is told, and remembers what it was.
+/// Returns canned results and records the calls.
 struct FakeOperator final : Operator {
   std::expected<std::int64_t, std::string> decide(std::int64_t number, Action action) override {
     decided.emplace_back(number, action);
@@ -94,11 +94,11 @@ struct FakeOperator final : Operator {
   std::vector<std::pair<icd::ArtifactReport, bool>> reported;
   std::vector<std::pair<std::int64_t, icd::ArtifactReport>> corrected;
   std::optional<std::expected<std::int64_t, std::string>>
-      outcome;  // of decide(), report() and correct(), where it is not the same number, 41 or 42
+      outcome;  // of decide(), report() and correct(), if not the same number, 41 or 42
   std::vector<std::pair<std::uint64_t, RejectedAction>> decided_messages;
-  std::string rejected_trouble;  // of rejected(), where there is any
+  std::string rejected_trouble;  // of rejected(); "": it succeeds
   std::vector<std::string> acknowledged;
-  std::string alarm_trouble;  // of acknowledge(), where there is any
+  std::string alarm_trouble;  // of acknowledge(); "": it succeeds
   std::int64_t run = 1;
   icd::Checked<std::string> ledger = "ledger.damaged-1";
   double identified = 0;  // seconds
@@ -106,7 +106,7 @@ struct FakeOperator final : Operator {
 
 class FakeHead final : public intake::RequestHead {
  public:
-  /// `target`: a path, and after it a query, if any.
+  /// `target`: a path with an optional query.
   FakeHead(std::string method, const std::string& target, std::vector<intake::Header> headers = {},
            std::optional<std::uint64_t> length = 0)
       : method_(std::move(method)), headers_(std::move(headers)), length_(length) {
@@ -179,7 +179,7 @@ inline std::string header(const intake::Answer& answer, std::string_view name) {
   return found == answer.headers.end() ? "" : found->value;
 }
 
-/// Hands requests on to a handler that is made later.
+/// Forwards requests to a handler that is set later.
 struct Forward final : intake::Handler {
   intake::Credentials shown(const intake::RequestHead& head) override { return to->shown(head); }
   std::unique_ptr<intake::BodySink> open(const intake::RequestHead& head,

@@ -38,7 +38,7 @@ TEST(DrawnMarker, AppliesThePoseToItsPoints) {
   icd::Marker line = marker(MarkerType::LineStrip, {{1, 0, 0}, {0, 2, 0}, {0, 0, 3}});
   line.pose.position = {10, 20, 5};
   const double half = std::numbers::pi / 4;
-  line.pose.orientation = {0, 0, std::sin(half), std::cos(half)};  // a quarter to the left
+  line.pose.orientation = {0, 0, std::sin(half), std::cos(half)};  // a quarter turn to the left
   EXPECT_THAT(drawn(line).points, ElementsAre(near(10, 21), near(8, 20), near(10, 20)));
   EXPECT_NEAR(drawn(line).heading, 2 * half, 1e-9);
   line.pose.orientation = {0, std::sin(half), 0, std::cos(half)};  // about y: z goes to x
@@ -51,7 +51,8 @@ TEST(DrawnMarker, HasPointsOnlyIfItsShapeUsesThem) {
                           MarkerType::TextViewFacing, MarkerType::MeshResource}) {
     EXPECT_THAT(drawn(marker(type, along_x(5))).points, IsEmpty());
   }
-  EXPECT_THAT(drawn(marker(MarkerType::Arrow, along_x(1))).points, IsEmpty()) << "by its pose";
+  EXPECT_THAT(drawn(marker(MarkerType::Arrow, along_x(1))).points, IsEmpty())
+      << "an arrow with one point uses its pose";
   EXPECT_THAT(drawn(marker(MarkerType::Arrow, along_x(3))).points, ElementsAre(near(0, 0), near(1, 0)));
   EXPECT_THAT(drawn(marker(MarkerType::LineList, along_x(5))).points, SizeIs(4)) << "a line has two ends";
   EXPECT_THAT(drawn(marker(MarkerType::TriangleList, along_x(8))).points, SizeIs(6));
@@ -75,19 +76,20 @@ TEST(DrawnMarker, ThinsAMarkerWithTooManyPoints) {
     EXPECT_GE(shown.point_count, icd::kMostMarkerPoints - 3);
   }
   const auto pairs = drawn(marker(MarkerType::LineList, along_x(50'000)));
-  EXPECT_EQ(pairs.points[3].x, pairs.points[2].x + 1) << "a line keeps both of its ends";
+  EXPECT_EQ(pairs.points[3].x, pairs.points[2].x + 1) << "a line lost an end";
 }
 
 TEST(DrawnMarker, ThinsAStripAlongItsLengthAndKeepsItsEnds) {
-  auto points = along_x(20'000, 0);  // it stood for long
+  auto points = along_x(20'000, 0);  // the robot stood still for long
   for (const auto& point : along_x(5000)) points.push_back(point);
   const auto shown = drawn(marker(MarkerType::LineStrip, points));
   EXPECT_THAT(shown.points.front(), near(0, 0));
   EXPECT_THAT(shown.points.back(), near(4999, 0));
   for (std::size_t i = 1; i < shown.points.size(); ++i) {
-    ASSERT_LE(shown.points[i].x - shown.points[i - 1].x, 7) << "no long way is left out at " << i;
+    ASSERT_LE(shown.points[i].x - shown.points[i - 1].x, 7) << "a long way is left out at " << i;
   }
-  EXPECT_THAT(drawn(marker(MarkerType::LineStrip, along_x(5000, 0))).points, SizeIs(2)) << "it only stood";
+  EXPECT_THAT(drawn(marker(MarkerType::LineStrip, along_x(5000, 0))).points, SizeIs(2))
+      << "a line without movement has two points";
 }
 
 TEST(DrawnMarker, HasAColourForEachRemainingPart) {
@@ -118,7 +120,7 @@ TEST(DrawnMarker, DropsColoursWhoseCountDoesNotFit) {
   }
 }
 
-/// Points that go to and fro between two corners of space.
+/// Points that alternate between two corners of space.
 std::vector<icd::Point> between(double far, std::size_t count) {
   std::vector<icd::Point> points;
   for (std::size_t i = 0; i < count; ++i) points.push_back({i % 2 == 0 ? far : -far, -far, far});
@@ -154,7 +156,7 @@ TEST(DrawnMarker, LimitsItsText) {
     EXPECT_EQ(drawn(mesh).mesh, name) << url;
   }
   mesh.text = std::string(119, 'a') + "\u00e9" + std::string(9000, 'b');
-  EXPECT_EQ(drawn(mesh).text, std::string(119, 'a')) << "no half character";
+  EXPECT_EQ(drawn(mesh).text, std::string(119, 'a')) << "the text is cut within a character";
 }
 
 }  // namespace

@@ -12,12 +12,11 @@ namespace {
 
 const std::regex kHelp(R"(# HELP ([a-zA-Z_:][a-zA-Z0-9_:]*) ((?:[^\\]|\\\\|\\n)+))");
 const std::regex kType(R"(# TYPE ([a-zA-Z_:][a-zA-Z0-9_:]*) (counter|gauge))");
-/// Of a line that emptied() has been through.
+/// A sample in the output of emptied().
 const std::regex kSample(R"re(([a-zA-Z_:][a-zA-Z0-9_:]*)(\{(?:[a-zA-Z_][a-zA-Z0-9_]*="",?)+\})? ([^ ]+))re");
 const std::regex kValue(R"(NaN|[+-]Inf|-?\d+(\.\d+)?(e[+-]?\d+)?)");
 
-/// The line without what is in its labels' values, which may be long; "" where that is not escaped as it
-/// must.
+/// The line without the values of its labels, which may be long; "" if a value is not escaped correctly.
 std::string emptied(const std::string& line) {
   std::string text;
   bool inside = false;
@@ -51,7 +50,7 @@ class Reader {
     } else if (std::regex_match(form, parts, kSample)) {
       sample(line, parts);
     } else {
-      fault(line, "is nothing that the format knows");
+      fault(line, "is not a line of the format");
     }
   }
   std::vector<std::string> faults;

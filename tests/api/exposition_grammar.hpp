@@ -6,9 +6,9 @@
 
 namespace adit::api {
 
-/// What is wrong with a text by the exposition format 0.0.4 (and by Prometheus' rules for names): a sentence
-/// for each fault. Strict: each metric has one HELP and one TYPE before its samples, which stand together; no
-/// sample is there twice; a counter ends in _total and is no less than 0.
+/// Violations of the exposition format 0.0.4 (and of Prometheus' rules for names), one sentence each. Each
+/// metric must have one HELP and one TYPE before its samples, which stand together. No sample may occur
+/// twice. A counter must end in _total and must not be negative.
 std::vector<std::string> faults_of(std::string_view text);
 
 }  // namespace adit::api

@@ -10,7 +10,7 @@
 
 namespace adit::api {
 
-/// A box of which a test says how it is.
+/// A box whose state a test sets.
 struct FakeBox final : Box {
   std::vector<LogRecord> log(std::uint64_t after) const override {
     std::vector<LogRecord> rows;
@@ -28,7 +28,7 @@ struct FakeBox final : Box {
     done();
   }
 
-  /// A record about a report.
+  /// Adds a log record about a report.
   void say(int severity, std::string level, std::string message, const std::string& note = "") {
     const std::uint64_t seq = logged() + 1;
     LogRecord record{.seq = seq,

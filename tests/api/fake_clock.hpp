@@ -6,7 +6,7 @@
 
 namespace adit::api {
 
-/// Is what it is told to be, and remembers what it was set to.
+/// A clock whose state a test sets. Records the times that it is set to.
 struct FakeClock final : Clock {
   ClockView clock() const override { return view; }
   icd::Checked<void> set_clock(double time) override {

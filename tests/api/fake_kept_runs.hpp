@@ -10,7 +10,7 @@
 
 namespace adit::api {
 
-/// Runs that are kept nowhere but here. Answers at once.
+/// Kept runs in memory. Answers synchronously.
 struct FakeKeptRuns final : KeptRuns {
   RunList list() const override { return all; }
   History history(Time since) const override {

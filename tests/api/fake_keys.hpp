@@ -12,12 +12,12 @@
 
 namespace adit::api {
 
-/// The token that a test's page knows.
+/// The valid token in tests of the page.
 inline icd::BearerToken token(std::string_view text = "team-1") {
   return *icd::BearerToken::parse(text);
 }
 
-/// Passwords in the clear, checked when it is told to.
+/// Passwords in plain text. Checks them when the test calls for it.
 struct FakeKeys final : Keys {
   const std::string& unread() const override { return unread_; }
   bool first_start() const override { return !operator_; }

@@ -9,7 +9,7 @@
 
 namespace adit::api {
 
-/// Has the addresses that it is told to have, and remembers what it was asked for.
+/// Has the addresses that a test sets, and records requests.
 struct FakeNetwork final : Network {
   NetworkView network() const override { return view; }
   network::Findings check(const network::Numbers&, const std::string& asker) const override {

@@ -15,7 +15,7 @@ inline constexpr const char* kCourses =
     R"(, "courses": [{"name": "A", "scoring": {"address": "10.100.2.200", "port": 8000},)"
     R"( "mapping": {"address": "10.100.2.201", "port": 8000}}])";
 
-/// Remembers what it was told, and refuses where it is to.
+/// Records requests, and rejects them if the test says so.
 struct FakeSetup : Setup {
   const settings::Settings& settings() const override { return now; }
   bool saved() const override { return false; }

@@ -8,27 +8,27 @@
 
 namespace adit::api {
 
-/// Is what it is told to be, and remembers what it was asked.
+/// Has the state that a test sets, and records requests.
 struct FakeSpare final : Spare {
   SpareView spare() const override { return view; }
-  icd::Checked<void> stand_by() override { return said("standby"); }
-  icd::Checked<void> resume() override { return said("resume"); }
+  icd::Checked<void> stand_by() override { return record("standby"); }
+  icd::Checked<void> resume() override { return record("resume"); }
   void export_to(Sealed done) override {
-    const auto may = said("export");
-    if (!may) return done(std::unexpected(may.error()));
+    const auto permitted = record("export");
+    if (!permitted) return done(std::unexpected(permitted.error()));
     done(file);
   }
-  void export_to_stick(Done done) override { done(said("export to the stick")); }
-  icd::Checked<void> take_from_stick(const std::string& name) override { return said("take " + name); }
+  void export_to_stick(Done done) override { done(record("export to the stick")); }
+  icd::Checked<void> take_from_stick(const std::string& name) override { return record("take " + name); }
   icd::Checked<void> take_in(std::string taken) override {
     file = std::move(taken);
-    return said("take");
+    return record("take");
   }
-  void open(const std::string& code, Done done) override { done(said("open " + code)); }
-  icd::Checked<void> forget() override { return said("forget"); }
-  icd::Checked<void> take_over() override { return said("take over"); }
+  void open(const std::string& code, Done done) override { done(record("open " + code)); }
+  icd::Checked<void> forget() override { return record("forget"); }
+  icd::Checked<void> take_over() override { return record("take over"); }
 
-  icd::Checked<void> said(const std::string& what) {
+  icd::Checked<void> record(const std::string& what) {
     asked.push_back(what);
     return outcome;
   }

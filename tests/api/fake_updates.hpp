@@ -8,7 +8,7 @@
 
 namespace adit::api {
 
-/// Is as it is told to be, and remembers what it was asked for.
+/// Has the state that a test sets, and records requests.
 struct FakeUpdates final : Updates {
   struct Received {
     std::uint64_t size = 0;
@@ -46,7 +46,7 @@ struct FakeUpdates final : Updates {
   UpdateView view;
   icd::Checked<void> outcome;
   Received received;
-  bool more = true;  // what a piece is answered
+  bool more = true;  // the result for a piece
   std::vector<bool> sticks, restarts, backs;
   int stays = 0;
 

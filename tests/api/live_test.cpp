@@ -19,7 +19,7 @@ using testing::HasSubstr;
 using testing::SizeIs;
 using testing::StartsWith;
 
-/// A view of so many robots and reports.
+/// A view with that many robots and reports.
 RunView team(int robots, int reports) {
   RunView view = *scene("calm", 1'793'000'000.5, 0);
   view.robots.clear();
@@ -48,7 +48,7 @@ RunView team(int robots, int reports) {
   return view;
 }
 
-/// What happens in a run, in any order. All numbers are whole thousandths.
+/// Makes random changes to a view. All numbers are multiples of a thousandth, so that they survive JSON.
 void change_some(RunView& view, std::mt19937_64& random) {
   view.now += 0.25;
   const auto any = [&random](auto& rows) -> auto& { return rows[random() % rows.size()]; };
@@ -75,7 +75,7 @@ void change_some(RunView& view, std::mt19937_64& random) {
 
 class LiveTest : public testing::Test {
  protected:
-  /// Opens one more page; null where it was refused.
+  /// Opens another page; null if it was rejected.
   std::shared_ptr<FakeStream> open() {
     FakeResponder responder;
     live.open(responder, [this] { return welcome; });
@@ -85,7 +85,7 @@ class LiveTest : public testing::Test {
 
   void pass(milliseconds length) { time.pass(loop, length); }
 
-  /// Something that pages are told of at once.
+  /// Makes a change that pages get at once.
   void change() {
     source.now.alarms.emplace_back();
     live.changed();
@@ -110,7 +110,7 @@ TEST_F(LiveTest, SendsTheRunAsJsonAtOnce) {
   const std::string& event = page->sent[0];
   ASSERT_THAT(event, StartsWith("retry: 1000\ndata: {"));
   EXPECT_TRUE(event.ends_with("}\n\n"));
-  EXPECT_EQ(event.find('\n', event.find("data: ")), event.size() - 2) << "data is one line";
+  EXPECT_EQ(event.find('\n', event.find("data: ")), event.size() - 2) << "the data has several lines";
   EXPECT_EQ(nlohmann::json::parse(event.substr(event.find('{')))["version"], "1.2.3");
 }
 
@@ -150,7 +150,7 @@ TEST_F(LiveTest, SendsReportsAndAlarmsWithoutDelay) {
   live.changed();
   pass(milliseconds{40});
   ASSERT_THAT(page->sent, SizeIs(3));
-  EXPECT_THAT(page->sent[2], HasSubstr("queued_bytes")) << "an event has all that changed";
+  EXPECT_THAT(page->sent[2], HasSubstr("queued_bytes")) << "a change is missing in the event";
 }
 
 TEST_F(LiveTest, SendsTheLastOfManyChanges) {
@@ -181,7 +181,7 @@ TEST_F(LiveTest, ReadsNothingWithoutAnOpenPage) {
   const int asked = source.asked;
   live.changed();
   pass(milliseconds{300});
-  EXPECT_EQ(source.asked, asked) << "the page that has gone is forgotten";
+  EXPECT_EQ(source.asked, asked) << "a closed page still causes requests";
 }
 
 TEST_F(LiveTest, ReadsTheViewOnceForAllPages) {
@@ -198,7 +198,7 @@ TEST_F(LiveTest, EndsWithTheSession) {
   welcome = false;
   pass(Live::kHeartbeat + milliseconds{100});
   EXPECT_THAT(page->sent, SizeIs(1));
-  EXPECT_EQ(page.use_count(), 1) << "the stream has been dropped, and so ended";
+  EXPECT_EQ(page.use_count(), 1) << "the stream is still referenced";
 }
 
 TEST_F(LiveTest, SendsRunningTimesOnlyWithTheHeartbeat) {
@@ -272,12 +272,12 @@ TEST_F(LiveTest, SendsOneReportInFewBytes) {
             "event: patch\ndata: {\"reports\":{\"rows\":{\"0\":{\"state\":\"sending\"}}}}\n\n");
 }
 
-/// Times are told by another clock than they are kept by: the last digits differ each time.
+/// Times are converted from one clock to another, so their last digits change each time.
 TEST_F(LiveTest, SendsNoTimesThatDifferBelowTheirPrecision) {
   source.now = team(4, 20);
   source.now.reports[3].position->x = 0.123456789;
   const auto page = open();
-  EXPECT_THAT(page->sent[0], HasSubstr("0.123456789")) << "what makes a report the same is told exactly";
+  EXPECT_THAT(page->sent[0], HasSubstr("0.123456789")) << "a report's identity must be exact";
   for (ReportRow& report : source.now.reports) report.changed += 2e-7;
   for (RobotRow& robot : source.now.robots) *robot.at += 2e-7;
   live.changed();
@@ -289,7 +289,7 @@ TEST_F(LiveTest, SendsASlowPageAWholeViewInsteadOfPatches) {
   source.now = team(6, 200);
   const auto slow = open(), fast = open();
   const std::size_t whole = slow->sent[0].size();
-  slow->queued = whole + 30'000;  // a view that it takes, and patches behind it
+  slow->queued = whole + 30'000;  // a view that fits, and patches after it
   change();
   pass(milliseconds{300});
   EXPECT_THAT(slow->sent, SizeIs(2));
@@ -298,21 +298,21 @@ TEST_F(LiveTest, SendsASlowPageAWholeViewInsteadOfPatches) {
   change();
   pass(milliseconds{300});
   ASSERT_THAT(slow->sent, SizeIs(3));
-  EXPECT_EQ(slow->queued, 0) << "what waited has made room";
+  EXPECT_EQ(slow->queued, 0) << "queued bytes remain";
   EXPECT_THAT(slow->sent[2], StartsWith("data: {\"now\":"));
   EXPECT_GT(slow->sent[2].size() + 100, whole);
   EXPECT_THAT(fast->sent[2], StartsWith("event: patch\n"));
 }
 
-/// Whoever opens when, and whoever is slow: each page has what there is.
+/// Pages that open at any time, and slow pages, get the current view.
 TEST_F(LiveTest, SendsEachViewToEachPage) {
-  struct OfPage {
+  struct PageReader {
     std::shared_ptr<FakeStream> stream;
     std::size_t read = 0;
     codec::Value view = {};
   };
   std::mt19937_64 random(7);
-  std::vector<OfPage> readers;
+  std::vector<PageReader> readers;
   source.now = team(4, 30);
   for (int step = 0; step < 30; ++step) {
     if (step % 8 == 0) readers.push_back({.stream = open()});
@@ -320,12 +320,14 @@ TEST_F(LiveTest, SendsEachViewToEachPage) {
     change_some(source.now, random);
     live.changed();
     pass(milliseconds{1040});
-    for (OfPage& reader : readers) {
+    for (PageReader& reader : readers) {
       for (; reader.read < reader.stream->sent.size(); ++reader.read) {
         const std::string& event = reader.stream->sent[reader.read];
         const std::size_t data = event.find("data: ");
-        const codec::Value told = codec::parse_json(event.substr(data + 6, event.size() - data - 8)).value();
-        reader.view = event.starts_with("event: patch") ? codec::test::patched(reader.view, told) : told;
+        const codec::Value data_value =
+            codec::parse_json(event.substr(data + 6, event.size() - data - 8)).value();
+        reader.view =
+            event.starts_with("event: patch") ? codec::test::patched(reader.view, data_value) : data_value;
       }
       const codec::Value now = codec::parse_json(codec::to_json(source.now)).value();
       ASSERT_EQ(codec::write_json(reader.view), codec::write_json(now)) << "step " << step;
@@ -343,7 +345,7 @@ TEST_F(LiveTest, ReservesConnectionsForRobots) {
   EXPECT_EQ(refusal->status, icd::Status::ServiceUnavailable);
   EXPECT_TRUE(nlohmann::json::parse(refusal->body).is_string());
   pages[3]->gone = true;
-  EXPECT_NE(open(), nullptr) << "one that has gone makes room";
+  EXPECT_NE(open(), nullptr) << "a closed page must make room";
 }
 
 }  // namespace

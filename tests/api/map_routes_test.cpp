@@ -16,7 +16,7 @@ namespace {
 using nlohmann::json;
 using testing::StartsWith;
 
-/// The scene, drawn once: drawing takes longer than the tests.
+/// The scene, drawn once, because drawing takes longer than the tests.
 const picture::Mosaic& drawn_scene() {
   static const picture::Mosaic drawn = [] {
     picture::Mosaic map;
@@ -51,7 +51,7 @@ TEST_F(MapRoutesTest, ShowsTheAreaCoveredByGrids) {
   EXPECT_EQ(covered["square_metres"], static_cast<double>(area.now().all) / 16);
   EXPECT_GT(covered["square_metres"], 100.0);
   EXPECT_EQ(covered["whole"], true);
-  ASSERT_EQ(covered["robots"].size(), 1) << "ugv1 has a cloud only";
+  ASSERT_EQ(covered["robots"].size(), 1) << "ugv1 has only a cloud";
   EXPECT_EQ(covered["robots"][0]["robot"], "");
   EXPECT_EQ(covered["robots"][0]["square_metres"], covered["square_metres"]);
 }
@@ -120,10 +120,10 @@ TEST_F(MapRoutesTest, SendsATileAgainOnlyIfItChanged) {
   const auto earlier = get_file("/adit/map/grid/-/1/0/0.png?at=1700", header(first, "ETag"));
   EXPECT_EQ(earlier.status, icd::Status::Ok);
   EXPECT_NE(earlier.body, first.body);
-  EXPECT_EQ(header(earlier, "Cache-Control"), "max-age=3600") << "it has been followed by others";
+  EXPECT_EQ(header(earlier, "Cache-Control"), "max-age=3600") << "a later picture exists";
   EXPECT_LE(std::stod(header(earlier, "Adit-Since")), 1700);
   EXPECT_GT(std::stod(header(earlier, "Adit-Until")), 1700);
-  EXPECT_EQ(header(first, "Adit-Until"), "") << "none has followed";
+  EXPECT_EQ(header(first, "Adit-Until"), "") << "no later picture exists";
   const auto until = header(earlier, "Adit-Until");
   EXPECT_EQ(header(get_file("/adit/map/grid/-/1/0/0.png?at=" + until), "Adit-Since"), until);
 }

@@ -11,14 +11,14 @@ namespace {
 
 constexpr int kSide = 480;  // cells of half a metre: 240 m
 
-/// How far a place lies from the middle of a tunnel that winds towards +X, or of its branch towards +Y.
+/// The distance of a place from the centre of a winding tunnel towards +X, or of its branch towards +Y.
 double off_the_way(double x, double y) {
   const double main = std::abs(y - 40 - 12 * std::sin(x / 23));
   const double branch = y < 40 ? 1e9 : std::abs(x - 130 - 9 * std::sin(y / 17));
   return std::min(main, branch);
 }
 
-/// What is known of the cave once `reach` metres of it have been seen.
+/// The part of the cave that is known after `reach` metres.
 icd::MapUpdate explored(double reach) {
   icd::OccupancyGrid grid;
   grid.width = grid.height = kSide;
@@ -72,7 +72,7 @@ void draw_scene(picture::Mosaic& map, double now) {
   }
 }
 
-/// What the shapes that are made of points get, around their pose.
+/// Points around the marker's pose, for types that are made of points.
 std::vector<icd::Point> points_of(icd::MarkerType type) {
   std::vector<icd::Point> points;
   switch (type) {

@@ -7,18 +7,18 @@
 
 namespace adit::api {
 
-/// Ten minutes of a run, up to `now`: the merged grid of a cave that is explored bit by bit, and a robot's
-/// clouds of its floor, which climbs from 0 to 6 m.
+/// Draws ten minutes of a run up to `now`: the merged grid of a cave that is explored step by step, and a
+/// robot's clouds of its floor, which climbs from 0 to 6 m.
 void draw_scene(picture::Mosaic& map, double now);
 
-/// A marker of each type, along the tunnel, and an arrow by two points; one that cannot be seen, one that has
-/// expired, and a line of more points than are drawn.
+/// A marker of each type along the tunnel, and an arrow by two points. Also an invisible marker, an expired
+/// one, and a line with more points than are drawn.
 MarkerChanges scene_markers(double now);
 
-/// Two robots on their ways, the last ten minutes up to `now`.
+/// Tracks of two robots over the last ten minutes up to `now`.
 std::vector<Track> scene_tracks(double now);
 
-/// A marker that has a bit of everything, as the box keeps it to be drawn.
+/// A marker with a value in each member, as the box stores it for drawing.
 inline DrawnMarker drawn_marker() {
   return {.ns = "path",
           .id = -3,

@@ -93,7 +93,7 @@ TEST(Metrics, ShowTheValuesOfTheView) {
                              R"(adit_sessions{role="operator"} 2)"}) {
     EXPECT_THAT(text, HasSubstr(icd::sentence("\n", sample, "\n")));
   }
-  EXPECT_THAT(text, Not(HasSubstr("adit_updates_accepted_age_seconds{"))) << "none was accepted";
+  EXPECT_THAT(text, Not(HasSubstr("adit_updates_accepted_age_seconds{"))) << "no message was accepted yet";
 }
 
 TEST(Metrics, CountReportsByState) {
@@ -103,7 +103,7 @@ TEST(Metrics, CountReportsByState) {
   const std::string text = write_metrics(all);
   EXPECT_THAT(text, HasSubstr("adit_reports{state=\"queued\"} 2\n"));
   EXPECT_THAT(text, HasSubstr("adit_reports{state=\"settled\"} 0\n"))
-      << "so that it is known before there is one";
+      << "the counter must exist before the first event";
   EXPECT_THAT(text, HasSubstr("adit_reports_asking 1\n"));
 }
 

@@ -28,7 +28,7 @@ struct FakeFlow final : intake::Flow {
 
 inline const std::vector<intake::Header> kJsonByToken = {kByToken, {"Content-Type", "application/json"}};
 
-/// All that an API asks.
+/// Everything that an API needs.
 struct Doubles {
   Served served() {
     return {.source = source,
@@ -61,9 +61,9 @@ struct Doubles {
   FakeSpare spare;
 };
 
-/// A page of doubles, asked without a server.
+/// An API of doubles, called without a server.
 struct Page : Doubles {
-  /// Begins a request, to be answered by `responder`.
+  /// Begins a request. `responder` gets the answer.
   std::unique_ptr<intake::BodySink> open(const std::string& method, const std::string& target,
                                          std::vector<intake::Header> headers,
                                          std::optional<std::uint64_t> length) {
@@ -76,7 +76,7 @@ struct Page : Doubles {
     if (!body.empty()) sink->on_body({reinterpret_cast<const std::uint8_t*>(body.data()), body.size()});
     sink->on_end();
   }
-  /// The answer to a request; its body is handed over where the page takes one.
+  /// The answer to a request. The body is passed on if the API reads one.
   intake::Answer request(const std::string& method, const std::string& target,
                          std::vector<intake::Header> headers, const std::string& body = "") {
     const auto sink = open(method, target, std::move(headers), body.size());
@@ -86,7 +86,7 @@ struct Page : Doubles {
     return responder->answered.value_or(intake::Answer{});
   }
   intake::Answer get(const std::string& target) { return request("GET", target, {kByToken}); }
-  /// What is there, or is not. A page's file is answered at once, without a look at the body.
+  /// The answer to a GET of a file, which never reads the body.
   intake::Answer get_file(const std::string& target, std::string if_none_match = "",
                           const std::string& method = "GET") {
     auto answer = request(method, target, {{"If-None-Match", std::move(if_none_match)}, kByToken});
@@ -97,9 +97,9 @@ struct Page : Doubles {
     return request("POST", target, kJsonByToken, body);
   }
 
-  std::deque<FakeHead> heads;  // each is asked until its request has ended
+  std::deque<FakeHead> heads;  // must outlive their requests
   std::string peer = "10.0.0.5", local = "10.0.0.1";
-  bool took_body = false;  // the last request's: it was not answered from its head alone
+  bool took_body = false;  // the last request was not answered from its head alone
   std::shared_ptr<FakeResponder> responder;
   std::shared_ptr<FakeFlow> flow = std::make_shared<FakeFlow>();
 

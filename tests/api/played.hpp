@@ -11,7 +11,7 @@
 
 namespace adit::api {
 
-/// As a Source gives them: those of `all`, oldest first, that are numbered above `after`.
+/// The rows of `all` numbered above `after`, oldest first, as a Source returns them.
 inline std::vector<ReportRow> rows_after(std::vector<ReportRow> all, std::int64_t after, std::size_t most) {
   std::erase_if(all, [after](const ReportRow& row) { return row.number <= after; });
   all.resize(std::min(all.size(), most));
@@ -28,7 +28,7 @@ inline ReportCounts counts_of(const std::vector<ReportRow>& rows) {
   return counts;
 }
 
-/// What was done to a scene's reports, so that a browser sees it done.
+/// Records operations on a scene's reports, so that a browser sees their effect.
 class Played {
  public:
   std::expected<std::int64_t, std::string> decide(const RunView& view, std::int64_t number, Action action) {
@@ -112,7 +112,7 @@ class Played {
   std::set<std::uint64_t> decided_messages_;
   std::set<std::string> acknowledged_;
   std::map<std::int64_t, std::string> states_;
-  std::int64_t runs_ = 0;         // that the operator declared
+  std::int64_t runs_ = 0;         // declared by the operator
   std::vector<ReportRow> added_;  // oldest first
 };
 

@@ -6,8 +6,8 @@
 
 namespace adit::api {
 
-/// A box with a stick in it on which another box's export is, and one that cannot be read. Each look at the
-/// stick takes it a step on.
+/// A box with a stick that has another box's export and an unreadable one. Each look at the stick advances
+/// it by one step.
 struct PlayedSpare final : Spare {
   PlayedSpare() {
     view.stick = StickRow{
@@ -62,7 +62,7 @@ struct PlayedSpare final : Spare {
   mutable SpareView view;
 
  private:
-  /// The first writing comes to nothing.
+  /// The first write fails.
   void step() const {
     StickRow& stick = *view.stick;
     if (stick.doing == "writing") {

@@ -6,7 +6,7 @@
 
 namespace adit::api {
 
-/// A box that takes any update whose last byte is not 'x', and has a report that waits.
+/// A box that accepts any update whose last byte is not 'x', and has a queued report.
 struct PlayedUpdates final : Updates {
   PlayedUpdates() {
     view.managed = view.runs_here = true;

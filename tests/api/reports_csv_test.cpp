@@ -34,7 +34,7 @@ ReportRow row() {
           .note = {}};
 }
 
-/// The row whose note is `note`, as far as that is all there is to it.
+/// The CSV cell of the note.
 std::string note_cell(std::string note) {
   ReportRow noted;
   noted.note = std::move(note);

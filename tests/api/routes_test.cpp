@@ -17,7 +17,7 @@ using testing::HasSubstr;
 using Status = icd::Status;
 using Headers = std::vector<intake::Header>;
 
-/// A path of the route's pattern.
+/// An example path for the route's pattern.
 std::string path_of(const Route& route) {
   static const std::regex kind(R"(\{kind\})"), any(R"(\{\w+\})");
   return std::regex_replace(std::regex_replace(std::string(route.path), kind, "grid"), any, "1");
@@ -27,9 +27,9 @@ std::string name_of(const Route& route) {
   return std::string(route.method) + ' ' + std::string(route.path);
 }
 
-/// A page, asked by somebody.
-struct Asked : Page {
-  /// Who is logged in, as his browser shows it.
+/// A page with a visitor.
+struct VisitedPage : Page {
+  /// Headers of a browser that is logged in.
   Headers logged_in(const std::string& password, bool with_csrf = true) {
     const auto answer = request("POST", "/adit/login", {{"Content-Type", "application/json"}},
                                 json{{"password", password}}.dump());
@@ -38,7 +38,7 @@ struct Asked : Page {
     if (with_csrf) shown.push_back({"Adit-CSRF", json::parse(answer.body)["csrf"]});
     return shown;
   }
-  /// Of the answer; 200 to what is answered by a stream.
+  /// The status of the answer; 200 for a stream.
   int status_of(const Route& route, Headers headers, const std::string& body = "") {
     headers.push_back({"Content-Type", std::string(route.body.type)});
     send(open(std::string(route.method), path_of(route), std::move(headers), body.size()).get(), body);
@@ -50,67 +50,69 @@ bool is_for(const Route& route, RouteAccess least) {
   return route.who >= least;
 }
 
-/// Each who asks, and what he is told where the door is shut: 0 where it is open.
+/// A kind of visitor, and the status that it gets for a route; 0: it has access.
 struct Visitor {
   const char* name;
-  Headers (*shows)(Asked&);
-  int (*told)(const Route&);
+  Headers (*shows)(VisitedPage&);
+  int (*expected)(const Route&);
 };
 constexpr const char *kOperator = "correct horse", *kViewer = "look, do not touch";
-int only_anybody(const Route& route) {
+int unauthenticated_status(const Route& route) {
   return is_for(route, RouteAccess::OperatorOrSetUp) ? 401 : 0;
 }
-int only_viewers(const Route& route) {
+int viewer_status(const Route& route) {
   const bool for_operators = route.who == RouteAccess::Operator || route.who == RouteAccess::OperatorOrSetUp;
   return for_operators ? 403 : 0;
 }
-int nothing_by_cookie_alone(const Route& route) {
+int status_without_csrf(const Route& route) {
   return is_for(route, RouteAccess::OperatorOrSetUp) && route.method == "POST" ? 403 : 0;
 }
-int only_what_is_open(const Route& route) {
+int foreign_page_status(const Route& route) {
   return route.who == RouteAccess::Open ? 0 : 403;
 }
 const Visitor kVisitors[] = {
-    {"nobody", [](Asked&) { return Headers{}; }, only_anybody},
-    {"another token", [](Asked&) { return Headers{{"Authorization", "Bearer team-1x"}}; }, only_anybody},
-    {"a viewer", [](Asked& page) { return page.logged_in(kViewer); }, only_viewers},
-    {"a viewer without CSRF", [](Asked& page) { return page.logged_in(kViewer, false); },
-     [](const Route& route) { return std::max(only_viewers(route), nothing_by_cookie_alone(route)); }},
-    {"an operator", [](Asked& page) { return page.logged_in(kOperator); }, [](const Route&) { return 0; }},
-    {"an operator without CSRF", [](Asked& page) { return page.logged_in(kOperator, false); },
-     nothing_by_cookie_alone},
+    {"nobody", [](VisitedPage&) { return Headers{}; }, unauthenticated_status},
+    {"another token", [](VisitedPage&) { return Headers{{"Authorization", "Bearer team-1x"}}; },
+     unauthenticated_status},
+    {"a viewer", [](VisitedPage& page) { return page.logged_in(kViewer); }, viewer_status},
+    {"a viewer without CSRF", [](VisitedPage& page) { return page.logged_in(kViewer, false); },
+     [](const Route& route) { return std::max(viewer_status(route), status_without_csrf(route)); }},
+    {"an operator", [](VisitedPage& page) { return page.logged_in(kOperator); },
+     [](const Route&) { return 0; }},
+    {"an operator without CSRF", [](VisitedPage& page) { return page.logged_in(kOperator, false); },
+     status_without_csrf},
     {"an operator with another session's CSRF",
-     [](Asked& page) {
+     [](VisitedPage& page) {
        auto shown = page.logged_in(kOperator, false);
        shown.push_back(page.logged_in(kOperator).back());
        return shown;
      },
-     nothing_by_cookie_alone},
-    {"a script", [](Asked&) { return Headers{kByToken}; }, [](const Route&) { return 0; }},
+     status_without_csrf},
+    {"a script", [](VisitedPage&) { return Headers{kByToken}; }, [](const Route&) { return 0; }},
     {"a page from elsewhere",
-     [](Asked& page) {
+     [](VisitedPage& page) {
        auto shown = page.logged_in(kOperator);
        shown[1].value = "http://evil.example";
        return shown;
      },
-     only_what_is_open},
+     foreign_page_status},
     {"a page by a name of its own for this address",
-     [](Asked& page) {
+     [](VisitedPage& page) {
        auto shown = page.logged_in(kOperator);
        shown[1].value = "http://evil.example:8000";
        shown.push_back({"Host", "evil.example:8000"});
        return shown;
      },
-     only_what_is_open},
+     foreign_page_status},
 };
 
 TEST(Routes, EnforceTheTableOfRights) {
   for (const Visitor& visitor : kVisitors) {
     for (const Route& route : routes()) {
-      Asked page;
-      const int status = page.status_of(route, visitor.shows(page)), told = visitor.told(route);
+      VisitedPage page;
+      const int status = page.status_of(route, visitor.shows(page)), expected = visitor.expected(route);
       const bool shut = status == 401 || status == 403;
-      EXPECT_EQ(shut ? status : 0, told) << visitor.name << ", " << name_of(route);
+      EXPECT_EQ(shut ? status : 0, expected) << visitor.name << ", " << name_of(route);
       if (status != 401) continue;
       EXPECT_EQ(header(*page.responder->answered, "WWW-Authenticate"), "Bearer");
     }
@@ -120,8 +122,8 @@ TEST(Routes, EnforceTheTableOfRights) {
 TEST(Routes, HaveNoEffectWithoutRights) {
   for (const Visitor& visitor : kVisitors) {
     for (const Route& route : routes()) {
-      if (visitor.told(route) == 0) continue;
-      Asked page;
+      if (visitor.expected(route) == 0) continue;
+      VisitedPage page;
       page.status_of(route, visitor.shows(page), R"({"seconds":1,"type":"Drill","x":1,"y":2,"z":3})");
       EXPECT_FALSE(page.took_body && page.responder->answered->status == Status::Ok);
       EXPECT_TRUE(page.decisions.decided.empty() && page.decisions.reported.empty() &&
@@ -140,7 +142,7 @@ TEST(Routes, HaveNoEffectWithoutRights) {
 TEST(Routes, OpenOnlyThePasswordDuringSetUp) {
   for (const bool first_start : {false, true}) {
     for (const Route& route : routes()) {
-      Asked page;
+      VisitedPage page;
       page.keys.set_up = !first_start;
       if (first_start) page.keys.operator_.reset();
       const int status = page.status_of(route, {});
@@ -158,7 +160,7 @@ TEST(Routes, RejectOtherMethodsWithAnAllowHeader) {
       if (each.path == route.path) allowed += (allowed.empty() ? "" : ", ") + std::string(each.method);
     }
     if (allowed.starts_with("GET")) allowed.insert(3, ", HEAD");
-    Asked page;
+    VisitedPage page;
     for (const char* method : {"DELETE", "PUT", "OPTIONS"}) {
       const auto answer = page.request(method, path_of(route), {kByToken});
       EXPECT_EQ(answer.status, Status::MethodNotAllowed) << method << ' ' << route.path;
@@ -177,9 +179,10 @@ TEST(Routes, RejectOtherMethodsWithAnAllowHeader) {
 TEST(Routes, CheckTypeAndLengthOfBodies) {
   for (const Route& route : routes()) {
     if (route.method == "GET") continue;
-    Asked page;
+    VisitedPage page;
     const std::string path = path_of(route);
-    // What a form or a script of another web page can send without being asked (Fetch, CORS-safelisted).
+    // Content types that a form or a script of another web page can send without permission (Fetch,
+    // CORS-safelisted).
     for (const char* type :
          {"", "text/plain", "application/x-www-form-urlencoded", "multipart/form-data; boundary=x"}) {
       const auto answer = page.request("POST", path, {kByToken, {"Content-Type", type}}, "{}");
@@ -192,7 +195,7 @@ TEST(Routes, CheckTypeAndLengthOfBodies) {
     EXPECT_THAT(page.responder->answered->body,
                 HasSubstr(" of at most " + std::to_string(route.body.most) + " bytes"));
     const auto sink = page.open("POST", path, good, route.body.most);
-    EXPECT_TRUE(sink) << path << ": it is to come";
+    EXPECT_TRUE(sink) << path << ": the body is not read";
     if (route.body.most > 1u << 20) continue;
     Page::send(page.open("POST", path, good, std::nullopt).get(), std::string(route.body.most + 1, ' '));
     EXPECT_EQ(page.responder->answered->status, Status::ContentTooLarge) << path;
@@ -200,7 +203,7 @@ TEST(Routes, CheckTypeAndLengthOfBodies) {
 }
 
 TEST(Routes, UnknownPathsRequireALogin) {
-  Asked page;
+  VisitedPage page;
   for (const char* path : {"/adit/", "/adit/nothing", "/adit/reports/7/history"}) {
     EXPECT_EQ(page.request("GET", path, {}).status, Status::Unauthorized) << path;
     EXPECT_EQ(page.get(path).status, Status::NotFound) << path;
@@ -208,7 +211,7 @@ TEST(Routes, UnknownPathsRequireALogin) {
   }
 }
 
-/// All the references in a document.
+/// Collects all references in a document.
 void collect(const json& value, std::set<std::string>& references) {
   if (value.is_object() && value.contains("$ref")) references.insert(value["$ref"]);
   for (const json& each : value) {
@@ -217,7 +220,7 @@ void collect(const json& value, std::set<std::string>& references) {
 }
 
 TEST(Description, HasTheRightsAndParametersOfEachRoute) {
-  Asked page;
+  VisitedPage page;
   const json whole = json::parse(page.request("GET", "/adit/openapi.json", {}).body);
   EXPECT_EQ(whole["openapi"], "3.1.0");
   std::size_t operations = 0;
@@ -249,7 +252,7 @@ TEST(Description, HasTheRightsAndParametersOfEachRoute) {
 }
 
 TEST(Description, IsPublicAndCached) {
-  Asked page;
+  VisitedPage page;
   const auto answer = page.request("GET", "/adit/openapi.json", {});
   EXPECT_EQ(answer.content_type, "application/json");
   const auto again = page.request("GET", "/adit/openapi.json", {{"If-None-Match", header(answer, "ETag")}});

@@ -25,7 +25,7 @@ TEST(RunView, HasNoPositionForALostReport) {
   EXPECT_TRUE(parsed["reports"][1]["position"].is_object());
 }
 
-/// One for page, `adit status`, metrics and alarms.
+/// The page, `adit status`, metrics and alarms use the same ages.
 TEST(RunView, HasTheAgesThatAlarmsUse) {
   RunView view;
   view.activities.resize(2);
@@ -38,7 +38,7 @@ TEST(RunView, HasTheAgesThatAlarmsUse) {
   EXPECT_EQ(view.activities[0].age, 26);
   EXPECT_EQ(view.activities[0].behind, 25);
   EXPECT_EQ(view.activities[1].age, std::nullopt);
-  EXPECT_EQ(view.robots[0].age, 0) << "never negative";
+  EXPECT_EQ(view.robots[0].age, 0) << "an age is never negative";
 }
 
 TEST(RunView, ShowsTheAgeOfRobotDataNotOfItsDelivery) {
@@ -52,10 +52,10 @@ TEST(RunView, ShowsTheAgeOfRobotDataNotOfItsDelivery) {
   alarms::Facts facts{.now = 1000};
   facts.streams = streams_of(view.activities, facts.now);
   add_verdicts(view, facts);
-  EXPECT_EQ(view.activities[0].age, 94) << "it was queued for long";
-  EXPECT_EQ(view.activities[1].age, 20) << "the newest one was not delivered";
+  EXPECT_EQ(view.activities[0].age, 94) << "the message was queued for long";
+  EXPECT_EQ(view.activities[1].age, 20) << "the newest message was not delivered";
   EXPECT_EQ(view.robots[0].age, 94);
-  EXPECT_EQ(view.robots[1].age, std::nullopt) << "before a start of the machine";
+  EXPECT_EQ(view.robots[1].age, std::nullopt) << "the time is from before the boot";
 }
 
 alarms::Stream of(const char* kind, std::optional<double> age, int status = 200,

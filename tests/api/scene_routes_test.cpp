@@ -53,7 +53,7 @@ TEST_F(SceneRoutesTest, GiveTracksOfRobots) {
             (json{{"tracks", {{{"robot", "r1"}, {"poses", {{100.13, 1.23, 5.0, -6.0, 3.14}}}}}}}));
 }
 
-/// A pose each second: `to(second)`.
+/// One pose per second, given by `to(second)`.
 template <typename To>
 std::vector<TrackPose> each_second(int count, To to) {
   std::vector<TrackPose> poses;
@@ -75,7 +75,8 @@ TEST_F(SceneRoutesTest, OmitPosesThatInterpolationGives) {
   using testing::ElementsAre;
   const auto ahead = [](double i) { return TrackPose{.position = {2 * i, i, 0}, .heading = 0.1 * i}; };
   EXPECT_THAT(times_of(each_second(1, ahead)), ElementsAre(0));
-  EXPECT_THAT(times_of(each_second(25, ahead)), ElementsAre(0, 10, 20, 24)) << "a straight way, at most 10 s";
+  EXPECT_THAT(times_of(each_second(25, ahead)), ElementsAre(0, 10, 20, 24))
+      << "on a straight line at most 10 s apart";
   EXPECT_THAT(
       times_of(each_second(7, [](double i) { return TrackPose{.position = {std::abs(i - 3), 0, 0}}; })),
       ElementsAre(0, 3, 6))
@@ -87,7 +88,7 @@ TEST_F(SceneRoutesTest, OmitPosesThatInterpolationGives) {
   EXPECT_THAT(
       times_of(each_second(7, [](double i) { return TrackPose{.position = {i > 3 ? 2 * i : i, 0, 0}}; })),
       ElementsAre(0, 3, 4, 6))
-      << "another speed";
+      << "a change of speed";
   EXPECT_THAT(
       times_of(each_second(7, [](double i) { return TrackPose{.position = {}, .heading = 2 + 0.3 * i}; })),
       ElementsAre(0, 6))

@@ -57,7 +57,7 @@ ReportRow report(std::int64_t number, std::string type, Time received, std::stri
           .note = {}};
 }
 
-/// An alarm with its action.
+/// An alarm with an action.
 alarms::Alarm alarm(std::string id, alarms::Severity severity, Time since, std::string what, std::string why,
                     alarms::Action action) {
   const std::size_t colon = id.find(':');
@@ -162,7 +162,7 @@ RunView trouble(Time now, double elapsed) {
   return view;
 }
 
-/// A report in every state that there is, after a new run began.
+/// A report in every state, after a new run began.
 RunView reports(Time now, double elapsed) {
   RunView view = calm(now, elapsed);
   view.run_number = 2;
@@ -179,7 +179,7 @@ RunView reports(Time now, double elapsed) {
                   report(19, "Survivor", now - 120, "rejected", 422, {}),
                   report(18, "Survivor", now - 900, "answered", 201, 1)};
   for (ReportRow& row : view.reports) row.run = row.number == 18 ? 1 : 2;
-  view.reports[4].position = {306.25, -2.5, 0.25};  // near report 25, and of its type
+  view.reports[4].position = {306.25, -2.5, 0.25};  // near report 25, of the same type
   view.reports[4].type = "Gas";
   view.reports[2].asking = true;
   view.reports[2].note = "the connection was lost before an answer came; the run's status is being asked";

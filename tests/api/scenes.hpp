@@ -7,8 +7,8 @@
 
 namespace adit::api {
 
-/// A run as it might be `elapsed` seconds into a test, at `now` on the box's clock. Nothing where no scene
-/// has that name: "empty", "calm", "trouble" or "hostile".
+/// An example run, `elapsed` seconds into a test, at `now` on the box's clock. Scenes: "empty", "calm",
+/// "trouble", "hostile"; nullopt for other names.
 std::optional<RunView> scene(std::string_view name, Time now, double elapsed);
 
 }  // namespace adit::api

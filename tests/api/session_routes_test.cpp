@@ -18,7 +18,7 @@ using testing::StartsWith;
 using Status = icd::Status;
 using Headers = std::vector<intake::Header>;
 
-/// Who asks, as a browser remembers it.
+/// A browser's cookies.
 struct Browser {
   std::string cookie, csrf;
 };
@@ -104,7 +104,7 @@ TEST_F(SessionRoutesTest, RejectGuessesUncheckedAfterFive) {
   EXPECT_EQ(keys.checked, 5);
 }
 
-/// Whoever comes then has to wait for its turn, for minutes.
+/// After wrong passwords, each further log-in is delayed, for minutes.
 class GuessedAtTest : public SessionRoutesTest {
  protected:
   void guess_from_everywhere() {
@@ -143,7 +143,7 @@ TEST_F(GuessedAtTest, AdmitAKnownDevice) {
   const auto answer = try_to(device);
   EXPECT_EQ(answer.status, Status::Ok);
   EXPECT_EQ(std::ranges::count(answer.headers, "Set-Cookie", &intake::Header::name), 1)
-      << "it keeps the one it has";
+      << "the session must stay the same";
 }
 
 TEST_F(GuessedAtTest, ReserveRoomForAKnownDevice) {
@@ -193,7 +193,7 @@ TEST_F(SessionRoutesTest, CheckFewPasswordsAtOnce) {
   std::vector<std::shared_ptr<FakeResponder>> all;
   for (int i = 0; i < 4; ++i) {
     all.push_back(begin("POST", "/adit/login", headers, R"({"password":"correct horse"})"));
-    EXPECT_FALSE(all.back()->answered) << "nobody waits for the hash";
+    EXPECT_FALSE(all.back()->answered) << "answered before the hash";
   }
   EXPECT_EQ(post("/adit/login", {{"password", "correct horse"}}).status, Status::TooManyRequests);
   keys.answer_all();
@@ -220,33 +220,34 @@ TEST_F(SessionRoutesTest, SetTheFirstPasswordWithOnlyTheCode) {
 
   EXPECT_EQ(post("/adit/password", good).status, Status::Ok);
   EXPECT_EQ(keys.operator_, "a new password");
-  EXPECT_EQ(post("/adit/password", good).status, Status::Unauthorized) << "the code is good once";
+  EXPECT_EQ(post("/adit/password", good).status, Status::Unauthorized) << "the code is valid once";
   EXPECT_EQ(session(log_in("a new password"))["role"], "operator");
 }
 
 TEST_F(SessionRoutesTest, SetAPasswordWithoutCredentialsDuringSetUp) {
   const Browser old = log_in("correct horse"), viewer = log_in("look, do not touch");
   const json body = {{"role", "operator"}, {"password", "a new password"}};
-  EXPECT_EQ(post("/adit/password", body).status, Status::Unauthorized) << "not before";
+  EXPECT_EQ(post("/adit/password", body).status, Status::Unauthorized) << "the code is not valid yet";
   EXPECT_EQ(session()["set_up_open"], false);
   keys.set_up = true;
   EXPECT_EQ(session()["set_up_open"], true);
-  EXPECT_EQ(get("/adit/run", old).status, Status::Ok) << "nothing has changed yet";
+  EXPECT_EQ(get("/adit/run", old).status, Status::Ok) << "a session ended too early";
   json wrong = body;
   wrong["password"] = "too short";
   EXPECT_EQ(post("/adit/password", wrong).status, Status::UnprocessableEntity);
   wrong = {{"role", "viewer"}, {"password", "a new password"}};
-  EXPECT_EQ(post("/adit/password", wrong).status, Status::Unauthorized) << "the viewers' needs the operator";
+  EXPECT_EQ(post("/adit/password", wrong).status, Status::Unauthorized)
+      << "only an operator may change the viewers' password";
   wrong = {{"role", "operator"}, {"current", "wrong"}, {"password", "a new password"}};
-  EXPECT_EQ(post("/adit/password", wrong).status, Status::Unauthorized) << "who says one is asked for it";
+  EXPECT_EQ(post("/adit/password", wrong).status, Status::Unauthorized) << "a stated password is checked";
   EXPECT_EQ(keys.operator_, "correct horse");
   EXPECT_EQ(get("/adit/run", old).status, Status::Ok);
 
   EXPECT_EQ(post("/adit/password", body).status, Status::Ok);
   EXPECT_EQ(keys.operator_, "a new password");
-  EXPECT_EQ(get("/adit/run", old).status, Status::Unauthorized) << "who knew the old one is out";
+  EXPECT_EQ(get("/adit/run", old).status, Status::Unauthorized) << "sessions of the old password end";
   EXPECT_EQ(get("/adit/run", viewer).status, Status::Ok);
-  EXPECT_EQ(post("/adit/password", body).status, Status::Unauthorized) << "it is good once";
+  EXPECT_EQ(post("/adit/password", body).status, Status::Unauthorized) << "the code is valid once";
 }
 
 TEST_F(SessionRoutesTest, OpenNoOtherRouteDuringSetUp) {
@@ -260,7 +261,7 @@ TEST_F(SessionRoutesTest, OpenNoOtherRouteDuringSetUp) {
   EXPECT_EQ(
       ask("POST", "/adit/password", headers, R"({"role":"operator","password":"a new password"})").status,
       Status::Forbidden)
-      << "a page from elsewhere";
+      << "a page of another origin";
   EXPECT_EQ(ask("POST", "/adit/password", {{"Content-Type", "text/plain"}},
                 R"({"role":"operator","password":"a new password"})")
                 .status,
@@ -285,7 +286,7 @@ TEST_F(SessionRoutesTest, RequireNoCodeDuringSetUpAtTheFirstStart) {
   EXPECT_EQ(
       post("/adit/password", {{"role", "operator"}, {"code", "1"}, {"password", "a new password"}}).status,
       Status::Forbidden)
-      << "but one that is shown has to be right";
+      << "a password that is sent is checked";
   EXPECT_EQ(post("/adit/password", {{"role", "operator"}, {"password", "a new password"}}).status,
             Status::Ok);
   EXPECT_EQ(keys.operator_, "a new password");
@@ -315,7 +316,8 @@ TEST_F(SessionRoutesTest, OperatorChangesBothPasswordsWithTheOwnOne) {
   json change = {{"role", "operator"}, {"current", "wrong"}, {"password", "a new password"}};
   EXPECT_EQ(post("/adit/password", change, mine).status, Status::Forbidden);
   change["current"] = "look, do not touch";
-  EXPECT_EQ(post("/adit/password", change, mine).status, Status::Forbidden) << "the viewers' is not enough";
+  EXPECT_EQ(post("/adit/password", change, mine).status, Status::Forbidden)
+      << "the viewers' password is not enough";
   change["current"] = "correct horse";
   EXPECT_EQ(post("/adit/password", change, mine).status, Status::Ok);
   EXPECT_EQ(keys.operator_, "a new password");

@@ -22,14 +22,14 @@ class SettingsRoutesTest : public OnPage {
 };
 
 TEST_F(SettingsRoutesTest, ShowAllSettingsButNoToken) {
-  const json said = shown();
-  EXPECT_EQ(said["settings"], json::parse(settings::file_of(setup.now)));
-  EXPECT_EQ(said["tag"], settings::tag_of(setup.now));
-  EXPECT_EQ(said["saved"], false);
-  EXPECT_EQ(said["tokens"], (json{{"scoring", true}, {"course.A.mapping", false}}));
-  EXPECT_EQ(said["odd_tokens"], (json{{{"path", "scoring"}, {"what", "odd"}}}));
+  const json stored = shown();
+  EXPECT_EQ(stored["settings"], json::parse(settings::file_of(setup.now)));
+  EXPECT_EQ(stored["tag"], settings::tag_of(setup.now));
+  EXPECT_EQ(stored["saved"], false);
+  EXPECT_EQ(stored["tokens"], (json{{"scoring", true}, {"course.A.mapping", false}}));
+  EXPECT_EQ(stored["odd_tokens"], (json{{{"path", "scoring"}, {"what", "odd"}}}));
   const auto key = [&](const std::string& path) {
-    for (const json& row : said["keys"]) {
+    for (const json& row : stored["keys"]) {
       if (row["path"] == path) return row;
     }
     return json();
@@ -68,9 +68,9 @@ TEST_F(SettingsRoutesTest, TellWhyTheLastChangeWasReverted) {
 }
 
 TEST_F(SettingsRoutesTest, SendRetryAfterOnlyWhileAChangeIsApplied) {
-  json said = shown();
-  const json change = {{"settings", said["settings"]}, {"base", said["tag"]}};
-  const json stale = {{"settings", said["settings"]}, {"base", "another"}};
+  json stored = shown();
+  const json change = {{"settings", stored["settings"]}, {"base", stored["tag"]}};
+  const json stale = {{"settings", stored["settings"]}, {"base", "another"}};
   setup.refusal = icd::Refusal{Status::Conflict, "whatever the sentence is"};
   for (const auto& answer : {post("/adit/settings", change), post("/adit/course", {{"name", "A"}}),
                              post("/adit/tokens", {{"name", "scoring"}, {"token", nullptr}}),
@@ -107,40 +107,41 @@ TEST_F(SettingsRoutesTest, CheckWithoutChangingAnything) {
 }
 
 TEST_F(SettingsRoutesTest, SaveGoodSettingsAndListTheChanges) {
-  json said = shown();
-  said["settings"]["team"]["connections"] = 65;
-  const auto answer = post("/adit/settings", {{"settings", said["settings"]}, {"base", said["tag"]}});
+  json stored = shown();
+  stored["settings"]["team"]["connections"] = 65;
+  const auto answer = post("/adit/settings", {{"settings", stored["settings"]}, {"base", stored["tag"]}});
   EXPECT_EQ(answer.status, Status::Ok);
   EXPECT_EQ(json::parse(answer.body),
             (json{{"changes", {{{"path", "team.connections"}, {"from", 128}, {"to", 65}}}},
                   {"warnings", json::array()}}));
   EXPECT_EQ(setup.now.team.connections, 65u);
-  EXPECT_EQ(post("/adit/settings", {{"settings", said["settings"]}, {"base", said["tag"]}}).status,
+  EXPECT_EQ(post("/adit/settings", {{"settings", stored["settings"]}, {"base", stored["tag"]}}).status,
             Status::Conflict)
-      << "made from settings that are no more";
+      << "the change is based on older settings";
   setup.is_applying = false;
-  said["tag"] = shown()["tag"];
-  EXPECT_EQ(json::parse(post("/adit/settings", {{"settings", said["settings"]}, {"base", said["tag"]}}).body),
-            (json{{"changes", json::array()}, {"warnings", json::array()}}));
+  stored["tag"] = shown()["tag"];
+  EXPECT_EQ(
+      json::parse(post("/adit/settings", {{"settings", stored["settings"]}, {"base", stored["tag"]}}).body),
+      (json{{"changes", json::array()}, {"warnings", json::array()}}));
 }
 
 TEST_F(SettingsRoutesTest, RejectPortZero) {
-  json said = shown();
-  said["settings"]["team"]["listen"].push_back({{"address", "10.0.0.1"}, {"port", 0}});
-  const auto checked = post("/adit/settings/check", {{"settings", said["settings"]}});
+  json stored = shown();
+  stored["settings"]["team"]["listen"].push_back({{"address", "10.0.0.1"}, {"port", 0}});
+  const auto checked = post("/adit/settings/check", {{"settings", stored["settings"]}});
   EXPECT_THAT(checked.body, HasSubstr("].port"));
   EXPECT_THAT(checked.body, HasSubstr("expected 1 to 65535, got 0"));
-  const auto saved = post("/adit/settings", {{"settings", said["settings"]}, {"base", said["tag"]}});
+  const auto saved = post("/adit/settings", {{"settings", stored["settings"]}, {"base", stored["tag"]}});
   EXPECT_EQ(saved.status, Status::UnprocessableEntity);
   EXPECT_EQ(setup.saves, 0);
 }
 
 TEST_F(SettingsRoutesTest, RejectBadSettingsWithAllErrors) {
-  const json said = shown();
-  json settings = said["settings"];
+  const json stored = shown();
+  json settings = stored["settings"];
   settings["team"]["connections"] = "many";
   settings["robots"] = {{{"name", "ugv-1"}}};
-  const auto answer = post("/adit/settings", {{"settings", settings}, {"base", said["tag"]}});
+  const auto answer = post("/adit/settings", {{"settings", settings}, {"base", stored["tag"]}});
   EXPECT_EQ(answer.status, Status::UnprocessableEntity);
   EXPECT_THAT(std::string(json::parse(answer.body)),
               HasSubstr("team.connections: expected a whole number from "));
@@ -180,7 +181,7 @@ TEST_F(SettingsRoutesTest, RejectMalformedBodiesWithTheFieldsName) {
     const auto answer = post(row.path, row.body);
     EXPECT_EQ(answer.status, Status::UnprocessableEntity) << row.path << row.body;
     EXPECT_THAT(answer.body, HasSubstr(row.word)) << row.path << row.body;
-    EXPECT_THAT(answer.body, Not(HasSubstr("two words"))) << "what was meant for a token is not repeated";
+    EXPECT_THAT(answer.body, Not(HasSubstr("two words"))) << "the answer repeats a rejected token";
   }
   EXPECT_EQ(request("POST", "/adit/course", {kByToken, {"Content-Type", "application/json"}}, "{").status,
             Status::BadRequest);
@@ -211,7 +212,7 @@ TEST_F(SettingsRoutesTest, SwitchTheCourseByNameAndBackToNone) {
 
 TEST_F(SettingsRoutesTest, ResetOnlyWithTheOperatorsPassword) {
   EXPECT_EQ(post("/adit/reset", {{"password", "look, do not touch"}}).status, Status::Forbidden)
-      << "the viewer's";
+      << "for a viewer";
   EXPECT_EQ(post("/adit/reset", json::object()).status, Status::UnprocessableEntity);
   EXPECT_EQ(setup.resets, 0);
   const auto answer = post("/adit/reset", {{"password", "correct horse"}});
@@ -231,10 +232,10 @@ TEST_F(SettingsRoutesTest, LimitGuessesOfThePasswordByReset) {
 
 TEST_F(SettingsRoutesTest, TellWhyAChangeFails) {
   setup.refusal = {Status::ServiceUnavailable, "cannot store the change: No space left on device"};
-  json said = shown();
-  said["settings"]["team"]["connections"] = 65;
+  json stored = shown();
+  stored["settings"]["team"]["connections"] = 65;
   for (const auto& answer :
-       {post("/adit/settings", {{"settings", said["settings"]}, {"base", said["tag"]}}),
+       {post("/adit/settings", {{"settings", stored["settings"]}, {"base", stored["tag"]}}),
         post("/adit/tokens", {{"name", "scoring"}, {"token", "x"}}), post("/adit/course", {{"name", "A"}}),
         post("/adit/reset", {{"password", "correct horse"}})}) {
     EXPECT_EQ(answer.status, Status::ServiceUnavailable);

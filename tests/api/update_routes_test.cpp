@@ -54,11 +54,11 @@ TEST_F(UpdateRoutesTest, ShowAnUpdate) {
             json::parse(R"({"stage": "left", "version": "0.2.0", "slot": "B", "why": "it did not"})"));
   EXPECT_EQ(shown["stick"], json::parse(R"({"name": "adit-x.raucb", "version": "0.3.0"})"));
   EXPECT_EQ(shown["stick_why"], "too old");
-  EXPECT_EQ(shown["newer"], "") << "known: none";
+  EXPECT_EQ(shown["newer"], "") << "no newer version is known";
   EXPECT_EQ(shown["newer_why"], "no");
 }
 
-/// As a squashfs of `used` bytes begins.
+/// The head of a squashfs of `used` bytes.
 std::vector<std::uint8_t> head(std::uint8_t used = 40) {
   std::vector<std::uint8_t> bytes(update::kBundleHead);
   std::ranges::copy(std::string_view("hsqs"), bytes.begin());
@@ -75,11 +75,11 @@ TEST_F(UpdateRoutesTest, PassOnABundleInPieces) {
   EXPECT_TRUE(exchange->on_body(std::span(first).first(7)));
   EXPECT_TRUE(exchange->on_body(std::span(first).subspan(7)));
   updates.more = false;
-  EXPECT_FALSE(exchange->on_body(second)) << "a full disk's queue holds up whoever sends";
+  EXPECT_FALSE(exchange->on_body(second)) << "a full queue must delay the sender";
   updates.received.resume();
   EXPECT_EQ(flow->resumed, 1);
   exchange->on_end();
-  EXPECT_FALSE(responder->answered) << "it is not on the disk yet";
+  EXPECT_FALSE(responder->answered) << "answered before the update is on the disk";
   updates.received.done({});
   EXPECT_EQ(updates.received.bytes, std::string(first.begin(), first.end()) + "def");
   EXPECT_EQ(responder->answered->status, icd::Status::Ok);
@@ -94,11 +94,11 @@ TEST_F(UpdateRoutesTest, RejectOtherFilesByTheirFirstBytes) {
         std::pair(cut, "the update is incomplete: expected more than 60 bytes, got 60")}) {
     const auto exchange = open("POST", "/adit/update", kBytes, 60);
     EXPECT_TRUE(exchange->on_body(bytes));
-    ASSERT_TRUE(responder->answered) << "before the rest comes";
+    ASSERT_TRUE(responder->answered) << "not answered before the rest arrives";
     EXPECT_EQ(responder->answered->status, icd::Status::UnprocessableEntity);
     EXPECT_EQ(json::parse(responder->answered->body), why);
     EXPECT_TRUE(updates.received.dropped);
-    EXPECT_TRUE(exchange->on_body(bytes));  // what was under way is passed over
+    EXPECT_TRUE(exchange->on_body(bytes));  // later pieces are ignored
     exchange->on_end();
     EXPECT_FALSE(updates.received.whole);
   }

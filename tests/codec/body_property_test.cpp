@@ -1,4 +1,4 @@
-// Laws that hold for any body: random documents written by nlohmann-json, cut anywhere, damaged anywhere.
+// Properties of any body: random documents from nlohmann-json, split at any byte and damaged at any byte.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -75,10 +75,10 @@ TEST(AnyDocument, ReadsTheSameWithAnotherParser) {
     const std::string json = json_of(document, random);
     const auto from_json = decode_in_random_chunks(kJsonBody, Split::MapData, json, random);
     ASSERT_TRUE(from_json) << json << "\n" << from_json.error().sentence;
-    ASSERT_TRUE(says(from_json->root, document)) << json;
+    ASSERT_TRUE(equals(from_json->root, document)) << json;
     const auto from_cbor = decode_in_random_chunks(kCborBody, Split::MapData, cbor_of(document), random);
     ASSERT_TRUE(from_cbor) << json << "\n" << from_cbor.error().sentence;
-    ASSERT_TRUE(says(from_cbor->root, document)) << json;
+    ASSERT_TRUE(equals(from_cbor->root, document)) << json;
   }
 }
 
@@ -103,11 +103,11 @@ TEST(AnyDocument, ReadsBackTheSame) {
     const auto value = parse_json(document.dump());
     ASSERT_TRUE(value);
     const std::string written = write_json(*value);
-    ASSERT_TRUE(says(*value, ordered_json::parse(written))) << written;
+    ASSERT_TRUE(equals(*value, ordered_json::parse(written))) << written;
   }
 }
 
-/// A map whose data, between random members, is written in each of the four forms.
+/// Writes a map's data, between random members, in each of the four forms.
 TEST(AnyMapData, ArrivesUnchangedInAnySizeAndForm) {
   Randomness random(3);
   const std::vector<std::size_t> sizes = {0,    1,    2,    3,    4,    5,    255,   256,   257,   4095,
@@ -145,7 +145,7 @@ TEST(AnyMapData, ArrivesUnchangedInAnySizeAndForm) {
   }
 }
 
-/// One to three bytes changed, left out, doubled or put in.
+/// Changes, removes, repeats or inserts one to three bytes.
 void damage(std::string& body, Randomness& random) {
   static constexpr std::string_view kTelling = "{}[]\",:\\u0eE-+./dD8 \n\t\x80\xff";
   for (std::size_t left = 1 + random() % 3; left > 0 && !body.empty(); --left) {
@@ -167,12 +167,12 @@ void damage(std::string& body, Randomness& random) {
 }
 
 bool ends_for_nlohmann_json(const std::string& body) {
-  return body.find('\0') != std::string::npos;  // which it takes for the end of the document
+  return body.find('\0') != std::string::npos;  // the parser takes it for the end of the document
 }
 
 TEST(AnyDamagedJson, GetsTheSameVerdictFromAnotherParser) {
   Randomness random(4);
-  int taken = 0;
+  int accepted = 0;
   constexpr int kRounds = 10'000;
   RecordProperty("cases", kRounds);
   for (int round = 0; round < kRounds; ++round) {
@@ -182,13 +182,13 @@ TEST(AnyDamagedJson, GetsTheSameVerdictFromAnotherParser) {
     const bool good = ordered_json::accept(body);
     ASSERT_EQ(parse_json(body).has_value(), good) << body;
     ASSERT_EQ(decode_in_random_chunks(kJsonBody, Split::Nothing, body, random).has_value(), good) << body;
-    taken += good ? 1 : 0;
+    accepted += good ? 1 : 0;
   }
-  EXPECT_GT(taken, kRounds / 30);  // both verdicts were common enough to mean something
-  EXPECT_LT(taken, kRounds - kRounds / 30);
+  EXPECT_GT(accepted, kRounds / 30);  // both results were common
+  EXPECT_LT(accepted, kRounds - kRounds / 30);
 }
 
-/// What is read when it is whole, and what is read as it comes.
+/// The results of reading at once and of reading in pieces.
 TEST(AnyJson, IsTheSameWithAndWithoutSplitData) {
   Randomness random(6);
   constexpr int kRounds = 6000;
@@ -209,7 +209,7 @@ TEST(AnyJson, IsTheSameWithAndWithoutSplitData) {
     ASSERT_EQ(bounded.has_value(), decode(kJsonBody, Split::MapData, body, {.values = values}).has_value());
     at_once += json_value(body, values) ? 1 : 0;
   }
-  EXPECT_GT(at_once, kRounds / 20);  // both ways were taken often
+  EXPECT_GT(at_once, kRounds / 20);  // both ways were common
   EXPECT_LT(at_once, kRounds - kRounds / 20);
 }
 

@@ -1,5 +1,5 @@
-// Laws of a map's data in JSON, which has a fast way and a slow one: byte by byte it goes the slow way alone,
-// in larger pieces both, and what it is must not depend on that. Hostile and good data alike.
+// Properties of a map's data in JSON, which has a fast and a slow parser. Single bytes use only the slow
+// one, larger pieces use both. The result must not depend on that, for valid and for damaged data.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -17,8 +17,8 @@ auto one_of(const Choices& choices, Randomness& random) {
   return choices[random() % std::size(choices)];
 }
 
-/// A string of base64 with its quotation marks: seldom longer than a block that is looked at at once, some of
-/// it escaped, every second damaged.
+/// A JSON string of base64, rarely longer than a block of the fast parser. Some characters are escaped,
+/// every second string is damaged.
 std::string random_base64(Randomness& random) {
   const std::vector<std::string> odd = {"=",  "==",   "\\/",  "\\u0041", "\\u002b", "\\u00", "\\n",
                                         "\\", "\"",   "\"}",  "-",       "_",       " ",     "\n",
@@ -34,7 +34,7 @@ std::string random_base64(Randomness& random) {
   return '"' + text + '"';
 }
 
-/// A list: runs of the same element, in one of the ways in which clients write them, every second damaged.
+/// A list with runs of the same element, in a style of some client. Every second list is damaged.
 std::string random_list(Randomness& random) {
   const std::vector<std::string> between = {",", ", ", ",\n    ", " , ", " ,", ",\t\r"};
   const std::vector<std::string> odd = {"256",  "-2",   "1.0",   "01",   "-0",  "1e1", "00",  "-",
@@ -56,7 +56,7 @@ std::string random_list(Randomness& random) {
   return text;
 }
 
-/// Gives how many of the bodies were good.
+/// Returns how many bodies were valid.
 int expect_the_same_however_cut(int rounds, Randomness& random, std::string (*data)(Randomness&)) {
   int good = 0;
   ::testing::Test::RecordProperty("cases", rounds);
@@ -85,7 +85,7 @@ int expect_the_same_however_cut(int rounds, Randomness& random, std::string (*da
 TEST(AnyBase64, DecodesTheSameOnTheFastAndSlowPath) {
   Randomness random(11);
   const int good = expect_the_same_however_cut(2000, random, random_base64);
-  EXPECT_GT(good, 200);  // both verdicts were common enough to mean something
+  EXPECT_GT(good, 200);  // both results were common
   EXPECT_LT(good, 1800);
 }
 
@@ -96,7 +96,7 @@ TEST(AnyList, ReadsTheSameOnTheFastAndSlowPath) {
   EXPECT_LT(good, 630);
 }
 
-/// The bytes of base64 as RFC 4648 has it, one character at a time.
+/// Decodes base64 by RFC 4648, one character at a time.
 std::vector<std::uint8_t> bytes_of(std::string_view base64) {
   std::vector<std::uint8_t> bytes;
   std::uint32_t bits = 0;
@@ -109,7 +109,7 @@ std::vector<std::uint8_t> bytes_of(std::string_view base64) {
   return bytes;
 }
 
-/// A list in CBOR: runs, told by a length or ended by a break, some elements longer than they need be; and
+/// A CBOR list of runs, with a length or a break, with some elements in a longer form than necessary. And
 /// its bytes.
 struct CborList {
   std::string body = from_hex("a1 63 6d7367 a1 64 64617461");

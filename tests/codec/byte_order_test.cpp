@@ -1,4 +1,4 @@
-// Big-endian clouds (ICD 6.3.2) go up little-endian, value by value.
+// Adit sends big-endian clouds (ICD 6.3.2) as little-endian, value by value.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -53,7 +53,7 @@ TEST(BigEndianCloud, BecomesTheSameLittleEndianCloud) {
   for (const auto& [begin, size] : {std::pair{1, 8}, {9, 8}, {17, 8}, {26, 2}, {28, 2}, {30, 4}, {38, 8}}) {
     for (int i = 0; i < size; ++i) turned[begin + i] = static_cast<std::uint8_t>(begin + size - 1 - i);
   }
-  // More points than one chunk holds, and no whole number of them in it.
+  // More points than one chunk has; a chunk does not end at a point.
   Bytes all, all_turned;
   for (int i = 0; i < 10'000; ++i) {
     point[47] = turned[47] = static_cast<std::uint8_t>(i);  // padding
@@ -108,7 +108,7 @@ TEST(BigEndianCloud, StaysBigEndianIfFieldsOverlap) {
   EXPECT_TRUE(cloud_in(*map).is_bigendian);
   EXPECT_EQ(test::raw_data(map->data), data);
 
-  message["msg"]["origin"] = test::good_cloud()["msg"]["origin"];  // there is a server that turns it wrongly
+  message["msg"]["origin"] = test::good_cloud()["msg"]["origin"];  // a server exists that converts it wrongly
   EXPECT_EQ(
       test::sentence_of(read(message)),
       "msg.is_bigendian: expected false for a cloud that has an origin and overlapping fields, got true");

@@ -1,4 +1,4 @@
-// RFC 8949: which documents are taken and which are refused, whole and in chunks of any size.
+// RFC 8949: valid and invalid documents, whole and in chunks of any size.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -16,8 +16,8 @@ icd::Checked<Document> decode_hex(std::string_view hex, std::size_t size = 10000
   return decode_in_chunks(kCborBody, split, from_hex(hex), size);
 }
 
-/// RFC 8949 appendix A, and what it means in JSON: without tags, with null for undefined and for simple
-/// values, and without members whose keys are no text.
+/// RFC 8949 appendix A, and the same in JSON: without tags, with null for undefined and for simple values,
+/// and without members whose keys are not text.
 const std::vector<std::pair<std::string, std::string>> kGoodCbor = {
     {"00", "0"},
     {"01", "1"},
@@ -39,7 +39,7 @@ const std::vector<std::pair<std::string, std::string>> kGoodCbor = {
     {"29", "-10"},
     {"3863", "-100"},
     {"3903e7", "-1000"},
-    // Lengths longer than they need be are well-formed (4.1 only prefers others).
+    // Lengths in a longer form than necessary are well-formed (4.1 only prefers short ones).
     {"1800", "0"},
     {"1b0000000000000001", "1"},
     {"3a00000000", "-1"},
@@ -99,7 +99,7 @@ const std::vector<std::pair<std::string, std::string>> kGoodCbor = {
     {"826161bf61626163ff", R"(["a",{"b":"c"}])"},
     {"bf6346756ef563416d7421ff", R"({"Fun":true,"Amt":-2})"},
     {"bfff", "{}"},
-    // Keys: in chunks, tagged, texts as byte strings, and those that are no text
+    // Keys: chunked, tagged, text as byte strings, and keys that are not text
     {"a17f61616162ff01", R"({"ab":1})"},
     {"a1c0616101", R"({"a":1})"},
     {"a24101026161f6", "{\"\\u0001\":2,\"a\":null}"},
@@ -117,7 +117,7 @@ TEST(CborBody, ReadsTheExamplesOfTheRfc) {
       for (const Split split : {Split::Nothing, Split::MapData}) {
         const auto document = decode_hex(hex, size, split);
         ASSERT_TRUE(document) << hex << ": " << document.error().sentence;
-        EXPECT_TRUE(says(document->root, nlohmann::ordered_json::parse(meaning))) << hex;
+        EXPECT_TRUE(equals(document->root, nlohmann::ordered_json::parse(meaning))) << hex;
       }
     }
   }
@@ -140,7 +140,7 @@ TEST(CborBody, KeepsByteStringsAsBytes) {
   }
 }
 
-/// What the member "a" is, before a "b" that is [1].
+/// The value of member "a" before a member "b" with value [1].
 Value before_a_list(const std::string& hex, std::size_t size, Split split) {
   const auto document = decode_hex("a2 6161" + hex + "6162 8101", size, split);
   EXPECT_TRUE(document) << hex << ": " << document.error().sentence;
@@ -178,7 +178,7 @@ std::string tagged(std::uint64_t tag) {
   return body + '\0';
 }
 
-/// By IANA's registry: those whose content stays a text, a number, bytes, an array or a map.
+/// Tags in IANA's registry whose content remains a text, a number, bytes, an array or a map.
 TEST(CborBody, KeepsValuesUnderATagThatOnlyAnnotates) {
   const std::set<std::uint64_t> remarks = {0,   1,   21,  22,  23,  28,  32,   33,    34,    35,
                                            36,  39,  41,  64,  68,  72,  108,  201,   256,   258,
@@ -204,10 +204,10 @@ TEST(CborBody, KeepsNanAndInfinity) {
   }
 }
 
-/// RFC 8949 appendix F, and more of each kind.
+/// RFC 8949 appendix F, and more examples of each kind.
 const std::vector<std::pair<std::string, std::string>> kBadCbor = {
     {"", "0: an empty document"},
-    // The end comes too early in a head
+    // The document ends within a head
     {"18", "1: the document is cut short"},
     {"19", "1: the document is cut short"},
     {"1a", "1: the document is cut short"},
@@ -226,14 +226,14 @@ const std::vector<std::pair<std::string, std::string>> kBadCbor = {
     {"f900", "2: the document is cut short"},
     {"fa0000", "3: the document is cut short"},
     {"fb000000", "4: the document is cut short"},
-    // In a definite string, also one that claims more than there can be
+    // The document ends within a definite string, also one with an impossible length
     {"41", "1: the document is cut short"},
     {"61", "1: the document is cut short"},
     {"5affffffff00", "6: the document is cut short"},
     {"5bffffffffffffffff010203", "12: the document is cut short"},
     {"7affffffff00", "6: the document is cut short"},
     {"7b7fffffffffffffff010203", "12: the document is cut short"},
-    // In definite containers, also those that claim more than there can be
+    // The document ends within a definite container, also one with an impossible length
     {"81", "1: the document is cut short"},
     {"818181818181818181", "9: the document is cut short"},
     {"8200", "2: the document is cut short"},
@@ -244,7 +244,7 @@ const std::vector<std::pair<std::string, std::string>> kBadCbor = {
     {"9bffffffffffffffff00", "10: the document is cut short"},
     {"bbffffffffffffffff0000", "11: the document is cut short"},
     {"c0", "1: the document is cut short"},
-    // In indefinite ones
+    // The document ends within an indefinite item
     {"5f4100", "3: the document is cut short"},
     {"7f6100", "3: the document is cut short"},
     {"9f", "1: the document is cut short"},
@@ -255,7 +255,7 @@ const std::vector<std::pair<std::string, std::string>> kBadCbor = {
     {"9f8000", "3: the document is cut short"},
     {"9f9f9f9f9fffffffff", "9: the document is cut short"},
     {"9f819f819f9fffffff", "9: the document is cut short"},
-    // More after the end
+    // Bytes after the document
     {"0000", "1: bytes after the document"},
     {"a000", "1: bytes after the document"},
     {"9fff00", "2: bytes after the document"},
@@ -273,12 +273,12 @@ const std::vector<std::pair<std::string, std::string>> kBadCbor = {
     {"fc", "0: reserved additional information"},
     {"81fd", "1: reserved additional information"},
     {"fe", "0: reserved additional information"},
-    // Simple values in two bytes that have one
+    // Two-byte simple values below 32
     {"f800", "0: a simple value below 32 in two bytes"},
     {"f801", "0: a simple value below 32 in two bytes"},
     {"f818", "0: a simple value below 32 in two bytes"},
     {"81f81f", "1: a simple value below 32 in two bytes"},
-    // Strings in chunks of something else
+    // Chunks of a wrong type in strings
     {"5f00ff", "1: a string in chunks holds something else"},
     {"5f21ff", "1: a string in chunks holds something else"},
     {"5f6100ff", "1: a string in chunks holds something else"},
@@ -289,7 +289,7 @@ const std::vector<std::pair<std::string, std::string>> kBadCbor = {
     {"7f4100ff", "1: a string in chunks holds something else"},
     {"5f5f4100ffff", "1: a string in chunks holds something else"},
     {"7f7f6100ffff", "1: a string in chunks holds something else"},
-    // Break where none belongs
+    // An unexpected break
     {"ff", "0: an unexpected break"},
     {"81ff", "1: an unexpected break"},
     {"8200ff", "2: an unexpected break"},
@@ -303,18 +303,18 @@ const std::vector<std::pair<std::string, std::string>> kBadCbor = {
     {"9fc0ff", "2: an unexpected break"},
     {"bf00ff", "2: a key without its value"},
     {"bf000000ff", "4: a key without its value"},
-    // Indefinite lengths where there are none
+    // Indefinite lengths in items that allow none
     {"1f", "0: an indefinite length in an item that allows none"},
     {"3f", "0: an indefinite length in an item that allows none"},
     {"df", "0: an indefinite length in an item that allows none"},
-    // Texts that are not UTF-8 (3.1), also when only their chunks are not (3.2.3)
+    // Text that is not UTF-8 (3.1), also if only a chunk is not (3.2.3)
     {"61ff", "1: a text that is not UTF-8"},
     {"62c328", "2: a text that is not UTF-8"},
     {"63eda080", "2: a text that is not UTF-8"},
     {"61c3", "0: a text that ends within a character"},
     {"7f61c361bcff", "1: a text that ends within a character"},
     {"a161ff00", "2: a text that is not UTF-8"},
-    // JSON: {}, {"x": 1}, an object over lines, one behind a byte order mark
+    // JSON: {}, {"x": 1}, an object on several lines, an object after a byte order mark
     {"7b7d", "2: the document is cut short (this looks like JSON; Content-Type says CBOR)"},
     {"7b2278223a20317d", "8: the document is cut short (this looks like JSON; Content-Type says CBOR)"},
     {"7b2278223a20312c202279223a317d",

@@ -1,4 +1,4 @@
-// The map's data in CBOR: split from the rest as it arrives, a byte string (ICD 6.3) or an array of integers.
+// The map's data in CBOR, split off as it arrives: a byte string (ICD 6.3) or an array of integers.
 #include <gtest/gtest.h>
 
 #include "codec/documents.hpp"
@@ -44,7 +44,7 @@ const std::vector<CborCase> kGoodCborData = {
      "ab\xff",
      DataForm::Integers},
     {map_with("82c01861c1d71862"), "ab", DataForm::Integers},
-    // The way there: keys in chunks, tags everywhere, members before and behind, keys that are no text
+    // The path to the data: chunked keys, tags everywhere, members before and after, keys that are not text
     {from_hex("a1 7f61 6d 62 7367ff a1 7f 6464617461 60 ff 4161"), "a"},
     {from_hex("d9d9f7 a1 c0 636d7367 c1 a1 d7 6464617461 d823 4161"), "a"},
     {from_hex("bf 6161 5f4100ff 636d7367 bf 6162 9f01ff 6464617461 4161 6163 a0 ff 6164 f6 ff"), "a"},
@@ -164,7 +164,7 @@ TEST(CborData, IsRejectedByItsDeclaredLength) {
        {"591771", "5b00000001ffffffff", "5bffffffffffffffff00", "5f591770 411a", "5f 591771"}) {
     const auto document = decode(kCborBody, Split::MapData, map_with(hex), limits);
     ASSERT_FALSE(document);
-    const bool two = std::string_view(hex).starts_with("5f591770");  // whose first piece alone fits
+    const bool two = std::string_view(hex).starts_with("5f591770");  // only the first piece fits
     EXPECT_EQ(document.error().status, two ? icd::Status::BadRequest : icd::Status::ContentTooLarge) << hex;
   }
 }

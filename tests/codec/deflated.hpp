@@ -7,7 +7,8 @@
 
 namespace adit::codec::test {
 
-/// By zlib itself, not by the codec. Window bits as zlib counts them: 31 gzip, 15 zlib, -15 raw deflate.
+/// Compresses with zlib, independent of the codec. Window bits as in zlib: 31 gzip, 15 zlib, -15 raw
+/// deflate.
 inline std::string deflated(std::string_view bytes, int window_bits) {
   z_stream stream{};
   deflateInit2(&stream, 6, Z_DEFLATED, window_bits, 8, Z_DEFAULT_STRATEGY);

@@ -10,13 +10,14 @@
 
 #include "codec/body_decoder.hpp"
 
-/// For the tests of the byte level: bodies in chunks, and documents compared with what nlohmann-json read.
+/// Helpers for tests of the byte level: bodies in chunks, and comparison with documents that nlohmann-json
+/// read.
 namespace adit::codec::test {
 
 inline constexpr BodyKind kJsonBody{Format::Json, ContentCoding::Identity};
 inline constexpr BodyKind kCborBody{Format::Cbor, ContentCoding::Identity};
 
-/// The body as a server would give it: in chunks of `size` bytes.
+/// Decodes the body in chunks of `size` bytes.
 inline icd::Checked<Document> decode_in_chunks(BodyKind kind, Split split, std::string_view body,
                                                std::size_t size, const Limits& limits = {}) {
   BodyDecoder decoder(kind, split, limits);
@@ -28,7 +29,8 @@ inline icd::Checked<Document> decode_in_chunks(BodyKind kind, Split split, std::
   return decoder.finish();
 }
 
-/// In chunks of random sizes up to one that is random, too, and at most `most`; some of them are empty.
+/// Decodes the body in chunks of random sizes, at most `most` and at most a random limit. Some chunks are
+/// empty.
 inline icd::Checked<Document> decode_in_random_chunks(BodyKind kind, Split split, std::string_view body,
                                                       std::mt19937_64& random, std::size_t most = 40,
                                                       const Limits& limits = {}) {
@@ -57,7 +59,7 @@ inline std::string base64_of(std::span<const std::uint8_t> bytes) {
   return text;
 }
 
-/// Bytes written as "83 01 ff".
+/// Bytes from hexadecimal digits such as "83 01 ff".
 inline std::string from_hex(std::string_view digits) {
   std::string bytes;
   std::string pair;
@@ -70,9 +72,8 @@ inline std::string from_hex(std::string_view digits) {
   return bytes;
 }
 
-/// Whether `value` says what `expected` says: the same members in the same order, and numbers of the same
-/// value.
-inline bool says(const Value& value, const nlohmann::ordered_json& expected) {
+/// Whether `value` equals `expected`: the same members in the same order, and numbers of the same value.
+inline bool equals(const Value& value, const nlohmann::ordered_json& expected) {
   if (const auto* whole = std::get_if<std::int64_t>(&value.is)) {
     return expected.is_number() && expected.get<double>() == static_cast<double>(*whole) &&
            (expected.is_number_float() || expected.get<std::int64_t>() == *whole);
@@ -93,13 +94,13 @@ inline bool says(const Value& value, const nlohmann::ordered_json& expected) {
   }
   if (const auto* array = std::get_if<Value::Array>(&value.is)) {
     return expected.is_array() &&
-           std::equal(array->begin(), array->end(), expected.begin(), expected.end(), says);
+           std::equal(array->begin(), array->end(), expected.begin(), expected.end(), equals);
   }
   if (const auto* object = std::get_if<Value::Object>(&value.is)) {
     if (!expected.is_object() || expected.size() != object->size()) return false;
     auto member = object->begin();
     for (const auto& [key, child] : expected.items()) {
-      if (member->first != key || !says(member->second, child)) return false;
+      if (member->first != key || !equals(member->second, child)) return false;
       ++member;
     }
     return true;
@@ -107,7 +108,7 @@ inline bool says(const Value& value, const nlohmann::ordered_json& expected) {
   return std::holds_alternative<std::nullptr_t>(value.is) && expected.is_null();
 }
 
-/// The value at root.msg.data; nullptr where there is none.
+/// The value at root.msg.data, or nullptr.
 inline const Value* msg_data(const Value& root) {
   const Value* at = &root;
   for (const std::string_view name : {"msg", "data"}) {

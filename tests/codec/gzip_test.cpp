@@ -23,7 +23,7 @@ Bytes runs(std::size_t size) {
   return bytes;
 }
 
-/// What gunzip gives, or its refusal's sentence as bytes.
+/// The result of gunzip, or its error sentence as bytes.
 struct Inflated {
   Bytes bytes;
   std::size_t members = 0;
@@ -72,14 +72,14 @@ TEST(Gunzip, InflatesTheSameInAnyPieces) {
   const Bytes member = test::compressed(bytes);
   for (const std::size_t piece : {1, 7, 1000, 65536}) {
     const auto inflated = inflate_all(in_pieces(member, piece));
-    EXPECT_EQ(inflated.sentence, "taken");
+    EXPECT_EQ(inflated.sentence, "accepted");
     EXPECT_EQ(inflated.bytes, bytes);
   }
 }
 
 TEST(Gunzip, InflatesAnEmptyMember) {
   const auto inflated = inflate_all(icd::ChunkedBytes(test::compressed({})));
-  EXPECT_EQ(inflated.sentence, "taken");
+  EXPECT_EQ(inflated.sentence, "accepted");
   EXPECT_TRUE(inflated.bytes.empty());
 }
 
@@ -104,7 +104,7 @@ TEST(Gunzip, JoinsSeveralMembersInAnyPieces) {  // RFC 1952 2.2
       joined({nothing, test::compressed(one), nothing, nothing, test::compressed(other), nothing});
   for (const std::size_t piece : {1, 7, 1000, 65536}) {
     const auto inflated = inflate_all(in_pieces(members, piece));
-    EXPECT_EQ(inflated.sentence, "taken") << piece;
+    EXPECT_EQ(inflated.sentence, "accepted") << piece;
     EXPECT_EQ(inflated.bytes, joined({one, other})) << piece;
     EXPECT_EQ(inflated.members, 6u) << piece;
   }
@@ -141,7 +141,7 @@ TEST(Gunzip, RejectsOtherFormats) {
   EXPECT_EQ(inflate_all(icd::ChunkedBytes(Bytes(100, 'a'))).sentence, start + "incorrect header check");
   EXPECT_EQ(inflate_all(icd::ChunkedBytes(test::compressed(runs(100), 15))).sentence,
             start + "incorrect header check");
-  EXPECT_NE(inflate_all(icd::ChunkedBytes(test::compressed(runs(100), -15))).sentence, "taken");
+  EXPECT_NE(inflate_all(icd::ChunkedBytes(test::compressed(runs(100), -15))).sentence, "accepted");
 }
 
 TEST(Gunzip, RejectsABadChecksumOrLength) {
@@ -174,7 +174,7 @@ TEST(ClaimedSize, IsReadFromAnyPieces) {
 
 TEST(Gunzip, AcceptsDataOfExactlyTheLimit) {
   const Bytes bytes = runs(100'000);
-  EXPECT_EQ(inflate_all(icd::ChunkedBytes(test::compressed(bytes)), bytes.size()).sentence, "taken");
+  EXPECT_EQ(inflate_all(icd::ChunkedBytes(test::compressed(bytes)), bytes.size()).sentence, "accepted");
   EXPECT_EQ(inflate_all(icd::ChunkedBytes(test::compressed(bytes)), bytes.size() - 1).sentence,
             "413: msg.data: expected at most 99999 bytes, got more");
 }
@@ -190,7 +190,7 @@ TEST(Gunzip, StopsIfTheSinkRejectsData) {
   EXPECT_EQ(calls, 1);
 }
 
-/// Whatever bytes are changed, gunzip refuses or gives bytes within its limit; it never crashes.
+/// After any change of bytes, gunzip returns an error or bytes within its limit, and never crashes.
 TEST(Gunzip, SurvivesDamage) {
   std::mt19937_64 random(3);
   const Bytes member = test::compressed(runs(5000));
@@ -199,7 +199,7 @@ TEST(Gunzip, SurvivesDamage) {
     for (int i = 0; i < 3; ++i) damaged[random() % damaged.size()] = static_cast<std::uint8_t>(random());
     const auto inflated = inflate_all(in_pieces(damaged, 1 + random() % 200), 6000);
     EXPECT_LE(inflated.bytes.size(), 6000U);
-    EXPECT_TRUE(inflated.sentence != "taken" || inflated.bytes == runs(5000));
+    EXPECT_TRUE(inflated.sentence != "accepted" || inflated.bytes == runs(5000));
   }
 }
 

@@ -12,7 +12,7 @@ using test::in_pieces;
 
 constexpr std::size_t kEnough = std::size_t{1} << 24;
 
-/// Of runs and noise, so that no level leaves it as it is.
+/// Runs and noise, so that every compression level changes it.
 Bytes mixed(std::size_t size) {
   std::mt19937_64 random(size);
   Bytes bytes(size, 255);
@@ -91,7 +91,7 @@ TEST(GunzipWhole, RejectsTruncatedAndTrailingData) {
 
 TEST(GunzipWhole, RejectsDamagedData) {
   const Bytes bytes = mixed(300), member = test::compressed(bytes);
-  for (std::size_t i = 10; i < member.size(); ++i) {  // its head says what does not matter
+  for (std::size_t i = 10; i < member.size(); ++i) {  // skips the head, whose bytes may be ignored
     Bytes damaged = member;
     damaged[i] ^= 0x10;
     const auto inflated = gunzip_whole(icd::ChunkedBytes(damaged), bytes.size());

@@ -11,7 +11,7 @@ namespace adit::codec::test {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// What is answered to a good message that is changed so, by that section of the ICD.
+/// A change of a valid message, and the expected answer by a section of the ICD.
 struct IcdRow {
   const char* section;
   std::function<void(json&)> change;

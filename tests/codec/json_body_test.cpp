@@ -1,4 +1,4 @@
-// RFC 8259, strictly: which documents are taken and which are refused, whole and in chunks of any size.
+// RFC 8259, strictly: valid and invalid documents, whole and in chunks of any size.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@ const std::vector<std::string> kGoodJson = {
     // Documents of every kind
     "{}", "[]", "null", "true", "false", "0", "\"\"", " \t\r\n[ ] \n", "[null,true,false]",
     "{\"a\":1,\"b\":[2,{\"c\":{}}]}", "{\"\":0}", "{\"a\":{\"a\":{\"a\":[[[]]]}}}",
-    // Behind a byte order mark (RFC 8259 8.1)
+    // After a byte order mark (RFC 8259 8.1)
     "\xef\xbb\xbf{}", "\xef\xbb\xbf [1]", "\xef\xbb\xbf\"a\"",
     // Numbers
     "-0", "-1", "10", "0.5", "-0.25", "1e2", "1E2", "1e+2", "1e-2", "0e1", "0E-0", "1.5e10", "123.456e-7",
@@ -28,7 +28,7 @@ const std::vector<std::string> kGoodJson = {
     R"("\uffff\u0000")", "\"\x7f\"", "\"\xc3\xa9\"", "\"\xe2\x82\xac\"", "\"\xf0\x9d\x84\x9e\"",
     "\"\xf4\x8f\xbf\xbf\"", "\"\xed\x9f\xbf\xee\x80\x80\"", "\"\xef\xbf\xbf\"",
     R"({"\u0061\/":"x","\u0000":1})", "\"/\"",
-    // Nearly msg.data
+    // Paths that resemble msg.data
     R"({"msg":[{"data":"!"}]})", R"({"msg":{"x":{"data":"!"}}})", R"({"data":"!"})",
     R"([{"msg":{"data":"!"}}])", R"({"msg":{"datas":"!","dat":"!","data ":"!"}})", R"({"msgs":{"data":"!"}})",
     R"({"a":{"data":"!"},"msg":1})", R"({"msg":{"a":{}},"b":{"data":"!"}})", R"({"msg":{"data":null}})",
@@ -41,7 +41,7 @@ TEST(JsonBody, ReadsTheSameAsAnotherParser) {
       for (const Split split : {Split::Nothing, Split::MapData}) {
         const auto document = decode_in_chunks(kJsonBody, split, text, size);
         ASSERT_TRUE(document) << document.error().sentence;
-        EXPECT_TRUE(says(document->root, expected)) << text << " in chunks of " << size;
+        EXPECT_TRUE(equals(document->root, expected)) << text << " in chunks of " << size;
         EXPECT_EQ(document->data_form, DataForm::Absent);
       }
     }
@@ -49,7 +49,7 @@ TEST(JsonBody, ReadsTheSameAsAnotherParser) {
 }
 
 const std::vector<std::pair<std::string, std::string>> kBadJson = {
-    // Nothing, too little, too much
+    // Empty, cut short, or followed by more
     {"", "0: an empty document"},
     {"  ", "2: the document is cut short"},
     {"{", "1: the document is cut short"},
@@ -210,7 +210,7 @@ TEST(JsonBody, RejectsABodyOverTheLimitAtOnceWith413) {
     const auto fed = decoder.feed({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
     ASSERT_FALSE(fed) << text;
     EXPECT_EQ(fed.error().status, icd::Status::ContentTooLarge);
-    EXPECT_EQ(decoder.finish().error(), fed.error()) << "a spent decoder gives its refusal again";
+    EXPECT_EQ(decoder.finish().error(), fed.error()) << "a failed decoder repeats its error";
   }
 }
 

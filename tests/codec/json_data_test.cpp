@@ -1,4 +1,4 @@
-// The map's data in JSON: split from the rest as it arrives, base64 (ICD 6.3) or an array of integers.
+// The map's data in JSON, split off as it arrives: base64 (ICD 6.3) or an array of integers.
 #include <gtest/gtest.h>
 
 #include "codec/documents.hpp"
@@ -17,7 +17,7 @@ const std::vector<JsonCase> kGoodJsonData = {
     JsonCase{R"({"msg":{"data":""}})", ""},
     JsonCase{R"({"a":[1,{"msg":3}],"msg":{"b":{"data":7},"data":"Zg==","c":"d"},"e":0})", "f"},
     JsonCase{R"({"msg":{"data":"Zg"}})", "f"},                   // no padding
-    JsonCase{R"({"msg":{"data":"\/\/\/\/"}})", "\xff\xff\xff"},  // as some escape slashes
+    JsonCase{R"({"msg":{"data":"\/\/\/\/"}})", "\xff\xff\xff"},  // with escaped slashes
     JsonCase{R"({"msg":{"data":"\u002B\u002bAAZg\u003d\u003d"}})",
              std::string("\xfb\xe0\0f", 4)},  // as Gson does
     JsonCase{R"({"\u006Dsg":{"d\u0061ta":"Zm8="}})", "fo"},
@@ -121,7 +121,7 @@ TEST(JsonData, CanBeTakenInPiecesAndStillCounts) {
   ASSERT_TRUE(feed(decoder, "\"}}"));
   const auto document = decoder.finish();
   ASSERT_TRUE(document);
-  EXPECT_EQ(document->data.to_string(), "\xff\xff\xff") << "the rest of it";
+  EXPECT_EQ(document->data.to_string(), "\xff\xff\xff") << "the rest of the data";
 
   BodyDecoder too_much(kJsonBody, Split::MapData, limits);
   ASSERT_TRUE(feed(too_much, R"({"msg":{"data":")" + std::string(8000, 'A')));

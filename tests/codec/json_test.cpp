@@ -15,7 +15,7 @@ namespace {
 TEST(Json, ParsesOrTellsTheFault) {
   const auto value = parse_json(R"({"a":[1,2.5,"x",null,true]})");
   ASSERT_TRUE(value);
-  EXPECT_TRUE(says(*value, nlohmann::ordered_json::parse(R"({"a":[1,2.5,"x",null,true]})")));
+  EXPECT_TRUE(equals(*value, nlohmann::ordered_json::parse(R"({"a":[1,2.5,"x",null,true]})")));
   EXPECT_EQ(parse_json("[1,]").error(), "not well-formed JSON at byte 3: expected a value, got ']'");
   EXPECT_EQ(parse_json("nul").error(), "not well-formed JSON at byte 3: the document is cut short");
   EXPECT_EQ(parse_json("").error(), "not well-formed JSON at byte 0: an empty document");
@@ -37,7 +37,7 @@ TEST(Json, IsWrittenOnOneLineAndReadsBackTheSame) {
   ASSERT_TRUE(value);
   const std::string written = write_json(*value);
   EXPECT_EQ(written.find('\n'), std::string::npos);
-  EXPECT_TRUE(says(*value, nlohmann::ordered_json::parse(written))) << written;
+  EXPECT_TRUE(equals(*value, nlohmann::ordered_json::parse(written))) << written;
 }
 
 TEST(Json, WritesNullForValuesThatJsonLacks) {
@@ -74,8 +74,8 @@ TEST(Value, TellsItsKindInASentence) {
   for (const auto& [value, kind] : kinds) EXPECT_EQ(value.kind(), kind);
 }
 
-/// What is read by cJSON alone is no more than what the splitter lets through: documents made of pieces that
-/// go together, mostly, and then changed in one place.
+/// A document that cJSON alone accepts is also accepted by the splitter. Documents are made of fitting
+/// pieces and then changed in one place.
 TEST(Json, IsReadStrictlyOnTheFastPath) {
   std::mt19937 random(7);
   const auto below = [&random](std::size_t n) {
@@ -99,7 +99,7 @@ TEST(Json, IsReadStrictlyOnTheFastPath) {
     std::string text = document(document, 3);
     if (below(2) == 0) text.insert(below(text.size() + 1), 1, bytes[below(bytes.size())]);
     if (below(4) == 0) text.erase(below(text.size()), 1);
-    const auto split = decode(kJsonBody, Split::MapData, text);  // by the splitter alone
+    const auto split = decode(kJsonBody, Split::MapData, text);  // by the splitter
     ASSERT_EQ(parse_json(text).has_value(), split.has_value()) << text;
     well_formed += split ? 1 : 0;
   }

@@ -1,4 +1,4 @@
-// Documents whose arrays are left as text, and parsed element by element.
+// Documents whose arrays stay text and are parsed element by element.
 #include <gtest/gtest.h>
 
 #include "codec/documents.hpp"
@@ -15,7 +15,7 @@ using namespace std::string_literals;
 
 struct Row {
   BodyKind kind;
-  std::string body, says;
+  std::string body, expected;
 };
 
 TEST(Lists, AreFoundAmongAnySurroundings) {
@@ -32,15 +32,15 @@ TEST(Lists, AreFoundAmongAnySurroundings) {
       {kCborBody, "\x9f\x9f\x01\x02\xff\x80\x81\xa0\xff", "[[1,2],[],[{}]]"},
       {kCborBody, "\xbf\x61"s + "a\x82\x62,]\x7f\x61x\x61y\xff\x61"s + "b\x9f\xbf\xff\xff\xff",
        R"({"a":[",]","xy"],"b":[{}]})"},
-      // Arrays among what is passed over: a key that is no text, and its value.
+      // Arrays in skipped parts: a key that is not text, and its value.
       {kCborBody, "\xa3\x81\x01\x82\x02\x03\x61"s + "a\x81\x04\x41\xff\x81\x05", R"({"a":[4]})"},
   };
-  for (const auto& [kind, body, says] : rows) {
+  for (const auto& [kind, body, expected] : rows) {
     const auto whole = decode(kind, Split::Nothing, body);
     const auto listed = decode(kind, Split::Lists, body);
-    ASSERT_TRUE(whole && listed) << says;
-    EXPECT_EQ(write_json(whole->root), says);
-    EXPECT_EQ(write_json(listed->root), says);
+    ASSERT_TRUE(whole && listed) << expected;
+    EXPECT_EQ(write_json(whole->root), expected);
+    EXPECT_EQ(write_json(listed->root), expected);
   }
 }
 
@@ -62,7 +62,8 @@ TEST(Lists, AreParsedOnFirstUse) {
   EXPECT_EQ(reading.outcome(0).error().sentence, "a: expected a string, got an array");
 }
 
-/// One way for objects of numbers, which must say no of everything that the general way reads otherwise.
+/// A fast parser for objects of numbers. It must reject everything that the general parser reads
+/// differently.
 TEST(Lists, GiveTheNumbersOfAnObjectWithExactlyTheseMembers) {
   constexpr std::string_view kNames[] = {"x", "y"};
   struct Element {
@@ -108,7 +109,7 @@ TEST(Lists, GiveTheNumbersOfAnObjectWithExactlyTheseMembers) {
   }
 }
 
-/// A document that comes in one piece has the same errors inside its lists as one that comes in many.
+/// Errors inside lists are the same for a document in one piece and in many pieces.
 TEST(Lists, AreWellFormed) {
   for (const std::string inside : {"1 2", "1,", ",1", "01", "-", "1.", "tru", "\"", "\"\\x\"", "{\"a\":}",
                                    "{1:2}", "{\"a\" 1}", "[", "1e999", "\"\xff\""}) {
@@ -120,7 +121,7 @@ TEST(Lists, AreWellFormed) {
   }
 }
 
-/// However long its lists are, of a message there is no more than this as a tree.
+/// Limits the tree of a message, whatever the length of its lists.
 TEST(Lists, LeaveFewOtherValues) {
   const auto members = [](std::size_t count, std::string_view before, std::string_view after) {
     std::string body(before);

@@ -1,4 +1,4 @@
-// Every member of ROS 1's visualization_msgs/Marker, which the ICD encodes (2.2, 6.6): what comes in goes up.
+// Every member of ROS 1's visualization_msgs/Marker, which the ICD encodes (2.2, 6.6), is sent upstream.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -15,7 +15,7 @@ namespace {
 
 using test::json;
 
-/// visualization_msgs/Marker of ROS 1 (noetic), its constants left out.
+/// visualization_msgs/Marker of ROS 1 (noetic), without its constants.
 constexpr const char* kRosDefinition = R"(Header header
 string ns
 int32 id
@@ -33,7 +33,7 @@ string mesh_resource
 bool mesh_use_embedded_materials
 )";
 
-/// The structure of ICD 6.6, its optional members too.
+/// The structure of ICD 6.6, with its optional members.
 constexpr const char* kIcdDefinition = R"(header.stamp <float>
 header.frame_id <string>
 ns <string>
@@ -73,8 +73,8 @@ json color(double r, double g, double b, double a) {
   return {{"r", r}, {"g", g}, {"b", b}, {"a", a}};
 }
 
-/// A value of each member that is not its default, as it goes up.
-const std::map<std::string, json> kSaid = {
+/// A value other than the default for each member, as it is sent upstream.
+const std::map<std::string, json> kValues = {
     {"header", {{"stamp", 721.5}, {"frame_id", "darpa"}}},
     {"ns", "paths"},
     {"id", -7},
@@ -93,18 +93,18 @@ const std::map<std::string, json> kSaid = {
     {"mesh_use_embedded_materials", true},
 };
 
-/// What a marker must have, and points for the colors.
+/// The required members of a marker, and points for the colors.
 json least_marker() {
   return {{"type", 0},
           {"action", 0},
           {"pose", {{"position", point(0, 0, 0)}, {"orientation", {{"x", 0}, {"y", 0}, {"z", 0}, {"w", 1}}}}},
           {"scale", point(0, 0, 0)},
           {"color", color(0, 0, 0, 0)},
-          {"points", kSaid.at("points")}};
+          {"points", kValues.at("points")}};
 }
 
-/// What the Command Post reads of a marker that a client sent in this body.
-json sent_up(Format format, const std::string& body) {
+/// The Command Post's reading of a marker that a client sent in this body.
+json sent_upstream(Format format, const std::string& body) {
   const auto document = decode({.format = format}, Split::Nothing, body);
   if (!document) return document.error().sentence;
   const auto update = read_markers_update(*document, {});
@@ -113,16 +113,16 @@ json sent_up(Format format, const std::string& body) {
 }
 
 json through_json(const json& marker) {
-  return sent_up(Format::Json, test::as_json({{"markers", json::array({marker})}}));
+  return sent_upstream(Format::Json, test::as_json({{"markers", json::array({marker})}}));
 }
 json through_cbor(const json& marker) {
-  return sent_up(Format::Cbor, test::as_cbor({{"markers", json::array({marker})}}));
+  return sent_upstream(Format::Cbor, test::as_cbor({{"markers", json::array({marker})}}));
 }
 
 TEST(Marker, HasAllMembersOfRos) {
-  std::set<std::string> said;
-  for (const auto& [name, value] : kSaid) said.insert(name);
-  EXPECT_EQ(said, members_of_ros());
+  std::set<std::string> tested;
+  for (const auto& [name, value] : kValues) tested.insert(name);
+  EXPECT_EQ(tested, members_of_ros());
 }
 
 /// The value at "pose.position.x".
@@ -133,14 +133,14 @@ const json& at_path(const json& marker, const std::string& path) {
   return *value;
 }
 
-/// What the ICD calls the kind of a value: 1.0 is a float, 1 an int. A duration goes up as a float.
+/// The ICD's name of the type of a value: 1.0 is a float, 1 an int. A duration is sent as a float.
 std::string kind_of(const json& value) {
   if (value.is_number_float()) return "<float>";
   return value.is_number() ? "<int>" : value.is_string() ? "<string>" : value.type_name();
 }
 
 TEST(Marker, HasEachMemberOfTheIcdInItsType) {
-  const json whole(kSaid), sent = through_json(whole);
+  const json whole(kValues), sent = through_json(whole);
   std::istringstream lines(kIcdDefinition);
   for (std::string path, kind; lines >> path >> kind;) {
     EXPECT_EQ(kind_of(at_path(sent, path)), kind == "<duration>" ? "<float>" : kind) << path;
@@ -148,20 +148,20 @@ TEST(Marker, HasEachMemberOfTheIcdInItsType) {
   }
 }
 
-/// As text, in which 1.0 is not 1.
+/// As text, in which 1.0 and 1 differ.
 std::string kinds_of(const json& marker, const std::string& name) {
   return marker.value(name, json()).dump();
 }
 
 TEST(Marker, KeepsEachReceivedMember) {
-  for (const auto& [name, value] : kSaid) {
+  for (const auto& [name, value] : kValues) {
     json marker = least_marker();
     marker[name] = value;
     EXPECT_EQ(kinds_of(through_json(marker), name), value.dump()) << name;
     EXPECT_EQ(kinds_of(through_cbor(marker), name), value.dump()) << name;
   }
-  EXPECT_EQ(through_json(kSaid).dump(), json(kSaid).dump());
-  EXPECT_EQ(through_cbor(kSaid).dump(), json(kSaid).dump());
+  EXPECT_EQ(through_json(kValues).dump(), json(kValues).dump());
+  EXPECT_EQ(through_cbor(kValues).dump(), json(kValues).dump());
 }
 
 TEST(Marker, UsesDefaultsForAbsentAndNullMembers) {
@@ -175,13 +175,13 @@ TEST(Marker, UsesDefaultsForAbsentAndNullMembers) {
   }
   EXPECT_EQ(through_json(marker), without);
   EXPECT_EQ(through_cbor(marker), without);
-  marker["frame_locked"] = marker["mesh_use_embedded_materials"] = 0;  // as C programs write false
+  marker["frame_locked"] = marker["mesh_use_embedded_materials"] = 0;  // C programs write 0 for false
   marker["points"] = marker["colors"] = json::array();
   marker["mesh_resource"] = "";
   EXPECT_EQ(through_json(marker), without);
 }
 
-/// A body in which `raw` stands for the marker's points.
+/// A body with `raw` in place of the marker's points.
 std::string body_with_points(Format format, const std::string& raw) {
   json marker = least_marker();
   marker["points"] = "POINTS";
@@ -194,7 +194,7 @@ std::string body_with_points(Format format, const std::string& raw) {
 TEST(Marker, ReadsNumbersInEachFormOfJson) {
   for (const char* const three : {"3", "3.0", "3e0", "0.03E+2", "300e-2"}) {
     const std::string points = std::string(R"([{"x":)") + three + R"(,"y":-0.0,"z":0}])";
-    const json up = sent_up(Format::Json, body_with_points(Format::Json, points));
+    const json up = sent_upstream(Format::Json, body_with_points(Format::Json, points));
     EXPECT_EQ(up["points"], json::array({point(3, 0, 0)})) << three;
   }
 }
@@ -205,7 +205,7 @@ TEST(Marker, ReadsNumbersInEachFormOfCbor) {
                                "\xf9\x42\0"s, "\xfa\x40\x40\0\0"s, "\xfb\x40\x08\0\0\0\0\0\0"s};
   for (const std::string& three : forms) {
     const std::string points = "\x9f\xa3\x61x" + three + "\x61y\x20\x61z\xf9\xc0\x00\xff"s;  // -1 and -2.0
-    const json up = sent_up(Format::Cbor, body_with_points(Format::Cbor, points));
+    const json up = sent_upstream(Format::Cbor, body_with_points(Format::Cbor, points));
     EXPECT_EQ(up["points"], json::array({point(3, -1, -2)})) << testing::PrintToString(three);
   }
 }
@@ -243,17 +243,17 @@ TEST(Marker, IsRejectedWithTheNameOfTheMember) {
     json marker = least_marker();
     marker[row.member] = row.value;
     EXPECT_EQ(through_cbor(marker), row.sentence);
-    if (std::string(row.sentence).ends_with("nan")) continue;  // JSON has none
+    if (std::string(row.sentence).ends_with("nan")) continue;  // JSON has no NaN
     EXPECT_EQ(through_json(marker), row.sentence);
   }
 }
 
 TEST(Marker,
-     KeepsItsColorsHoweverManyPointsItHas) {  // rviz ignores those that fit none, and shows the marker
+     KeepsItsColorsHoweverManyPointsItHas) {  // rviz ignores a wrong number of colors and shows the marker
   const json one = json::array({color(1, 0, 0, 1)}), two = {color(1, 0, 0, 1), color(0, 1, 0, 1)};
   for (const int type : {1, 4, 8, 11}) {
     for (const int action : {0, 2}) {
-      for (const json& points : {json::array(), json(kSaid.at("points"))}) {
+      for (const json& points : {json::array(), json(kValues.at("points"))}) {
         for (const json& colors : {one, two}) {
           json marker = least_marker();
           marker["type"] = type;

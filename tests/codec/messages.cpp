@@ -17,7 +17,7 @@ json header() {
   return {{"stamp", 721.4}, {"frame_id", "darpa"}};
 }
 
-/// Each binary in it as a base64 string.
+/// Replaces each binary by a base64 string.
 json with_base64(json value) {
   if (value.is_binary()) return base64(value.get_binary());
   if (value.is_structured()) {

@@ -13,14 +13,14 @@
 #include "icd/state_update.hpp"
 #include "icd/status.hpp"
 
-/// Request bodies and messages for the tests of the message level. Bodies are made by nlohmann-json and zlib
-/// alone, so that they owe nothing to the code under test.
+/// Request bodies and messages for tests of the message level. They are made only with nlohmann-json and
+/// zlib, so they are independent of the code under test.
 namespace adit::codec::test {
 
 using nlohmann::json;
 using Bytes = std::vector<std::uint8_t>;
 
-/// As they come from a network.
+/// In chunks, as from a network.
 inline icd::ChunkedBytes in_pieces(const Bytes& bytes, std::size_t piece) {
   icd::ChunkedBytes chunked;
   for (std::size_t i = 0; i < bytes.size(); i += piece) {
@@ -30,7 +30,7 @@ inline icd::ChunkedBytes in_pieces(const Bytes& bytes, std::size_t piece) {
 }
 using Random = std::mt19937_64;
 
-/// Good messages, each with every member that the ICD lists; a map's data is binary.
+/// Valid messages with every member that the ICD lists. A map's data is binary.
 json good_grid();   // 4 x 3 cells
 json good_cloud();  // 2 points of x, y, z, rgba
 json good_state();
@@ -39,27 +39,27 @@ json good_report();
 json quaternion(double x, double y, double z, double w);
 
 std::string base64(const Bytes& bytes);
-/// With every binary as a base64 string.
+/// With each binary as a base64 string.
 std::string as_json(const json& message);
 std::string as_cbor(const json& message);
 
 /// By zlib. `window` is deflateInit2's: 31 gzip, 15 zlib, -15 raw deflate.
 Bytes compressed(const Bytes& bytes, int window = 31);
-/// The one gzip member that `bytes` is; fails the test where it is none, or where anything follows it.
+/// Decompresses `bytes`, which must be exactly one gzip member.
 Bytes only_member(const Bytes& bytes);
 
-/// The sentence of a refusal, behind its status if that is not 422; "taken" for none.
+/// The sentence of an error, after its status if that is not 422; "accepted" if there is no error.
 template <class T>
 std::string sentence_of(const icd::Checked<T>& checked) {
-  if (checked) return "taken";
+  if (checked) return "accepted";
   if (checked.error().status != icd::Status::UnprocessableEntity)
     return std::to_string(static_cast<int>(checked.error().status)) + ": " + checked.error().sentence;
   return checked.error().sentence;
 }
 
-/// Equal in everything but in how the data is held: its bytes are compared before compression.
+/// Compares all members, and the data before compression.
 void expect_same(const icd::MapUpdate& map, const icd::MapUpdate& expected);
-/// With the values of a big-endian cloud turned: as it is once it has been read.
+/// The map with the values of a big-endian cloud converted, as the codec reads it.
 icd::MapUpdate little_endian(icd::MapUpdate map);
 Bytes raw_data(const icd::MapData& data);
 

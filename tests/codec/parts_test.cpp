@@ -1,4 +1,4 @@
-// One bad pose or marker does not hide the others; and text as Python 2 writes it in CBOR is text.
+// One bad pose or marker does not affect the others. Text that Python 2 writes in CBOR counts as text.
 #include <gtest/gtest.h>
 
 #include "codec/messages.hpp"
@@ -103,10 +103,10 @@ TEST(MarkerParts, HaveTheGoodMarkersAndASentenceForEachBadOne) {
             "\"darpa\", got \"map\" (the setting rules.rewrite_frame_id accepts any frame) (the other 2 were "
             "accepted)");
   EXPECT_EQ(read_parts->refused.refusal().setting, "rules.rewrite_frame_id")
-      << "the first one's that has one";
+      << "the first error with a setting names it";
 }
 
-/// Every text of it as a byte string, keys too, as `cbor.dumps` of Python 2 has it.
+/// Writes each text as a byte string, keys too, as `cbor.dumps` of Python 2 does.
 std::string as_python_2_writes_it(const json& message) {
   const auto rewrite = [](auto& self, const json& value) -> std::string {
     const auto bytes_of = [](const std::string& text) {

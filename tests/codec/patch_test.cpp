@@ -18,7 +18,7 @@ struct Step {
   static const Row kRow;
 };
 
-/// What stands among the members of a way.
+/// Its members are inlined in a way.
 struct Mark {
   double depth = 0;
   std::optional<double> width;
@@ -37,7 +37,7 @@ struct Way {
   static const Row kRow;
 };
 
-/// Steps that nothing tells apart but their places.
+/// Steps that only their indices identify.
 struct Unnamed {
   static Value write(const std::vector<Step>& steps);
   static void read(const Field& field, std::vector<Step>& steps);
@@ -59,7 +59,7 @@ void Unnamed::read(const Field& field, std::vector<Step>& steps) {
   KindOf<std::vector<Step>>::read(field, steps);
 }
 
-/// One that writes itself in another way than it is kept.
+/// Writes itself in another form than it is stored.
 struct InWords {
   static Value write(double depth) { return {std::string(depth < 10 ? "shallow" : "deep")}; }
   static void read(const Field& field, double& depth) { depth = field.text() == "deep" ? 10 : 0; }
@@ -85,7 +85,7 @@ Way way() {
           .unnamed = {}};
 }
 
-/// As JSON; "": nothing changed.
+/// The patch as JSON; "" if there is no change.
 std::string patch_text(const Way& before, const Way& now) {
   const auto found = patch(before, now);
   return found ? write_json(*found) : "";
@@ -110,7 +110,7 @@ TEST(Patch, HasTheChangedMembers) {
 TEST(Patch, HasDerivedAndInlinedMembers) {
   Way now = way();
   now.at = {.depth = 3, .width = 0.5};
-  EXPECT_EQ(patch_text(way(), now), R"({"width":0.5})") << "both are shallow";
+  EXPECT_EQ(patch_text(way(), now), R"({"width":0.5})") << "both depths are written as shallow";
   now.at.depth = 30;
   EXPECT_EQ(patch_text(way(), now), R"({"depth":"deep","width":0.5})");
 }
@@ -168,7 +168,7 @@ Step any_step(Random& random) {
           .height = random() % 3 == 0 ? std::nullopt : std::optional(static_cast<double>(random() % 3))};
 }
 
-/// Some of what can become of a list: rows come, go, change and move; two may even have the same number.
+/// Random changes of a list: elements are added, removed, changed and moved. Two may have the same number.
 void change_some(Random& random, std::vector<Step>& steps) {
   for (std::uint64_t i = random() % 4; i > 0; --i) {
     const auto any = steps.begin() + static_cast<std::ptrdiff_t>(random() % (steps.size() + 1));
@@ -202,33 +202,33 @@ void change_some(Random& random, Way& way) {
   change_some(random, way.unnamed);
 }
 
-/// As a client has it.
+/// The value as a client parses it.
 Value read_again(const Value& value) {
   return parse_json(write_json(value)).value();
 }
 
 TEST(Patch, TurnsAnyViewIntoTheNext) {
   Random random(7);
-  for (int life = 0; life < 6; ++life) {
-    Way told = way(), now = told;
-    Value known = read_again(json(told));
+  for (int client = 0; client < 6; ++client) {
+    Way sent = way(), now = sent;
+    Value known = read_again(json(sent));
     for (int step = 0; step < 100; ++step) {
       change_some(random, now);
-      const auto change = patch(told, now);
-      ASSERT_EQ(change.has_value(), json(told) != json(now));
+      const auto change = patch(sent, now);
+      ASSERT_EQ(change.has_value(), json(sent) != json(now));
       if (!change) continue;
       const auto applied = apply_patch(known, read_again(*change));
       known = test::patched(known, read_again(*change));
-      ASSERT_TRUE(applied && *applied == known) << "our own client makes the same of it";
+      ASSERT_TRUE(applied && *applied == known) << "our client has another result";
       ASSERT_EQ(write_json(known), write_json(read_again(json(now)))) << write_json(*change);
-      told = now;
+      sent = now;
     }
   }
 }
 
-// What a client of ours makes of patches that are none: it never takes them, and they cost it nothing.
+// How our client handles invalid patches: it rejects them at little cost.
 
-/// As JSON; "": it is no patch of that.
+/// The patched value as JSON; "" if the patch does not fit.
 std::string patched_text(std::string_view before, std::string_view patch) {
   const auto now = apply_patch(parse_json(before).value(), parse_json(patch).value());
   return now ? write_json(*now) : "";

@@ -4,7 +4,7 @@
 
 namespace adit::codec::test {
 
-/// What a patch (codec/patch.hpp) makes of a value, written a second time, as README.md of the API says it.
+/// Applies a patch (codec/patch.hpp) to a value. A second implementation, from the API's README.md.
 Value patched(const Value& value, const Value& patch);
 
 }  // namespace adit::codec::test

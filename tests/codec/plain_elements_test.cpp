@@ -10,7 +10,7 @@ namespace {
 TEST(PlainElements, CountARunOfEqualElements) {
   struct Case {
     std::string_view text;
-    int value;  // -1: nothing is taken
+    int value;  // -1: no element
     std::size_t count;
     std::string_view rest;
   };
@@ -41,12 +41,12 @@ TEST(PlainElements, CountARunOfEqualElements) {
   };
   for (const Case& row : cases) {
     std::string_view text = row.text;
-    const auto taken = take_plain_elements(text);
-    ASSERT_EQ(taken.has_value(), row.value >= 0) << row.text;
-    EXPECT_EQ(text, taken ? row.rest : row.text);
-    if (!taken) continue;
-    EXPECT_EQ(int{taken->value}, row.value) << row.text;
-    EXPECT_EQ(taken->count, row.count) << row.text;
+    const auto elements = take_plain_elements(text);
+    ASSERT_EQ(elements.has_value(), row.value >= 0) << row.text;
+    EXPECT_EQ(text, elements ? row.rest : row.text);
+    if (!elements) continue;
+    EXPECT_EQ(int{elements->value}, row.value) << row.text;
+    EXPECT_EQ(elements->count, row.count) << row.text;
   }
 }
 
@@ -54,7 +54,7 @@ TEST(PlainElements, CountARunOfEqualCborElements) {
   struct Case {
     std::string_view hex;
     std::uint64_t most;
-    int value;  // -1: nothing is taken
+    int value;  // -1: no element
     std::size_t count;
     std::string_view rest;
   };
@@ -76,12 +76,12 @@ TEST(PlainElements, CountARunOfEqualCborElements) {
   for (const Case& row : cases) {
     const std::string bytes = from_hex(row.hex);
     std::string_view left = bytes;
-    const auto taken = take_plain_cbor_elements(left, row.most);
-    ASSERT_EQ(taken.has_value(), row.value >= 0) << row.hex;
+    const auto elements = take_plain_cbor_elements(left, row.most);
+    ASSERT_EQ(elements.has_value(), row.value >= 0) << row.hex;
     EXPECT_EQ(left, from_hex(row.rest)) << row.hex;
-    if (!taken) continue;
-    EXPECT_EQ(int{taken->value}, row.value) << row.hex;
-    EXPECT_EQ(taken->count, row.count) << row.hex;
+    if (!elements) continue;
+    EXPECT_EQ(int{elements->value}, row.value) << row.hex;
+    EXPECT_EQ(elements->count, row.count) << row.hex;
   }
 }
 

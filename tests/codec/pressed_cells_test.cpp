@@ -1,5 +1,5 @@
-// Cells of a grid that said before its data that it is one are gzipped as they arrive; what is taken and what
-// is refused is the same as of a grid that says it last.
+// If a grid's type comes before its data, the cells are compressed as they arrive. The result and the
+// errors are the same as if the type comes last.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -21,7 +21,7 @@ enum class Says : std::uint8_t { First, Last };
 struct Grid {
   unsigned width = 1, height = 1;
   Bytes data;
-  std::string compression;  // "": no such member
+  std::string compression;  // "": the member is missing
 };
 
 std::string text_of(const Bytes& bytes) {
@@ -46,7 +46,7 @@ struct Body {
   std::string text;
 };
 
-/// In each of the four forms in which data may stand.
+/// The body in each of the four forms of data.
 std::vector<Body> bodies(const Grid& grid, Says says) {
   const auto cbor = [&](const ordered_json& data) {
     const auto bytes = ordered_json::to_cbor(message(grid, data, says));
@@ -68,7 +68,7 @@ std::string inflated(const icd::ChunkedBytes& member) {
   return all;
 }
 
-/// Cells as a map has them, in runs; seldom one that no cell may be.
+/// A map's cells in runs. Rarely with an invalid cell.
 Bytes random_cells(std::size_t count, Randomness& random) {
   static constexpr std::uint8_t kLikely[] = {255, 0, 100, 50, 31, 139};
   Bytes cells;
@@ -155,13 +155,13 @@ TEST(PressedCells, GiveTheSameMapAndTheSameRejections) {
       ++good;
     }
   }
-  EXPECT_GT(good, kRounds);  // both verdicts were common enough to mean something
+  EXPECT_GT(good, kRounds);  // both results were common
   EXPECT_LT(good, 3 * kRounds);
 }
 
 TEST(PressedCells, AreTheSameIfTakenInPieces) {
   Randomness random(22);
-  Bytes cells(300'000);  // that do not compress, so that there is something to take
+  Bytes cells(300'000);  // incompressible, so that the copied data is large
   for (auto& cell : cells) cell = static_cast<std::uint8_t>(random() % 101);
   const Grid grid{.width = 600, .height = 500, .data = cells, .compression = {}};
   const std::string body = message(grid, base64_of(cells), Says::First).dump();

@@ -13,12 +13,12 @@ std::size_t below(Random& random, std::size_t end) {
   return random() % end;
 }
 
-/// Mostly small, so that the tests are fast; now and then large enough for several chunks.
+/// Mostly small, for speed. Sometimes large enough for several chunks.
 std::size_t any_size(Random& random, std::size_t end) {
   return below(random, below(random, 8) == 0 ? end : end / 8);
 }
 
-/// Any finite double, of any size, and often a whole one.
+/// Any finite double of any magnitude, often a whole number.
 double any_number(Random& random) {
   if (below(random, 4) == 0) return static_cast<double>(below(random, 2001)) - 1000;
   double number = NAN;
@@ -39,7 +39,7 @@ icd::Pose any_pose(Random& random) {
               icd::rotation_of({any_number(random), any_number(random), any_number(random), 0.5}).value()};
 }
 
-/// Often the last one.
+/// Often `last`.
 double any_time(Random& random, double last) {
   return std::min(std::abs(any_number(random)), last);
 }
@@ -56,7 +56,7 @@ icd::RobotName any_name(Random& random) {
   return *icd::RobotName::parse(text);
 }
 
-/// UTF-8 of every length, quotation marks, control characters.
+/// UTF-8 sequences of every length, quotation marks, control characters.
 std::string any_text(Random& random) {
   static const std::vector<std::string> kPieces = {
       "a", "Z", " ", "\"", "\\", "\n", "\x01", "/", "\xc3\xa9", "\xe2\x82\xac", "\xf0\x9f\xa4\x96"};
@@ -74,7 +74,7 @@ icd::Color any_color(Random& random) {
   return {fraction(random), fraction(random), fraction(random), fraction(random)};
 }
 
-/// Of a marker, what the ICD does not list.
+/// Adds members of a marker that the ICD does not list.
 void add_geometry(icd::Marker& marker, Random& random) {
   marker.frame_locked = below(random, 2) == 0;
   marker.points.resize(any_size(random, 200));

@@ -1,4 +1,4 @@
-// A row for each rule of the ICD about a PointCloud2 in POST /map/update, sent as JSON and as CBOR.
+// One row for each rule of the ICD about a PointCloud2 in POST /map/update, sent as JSON and as CBOR.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -93,7 +93,7 @@ TEST(ReadMapUpdate, RejectsACloudOverTheLargestMap) {
   icd::Rules rules;
   rules.map_bytes = 1600;
   const IcdRow rows[] = {
-      {"setting", [](json& m) { m["msg"]["data"] = json::binary(Bytes(1600, 0)); }, "taken"},
+      {"setting", [](json& m) { m["msg"]["data"] = json::binary(Bytes(1600, 0)); }, "accepted"},
       {"setting", [](json& m) { m["msg"]["data"] = json::binary(Bytes(1616, 0)); },
        "413: msg.data: expected at most 1600 bytes (the setting rules.map_bytes), got 1616"},
       {"setting and a gzip bomb",
@@ -112,8 +112,7 @@ TEST(ReadMapUpdate, RejectsACloudOverTheLargestMap) {
 TEST(ReadMapUpdate, KeepsThePointsOfAllGzipMembers) {  // RFC 1952 2.2
   Bytes points(48);
   std::iota(points.begin(), points.end(), std::uint8_t{0});
-  for (const std::size_t first :
-       {0, 1, 15, 16, 32, 47, 48}) {  // bytes; the last member alone may hold points
+  for (const std::size_t first : {0, 1, 15, 16, 32, 47, 48}) {  // bytes; only the last member may hold points
     const auto middle = points.begin() + static_cast<std::ptrdiff_t>(first);
     Bytes members = test::compressed(Bytes(points.begin(), middle));
     const Bytes last = test::compressed(Bytes(middle, points.end()));
@@ -149,7 +148,7 @@ struct Rows {
   std::size_t width, height, row_step;
 };
 
-/// A cloud of that many rows, of points of 16 bytes, and its data without and with padding.
+/// A cloud with that many rows of 16-byte points, and its data without and with padding.
 json organised_cloud(const Rows& rows, Bytes& points, Bytes& padded) {
   for (std::size_t row = 0; row < rows.height; ++row) {
     for (std::size_t i = 0; i < rows.row_step; ++i) {
@@ -167,14 +166,15 @@ json organised_cloud(const Rows& rows, Bytes& points, Bytes& padded) {
 }
 
 TEST(ReadMapUpdate, DropsTheRowPaddingOfAnOrganisedCloud) {
-  // 85: no whole number of points in the data. The larger ones begin and end rows anywhere in a chunk.
+  // 85: padding is not a whole number of points. In the larger clouds rows begin and end anywhere in a
+  // chunk.
   for (const Rows& rows : {Rows{5, 4, 88}, {5, 4, 85}, {1, 2, 17}, {640, 480, 10'241}, {3, 2, 200'000}}) {
     Bytes points, padded;
     json message = organised_cloud(rows, points, padded);
     const auto expect_points = [&](Format format) {
       const auto map =
           read_map(format, format == Format::Json ? test::as_json(message) : test::as_cbor(message));
-      ASSERT_EQ(test::sentence_of(map), "taken") << rows.row_step;
+      ASSERT_EQ(test::sentence_of(map), "accepted") << rows.row_step;
       EXPECT_EQ(map->data.raw_size, points.size()) << rows.row_step;
       EXPECT_TRUE(map->data.bytes == icd::ChunkedBytes(points)) << rows.row_step;
     };
@@ -190,10 +190,10 @@ TEST(ReadMapUpdate, DropsTheRowPaddingOfAnOrganisedCloud) {
   }
 }
 
-/// As real drivers fill them in.
+/// As real drivers write them.
 TEST(ReadMapUpdate, IgnoresInconsistentRowsOfACloud) {
   Bytes points, padded;
-  const json message = organised_cloud({5, 4, 96}, points, padded);  // each row, with its padding, 6 points
+  const json message = organised_cloud({5, 4, 96}, points, padded);  // each row has 6 points with its padding
   const std::pair<const char*, json> changes[] = {
       {"row_step", 0},   {"row_step", 384},       {"row_step", 24},    {"row_step", 80},
       {"row_step", 112}, {"row_step", "96"},      {"row_step", -96},   {"row_step", nullptr},
@@ -203,7 +203,7 @@ TEST(ReadMapUpdate, IgnoresInconsistentRowsOfACloud) {
     json changed = message;
     changed["msg"][name] = value;
     const auto map = read_map(Format::Cbor, test::as_cbor(changed));
-    ASSERT_EQ(test::sentence_of(map), "taken") << name << value;
+    ASSERT_EQ(test::sentence_of(map), "accepted") << name << value;
     EXPECT_TRUE(map->data.bytes == icd::ChunkedBytes(padded)) << name << value;
   }
   json flat = message;

@@ -1,4 +1,4 @@
-// A row for each rule of the ICD about an OccupancyGrid in POST /map/update, sent as JSON and as CBOR.
+// One row for each rule of the ICD about an OccupancyGrid in POST /map/update, sent as JSON and as CBOR.
 #include <gtest/gtest.h>
 #include <zlib.h>
 
@@ -40,8 +40,8 @@ TEST(ReadMapUpdate, RejectsAForbiddenGrid) {
        "msg.info.resolution: expected a finite float32 above 0, got 1e+39"},
       {"6.3.1 and ROS's float32", [](json& m) { m["msg"]["info"]["resolution"] = 1e-50; },
        "msg.info.resolution: expected a finite float32 above 0, got 1e-50"},
-      {"6.3.1 and ROS's float32", [](json& m) { m["msg"]["info"]["resolution"] = 3.4e38; }, "taken"},
-      {"6.3.1 and ROS's float32", [](json& m) { m["msg"]["info"]["resolution"] = 2e-45; }, "taken"},
+      {"6.3.1 and ROS's float32", [](json& m) { m["msg"]["info"]["resolution"] = 3.4e38; }, "accepted"},
+      {"6.3.1 and ROS's float32", [](json& m) { m["msg"]["info"]["resolution"] = 2e-45; }, "accepted"},
       {"6.3.1", [](json& m) { m["msg"]["info"]["resolution"] = kNan; },
        "msg.info.resolution: expected a finite number, got nan"},
       {"6.3.1", [](json& m) { m["msg"]["info"].erase("width"); }, "msg.info.width: missing"},
@@ -152,14 +152,14 @@ TEST(ReadMapUpdate, KeepsTheMembersOfAGrid) {
   }
 }
 
-/// Patterns that come again anywhere: Z_RLE finds none of them.
+/// Patterns that repeat at a distance, which Z_RLE does not find.
 Bytes patterned(std::size_t size) {
   Bytes cells(size);
   for (std::size_t i = 0; i < size; ++i) cells[i] = static_cast<std::uint8_t>(i % 700 % 97);
   return cells;
 }
 
-/// What is kept of `member`, which holds `cells`.
+/// The data that the codec stores for `member`, which contains `cells`.
 icd::ChunkedBytes kept_of(const Bytes& member, const Bytes& cells) {
   json message = test::good_grid();
   message["msg"]["info"]["width"] = cells.size();
@@ -167,7 +167,7 @@ icd::ChunkedBytes kept_of(const Bytes& member, const Bytes& cells) {
   message["msg"]["compression"] = "gzip";
   message["msg"]["data"] = json::binary(member);
   const auto map = read_map(Format::Cbor, test::as_cbor(message));
-  EXPECT_EQ(test::sentence_of(map), "taken");
+  EXPECT_EQ(test::sentence_of(map), "accepted");
   EXPECT_EQ(map->data.compression, icd::Compression::Gzip);
   EXPECT_EQ(map->data.raw_size, cells.size());
   EXPECT_EQ(test::only_member(map->data.bytes.to_vector()), cells);
@@ -179,7 +179,7 @@ TEST(ReadMapUpdate, KeepsTheSendersGzipMemberIfSmaller) {
   EXPECT_EQ(kept_of(member, cells), icd::ChunkedBytes(member));
 }
 
-/// What follows a member hangs a Command Post.
+/// Bytes after a gzip member hang a Command Post.
 TEST(ReadMapUpdate, UsesItsOwnGzipMemberIfTheSenderHasSeveral) {
   const Bytes cells = patterned(50'000), half(cells.begin(), cells.begin() + 25'000),
               rest(cells.begin() + 25'000, cells.end());
@@ -192,7 +192,7 @@ TEST(ReadMapUpdate, UsesItsOwnGzipMemberIfTheSenderHasSeveral) {
 TEST(ReadMapUpdate, UsesItsOwnGzipMemberIfSmaller) {
   Bytes cells(50'000, icd::kUnknownCell);
   for (std::size_t i = 0; i < cells.size(); i += 4'000) cells[i] = 100;
-  Bytes stored{0x1f, 0x8b, 8, 0, 0, 0, 0, 0, 0, 255};  // one block that is not compressed (RFC 1951 3.2.4)
+  Bytes stored{0x1f, 0x8b, 8, 0, 0, 0, 0, 0, 0, 255};  // one stored block (RFC 1951 3.2.4)
   const auto put = [&](std::size_t number, std::size_t bytes) {
     for (std::size_t i = 0; i < bytes; ++i) stored.push_back(static_cast<std::uint8_t>(number >> 8 * i));
   };

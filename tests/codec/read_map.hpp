@@ -17,7 +17,7 @@ inline icd::Checked<icd::MapUpdate> read_map(Format format, const std::string& b
   return read_map_update(std::move(*document), rules);
 }
 
-/// What both formats answer to each row. NaN and infinities exist in CBOR alone.
+/// Checks the answer to each row in both formats. Only CBOR has NaN and infinities.
 inline void expect_map_answers(std::span<const IcdRow> rows, const json& good, const icd::Rules& rules = {}) {
   for (const IcdRow& row : rows) {
     json message = good;

@@ -1,4 +1,4 @@
-// A row for each rule of the ICD about any map in POST /map/update, sent as JSON and as CBOR.
+// One row for each rule of the ICD about any map in POST /map/update, sent as JSON and as CBOR.
 #include "codec/read_map.hpp"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ using test::read_map;
 
 TEST(ReadMapUpdate, RejectsAForbiddenMap) {
   const IcdRow rows[] = {
-      {"6.4", [](json&) {}, "taken"},
+      {"6.4", [](json&) {}, "accepted"},
       {"6.4", [](json& m) { m = json::array(); }, "the body: expected an object, got an array"},
       {"6.4", [](json& m) { m = "map"; }, "the body: expected an object, got a string"},
       {"6.4", [](json& m) { m.erase("type"); }, "type: missing"},
@@ -43,7 +43,7 @@ TEST(ReadMapUpdate, RejectsAForbiddenMap) {
       {"6.1", [](json& m) { m["msg"]["header"]["frame_id"] = "map"; },
        "msg.header.frame_id: expected \"darpa\", got \"map\" (the setting rules.rewrite_frame_id accepts any "
        "frame)"},
-      {"6.1", [](json& m) { m["msg"]["header"]["frame_id"] = ""; }, "taken"},
+      {"6.1", [](json& m) { m["msg"]["header"]["frame_id"] = ""; }, "accepted"},
       {"6.1", [](json& m) { m["msg"]["header"]["frame_id"] = 1; },
        "msg.header.frame_id: expected a string, got a whole number"},
       {"6.2", [](json& m) { m["msg"]["header"]["stamp"] = "now"; },
@@ -55,7 +55,7 @@ TEST(ReadMapUpdate, RejectsAForbiddenMap) {
        "msg.header.stamp: expected a number from 0 to 4294967295.9999995, got -0.5"},
       {"6.2", [](json& m) { m["msg"]["header"]["stamp"] = kInfinity; },
        "msg.header.stamp: expected a number from 0 to 4294967295.9999995, got inf"},
-      {"6.2 and ROS's time", [](json& m) { m["msg"]["header"]["stamp"] = 4294967295.5; }, "taken"},
+      {"6.2 and ROS's time", [](json& m) { m["msg"]["header"]["stamp"] = 4294967295.5; }, "accepted"},
       {"6.2 and ROS's time", [](json& m) { m["msg"]["header"]["stamp"] = 4294967296.0; },
        "msg.header.stamp: expected a number from 0 to 4294967295.9999995, got 4294967296"},
       {"6.2", [](json& m) { m["msg"]["header"]["stamp"] = {{"secs", 5}}; },
@@ -64,9 +64,10 @@ TEST(ReadMapUpdate, RejectsAForbiddenMap) {
        "msg.header.stamp.secs: expected a whole number from 0 to 4294967295, got -1"},
       {"6.2", [](json& m) { m["msg"]["header"]["stamp"] = {{"secs", 5}, {"nsecs", 1'000'000'000}}; },
        "msg.header.stamp.nsecs: expected a whole number from 0 to 999999999, got 1000000000"},
-      {"6.2 and ROS 2", [](json& m) { m["msg"]["header"]["stamp"] = {{"sec", 5}, {"nanosec", 7}}; }, "taken"},
+      {"6.2 and ROS 2", [](json& m) { m["msg"]["header"]["stamp"] = {{"sec", 5}, {"nanosec", 7}}; },
+       "accepted"},
       {"6.2 and ROS's C++", [](json& m) { m["msg"]["header"]["stamp"] = {{"sec", 5}, {"nsec", 7}}; },
-       "taken"},
+       "accepted"},
       {"6.2 and ROS 2", [](json& m) { m["msg"]["header"]["stamp"] = {{"sec", 5}}; },
        "msg.header.stamp.nanosec: missing"},
       {"6.2 and ROS 2", [](json& m) { m["msg"]["header"]["stamp"] = {{"secs", 5}, {"nanosec", 7}}; },
@@ -86,7 +87,7 @@ TEST(ReadMapUpdate, RejectsAForbiddenMap) {
        "msg.compression: expected \"none\" or \"gzip\", got \"\""},
       {"6.3", [](json& m) { m["msg"]["compression"] = true; },
        "msg.compression: expected a string, got true or false"},
-      {"6.3", [](json& m) { m["msg"]["compression"] = "NONE"; }, "taken"},
+      {"6.3", [](json& m) { m["msg"]["compression"] = "NONE"; }, "accepted"},
       {"6.3", [](json& m) { m["msg"]["compression"] = "gzi"; },
        "msg.compression: expected \"none\" or \"gzip\", got \"gzi\""},
       {"6.3", [](json& m) { m["msg"]["compression"] = "GZip"; },
@@ -126,7 +127,7 @@ TEST(ReadMapUpdate, RejectsDataOverTheLargestMapWith413) {
   }
 }
 
-/// Data that says at its end that it is of a wrong size.
+/// The data has a wrong size, which only its end shows.
 TEST(ReadMapUpdate, AllocatesLittleForRejectedGzippedData) {
   constexpr std::size_t kLarge = 4'000'000, kEnoughForTheRest = 300;  // bytes; allocations
   icd::Rules rules;
@@ -185,24 +186,24 @@ TEST(ReadMapUpdate, RejectsAMemberOfTheIcdGivenTwice) {
   EXPECT_EQ(twice(R"("frame_id":)", R"("frame_id":"darpa")"), "msg.header.frame_id: given twice");
   EXPECT_EQ(twice(R"("compression":)", R"("compression":null)"), "msg.compression: given twice");
   EXPECT_EQ(twice(R"("w":)", R"("w":1)"), "msg.info.origin.orientation.w: given twice");
-  EXPECT_EQ(twice(R"("type":)", R"("extra":1,"extra":2)"), "taken");
+  EXPECT_EQ(twice(R"("type":)", R"("extra":1,"extra":2)"), "accepted");
 }
 
 TEST(ReadMapUpdate, AcceptsMessagesOfRealClients) {
   const IcdRow rows[] = {
-      {"name absent", [](json& m) { m.erase("name"); }, "taken"},
-      {"name null", [](json& m) { m["name"] = nullptr; }, "taken"},
-      {"name empty", [](json& m) { m["name"] = ""; }, "taken"},
-      {"header absent", [](json& m) { m["msg"].erase("header"); }, "taken"},
-      {"header null", [](json& m) { m["msg"]["header"] = nullptr; }, "taken"},
-      {"header empty", [](json& m) { m["msg"]["header"] = json::object(); }, "taken"},
-      {"stamp null", [](json& m) { m["msg"]["header"]["stamp"] = nullptr; }, "taken"},
-      {"stamp a whole number", [](json& m) { m["msg"]["header"]["stamp"] = 5; }, "taken"},
-      {"frame_id null", [](json& m) { m["msg"]["header"]["frame_id"] = nullptr; }, "taken"},
-      {"header.seq", [](json& m) { m["msg"]["header"]["seq"] = 17; }, "taken"},
-      {"compression absent", [](json& m) { m["msg"].erase("compression"); }, "taken"},
-      {"compression null", [](json& m) { m["msg"]["compression"] = nullptr; }, "taken"},
-      {"members of any name", [](json& m) { m["msg"]["width\n"] = {{"x", {1, "2"}}}; }, "taken"},
+      {"name absent", [](json& m) { m.erase("name"); }, "accepted"},
+      {"name null", [](json& m) { m["name"] = nullptr; }, "accepted"},
+      {"name empty", [](json& m) { m["name"] = ""; }, "accepted"},
+      {"header absent", [](json& m) { m["msg"].erase("header"); }, "accepted"},
+      {"header null", [](json& m) { m["msg"]["header"] = nullptr; }, "accepted"},
+      {"header empty", [](json& m) { m["msg"]["header"] = json::object(); }, "accepted"},
+      {"stamp null", [](json& m) { m["msg"]["header"]["stamp"] = nullptr; }, "accepted"},
+      {"stamp a whole number", [](json& m) { m["msg"]["header"]["stamp"] = 5; }, "accepted"},
+      {"frame_id null", [](json& m) { m["msg"]["header"]["frame_id"] = nullptr; }, "accepted"},
+      {"header.seq", [](json& m) { m["msg"]["header"]["seq"] = 17; }, "accepted"},
+      {"compression absent", [](json& m) { m["msg"].erase("compression"); }, "accepted"},
+      {"compression null", [](json& m) { m["msg"]["compression"] = nullptr; }, "accepted"},
+      {"members of any name", [](json& m) { m["msg"]["width\n"] = {{"x", {1, "2"}}}; }, "accepted"},
   };
   expect_map_answers(rows, test::good_grid());
   expect_map_answers(rows, test::good_cloud());
@@ -211,7 +212,7 @@ TEST(ReadMapUpdate, AcceptsMessagesOfRealClients) {
 TEST(ReadMapUpdate, AcceptsAnyFrameIfTheSettingsRewriteIt) {
   icd::Rules rules;
   rules.rewrite_frame_id = true;
-  const IcdRow rows[] = {{"6.1", [](json& m) { m["msg"]["header"]["frame_id"] = "map"; }, "taken"}};
+  const IcdRow rows[] = {{"6.1", [](json& m) { m["msg"]["header"]["frame_id"] = "map"; }, "accepted"}};
   expect_map_answers(rows, test::good_grid(), rules);
 }
 

@@ -1,4 +1,4 @@
-// A row for each rule of the ICD about POST /state/update and POST /markers/update, as JSON and as CBOR.
+// One row for each rule of the ICD about POST /state/update and POST /markers/update, as JSON and as CBOR.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -34,7 +34,7 @@ void expect_answers(Reader<Message> reader, std::span<const IcdRow> rows, const 
     row.change(message);
     EXPECT_EQ(test::sentence_of(read(reader, Format::Cbor, test::as_cbor(message), rules)), row.sentence)
         << "ICD " << row.section << ", CBOR";
-    if (row.sentence.ends_with("nan")) continue;  // JSON has none
+    if (row.sentence.ends_with("nan")) continue;  // JSON has no NaN
     EXPECT_EQ(test::sentence_of(read(reader, Format::Json, test::as_json(message), rules)), row.sentence)
         << "ICD " << row.section << ", JSON";
   }
@@ -42,11 +42,11 @@ void expect_answers(Reader<Message> reader, std::span<const IcdRow> rows, const 
 
 TEST(ReadStateUpdate, RejectsAForbiddenState) {
   const IcdRow rows[] = {
-      {"6.5", [](json&) {}, "taken"},
-      {"6.5", [](json& m) { m["poses"] = json::array(); }, "taken"},
-      {"6.5", [](json& m) { m.erase("header"); }, "taken"},
-      {"6.5", [](json& m) { m["header"] = nullptr; }, "taken"},
-      {"6.5", [](json& m) { m["extra"] = {1, 2}; }, "taken"},
+      {"6.5", [](json&) {}, "accepted"},
+      {"6.5", [](json& m) { m["poses"] = json::array(); }, "accepted"},
+      {"6.5", [](json& m) { m.erase("header"); }, "accepted"},
+      {"6.5", [](json& m) { m["header"] = nullptr; }, "accepted"},
+      {"6.5", [](json& m) { m["extra"] = {1, 2}; }, "accepted"},
       {"6.5", [](json& m) { m = nullptr; }, "the body: expected an object, got null"},
       {"6.5", [](json& m) { m["header"] = json::array(); }, "header: expected an object, got an array"},
       {"6.1", [](json& m) { m["header"]["frame_id"] = "odom"; },
@@ -136,9 +136,9 @@ TEST(ReadStateUpdate, MakesAnAllZeroQuaternionTheIdentity) {
 
 TEST(ReadStateUpdate, NamesAMemberUnderAForeignCborTag) {
   constexpr std::uint64_t kRational = 30;
-  const json tagged = json::binary({1, 2}, kRational);  // which nlohmann writes under that tag
+  const json tagged = json::binary({1, 2}, kRational);  // nlohmann writes it with that tag
   const IcdRow rows[] = {
-      {"6.5", [&](json& m) { m["poses"][0]["covariance"] = {tagged, {{"x", tagged}}}; }, "taken"},
+      {"6.5", [&](json& m) { m["poses"][0]["covariance"] = {tagged, {{"x", tagged}}}; }, "accepted"},
       {"6.5", [&](json& m) { m["poses"][0]["position"]["x"] = tagged; },
        "poses[0].position.x: expected a number, got CBOR tag 30, which changes the meaning of its value"},
       {"6.5", [&](json& m) { m["poses"][0]["name"] = tagged; },
@@ -155,7 +155,7 @@ TEST(ReadStateUpdate, NamesAMemberUnderAForeignCborTag) {
   }
 }
 
-TEST(ReadStateUpdate, AddsSecondsAndNanoseconds) {  // as ROS 1, ROS 2 and their C++ have stamps
+TEST(ReadStateUpdate, AddsSecondsAndNanoseconds) {  // stamps of ROS 1, ROS 2 and their C++ types
   for (const auto& [seconds, nanoseconds] :
        {std::pair("secs", "nsecs"), std::pair("sec", "nanosec"), std::pair("sec", "nsec")}) {
     json message = test::good_state();
@@ -166,7 +166,7 @@ TEST(ReadStateUpdate, AddsSecondsAndNanoseconds) {  // as ROS 1, ROS 2 and their
   }
 }
 
-/// The double that is nearest to ROS's last one is a second that ROS does not have.
+/// The double nearest to ROS's last time stamp is a second that ROS does not have.
 TEST(ReadMarkersUpdate, StaysWithinRosTimesByRounding) {
   json message = test::good_markers();
   message["markers"][0]["header"]["stamp"] = {{"secs", 4294967295}, {"nsecs", 999'999'999}};
@@ -189,8 +189,8 @@ TEST(ReadMarkersUpdate, GivesAMarkerWithoutNamespaceOne) {
   const auto update = read(read_markers_update, Format::Json, test::as_json(message));
   ASSERT_TRUE(update.has_value());
   EXPECT_EQ(update->markers[0].ns, icd::kUnnamedMarkers);
-  EXPECT_EQ(update->markers[1].ns, icd::kUnnamedMarkers) << "its delete has to find it";
-  EXPECT_EQ(update->markers[2].ns, "") << "what deletes all names none";
+  EXPECT_EQ(update->markers[1].ns, icd::kUnnamedMarkers) << "a delete must find the marker";
+  EXPECT_EQ(update->markers[2].ns, "") << "delete-all has no namespace";
   EXPECT_EQ(update->markers[3].ns, marker["ns"].get<std::string>());
 }
 
@@ -202,18 +202,18 @@ TEST(ReadStateUpdate, RejectsAMemberGivenTwice) {
                              orientation + members + "}]}";
     return test::sentence_of(read(read_state_update, Format::Json, body));
   };
-  EXPECT_EQ(answer(""), "taken");
+  EXPECT_EQ(answer(""), "accepted");
   EXPECT_EQ(answer(R"(,"name":"a")"), "poses[0].name: given twice");
   EXPECT_EQ(answer(R"(,"position":)" + position), "poses[0].position: given twice");
-  EXPECT_EQ(answer(R"(,"covariance":1,"covariance":1)"), "taken");
+  EXPECT_EQ(answer(R"(,"covariance":1,"covariance":1)"), "accepted");
   EXPECT_EQ(test::sentence_of(read(read_state_update, Format::Json, R"({"poses":[],"poses":[]})")),
             "poses: given twice");
 }
 
 TEST(ReadMarkersUpdate, RejectsForbiddenMarkers) {
   const IcdRow rows[] = {
-      {"6.6", [](json&) {}, "taken"},
-      {"6.6", [](json& m) { m["markers"] = json::array(); }, "taken"},
+      {"6.6", [](json&) {}, "accepted"},
+      {"6.6", [](json& m) { m["markers"] = json::array(); }, "accepted"},
       {"6.6", [](json& m) { m.erase("markers"); }, "markers: missing"},
       {"6.6", [](json& m) { m["markers"] = 1; }, "markers: expected an array, got a whole number"},
       {"6.6", [](json& m) { m["markers"][0] = nullptr; }, "markers[0]: expected an object, got null"},
@@ -222,19 +222,19 @@ TEST(ReadMarkersUpdate, RejectsForbiddenMarkers) {
        "accepts any frame)"},
       {"6.2", [](json& m) { m["markers"][0]["header"]["stamp"] = -2; },
        "markers[0].header.stamp: expected a number from 0 to 4294967295.9999995, got -2"},
-      {"6.6", [](json& m) { m["markers"][0].erase("ns"); }, "taken"},
-      {"6.6", [](json& m) { m["markers"][0]["ns"] = nullptr; }, "taken"},
+      {"6.6", [](json& m) { m["markers"][0].erase("ns"); }, "accepted"},
+      {"6.6", [](json& m) { m["markers"][0]["ns"] = nullptr; }, "accepted"},
       {"6.6", [](json& m) { m["markers"][0]["ns"] = 5; },
        "markers[0].ns: expected a string, got a whole number"},
-      {"6.6", [](json& m) { m["markers"][0].erase("id"); }, "taken"},
-      {"6.6", [](json& m) { m["markers"][0]["id"] = 7.0; }, "taken"},
-      {"6.6", [](json& m) { m["markers"][0]["id"] = -2147483648; }, "taken"},
+      {"6.6", [](json& m) { m["markers"][0].erase("id"); }, "accepted"},
+      {"6.6", [](json& m) { m["markers"][0]["id"] = 7.0; }, "accepted"},
+      {"6.6", [](json& m) { m["markers"][0]["id"] = -2147483648; }, "accepted"},
       {"6.6", [](json& m) { m["markers"][0]["id"] = 2147483648; },
        "markers[0].id: expected a whole number from -2147483648 to 2147483647, got 2147483648"},
       {"6.6", [](json& m) { m["markers"][0]["id"] = "7"; },
        "markers[0].id: expected a whole number, got a string"},
       {"6.6", [](json& m) { m["markers"][0].erase("type"); }, "markers[0].type: missing"},
-      {"6.6", [](json& m) { m["markers"][0]["type"] = 11; }, "taken"},
+      {"6.6", [](json& m) { m["markers"][0]["type"] = 11; }, "accepted"},
       {"6.6", [](json& m) { m["markers"][0]["type"] = 12; },
        "markers[0].type: expected a whole number from 0 to 11, got 12"},
       {"6.6", [](json& m) { m["markers"][0]["type"] = -1; },
@@ -259,8 +259,8 @@ TEST(ReadMarkersUpdate, RejectsForbiddenMarkers) {
       {"6.6", [](json& m) { m["markers"][0]["color"].erase("a"); }, "markers[0].color.a: missing"},
       {"6.6", [](json& m) { m["markers"][0]["color"]["a"] = 2; },
        "markers[0].color.a: expected a number from 0 to 1, got 2"},
-      {"6.6 and ROS's float32", [](json& m) { m["markers"][0]["color"]["a"] = 1.0000001192; }, "taken"},
-      {"6.6 and ROS's float32", [](json& m) { m["markers"][0]["color"]["a"] = -1.1e-7; }, "taken"},
+      {"6.6 and ROS's float32", [](json& m) { m["markers"][0]["color"]["a"] = 1.0000001192; }, "accepted"},
+      {"6.6 and ROS's float32", [](json& m) { m["markers"][0]["color"]["a"] = -1.1e-7; }, "accepted"},
       {"6.6 and ROS's float32", [](json& m) { m["markers"][0]["color"]["a"] = 1.0000003; },
        "markers[0].color.a: expected a number from 0 to 1, got 1.0000003"},
       {"6.6 and ROS's float32", [](json& m) { m["markers"][0]["color"]["a"] = -2e-7; },
@@ -271,15 +271,15 @@ TEST(ReadMarkersUpdate, RejectsForbiddenMarkers) {
        "markers[0].color.g: expected a number from 0 to 1, got nan"},
       {"6.6", [](json& m) { m["markers"][0]["color"]["b"] = "1"; },
        "markers[0].color.b: expected a number from 0 to 1, got a string"},
-      {"6.6", [](json& m) { m["markers"][0].erase("lifetime"); }, "taken"},
-      {"6.6", [](json& m) { m["markers"][0]["lifetime"] = nullptr; }, "taken"},
-      {"6.6", [](json& m) { m["markers"][0]["lifetime"] = {{"secs", 5}, {"nsecs", 0}}; }, "taken"},
-      {"6.6", [](json& m) { m["markers"][0]["lifetime"] = {{"sec", 5}, {"nanosec", 0}}; }, "taken"},
-      {"6.6", [](json& m) { m["markers"][0]["lifetime"] = {{"sec", 5}, {"nsec", 0}}; }, "taken"},
+      {"6.6", [](json& m) { m["markers"][0].erase("lifetime"); }, "accepted"},
+      {"6.6", [](json& m) { m["markers"][0]["lifetime"] = nullptr; }, "accepted"},
+      {"6.6", [](json& m) { m["markers"][0]["lifetime"] = {{"secs", 5}, {"nsecs", 0}}; }, "accepted"},
+      {"6.6", [](json& m) { m["markers"][0]["lifetime"] = {{"sec", 5}, {"nanosec", 0}}; }, "accepted"},
+      {"6.6", [](json& m) { m["markers"][0]["lifetime"] = {{"sec", 5}, {"nsec", 0}}; }, "accepted"},
       {"6.6", [](json& m) { m["markers"][0]["lifetime"] = -1; },
        "markers[0].lifetime: expected a number from 0 to 2147483647.9999998, got -1"},
-      {"6.6 and ROS's duration", [](json& m) { m["markers"][0]["lifetime"] = 2147483647.5; }, "taken"},
-      {"6.6 and ROS's duration", [](json& m) { m["markers"][0]["lifetime"] = 1e-300; }, "taken"},
+      {"6.6 and ROS's duration", [](json& m) { m["markers"][0]["lifetime"] = 2147483647.5; }, "accepted"},
+      {"6.6 and ROS's duration", [](json& m) { m["markers"][0]["lifetime"] = 1e-300; }, "accepted"},
       {"6.6 and ROS's duration", [](json& m) { m["markers"][0]["lifetime"] = 3e9; },
        "markers[0].lifetime: expected a number from 0 to 2147483647.9999998, got 3e+09"},
       {"6.6 and ROS's duration", [](json& m) { m["markers"][0]["lifetime"] = 1e300; },
@@ -289,10 +289,10 @@ TEST(ReadMarkersUpdate, RejectsForbiddenMarkers) {
        "markers[0].lifetime.secs: expected a whole number from 0 to 2147483647, got 3000000000"},
       {"6.6", [](json& m) { m["markers"][0]["lifetime"] = {{"secs", 5}, {"nsecs", -1}}; },
        "markers[0].lifetime.nsecs: expected a whole number from 0 to 999999999, got -1"},
-      {"6.6", [](json& m) { m["markers"][0].erase("text"); }, "taken"},
+      {"6.6", [](json& m) { m["markers"][0].erase("text"); }, "accepted"},
       {"6.6", [](json& m) { m["markers"][0]["text"] = 1; },
        "markers[0].text: expected a string, got a whole number"},
-      {"6.6", [](json& m) { m["markers"][1] = {{"action", 3}}; }, "taken"},
+      {"6.6", [](json& m) { m["markers"][1] = {{"action", 3}}; }, "accepted"},
       {"6.6", [](json& m) { m["markers"][1]["pose"] = 1; },
        "markers[1].pose: expected an object, got a whole number"},
       {"6.6", [](json& m) { m["markers"][1].erase("action"); }, "markers[1].action: missing"},
@@ -332,7 +332,7 @@ TEST(ReadMarkersUpdate, ClampsColorsThatRoundingPutPastTheLimit) {
 TEST(ReadMarkersUpdate, RewritesTheFrameIfTheSettingsSaySo) {
   icd::Rules rules;
   rules.rewrite_frame_id = true;
-  const IcdRow rows[] = {{"6.1", [](json& m) { m["markers"][0]["header"]["frame_id"] = "map"; }, "taken"}};
+  const IcdRow rows[] = {{"6.1", [](json& m) { m["markers"][0]["header"]["frame_id"] = "map"; }, "accepted"}};
   expect_answers(read_markers_update, rows, test::good_markers(), rules);
 }
 

@@ -1,5 +1,4 @@
-// What is written can be read, and says the same: through Adit's own form and through each style in which
-// clients are known to write.
+// A written message reads back equal, in Adit's own form and in each style of known clients.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -24,7 +23,7 @@ Message must(icd::Checked<Message> checked) {
   return *std::move(checked);
 }
 
-/// A body that arrives in pieces of any size.
+/// Decodes a body that arrives in pieces of any size.
 Document arrive(BodyKind kind, Split split, std::string_view body, Random& random) {
   BodyDecoder decoder(kind, split, {});
   const std::size_t longest = body.size() < 2000 ? 20 : 50'000;
@@ -75,8 +74,7 @@ TEST(RoundTrip, OfMarkers) {
   }
 }
 
-/// The message that Adit writes for `map`, as a document that a client's style can be put on, its data not
-/// compressed.
+/// The message that Adit writes for `map`, as a document with uncompressed data, for a client's style.
 json as_document(const icd::MapUpdate& map) {
   json document = json::from_cbor(write_map_update(map).to_vector());
   document["msg"]["data"] = json::binary(test::raw_data(map.data));
@@ -110,7 +108,7 @@ void with_everything_of_ros(json& document) {
   msg["is_dense"] = true;
 }
 
-/// Whole numbers without a fraction, as JavaScript writes them.
+/// Writes whole numbers without a fraction, as JavaScript does.
 void with_integers_for_floats(json& value) {
   if (value.is_number_float()) {
     const double number = value;
@@ -148,7 +146,7 @@ const Style kStyles[] = {
 
 struct Coding {
   ContentCoding coding;
-  int window;  // of zlib; 0: none
+  int window;  // of zlib; 0: uncompressed
 };
 
 constexpr Coding kCodings[] = {{ContentCoding::Identity, 0},
@@ -206,10 +204,10 @@ TEST(RoundTrip, OfStatesAndMarkersInJsonOfClients) {
   }
 }
 
-/// Damaged bodies are refused or read, and never crash; what is read can be written and read again.
+/// Damaged bodies are rejected or read, and never crash. A body that is read can be written and read again.
 TEST(RoundTrip, SurvivesDamagedBodies) {
   Random random(9);
-  int taken = 0;
+  int accepted = 0;
   for (int round = 0; round < 400; ++round) {
     const json good = round % 2 == 0 ? test::good_grid() : test::good_cloud();
     const auto format = round % 4 < 2 ? Format::Json : Format::Cbor;
@@ -222,10 +220,10 @@ TEST(RoundTrip, SurvivesDamagedBodies) {
       EXPECT_FALSE(map.error().sentence.empty());
       continue;
     }
-    ++taken;
+    ++accepted;
     test::expect_same(map_of(kCborBody, write_map_update(*map).to_string(), random), *map);
   }
-  EXPECT_GT(taken, 10);
+  EXPECT_GT(accepted, 10);
 }
 
 }  // namespace

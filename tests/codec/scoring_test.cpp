@@ -43,9 +43,9 @@ const std::string kTheTen =
 
 TEST(ReadArtifactReport, RejectsAForbiddenReport) {
   const IcdRow rows[] = {
-      {"5.2", [](json&) {}, "taken"},
-      {"5.2", [](json& m) { m["name"] = "robot1"; }, "taken"},  // as in the ICD's own example
-      {"5.2", [](json& m) { m["x"] = 1011; }, "taken"},
+      {"5.2", [](json&) {}, "accepted"},
+      {"5.2", [](json& m) { m["name"] = "robot1"; }, "accepted"},  // as in the ICD's example
+      {"5.2", [](json& m) { m["x"] = 1011; }, "accepted"},
       {"5.2", [](json& m) { m = {1}; }, "the body: expected an object, got an array"},
       {"5.2", [](json& m) { m.erase("x"); }, "x: missing"},
       {"5.2", [](json& m) { m.erase("y"); }, "y: missing"},
@@ -55,7 +55,7 @@ TEST(ReadArtifactReport, RejectsAForbiddenReport) {
       {"5.2", [](json& m) { m["z"] = false; }, "z: expected a number, got true or false"},
       {"5.2", [](json& m) { m.erase("type"); }, "type: missing"},
       {"5.2", [](json& m) { m["type"] = 1; }, "type: expected a string, got a whole number"},
-      {"5.2", [](json& m) { m["type"] = "CELL pHone"; }, "taken"},
+      {"5.2", [](json& m) { m["type"] = "CELL pHone"; }, "accepted"},
       {"5.2", [](json& m) { m["type"] = "test"; },
        kTheTen + "\"test\" (the setting rules.forward_unknown_types accepts others)"},
       {"5.2", [](json& m) { m["type"] = ""; }, kTheTen + "\"\""},
@@ -85,8 +85,8 @@ TEST(ReadArtifactReport, AcceptsOtherTypesIfTheSettingsForwardThem) {
     message["type"] = type;
     return test::sentence_of(read_report(message.dump(), rules));
   };
-  EXPECT_EQ(answer("test"), "taken");
-  EXPECT_EQ(answer(std::string(64, 'a')), "taken");
+  EXPECT_EQ(answer("test"), "accepted");
+  EXPECT_EQ(answer(std::string(64, 'a')), "accepted");
   EXPECT_EQ(answer(""), "type: expected 1 to 64 printable ASCII characters, got \"\"");
   EXPECT_EQ(answer("a\tb"), "type: expected 1 to 64 printable ASCII characters, got \"a?b\"");
   EXPECT_TRUE(answer(std::string(65, 'a')).starts_with("type: expected 1 to 64 printable ASCII characters"));
@@ -103,7 +103,7 @@ TEST(ReadArtifactReport, NamesTheSettingThatWouldAcceptTheType) {
     return read_report(R"({"x":1,"y":2,"z":3,"type":")" + type + R"("})").error().setting;
   };
   EXPECT_EQ(setting("test"), "rules.forward_unknown_types");
-  EXPECT_EQ(setting("Cellphone"), "") << "misspelt";
+  EXPECT_EQ(setting("Cellphone"), "") << "a misspelt type";
   EXPECT_EQ(setting(""), "");
 }
 
@@ -138,7 +138,7 @@ TEST(WriteArtifactReport, WritesTheIcdsExample) {
             R"({"x": 1011.242, "y": -244.433, "z": -10.011, "type": "backpack", "name": "robot1"})");
 }
 
-TEST(WriteArtifactReport, WritesFloatsAsFloats) {  // ICD 5.2; a whole number is not one to every server
+TEST(WriteArtifactReport, WritesFloatsAsFloats) {  // ICD 5.2; some servers reject an integer
   const auto written = [](const char* x) {
     const auto report = read_report(std::string(R"({"x":)") + x + R"(,"y":0,"z":-0.0,"type":"Rope"})");
     return report ? write_artifact_report(*report) : report.error().sentence;

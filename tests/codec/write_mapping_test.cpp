@@ -1,4 +1,4 @@
-// The canonical form of the mapping messages, read by another CBOR library.
+// The canonical form of the mapping messages, parsed by another CBOR library.
 #include <gtest/gtest.h>
 
 #include "codec/cbor_writer.hpp"
@@ -27,7 +27,7 @@ ordered_json read_back(const icd::ChunkedBytes& body) {
   return ordered_json::from_cbor(body.to_vector());
 }
 
-/// Members and their order alike.
+/// Compares members and their order.
 void expect_alike(const ordered_json& written, const ordered_json& expected) {
   EXPECT_EQ(written, expected);
   const auto without_binary = [](ordered_json message) {
@@ -75,7 +75,7 @@ TEST(WriteMapUpdate, WritesTheSameWithDataFirst) {
     ASSERT_TRUE(read) << read.error().sentence;
     test::expect_same(*read, test::little_endian(update));
     if (!update.is_grid() && update.data.compression != icd::Compression::None)
-      continue;  // is kept otherwise
+      continue;  // stored in another form
     EXPECT_EQ(data_after(written.before), update.data.bytes.size());
     EXPECT_EQ(read_data_first(written.before, update.data.bytes, written.after, {}), update);
     for (std::string damaged = written.after; !damaged.empty(); damaged.pop_back()) {

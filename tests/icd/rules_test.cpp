@@ -33,7 +33,7 @@ PointCloud2 good_cloud() {
 }
 
 std::string sentence_of(const Checked<void>& checked) {
-  if (checked) return "taken";
+  if (checked) return "accepted";
   if (checked.error().status != Status::UnprocessableEntity)
     return sentence(static_cast<int>(checked.error().status), ": ", checked.error().sentence);
   return checked.error().sentence;
@@ -47,8 +47,8 @@ struct GridRow {
 
 TEST(GridRules, TellExpectedAndActualValues) {
   const GridRow rows[] = {
-      {"6.3.1", [](auto&) {}, "taken"},
-      {"6.3.1", [](auto& g) { g.resolution = 8e-46; }, "taken"},  // becomes the least float32
+      {"6.3.1", [](auto&) {}, "accepted"},
+      {"6.3.1", [](auto& g) { g.resolution = 8e-46; }, "accepted"},  // becomes the least float32
       {"6.3.1", [](auto& g) { g.resolution = 7e-46; },
        "msg.info.resolution: expected a finite float32 above 0, got 7e-46"},
       {"6.3.1", [](auto& g) { g.resolution = 0; },
@@ -70,7 +70,7 @@ TEST(GridRules, TellExpectedAndActualValues) {
          g.width = 100;
          g.height = 100;
        },
-       "taken"},
+       "accepted"},
       {"6.3.1",
        [](auto& g) {
          g.width = 101;
@@ -107,7 +107,7 @@ TEST(GridRules, NameTheSettingThatWouldAcceptALargerGrid) {
 }
 
 TEST(GridSize, IsWidthTimesHeight) {
-  EXPECT_EQ(sentence_of(check_size(good_grid(), 4800)), "taken");
+  EXPECT_EQ(sentence_of(check_size(good_grid(), 4800)), "accepted");
   EXPECT_EQ(sentence_of(check_size(good_grid(), 4799)),
             "msg.info.width: expected 80 x 60 = 4800 bytes of data, got 4799");
   EXPECT_EQ(sentence_of(check_size(good_grid(), 4801)),
@@ -120,9 +120,9 @@ TEST(Cells, AreZeroToAHundredOrUnknown) {  // ICD 6.3.1
     cells[73] = static_cast<std::uint8_t>(value);
     const bool good = value <= 100 || value == 255;
     EXPECT_EQ(sentence_of(check_cells(cells, 1000)),
-              good ? "taken" : sentence("msg.data[1073]: expected 0 to 100 or 255, got ", value));
+              good ? "accepted" : sentence("msg.data[1073]: expected 0 to 100 or 255, got ", value));
   }
-  EXPECT_EQ(sentence_of(check_cells({}, 0)), "taken");
+  EXPECT_EQ(sentence_of(check_cells({}, 0)), "accepted");
 }
 
 struct CloudRow {
@@ -133,17 +133,17 @@ struct CloudRow {
 
 TEST(CloudRules, TellExpectedAndActualValues) {
   const CloudRow rows[] = {
-      {"6.3.2", [](auto&) {}, "taken"},
+      {"6.3.2", [](auto&) {}, "accepted"},
       {"6.3.2 and kills a server", [](auto& c) { c.point_step = 0; },
        "msg.point_step: expected a whole number from 1 to 65536, got 0"},
-      {"6.3.2", [](auto& c) { c.point_step = 65536; }, "taken"},
+      {"6.3.2", [](auto& c) { c.point_step = 65536; }, "accepted"},
       {"6.3.2", [](auto& c) { c.point_step = 65537; },
        "msg.point_step: expected a whole number from 1 to 65536, got 65537"},
       {"6.3.2", [](auto& c) { c.fields.clear(); },
        "msg.fields: expected at least x, y and z, got an empty list"},
       {"6.3.2", [](auto& c) { c.fields.resize(257, field("intensity", 0)); },
        "msg.fields: expected at most 256 fields, got 257"},
-      {"6.3.2", [](auto& c) { c.fields.resize(256, field("intensity", 0)); }, "taken"},
+      {"6.3.2", [](auto& c) { c.fields.resize(256, field("intensity", 0)); }, "accepted"},
       {"6.3.2", [](auto& c) { c.fields[3].count = 0; }, "msg.fields[3].count: expected at least 1, got 0"},
       {"6.3.2 and kills a server", [](auto& c) { c.point_step = 15; },
        "msg.fields[3].offset: expected the field to end within point_step 15, got 12 + 4 x 1 = 16"},
@@ -158,7 +158,7 @@ TEST(CloudRules, TellExpectedAndActualValues) {
       {"6.3.2", [](auto& c) { c.fields[1] = field("Y", 4); }, "msg.fields: missing field \"y\""},
       {"6.3.2", [](auto& c) { c.fields.erase(c.fields.begin()); }, "msg.fields: missing field \"x\""},
       {"6.3.2", [](auto& c) { c.fields[3] = field("z", 12); }, "msg.fields: expected one field \"z\", got 2"},
-      {"6.3.2", [](auto& c) { c.fields.insert(c.fields.end(), 2, field("rgba", 12)); }, "taken"},
+      {"6.3.2", [](auto& c) { c.fields.insert(c.fields.end(), 2, field("rgba", 12)); }, "accepted"},
       {"6.3.2", [](auto& c) { c.fields[0].datatype = Datatype::Int32; },
        "msg.fields[0].datatype: expected 7 or 8 for \"x\", got 5"},
       {"6.3.2", [](auto& c) { c.fields[2].datatype = Datatype::Uint8; },
@@ -172,7 +172,7 @@ TEST(CloudRules, TellExpectedAndActualValues) {
          c.fields = {field("z", 0, Datatype::Float64), field("y", 8, Datatype::Float64),
                      field("x", 16, Datatype::Float64)};
        },
-       "taken"},
+       "accepted"},
   };
   for (const auto& row : rows) {
     PointCloud2 cloud = good_cloud();
@@ -182,14 +182,14 @@ TEST(CloudRules, TellExpectedAndActualValues) {
 }
 
 TEST(CloudSize, IsAWholeNumberOfPoints) {  // ICD 6.3.2
-  EXPECT_EQ(sentence_of(check_size(good_cloud(), 0)), "taken");
-  EXPECT_EQ(sentence_of(check_size(good_cloud(), 160)), "taken");
+  EXPECT_EQ(sentence_of(check_size(good_cloud(), 0)), "accepted");
+  EXPECT_EQ(sentence_of(check_size(good_cloud(), 160)), "accepted");
   EXPECT_EQ(sentence_of(check_size(good_cloud(), 161)),
             "msg.data: expected a multiple of point_step 16, got 161 bytes");
 }
 
 TEST(FrameId, IsDarpaUnlessTheSettingsRewriteIt) {  // ICD 6.1
-  EXPECT_EQ(sentence_of(check_frame_id("darpa", "header.frame_id", {})), "taken");
+  EXPECT_EQ(sentence_of(check_frame_id("darpa", "header.frame_id", {})), "accepted");
   for (const std::string frame : {"map", "Darpa", "darpa ", "/darpa"}) {
     EXPECT_EQ(sentence_of(check_frame_id(frame, "header.frame_id", {})),
               sentence("header.frame_id: expected \"darpa\", got \"", frame,
@@ -197,7 +197,7 @@ TEST(FrameId, IsDarpaUnlessTheSettingsRewriteIt) {  // ICD 6.1
     EXPECT_EQ(check_frame_id(frame, "header.frame_id", {}).error().setting, "rules.rewrite_frame_id");
     Rules rewriting;
     rewriting.rewrite_frame_id = true;
-    EXPECT_EQ(sentence_of(check_frame_id(frame, "header.frame_id", rewriting)), "taken");
+    EXPECT_EQ(sentence_of(check_frame_id(frame, "header.frame_id", rewriting)), "accepted");
   }
 }
 

@@ -4,7 +4,7 @@ import { said, toTab, watch } from "./watch.js";
 
 const row = (page, number) => page.locator(`#reports li[data-key="${number}"]`);
 const button = (page, name, number) => page.getByRole("button", { name: `${name}: report ${number}` });
-/** Opens a row, pressing once more where it took no press: none does while it moves. */
+/** Opens a row, and presses again if the row was moving, because a moving row takes no press. */
 async function opened(page, number) {
   const isOpen = row(page, number).locator(".open[aria-expanded=true]");
   do await row(page, number).locator(".open").click();
@@ -13,7 +13,7 @@ async function opened(page, number) {
 const becomes = (page, number, words) =>
   page.waitForFunction(([number, words]) => document.querySelector(`#reports li[data-key="${number}"]`)?.innerText.includes(words), [number, words]);
 
-test("offers at each report what its state allows, and nothing else", async (t) => {
+test("offers for each report only the actions that its state allows", async (t) => {
   const { page } = await watch(t, "reports");
   await page.getByRole("button", { name: "All runs" }).click();
   const expected = {
@@ -26,7 +26,7 @@ test("offers at each report what its state allows, and nothing else", async (t) 
   }
 });
 
-test("has what waits for the operator's word at hand, and the rest behind one press", async (t) => {
+test("shows reports that need the operator, and the others after one press", async (t) => {
   const { page } = await watch(t, "reports");
   assert.equal(await row(page, 25).locator(".actions button").count(), 2);
   assert.equal(await row(page, 23).locator(".actions button").count(), 0);
@@ -37,7 +37,7 @@ test("has what waits for the operator's word at hand, and the rest behind one pr
   assert.equal(await row(page, 23).locator(".actions button").count(), 0);
 });
 
-test("does at once what costs nothing", async (t) => {
+test("performs free actions at once", async (t) => {
   const { page } = await watch(t, "reports");
   await button(page, "Withdraw", 24).click();
   await becomes(page, 24, "withdrawn");
@@ -51,7 +51,7 @@ test("does at once what costs nothing", async (t) => {
   assert.deepEqual(page.complaints, []);
 });
 
-test("asks before what costs a report, and does nothing where the answer is no", async (t) => {
+test("asks before an action that costs a report, and does nothing on no", async (t) => {
   const { page } = await watch(t, "reports");
   await button(page, "Send again", 25).click();
   const question = page.getByRole("alertdialog");
@@ -68,7 +68,7 @@ test("asks before what costs a report, and does nothing where the answer is no",
   await becomes(page, 25, "queued");
 });
 
-test("asks before it sends what another of its type is close to, and what was withdrawn", async (t) => {
+test("asks before it sends a near duplicate or a withdrawn report", async (t) => {
   const { page } = await watch(t, "reports");
   const question = page.getByRole("alertdialog");
   await button(page, "Send", 24).click();
@@ -82,7 +82,7 @@ test("asks before it sends what another of its type is close to, and what was wi
   await becomes(page, 20, "queued");
 });
 
-test("resubmits as a new report, and says its number", async (t) => {
+test("resubmits as a new report and shows its number", async (t) => {
   const { page } = await watch(t, "reports");
   await row(page, 23).locator(".open").click();
   await button(page, "Resubmit", 23).click();
@@ -91,7 +91,7 @@ test("resubmits as a new report, and says its number", async (t) => {
   await becomes(page, 29, "queued");
 });
 
-test("shows the box's sentence where an action cannot be", async (t) => {
+test("shows the box's sentence if an action is impossible", async (t) => {
   const { page } = await watch(t, "reports");
   await row(page, 19).locator(".open").click();
   await button(page, "Send again", 19).click();
@@ -99,7 +99,7 @@ test("shows the box's sentence where an action cannot be", async (t) => {
   assert.equal(await row(page, 19).locator(".outcome").getAttribute("data-bad"), "true");
 });
 
-test("lets a viewer look, and says why no more", async (t) => {
+test("shows a viewer the reports and why he has no actions", async (t) => {
   const prepare = (page) => page.route("**/adit/session", (route) => route.fulfill({ json: { role: "viewer", csrf: "x", first_start: false } }));
   const { page } = await watch(t, "reports", { prepare });
   await said(page, "Only an operator can act");
@@ -108,7 +108,7 @@ test("lets a viewer look, and says why no more", async (t) => {
   assert.ok(await page.locator("#compose").isHidden());
 });
 
-test("offers nothing while the box is lost, and again once it is back", async (t) => {
+test("offers no action while the box is lost, and all once it is back", async (t) => {
   const { stage, page } = await watch(t, "reports");
   stage.freeze();
   await page.waitForSelector("body[data-link=lost]");
@@ -119,7 +119,7 @@ test("offers nothing while the box is lost, and again once it is back", async (t
   await page.waitForFunction(() => !document.querySelector("#reports .actions button").disabled);
 });
 
-test("has nothing to press that is smaller than a gloved finger", async (t) => {
+test("has no button smaller than a gloved finger", async (t) => {
   for (const viewport of [{ width: 390, height: 844 }, { width: 1280, height: 720 }, { width: 3840, height: 2160 }]) {
     const { page } = await watch(t, "reports", { viewport });
     await toTab(page, "Reports");
@@ -130,7 +130,7 @@ test("has nothing to press that is smaller than a gloved finger", async (t) => {
   }
 });
 
-test("leaves the focus in the row whose buttons change by what was done", async (t) => {
+test("leaves the focus in the row if an action changes its buttons", async (t) => {
   const { page } = await watch(t, "reports");
   await row(page, 28).locator(".open").click();
   for (const [number, action, words] of [[24, "Withdraw", "Withdrawn."], [28, "Hold", "Held until"], [25, "Settle", "Settled."]]) {

@@ -2,12 +2,12 @@ import { test } from "node:test";
 import { serve } from "./stage.js";
 import { visitor, watch } from "./watch.js";
 
-/** The first answer to each of `names` is lost, as where the network changes under the browser. */
+/** The first answer to each of `names` is lost, as if the network changes under the browser. */
 const losesFirst = (...names) => async (page) => {
   for (const name of names) await page.route(`**/${name}`, (route) => route.abort("connectionaborted"), { times: 1 });
 };
 
-/** The page is of another version than the box, which was updated in between: what it names is there no longer. */
+/** The page is from an earlier version of the box, which was updated meanwhile, so the page names files that are gone. */
 const isOld = async (page) => {
   const old = async (route) => {
     const answer = await route.fetch();
@@ -16,17 +16,17 @@ const isOld = async (page) => {
   await page.route(({ pathname }) => pathname === "/", old, { times: 1 });
 };
 
-test("is loaded again where a part of it did not come", async (t) => {
+test("is loaded again if a part of it was lost", async (t) => {
   for (const [path, ...lost] of [["", "index.*.css"], ["", "index.*.js"], ["", "index.*.css", "index.*.js"], ["display", "display.*.js"]]) {
-    await watch(t, "calm", { path, prepare: losesFirst(...lost) }); // which waits for the link
+    await watch(t, "calm", { path, prepare: losesFirst(...lost) });  // waits for the link
   }
 });
 
-test("is loaded again where the box has another version of it by now", async (t) => {
+test("is loaded again if the box has another version by now", async (t) => {
   await watch(t, "calm", { prepare: isOld });
 });
 
-test("lets somebody log in, though a part of the login did not come at first", async (t) => {
+test("logs in although a part of the login page was lost at first", async (t) => {
   const stage = await serve("calm");
   t.after(() => stage.end());
   const page = await visitor(t, `${stage.url}login.html`, {}, losesFirst("login.*.js"));

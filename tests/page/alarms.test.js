@@ -16,8 +16,8 @@ test("says that there is no alarm, and which was the last", async (t) => {
   assert.equal(await icon(page), "icon.svg");
 });
 
-test("shows the two worst with what to do, in the strip, the title and the icon", async (t) => {
-  const { page } = await watch(t, "trouble", { bypassCSP: true }); // axe is a script of its own
+test("shows the two worst alarms with what to do, in the strip, the title and the icon", async (t) => {
+  const { page } = await watch(t, "trouble", { bypassCSP: true });  // axe is a script
   const cards = page.locator(".alarms .worst .alarm");
   assert.equal(await cards.count(), 2);
   assert.match(await cards.nth(0).innerText(), /Mapping is unreachable\s+\d+:\d\d.*Command Post: connecting to.*hides 3/s);
@@ -30,7 +30,7 @@ test("shows the two worst with what to do, in the strip, the title and the icon"
   await axeFindsNothing(page);
 });
 
-test("leads from each alarm in the list to what it means", async (t) => {
+test("links each alarm in the list to its explanation", async (t) => {
   const { page } = await watch(t, "trouble", { bypassCSP: true });
   await page.getByRole("button", { name: "All 3" }).click();
   await page.locator("#all-alarms li", { hasText: "5 reports are left" }).getByRole("link", { name: "Help" }).click();
@@ -61,7 +61,7 @@ test("keeps its place and height in every state", async (t) => {
   }
 });
 
-test("cuts no headline, of however many words, on any screen", async (t) => {
+test("cuts no headline on any screen, whatever its length", async (t) => {
   const WORDS = ["The server is not a Command Post", "Too many clients are anonymous"];
   const prepare = (page) => retell(page, (words) => (view) => ({ ...view, alarms: view.alarms.slice(0, 2).map((alarm, i) => ({ ...alarm, what: words[i], acknowledged: false, action: { word: "Open set-up", link: "/setup" } })) }), WORDS);
   const { page } = await watch(t, "trouble", { prepare });
@@ -76,7 +76,7 @@ test("cuts no headline, of however many words, on any screen", async (t) => {
   }
 });
 
-test("offers the action of an alarm on a phone, or to acknowledge one without an action", async (t) => {
+test("offers an alarm's action on a phone, or to acknowledge an alarm without an action", async (t) => {
   const prepare = (page) => retell(page, () => (view) => {
     for (const alarm of view.alarms) if (globalThis.without) alarm.action = { word: "", link: "" };
     return view;
@@ -91,7 +91,7 @@ test("offers the action of an alarm on a phone, or to acknowledge one without an
   assert.ok(width >= 44 && height >= 44);
 });
 
-test("counts its alarms on the tab to which they lead", async (t) => {
+test("counts alarms on the tab that shows them", async (t) => {
   const prepare = (page) => retell(page, () => (view) => {
     const alarm = (severity, what, link) => ({ ...view.alarms[0], id: what, severity, what, action: { word: "Show", link } });
     return { ...view, alarms: view.alarms.length ? [
@@ -108,7 +108,7 @@ test("counts its alarms on the tab to which they lead", async (t) => {
   assert.deepEqual(badges, [["reports", "1", "ask", "Report 8 is in doubt"], ["robots", "2", "bad", "uav5 is silent, uav6 is late"]]);
 });
 
-test("quiets what is acknowledged, and puts what is new before it", async (t) => {
+test("mutes acknowledged alarms and lists new ones first", async (t) => {
   const { page } = await watch(t, "trouble");
   const first = page.locator(".alarms .worst .alarm").first();
   await first.getByRole("button", { name: "Acknowledge" }).click();
@@ -121,7 +121,7 @@ test("quiets what is acknowledged, and puts what is new before it", async (t) =>
   assert.equal(await known.getByRole("button", { name: "Acknowledge" }).isVisible(), false);
 });
 
-test("leads nowhere but to the box, whatever an alarm says", async (t) => {
+test("links only to the box, whatever the text of an alarm", async (t) => {
   const { page } = await watch(t, "hostile");
   await page.waitForSelector(".alarms .alarm");
   assert.equal(await page.locator(".alarms a[href^=javascript]").count(), 0);
@@ -129,7 +129,7 @@ test("leads nowhere but to the box, whatever an alarm says", async (t) => {
   assert.equal(await page.evaluate(() => globalThis.pwned), undefined);
 });
 
-test("sounds only where somebody wants it, and remembers that", async (t) => {
+test("makes sounds only if the user wants them, and remembers the choice", async (t) => {
   const { page } = await watch(t, "trouble", { prepare: (fresh) => fresh.addInitScript(() => {
     globalThis.tones = 0;
     const real = AudioContext.prototype.createOscillator;
@@ -141,7 +141,7 @@ test("sounds only where somebody wants it, and remembers that", async (t) => {
   await page.waitForSelector(".alarms .alarm");
   assert.equal(await page.evaluate(() => globalThis.tones), 0);
   await page.getByRole("button", { name: "Sound is off" }).click();
-  await page.waitForFunction(() => globalThis.tones >= 4); // that it is on, and the alarm
+  await page.waitForFunction(() => globalThis.tones >= 4);  // one for switching it on, one for the alarm
   await page.reload();
   await page.getByRole("button", { name: "Sound is on" }).waitFor();
   await page.waitForFunction(() => globalThis.tones >= 2);
@@ -149,7 +149,7 @@ test("sounds only where somebody wants it, and remembers that", async (t) => {
   await page.getByRole("button", { name: "Sound is off" }).waitFor();
 });
 
-test("sounds on after the box's clock stepped back", async (t) => {
+test("still makes sounds after the box's clock stepped back", async (t) => {
   const prepare = async (page) => {
     await page.addInitScript(() => {
       localStorage.setItem("adit-sound", "on");
@@ -168,10 +168,10 @@ test("sounds on after the box's clock stepped back", async (t) => {
     globalThis.step = 3600;
     return globalThis.tones;
   });
-  await page.waitForFunction((before) => globalThis.tones >= before + 4, before, { timeout: patient(40_000) }); // twice more, within 20 s
+  await page.waitForFunction((before) => globalThis.tones >= before + 4, before, { timeout: patient(40_000) });  // two more within 20 s
 });
 
-test("is one line to those who only listen", async (t) => {
+test("is one line for a screen reader", async (t) => {
   const { page } = await watch(t, "calm");
   assert.equal(await page.locator(".alarms .worst").getAttribute("aria-live"), "assertive");
   assert.equal(await text(page, ".alarms .all"), "History");

@@ -1,4 +1,4 @@
-// The real thing: aditd with a rehearsal Command Post, on loopback, for the length of one test.
+// The real programs for one test: aditd with a rehearsal Command Post, on loopback.
 import { once } from "node:events";
 import { createServer } from "node:net";
 import { setTimeout as sleep } from "node:timers/promises";
@@ -9,10 +9,10 @@ import { patient } from "./patience.js";
 export { OPERATOR, TOKENS };
 export const VIEWER = "look, do not touch";
 
-/** A connection of its own for a request: a box that restarts, after a reset, closes those that are kept. */
+/** Uses a new connection for each request, because a restarting box closes open ones. */
 export const ONCE = { Connection: "close" };
 
-/** The first true value of `look()`. After `within` ms times ADIT_PATIENCE: an Error with `what` and the value seen last. */
+/** The first true value of `look()`. After `within` ms times ADIT_PATIENCE: an Error with `what` and the last value. */
 export async function until(look, what, within = 60_000) {
   for (const end = Date.now() + patient(within); ; await sleep(50)) {
     const found = await look();
@@ -21,8 +21,8 @@ export async function until(look, what, within = 60_000) {
   }
 }
 
-/** One that nobody listens at, where a program is to be found however often it restarts. Below those that the kernel gives
- *  to whoever asks for any, or it might give this one away meanwhile. */
+/** A free port at which a program can listen again after a restart. It is below the ephemeral ports, so the kernel does not give it to
+ *  others meanwhile. */
 export async function freePort() {
   for (;;) {
     const port = 11_000 + Math.floor(Math.random() * 21_000), server = createServer().listen(port, "127.0.0.1");
@@ -32,7 +32,8 @@ export async function freePort() {
   }
 }
 
-/** aditd at work, both passwords set; `ask(method, path, {role, body, headers})` asks as an operator's script by default. */
+/** A running aditd with both passwords set. `ask(method, path, {role, body, headers})` sends a request, by default as an operator's
+ *  script. */
 export async function box(t, rates = {}) {
   const it = await begin({ settings: { command_post: { rates } } });
   t.after(() => it.end());
@@ -55,12 +56,12 @@ export async function box(t, rates = {}) {
   await ask("POST", "/adit/password", { body: { role: "viewer", current: OPERATOR, password: VIEWER } });
   who.viewer = await logIn(VIEWER);
   let listened = 1;
-  /** After a reset. */
+  /** Waits for the restart after a reset. */
   const restarted = () => until(() => (it.log().match(/: listening /g) ?? []).length > listened && ++listened, "the box to restart");
   return { url, ask, logIn, code: it.code, restarted };
 }
 
-/** A team at work: one of every kind of message, and one that is refused. */
+/** Posts one message of every kind, and one that is rejected. */
 export async function play(ask, name = "ugv1") {
   const header = { stamp: Date.now() / 1000, frame_id: "darpa" };
   const pose = { position: { x: 1, y: 2, z: 0 }, orientation: { x: 0, y: 0, z: 0, w: 1 } };

@@ -1,4 +1,4 @@
-// What a real aditd tells of itself: metrics that the Grafana dashboard shows, and a support bundle without secrets.
+// A real aditd's self-description: metrics that the Grafana dashboard shows, and a support bundle without secrets.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";
@@ -14,7 +14,7 @@ const expressions = dashboard.panels.flatMap(({ targets }) => (targets ?? []).ma
 
 const scrape = async (ask) => (await ask("GET", "/metrics")).text();
 
-test("every metric of the dashboard is in a real scrape, with the labels that the dashboard uses", async (t) => {
+test("every metric of the dashboard exists in a real scrape, with the dashboard's labels", async (t) => {
   const { ask } = await box(t);
   await play(ask);
   const metrics = await until(async () => {
@@ -34,7 +34,7 @@ test("every metric of the dashboard is in a real scrape, with the labels that th
   }
 });
 
-test("the support bundle holds all that helps, and no token, password, code or cookie", async (t) => {
+test("the support bundle has all logs and settings, and no token, password, code or cookie", async (t) => {
   const { ask, code, logIn } = await box(t);
   await play(ask);
   const mine = await logIn(OPERATOR);
@@ -66,7 +66,7 @@ test("the support bundle holds all that helps, and no token, password, code or c
   }
 });
 
-test("a reset from the page takes the box back to its first start, and keeps the reports", async (t) => {
+test("a reset from the page returns the box to its first start and keeps the reports", async (t) => {
   const { ask, url, restarted } = await box(t);
   await ask("POST", "/adit/reports", { body: { type: "Drill", x: 1, y: 2, z: 3 } });
   const browser = await launch();

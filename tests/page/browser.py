@@ -1,4 +1,4 @@
-"""Chromium's headless shell, driven over its DevTools pipe: null-terminated JSON on descriptors 3 and 4. For the one story of the page
+"""Controls Chromium's headless shell over its DevTools pipe: null-terminated JSON on descriptors 3 and 4. For the one story of the page
 that needs no npm; all others use Playwright."""
 
 import json
@@ -9,7 +9,7 @@ import tempfile
 from patience import wait_until
 
 CHROMIUM = os.environ.get("CHROMIUM", "/usr/bin/chromium-headless-shell")
-# What a user finds by its words: a field by its label, a button by its text, both in the open dialog if there is one.
+# Finds an element as a user does: a field by its label, a button by its text. If a dialog is open, searches only there.
 FIND = """(kind, words) => {
   const top = [...document.querySelectorAll("dialog[open]")].at(-1) ?? document;
   const said = (node) => (node?.innerText ?? node?.textContent ?? "").trim();
@@ -18,7 +18,7 @@ FIND = """(kind, words) => {
     : [...top.querySelectorAll(words)];
   return all.find((each) => each.checkVisibility() && each.getBoundingClientRect().width);
 }"""
-# The middle of the element, if a press there reaches it: it is enabled, has stood still (presses.js), and lies on top. Else null.
+# The centre of the element if a press there reaches it: it is enabled, still (presses.js) and on top. Otherwise null.
 PLACE = f"""async (kind, words) => {{
   const found = ({FIND})(kind, words);
   if (!found || found.disabled) return null;

@@ -5,7 +5,7 @@ import { axeFindsNothing, visitor } from "./watch.js";
 
 const OPERATOR = "correct horse", VIEWER = "look, do not touch";
 
-/** The page of a box whose clock is two hours behind, logged in. */
+/** The logged-in page of a box whose clock is two hours behind. */
 async function come(t, password, options = {}) {
   const stage = await serve("calm", 0, "clock-behind");
   t.after(() => stage.end());
@@ -20,8 +20,8 @@ async function come(t, password, options = {}) {
 
 const clockOf = (page) => page.evaluate(async () => (await fetch("/adit/clock")).json());
 
-test("asks the operator once whether this device’s time counts, and sets the box’s to it", async (t) => {
-  const { page, dialog } = await come(t, OPERATOR, { bypassCSP: true }); // for axe
+test("asks the operator once whether to use this device’s time, and sets the box’s clock to it", async (t) => {
+  const { page, dialog } = await come(t, OPERATOR, { bypassCSP: true });  // for axe
   await dialog.getByText(/2:00 h behind this device/).waitFor();
   await axeFindsNothing(page);
   await dialog.getByRole("button", { name: "Set the clock" }).click();
@@ -29,7 +29,7 @@ test("asks the operator once whether this device’s time counts, and sets the b
   assert.deepEqual(page.complaints, []);
 });
 
-test("does not ask again whoever said no, and leaves the clock alone", async (t) => {
+test("does not ask again after no, and does not set the clock", async (t) => {
   const { page, dialog } = await come(t, OPERATOR);
   await dialog.waitFor();
   const before = (await clockOf(page)).now;

@@ -1,4 +1,4 @@
-// A report composed by hand: what, where, the check, and away.
+// Composing a report: type, place, check, send.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { axeFindsNothing, settled, text, toTab, watch } from "./watch.js";
@@ -6,7 +6,7 @@ import { axeFindsNothing, settled, text, toTab, watch } from "./watch.js";
 const TYPES = ["Survivor", "Cell Phone", "Backpack", "Drill", "Fire Extinguisher", "Gas", "Vent", "Helmet", "Rope", "Cube"];
 const canvas = "#map .frame canvas";
 
-/** By its key, which does nothing until it is known who looks. */
+/** Opens the form by its key, which works only once the page knows the user's role. */
 const compose = async (page) => {
   await page.waitForSelector("#reports .compose:enabled", { state: "attached" });
   await page.keyboard.press("n");
@@ -26,7 +26,7 @@ const send = (page) => page.locator("#compose .send").click();
 const becomes = (page, number, words) =>
   page.waitForFunction(([number, words]) => document.querySelector(`#reports li[data-key="${number}"]`)?.innerText.includes(words), [number, words]);
 
-test("composes a report: what, where, a look at what is near, and away", async (t) => {
+test("composes a report: type, place, a check for near ones, and sends it", async (t) => {
   const { page } = await watch(t, "reports");
   await page.getByRole("button", { name: "New report" }).click();
   assert.deepEqual(await page.locator("#compose .types button").allTextContents(), TYPES);
@@ -43,7 +43,7 @@ test("composes a report: what, where, a look at what is near, and away", async (
   assert.deepEqual(page.complaints, []);
 });
 
-test("takes the place of the reports, never of the map, and moves neither", async (t) => {
+test("replaces the list of reports, never the map, and moves neither", async (t) => {
   for (const viewport of [{ width: 1280, height: 720 }, { width: 1920, height: 1080 }]) {
     const { page } = await watch(t, "reports", { viewport });
     const boxes = () => page.evaluate(() => [".strip", ".alarms", "#map .frame", "#maps", "#link-plots"].map((part) => JSON.stringify(document.querySelector(part).getBoundingClientRect())));
@@ -61,7 +61,7 @@ test("takes the place of the reports, never of the map, and moves neither", asyn
   }
 });
 
-test("says how far the next one of that type is where none is near", async (t) => {
+test("says how far the nearest report of that type is, if none is near", async (t) => {
   const { page } = await watch(t, "reports");
   await compose(page);
   await fill(page, "Drill", "343", "-104.5", "0.25");
@@ -70,7 +70,7 @@ test("says how far the next one of that type is where none is near", async (t) =
   for (const gap of gaps) assert.ok(gap >= 4, `${gaps}: a shape stands beside its words, not in them`);
 });
 
-test("names the field that is wrong, and goes there", async (t) => {
+test("names the wrong field and focuses it", async (t) => {
   const { page } = await watch(t, "reports");
   await compose(page);
   await choose(page, "Rope");
@@ -84,7 +84,7 @@ test("names the field that is wrong, and goes there", async (t) => {
   }
 });
 
-test("says that the very same was reported, and sends it again only when told to", async (t) => {
+test("says that the same report exists, and sends it again only if confirmed", async (t) => {
   const { page } = await watch(t, "reports");
   await compose(page);
   await fill(page, "Helmet", "281,75", "−4.5", ".25");
@@ -100,7 +100,7 @@ test("says that the very same was reported, and sends it again only when told to
   await becomes(page, 29, "queued");
 });
 
-test("shows the box's sentence where it was not taken, and keeps what was typed", async (t) => {
+test("shows the box's sentence if the report was rejected, and keeps the input", async (t) => {
   const { page } = await watch(t, "reports");
   await compose(page);
   await fill(page, "Cube", "666", "0", "0");
@@ -112,10 +112,10 @@ test("shows the box's sentence where it was not taken, and keeps what was typed"
   await page.locator("#compose").waitFor({ state: "hidden" });
   await compose(page);
   await choose(page, "Cube");
-  assert.equal(await page.inputValue("#compose input[name=x]"), "", "what was cancelled is gone");
+  assert.equal(await page.inputValue("#compose input[name=x]"), "", "a cancelled report is discarded");
 });
 
-/** Keeps ANYmal2, which stands at 52, -14 far from all tracks, in the middle of the map; gives `tap(x, y)` in metres. */
+/** Keeps ANYmal2, which stands at 52, -14 far from all tracks, in the middle of the map. Returns `tap(x, y)` in metres. */
 async function aim(page) {
   await page.selectOption("#map .follow select", "ANYmal2");
   await settled(page);
@@ -123,12 +123,12 @@ async function aim(page) {
   const at = (right, down) => page.locator(canvas).tap({ position: { x: width / 2 + right, y: height / 2 + down } });
   const y = async () => Number(await page.inputValue("#compose input[name=y]"));
   await at(0, 40);
-  const scale = 40 / (-14 - (await y())); // pixels a metre
+  const scale = 40 / (-14 - (await y()));  // pixels per metre
   return (x, y) => at((x - 52) * scale, (-14 - y) * scale);
 }
 const z = (page) => page.inputValue("#compose input[name=z]");
 
-/** A report whose place is asked for, on a phone. */
+/** A report whose place is being picked, on a phone. */
 async function placeByTouch(t) {
   const { page } = await watch(t, "calm", { viewport: { width: 390, height: 844 }, hasTouch: true, bypassCSP: true });
   await toTab(page, "Reports");
@@ -151,13 +151,13 @@ test("takes the height from the tracks at the place, by touch, and says how it w
   assert.match(await text(page, "#compose .notes li"), /^z 0\.3 m from ANYmal2’s track, [01]\.\d m away, (now|\d+ s ago)\.$/);
   await page.getByRole("button", { name: "Place", exact: true }).tap();
   await tap(52, -34);
-  assert.equal(await z(page), "", "that height was of another place");
+  assert.equal(await z(page), "", "the height of the earlier place must go");
   await tap(52, -17.5);
   await page.locator("#compose .notes li", { hasText: /^z 0\.3 m from ANYmal2’s track, [34]\.\d m away, .*: check it\.$/ }).waitFor();
 
   await page.getByRole("button", { name: "Place", exact: true }).tap();
   await page.fill("#compose input[name=x]", "60");
-  assert.equal(await z(page), "", "nor is it that of a place that is typed");
+  assert.equal(await z(page), "", "a typed place has no height from the earlier place");
   await page.fill("#compose input[name=z]", "2");
   await check(page);
   assert.equal(await text(page, "#compose .notes li"), "z typed.");
@@ -196,10 +196,10 @@ test("takes a place by keyboard, and asks for z before the tracks have loaded", 
   await page.keyboard.press("Escape");
   await page.locator("#compose").waitFor({ state: "hidden" });
   await compose(page);
-  assert.notEqual(await page.inputValue("#compose input[name=x]"), "", "what was only left is still there");
+  assert.notEqual(await page.inputValue("#compose input[name=x]"), "", "a closed form keeps its input");
 });
 
-test("sends what was checked: a tap on the map moves nothing then", async (t) => {
+test("sends the checked report: a tap on the map then changes nothing", async (t) => {
   const { page } = await watch(t, "reports");
   await compose(page);
   await fill(page, "Gas", "306", "-3.5", "0.25");
@@ -208,10 +208,10 @@ test("sends what was checked: a tap on the map moves nothing then", async (t) =>
   await page.getByRole("button", { name: "Place", exact: true }).click();
   await page.locator(canvas).click({ position: { x: 200, y: 150 } });
   assert.notEqual(await page.inputValue("#compose input[name=x]"), "306");
-  assert.equal(await z(page), "", "the typed height was of another place");
+  assert.equal(await z(page), "", "the typed height belongs to the earlier place");
 });
 
-test("shows map and fields at once on a phone, in every step", async (t) => {
+test("shows map and fields together on a phone, in every step", async (t) => {
   const { page } = await watch(t, "reports", { viewport: { width: 390, height: 844 }, hasTouch: true });
   await toTab(page, "Reports");
   await page.locator("#reports .compose").tap();
@@ -226,7 +226,7 @@ test("shows map and fields at once on a phone, in every step", async (t) => {
   assert.ok(button.y + button.height <= 844 && button.height >= 44, JSON.stringify(button));
 });
 
-test("has nothing that axe finds wrong in its steps and dialogs", async (t) => {
+test("has no axe fault in its steps and dialogs", async (t) => {
   const { page } = await watch(t, "reports", { bypassCSP: true });
   const isWell = async (what, themes = ["dark"]) => {
     for (const theme of themes) {

@@ -1,17 +1,18 @@
-// A refusal that a setting can prevent links to this setting, by its key and not by the sentence, if the user may change settings.
+// If a setting can prevent a rejection, the page links to this setting, by its key and not by the sentence, if the user may change
+// settings.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { retell } from "./retold.js";
 import { axeFindsNothing, openMore, said, watch } from "./watch.js";
 
 const cures = (page) => page.locator("#refusals .cure:visible");
-/** A page whose box names `setting` for each of its refusals. */
+/** A page whose box names `setting` for each rejection. */
 const naming = (setting) => (page) => retell(page, (setting) => (view) => {
   for (const row of view.refusals) Object.assign(row, { sentence: "rules.map_bytes: (the setting rules.map_bytes)", setting });
   return view;
 }, setting);
 
-test("leads an operator from a refusal to the setting that can prevent it", async (t) => {
+test("links an operator from a rejection to the setting that can prevent it", async (t) => {
   const { page } = await watch(t, "trouble", { bypassCSP: true });
   await openMore(page);
   await page.getByRole("link", { name: "Set rules.rewrite_frame_id" }).waitFor();
@@ -20,7 +21,7 @@ test("leads an operator from a refusal to the setting that can prevent it", asyn
   await axeFindsNothing(page, "a refusal with its cure");
 });
 
-test("leads from a name that a robot may not have to the robots and their aliases", async (t) => {
+test("links from a rejected robot name to the robots and their aliases", async (t) => {
   const { page } = await watch(t, "trouble", { prepare: naming("robots[].alias") });
   await openMore(page);
   const way = page.getByRole("link", { name: "Set robots[].alias" }).first();
@@ -28,14 +29,14 @@ test("leads from a name that a robot may not have to the robots and their aliase
   assert.equal(await way.getAttribute("href"), "/setup#robots");
 });
 
-test("leads nowhere if the box names no setting, though its sentence does", async (t) => {
+test("has no link if the box names no setting, even if its sentence does", async (t) => {
   const { page } = await watch(t, "trouble", { prepare: naming("") });
   await openMore(page);
   await said(page, "the setting rules.map_bytes");
   assert.equal(await cures(page).count(), 0);
 });
 
-test("offers a viewer nothing", async (t) => {
+test("shows a viewer no link", async (t) => {
   const prepare = (page) => page.route("**/adit/session", (route) => route.fulfill({ json: { role: "viewer", csrf: "x", first_start: false } }));
   const { page } = await watch(t, "trouble", { prepare });
   await said(page, "Only an operator can act");

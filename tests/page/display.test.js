@@ -8,7 +8,7 @@ import { said, showsTheClock, text, watch } from "./watch.js";
 
 const SCREENS = [[1280, 720], [1920, 1080], [3840, 2160]];
 
-test("shows the run on one screen, without anything to press", async (t) => {
+test("shows the run on one screen, without buttons", async (t) => {
   for (const path of ["display", "display.html"]) {
     const began = Date.now(), { page } = await watch(t, "reports", { path });
     await showsTheClock(page, began);
@@ -22,7 +22,7 @@ test("shows the run on one screen, without anything to press", async (t) => {
   }
 });
 
-test("fits 720p, 1080p and 4K whole, and nothing on it is too small to read", async (t) => {
+test("fits 720p, 1080p and 4K, with all text large enough", async (t) => {
   const { page } = await watch(t, "trouble", { path: "display" });
   for (const [width, height] of SCREENS) {
     await page.setViewportSize({ width, height });
@@ -37,7 +37,7 @@ test("fits 720p, 1080p and 4K whole, and nothing on it is too small to read", as
   }
 });
 
-test("shows each report whole or not at all: nobody can scroll there", async (t) => {
+test("shows each report as a whole or not at all, because the display does not scroll", async (t) => {
   const { page } = await watch(t, "trouble", { path: "display" });
   await page.locator("#reports li").nth(9).waitFor();
   for (const [width, height] of [[360, 740], ...SCREENS]) {
@@ -54,7 +54,7 @@ test("shows each report whole or not at all: nobody can scroll there", async (t)
   }
 });
 
-test("cuts no figure short, not even on a phone", async (t) => {
+test("cuts no figure, not even on a phone", async (t) => {
   const { page } = await watch(t, "reports", { path: "display" });
   for (const [width, height] of [[390, 844], [844, 390], [768, 1024], ...SCREENS]) {
     await page.setViewportSize({ width, height });
@@ -65,7 +65,7 @@ test("cuts no figure short, not even on a phone", async (t) => {
   }
 });
 
-test("cuts no word in the head of a list, and shows what is wrong before what is well", async (t) => {
+test("cuts no word in the head of a list, and shows problems first", async (t) => {
   const prepare = (page) => retell(page, () => (view) => {
     const grid = view.activities.find(({ kind, robot }) => kind === "grid" && !robot), markers = view.activities.find(({ kind }) => kind === "markers");
     if (!grid || !markers) return view;
@@ -96,7 +96,7 @@ test("cuts no word in the head of a list, and shows what is wrong before what is
   }
 });
 
-test("names each robot in full, and tells what asks from what is bad", async (t) => {
+test("shows each robot's full name, and marks questions and faults differently", async (t) => {
   const { page } = await watch(t, "reports", { path: "display" });
   await page.$$eval("#robots .name", ([first]) => (first.textContent = "explorer10"));
   for (const [width, height] of SCREENS) {
@@ -105,20 +105,20 @@ test("names each robot in full, and tells what asks from what is bad", async (t)
     assert.deepEqual(cut, [], `${width} x ${height}`);
   }
   await page.setViewportSize({ width: 1280, height: 720 });
-  await page.$$eval("#shared .name", (names) => names.forEach((name) => (name.textContent = "Merged cloud"))); // as long as they get
+  await page.$$eval("#shared .name", (names) => names.forEach((name) => (name.textContent = "Merged cloud")));  // the longest names
   const [end, edge] = await page.evaluate(() => ["#shared", "#maps"].map((part) => document.querySelector(part).getBoundingClientRect().right));
   assert.ok(end <= edge, `${end} of ${edge}`);
   const levels = await page.$$eval("#attention .alarm", (nodes) => nodes.map((node) => node.dataset.level));
   assert.deepEqual(levels, ["ask", "ask"]);
 });
 
-test("shows what may pass by itself where nothing else calls", async (t) => {
+test("shows a temporary alarm if there is no other", async (t) => {
   const prepare = (page) => retell(page, () => (view) => ({ ...view, alarms: view.alarms.filter(({ severity }) => severity === "wait") }));
   const { page } = await watch(t, "trouble", { path: "display", prepare });
   await page.locator("#attention .alarm[data-level=wait]", { hasText: "5 reports are left" }).waitFor();
 });
 
-test("says that the box is lost, and comes back by itself", async (t) => {
+test("says that the box is lost, and recovers by itself", async (t) => {
   const { stage, page } = await watch(t, "calm", { path: "display" });
   stage.freeze();
   await page.waitForSelector("body[data-link=lost]");
@@ -129,7 +129,7 @@ test("says that the box is lost, and comes back by itself", async (t) => {
   assert.equal((await text(page, "#attention")).trim(), "No alarm");
 });
 
-test("shows the run also where damage took a report's place from the ledger", async (t) => {
+test("shows the run even if damage took a report's place from the ledger", async (t) => {
   const prepare = (page) => retell(page, () => (view) => {
     for (const report of view.reports) if (report.number === 8) Object.assign(report, { type: "", position: null, sender: "lost", run: view.run_number });
     return view;
@@ -145,7 +145,7 @@ test("counts every report, also those past the newest 200", async (t) => {
   await page.locator("#reports .count", { hasText: new RegExp(`^${COUNT}$`) }).waitFor();
 });
 
-test("has the robots' lines from what the box has kept, as it opens", async (t) => {
+test("shows the robots' lines from the box's history when it opens", async (t) => {
   const { page } = await watch(t, "calm", { path: "display", prepare: withHistory((now) => kept(now, 500)) });
   await until(async () => (await spans(page, '#robots li[data-key="ANYmal1"] path'))[0] >= 85, "a line of three minutes");
   assert.deepEqual(page.complaints, []);

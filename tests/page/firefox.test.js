@@ -1,5 +1,5 @@
-// The run page in Debian's Firefox, with a real box; all other stories are Chromium's. Playwright drives it by WebDriver BiDi, which it offers
-// under a private name and without errors of scripts: failed.js shows these.
+// The run page in Debian's Firefox, with a real box; all other stories use Chromium. Playwright drives it by WebDriver BiDi, which it
+// offers under a private name and without errors of scripts; failed.js shows these.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import playwright from "playwright-core";
@@ -8,9 +8,9 @@ import { patient } from "./patience.js";
 import { leave, shoot, visit } from "./stage.js";
 
 const FIREFOX = process.env.FIREFOX ?? "/usr/bin/firefox-esr";
-const CLASSIC = { "widget.gtk.overlay-scrollbars.enabled": false }; // scrollbars take room, as on Windows
+const CLASSIC = { "widget.gtk.overlay-scrollbars.enabled": false };  // scrollbars take room, as on Windows
 
-/** What they cut off: a list scrolls up and down alone. */
+/** Elements that cut their content; a list may scroll vertically. */
 const cut = () =>
   [...document.querySelectorAll(".layers fieldset, main .scroll")].filter((node) => node.scrollWidth > node.clientWidth)
     .map((node) => `${node.closest("[id]").id} ${node.className}`);

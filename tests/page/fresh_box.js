@@ -1,4 +1,4 @@
-// A box as it comes: aditd on an empty state folder and without tokens, and a Command Post to rehearse against.
+// A box as delivered: aditd with an empty state directory and without tokens, and a rehearsal Command Post.
 import { spawn } from "node:child_process";
 import { once } from "node:events";
 import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -36,7 +36,7 @@ class FreshBox {
     await once(program, "exit");
   }
 
-  /** Stops and goes on with aditd, as a box that has gone silent. */
+  /** Stops aditd, as a box that falls silent; or continues it. */
   freeze = () => this.#programs.aditd.kill("SIGSTOP");
   thaw = () => this.#programs.aditd.kill("SIGCONT");
 
@@ -66,7 +66,7 @@ class FreshBox {
 
   code = () => readFileSync(join(this.state, "first-start.code"), "utf8").trim();
 
-  /** An operator's own session, by password: `ask(path, body)` gives {status, said}; with a body it posts. */
+  /** An operator's own session, by password. `ask(path, body)` returns {status, said}; with a body it posts. */
   async operator() {
     const post = (path, body, headers = ONCE) =>
       fetch(this.url.slice(0, -1) + path, { method: "POST", headers: { "Content-Type": "application/json", ...headers }, body: JSON.stringify(body) });
@@ -79,7 +79,7 @@ class FreshBox {
     };
   }
 
-  /** Sets the passwords as the first start does, and gives an operator's session. */
+  /** Sets the passwords as the first start does, and returns an operator's session. */
   async settle() {
     const first = { role: "operator", code: this.code(), password: PASSWORD };
     await fetch(`${this.url}adit/password`, { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(first) });
@@ -98,14 +98,14 @@ let browser;
 before(async () => (browser = await launch()));
 after(() => browser?.close());
 
-/** A box for the length of one test. */
+/** A box for one test. */
 export async function freshBox(t, options) {
   const box = new FreshBox();
   t.after(() => box.close());
   return box.begin(options);
 }
 
-/** A page of the box, for the length of one test; with a password: logged in, at `path`. */
+/** A page of the box for one test; with a password: logged in, at `path`. */
 export async function come(t, box, path, password, options = {}) {
   const page = await visit(browser, box.url + path, options);
   t.after(() => leave(page));

@@ -1,4 +1,4 @@
-// Which height the page takes for a place on the map, case by case, and how it says so.
+// The height that the page chooses for a place on the map, case by case, and its explanation.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { heightNote, heightsAt } from "../../firmware/doors/site/files/height.js";

@@ -1,11 +1,11 @@
-// The plots of the link: what is now, and what the box could not tell.
+// The plots of the link: current figures, and gaps in the box's measurements.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { watch } from "./watch.js";
 
 const gaps = (page) => page.$$eval("#plots .lost", (paths) => paths.map((path) => Boolean(path.getAttribute("d"))));
 
-test("shades what was lost, and only that", async (t) => {
+test("shades lost times only", async (t) => {
   const { page, stage } = await watch(t, "calm");
   await page.locator("#plots li").nth(4).waitFor();
   assert.deepEqual(await gaps(page), Array(5).fill(false));
@@ -18,7 +18,7 @@ test("shades what was lost, and only that", async (t) => {
   assert.deepEqual(await gaps(page), Array(5).fill(true));
 });
 
-test("has on a phone three of them, and none on another", async (t) => {
+test("shows three plots on a phone without overlaps", async (t) => {
   const { page } = await watch(t, "calm", { viewport: { width: 390, height: 844 } });
   await page.locator("#plots li").nth(2).waitFor();
   const rows = await page.$$eval("#plots li", (items) => items.filter((item) => item.checkVisibility()).map((item) => {
@@ -28,7 +28,7 @@ test("has on a phone three of them, and none on another", async (t) => {
   assert.deepEqual(rows, [true, true, true]);
 });
 
-test("says that a report whose answer does not come may have been accepted", async (t) => {
+test("says that a report without an answer may have been accepted", async (t) => {
   const { stage, page } = await watch(t, "calm");
   await page.locator("#reports .compose:enabled").click();
   await page.locator("#compose .types").getByRole("button", { name: "Drill", exact: true }).click();

@@ -1,9 +1,9 @@
-// When a page draws itself: events may come four times a second, which is more than a user reads.
+// When a page is drawn: events may come four times per second, faster than a user reads.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { text, watch } from "./watch.js";
 
-/** Nothing is heard but what the test tells: `tell(type, data)`. */
+/** Replaces the event stream: the test sends events with `tell(type, data)`. */
 function hearTheTest() {
   globalThis.EventSource = class extends EventTarget {
     readyState = 1;
@@ -16,7 +16,7 @@ function hearTheTest() {
   };
 }
 
-test("draws itself each second, and at once if a report or an alarm changed", async (t) => {
+test("is drawn each second, and at once if a report or an alarm changed", async (t) => {
   const prepare = async (page) => {
     await page.clock.install();
     await page.addInitScript(hearTheTest);
@@ -27,7 +27,7 @@ test("draws itself each second, and at once if a report or an alarm changed", as
   await page.clock.pauseAt(await page.evaluate(() => Date.now() + 1000));
   const before = await score();
   for (const next of [711, 712]) await tell({ run: { score: next } });
-  assert.equal(await score(), before, "not with each event");
+  assert.equal(await score(), before, "the page is not drawn with each event");
   await page.clock.runFor(1000);
   assert.equal(await score(), "712");
 

@@ -8,7 +8,7 @@ let browser;
 before(async () => (browser = await launch()));
 after(() => browser?.close());
 
-/** A page at `path`, with no session, for the length of one test. */
+/** A page at `path` without a session, for one test. */
 async function come(t, path = "", more = [], options) {
   const stage = await serve("calm", 0, ...more);
   t.after(() => stage.end());
@@ -25,17 +25,17 @@ async function logIn(page, password) {
   await page.keyboard.press("Enter");
 }
 
-test("asks whoever is not logged in for the password, and goes where he wanted to", async (t) => {
+test("asks an unauthenticated user for the password, and then goes where he wanted to", async (t) => {
   const { page } = await come(t, "index.html?x=1#reports");
   await page.waitForURL(/login\.html/);
   await logIn(page, "correct horse");
   await live(page);
-  // #reports was a way on the page: it has led there, and may lead there again.
+  // #reports was a part of the page, and the login returns to it.
   assert.match(page.url(), /\/index\.html\?x=1$/);
   await isLoggedInAs(page, "operator");
 });
 
-test("says what is wrong with a password, and lets it be typed again", async (t) => {
+test("says what is wrong with a password, and lets the user type again", async (t) => {
   const { page } = await come(t, "login.html");
   await logIn(page, "wrong horse");
   await page.getByRole("alert").getByText("that is not the password").waitFor();
@@ -62,7 +62,7 @@ test("sets the first password with the code of the box", async (t) => {
   await isLoggedInAs(page, "operator");
 });
 
-test("offers a new password without the code while set-up is open, beside the login", async (t) => {
+test("offers a new password without the code while set-up is open", async (t) => {
   const { page } = await come(t, "", ["set-up-open"]);
   const first = page.locator("#first");
   await first.waitFor();
@@ -75,7 +75,7 @@ test("offers a new password without the code while set-up is open, beside the lo
   await isLoggedInAs(page, "operator");
 });
 
-test("logs out, for good", async (t) => {
+test("logs out for good", async (t) => {
   const { page, stage } = await come(t);
   await logIn(page, "correct horse");
   await live(page);
@@ -90,10 +90,10 @@ test("logs out, for good", async (t) => {
   assert.equal(old.status, 401);
 });
 
-test("goes nowhere but to a page of this box", async (t) => {
+test("goes only to pages of this box", async (t) => {
   const { page, stage } = await come(t, "icon.svg");
   for (const next of ["//evil.example/", "https://evil.example/", "javascript:alert(1)", "/.//evil.example/", "\\\\evil.example", "http://["]) {
-    await page.goto(`${stage.url}icon.svg`); // a page that goes nowhere by itself
+    await page.goto(`${stage.url}icon.svg`);  // a page that does not redirect
     await page.context().clearCookies();
     await page.goto(`${stage.url}login.html?next=${encodeURIComponent(next)}`);
     await logIn(page, "correct horse");
@@ -102,7 +102,7 @@ test("goes nowhere but to a page of this box", async (t) => {
   }
 });
 
-test("has nothing that axe finds wrong at the door, in the dark and by day", async (t) => {
+test("has no axe fault, in the dark and the light theme", async (t) => {
   for (const more of [[], ["first-start"], ["set-up-open"]]) {
     const { page } = await come(t, "login.html", more, { bypassCSP: true });
     await page.waitForSelector("form:not([hidden])");

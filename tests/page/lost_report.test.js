@@ -1,4 +1,4 @@
-// A report that damage took from the ledger has no place: the list says so, the map does not draw it at the origin.
+// A report whose place was lost by damage of the ledger: the list says so, and the map does not draw it at the origin.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { retell } from "./retold.js";
@@ -25,7 +25,7 @@ async function withReport(t, position) {
 
 const names = (page) => page.evaluate(() => [...globalThis.written].map((name) => name.trim()));
 
-test("says that it is lost, and draws it nowhere", async (t) => {
+test("says that the place is lost, and draws no sign", async (t) => {
   const page = await withReport(t, null);
   assert.match(await text(page, '#reports [data-key="8"] .where'), /^#8 · lost from the ledger · /);
   assert.deepEqual(await page.locator('#reports [data-key="8"] button:visible').allTextContents(), ["Details of report 8", "Settle"]);
@@ -43,7 +43,7 @@ test("names the robot that found it", async (t) => {
   assert.match(await text(page, '#reports [data-key="8"] .where'), /^#8 · .* m · spot1 · /);
 });
 
-test("draws one that is in truth at the origin", async (t) => {
+test("draws a report that is really at the origin", async (t) => {
   const page = await withReport(t, { x: 0, y: 0, z: 0 });
   await page.waitForFunction(() => [...globalThis.written].some((name) => name.startsWith("#8")));
 });

@@ -1,9 +1,9 @@
-// A box with more reports than an event tells.
+// A box with more reports than an event has.
 
 import { retell } from "./retold.js";
 
 export const COUNT = 450;
-/** The page of a box that has so many reports, of which an event tells the newest 200. */
+/** The page of a box that has that many reports, of which an event has the newest 200. */
 export async function withMany(page) {
   const one = { type: "Rope", sender: "ugv1", received: 1e9, changed: 1e9, state: "answered", status: 201, report_status: "scored", score_change: 1, note: "", asking: false, reconciled: false, same_as: 0 };
   await retell(page, (one, count) => (view) => {

@@ -8,7 +8,7 @@ import { hears, settled, toTab, watch } from "./watch.js";
 
 const asked = (page, part) => page.requests.filter((url) => url.includes(part)).length;
 const tiles = (page) => asked(page, ".png");
-/** Whether more pixels than the rims of letters have about this colour. */
+/** Whether more pixels have about this colour than the rims of letters have. */
 const shows = (page, [red, green, blue, most]) =>
   page.$eval(canvas, (node, [red, green, blue, most]) => {
     let count = 0;
@@ -28,15 +28,15 @@ async function hide(page, ...names) {
 const appears = (page, colour, what) => until(() => shows(page, colour), what);
 const goes = (page, colour, what) => until(async () => !(await shows(page, colour)), `${what} to go`);
 
-/** The slider, which is there once a map is. */
+/** The time slider, which exists once there is a map. */
 async function sliderOf(page) {
   await page.waitForSelector("#map input[type=range]:enabled");
   return page.getByRole("slider");
 }
 
-test("shows the maps, the robots on them and the reports, each by its box", async (t) => {
+test("shows the maps, the robots on them and the reports, each by its own checkbox", async (t) => {
   const { page } = await watch(t, "calm", { colorScheme: "dark" });
-  await hide(page, "Tracks"); // of the robots' colours
+  await hide(page, "Tracks");  // they have the robots' colours
   for (const [name, colour] of [["Grids", WALL], ["Robots", ROBOT], ["Reports", SCORED], ["Markers", MARKER], ["merged", WALL]]) {
     await appears(page, colour, name);
     await box(page, name).uncheck();
@@ -49,10 +49,10 @@ test("shows the maps, the robots on them and the reports, each by its box", asyn
   await box(page, "Clouds").uncheck();
   await changed(page, before, "the clouds to go");
   assert.match(await page.textContent("#map .legend"), /Height\s+0\.0 m\s+\d\.0 m/);
-  assert.deepEqual(page.complaints.filter((text) => !text.includes("getImageData")), []); // this test's own reading
+  assert.deepEqual(page.complaints.filter((text) => !text.includes("getImageData")), []);  // from this test's own reading
 });
 
-test("shows the robots where they were, and the tracks and markers as far as they had come", async (t) => {
+test("shows robots, tracks and markers as they were at a time", async (t) => {
   const { page } = await watch(t, "calm", { colorScheme: "dark" });
   const slider = await sliderOf(page);
   await hide(page, "Clouds", "Reports", "Tracks");
@@ -72,15 +72,15 @@ test("shows the robots where they were, and the tracks and markers as far as the
   await changed(page, begun, "the tracks as far as they have come now");
 });
 
-test("is moved by hand, wheel, keys and buttons, and fits again", async (t) => {
+test("moves by hand, wheel, keys and buttons, and fits again", async (t) => {
   const { page } = await watch(t, "empty");
   await settled(page);
   const moves = {
     wheel: async () => {
       const before = await picture(page);
-      await page.locator(canvas).hover(); // once it stands still
+      await page.locator(canvas).hover();  // once the page is still
       await until(async () => {
-        await page.mouse.wheel(0, -240); // again, as a hand does: a busy browser may lose one
+        await page.mouse.wheel(0, -240);  // again, as a user does, because a busy browser may lose one
         return (await picture(page)) !== before;
       }, "the wheel to be heard");
     },
@@ -97,7 +97,7 @@ test("is moved by hand, wheel, keys and buttons, and fits again", async (t) => {
   }
 });
 
-test("pans by dragging and by the arrow keys, and comes back by All", async (t) => {
+test("pans by dragging and by the arrow keys, and All shows the whole map again", async (t) => {
   const { page } = await watch(t, "reports");
   await settled(page);
   await hide(page, "Robots", "Tracks"); // they move by themselves
@@ -125,9 +125,9 @@ test("looks after a move as if it were drawn again", async (t) => {
   await page.mouse.move(at.x + 200, at.y + 200);
   await page.waitForSelector("[data-moving]", { state: "detached" });
   await page.mouse.down();
-  await page.mouse.move(at.x + 251.4, at.y + 227.3, { steps: 5 }); // parts of pixels, as a pen's
+  await page.mouse.move(at.x + 251.4, at.y + 227.3, { steps: 5 });  // fractions of pixels, as a pen's
   await page.mouse.up();
-  await hears(page, 1); // it has come to rest meanwhile
+  await hears(page, 1);  // the map has come to rest meanwhile
   const moved = await changed(page, whole, "the move");
   await page.emulateMedia({ colorScheme: "light" });
   await changed(page, moved, "the light map");
@@ -135,7 +135,7 @@ test("looks after a move as if it were drawn again", async (t) => {
   await becomes(page, moved, "the same, drawn again", 100);
 });
 
-test("shows the map as it was, by the slider, and now again", async (t) => {
+test("shows an earlier map by the slider, and the current one again", async (t) => {
   const { page } = await watch(t, "calm");
   const slider = await sliderOf(page);
   await hide(page, "Robots", "Tracks", "Reports");
@@ -152,7 +152,7 @@ test("shows the map as it was, by the slider, and now again", async (t) => {
   await becomes(page, whole);
 });
 
-test("fetches a tile when it is seen and its version changed, not over and over", async (t) => {
+test("loads a tile only if it is visible and its version changed", async (t) => {
   const { page } = await watch(t, "calm");
   await settled(page);
   const once = tiles(page), maps = asked(page, "/adit/map?");
@@ -162,7 +162,7 @@ test("fetches a tile when it is seen and its version changed, not over and over"
   assert.equal(asked(page, "/adit/map?"), maps);
 });
 
-test("is drawn again only when something on it changed", async (t) => {
+test("is drawn again only if something on it changed", async (t) => {
   const prepare = (page) => page.addInitScript(() => {
     globalThis.drawn = 0;
     const clear = CanvasRenderingContext2D.prototype.clearRect;
@@ -173,13 +173,13 @@ test("is drawn again only when something on it changed", async (t) => {
   });
   const { page } = await watch(t, "empty", { prepare });
   await settled(page);
-  await hears(page, 1); // the first news are drawn
+  await hears(page, 1);  // the first events are drawn
   const before = await page.evaluate(() => globalThis.drawn);
   await hears(page, 2);
   assert.equal(await page.evaluate(() => globalThis.drawn), before);
 });
 
-test("shows the map of a box that was restarted", async (t) => {
+test("shows the map of a restarted box", async (t) => {
   const { stage, page } = await watch(t, "calm", { colorScheme: "dark" });
   await settled(page);
   const once = tiles(page);
@@ -193,7 +193,7 @@ test("shows the map of a box that was restarted", async (t) => {
   assert.ok(await shows(page, WALL));
 });
 
-test("takes two fingers", async (t) => {
+test("zooms with two fingers", async (t) => {
   const { page } = await watch(t, "calm", { hasTouch: true, viewport: { width: 390, height: 844 } });
   await toTab(page, "Map");
   await settled(page);
@@ -213,7 +213,7 @@ test("takes two fingers", async (t) => {
   await changed(page, before, "the fingers' move");
 });
 
-test("gets the picture of the map later where it cannot be had at first", async (t) => {
+test("loads the map's picture later if it is unavailable at first", async (t) => {
   let fails = true;
   const prepare = (page) => page.route("**/adit/map?*", (route) => (fails ? route.fulfill({ status: 503, json: "busy" }) : route.continue()));
   const { page } = await watch(t, "calm", { prepare });

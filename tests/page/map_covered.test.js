@@ -1,22 +1,22 @@
-// Names on the map, in a browser: none below what stands over it, and none where a phone has no room.
+// Names on the map, in a browser: no name under an overlay, and no names on a phone's small map.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { until } from "./box.js";
 import { retell } from "./retold.js";
 import { hears, settled, toTab, watch } from "./watch.js";
 
-/** Reports all over the map; each name that is written is in `names()` with its box, pixels of the map. */
+/** Reports all over the map. `names()` has each written name with its box in pixels of the map. */
 async function crowded(page) {
   await page.addInitScript(() => {
     globalThis.written = [];
     const { fillText, resetTransform } = CanvasRenderingContext2D.prototype, rim = (side) => (side - side / 1.4) / 2;
-    CanvasRenderingContext2D.prototype.resetTransform = function () { // it is about to be drawn again
+    CanvasRenderingContext2D.prototype.resetTransform = function () {  // begins a new drawing
       globalThis.written = globalThis.written.filter(({ canvas }) => canvas !== this.canvas);
       return resetTransform.call(this);
     };
     CanvasRenderingContext2D.prototype.fillText = function (text, left, middle) {
       const { canvas } = this, size = parseFloat(this.font.match(/([\d.]+)px/)[1]);
-      if (!canvas.isConnected) { // a plate: larger than what is seen by a fifth at each side, 200 pixels at most
+      if (!canvas.isConnected) {  // an offscreen layer: larger than the visible map by a fifth on each side, at most 200 pixels
         const off = [canvas.width, canvas.height].map((side) => Math.ceil(Math.min(200, rim(side))));
         const from = left - off[0], at = middle - off[1];
         globalThis.written.push({ canvas, text, box: [from, at - size / 2, from + this.measureText(text).width, at + size / 2] });
@@ -32,7 +32,7 @@ async function crowded(page) {
   });
 }
 const names = (page) => page.evaluate(() => globalThis.written.filter(({ text }) => text.startsWith("#")).map(({ text, box }) => ({ text, box })));
-/** Until the reports are no groups. */
+/** Zooms in until the reports are not grouped. */
 async function zoomToNames(page) {
   await until(async () => {
     await page.getByRole("button", { name: "Zoom in" }).click();
@@ -47,7 +47,7 @@ const covers = (page) => page.$$eval("#map :is(.zoom, .follow, .legend)", (nodes
 });
 const overlap = (a, b) => a[0] < b[2] - 1 && a[2] > b[0] + 1 && a[1] < b[3] - 1 && a[3] > b[1] + 1;
 
-test("writes no name below the map's tools and its legend", async (t) => {
+test("writes no name under the map's tools and its legend", async (t) => {
   const { page } = await watch(t, "calm", { prepare: crowded });
   for (const [width, height] of [[1280, 720], [1920, 1080], [390, 844]]) {
     await page.setViewportSize({ width, height });

@@ -1,4 +1,4 @@
-// The map looked at closely: what was forwarded is drawn with its own cells, by the real programs.
+// Zoomed in, the map shows the cells that were forwarded, with the real programs.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { drawLayers } from "../../firmware/doors/site/files/map_layers.js";
@@ -7,10 +7,10 @@ import { box, canvas } from "./pictures.js";
 import { countAwaited } from "./stage.js";
 import { settled, visitor } from "./watch.js";
 
-const SIDE = 400, CELL = 0.05; // cells, metres
+const SIDE = 400, CELL = 0.05;  // cells, metres
 const BY_TOKEN = { colorScheme: "dark", extraHTTPHeaders: { Authorization: `Bearer ${TOKENS.team}` } };
 
-/** A square of 20 m around the origin, free but for a wall one cell thick along its middle, `up` cells above it. */
+/** A square of 20 m around the origin, free except for a wall one cell thick along its middle, `up` cells above it. */
 function grid(up) {
   const cells = Buffer.alloc(SIDE * SIDE);
   cells.fill(100, (SIDE / 2 + up) * SIDE, (SIDE / 2 + up + 1) * SIDE);
@@ -19,7 +19,7 @@ function grid(up) {
   return { type: "OccupancyGrid", name: "ugv1", msg: { header: { stamp: Date.now() / 1000, frame_id: "darpa" }, info, data: cells.toString("base64") } };
 }
 
-/** How many pixels above the map's middle the wall is, and how thick: {up, thick}; null where there is none. */
+/** The distance of the wall above the map's middle and its thickness, in pixels: {up, thick}; null without a wall. */
 const wall = (page) =>
   page.$eval(canvas, (node) => {
     const column = Math.round(node.width / 3), { data } = node.getContext("2d").getImageData(column, 0, 1, node.height);
@@ -35,7 +35,7 @@ async function post(at, up) {
   await until(async () => (await (await at.ask("GET", "/adit/map")).json()).version > before, "the map to be drawn");
 }
 
-test("zoomed in shows the cells that were forwarded, and follows where they change", async (t) => {
+test("zoomed in, shows the cells that were forwarded, and follows changes", async (t) => {
   const at = await boxAtWork(t);
   await post(at, 1);
   const page = await visitor(t, `${at.url}/`, BY_TOKEN, (page) => page.addInitScript(countAwaited));
@@ -51,7 +51,7 @@ test("zoomed in shows the cells that were forwarded, and follows where they chan
   await until(async () => (await wall(page)) !== null, "the wall");
   const coarse = await wall(page);
   if (finer() === 0) assert.ok(coarse.thick <= 6, `a base pixel: ${coarse.thick}`);
-  // Wheel by wheel: the scale is what the wall's own height over the middle says. Its lower edge is 5 cm above y = 0.
+  // One wheel step at a time. The scale follows from the wall's height above the middle; its lower edge is 5 cm above y = 0.
   await until(async () => {
     await near();
     await settled(page);
@@ -60,20 +60,20 @@ test("zoomed in shows the cells that were forwarded, and follows where they chan
   }, "a wall as thick as a cell, a cell above the middle");
   const { up } = await wall(page);
 
-  await post(at, 2); // within the same pixel of the base: only finer tiles show it
+  await post(at, 2);  // within the same pixel of the base map; only finer tiles show it
   await until(async () => Math.abs(((await wall(page))?.up ?? 0) - 2 * up) <= 3, "the wall where it is now");
-  assert.ok(Math.abs((await wall(page)).thick - up) <= 2, "as thick as it was");
+  assert.ok(Math.abs((await wall(page)).thick - up) <= 2, "the wall's thickness changed");
 
   const slider = page.getByRole("slider");
   await until(async () => {
-    await slider.press("Shift+ArrowLeft"); // a second
+    await slider.press("Shift+ArrowLeft");  // one second
     await settled(page);
     return ((await wall(page))?.thick ?? 0) >= 4 * up;
   }, "earlier it is as coarse as it is kept");
   assert.deepEqual(page.complaints.filter((text) => !text.includes("getImageData")), []);
 });
 
-test("asks for nothing finer where nothing would be seen of it, and for a tile again only where it changed", async (t) => {
+test("loads no finer tile that would look the same, and reloads a tile only if it changed", async (t) => {
   const at = await boxAtWork(t);
   await post(at, 1);
   const page = await visitor(t, `${at.url}/`, BY_TOKEN, (page) => page.addInitScript(countAwaited));
@@ -96,10 +96,10 @@ test("asks for nothing finer where nothing would be seen of it, and for a tile a
   assert.ok(answer.ok);
   await until(async () => (await (await at.ask("GET", "/adit/run")).json()).activities.some(({ kind, forwarded }) => kind === "grid" && forwarded >= 3), "it to be forwarded");
   await settled(page);
-  assert.equal(finer().length, count, "the same grid again changes nothing");
+  assert.equal(finer().length, count, "an unchanged grid causes no request");
 });
 
-test("asks for nothing finer than lies in what is seen where a coarse tile, which is larger, has come", () => {
+test("loads no finer tile outside the view, even if a larger coarse tile is there", () => {
   const asked = [], metres = { "-1": 12.8, 0: 64, 1: 256 };
   const tiles = { side: 256, metresPerPixel: [0.25, 1], metresOf: (level) => metres[level], image: () => null, finerImage: (layer, place) => void asked.push(place) };
   const layer = { kind: "grid", robot: "ugv1", finer: { level: -1 }, tiles: new Map([["0/0/0", { level: 0, x: 0, y: 0 }]]) };
@@ -108,7 +108,7 @@ test("asks for nothing finer than lies in what is seen where a coarse tile, whic
   assert.deepEqual(asked, ["-1/0/0", "-1/1/0"]);
 });
 
-test("gives the cells of a grid of 5 cm as they are", async (t) => {
+test("serves the cells of a 5 cm grid unchanged", async (t) => {
   const at = await boxAtWork(t);
   await post(at, 1);
   const map = await (await at.ask("GET", "/adit/map")).json();

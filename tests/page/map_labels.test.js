@@ -1,4 +1,4 @@
-// What is reckoned for the map without a browser: names that do not collide, steps of the grid in metres, layers that are copied.
+// Computations for the map, without a browser: names that do not collide, grid steps in metres, copied layers.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { groupReports } from "../../firmware/doors/site/files/map_groups.js";
@@ -11,7 +11,7 @@ import { MapView } from "../../firmware/doors/site/files/map_view.js";
 
 const SIZE = 12;
 
-/** A canvas that only notes where something was written: [left, top, right, bottom, text]. */
+/** A canvas that only records texts: [left, top, right, bottom, text]. */
 const paper = () => ({
   written: [],
   measureText: (text) => ({ width: text.length * SIZE * 0.6 }),
@@ -21,14 +21,14 @@ const paper = () => ({
   },
 });
 
-/** Numbers from 0 to 1 that are the same each time. */
+/** Pseudorandom numbers from 0 to 1, the same each time. */
 function dice(seed) {
   return () => (seed = (seed * 1103515245 + 12345) % 2147483648) / 2147483648;
 }
 
 const overlap = (a, b) => a[0] < b[2] && a[2] > b[0] && a[1] < b[3] && a[3] > b[1];
 
-test("fits an area so that the scale and a sign stand clear below it", () => {
+test("fits an area so that the scale and a sign stay free below it", () => {
   const area = { left: 0, right: 30, bottom: -10, top: 50 };
   for (const [width, height, room] of [[390, 200, 48], [1920, 1080, 48], [390, 500, 0]]) {
     const view = Object.assign(new MapView(), { width, height });
@@ -40,7 +40,7 @@ test("fits an area so that the scale and a sign stand clear below it", () => {
   }
 });
 
-test("draws the tiles of a place as one image, made again if one of them changed", (t) => {
+test("draws the tiles of a place as one image, and again if one of them changed", (t) => {
   const drawn = [], made = [];
   t.after(() => delete globalThis.document);
   globalThis.document = /** @type {any} */ ({
@@ -60,10 +60,10 @@ test("draws the tiles of a place as one image, made again if one of them changed
   draw();
   assert.deepEqual(made.slice(2), ["r1", "r2 later"]);
   draw(layers.slice(1));
-  assert.equal(drawn.at(-1), images.r2, "of a single layer, its own image");
+  assert.equal(drawn.at(-1), images.r2, "a single layer is drawn from its own image");
 });
 
-test("writes no name upon another, nor cut at the edge, nor upon what is drawn", () => {
+test("writes no name over another, over the edge or over signs", () => {
   const paint = paper(), roll = dice(7), drawn = [];
   const labels = new Labels(paint, {}, SIZE, { width: 800, height: 500, margin: [100, 100] });
   for (let i = 0; i < 12; ++i) {
@@ -81,7 +81,7 @@ test("writes no name upon another, nor cut at the edge, nor upon what is drawn",
   });
 });
 
-test("leaves a gap between two names in a row: they are two", () => {
+test("leaves a gap between two names in a row", () => {
   const paint = paper(), labels = new Labels(paint, {}, SIZE, { width: 4000, height: 500 });
   labels.write("r8", 400, 250);
   const [begin, , end] = paint.written[0];
@@ -94,7 +94,7 @@ test("leaves a gap between two names in a row: they are two", () => {
   }
 });
 
-test("gives who comes first the place at the right, the next one another, and the fifth none", () => {
+test("places the first name at the right, the next ones elsewhere, and the fifth not at all", () => {
   const paint = paper(), labels = new Labels(paint, {}, SIZE, { width: 800, height: 500 });
   const found = [..."abcde"].map((letter) => labels.write(letter.repeat(6), 400, 250));
   assert.deepEqual(found, [true, true, true, true, false]);
@@ -110,7 +110,7 @@ test("draws a line each 1, 2 or 5 metres, times a power of ten, far enough apart
   }
 });
 
-test("writes no name upon the scale and the figures at the edges", () => {
+test("writes no name over the scale and the figures at the edges", () => {
   for (const [width, height, scale] of [[374, 230, 3.3], [374, 184, 2.7], [1260, 720, 8], [2900, 1800, 31]]) {
     const view = Object.assign(new MapView(), { width, height, scale, centre: { x: 40, y: -3 } });
     const edges = { ...paper(), beginPath() {}, moveTo() {}, lineTo() {}, stroke() {} };
@@ -127,7 +127,7 @@ test("writes no name upon the scale and the figures at the edges", () => {
   }
 });
 
-test("knows what a plate with a rim covers", () => {
+test("knows the area that an offscreen layer covers", () => {
   const view = Object.assign(new MapView(), { width: 800, height: 500, scale: 4 }), plate = view.widened(200, 125);
   assert.ok(plate.covers(view) && plate.isAround(view));
   view.pan(199, -124);
@@ -138,7 +138,7 @@ test("knows what a plate with a rim covers", () => {
   assert.ok(Math.abs(left - (200 - 209)) < 1e-6 && Math.abs(top - (125 + 124)) < 1e-6);
 });
 
-test("has a pose each second where the box left out those of a straight way, and none where a robot stood or was not heard", () => {
+test("interpolates one pose per second on straight segments, and none while a robot stood or was silent", () => {
   const turned = 2 * Math.PI - 6;
   assert.deepEqual(filled([[100, 0, 0, 1, 3], [102, 2, 4, 1, -3]]), [[100, 0, 0, 1, 3], [101, 1, 2, 1, 3 + turned / 2], [102, 2, 4, 1, -3]]);
   for (const poses of [[[100, 0, 0, 0, 0]], [[100, 0, 0, 0, 0], [110, 0.05, 0, 0, 0]], [[100, 0, 0, 0, 0], [112, 9, 0, 0, 0]], [[100, 0, 0, 0, 0], [101, 1, 0, 0, 0]]]) {
@@ -159,9 +159,9 @@ test("stands for three reports or more of one place with one sign, of their wors
   assert.equal(shown(10).groups.reduce((sum, { count }) => sum + count, shown(10).singles.length), 1000);
 });
 
-test("says of a silent robot when it was last seen", () => {
+test("says when a silent robot was last heard", () => {
   const silent = new Set(["ugv1"]);
   assert.equal(lastSeen({ name: "ugv1", age: 94 }, silent), "ugv1 · last seen 1 min ago");
-  assert.equal(lastSeen({ name: "ugv1", age: null }, silent), "ugv1 · silent", "its pose is of before a start of the box");
+  assert.equal(lastSeen({ name: "ugv1", age: null }, silent), "ugv1 · silent", "the last pose is from before a start of the box");
   assert.equal(lastSeen({ name: "ugv2", age: 94 }, silent), "ugv2");
 });

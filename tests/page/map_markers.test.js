@@ -1,4 +1,4 @@
-// Every kind of marker on the map: what is to be seen at its place, and nothing beside it.
+// Every kind of marker on the map: drawn at its place, and only there.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { until } from "./box.js";
@@ -8,7 +8,7 @@ import { hears, settled, watch } from "./watch.js";
 const INK = { r: 1, g: 0.2, b: 1, a: 1 }, PINK = [255, 51, 255], BLUE = [0, 102, 255], BLUE_HEX = "#0066ffff";
 const SIDE = [[0, 0], [20, 0]], ANGLE = [[0, 0], [20, 0], [20, 20]], PAIRS = [[0, 0], [20, 0], [0, 20], [20, 20]];
 
-/** By name: the members of a marker at (0, 0), what is `inked` of its surroundings (in BLUE where `blue`), and what is `blank`. */
+/** By name: the members of a marker at (0, 0), the places around it that are `inked` (BLUE if `blue`), and those that are `blank`. */
 const KINDS = {
   "an arrow by its pose": { type: 0, heading: Math.PI / 2, scale: [20, 4], inked: [[0, 5], [0, 15]], blank: [[10, 0], [0, -5]] },
   "an arrow by two points": { type: 0, points: [[0, 0], [0, 20]], scale: [1, 4], inked: [[0, 5], [0, 17]], blank: [[10, 10], [0, -5]] },
@@ -25,7 +25,7 @@ const KINDS = {
   "a mesh": { type: 10, mesh: "drill", scale: [1, 1], inked: [[0, 0]], blank: [[10, 10]] },
   "a list of triangles": { type: 11, points: ANGLE, scale: [1, 1], inked: [[10, 0], [20, 10], [10, 10]], blank: [[15, 5]] },
 };
-const COLUMNS = 4, STEP = 34, LEFT = 0, TOP = 120; // metres
+const COLUMNS = 4, STEP = 34, LEFT = 0, TOP = 120;  // metres
 const placeOf = (i) => ({ x: LEFT + (i % COLUMNS) * STEP, y: TOP - Math.floor(i / COLUMNS) * STEP });
 
 function marker(id, { x, y }, { type, points = [], scale, heading = 0, colors = [], mesh = "", color = INK }) {
@@ -35,7 +35,7 @@ function marker(id, { x, y }, { type, points = [], scale, heading = 0, colors = 
   };
 }
 
-/** The pixels of one colour, and where the middle of them is. */
+/** The number and the centre of the pixels with one colour. */
 const find = (page, colour, near) =>
   page.$eval(canvas, (node, [colour, near]) => {
     const [left, top, size] = near ? [near[0] - 2, near[1] - 2, 5] : [0, 0, 0];
@@ -52,13 +52,13 @@ const find = (page, colour, near) =>
 
 test("draws every kind of marker at its place, in its size and its colours", async (t) => {
   const kinds = Object.entries(KINDS);
-  const signs = [[{ x: -10, y: 40 }, { r: 1, g: 0, b: 0, a: 1 }], [{ x: 130, y: 60 }, { r: 0, g: 1, b: 0, a: 1 }]]; // by which the map's scale is found
+  const signs = [[{ x: -10, y: 40 }, { r: 1, g: 0, b: 0, a: 1 }], [{ x: 130, y: 60 }, { r: 0, g: 1, b: 0, a: 1 }]];  // to find the map's scale
   const markers = kinds.map(([, kind], i) => marker(i, placeOf(i), kind))
     .concat(signs.map(([place, color], i) => marker(100 + i, place, { type: 1, scale: [5, 5], color })));
   const prepare = (page) => page.route("**/adit/markers*", (route) => route.fulfill({ json: { version: 1, whole: true, left_out: 0, markers, gone: [] } }));
   const { page } = await watch(t, "calm", { colorScheme: "dark", viewport: { width: 1920, height: 1080 }, prepare });
   await settled(page);
-  for (const key of "-+") await page.locator(canvas).press(key); // from here on it stays where it is
+  for (const key of "-+") await page.locator(canvas).press(key);  // stops automatic fitting
   for (const name of ["Grids", "Clouds", "Robots", "Tracks", "Reports"]) await box(page, name).uncheck();
   await until(async () => (await find(page, [0, 255, 0])).count, "the markers");
   await settled(page);
@@ -75,7 +75,7 @@ test("draws every kind of marker at its place, in its size and its colours", asy
   assert.deepEqual(wrong, []);
 });
 
-test("draws the markers once for a view, however often a robot moves on it", async (t) => {
+test("draws the markers once per view, however often a robot moves", async (t) => {
   const prepare = (page) => page.addInitScript(() => {
     globalThis.drawn = { maps: 0, lines: 0 };
     const { clearRect, stroke } = CanvasRenderingContext2D.prototype;
@@ -84,16 +84,16 @@ test("draws the markers once for a view, however often a robot moves on it", asy
       return clearRect.apply(this, words);
     };
     CanvasRenderingContext2D.prototype.stroke = function (...words) {
-      if (this.strokeStyle === "#ff33ff") ++globalThis.drawn.lines; // the markers' colour
+      if (this.strokeStyle === "#ff33ff") ++globalThis.drawn.lines;  // the markers' colour
       return stroke.apply(this, words);
     };
   });
   const { page } = await watch(t, "calm", { prepare });
   const drawn = () => page.evaluate(() => ({ ...globalThis.drawn }));
   await until(async () => (await drawn()).lines, "the markers");
-  await page.locator(canvas).press("+"); // from here on no robot's move changes what is seen
+  await page.locator(canvas).press("+");  // from here on a moving robot does not change the view
   await settled(page);
-  const before = await until(async () => { // once it has come to rest, it is drawn as large as it is seen
+  const before = await until(async () => {  // at rest the layer is drawn at its final size
     const { lines } = await drawn();
     await hears(page, 2);
     const now = await drawn();

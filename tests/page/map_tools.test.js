@@ -1,4 +1,4 @@
-// What stands on the map: whom it follows, what is measured on it, and its colours.
+// The map's tools: following a robot, measuring, colours.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { robotRgb } from "../../firmware/doors/site/files/robot_colour.js";
@@ -10,7 +10,7 @@ const SCOUT = robotRgb(1, "dark");
 const measure = (page) => page.getByRole("button", { name: "Measure" });
 const told = (page) => page.textContent("#map .measured");
 
-/** The middle of what has this colour, in the page's pixels from the canvas's corner; null: nothing has. */
+/** The centre of the pixels with this colour, in page pixels from the canvas's corner; null if there are none. */
 const middleOf = (page, colour) => page.$eval(canvas, (node, colour) => {
   const { data, width } = node.getContext("2d").getImageData(0, 0, node.width, node.height);
   let count = 0, x = 0, y = 0;
@@ -35,7 +35,7 @@ async function isInTheMiddle(page) {
   }, "Scout in the middle");
 }
 
-test("follows a robot that is chosen, until the map is moved by hand", async (t) => {
+test("follows a chosen robot until the user moves the map", async (t) => {
   const { page } = await watch(t, "calm", { colorScheme: "dark" });
   await only(page, "Robots");
   const choice = page.getByLabel("Follow");
@@ -52,7 +52,7 @@ test("follows a robot that is chosen, until the map is moved by hand", async (t)
   assert.equal(await choice.inputValue(), "");
 });
 
-test("follows a robot that is tapped, and nobody after a tap beside it", async (t) => {
+test("follows a tapped robot, and stops after a tap beside it", async (t) => {
   const { page } = await watch(t, "calm", { colorScheme: "dark", hasTouch: true });
   await only(page, "Robots");
   const at = await until(() => middleOf(page, SCOUT), "Scout");
@@ -64,13 +64,13 @@ test("follows a robot that is tapped, and nobody after a tap beside it", async (
   assert.equal(await page.getByLabel("Follow").inputValue(), "");
 });
 
-test("measures between two points, by finger and by key, and says how far", async (t) => {
+test("measures between two points, by finger and by key", async (t) => {
   const { page } = await watch(t, "empty", { hasTouch: true });
   await settled(page);
   const tap = (x, y) => page.locator(canvas).tap({ position: { x, y } });
   const metres = async () => Number(/^([\d.]+) m \(x −?[\d.]+, y −?[\d.]+\)$/.exec(await told(page))[1]);
   await tap(300, 200);
-  assert.equal(await told(page), "", "only once it is wanted");
+  assert.equal(await told(page), "", "nothing is measured yet");
   await measure(page).tap();
   assert.equal(await measure(page).getAttribute("aria-pressed"), "true");
   assert.equal(await told(page), "Tap the first point.");
@@ -92,7 +92,7 @@ test("measures between two points, by finger and by key, and says how far", asyn
   assert.equal(await measure(page).getAttribute("aria-pressed"), "false");
 });
 
-test("sets a place while a report is composed, whatever was measured before", async (t) => {
+test("picks a place while a report is composed, whatever was measured before", async (t) => {
   const { page } = await watch(t, "reports");
   await measure(page).click();
   await page.getByRole("button", { name: "New report" }).click();
@@ -104,7 +104,7 @@ test("sets a place while a report is composed, whatever was measured before", as
   assert.equal(await page.getByLabel("Follow").inputValue(), "");
 });
 
-test("has tools that a gloved finger hits", async (t) => {
+test("has tools large enough for a gloved finger", async (t) => {
   for (const viewport of [{ width: 390, height: 844 }, { width: 1280, height: 720 }]) {
     const { page } = await watch(t, "calm", { viewport });
     await toTab(page, "Map");
@@ -126,8 +126,8 @@ test("colours clouds by height or by robot, and at night all in red", async (t) 
   const own = robotRgb(3, "dark").map((part) => part.toString(16).padStart(2, "0")).join("");
   await until(() => clouds().some((url) => url.endsWith(`to=${own}`)), "clouds in the robot's colour");
   assert.ok(await page.locator("#map .legend").isHidden());
-  await page.locator(".strip .theme").click(); // light
-  await page.locator(".strip .theme").click(); // red
+  await page.locator(".strip .theme").click();  // light theme
+  await page.locator(".strip .theme").click();  // night theme
   await page.waitForSelector("[data-theme=red]");
   await settled(page);
   const others = () => page.$eval(canvas, (node) => {
@@ -142,9 +142,9 @@ test("colours clouds by height or by robot, and at night all in red", async (t) 
   await until(async () => (await others()) === "none", "a map without any light but red");
 });
 
-test("is copied while it is dragged: what is on it is drawn now and then, and when it has come to rest", async (t) => {
+test("is copied while it is dragged; layers are drawn now and then, and at rest", async (t) => {
   const prepare = (page) => page.addInitScript(() => {
-    globalThis.drawn = 0; // how often all reports' pictures were
+    globalThis.drawn = 0;  // how often the reports' layer was drawn
     let isDrawing = false;
     const real = CanvasRenderingContext2D.prototype.roundRect;
     CanvasRenderingContext2D.prototype.roundRect = function (...words) {
@@ -161,7 +161,7 @@ test("is copied while it is dragged: what is on it is drawn now and then, and wh
   await only(page, "Reports");
   await page.locator(canvas).press("f");
   const drawn = () => page.evaluate(() => globalThis.drawn);
-  await hears(page, 2); // it has come to rest meanwhile
+  await hears(page, 2);  // the map has come to rest meanwhile
   const { before, during, frames } = await page.$eval(canvas, async (node) => {
     const { x, y } = node.getBoundingClientRect(), frame = () => new Promise(requestAnimationFrame);
     node.setPointerCapture = () => {};
@@ -184,7 +184,7 @@ test("is copied while it is dragged: what is on it is drawn now and then, and wh
   await until(async () => (await drawn()) > during, "the reports to be drawn where they are now");
 });
 
-test("has the layers behind one tool, with sets of them, and none is cut", async (t) => {
+test("has the layers in one tool, with sets of layers, all visible", async (t) => {
   for (const viewport of [{ width: 1280, height: 720 }, { width: 390, height: 844 }]) {
     const { page } = await watch(t, "calm", { viewport, bypassCSP: true });
     await toTab(page, "Map");

@@ -1,4 +1,4 @@
-// A box with two interfaces, adit-network at work, and a station on the team's network, each in a network namespace (../alone).
+// A box with two interfaces and adit-network, and a station on the team's network, each in a network namespace (../alone).
 import { execFileSync, spawn, spawnSync } from "node:child_process";
 import { once } from "node:events";
 import { chmodSync, existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -16,7 +16,7 @@ const ASKED = ["wanted.json", "word.json", "probe.json", "endpoints.json", "forg
 
 const ip = (...words) => execFileSync("ip", words, { stdio: "pipe" });
 
-/** team0 of the box to the station, which has an address in each subnet that is tried; darpa0 to nobody. */
+/** Connects team0 of the box with the station, which has an address in each tested subnet, and darpa0 with an unused end. */
 function connect() {
   for (const name of [BOX, STATION]) {
     ip("netns", "add", name);
@@ -24,7 +24,7 @@ function connect() {
   }
   ip("-n", BOX, "link", "add", "team0", "type", "veth", "peer", "name", "lan0", "netns", STATION);
   ip("-n", BOX, "link", "add", "darpa0", "type", "veth", "peer", "name", "wan0", "netns", STATION);
-  // Chromium drops what it has asked for when an address of its own comes, as one of IPv6 would by itself: again.test.js has that.
+  // Chromium cancels its requests when the machine gets an address, as IPv6 would add one by itself. again.test.js covers that.
   for (const link of ["lan0", "wan0"]) ip("-n", STATION, "link", "set", link, "addrgenmode", "none");
   for (const [name, link] of [[BOX, "team0"], [BOX, "darpa0"], [STATION, "lan0"], [STATION, "wan0"]]) ip("-n", name, "link", "set", link, "up");
   for (const address of ["192.168.7.2/24", "192.168.8.2/24"]) ip("-n", STATION, "address", "add", address, "dev", "lan0");
@@ -47,7 +47,7 @@ export class NetworkedBox {
     return program;
   }
 
-  /** adit-network as its units run it: whenever something is asked for, one at a time. */
+  /** Runs adit-network as its units do: once per request, one at a time. */
   async #serveNetwork() {
     const networkctl = join(this.folder, "networkctl");
     writeFileSync(networkctl, `#!/bin/sh\nexec ${STAND_IN} ${this.folder}/files "$@"\n`);
@@ -96,16 +96,16 @@ export class NetworkedBox {
   }
 
   #isAsked = () => ASKED.some((name) => existsSync(join(this.state, name)));
-  /** Nothing is asked for, and adit-network, which takes a change back in time, has ended. */
+  /** Whether no request is pending and adit-network, which reverts unconfirmed changes, has ended. */
   isAtRest = () => !this.#isAsked() && !this.#isChanging;
 
   code = () => readFileSync(join(this.state, "first-start.code"), "utf8").trim();
-  /** The address that team0 has: "192.168.7.11/24". */
+  /** The address of team0: "192.168.7.11/24". */
   address() {
     const [link] = JSON.parse(ip("-n", BOX, "-4", "-j", "address", "show", "dev", "team0"));
     return (link?.addr_info ?? []).map(({ local, prefixlen }) => `${local}/${prefixlen}`).join(" ");
   }
-  /** Puts the station's end of a cable in, or pulls it. */
+  /** Plugs the station's end of a cable in, or out. */
   plug = (link, isIn) => ip("-n", STATION, "link", "set", link, isIn ? "up" : "down");
   visit = (url) => visit(this.browser, url);
 

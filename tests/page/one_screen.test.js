@@ -1,5 +1,5 @@
-// In every scene, the run page and the display fit each screen, and axe finds no fault. The scenes `trouble` and `reports`, which have each
-// colour, are shown in all themes.
+// In every scene, the run page and the display fit each screen, without axe faults. The scenes `trouble` and `reports` contain every
+// colour and are shown in all themes.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { axeFindsNothing, watch } from "./watch.js";
@@ -8,7 +8,7 @@ const SIZES = [[390, 844], [768, 1024], [1280, 720], [1920, 1080], [3840, 2160]]
 
 for (const path of ["", "display"]) {
   for (const scene of ["empty", "calm", "trouble", "reports", "hostile"]) {
-    test(`/${path} is one screen from a phone to 4K, and axe finds nothing wrong with it: ${scene}`, async (t) => {
+    test(`/${path} is one screen from a phone to 4K, without axe faults: ${scene}`, async (t) => {
       const { page } = await watch(t, scene, { path, bypassCSP: true });
       for (const theme of ["trouble", "reports"].includes(scene) ? ["dark", "light", "red"] : ["dark"]) {
         await page.evaluate((theme) => (document.documentElement.dataset.theme = theme), theme);

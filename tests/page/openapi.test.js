@@ -1,12 +1,11 @@
-// The description of the API, as a real aditd serves it, held against that aditd: every path and method that it names, and
-// every route that the README names.
+// Compares the API description that a real aditd serves with that aditd: every path and method in it, and every route in the README.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import Ajv from "ajv/dist/2020.js";
 import { OPERATOR, box, play, until } from "./box.js";
 
-/** What the box says of itself. */
+/** The description that the box serves. */
 async function described() {
   const ends = [];
   const { ask } = await box({ after: (end) => ends.push(end) });
@@ -26,7 +25,7 @@ const ajv = new Ajv({ strict: true, allErrors: true, validateFormats: false, str
 const refersByName = (schema) => JSON.parse(JSON.stringify(schema).replaceAll("#/components/schemas/", ""));
 for (const [name, schema] of Object.entries(api.components.schemas)) ajv.addSchema({ $id: name, ...refersByName(schema) });
 
-/** What is wrong with a value by a schema of the description. */
+/** The violations of a schema of the description by a value. */
 function faults(schema, value) {
   const check = ajv.compile(refersByName(schema));
   return check(value) ? [] : check.errors.map(({ instancePath, message, params }) => `${instancePath} ${message} ${JSON.stringify(params)}`);
@@ -34,7 +33,7 @@ function faults(schema, value) {
 
 const resolved = (response) => (response.$ref ? api.components.responses[response.$ref.split("/").at(-1)] : response);
 
-/** Fails unless the answer is one that the description knows of this operation. */
+/** Fails unless the description has this answer for the operation. */
 async function isAsDescribed({ path, method, operation }, answer) {
   const what = `${method} ${path} ${answer.status}`;
   const response = operation.responses[answer.status];
@@ -55,7 +54,7 @@ async function firstEvent(answer) {
   }
 }
 
-/** A path with the examples of the description in it, or with what `known` has in their place. */
+/** A path with the description's examples, or with the values in `known`. */
 function pathOf({ path, operation }, known = {}) {
   const value = (each) => String(known[each.name] ?? each.example);
   const filled = named(operation, "path").reduce((sum, each) => sum.replace(`{${each.name}}`, value(each)), path);
@@ -63,13 +62,13 @@ function pathOf({ path, operation }, known = {}) {
   return query.size ? `${filled}?${query}` : filled;
 }
 
-/** The example of the description; of what is no JSON, any bytes. */
+/** The description's example of a body; any bytes if the body is not JSON. */
 const bodyOf = ({ operation }) => {
   const content = operation.requestBody?.content;
   return content && (content["application/json"]?.example ?? Buffer.from("no bundle"));
 };
 
-test("describes every route of the README, and no route that is not there", () => {
+test("describes exactly the routes of the README", () => {
   const rows = [...readme.matchAll(/^\| (GET|POST) `([^`]+)` \|/gm)].map(([, method, path]) => ({ method, path }));
   assert.ok(rows.length > 20);
   const pattern = (path) => new RegExp(`^${path.replaceAll(".", "\\.").replaceAll(/\{\w+\}/g, "[^/]+")}$`);
@@ -78,14 +77,14 @@ test("describes every route of the README, and no route that is not there", () =
   assert.deepEqual(operations.filter((each) => !rows.some((row) => fits(row, each))).map(({ method, path }) => `${method} ${path}`), []);
 });
 
-test("describes what becomes of a body that is too long, or no good, wherever one is taken", () => {
+test("describes the answers to a body that is too long or invalid, wherever a body is read", () => {
   const taking = operations.filter(({ operation }) => operation.requestBody);
   assert.ok(taking.length > 20);
   const without = (status) => taking.filter(({ operation }) => !operation.responses[status]).map(({ path }) => path);
   assert.deepEqual([without(413), without(422)], [[], []]);
 });
 
-test("describes what whoever is not let in is answered", () => {
+test("describes the answers to unauthenticated requests", () => {
   const guarded = operations.filter(({ operation }) => operation["x-adit-role"]);
   assert.ok(guarded.length > 20);
   assert.deepEqual(guarded.filter(({ operation }) => !operation.responses[401] || !operation.responses[403]).map(({ path }) => path), []);
@@ -104,8 +103,8 @@ test("every example fits its schema", () => {
   }
 });
 
-test("every path and method does as it is described to an operator", async (t) => {
-  const { ask, logIn } = await box(t, { reports_hz: 0.001 }); // all but the first wait
+test("every path and method answers an operator as described", async (t) => {
+  const { ask, logIn } = await box(t, { reports_hz: 0.001 });  // all reports except the first stay queued
   await play(ask);
   const map = await until(async () => (await (await ask("GET", "/adit/map")).json()).layers[0], "a picture of a map");
   const [tile] = map.tiles;
@@ -137,16 +136,16 @@ test("every path and method does as it is described to an operator", async (t) =
   };
   const current = async () => (await ask("GET", "/adit/settings")).json();
   const bodies = { "POST /adit/settings": async () => (({ settings, tag }) => ({ settings, base: tag }))(await current()) };
-  const never = ["POST /adit/alarms/acknowledge", // nothing is to be acknowledged
+  const never = ["POST /adit/alarms/acknowledge",  // no alarm can be acknowledged
     "POST /adit/reports/{number}/settle", // no report is in doubt: 409
-    "POST /adit/rejected/{number}/send", "POST /adit/rejected/{number}/discard", // and nothing is rejected
-    "POST /adit/network", "POST /adit/network/confirm", "POST /adit/network/revert", // no change can be made here
-    "POST /adit/update", "POST /adit/update/stick", "POST /adit/update/restart", "POST /adit/update/back", "POST /adit/update/stay", // nor an update
-    "POST /adit/spare/resume", "GET /adit/spare/export", "POST /adit/spare/to-stick", // it does not rest
-    "POST /adit/spare/from-stick", // nor is a stick in it
-    "POST /adit/spare/take", "POST /adit/spare/open", "POST /adit/spare/take-over", // and no other box does
+    "POST /adit/rejected/{number}/send", "POST /adit/rejected/{number}/discard",  // no message is rejected
+    "POST /adit/network", "POST /adit/network/confirm", "POST /adit/network/revert",  // networks cannot be changed here
+    "POST /adit/update", "POST /adit/update/stick", "POST /adit/update/restart", "POST /adit/update/back", "POST /adit/update/stay",  // the box cannot be updated here
+    "POST /adit/spare/resume", "GET /adit/spare/export", "POST /adit/spare/to-stick",  // the box is not on standby
+    "POST /adit/spare/from-stick",  // no stick is plugged in
+    "POST /adit/spare/take", "POST /adit/spare/open", "POST /adit/spare/take-over",  // and no other box
     "POST /adit/ledger/new", // the ledger can be read
-    "POST /adit/clock"]; // and nobody sets the clock here
+    "POST /adit/clock"];  // clocks are not set here
   for (const each of operations) {
     const name = `${each.method} ${each.path}`;
     if (name === "POST /adit/spare/standby") continue; // on standby the box rejects the next requests: box/spare.test.js

@@ -4,14 +4,14 @@ import { serve } from "./stage.js";
 import { retell } from "./retold.js";
 import { hears, said, settled, showsTheClock, text, toTab, visitor, watch } from "./watch.js";
 
-test("shows how the run stands, and that every map arrives", async (t) => {
+test("shows the state of the run, and that every map arrives", async (t) => {
   const began = Date.now(), { page } = await watch(t, "calm");
   await showsTheClock(page, began);
   assert.equal(await text(page, "#score"), "7");
   assert.equal(await text(page, "#remaining"), "18");
   assert.match(await text(page, "#arriving"), /Every map arrives.*3 robots and the merged map, oldest 7 s/);
   assert.equal(await page.locator("#robots li").filter({ hasText: "ANYmal2" }).count(), 1);
-  await page.locator("#robots li[data-level=good]").filter({ hasText: /ANYmal2 grid 7 s · cloud 1 s\s*7 s/ }).waitFor(); // its age grows until the next event
+  await page.locator("#robots li[data-level=good]").filter({ hasText: /ANYmal2 grid 7 s · cloud 1 s\s*7 s/ }).waitFor();  // the age grows until the next event
   await page.getByTitle(/^ANYmal1: up to date\n(.*\n)*cloud: .*96 merged, treated as parts, rounded to 8mm$/m).waitFor();
   assert.match(await text(page, "#shared"), /Merged\s+3 s.*Markers\s+21 s/);
   assert.match(await text(page, "#reports .rows li:first-child"), /Survivor.*85\.8, −4\.5.*scored \+1/);
@@ -19,7 +19,8 @@ test("shows how the run stands, and that every map arrives", async (t) => {
   assert.deepEqual(page.complaints, []);
 });
 
-// Chromium without the calls that came after the floor (README of firmware/doors/site). What Chromium cannot forget, house: browsers finds.
+// Chromium without the calls that are newer than the oldest supported browsers (README of firmware/doors/site). The house test `browsers`
+// finds what Chromium cannot hide.
 const atTheFloor = (page) => page.addInitScript(() => {
   for (const name of ["toSorted", "toSpliced", "toReversed", "with"]) delete Array.prototype[name];
   delete Map.groupBy;
@@ -35,7 +36,7 @@ const atTheFloor = (page) => page.addInitScript(() => {
   }
 });
 
-test("shows the same in the oldest browsers that it is for", async (t) => {
+test("shows the same in the oldest supported browsers", async (t) => {
   const rowsOf = async (scene, options) => {
     const { page } = await watch(t, scene, options);
     await page.locator("#reports ol > li, #robots li").first().waitFor();
@@ -48,13 +49,13 @@ test("shows the same in the oldest browsers that it is for", async (t) => {
   }
 });
 
-// Chromium meets the condition of page.css, so it gets another one, which no browser meets.
+// Chromium meets the condition of page.css, so the test changes it to one that no browser meets.
 const belowTheFloor = (page) => page.route("**/*.css", async (route) => {
   const answer = await route.fetch(), style = await answer.text();
   await route.fulfill({ response: answer, body: style.replace(/@supports \(container-type: ?inline-size\)/, "@supports (container-type: none-of-these)") });
 });
 
-test("says in a browser that is too old which ones it needs, on each page and without a script", async (t) => {
+test("says in an unsupported browser which ones it needs, on each page and without a script", async (t) => {
   const stage = await serve("calm");
   t.after(() => stage.end());
   for (const path of ["", "display", "runs", "setup", "system", "login.html"]) {
@@ -66,7 +67,7 @@ test("says in a browser that is too old which ones it needs, on each page and wi
   }
 });
 
-test("shows a script's error as an alarm, and no list as empty because of it", async (t) => {
+test("shows a script error as an alarm, and no list as empty because of it", async (t) => {
   const { stage, page } = await watch(t, "empty");
   await page.locator("#reports").getByText("No report yet.").waitFor();
   await page.evaluate(() => void Promise.reject(new Error("a promise was rejected.")));
@@ -82,7 +83,7 @@ test("shows a script's error as an alarm, and no list as empty because of it", a
   }
 });
 
-test("follows what changes, and says so to those who only listen", async (t) => {
+test("follows changes, and announces them to screen readers", async (t) => {
   const { stage, page } = await watch(t, "calm");
   const alert = page.locator("#attention");
   assert.equal(await alert.getAttribute("aria-live"), "assertive");
@@ -90,7 +91,7 @@ test("follows what changes, and says so to those who only listen", async (t) => 
   stage.play("trouble");
   await said(page, "Report 8 is in doubt");
   assert.match(await text(page, "#arriving"), /3 of 4 arrive.*not ANYmal1; oldest other \d+ s/);
-  await page.locator("#robots li[data-level=wait]").filter({ hasText: /ANYmal2 grid \d+ (s|min) behind/ }).and(page.getByTitle(/grid: 247 queued/)).waitFor(); // though one was just sent
+  await page.locator("#robots li[data-level=wait]").filter({ hasText: /ANYmal2 grid \d+ (s|min) behind/ }).and(page.getByTitle(/grid: 247 queued/)).waitFor();  // although a grid was just sent
   assert.match(await text(page, "#sayings"), /ANYmal2 cloud: 429 "Cloud updates too frequent/);
   assert.match(await text(page, "#post"), /unreachable.*Connection refused/);
   assert.match(await text(page, "#reports .rows"), /Vent.*in doubt.*Helmet.*queued.*Cube.*sending/);
@@ -99,7 +100,7 @@ test("follows what changes, and says so to those who only listen", async (t) => 
   assert.match(await text(page, "#arriving"), /Every map arrives/);
 });
 
-test("tells every state by a shape and a word, not by colour alone", async (t) => {
+test("shows every state by a shape and a word, not only by colour", async (t) => {
   const { page } = await watch(t, "trouble");
   const shapes = await page.$$eval(".glyph", (glyphs) => {
     const shape = (glyph) => {
@@ -116,7 +117,7 @@ test("tells every state by a shape and a word, not by colour alone", async (t) =
   }
 });
 
-test("has what is done of other runs behind one press, and says how many there are", async (t) => {
+test("shows reports of other runs after one press, and their number", async (t) => {
   const { page } = await watch(t, "reports");
   const others = page.getByRole("button", { name: "All runs" });
   const shown = () => page.locator("#reports .rows li").count();
@@ -130,7 +131,7 @@ test("has what is done of other runs behind one press, and says how many there a
   assert.equal(await shown(), 10);
 });
 
-test("goes to the first report of another run where it shows them, however many are before it", async (t) => {
+test("scrolls to the first report of another run when it shows them, however many are before it", async (t) => {
   const prepare = (page) => retell(page, () => (view) => {
     const reports = Array.from({ length: 200 }, (_, i) => ({ ...view.reports.at(-1), number: 200 - i, run: 1 + Math.floor((199 - i) / 70) }));
     return { ...view, reports, run_number: 3 };
@@ -143,7 +144,7 @@ test("goes to the first report of another run where it shows them, however many 
     assert.match(await text(page, "#reports .count"), /^60 sent$/);
     const off = await look();
     await others.press("Enter");
-    assert.notEqual(await look(), off, "it is seen to be pressed");
+    assert.notEqual(await look(), off, "the button looks pressed");
     const first = page.locator('#reports li[data-key="140"]');
     await page.waitForFunction((row) => {
       const { top, bottom } = row.getBoundingClientRect(), list = row.parentNode.getBoundingClientRect();
@@ -157,7 +158,7 @@ test("goes to the first report of another run where it shows them, however many 
   }
 });
 
-test("tells where each report is in its life, and what waits for the operator's word", async (t) => {
+test("shows the state of each report, and which reports need the operator", async (t) => {
   const { page } = await watch(t, "reports");
   await page.getByRole("button", { name: "All runs" }).click();
   const rows = await page.$$eval("#reports .rows li", (items) => items.map((item) => [item.dataset.level, item.innerText.replace(/Details of report \d+/, "").replace(/\s+/g, " ").trim()]));
@@ -183,7 +184,7 @@ test("tells where each report is in its life, and what waits for the operator's 
   assert.deepEqual(page.complaints, []);
 });
 
-test("puts in anybody's text as text", async (t) => {
+test("inserts text from outside as text", async (t) => {
   const { page } = await watch(t, "hostile");
   await said(page, "<script>window.pwned=1</script>");
   assert.equal(await page.evaluate(() => window.pwned), undefined);
@@ -191,7 +192,7 @@ test("puts in anybody's text as text", async (t) => {
   assert.deepEqual(page.complaints, []);
 });
 
-test("has figures that are read from two metres, and one size more where there is room, but no larger ones on 4K", async (t) => {
+test("has figures readable from two metres, one size larger if there is room, and no larger ones on 4K", async (t) => {
   const { page } = await watch(t, "calm");
   for (const [[width, height], wanted] of [[[390, 844], 28], [[1280, 720], 32], [[1920, 1080], 44], [[3840, 2160], 44]]) {
     await page.setViewportSize({ width, height });
@@ -199,7 +200,7 @@ test("has figures that are read from two metres, and one size more where there i
   }
 });
 
-test("has strip, alarms, map, tools and heads of lists at the same place in every state", async (t) => {
+test("has strip, alarms, map, tools and list heads at the same place in every state", async (t) => {
   const parts = [".strip", ".alarms", "#map .frame", "#map .zoom", "#map .time", "#link-plots", "#reports .head", "#maps .line", ".tabs"];
   for (const viewport of [{ width: 390, height: 844 }, { width: 1280, height: 720 }, { width: 1920, height: 1080 }]) {
     const { stage, page } = await watch(t, "empty", { viewport });
@@ -220,7 +221,7 @@ test("has strip, alarms, map, tools and heads of lists at the same place in ever
   }
 });
 
-test("wears the theme that was chosen, here and on the other pages, and the system's until one is", async (t) => {
+test("uses the chosen theme on all pages, and the system's until one is chosen", async (t) => {
   const { page, stage } = await watch(t, "calm", { colorScheme: "light" });
   const worn = () => page.evaluate(() => [document.documentElement.dataset.theme, getComputedStyle(document.body).backgroundColor]);
   assert.deepEqual(await worn(), ["light", "rgb(236, 234, 228)"]);
@@ -239,7 +240,7 @@ test("wears the theme that was chosen, here and on the other pages, and the syst
   }
 });
 
-test("can be walked through by keyboard", async (t) => {
+test("can be used by keyboard", async (t) => {
   const { page } = await watch(t, "calm");
   await page.waitForSelector("#reports .compose:enabled");
   await page.keyboard.press("Tab");
@@ -255,11 +256,11 @@ test("can be walked through by keyboard", async (t) => {
   }
 });
 
-test("loads nothing from anywhere but the box", async (t) => {
+test("loads files only from the box", async (t) => {
   for (const path of ["", "display"]) {
     const { stage, page } = await watch(t, "calm", { path });
     await settled(page);
-    await hears(page, 3); // nothing with the next events, either
+    await hears(page, 3);  // nor with the next events
     assert.ok(page.requests.length > 10);
     for (const url of page.requests) assert.ok(url.startsWith(stage.url), url);
     assert.deepEqual(page.complaints, []);
@@ -282,14 +283,14 @@ test("says that a silent box is lost, and recovers by itself", async (t) => {
   assert.match(await text(page, "#arriving"), /Every map arrives/);
 });
 
-test("says at once that a box that stopped is lost, and finds the next one at its address", async (t) => {
+test("says at once that a stopped box is lost, and finds the next one at its address", async (t) => {
   const prepare = async ({ clock }) => {
     await clock.install();
     await clock.pauseAt(Date.now() + 60_000);
   };
   const { stage, page } = await watch(t, "calm", { prepare });
   await stage.end();
-  await page.waitForSelector("body[data-link=lost]"); // while the page's clock stands still
+  await page.waitForSelector("body[data-link=lost]");  // while the page's clock stands still
   const next = await serve("trouble", stage.port);
   t.after(() => next.end());
   await page.clock.resume();

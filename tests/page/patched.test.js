@@ -1,4 +1,4 @@
-// What the page makes of a patch, case by case; that the box's patches are right is tests/codec/patch_test.cpp's.
+// How the page applies a patch, case by case. tests/codec/patch_test.cpp checks the box's patches.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { patched } from "../../firmware/doors/site/files/patched.js";
@@ -21,14 +21,14 @@ const CASES = [
 ];
 
 for (const [what, patch, next] of CASES) {
-  test(`makes the next view of ${what}`, () => {
+  test(`applies a patch with ${what}`, () => {
     const before = structuredClone(view);
     assert.deepEqual(patched(view, patch), next);
-    assert.deepEqual(view, before, "and leaves the one before as it was");
+    assert.deepEqual(view, before, "patched() must not change the view before");
   });
 }
 
-test("keeps the very rows that did not change", () => {
+test("keeps the objects of unchanged rows", () => {
   const next = patched(view, { rows: { rows: { 1: { note: "new" } } } });
   assert.equal(next.rows[0], view.rows[0]);
   assert.equal(next.at, view.at);

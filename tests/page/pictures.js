@@ -1,23 +1,23 @@
-// What the map of a page looks like, so that two looks can be compared.
+// Pictures of a page's map, for comparison.
 import { until } from "./box.js";
 
 export const canvas = "#map .frame canvas";
 export const picture = (page) => page.$eval(canvas, (node) => node.toDataURL());
-/** The box of a layer, which is checked without opening the panel that it is in. */
+/** A layer's checkbox, which need not be visible to be checked. */
 export function box(page, name) {
   const setChecked = (checked) => page.getByRole("checkbox", { name, exact: true, includeHidden: true }).evaluate((node, checked) => node.checked === checked || node.click(), checked);
   return { setChecked, check: () => setChecked(true), uncheck: () => setChecked(false) };
 }
 
-/** The next picture that is not `before`. */
+/** The next picture that differs from `before`. */
 export const changed = (page, before, what) =>
   until(async () => {
     const now = await picture(page);
     return now !== before && now;
   }, what);
-const FEW = 12; // pixels: what is drawn in pieces may round another way where an image's edge is
+const FEW = 12;  // pixels; a layer drawn in pieces may round differently at an image's edge
 
-/** How many pixels differ from those of that picture. */
+/** The number of pixels that differ from those of the picture. */
 const differences = (page, whole) =>
   page.$eval(canvas, async (node, whole) => {
     const bytes = Uint8Array.from(atob(whole.split(",")[1]), (letter) => letter.charCodeAt(0));

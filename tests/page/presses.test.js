@@ -1,5 +1,5 @@
-// What opens or moves under a finger does not take that finger's press, nor the second one of a double tap: by real touches,
-// from which the browser itself makes its clicks.
+// An element that opens or moves under a finger takes neither that finger's press nor the second tap of a double tap. The tests use real
+// touches, from which the browser makes clicks.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { canvas } from "./pictures.js";
@@ -8,7 +8,7 @@ import { armed, settled, toTab, watch } from "./watch.js";
 const PHONE = { hasTouch: true, viewport: { width: 390, height: 844 } };
 const DIALOG = "#help";
 
-/** What touches the page: fingers, each at its place, or a mouse or pen. */
+/** Input devices: fingers at their places, a mouse, a pen. */
 async function glass(page) {
   const devtools = await page.context().newCDPSession(page);
   const send = (type, touchPoints) => devtools.send("Input.dispatchTouchEvent", { type, touchPoints });
@@ -26,14 +26,14 @@ async function glass(page) {
   return { down, up, tap, mouse: point("mouse"), pen: point("pen") };
 }
 
-/** Where a report is composed, and of what. */
+/** The state of the report form. */
 const composed = (page) => page.evaluate(() => {
   const panel = document.getElementById("compose");
   return { open: !panel.hidden, type: panel.querySelector(".count").textContent, pressed: panel.querySelector(".types [aria-pressed=true]")?.textContent ?? "",
     x: panel.querySelector("input[name=x]").value, typing: document.activeElement.matches("input[type=text]") };
 });
 
-/** A report of a Drill is composed, and its place about to be picked. */
+/** A Drill is being composed, and its place is about to be picked. */
 async function picking(t, options) {
   const { page } = await watch(t, "calm", options);
   await toTab(page, "Reports");
@@ -45,7 +45,7 @@ async function picking(t, options) {
   return page;
 }
 
-/** Places all over the map where a finger meets nothing else. */
+/** Places all over the map at which a finger hits only the map. */
 const placesOn = (page, count) => page.$eval(canvas, (node, count) => {
   const { x, y, width, height } = node.getBoundingClientRect(), places = [];
   for (let i = 0; places.length < count && i < 1000; ++i) {
@@ -55,7 +55,7 @@ const placesOn = (page, count) => page.$eval(canvas, (node, count) => {
   return places;
 }, count);
 
-/** Picks each of the places by `touch`; what came of those after which anything but the place had changed. */
+/** Picks each place with `touch`. Returns the states after picks that changed more than the place. */
 async function pickEach(page, places, touch) {
   const wrong = [];
   for (const place of places) {
@@ -71,14 +71,14 @@ async function pickEach(page, places, touch) {
 }
 
 for (const [name, options] of Object.entries({ "a phone": PHONE, "a screen": { hasTouch: true, viewport: { width: 1280, height: 720 } } })) {
-  test(`a tap that picks a place on the map changes the place and nothing else: 8 taps on ${name}`, async (t) => {
+  test(`a tap that picks a place on the map changes only the place: 8 taps on ${name}`, async (t) => {
     const page = await picking(t, options);
     const { tap } = await glass(page);
     assert.deepEqual(await pickEach(page, await placesOn(page, 8), tap), []);
   });
 }
 
-test("nor does a slow finger, a double tap, a mouse, a pen or a key that is held", async (t) => {
+test("a slow finger, a double tap, a mouse, a pen and a held key change only the place", async (t) => {
   const page = await picking(t, PHONE);
   const { down, up, tap, mouse, pen } = await glass(page);
   const places = await placesOn(page, 4);
@@ -103,13 +103,13 @@ test("two fingers on the map pick nothing", async (t) => {
   assert.equal((await composed(page)).x, "");
 });
 
-/** The middle of what closes the help, which is open. */
+/** The centre of the button that closes the open help. */
 async function closer(page) {
   const { x, y, width, height } = await page.locator("#help .close").boundingBox();
   return [x + width / 2, y + height / 2].map(Math.round);
 }
 
-test("a finger that is down while a dialog opens by another hand does not press it", async (t) => {
+test("a finger that is down while a dialog opens does not press it", async (t) => {
   const { page } = await watch(t, "calm", PHONE);
   const { down, up } = await glass(page);
   await page.locator("button.help").first().evaluate((button) => button.click());
@@ -118,13 +118,13 @@ test("a finger that is down while a dialog opens by another hand does not press 
   await page.waitForSelector(DIALOG, { state: "hidden" });
   await down(place);
   await page.locator("button.help").first().evaluate((button) => button.click());
-  await armed(page); // the dialog stands still by then, and it is not a long press yet
+  await armed(page);  // the dialog is still by then, and it is not a long press yet
   await up();
   await settled(page);
   assert.ok(await page.locator(DIALOG).isVisible());
 });
 
-test("the second tap on what closes a dialog does not go through to what lies below", async (t) => {
+test("the second tap on a button that closes a dialog does not press the element below", async (t) => {
   const page = await picking(t, { hasTouch: true, viewport: { width: 1920, height: 1080 } });
   const { tap } = await glass(page);
   await page.keyboard.press("?");
@@ -144,14 +144,14 @@ const isComposing = async (page) => {
   return (await composed(page)).open;
 };
 
-test("what moves under a finger is not pressed by it, and is once it has stood still", async (t) => {
+test("an element that moves under a finger takes a press only once it is still", async (t) => {
   const { page } = await watch(t, "calm", PHONE);
   await toTab(page, "Reports");
   const { down, up, tap } = await glass(page);
   const button = page.locator("#reports .compose:enabled");
   await armed(page);
   let by = 0;
-  /** The panel, which holds still otherwise, goes down by 100 pixels; gives where the button is then. */
+  /** Moves the panel, which is otherwise still, down by 100 pixels. Returns the button's new place. */
   const shift = () => button.evaluate((node, by) => {
     document.getElementById("reports").style.translate = `0 ${by}px`;
     const { x, y, width, height } = node.getBoundingClientRect();
@@ -162,16 +162,16 @@ test("what moves under a finger is not pressed by it, and is once it has stood s
   await down(next);
   await shift();
   await up();
-  assert.ok(!(await isComposing(page)), "it came under the finger");
+  assert.ok(!(await isComposing(page)), "the button moved under the finger");
   await tap(await shift());
-  assert.ok(!(await isComposing(page)), "it had just come there");
+  assert.ok(!(await isComposing(page)), "the button is not still yet");
   const place = await shift();
   await page.waitForFunction(([x, y]) => document.elementFromPoint(x, y)?.matches(".compose"), place);
   await tap(place);
-  assert.ok(await isComposing(page), "it stood still");
+  assert.ok(await isComposing(page), "the button is still");
 });
 
-test("what was under the finger as it came down is pressed, also where the page moves before it is lifted", async (t) => {
+test("the element under the finger at its start is pressed, even if the page moves before its end", async (t) => {
   const { page } = await watch(t, "calm", PHONE);
   await toTab(page, "Reports");
   const { down, up } = await glass(page);
@@ -180,7 +180,7 @@ test("what was under the finger as it came down is pressed, also where the page 
   const mouse = { down: async ([x, y]) => { await page.mouse.move(x, y); await page.mouse.down(); }, up: () => page.mouse.up(), drag: (x, y) => page.mouse.move(x, y) };
   for (const [name, hand] of Object.entries({ touch, mouse })) {
     for (const [moves, isMeant] of [["away", true], ["hidden", false], ["dragged", false]]) {
-      if (name === "touch" && moves === "dragged") continue; // that scrolls
+      if (name === "touch" && moves === "dragged") continue;  // that scrolls
       await page.waitForFunction(() => !document.querySelector("[data-moving]"));
       const { x, y, width, height } = await button.boundingBox(), place = [x + width / 2, y + height / 2];
       await hand.down(place);
@@ -197,13 +197,13 @@ test("what was under the finger as it came down is pressed, also where the page 
   }
 });
 
-test("a question that opens over a dialog takes no press at once, wherever it stands in the page", async (t) => {
+test("a question over a dialog takes no press at once, wherever it is in the page", async (t) => {
   const { page } = await watch(t, "calm");
   const moving = await page.evaluate(async () => {
     const [first, last] = document.querySelectorAll("dialog"), seen = [];
     const after = async (done) => {
       done();
-      await Promise.resolve(); // presses.js was told
+      await Promise.resolve();  // presses.js has handled the event
       seen.push([first, last].map((dialog) => [...dialog.querySelectorAll("button")].some(({ dataset }) => "moving" in dataset)));
       for (const node of document.querySelectorAll("[data-moving]")) delete node.dataset.moving;
     };

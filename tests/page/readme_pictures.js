@@ -20,7 +20,7 @@ try {
   await sleep(20_000);
   const { x, y } = first.position;
   for (const [type, left, up] of [["Survivor", 4, 2], ["Drill", -3, 6], ["Backpack", 12, 8], ["Gas", 8, -4], ["Gas", 10, -4]]) await made.compose(type, x + left, y + up);
-  await sleep(50_000); // so that there is something to see
+  await sleep(50_000);  // so that there is enough to see
   const page = await visit(browser, `${made.url}login.html`, { colorScheme: "dark" });
   await page.fill("#login input[name=password]", PASSWORD);
   await page.click("#login button");
@@ -28,7 +28,7 @@ try {
   for (const { name, path, act, width = 1280, height = 720 } of PICTURES) {
     await page.setViewportSize({ width, height });
     await page.goto(made.url + path);
-    await sleep(15_000); // the plots and lines of ages are as long as the page was open
+    await sleep(15_000);  // plots and age lines are as long as the page was open
     await act?.(page);
     if (act) await sleep(9000);
     await page.screenshot({ path: join(folder, `${name}.png`) });

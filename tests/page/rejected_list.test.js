@@ -1,4 +1,4 @@
-// Rejected messages, as a phone shows them and a screen reader reads them.
+// The list of rejected messages, on a phone and for a screen reader.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { retell } from "./retold.js";
@@ -8,7 +8,7 @@ const WHY = "msg.data: expected 4800 cells for a width of 80 and a height of 60,
 const ROWS = [7, 8, 9].map((number) =>
   ({ number, kind: "cloud", robot: "ANYmal1", at: Date.now() / 1000 - 40, status: 422, why: WHY, bytes: 412_000, replaced: number === 8 }));
 
-/** A page of a box that has set `globalThis.rejectedRows` of the page aside. */
+/** A page whose box rejected the messages in the page's `globalThis.rejectedRows`. */
 async function withRows(t, options) {
   const prepare = (page) => retell(page, (rows) => {
     globalThis.rejectedRows = rows;
@@ -20,7 +20,7 @@ async function withRows(t, options) {
   return page;
 }
 
-/** What the box tells from now on. */
+/** Changes the rows that the box reports from now on. */
 const become = (page, rows) => page.evaluate((rows) => (globalThis.rejectedRows = rows), rows);
 const discard = (page, number) => page.getByRole("button", { name: `Discard: ${number}`, exact: true });
 const hasFocus = (page, number) =>
@@ -42,13 +42,13 @@ for (const [name, width] of [["a phone", 360], ["a narrow column", 1056]]) {
   });
 }
 
-test("keeps the buttons beside the sentence where there is room", async (t) => {
+test("keeps the buttons beside the sentence if there is room", async (t) => {
   const page = await withRows(t, { viewport: { width: 880, height: 740 } });
   const [why] = await boxes(page, ".why");
   for (const button of await boxes(page, "button")) assert.ok(button.left >= why.right);
 });
 
-test("names each button by what it is for, and counts what nothing newer has replaced", async (t) => {
+test("names each button by its row, and counts messages that no newer one replaced", async (t) => {
   const page = await withRows(t, { bypassCSP: true });
   for (const { number } of ROWS) {
     for (const word of ["Send again", "Discard"]) assert.equal(await page.getByRole("button", { name: `${word}: ${number}`, exact: true }).count(), 1);
@@ -57,7 +57,7 @@ test("names each button by what it is for, and counts what nothing newer has rep
   await axeFindsNothing(page, "what is rejected");
 });
 
-test("has its title gone with the last row, and the last word once it could be read", async (t) => {
+test("hides its title with the last row, and the result after a time to read it", async (t) => {
   const page = await withRows(t);
   await page.route("**/adit/rejected/*/discard", async (route) => {
     await page.evaluate(() => (globalThis.rejectedRows = []));
@@ -70,7 +70,7 @@ test("has its title gone with the last row, and the last word once it could be r
   assert.equal(await text(page, "#rejected .said"), "");
 });
 
-test("keeps the focus where it is while other rows come and go", async (t) => {
+test("keeps the focus in its row while other rows come and go", async (t) => {
   const page = await withRows(t);
   await page.evaluate(() => {
     globalThis.lost = 0;
@@ -81,10 +81,10 @@ test("keeps the focus where it is while other rows come and go", async (t) => {
   await page.locator('#rejected li[data-key="11"]').waitFor();
   assert.equal(await page.locator("#rejected li").count(), 3);
   await hasFocus(page, 9);
-  assert.equal(await page.evaluate(() => globalThis.lost), 0, "not even for a moment");
+  assert.equal(await page.evaluate(() => globalThis.lost), 0, "the focus was lost for a moment");
 });
 
-test("hands the focus of a row that somebody else discards to the next, to the one before, and to the title", async (t) => {
+test("moves the focus of a row that another operator discards to the next row, the one before, or the title", async (t) => {
   const page = await withRows(t);
   await discard(page, 8).focus();
   await become(page, [ROWS[0], ROWS[2]]);
@@ -95,7 +95,7 @@ test("hands the focus of a row that somebody else discards to the next, to the o
   await page.waitForFunction(() => document.activeElement.id === "post-title");
 });
 
-test("lets a key that is pressed twice discard one row, not the next one too", async (t) => {
+test("a key that is pressed twice discards only one row", async (t) => {
   const page = await withRows(t);
   await page.evaluate(() => {
     const press = (node) => node.dispatchEvent(new KeyboardEvent("keydown", { key: "Enter", bubbles: true, cancelable: true }));
@@ -103,7 +103,7 @@ test("lets a key that is pressed twice discard one row, not the next one too", a
     document.addEventListener("focusin", ({ target }) => (globalThis.atOnce = press(target)));
   });
   await discard(page, 7).focus();
-  assert.equal(await page.evaluate(() => globalThis.atOnce), true, "who goes there himself need not wait");
+  assert.equal(await page.evaluate(() => globalThis.atOnce), true, "a user who moves the focus sees the new rows at once");
   await become(page, ROWS.slice(1));
   await hasFocus(page, 8);
   assert.equal(await page.evaluate(() => globalThis.atOnce), false);

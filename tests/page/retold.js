@@ -1,16 +1,16 @@
-// What a page hears of the box, changed on its way: for views that no box is easily brought to.
+// Changes the events that a page receives, for views that are hard to reach with a real box.
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { FILES } from "./stage.js";
 
 const patched = readFileSync(join(FILES, "patched.js"), "utf8").replace(/^export /gm, "");
 
-/** The page hears, in the place of each view of the run, what `make(...given)` makes of it: make gives a function of the view,
- *  which it may change; nothing: it hears nothing. All of it runs in the page. */
+/** Replaces each view of the run. `make(...given)` returns a function that gets the view, may change it, and returns it; if it returns
+ *  undefined, the event is dropped. All of it runs in the page. */
 export const retell = (page, make, ...given) => page.addInitScript(`{
   ${patched}
   const change = (${make})(...${JSON.stringify(given)});
-  delete globalThis.SharedWorker; // which would hear it in the page's place
+  delete globalThis.SharedWorker; // it would receive the events instead of the page
   const Heard = globalThis.EventSource;
   globalThis.EventSource = class extends Heard {
     #view = null;
@@ -28,7 +28,7 @@ export const retell = (page, make, ...given) => page.addInitScript(`{
   };
 }`);
 
-/** While `globalThis.deaf`, the page hears the last view from before again and again. In silence it would call the box lost after 4.5 s. */
+/** While `globalThis.deaf` is set, the page receives the last view again and again. After 4.5 s of silence it would call the box lost. */
 export const canBeDeaf = (page) =>
   retell(page, () => {
     let last = null;

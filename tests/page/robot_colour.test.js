@@ -1,4 +1,4 @@
-// The robots' colours and the artifacts' icons, without a browser.
+// Colours of robots and icons of artifacts, without a browser.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
@@ -18,12 +18,12 @@ const contrast = (one, other) => {
   return (high + 0.05) / (low + 0.05);
 };
 
-test("a robot's kind is told from its name", () => {
+test("a robot's kind follows from its name", () => {
   const kinds = { ugv1: "ground", husky: "ground", "": "ground", spot3: "legged", ANYmal_2: "legged", uav7: "flying", drone: "flying", my_uav: "ground" };
   for (const [name, kind] of Object.entries(kinds)) assert.equal(kindOf(name), kind, name);
 });
 
-test("twenty robots have twenty colours by day, those of neighbouring hues another lightness and pattern", () => {
+test("twenty robots have twenty colours by day, and neighbouring hues differ in lightness and pattern", () => {
   for (const theme of ["dark", "light"]) assert.equal(new Set(TWENTY.map((place) => `${robotRgb(place, theme)}`)).size, 20);
   const byHue = [...TWENTY].sort((a, b) => toneOf(a).hue - toneOf(b).hue);
   byHue.forEach((place, i) => {
@@ -33,19 +33,19 @@ test("twenty robots have twenty colours by day, those of neighbouring hues anoth
   });
 });
 
-test("a robot keeps its colour as others come, and has the same on each page: by the first poses", () => {
+test("a robot keeps its colour as others join, and has the same on each page, in the order of first poses", () => {
   const colours = (...names) => names.map((name) => lookOf(name).colour);
-  colours("r1", "r2", "r10"); // as a page hears of them
+  colours("r1", "r2", "r10");  // in an event
   assert.deepEqual(colours("r10", "r1", "r2", "r9", "r10"), [2, 0, 1, 3, 2]);
-  orderRobots(["r10", "r9"]); // as the tracks say
+  orderRobots(["r10", "r9"]);  // in the tracks
   assert.deepEqual(colours("r10", "r9", "r1", "r2"), [0, 1, 2, 3]);
   assert.ok(chooseColours([{ name: "r9", colour: 1 }]));
   assert.deepEqual(colours("r10", "r9", "r1", "r2"), [1, 0, 2, 3]);
-  assert.ok(!chooseColours([{ name: "r9", colour: 1 }]), "the same again changes nothing");
+  assert.ok(!chooseColours([{ name: "r9", colour: 1 }]), "the same colours again are not a change");
 });
 
-test("robots of one chosen colour have different patterns, and the others have the colours that no robot chose", () => {
-  const chosen = new Map([["r2", 2], ["r4", 2], ["r3", 0]]); // as in tests/archive/run_report_test.cpp
+test("robots with the same chosen colour have different patterns, and the others have unchosen colours", () => {
+  const chosen = new Map([["r2", 2], ["r4", 2], ["r3", 0]]);  // as in tests/archive/run_report_test.cpp
   assert.deepEqual([...robotLooks(["r1", "r2", "r3", "r4"], chosen).values()].map(({ colour, pattern }) => [colour, pattern]), [[1, 1], [2, 2], [0, 0], [2, 3]]);
 });
 
@@ -55,7 +55,7 @@ test("the settings name as many colours as there are", () => {
   assert.equal(words.match(/"\w+"/g).length, 1 + TWENTY.length);
 });
 
-test("a robot's colour is read on the ground of each theme", () => {
+test("a robot's colour has enough contrast in each theme", () => {
   for (const [theme, ground] of Object.entries(GROUNDS)) {
     for (let place = 0; place < 60; ++place) {
       const ratio = contrast(robotRgb(place, theme), bytesOf(ground));
@@ -64,7 +64,7 @@ test("a robot's colour is read on the ground of each theme", () => {
   }
 });
 
-test("no robot has the hue of a level", () => {
+test("no robot has the hue of an alarm level", () => {
   for (let place = 0; place < 60; ++place) {
     for (const level of [25, 75, 158, 277]) assert.ok(Math.abs(toneOf(place).hue - level) >= 10, `${place}: ${toneOf(place).hue}`);
   }
@@ -76,19 +76,19 @@ test("the run's report has the colours of the light page", () => {
   assert.deepEqual(source.match(/#[0-9a-f]{6}/g), [...Array(40).keys()].map(hex));
 });
 
-test("at night lightness and pattern alone differ", () => {
+test("at night only lightness and pattern differ", () => {
   const reds = new Set(TWENTY.map((place) => `${robotRgb(place, "red")} ${dashesOf(place)}`));
   assert.equal(reds.size, 4);
   for (const rgb of reds) assert.ok(Number(rgb.split(",")[0]) > 2 * Number(rgb.split(",")[2].split(" ")[0]), rgb);
 });
 
-test("OKLCH is converted as its author says", () => {
+test("OKLCH is converted as its author defines it", () => {
   assert.deepEqual(rgbOf(1, 0, 0), [255, 255, 255]);
   assert.deepEqual(rgbOf(0, 0, 0), [0, 0, 0]);
   assert.deepEqual(rgbOf(0.627955, 0.257683, 29.2339), [255, 0, 0]); // sRGB's red
 });
 
-test("each artifact type of the ICD has an icon of its own, and what is none has another", () => {
+test("each artifact type of the ICD has its own icon, and other types another one", () => {
   const types = `${readFileSync(new URL("../../firmware/interface/icd/artifact_types.inc", import.meta.url))}`.match(/^".*"/gm).map((line) => line.slice(1, -1));
   assert.equal(types.length, 10);
   assert.equal(new Set([...types, "Ghost"].map(linesOf)).size, 11);

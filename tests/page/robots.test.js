@@ -1,4 +1,4 @@
-// The robots' panel: who is worst off is seen at once, and nothing of it moves under a hand.
+// The robots' panel: the worst robots come first, and no row moves under a pointer.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { until } from "./box.js";
@@ -10,7 +10,7 @@ const SMALL = { width: 1280, height: 720 }, LARGE = { width: 1920, height: 1080 
 const names = (page, list = "#robots") => page.$$eval(`${list} li`, (rows) => rows.map((row) => row.dataset.key));
 const watchTwenty = (t, options = {}) => watch(t, "calm", { prepare: twenty, ...options });
 
-test("has twenty robots in sight, whole, where the screen is one of 720 or 1080 lines", async (t) => {
+test("shows twenty robots as a whole on screens of 720 and 1080 lines", async (t) => {
   const { page } = await watchTwenty(t);
   for (const [viewport, tall] of [[SMALL, 24], [LARGE, 44]]) {
     await page.setViewportSize(viewport);
@@ -31,7 +31,7 @@ test("takes the height of its rows, and leaves the rest to the reports", async (
   const heights = (page) => page.$$eval("#reports, #maps .scroll, #robots", (nodes) => nodes.map((node) => node.offsetHeight));
   const { page: few } = await watch(t, "calm");
   const [most, panel, rows] = await heights(few);
-  assert.ok(panel - rows < 48, `${panel} for rows of ${rows}`); // of two of three rows
+  assert.ok(panel - rows < 48, `${panel} for rows of ${rows}`);  // two of three rows
   const { page: many } = await watchTwenty(t);
   await many.locator("#robots li").nth(19).waitFor();
   const [less] = await heights(many);
@@ -53,7 +53,7 @@ test("cuts no word in the head of its list", async (t) => {
   }
 });
 
-test("has the worst first: who is silent is filled and says so, who is late has a shape", async (t) => {
+test("has the worst first: silent robots are filled and marked in words, late ones have a shape", async (t) => {
   const { page } = await watchTwenty(t, { viewport: LARGE, colorScheme: "dark" });
   await page.locator("#robots li").nth(19).waitFor();
   assert.deepEqual((await names(page)).slice(0, 2), ["uav5", "uav6"]);
@@ -66,14 +66,14 @@ test("has the worst first: who is silent is filled and says so, who is late has 
   assert.deepEqual(styles.map(([, , level]) => level), ["bad", "wait", "good"]);
 });
 
-test("shows the number that the rows are sorted by", async (t) => {
+test("shows the number by which the rows are sorted", async (t) => {
   const { page } = await watchTwenty(t);
   const numbers = () => page.$$eval("#robots li[data-level=good] .age .text", (ages) => ages.map(({ textContent }) => (textContent === "now" ? 0 : parseInt(textContent))));
   const isSorted = (values) => values.length === 18 && values[0] >= 6 && values.every((value, i) => i === 0 || value <= values[i - 1]);
   await until(async () => isSorted(await numbers()), "numbers in order");
 });
 
-test("says of a robot that sends no map that it has none, and of one whose map never came that it never did", async (t) => {
+test("says that a robot sends no maps, or that its maps never arrived", async (t) => {
   const prepare = (page) => retell(page, () => (view) => {
     const row = { ...view.activities[0], age: 0 }, robot = { level: "good", word: "up to date", silent: false };
     const activities = [{ ...row, robot: "scout", kind: "state" }, { ...row, robot: "carter", kind: "grid", age: null }];
@@ -85,7 +85,7 @@ test("says of a robot that sends no map that it has none, and of one whose map n
   assert.deepEqual([await age("scout"), await age("carter")], ["no map", "never"]);
 });
 
-for (const [age, words] of [[94, /^uav9\s+silent\s+1:\d\d$/], [null, /^uav9\s+silent\s+unknown$/]]) test(`has a row for one of which nothing was heard since the service began, with its age if that is known: ${age}`, async (t) => {
+for (const [age, words] of [[94, /^uav9\s+silent\s+1:\d\d$/], [null, /^uav9\s+silent\s+unknown$/]]) test(`has a row for a robot that was silent since the service began, with its age if that is known: ${age}`, async (t) => {
   const prepare = (page) => retell(page, (age) => (view) => ({ ...view, standings: [...view.standings, { name: "uav9", level: "bad", word: "silent", silent: true, has_map: false, age }] }), age);
   const { page } = await watch(t, "calm", { prepare, viewport: LARGE });
   await page.waitForSelector('#robots li[data-key="uav9"][data-level=bad]');
@@ -93,7 +93,7 @@ for (const [age, words] of [[94, /^uav9\s+silent\s+1:\d\d$/], [null, /^uav9\s+si
   assert.equal((await names(page))[0], "uav9");
 });
 
-test("moves no row under a pointer; the order changes once it has left", async (t) => {
+test("moves no row under a pointer, and sorts once the pointer has left", async (t) => {
   const { page } = await watchTwenty(t);
   await page.locator("#robots li[data-level=bad]").waitFor();
   await page.locator("#robots li").nth(12).hover();
@@ -116,7 +116,7 @@ test("moves no row while the panel has the focus of the keyboard", async (t) => 
   assert.deepEqual(await names(page), before);
 });
 
-test("opens the list in the place of the reports by a touch anywhere on it, and by a key", async (t) => {
+test("opens the list in place of the reports by a touch anywhere on it, and by a key", async (t) => {
   for (const viewport of [SMALL, LARGE]) {
     const { page } = await watchTwenty(t, { viewport, hasTouch: true, bypassCSP: true });
     await page.locator("#robots li").nth(13).tap();
@@ -143,7 +143,7 @@ test("opens the list in the place of the reports by a touch anywhere on it, and 
   }
 });
 
-test("has on a phone the worst below the map, and all in their tab", async (t) => {
+test("shows on a phone the worst robots below the map, and all in their tab", async (t) => {
   const { page } = await watchTwenty(t, { viewport: { width: 390, height: 844 }, hasTouch: true });
   const inSight = () => page.evaluate(() => {
     const { top, bottom } = document.querySelector("#maps .scroll").getBoundingClientRect();
@@ -158,7 +158,7 @@ test("has on a phone the worst below the map, and all in their tab", async (t) =
   await toTab(page, "Run");
 });
 
-test("says what area the grids cover, of all robots and of each, and which robot has no grid", async (t) => {
+test("shows the area that the grids cover, together and for each robot, and which robot has no grid", async (t) => {
   const covered = { version: 1, square_metres: 4213.06, whole: true, robots: [{ robot: "carter", square_metres: 812.5 }] };
   const prepare = async (page) => {
     await retell(page, () => (view) => {
@@ -177,11 +177,11 @@ test("says what area the grids cover, of all robots and of each, and which robot
   await page.locator("#all-robots li").first().waitFor();
   assert.match(await words("carter"), /^grid .* · covers 813 m²$/);
   assert.match(await words("scout"), /^cloud .* · no grid$/);
-  assert.doesNotMatch(await words("rover"), /covers|no grid/); // its grid is not drawn yet
+  assert.doesNotMatch(await words("rover"), /covers|no grid/);  // its grid is not drawn yet
   assert.deepEqual(page.complaints, []);
 });
 
-test("draws each map's age as it was, now at the right", async (t) => {
+test("draws each map's age over time, with now at the right", async (t) => {
   const { page } = await watchTwenty(t);
   await page.clock.install();
   await page.clock.runFor(20_000);

@@ -1,4 +1,4 @@
-// The runs that are kept, by the real box: listed by course, looked at again, printed, deleted.
+// Kept runs of the real box: list, map, print, delete.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { robotRgb } from "../../firmware/doors/site/files/robot_colour.js";
@@ -7,7 +7,7 @@ import { armed, axeFindsNothing, shoot, visitor } from "./watch.js";
 
 const SIZES = [["phone", 390, 844], ["720p", 1280, 720], ["1080p", 1920, 1080], ["4k", 3840, 2160]];
 
-/** A box with two runs, of which the first has a map. */
+/** A box with two runs. The first one has a map. */
 async function withRuns(t) {
   const at = await box(t);
   await play(at.ask);
@@ -27,7 +27,7 @@ async function come(t, { url }, password = OPERATOR) {
   return page;
 }
 
-test("lists runs, shows an earlier one's map at its times, and deletes it once that is confirmed", async (t) => {
+test("lists runs, shows an earlier run's map at its times, and deletes it after a confirmation", async (t) => {
   const at = await withRuns(t);
   const page = await come(t, at);
   const earlier = page.locator("#runs .rows li", { hasText: "Run 1" });
@@ -70,7 +70,7 @@ test("lists runs, shows an earlier one's map at its times, and deletes it once t
   assert.equal((await (await at.ask("GET", "/adit/runs")).json()).runs.length, 1);
 });
 
-test("prints a run without script, black on white, on pages of A4", async (t) => {
+test("prints a run without a script, black on white, on A4", async (t) => {
   const at = await withRuns(t);
   const page = await come(t, at);
   await page.goto(`${at.url}/adit/runs/1/report.html`);
@@ -81,7 +81,7 @@ test("prints a run without script, black on white, on pages of A4", async (t) =>
   await axeFindsNothing(page);
 });
 
-test("a viewer looks again and deletes nothing", async (t) => {
+test("a viewer can look at runs but cannot delete them", async (t) => {
   const at = await withRuns(t);
   const page = await come(t, at, VIEWER);
   assert.equal(await page.getByRole("button", { name: /^View/ }).count(), 2);

@@ -1,6 +1,7 @@
-// Serves the page with a scene of scenes.hpp, for a browser: `adit_page_scenes PORT [SCENE
+// Serves the page with a scene of scenes.hpp to a browser: `adit_page_scenes PORT [SCENE
 // [first-start|set-up-open]]`. The passwords are FakeKeys'; the token is "team-1". Each line on standard
-// input is the name of the next scene, or after "say " what the log says next; its end ends the program.
+// input is the name of the next scene, or after "say " the next log record. The program ends at the end of
+// the input.
 #include <sys/epoll.h>
 #include <unistd.h>
 
@@ -101,7 +102,7 @@ class Stage final : public Source, public Operator {
   Played played_;
 };
 
-/// A box that has been at work for a while.
+/// A box that has run for a while.
 void furnish(FakeBox& box, Time now) {
   box.self = {.version = "0.1.0",
               .build = "0123456789ab, GNU 12.2.0, Release",
@@ -117,7 +118,7 @@ void furnish(FakeBox& box, Time now) {
   box.say(3, "error", "the ledger cannot be written", "disk I/O error");
 }
 
-/// Nothing is left to be set up.
+/// All steps of the set-up are done.
 struct ReadySetup final : FakeSetup {
   bool saved() const override { return true; }
   std::vector<TokenRow> tokens() const override { return {{"scoring", true}, {"mapping", true}}; }

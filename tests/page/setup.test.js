@@ -6,14 +6,14 @@ import { test } from "node:test";
 import { come, freePort, freshBox, LOOKING, TOKENS, until } from "./fresh_box.js";
 import { complaints, COURSES, field, fill, hears, ready, review, step, type } from "./setup_page.js";
 
-/** Runs the Test, and gives of each endpoint each step's state. */
+/** Runs the Test, and returns each endpoint's steps with their states. */
 async function tried(page) {
   await page.getByRole("button", { name: "Run the test" }).click();
   await page.locator("#step-test .outcome", { hasText: "No report was spent." }).waitFor();
   return page.$$eval("#step-test .trial", (all) => all.map((each) => [...each.querySelectorAll("ol .badge")].map((badge) => badge.textContent.trim())));
 }
 
-test("tries each endpoint step by step, and says what to do where one fails", async (t) => {
+test("tests each endpoint step by step, and says what to do if a step fails", async (t) => {
   const { box, ask, page } = await ready(t, "setup#test");
   const unreached = await tried(page);
   assert.equal(unreached.length, 2);
@@ -37,7 +37,7 @@ test("tries each endpoint step by step, and says what to do where one fails", as
   assert.notEqual(await page.locator(".trial li", { hasText: "The token is accepted" }).first().locator(".advice").innerText(), "");
 });
 
-test("keeps tokens to itself, and says which are there", async (t) => {
+test("never shows tokens, and says which exist", async (t) => {
   const { box, ask, page } = await ready(t, "setup#tokens");
   const token = page.locator("form.token", { hasText: "Team’s token" });
   await token.getByText("is set").waitFor();
@@ -51,7 +51,7 @@ test("keeps tokens to itself, and says which are there", async (t) => {
     await token.getByText("expected 1 to 256 visible ASCII characters").waitFor();
     await token.getByRole("button", { name: "Set" }).click();
     await token.getByText("Team’s token: expected null or 1 to 256 visible ASCII characters").waitFor();
-    assert.equal(await input.inputValue(), wrong, "what was typed is kept");
+    assert.equal(await input.inputValue(), wrong, "the typed value is lost");
   }
   await token.getByRole("button", { name: "Show" }).click();
   assert.equal(await input.getAttribute("type"), "text");
@@ -69,20 +69,20 @@ test("keeps tokens to itself, and says which are there", async (t) => {
   await page.locator("#review").getByRole("button", { name: "Remove" }).click();
   await token.getByText("Removed.").waitFor();
   assert.ok(!existsSync(join(box.state, "secrets/team.token")));
-  assert.equal(await asTeam(TOKENS.team), 200, "the one that the box was given counts again");
+  assert.equal(await asTeam(TOKENS.team), 200, "the token in use is valid again");
   const shown = JSON.stringify((await ask("/adit/settings")).said) + (await page.content());
   for (const secret of [...Object.values(TOKENS), "another-token"]) assert.ok(!shown.includes(secret));
   assert.deepEqual(complaints(page, "422"), []);
 });
 
-test("switches to another course by one press, once it was said what that changes", async (t) => {
+test("switches to another course by one press, after showing the changes", async (t) => {
   const { box, ask, page } = await ready(t, "setup#courses", { courses: [COURSES[0]] });
   await page.getByRole("button", { name: "Add a course" }).click();
   await page.keyboard.type("B");
   for (const [name, value] of [["scoring.address", "127.0.0.1"], ["scoring.port", box.scoring], ["mapping.address", "127.0.0.1"], ["mapping.port", box.mapping]]) {
     await type(page, `courses[1].${name}`, String(value));
   }
-  assert.ok(await page.getByRole("button", { name: "Switch to Course A" }).isDisabled(), "what was typed comes first");
+  assert.ok(await page.getByRole("button", { name: "Switch to Course A" }).isDisabled(), "typed changes must be saved first");
   await page.getByRole("button", { name: "Apply changes" }).click();
   await review(page);
   await page.getByRole("button", { name: "Apply", exact: true }).click();
@@ -100,7 +100,7 @@ test("switches to another course by one press, once it was said what that change
   await page.locator("#review").getByText(`reports go to 127.0.0.1:${box.scoring} from then on; no report is queued, in doubt or held now`).waitFor();
   await page.getByRole("button", { name: "Switch", exact: true }).click();
   await page.getByText("Course B is in use.").waitFor();
-  await page.waitForFunction(() => document.activeElement.id === "courses-title"); // the button that had it is gone
+  await page.waitForFunction(() => document.activeElement.id === "courses-title");  // the button with the focus is gone
   await until(async () => (await ask("/adit/run")).said.endpoints.every(({ last_status: status }) => status === 200 || status === 0) && (await ask("/adit/run")).said.endpoints[0].last_status === 200, "the scoring endpoint's answer");
   await step(page, "Command Post").click();
   await page.getByText("Course B is in use and overrides these addresses.").waitFor();
@@ -116,7 +116,7 @@ test("switches to another course by one press, once it was said what that change
   assert.deepEqual(complaints(page), []);
 });
 
-test("follows the other operator's switch, and takes no yes to a question that he changed", async (t) => {
+test("follows another operator's switch, and discards a confirmation of an outdated question", async (t) => {
   const { ask, page } = await ready(t, "setup#courses", { courses: COURSES });
   const other = async (name) => {
     assert.equal((await ask("/adit/course", { name })).status, 200);
@@ -133,7 +133,7 @@ test("follows the other operator's switch, and takes no yes to a question that h
   await page.getByRole("button", { name: "Cancel" }).click();
   await inUse("No course");
 
-  // He switches just after the press.
+  // The other operator switches just after the press.
   await page.getByRole("button", { name: "Switch to Course B" }).click();
   await review(page);
   await page.route(/\/adit\/(settings|course)$/, async (route) => {
@@ -147,7 +147,7 @@ test("follows the other operator's switch, and takes no yes to a question that h
   await inUse("Course A");
 });
 
-test("gives all settings as a file, and takes one that is checked and shown first", async (t) => {
+test("exports all settings as a file, and imports a file after a check and a preview", async (t) => {
   const { ask, page } = await ready(t, "setup#file");
   const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("link", { name: "Download the settings" }).click()]);
   assert.equal(download.suggestedFilename(), "adit-settings.json");
@@ -180,7 +180,7 @@ test("gives all settings as a file, and takes one that is checked and shown firs
   await step(page, "Robots").getByText("1 named").waitFor();
 });
 
-test("finds a setting by its name or its meaning, and changes it", async (t) => {
+test("finds a setting by its name or meaning, and changes it", async (t) => {
   const { ask, page } = await ready(t, "setup#all");
   const search = page.getByLabel("Search");
   await search.fill("held until the operator");
@@ -204,12 +204,12 @@ test("finds a setting by its name or its meaning, and changes it", async (t) => 
   assert.deepEqual([settings.reports.review, settings.command_post.rates.map_hz, settings.team.require_token], ["all", 0.5, false]);
 });
 
-test("says where the page goes when it moves, and reverts what the box cannot use", async (t) => {
+test("says where the page moves, and reverts values that the box cannot use", async (t) => {
   const { page } = await ready(t, "setup#network");
   await type(page, "team.listen[0].address", "203.0.113.7");
   await page.getByRole("button", { name: "Apply changes" }).click();
   await page.locator("#review .warnings").getByText("this page move").waitFor();
-  const movesTo = page.evaluate(() => new Promise((found, missed) => { // shown until it is reverted, which may be soon
+  const movesTo = page.evaluate(() => new Promise((found, missed) => {  // shown until the revert, which may be soon
     const says = () => [...document.querySelectorAll("#typed a")].some((link) => link.textContent.includes("http://203.0.113.7:"));
     new MutationObserver(() => says() && found()).observe(document.body, { subtree: true, childList: true, characterData: true });
     setTimeout(missed, 30000, new Error("the page did not say where it goes"));
@@ -229,7 +229,7 @@ test("says where the page goes when it moves, and reverts what the box cannot us
   await hears(page, "Live");
 });
 
-test("shows a viewer all of it, and lets him change nothing", async (t) => {
+test("shows a viewer all settings without a way to change them", async (t) => {
   const box = await freshBox(t, { secrets: ["scoring", "mapping"], settings: { robots: [{ name: "ugv1" }], courses: COURSES } });
   await box.settle();
   const page = await come(t, box, "setup", LOOKING);

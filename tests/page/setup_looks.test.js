@@ -14,7 +14,7 @@ async function turnTo(page, name) {
   await page.locator(`#step-${name}`).waitFor();
 }
 
-test("fits every screen, in the dark and by day, with nothing that axe finds wrong", async (t) => {
+test("fits every screen, in both themes, without axe faults", async (t) => {
   const box = await freshBox(t, { secrets: ["scoring"], settings: SETTINGS });
   await box.settle();
   const page = await come(t, box, "setup", PASSWORD, { bypassCSP: true });

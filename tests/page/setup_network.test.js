@@ -6,7 +6,7 @@ import { hears, review } from "./setup_page.js";
 import { leave } from "./stage.js";
 
 const OLD = "http://192.168.7.11:8000/", NEW = "http://192.168.8.11:8000/";
-const SOON = 28_000, LATE = 300_000; // ms until the box takes a change back: soon where that is waited for
+const SOON = 28_000, LATE = 300_000;  // ms until the box reverts a change: SOON for tests that wait for it
 
 let box;
 afterEach(() => box?.close());
@@ -15,13 +15,13 @@ const team = (page, label) => page.locator("[data-side=team]").getByLabel(label)
 const post = (page, label) => page.locator("[data-side=command_post]").getByLabel(label);
 const sign = (page) => page.locator("header").getByRole("link", { name: /Network change/ });
 
-/** A box for the length of one test, and its set-up's first step. */
+/** A box for one test, and the first step of its set-up page. */
 async function begin(t, takesBackWithin) {
   box = await new NetworkedBox().begin(takesBackWithin);
   return come(t, OLD);
 }
 
-/** The set-up's first step at `url`, logged in; at the first start, too. */
+/** The set-up page's first step at `url`, logged in; also works at the first start. */
 async function come(t, url) {
   const page = await box.visit(`${url}setup#network`);
   t.after(() => leave(page));
@@ -39,7 +39,7 @@ async function come(t, url) {
   return page;
 }
 
-/** Changes the team's address for now. */
+/** Changes the team's address, unconfirmed. */
 async function change(page, address) {
   await team(page, "Address").fill(`${address}/24`);
   await page.getByRole("button", { name: "Change the addresses" }).click();
@@ -48,7 +48,7 @@ async function change(page, address) {
   await until(() => box.address() === `${address}/24`, `team0 to have ${address}`);
 }
 
-test("says what is wrong with the addresses as they are typed, and what a change would do", async (t) => {
+test("checks addresses as they are typed, and says what a change would do", async (t) => {
   const page = await begin(t, LATE);
   assert.equal(await team(page, "Mode").inputValue(), "static");
   assert.equal(await team(page, "Address").inputValue(), "192.168.7.11/24");
@@ -99,7 +99,7 @@ test("says what is wrong with the addresses as they are typed, and what a change
   await page.getByText("The box already has these addresses.").waitFor();
 });
 
-test("takes a change back that nobody confirms, and says so", async (t) => {
+test("reverts an unconfirmed change, and says so", async (t) => {
   const page = await begin(t, SOON);
   await team(page, "Address").fill("192.168.8.11/24");
   await page.getByRole("button", { name: "Change the addresses" }).click();
@@ -122,7 +122,7 @@ test("keeps a change that is confirmed from the new address", async (t) => {
   await change(page, "192.168.8.11");
   const there = await come(t, NEW);
   await there.goto(NEW);
-  await sign(there).filter({ hasText: /\d+ s left/ }).waitFor(); // on the run's page, too
+  await sign(there).filter({ hasText: /\d+ s left/ }).waitFor();  // also on the run page
   await there.goto(`${NEW}system`);
   await sign(there).click();
   await there.getByText("You are at the new address. Confirm to keep it.").waitFor();
@@ -140,7 +140,7 @@ test("keeps a change that is confirmed from the new address", async (t) => {
   await there.getByText(/The last change was reverted/).waitFor();
 });
 
-test("shows both ports as the kernel has them, as a cable is pulled and put back", async (t) => {
+test("shows both ports' state in the kernel as a cable is unplugged and plugged in", async (t) => {
   const page = await begin(t, LATE);
   const port = (side) => page.locator(".ports li", { hasText: side });
   await port("Command Post’s side: darpa0").getByText("cable in").waitFor();

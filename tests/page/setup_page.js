@@ -1,4 +1,4 @@
-// The set-up's page, for its tests.
+// The set-up page, for its tests.
 import { come, freshBox, PASSWORD } from "./fresh_box.js";
 
 export const COURSES = [
@@ -10,7 +10,7 @@ export const field = (page, path) => page.locator(`.field[data-path="${path}"]`)
 export const step = (page, name) => page.locator("#steps").getByRole("link", { name });
 export const hears = (page, words) => page.locator("#link, #missing, #typed").filter({ hasText: words }).first().waitFor();
 
-/** A box that is set up but for `settings`, and the set-up's page of its operator. */
+/** A box with all settings except for `settings`, and its operator's set-up page. */
 export async function ready(t, path = "setup", settings = {}) {
   const box = await freshBox(t, { secrets: ["scoring", "mapping", "team"], settings });
   const ask = await box.settle();
@@ -19,14 +19,14 @@ export async function ready(t, path = "setup", settings = {}) {
   return { box, ask, page };
 }
 
-/** What the browser complained of; that a box was away while it restarted is none. */
+/** The browser's complaints, except that a restarting box was unreachable. */
 export const complaints = (page, ...known) => page.complaints.filter((each) => !["ERR_CONNECTION", "ERR_EMPTY", ...known].some((part) => each.includes(part)));
 
 /** Types into the field of a setting, and leaves it. */
 export async function type(page, path, text) {
   const input = field(page, path).locator("input");
   await input.fill(text);
-  await input.dispatchEvent("input"); // fill() says nothing where the text was the same
+  await input.dispatchEvent("input");  // fill() causes no event if the text is the same
   await input.evaluate((node) => node.blur());
 }
 
@@ -34,7 +34,7 @@ export async function fill(page, fields) {
   for (const [label, text] of Object.entries(fields)) await page.getByLabel(label, { exact: true }).fill(text);
 }
 
-/** The rows of the dialog that shows what is about to change. */
+/** The rows of the dialog that shows the pending changes. */
 export async function review(page) {
   await page.locator("#review[open]").waitFor();
   return page.$$eval("#review tbody tr", (rows) => rows.map((row) => [...row.cells].map((cell) => cell.textContent)));

@@ -5,7 +5,7 @@ import { complaints, COURSES, ready, step } from "./setup_page.js";
 
 const tries = (page) => page.getByRole("button", { name: "Try before applying" });
 const outcome = (page, where) => page.locator(`[data-tried=${where}] > .outcome`);
-/** Of each endpoint each step's state. */
+/** Each endpoint's steps with their states. */
 const states = (page, where) =>
   page.$$eval(`[data-tried=${where}] .trial`, (all) => all.map((each) => [...each.querySelectorAll("ol .badge")].map((badge) => badge.textContent.trim())));
 
@@ -14,7 +14,7 @@ async function tried(page, where, verdict) {
   return states(page, where);
 }
 
-test("tries addresses as they are typed, before they are applied, and says what to do", async (t) => {
+test("tests addresses as they are typed, before they are saved, and says what to do", async (t) => {
   const { box, ask, page } = await ready(t, "setup#post");
   await page.getByLabel("Scoring port", { exact: true }).fill(String(box.scoring));
   await tries(page).click();
@@ -31,7 +31,7 @@ test("tries addresses as they are typed, before they are applied, and says what 
   assert.deepEqual(complaints(page), []);
 });
 
-test("drops a result once its values are others: typed, applied, or saved by another operator", async (t) => {
+test("drops a result once its values changed: typed, saved, or saved by another operator", async (t) => {
   const { box, ask, page } = await ready(t, "setup#post");
   const type = (label, port) => page.getByLabel(label, { exact: true }).fill(String(port));
   const shows = async (where, words) => {
@@ -46,7 +46,7 @@ test("drops a result once its values are others: typed, applied, or saved by ano
   assert.equal(await shows("typed", ""), 0);
   await type("Mapping port", 2);
   assert.equal(await shows("typed", "1 of 12 steps failed. These values are not applied yet. No report was spent."), 2);
-  await page.reload(); // the typed values stay; the page does not know whether they were tested
+  await page.reload();  // the typed values stay, but the page does not know whether they were tested
   assert.equal(await shows("typed", "1 of 12 steps failed. This test began elsewhere, perhaps with other values. No report was spent."), 2);
 
   await type("Mapping port", box.mapping);
@@ -72,7 +72,7 @@ test("drops a result once its values are others: typed, applied, or saved by ano
   await step(page, "Test").getByText("not run").waitFor();
 });
 
-test("tries a token as it is typed, and neither keeps nor shows it", async (t) => {
+test("tests a typed token, and neither stores nor shows it", async (t) => {
   const { box, ask, page } = await ready(t, "setup#post");
   for (const [label, port] of [["Scoring port", box.scoring], ["Mapping port", box.mapping]]) await page.getByLabel(label, { exact: true }).fill(String(port));
   await step(page, "Tokens").click();
@@ -87,7 +87,7 @@ test("tries a token as it is typed, and neither keeps nor shows it", async (t) =
   assert.deepEqual(complaints(page), []);
 });
 
-test("says what is wrong by the name of its field", async (t) => {
+test("names the field of an error", async (t) => {
   const { page } = await ready(t, "setup#post");
   await page.getByLabel("Mapping address", { exact: true }).fill("10.100.1");
   await tries(page).click();
@@ -96,7 +96,7 @@ test("says what is wrong by the name of its field", async (t) => {
   assert.ok(await tries(page).isEnabled());
 });
 
-test("keeps what is wrong, whatever was asked for before is answered later", async (t) => {
+test("keeps an error if an earlier request is answered later", async (t) => {
   const { page } = await ready(t, "setup#post");
   await page.getByLabel("Mapping address", { exact: true }).fill("10.100.1");
   const isTest = (answer, method) => answer.url().endsWith("/adit/test") && answer.request().method() === method;
@@ -105,15 +105,15 @@ test("keeps what is wrong, whatever was asked for before is answered later", asy
     if (route.request().method() === "GET") await refused;
     await route.continue();
   });
-  await page.reload(); // the typed values stay, and the page asks for the state of the test
+  await page.reload();  // the typed values stay, and the page asks for the state of the test
   await tries(page).click();
   await tried(page, "typed", "Mapping address: expected an IPv4 or IPv6 address");
   await (await late).finished();
-  await page.evaluate(() => fetch("/adit/session").then((answer) => answer.json())); // and the page has read it
+  await page.evaluate(() => fetch("/adit/session").then((answer) => answer.json()));  // the page has read it too
   assert.match(await outcome(page, "typed").innerText(), /Mapping address: expected an IPv4 or IPv6 address/);
 });
 
-test("follows the test that runs already, where another is refused for it", async (t) => {
+test("shows the running test if another one is rejected for it", async (t) => {
   const { ask, page } = await ready(t, "setup#post");
   let isShown;
   const shown = new Promise((resolve) => (isShown = resolve));
@@ -131,7 +131,7 @@ test("follows the test that runs already, where another is refused for it", asyn
   assert.equal(await outcome(page, "typed").textContent(), "");
 });
 
-test("tries a course before it is switched to, and tells it from the Test of what is in use", async (t) => {
+test("tests a course before a switch, and marks it apart from the Test of the current course", async (t) => {
   const { box, ask, page } = await ready(t, "setup#courses", { courses: COURSES });
   const { settings, tag } = (await ask("/adit/settings")).said;
   settings.courses[1] = { name: "B", scoring: { address: "127.0.0.1", port: box.scoring }, mapping: { address: "127.0.0.1", port: box.mapping } };
@@ -148,7 +148,7 @@ test("tries a course before it is switched to, and tells it from the Test of wha
   await step(page, "Test").getByText("failed").waitFor();
 });
 
-test("shows a viewer no way to try anything", async (t) => {
+test("shows a viewer no tests", async (t) => {
   const { box, page } = await ready(t, "setup#post");
   await page.close();
   const viewer = await come(t, box, "setup#post", LOOKING);

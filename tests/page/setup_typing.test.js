@@ -1,4 +1,4 @@
-// What is typed on the set-up's page: checked as it is typed, and never lost.
+// Typing on the set-up page: checks while typing, and no loss of input.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { merged } from "../../firmware/doors/site/files/draft.js";
@@ -9,7 +9,7 @@ import { complaints, COURSES, field, hears, ready, review, step, type } from "./
 const focusIsAt = (page, path) =>
   page.waitForFunction((path) => document.activeElement.closest("[data-path]")?.dataset.path === path, path);
 
-test("checks the names of robots as they are typed, and says what is wrong once the field is left", async (t) => {
+test("checks robot names while they are typed, and shows errors after the field is left", async (t) => {
   const { ask, page } = await ready(t, "setup#robots");
   const add = page.getByRole("button", { name: "Add a robot" });
   for (const name of ["", "two words", "elevenchars", "ugv-1", "böse"]) {
@@ -18,7 +18,7 @@ test("checks the names of robots as they are typed, and says what is wrong once 
     await page.keyboard.type(name);
     await (await checked).finished();
     await hears(page, "Your changes are not yet applied.");
-    assert.equal(await page.locator("[data-path='robots[0].name'] .wrong").textContent(), "", "nobody has finished typing");
+    assert.equal(await page.locator("[data-path='robots[0].name'] .wrong").textContent(), "", "an error is shown while typing");
     await page.keyboard.press("Tab");
     await page.locator("[data-path='robots[0].name'] .wrong").filter({ hasText: "1 to 10 letters, digits and underscores" }).waitFor().catch((error) => {
       throw new Error(`${name}: ${error.message}`);
@@ -32,7 +32,7 @@ test("checks the names of robots as they are typed, and says what is wrong once 
   await page.keyboard.press("Tab");
   await page.locator("[data-path='robots[1].name'] .wrong", { hasText: "the same as “Robot 1: name”" }).waitFor();
   await page.getByRole("button", { name: "Apply changes" }).click();
-  await focusIsAt(page, "robots[1].name"); // the error
+  await focusIsAt(page, "robots[1].name");  // the error
   await type(page, "robots[1].name", "uav1");
   await type(page, "robots[1].alias", "ugv1");
   await page.locator("[data-path='robots[1].alias'] .wrong", { hasText: "an alias is another name" }).waitFor();
@@ -49,13 +49,13 @@ test("checks the names of robots as they are typed, and says what is wrong once 
   assert.deepEqual(complaints(page), []);
 });
 
-test("keeps every row that was added, named or not, when another operator saved meanwhile", () => {
+test("keeps every added row, named or not, if another operator saved meanwhile", () => {
   const row = (name) => ({ name, alias: "" });
   const both = merged([row("ugv1")], [row("ugv1"), row(""), row("")], [row("ugv1"), row("uav1")]);
   assert.deepEqual(both.map(({ name }) => name), ["ugv1", "uav1", "", ""]);
 });
 
-test("shows a new or a removed item of a list in one row, with what differs from the usual", () => {
+test("shows an added or removed list item in one row, with its non-default values", () => {
   const usual = (path) => ({ alias: "", voxel_metres: 0 })[path.split(".").at(-1)];
   const robot = (name, from, to) => [[`robots[${name}].name`, from && name, to && name], [`robots[${name}].alias`, from, to], [`robots[${name}].voxel_metres`, from && 0, to && 0.1]];
   assert.deepEqual(inShort([["runs.length_seconds", 60, 90], ...robot("uav1", null, "x"), ["robots[ugv1].alias", "", "y"], ...robot("ugv2", "z", null)], usual), [
@@ -66,14 +66,14 @@ test("shows a new or a removed item of a list in one row, with what differs from
   ]);
 });
 
-test("calls a setting by its name in every sentence", () => {
+test("uses a setting's name in every sentence", () => {
   assert.equal(spoken("Needs command_post.arrange_clouds, under robots[].name or robots[2].name."), "Needs “Command Post: arrange clouds”, under “Robot: name” or “Robot 3: name”.");
 });
 
-/** What no setting of its kind can be. */
+/** Wrong values for each kind of setting. */
 const WRONG = { whole: ["-1", "1.5", "many", "99999999999999999999", ""], real: ["0x", "-3", "many", ""], text: ["ß ß", "\u0007"] };
 
-test("says at every field what is wrong with it, and keeps what was typed", async (t) => {
+test("shows an error at every field, and keeps the input", async (t) => {
   const { page } = await ready(t, "setup", { robots: [{ name: "ugv1" }], courses: COURSES });
   const { keys } = await page.evaluate(async () => (await fetch("/adit/settings")).json());
   const kinds = new Map(keys.map(({ path, kind }) => [path, kind]));
@@ -84,7 +84,7 @@ test("says at every field what is wrong with it, and keeps what was typed", asyn
     await here.waitFor();
     for (const button of await here.locator(".opens").all()) await button.click();
     const paths = await here.locator(".field[data-path]:not(form .field)").evaluateAll((all) => all.map((each) => each.dataset.path));
-    const ofKind = (path) => WRONG[kinds.get(path.replace(/\[\d\]/g, "[]"))] ?? []; // a choice and a flag cannot be wrong
+    const ofKind = (path) => WRONG[kinds.get(path.replace(/\[\d\]/g, "[]"))] ?? [];  // a choice and a flag cannot be wrong
     for (let i = 0; i < WRONG.whole.length; ++i) {
       const wrong = new Map(paths.flatMap((path) => (ofKind(path)[i] === undefined ? [] : [[path, ofKind(path)[i]]])));
       for (const [path, text] of wrong) await type(page, path, text);
@@ -104,7 +104,7 @@ test("says at every field what is wrong with it, and keeps what was typed", asyn
   assert.deepEqual(complaints(page), []);
 });
 
-test("lists the errors of other steps, each with a way to it", async (t) => {
+test("lists the errors of other steps, with a link to each", async (t) => {
   const { page } = await ready(t, "setup#post");
   await type(page, "command_post.scoring.port", "0");
   await hears(page, "1 error to correct");
@@ -121,7 +121,7 @@ test("lists the errors of other steps, each with a way to it", async (t) => {
   assert.ok(await page.locator("#typed").isHidden());
 });
 
-test("shows two operators what each has done, and lets one go on from the newer", async (t) => {
+test("shows two operators each other's changes, and lets one continue from the newer settings", async (t) => {
   const { box, ask, page } = await ready(t, "setup#post", { robots: [{ name: "ugv1" }, { name: "ugv2" }] });
   const other = await come(t, box, "setup#post", PASSWORD);
   await type(page, "command_post.scoring.port", "8001");
@@ -144,7 +144,7 @@ test("shows two operators what each has done, and lets one go on from the newer"
   const { command_post: post } = (await ask("/adit/settings")).said.settings;
   assert.deepEqual([post.scoring.port, post.mapping.port], [8001, 8003]);
 
-  // Both are in the dialog when the first of them applies: the box itself refuses the second.
+  // The dialog has both changes when the first one is applied. The box rejects the second.
   await type(other, "command_post.mapping.port", "8004");
   await hears(other, /change/);
   await page.evaluate(() => (location.hash = "robots"));
@@ -172,7 +172,7 @@ test("shows two operators what each has done, and lets one go on from the newer"
   assert.equal(await field(other, "command_post.mapping.port").locator("input").inputValue(), "8003");
 });
 
-test("keeps what is typed while the box applies a change, and drops what is typed on top of another operator's settings", async (t) => {
+test("keeps input while the box applies a change, and drops input that is based on another operator's older settings", async (t) => {
   const { ask, page } = await ready(t, "setup#robots", { robots: [{ name: "ugv1" }] });
   const apply = async () => {
     await page.getByRole("button", { name: "Apply changes" }).click();
@@ -212,7 +212,7 @@ test("keeps what is typed while the box applies a change, and drops what is type
   assert.equal(await field(page, "command_post.mapping.port").locator("input").inputValue(), "2");
 });
 
-test("knows its own save, though the answer was lost, and after a reload", async (t) => {
+test("recognises its own save, even if the answer was lost, and after a reload", async (t) => {
   const { ask, page } = await ready(t, "setup#post");
   let answersLost = 1;
   await page.route("**/adit/settings", async (route) => {
@@ -240,7 +240,7 @@ test("knows its own save, though the answer was lost, and after a reload", async
   await isOwn();
 });
 
-test("loses nothing that was typed when the box is lost in the middle of it", async (t) => {
+test("keeps all input if the box is lost while typing", async (t) => {
   const { box, ask, page } = await ready(t, "setup#robots");
   await page.getByRole("button", { name: "Add a robot" }).click();
   await page.keyboard.type("ug");
@@ -255,7 +255,7 @@ test("loses nothing that was typed when the box is lost in the middle of it", as
   await hears(page, /[1-9] changes?/);
   await page.reload();
   await hears(page, /[1-9] changes?/);
-  assert.equal(await field(page, "robots[0].name").locator("input").inputValue(), "ugv1", "kept through a reload, too");
+  assert.equal(await field(page, "robots[0].name").locator("input").inputValue(), "ugv1", "the input is lost after a reload");
   await page.getByRole("button", { name: "Apply changes" }).click();
   await review(page);
   await box.end("aditd", "SIGKILL");
@@ -267,7 +267,7 @@ test("loses nothing that was typed when the box is lost in the middle of it", as
   assert.equal((await ask("/adit/settings")).said.settings.robots[0].name, "ugv1");
 });
 
-test("is opened at the setting that a refusal names", async (t) => {
+test("opens at the setting that a rejection names", async (t) => {
   const { page } = await ready(t, "setup?setting=rules.rewrite_frame_id#all");
   await focusIsAt(page, "rules.rewrite_frame_id");
   await page.keyboard.press("Space");

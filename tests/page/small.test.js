@@ -1,4 +1,4 @@
-// The smallest phones: nothing is cut, and no text lies on another.
+// The smallest phones: no text is cut, and no texts overlap.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { retell } from "./retold.js";
@@ -6,7 +6,7 @@ import { openMore, settled, toTab, watch } from "./watch.js";
 
 const PHONES = [[320, 640], [360, 740]];
 
-/** Texts of one row that lie on each other, leave their section or are cut short. */
+/** Texts of one row that overlap, leave their section or are cut. */
 const faults = (page) => page.evaluate(() => {
   const linesOf = (node) => {
     const range = document.createRange();
@@ -31,7 +31,7 @@ const faults = (page) => page.evaluate(() => {
 });
 
 for (const [width, height] of PHONES) {
-  test(`nothing is cut or lies on another at ${width} x ${height}`, async (t) => {
+  test(`no text is cut or overlaps another at ${width} x ${height}`, async (t) => {
     for (const scene of ["trouble", "reports"]) {
       const { page } = await watch(t, scene, { viewport: { width, height }, hasTouch: true });
       for (const tab of ["Run", "Map", "Reports", "Robots"]) {
@@ -58,7 +58,7 @@ test("cuts neither the verdict nor its reason", async (t) => {
   assert.deepEqual(cut, []);
 });
 
-test("brings both reports of a pair into sight, and the button that closes them", async (t) => {
+test("scrolls to both reports of a pair and to the button that closes them", async (t) => {
   const { page } = await watch(t, "reports", { viewport: { width: 360, height: 740 }, hasTouch: true });
   await toTab(page, "Reports");
   await page.getByRole("button", { name: /^Show both on the map/ }).first().tap();

@@ -1,4 +1,4 @@
-// The stage for a test: a program that serves the page with a scene, and a browser that looks at it.
+// Shared by tests with a scene: a program that serves the page with the scene, and a browser page.
 import { spawn } from "node:child_process";
 import { once } from "node:events";
 import { mkdirSync } from "node:fs";
@@ -8,11 +8,11 @@ import { fileURLToPath } from "node:url";
 import { chromium } from "playwright-core";
 import { patient } from "./patience.js";
 
-/** The folder of the programs that are tested. */
+/** The directory of the tested programs. */
 export const BIN = resolve(process.env.ADIT_BIN);
-/** The pages as they are written. */
+/** The source files of the pages. */
 export const FILES = fileURLToPath(new URL("../../firmware/doors/site/files", import.meta.url));
-/** Debian's shell of Chromium: the same engine in half the time that the whole browser takes. */
+/** Debian's headless shell of Chromium: the same engine, in half the time of the whole browser. */
 export const CHROMIUM = process.env.CHROMIUM ?? "/usr/bin/chromium-headless-shell";
 
 /** Serves `scene` on `port` (0: any free one); `more`: "first-start" or "set-up-open". */
@@ -43,18 +43,18 @@ export const launch = (executablePath = CHROMIUM) =>
 
 const BY_TOKEN = { extraHTTPHeaders: { Authorization: "Bearer team-1" } };
 
-/** Opens the page, let in by the token. */
+/** Opens the page with the token. */
 export async function look(browser, url, options = {}, prepare = () => {}) {
   const page = await visit(browser, url, { ...BY_TOKEN, ...options }, prepare);
   await page.waitForSelector("body[data-link=live]");
   return page;
 }
 
-/** Opens a page; what it complained of and where it went is in `page.complaints` and `page.requests`. */
+/** Opens a page. Its complaints and requests are in `page.complaints` and `page.requests`. */
 export async function visit(browser, url, options = {}, prepare = () => {}) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 720 }, ...options });
   context.setDefaultTimeout(patient(120_000));
-  // A worker's requests do not have the context's headers. A visitor with a token gets a browser without shared workers.
+  // A worker's requests lack the context's headers, so a page with a token gets no shared workers.
   if (options.extraHTTPHeaders) await context.addInitScript(() => delete globalThis.SharedWorker);
   const page = await context.newPage();
   page.complaints = [];
@@ -70,13 +70,13 @@ export async function visit(browser, url, options = {}, prepare = () => {}) {
   return page;
 }
 
-/** Closes it. What a test does with an answer that is under way then fails nobody. */
+/** Closes the page. Errors of the test's handlers for pending answers then fail no test. */
 export async function leave(page) {
   if (!page.isClosed()) await page.unrouteAll({ behavior: "ignoreErrors" });
   await page.context().close();
 }
 
-/** Counts, in the page, what it asked for and has not yet, and what the box told it: an init script, for settled() and hears(). */
+/** An init script for settled() and hears(): counts the page's pending requests and the box's events. */
 export function countAwaited() {
   globalThis.awaited = globalThis.still = globalThis.heard = 0;
   const { EventSource } = globalThis;
@@ -96,27 +96,27 @@ export function countAwaited() {
   }
 }
 
-/** Until a page that is watched has all that it asked for, and has drawn it: for three frames nothing was awaited. */
+/** Waits until a watched page has no pending request for three frames, so that it has drawn everything. */
 export const settled = (page) =>
   page.waitForFunction(() => {
     globalThis.still = globalThis.awaited ? 0 : (globalThis.still + 1) % 4;
     return !globalThis.awaited && !globalThis.still;
   });
 
-/** Until a page was told so many events more and, if it is the run's, has drawn itself since, which it does each second: what it does of
- *  itself, or because of them, it has done. */
+/** Waits until the page has received `count` more events and, on the run page, was drawn since. The page is drawn each second, so it
+ *  has then handled the events. */
 export async function hears(page, count) {
   const before = await page.evaluate(() => globalThis.heard);
   await page.waitForFunction((enough) => globalThis.heard >= enough, before + count);
   if (!(await page.$("#about"))) return;
-  const told = await page.textContent("#about"); // the box's clock
+  const told = await page.textContent("#about");  // the box's clock
   await page.waitForFunction((told) => document.getElementById("about").textContent !== told, told);
 }
 
-/** Until all that appeared or moved takes presses again: presses.js. */
+/** Waits until every element that appeared or moved takes presses again: presses.js. */
 export const armed = (page) => page.waitForFunction(() => !document.querySelector("[data-moving]"));
 
-/** Kept beside the programs, for people to look at. */
+/** Saves a picture beside the programs, for people. */
 export async function shoot(page, name) {
   const folder = join(BIN, "../screenshots");
   mkdirSync(folder, { recursive: true });

@@ -1,4 +1,4 @@
-// When a page takes it that somebody set the box's clock, without a browser.
+// When a page assumes a step of the box's clock, without a browser.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { Steps } from "../../firmware/doors/site/files/steps.js";
@@ -11,10 +11,10 @@ function told(t) {
   return { page, steps: new Steps() };
 }
 
-test("a clock that runs, late events and a lost connection are no step", (t) => {
+test("a running clock, late events and a lost connection are not a step", (t) => {
   const { page, steps } = told(t);
   let box = 1.8e9;
-  assert.equal(steps.seen(box), false, "the first is compared with nothing");
+  assert.equal(steps.seen(box), false, "the first time is not a step");
   for (const pass of [1, 1.5, 0.5, 300]) {
     page.now += pass;
     box += pass;
@@ -22,12 +22,12 @@ test("a clock that runs, late events and a lost connection are no step", (t) => 
   }
   for (let i = 0; i < 60; ++i) {
     page.now += 1;
-    assert.equal(steps.seen(box), false, "what was told last is shown again");
+    assert.equal(steps.seen(box), false, "a repeated event is not a step");
   }
-  assert.equal(steps.seen(box + 60), false, "and it is back");
+  assert.equal(steps.seen(box + 60), false, "the connection is back, which is not a step");
 });
 
-test("a step is one, either way, and told once", (t) => {
+test("a step forward or back is reported once", (t) => {
   const { page, steps } = told(t);
   steps.seen(1.8e9);
   for (const [passed, box] of [[1, 1.8e9 + YEARS], [1, 1.8e9 - YEARS], [1, 1.8e9 - YEARS + 30]]) {

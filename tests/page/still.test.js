@@ -1,4 +1,4 @@
-// The list of reports while a hand is on it, another operator at work meanwhile; and reports past those that an event has.
+// The list of reports under a mouse or finger while another operator acts; and reports beyond those in an event.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { COUNT, withMany } from "./many_reports.js";
@@ -8,11 +8,11 @@ import { watch } from "./watch.js";
 const row = (page, number) => page.locator(`#reports li[data-key="${number}"]`);
 const boxes = (page) => page.$$eval("#reports .rows > li, #reports .actions button", (nodes) => nodes.map((node) => [node.closest("li").dataset.key, node.textContent.slice(0, 9), node.getBoundingClientRect().top]));
 
-/** Another operator does it. */
+/** Acts as another operator. */
 const elsewhere = (stage, path, body = {}) =>
   fetch(`${stage.url}adit/reports${path}`, { method: "POST", headers: { Authorization: "Bearer team-1", "Content-Type": "application/json" }, body: JSON.stringify(body) });
 
-test("nothing moves under a mouse while another operator acts: what is new waits above, and comes once the mouse has gone", async (t) => {
+test("no row moves under a mouse while another operator acts: new rows wait above, and appear once the mouse has left", async (t) => {
   const { stage, page } = await watch(t, "reports");
   await row(page, 25).locator(".title").hover();
   const before = (await boxes(page)).map(([key, , top]) => [key, top]);
@@ -26,21 +26,21 @@ test("nothing moves under a mouse while another operator acts: what is new waits
   await row(page, 29).waitFor();
   assert.equal(await page.locator("#reports .newer").isVisible(), false);
   assert.equal(await row(page, 25).locator(".actions button").count(), 0);
-  assert.equal(await page.locator("#reports li").first().getAttribute("data-key"), "24", "those that wait for a word are first");
+  assert.equal(await page.locator("#reports li").first().getAttribute("data-key"), "24", "reports that need the operator come first");
 });
 
-test("shows what is new at once where that is asked for", async (t) => {
+test("shows new rows at once if asked to", async (t) => {
   const { stage, page } = await watch(t, "reports", { hasTouch: true });
   await row(page, 25).locator(".title").tap();
   await elsewhere(stage, "", { type: "Rope", x: 1, y: 2, z: 3 });
   const end = Date.now() + 30_000;
-  while (Date.now() < end && !(await row(page, 29).count())) { // it may have come by itself, where this test is slow
+  while (Date.now() < end && !(await row(page, 29).count())) {  // the row may have appeared by itself if this test is slow
     await page.getByRole("button", { name: "1 new" }).tap({ timeout: 1000 }).catch(() => {});
   }
   await row(page, 29).waitFor();
 });
 
-test("reaches every report, also those past the newest 200, and looks for duplicates among all", async (t) => {
+test("reaches every report, also those past the newest 200, and checks all for duplicates", async (t) => {
   const { page } = await watch(t, "reports", { prepare: withMany });
   await page.locator("#reports .count", { hasText: `${COUNT} sent` }).waitFor();
   const list = page.locator("#reports .scroll");
@@ -56,7 +56,7 @@ test("reaches every report, also those past the newest 200, and looks for duplic
   assert.match(await page.textContent("#compose .notes"), /#4 Rope is 1\.0 m away/);
 });
 
-test("shows the reports of one state or type and those that ask, and all again for one that an alarm names", async (t) => {
+test("filters reports by state, type and need of a decision, and shows all for a report that an alarm names", async (t) => {
   const { page } = await watch(t, "reports");
   const shown = () => page.$$eval("#reports .rows > li:not([data-level=ask])", (rows) => rows.map((row) => row.querySelector(".what").textContent));
   const filter = page.locator("#reports .filter select");

@@ -1,4 +1,4 @@
-// The system page as a whole, and what else is on it: the support bundle, the reset, what the box is made of.
+// The system page as a whole, and its parts: support bundle, reset, software list.
 import assert from "node:assert/strict";
 import { readFile } from "node:fs/promises";
 import { test } from "node:test";
@@ -8,7 +8,7 @@ import { come, OPERATOR, untilRows, VIEWER } from "./system_page.js";
 
 const SIZES = [["phone", 390, 844], ["720p", 1280, 720], ["1080p", 1920, 1080], ["4k", 3840, 2160]];
 
-test("gives the support bundle as a file", async (t) => {
+test("serves the support bundle as a file", async (t) => {
   const { stage, page } = await come(t);
   const button = page.getByRole("button", { name: "Download the bundle" });
   const [download] = await Promise.all([page.waitForEvent("download"), button.click()]);
@@ -23,7 +23,7 @@ test("gives the support bundle as a file", async (t) => {
   await page.locator("#bundle .outcome[data-bad=true]").filter({ hasText: "does not answer" }).waitFor();
 });
 
-test("tells what the box is made of", async (t) => {
+test("lists the box's software", async (t) => {
   const { page } = await come(t);
   await page.locator("#about dd").first().waitFor();
   assert.match(await text(page, "#about dl"), /Version0\.1\.0.*GNU 12\.2\.0.*Apache-2\.0.*1:\d\d h.*aarch64.*A board/);
@@ -35,7 +35,7 @@ test("tells what the box is made of", async (t) => {
   }
 });
 
-test("shows a viewer what he may see, and nothing that he may not do", async (t) => {
+test("shows a viewer only permitted parts and no forbidden actions", async (t) => {
   const { page } = await come(t, VIEWER);
   await untilRows(page, 4);
   await page.locator("#looks").waitFor();
@@ -45,7 +45,7 @@ test("shows a viewer what he may see, and nothing that he may not do", async (t)
   assert.deepEqual(page.complaints, []);
 });
 
-test("leads from each page to the others", async (t) => {
+test("links all pages", async (t) => {
   const { stage, page } = await come(t);
   const nav = page.getByRole("navigation", { name: /^(All p|P)ages$/ });
   assert.deepEqual(await nav.getByRole("link").allInnerTexts(), ["Run", "Runs", "Set-up", "System", "Display"]);
@@ -60,7 +60,7 @@ test("leads from each page to the others", async (t) => {
   await page.waitForURL(`${stage.url}display`);
 });
 
-test("fits every screen, in the dark and by day, with nothing that axe finds wrong", async (t) => {
+test("fits every screen, in both themes, without axe faults", async (t) => {
   const { stage, page } = await come(t, OPERATOR, { bypassCSP: true });
   await page.locator("#sessions li").first().waitFor();
   stage.play(`say ${"long".repeat(200)}`);

@@ -1,9 +1,9 @@
-// Who is logged in, and the passwords, on the system page.
+// Sessions and passwords on the system page.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { come, fill, OPERATOR, VIEWER } from "./system_page.js";
 
-test("lists who is logged in, and ends a session, whose page goes to the login", async (t) => {
+test("lists the sessions, and ends one, whose page goes to the login", async (t) => {
   const { stage, page } = await come(t);
   const { page: other } = await come(t, VIEWER, { stage });
   const row = page.locator("#sessions li", { hasText: /viewer/i });
@@ -12,7 +12,7 @@ test("lists who is logged in, and ends a session, whose page goes to the login",
   assert.match(await row.innerText(), /logged in (now|\d+ (s|min) ago), seen (now|\d+ (s|min) ago)/);
   await row.getByRole("button", { name: "End: viewer" }).click();
   await page.getByRole("button", { name: "Cancel" }).click();
-  assert.equal(await page.locator("#sessions li").count(), 2, "nothing is done on a no");
+  assert.equal(await page.locator("#sessions li").count(), 2, "a cancelled action was performed");
   await row.getByRole("button", { name: "End: viewer" }).click();
   await page.getByRole("button", { name: "End", exact: true }).click();
   await row.waitFor({ state: "detached" });
@@ -43,13 +43,13 @@ test("names each session's browser and system", async (t) => {
   assert.deepEqual(shown.sort(), AGENTS.map(([, name]) => name).sort());
 });
 
-test("logs out by ending the own session", async (t) => {
+test("logs out by ending its own session", async (t) => {
   const { page } = await come(t);
   await page.locator("#sessions").getByRole("button", { name: /Log out: operator/ }).click();
   await page.getByRole("button", { name: "End", exact: true }).click();
   await page.waitForURL(/login\.html/);
   const kept = (await page.context().cookies()).filter(({ value }) => value);
-  assert.deepEqual(kept.map(({ name }) => name), ["adit-device"], "which lets nobody in");
+  assert.deepEqual(kept.map(({ name }) => name), ["adit-device"], "only the device cookie remains");
 });
 
 test("says what is wrong with a new password", async (t) => {
@@ -67,18 +67,18 @@ test("says what is wrong with a new password", async (t) => {
     await form.getByRole("button", { name: "Change" }).click();
     await outcome.filter({ hasText: sentence }).waitFor();
     assert.equal(await outcome.getAttribute("data-bad"), "true");
-    assert.equal(await form.locator("[name=current]").inputValue(), fields.current, "and leaves what was typed");
+    assert.equal(await form.locator("[name=current]").inputValue(), fields.current, "the current password is kept");
   }
 });
 
-test("changes the operator's password, and sends the other operators to the login", async (t) => {
+test("changes the operator's password, which sends the other operators to the login", async (t) => {
   const { stage, page } = await come(t);
   const { page: other } = await come(t, OPERATOR, { stage });
   const form = page.locator("form[data-role=operator]");
   await fill(form, { current: OPERATOR, password: "a new password", again: "a new password" });
   await page.keyboard.press("Enter");
   await form.getByText("Changed.").waitFor();
-  assert.equal(await form.locator("[name=password]").inputValue(), "", "and forgets it");
+  assert.equal(await form.locator("[name=password]").inputValue(), "", "the field is empty after the change");
   await other.waitForURL(/login\.html/);
   await page.reload();
   await page.locator("#link .text", { hasText: "Live" }).waitFor();

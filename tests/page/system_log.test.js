@@ -5,7 +5,7 @@ import { test } from "node:test";
 import { serve } from "./stage.js";
 import { come, OPERATOR, rows, untilRows } from "./system_page.js";
 
-test("shows the log as it grows, newest first", async (t) => {
+test("shows the growing log, newest first", async (t) => {
   const { stage, page } = await come(t);
   await untilRows(page, 4);
   const said = await rows(page);
@@ -14,11 +14,11 @@ test("shows the log as it grows, newest first", async (t) => {
   stage.play("say the cable was pulled");
   await page.locator("#log li", { hasText: "the cable was pulled" }).waitFor();
   assert.match((await rows(page))[0], /the cable was pulled/);
-  assert.equal(await page.evaluate(() => window.pwned), undefined, "what anybody sent is text");
+  assert.equal(await page.evaluate(() => window.pwned), undefined, "text in the log was executed");
   assert.deepEqual(page.complaints, []);
 });
 
-test("shows of the log what is asked for, and gives the same as a file", async (t) => {
+test("filters the log, and exports the same lines as a file", async (t) => {
   const { page } = await come(t);
   await page.getByLabel("Level").selectOption("Warnings and worse");
   await untilRows(page, 2);
@@ -35,7 +35,7 @@ test("shows of the log what is asked for, and gives the same as a file", async (
   await untilRows(page, 4);
 });
 
-test("says when the box is lost, and comes back with a log of its own when it was restarted", async (t) => {
+test("says when the box is lost, and shows the new log after a restart", async (t) => {
   const { stage, page } = await come(t);
   await untilRows(page, 4);
   for (let i = 0; i < 3; ++i) stage.play(`say ${i}`);
@@ -44,7 +44,7 @@ test("says when the box is lost, and comes back with a log of its own when it wa
   await page.locator("#link .text", { hasText: "Box lost" }).waitFor();
   const again = await serve("calm", stage.port);
   t.after(() => again.end());
-  await page.waitForURL(/login\.html/); // its sessions are gone, too
+  await page.waitForURL(/login\.html/);  // its sessions are gone too
   await page.locator("#login").getByLabel("Password").fill(OPERATOR);
   await page.keyboard.press("Enter");
   await untilRows(page, 4);

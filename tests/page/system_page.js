@@ -1,10 +1,10 @@
-// The system page, for its tests: fed by a program that plays scenes.
+// The system page, for its tests, with a program that plays scenes.
 import { serve } from "./stage.js";
 import { visitor } from "./watch.js";
 
 export const OPERATOR = "correct horse", VIEWER = "look, do not touch";
 
-/** A page that logged in with `password` and looks at the system, for the length of one test. */
+/** The system page after a log-in with `password`, for one test. */
 export async function come(t, password = OPERATOR, { stage, ...options } = {}) {
   if (!stage) {
     stage = await serve("calm");
@@ -28,8 +28,8 @@ export async function fill(form, fields) {
   for (const [name, value] of Object.entries(fields)) await form.locator(`[name=${name}]`).fill(value);
 }
 
-/** Presses `button`, which makes a POST to a path of `paths`; again before the POST is answered, and again before the page shows what came
- *  of it. Gives the presses and POSTs, counted on. */
+/** Presses `button`, which POSTs to one of `paths`. Presses it again before the POST is answered, and again before the page shows the
+ *  result. Returns the numbers of presses and POSTs so far. */
 export async function pressThrice(page, paths, button) {
   const count = { presses: 0, posts: 0 };
   const press = () => ++count.presses && button.click();

@@ -1,4 +1,4 @@
-// The export for a spare box and the stick in the box, on the system page. Both boxes in full: box/spare.test.js.
+// The export for a spare box and the box's stick, on the system page. box/spare.test.js has both boxes in full.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { axeFindsNothing } from "./axe.js";
@@ -7,7 +7,7 @@ import { come, OPERATOR, pressThrice, VIEWER } from "./system_page.js";
 const STAGED = "adit-10.0.0.1-20250615T150640Z.adit-spare";
 
 async function spareOf(t) {
-  const { page } = await come(t, OPERATOR, { bypassCSP: true }); // for axe
+  const { page } = await come(t, OPERATOR, { bypassCSP: true });  // for axe
   const section = page.locator("#spare"), said = (words) => section.getByText(words).waitFor();
   await section.getByRole("button", { name: "Start standby, export to the stick" }).waitFor();
   return { page, section, said, press: (name) => section.getByRole("button", { name }).click(), yes: () => page.locator("#confirm button.main").click() };
@@ -15,11 +15,11 @@ async function spareOf(t) {
 
 const asked = (page, path) => page.requests.filter((url) => url.endsWith(path)).length;
 
-test("one press puts the box to rest and its export on the stick; what fails can be tried again, and it says when the stick may go", async (t) => {
+test("one press puts the box on standby and writes its export to the stick; a failure can be retried, and it says when the stick may be removed", async (t) => {
   const { page, section, said, press, yes } = await spareOf(t);
   await press("Start standby, export to the stick");
   await page.locator("#confirm").getByRole("button", { name: "Cancel" }).click();
-  assert.equal(asked(page, "/adit/spare/standby"), 0, "nothing is asked for on a no");
+  assert.equal(asked(page, "/adit/spare/standby"), 0, "a cancelled action was requested");
   await press("Start standby, export to the stick");
   await yes();
   await said("The stick is full.");
@@ -45,7 +45,7 @@ test("a box is not put on standby if its stick could not be written", async (t) 
   assert.equal(asked(page, "/adit/spare/standby"), 0);
 });
 
-test("what is on the stick is offered by the box and the time of its name, and asks for its code like what is uploaded", async (t) => {
+test("an export on the stick is offered by its box and time, and asks for its code like an uploaded one", async (t) => {
   const { page, section, said, press } = await spareOf(t);
   const when = await page.evaluate(() => new Date(1.75e12).toLocaleString());
   await section.getByRole("button", { name: `Take in from the stick: the box at 10.0.0.7, ${when}` }).waitFor();
@@ -61,7 +61,7 @@ test("what is on the stick is offered by the box and the time of its name, and a
   assert.deepEqual(page.complaints, []);
 });
 
-test("presses are one until the page shows what came of the first", async (t) => {
+test("repeated presses count once until the page shows the first one's result", async (t) => {
   const { page, section, said } = await spareOf(t);
   const count = await pressThrice(page, /\/adit\/spare/, section.getByRole("button", { name: "Take in from the stick: zip.adit-spare" }));
   await said("The file is not an export from Adit.");
@@ -69,7 +69,7 @@ test("presses are one until the page shows what came of the first", async (t) =>
   assert.deepEqual(page.complaints, []);
 });
 
-test("where no stick is written or read, none is spoken of", async (t) => {
+test("the page does not mention sticks if the box cannot use them", async (t) => {
   const { page, section } = await spareOf(t);
   await page.route("**/adit/spare", async (route) => {
     const answer = await route.fetch();
@@ -80,7 +80,7 @@ test("where no stick is written or read, none is spoken of", async (t) => {
   assert.equal(await section.getByRole("button", { name: "Start standby and export", exact: true }).count(), 1);
 });
 
-test("a viewer is shown nothing of it", async (t) => {
+test("a viewer does not see the section", async (t) => {
   const { page } = await come(t, VIEWER);
   assert.equal(await page.locator("#spare").isVisible(), false);
 });

@@ -1,4 +1,4 @@
-// The time that is shown: steps, play, ticks; and what the box has kept of the run from before the page was opened.
+// The shown time: steps, play, ticks; and the box's history from before the page was opened.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { until } from "./box.js";
@@ -18,11 +18,11 @@ async function opened(t, scene = "calm", options = {}) {
   return { page, stage };
 }
 
-test("goes back and on in steps of ten seconds, by press and by key, and of a minute by key", async (t) => {
+test("steps by ten seconds, by press and by key, and by a minute by key", async (t) => {
   const { page } = await opened(t);
   const from = async (what, seconds) => {
     await slider(page).press("Home");
-    for (let i = 0; i < 3; ++i) await slider(page).press("PageUp"); // into the midst of it
+    for (let i = 0; i < 3; ++i) await slider(page).press("PageUp");  // into the middle of it
     const before = await value(page);
     assert.equal(before, 180);
     await what();
@@ -40,10 +40,10 @@ test("goes back and on in steps of ten seconds, by press and by key, and of a mi
   await button(page, "Now").click();
   assert.equal(await shown(page), "now");
   await button(page, "+10 s").click();
-  assert.equal(await shown(page), "now", "there is nothing later");
+  assert.equal(await shown(page), "now", "the slider is at its end");
 });
 
-test("plays from where it is up to now, faster or slower, and pauses", async (t) => {
+test("plays from the shown time up to now, faster or slower, and pauses", async (t) => {
   const { page } = await opened(t);
   await slider(page).press("Home");
   assert.equal(await page.textContent("#map .speed"), "10×");
@@ -63,24 +63,24 @@ test("plays from where it is up to now, faster or slower, and pauses", async (t)
   await button(page, "Play").click();
   await until(async () => (await value(page)) < 200, "it to begin at the first again");
   await slider(page).press("ArrowLeft");
-  assert.equal(await page.locator("#map .play").getAttribute("aria-label"), "Play", "who moves it by hand pauses it");
+  assert.equal(await page.locator("#map .play").getAttribute("aria-label"), "Play", "moving the slider pauses");
 });
 
-test("asks for a tile again only where it changed by that time", async (t) => {
+test("loads a tile again only if it changed by that time", async (t) => {
   const { page } = await opened(t);
   await slider(page).press("Home");
   for (let i = 0; i < 4; ++i) await slider(page).press("PageUp");
   await settled(page);
   const tiles = () => page.requests.filter((url) => url.includes("at=")).length, before = tiles();
   for (let i = 0; i < 6; ++i) {
-    await slider(page).press("Shift+ArrowRight"); // the scene's map grows each 30 s
+    await slider(page).press("Shift+ArrowRight");  // the scene's map grows every 30 s
     await settled(page);
   }
   const more = tiles() - before, seen = new Set(page.requests.filter((url) => url.includes("at=")).map((url) => url.split("?")[0])).size;
   assert.ok(more <= seen, `${more} of ${seen} tiles, in six steps`);
 });
 
-/** How many pixels of the ticks are drawn in the upper and in the lower half. */
+/** The number of pixels of ticks in the upper and in the lower half. */
 const ticks = (page) => page.$eval("#map .ticks", (canvas) => {
   const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height), counts = [0, 0];
   for (let i = 3; i < data.length; i += 4) if (data[i] > 100) ++counts[i < data.length / 2 ? 0 : 1];
@@ -95,10 +95,10 @@ test("has ticks of reports above its line, and of alarms below", async (t) => {
   await until(async () => (await ticks(alarmed))[1] > 20, "the alarms");
 });
 
-test("fills plots and the robots' lines from what the box has kept, as the page opens", async (t) => {
+test("fills plots and the robots' lines from the box's history when the page opens", async (t) => {
   const { page } = await opened(t, "calm", { prepare: withHistory((now) => kept(now, 500)) });
   await until(async () => (await spans(page, "#plots .line")).every((span) => span >= 110), "plots of eight minutes"); // of 149
-  assert.ok((await spans(page, "#plots .line")).every((span) => span <= 130), "no more than there was");
+  assert.ok((await spans(page, "#plots .line")).every((span) => span <= 130), "the plot is longer than the history");
   const [first] = await spans(page, '#robots li[data-key="ANYmal1"] path');
   assert.ok(first >= 85, `${first} of 90`);
   assert.equal(page.historyAsked[0], "0");
@@ -106,10 +106,10 @@ test("fills plots and the robots' lines from what the box has kept, as the page 
   assert.equal(page.historyAsked.length, 1);
   const { page: young } = await opened(t, "calm", { prepare: withHistory((now) => kept(now, 0)) });
   await young.locator("#plots li").nth(4).waitFor();
-  assert.ok((await spans(young, "#plots .line")).every((span) => span < 10), "nothing is made up");
+  assert.ok((await spans(young, "#plots .line")).every((span) => span < 10), "the plot shows times without data");
 });
 
-test("has a slider of at least half of its panel", async (t) => {
+test("has a slider of at least half of its panel's width", async (t) => {
   const { page } = await opened(t);
   for (const [width, height] of [[390, 844], [1280, 720], [1920, 1080]]) {
     await page.setViewportSize({ width, height });
@@ -118,7 +118,7 @@ test("has a slider of at least half of its panel", async (t) => {
   }
 });
 
-test("has room for a gloved finger on a phone, with all that is on a larger screen", async (t) => {
+test("has room for a gloved finger on a phone, with all parts of a larger screen", async (t) => {
   const { page } = await opened(t, "calm", { viewport: { width: 390, height: 844 }, hasTouch: true });
   const boxes = await page.$$eval("#map .time :is(button, input)", (nodes) => nodes.map((node) => {
     const { left, right, width, height } = node.getBoundingClientRect();

@@ -1,12 +1,12 @@
-// Twenty robots, as an init script for a page that looks at a scene: each view of the run has them in the place of its own.
+// Twenty robots, as an init script for a page of a scene: they replace the robots in each view.
 
 import { retell } from "./retold.js";
 
-/** `silent`: the names of those that said nothing for 94 s; `late`: of those whose grid waits for 12 s. */
+/** `silent`: names of robots that were silent for 94 s; `late`: names of those whose grid is queued for 12 s. */
 export const twenty = (page, { silent = ["uav5"], late = ["uav6"] } = {}) => retell(page, (silent, late) => {
   const names = [..."12345678"].map((n) => `ugv${n}`).concat([..."123456"].flatMap((n) => [`spot${n}`, `uav${n}`]));
   const began = Date.now() / 1000;
-  globalThis.told = { silent, late }; // a test changes it
+  globalThis.told = { silent, late };  // a test may change it
   const row = (view, kind, robot, since) => ({ ...view.activities.find((each) => each.kind === "grid" && !each.robot), kind, robot, age: since });
   return (view) => {
     if (!view.activities.length) return view;

@@ -1,4 +1,4 @@
-// What every test of the page needs: a browser for the file, and a page that looks at a scene.
+// Shared by all tests of the page: a browser for the file, and a page of a scene.
 import assert from "node:assert/strict";
 import { after, before } from "node:test";
 import { countAwaited, launch, leave, look, serve, visit } from "./stage.js";
@@ -11,23 +11,23 @@ let browser;
 before(async () => (browser = await launch()));
 after(() => browser?.close());
 
-/** A page that looks at a scene, for the length of one test; `prepare(page)` before it is opened. */
+/** A page of a scene, for one test. `prepare(page)` runs before it is opened. */
 export async function watch(t, scene, { path = "", prepare, ...options } = {}) {
   const stage = await serve(scene);
   let page;
   t.after(async () => {
-    if (page) await leave(page); // first: its requests must not fail with the server
+    if (page) await leave(page);  // first, because its requests must not fail when the server ends
     await stage.end();
   });
   page = await look(browser, stage.url + path, options, async (page) => {
     await page.addInitScript(countAwaited);
-    await page.route("**/adit/settings", (route) => route.fulfill({ json: { keys: [] } })); // which a scene has none of
+    await page.route("**/adit/settings", (route) => route.fulfill({ json: { keys: [] } }));  // a scene has no settings
     await prepare?.(page);
   });
   return { stage, page };
 }
 
-/** Whoever comes to `url` without a session, for the length of one test. */
+/** A page at `url` without a session, for one test. */
 export async function visitor(t, url, options = {}, prepare = () => {}) {
   const page = await visit(browser, url, options, prepare);
   t.after(() => leave(page));
@@ -37,7 +37,7 @@ export async function visitor(t, url, options = {}, prepare = () => {}) {
 export const text = (page, selector) => page.textContent(selector);
 export const said = (page, words) => page.waitForFunction((words) => document.body.innerText.includes(words), words);
 
-/** Fails unless the clock is the scene's: 12:34 at first, and not further than the time since `began`. */
+/** Fails unless the clock is the scene's: 12:34 at first, plus at most the time since `began`. */
 export async function showsTheClock(page, began) {
   const shown = await text(page, "#clock");
   assert.match(shown, /^\d\d:\d\d$/);

@@ -1,4 +1,4 @@
-// What a visit of a page weighs, and that what is kept is kept rightly: by what a browser and a script are really sent.
+// The size and the caching of a page, by real answers to a browser and a script.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { createHash } from "node:crypto";
@@ -14,8 +14,8 @@ import { FILES, serve } from "./stage.js";
 import { visitor } from "./watch.js";
 
 const PAGES = ["", "display", "runs", "setup", "system", "help", "login.html"];
-const MOST_REQUESTS = 5; // the page, its script, its style, its icon, and what loads it again
-const MOST = 60_000; // bytes of one page as they are sent
+const MOST_REQUESTS = 5;  // the page, its script, its style, its icon, and its reload script
+const MOST = 60_000;  // bytes of one page, compressed
 const SITE = fileURLToPath(new URL("../../firmware/doors/site/", import.meta.url));
 
 async function stageFor(t) {
@@ -24,7 +24,7 @@ async function stageFor(t) {
   return stage;
 }
 
-/** What a script is answered: {status, headers, body}. */
+/** The answer to a script: {status, headers, body}. */
 const ask = (url, headers = {}) =>
   new Promise((resolve, reject) => {
     get(url, { headers }, async (answer) => resolve({ ...answer, status: answer.statusCode, headers: answer.headers, body: Buffer.concat(await answer.toArray()) })).on("error", reject);
@@ -33,7 +33,7 @@ const ask = (url, headers = {}) =>
 /** The files that a page names. */
 const namedIn = (html) => [...html.matchAll(/(?:href|src)="([^"/]+\.(?:js|css|svg))"/g)].map(([, name]) => name);
 
-/** What a browser asks for to show a page, but for the API's answers: [{url, headers, kept, length}]. */
+/** A browser's requests for a page, without the API: [{url, headers, kept, length}]. */
 async function visitTwice(t, stage, path) {
   const page = await visitor(t, "about:blank", { extraHTTPHeaders: { Authorization: "Bearer team-1" } });
   const devtools = await page.context().newCDPSession(page);
@@ -54,7 +54,7 @@ async function visitTwice(t, stage, path) {
   return visits;
 }
 
-test("a page comes in a handful of answers, all compressed", async (t) => {
+test("a page loads in a few answers, all compressed", async (t) => {
   const stage = await stageFor(t);
   for (const path of ["", "display", "setup", "system"]) {
     const [first, again] = await visitTwice(t, stage, path);
@@ -68,7 +68,7 @@ test("a page comes in a handful of answers, all compressed", async (t) => {
   }
 });
 
-test("what is named by its content is that, and may be kept; a page is asked for each time", async (t) => {
+test("files named by their content have that content and may be cached; a page is requested each time", async (t) => {
   const stage = await stageFor(t);
   for (const path of PAGES) {
     const page = await ask(stage.url + path);
@@ -89,7 +89,7 @@ test("what is named by its content is that, and may be kept; a page is asked for
   }
 });
 
-/** What is served of the pages' files in `files`, of each its text, by name. */
+/** The built files of the pages for source files `files`, as text by name. */
 function made(files) {
   const folder = mkdtempSync(join(tmpdir(), "adit-bundle-"));
   try {
@@ -101,7 +101,7 @@ function made(files) {
   }
 }
 
-/** The pages' files once more, in a folder that goes with the test. */
+/** A copy of the pages' source files in a directory that is removed after the test. */
 function elsewhere(t) {
   const folder = mkdtempSync(join(tmpdir(), "adit-pages-"));
   t.after(() => rmSync(folder, { recursive: true }));
@@ -109,7 +109,7 @@ function elsewhere(t) {
   return join(folder, "files");
 }
 
-test("the same bytes come of the same files, wherever they lie", (t) => {
+test("the build does not depend on the directory", (t) => {
   const other = elsewhere(t);
   const first = made(FILES);
   assert.ok(Object.keys(first).length > PAGES.length * 3);
@@ -117,13 +117,13 @@ test("the same bytes come of the same files, wherever they lie", (t) => {
   for (const [name, text] of Object.entries(first)) assert.ok(!text.includes(SITE) && !text.includes(other) && !/\/\*|^\s*\/\/ /m.test(text), name);
 });
 
-test("a page that names a part that is none is not served without it", (t) => {
+test("a page that names a missing part fails to build", (t) => {
   const other = elsewhere(t);
   appendFileSync(join(other, "runs.html"), "<!-- part: nobody -->\n");
   assert.throws(() => made(other), /nobody\.html/);
 });
 
-test("every page is valid HTML without script or style of its own", async () => {
+test("every page is valid HTML without inline script or style", async () => {
   const validator = new HtmlValidate({
     extends: ["html-validate:standard"],
     rules: { "no-inline-style": "error", "no-trailing-whitespace": "error", "void-style": "off", "doctype-style": "off", "long-title": "off" },

@@ -1,4 +1,4 @@
-// Whose fault a 500 is: Blame and the queues, against servers of several kinds, on simulated time.
+// Which message causes a 500: Blame and the queues with several kinds of servers, in simulated time.
 #include "queues/blame.hpp"
 
 #include <gtest/gtest.h>
@@ -15,19 +15,19 @@
 namespace adit::queues {
 namespace {
 
-/// Whether a server takes the map whose points are that value, at that second.
+/// Whether a server accepts a map with that value in its points, at that second.
 using Server = std::function<bool(std::uint8_t, double)>;
 
 struct Outcome {
-  std::vector<std::uint8_t> taken, rejected;
+  std::vector<std::uint8_t> delivered, rejected;
   std::size_t waiting = 0;
   int tries_of_first = 0;
 };
 
-/// `senders` robots post a cloud each second, numbered 1, 2, 3...: the first posts 1, the second 2, and so
-/// on. One is sent each second, as the gateway sends them.
+/// `senders` robots post a cloud each second, numbered 1, 2, 3 and so on. The first posts 1, the second 2,
+/// and so on. One cloud is sent each second, in the gateway's order.
 Outcome played(const Server& server, int clouds, int senders, double until) {
-  MapQueue queue(0);  // nothing is merged
+  MapQueue queue(0);  // no clouds are merged
   Blame blame;
   Outcome outcome;
   int posted = 0;
@@ -44,7 +44,7 @@ Outcome played(const Server& server, int clouds, int senders, double until) {
     outcome.tries_of_first += which == 1 ? 1 : 0;
     if (server(which, now)) {
       blame.passed(name, at(now));
-      outcome.taken.push_back(which);
+      outcome.delivered.push_back(which);
     } else if (blame.failed(name, map->trial, at(now)) == Blame::Next::Reject) {
       outcome.rejected.push_back(which);
     } else {
@@ -60,7 +60,7 @@ TEST(Blame, RejectsNothingDuringAnOutage) {
     const Server outage = [&](std::uint8_t, double now) { return now < 5 || now >= 5 + length; };
     const Outcome outcome = played(outage, 20, 3, 5 + length + 30);
     EXPECT_TRUE(outcome.rejected.empty()) << length;
-    EXPECT_EQ(outcome.taken.size(), 20) << length;
+    EXPECT_EQ(outcome.delivered.size(), 20) << length;
     EXPECT_EQ(outcome.waiting, 0) << length;
   }
 }
@@ -69,24 +69,25 @@ TEST(Blame, RejectsTheOnlyFailingMapAndDeliversTheRest) {
   for (const int senders : {1, 2, 5}) {
     const Outcome outcome = played([](std::uint8_t which, double) { return which != 1; }, 30, senders, 60);
     EXPECT_EQ(outcome.rejected, std::vector<std::uint8_t>{1}) << senders;
-    EXPECT_EQ(outcome.taken.size(), 29) << senders;
-    EXPECT_GE(outcome.tries_of_first, 4) << senders << ": its tries are few";
-    EXPECT_LE(outcome.tries_of_first, 6) << senders << ": it holds others up";
+    EXPECT_EQ(outcome.delivered.size(), 29) << senders;
+    EXPECT_GE(outcome.tries_of_first, 4) << senders << ": tries of the first map are too few";
+    EXPECT_LE(outcome.tries_of_first, 6) << senders << ": the first map delays others";
   }
 }
 
 TEST(Blame, RejectsSeveralFailingMapsWhileOthersPass) {
   const auto is_good = [](std::uint8_t which, double) { return which % 5 != 0 || which > 30; };
   const Outcome outcome = played(is_good, 100, 5, 300);
-  EXPECT_EQ(outcome.rejected.size(), 6) << "a robot whose first maps all fail";
-  EXPECT_EQ(outcome.taken.size(), 94);
+  EXPECT_EQ(outcome.rejected.size(), 6) << "all first maps of one robot fail";
+  EXPECT_EQ(outcome.delivered.size(), 94);
 }
 
 TEST(Blame, KeepsFailingMapsQueuedIfNoOtherIsSent) {
   const Outcome outcome = played([](std::uint8_t which, double) { return which % 5 != 0; }, 30, 5, 200);
   EXPECT_GE(outcome.rejected.size(), 1);
-  EXPECT_EQ(outcome.rejected.size() + outcome.waiting, 6) << "the last wait until another passes";
-  EXPECT_EQ(outcome.taken.size(), 24);
+  EXPECT_EQ(outcome.rejected.size() + outcome.waiting, 6)
+      << "the last maps stay queued until another is accepted";
+  EXPECT_EQ(outcome.delivered.size(), 24);
 }
 
 TEST(Blame, SpacesTheTries) {
@@ -119,25 +120,25 @@ TEST(Blame, CountsNoStrikeIfAnotherSenderAlsoFails) {
   blame.passed("ugv2", at(0));
   blame.failed("ugv1", trial, at(1));
   blame.passed("ugv3", at(2));
-  blame.failed("ugv2", other, at(3));  // it passed before
+  blame.failed("ugv2", other, at(3));  // it was accepted before
   blame.failed("ugv1", trial, at(4));
   EXPECT_EQ(trial.strikes, 0);
   blame.passed("ugv3", at(5));
-  blame.failed("ugv2", other, at(6));  // on trial itself: it says nothing of others
+  blame.failed("ugv2", other, at(6));  // on trial itself, so its failure says little about others
   blame.failed("ugv1", trial, at(7));
   EXPECT_EQ(trial.strikes, 1);
 }
 
 TEST(Blame, RejectsFewMapsIfHalfOfAllTriesFailAtRandom) {
-  std::size_t rejected = 0, taken = 0;
+  std::size_t rejected = 0, delivered = 0;
   for (unsigned seed = 1; seed <= 20; ++seed) {
     std::mt19937_64 random{seed};
     const Outcome outcome = played([&](std::uint8_t, double) { return random() % 2 == 0; }, 60, 4, 400);
     rejected += outcome.rejected.size();
-    taken += outcome.taken.size();
+    delivered += outcome.delivered.size();
     EXPECT_EQ(outcome.waiting, 0);
   }
-  EXPECT_LE(rejected, taken / 50);
+  EXPECT_LE(rejected, delivered / 50);
 }
 
 TEST(MapQueueOnTrial, SendsOneOtherMapFirst) {
@@ -151,14 +152,14 @@ TEST(MapQueueOnTrial, SendsOneOtherMapFirst) {
   blame.failed("ugv1", first->trial, at(3));
   queue.put_back(std::move(*first));
   EXPECT_EQ(points_of(queue.take(at(4))->map).front(), 2);
-  EXPECT_EQ(points_of(queue.take(at(5))->map).front(), 1) << "one other, not all";
+  EXPECT_EQ(points_of(queue.take(at(5))->map).front(), 1) << "only one other map goes first";
 }
 
 TEST(MapQueueOnTrial, KeepsLaterGridsOfItsNameBehindItAtFirst) {
   MapQueue queue(0);
   queue.add(1, grid_update("ugv1", grid(0, 0, 10, 10)), at(0));
   queue.add(2, grid_update("ugv1", grid(0.25, 0.25, 10, 10)),
-            at(1));  // overlaps it, and fills no rectangle with it
+            at(1));  // overlaps it without forming a rectangle
   Blame blame;
   for (int i = 0; i < MapQueue::kInPlace; ++i) {
     auto taken = queue.take(at(10 * i));
@@ -193,7 +194,7 @@ TEST(MapQueueOnTrial, GivesItsPlaceToANewerCoveringGrid) {
   queue.add(2, grid_update("ugv1", grid(0, 0, 20, 20)), at(2));
   const auto newer = queue.take(at(3));
   EXPECT_EQ(newer->updates, (std::vector<std::uint64_t>{1, 2}));
-  EXPECT_LE(newer->trial.strikes, Blame::kMostStrikes - 2) << "it is to fail by itself";
+  EXPECT_LE(newer->trial.strikes, Blame::kMostStrikes - 2) << "the newer map starts without most strikes";
 }
 
 }  // namespace

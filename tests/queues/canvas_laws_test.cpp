@@ -1,5 +1,5 @@
-// A window that rolls with its robot, sent with what lies in the gaps between its places: what a Command Post
-// has in the end is what was posted, whatever became of each try.
+// A window that rolls with its robot is sent with known cells in the gaps between its places. The Command
+// Post must finally have the posted cells, whatever the outcome of each try.
 #include <gmock/gmock.h>
 
 #include <bitset>
@@ -13,14 +13,14 @@
 namespace adit::queues {
 namespace {
 
-constexpr int kSide = 400;  // cells of the world, with (0, 0) in its middle
+constexpr int kSide = 400;  // cells of the world; (0, 0) is its centre
 constexpr int kWindow = 14;
 constexpr double kCell = 0.05;
 
-/// The world's cells, as a server has them.
+/// The world's cells at a server.
 struct World {
   std::vector<std::uint8_t> cells = std::vector<std::uint8_t>(std::size_t{kSide} * kSide, icd::kUnknownCell);
-  bool overlays = false;  // unknown overwrites nothing
+  bool overlays = false;  // unknown cells overwrite no cell
 
   void empty() { std::ranges::fill(cells, icd::kUnknownCell); }
   void put(const icd::OccupancyGrid& grid, const std::vector<std::uint8_t>& values) {
@@ -42,7 +42,7 @@ class CanvasLaws : public testing::TestWithParam<std::uint64_t> {
       const int what = pick(400);
       if (what < 250) post();
       if (what >= 250 && what < 376) send();
-      if (what >= 376 && what < 396) ask_or_hear();
+      if (what >= 376 && what < 396) ask_or_read_status();
       if (what == 396) change_run();
       if (what == 397) restart();
       if (what == 398) begin_run();
@@ -51,7 +51,7 @@ class CanvasLaws : public testing::TestWithParam<std::uint64_t> {
     while (queue_.count() > 0 || following_) send();
   }
 
-  /// The window has moved; now and then it is another patch.
+  /// Posts the moved window, sometimes another patch.
   void post() {
     if (pick(25) == 0) towards_x_ = pick(9) - 4, towards_y_ = pick(9) - 4;
     x_ = std::clamp(x_ + towards_x_, -150, 130), y_ = std::clamp(y_ + towards_y_, -150, 130);
@@ -84,7 +84,7 @@ class CanvasLaws : public testing::TestWithParam<std::uint64_t> {
   struct Sent {
     QueuedMap waiting;
     std::vector<std::uint8_t> cells;
-    int run = 0;  // that was known
+    int run = 0;  // the run that was known
   };
   std::optional<Sent> take() {
     auto next = queue_.take();
@@ -94,14 +94,14 @@ class CanvasLaws : public testing::TestWithParam<std::uint64_t> {
     return Sent{*std::move(next), std::move(cells), known_run_};
   }
 
-  /// The next one is packed while one is under way, of which it may not be known whether it arrived.
+  /// Packs the next map while one is in flight, whose delivery may be unknown.
   void send() {
     auto sent = following_ ? std::exchange(following_, {}) : take();
     if (!sent) return;
     if (pick(3) == 0) following_ = take();
     under_way_ = &*sent;
     while (pick(3) == 0) post();
-    while (pick(4) == 0) ask_or_hear();
+    while (pick(4) == 0) ask_or_read_status();
     under_way_ = nullptr;
     const int what = pick(20);
     if (what > 3) {
@@ -109,7 +109,7 @@ class CanvasLaws : public testing::TestWithParam<std::uint64_t> {
       forget(sent->waiting.updates);
       return;
     }
-    if (what % 2 == 0) arrives(*sent);  // and nobody knows
+    if (what % 2 == 0) arrives(*sent);  // without an answer
     if (following_) forget(queue_.put_back(std::exchange(following_, {})->waiting));
     if (what == 3) ++sent->waiting.trial.failures;
     if (what == 1 && !sent->waiting.parts.empty()) return queue_.put_back_apart(std::move(sent->waiting));
@@ -118,13 +118,13 @@ class CanvasLaws : public testing::TestWithParam<std::uint64_t> {
 
   void arrives(const Sent& sent) {
     const auto& grid = std::get<icd::OccupancyGrid>(sent.waiting.map.msg);
-    if (sent.waiting.has_gaps) look_into_gaps(sent, grid);
+    if (sent.waiting.has_gaps) check_gaps(sent, grid);
     overwriting_.put(grid, sent.cells);
     overlaying_.put(grid, sent.cells);
   }
 
-  /// No cell that the server knows becomes unknown there.
-  void look_into_gaps(const Sent& sent, const icd::OccupancyGrid& grid) {
+  /// Checks that no cell that the server knows becomes unknown.
+  void check_gaps(const Sent& sent, const icd::OccupancyGrid& grid) {
     std::vector<std::uint8_t> is_posted(sent.cells.size(), 0);
     for (const QueuedMap& part : sent.waiting.parts) {
       const auto its = *cells_in(grid, std::get<icd::OccupancyGrid>(part.map.msg));
@@ -142,8 +142,8 @@ class CanvasLaws : public testing::TestWithParam<std::uint64_t> {
     }
   }
 
-  /// With an empty map, there; here it is noticed by the next status that is asked for. What waits is posted
-  /// in it: its cells are the newest there are.
+  /// The server's map is empty. The queue notices the run with the next status. Queued maps belong to the
+  /// new run: their cells are the newest.
   void begin_run() {
     ++run_;
     std::fill(is_of_earlier_run_.begin(), is_of_earlier_run_.end(), false);
@@ -158,34 +158,34 @@ class CanvasLaws : public testing::TestWithParam<std::uint64_t> {
     }
   }
 
-  /// What is said is heard later.
-  void ask_or_hear() {
-    if (!said_) {
-      said_ = run_;
+  /// Asks for a status, or reads the answer to an earlier request.
+  void ask_or_read_status() {
+    if (!pending_status_) {
+      pending_status_ = run_;
       return;
     }
-    const int said = *std::exchange(said_, {});
-    if (said == known_run_) {
+    const int status = *std::exchange(pending_status_, {});
+    if (status == known_run_) {
       std::vector<const icd::MapUpdate*> maps;
       if (under_way_ != nullptr) maps.push_back(&under_way_->waiting.map);
       if (following_) maps.push_back(&following_->waiting.map);
       return queue_.canvases().heard(maps);
     }
-    known_run_ = said;
+    known_run_ = status;
     if (following_) forget(queue_.put_back(std::exchange(following_, {})->waiting));
     queue_.canvases().begin_run();
   }
 
-  /// It is taken for another that may be the same, and is.
+  /// The queue takes the run for another one that may be the same. It is the same.
   void change_run() {
     if (following_) forget(queue_.put_back(std::exchange(following_, {})->waiting));
     queue_.canvases().change_run();
   }
 
-  /// A life that follows has the maps that wait, and where some were sent.
+  /// The next process has the queued maps and knows the sent areas.
   void restart() {
     following_.reset();
-    said_.reset();
+    pending_status_.reset();
     queue_ = MapQueue{0};
     queue_.canvases() = Canvases{kMostTiles};
     queue_.canvases().carry_on(extents_);
@@ -206,7 +206,7 @@ class CanvasLaws : public testing::TestWithParam<std::uint64_t> {
   std::optional<Sent> following_;
   const Sent* under_way_ = nullptr;
   int run_ = 1, known_run_ = 1, blanked_ = 0;
-  std::optional<int> said_;  // the run that was on when a status was asked for that is still to be heard
+  std::optional<int> pending_status_;  // the run at the time of the pending status request
   std::uint64_t number_ = 0;
   int x_ = 0, y_ = 0, towards_x_ = 2, towards_y_ = 3, gaps_ = 0;
   std::vector<std::bitset<256>> ever_posted_ = std::vector<std::bitset<256>>(std::size_t{kSide} * kSide);
@@ -214,20 +214,20 @@ class CanvasLaws : public testing::TestWithParam<std::uint64_t> {
   World posted_, overwriting_, overlaying_{.overlays = true};
 };
 
-/// Until another run is noticed, what lies in gaps is sent as it was in the one before.
+/// Until another run is noticed, gaps are filled with the cells of the run before.
 TEST_P(CanvasLaws, ServerHasTheNewestValueOfEachPostedCell) {
   run(1000);
   EXPECT_GT(gaps_, 3);
-  EXPECT_EQ(blanked_, 0) << "cells that nobody posted as unknown";
+  EXPECT_EQ(blanked_, 0) << "known cells became unknown";
   for (std::size_t i = 0; i < posted_.cells.size(); ++i) {
     const bool may_be_older = is_of_earlier_run_[i];
     if (may_be_older && ever_posted_[i].none()) continue;
     const std::uint8_t newest = posted_.cells[i], has = overlaying_.cells[i];
-    ASSERT_EQ(overwriting_.cells[i], newest) << "cell " << i << ": unknown cells too, where it overwrites";
+    ASSERT_EQ(overwriting_.cells[i], newest) << "cell " << i << ": differs on an overwriting server";
     const bool is_right =
         newest != icd::kUnknownCell ? has == newest : has == icd::kUnknownCell || ever_posted_[i].test(has);
     ASSERT_TRUE(is_right || may_be_older)
-        << "cell " << i << ": " << int{has} << " where it overlays, not " << int{newest};
+        << "cell " << i << ": " << int{has} << " on an overlaying server, not " << int{newest};
   }
 }
 

@@ -26,21 +26,21 @@ class CanvasesTest : public testing::Test {
     }
     queue_.add(number_, std::move(map), at(static_cast<double>(number_)));
   }
-  QueuedMap taken() {
+  QueuedMap take_packed() {
     auto next = queue_.take();
     packed_of(queue_, *next);
     return *std::move(next);
   }
-  /// How many of two windows, one up to the right of the other, go in one message.
+  /// The number of windows that share a message, of two with one up to the right of the other.
   std::size_t go_together(int x, int y) {
     add(window_at(x, y));
     add(window_at(x + 2, y + 2));
-    const std::size_t together = taken().updates.size();
-    while (queue_.count() > 0) taken();
+    const std::size_t together = take_packed().updates.size();
+    while (queue_.count() > 0) take_packed();
     return together;
   }
 
-  /// After the first, which is never stitched.
+  /// The same after a first window, which is never stitched.
   std::size_t go_together_from_now_on(int x, int y) {
     go_together(300, 300);
     return go_together(x, y);
@@ -55,25 +55,25 @@ class CanvasesTest : public testing::Test {
 };
 
 TEST_F(CanvasesTest, KnowSentAndUnsentAreas) {
-  EXPECT_EQ(go_together(0, 0), 1) << "nothing is known before the first";
+  EXPECT_EQ(go_together(0, 0), 1) << "no area is known before the first map";
   EXPECT_EQ(go_together(4, 4), 2);
-  EXPECT_EQ(go_together(0, 2), 2) << "over what was sent";
-  EXPECT_EQ(go_together(-300, 500), 2) << "elsewhere";
+  EXPECT_EQ(go_together(0, 2), 2) << "over a sent area";
+  EXPECT_EQ(go_together(-300, 500), 2) << "outside the sent area";
 }
 
 TEST_F(CanvasesTest, DoNotKnowAreasSentOnAnotherLattice) {
   add(window_at(0, 0, 40, 0.25));
-  taken();
+  take_packed();
   EXPECT_EQ(go_together(5, 5), 1);
-  EXPECT_EQ(go_together(6, 6), 1) << "nor do they learn it";
-  EXPECT_EQ(go_together(70, 70), 2) << "there nothing was, tiles away";
+  EXPECT_EQ(go_together(6, 6), 1) << "sending a map there does not make the area known";
+  EXPECT_EQ(go_together(70, 70), 2) << "an area that was never sent, some tiles away";
 }
 
 TEST_F(CanvasesTest, NewRunKnowsMapsSentSinceTheSecondLastStatus) {
   go_together(0, 0);
   hear(1);
   queue_.canvases().begin_run();
-  EXPECT_EQ(go_together_from_now_on(4, 4), 1) << "the status may have been asked for before it arrived";
+  EXPECT_EQ(go_together_from_now_on(4, 4), 1) << "the status may be older than the map's arrival";
   hear(2);
   queue_.canvases().begin_run();
   EXPECT_EQ(go_together_from_now_on(4, 4), 2);
@@ -81,12 +81,12 @@ TEST_F(CanvasesTest, NewRunKnowsMapsSentSinceTheSecondLastStatus) {
 
 TEST_F(CanvasesTest, NewRunKnowsMapsInFlightAtTheSecondLastStatus) {
   add(window_at(100, 100));
-  const QueuedMap under_way = taken();
+  const QueuedMap under_way = take_packed();
   const icd::MapUpdate* const maps[] = {&under_way.map};
   queue_.canvases().heard(maps);
   hear(1);
   queue_.canvases().begin_run();
-  EXPECT_EQ(go_together_from_now_on(102, 102), 1) << "what lies in its corner is not known";
+  EXPECT_EQ(go_together_from_now_on(102, 102), 1) << "the cells in its corner are unknown";
   hear(2);
   queue_.canvases().begin_run();
   EXPECT_EQ(go_together_from_now_on(102, 102), 2);
@@ -107,7 +107,7 @@ TEST_F(CanvasesTest, ForgetCellsIfTheRunMayHaveChanged) {
   hear(2);
   queue_.canvases().change_run();
   EXPECT_EQ(go_together_from_now_on(4, 4), 1);
-  EXPECT_EQ(go_together(340, 340), 2) << "there nothing was";
+  EXPECT_EQ(go_together(340, 340), 2) << "no map was sent there";
 }
 
 TEST_F(CanvasesTest, ResumedRunCountsAllPostedMapsAsSent) {
@@ -139,8 +139,8 @@ TEST_F(CanvasesTest, KeepCommandPostsApart) {
   go_together(0, 0);
   queue_.canvases().lead_to("10.100.2.201:8000");
   add(window_at(100, 100));
-  taken();
-  EXPECT_EQ(go_together(0, 0), 2) << "this one has nothing there";
+  take_packed();
+  EXPECT_EQ(go_together(0, 0), 2) << "this Command Post has no cells there";
   queue_.canvases().lead_to("10.100.1.201:8000");
   go_together(200, 200);
   EXPECT_EQ(go_together(0, 0), 1);
@@ -159,30 +159,30 @@ TEST_F(CanvasesTest, RunAtAnotherCommandPostChangesNothingHere) {
   queue_.canvases().lead_to("10.100.1.201:8000");
   go_together(200, 200);
   EXPECT_EQ(go_together(0, 0), 1);
-  EXPECT_EQ(go_together(-1990, -1990), 1) << "of an earlier life";
+  EXPECT_EQ(go_together(-1990, -1990), 1) << "from an earlier process";
 }
 
 TEST_F(CanvasesTest, DoNotKnowCellsOfAFailedTry) {
   go_together(0, 0);
   add(window_at(4, 4));
-  QueuedMap failed = taken();
+  QueuedMap failed = take_packed();
   ++failed.trial.failures;
   queue_.put_back(std::move(failed));
   add(window_at(6, 6));
   add(window_at(8, 8));
-  EXPECT_EQ(taken().updates.size(), 1) << "it";
-  EXPECT_EQ(taken().updates.size(), 1) << "a corner between the others is in its tile";
+  EXPECT_EQ(take_packed().updates.size(), 1) << "the failed map goes alone";
+  EXPECT_EQ(take_packed().updates.size(), 1) << "a corner between the others lies in its tile";
 }
 
 TEST_F(CanvasesTest, SplitAFailedMapWithGapsIntoItsParts) {
   go_together(0, 0);
   add(window_at(4, 4));
   add(window_at(6, 6));
-  QueuedMap both = taken();
+  QueuedMap both = take_packed();
   ASSERT_TRUE(both.has_gaps);
   queue_.put_back(std::move(both));
-  EXPECT_EQ(queue_.count(), 2) << "so it comes back as its parts";
-  EXPECT_EQ(taken().parts.size(), 2);
+  EXPECT_EQ(queue_.count(), 2) << "a failed stitched map returns as its parts";
+  EXPECT_EQ(take_packed().parts.size(), 2);
 }
 
 TEST_F(CanvasesTest, ForgetTheOldestAtTheMemoryLimit) {
@@ -201,15 +201,15 @@ TEST_F(CanvasesTest, ForgetTheOldestAtTheMemoryLimit) {
 
 TEST_F(CanvasesTest, IgnoreWholeTurnedAndOversizedGrids) {
   add(window_at(0, 0));
-  EXPECT_TRUE(taken().ground);
+  EXPECT_TRUE(take_packed().ground);
   add(window_at(-1, -1, 12));
-  EXPECT_FALSE(taken().ground) << "all that was sent lies in it";
+  EXPECT_FALSE(take_packed().ground) << "it contains every sent area";
   add(window_at(4, 4));
-  EXPECT_TRUE(taken().ground);
+  EXPECT_TRUE(take_packed().ground);
   auto turned = window_at(0, 0);
   std::get<icd::OccupancyGrid>(turned.msg).origin.orientation = {0, 0, 0.6, 0.8};
   add(turned);
-  EXPECT_FALSE(taken().ground);
+  EXPECT_FALSE(take_packed().ground);
   queue_.add(99, grid_update("R1", grid(-500, -500, 3000, 3000)), at(99));
   EXPECT_FALSE(queue_.take()->ground);
 }

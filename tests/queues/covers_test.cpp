@@ -14,7 +14,7 @@ icd::Quaternion yaw(double angle) {
   return {0, 0, std::sin(angle / 2), std::cos(angle / 2)};
 }
 
-/// `older` moved by cells along the newer's own axes.
+/// `older` moved by cells along its own axes.
 icd::OccupancyGrid shifted(icd::OccupancyGrid older, double angle, double cells_x, double cells_y) {
   const double x = cells_x * older.resolution, y = cells_y * older.resolution;
   older.origin.orientation = yaw(angle);
@@ -93,7 +93,7 @@ TEST(Covers, MeasuresAlongTheAxesOfTurnedGrids) {
   }
 }
 
-/// Any grid: few values of each kind, so that laws are tried where they bite.
+/// A random grid with few values of each kind, so that equalities are frequent.
 icd::OccupancyGrid any_grid(std::mt19937_64& random) {
   const auto one_of = [&](std::initializer_list<double> values) {
     return values.begin()[std::uniform_int_distribution<std::size_t>{0, values.size() - 1}(random)];
@@ -129,8 +129,7 @@ TEST(Covers, IsTransitive) {
   EXPECT_GT(chains, 30);
 }
 
-/// The middle of a cell in "darpa", by the ICD's words (6.3.1): origin, then row by row along the grid's
-/// axes.
+/// The centre of a cell in "darpa" (ICD 6.3.1): origin, then row by row along the grid's axes.
 icd::Point middle_of(const icd::OccupancyGrid& grid, double column, double row) {
   const double angle = 2 * std::atan2(grid.origin.orientation.z, grid.origin.orientation.w);
   const double x = (column + 0.5) * grid.resolution, y = (row + 0.5) * grid.resolution;
@@ -138,7 +137,7 @@ icd::Point middle_of(const icd::OccupancyGrid& grid, double column, double row) 
           grid.origin.position.y + std::sin(angle) * x + std::cos(angle) * y, grid.origin.position.z};
 }
 
-/// Whether some cell of `grid` lies where that point is, to a thousandth of a cell.
+/// Whether a cell of `grid` has its centre at that point, within a thousandth of a cell.
 bool has_cell_at(const icd::OccupancyGrid& grid, const icd::Point& point) {
   const double close = grid.resolution * 0.002;
   for (std::uint32_t row = 0; row < grid.height; ++row) {

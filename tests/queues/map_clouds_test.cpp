@@ -1,4 +1,4 @@
-// Clouds that newer ones replace: where a setting says so, and where they were compared.
+// Newer clouds replace older ones: if a setting says so, or if a comparison shows it.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ Points set_of(const icd::MapData& data) {
   return {points.begin(), points.end()};
 }
 
-/// As the flow does it.
+/// Compares clouds as the flow does.
 std::vector<std::uint64_t> compare_all(MapQueue& queue) {
   std::vector<std::uint64_t> gone;
   while (const auto two = queue.to_compare()) {
@@ -78,12 +78,12 @@ TEST(WholeClouds, LeaveGridsOfTheirRobotAlone) {
 TEST(ComparedClouds, AreReplacedByACloudWithAllTheirPoints) {
   MapQueue queue{kRoom};
   queue.add(1, cloud_update("R1", {1, 2}), at(1));
-  EXPECT_FALSE(queue.to_compare()) << "nothing to compare it with";
+  EXPECT_FALSE(queue.to_compare()) << "no other cloud to compare it with";
   queue.add(2, cloud_update("R1", {2, 3, 1}), at(2));
   EXPECT_THAT(compare_all(queue), ElementsAre(1));
   queue.add(3, cloud_update("R1", {4}), at(3));
   EXPECT_THAT(compare_all(queue), IsEmpty());
-  EXPECT_FALSE(queue.to_compare()) << "it is known";
+  EXPECT_FALSE(queue.to_compare()) << "the comparison was made";
   EXPECT_EQ(queue.count(), 2);
   const auto merged = *queue.take();
   EXPECT_THAT(merged.updates, ElementsAre(1, 2, 3));
@@ -121,7 +121,7 @@ TEST(ComparedClouds, StayIfOneChangedMeanwhile) {
   EXPECT_THAT(points_of(queue.take()->map), ElementsAre(1, 2, 2, 3, 4));
 }
 
-/// Posts of one robot, some whole and some parts, sent, failed and compared in any order.
+/// One robot's whole and partial clouds, posted, sent, failed and compared in any order.
 class CloudsCourse {
  public:
   CloudsCourse(std::uint64_t seed, Clouds clouds) : random_{seed}, queue_{queue_of(clouds)} {}
@@ -138,7 +138,7 @@ class CloudsCourse {
   }
 
   Points posted, sent;
-  std::vector<std::uint8_t> newest, last;  // the points of the last that was posted and of the last sent
+  std::vector<std::uint8_t> newest, last;  // points of the last posted and the last sent cloud
 
  private:
   int pick(int below) { return std::uniform_int_distribution{0, below - 1}(random_); }

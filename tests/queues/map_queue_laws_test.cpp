@@ -1,4 +1,4 @@
-// The laws of MapQueue over random sequences of add, take and put_back.
+// Invariants of MapQueue over random sequences of add, take and put_back.
 #include <gmock/gmock.h>
 
 #include <map>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kMergeBytes = 60;  // five points
 
-/// Drives a queue as a gateway does, with whatever it likes, and remembers all that went in and came out.
+/// Drives a queue with random calls that a gateway can make, and records its inputs and outputs.
 class Course {
  public:
   explicit Course(std::uint64_t seed) : random_{seed} {}
@@ -66,7 +66,7 @@ class Course {
   void send(bool taken) {
     auto next = queue_.take();
     if (!next) return;
-    while (pick(3) == 0) add();  // while it is on its way
+    while (pick(3) == 0) add();  // while the map is in flight
     if (taken) {
       sent.push_back(std::move(*next));
     } else {
@@ -101,12 +101,13 @@ TEST_P(MapQueueLaws, EachGridIsSentOrCoveredByALaterOne) {
   for (const auto& [number, update] : course_.accepted) {
     const auto* grid = std::get_if<icd::OccupancyGrid>(&update.msg);
     if (!grid) continue;
-    const bool said = std::ranges::any_of(course_.sent, [&, n = number, &u = update](const QueuedMap& map) {
-      const auto* sent = std::get_if<icd::OccupancyGrid>(&map.map.msg);
-      return sent && map.map.name == u.name && map.updates.back() >= n &&
-             std::ranges::count(map.updates, n) == 1 && covers(*sent, *grid);
-    });
-    EXPECT_TRUE(said) << number;
+    const bool is_sent =
+        std::ranges::any_of(course_.sent, [&, n = number, &u = update](const QueuedMap& map) {
+          const auto* sent = std::get_if<icd::OccupancyGrid>(&map.map.msg);
+          return sent && map.map.name == u.name && map.updates.back() >= n &&
+                 std::ranges::count(map.updates, n) == 1 && covers(*sent, *grid);
+        });
+    EXPECT_TRUE(is_sent) << number;
   }
 }
 
@@ -123,7 +124,7 @@ TEST_P(MapQueueLaws, OverlappingGridsAreSentInOrder) {
   for (std::size_t i = 0; i < course_.sent.size(); ++i) {
     for (const auto number : course_.sent[i].updates) sent_as[number] = i;
   }
-  for (const auto number : course_.replaced) course_.accepted.erase(number);  // it was not sent itself
+  for (const auto number : course_.replaced) course_.accepted.erase(number);  // they were not sent themselves
   for (const auto& [older, map] : course_.accepted) {
     for (const auto& [newer, other] : course_.accepted) {
       if (newer < older || !map.is_grid() || !other.is_grid() || map.name != other.name) continue;

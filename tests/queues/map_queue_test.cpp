@@ -75,7 +75,8 @@ TEST(MapQueue, NeverSendsOldCellsAfterNewerOnes) {
   MapQueue queue{kPlenty};
   queue.add(1, grid_update("R1", kSmall), at(1));
   queue.add(2, grid_update("R2", kSmall), at(2));
-  queue.add(3, grid_update("R1", grid(0.2, 0.2, 200, 200)), at(3));  // overlaps the next, and is not covered
+  queue.add(3, grid_update("R1", grid(0.2, 0.2, 200, 200)),
+            at(3));  // overlaps the next grid, but is not covered
   queue.add(4, grid_update("R1", kLarge), at(4));
   EXPECT_THAT(queue.take()->updates, ElementsAre(3));
   EXPECT_THAT(queue.take()->updates, ElementsAre(2)) << "R2's turn";
@@ -112,7 +113,7 @@ TEST(MapQueue, SplitsFailedMergedCloudsAndSendsEachAlone) {
     EXPECT_THAT(part->updates, ElementsAre(static_cast<std::uint64_t>(point)));
     EXPECT_THAT(points_of(part->map), ElementsAre(point));
   }
-  EXPECT_THAT(queue.take()->updates, ElementsAre(4, 5)) << "those that came later are merged as ever";
+  EXPECT_THAT(queue.take()->updates, ElementsAre(4, 5)) << "later maps are merged as usual";
   EXPECT_EQ(queue.bytes(), 0);
 }
 
@@ -127,7 +128,7 @@ TEST(MapQueue, MergesWithinItsLimitAndInOrder) {
   MapQueue queue{36};  // three points
   queue.add(1, cloud_update("R1", {1, 2}), at(1));
   queue.add(2, cloud_update("R1", {3, 4}), at(2));
-  queue.add(3, cloud_update("R1", {5}), at(3));  // would fit, but must not go ahead of 2
+  queue.add(3, cloud_update("R1", {5}), at(3));  // would fit, but must not go before 2
   EXPECT_THAT(queue.take()->updates, ElementsAre(1));
   EXPECT_THAT(queue.take()->updates, ElementsAre(2, 3));
 }
@@ -162,7 +163,7 @@ TEST(MapQueue, TellsWhichCloudsCanBeMerged) {
   fields.fields[2].name = "Z";
   bytes.is_bigendian = true;
   moved.origin = icd::Pose{{1, 0, 0}, {}};
-  still.origin = icd::Pose{};  // ICD 6.3.2: the same as none
+  still.origin = icd::Pose{};  // ICD 6.3.2: equals no origin
   EXPECT_TRUE(mergeable(plain, plain));
   EXPECT_TRUE(mergeable(plain, still));
   EXPECT_FALSE(mergeable(plain, step));
@@ -179,7 +180,7 @@ TEST(MapQueue, PutsAFailedMapFirstOfItsSender) {
   queue.add(3, grid_update("R1", kElsewhere), at(3));
   EXPECT_FALSE(queue.is_replaced(failed));
   EXPECT_THAT(queue.put_back(failed), ElementsAre());
-  EXPECT_THAT(queue.take()->updates, ElementsAre(2)) << "a try is a turn";
+  EXPECT_THAT(queue.take()->updates, ElementsAre(2)) << "a failed try counts as a turn";
   EXPECT_THAT(queue.take()->updates, ElementsAre(1));
   EXPECT_THAT(queue.take()->updates, ElementsAre(3));
 }
@@ -191,7 +192,7 @@ TEST(MapQueue, DropsAFailedGridThatANewerOneCovers) {
   queue.add(2, cloud_update("R2", {1}), at(2));
   queue.add(3, grid_update("R1", kLarge), at(3));
   EXPECT_TRUE(queue.is_replaced(failed));
-  EXPECT_THAT(queue.put_back(failed), ElementsAre(1)) << "nobody needs it any more";
+  EXPECT_THAT(queue.put_back(failed), ElementsAre(1)) << "the map is no longer needed";
   EXPECT_EQ(queue.count(), 2);
   EXPECT_THAT(queue.take()->updates, ElementsAre(2)) << "R2's turn";
   const auto heir = queue.take();
@@ -214,7 +215,8 @@ TEST(MapQueue, RetriesByHandKeepTheirOrder) {
   for (const std::uint64_t number : {1, 2, 3}) EXPECT_THAT(queue.take()->updates, ElementsAre(number));
 }
 
-// A clock that was set back: the simulation's seed 60002763 lost the later one's area to the older one's.
+// The clock was set back. Guards against a defect in which the older grid won the shared area (the
+// simulation's seed 60002763).
 TEST(MapQueue, OfEqualStampsTheLaterRetryIsNewer) {
   MapQueue queue{kPlenty};
   EXPECT_THAT(queue.put_back(sent_again(1, kLarge, 10)), IsEmpty());
@@ -270,13 +272,13 @@ TEST(MapQueue, TellsIfAMapMergesIntoTheLastOfItsSender) {
   EXPECT_FALSE(queue.joins(grid_update("R1", grid(0, 0, 4, 4))));
   queue.add(1, grid_update("R1", grid(0, 0, 4, 4)), at(1));
   EXPECT_TRUE(queue.joins(grid_update("R1", grid(0.2, 0, 4, 4))));
-  EXPECT_FALSE(queue.joins(grid_update("R1", grid(0.2, 0, 4, 4, 0.1)))) << "of another lattice";
+  EXPECT_FALSE(queue.joins(grid_update("R1", grid(0.2, 0, 4, 4, 0.1)))) << "the grid has another lattice";
   EXPECT_FALSE(queue.joins(grid_update("R2", grid(0.2, 0, 4, 4))));
   queue.put_back_apart(*[&] {
     queue.add(2, grid_update("R1", grid(0.2, 0, 4, 4)), at(2));
     return queue.take();
   }());
-  EXPECT_FALSE(queue.joins(grid_update("R1", grid(0.4, 0, 4, 4)))) << "what waits goes by itself";
+  EXPECT_FALSE(queue.joins(grid_update("R1", grid(0.4, 0, 4, 4)))) << "the queued grid is sent alone";
 
   auto turned = icd::xyz();
   turned.is_bigendian = true;

@@ -1,4 +1,4 @@
-// Whose turn it is among senders of all habits.
+// The order of senders with different habits.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -16,20 +16,20 @@ namespace {
 
 constexpr std::size_t kSlot = 1000;  // bytes
 
-/// A patch that covers no other of its sender.
+/// A patch that covers no other of the same sender.
 icd::MapUpdate patch(const std::string& name, std::uint64_t number) {
   return grid_update(name, grid(10.0 * static_cast<double>(number), 0, 10, 10));
 }
 
-/// A queue, its maps so far, and the turn that each sender expects.
+/// A queue, its maps so far, and the expected order of senders.
 struct Race {
-  MapQueue queue{0};  // merges nothing
+  MapQueue queue{0};  // merges no maps
   std::uint64_t number = 0;
   double now = 0;
 
   Race() { queue.a_slot_carries(kSlot); }
   void post(icd::MapUpdate map) { queue.add(++number, std::move(map), at(now)); }
-  /// The name of the one that goes; it takes so many bytes of the link.
+  /// Sends the next map, which takes `bytes` of the link. Returns its sender.
   std::string send(std::size_t bytes = 1) {
     const auto next = *queue.take(at(now));
     queue.carried(Sender::of(next.map), bytes);
@@ -37,9 +37,9 @@ struct Race {
   }
 };
 
-/// Whom each sender that waits has let go first since it began to wait, or was served last; and who waited
-/// then.
-class Waits {
+/// For each waiting sender: the senders that went before it since its wait began or it was last served, and
+/// the senders that were waiting then.
+class TurnCheck {
  public:
   void begins(const std::string& who) {
     if (!others_.contains(who)) others_[who] = waiting();
@@ -47,7 +47,8 @@ class Waits {
   void served(const std::string& who, bool waits_still) {
     for (auto& [each, others] : others_) {
       if (each == who) continue;
-      EXPECT_EQ(others.erase(who), 1) << who << " goes twice, or from behind, while " << each << " waits";
+      EXPECT_EQ(others.erase(who), 1)
+          << who << " is served twice or before its turn, while " << each << " waits";
     }
     others_.erase(who);
     if (waits_still) begins(who);
@@ -68,21 +69,21 @@ TEST_P(MapTurns, WaitingSenderIsPassedAtMostOnceByEach) {
   std::mt19937_64 random{GetParam()};
   const auto pick = [&](int below) { return std::uniform_int_distribution{0, below - 1}(random); };
   Race race;
-  Waits waits;
+  TurnCheck turn_check;
   const int senders = 2 + pick(8);
   for (int slot = 0; slot < 120; ++slot) {
     race.now = slot;
     const auto post = [&](const std::string& who) {
       race.post(patch(who, race.number));
-      waits.begins(who);
+      turn_check.begins(who);
     };
     for (int i = 0; i < 6; ++i) post("hostile");
-    if (pick(3) == 0) post("new" + std::to_string(slot));  // under one name after the other
+    if (pick(3) == 0) post("new" + std::to_string(slot));  // each time under another name
     for (int i = 0; i < senders; ++i) {
       if (pick(senders) == 0) post("R" + std::to_string(i));
     }
     const std::string who = race.send();
-    waits.served(who, race.queue.count({robot(who), true}) > 0);
+    turn_check.served(who, race.queue.count({robot(who), true}) > 0);
   }
 }
 
@@ -94,7 +95,7 @@ TEST_P(MapTurns, NewestMapWaitsAtMostOneTurnPerSender) {
   for (int slot = 0; slot < 100; ++slot) {
     race.now = slot;
     for (int i = 0; i < 6; ++i) race.post(patch("hostile", race.number));
-    for (std::size_t i = 1; i < names.size(); ++i) {  // its whole map, now and then
+    for (std::size_t i = 1; i < names.size(); ++i) {  // sometimes its whole map
       if (random() % i == 0) race.post(grid_update(names[i], grid(0, 0, 10, 10)));
     }
     const auto next = *race.queue.take(at(race.now));
@@ -155,7 +156,7 @@ TEST(MapTurn, DebtOutlastsAnEmptyQueue) {
 TEST(MapTurn, IsFreeIfNoOtherSenderWaits) {
   Race race;
   for (int i = 0; i < 3; ++i) race.post(patch("R1", race.number));
-  for (int i = 0; i < 3; ++i) EXPECT_EQ(race.send(9 * kSlot), "R1") << "nobody else waits";
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(race.send(9 * kSlot), "R1") << "no other sender waits";
 }
 
 TEST(MapTurn, ForgetsSendersThatAreGone) {

@@ -13,17 +13,17 @@
 
 namespace adit::queues {
 
-/// A moment of simulated time, `seconds` after its beginning.
+/// `seconds` after the beginning of simulated time.
 inline Instant at(double seconds) {
   return Instant{std::chrono::duration_cast<Instant::duration>(std::chrono::duration<double>{seconds})};
 }
 
-/// "" for a merged map.
+/// "": a merged map.
 inline std::optional<icd::RobotName> robot(std::string_view name) {
   return icd::RobotName::parse(name);
 }
 
-/// Of one client's state, with its stamp.
+/// The poses of one client's state, with its stamp.
 inline std::vector<PostedPose> posted(const icd::StateUpdate& update,
                                       const std::string& address = "10.0.0.5") {
   std::vector<PostedPose> poses;
@@ -44,14 +44,14 @@ inline icd::OccupancyGrid grid(double x, double y, std::uint32_t width, std::uin
   return grid;
 }
 
-/// The bytes of its data do not matter to the queue.
+/// The queue ignores the data.
 inline icd::MapUpdate grid_update(std::string_view name, const icd::OccupancyGrid& grid) {
   icd::MapData data{icd::ChunkedBytes{std::vector<std::uint8_t>{1, 2, 3}}, icd::Compression::Gzip, 0};
   data.raw_size = std::size_t{grid.width} * grid.height;
   return {robot(name), grid, data};
 }
 
-/// One point for each of `points`, all twelve bytes of which are that value.
+/// One point for each element of `points`. All twelve bytes of a point have that value.
 inline icd::MapUpdate cloud_update(std::string_view name, const std::vector<std::uint8_t>& points,
                                    const icd::PointCloud2& cloud = icd::xyz()) {
   std::vector<std::uint8_t> bytes;

@@ -36,7 +36,7 @@ icd::Marker remove_all() {
   return marker(icd::MarkerAction::DeleteAll, "", 0);
 }
 
-/// What the Command Post's display shows after a row of changes (ICD 6.6).
+/// The Command Post's display after a sequence of changes (ICD 6.6).
 using Scene = std::map<std::pair<std::string, std::int32_t>, icd::Marker>;
 
 Scene replay(Scene scene, const std::vector<icd::Marker>& changes) {
@@ -107,7 +107,7 @@ TEST(MarkerChanges, MergingKeepsTheScene) {
     const auto both = merged(older, newer);
     ASSERT_EQ(replay(scene, both), replay(replay(scene, older), newer));
     ASSERT_LE(both.size(), older.size() + newer.size());
-    ASSERT_EQ(merged({}, both), both) << "as few as say the same";
+    ASSERT_EQ(merged({}, both), both) << "merging again changes the message";
   }
 }
 
@@ -129,10 +129,11 @@ TEST(MarkerChanges, LateOlderChangesGiveTheSameScene) {
     const auto both = in_order(changes);
     const Scene then = replay(replay(scene, older), newer);
     ASSERT_EQ(replay(scene, both), then);
-    ASSERT_EQ(merged({}, both), both) << "as few as say the same";
+    ASSERT_EQ(merged({}, both), both) << "merging again changes the message";
     ASSERT_EQ(changes.size().count, both.size());
     for (const icd::Marker& marker : newest) changes.apply(marker);
-    ASSERT_EQ(replay(scene, in_order(changes)), replay(then, newest)) << "each is found where it stands";
+    ASSERT_EQ(replay(scene, in_order(changes)), replay(then, newest))
+        << "replaying in order gives another scene";
   }
 }
 
@@ -162,7 +163,7 @@ TEST(MarkerQueue, CountsAnUpdateWithItsLastMarker) {
   queue.add({{add(1, "new")}}, at(2));
   const auto first = queue.take();
   EXPECT_THAT(first->update.markers, SizeIs(2));
-  EXPECT_EQ(first->updates, 1) << "of the second update, whose one marker stood first in line";
+  EXPECT_EQ(first->updates, 1) << "the second update's marker was first in the queue";
   EXPECT_EQ(queue.oldest(), at(1));
   EXPECT_EQ(queue.take()->updates, 1);
 }
@@ -208,7 +209,7 @@ TEST(MarkerQueue, FrequentChangesDoNotDelayOtherMarkers) {
   EXPECT_THAT(queue.take()->update.markers, ElementsAre(add(2)));
 }
 
-/// A path of so many points.
+/// A path with that many points.
 icd::Marker path(std::int32_t id, std::size_t points) {
   icd::Marker path = add(id);
   path.points.resize(points);
@@ -220,7 +221,7 @@ TEST(MarkerQueue, LimitsTheBytesOfAMessage) {
   queue.add({{path(1, 10), path(2, 20), path(3, 1), path(4, 90), path(5, 0)}}, at(1));
   EXPECT_THAT(queue.take()->update.markers, ElementsAre(path(1, 10), path(2, 20)));
   EXPECT_THAT(queue.take()->update.markers, ElementsAre(path(3, 1)));
-  EXPECT_THAT(queue.take()->update.markers, ElementsAre(path(4, 90))) << "one that is larger goes alone";
+  EXPECT_THAT(queue.take()->update.markers, ElementsAre(path(4, 90))) << "a larger marker is sent alone";
   EXPECT_THAT(queue.take()->update.markers, ElementsAre(path(5, 0)));
 }
 
@@ -243,10 +244,10 @@ TEST(MarkerQueue, LimitsBytesButAcceptsReplacements) {
   MarkerQueue queue{{.bytes = 4 * quarter}};
   queue.add({{path(1, 1000), path(2, 1000), path(3, 1000)}}, at(1));
   EXPECT_FALSE(queue.has_room_for({{path(4, 0)}}));
-  EXPECT_FALSE(queue.has_room_for({{path(1, 1000), path(4, 10)}})) << "it is not only one that waits";
+  EXPECT_FALSE(queue.has_room_for({{path(1, 1000), path(4, 10)}})) << "the update also adds a new marker";
   EXPECT_TRUE(queue.has_room_for({{path(1, 2000)}})) << "a path that grows";
   EXPECT_FALSE(queue.has_room_for({{path(1, 2100)}}));
-  EXPECT_TRUE(queue.has_room_for({{path(1, 9000), path(1, 2000)}})) << "the last of them is what waits";
+  EXPECT_TRUE(queue.has_room_for({{path(1, 9000), path(1, 2000)}})) << "only the last change is queued";
   queue.add({{path(1, 2000)}}, at(2));
   EXPECT_TRUE(queue.has_room_for({{remove(1), path(2, 900)}}));
   EXPECT_TRUE(queue.has_room_for({{remove_all(), path(4, 1000)}}));
@@ -264,7 +265,7 @@ TEST(MarkerQueue, FullQueueStillAcceptsReplacementsInAnUpdate) {
               ElementsAre(remove_all()));
 }
 
-TEST(MarkerQueue, AcceptsAnyUpdateIfEmpty) {  // its sender could not be told when to try again
+TEST(MarkerQueue, AcceptsAnyUpdateIfEmpty) {  // its sender could not be told when to retry
   const MarkerQueue queue{{.bytes = 1000}};
   EXPECT_TRUE(queue.has_room_for({{path(1, 5000)}}));
 }
@@ -302,7 +303,7 @@ TEST(MarkerChanges, TellTheirSizeAndTheirSizeWithAnUpdate) {
   }
 }
 
-/// Drives a queue with random changes and failures against a display that replays what it is sent.
+/// Drives a queue with random changes and failures. A display replays the sent messages.
 class MarkerQueueLaws : public testing::TestWithParam<std::uint64_t> {};
 
 TEST_P(MarkerQueueLaws, FinalSceneIsRightAndEachUpdateCountsOnce) {

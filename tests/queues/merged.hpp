@@ -6,7 +6,7 @@
 
 namespace adit::queues {
 
-/// What is to be sent of `older` followed by `newer`.
+/// The changes to send for `older` followed by `newer`.
 inline std::vector<icd::Marker> merged(const std::vector<icd::Marker>& older,
                                        const std::vector<icd::Marker>& newer) {
   MarkerChanges changes;

@@ -10,7 +10,7 @@
 
 namespace adit::queues {
 
-/// Lays the cells of `part`, which are not compressed, over those of `grid`, within which it lies.
+/// Copies the uncompressed cells of `part` over those of `grid`, which contains it.
 inline void lay(std::vector<std::uint8_t>& cells, const icd::OccupancyGrid& grid,
                 const icd::MapUpdate& part) {
   const auto place = cells_in(grid, std::get<icd::OccupancyGrid>(part.msg));
@@ -21,7 +21,7 @@ inline void lay(std::vector<std::uint8_t>& cells, const icd::OccupancyGrid& grid
   }
 }
 
-/// The cells of a grid that was taken, as a gateway packs them, which tells the queue of it.
+/// The cells of a grid from take(), packed as by the gateway, which informs the queue.
 inline std::vector<std::uint8_t> packed_of(MapQueue& queue, const QueuedMap& taken) {
   const auto& grid = std::get<icd::OccupancyGrid>(taken.map.msg);
   std::vector<std::uint8_t> cells(std::size_t{grid.width} * grid.height, icd::kUnknownCell);

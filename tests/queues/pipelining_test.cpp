@@ -7,7 +7,7 @@
 namespace adit::queues {
 namespace {
 
-QueuedMap waits(icd::MapUpdate map) {
+QueuedMap queued_map(icd::MapUpdate map) {
   return {.map = std::move(map), .accepted = at(0), .updates = {1}};
 }
 
@@ -16,13 +16,13 @@ QueuedMap whole(QueuedMap cloud) {
   return cloud;
 }
 
-const QueuedMap kGrid = waits(grid_update("r1", grid(0, 0, 10, 10)));
-const QueuedMap kCloud = waits(cloud_update("r1", {1}));
+const QueuedMap kGrid = queued_map(grid_update("r1", grid(0, 0, 10, 10)));
+const QueuedMap kCloud = queued_map(cloud_update("r1", {1}));
 
-/// At a Command Post that has taken so many.
-Pipelining after(int taken) {
+/// An Pipelining after that many accepted messages.
+Pipelining after(int accepted) {
   Pipelining ahead;
-  for (int i = 0; i < taken; ++i) ahead.taken(false);
+  for (int i = 0; i < accepted; ++i) ahead.taken(false);
   return ahead;
 }
 
@@ -31,8 +31,8 @@ bool may_go(const Pipelining& ahead, double now = 1, bool went_ahead = false) {
 }
 
 TEST(Pipelining, AllowedIfTheOrderDoesNotMatter) {
-  const QueuedMap other_grid = waits(grid_update("r2", grid(0, 0, 10, 10)));
-  const QueuedMap merged = waits(cloud_update("", {1}));
+  const QueuedMap other_grid = queued_map(grid_update("r2", grid(0, 0, 10, 10)));
+  const QueuedMap merged = queued_map(cloud_update("", {1}));
   const struct {
     const QueuedMap &one, &other;
     bool in_any_order;
@@ -68,12 +68,12 @@ TEST(Pipelining, AllowedWhileTheAnswerIsNotLate) {
 
 TEST(Pipelining, SecondAllowedAfterOneAheadWasDelivered) {
   Pipelining ahead = after(Pipelining::kWell);
-  EXPECT_FALSE(may_go(ahead, 1, true)) << "a trial";
+  EXPECT_FALSE(may_go(ahead, 1, true)) << "this map is a trial";
   ahead.taken(true);
   EXPECT_TRUE(may_go(ahead, 1, true));
   ahead.failed(true);
   for (int i = 0; i < Pipelining::kMostWell; ++i) ahead.taken(false);
-  EXPECT_FALSE(may_go(ahead, 1, true)) << "a trial again";
+  EXPECT_FALSE(may_go(ahead, 1, true)) << "this map is another trial";
   EXPECT_TRUE(may_go(ahead));
 }
 
@@ -87,18 +87,18 @@ TEST(Pipelining, ForbiddenForAMapThatFailedBefore) {
 
 TEST(Pipelining, BacksOffIfTwoInFlightFail) {
   Pipelining ahead;
-  for (int tried = 0, taken_between = Pipelining::kWell; tried < 10; ++tried) {
-    int taken = 0;
-    for (; !may_go(ahead); ++taken) ahead.taken(false);
-    EXPECT_EQ(taken, taken_between);
+  for (int tried = 0, accepted_between = Pipelining::kWell; tried < 10; ++tried) {
+    int accepted = 0;
+    for (; !may_go(ahead); ++accepted) ahead.taken(false);
+    EXPECT_EQ(accepted, accepted_between);
     ahead.failed(true);
-    taken_between = std::min(2 * taken_between, Pipelining::kMostWell);
+    accepted_between = std::min(2 * accepted_between, Pipelining::kMostWell);
   }
   for (int i = 0; i < Pipelining::kMostWell; ++i) ahead.taken(false);
   ahead.taken(true);
   ahead.failed(false);
   for (int i = 0; i < Pipelining::kWell; ++i) ahead.taken(false);
-  EXPECT_TRUE(may_go(ahead)) << "one was taken";
+  EXPECT_TRUE(may_go(ahead)) << "a map was accepted";
 }
 
 }  // namespace

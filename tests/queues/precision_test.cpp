@@ -1,4 +1,4 @@
-// How far a robot's clouds are rounded: by its setting, or by what waits.
+// The precision of a robot's clouds: by its setting, or by the queued bytes.
 #include "queues/precision.hpp"
 
 #include <gtest/gtest.h>
@@ -44,7 +44,7 @@ TEST_F(PrecisionOf, ARobotIsItsSetting) {
   EXPECT_EQ(next(), Precision::Millimetre);
   add("R3", 3);
   while (queue_.count(Sender{robot("R2"), false}) > 0) (void)queue_.take();
-  EXPECT_EQ(next(), Precision::Exact) << "who has no setting";
+  EXPECT_EQ(next(), Precision::Exact) << "a robot without a setting";
 }
 
 TEST_F(PrecisionOf, CloudsOfNoRobotAndGridsIsExact) {
@@ -66,7 +66,7 @@ TEST_F(PrecisionOf, AutoFollowsTheQueuedBytes) {
   EXPECT_EQ(next(), Precision::EightMillimetres);
   while (queue_.count() > 0) (void)queue_.take();
   add("R1", 1);
-  EXPECT_EQ(next(), Precision::Exact) << "once all is gone";
+  EXPECT_EQ(next(), Precision::Exact) << "once the queue is empty";
 }
 
 TEST_F(PrecisionOf, AutoMergesAtMostOneMessage) {

@@ -38,8 +38,8 @@ RejectedMessage item(Message message, std::size_t bytes = 100) {
   return item;
 }
 
-/// Those that it replaces, now that the Command Post took it.
-std::vector<std::uint64_t> taken(RejectedMessages& rejected, const Message& message) {
+/// The rejected messages that the accepted `message` replaces.
+std::vector<std::uint64_t> replaced_by(RejectedMessages& rejected, const Message& message) {
   auto replaced = rejected.replaced_by(message);
   rejected.mark_replaced(replaced);
   return replaced;
@@ -53,7 +53,7 @@ TEST(RejectedMessages, TellsIfAMessageReplacesAnother) {
   EXPECT_TRUE(replaces(small, small));
   EXPECT_FALSE(replaces(small, large));
   EXPECT_FALSE(replaces(others, small));
-  EXPECT_FALSE(replaces(cloud, cloud)) << "nothing covers a cloud";
+  EXPECT_FALSE(replaces(cloud, cloud)) << "no cloud covers another";
   EXPECT_FALSE(replaces(cloud, small));
 
   const Message one = state_of({"ugv1"}), both = state_of({"ugv1", "ugv2"});
@@ -76,11 +76,12 @@ TEST(RejectedMessages, MarksMapsThatANewerOneContains) {
   RejectedMessages rejected;
   rejected.add(item(grid_update("ugv1", grid(0, 0, 10, 10))));
   rejected.add(item(cloud_update("ugv1", {1})));
-  EXPECT_TRUE(taken(rejected, grid_update("ugv1", grid(5, 5, 10, 10))).empty());
+  EXPECT_TRUE(replaced_by(rejected, grid_update("ugv1", grid(5, 5, 10, 10))).empty());
   EXPECT_EQ(rejected.replaced_by(grid_update("ugv1", grid(0, 0, 30, 30))).size(), 1u);
   EXPECT_FALSE(rejected.find(1)->replaced) << "not before it is marked";
-  EXPECT_EQ(taken(rejected, grid_update("ugv1", grid(0, 0, 30, 30))), std::vector<std::uint64_t>{1});
-  EXPECT_TRUE(taken(rejected, grid_update("ugv1", grid(0, 0, 30, 30))).empty()) << "it was marked before";
+  EXPECT_EQ(replaced_by(rejected, grid_update("ugv1", grid(0, 0, 30, 30))), std::vector<std::uint64_t>{1});
+  EXPECT_TRUE(replaced_by(rejected, grid_update("ugv1", grid(0, 0, 30, 30))).empty())
+      << "it was marked before";
   EXPECT_TRUE(rejected.find(1)->replaced);
   EXPECT_FALSE(rejected.find(2)->replaced);
 }
@@ -93,12 +94,12 @@ TEST(RejectedMessages, AreNotReplacedByAnOlderRetriedGrid) {
   };
   RejectedMessages rejected;
   rejected.add(item(made_at(20, 10)));
-  EXPECT_TRUE(taken(rejected, made_at(10, 30)).empty());
-  EXPECT_TRUE(rejected.add(item(made_at(10, 30))).empty()) << "nor where that is rejected again";
-  EXPECT_EQ(taken(rejected, made_at(30, 30)), (std::vector<std::uint64_t>{1, 2}));
+  EXPECT_TRUE(replaced_by(rejected, made_at(10, 30)).empty());
+  EXPECT_TRUE(rejected.add(item(made_at(10, 30))).empty()) << "also if it is rejected again";
+  EXPECT_EQ(replaced_by(rejected, made_at(30, 30)), (std::vector<std::uint64_t>{1, 2}));
 }
 
-/// Of 30 x 10 cells, of which nothing was made but the ten at the left and the ten at the right.
+/// Of 30 x 10 cells; only the ten columns at each end were posted.
 QueuedMap with_a_gap() {
   QueuedMap stitched{.map = grid_update("ugv1", grid(0, 0, 30, 10)), .accepted = {}, .updates = {1, 2}};
   for (const double x : {0.0, 2.0})
@@ -115,11 +116,11 @@ TEST(RejectedMessages, AreNotReplacedByTheGapOfAStitchedGrid) {
   rejected.add(item(grid_update("ugv1", grid(2, 0, 5, 5))));    // within the second part
   std::vector<std::uint64_t> replaced;
   for (const icd::MapUpdate* const map : said_by(stitched))
-    std::ranges::copy(taken(rejected, *map), std::back_inserter(replaced));
+    std::ranges::copy(replaced_by(rejected, *map), std::back_inserter(replaced));
   EXPECT_EQ(replaced, std::vector<std::uint64_t>{2});
   stitched.has_gaps = false;
   ASSERT_EQ(said_by(stitched).size(), 1u);
-  EXPECT_EQ(taken(rejected, *said_by(stitched).front()), std::vector<std::uint64_t>{1});
+  EXPECT_EQ(replaced_by(rejected, *said_by(stitched).front()), std::vector<std::uint64_t>{1});
 }
 
 TEST(RejectedMessages, AreRetriedIfTheSentGridHasAGapThere) {
@@ -128,16 +129,16 @@ TEST(RejectedMessages, AreRetriedIfTheSentGridHasAGapThere) {
         .map = grid_update("ugv1", grid(x, 0, cells, cells)), .accepted = {}, .updates = {3}, .again = 10};
   };
   const QueuedMap goes = with_a_gap();
-  EXPECT_FALSE(replaces(goes, back(1, 10))) << "in the middle";
-  EXPECT_FALSE(replaces(goes, back(1.8, 5))) << "half in the second part";
-  EXPECT_TRUE(replaces(goes, back(2, 5))) << "within it";
+  EXPECT_FALSE(replaces(goes, back(1, 10))) << "the grid lies in the gap";
+  EXPECT_FALSE(replaces(goes, back(1.8, 5))) << "the grid lies half in the second part";
+  EXPECT_TRUE(replaces(goes, back(2, 5))) << "the grid lies in the second part";
 }
 
 TEST(RejectedMessages, MarksADeleteAllOlderThanAMarker) {
   RejectedMessages rejected;
   rejected.add(item(icd::MarkersUpdate{{marker("", 0, icd::MarkerAction::DeleteAll)}}));
-  EXPECT_TRUE(taken(rejected, state_of({"ugv1"})).empty());
-  EXPECT_EQ(taken(rejected, icd::MarkersUpdate{{marker("a", 1)}}), std::vector<std::uint64_t>{1});
+  EXPECT_TRUE(replaced_by(rejected, state_of({"ugv1"})).empty());
+  EXPECT_EQ(replaced_by(rejected, icd::MarkersUpdate{{marker("a", 1)}}), std::vector<std::uint64_t>{1});
 }
 
 TEST(RejectedMessages, KeepsOneOfEqualMessages) {
@@ -152,10 +153,11 @@ TEST(RejectedMessages, IsBounded) {
   for (std::size_t i = 0; i < 3 * RejectedMessages::kMostItems; ++i)
     rejected.add(item(cloud_update("ugv1", {1})));
   EXPECT_EQ(rejected.items().size(), RejectedMessages::kMostItems);
-  EXPECT_EQ(rejected.items().front().number, 2 * RejectedMessages::kMostItems + 1) << "the oldest go";
+  EXPECT_EQ(rejected.items().front().number, 2 * RejectedMessages::kMostItems + 1)
+      << "the oldest messages are dropped";
 
   rejected.add(item(cloud_update("ugv1", {1}), RejectedMessages::kMostBytes + 1));
-  EXPECT_EQ(rejected.items().size(), 1) << "one is always kept";
+  EXPECT_EQ(rejected.items().size(), 1) << "one message is always kept";
 }
 
 TEST(RejectedMessages, GivesEachMessageOutOnce) {
@@ -187,7 +189,7 @@ TEST(StateQueueApart, FindsTheFaultyRobotAndSendsTheOthers) {
 
   queue.add(posted(state_of({"ugv1", "ugv2", "ugv3"})), at(5));
   const auto together = queue.take(at(6));
-  ASSERT_EQ(together->update.poses.size(), 2) << "those that passed go together again";
+  ASSERT_EQ(together->update.poses.size(), 2) << "accepted poses are sent together again";
   const auto apart = queue.take(at(20));
   ASSERT_EQ(apart->update.poses.size(), 1);
   EXPECT_EQ(apart->update.poses.front().name.text(), "ugv2");
@@ -197,28 +199,28 @@ TEST(StateQueueApart, FindsTheFaultyRobotAndSendsTheOthers) {
 }
 
 TEST(StateQueueApart, RetriesOnlyTheNewestRejectedPose) {
-  const icd::StateUpdate set_aside = state_of({"ugv1"});
+  const icd::StateUpdate rejected_poses = state_of({"ugv1"});
   StateQueue queue;
-  queue.add_unless_known(set_aside, at(0));
+  queue.add_unless_known(rejected_poses, at(0));
   const auto given_up = queue.take();
-  ASSERT_TRUE(given_up) << "nothing newer is known";
-  queue.add_unless_known(set_aside, at(1));
-  EXPECT_TRUE(queue.empty()) << "it is under way";
-  queue.give_up(set_aside.poses.front().name, at(1));
-  queue.add_unless_known(set_aside, at(2));
+  ASSERT_TRUE(given_up) << "no newer pose is known";
+  queue.add_unless_known(rejected_poses, at(1));
+  EXPECT_TRUE(queue.empty()) << "the pose is in flight";
+  queue.give_up(rejected_poses.poses.front().name, at(1));
+  queue.add_unless_known(rejected_poses, at(2));
   const auto again = queue.take();
   ASSERT_TRUE(again);
   queue.passed(*again);
-  queue.add_unless_known(set_aside, at(3));
-  EXPECT_TRUE(queue.empty()) << "it was taken";
+  queue.add_unless_known(rejected_poses, at(3));
+  EXPECT_TRUE(queue.empty()) << "the pose was delivered";
 
-  queue.add(posted(set_aside), at(4));
+  queue.add(posted(rejected_poses), at(4));
   queue.take();
-  queue.add(posted(set_aside), at(5));  // a newer one
-  queue.give_up(set_aside.poses.front().name, at(6));
+  queue.add(posted(rejected_poses), at(5));  // a newer one
+  queue.give_up(rejected_poses.poses.front().name, at(6));
   queue.passed(*queue.take());
-  queue.add_unless_known(set_aside, at(7));
-  EXPECT_TRUE(queue.empty()) << "a newer one was taken";
+  queue.add_unless_known(rejected_poses, at(7));
+  EXPECT_TRUE(queue.empty()) << "a newer pose was delivered";
 }
 
 TEST(StateQueueApart, SendsOtherRobotsWhileOneIsOnTrial) {
@@ -226,8 +228,8 @@ TEST(StateQueueApart, SendsOtherRobotsWhileOneIsOnTrial) {
   queue.add(posted(state_of({"ugv1", "ugv2"})), at(0));
   queue.give_up(*robot("ugv2"), at(0));
   EXPECT_EQ(queue.take(at(1))->update.poses.front().name.text(), "ugv1");
-  EXPECT_FALSE(queue.empty()) << "ugv2 has news still";
-  EXPECT_EQ(queue.unsent().size(), 1) << "and ugv1 is under way";
+  EXPECT_FALSE(queue.empty()) << "ugv2 still has an unsent pose";
+  EXPECT_EQ(queue.unsent().size(), 1) << "ugv1 is in flight";
 }
 
 TEST(MarkerQueueNarrower, FindsTheFaultyMarker) {
@@ -272,7 +274,7 @@ TEST(MarkerQueueBehind, SendsAPostponedMarkerAfterTheOthers) {
   MarkerQueue queue({.per_message = 1});
   queue.add({{marker("a", 1), marker("b", 1)}}, at(0));
   queue.put_behind(*queue.take());
-  EXPECT_EQ(queue.take()->updates, 0u) << "its update has not gone whole";
+  EXPECT_EQ(queue.take()->updates, 0u) << "only a part of the update was sent";
   ASSERT_TRUE(queue.oldest());
   const auto again = queue.take();
   EXPECT_EQ(again->update.markers.front().ns, "a");
@@ -300,11 +302,11 @@ TEST(MarkerQueueBehind, DoesNotReorderADeleteAll) {
     const auto first = queue.take();
     ASSERT_EQ(first->update.markers.front().action, icd::MarkerAction::DeleteAll);
     queue.put_behind(*first);
-    (void)queue.take();  // the message that is sent ahead of it once
+    (void)queue.take();  // the message that is sent before it once
   }
   queue.passed();
   EXPECT_EQ(queue.take()->update.markers.front().action, icd::MarkerAction::DeleteAll);
-  EXPECT_EQ(queue.take()->update.markers.front().ns, "a") << "in its own turn too";
+  EXPECT_EQ(queue.take()->update.markers.front().ns, "a") << "also in its own turn";
 }
 
 TEST(MarkerQueueBehind, TriesOtherMarkersAheadOfADeleteAll) {
@@ -315,10 +317,10 @@ TEST(MarkerQueueBehind, TriesOtherMarkersAheadOfADeleteAll) {
     queue.put_behind(*queue.take());
     const auto other = queue.take();
     EXPECT_TRUE(other->is_ahead);
-    EXPECT_EQ(other->updates, 0u) << "it waits still";
+    EXPECT_EQ(other->updates, 0u) << "the update is still queued";
     ahead.push_back(other->update.markers.front().ns);
   }
-  EXPECT_EQ(ahead, (std::vector<std::string>{"a", "b", "a"})) << "one of them may be at fault too";
+  EXPECT_EQ(ahead, (std::vector<std::string>{"a", "b", "a"})) << "each of them may be at fault";
   EXPECT_EQ(queue.count(), 3u);
 }
 
@@ -331,7 +333,7 @@ TEST(MarkerQueueBehind, SendsNothingAheadOfALoneDeleteAll) {
   EXPECT_EQ(again->updates, 1u);
 }
 
-/// It would go to another Command Post, hours later.
+/// The poses would be sent to another Command Post, hours later.
 TEST(StateQueue, FailedSendDoesNotMakeOldPosesNews) {
   StateQueue queue;
   queue.add(posted(state_of({"ugv1"})), at(0));
@@ -352,7 +354,7 @@ TEST(StateQueue, ForgetsRobotsWithoutNewsIfFull) {
   }
   queue.add(posted(many), at(0));
   const auto under_way = *queue.take();
-  EXPECT_FALSE(queue.has_room_for(state_of({"ugv1"}))) << "they may come back";
+  EXPECT_FALSE(queue.has_room_for(state_of({"ugv1"}))) << "the messages in flight may return";
   queue.passed(under_way);
   queue.add(posted(state_of({"r7"})), at(1));
   ASSERT_TRUE(queue.has_room_for(state_of({"ugv1"})));

@@ -21,7 +21,8 @@ Stamper of(const std::string& robot, const std::string& address = "10.0.0.5") {
 TEST(StampShift, FirstStampIsNowAndSpacingIsKept) {
   StampShift shift;
   EXPECT_EQ(shift.shift(of("R1"), 100.0, kNow), kNow);
-  EXPECT_THAT(shift.shift(of("R1"), 100.3, kNow + 2), DoubleNear(kNow + 0.3, 1e-6)) << "however late it came";
+  EXPECT_THAT(shift.shift(of("R1"), 100.3, kNow + 2), DoubleNear(kNow + 0.3, 1e-6))
+      << "a late message has its own stamp";
   EXPECT_THAT(shift.shift(of("R1"), 100.1, kNow + 2), DoubleNear(kNow + 0.1, 1e-6)) << "out of order";
 }
 
@@ -29,7 +30,7 @@ TEST(StampShift, StampsUnstampedMessagesWithNow) {
   StampShift shift;
   EXPECT_EQ(shift.shift(of("R1"), {}, kNow), kNow);
   EXPECT_EQ(shift.shift(of("R1"), 0.0, kNow + 1), kNow + 1) << "ROS: not set";
-  EXPECT_EQ(shift.shift(of("R1"), 100.0, kNow + 2), kNow + 2) << "the first that it gave";
+  EXPECT_EQ(shift.shift(of("R1"), 100.0, kNow + 2), kNow + 2) << "the first stamp of this robot";
 }
 
 TEST(StampShift, StampsUnstampedMessagesNotBeforeTheLastStamp) {
@@ -50,7 +51,8 @@ TEST(StampShift, KeepsSendersApart) {
 TEST(StampShift, RestartsAfterAClockStepBack) {
   StampShift shift;
   shift.shift(of("R1"), 100.0, kNow);
-  EXPECT_THAT(shift.shift(of("R1"), 95.5, kNow + 1), DoubleNear(kNow - 4.5, 1e-6)) << "late, no jump";
+  EXPECT_THAT(shift.shift(of("R1"), 95.5, kNow + 1), DoubleNear(kNow - 4.5, 1e-6))
+      << "a late message is not a step";
   EXPECT_EQ(shift.shift(of("R1"), 94.5, kNow + 1), kNow + 1);
   EXPECT_THAT(shift.shift(of("R1"), 95.0, kNow + 2), DoubleNear(kNow + 1.5, 1e-6));
 }
@@ -58,9 +60,9 @@ TEST(StampShift, RestartsAfterAClockStepBack) {
 TEST(StampShift, RestartsAfterAClockStepAhead) {
   StampShift shift;
   shift.shift(of("R1"), 100.0, kNow);
-  EXPECT_THAT(shift.shift(of("R1"), 104.5, kNow), DoubleNear(kNow + 4.5, 1e-6)) << "no jump";
-  EXPECT_THAT(shift.shift(of("R1"), 3600.0, kNow + 1), DoubleNear(kNow + 4.5, 1e-6))
-      << "nor behind what it had";
+  EXPECT_THAT(shift.shift(of("R1"), 104.5, kNow), DoubleNear(kNow + 4.5, 1e-6))
+      << "the clock was not stepped";
+  EXPECT_THAT(shift.shift(of("R1"), 3600.0, kNow + 1), DoubleNear(kNow + 4.5, 1e-6)) << "a stamp ran back";
   EXPECT_THAT(shift.shift(of("R1"), 3601.0, kNow + 2), DoubleNear(kNow + 5.5, 1e-6));
   EXPECT_EQ(shift.shift(of("R1"), 9000.0, kNow + 60), kNow + 60);
 }
@@ -72,7 +74,7 @@ TEST(StampShift, StampsNeverGoBackAfterAClockStepBack) {
     shift.shift(of("R1"), 10'000.0, kNow, 1);
     const icd::Stamp ahead = shift.shift(of("R1"), 10'004.0, kNow + 0.1, 1);
     const icd::Stamp first = shift.shift(of("R1"), 10'004.1 - back, kNow + 0.2, 1);
-    EXPECT_GE(first, ahead) << "its pose counts at once";
+    EXPECT_GE(first, ahead) << "the pose counts at once";
     EXPECT_THAT(shift.shift(of("R1"), 10'004.4 - back, kNow + 0.3, 1), DoubleNear(first + 0.3, 1e-6));
   }
 }
@@ -107,7 +109,7 @@ TEST(StampShift, ForgetsTheLongestSilentAddress) {
     shift.shift(busy, 100.0, kNow);
   }
   EXPECT_THAT(shift.shift(busy, 100.5, kNow + 3), DoubleNear(kNow + 0.5, 1e-6));
-  EXPECT_EQ(shift.shift(silent, 100.5, kNow + 3), kNow + 3) << "restarted";
+  EXPECT_EQ(shift.shift(silent, 100.5, kNow + 3), kNow + 3) << "the robot was restarted";
 }
 
 TEST(StampShift, LimitsTheClocksOfAnAddress) {
@@ -115,9 +117,9 @@ TEST(StampShift, LimitsTheClocksOfAnAddress) {
   const Stamper other = of("R1", "10.0.0.6"), first = of("0"), late = of("late");
   shift.shift(other, 100.0, kNow);
   for (int i = 0; i < 2000; ++i) shift.shift(of(std::to_string(i)), 5.0, kNow);
-  EXPECT_EQ(shift.shift(late, 7.0, kNow + 1), kNow + 2) << "by the clock that all further robots share";
+  EXPECT_EQ(shift.shift(late, 7.0, kNow + 1), kNow + 2) << "further robots share one clock";
   EXPECT_LE(shift.clocks().size(), 1 + StampShift::kMostOfAddress);
-  EXPECT_THAT(shift.shift(first, 5.5, kNow + 3), DoubleNear(kNow + 0.5, 1e-6)) << "its own goes on";
+  EXPECT_THAT(shift.shift(first, 5.5, kNow + 3), DoubleNear(kNow + 0.5, 1e-6)) << "its own clock continues";
   EXPECT_THAT(shift.shift(other, 100.5, kNow + 3), DoubleNear(kNow + 0.5, 1e-6));
   for (const icd::Uri uri : icd::kUris) shift.shift({"10.0.0.5", uri, "new"}, 5.0, kNow);
   EXPECT_EQ(shift.clocks().size(), 1 + StampShift::kMostOfAddress);
@@ -155,9 +157,9 @@ TEST(StampShift, ReportsEachChangedClockOnce) {
   EXPECT_EQ(changed[0].second.latest, 101.0);
   EXPECT_TRUE(shift.changed().empty());
   shift.shift(of("R2"), 101.5, kNow + 1);
-  EXPECT_TRUE(shift.changed().empty()) << "as it was set";
+  EXPECT_TRUE(shift.changed().empty()) << "the clock did not change";
   shift.shift(of("R2"), 90.0, kNow + 1);
-  EXPECT_EQ(shift.changed().size(), 1) << "set again";
+  EXPECT_EQ(shift.changed().size(), 1) << "the clock was set again";
   for (const icd::Uri uri : {icd::Uri::MapUpdate, icd::Uri::MarkersUpdate}) {
     for (const double stamp : {50.0, 51.0}) {
       shift.shift({"R1", uri, ""}, stamp, kNow);
@@ -166,7 +168,7 @@ TEST(StampShift, ReportsEachChangedClockOnce) {
   }
 }
 
-/// As one life hands over to the next, at any message: nobody can see that it did.
+/// A restart at any message must not be visible.
 TEST(StampShift, ContinuesUnchangedAfterARestart) {
   std::mt19937_64 random{1};
   std::uniform_real_distribution<double> step{-6, 4};
@@ -191,10 +193,11 @@ TEST(StampShift, KnowsTheClockOfARobotThatSendsForAWhile) {
   shift.shift(of("R1"), 5010.0, kNow + 10);
   EXPECT_THAT(*shift.told(kNow + 12, 0, 1e9), DoubleNear(5012, 1e-6));
   for (int second = 0; second <= 10; ++second) shift.shift(of("R2"), 100.0 + second, kNow + second);
-  EXPECT_THAT(*shift.told(kNow + 12, 0, 1e9), DoubleNear(112, 1e-6)) << "the earliest";
-  EXPECT_THAT(*shift.told(kNow + 12, 1000, 1e9), DoubleNear(5012, 1e-6)) << "the other one's is not set";
+  EXPECT_THAT(*shift.told(kNow + 12, 0, 1e9), DoubleNear(112, 1e-6)) << "the earliest stamp";
+  EXPECT_THAT(*shift.told(kNow + 12, 1000, 1e9), DoubleNear(5012, 1e-6))
+      << "the other robot's clock is not set";
   EXPECT_THAT(*shift.told(kNow + 12, 0, 1000), DoubleNear(112, 1e-6));
-  EXPECT_FALSE(shift.told(kNow + 21, 0, 1e9)) << "they say nothing any more";
+  EXPECT_FALSE(shift.told(kNow + 21, 0, 1e9)) << "the robots are silent";
 }
 
 TEST(StampShift, ForgetsTheLongestSilentAddressAfterARestart) {

@@ -63,8 +63,8 @@ TEST(StateQueue, GivesNothingWithoutNews) {
 struct OrderCase {
   const char* what;
   std::optional<icd::Stamp> held, newer;
-  const char* address;  // of the newer one
-  double x;             // that is kept: 1, which came first, or 2
+  const char* address;  // of the newer pose
+  double x;             // x of the pose that is kept: 1 is the earlier one, 2 the later one
 };
 
 class StateQueueOrder : public testing::TestWithParam<OrderCase> {};
@@ -75,7 +75,7 @@ TEST_P(StateQueueOrder, IsByStampWithinAClientElseByArrival) {
   post(queue, state(given.held, {pose("R1", 1)}), at(1));
   queue.passed(*queue.take());
   post(queue, state(given.newer, {pose("R1", 2)}, given.address), at(2));
-  EXPECT_EQ(queue.empty(), given.x == 1) << "one that is older is no news";
+  EXPECT_EQ(queue.empty(), given.x == 1) << "an older pose is not news";
   post(queue, state(1, {pose("R2", 0)}), at(3));
   EXPECT_THAT(queue.take()->update.poses, ElementsAre(pose("R1", given.x), pose("R2", 0)));
 }
@@ -101,11 +101,11 @@ TEST(StateQueue, RepeatsNoPoseOfAnEarlierRun) {
   queue.begin_run();
   post(queue, state(12, {pose("R3", 3)}), at(3));
   const auto first = queue.take();
-  EXPECT_THAT(first->update.poses, ElementsAre(pose("R2", 2), pose("R3", 3))) << "what waits is not lost";
+  EXPECT_THAT(first->update.poses, ElementsAre(pose("R2", 2), pose("R3", 3))) << "a queued pose was lost";
   queue.passed(*first);
   post(queue, state(13, {pose("R4", 4)}), at(4));
   EXPECT_THAT(queue.take()->update.poses, ElementsAre(pose("R3", 3), pose("R4", 4)));
-  EXPECT_THAT(queue.news_in(state(9, {pose("R1", 9)})), IsEmpty()) << "it came late";
+  EXPECT_THAT(queue.news_in(state(9, {pose("R1", 9)})), IsEmpty()) << "a late pose is not news";
 }
 
 TEST(StateQueue, RetriesAPoseOfAnEarlierRunUntilDelivered) {
@@ -120,7 +120,7 @@ TEST(StateQueue, RetriesAPoseOfAnEarlierRunUntilDelivered) {
   queue.passed(*again);
   queue.passed(*queue.take());
   post(queue, state(12, {pose("R2", 3)}), at(3));
-  EXPECT_THAT(queue.take()->update.poses, ElementsAre(pose("R1", 2), pose("R2", 3))) << "it posted since";
+  EXPECT_THAT(queue.take()->update.poses, ElementsAre(pose("R1", 2), pose("R2", 3))) << "R1 posted again";
 }
 
 TEST(StateQueue, FailedPosesAreNewsAndReplaceNoNewerOnes) {
@@ -142,7 +142,7 @@ TEST(StateQueue, LimitsTheNumberOfRobots) {
   EXPECT_TRUE(queue.has_room_for(many));
   queue.add(posted(many), at(1));
   EXPECT_FALSE(queue.has_room_for({{}, {pose("R1", 0)}}));
-  EXPECT_TRUE(queue.has_room_for({{}, {pose("7", 0)}})) << "a robot that it knows";
+  EXPECT_TRUE(queue.has_room_for({{}, {pose("7", 0)}})) << "a known robot";
 }
 
 TEST(StateQueue, SendsTheNewestPosesUntilDelivered) {
@@ -150,7 +150,7 @@ TEST(StateQueue, SendsTheNewestPosesUntilDelivered) {
   const auto pick = [&](int below) { return std::uniform_int_distribution{0, below - 1}(random); };
   StateQueue queue;
   std::map<icd::RobotName, std::pair<icd::Stamp, double>> newest;
-  std::map<icd::RobotName, double> lacking;  // at the Command Post
+  std::map<icd::RobotName, double> lacking;  // missing at the Command Post
   int number = 0;
   const auto add = [&] {
     icd::StateUpdate update{{number + pick(5)}, {}};

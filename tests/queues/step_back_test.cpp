@@ -22,7 +22,7 @@ struct Said {
 struct StepBackCase {
   const char* what;
   std::vector<Said> said;
-  int shown;  // by which of them, from 0; -1: by none
+  int shown;  // index of the message that shows it; -1: no message
 };
 
 class StepBackCases : public testing::TestWithParam<StepBackCase> {};
@@ -56,15 +56,15 @@ INSTANTIATE_TEST_SUITE_P(
         StepBackCase{"one that was silent for long", {{6, 2}, {10, 1}, {7, 2}, {7.1, 2}}, 3},
         StepBackCase{"connections that are not known", {{10, 0}, {7, 0}, {7.1, 0}}, -1}));
 
-/// A robot whose clock runs and posts over several connections, each of which waits for its answer before it
-/// takes the next message, and holds it up for as long as it likes.
+/// A robot's clock runs. The robot posts on several connections. Each connection waits for an answer before
+/// its next message and may delay it for any time.
 TEST(StepBack, IsNotSeenInMessagesReorderedByConnections) {
   std::mt19937_64 random{1};
   std::uniform_real_distribution<double> held_up{0, 4.5};
   std::bernoulli_distribution often{0.3}, reopens{0.2};
   for (int robot = 0; robot < 200; ++robot) {
     StepBack step_back;
-    std::multimap<double, Said> arrivals;  // by when they arrive
+    std::multimap<double, Said> arrivals;  // by arrival time
     Connection last_opened = 2;
     for (auto [connection, now] : {std::pair<Connection, double>{1, 0}, {2, 0.05}}) {
       for (Connection on = connection; now < 60;) {
@@ -80,12 +80,12 @@ TEST(StepBack, IsNotSeenInMessagesReorderedByConnections) {
   }
 }
 
-/// The rule from end to end: a robot's clock is set back now and then, and its newest pose is sent on after
-/// one message more at the latest.
+/// The rule from end to end: a robot's clock is set back sometimes, and its newest pose is forwarded after
+/// at most one further message.
 TEST(StepBack, IsDetectedWithinOneMessage) {
   std::mt19937_64 random{1};
   std::uniform_real_distribution<double> by{2.0, 4.9};
-  for (const int connections : {1, 2, 0}) {  // 0: a new one for each message
+  for (const int connections : {1, 2, 0}) {  // 0: a new connection for each message
     SCOPED_TRACE(connections);
     StampShift shift;
     StateQueue queue;
@@ -98,8 +98,7 @@ TEST(StepBack, IsDetectedWithinOneMessage) {
       const icd::Pose pose{{static_cast<double>(number), 0, 0}, {}};
       queue.add(queue.news_in(posted({{stamp}, {{*robot("R1"), pose}}})), at(number));
       if (const auto taken = queue.take()) sent = taken->update.poses.front().pose.position.x;
-      ASSERT_GE(sent, number == clock_was_set ? number - 1 : number)
-          << "the pose that is sent after this one";
+      ASSERT_GE(sent, number == clock_was_set ? number - 1 : number) << "the pose sent after this message";
     }
   }
 }

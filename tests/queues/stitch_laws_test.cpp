@@ -1,4 +1,4 @@
-// What a Command Post has in the end is what was posted, however grids were stitched on their way.
+// The Command Post finally has the posted cells, whatever grids were stitched.
 #include <gmock/gmock.h>
 
 #include <map>
@@ -15,10 +15,10 @@
 namespace adit::queues {
 namespace {
 
-/// Of a name and a lattice; the lattice is that of a grid which is kept for it.
+/// Name and lattice of a grid. The lattice is that of a grid kept for it.
 using Place = std::tuple<std::string, int, std::int64_t, std::int64_t>;
 
-/// A server's cells.
+/// The cells of a server.
 class Replay {
  public:
   explicit Replay(bool overlays) : overlays_(overlays) {}
@@ -40,7 +40,7 @@ class StitchLaws : public testing::TestWithParam<std::uint64_t> {
                         : grid(0, 0, 1, 1, 0.1);
   }
 
-  /// Each cell of a grid, in its order.
+  /// Visits each cell of a grid, in order.
   template <class Visit>
   static void for_each_cell(const icd::MapUpdate& map, Visit visit) {
     const auto& grid = std::get<icd::OccupancyGrid>(map.msg);
@@ -82,7 +82,7 @@ class StitchLaws : public testing::TestWithParam<std::uint64_t> {
     queue_.add(number_, std::move(map), at(static_cast<double>(number_)));
   }
 
-  /// As a gateway does: others come while it is on its way, and it may not arrive, or be refused.
+  /// Sends as a gateway does: other grids arrive meanwhile, and the message may be lost or rejected.
   void send(int how) {
     auto next = queue_.take();
     if (!next) return;
@@ -122,10 +122,11 @@ TEST_P(StitchLaws, ServerHasTheNewestValueOfEachPostedCell) {
   run();
   EXPECT_GT(stitched_, 5);
   for (const auto& [place, value] : overwriting_.cells) {
-    EXPECT_TRUE(newest_.contains(place) || value == icd::kUnknownCell) << "nobody posted that cell";
+    EXPECT_TRUE(newest_.contains(place) || value == icd::kUnknownCell)
+        << "the server has a cell that was not posted";
   }
   for (const auto& [place, value] : newest_) {
-    EXPECT_EQ(overwriting_.cells.at(place), value) << "unknown cells too, where it overwrites";
+    EXPECT_EQ(overwriting_.cells.at(place), value) << "an overwriting server also has unknown cells";
   }
   for (const auto& [place, value] : newest_) {
     const auto has = overlaying_.cells.find(place);
@@ -133,7 +134,8 @@ TEST_P(StitchLaws, ServerHasTheNewestValueOfEachPostedCell) {
       ASSERT_NE(has, overlaying_.cells.end());
       EXPECT_EQ(has->second, value);
     } else if (has != overlaying_.cells.end()) {
-      EXPECT_TRUE(posted_.at(place).contains(has->second)) << "once known, it stays where it overlays";
+      EXPECT_TRUE(posted_.at(place).contains(has->second))
+          << "a known cell stays known on an overlaying server";
     }
   }
 }

@@ -17,16 +17,18 @@ TEST(Stitch, JoinsGridsThatFillARectangle) {
   const auto row = stitch(std::vector<Cells>{{0, 0, 4, 4}, {4, 0, 4, 4}, {-2, 0, 2, 4}});
   EXPECT_THAT(row.which, ElementsAre(0, 1, 2));
   EXPECT_EQ(row.cells, (Cells{-2, 0, 10, 4}));
-  EXPECT_THAT(which({{0, 0, 4, 4}, {2, 0, 4, 4}}), ElementsAre(0, 1)) << "they overlap";
-  EXPECT_THAT(which({{0, 0, 4, 4}, {1, 1, 2, 2}}), ElementsAre(0, 1)) << "the newer lies within";
+  EXPECT_THAT(which({{0, 0, 4, 4}, {2, 0, 4, 4}}), ElementsAre(0, 1)) << "the grids overlap";
+  EXPECT_THAT(which({{0, 0, 4, 4}, {1, 1, 2, 2}}), ElementsAre(0, 1))
+      << "the newer grid lies within the older";
   EXPECT_THAT(which({{0, 0, 1, 6}, {0, 6, 1, 6}, {1, 0, 1, 12}}), ElementsAre(0, 1, 2));
 }
 
 TEST(Stitch, LeavesNoGap) {
-  EXPECT_THAT(which({{0, 0, 4, 4}, {5, 0, 4, 4}}), ElementsAre(0)) << "a column between them";
-  EXPECT_THAT(which({{0, 0, 4, 4}, {2, 2, 4, 4}}), ElementsAre(0)) << "two corners";
-  EXPECT_THAT(which({{0, 0, 4, 4}, {4, 0, 4, 4}, {0, 4, 4, 4}}), ElementsAre(0, 1)) << "one corner";
-  EXPECT_THAT(which({{0, 0, 4, 4}, {4, 0, 4, 3}, {4, 3, 3, 1}}), ElementsAre(0)) << "one cell";
+  EXPECT_THAT(which({{0, 0, 4, 4}, {5, 0, 4, 4}}), ElementsAre(0)) << "a column lies between the grids";
+  EXPECT_THAT(which({{0, 0, 4, 4}, {2, 2, 4, 4}}), ElementsAre(0)) << "two corners are missing";
+  EXPECT_THAT(which({{0, 0, 4, 4}, {4, 0, 4, 4}, {0, 4, 4, 4}}), ElementsAre(0, 1))
+      << "one corner is missing";
+  EXPECT_THAT(which({{0, 0, 4, 4}, {4, 0, 4, 3}, {4, 3, 3, 1}}), ElementsAre(0)) << "one cell is missing";
 }
 
 TEST(Stitch, HasGapsOnlyIfTheirCellsAreKnown) {
@@ -36,7 +38,7 @@ TEST(Stitch, HasGapsOnlyIfTheirCellsAreKnown) {
     asked.push_back(all);
     return those.size() < 3;
   });
-  EXPECT_THAT(found.which, ElementsAre(0, 1)) << "of the third nothing is known";
+  EXPECT_THAT(found.which, ElementsAre(0, 1)) << "the third grid's size is unknown";
   EXPECT_TRUE(found.has_gaps);
   EXPECT_THAT(asked, ElementsAre(Cells{0, 0, 12, 13}, Cells{0, 0, 15, 15}));
   const auto row = stitch(std::vector<Cells>{{0, 0, 4, 4}, {4, 0, 4, 4}}, [](auto&&...) { return true; });
@@ -60,13 +62,15 @@ TEST(Stitch, NeedsTheRectangleFilledByAllTogether) {
 
 TEST(Stitch, MovesNoGridPastAnOverlappingOne) {
   const Cells first{0, 0, 4, 4}, corner{3, 3, 4, 4}, beside{4, 0, 4, 4}, far{40, 40, 4, 4};
-  EXPECT_THAT(which({first, corner, beside}), ElementsAre(0)) << "the corner is older than what it overlaps";
-  EXPECT_THAT(which({first, beside, corner}), ElementsAre(0, 1)) << "it follows";
+  EXPECT_THAT(which({first, corner, beside}), ElementsAre(0))
+      << "the corner grid is older than the grid that it overlaps";
+  EXPECT_THAT(which({first, beside, corner}), ElementsAre(0, 1)) << "the corner grid is the last one";
   EXPECT_THAT(which({first, far, beside}), ElementsAre(0, 2));
 }
 
 TEST(Stitch, IsBounded) {
-  EXPECT_THAT(which({{0, 0, 2048, 2048}, {2048, 0, 1, 2048}}), ElementsAre(0)) << "too many cells";
+  EXPECT_THAT(which({{0, 0, 2048, 2048}, {2048, 0, 1, 2048}}), ElementsAre(0))
+      << "the result has too many cells";
   EXPECT_THAT(which({{0, 0, 2048, 2047}, {0, 2047, 2048, 1}}), ElementsAre(0, 1));
   EXPECT_THAT(which({{0, 0, 4'000'000'000, 4'000'000'000}, {0, 0, 1, 1}}), ElementsAre(0));
   std::vector<Cells> many;

@@ -4,17 +4,17 @@
 
 #include "simulation/bad_messages.hpp"
 #include "simulation/courses.hpp"
+#include "simulation/deciding_operator.hpp"
 #include "simulation/faults.hpp"
-#include "simulation/judge.hpp"
 #include "simulation/messages.hpp"
 
 namespace adit::simulation {
 namespace {
 
 constexpr int kRequestTimeout = 408;
-constexpr double kWritesDown = 0.05;  // how soon after an answer it is in the ledger
+constexpr double kWritesDown = 0.05;  // seconds until the ledger has recorded an answer
 constexpr std::int64_t kUnknown = 0, kElsewhere = -1, kBefore = -2;  // serials
-/// Faults in which the Command Post's answer is right.
+/// Faults after which the Command Post's answer is still correct.
 const std::set<std::string> kRightAnswers = {name_of(Fault::Delay), name_of(Fault::OddAnswer),
                                              name_of(Fault::ClosesAfter)};
 
@@ -45,24 +45,24 @@ void OpenReports::add(const Event& event) {
     const bool is_whole = event.kind == Kind::Whole && posted != posted_.end();
     if (is_whole && known_.insert(posted->second).second) open_.insert(posted->second);
   }
-  // If one report is in doubt and the same report waits, the one that waits is withdrawn.
+  // If one report is in doubt and an identical report is queued, a withdrawal withdraws the queued one.
   const bool is_over = event.what == kSettle || (event.what == kWithdraw && !in_doubt());
   const bool is_done = event.kind == Kind::Answered && event.status / 100 == 2;
   if (is_over && is_done) open_.erase(event.serial);
   if (event.what == kCorrect && is_done) open_.erase(event.serial - kCorrections);
   if (event.kind == Kind::Dies) {
-    for (const auto& [serial, at] : told_) {
+    for (const auto& [serial, at] : answered_) {
       if (event.at - at > kWritesDown) continue;
       open_.insert(serial);
       doubts_.insert(serial);
     }
   }
-  // In the life before one may have been written down before its first byte left.
+  // The process before may have recorded "sending" before the first byte left.
   if (event.kind == Kind::Begins && any()) doubts_.insert(is_switched_ ? kElsewhere : kBefore);
   if (event.what == kCourse && !doubts_.empty()) doubts_.insert(kElsewhere);
   is_switched_ = is_switched_ || event.what == kCourse;
   if (event.what != kReports) return;
-  if (event.kind == Kind::Taken) taken_.insert(event.serial);
+  if (event.kind == Kind::Taken) recorded_.insert(event.serial);
   if (event.kind == Kind::Fault) is_odd_ = is_odd_ || !kRightAnswers.contains(event.who);
   if (event.actor != Actor::Adit) return;
   if (event.kind == Kind::Leaves) {
@@ -71,19 +71,20 @@ void OpenReports::add(const Event& event) {
   }
   if (event.kind == Kind::Left) {
     sent_[event.request] = event.serial;
-    // The same report goes again to another course, although the first one answered it.
+    // The same report is sent again to another course, although the first course answered it.
     open_.insert(event.serial);
     doubts_.insert(event.serial);
     doubts_.erase(kUnknown);
   }
   const auto sent = sent_.find(event.request);
   if (event.kind != Kind::Replied || sent == sent_.end()) return;
-  const bool is_told = event.status / 100 == 2 && !is_odd_ && taken_.contains(sent->second);
-  if (is_told) {
+  const bool is_answered = event.status / 100 == 2 && !is_odd_ && recorded_.contains(sent->second);
+  if (is_answered) {
     open_.erase(sent->second);
-    told_[sent->second] = event.at;
+    answered_[sent->second] = event.at;
   }
-  if (is_told || (event.status / 100 == 4 && event.status != kRequestTimeout)) doubts_.erase(sent->second);
+  if (is_answered || (event.status / 100 == 4 && event.status != kRequestTimeout))
+    doubts_.erase(sent->second);
   if (open_.empty() && !doubts_.contains(kElsewhere)) doubts_.clear();
 }
 

@@ -11,43 +11,43 @@
 
 namespace adit::simulation {
 
-/// Seconds in which what nobody waits for any more may still be accepted: it may stand at the door until the
-/// next life begins, and be read by it.
+/// Seconds in which a request may still be accepted after its client has gone: its connection may wait at
+/// the door until the next process reads it.
 constexpr double kForgotten = 12;
 
-/// One request of a client, and what became of it. Where the client heard nothing it is unknown: it may have
-/// counted at any time from when it began until it ended, or never.
+/// One request of a client and its outcome. If the client heard no answer, the outcome is unknown: the
+/// request may have counted at any time between `began` and `ended`, or never.
 struct Asked {
   std::string path;
   std::vector<Item> items;
   double began = 0;
-  double ended = 0;  // after this it is not accepted any more
+  double ended = 0;  // the request is not accepted after this time
   bool whole = false;
-  int status = 0;  // 0: the client heard nothing
+  int status = 0;  // 0: the client heard no answer
 
   bool accepted() const { return status == 200; }
   bool may_count() const { return accepted() || (status == 0 && whole); }
 };
 
-/// Reports that were posted, by a client or on the page, until the Command Post has answered them with 2xx
-/// or the operator has called them done or withdrawn.
+/// Reports that a client or the operator posted, until the Command Post has answered them with 2xx or the
+/// operator has settled or withdrawn them.
 class OpenReports {
  public:
   void add(const Event& event);
   bool any() const { return !open_.empty(); }
-  /// One has left, or some of it, and no answer told what became of it.
+  /// A report has left, or a part of it, and no answer told whether it was recorded.
   bool in_doubt() const { return !doubts_.empty(); }
 
  private:
   std::map<std::uint64_t, std::int64_t> posted_,
       sent_;  // serials, by the client's request and the connection
-  std::set<std::int64_t> known_, open_, taken_, doubts_;  // serials
-  std::map<std::int64_t, double> told_;                   // serials that were answered, and when
-  bool is_odd_ = false;                                   // the answer under way is not the report's own
-  bool is_switched_ = false;                              // the course was, so that a doubt may be elsewhere
+  std::set<std::int64_t> known_, open_, recorded_, doubts_;  // serials
+  std::map<std::int64_t, double> answered_;                  // serials that were answered, and when
+  bool is_odd_ = false;                                      // the answer in flight is not the report's own
+  bool is_switched_ = false;  // the course was switched, so a report in doubt may be at the other course
 };
 
-/// Those of that path, but for bad messages, in the order in which they began.
+/// The requests for `path`, without bad messages, in the order in which they began.
 std::vector<Asked> asked_in(const std::vector<Event>& events, const std::string& path);
 
 }  // namespace adit::simulation

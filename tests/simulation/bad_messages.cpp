@@ -17,7 +17,7 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr const char* kRight = "Bearer token-of-the-team";
 
-/// A good message of each kind, before it is spoilt.
+/// A valid message of each kind, before a fault is put into it.
 Posting good(std::string_view kind, std::int64_t serial) {
   if (kind == "report") return {kReports, {{.who = "", .serial = serial}}};
   if (kind == "pose") return {kState, {{.who = "bad", .serial = serial}}};
@@ -26,12 +26,12 @@ Posting good(std::string_view kind, std::int64_t serial) {
   return {kMap, {{.who = "bad", .serial = serial, .says = Extent{}.says()}}};
 }
 
-/// What is wrong within a message: 422, "incorrect information for this interaction type".
+/// A fault inside a message: 422, "incorrect information for this interaction type".
 struct Spoilt {
   const char* what;
   const char* kind;
   void (*spoil)(Json& message);
-  bool cbor_only = false;  // JSON has no word for it
+  bool cbor_only = false;  // JSON cannot express it
 };
 
 const std::vector<Spoilt>& all_spoilt() {
@@ -101,7 +101,7 @@ BadMessage spoilt(Random& random, std::int64_t serial) {
           post(posting.path, bytes_of(message, cbor), cbor ? kCborType : kJsonType, kRight)};
 }
 
-/// What is wrong around a message.
+/// A fault outside the message: its path, method, headers or encoding.
 BadMessage misposted(Random& random, std::int64_t serial) {
   constexpr const char* kKinds[] = {"report", "pose", "marker", "cloud", "grid"};
   const Posting posting = good(kKinds[random.below(std::size(kKinds))], serial);

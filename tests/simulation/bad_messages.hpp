@@ -7,17 +7,17 @@
 
 namespace adit::simulation {
 
-constexpr std::int64_t kBadSerials = 30'000;  // those of bad messages begin here
+constexpr std::int64_t kBadSerials = 30'000;  // serials of bad messages begin here
 
-/// A request that the ICD forbids, and what it says of it.
+/// A request that the ICD forbids, and the status that the ICD gives it.
 struct BadMessage {
-  std::string what;  // is bad: "a pose without its position"
+  std::string what;  // the fault: "a pose without its position"
   std::string path;
-  int status = 422;  // that its sender hears (ICD 4.1)
+  int status = 422;  // expected answer (ICD 4.1)
   std::string request;
 };
 
-/// One of them, drawn; its serial is in it where it has room for one.
+/// A drawn bad message. It contains the serial if it has a field for one.
 BadMessage bad_message(Random& random, std::int64_t serial);
 
 }  // namespace adit::simulation

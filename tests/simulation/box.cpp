@@ -23,10 +23,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kLargestMap = 64u << 10;  // as a robot or a flood posts it
+constexpr std::size_t kLargestMap = 64u << 10;  // of a robot or a flood
 constexpr std::uint64_t kRightThen = 4, kSoon = 40, kMostCrossings = 400;
 constexpr double kDiesInExec = 0.3;
-/// Seconds until a process is started again, and until a machine is.
+/// Seconds until a killed process is restarted, and until a machine without power is booted.
 constexpr double kRestart[] = {0.05, 2}, kBoot[] = {5, 20};
 
 void write(const fs::path& path, const std::string& text) {
@@ -34,10 +34,10 @@ void write(const fs::path& path, const std::string& text) {
   fs::permissions(path, fs::perms::owner_read | fs::perms::owner_write);
 }
 
-/// Some are so small that they fill, and that messages are divided.
+/// Some queues are so small that they fill up and messages are split.
 struct Queues {
   std::string settings;
-  std::size_t most_map_bytes;  // that wait, two that come back with them
+  std::size_t most_map_bytes;  // queued; plus two maps that are queued again
 };
 
 Queues queues(Random random) {
@@ -55,8 +55,9 @@ Queues queues(Random random) {
   return queues;
 }
 
-/// In some worlds points of one voxel are left out of the first robots' clouds; so small are voxels that each
-/// point of another serial has its own. In some, the first robots' clouds are rounded.
+/// In some worlds Adit leaves out points of the first robots' clouds that share a voxel. Voxels are so
+/// small that points of different serials never share one. In other worlds Adit rounds the first robots'
+/// clouds.
 std::string robots(Random random) {
   constexpr int kNamed = 4;
   const bool leaves_out = random.chance(0.3), rounds = random.chance(0.3);
@@ -72,7 +73,7 @@ std::string robots(Random random) {
   return R"(, "robots": [)" + list + "]";
 }
 
-/// Nobody connects to the socket in which the team's server listens: the clients come in by the door.
+/// No client connects to the listening socket: the clients come in through the door (door.hpp).
 std::string first_settings(const std::string& queues, const std::string& robots,
                            const std::string& interface) {
   return R"({"version": 1, "command_post": {"scoring": {"address": "10.100.1.200", "port": )" +
@@ -85,7 +86,7 @@ std::string first_settings(const std::string& queues, const std::string& robots,
          interface + R"("}, "queues": {)" + queues + "}" + robots + "}";
 }
 
-/// With its mode, and what is a hole in it.
+/// Copies the mode and the holes too.
 void copy_one(const fs::path& from, const fs::path& to) {
   const loop::FileDescriptor source(::open(from.c_str(), O_RDONLY | O_CLOEXEC));
   struct stat found{};
@@ -103,7 +104,7 @@ void copy_one(const fs::path& from, const fs::path& to) {
   if (!well) std::abort();
 }
 
-/// What is no file is left out.
+/// Copies directories and regular files only.
 void copy_folder(const fs::path& from, const fs::path& to) {
   fs::create_directory(to, from);
   for (const auto& entry : fs::directory_iterator(from)) {
@@ -144,10 +145,10 @@ Box::~Box() {
 }
 
 void Box::live() {
-  while (!finished_ || starts_again_) one_life();
+  while (!finished_ || starts_again_) run_process();
 }
 
-void Box::one_life() {
+void Box::run_process() {
   gateway::Options options;
   options.settings = folder_ / "settings.json";
   options.secrets = folder_ / "secrets";
@@ -158,7 +159,7 @@ void Box::one_life() {
   options.notices = folder_ / "notices";
   options.block = folder_ / "block";
   ::setenv("RUNTIME_DIRECTORY", (folder_ / "runtime").c_str(), 1);
-  world_.begin_life(std::exchange(starts_again_, false));
+  world_.begin_process(std::exchange(starts_again_, false));
   world_.note(
       {.actor = Actor::Disk, .kind = Kind::Serves, .what = "settings", .who = world_.disk().settings()});
   if (const auto how = std::exchange(dies_at_start_, std::nullopt)) die_soon(*how);
@@ -176,8 +177,8 @@ void Box::one_life() {
     folder_ = next_;
     world_.disk().mount(folder_);
   }
-  world_.end_life();
-  if (boots_) starts_again_ = false;  // the power was cut within exec
+  world_.end_process();
+  if (boots_) starts_again_ = false;  // the power was cut during exec
   if (starts_again_) return;
   const auto& [least, most] = std::exchange(boots_, false) ? kBoot : kRestart;
   if (!finished_) world_.run_for(seconds(random_.between(least, most)));
@@ -191,7 +192,7 @@ void Box::finish() {
 void Box::terminate() {
   world_.when_moving([this] {
     if (world_.is_dead() || !world_.on_sigterm) return;
-    world_.note({.kind = Kind::Stops, .what = "aditd", .who = "", .serial = world_.life()});
+    world_.note({.kind = Kind::Stops, .what = "aditd", .who = "", .serial = world_.process()});
     world_.on_sigterm();
   });
 }
@@ -207,18 +208,18 @@ void Box::die_soon(World::How how) {
   world_.die_after(random_.below(random_.chance(0.5) ? kSoon : kMostCrossings), how, dies);
 }
 
-/// The files as they are at this instant are the next life's: what the objects of this one still write goes
-/// to the old ones.
+/// The next process starts from the files as they are now. Later writes by objects of the dead process go
+/// to the old files.
 void Box::died() {
   next_ = top_ / std::to_string(++folders_);
   copy_folder(folder_, next_);
 }
 
-/// What was in memory is gone, but for who is logged in: as if the operator had logged in again. Some
-/// machines have a clock that goes on without power, others begin where they always do.
+/// Memory is lost, except the sessions: as if the operator had logged in again. The clock of some machines
+/// runs on without power, others start at a fixed time.
 void Box::lost_power() {
   died();
-  world_.note({.kind = Kind::PowerCut, .what = "", .who = "", .serial = world_.life()});
+  world_.note({.kind = Kind::PowerCut, .what = "", .who = "", .serial = world_.process()});
   world_.disk().cut_power(next_);
   const fs::path runtime = next_ / Disk::kRuntime;
   const fs::path sessions = folder_ / Disk::kRuntime / admin::SessionKeeper::kFile;

@@ -9,35 +9,36 @@
 
 namespace adit::simulation {
 
-/// The box: its folders, and the lives of aditd, one after the other.
+/// The box: its directories, and the processes of aditd, one after the other.
 class Box {
  public:
-  /// The interface to the Command Post, and in half of the runs the team's: one that every machine has.
+  /// The interface to the Command Post, and in half of the runs the interface to the team. Every machine
+  /// has it.
   static constexpr const char* kInterface = "lo";
 
-  /// Makes a folder in memory, which goes with this. `world` outlives it.
+  /// Makes a directory in memory and removes it on destruction. `world` must outlive the box.
   explicit Box(World& world);
   ~Box();
   Box(const Box&) = delete;
   Box& operator=(const Box&) = delete;
 
-  /// Lives until finish() was called and the process has ended.
+  /// Runs aditd again and again until finish() was called and the process has ended.
   void live();
-  /// SIGTERM, for good.
+  /// Sends SIGTERM; aditd is not started again.
   void finish();
   void terminate();
-  /// At a drawn call of the seam from now on, or from the next start on.
+  /// The process dies at a drawn call of the seam, counted from now or from the next start.
   void die(World::How how);
 
   std::string state() const { return (folder_ / "state").string(); }
   std::string runtime() const { return (folder_ / "runtime").string(); }
   std::string secrets() const { return (folder_ / "secrets").string(); }
-  /// Of maps that may wait by the first settings, one that comes back with them.
+  /// Limit of queued maps in the first settings, plus one map that is queued again.
   std::size_t most_map_bytes() const { return most_map_bytes_; }
   std::string settings() const { return (folder_ / "settings.json").string(); }
 
  private:
-  void one_life();
+  void run_process();
   void die_soon(World::How how);
   void died();
   void lost_power();

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kMostInflated = 16 << 20;  // bytes
 
-/// As its last four bytes say (RFC 1952 2.3.1).
+/// The size that the last four bytes give (RFC 1952 2.3.1).
 std::size_t size_inflated(const std::string& member) {
   std::size_t size = 0;
   for (std::size_t i = 1; i <= 4; ++i)

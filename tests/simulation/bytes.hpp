@@ -4,9 +4,9 @@
 
 namespace adit::simulation {
 
-/// One member of gzip.
+/// Compresses into one gzip member.
 std::string deflated(const std::string& bytes);
-/// What a member of gzip holds, up to 16 MiB; "" where it is none.
+/// Decompresses one gzip member of at most 16 MiB; "" if it is not a gzip member.
 std::string inflated(const std::string& bytes);
 std::string base64(const std::string& bytes);
 

@@ -13,7 +13,7 @@ constexpr const char* kNames[] = {"Open fails", "List fails",   "Read fails", "S
                                   "Map fails",  "Status fails", "Write fails"};
 constexpr double kLongest = 15;                // seconds
 constexpr std::uint64_t kAll = 1'000'000'000;  // calls
-/// Of the runtime folder: who is logged in is not in it (README.md, power cut).
+/// Of the runtime directory. Faults do not hit the sessions (README.md, power cut).
 constexpr const char* kQueues[] = {"runtime/journal", "runtime/waiting", "runtime/rejected"};
 
 bool is_in(const std::string& name, bool in_memory) {
@@ -68,7 +68,7 @@ void CallFaults::end(Fault& fault) {
   world_.note({.actor = Actor::Disk, .kind = Kind::Mended, .what = "", .who = fault.name});
 }
 
-void CallFaults::life_begins() {
+void CallFaults::process_begins() {
   for (Fault& fault : faults_) {
     if (fault.at_start && !fault.was_on && world_.time() >= fault.begins) begin(fault);
   }

@@ -11,34 +11,36 @@ namespace adit::simulation {
 
 class World;
 
-/// Calls of libc that fail on the box's files for a time: in the state folder, or on the journal, the spool
-/// and the rejected messages in the runtime folder. One of four runs has up to three of them.
+/// Calls of libc that fail on the box's files for some time: in the state directory, or on the journal, the
+/// spool and the rejected messages in the runtime directory. One of four runs has up to three such faults.
 class CallFaults {
  public:
   enum class Call : std::uint8_t {
-    Open,    // of any file or directory: no descriptor is left
+    Open,    // EMFILE when any file or directory is opened
     List,    // opendir, fdopendir, readdir
-    Read,    // read, pread: at once, or behind some bytes
-    Less,    // read, pread: some of the bytes, and no error
+    Read,    // read, pread: at once, or after some bytes
+    Less,    // read, pread: fewer bytes than requested, no error
     Map,     // mmap
     Status,  // stat, fstat, fstatat, lstat
-    Write,   // write, pwrite: at once, or behind some bytes
+    Write,   // write, pwrite: at once, or after some bytes
     End
   };
 
   explicit CallFaults(World& world);
-  /// Draws when they come. Each may be left out, by its name. Half of them come with a start of the process.
+  /// Draws the times of the faults. Each may be left out by its name. Half of the faults begin with a start
+  /// of the process.
   void plan(double trouble_for);
-  /// When the process is to end, so that a start follows that meets a fault: seconds.
+  /// Times in seconds at which the process is to end, so that a start meets a fault.
   const std::vector<double>& ends() const { return ends_; }
-  /// A process is about to begin.
-  void life_begins();
+  /// Call before each start of the process.
+  void process_begins();
 
-  /// The errno with which this call fails; 0: it does not.
+  /// The errno with which this call fails, or 0 if it succeeds.
   int error(Call call, const std::string& name);
-  /// Of `size` bytes so many are read or written before the call fails; nothing: it does not fail.
+  /// The number of bytes, of `size`, that are read or written before the call fails; nullopt if it
+  /// succeeds.
   std::optional<std::size_t> cut(Call call, const std::string& name, std::size_t size);
-  /// Of all faults of the runtime folder, the end of their names.
+  /// Suffix of the names of all faults of the runtime directory.
   static constexpr const char* kInRuntime = " in runtime";
   const std::string& names() const { return names_; }
 
@@ -49,8 +51,8 @@ class CallFaults {
     bool at_start;         // it begins with the first start after `begins`
     int number;            // the errno
     double begins, lasts;  // seconds
-    double odds;           // that a call fails
-    std::uint64_t most;    // calls that fail
+    double odds;           // probability that a call fails
+    std::uint64_t most;    // limit of failing calls
     Random random;
     std::string name = {};
     bool is_on = false, was_on = false;

@@ -1,4 +1,4 @@
-// All of them, and what a power cut may cost.
+// Runs all checks, and decides what a power cut may lose.
 #include "simulation/checks.hpp"
 
 #include <algorithm>
@@ -8,16 +8,16 @@
 namespace adit::simulation {
 namespace {
 
-/// What was accepted before the last power cut, but for reports, may have been lost, or not: what waited was
-/// in memory. It is as if its client had heard nothing.
+/// Everything that was accepted before the last power cut, except reports, was in memory and may be lost or
+/// not. So these requests count as if their clients had heard no answer.
 std::vector<Event> with_losses(const std::vector<Event>& events) {
-  int lives = 0;  // that ended by the last cut, and before
+  int last_process = 0;  // processes up to the last power cut
   for (const Event& event : events) {
-    if (event.kind == Kind::PowerCut) lives = event.life;
+    if (event.kind == Kind::PowerCut) last_process = event.process;
   }
   std::vector<Event> told = events;
   for (Event& event : told) {
-    if (event.kind != Kind::Answered || event.what == kReports || event.life > lives) continue;
+    if (event.kind != Kind::Answered || event.what == kReports || event.process > last_process) continue;
     event.kind = Kind::Gone;
     event.status = 0;
   }
@@ -28,12 +28,12 @@ std::vector<Event> with_losses(const std::vector<Event>& events) {
 
 Window window_of(const Evidence& evidence, double first, double last) {
   constexpr double kForever = 1e12;
-  /// Of each cut: the time that was kept last is that old where the disk was at fault, and then no power.
+  /// Seconds by which the stored time may be behind at a power cut if the disk was faulty before it.
   constexpr double kBehind = 200;
-  double behind = 0;  // by which the box's clock is, after a start
+  double behind = 0;  // how far the box's clock is behind after a start
   DiskFaultsSeen disk;
   for (const Event& event : evidence.events) {
-    // The next gateway's clock for stamps is ahead, and times of the one before seem as much older.
+    // The clock for stamps of the next gateway is ahead, and older times seem older by as much.
     if (event.kind == Kind::PowerCut || disk.forgets_at(event)) last += kBehind;
     disk.add(event);
     const bool by_a_start = event.stamp == -event.at;

@@ -12,24 +12,25 @@ namespace adit::simulation {
 
 constexpr double kLongestDoubt = 60;  // seconds
 
-/// What both sides saw, and what the box holds in the end, long after the last fault.
+/// What both sides saw, and the contents of the box at the end, long after the last fault.
 struct Evidence {
   const std::vector<Event>& events;
   const std::vector<dispatch::Report>& reports;  // of the ledger
   const std::vector<Reading>& readings;          // of the page
-  std::size_t most_map_bytes = 0;                // that wait at once, by the first settings
-  std::size_t missing = 0;                       // records of the ledger
+  std::size_t most_map_bytes = 0;                // limit of queued maps in the first settings
+  std::size_t missing = 0;                       // records missing in the ledger
 };
 
-/// The window of the world's clock in which something was that the box has as from `first` to `last` by its
-/// own: a power cut may set that back, and if somebody else set it, nothing is known.
+/// The window of the world's clock for a span from `first` to `last` of the box's clock. A power cut may
+/// set the box's clock back; if anything else set it, the window is unbounded.
 struct Window {
   double first = 0, last = 0;
   bool has(double at) const { return at > first && at < last; }
 };
 Window window_of(const Evidence& evidence, double first, double last);
 
-/// Each adds a sentence for what it finds broken, which begins with its name. Their rules are in README.md.
+/// Each check adds a sentence for each violation, which begins with the check's name. README.md has the
+/// rules.
 using Broken = std::vector<std::string>;
 void settings_kept(const Evidence& evidence, Broken& broken);
 void starts(const Evidence& evidence, Broken& broken);
@@ -58,14 +59,14 @@ void bounded(const Evidence& evidence, Broken& broken);
 void has_room(const Evidence& evidence, Broken& broken);
 void alive(const Evidence& evidence, Broken& broken);
 
-/// Which faults of the disk there were, of events in their order.
+/// The faults of the disk so far. Events are added in their order.
 class DiskFaultsSeen {
  public:
   void add(const Event& event);
-  /// Whether a gateway begins after one that could not keep in the runtime folder what the next one is to
-  /// know, or cannot read it itself.
+  /// Whether a gateway begins without state in the runtime directory: the one before could not write it, or
+  /// this one cannot read it.
   bool forgets_at(const Event& event) const;
-  /// Any, now or less than so many seconds ago.
+  /// Whether a fault is present, or ended less than `seconds` ago.
   bool within(double seconds, double now) const;
 
  private:

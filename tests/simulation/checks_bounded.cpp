@@ -1,4 +1,4 @@
-// Bounded: what the box holds, while it works and at rest.
+// Bounded: limits of memory, files and lists, under load and at rest.
 #include <algorithm>
 #include <ranges>
 #include <string>
@@ -11,14 +11,14 @@ namespace adit::simulation {
 namespace {
 
 constexpr std::uint64_t kMiB = 1u << 20;
-/// The log that is written, a spare one, and one for each of the disk's faults, which begin another one:
-/// until there are two snapshots. With all else in the state folder.
+/// The log in use, a spare one, and one for each fault of the disk, because a fault begins another log,
+/// until there are two snapshots. Plus all other files of the state directory.
 constexpr std::uint64_t kStateFolder = 26 * kMiB;
-/// What stays of a damaged ledger.
+/// Size of a damaged ledger that was put aside.
 constexpr std::uint64_t kDamaged = 5 * kMiB;
-/// The journal that is written, and the one that is made smaller beside its snapshot.
+/// The journal in use, and the compacted one that is written beside it.
 constexpr std::uint64_t kJournal = 5 * kMiB / 2;
-/// The sessions, and the rejected messages of a run.
+/// The sessions and the rejected messages of a run.
 constexpr std::uint64_t kBeside = kMiB;
 
 struct Most {
@@ -29,7 +29,7 @@ constexpr Most kLists[] = {{"activities", 200}, {"refusals", 50}, {"reports", 20
 
 class Looking {
  public:
-  /// `damaged`: so many damaged ledgers were put aside.
+  /// `damaged`: number of damaged ledgers that were put aside.
   Looking(const Reading& reading, std::uint64_t damaged, Broken& broken)
       : reading_(reading), state_(kStateFolder + damaged * kDamaged), broken_(broken) {}
 
@@ -41,13 +41,13 @@ class Looking {
   void at_lists() {
     for (const auto& [list, rows] : kLists) at(list, reading_.view.at(list).size(), rows);
   }
-  /// `compacts`: no fault kept the journal from being made smaller.
+  /// `compacts`: no fault kept the journal from being compacted.
   void at_files(bool compacts) {
     at("bytes in the state folder", reading_.stored.state, state_);
     if (compacts) at("bytes of the journal", reading_.stored.journal, kJournal);
     at("bytes in the runtime folder", reading_.stored.others, kBeside);
   }
-  void at_rest() { at("bytes of maps that wait no more", reading_.stored.waiting, 0); }
+  void at_rest() { at("bytes of maps at rest", reading_.stored.waiting, 0); }
 
  private:
   const Reading& reading_;
@@ -55,7 +55,7 @@ class Looking {
   Broken& broken_;
 };
 
-/// When so many events had happened.
+/// The number of damaged ledgers after the first `events` events.
 std::uint64_t damaged_after(std::size_t events, const Evidence& evidence) {
   const auto was_damaged = [](const Event& event) {
     return event.kind == Kind::Said && event.text.contains("The ledger was damaged");
@@ -75,7 +75,7 @@ bool nothing_waits(const nlohmann::json& view) {
 }  // namespace
 
 void bounded(const Evidence& evidence, Broken& broken) {
-  double changed = 1e9;  // when other settings came
+  double changed = 1e9;  // when other settings were saved
   for (const Event& event : evidence.events) {
     if (event.kind == Kind::Written) changed = std::min(changed, event.at);
     if (event.kind == Kind::Forbidden && event.what == kTooMuch)
@@ -89,7 +89,7 @@ void bounded(const Evidence& evidence, Broken& broken) {
       looking.at("bytes of maps", reading.view.at("queued_bytes"), evidence.most_map_bytes);
   }
   if (evidence.readings.empty() || !nothing_waits(evidence.readings.back().view)) return;
-  // A start that cannot list the folder leaves unfinished files, and logs that.
+  // A start that cannot list the directory leaves unfinished files, and logs that.
   if (std::ranges::any_of(evidence.events, is_in_runtime)) return;
   Looking(evidence.readings.back(), 0, broken).at_rest();
 }

@@ -1,4 +1,4 @@
-// Starts and SettingsKept, and what the checks know of the disk.
+// Starts and SettingsKept, and the faults of the disk that the checks allow for.
 #include <algorithm>
 
 #include "icd/sentence.hpp"
@@ -17,7 +17,7 @@ bool is_of_runtime(const std::string& fault) {
 void starts(const Evidence& evidence, Broken& broken) {
   for (const Event& event : evidence.events) {
     if (event.kind == Kind::Fails)
-      broken.push_back(icd::sentence("Starts: life ", event.life, " did not begin, at ", event.at));
+      broken.push_back(icd::sentence("Starts: process ", event.process, " did not start, at ", event.at));
   }
 }
 
@@ -32,8 +32,8 @@ void settings_kept(const Evidence& evidence, Broken& broken) {
     if (event.kind == Kind::Saved) may_be = {last};
     if (event.kind != Kind::Serves) continue;
     if (!may_be.contains(event.who))
-      broken.push_back(icd::sentence("SettingsKept: life ", event.life,
-                                     " begins with settings of before the ones that an operator saved"));
+      broken.push_back(icd::sentence("SettingsKept: process ", event.process,
+                                     " begins with older settings than those that an operator saved"));
     last = event.who;
     may_be = {last};
   }

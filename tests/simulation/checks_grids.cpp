@@ -1,4 +1,4 @@
-// GridArrived: replays the cells of all grids that the Command Post took.
+// GridArrived: replays the cells of all grids that the Command Post accepted.
 #include <algorithm>
 #include <deque>
 #include <map>
@@ -17,19 +17,19 @@
 namespace adit::simulation {
 namespace {
 
-/// A grid that failed so often at the Command Post lets newer ones pass, to see whether they can.
+/// A grid that failed this often at the Command Post lets newer grids pass (queues/map_queue.hpp).
 constexpr int kInPlace = 3;
 constexpr int kNoValue = 255;
 
-/// A grid that was posted, and what became of it.
+/// A posted grid and its outcome.
 struct PostedGrid {
   const Asked* asked;
   std::int64_t serial;
   Extent extent;
-  std::size_t taken = 0;    // the last event by which it was; 0: none
+  std::size_t taken = 0;    // the last event that delivered it; 0: none
   int failures = 0;         // answers of 5xx to it
-  bool is_taken = false;    // as an answer said
-  bool is_refused = false;  // it is rejected, and follows later at the operator's word
+  bool is_taken = false;    // an answer confirmed the delivery
+  bool is_refused = false;  // rejected; the operator sends it again later
 
   void answered(const Event& reply) {
     if (reply.status >= 500) ++failures;
@@ -39,19 +39,20 @@ struct PostedGrid {
   bool is_before(const PostedGrid& other) const { return asked->ended < other.asked->began; }
 };
 
-/// Whether `size` cells from `begin`, in half cells, lie within those.
+/// Whether `size` cells from `begin` lie within `outer_size` cells from `outer_begin`. Origins are in half
+/// cells.
 bool lies_within(int begin, int size, int outer_begin, int outer_size) {
   const int halves = begin - outer_begin;
   return halves >= 0 && halves % 2 == 0 && halves / 2 + size <= outer_size;
 }
 
-/// ICD 6.3.1: whether `outer` says all that `inner` said, if it is newer.
+/// ICD 6.3.1: whether a newer `outer` replaces everything in `inner`.
 bool holds(const Extent& outer, const Extent& inner) {
   return outer.centimetres == inner.centimetres && lies_within(inner.x, inner.width, outer.x, outer.width) &&
          lies_within(inner.y, inner.height, outer.y, outer.height);
 }
 
-/// Whether they have any place in common.
+/// Whether the extents overlap.
 bool overlap(const Extent& a, const Extent& b) {
   const auto one = [&](int a_begin, int a_size, int b_begin, int b_size) {
     return a_begin * a.centimetres < (b_begin + 2 * b_size) * b.centimetres &&
@@ -60,7 +61,7 @@ bool overlap(const Extent& a, const Extent& b) {
   return one(a.x, a.width, b.x, b.width) && one(a.y, a.height, b.y, b.height);
 }
 
-/// Gives each cell of it as an extent of its own, row by row.
+/// Visits each cell of an extent, row by row, as an extent of its own.
 template <class Visit>
 void for_each_cell(const Extent& extent, Visit visit) {
   for (int row = 0; row < extent.height; ++row) {
@@ -69,10 +70,10 @@ void for_each_cell(const Extent& extent, Visit visit) {
   }
 }
 
-/// The grids of one name, and what the Command Post has of them. What two Command Posts have is taken
-/// together where an operator `switches` between them: then a cell that one of them lacks is not missed. Nor
-/// is one that was sent by a life of which the box knows nothing. What was sent in an earlier run may be
-/// missed, for a run begins with an empty map.
+/// The grids of one name, and the cells that the Command Post has of them. If an operator `switches`
+/// between two Command Posts, the cells of both count together, and a cell that is missing at one is no
+/// violation. Neither is a cell that was sent by a process of which the box has no record. A cell that was
+/// sent in an earlier run may be missing, because a run begins with an empty map.
 class GridsOfOneName {
  public:
   explicit GridsOfOneName(bool has_more_maps) : has_more_maps_(has_more_maps) {}
@@ -81,7 +82,7 @@ class GridsOfOneName {
     posted_.push_back({&asked, item.serial, Extent::from(item.says)});
   }
 
-  /// A grid left, or was taken: those that were posted and are in it.
+  /// A grid left, or was accepted. Returns the posted grids that the message contains.
   std::vector<PostedGrid*> sent(const Event& event) {
     std::vector<PostedGrid*> in_it;
     const Message message = read(event);
@@ -104,7 +105,7 @@ class GridsOfOneName {
       const auto had = has_.find(key_of(cell));
       const bool was_sent = had != has_.end();
       const bool is_earlier = was_sent && had->second.place < run_began_;
-      // A grid of an earlier run has a gap's value there by chance.
+      // A grid of an earlier run may have the value of a gap by chance.
       const bool is_of_run = std::ranges::any_of(
           owners, [&](const PostedGrid* owner) { return owner->taken == 0 || owner->taken >= run_began_; });
       const bool is_blank = value == kNoValue && is_earlier && !is_of_run;
@@ -115,8 +116,9 @@ class GridsOfOneName {
       if (!owners.empty()) has_[key_of(cell)] = {since, owners};
     });
     if (is_strange)
-      broken.push_back(icd::sentence("GridArrived: cells that nobody posted were taken from '", event.who,
-                                     "' at ", event.at));
+      broken.push_back(
+          icd::sentence("GridArrived: the Command Post accepted cells that no client posted, of '", event.who,
+                        "' at ", event.at));
   }
 
   void check(const std::string& name, Broken& broken) const {
@@ -125,28 +127,29 @@ class GridsOfOneName {
       if (!is_there(grid)) {
         broken.push_back(
             icd::sentence("GridArrived: ", name, "'s ", grid.serial,
-                          " was answered 200, and the Command Post has older cells there, or none"));
+                          " was answered 200, but the Command Post has older cells there, or none"));
       }
       for (const PostedGrid& older : posted_) {
         const bool may_be_over = older.taken > 0 && older.is_before(grid) &&
                                  overlap(older.extent, grid.extent) && !lets_newer_pass(older);
         if (!may_be_over || !is_under(grid, older)) continue;
-        broken.push_back(icd::sentence("GridArrived: ", name, "'s ", older.serial, " lies over its newer ",
-                                       grid.serial, ", for it was taken last"));
+        broken.push_back(icd::sentence("GridArrived: ", name, "'s ", older.serial,
+                                       " was delivered after the newer ", grid.serial,
+                                       ", for it was taken last"));
       }
     }
   }
 
  private:
-  /// Those that have that value there, of which one is the cell's.
+  /// The posted grids that have the cell's value at its place. One of them is the cell's owner.
   using Owners = std::vector<PostedGrid*>;
   struct Message {
     Extent extent;
-    std::vector<PostedGrid*> within;  // that lie within it
+    std::vector<PostedGrid*> within;  // the posted grids that lie within the message
     std::vector<Owners> cells;
   };
   struct Has {
-    std::size_t place = 0;  // of the event by which it was taken
+    std::size_t place = 0;  // the event that delivered it
     Owners owners;
   };
   using Key = std::tuple<int, int, int>;
@@ -172,8 +175,9 @@ class GridsOfOneName {
     return message;
   }
 
-  /// Where a message has gaps, not all that lies within it is in it, and a gap may have its value by chance.
-  /// Of what is in it each cell is its own, or of one that is no older, also where that has replaced it.
+  /// A message with gaps does not contain every grid that lies within it, and a gap may have a grid's value
+  /// by chance. A contained grid has at each cell its own value or the value of a grid that is not older,
+  /// even if that grid has replaced it.
   static void leave_out_what_is_not_in(Message& message) {
     Owners not_in;
     for (PostedGrid* grid : message.within) {
@@ -195,8 +199,8 @@ class GridsOfOneName {
     std::ranges::for_each(message.cells, leave_out);
   }
 
-  /// Those that have that value there, also where they do not lie within the message: what was sent last may
-  /// be sent with what lies about it.
+  /// The posted grids that have that value there, even if they are larger than the message: a grid that was
+  /// sent before may be sent as a part.
   Owners owners_of(const Extent& cell, int value, double at) {
     Owners owners;
     for (PostedGrid& each : posted_) {
@@ -207,7 +211,8 @@ class GridsOfOneName {
     return owners;
   }
 
-  /// Each of its cells is its own, or one that is no older; or of one that let it pass.
+  /// Each of its cells has the grid's value, or the value of a grid that is not older or that this grid let
+  /// pass.
   bool is_there(const PostedGrid& grid) const {
     bool all = true;
     for_each_cell(grid.extent, [&](const Extent& cell) {
@@ -220,7 +225,7 @@ class GridsOfOneName {
     return all;
   }
 
-  /// Whether `older`, which may be of another lattice, was taken after some of what is over it.
+  /// Whether `older`, perhaps on another lattice, was accepted after a part of a grid that covers it.
   bool is_under(const PostedGrid& grid, const PostedGrid& older) const {
     bool any = false;
     for_each_cell(grid.extent, [&](const Extent& cell) {
@@ -230,7 +235,7 @@ class GridsOfOneName {
     return any;
   }
 
-  /// Its failures count with those of what it may have replaced.
+  /// Counts the failures of the grid and of the grids that it may have replaced.
   bool lets_newer_pass(const PostedGrid& grid) const {
     int failures = grid.failures;
     for (const PostedGrid& older : posted_) {
@@ -242,28 +247,28 @@ class GridsOfOneName {
   }
 
   bool has_more_maps_;
-  std::size_t run_began_ = 0;  // by which event
+  std::size_t run_began_ = 0;  // the event with which the run began
   std::deque<PostedGrid> posted_;
   std::map<Key, Has> has_;
 };
 
-/// A life that could write nothing down, and a power cut: where it was the life's end the next one holds
-/// itself for the first, and where it was before, this one knows nothing of what the earlier ones sent. A
-/// life between them that ended as it began has written nothing down, either.
+/// Whether a power cut followed a process that could write nothing to disk. If the cut ended that process,
+/// the next process takes itself for the first. If the cut came earlier, this process knows nothing of
+/// earlier messages. A process in between that ended at its start has written nothing either.
 bool knows_nothing(const Evidence& evidence) {
   constexpr double kTooShort = 1;         // seconds
   std::set<std::int64_t> unwritten, cut;  // lives
   std::map<std::int64_t, double> length;
   for (const Event& event : evidence.events) {
     if (event.kind == Kind::Said && event.text.contains("stamps may run backward"))
-      unwritten.insert(event.life);
+      unwritten.insert(event.process);
     if (event.kind == Kind::PowerCut) cut.insert(event.serial);
-    if (event.kind == Kind::Begins) length[event.life] = -event.at;
-    if (event.kind == Kind::Ended) length[event.life] += event.at;
+    if (event.kind == Kind::Begins) length[event.process] = -event.at;
+    if (event.kind == Kind::Ended) length[event.process] += event.at;
   }
-  return std::ranges::any_of(unwritten, [&](std::int64_t life) {
-    if (cut.contains(life - 1)) return true;
-    std::int64_t last = life;
+  return std::ranges::any_of(unwritten, [&](std::int64_t process) {
+    if (cut.contains(process - 1)) return true;
+    std::int64_t last = process;
     while (!cut.contains(last) && length.contains(last + 1) && length[last + 1] < kTooShort) ++last;
     return cut.contains(last);
   });

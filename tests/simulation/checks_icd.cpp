@@ -1,4 +1,4 @@
-// Refused, Clean and StatusTrue: of what the ICD says that either side may see.
+// Refused, Clean and StatusTrue: the ICD as seen from both sides.
 #include <cmath>
 #include <map>
 
@@ -11,21 +11,21 @@
 namespace adit::simulation {
 namespace {
 
-constexpr double kOldest = 15;               // seconds since a status was asked for that is still told
-constexpr double kOldestBehindReports = 60;  // while a report waits, and after it
-constexpr double kGoFirst = 15;              // seconds: so long after it reports may still go first
-constexpr double kOnItsWay = 1;              // second, in which an answer reaches its client
-constexpr double kConnecting = 3;            // seconds that a question may wait before its first byte leaves
+constexpr double kOldest = 15;  // seconds since the status was requested, after which Adit does not serve it
+constexpr double kOldestBehindReports = 60;  // the same, while a report is queued and after it
+constexpr double kGoFirst = 15;    // seconds after a report in which reports may still have priority
+constexpr double kOnItsWay = 1;    // seconds in which an answer reaches its client
+constexpr double kConnecting = 3;  // seconds that a request may wait before its first byte leaves
 constexpr int kTimeout = 408, kTooMany = 429, kStops = 503;
 
-/// What the Command Post said of the run, as it was understood.
+/// A status of the Command Post as Adit understood it.
 struct Known {
   double asked;
-  double slow;  // seconds that the box had stood still by then, for its disk
+  double slow;  // seconds that the box had stood still for its disk until then
   const Says* says;
 };
 
-/// `slow`: as Known's, by the time of the answer.
+/// `slow`: as in Known, at the time of the answer.
 bool may_be(const Known& known, const Event& answer, double slow, double oldest_told) {
   const double oldest = answer.at - known.asked;
   const double youngest = oldest - kOnItsWay - (slow - known.slow);
@@ -41,7 +41,7 @@ void refused(const Evidence& evidence, Broken& broken) {
     if (event.kind == Kind::Invoke && event.status != 0) bad[event.request] = &event;
     const bool went = event.kind == Kind::Left || event.kind == Kind::Taken;
     if (went && event.serial >= kBadSerials && event.actor != Actor::Team)
-      broken.push_back(icd::sentence("Refused: a bad message went to ", event.what, ", ", event.serial));
+      broken.push_back(icd::sentence("Refused: a bad message was sent to ", event.what, ", ", event.serial));
     if (event.kind != Kind::Answered || !bad.contains(event.request)) continue;
     const Event& asked = *bad[event.request];
     const bool elsewhere = event.status == kTimeout || event.status == kTooMany || event.status == kStops;
@@ -64,7 +64,7 @@ void clean(const Evidence& evidence, Broken& broken) {
 }
 
 void status_true(const Evidence& evidence, Broken& broken) {
-  std::vector<Known> known;                         // of this life
+  std::vector<Known> known;                         // in this process
   std::map<std::uint64_t, std::size_t> known_then;  // when a client asked
   OpenReports reports;
   double asked = 0, slow = 0, last_report = -1e9;
@@ -79,7 +79,7 @@ void status_true(const Evidence& evidence, Broken& broken) {
       known.push_back({asked, slow, &event.says});
     if (event.kind == Kind::Invoke) known_then[event.request] = known.size();
     if (event.kind != Kind::Answered || event.status != 200) continue;
-    // Nothing older than what was known when it asked.
+    // The answer is not older than the status that was known when the client asked.
     const std::size_t newest = known_then.contains(event.request) ? known_then[event.request] : 0;
     const bool is_behind = event.at - last_report <= kGoFirst + kOnItsWay + slow;
     const double oldest = is_behind ? kOldestBehindReports : kOldest;
@@ -89,12 +89,12 @@ void status_true(const Evidence& evidence, Broken& broken) {
     if (found) continue;
     if (event.says.empty()) {
       broken.push_back(
-          icd::sentence("StatusTrue: at ", event.at, " a client was told 200 with what is no status"));
+          icd::sentence("StatusTrue: at ", event.at, " a client got a 200 that is not a status"));
       continue;
     }
-    broken.push_back(icd::sentence("StatusTrue: at ", event.at, " a client was told score ", event.says.at(0),
+    broken.push_back(icd::sentence("StatusTrue: at ", event.at, " a client got score ", event.says.at(0),
                                    ", ", event.says.at(1), " reports and clock ", event.says.at(2) / 1000.0,
-                                   " of age ", event.stamp, ": not the last that was known"));
+                                   " of age ", event.stamp, ", which was not the last known status"));
   }
 }
 

@@ -9,7 +9,7 @@
 #include "simulation/asked.hpp"
 #include "simulation/checks.hpp"
 #include "simulation/courses.hpp"
-#include "simulation/judge.hpp"
+#include "simulation/deciding_operator.hpp"
 #include "simulation/messages.hpp"
 #include "simulation/scoreboard.hpp"
 #include "simulation/upstream_view.hpp"
@@ -19,16 +19,16 @@ namespace {
 
 constexpr double kLongestSending = 60;  // seconds
 
-/// A cloud that was posted, and the events by which it was taken.
+/// A posted cloud and the events that delivered it.
 struct Posted {
   const Asked* asked;
   const Item* item;
   std::vector<std::size_t> taken = {};
-  bool again = false;  // later ones had its points, too
+  bool again = false;  // later clouds contained its points too
 };
 using Name = std::string;
 
-/// Of each name, those that may have counted.
+/// By name, the clouds that may have been accepted.
 std::map<Name, std::vector<Posted>> posted_in(const Evidence& evidence, const std::vector<Asked>& all) {
   std::map<Name, std::vector<Posted>> posted;
   std::map<std::int64_t, std::pair<Name, std::size_t>> by_serial;
@@ -56,7 +56,7 @@ std::map<Name, std::vector<Posted>> posted_in(const Evidence& evidence, const st
   return posted;
 }
 
-/// By which event the message of a taking left.
+/// The event by which the message of this delivery had left.
 std::size_t left_by(const std::vector<Event>& events, std::size_t taken) {
   std::size_t place = taken;
   const auto is_it = [&](const Event& event) {
@@ -67,10 +67,10 @@ std::size_t left_by(const std::vector<Event>& events, std::size_t taken) {
   return place;
 }
 
-/// Between one taking and the next the process was killed, or the first one's answer was lost or no 200; or
-/// the second one left before the first and was long under way, after its connection was lost; or
-/// the operator sent again what was still rejected after a kill, though it waited by then, or was rejected
-/// twice.
+/// Whether a second delivery is allowed. One of these must hold: between the two the process was killed;
+/// the first answer was lost or was not 200; the second left before the first and took long, after its
+/// connection was lost; the operator sent a message again that was still rejected after a kill, although it
+/// was queued by then or rejected twice.
 bool may_be_double(const std::vector<Event>& events, std::size_t first, std::size_t second) {
   const auto is_kill = [](const Event& event) { return event.kind == Kind::Dies; };
   const auto is_word = [](const Event& event) {
@@ -91,8 +91,9 @@ bool may_be_double(const std::vector<Event>& events, std::size_t first, std::siz
   return status != 200;
 }
 
-/// Between the two a run, a setting or a course began, so points that were left out of the first must go now.
-/// A clock that was set back looks like another run, until the answer to a report names the present one.
+/// A run, a setting or a course began between the two, so points that were left out of the first must be
+/// sent now. A clock that was set back looks like another run, until the answer to a report names the
+/// current run.
 bool may_go_whole(const std::vector<Event>& events, std::size_t first, std::size_t second) {
   bool is_set_back = false;
   for (std::size_t i = 0; i < second; ++i) {
@@ -108,7 +109,7 @@ bool may_go_whole(const std::vector<Event>& events, std::size_t first, std::size
 
 void check_clouds(const Evidence& evidence, const Name& name, const std::vector<Posted>& all,
                   Broken& broken) {
-  // Of a merged cloud all goes whole again, also a part that had no more.
+  // A merged cloud is sent again as a whole, with parts that were delivered before.
   const auto message_of = [&](std::size_t taken) {
     return std::pair(evidence.events[taken].request, evidence.events[taken].at);
   };
@@ -120,7 +121,7 @@ void check_clouds(const Evidence& evidence, const Name& name, const std::vector<
   for (const Posted& cloud : all) {
     if (cloud.asked->accepted() && cloud.taken.empty()) {
       broken.push_back(icd::sentence("CloudArrived: ", cloud.item->serial, " of '", name,
-                                     "' was answered 200, and no cloud with all its points was taken"));
+                                     "' was answered 200, but no cloud with all its points was delivered"));
     }
     for (std::size_t i = 1; i < cloud.taken.size() && !cloud.again; ++i) {
       if (may_be_double(evidence.events, cloud.taken[i - 1], cloud.taken[i])) continue;
@@ -128,7 +129,7 @@ void check_clouds(const Evidence& evidence, const Name& name, const std::vector<
           may_go_whole(evidence.events, cloud.taken[i - 1], cloud.taken[i]))
         continue;
       broken.push_back(icd::sentence("CloudArrived: ", cloud.item->serial, " of '", name,
-                                     "' was taken again at ", evidence.events[cloud.taken[i]].at));
+                                     "' was delivered twice, at ", evidence.events[cloud.taken[i]].at));
     }
   }
 }
@@ -139,8 +140,8 @@ void cloud_arrived(const Evidence& evidence, Broken& broken) {
   for (const Event& event : evidence.events) {
     const bool taken = event.kind == Kind::Taken && event.what == kMap && is_cloud(event.says);
     if (taken && event.says.front() == kStrange)
-      broken.push_back(
-          icd::sentence("CloudArrived: points that nobody posted were taken from '", event.who, "'"));
+      broken.push_back(icd::sentence(
+          "CloudArrived: the Command Post accepted points that no client posted, of '", event.who, "'"));
   }
   const auto all = asked_in(evidence.events, kMap);
   for (const auto& [name, clouds] : posted_in(evidence, all)) check_clouds(evidence, name, clouds, broken);

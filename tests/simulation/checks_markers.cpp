@@ -1,4 +1,4 @@
-// PoseArrived and MarkersArrived: of what stands at rest, one value for each name.
+// PoseArrived and MarkersArrived: the value of each name at rest.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -16,15 +16,16 @@
 namespace adit::simulation {
 namespace {
 
-constexpr double kOneClock = 1;  // second, by which stamps of one clock may be off
-/// Seconds: a message that is late by less never shows that its clock was set back, by more always.
+constexpr double kOneClock = 1;  // seconds by which stamps of one clock may differ
+/// Seconds. A message that is late by less than kOutOfOrder never shows that its clock was set back; one
+/// that is late by more than kJump always does.
 constexpr double kOutOfOrder = 1, kJump = 5;
 
-/// What may have set a value, and when.
+/// A request that may have set a value, and when.
 struct Change {
   double began, ended, stamp;
   bool accepted;
-  std::int64_t serial;  // 0: it took the value away
+  std::int64_t serial;  // 0: the value was deleted
   Says sender = {};
 
   bool is_of_one_clock(const Change& other) const {
@@ -34,9 +35,9 @@ struct Change {
 };
 using Changes = std::vector<Change>;
 
-/// Whether `other` came after `change` for sure: by their stamps, if they are of one clock, unless that of
-/// another may have come in between and replaced the first, or the gateway may have forgotten it then; else
-/// by when they were posted.
+/// Whether `other` certainly came after `change`. Stamps decide if one clock made both, unless a pose of
+/// another clock may have come between them and replaced the first, or the gateway may have forgotten the
+/// first. Otherwise the times of the posts decide.
 bool is_before(const Change& change, const Change& other, const Changes& all,
                const std::vector<double>& forgets) {
   const bool by_stamps = change.stamp < other.stamp, by_arrival = change.ended < other.began;
@@ -49,8 +50,8 @@ bool is_before(const Change& change, const Change& other, const Changes& all,
   return is_apart ? by_arrival : by_stamps;
 }
 
-/// Whether `late`, which was posted after `early`, may have been overtaken by it as far as its stamp tells:
-/// the first late one of a clock that was set back may (`queues/step_back.hpp`).
+/// Whether `early` may have replaced `late`, which was posted after it, because of its stamp. That is
+/// allowed for the first late message of a clock that was set back (`queues/step_back.hpp`).
 bool seems_overtaken(const Change& late, const Change& early, const Changes& all) {
   if (late.stamp == 0 || late.stamp >= early.stamp || late.stamp < early.stamp - kJump) return false;
   if (late.stamp >= early.stamp - kOutOfOrder) return true;
@@ -60,8 +61,8 @@ bool seems_overtaken(const Change& late, const Change& early, const Changes& all
   });
 }
 
-/// The values that may stand in the end: of each change that none that was accepted came after. `forgets`:
-/// when the gateway may have forgotten what it holds.
+/// The values that may remain at the end: those of changes that no accepted change followed. `forgets`:
+/// times at which the gateway may have lost its values.
 std::set<std::int64_t> last_of(const Changes& changes, const std::vector<double>& forgets = {}) {
   std::set<std::int64_t> last;
   bool any = false;
@@ -89,7 +90,7 @@ Key key_of(const Item& item) {
   return {item.who, item.says[1]};
 }
 
-/// Where a marker stands that was posted with this item: all without a namespace have one.
+/// The key of a posted marker. All markers without a namespace share one.
 Key posted_key(const Item& item) {
   return {item.who.empty() ? "unnamed" : item.who, item.says[1]};
 }
@@ -107,7 +108,7 @@ void replay(Scene& scene, const Item& item) {
   }
 }
 
-/// What each of `keys` is to be after this request, where it says anything of it.
+/// The value of each of `keys` after this request, if the request sets it.
 std::map<Key, std::int64_t> says_of(const Asked& asked, const std::set<Key>& keys) {
   std::map<Key, std::int64_t> says;
   for (const Item& item : asked.items) {
@@ -120,18 +121,18 @@ std::map<Key, std::int64_t> says_of(const Asked& asked, const std::set<Key>& key
   return says;
 }
 
-/// Once the gateway has heard a status of another run, no pose goes that was taken and was posted before that
-/// run.
-void judge_runs(const Evidence& evidence, const std::vector<Asked>& states, Broken& broken) {
-  std::map<std::int64_t, double> posted;  // the latest that each may have been
+/// After the gateway has heard a status of another run, it sends no pose that it accepted and that was
+/// posted before that run.
+void check_runs(const Evidence& evidence, const std::vector<Asked>& states, Broken& broken) {
+  std::map<std::int64_t, double> posted;  // the latest time at which each may have been posted
   for (const Asked& asked : states) {
     for (const Item& item : asked.items) posted[item.serial] = asked.ended;
   }
   double began = 0;
   bool is_heard = false;
-  std::set<std::uint64_t> asks;  // for a status of this run
+  std::set<std::uint64_t> asks;  // requests for a status of this run
   std::map<std::uint64_t, std::set<std::int64_t>> under_way;
-  std::set<std::int64_t> taken;  // in this life: the next one may not know
+  std::set<std::int64_t> taken;  // in this process; the next one may not know them
   for (const Event& event : evidence.events) {
     if (event.what == kCourse) return;
     if (event.kind == Kind::Begins) taken.clear();
@@ -150,9 +151,9 @@ void judge_runs(const Evidence& evidence, const std::vector<Asked>& states, Brok
     if (event.kind != Kind::Left) continue;
     under_way[event.request].insert(event.serial);
     if (is_heard && posted[event.serial] < began && taken.contains(event.serial))
-      broken.push_back(icd::sentence("PoseArrived: ", event.who, " was said to be where ", event.serial,
-                                     " said, at ", event.at, ", in a run that began at ", began,
-                                     ", after it was posted"));
+      broken.push_back(icd::sentence("PoseArrived: ", event.who, " was sent with pose ", event.serial, " at ",
+                                     event.at, ", in a run that began at ", began,
+                                     ", after the pose was posted"));
   }
 }
 
@@ -161,7 +162,7 @@ void judge_runs(const Evidence& evidence, const std::vector<Asked>& states, Brok
 void pose_arrived(const Evidence& evidence, Broken& broken) {
   std::map<std::string, Changes> changes;
   const std::vector<Asked> states = asked_in(evidence.events, kState);
-  judge_runs(evidence, states, broken);
+  check_runs(evidence, states, broken);
   for (const Asked& asked : states) {
     if (!asked.may_count()) continue;
     for (const Item& item : asked.items)
@@ -169,7 +170,7 @@ void pose_arrived(const Evidence& evidence, Broken& broken) {
           {asked.began, asked.ended, item.stamp, asked.accepted(), item.serial, item.says});
   }
   std::map<std::string, std::int64_t> taken;
-  // Of poses that were taken, another life and another course know nothing.
+  // Another process or another course knows no accepted poses.
   std::vector<double> forgets;
   for (const Event& event : evidence.events) {
     const bool begins = event.kind == Kind::Begins || event.kind == Kind::Serves || event.what == kCourse;
@@ -179,8 +180,8 @@ void pose_arrived(const Evidence& evidence, Broken& broken) {
   for (const auto& [who, of_it] : changes) {
     const auto last = last_of(of_it, forgets);
     if (last.contains(taken[who])) continue;
-    broken.push_back(icd::sentence("PoseArrived: ", who, " is at rest where ", taken[who],
-                                   " said, and not where ", list_of(last), " did"));
+    broken.push_back(
+        icd::sentence("PoseArrived: ", who, " has at rest pose ", taken[who], ", not ", list_of(last)));
   }
 }
 
@@ -193,7 +194,7 @@ void markers_arrived(const Evidence& evidence, Broken& broken) {
   std::map<Key, Changes> changes;
   for (const Asked& asked : all) {
     if (!asked.may_count()) continue;
-    // In no order of stamps: a marker's is not its place in the scene's history.
+    // Not ordered by stamp: a marker's stamp is not its place in the scene's history.
     for (const auto& [key, serial] : says_of(asked, keys))
       changes[key].push_back({asked.began, asked.ended, 0, asked.accepted(), serial});
   }
@@ -207,7 +208,7 @@ void markers_arrived(const Evidence& evidence, Broken& broken) {
     const std::int64_t stands = taken.contains(key) ? taken[key] : 0;
     if (last.contains(stands)) continue;
     broken.push_back(icd::sentence("MarkersArrived: of marker ", key.second, " of ", key.first, " ", stands,
-                                   " stands at rest, and not ", list_of(last)));
+                                   " remains at rest, not ", list_of(last)));
   }
 }
 

@@ -14,14 +14,14 @@ using Json = nlohmann::json;
 
 constexpr std::string_view kPostDown = "command_post_";
 
-/// The number of a metric, with its labels.
+/// The value of a metric with its labels.
 std::optional<double> metric(const std::string& text, const std::string& name) {
   const std::size_t at = text.find("\n" + name + " ");
   if (at == std::string::npos) return std::nullopt;
   return std::strtod(text.c_str() + at + name.size() + 2, nullptr);
 }
 
-/// Of alarms that come and go by time alone, which is no event.
+/// Alarms that begin and end by time alone, without an event.
 bool goes_by_time(std::string_view id) {
   constexpr std::string_view kByTime[] = {
       "robot_silent", "robots_silent",   "map_behind",    "maps_behind", "queue_",    "clients_refused",
@@ -29,8 +29,8 @@ bool goes_by_time(std::string_view id) {
   return std::ranges::any_of(kByTime, [&](std::string_view begins) { return id.starts_with(begins); });
 }
 
-/// Whether the metrics have an alarm of the Command Post's that the view has not: it came by time alone, and
-/// hides the reports in doubt of which Adit is finding out.
+/// Whether the metrics have an alarm of the Command Post that the view lacks. It began by time alone, and
+/// it hides the reports in doubt that Adit is classifying.
 bool is_down_since(const Reading& reading) {
   const std::string_view begins = "adit_alarm{id=\"", text = reading.metrics;
   for (std::size_t at = text.find(begins); at != text.npos; at = text.find(begins, at + 1)) {
@@ -42,8 +42,8 @@ bool is_down_since(const Reading& reading) {
   return false;
 }
 
-/// The metrics name each alarm that the view has.
-void judge_alarms(const Reading& reading, Broken& broken) {
+/// The metrics name each alarm of the view.
+void check_alarms(const Reading& reading, Broken& broken) {
   for (const Json& alarm : reading.view.at("alarms")) {
     const std::string id = alarm.at("id");
     if (goes_by_time(id) || reading.metrics.contains("adit_alarm{id=" + alarm.at("id").dump() + ","))
@@ -56,7 +56,7 @@ void judge_alarms(const Reading& reading, Broken& broken) {
 
 }  // namespace
 
-void judge_metrics(const Evidence& evidence, const Reading& reading, Broken& broken) {
+void check_metrics(const Evidence& evidence, const Reading& reading, Broken& broken) {
   if (reading.metrics.empty() || reading.worked) return;
   for (std::size_t i = reading.asked; i < reading.measured; ++i) {
     const Event& event = evidence.events[i];
@@ -67,14 +67,14 @@ void judge_metrics(const Evidence& evidence, const Reading& reading, Broken& bro
     const auto told = metric(reading.metrics, name);
     if (told && std::abs(*told - shown) < 1e-6) return;
     broken.push_back(icd::sentence("Honest: at ", reading.at, " ", name, " is ", told.value_or(-1),
-                                   ", and by the view ", shown));
+                                   ", but the view has ", shown));
   };
   for (const Json& row : reading.view.at("activities")) {
     const std::string labels = "{kind=" + row.at("kind").dump() + ",robot=" + row.at("robot").dump() + "}";
     for (const char* const count : {"accepted", "forwarded", "replaced", "merged", "throttled", "failed"})
       compare("adit_updates_" + std::string(count) + "_total" + labels, row.at(count));
   }
-  judge_alarms(reading, broken);
+  check_alarms(reading, broken);
   for (const Json& row : reading.view.at("endpoints")) {
     const std::string labels = "{endpoint=" + row.at("name").dump() + "}";
     compare("adit_endpoint_up" + labels, row.at("connected") ? 1 : 0);

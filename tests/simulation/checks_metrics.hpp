@@ -4,7 +4,7 @@
 
 namespace adit::simulation {
 
-/// Of Honest: the metrics say what the view says, where nothing happened between the two.
-void judge_metrics(const Evidence& evidence, const Reading& reading, Broken& broken);
+/// Part of Honest: the metrics agree with the view, if no event happened between the two.
+void check_metrics(const Evidence& evidence, const Reading& reading, Broken& broken);
 
 }  // namespace adit::simulation

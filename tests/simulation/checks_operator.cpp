@@ -1,4 +1,4 @@
-// Obeyed: of the operator's word.
+// Obeyed: Adit follows the operator's decisions.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -7,24 +7,25 @@
 #include "icd/sentence.hpp"
 #include "simulation/checks.hpp"
 #include "simulation/courses.hpp"
-#include "simulation/judge.hpp"
+#include "simulation/deciding_operator.hpp"
 #include "simulation/messages.hpp"
 #include "simulation/operator.hpp"
 
 namespace adit::simulation {
 namespace {
 
-/// Seconds after which settings that were saved are those that count.
+/// Seconds until saved settings apply.
 constexpr double kApplied = 5;
 
 bool is_word(const Event& event, const char* what) {
   return event.what == what && event.who == kOperator;
 }
 
-/// What he held, withdrew or corrected stays with the box until he sends it, or another run is on.
-void judge_held(const Evidence& evidence, Broken& broken) {
+/// A report that the operator held, withdrew or corrected is not sent until he sends it or another run
+/// begins.
+void check_held(const Evidence& evidence, Broken& broken) {
   std::map<std::int64_t, const Event*> kept;
-  std::map<std::int64_t, int> reports;  // of a serial: in several runs there are several
+  std::map<std::int64_t, int> reports;  // per serial: several runs can have one each
   for (const dispatch::Report& report : evidence.reports) ++reports[serial_of(report)];
   for (const Event& event : evidence.events) {
     const bool is_done = event.kind == Kind::Answered && event.status == 200;
@@ -36,14 +37,14 @@ void judge_held(const Evidence& evidence, Broken& broken) {
         reports[event.serial] > 1)
       continue;
     broken.push_back(icd::sentence("Obeyed: report ", event.serial, " was sent at ", event.at,
-                                   ", and the operator's last word was '", kept[event.serial]->what, "', at ",
-                                   kept[event.serial]->at));
+                                   ", but the operator's last decision was '", kept[event.serial]->what,
+                                   "', at ", kept[event.serial]->at));
   }
 }
 
-/// With `review` as "all", what is posted goes at his word alone.
-void judge_review(const Evidence& evidence, Broken& broken) {
-  std::map<std::int64_t, double> posted;  // first
+/// While `review` is "all", a posted report is sent only after the operator's word.
+void check_review(const Evidence& evidence, Broken& broken) {
+  std::map<std::int64_t, double> posted;  // the first time
   std::set<std::int64_t> sent;
   double all_since = -1;
   for (const Event& event : evidence.events) {
@@ -56,14 +57,15 @@ void judge_review(const Evidence& evidence, Broken& broken) {
       posted.emplace(event.serial, event.at);
     const bool goes = event.kind == Kind::Left && event.what == kReports;
     if (!goes || all_since < 0 || sent.contains(event.serial) || posted[event.serial] < all_since) continue;
-    broken.push_back(icd::sentence("Obeyed: report ", event.serial, " was sent unseen at ", event.at,
-                                   ", and every report is to be held"));
+    broken.push_back(icd::sentence("Obeyed: report ", event.serial,
+                                   " was sent without the operator's word at ", event.at,
+                                   ", although every report is to be held"));
   }
 }
 
-/// What he composed while reports.undo_s was on goes no sooner, and after a restart meanwhile at his word
-/// alone.
-void judge_undo(const Evidence& evidence, Broken& broken) {
+/// A report that the operator composed while reports.undo_s was on is not sent sooner. After a restart
+/// within that time it is sent only after his word.
+void check_undo(const Evidence& evidence, Broken& broken) {
   struct Wait {
     double until;
     bool is_restarted = false;
@@ -87,31 +89,31 @@ void judge_undo(const Evidence& evidence, Broken& broken) {
     if (event.kind != Kind::Left || event.what != kReports || wait == waits.end()) continue;
     if (event.at >= wait->second.until && !wait->second.is_restarted) continue;
     broken.push_back(icd::sentence("Obeyed: report ", event.serial, " was sent at ", event.at,
-                                   ", and the operator could undo it until ", wait->second.until,
-                                   wait->second.is_restarted ? ", when aditd had restarted" : ""));
+                                   ", although the operator could undo it until ", wait->second.until,
+                                   wait->second.is_restarted ? ", after a restart of aditd" : ""));
   }
 }
 
-/// What he composed and was told of is kept.
-void judge_composed(const Evidence& evidence, Broken& broken) {
+/// A composed report that was answered is in the ledger.
+void check_composed(const Evidence& evidence, Broken& broken) {
   std::set<std::int64_t> kept;
   for (const dispatch::Report& report : evidence.reports) kept.insert(serial_of(report));
   for (const Event& event : evidence.events) {
     if (event.kind != Kind::Answered || event.status != 202 || !is_word(event, kCompose) ||
         kept.contains(event.serial))
       continue;
-    broken.push_back(
-        icd::sentence("Obeyed: the operator's report ", event.serial, " was answered 202, and is nowhere"));
+    broken.push_back(icd::sentence("Obeyed: the operator's report ", event.serial,
+                                   " was answered 202, but is not in the ledger"));
   }
 }
 
 }  // namespace
 
 void obeyed(const Evidence& evidence, Broken& broken) {
-  judge_held(evidence, broken);
-  judge_review(evidence, broken);
-  judge_undo(evidence, broken);
-  judge_composed(evidence, broken);
+  check_held(evidence, broken);
+  check_review(evidence, broken);
+  check_undo(evidence, broken);
+  check_composed(evidence, broken);
 }
 
 }  // namespace adit::simulation

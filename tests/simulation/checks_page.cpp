@@ -1,4 +1,4 @@
-// Honest, Lights and Alive: of what the page, the panel and systemd are told.
+// Honest, Lights and Alive: what Adit shows on the page and the panel and reports to systemd.
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -21,15 +21,15 @@ using Json = nlohmann::json;
 using Moment = PageAccount::Moment;
 
 constexpr double kRests = 100;     // seconds after the last fault
-constexpr double kHeartbeat = 10;  // seconds within which systemd hears that aditd lives
+constexpr double kHeartbeat = 10;  // seconds between two signs of life to systemd
 constexpr double kAgeRounding = 0.05;
-constexpr double kLongestSwitch = 12;  // seconds within which a course is switched
+constexpr double kLongestSwitch = 12;  // seconds until a course is switched
 
 Moment moment_of(const Reading& reading) {
   return {reading.asked, reading.heard};
 }
 
-/// What a view counts of each stream: grids and clouds of one robot together.
+/// A view's count for each stream. Grids and clouds of one robot count together.
 std::map<Stream, std::int64_t> counts(const Json& view, const char* member) {
   std::map<Stream, std::int64_t> all;
   for (const Json& row : view.at("activities")) {
@@ -40,7 +40,7 @@ std::map<Stream, std::int64_t> counts(const Json& view, const char* member) {
   return all;
 }
 
-/// Between two readings of one gateway.
+/// The difference between two readings of one gateway.
 class Difference {
  public:
   Difference(const PageAccount& account, const Reading& from, const Reading& to, Broken& broken)
@@ -73,8 +73,8 @@ class Difference {
   void compare(const std::string& what, std::int64_t shown, Range range) {
     if (range.has(shown)) return;
     broken_.push_back(icd::sentence("Honest: ", what, " ", shown, " times between ", from_.at, " and ",
-                                    to_.at, " by the page, and ", range.least, " to ", range.most,
-                                    " times by the history"));
+                                    to_.at, " on the page, ", range.least, " to ", range.most,
+                                    " times in the history"));
   }
 
   const PageAccount& account_;
@@ -82,15 +82,15 @@ class Difference {
   Broken& broken_;
 };
 
-/// A robot is as old as the last pose that itself posted, whatever else went since.
-void judge_ages(const Evidence& evidence, const PageAccount& account, const Reading& reading,
+/// A robot's age is that of the last pose that the robot itself posted.
+void check_ages(const Evidence& evidence, const PageAccount& account, const Reading& reading,
                 Broken& broken) {
   const auto judge = [&](const Json& row, const std::string& robot) {
     const auto [least, most] = account.age(stream_of(kState, robot), moment_of(reading));
     const double age = row.at("age").is_null() ? HUGE_VAL : row.at("age").get<double>();
     if (age >= least - kAgeRounding && age <= most + kAgeRounding) return;
-    broken.push_back(icd::sentence("Honest: at ", reading.at, " the page calls ", robot, " ", age,
-                                   " s old, and it is ", least, " to ", most, " s"));
+    broken.push_back(icd::sentence("Honest: at ", reading.at, " the page shows ", robot, " ", age,
+                                   " s old, but it is ", least, " to ", most, " s"));
   };
   const auto is_set = [](const Event& event) {
     return event.kind == Kind::ClockSet || event.kind == Kind::PowerCut;
@@ -103,7 +103,7 @@ void judge_ages(const Evidence& evidence, const PageAccount& account, const Read
   for (const Json& row : reading.view.at("robots")) judge(row, row.at("name"));
 }
 
-/// The last status of that Command Post that was heard before a moment and after another.
+/// The last status of that Command Post that Adit read between two events.
 const Event* last_status(const std::vector<Event>& events, std::size_t from, std::size_t to, int place) {
   while (to-- > from) {
     const Event& event = events[to];
@@ -114,7 +114,7 @@ const Event* last_status(const std::vector<Event>& events, std::size_t from, std
 }
 
 /// Score, reports left and their age are those of the last status.
-void judge_run(const Evidence& evidence, std::size_t begun, const Reading& reading, Broken& broken) {
+void check_run(const Evidence& evidence, std::size_t begun, const Reading& reading, Broken& broken) {
   const int place = place_at(reading.view.at("endpoints").front().at("address"));
   const Event* const heard = last_status(evidence.events, begun, reading.asked, place);
   if (heard != last_status(evidence.events, begun, reading.heard, place) || heard == nullptr) return;
@@ -123,18 +123,18 @@ void judge_run(const Evidence& evidence, std::size_t begun, const Reading& readi
     return run.at(name).get<std::int64_t>() != status.at(name).get<std::int64_t>();
   };
   if (run.is_null() || differs("score") || differs("remaining_reports")) {
-    broken.push_back(icd::sentence("Honest: at ", reading.at, " the page says of the run ", run.dump(),
-                                   ", and the Command Post ", heard->text));
+    broken.push_back(icd::sentence("Honest: at ", reading.at, " the page shows the run ", run.dump(),
+                                   ", but the Command Post answered ", heard->text));
     return;
   }
   const double age = reading.view.at("run_clock").at("age").get<double>();
   const double asked = reading.at - heard->at, told = evidence.events[reading.heard - 1].at - heard->at;
   if (age < asked - kAgeRounding || age > told + kAgeRounding)
-    broken.push_back(icd::sentence("Honest: at ", reading.at, " the page calls the status ", age,
-                                   " s old, and it came at ", heard->at));
+    broken.push_back(icd::sentence("Honest: at ", reading.at, " the page shows the status ", age,
+                                   " s old, but it arrived at ", heard->at));
 }
 
-/// What somebody else recorded meanwhile looks the same.
+/// Another sender recorded a report meanwhile, which looks the same.
 bool is_blurred(const Evidence& evidence, const Json& row) {
   const Window window =
       window_of(evidence, row.at("received").get<double>() - kLongestDoubt, row.at("changed").get<double>());
@@ -143,8 +143,8 @@ bool is_blurred(const Evidence& evidence, const Json& row) {
   });
 }
 
-/// A report that is called recorded is, with the points that it got.
-void classify_reports(const Evidence& evidence, const Reading& reading, Broken& broken) {
+/// A report that the page calls recorded is recorded, with the points shown.
+void check_reports(const Evidence& evidence, const Reading& reading, Broken& broken) {
   for (const Json& row : reading.view.at("reports")) {
     const std::string state = row.at("state");
     if (row.at("position").is_null()) continue;
@@ -158,17 +158,17 @@ void classify_reports(const Evidence& evidence, const Reading& reading, Broken& 
       right = right || row.at("score_change") == std::llround(event.stamp);
     }
     if (!recorded && !is_blurred(evidence, row))
-      broken.push_back(icd::sentence("Honest: at ", reading.at, " the page calls report ", serial, " ", state,
-                                     ", and it is not recorded"));
+      broken.push_back(icd::sentence("Honest: at ", reading.at, " the page shows report ", serial, " ", state,
+                                     ", but it is not recorded"));
     if (recorded && !right && !is_blurred(evidence, row))
-      broken.push_back(icd::sentence("Honest: at ", reading.at, " the page gives report ", serial,
-                                     " a score that it has not"));
+      broken.push_back(
+          icd::sentence("Honest: at ", reading.at, " the page shows report ", serial, " with a wrong score"));
   }
 }
 
-/// With nothing under way, an endpoint's last status is that of its last answer, or trouble says why none
-/// came.
-void judge_last_answers(const Evidence& evidence, std::size_t begun, const Reading& reading, Broken& broken) {
+/// If nothing is in flight, an endpoint's last status is that of its last answer, or `trouble` says why no
+/// answer came.
+void check_last_answers(const Evidence& evidence, std::size_t begun, const Reading& reading, Broken& broken) {
   std::map<std::string, std::string> under_way;  // path by endpoint
   std::map<std::string, const Event*> last;
   const int place = place_at(reading.view.at("endpoints").front().at("address"));
@@ -186,14 +186,14 @@ void judge_last_answers(const Evidence& evidence, std::size_t begun, const Readi
     const int status = row.at("last_status");
     const bool none = status == 0 && row.at("trouble") != "";  // the last request got no answer
     if (heard == nullptr || none || status == heard->status) continue;
-    broken.push_back(icd::sentence("Honest: at ", reading.at, " the page says that scoring answered ",
-                                   row.at("last_status").dump(), " last, and it was ", heard->status));
+    broken.push_back(icd::sentence("Honest: at ", reading.at, " the page shows scoring's last status ",
+                                   row.at("last_status").dump(), ", but it was ", heard->status));
   }
 }
 
-/// That a message was not taken for want of room is said until the next one is: there may be none. And a
-/// write that a death tore in its last byte looks like a damaged byte. Where the settings name robots, others
-/// stay told of; and robots have stopped, and reports were spent.
+/// Alarms of past events. "No room" for a message stays until the next message is accepted. A write that a
+/// death tore in its last byte looks like a damaged byte. If the settings name robots, unknown senders stay
+/// listed. Stopped robots and spent reports stay listed.
 bool is_of_the_past(const Json& alarm) {
   const std::string id = alarm.at("id");
   constexpr std::string_view kOfThePast[] = {"map_not_kept",   "state_not_kept", "run_not_kept",
@@ -203,10 +203,9 @@ bool is_of_the_past(const Json& alarm) {
          std::ranges::any_of(kOfThePast, [&](std::string_view begins) { return id.starts_with(begins); });
 }
 
-/// The last reading is not at rest if a planned death came that late, or if one map takes longer to upload
-/// than the rest lasts.
+/// False if a planned death came this late, or if one map takes longer to upload than the rest lasts.
 bool is_at_rest(const Evidence& evidence, const Reading& reading) {
-  constexpr double kNoticed = 2;  // seconds after which an alarm has gone
+  constexpr double kNoticed = 2;  // seconds until an ended alarm disappears
   bool is_under_way = false;
   double answered = 0;
   for (std::size_t i = 0; i < reading.heard; ++i) {
@@ -223,33 +222,33 @@ bool is_at_rest(const Evidence& evidence, const Reading& reading) {
              [&](const Event& event) { return event.kind == Kind::Calm && event.at + kRests < reading.at; });
 }
 
-/// Long after the last fault nothing waits, and nobody is called but for what only the operator can judge.
-void judge_rest(const Evidence& evidence, const Reading& reading, Broken& broken) {
+/// Long after the last fault nothing is queued, and only what the operator must decide calls him.
+void check_rest(const Evidence& evidence, const Reading& reading, Broken& broken) {
   for (const auto& [stream, count] : counts(reading.view, "queued")) {
     if (count > 0)
       broken.push_back(icd::sentence("Honest: at rest ", count, " of ", stream.path, " of ", stream.who,
-                                     " are said to wait"));
+                                     " are shown as queued"));
   }
   const auto& reports = reading.view.at("reports");
-  const auto judged = std::ranges::count_if(
+  const auto undecided = std::ranges::count_if(
       reports, [](const Json& row) { return row.at("state") == "held" || row.at("state") == "in_doubt"; });
   const auto called = static_cast<std::size_t>(std::ranges::count_if(
       reading.view.at("alarms"), [](const Json& alarm) { return !is_of_the_past(alarm); }));
-  // Of reports that Adit cannot account for he is told.
+  // An alarm reports reports that Adit cannot account for.
   const bool beside = std::ranges::any_of(evidence.events, [](const Event& event) {
     const bool is_told = event.what != kSameMap && !event.who.ends_with(kNameless);
     return event.kind == Kind::Another || (event.kind == Kind::NewRun && !is_told);
   });
-  if (called > 0 && judged == 0 && !beside && reading.view.at("rejected").empty())
+  if (called > 0 && undecided == 0 && !beside && reading.view.at("rejected").empty())
     broken.push_back(
         icd::sentence("Honest: at rest the operator is called: ", reading.view.at("alarms").dump()));
-  constexpr std::int64_t kOneByOne = 10;  // more are told of together
-  if (called < static_cast<std::size_t>(std::min<std::int64_t>(judged, kOneByOne)))
-    broken.push_back(icd::sentence("Honest: at rest ", judged,
-                                   " reports wait for the operator, and he is called ", called, " times"));
+  constexpr std::int64_t kOneByOne = 10;  // more share one alarm
+  if (called < static_cast<std::size_t>(std::min<std::int64_t>(undecided, kOneByOne)))
+    broken.push_back(icd::sentence("Honest: at rest ", undecided,
+                                   " reports need the operator, but alarms call him ", called, " times"));
 }
 
-/// Another course was asked for just now: which Command Post it speaks of is not known.
+/// Another course was requested just now, so the view's Command Post is unknown.
 bool is_switching(const Evidence& evidence, const Reading& reading) {
   return std::ranges::any_of(evidence.events, [&](const Event& event) {
     return event.what == kCourse && event.at <= reading.at && event.at > reading.at - kLongestSwitch;
@@ -270,38 +269,39 @@ void honest(const Evidence& evidence, Broken& broken) {
     }
     before = &reading;
     if (begun > reading.asked || is_switching(evidence, reading)) continue;
-    judge_run(evidence, begun, reading, broken);
-    judge_ages(evidence, account, reading, broken);
-    classify_reports(evidence, reading, broken);
-    judge_last_answers(evidence, begun, reading, broken);
-    judge_metrics(evidence, reading, broken);
-    if (reading.lie.starts_with("Honest")) broken.push_back(reading.lie);
+    check_run(evidence, begun, reading, broken);
+    check_ages(evidence, account, reading, broken);
+    check_reports(evidence, reading, broken);
+    check_last_answers(evidence, begun, reading, broken);
+    check_metrics(evidence, reading, broken);
+    if (reading.difference.starts_with("Honest")) broken.push_back(reading.difference);
   }
   if (!evidence.readings.empty() && is_at_rest(evidence, evidence.readings.back()))
-    judge_rest(evidence, evidence.readings.back(), broken);
+    check_rest(evidence, evidence.readings.back(), broken);
 }
 
 void lights(const Evidence& evidence, Broken& broken) {
   for (const Reading& reading : evidence.readings) {
-    if (reading.lie.starts_with("Lights")) broken.push_back(icd::sentence(reading.lie, ", at ", reading.at));
+    if (reading.difference.starts_with("Lights"))
+      broken.push_back(icd::sentence(reading.difference, ", at ", reading.at));
   }
 }
 
 void alive(const Evidence& evidence, Broken& broken) {
-  double last = 0, slow = 0;  // slow: seconds since then in which it stood still for its disk
+  double last = 0, slow = 0;  // seconds since then in which the process stood still for its disk
   bool ready = false, stopping = false, ended = false;
   for (const Event& event : evidence.events) {
     if (event.kind == Kind::Begins) {
       ready = stopping = ended = false;
       last = event.at;
     }
-    if (event.kind == Kind::Ended) ended = true;  // what it said before may still be heard
+    if (event.kind == Kind::Ended) ended = true;  // messages that it sent before may still be heard
     if (event.kind == Kind::Stops) stopping = true;
     if (event.kind == Kind::Answered && event.status == 200 && !ready && !ended)
       broken.push_back(
           icd::sentence("Alive: ", event.what, " was answered 200 at ", event.at, ", before READY"));
     if (event.kind == Kind::Told && event.what == "STOPPING" && !stopping)
-      broken.push_back(icd::sentence("Alive: STOPPING at ", event.at, ", and nobody asked for it"));
+      broken.push_back(icd::sentence("Alive: STOPPING at ", event.at, ", without SIGTERM"));
     const bool sign = event.kind == Kind::Told && event.what == "WATCHDOG";
     const bool over = event.kind == Kind::Dies || event.kind == Kind::Ended;
     if (event.kind == Kind::Told && event.what == "READY") {
@@ -318,7 +318,8 @@ void alive(const Evidence& evidence, Broken& broken) {
     if (over) ready = event.kind == Kind::Dies && ready;
   }
   for (const Reading& reading : evidence.readings) {
-    if (reading.lie.starts_with("Alive")) broken.push_back(icd::sentence(reading.lie, ", at ", reading.at));
+    if (reading.difference.starts_with("Alive"))
+      broken.push_back(icd::sentence(reading.difference, ", at ", reading.at));
   }
 }
 

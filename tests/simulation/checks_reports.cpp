@@ -1,4 +1,4 @@
-// Once, NotLost and Live: of reports.
+// Once, NotLost and Live, about reports.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include "icd/sentence.hpp"
 #include "simulation/checks.hpp"
-#include "simulation/meant.hpp"
+#include "simulation/intended_runs.hpp"
 #include "simulation/messages.hpp"
 #include "simulation/scoreboard.hpp"
 #include "simulation/world.hpp"
@@ -25,13 +25,13 @@ std::map<std::int64_t, double> first_records(const Evidence& evidence) {
   return records;
 }
 
-/// One more report was granted, which makes up for one that was recorded.
+/// One more report was granted, which hides one that was recorded.
 bool is_grant(const Event& event) {
   return event.kind == Kind::NewRun && event.what == kSameMap;
 }
 
-/// What somebody else recorded while this one was in doubt looks the same, and a report that was granted as
-/// if it were not recorded; nobody could tell.
+/// Whether the evidence is ambiguous: another sender's record while this report was in doubt looks like
+/// this report's, and a granted report makes it look unrecorded.
 bool is_blurred(const Evidence& evidence, const dispatch::Report& report) {
   const Window window = window_of(evidence, report.sent - kLongestDoubt, report.changed);
   return std::ranges::any_of(evidence.events, [&](const Event& event) {
@@ -51,7 +51,7 @@ std::int64_t serial_of(const dispatch::Report& report) {
 
 void once(const Evidence& evidence, Broken& broken) {
   std::map<std::pair<std::int64_t, std::string>, double> records;  // when each was recorded first
-  Meant meant;
+  IntendedRuns meant;
   double granted = -kLongestDoubt;
   for (const Event& event : evidence.events) {
     meant.add(event);
@@ -60,16 +60,16 @@ void once(const Evidence& evidence, Broken& broken) {
     const bool costs = !event.who.ends_with(kInAStop);
     const auto [first, is_first] = records.try_emplace({event.serial, event.who}, event.at);
     const bool again = !is_first;
-    // A course that was switched away and back makes a doubt longer than a grant beside its first record.
+    // A course that was switched away and back extends a doubt beyond a grant beside its first record.
     const bool could_tell =
         event.at - granted > kLongestDoubt && std::abs(first->second - granted) > kLongestDoubt;
     if (costs && again && could_tell && !meant.is_sent_across(event.serial)) {
       broken.push_back(icd::sentence("Once: report ", event.serial, " was recorded again in ", event.who,
                                      " at ", event.at));
     }
-    if (meant.is_meant(event.serial, place_of(event.who), event.at)) continue;
-    broken.push_back(
-        icd::sentence("Once: report ", event.serial, " was sent into ", event.who, " unasked at ", event.at));
+    if (meant.is_intended(event.serial, place_of(event.who), event.at)) continue;
+    broken.push_back(icd::sentence("Once: report ", event.serial, " was sent to ", event.who,
+                                   ", for which it was not meant, at ", event.at));
   }
 }
 
@@ -90,8 +90,8 @@ void not_lost(const Evidence& evidence, Broken& broken) {
           return record != records.end() && record->second <= event.at;
         });
     if (!is_recorded && !blurred.contains(event.serial)) {
-      broken.push_back(icd::sentence("NotLost: a client was told that report ", event.serial,
-                                     " is recorded, and it was not, at ", event.at));
+      broken.push_back(icd::sentence("NotLost: a client was answered that report ", event.serial,
+                                     " is recorded, but it was not, at ", event.at));
     }
   }
   std::set<std::int64_t> known;
@@ -99,7 +99,7 @@ void not_lost(const Evidence& evidence, Broken& broken) {
   for (const Event& event : evidence.events) {
     if (is_report(event, Kind::Left) && known.insert(event.serial).second) {
       broken.push_back(icd::sentence("NotLost: report ", event.serial, " was sent at ", event.at,
-                                     ", and the ledger does not know it"));
+                                     ", but is not in the ledger"));
     }
   }
   for (const dispatch::Report& report : evidence.reports) {
@@ -107,7 +107,7 @@ void not_lost(const Evidence& evidence, Broken& broken) {
         report.state == ReportState::Answered || (report.state == ReportState::Settled && report.reconciled);
     if (claimed && !records.contains(serial_of(report)) && !is_blurred(evidence, report)) {
       broken.push_back(icd::sentence("NotLost: report ", serial_of(report), " is ",
-                                     dispatch::name_of(report.state), ", and was not recorded"));
+                                     dispatch::name_of(report.state), ", but was not recorded"));
     }
   }
 }

@@ -1,4 +1,4 @@
-// Kept, Answered and HasRoom: of what the team's clients heard.
+// Kept, Answered and HasRoom: what the team's clients heard.
 #include <map>
 
 #include "icd/sentence.hpp"
@@ -8,9 +8,9 @@
 namespace adit::simulation {
 namespace {
 
-/// Seconds within which a whole request is answered, or its connection closed.
+/// Seconds until a complete request is answered or its connection closed.
 constexpr double kReportWithin = 21, kOtherWithin = 8;
-/// And one that is not whole, from its last byte on.
+/// The same for an incomplete request, from its last byte.
 constexpr double kBodyWithin = 17, kHeadWithin = 62;
 
 }  // namespace
@@ -18,18 +18,18 @@ constexpr double kBodyWithin = 17, kHeadWithin = 62;
 void kept(const Evidence& evidence, Broken& broken) {
   std::map<std::uint64_t, double> began;
   double stopped = -1;
-  int life = 0;
+  int process = 0;
   for (const Event& event : evidence.events) {
     if (event.kind == Kind::Stops) {
       stopped = event.at;
-      life = event.life;
+      process = event.process;
     }
     if (event.kind == Kind::Invoke) began[event.request] = event.at;
     const bool taken = event.kind == Kind::Answered && event.status == 200 && event.what != kReports;
-    if (taken && event.life == life && began[event.request] > stopped) {
-      broken.push_back(icd::sentence("Kept: ", event.what, " ", event.serial, " of ", event.who, " came at ",
-                                     began[event.request], ", after the stop at ", stopped,
-                                     ", and was answered 200"));
+    if (taken && event.process == process && began[event.request] > stopped) {
+      broken.push_back(icd::sentence("Kept: ", event.what, " ", event.serial, " of ", event.who,
+                                     " arrived at ", began[event.request], ", after the stop at ", stopped,
+                                     ", but was answered 200"));
     }
   }
 }
@@ -38,25 +38,26 @@ void answered(const Evidence& evidence, Broken& broken) {
   std::map<std::uint64_t, std::pair<double, int>> whole;
   std::map<int, double> begun;
   bool is_on = false;
-  double slow = 0, slow_until = 0;  // seconds that it stood still for its disk, and until when
+  double slow = 0, slow_until = 0;  // seconds that the box stood still for its disk, and until when
   std::map<std::uint64_t, double> slow_before;
   std::map<std::uint64_t, int> stalled;
   for (const Event& event : evidence.events) {
-    if (event.kind == Kind::Begins) begun[event.life] = event.at;
+    if (event.kind == Kind::Begins) begun[event.process] = event.at;
     if (event.kind == Kind::Begins || event.kind == Kind::Ended) is_on = event.kind == Kind::Begins;
     if (event.kind == Kind::Slow) {
       slow += event.stamp;
       slow_until = event.at + event.stamp;
     }
     if (event.kind == Kind::Whole || event.kind == Kind::Stalls) {
-      whole[event.request] = {event.at, event.life};
+      whole[event.request] = {event.at, event.process};
       slow_before[event.request] = slow - std::max(0.0, slow_until - event.at);
       if (event.kind == Kind::Stalls) stalled[event.request] = event.status;
     }
     if (event.kind != Kind::Answered && event.kind != Kind::Gone) continue;
     const auto asked = whole.find(event.request);
     if (asked == whole.end() || !is_on) continue;
-    const double since = std::max(asked->second.first, begun[event.life]);  // it may have waited at the door
+    const double since =
+        std::max(asked->second.first, begun[event.process]);  // it may have waited at the door
     const double rule = stalled[event.request] == kInBody   ? kBodyWithin
                         : stalled[event.request] == kInHead ? kHeadWithin
                         : event.what == kReports            ? kReportWithin
@@ -69,8 +70,8 @@ void answered(const Evidence& evidence, Broken& broken) {
   }
 }
 
-/// But for a flood, which has more connections than an address may, nobody who shows a token is sent away for
-/// others.
+/// A client with a token never loses its connection to others. A flood is the exception, because it has
+/// more connections than an address may have.
 void has_room(const Evidence& evidence, Broken& broken) {
   for (const Event& event : evidence.events) {
     const bool is_sent_away =
@@ -78,7 +79,7 @@ void has_room(const Evidence& evidence, Broken& broken) {
         (event.text.contains("was closed for another") || event.text.contains("too many requests at once"));
     if (!is_sent_away || event.who == "flood") continue;
     broken.push_back(icd::sentence("HasRoom: ", event.what, " ", event.serial, " of ", event.who,
-                                   " found no room at ", event.at));
+                                   " was rejected for others at ", event.at));
   }
 }
 

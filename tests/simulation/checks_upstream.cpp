@@ -1,4 +1,4 @@
-// Paced, Learned and Stamps: of what goes to the Command Post.
+// Paced, Learned and Stamps, about requests to the Command Post.
 #include <algorithm>
 #include <map>
 #include <optional>
@@ -10,7 +10,7 @@
 #include "simulation/checks.hpp"
 #include "simulation/counting.hpp"
 #include "simulation/courses.hpp"
-#include "simulation/judge.hpp"
+#include "simulation/deciding_operator.hpp"
 #include "simulation/messages.hpp"
 #include "simulation/station.hpp"
 #include "simulation/world.hpp"
@@ -21,28 +21,30 @@ namespace {
 constexpr double kSpacing = 1;      // seconds between two requests of a URI: the settings' default
 constexpr double kRounding = 1e-6;  // of the history's times
 constexpr double kStampRounding = 1e-3;
-constexpr double kAhead = 5;  // seconds that a stamp may be after the clock for stamps
-/// Seconds: a start of the machine begins where no stamp has been, so much ahead at the most; what was
-/// written of that holds so long.
+constexpr double kAhead = 5;  // seconds that a stamp may be ahead of the clock for stamps
+/// Seconds. After a boot, stamps begin beyond all earlier ones, at most kFloorAhead ahead. A stored floor
+/// is valid for kFloorHolds.
 constexpr double kFloorAhead = 170, kFloorHolds = 35;
 constexpr double kMakesWay = 1;       // seconds until the next gateway has begun
-constexpr double kTriedAgain = 9;     // seconds
-constexpr double kLongestPause = 30;  // that a Retry-After is heeded for
-constexpr double kVouches = 13;       // seconds that a status does for the run: 15, and some to send a report
-constexpr double kSoon = 1;           // seconds: what it waited for was the status
-constexpr double kMostHeld = 4;       // seconds
-constexpr double kGivesWay = 1;       // seconds, of which Adit takes 0.2
-/// Bytes a second: less than maps get of the smallest budget that an operator sets.
+constexpr double kTriedAgain = 9;     // seconds until Adit sends early again
+constexpr double kLongestPause = 30;  // longest Retry-After that Adit obeys
+constexpr double kVouches =
+    13;                      // seconds that a status vouches for the run: 15, less the time to send a report
+constexpr double kSoon = 1;  // seconds after a status in which a report that waited for it leaves
+constexpr double kMostHeld = 4;  // seconds
+constexpr double kGivesWay = 1;  // seconds in which a status gives way; Adit takes 0.2
+/// Bytes per second: less than maps get of the smallest budget that an operator sets.
 constexpr std::int64_t kLeastGiven = 1'500'000;
 
 /// For messages with the station's clock, which runs like the world's: a robot's first message counts as
-/// posted when it arrived, and each later one by the difference of the stamps. If a message was held for so
-/// long that the next one is far ahead of it, Adit learns the clock again (queues/stamps.hpp), and this check
-/// leaves the robot out from then on.
+/// posted when it arrived, and each later one by the difference of the stamps. If a message was held so
+/// long that the next one is far ahead of it, Adit learns the clock again (queues/stamps.hpp), and this
+/// check leaves the robot out from then on.
 class Spacing {
  public:
   explicit Spacing(const std::vector<Event>& events) {
-    std::map<std::string, std::pair<double, double>> first;  // by when it had come, and how late it was
+    std::map<std::string, std::pair<double, double>>
+        first;  // latest arrival of the first message, and how late it was
     std::set<std::string> is_held;
     for (const Asked& asked : asked_in(events, kState)) {
       for (const Item& item : asked.items) {
@@ -55,7 +57,7 @@ class Spacing {
       }
     }
   }
-  /// The least that its stamp may be upstream.
+  /// The lower bound of its stamp upstream.
   double least(const Event& pose) const {
     const auto found = least_.find(pose.serial);
     return found == least_.end() ? 0 : found->second;
@@ -71,7 +73,7 @@ void paced(const Evidence& evidence, Broken& broken) {
   std::map<Kind, std::map<std::string, double>> last;  // of Leaves and of Complete
   struct Asked {
     double at, pause;
-    int life;
+    int process;
   };
   std::map<std::string, Asked> asked;
   DiskFaultsSeen disk;
@@ -87,21 +89,22 @@ void paced(const Evidence& evidence, Broken& broken) {
       asked.clear();
     }
     disk.add(event);
-    if (event.kind == Kind::Dies) asked.clear();  // the answer may have been read and not yet understood
+    if (event.kind == Kind::Dies) asked.clear();  // the answer may have been read and not yet processed
     if (event.kind == Kind::Replied && event.status == 429)
-      asked[event.what] = {event.at, std::min(event.stamp, kLongestPause), event.life};
+      asked[event.what] = {event.at, std::min(event.stamp, kLongestPause), event.process};
     if (event.kind != Kind::Leaves && event.kind != Kind::Complete) continue;
     const auto before = last[event.kind].find(event.what);
     if (before != last[event.kind].end() && event.at - before->second < kSpacing - kRounding) {
-      broken.push_back(icd::sentence(
-          "Paced: ", event.what, " was asked ", event.at - before->second, " s after the last time, by its ",
-          event.kind == Kind::Leaves ? "first byte" : "last byte", ", at ", event.at));
+      broken.push_back(icd::sentence("Paced: ", event.what, " was requested ", event.at - before->second,
+                                     " s after the request before, by its ",
+                                     event.kind == Kind::Leaves ? "first byte" : "last byte", ", at ",
+                                     event.at));
     }
     last[event.kind][event.what] = event.at;
     if (event.kind == Kind::Complete) continue;
     const auto pause = asked.find(event.what);
     if (pause != asked.end() && event.at - pause->second.at < pause->second.pause - kRounding) {
-      broken.push_back(icd::sentence("Paced: ", event.what, " was asked ", event.at - pause->second.at,
+      broken.push_back(icd::sentence("Paced: ", event.what, " was requested ", event.at - pause->second.at,
                                      " s after a 429 that asked for ", pause->second.pause, " s, at ",
                                      event.at));
     }
@@ -109,22 +112,22 @@ void paced(const Evidence& evidence, Broken& broken) {
   }
 }
 
-/// A report that is posted while only a status is under way is not kept waiting by it. That is seen if
-/// nothing else can keep it waiting: each one before was answered 2xx, the last left long enough ago,
-/// a status vouches for the run, no operator says a word, the process does not stand still, no 429 in
-/// this life has lowered the rate of reports, and the report goes as soon as the status is over.
+/// A posted report does not wait for a status that is in flight. The check applies if nothing else can
+/// delay the report: each earlier report was answered 2xx, the last one left long enough ago, a status
+/// vouches for the run, the operator does nothing, the process does not stand still, no 429 in this process
+/// has lowered the rate of reports, and the report leaves as soon as the status is over.
 void reports_go_first(const Evidence& evidence, Broken& broken) {
   struct Status {
     std::uint64_t connection = 0;
-    std::map<std::int64_t, double> waits;  // reports that were posted since it left, and when
+    std::map<std::int64_t, double> waits;  // reports posted since it left, and when
   };
   std::optional<Status> status;
-  std::map<std::int64_t, double> waited;         // for how long, until a status was over
-  double over = 0;                               // when that was
+  std::map<std::int64_t, double> waited;         // how long each waited until a status was over
+  double over = 0;                               // when that status was over
   std::map<std::uint64_t, std::int64_t> posted;  // by the client's request
-  std::set<std::int64_t> known;                  // reports that were posted
-  double left = 0;                               // when the last one did
-  double heard = -kVouches;                      // when a status was
+  std::set<std::int64_t> known;                  // posted reports
+  double left = 0;                               // when the last report left
+  double heard = -kVouches;                      // when a status was read
   bool is_slowed = false;                        // by a 429 to a report, or for one limit over both
   OpenReports open;
   for (const Event& event : evidence.events) {
@@ -139,7 +142,7 @@ void reports_go_first(const Evidence& evidence, Broken& broken) {
     }
     const bool is_refused = event.kind == Kind::Replied && event.what == kReports && event.status == 429;
     is_slowed = is_slowed || is_refused || (event.kind == Kind::Fault && event.who == kBeyondOneLimit);
-    // A status that was asked for before the course was switched says nothing of this Command Post.
+    // A status that was requested before the course was switched is not from this Command Post.
     if (event.kind == Kind::Replied && event.what == kStatus && !event.says.empty() && status &&
         status->connection == event.request)
       heard = event.at;
@@ -174,11 +177,11 @@ void reports_go_first(const Evidence& evidence, Broken& broken) {
   }
 }
 
-/// A status follows a report as another report would, unless it decides what became of one. A Command Post
-/// with one limit over both says so once in a life.
+/// A status keeps the same distance from a report as another report, unless it decides about a report in
+/// doubt. A Command Post with one limit over both answers 429 for that once per process.
 void status_keeps_away(const Evidence& evidence, Broken& broken) {
-  std::optional<double> left;              // the last report, in this life
-  bool is_said = false, is_shown = false;  // that it has one limit, and so that Adit has heard it
+  std::optional<double> left;              // the last report of this process
+  bool is_said = false, is_shown = false;  // it has answered that it has one limit; Adit has read that
   OpenReports open;
   for (const Event& event : evidence.events) {
     open.add(event);
@@ -190,28 +193,29 @@ void status_keeps_away(const Evidence& evidence, Broken& broken) {
     if (open.in_doubt()) continue;
     if (event.what == kStatus && event.kind == Kind::Leaves && left &&
         event.at - *left < kSpacing - kRounding)
-      broken.push_back(icd::sentence("Paced: the status was asked for ", event.at - *left,
+      broken.push_back(icd::sentence("Paced: the status was requested ", event.at - *left,
                                      " s after a report, at ", event.at));
     if (event.kind == Kind::Fault && event.who == kBeyondOneLimit && is_shown)
       broken.push_back(
-          icd::sentence("Learned: ", event.what, " came too soon for one limit over all, at ", event.at));
+          icd::sentence("Learned: ", event.what, " was sent too soon for one limit over all, at ", event.at));
   }
 }
 
-/// Whoever counts from its answers is found out by his first 429 that is heard, and tried again after 10 s at
-/// the soonest, and once until a kill or a power cut (pace/rate_limit.hpp).
+/// A Command Post that counts from its answers is detected by its first 429 that Adit reads. Adit tries
+/// again after 10 s at the earliest, and once until a kill or a power cut (pace/rate_limit.hpp).
 void learned(const Evidence& evidence, Broken& broken) {
-  std::map<std::string, double> said, last;  // by URI: when it came too soon, unheard as yet, and heard
+  std::map<std::string, double> said, last;  // by URI: a 429 for "too soon", not yet read, and read
   std::set<std::string> single;              // URIs whose last answer was such a 429
-  std::map<std::string, int> times;          // by URI: such 429s that a 2xx followed
+  std::map<std::string, int> times;          // by URI: such 429s followed by a 2xx
   DiskFaultsSeen disk;
   double forgotten_until = 0;
   for (const Event& event : evidence.events) {
     if (disk.forgets_at(event)) forgotten_until = event.at + kMakesWay + kSpacing;
     const bool forgets = disk.forgets_at(event) || event.kind == Kind::Dies || event.kind == Kind::PowerCut;
-    // At a death the answer may have been read and not yet understood.
+    // At a death the answer may have been read and not yet processed.
     if (forgets) times.clear(), single.clear(), last.clear();
-    // Of a page of HTML, or of a body that is too long, Adit cannot know whether the message was accepted.
+    // Adit cannot know from a page of HTML, or from a body that is too long, whether the message was
+    // accepted.
     const bool is_accepted = event.kind == Kind::Replied && event.status / 100 == 2 && event.who.empty();
     if (is_accepted && single.erase(event.what) > 0) ++times[event.what];
     if (event.kind == Kind::Replied && event.status == 429) single.erase(event.what);
@@ -222,22 +226,23 @@ void learned(const Evidence& evidence, Broken& broken) {
       last[event.what] = unheard->second;
       said.erase(unheard);
     }
-    // It may be long under way.
+    // The answer may be in flight for long.
     if (event.kind != Kind::Fault || event.who != kTooSoon || event.stamp < forgotten_until) continue;
     const auto before = last.find(event.what);
     if (event.serial != static_cast<std::int64_t>(Counting::What::Answers)) {
       broken.push_back(icd::sentence("Learned: ", event.what,
-                                     " came too soon for a Command Post that counts ",
+                                     " was sent too soon for a Command Post that counts ",
                                      event.serial == 0 ? "first" : "last", " bytes, at ", event.at));
     } else if (before != last.end() && event.at - before->second < kTriedAgain) {
-      broken.push_back(icd::sentence("Learned: ", event.what,
-                                     " came too soon for a Command Post that counts ", "from its answers, ",
-                                     event.at - before->second, " s after the last time, at ", event.at));
+      broken.push_back(icd::sentence(
+          "Learned: ", event.what, " was sent too soon for a Command Post that counts ", "from its answers, ",
+          event.at - before->second, " s after the request before, at ", event.at));
     } else if (times[event.what] > 1) {
-      broken.push_back(icd::sentence("Learned: ", event.what,
-                                     " came too soon for the third time for a Command Post that counts from "
-                                     "its answers, at ",
-                                     event.at));
+      broken.push_back(
+          icd::sentence("Learned: ", event.what,
+                        " was sent too soon for the third time for a Command Post that counts from "
+                        "its answers, at ",
+                        event.at));
     }
     said[event.what] = event.at;
   }
@@ -249,8 +254,9 @@ void stamps(const Evidence& evidence, Broken& broken) {
   bool is_spaced = true;  // no clock of a robot was forgotten
   DiskFaultsSeen disk;
   double ahead = kAhead, forgotten_until = 0;
-  double clock = 0;      // by which the box's is ahead of the world's
-  bool by_clock = true;  // the next life may begin where that is: before the first stamp none need be kept
+  double clock = 0;      // how far the box's clock is ahead of the world's
+  bool by_clock = true;  // the next process may begin at the box's clock, because no stamp need be stored
+                         // before the first
   for (const Event& event : evidence.events) {
     if (event.kind == Kind::ClockSet) clock = event.stamp;
     by_clock = by_clock || event.kind == Kind::PowerCut || disk.forgets_at(event);

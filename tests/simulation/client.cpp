@@ -129,7 +129,7 @@ void Client::heard(const HttpMessage& answer) {
   ended(std::move(event));
 }
 
-/// A client that heard nothing has done with the connection.
+/// A client that heard no answer closes the connection.
 void Client::gone(const std::string& why) {
   close();
   Event event = about_;
@@ -143,7 +143,7 @@ void Client::ended(Event event) {
   world_.note(std::move(event));
   const auto done = std::exchange(done_, nullptr);
   ++number_;
-  // Not from within this call: it may ask again.
+  // Not from within this call, because `done` may ask again.
   world_.after({}, [done, status] { done(status); });
 }
 

@@ -14,35 +14,36 @@ namespace adit::simulation {
 
 class World;
 
-/// How a client treats its connections.
+/// A client's use of its connections.
 struct Manners {
   bool keeps_alive = true;
-  double patience = 10;    // seconds for an answer
-  double hangs_up = 0;     // how likely at any byte, for each request
-  double dribbles = 0.1;   // how likely it sends a request in pieces
-  double half_closes = 0;  // how likely it ends its direction once the request is sent
-  double stalls = 0;       // how likely it stops within a request, and stays
+  double patience = 10;    // seconds to wait for an answer
+  double hangs_up = 0;     // probability per request, at any byte
+  double dribbles = 0.1;   // probability of a request in pieces
+  double half_closes = 0;  // probability of ending its direction after the request
+  double stalls = 0;       // probability of stopping within a request and holding the connection
 };
 
 /// An HTTP client of the team: one request at a time.
 class Client {
  public:
-  /// `world` outlives this.
+  /// `world` must outlive the client.
   Client(World& world, std::string address, Manners manners, Random random);
   ~Client();
   Client(const Client&) = delete;
   Client& operator=(const Client&) = delete;
 
-  /// `done` gets the status, or 0 where there was no whole answer. Requires !busy().
+  /// Sends a request. Calls `done` with the status, or with 0 if there was no complete answer. Requires
+  /// !busy().
   void ask(std::string request, Event about, std::function<void(int status)> done) {
     ask_several(std::move(request), std::vector{std::move(about)}, std::move(done));
   }
-  /// For a request that says several things: an event for each.
+  /// The same for a request with several items, with one event for each.
   void ask_several(std::string request, std::vector<Event> about, std::function<void(int status)> done);
-  /// From now on all that it asks is asked: a check counts on it.
+  /// From now on its requests are never left out, because a check counts on them.
   void is_needed() { needed_ = true; }
   bool busy() const { return static_cast<bool>(done_); }
-  /// The body of the last whole answer.
+  /// The body of the last complete answer.
   const std::string& heard() const { return heard_; }
 
  private:
@@ -66,13 +67,13 @@ class Client {
   HttpStream answers_;
   std::string request_;
   std::size_t written_ = 0;
-  std::size_t hang_up_at_ = 0;  // bytes; 0: not
-  std::size_t stalls_at_ = 0;   // as hang_up_at_
+  std::size_t hang_up_at_ = 0;  // bytes; 0: never
+  std::size_t stalls_at_ = 0;   // bytes; 0: never
   bool half_close_ = false;
-  Event about_;  // the first of what the request says
+  Event about_;  // the first item of the request
   std::function<void(int)> done_;
   std::string heard_;
-  std::uint64_t number_ = 0;  // of the request
+  std::uint64_t number_ = 0;
   bool needed_ = false;
 };
 

@@ -11,7 +11,7 @@
 namespace adit::simulation {
 namespace {
 
-constexpr double kLatest = 8;  // seconds after which nothing is recorded any more
+constexpr double kLatest = 8;  // seconds after which a lost request is not recorded any more
 constexpr double kLongest = 8, kLongestOutage = 25;
 constexpr std::chrono::milliseconds kOneLimit{950};  // "approximately" one request a second
 constexpr const char *kEarly = "Early", *kRepeats = "Repeats";
@@ -31,11 +31,11 @@ bool is_mapping(const HttpMessage& request) {
 
 }  // namespace
 
-/// One connection. The requests that it reads are answered one after the other.
+/// One connection. It answers its requests one after the other.
 class CommandPost::Conversation final : public Peer {
  public:
   Conversation(CommandPost& post, Link& link) : post_(post), link_(link) {}
-  void came(std::string_view bytes, Instant left) override {
+  void received(std::string_view bytes, Instant left) override {
     if (stream_.is_between()) began_ = left;
     stream_.feed(bytes);
     while (const auto request = stream_.next()) post_.asked(*request, {.first = began_, .last = left}, link_);
@@ -45,9 +45,9 @@ class CommandPost::Conversation final : public Peer {
 
  private:
   CommandPost& post_;
-  Link& link_;  // whose this is
+  Link& link_;
   HttpStream stream_;
-  Instant began_{};  // to leave: the request that comes
+  Instant began_{};  // time at which the first byte of the current request left
 };
 
 CommandPost::CommandPost(World& world, const Faults& faults, double trouble_for, int place)
@@ -62,14 +62,14 @@ CommandPost::CommandPost(World& world, const Faults& faults, double trouble_for,
       scoreboard_(world, faults_, random_, place),
       counting_(world.random("counting")) {
   for (const Fault fault : kPeriods) {
-    // Nobody can tell one run from the next by clocks that stand.
+    // Runs cannot be told apart if their clocks stand still.
     const bool untold = fault == Fault::NewRun && faults_.has(Fault::ConstantClocks);
     if (faults_.has(fault) && !untold) plan_periods(fault, trouble_for);
   }
   if (!faults_.has(Fault::ConstantClocks)) plan_clerk(trouble_for);
 }
 
-/// In one of five runs somebody sets the clock back, or grants one more report, up to three times.
+/// In one of five runs the clock is set back, or one more report is granted, up to three times.
 void CommandPost::plan_clerk(double trouble_for) {
   Random random = world_.random(numbered("clerk", scoreboard_.place()));
   if (!random.chance(0.2)) return;
@@ -144,7 +144,7 @@ std::unique_ptr<Peer> CommandPost::connected(const uplink::Endpoint&, Link& link
   return std::make_unique<Conversation>(*this, link);
 }
 
-/// What comes on a connection that Adit has given up does not count.
+/// Ignores requests on a connection that Adit has closed.
 void CommandPost::asked(const HttpMessage& request, const WhenLeft& left, Link& link) {
   connection_ = link.number();
   if (is_on(Fault::Mute) || is_on(Fault::Outage)) return;
@@ -159,7 +159,7 @@ void CommandPost::asked(const HttpMessage& request, const WhenLeft& left, Link& 
   if (link.answers_until() > world_.now()) world_.at(link.answers_until(), count);
 }
 
-/// With a 429.
+/// Answers 429.
 bool CommandPost::refuses(const HttpMessage& request, const WhenLeft& left, Link& link) {
   if (is_on(Fault::Storm) || is_on(Fault::PoliteStorm)) {
     const std::string after = is_on(Fault::PoliteStorm)
@@ -200,7 +200,7 @@ void CommandPost::answer(const HttpMessage& request, Link& link) {
   link.send(take(request), seconds(random_.between(0, 0.01)));
 }
 
-/// With a 200, to a message of which some has not come: it never does, and nothing is taken.
+/// Answers 200 to an incomplete message. Its rest never arrives, so it is not accepted.
 void CommandPost::may_answer_early(const HttpMessage& head, Link& link) {
   const bool does = early_.chance(answers_early_);
   const auto resets = seconds(early_.between(0, 0.5));
@@ -223,7 +223,7 @@ void CommandPost::take_later(const HttpMessage& request, double within) {
   world_.after(seconds(random_.between(0, within)), [this, request] { take(request); });
 }
 
-/// By when it answers, and what becomes of the connection.
+/// Decides the time of the answer and the fate of the connection.
 void CommandPost::misbehave(Fault fault, const HttpMessage& request, Link& link) {
   note(fault, request.path());
   const auto soon = seconds(random_.between(0, 0.5));
@@ -254,7 +254,7 @@ void CommandPost::misbehave(Fault fault, const HttpMessage& request, Link& link)
   }
 }
 
-/// Its bytes, and whether it was recorded.
+/// The bytes of the faulty answer, and whether the request was recorded.
 std::string CommandPost::bad_answer(Fault fault, const HttpMessage& request) {
   const auto maybe_take = [&] {
     if (random_.chance(0.5)) take(request);
@@ -296,7 +296,7 @@ std::string CommandPost::bad_answer(Fault fault, const HttpMessage& request) {
       take(request);
       return http_answer("429 Too Many Requests", kJson, "\"Cloud updates too frequent. Reduce to <1Hz.\"");
     case Fault::OddAnswer:
-      return said_oddly(take(request), random_);
+      return in_another_form(take(request), random_);
     default:
       return take(request);
   }

@@ -17,15 +17,15 @@
 
 namespace adit::simulation {
 
-/// Both endpoints of a Command Post by the letter of the ICD, with the faults of one run.
+/// Both endpoints of a Command Post that follows the ICD to the letter, with the faults of one run.
 class CommandPost final : public Host {
  public:
   static constexpr std::uint16_t kScoring = 8000, kMapping = 8001;  // ports
 
-  /// `place`: which one it is, from 0 on. `world` outlives this.
+  /// `place`: index of the Command Post, from 0. `world` must outlive it.
   CommandPost(World& world, const Faults& faults, double trouble_for, int place = 0);
 
-  /// No fault begins any more.
+  /// Ends all faults.
   void calm();
 
   std::optional<int> connecting(const uplink::Endpoint& endpoint) override;
@@ -40,9 +40,9 @@ class CommandPost final : public Host {
   void may_answer_early(const HttpMessage& head, Link& link);
   void misbehave(Fault fault, const HttpMessage& request, Link& link);
   std::string bad_answer(Fault fault, const HttpMessage& request);
-  /// Records what the request says: its answer.
+  /// Records the items of the request and returns the answer.
   std::string take(const HttpMessage& request);
-  /// Says what it said to the report before, and records nothing.
+  /// Returns the answer to the report before, and records nothing.
   std::optional<std::string> repeat_last_answer(const Item& item);
   void take_later(const HttpMessage& request, double within);
   void plan_periods(Fault fault, double trouble_for);
@@ -57,15 +57,15 @@ class CommandPost final : public Host {
   World& world_;
   Faults faults_;
   Random random_, early_, repeating_;
-  double answers_early_;                // how often, of the pieces in which requests come
-  double repeats_;                      // how often, of reports
-  const bool has_one_limit_;            // over reports and statuses
-  std::optional<loop::Instant> asked_;  // when the last of these left that it took
+  double answers_early_;                // probability per piece of a request
+  double repeats_;                      // probability per report
+  const bool has_one_limit_;            // one rate limit over reports and statuses
+  std::optional<loop::Instant> asked_;  // when the last accepted report or status left
   Scoreboard scoreboard_;
-  std::uint64_t connection_ = 0;  // on which it was asked last
+  std::uint64_t connection_ = 0;  // of the last request
   Counting counting_;
   bool calm_ = false;
-  std::set<Fault> on_;  // periods
+  std::set<Fault> on_;  // faults that last for a period
   std::vector<std::weak_ptr<Link>> links_;
 };
 

@@ -9,16 +9,17 @@
 
 namespace adit::simulation {
 
-/// Of a fault: a report or a status that came too soon after the other.
+/// Text of the fault: a report or a status came too soon after the other.
 inline constexpr const char* kBeyondOneLimit = "beyond one limit";
 
-/// When a request left Adit: as if all bytes were as long on their way, for what the line adds is not Adit's.
+/// When a request left Adit, as if all bytes took equally long: delays of the line are not Adit's fault.
 struct WhenLeft {
   loop::Instant first, last;
 };
 
-/// A Command Post takes about one request a second of a URI, and may measure that from first byte to first
-/// byte, from last byte to last byte, or from its answer to the next first byte. The seed draws which.
+/// The rate limit of a Command Post: about one request per second for each URI. It measures from first byte
+/// to first byte, from last byte to last byte, or from its answer to the next first byte. The seed decides
+/// which.
 class Counting {
  public:
   enum class What : std::uint8_t { Starts, LastBytes, Answers };
@@ -27,7 +28,7 @@ class Counting {
 
   What what() const { return what_; }
   bool is_too_soon(const std::string& path, const WhenLeft& left) const;
-  /// One that is not. May be called again, when its answer leaves.
+  /// Counts an accepted request. May be called again when its answer leaves.
   void count(const std::string& path, const WhenLeft& left, loop::Instant answered);
 
  private:
@@ -35,7 +36,7 @@ class Counting {
   std::map<std::string, loop::Instant> last_;
 };
 
-/// Of Fault, as `who`: a 429 for that; its serial is the What.
+/// Event::who of the fault for such a 429; the serial is the What.
 inline constexpr const char* kTooSoon = "too soon";
 
 }  // namespace adit::simulation

@@ -8,7 +8,7 @@
 namespace adit::simulation {
 namespace {
 
-constexpr double kStay = 60;  // seconds at each, at the end: one may end and begin meanwhile
+constexpr double kStay = 60;  // seconds at each course at the end; a run may end and begin meanwhile
 constexpr int kMostTries = 10;
 
 }  // namespace
@@ -58,7 +58,7 @@ Switcher::Switcher(World& world, double trouble_for)
   plan(trouble_for + kStay * 3 / 2);
 }
 
-/// What he wanted before he wants no more.
+/// A new wish replaces the earlier one.
 void Switcher::switch_to(const std::string& course) {
   wanted_ = course;
   tries_ = kMostTries;

@@ -11,20 +11,20 @@ namespace adit::simulation {
 
 class World;
 
-/// The course whose Command Post is the second one; "" is the first one's.
+/// The course of the second Command Post; the first one's course is "".
 inline constexpr const char* kOtherCourse = "B";
-/// Event::what of the operator's switching to a course; `who`: its name.
+/// Event::what if the operator switches the course; `who` is the course.
 inline constexpr const char* kCourse = "course";
-/// Which of the Command Posts is at such an address: 0 or 1.
+/// The index of the Command Post at that address: 0 or 1.
 int place_at(const std::string& address);
 
-/// The Command Posts of two courses.
+/// The two Command Posts of two courses.
 class Courses final : public Host {
  public:
-  /// `world` outlives this.
+  /// `world` must outlive them.
   Courses(World& world, const Faults& faults, double trouble_for);
 
-  /// No fault begins any more.
+  /// Ends all faults.
   void calm();
   std::optional<int> connecting(const uplink::Endpoint& endpoint) override;
   std::unique_ptr<Peer> connected(const uplink::Endpoint& endpoint, Link& link) override;
@@ -34,11 +34,11 @@ class Courses final : public Host {
   CommandPost first_, second_;
 };
 
-/// In some runs: an operator who switches between them, and once the trouble is over goes to each once more,
-/// so that what waits for it can go.
+/// In some runs, an operator who switches between the courses. Once the trouble is over he goes to each
+/// course once more, so that messages queued for it can be sent.
 class Switcher {
  public:
-  /// `world` outlives this.
+  /// `world` must outlive it.
   Switcher(World& world, double trouble_for);
 
  private:
@@ -47,8 +47,8 @@ class Switcher {
 
   World& world_;
   Client client_;
-  std::optional<std::string> wanted_;  // the course that he is to be told of
-  int tries_ = 0;                      // that are left
+  std::optional<std::string> wanted_;  // the course to switch to
+  int tries_ = 0;                      // tries left
 };
 
 }  // namespace adit::simulation

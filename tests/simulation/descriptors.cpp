@@ -50,10 +50,11 @@ void Descriptors::remove(std::uint64_t number) {
 }
 
 bool Descriptors::dispatch(Whose whose) {
-  std::array<epoll_event, 256> events;  // NOLINT(cppcoreguidelines-pro-type-member-init): asked for so often
+  std::array<epoll_event, 256>
+      events;  // NOLINT(cppcoreguidelines-pro-type-member-init): called too often to clear it
   const int count = ::epoll_wait(epoll_, events.data(), static_cast<int>(events.size()), 0);
   for (const epoll_event& event : std::span(events).first(static_cast<std::size_t>(std::max(count, 0)))) {
-    const std::uint64_t number = event.data.u64;  // the kernel packs it: no reference to it
+    const std::uint64_t number = event.data.u64;  // copied, because the kernel's struct is packed
     happened_[number] |= event.events;
   }
   bool any = false;
@@ -61,11 +62,11 @@ bool Descriptors::dispatch(Whose whose) {
     const auto found = watched_.find(number);
     if (found == watched_.end()) continue;
     if (whose != Whose::All && found->second.whose != whose) {
-      if (found->second.edge) happened_[number] |= what;  // which the kernel tells once
+      if (found->second.edge) happened_[number] |= what;  // an edge is reported once
       continue;
     }
     any = true;
-    const Ready call = found->second.ready;  // it may remove itself
+    const Ready call = found->second.ready;  // copied, because it may remove itself
     call(what);
   }
   return any;

@@ -33,7 +33,7 @@ std::string bytes_at(int fd, off_t at, std::uint64_t size) {
   return bytes;
 }
 
-/// Where the hole at its end begins.
+/// The offset at which the hole at the file's end begins.
 std::uint64_t end_of_data(int fd, std::uint64_t size) {
   const off_t hole = size == 0 ? 0 : ::lseek(fd, 0, SEEK_HOLE);
   return ::lseek(fd, hole, SEEK_DATA) < 0 ? static_cast<std::uint64_t>(hole) : size;
@@ -99,7 +99,7 @@ void Disk::cut_power(const std::filesystem::path& tree) {
   unsynced_.cut(tree, random_);
 }
 
-/// Nothing: it is not in the box's folder.
+/// "" if the path is not in the box's directory.
 std::string Disk::name_of(int folder, const char* path) const {
   if (path[0] != '/') {
     const auto open = open_.find(folder);
@@ -164,7 +164,7 @@ int Disk::open(int folder, const char* path, int flags, mode_t mode) {
   if ((writes || makes) && is_read_only(name)) return fail(EROFS);
   if (makes && is_full(name) && faults_.room(is_in_memory(name)) == 0) return fail(ENOSPC);
   if (makes || cuts) world_.crossing();
-  // What is overwritten is read before.
+  // Opened for reading too, because overwritten bytes are read first.
   const int how = (flags & O_ACCMODE) == O_WRONLY ? (flags & ~O_ACCMODE) | O_RDWR : flags;
   const int fd = real::open(folder, path, how & ~O_TRUNC, mode);
   if (fd < 0 || world_.is_dead()) return fd;
@@ -197,7 +197,7 @@ ssize_t Disk::write(int fd, std::span<const char> bytes, std::optional<off_t> at
   const std::uint64_t there = std::min<std::uint64_t>(bytes.size(), std::max<off_t>(0, size - place));
   bytes = bytes.first(there + take_room(open.name, bytes.size() - there));
   if (bytes.empty()) return fail(ENOSPC);
-  if (world_.dies_next()) {  // in the midst of it
+  if (world_.dies_next()) {  // dies within this call
     put(fd, open, bytes.first(cut(open, bytes.size(), place)), place);
     world_.crossing();
   }
@@ -207,8 +207,8 @@ ssize_t Disk::write(int fd, std::span<const char> bytes, std::optional<off_t> at
   return count;
 }
 
-/// How many of so many bytes a call reads or writes; nothing: it fails. One that ends before all are is
-/// followed by one that fails.
+/// The number of bytes, of `size`, that a call reads or writes; nullopt if it fails. After a short call the
+/// next one fails.
 std::optional<std::size_t> Disk::cut(CallFaults::Call call, int fd, std::size_t size) {
   Open& open = open_.at(fd);
   if (std::exchange(open.is_broken, false)) return std::nullopt;
@@ -237,8 +237,8 @@ int Disk::fails(CallFaults::Call call, int folder, const char* path) {
   return error == 0 ? 0 : fail(error);
 }
 
-/// How much of a write there is where the process dies in it. The kernel ends one only between two pages;
-/// what is in memory is cut anywhere, which is harder.
+/// The length of a write in which the process dies. The kernel cuts a write only between two pages. In
+/// memory it is cut at any byte, which is harder.
 std::uint64_t Disk::cut(const Open& open, std::uint64_t size, off_t at) {
   const std::uint64_t part = random_.below(size), place = static_cast<std::uint64_t>(at);
   if (is_in_memory(open.name)) return part;
@@ -279,7 +279,7 @@ int Disk::allocate(int fd, int mode, off_t at, off_t size) {
   return real::allocate(fd, mode, at, size);
 }
 
-/// What is in memory has nothing to wait for.
+/// Files in memory need no sync.
 int Disk::sync(int fd) {
   const Open open = open_.at(fd);
   if (is_in_memory(open.name)) return 0;

@@ -17,44 +17,44 @@ namespace adit::simulation {
 
 class World;
 
-/// The box's folder, of which all but `runtime` is on the disk, and that in memory. The files are real; this
-/// stands between them and the process that lives: its calls take part in deaths, meet the disk's faults, and
-/// leave behind what a power cut may take. posix.cpp hands it the calls of libc that change files.
+/// The box's directory: `runtime` is in memory, all else on the disk. The files are real. This class stands
+/// between them and the running process: its calls may be the process's last, meet the disk's faults, and
+/// record what a power cut may lose. posix.cpp passes it the calls of libc that read or change files.
 class Disk {
  public:
   static constexpr const char* kRuntime = "runtime";
   static constexpr const char* kSettings = "state/settings.json";
-  static constexpr std::uint64_t kRoom = 256 << 20;  // bytes, of each file system
+  static constexpr std::uint64_t kRoom = 256 << 20;  // bytes of each file system
 
   explicit Disk(World& world);
   ~Disk();
   Disk(const Disk&) = delete;
   Disk& operator=(const Disk&) = delete;
 
-  /// The one that this path belongs to, or this open file: null where it is no business of the box's, or no
-  /// process lives.
+  /// The disk of this path, or of this open file; null if it is not in the box's directory, or if no
+  /// process runs.
   static Disk* of(int folder, const char* path);
   static Disk* of(int fd);
-  /// Is closed.
+  /// Call after the descriptor was closed.
   static void forget(int fd);
 
-  /// The folder that is the box's from now on.
+  /// Sets the box's directory.
   void mount(const std::filesystem::path& folder);
-  /// No process has anything open any more.
-  /// Stands for what the saved settings say; "": there are none.
+  /// A digest of the saved settings; "" if there are none.
   std::string settings() const;
+  /// Call when no process has a file open any more.
   void let_go() { open_.clear(); }
-  /// Changes `tree`, a copy of the folder, into what a power cut leaves of it.
+  /// Changes `tree`, a copy of the directory, into the files after a power cut.
   void cut_power(const std::filesystem::path& tree);
   DiskFaults& faults() { return faults_; }
   CallFaults& calls() { return calls_; }
 
-  // As in libc, each; -1 and errno where it fails.
+  // As in libc: -1 and errno on failure.
   int open(int folder, const char* path, int flags, mode_t mode);
-  /// `at`: where it does not go on at the file's own place.
+  /// `at`: the offset; nullopt: the file's own position.
   ssize_t write(int fd, std::span<const char> bytes, std::optional<off_t> at);
   ssize_t read(int fd, void* to, std::size_t size, std::optional<off_t> at);
-  /// -1 and errno if a fault makes this call fail; else 0.
+  /// Returns -1 and sets errno if a fault makes this call fail, otherwise 0.
   int fails(CallFaults::Call call, int fd);
   int fails(CallFaults::Call call, int folder, const char* path);
   int truncate(int fd, off_t size);
@@ -65,22 +65,22 @@ class Disk {
   int make_folder(int folder, const char* path, mode_t mode);
   int link(int from_folder, const char* from, int to_folder, const char* to);
   int may_change(int folder, const char* path);
-  /// Six letters for a new name.
+  /// Six letters for a temporary name.
   std::string unique();
-  /// Bytes that come from the run's seed. False: no run is on.
+  /// Fills `bytes` from the run's seed. Returns false if no run is on.
   static bool fill_random(void* bytes, std::size_t size);
-  /// The bytes of all files whose names below the folder begin so.
+  /// Total size of the files whose names below the directory begin with `beginning`.
   std::uint64_t stored(const std::string& beginning);
-  /// Bytes that are left in the file system of that path.
+  /// Free bytes in the file system of that path.
   std::uint64_t room(int folder, const char* path);
   std::uint64_t room(int fd);
 
  private:
   struct Open {
-    std::string name;  // below the folder
+    std::string name;  // relative to the box's directory
     Unsynced::File file;
     bool appends, is_folder;
-    std::uint64_t device, number;  // what it was: libc itself may have closed it
+    std::uint64_t device, number;  // to detect that libc itself closed it
     bool is_broken = false;        // the next read or write fails
   };
   static bool is_on();
@@ -88,7 +88,7 @@ class Disk {
   static bool is_in_memory(const std::string& name);
   bool is_read_only(const std::string& name) const;
   bool is_full(const std::string& name) const;
-  /// How many of so many new bytes there is room for.
+  /// Reserves room for `bytes` new bytes and returns how many were available.
   std::uint64_t take_room(const std::string& name, std::uint64_t bytes);
   std::optional<std::size_t> cut(CallFaults::Call call, int fd, std::size_t size);
   std::uint64_t cut(const Open& open, std::uint64_t size, off_t at);
@@ -101,9 +101,9 @@ class Disk {
   DiskFaults faults_;
   CallFaults calls_;
   Unsynced unsynced_;
-  std::string folder_;  // with a slash at its end
+  std::string folder_;  // ends with a slash
   std::map<int, Open> open_;
-  bool looks_on_ = false;  // a check reads the files, and no fault is in its way
+  bool looks_on_ = false;  // a check reads the files, without faults
 };
 
 }  // namespace adit::simulation

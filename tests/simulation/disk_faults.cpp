@@ -27,7 +27,7 @@ void DiskFaults::plan(double trouble_for) {
   plan(Kind::Unreadable, trouble_for);
 }
 
-/// A time of trouble may begin with the run.
+/// A fault may begin with the run.
 void DiskFaults::plan(Kind kind, double trouble_for) {
   const bool at_once = random_.chance(0.2);
   const double begins = at_once ? 0 : random_.between(0, trouble_for);

@@ -9,33 +9,33 @@ namespace adit::simulation {
 
 class World;
 
-/// What may be wrong with the box's disk for a time. Most runs have none of it, the others one kind or two.
+/// Faults of the box's disk that last for some time. Most runs have none, the others one kind or two.
 class DiskFaults {
  public:
   enum class Kind : std::uint8_t {
-    Full,       // for what makes a file longer: some bytes are left
-    SyncFails,  // once, or all of them
+    Full,       // writes that make a file longer fail; some bytes are left
+    SyncFails,  // once, or for the whole time
     ReadOnly,
     Slow,         // some syncs take up to 5 s
-    RuntimeFull,  // the folder in memory
-    Unreadable,   // a file that is opened to be read
+    RuntimeFull,  // the directory in memory
+    Unreadable,   // opening a file for reading fails
     End
   };
 
   explicit DiskFaults(World& world);
-  /// Draws when they come. Each may be left out, by its name.
+  /// Draws the times of the faults. Each may be left out by its name.
   void plan(double trouble_for);
   bool is(Kind kind) const { return is_[static_cast<int>(kind)]; }
-  /// Bytes that are left while it is full.
+  /// Bytes that are left while the disk is full.
   std::uint64_t& room(bool in_memory) { return room_[in_memory ? 1 : 0]; }
   bool sync_fails();
-  /// Seconds that a sync takes.
+  /// Seconds that a sync takes now.
   double sync_takes();
-  /// "; disk: Full Slow", or "".
+  /// The kinds in this run, "; disk: Full Slow", or "".
   const std::string& names() const { return names_; }
 
  private:
-  /// What one that begins is like, drawn before.
+  /// The details of one fault, drawn when it was planned.
   struct Drawn {
     bool fails_once = false;
     std::uint64_t room = 0;

@@ -14,8 +14,8 @@ namespace adit::simulation {
 namespace {
 
 constexpr std::chrono::microseconds kAccepting{50};
-/// By the settings (Box), at most: of one address those that may have shown a token, and the share of those
-/// who have not. Who gives way is gone this much later.
+/// The limits in the settings (Box): connections of one address that may have shown a token, plus the share
+/// of unauthenticated ones. A connection that gives way is gone kGivesWay later.
 constexpr std::size_t kMostConnections = 64, kMostOfAddress = 8 + 16;
 constexpr std::chrono::milliseconds kGone{20};
 
@@ -72,7 +72,7 @@ void Door::admit_all() {
     peer.sin_addr.s_addr = next.address;
     peer.sin_port = htons(40000);
     served_[next.fd] = {next.address, server_};
-    admit_(next.fd, reinterpret_cast<const sockaddr*>(&peer), sizeof peer);  // which may close it at once
+    admit_(next.fd, reinterpret_cast<const sockaddr*>(&peer), sizeof peer);  // may close it at once
     world_.after(kGone,
                  [this, address = next.address] { world_.when_moving([this, address] { count(address); }); });
   }

@@ -15,8 +15,8 @@ namespace adit::simulation {
 
 class World;
 
-/// The team's side: who connects waits here until a server takes connections, as in the queue of a socket
-/// that systemd keeps.
+/// The team's side. New connections wait here until a server accepts them, as in the queue of a socket that
+/// systemd keeps.
 class Door {
  public:
   explicit Door(World& world) : world_(world) {}
@@ -24,17 +24,17 @@ class Door {
   Door(const Door&) = delete;
   Door& operator=(const Door&) = delete;
 
-  /// The client's end of a new connection from `address` (IPv4). It is not blocking.
+  /// Returns the client's non-blocking end of a new connection from `address` (IPv4).
   int connect(const std::string& address);
-  /// The settings name that interface for the team; "": any.
+  /// Sets the interface that the settings name for the team; "": any.
   void belongs_to(std::string interface) { interface_ = std::move(interface); }
-  /// A server that listens there takes connections until the token is let go of.
+  /// Gives the connections to a server, until the token is destroyed.
   std::shared_ptr<void> open(int listening, intake::Admit admit);
-  /// The client has closed its end.
+  /// Call after the client has closed its end.
   void closed(int fd);
-  /// The server has closed its end.
+  /// Call after the server has closed its end.
   void server_closed(int fd) { served_.erase(fd); }
-  /// The process is over: what it said before is still heard, and nothing of what it says now.
+  /// Ends the process's connections: clients still hear earlier bytes, but no later ones.
   void cut();
 
  private:
@@ -43,18 +43,18 @@ class Door {
     std::uint32_t address;
   };
   void admit_all();
-  /// The connections, of which one of `address` came just before.
+  /// Checks the limits after a new connection from `address`.
   void count(std::uint32_t address);
 
   World& world_;
   std::string interface_;
-  std::set<int> clients_;  // their ends of connections that were admitted
+  std::set<int> clients_;  // clients' ends of admitted connections
   struct Served {
     std::uint32_t address;
     int server;
   };
-  std::map<int, Served> served_;  // the servers' ends that are open
-  int server_ = 0;                // the one that takes connections now
+  std::map<int, Served> served_;  // open server ends
+  int server_ = 0;                // the server that accepts connections now
   std::deque<Waiting> waiting_;
   intake::Admit admit_;
   std::weak_ptr<void> token_;

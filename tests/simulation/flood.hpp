@@ -13,8 +13,7 @@ namespace adit::simulation {
 
 class World;
 
-/// A fleet behind one address that sends all at once: fifty states within a second, or clouds, by up to 40
-/// connections.
+/// A fleet behind one address: fifty states within a second, or clouds, on up to 40 connections at once.
 class Flood {
  public:
   Flood(World& world, double until);

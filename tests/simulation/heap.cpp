@@ -1,4 +1,4 @@
-// malloc(3) and its kin, in front of libc's own, so that what a life asks for is seen.
+// Replaces malloc(3) and its relatives to measure the memory of aditd.
 #include "simulation/heap.hpp"
 
 #include <malloc.h>
@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <utility>
 
-extern "C" {  // glibc's own names for them
+extern "C" {  // glibc's internal names
 void* __libc_malloc(std::size_t size);
 void* __libc_calloc(std::size_t count, std::size_t size);
 void* __libc_realloc(void* old, std::size_t size);
@@ -35,7 +35,7 @@ std::size_t most_wanted() {
 
 }  // namespace adit::simulation
 
-#ifndef ADIT_SANITIZED  // whose heap is its own
+#ifndef ADIT_SANITIZED  // a sanitizer has its own heap
 extern "C" {
 
 void* malloc(std::size_t size) {

@@ -4,9 +4,9 @@
 
 namespace adit::simulation {
 
-/// What the program has of malloc(3)'s memory, in bytes.
+/// Bytes allocated with malloc(3) now.
 std::size_t heap();
-/// The most that it has asked for at once since this was called last, whether or not there was so much.
+/// The largest single request in bytes since the last call, granted or not.
 std::size_t most_wanted();
 
 }  // namespace adit::simulation

@@ -9,17 +9,17 @@
 namespace adit::simulation {
 namespace {
 
-constexpr const char* kWords[] = {"asks",    "has asked",      "stalls at",
-                                  "hears",   "hears nothing",  "sends",
-                                  "ends",    "has sent",       "must not send",
-                                  "reads",   "opens",          "closes",
-                                  "takes",   "begins",         "is told to stop",
-                                  "dies",    "power cut",      "cannot begin",
-                                  "ended",   "saved",          "records another's",
-                                  "new run", "fault",          "written",
-                                  "serves",  "mended",         "slow",
-                                  "calm",    "tells",          "clock is set",
-                                  "shows",   "gives a second", ""};
+constexpr const char* kWords[] = {"requests",    "has requested",  "stalls at",
+                                  "is answered", "gets no answer", "sends",
+                                  "ends",        "has sent",       "must not send",
+                                  "reads",       "opens",          "closes",
+                                  "accepts",     "begins",         "gets SIGTERM",
+                                  "dies",        "power cut",      "cannot begin",
+                                  "ended",       "saved",          "records another's",
+                                  "new run",     "fault",          "written",
+                                  "serves",      "mended",         "slow",
+                                  "calm",        "notifies",       "clock is set",
+                                  "shows",       "gives a second", ""};
 static_assert(std::size(kWords) == static_cast<std::size_t>(Kind::Said) + 1);
 
 void mix(std::uint64_t& hash, std::uint64_t number) {
@@ -59,9 +59,9 @@ void History::note(Event event) {
 std::string line_of(const Event& event) {
   char time[32];
   std::snprintf(time, sizeof time, "%10.6f ", event.at);
-  std::string said = kWords[static_cast<int>(event.kind)];
-  const auto add = [&said](const std::string& word) {
-    said.append(said.empty() || word.empty() ? 0 : 1, ' ').append(word);
+  std::string words = kWords[static_cast<int>(event.kind)];
+  const auto add = [&words](const std::string& word) {
+    words.append(words.empty() || word.empty() ? 0 : 1, ' ').append(word);
   };
   if (event.status != 0) add(std::to_string(event.status));
   add(event.what);
@@ -76,7 +76,7 @@ std::string line_of(const Event& event) {
   add(event.text);
   constexpr std::size_t kColumn = 44;
   const std::size_t column = static_cast<std::size_t>(event.actor) * kColumn;
-  return time + std::string(column, ' ') + said;
+  return time + std::string(column, ' ') + words;
 }
 
 }  // namespace adit::simulation

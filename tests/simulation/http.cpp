@@ -46,7 +46,7 @@ std::optional<HttpMessage> HttpStream::next() {
   return is_whole ? std::exchange(head_, std::nullopt) : std::nullopt;
 }
 
-/// Whether all of it is there.
+/// Returns whether the body is complete.
 bool HttpStream::take_body() {
   if (bytes_.size() < length_) return false;
   head_->body = bytes_.substr(0, length_);

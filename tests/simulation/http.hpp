@@ -9,10 +9,10 @@ namespace adit::simulation {
 
 constexpr const char* kJson = "Content-Type: application/json\r\n";
 
-/// A request or an answer of HTTP/1.1 that says its length, comes in chunks, or is an interim one.
+/// A request or an answer of HTTP/1.1: with a length, chunked, or interim.
 struct HttpMessage {
-  std::string first;                           // its first line
-  std::map<std::string, std::string> headers;  // by names in lower case
+  std::string first;                           // first line
+  std::map<std::string, std::string> headers;  // by lower-case name
   std::string body;
 
   std::string header(const std::string& name) const;
@@ -20,18 +20,18 @@ struct HttpMessage {
   int status() const;        // of an answer
 };
 
-/// The messages of one direction of a connection, out of its bytes.
+/// Parses the messages of one direction of a connection.
 class HttpStream {
  public:
   void feed(std::string_view bytes) { bytes_ += bytes; }
-  /// The next whole one.
+  /// The next complete message.
   std::optional<HttpMessage> next();
-  /// No byte of a message that is not whole has come.
+  /// Whether no byte of an incomplete message has arrived.
   bool is_between() const { return bytes_.empty() && !head_; }
-  /// Of the one that is not whole: its head, once that has come, and how long its body is to be.
+  /// The head of the incomplete message, once complete.
   const std::optional<HttpMessage>& head() const { return head_; }
-  std::size_t length() const { return length_; }  // or of its next chunk
-  /// What has come of the first line of the one that is not whole.
+  std::size_t length() const { return length_; }  // of its body, or of its next chunk
+  /// The part of the incomplete message's first line that has arrived.
   std::string_view begun() const { return bytes_; }
 
  private:

@@ -6,8 +6,8 @@
 
 namespace adit::simulation {
 
-/// What the ICD minds in a request to the Command Post, by the rehearsal's reading of it, which shares no
-/// code with the gateway's; "": nothing.
+/// The violation of the ICD in a request to the Command Post, or "". Uses the rehearsal's reading of the
+/// ICD, which shares no code with the gateway's.
 std::string fault_of(const HttpMessage& request);
 
 }  // namespace adit::simulation

@@ -11,8 +11,8 @@ struct LedgerReading {
   std::vector<dispatch::Report> reports;  // by number
   std::size_t missing = 0;                // records
 };
-/// The files in a ledger's directory, read as firmware/doors/store/README.md and
-/// firmware/doors/ledger/README.md describe them, with none of the firmware's code.
+/// Reads the files in a ledger's directory as firmware/doors/store/README.md and
+/// firmware/doors/ledger/README.md describe them, without the firmware's code.
 LedgerReading read_ledger(const std::string& directory);
 
 }  // namespace adit::simulation

@@ -1,4 +1,4 @@
-// The whole gateway in a simulated world, from seeds.
+// Plays runs of the whole gateway in a simulated world, from seeds.
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -20,7 +20,7 @@
 namespace adit::simulation {
 namespace {
 
-/// The results of many runs, as plain numbers, because one process passes them to another.
+/// Sums over many runs, as plain numbers, because one process passes them to another.
 struct Tally {
   std::uint64_t runs = 0, events = 0, faults = 0, failed = 0;
   double hours = 0;  // simulated
@@ -75,7 +75,7 @@ class Shrinking {
  private:
   Actions actions() const { return play({.seed = seed_, .without = without_}).actions; }
 
-  /// Keeps `next` where the same is broken in it.
+  /// Keeps the omissions `next` if the same check still fails with the same sentence.
   bool still_breaks(Omissions next) {
     if (plays_left_-- <= 0) return false;
     const auto broken = play({.seed = seed_, .without = next}).broken;
@@ -90,7 +90,7 @@ class Shrinking {
     still_breaks(std::move(next));
   }
 
-  /// Halves, quarters and so on, down to single ones.
+  /// Tries to leave out halves, quarters and so on, down to single actions.
   bool try_ranges(const std::string& actor, std::uint64_t actions) {
     bool smaller = false;
     for (std::uint64_t size = (actions + 1) / 2; size > 0 && plays_left_ > 0;
@@ -116,14 +116,14 @@ class Shrinking {
   int plays_left_;
 };
 
-/// A run in which a check found that, made small: all is left out without which it finds the same, to the
-/// word: another sentence of the same check may have another cause. First whole actors, then ranges, then
-/// single actions. Plays the run again for each that it tries, `most_plays` times at most.
+/// Shrinks a failing run: leaves out everything without which the same check still fails with the same
+/// sentence, because another sentence may have another cause. Tries whole actors first, then ranges, then
+/// single actions. Each try plays the run again, at most `most_plays` times.
 Omissions shrunk(std::uint64_t seed, const Omissions& from, const std::string& broken, int most_plays) {
   return Shrinking(seed, from, broken, most_plays).result();
 }
 
-constexpr int kMostPlays = 400;  // to shrink one
+constexpr int kMostPlays = 400;  // tries to shrink one run
 constexpr std::uint64_t kPlayedTwice = 100;
 
 double cpu_seconds() {
@@ -136,7 +136,7 @@ std::string replay(std::uint64_t seed, const Omissions& without) {
   return command + " --log";
 }
 
-/// One of several processes: every `jobs`th seed from its own first on.
+/// One of several processes. It plays every `jobs`th seed from its own first seed.
 class Job {
  public:
   Job(const Options& options, std::uint64_t number) : options_(options), number_(number) {}
@@ -156,7 +156,7 @@ class Job {
     return options_.cpu <= 0 || cpu_seconds() <= options_.cpu;
   }
 
-  /// What the simulation itself did not expect is a failure as well.
+  /// Counts an exception of the simulation itself as a failure.
   void try_one(std::uint64_t seed) {
     try {
       one(seed);
@@ -193,7 +193,7 @@ class Job {
     return false;
   }
 
-  /// The first one only: it takes as long as hundreds of runs.
+  /// Shrinks the first failing run only, because that takes as long as hundreds of runs.
   void tell_shrunk(std::uint64_t seed, const std::string& broken) {
     shrunk_ = true;
     const Omissions without = shrunk(seed, options_.without, broken, kMostPlays);
@@ -207,11 +207,11 @@ class Job {
   const std::uint64_t number_;
   const std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
   Tally tally_;
-  bool found_ = false;  // what --until seeks
+  bool found_ = false;  // the check of --until has failed
   bool shrunk_ = false;
 };
 
-/// In processes of their own, for there is one world in each.
+/// Plays each job in a process of its own, because a process can have one world.
 bool play_all(const Options& options, Tally& tally) {
   std::array<int, 2> results{};
   if (::pipe(results.data()) != 0) return false;

@@ -7,12 +7,12 @@
 
 namespace adit::simulation {
 
-/// Of the team's network.
+/// An address of the team's network.
 inline std::string address(int number) {
   return std::string("10.0.0.").append(std::to_string(20 + number));
 }
 
-/// As the seed draws them.
+/// Draws the manners of a client.
 inline Manners manners(Random random) {
   return {.keeps_alive = random.chance(0.6),
           .patience = random.chance(0.5) ? random.between(0.3, 3) : random.between(3, 30),

@@ -17,13 +17,14 @@
 namespace adit::simulation {
 namespace {
 
-constexpr std::size_t kSerialCells = 4;     // of a bad grid, each a digit of base 100
-constexpr std::int64_t kPointsApart = 512;  // a point's intensity: so many times the serial, and its index
+constexpr std::size_t kSerialCells = 4;  // cells of a bad grid that hold its serial, each a digit of base 100
+constexpr std::int64_t kPointsApart =
+    512;  // a point's intensity is this times the serial, plus the point's index
 constexpr std::int64_t kInvalidEvery = 17;
-constexpr std::size_t kRowWidth = 4;  // less than any cloud has points
+constexpr std::size_t kRowWidth = 4;  // every cloud has more points
 constexpr double kPacking = 0.0013;   // metres by which packing may move a point
 
-/// Where a point lies.
+/// The place of a point.
 std::array<float, 3> place_of(std::int64_t serial, std::int64_t index) {
   return {static_cast<float>(index) * 0.37F, static_cast<float>(serial % 97) * 1.5F,
           static_cast<float>((serial * 7 + index * 13) % 100) * -0.01F};
@@ -69,14 +70,14 @@ std::string cells_of(std::int64_t serial, const Extent& extent) {
   return cells;
 }
 
-/// Nothing but its serial, so that it can be told wherever it goes.
+/// Only the serial, so that the grid is recognised wherever it goes.
 std::string bad_cells(std::int64_t serial, const Extent& extent) {
   std::string cells(static_cast<std::size_t>(extent.width) * static_cast<std::size_t>(extent.height), '\0');
   for (std::size_t i = kSerialCells; i-- > 0; serial /= 100) cells[i] = static_cast<char>(serial % 100);
   return cells;
 }
 
-/// Of a bad grid; 0 of any other.
+/// The serial of a bad grid; 0 for any other grid.
 std::int64_t bad_serial_in(const std::string& cells) {
   if (cells.size() <= kSerialCells || cells.find_first_not_of('\0', kSerialCells) != std::string::npos)
     return 0;
@@ -104,7 +105,8 @@ Json field(const char* name, std::size_t offset) {
   return {{"name", name}, {"offset", offset}, {"datatype", 7}, {"count", 1}};
 }
 
-/// Rows of kRowWidth points, of which the last ones may be invalid, and padding that reads as one more.
+/// Organises the points in rows of kRowWidth. The last points may be invalid, and padding looks like one
+/// more point.
 void organise(Json& msg, std::string& points, const Style& style) {
   const auto step = static_cast<std::size_t>(style.point_step), row = kRowWidth * step;
   const auto add = [&](std::string& bytes, float x) {
@@ -124,7 +126,7 @@ void organise(Json& msg, std::string& points, const Style& style) {
   points = std::move(padded);
 }
 
-/// In a third of them an invalid point comes before each kInvalidEvery valid ones.
+/// In a third of the clouds an invalid point comes before each kInvalidEvery valid ones.
 Json cloud(const std::vector<Item>& items, const Style& style) {
   const auto step = static_cast<std::size_t>(style.point_step);
   std::string points;
@@ -169,10 +171,10 @@ Item grid_item(const Json& msg) {
   return {.who = "", .serial = bad_serial_in(cells), .says = std::move(says)};
 }
 
-/// How often each point of a cloud is in a message.
+/// The number of copies of each of a cloud's points in a message.
 using Copies = std::map<std::int64_t, int>;
 
-/// The clouds of that serial: as many as their points are there, whatever order these are in.
+/// Adds the clouds of that serial, as often as all of their points occur, in any order of points.
 void add_copies(std::int64_t serial, const Copies& copies, std::vector<Item>& items) {
   const auto is_in = [&](int copy) {
     return std::ranges::count_if(copies, [copy](const auto& point) { return point.second >= copy; });
@@ -182,14 +184,14 @@ void add_copies(std::int64_t serial, const Copies& copies, std::vector<Item>& it
   }
 }
 
-/// No cloud that is posted has one; no cloud is turned.
+/// The pose of the message, which clients never post. Adit never rotates a cloud.
 std::array<float, 3> origin_of(const Json& msg) {
   if (!msg.contains("origin")) return {};
   const Json& at = msg["origin"].at("position");
   return {at.at("x").get<float>(), at.at("y").get<float>(), at.at("z").get<float>()};
 }
 
-/// In the order of their serials.
+/// The clouds of a message, by serial.
 std::vector<Item> cloud_items(const Json& msg) {
   const std::string data = data_in(msg);
   const auto step = msg.at("point_step").get<std::size_t>();

@@ -9,18 +9,18 @@ namespace adit::simulation {
 
 using Json = nlohmann::json;
 
-Json header_of(double stamp);  // 0: without one
+Json header_of(double stamp);  // 0: without a stamp
 double stamp_of(const Json& message);
 Json pose_at(double x, double y, const Style& style);
 
-/// The body of any message.
+/// The body of a message of any kind.
 Json message_of(const Posting& posting, const Style& style);
-/// The value of a grid's cell at that place, in half cells: of each grid another one, so that it shows whose
-/// cell it is.
+/// The value of a grid's cell at that place, in half cells. Each grid has other values, so that a cell
+/// shows its grid.
 int value_of(std::int64_t serial, int x, int y);
-/// Of a map.
+/// The body of a map.
 Json map_of(const std::vector<Item>& items, const Style& style);
-/// What it says: a grid, or each of the clouds that were merged into it.
+/// The grid, or each of the clouds that were merged into the message.
 std::vector<Item> map_items(const Json& message);
 
 }  // namespace adit::simulation

@@ -9,20 +9,20 @@ namespace adit::simulation {
 namespace {
 
 constexpr std::size_t kLetters = 60'000;
-constexpr double kAcross = 2.3;        // metres: no float32
-constexpr double kReportsApart = 100;  // metres, so that none is near another
+constexpr double kAcross = 2.3;        // metres; not exact in float32
+constexpr double kReportsApart = 100;  // metres, so that Adit does not take reports for duplicates
 
 std::int64_t whole(double number) {
   return static_cast<std::int64_t>(std::llround(number));
 }
 
-/// Of a line that is added; what is found is a cube, and has none.
+/// The number of points of a line that is added. Other markers are cubes without points.
 std::size_t points_of(const Item& item) {
   return item.says[0] == kAdd && item.who.ends_with(kPath) ? 2 + static_cast<std::size_t>(item.serial % 5)
                                                            : 0;
 }
 
-/// Some say very much.
+/// The length of a marker's text. Some texts are very long.
 std::size_t letters_of(const Item& item) {
   return item.says[0] == kAdd && item.who.ends_with(kWriting) ? kLetters : 0;
 }
@@ -32,7 +32,7 @@ int type_of(const Item& item) {
   return points_of(item) > 0 ? kLine : letters_of(item) > 0 ? kText : kCube;
 }
 
-/// The robot that a report names; "": the report has no name, as all of the operator's.
+/// The robot that a report names; "" for the operator's reports, which name none.
 std::string reporter_of(std::int64_t serial) {
   const std::int64_t posted = serial % kCorrections;  // a correction keeps the robot
   return posted < kOwnReports && posted % 3 == 0 ? "R1" : "";
@@ -47,7 +47,7 @@ Json report_of(std::int64_t serial, const Style& style) {
   return report;
 }
 
-/// A report with a missing or another robot counts as one that the team did not post.
+/// A report with a missing or another robot becomes kStrange.
 Item report_item(const Json& report) {
   const std::int64_t serial = whole(report.value("x", 0.0) / kReportsApart);
   return {.who = "", .serial = report.value("name", "") == reporter_of(serial) ? serial : kStrange};
@@ -71,7 +71,7 @@ Json marker_of(const Item& item, const Style& style) {
   return marker;
 }
 
-/// One that has lost points or letters is none that anybody posted.
+/// A marker that has lost points or letters becomes kStrange.
 Item marker_item(const Json& marker) {
   Item item{.who = marker.value("ns", ""),
             .serial = whole(marker.at("scale").at("x")),

@@ -12,21 +12,21 @@ namespace adit::simulation {
 inline constexpr const char *kReports = "/api/artifact_reports", *kStatus = "/api/status",
                             *kMap = "/map/update", *kState = "/state/update", *kMarkers = "/markers/update";
 
-/// What one message says of one thing, by the serial that rides in a field which nothing changes: a report's
-/// x, a pose's x, a marker's scale, the points' intensity. A grid's cells show it, each by its value.
+/// One item of a message. Its serial is in a field that Adit never changes: a report's x, a pose's x, a
+/// marker's scale, the points' intensity. The values of a grid's cells show its serial.
 struct Item {
-  std::string who;  // a map's or a pose's name, a marker's ns, "" of a report
+  std::string who;  // a map's or a pose's name, a marker's ns, "" for a report
   std::int64_t serial = 0;
   double stamp = 0;  // 0: none
-  /// Of a grid its Extent, and upstream its cells, of a cloud its points, of a marker action and id, of a
-  /// pose the number of the client that posts it.
+  /// A grid's Extent, and upstream its cells; a cloud's points; a marker's action and id; for a pose the
+  /// number of the client that posts it.
   Says says = {};
 };
 
-/// Where a grid lies.
+/// The place of a grid.
 struct Extent {
-  int centimetres = 50;       // of a cell
-  int x = 0, y = 0;           // of the origin, in half cells
+  int centimetres = 50;       // size of a cell
+  int x = 0, y = 0;           // origin, in half cells
   int width = 8, height = 8;  // cells
 
   static Extent from(const Says& says) { return {says[0], says[1], says[2], says[3], says[4]}; }
@@ -39,24 +39,24 @@ inline bool is_grid(const Says& says) {
 inline bool is_cloud(const Says& says) {
   return says.size() == 1;
 }
-inline constexpr int kStrange = -1;                // points, a marker or a report: none that anybody posted
-inline constexpr std::int64_t kOwnReports = 9000;  // serials from there on: of the operator's own
-/// The serial of a correction, above that of the report that it corrects.
+inline constexpr int kStrange = -1;                // points, a marker or a report that no client posted
+inline constexpr std::int64_t kOwnReports = 9000;  // first serial of the operator's reports
+/// Offset of a correction's serial from the serial of the report that it corrects.
 inline constexpr std::int64_t kCorrections = 10'000;
 
-/// How the namespaces of markers end: of lines, and of long texts.
+/// Suffixes of the namespaces of markers: lines, and long texts.
 inline constexpr const char *kPath = " path", *kWriting = " writing";
 enum MarkerAction { kAdd = 0, kDelete = 2, kDeleteAll = 3 };
 
-/// Of a request to the Command Post; none where it is no message of the ICD.
+/// The items of a request to the Command Post; empty if it is not a message of the ICD.
 std::vector<Item> items_of(const HttpMessage& request);
-/// Of a status: its score, its remaining reports, and its run clock in milliseconds.
+/// A status's score, its remaining reports, and its run clock in milliseconds.
 Says status_in(const std::string& body);
 
-/// A client's message before it is put into bytes.
+/// A client's message before it is serialised.
 struct Posting {
   std::string path;
-  /// Several markers of one stamp; or one thing, and behind it the clouds before it whose points it has, too.
+  /// Several markers of one stamp; or one item, followed by earlier clouds whose points it contains.
   std::vector<Item> items;
 };
 
@@ -64,15 +64,15 @@ struct Style {
   bool cbor = false, gzip = false, gzip_data = false;
   bool big_endian = false;  // clouds
   int point_step = 16;      // of clouds, in bytes
-  bool news_first = false;  // of clouds that have the points of those before them
-  bool rounds = false;      // a report's coordinates to float32
-  bool in_rows = false;     // clouds are organised, and their rows padded
-  double quaternion = 1;    // how long each is
+  bool news_first = false;  // in clouds with points of earlier ones, the new points come first
+  bool rounds = false;      // a report's coordinates are rounded to float32
+  bool in_rows = false;     // clouds are organised, with padded rows
+  double quaternion = 1;    // length of each
 };
 
-/// What a client says of each thing in it.
+/// The events of the items in it.
 std::vector<Event> events_of(const Posting& posting);
-/// The whole request, in the bytes of that style. Reports are JSON.
+/// The whole request in that style. Reports are JSON.
 std::string request_of(const Posting& posting, const Style& style);
 
 }  // namespace adit::simulation

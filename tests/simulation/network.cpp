@@ -11,9 +11,9 @@
 namespace adit::simulation {
 namespace {
 
-/// Bytes of a segment on Ethernet: a thin line delivers one after the other, and each is acknowledged.
+/// Bytes of a segment on Ethernet. A thin line delivers segments one after the other and acknowledges each.
 constexpr std::size_t kSegment = 1448;
-/// For so long Linux holds back the acknowledgement of a segment that no other follows (RFC 1122 4.2.3.2).
+/// The longest time for which Linux delays the acknowledgement of a last segment (RFC 1122 4.2.3.2).
 constexpr std::chrono::milliseconds kLateAck{40};
 
 }  // namespace
@@ -32,15 +32,15 @@ loop::Duration Link::latency() {
   return seconds(typical_ * random_.between(0.8, 1.5));
 }
 
-/// When what is sent now is there. While the line is stalled it is held, and sent again ever less often (RFC
-/// 6298 5.5): it may come as long after the stall as that has lasted.
+/// The arrival time of bytes sent now. A stalled line holds them and retries ever less often (RFC 6298
+/// 5.5), so they may arrive as long after the stall as it lasted.
 loop::Instant Link::arrival() {
   const Stalls& stalls = world_.network().stalls();
   if (!stalls.is_on()) return world_.now() + latency();
   return stalls.ends() + seconds(random_.between(0, stalls.length())) + latency();
 }
 
-/// In order, and not before the bytes before have come at the line's rate.
+/// The arrival time of the last byte: in order, and limited by the line's rate.
 loop::Instant Link::arrival_of(std::size_t bytes) {
   if (!is_thin_) return std::max(last_there_, arrival());
   const auto takes = seconds(static_cast<double>(bytes) / world_.network().map_rate());
@@ -75,14 +75,14 @@ std::size_t Link::write(std::string_view bytes) {
                             left_at = world_.now()] {
       if (self->lost_ || self->deaf_) return;
       self->acknowledge(piece.size(), left_at);
-      if (self->peer_) self->peer_->came(piece, left_at);
+      if (self->peer_) self->peer_->received(piece, left_at);
     });
     left -= size;
   }
   return taken;
 }
 
-/// The round trip is smoothed as Linux does (RFC 6298 2.3).
+/// Smooths the round trip time as Linux does (RFC 6298 2.3).
 void Link::acknowledge(std::size_t bytes, loop::Instant left_at) {
   unacknowledged_ -= bytes;
   delivered_ += bytes;
@@ -104,7 +104,7 @@ std::uint32_t Link::ready() const {
   return events;
 }
 
-/// A reset throws away what has not left, and may overtake nothing that has.
+/// A reset discards unsent bytes and never overtakes sent ones.
 void Link::close() {
   if (std::exchange(closed_, true)) return;
   if (resets_on_close && (world_.now() < held_until_ || random_.chance(0.5))) lost_ = true;

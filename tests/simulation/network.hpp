@@ -25,17 +25,17 @@ class Link;
 class Peer {
  public:
   virtual ~Peer() = default;
-  /// `left`: when Adit gave them to the network.
-  virtual void came(std::string_view bytes, loop::Instant left) = 0;
-  /// Adit's end is over; nothing comes any more.
+  /// `left`: when Adit passed the bytes to the network.
+  virtual void received(std::string_view bytes, loop::Instant left) = 0;
+  /// Adit has closed the connection; no bytes follow.
   virtual void ended() = 0;
 };
 
-/// Who is there to be connected to.
+/// Accepts connections.
 class Host {
  public:
   virtual ~Host() = default;
-  /// How connecting goes on: 0, an errno, or nothing for silence.
+  /// The result of a connection attempt: 0, an errno, or nullopt for no answer.
   virtual std::optional<int> connecting(const uplink::Endpoint& endpoint) = 0;
   /// `link` outlives the peer.
   virtual std::unique_ptr<Peer> connected(const uplink::Endpoint& endpoint, Link& link) = 0;
@@ -44,37 +44,37 @@ class Host {
 /// One TCP connection to the Command Post, in memory.
 class Link : public std::enable_shared_from_this<Link> {
  public:
-  /// `number`: told from the others by it in the history (Event::request).
+  /// `number`: identifies the connection in the history (Event::request).
   Link(World& world, std::uint64_t number, uplink::Endpoint endpoint, Random random);
 
   // Adit's end.
-  std::size_t write(std::string_view bytes);  // how many the window took
+  std::size_t write(std::string_view bytes);  // returns the bytes that fit into the window
   std::string inbox;
-  UpstreamView view;                  // of what Adit gives and takes
+  UpstreamView view;                  // records the messages of this connection
   bool ended = false, reset = false;  // what Adit finds at the end of its inbox
   bool open = false;
-  int error = 0;  // of connecting
+  int error = 0;  // of the connection attempt
   bool resets_on_close = false;
   std::size_t unacknowledged() const { return unacknowledged_; }
-  std::uint64_t delivered() const { return delivered_; }  // bytes that the other end has acknowledged
+  std::uint64_t delivered() const { return delivered_; }  // bytes acknowledged by the other end
   loop::Duration round_trip() const { return round_trip_; }
   loop::Duration least_round_trip() const { return least_round_trip_; }
-  loop::Instant last_left() const { return last_left_; }  // when write() took bytes last
+  loop::Instant last_left() const { return last_left_; }  // when write() last accepted bytes
   std::uint32_t ready() const;
   void close();
-  /// Adit's machine has no power: nothing tells the other end, and what has left arrives.
+  /// The power of Adit's machine is cut: sent bytes arrive, and the other end sees no close.
   void vanish();
   void connect(Host& host);
 
   // The Command Post's end.
-  /// Bytes on their way to Adit, in the order of the calls.
+  /// Sends bytes to Adit. They arrive in the order of the calls.
   void send(std::string bytes, loop::Duration delay = {});
   enum class How : std::uint8_t { End, Reset };
   void end(How how, loop::Duration delay = {});
-  /// From now on nothing that Adit sends comes, or is acknowledged.
+  /// From now on Adit's bytes neither arrive nor are acknowledged.
   void go_deaf() { deaf_ = true; }
   bool is_deaf() const { return deaf_; }
-  /// When what was sent last leaves.
+  /// When the last bytes that were sent leave.
   loop::Instant answers_until() const { return answers_until_; }
   std::uint64_t number() const { return number_; }
   const uplink::Endpoint& endpoint() const { return endpoint_; }
@@ -90,11 +90,11 @@ class Link : public std::enable_shared_from_this<Link> {
   const std::uint64_t number_;
   const uplink::Endpoint endpoint_;
   Random random_;
-  double typical_;        // latency, in seconds
-  bool is_thin_ = false;  // a map is on its way, and maps take long here
+  double typical_;        // latency in seconds
+  bool is_thin_ = false;  // a map is in flight, and maps take long here
   std::size_t window_;
   std::size_t unacknowledged_ = 0;
-  const bool acknowledges_late_;  // the last bytes
+  const bool acknowledges_late_;  // acknowledges the last bytes late
   std::uint64_t delivered_ = 0;
   loop::Duration round_trip_{}, least_round_trip_{};
   bool closed_ = false, lost_ = false, deaf_ = false;
@@ -102,7 +102,7 @@ class Link : public std::enable_shared_from_this<Link> {
   std::unique_ptr<Peer> peer_;
 };
 
-/// Adit's connections to the Command Post by their descriptors, which are no real ones.
+/// Adit's connections to the Command Post, by simulated descriptors.
 class Network {
  public:
   static constexpr int kFirst = 1 << 20;
@@ -111,16 +111,16 @@ class Network {
   explicit Network(World& world);
   void serve(Host* host) { host_ = host; }
   Stalls& stalls() { return stalls_; }
-  /// Bytes a second of a map; 0: as fast as all else.
+  /// Bytes per second of a map; 0: no limit.
   double map_rate() const { return map_rate_; }
 
-  /// A descriptor.
+  /// Returns a descriptor.
   int connect(const uplink::Endpoint& endpoint);
   Link* find(int fd);
   void close(int fd);
-  /// The process is over: what it had open is closed by the kernel.
+  /// The process has ended: the kernel closes its connections.
   void cut();
-  /// The machine has no power.
+  /// The machine's power is cut.
   void vanish();
 
   using Ready = std::function<void(std::uint32_t)>;

@@ -34,7 +34,7 @@ std::string chunked(const Parts& parts, Random& random) {
 
 }  // namespace
 
-std::string said_oddly(const std::string& answer, Random& random) {
+std::string in_another_form(const std::string& answer, Random& random) {
   if (random.chance(0.5)) return chunked(parts_of(answer), random);
   constexpr const char* kInterim[] = {"HTTP/1.1 100 Continue\r\n\r\n", "HTTP/1.1 102 Processing\r\n\r\n",
                                       "HTTP/1.1 103 Early Hints\r\nLink: </a>; rel=preload\r\n\r\n"};

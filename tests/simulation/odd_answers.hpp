@@ -6,14 +6,14 @@
 
 namespace adit::simulation {
 
-/// The same answer in other words: in chunks, or behind an interim answer. Requires one that says its length.
-std::string said_oddly(const std::string& answer, Random& random);
-/// It says that it has fewer bytes than it has, or more.
+/// The same answer, chunked or after an interim answer. Requires one with a length.
+std::string in_another_form(const std::string& answer, Random& random);
+/// The answer with a wrong length.
 std::string with_wrong_length(const std::string& answer, Random& random);
-/// JSON, under a status that says that all is well.
+/// A 200 with unrelated JSON.
 std::string with_wrong_types(Random& random);
 std::string redirect(Random& random);
-/// Of something between the box and the Command Post.
+/// An answer of a proxy between the box and the Command Post.
 std::string from_between(Random& random);
 
 }  // namespace adit::simulation

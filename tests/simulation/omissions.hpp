@@ -8,21 +8,21 @@
 
 namespace adit::simulation {
 
-/// Single things that an actor does in a run, each told apart by the actor's name and a number of its own,
-/// from 1 on. Some may be left out: all else that the seed draws stays as it is.
+/// Actions that are left out of a run. An action has its actor's name and a number, from 1. All other draws
+/// of the seed stay the same.
 class Omissions {
  public:
   Omissions() = default;
-  /// "ends/2,client 10.0.0.21/3-9,Silence": one, a range, all of an actor's. What is no such word leaves out
-  /// nothing.
+  /// Parses "ends/2,client 10.0.0.21/3-9,Silence": one action, a range, all actions of an actor. Ignores
+  /// other words.
   explicit Omissions(std::string_view words);
 
-  /// Whether that actor's number `number` is left out.
+  /// Whether that action of that actor is left out.
   bool has(const std::string& actor, std::uint64_t number) const;
   void add(const std::string& actor, std::uint64_t first, std::uint64_t last);
   void add_all(const std::string& actor) { whole_.insert(actor); }
   bool empty() const { return whole_.empty() && numbers_.empty(); }
-  /// As the constructor reads it.
+  /// In the format of the constructor.
   std::string words() const;
 
  private:
@@ -32,7 +32,7 @@ class Omissions {
   std::map<std::string, std::set<std::uint64_t>> numbers_;
 };
 
-/// How many things each actor of a run did, or would have done.
+/// The number of actions of each actor of a run, including those left out.
 using Actions = std::map<std::string, std::uint64_t>;
 
 }  // namespace adit::simulation

@@ -46,7 +46,7 @@ Operator::Operator(World& world, const Box& box, double until)
     world.after(seconds(random.between(0.5, until)), [this] { save(); });
 }
 
-/// Something in one or several of the sections.
+/// Changes one or several sections.
 void Operator::change(settings::Settings& next) {
   next.reports.near_metres = next.reports.near_metres > 5 ? 5 : 6;
   if (random_.chance(0.5)) next.reports.review = static_cast<dispatch::Review>(random_.below(3));

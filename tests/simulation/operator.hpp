@@ -12,13 +12,13 @@ namespace adit::simulation {
 class World;
 
 inline constexpr const char* kSettings = "/adit/settings";
-/// Event::what of Kind::Saved: with review as "all", or as anything else. Event::serial: reports.undo_s.
+/// Event::what of Kind::Saved: `review` is "all", or another value. Event::serial: reports.undo_s.
 inline constexpr const char *kReviewAll = "review all", *kReviewElse = "settings";
 
-/// Saves settings by the page's API, which the gateway takes over in place.
+/// Saves settings by the page's API. The gateway applies them in place.
 class Operator {
  public:
-  /// Logged in from the beginning. Both outlive this.
+  /// Is logged in from the beginning. `world` and `box` must outlive it.
   Operator(World& world, const Box& box, double until);
 
  private:

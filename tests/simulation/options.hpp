@@ -7,7 +7,7 @@ namespace adit::simulation {
 
 struct Options {
   std::uint64_t seed = 0, runs = 0;
-  double hours = 0, cpu = 0;  // 0: no such limit
+  double hours = 0, cpu = 0;  // 0: no limit
   std::uint64_t jobs = 1;
   Omissions without;
   bool log = false, story = false, as_it_is = false, help = false;

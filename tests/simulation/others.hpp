@@ -9,7 +9,7 @@ namespace adit::simulation {
 
 class World;
 
-/// Somebody whose software is broken: posts what the ICD forbids, and expects to hear so.
+/// A client with broken software. It posts bad messages and expects the error status of each.
 class Blunderer {
  public:
   Blunderer(World& world, int number);
@@ -26,7 +26,7 @@ class Blunderer {
   std::int64_t serial_;
 };
 
-/// Somebody whose link breaks within a request, and never says so.
+/// A client whose connection stalls within a request and is never closed.
 class Staller {
  public:
   explicit Staller(World& world);
@@ -42,7 +42,7 @@ class Staller {
   std::int64_t serial_ = 0;
 };
 
-/// Somebody who asks how the run stands.
+/// A client that asks for the status of the run.
 class Watcher {
  public:
   Watcher(World& world, int number);

@@ -11,7 +11,7 @@
 namespace adit::simulation {
 namespace {
 
-constexpr double kRecorded = 2;  // seconds within which a process records when a robot was heard
+constexpr double kRecorded = 2;  // seconds until a process records when a robot was last heard
 constexpr double kRestored = 3;  // seconds by which an age may be too high after a restart
 
 }  // namespace
@@ -30,7 +30,7 @@ PageAccount::PageAccount(const std::vector<Event>& events) : events_(events) {
   for (std::size_t i = 0; i < events.size(); ++i) {
     const Event& event = events[i];
     if (event.kind == Kind::Ended || event.kind == Kind::Dies) ended = event.at;
-    // A process that stands still for its disk records nothing meanwhile.
+    // A process that stands still for its disk records nothing in that time.
     const bool forgets = disk.forgets_at(event) || event.kind == Kind::PowerCut || event.kind == Kind::Slow;
     if (forgets || event.what == kCourse) forgotten_.push_back(i);
     disk.add(event);
@@ -40,7 +40,7 @@ PageAccount::PageAccount(const std::vector<Event>& events) : events_(events) {
     if (begins || event.what == kCourse) {  // or asks another Command Post
       begun_.push_back(i);
       recorded_until_.push_back(ended - kRecorded);
-      for (auto& [stream, told] : told_) told.is_of_before = true;
+      for (auto& [stream, delivered] : delivered_) delivered.is_of_before = true;
     }
     end_forgotten(i, event);
     read_team(i, event);
@@ -59,7 +59,7 @@ void PageAccount::read_team(std::size_t place, const Event& event) {
     }
     auto& all = posted_[stream];
     auto& open = open_[event.request];
-    // A message of several markers or clouds counts once, each pose of a state by itself.
+    // A message of several markers or clouds counts once. Each pose of a state counts separately.
     if (event.what != kState && !open.empty()) return;
     open.emplace_back(stream, all.size());
     all.push_back({.asked = place});
@@ -68,7 +68,7 @@ void PageAccount::read_team(std::size_t place, const Event& event) {
   if (event.kind == Kind::Answered) end(place, event);
 }
 
-/// What nobody waits for any more may still be accepted for a while.
+/// A request may be accepted for a while after its client is gone.
 void PageAccount::end_forgotten(std::size_t place, const Event& event) {
   while (!gone_.empty() && gone_.front().first + kForgotten < event.at) {
     end(place, {.what = "", .who = "", .request = gone_.front().second});
@@ -100,20 +100,21 @@ void PageAccount::read_upstream(std::size_t place, const Event& event) {
       event.what == kStatus && event.status >= 200 && event.status < 300 && event.says.empty();  // ICD 5.1
   if (never || is_no_run || (is_page && !allowed)) foreign_[endpoint].push_back(place);
   if (event.status >= 300 || is_page) return;
-  for (const auto& [stream, pose] : under_way_[event.request]) was_taken(place, stream, pose);
+  for (const auto& [stream, pose] : under_way_[event.request]) count_delivery(place, stream, pose);
 }
 
-/// A pose counts when it is news: one that was taken before is so only if it was posted again meanwhile.
-void PageAccount::was_taken(std::size_t place, const Stream& stream, std::int64_t pose) {
-  Told& told = told_[stream];
-  if (stream.path != kState || told.pose != pose) {
-    told = {.pose = pose, .times = 1};
+/// A pose counts when it is new. A pose that was delivered before is new only if it was posted again
+/// meanwhile.
+void PageAccount::count_delivery(std::size_t place, const Stream& stream, std::int64_t pose) {
+  Delivered& delivered = delivered_[stream];
+  if (stream.path != kState || delivered.pose != pose) {
+    delivered = {.pose = pose, .times = 1};
     const auto posted = posted_at_.find({stream, pose});
     age_from_[{stream, place}] = posted == posted_at_.end() ? events_[place].at : posted->second;
     return forwarded_[stream].push_back(place);
   }
-  if (!told.is_of_before && told.times >= poses_[{stream, pose}]) return;
-  ++told.times;
+  if (!delivered.is_of_before && delivered.times >= poses_[{stream, pose}]) return;
+  ++delivered.times;
   may_be_forwarded_[stream].push_back(place);
 }
 
@@ -168,7 +169,7 @@ PageAccount::Age PageAccount::age(const Stream& stream, Moment at) const {
     if (age_from_.at({stream, sure}) < events_[start].at) age.most += kRestored;
     return age;
   }
-  // A restart forgets nothing that was recorded.
+  // A restart loses no recorded time.
   const auto is_recorded = [&](std::size_t place) {
     const auto next = std::ranges::upper_bound(begun_, place) - begun_.begin();
     return events_[place].at <= recorded_until_[static_cast<std::size_t>(next)];

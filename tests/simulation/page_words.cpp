@@ -12,7 +12,7 @@ using Json = nlohmann::json;
 
 constexpr const char* kLights[] = {"health", "scoring", "mapping", "attention"};
 
-/// By the table of firmware/doors/panel/README.md, for a box whose cables are in.
+/// The pattern in the table of firmware/doors/panel/README.md, for a box whose cables are plugged in.
 std::string pattern_of(const std::string& light, const Json& view) {
   if (!view.at("identify_until").is_null()) return "twice";
   const Json& alarms = view.at("alarms");
@@ -41,7 +41,7 @@ std::string status_line(const Json& view) {
   if (const auto waiting = reports_in(view, "queued"); waiting > 0)
     line += icd::sentence(", ", waiting, " reports queued");
   const Json& alarms = view.at("alarms");
-  if (!alarms.empty() && calls(alarms.front())) line += "; " + said(alarms.front());
+  if (!alarms.empty() && calls(alarms.front())) line += "; " + alarm_line(alarms.front());
   return line;
 }
 
@@ -52,14 +52,14 @@ const Event* last(const std::vector<Event>& events, std::size_t count, Kind kind
   return nullptr;
 }
 
-/// Of the lights themselves: steady ones are lit or dark as the view says.
+/// Compares the lights themselves: a steady light is on or off as the view says.
 std::string lit(const Json& view, const std::string& bits) {
   std::size_t i = 0;
   for (const Json& light : view.at("lights")) {
     const std::string pattern = light.at("pattern"), name = light.at("name");
     const char bit = bits.at(i++);
     if ((pattern == "on" && bit != '1') || (pattern == "off" && bit != '0'))
-      return icd::sentence("Lights: ", name, " is ", bit == '1' ? "lit" : "dark", ", and the view says ",
+      return icd::sentence("Lights: ", name, " is ", bit == '1' ? "lit" : "dark", ", but the view says ",
                            pattern);
   }
   return "";
@@ -71,7 +71,7 @@ bool calls(const Json& alarm) {
   return alarm.at("severity") != "wait";
 }
 
-std::string said(const Json& alarm) {
+std::string alarm_line(const Json& alarm) {
   const std::string what = alarm.at("what"), why = alarm.at("why");
   return why.empty() ? what : what + ": " + why;
 }
@@ -86,17 +86,16 @@ std::string disagreement(const Json& view, const std::vector<Event>& events, std
   for (const Json& light : view.at("lights")) {
     const std::string name = light.at("name"), expected = pattern_of(name, view), shown = light.at("pattern");
     if (shown != expected)
-      return icd::sentence("Lights: ", name, " shows ", shown, ", and by the rest of the view it is ",
-                           expected);
+      return icd::sentence("Lights: ", name, " shows ", shown, ", but the rest of the view means ", expected);
   }
   const Event* const shown = last(events, count, Kind::Shows, "the panel");
-  if (std::string wrong = shown == nullptr ? "Lights: none was ever set" : lit(view, shown->who);
+  if (std::string wrong = shown == nullptr ? "Lights: no light was ever set" : lit(view, shown->who);
       !wrong.empty())
     return wrong;
   const Event* const told = last(events, count, Kind::Told, "STATUS");
   const std::string line = status_line(view);
   if (told == nullptr || told->text != line)
-    return icd::sentence("Alive: STATUS is '", told == nullptr ? "" : told->text, "', and by the view '",
+    return icd::sentence("Alive: STATUS is '", told == nullptr ? "" : told->text, "', but the view means '",
                          line, "'");
   return "";
 }

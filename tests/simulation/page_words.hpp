@@ -10,16 +10,16 @@
 
 namespace adit::simulation {
 
-/// In what the panel's lights, or what systemd was told, disagree with a view of the page by which the first
-/// `count` events had happened; "": in nothing.
+/// The difference between a view of the page and the panel's lights, or the status that systemd has; "" if
+/// there is none. `count`: the number of events before the view.
 std::string disagreement(const nlohmann::json& view, const std::vector<Event>& events, std::size_t count);
 
 /// Whether an alarm of a view calls the operator.
 bool calls(const nlohmann::json& alarm);
-/// It, in a line.
-std::string said(const nlohmann::json& alarm);
+/// The alarm in one line.
+std::string alarm_line(const nlohmann::json& alarm);
 
-/// How many reports a view shows in that state in the present run.
+/// The number of reports in that state in the view's current run.
 std::int64_t reports_in(const nlohmann::json& view, const std::string& state);
 
 }  // namespace adit::simulation

@@ -1,7 +1,7 @@
-// The calls of libc that read or change files, in front of libc's own (ELF: the program's come before a
-// library's), so that libstdc++'s go to the simulated disk, too. What does not belong to the box's folder
-// goes straight to the kernel. They bear names of their own, for libc's headers say more of theirs than is
-// wanted.
+// Replaces the calls of libc that read or change files. In ELF, a program's symbols come before a
+// library's, so the calls of libstdc++ go to the simulated disk too. Calls outside the box's directory go
+// straight to the kernel. The C++ names differ from libc's, because libc's headers declare more about
+// theirs than is needed.
 #include <dirent.h>
 #include <dlfcn.h>
 #include <sys/mman.h>
@@ -59,7 +59,7 @@ int status_of(int folder, const char* path, struct stat* found, int flags) {
   return real::status(folder, path, found, flags);
 }
 
-/// Whether the directory that is open there cannot be listed, or not to its end.
+/// Whether a fault hides a part of the open directory's entries.
 bool is_unlisted(int fd) {
   Disk* const disk = Disk::of(fd);
   return disk != nullptr && disk->fails(Call::List, fd) != 0;

@@ -5,8 +5,8 @@
 
 namespace adit::simulation {
 
-/// A generator of an actor's own, from the run's seed and the actor's name, so that none shifts the others.
-/// The same numbers on any machine (splitmix64).
+/// A random generator (splitmix64) of one actor, from the run's seed and the actor's name, so that actors
+/// do not affect each other. Gives the same numbers on every machine.
 class Random {
  public:
   Random(std::uint64_t seed, std::string_view name) : state_(seed * 0x9E3779B97F4A7C15u + 1) {
@@ -19,7 +19,7 @@ class Random {
     z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
     return z ^ (z >> 31);
   }
-  /// Below `end`, which is not 0.
+  /// A number below `end`. Requires end > 0.
   std::uint64_t below(std::uint64_t end) { return next() % end; }
   double unit() { return static_cast<double>(next() >> 11) * 0x1p-53; }
   double between(double low, double high) { return low + (high - low) * unit(); }

@@ -13,11 +13,11 @@ namespace {
 constexpr const char* kView = "/adit/run";
 constexpr const char* kMetrics = "/metrics";
 constexpr double kEvery = 5;
-/// Lights and STATUS are told each second: what they say may be as old.
-constexpr double kTold = 1.1;
+/// Lights and STATUS are updated each second, so they may be that old.
+constexpr double kUpdateDelay = 1.1;
 constexpr int kOften = 3;
 
-/// Events that change nothing that the page shows.
+/// Events that do not change the page.
 bool is_silent(const Event& event) {
   return event.kind == Kind::Told || event.kind == Kind::Shows || event.kind == Kind::Opens ||
          event.kind == Kind::Closes || event.kind == Kind::Given || event.what == kView ||
@@ -68,7 +68,7 @@ void Reader::look_at_rest() {
 void Reader::look() {
   if (world_.time() > until_) return;
   world_.after(seconds(kEvery), [this] { look(); });
-  again_ = 0;
+  times_seen_ = 0;
   look_at(kView, [this](const std::string& body) { viewed(body); });
 }
 
@@ -88,33 +88,34 @@ void Reader::viewed(const std::string& body) {
   Reading reading{.asked = asked_,
                   .heard = events.size(),
                   .at = events[asked_].at,
-                  .life = events[asked_].life,
+                  .process = events[asked_].process,
                   .view = nlohmann::json::parse(body),
                   .stored = stored(world_.disk())};
   world_.look_at_heap();
-  const std::string lie = disagreement(reading.view, events, reading.asked);
+  const std::string difference = disagreement(reading.view, events, reading.asked);
   readings_.push_back(std::move(reading));
   look_at(kMetrics, [this, jobs = jobs_ended_](const std::string& text) {
     readings_.back().metrics = text;
     readings_.back().measured = world_.history().events().size();
     readings_.back().worked = world_.jobs_ended() != jobs;
   });
-  look_again(lie);
+  confirm(difference);
 }
 
-/// What disagrees may have changed just now; it is one where nothing happens meanwhile and it stays.
-void Reader::look_again(const std::string& lie) {
+/// The state may have changed just now. It is a violation only if the difference stays and no event happens
+/// meanwhile.
+void Reader::confirm(const std::string& difference) {
   const auto& events = world_.history().events();
   const std::size_t since = readings_.size() > 1 ? readings_[readings_.size() - 2].asked : 0;
   const bool is_quiet =
       std::all_of(events.begin() + static_cast<std::ptrdiff_t>(since), events.end(), is_silent);
-  again_ = lie.empty() ? 0 : lie == lie_ && is_quiet ? again_ + 1 : 1;
-  if (again_ == 1) since_ = world_.time();
-  lie_ = lie;
-  if (again_ >= kOften && world_.time() - since_ > kTold) {
-    readings_.back().lie = lie;
-  } else if (again_ > 0) {
-    world_.after(seconds(kTold),
+  times_seen_ = difference.empty() ? 0 : difference == difference_ && is_quiet ? times_seen_ + 1 : 1;
+  if (times_seen_ == 1) since_ = world_.time();
+  difference_ = difference;
+  if (times_seen_ >= kOften && world_.time() - since_ > kUpdateDelay) {
+    readings_.back().difference = difference;
+  } else if (times_seen_ > 0) {
+    world_.after(seconds(kUpdateDelay),
                  [this] { look_at(kView, [this](const std::string& body) { viewed(body); }); });
   }
 }

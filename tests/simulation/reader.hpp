@@ -12,30 +12,30 @@ namespace adit::simulation {
 
 class World;
 
-/// What is in the box's folders, in bytes.
+/// Bytes in the box's directories.
 struct Stored {
   std::uint64_t state = 0, waiting = 0, journal = 0, others = 0;
 };
 
-/// What the page said at one moment.
+/// The page's content at one moment.
 struct Reading {
-  std::size_t asked = 0, heard = 0;  // so many events had happened
+  std::size_t asked = 0, heard = 0;  // numbers of events by then
   double at = 0;
-  int life = 0;
-  nlohmann::json view;       // of /adit/run
-  std::string metrics = {};  // read right after it
-  std::size_t measured = 0;  // events that had happened by then
-  bool worked = false;       // a worker ended a job since it was asked
-  Stored stored = {};        // when it was heard
-  std::string lie = {};      // in what lights or STATUS disagreed with it for as long as they may not
+  int process = 0;
+  nlohmann::json view;          // of /adit/run
+  std::string metrics = {};     // read right after the view
+  std::size_t measured = 0;     // number of events by then
+  bool worked = false;          // a worker ended a job since the request
+  Stored stored = {};           // when the answer was heard
+  std::string difference = {};  // lasting difference from the lights or STATUS
 };
 
-/// Somebody who looks at the page every few seconds.
+/// A client that reads the page every few seconds.
 class Reader {
  public:
-  /// Looks until then. `world` outlives this.
+  /// Reads until `until`. `world` must outlive it.
   Reader(World& world, double until);
-  /// From `from` on looks whether anything waits still, and tells when nothing does, or when it is `end`.
+  /// From `from` on, calls `rested` when nothing is queued, at `end` at the latest.
   void wait_for_rest(double from, double end, std::function<void()> rested);
   const std::vector<Reading>& readings() const { return readings_; }
 
@@ -44,17 +44,17 @@ class Reader {
   void look_at_rest();
   void look_at(const char* path, std::function<void(const std::string& body)> got);
   void viewed(const std::string& body);
-  void look_again(const std::string& lie);
+  void confirm(const std::string& difference);
 
   World& world_;
   Client client_;
   double until_, end_ = 0;
   std::function<void()> rested_;
-  int again_ = 0;     // how often the same lie was seen
-  double since_ = 0;  // first
-  std::string lie_;
+  int times_seen_ = 0;  // how often the same difference was seen
+  double since_ = 0;    // when it was first seen
+  std::string difference_;
   std::size_t asked_ = 0;
-  std::uint64_t jobs_ended_ = 0;  // when it was asked
+  std::uint64_t jobs_ended_ = 0;  // at the request
   std::vector<Reading> readings_;
 };
 

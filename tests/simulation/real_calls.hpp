@@ -9,7 +9,7 @@
 #include <cstring>
 #include <span>
 
-/// The kernel's file calls themselves, below those of libc that posix.cpp stands in for. They set errno.
+/// The kernel's file calls, below the functions of libc that posix.cpp replaces. They set errno.
 namespace adit::simulation::real {
 
 inline int open(int folder, const char* path, int flags, mode_t mode) {
@@ -33,13 +33,14 @@ inline int status(int fd, struct stat* found) {
 inline int status(int folder, const char* path, struct stat* found, int flags) {
   return static_cast<int>(::syscall(SYS_newfstatat, folder, path, found, flags));
 }
-/// Whether these are pages of zeros that go behind a file's end: reading a hole there gives the same.
+/// Whether the bytes are pages of zeros beyond a file's end, which a hole can replace.
 inline bool may_be_hole(int fd, std::span<const char> bytes, off_t at) {
   struct stat file{};
   return bytes.size() >= 4096 && bytes[0] == 0 && std::memcmp(&bytes[0], &bytes[1], bytes.size() - 1) == 0 &&
          status(fd, &file) == 0 && S_ISREG(file.st_mode) && file.st_size <= at;
 }
-/// A file of the ledger begins as 4 MiB of zeros: a hole takes no time to make and to copy.
+/// Writes zeros as a hole, because a file of the ledger begins as 4 MiB of zeros, and a hole is quick to
+/// make and to copy.
 inline ssize_t write_at(int fd, std::span<const char> bytes, off_t at) {
   const auto size = static_cast<ssize_t>(bytes.size());
   if (may_be_hole(fd, bytes, at)) return truncate(fd, at + size) == 0 ? size : -1;

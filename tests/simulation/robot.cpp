@@ -11,9 +11,9 @@ namespace adit::simulation {
 namespace {
 
 constexpr int kWritings = 80;
-constexpr int kLargest = 64;            // cells of a side
-constexpr std::size_t kLongestMap = 8;  // clouds until it begins again
-constexpr double kJump = 6;             // seconds: less may be messages that overtook each other
+constexpr int kLargest = 64;            // cells per side
+constexpr std::size_t kLongestMap = 8;  // clouds until its map begins again
+constexpr double kJump = 6;             // seconds; a smaller jump may be messages that overtook each other
 
 Style style(const World& world, const std::string& name) {
   Random random = world.random("style " + name), ros = world.random("ros style of " + name);
@@ -92,7 +92,8 @@ Item Robot::item(std::string who, Says says) {
           .says = std::move(says)};
 }
 
-/// Half of them are its whole map, which grows; the others are patches anywhere, some on another lattice.
+/// Half of the grids are its whole map, which grows. The others are patches at any place, some on another
+/// lattice.
 Item Robot::grid() {
   if (rolls_ && random_.chance(0.9)) return window();
   if (random_.chance(0.5)) {
@@ -116,7 +117,7 @@ Item Robot::window() {
   return item(name_, window_.says());
 }
 
-/// Some are of no robot.
+/// Some clouds have no robot's name.
 Item Robot::cloud() {
   return item(random_.chance(0.8) ? name_ : "", {between(random_, 5, random_.chance(0.1) ? 300 : 60)});
 }
@@ -124,12 +125,13 @@ Item Robot::cloud() {
 Posting Robot::clouds() {
   const Item news = cloud();
   if (!whole_ || news.who.empty()) return {kMap, {news}};
-  if (said_.size() == kLongestMap) said_.clear();
-  said_.insert(said_.begin(), news);
-  return {kMap, said_};
+  if (recent_clouds_.size() == kLongestMap) recent_clouds_.clear();
+  recent_clouds_.insert(recent_clouds_.begin(), news);
+  return {kMap, recent_clouds_};
 }
 
-/// Up to four changes in one message, of its own namespaces; in some runs it deletes all, others' too.
+/// Up to four changes of its own namespaces in one message. In some runs it deletes all markers, including
+/// those of others.
 Posting Robot::markers() {
   Posting posting{kMarkers, {}};
   for (std::uint64_t i = 1 + random_.below(4); i > 0; --i) {

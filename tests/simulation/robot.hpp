@@ -12,15 +12,15 @@ namespace adit::simulation {
 
 class World;
 
-/// A robot: posts where it is, grids that cover earlier ones or do not, clouds by themselves or several in a
-/// row, of what is new or of all since its map began, and markers that it changes and deletes. Its serials
-/// rise.
+/// A robot. It posts its pose, grids that cover earlier ones or not, clouds singly or several in a row,
+/// with new points or all points since its map began, and markers that it changes and deletes. Its serials
+/// ascend.
 class Robot {
  public:
-  static constexpr std::int64_t kSerials = 4096;  // of one robot, from `number` times as many on
+  static constexpr std::int64_t kSerials = 4096;  // serials per robot, from `number` times this
 
   Robot(World& world, int number);
-  /// Until then, on the run's clock.
+  /// Posts until `end`, on the run's clock.
   void post_until(double end);
 
  private:
@@ -37,23 +37,23 @@ class Robot {
   const int number_;
   Random random_;
   const std::string name_;
-  const std::string finds_ns_;  // "": its markers have no namespace; several robots may share that
+  const std::string finds_ns_;  // "": its markers have no namespace, which several robots may share
   Client client_;
   const Style style_;
   const double clock_;  // seconds by which its clock is off
-  const double jump_;   // and by which it is set once
+  const double jump_;   // seconds by which its clock is set, once
   const double jumps_at_;
   const bool stamps_;
-  const double every_;  // seconds between two messages, about
-  const double wipes_;  // how likely a change of markers deletes all
-  int writings_;        // still to come: markers with texts so long that they fill the journal
+  const double every_;  // approximate seconds between two messages
+  const double wipes_;  // probability that a change of markers deletes all
+  int writings_;        // remaining markers with texts so long that they fill the journal
   double end_ = 0;
   std::int64_t serial_;
-  Extent extent_;           // of its own map, which grows
-  const bool whole_;        // each of its clouds has all points since its map began
-  std::vector<Item> said_;  // then its clouds since, the newest first
-  std::uint64_t row_ = 0;   // maps still to come in this row
-  const bool rolls_;        // its grids are a window that moves with it, several in a row
+  Extent extent_;                    // of its growing map
+  const bool whole_;                 // each cloud has all points since its map began
+  std::vector<Item> recent_clouds_;  // the clouds since then, the newest first
+  std::uint64_t row_ = 0;            // maps left in this row
+  const bool rolls_;                 // its grids are a window that moves with it, several in a row
   bool row_of_grids_ = false;
   Extent window_{.width = 12, .height = 12};
 };

@@ -3,7 +3,7 @@
 #include "simulation/box.hpp"
 #include "simulation/checks.hpp"
 #include "simulation/courses.hpp"
-#include "simulation/judge.hpp"
+#include "simulation/deciding_operator.hpp"
 #include "simulation/ledger_reading.hpp"
 #include "simulation/operator.hpp"
 #include "simulation/reader.hpp"
@@ -13,8 +13,8 @@
 namespace adit::simulation {
 namespace {
 
-/// Seconds after the last fault: all that waits goes, and operators have had their say, at the soonest; a
-/// robot posts faster than its maps go, so that it may be at the latest.
+/// Seconds after the last fault. kLeastRest is enough to send queued messages and for the operators'
+/// decisions. kMostRest covers a robot that posts faster than its maps are sent.
 constexpr double kLeastRest = 120, kMostRest = 1200;
 
 /// In three of four runs: up to four ends of the process, by SIGTERM, SIGKILL or a power cut.
@@ -31,13 +31,13 @@ void plan_ends(World& world, Box& box, double trouble_for) {
   }
 }
 
-/// In three of ten runs: somebody sets the box's clock up to three times, either way, by seconds or by
+/// In three of ten runs: the box's clock is set up to three times, forward or back, by seconds or by
 /// months.
 void plan_clock(World& world, double trouble_for) {
   Random random = world.random("clock");
   if (!random.chance(0.3)) return;
   for (std::uint64_t i = 1 + random.below(3); i > 0; --i) {
-    // One that is set by less than half a second shows nowhere.
+    // A step of less than half a second has no effect.
     const double by = random.between(1, random.chance(0.5) ? 8 : 1e7);
     const double step = random.chance(0.5) ? by : -by;
     const auto when = seconds(random.between(0, trouble_for));
@@ -46,7 +46,7 @@ void plan_clock(World& world, double trouble_for) {
   }
 }
 
-/// An end of the process before each start that is to meet a fault.
+/// Ends the process before each start that a fault is to hit.
 void plan_calls(World& world, Box& box, double trouble_for) {
   CallFaults& calls = world.disk().calls();
   calls.plan(trouble_for);
@@ -70,7 +70,7 @@ Outcome play(const Plan& plan) {
   world.network().serve(&posts);
   const Team team(world, trouble_for);
   const Operator operator_(world, box, trouble_for);
-  const Judge judge(world, trouble_for);
+  const DecidingOperator deciding_operator(world, trouble_for);
   const Switcher switcher(world, trouble_for);
   Reader reader(world, trouble_for);
   plan_ends(world, box, trouble_for);

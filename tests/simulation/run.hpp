@@ -20,8 +20,8 @@ struct Outcome {
   double seconds = 0;  // simulated
   std::uint64_t steps = 0;
   std::size_t faults = 0;
-  std::string drawn;                // which faults exist
-  std::vector<std::string> broken;  // "Once: ..."
+  std::string drawn;                // the faults of the run
+  std::vector<std::string> broken;  // violations: "Once: ..."
   Actions actions;
 };
 

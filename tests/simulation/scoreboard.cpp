@@ -7,9 +7,9 @@
 namespace adit::simulation {
 namespace {
 
-constexpr int kSeenToRun = 4;       // statuses that were heard
-constexpr double kSeenToBeOn = 30;  // seconds: a new run may be seen when it has been on for so long
-/// What is heard in between is forgotten.
+constexpr int kSeenToRun = 4;       // statuses that Adit read
+constexpr double kSeenToBeOn = 30;  // seconds until a new run may be noticed
+/// Runs that Adit notices meanwhile are forgotten.
 constexpr const char* kLedgerIsGone = "rejecting reports: the ledger cannot be written";
 
 std::string json_number(double value) {
@@ -76,7 +76,8 @@ void Scoreboard::grant_report() {
   run_begins_ = world_.history().events().size();
 }
 
-/// What is recorded once more after a report was granted is not recorded twice: nobody could tell.
+/// The name of the run. A report recorded again after a grant gets another name, because the evidence is
+/// ambiguous.
 std::string Scoreboard::name() const {
   return run_name(place_, run_) + (grants_ > 0 ? ", granted " + std::to_string(grants_) : "");
 }

@@ -16,38 +16,38 @@ class World;
 
 inline constexpr const char *kScored = "scored", *kInAStop = " in a stop",
                             *kNameless = ", which nothing names";
-/// Of NewRun: one more report was granted, which Adit holds for another run; its map is the same.
+/// Event::what of NewRun: one more report was granted, so Adit takes the run for a new one; its map stays.
 inline constexpr const char* kSameMap = "the map stays";
-/// Of Fault: the run is the same.
+/// Event::what of a fault: the clock was set back within the run.
 inline constexpr const char* kSetBack = "clock set back";
-/// "run 3", as the history calls it.
+/// "run 3", as in the history.
 std::string run_name(int place, std::int64_t run);
 
-/// The runs of a Command Post, one after the other: it records whatever reaches it, and cannot tell a report
-/// from the same one again.
+/// The runs of a Command Post, one after the other. It records every report, including repetitions.
 class Scoreboard {
  public:
-  /// `place`: which Command Post this is, from 0 on. All outlive this.
+  /// `place`: index of the Command Post, from 0. All arguments must outlive it.
   Scoreboard(World& world, const Faults& faults, Random& random, int place);
 
   int place() const { return place_; }
-  /// The answer to a status.
+  /// Returns the answer to a status.
   std::string status();
-  /// Records a report, of that request: the answer to it.
+  /// Records the report of that request and returns the answer.
   std::string record(const Item& item, const HttpMessage& request);
-  /// The answer to the report that was recorded last, if that is another one than `item`.
+  /// The answer to the last recorded report; nullopt if that was `item`.
   std::optional<std::string> last_answer(const Item& item) const;
-  /// Somebody else's.
+  /// Records a report of another sender.
   void record_another();
-  /// Not before Adit saw its clock run, with the ledger at hand, and be further on than the new run's when
-  /// that is first seen: nothing would tell the one run from the other.
+  /// Whether Adit can tell a new run from the current one. Adit must have seen the current run's clock run,
+  /// with a working ledger, to a higher value than the new run's clock has when it is first seen.
   bool may_begin_run() const;
   void begin_run();
-  /// By a minute, in the same run, which is held for another one that it may be. Requires may_begin_run().
+  /// Sets the clock back by a minute within the run, so that Adit may take it for another run. Requires
+  /// may_begin_run().
   void set_clock_back();
-  /// In the same run, which is held for another one for certain. Requires may_begin_run().
+  /// Grants a report within the run, so that Adit takes it for another run. Requires may_begin_run().
   void grant_report();
-  /// What is recorded does not count.
+  /// While stopped, recorded reports do not count.
   void stop(bool stopped) { stopped_ = stopped; }
 
  private:
@@ -58,12 +58,12 @@ class Scoreboard {
   World& world_;
   const Faults& faults_;
   const int place_;
-  const bool numbers_runs_;  // it names them by numbers, not by texts
+  const bool numbers_runs_;  // answers name runs by number, not by text
   std::int64_t run_ = 1, grants_ = 0, remaining_ = 25, score_ = 0, id_ = 0;
   double run_began_;
-  std::size_t run_begins_ = 0;  // in the history
+  std::size_t run_begins_ = 0;  // index in the history
   bool stopped_ = false;
-  std::int64_t last_ = 0;  // the serial of the report that was recorded last
+  std::int64_t last_ = 0;  // serial of the last recorded report
   std::string last_answer_;
 };
 

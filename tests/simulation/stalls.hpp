@@ -6,12 +6,12 @@ namespace adit::simulation {
 
 class World;
 
-/// Times in which nothing gets through between the box and the Command Post, in either direction, and no end
-/// hears of it: a cable that is pulled and put back. In one of four runs, one or two of them.
+/// Times without any traffic between the box and the Command Post, in both directions. Neither end notices:
+/// a cable is pulled and put back. One of four runs has one or two of them.
 class Stalls {
  public:
   explicit Stalls(World& world) : world_(world) {}
-  /// Draws when they come. Each may be left out.
+  /// Draws the times. Each may be left out.
   void plan(double trouble_for);
   bool is_on() const;
   loop::Instant ends() const { return ends_; }

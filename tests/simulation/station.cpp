@@ -10,7 +10,7 @@ namespace adit::simulation {
 namespace {
 
 constexpr std::int64_t kFirstSerial = 24'000;
-constexpr int kPlanner = 91;            // of its address, if it is not the station's
+constexpr int kPlanner = 91;            // of its address, if it has its own
 constexpr int kFew = 100, kMany = 300;  // namespaces
 constexpr Manners kManners{.keeps_alive = true, .patience = 30};
 
@@ -32,7 +32,7 @@ Station::Station(World& world, double end)
   robots_.push_back({"S1", end});
   robots_.push_back({"S2", random_.between(0, end)});
   if (random_.chance(0.5)) robots_.push_back({"S3", random_.between(0, end)});
-  if (random_.chance(0.3)) robots_.push_back({"R1", random_.between(0, end)});  // which posts itself, too
+  if (random_.chance(0.3)) robots_.push_back({"R1", random_.between(0, end)});  // it also posts by itself
   world.after(seconds(random_.between(0, end / 4)), [this] { begin(); });
   if (random_.chance(0.5)) world.after(seconds(random_.between(0, end)), [this] { plan(); });
 }
@@ -48,7 +48,7 @@ Posting Station::states(bool all) {
   return posting;
 }
 
-/// Its clock is known by its first message: no other is under way meanwhile.
+/// Adit learns its clock from its first message, so no other message is in flight then.
 void Station::begin() {
   if (world_.time() > end_) return;
   world_.after(seconds(kLate), [this, posting = states(true)] {

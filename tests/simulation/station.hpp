@@ -13,16 +13,16 @@ namespace adit::simulation {
 
 class World;
 
-/// Posts where several robots are, one of them or all together, stamped by one clock that runs as the world's
-/// does. Each message leaves some time after its stamp, on one of two connections, so that they overtake each
-/// other. Its robots fall silent one after the other. In some runs a planner beside it posts markers of very
-/// many namespaces.
+/// Posts the poses of several robots, singly or together, stamped by one clock that runs as the world's.
+/// Each message leaves some time after its stamp, on one of two connections, so messages overtake each
+/// other. The robots fall silent one after the other. In some runs a planner beside it posts markers of
+/// very many namespaces.
 class Station {
  public:
   static constexpr int kNumber = 90;    // of its address
-  static constexpr double kLate = 0.8;  // seconds at most, and those of its first message
+  static constexpr double kLate = 0.8;  // maximum delay in seconds, and the delay of its first message
 
-  /// Posts until then. `world` outlives this.
+  /// Posts until `end`. `world` must outlive it.
   Station(World& world, double end);
 
  private:
@@ -41,7 +41,7 @@ class Station {
   const double end_, clock_, every_;
   std::array<Client, 2> clients_;
   Client planner_;
-  const int namespaces_;  // in a message
+  const int namespaces_;  // per message
   std::vector<Seen> robots_;
   std::int64_t serial_;
 };

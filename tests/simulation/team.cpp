@@ -62,7 +62,7 @@ Team::Team(World& world, double until) {
     watchers_.push_back(std::make_unique<Watcher>(world, static_cast<int>(i)));
   if (random.chance(0.2)) stallers_.push_back(std::make_unique<Staller>(world));
   if (random.chance(0.15)) floods_.push_back(std::make_unique<Flood>(world, until));
-  if (random.chance(0.15)) strangers_.push_back(std::make_unique<Strangers>(world, until));
+  if (random.chance(0.15)) unauthenticated_.push_back(std::make_unique<UnauthenticatedClients>(world, until));
   if (world.random("whether there is a station").chance(0.3))
     station_ = std::make_unique<Station>(world, until);
   for (const auto& robot : robots_) robot->post_until(until);

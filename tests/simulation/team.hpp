@@ -11,13 +11,14 @@
 #include "simulation/random.hpp"
 #include "simulation/robot.hpp"
 #include "simulation/station.hpp"
-#include "simulation/strangers.hpp"
+#include "simulation/unauthenticated_clients.hpp"
 
 namespace adit::simulation {
 
 class World;
 
-/// Somebody who reports artifacts, each until he hears that it is recorded; some press the button twice.
+/// Reports artifacts. Repeats each report until the answer says that it is recorded. Some reporters press
+/// the button twice.
 class Reporter {
  public:
   Reporter(World& world, int number);
@@ -31,27 +32,27 @@ class Reporter {
   World& world_;
   Random random_;
   Client client_, twin_;
-  const double twins_;  // how likely it is posted a second time before the first is answered
+  const double twins_;  // probability that a report is posted a second time before the first is answered
   const double every_;
   double end_ = 0;
   std::int64_t serial_;
   int tries_ = 0;
 };
 
-/// All of them.
+/// All clients of the team.
 class Team {
  public:
   Team(World& world, double until);
 
  private:
   std::vector<std::unique_ptr<Robot>> robots_;
-  std::unique_ptr<Station> station_;  // null: there is none
+  std::unique_ptr<Station> station_;  // may be null
   std::vector<std::unique_ptr<Reporter>> reporters_;
   std::vector<std::unique_ptr<Blunderer>> blunderers_;
   std::vector<std::unique_ptr<Watcher>> watchers_;
   std::vector<std::unique_ptr<Staller>> stallers_;
   std::vector<std::unique_ptr<Flood>> floods_;
-  std::vector<std::unique_ptr<Strangers>> strangers_;
+  std::vector<std::unique_ptr<UnauthenticatedClients>> unauthenticated_;
 };
 
 }  // namespace adit::simulation

@@ -23,8 +23,8 @@ std::string read_file(const fs::path& path) {
   return bytes;
 }
 
-/// A file that was gone has the mode of all of the box's, and so has its folder: that one was removed is no
-/// more synced than that its last file was.
+/// Recreates a file with the mode of all files of the box. Recreates its directory, because the removal of
+/// a directory is synced no earlier than the removal of its last file.
 void write_file(const fs::path& path, const std::string& bytes) {
   const bool is_new = !fs::exists(path);
   if (fs::create_directory(path.parent_path())) fs::permissions(path.parent_path(), fs::perms::owner_all);
@@ -71,7 +71,8 @@ void UnsyncedFile::take_back(const Change& change, std::string& bytes) {
   bytes.resize(change.size_before);
 }
 
-/// Its sectors all or each by itself, and the file's size where they are, or as it was to be.
+/// Applies all sectors of the change, or each with probability 1/2. The size is then that of the written
+/// sectors or the final one.
 void UnsyncedFile::apply(const Change& change, std::string& bytes, Random& random) {
   if (change.resizes) return bytes.resize(change.size);
   const bool whole = change.fate == Fate::Kept || random.chance(0.6);
@@ -88,7 +89,8 @@ void UnsyncedFile::apply(const Change& change, std::string& bytes, Random& rando
   if (!whole && random.chance(0.5)) bytes.resize(std::max<std::uint64_t>(bytes.size(), change.size));
 }
 
-/// In a third of the cuts nothing was written out, in a third all up to some change, and else any of them.
+/// In a third of the cuts no change was written out, in a third all changes up to one, in a third any of
+/// them.
 std::string UnsyncedFile::after_power_cut(std::string now, Random& random) const {
   for (auto change = changes_.rbegin(); change != changes_.rend(); ++change) take_back(*change, now);
   const std::uint64_t how = random.below(3), first = random.below(changes_.size() + 1);
@@ -98,7 +100,7 @@ std::string UnsyncedFile::after_power_cut(std::string now, Random& random) const
     if (change.fate == Fate::Kept || (change.fate == Fate::Open && is_out)) {
       apply(change, now, random);
     } else if (change.fate == Fate::Open && how == 2 && random.chance(0.3)) {
-      now.resize(std::max<std::uint64_t>(now.size(), change.size));  // its size alone
+      now.resize(std::max<std::uint64_t>(now.size(), change.size));  // only its size
     }
   }
   return now;
@@ -126,8 +128,8 @@ void Unsynced::removed(const std::string& name, std::optional<Content> content) 
   namings_.push_back({Kind::Removed, name, "", std::move(content), let_go(name)});
 }
 
-/// What was renamed in a folder that itself gets another name is taken for synced, and so is what was in the
-/// folder that a name leaves.
+/// Simplification: changes of names count as synced if their directory is renamed, or if a name leaves the
+/// directory.
 void Unsynced::renamed(const std::string& from, const std::string& to, std::optional<Content> replaced) {
   namings_.push_back({Kind::Renamed, to, from, std::move(replaced), let_go(to)});
   if (auto file = files_.extract(from)) {

@@ -12,28 +12,28 @@
 
 namespace adit::simulation {
 
-/// What is in a file.
+/// The content of a file.
 struct Content {
-  std::string bytes;       // but for the hole at its end
-  std::uint64_t size = 0;  // with it
+  std::string bytes;       // without the hole at its end
+  std::uint64_t size = 0;  // with the hole
 };
 
-/// What was done to one file and may be gone after a power cut.
+/// Changes of one file that a power cut may lose.
 class UnsyncedFile {
  public:
-  /// `before`: what it had there; `size`: its size until then.
+  /// `before`: the overwritten bytes; `size`: the file's size before.
   void wrote(std::uint64_t at, std::string bytes, std::string before, std::uint64_t size);
-  /// So many zeros, from its end or farther on.
+  /// Zeros were written, at or beyond the file's end.
   void wrote_zeros(std::uint64_t at, std::uint64_t length, std::uint64_t size);
-  /// `cut`: what was behind the new end.
+  /// `cut`: the bytes beyond the new end.
   void resized(std::uint64_t from, std::uint64_t to, std::string cut);
   void synced();
-  /// What was not synced until then never will be, though it reads well.
+  /// Changes since the last sync are never written out, although they can be read.
   void sync_failed();
   bool is_synced() const { return changes_.empty(); }
-  /// It has no name any more: what is still written to it reaches nobody.
+  /// The file was removed; later writes to it are lost.
   void is_gone() { gone_ = true; }
-  /// What is left of a file that reads `now`.
+  /// The content after a power cut, if the file reads `now`.
   std::string after_power_cut(std::string now, Random& random) const;
 
  private:
@@ -41,7 +41,7 @@ class UnsyncedFile {
   struct Change {
     bool resizes;
     std::uint64_t at, length, size, size_before;
-    std::string bytes, before;  // bytes: none where they are zeros behind the end
+    std::string bytes, before;  // bytes: empty for zeros beyond the end
     Fate fate = Fate::Open;
   };
   static void take_back(const Change& change, std::string& bytes);
@@ -51,22 +51,22 @@ class UnsyncedFile {
   bool gone_ = false;
 };
 
-/// What a power cut may take from a folder and all below it: each write since its file's last sync is kept,
-/// lost, or torn by sectors, and of the names that changed in a folder since that was synced, as many as are
-/// kept are the first ones, as in a file system with a journal. All names are paths below the folder.
+/// What a power cut may take from a directory and everything below it. Each write since a file's last sync
+/// is kept, lost, or torn by sectors. Of the names that changed in a directory since its last sync, the
+/// first ones are kept, as in a file system with a journal. All names are paths relative to the directory.
 class Unsynced {
  public:
   using File = std::shared_ptr<UnsyncedFile>;
   File file(const std::string& name);
 
   void made(const std::string& name);
-  /// `content`: what was in it, where it was a file.
+  /// `content`: nullopt for a directory.
   void removed(const std::string& name, std::optional<Content> content);
-  /// `replaced`: what was in the file that had the name until then.
+  /// `replaced`: the content of the file that had the name `to`.
   void renamed(const std::string& from, const std::string& to, std::optional<Content> replaced);
   void synced_folder(const std::string& name);
 
-  /// Changes `tree`, a copy of the folder, into what is left of it, which is on the disk for good.
+  /// Changes `tree`, a copy of the directory, into the state after a power cut, which is then synced.
   void cut(const std::filesystem::path& tree, Random& random);
 
  private:
@@ -74,10 +74,10 @@ class Unsynced {
   struct Naming {
     Kind kind;
     std::string name, from;
-    std::optional<Content> content;  // of what had the name before
-    File file;                       // so, too
+    std::optional<Content> content;  // of the file that had the name before
+    File file;                       // the same file's changes
   };
-  /// Of the file that loses this name; null: none is known.
+  /// Removes the file's name. Returns null if the file has no changes.
   File let_go(const std::string& name);
   void forget_below(const std::string& folder);
   void take_back(const Naming& naming, const std::filesystem::path& tree);

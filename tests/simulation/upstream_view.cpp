@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kLongestBody = 64u << 10;  // bytes of an answer's body
 
-/// Neither JSON nor nothing.
+/// Neither JSON nor empty.
 bool is_page(const std::string& body) {
   return !body.empty() && !nlohmann::json::accept(body);
 }

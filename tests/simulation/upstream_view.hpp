@@ -8,12 +8,12 @@
 
 namespace adit::simulation {
 
-/// `who` of an answer that is a page of HTML.
+/// Event::who of an answer that is an HTML page.
 inline constexpr const char* kForeign = "foreign";
-/// `who` of one that is longer than any Command Post's: of its head, for the rest is not read.
+/// Event::who of an answer longer than any Command Post's. Only its head is read.
 inline constexpr const char* kTooLong = "too long";
 
-/// What Adit gives a connection to the Command Post, and takes from it, as events of the history.
+/// Turns the bytes between Adit and the Command Post on one connection into events of the history.
 class UpstreamView {
  public:
   UpstreamView(int place, std::uint64_t connection) : place_(place), connection_(connection) {}
@@ -21,7 +21,7 @@ class UpstreamView {
   void came(std::string_view bytes);
 
  private:
-  const int place_;  // of the Command Post
+  const int place_;  // index of the Command Post
   const std::uint64_t connection_;
   HttpStream requests_, answers_;
   std::string path_;

@@ -11,7 +11,7 @@ namespace adit::simulation {
 namespace {
 
 constexpr Instant kBeginning{std::chrono::seconds{1000}};
-/// Bytes that one life may take, with what is simulated beside it, and ask for at once.
+/// Limits of one process, including the simulated world: total bytes, and bytes of one request.
 constexpr std::size_t kMostHeap = 24u << 20, kMostAtOnce = 8u << 20;
 World* the_world = nullptr;
 
@@ -78,7 +78,7 @@ void World::stand_still(Duration duration) {
     worker_waited_ += duration;
     return;
   }
-  if (now_ < stands_until_) return;  // it does already
+  if (now_ < stands_until_) return;  // it stands still already
   note({.actor = Actor::Disk,
         .kind = Kind::Slow,
         .what = "",
@@ -111,19 +111,19 @@ void World::note(Event event) {
   if (crossings_after_report_ && event.kind == Kind::Left && event.what == kReports)
     crossings_left_ = 1 + *std::exchange(crossings_after_report_, std::nullopt);
   event.at = time();
-  event.life = life_;
+  event.process = process_;
   history_.note(std::move(event));
 }
 
-void World::begin_life(bool again) {
-  ++life_;
+void World::begin_process(bool again) {
+  ++process_;
   dead_ = false;
   if (!again) {
     dies_ = nullptr;
     crossings_after_report_.reset();
   }
-  disk_.calls().life_begins();
-  note({.kind = Kind::Begins, .what = "aditd", .who = "", .serial = life_});
+  disk_.calls().process_begins();
+  note({.kind = Kind::Begins, .what = "aditd", .who = "", .serial = process_});
   heap_at_begin_ = heap();
   most_wanted();
 }
@@ -137,13 +137,13 @@ void World::look_at_heap() {
         .text = "memory: " + std::to_string(taken) + " bytes, " + std::to_string(wanted) + " at once"});
 }
 
-void World::end_life() {
+void World::end_process() {
   look_at_heap();
   dead_ = true;
   network_.cut();
   door_.cut();
   disk_.let_go();
-  note({.kind = Kind::Ended, .what = "aditd", .who = "", .serial = life_});
+  note({.kind = Kind::Ended, .what = "aditd", .who = "", .serial = process_});
 }
 
 void World::die_after(std::uint64_t crossings, How how, std::function<void()> dies) {
@@ -167,7 +167,7 @@ void World::crossing() {
 
 void World::die() {
   const auto dies = std::exchange(dies_, nullptr);
-  note({.kind = Kind::Dies, .what = "aditd", .who = "", .serial = life_});
+  note({.kind = Kind::Dies, .what = "aditd", .who = "", .serial = process_});
   dead_ = true;
   how_ == How::PowerCut ? network_.vanish() : network_.cut();
   door_.cut();

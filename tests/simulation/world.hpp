@@ -24,20 +24,20 @@ namespace adit::simulation {
 using loop::Duration;
 using loop::Instant;
 
-/// Thrown out of Loop::run() where the process was killed.
+/// Thrown out of Loop::run() if the process was killed.
 struct Killed {};
-/// Thrown where the process starts again by exec.
+/// Thrown if the process starts again by exec.
 struct StartsAgain {};
 
 inline Duration seconds(double seconds) {
   return std::chrono::duration_cast<Duration>(std::chrono::duration<double>(seconds));
 }
 
-/// One run: simulated time, what is to happen, and all that stands behind the seam. Everything comes from the
-/// seed. There is one at a time, current().
+/// One run: simulated time, planned events, and everything behind the seam. All of it follows from the
+/// seed. There is one world at a time, current().
 class World {
  public:
-  static constexpr double kEpoch = 1.7e9;  // by the box's clock, when a run begins
+  static constexpr double kEpoch = 1.7e9;  // the box's clock when a run begins
 
   explicit World(std::uint64_t seed, Omissions without = {});
   ~World();
@@ -48,32 +48,32 @@ class World {
   Random random(std::string_view name) const { return {seed_, name}; }
   Instant now() const { return now_; }
   double time() const;  // seconds since the run began
-  /// The box's clock.
+  /// The time on the box's clock.
   double stamp() const { return kEpoch + time() + clock_ahead_; }
   double clock_ahead() const { return clock_ahead_; }
-  /// Somebody sets it, or the machine starts with another.
+  /// Sets the box's clock, as a person does or as a boot does.
   void set_clock(double seconds_ahead);
 
   void at(Instant when, std::function<void()> happen);
   void after(Duration delay, std::function<void()> happen) { at(now_ + delay, std::move(happen)); }
-  /// Time jumps to the next event, which happens. False: there is none.
+  /// Jumps to the next event and runs it. Returns false if there is none.
   bool step();
-  /// While no process lives.
+  /// Passes time while no process runs.
   void run_for(Duration duration);
-  /// The process waits for its disk, and all others go on; a worker alone just takes longer.
+  /// The process waits for its disk while everything else goes on. A worker's job only takes longer.
   void stand_still(Duration duration);
-  /// Something of the process's that is due: it happens when the process does not stand still.
+  /// Runs an event of the process, after the process stands still no more.
   void when_moving(std::function<void()> happen);
-  /// A worker runs `work`: how long it waited for the disk meanwhile.
+  /// Runs `work` as a worker. Returns how long it waited for the disk.
   Duration in_worker(const std::function<void()>& work);
   std::uint64_t steps() const { return steps_; }
-  /// Counts the draws of what is random to the box.
+  /// Counts the box's draws of randomness.
   std::uint64_t entropy() { return ++entropy_; }
-  /// The loop hears that a worker has ended a job: no event, but it may change what the gateway shows.
+  /// The loop learns that a worker has ended a job. That is no event, but it may change the page.
   void job_ended() { ++jobs_ended_; }
   std::uint64_t jobs_ended() const { return jobs_ended_; }
 
-  /// For each thing that an actor may leave undone, before it does it: whether this one is left out.
+  /// Whether this action of the actor is left out. Call before each action that an actor may leave out.
   bool omits(const std::string& actor);
   const Actions& actions() const { return actions_; }
 
@@ -84,28 +84,28 @@ class World {
   Door& door() { return door_; }
   Disk& disk() { return disk_; }
 
-  int life() const { return life_; }
-  /// A process begins, or starts again: then a death that was drawn for it is still to come.
-  void begin_life(bool again = false);
-  /// It is over: its connections are cut.
-  void end_life();
-  /// A call of the seam: the process may die in it, before or after its effect.
+  int process() const { return process_; }
+  /// A process begins. `again`: by exec, so a planned death is still to come.
+  void begin_process(bool again = false);
+  /// The process has ended; cuts its connections.
+  void end_process();
+  /// A call of the seam. The process may die in it, before or after its effect.
   void crossing();
   enum class How : std::uint8_t { Killed, PowerCut };
-  /// The process dies at the call of the seam after `crossings` of them. `dies` is called at that instant.
+  /// Plans the process's death in the call of the seam after `crossings` others. `dies` is called then.
   void die_after(std::uint64_t crossings, How how, std::function<void()> dies);
-  /// The same, counted from the next report on that is sent.
+  /// The same, counted from the next report that is sent.
   void die_after_report(std::uint64_t crossings, How how, std::function<void()> dies);
-  /// It dies in the next call of the seam.
+  /// Whether the process dies in the next call of the seam.
   bool dies_next() const { return !dead_ && dies_ && !crossings_after_report_ && crossings_left_ <= 1; }
-  /// From here on nothing that the process does has an effect.
+  /// Whether the process is dead, so that its calls have no effect.
   bool is_dead() const { return dead_; }
 
-  /// Notes where the process takes more memory than it may.
+  /// Records a violation if the process uses too much memory.
   void look_at_heap();
 
   std::function<void()> on_sigterm;
-  std::vector<host::Inherited> inherited;  // by a process that starts again
+  std::vector<host::Inherited> inherited;  // descriptors for a process that starts again
 
  private:
   struct Planned {
@@ -134,7 +134,7 @@ class World {
   bool in_worker_ = false;
   Duration worker_waited_{};
   How how_ = How::Killed;
-  int life_ = 0;
+  int process_ = 0;
   std::size_t heap_at_begin_ = 0;
   bool dead_ = true;
   std::uint64_t crossings_left_ = 0;

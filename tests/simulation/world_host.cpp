@@ -1,5 +1,5 @@
-// host/link_changes.hpp, host/log.hpp, host/process.hpp, host/random.hpp and host/service.hpp's carrier()
-// over the simulated world.
+// Implements host/link_changes.hpp, host/log.hpp, host/process.hpp, host/random.hpp and host/service.hpp's
+// carrier() in the simulated world.
 #include "host/link_changes.hpp"
 #include "host/log.hpp"
 #include "host/memory.hpp"
@@ -40,7 +40,7 @@ void tell_console(Level level, std::string_view message, std::initializer_list<F
   say(level, message, fields);
 }
 
-/// Nothing here looks for secrets in a log.
+/// No check looks for secrets in the log.
 void keep_out_of_log(icd::Redaction) {}
 std::string without_secrets(std::string text) {
   return text;
@@ -59,7 +59,7 @@ std::string line_of(const Record& record) {
   return plain_line(time_text(record.at), record.level, record.message, fields);
 }
 
-/// All cables are in.
+/// All cables are plugged in.
 std::optional<bool> carrier(const std::string&) {
   return true;
 }
@@ -70,7 +70,7 @@ bool take_link_changes(const loop::FileDescriptor&) {
   return false;
 }
 
-/// The same on any machine.
+/// Constant, so that runs are the same on every machine.
 Process process() {
   return {};
 }

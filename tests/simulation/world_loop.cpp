@@ -1,4 +1,4 @@
-// loop/loop.hpp and loop/file_descriptor.hpp over the simulated world.
+// Implements loop/loop.hpp and loop/file_descriptor.hpp in the simulated world.
 #include <unistd.h>
 
 #include <csignal>
@@ -17,9 +17,9 @@ namespace {
 
 using simulation::World;
 
-/// sd-event's timers fire at most this late.
+/// Maximum delay of sd-event's timers.
 constexpr double kLatestTimer = 0.001;
-/// So many turns without time going on are a loop that spins.
+/// A loop that turns this often without progress of time is a busy loop.
 constexpr int kMostTurns = 100000;
 
 }  // namespace
@@ -27,7 +27,7 @@ constexpr int kMostTurns = 100000;
 void close_descriptor(int fd) noexcept {
   if (!simulation::Network::is_simulated(fd)) {
     ::close(fd);
-  } else if (World::current().life() != 0) {
+  } else if (World::current().process() != 0) {
     World::current().network().close(fd);
   }
 }
@@ -35,7 +35,7 @@ void close_descriptor(int fd) noexcept {
 struct Source::State : std::enable_shared_from_this<Source::State> {
   World& world = World::current();
   std::function<void(std::uint32_t)> call;
-  std::uint64_t descriptor = 0, link = 0;  // where it watches one
+  std::uint64_t descriptor = 0, link = 0;  // of a watched descriptor or link
   std::uint64_t setting = 0;               // counts the settings of a timer
   simulation::Random* lateness = nullptr;
 
@@ -97,7 +97,7 @@ void Source::cancel() {
 class Loop::Impl {
  public:
   World& world = World::current();
-  simulation::Random lateness = world.random("timers " + std::to_string(world.life()));
+  simulation::Random lateness = world.random("timers " + std::to_string(world.process()));
   Instant started = world.now();
   double stamp_at_start = world.stamp();
   WallClock wall{stamp_at_start, started};
@@ -113,7 +113,7 @@ class Loop::Impl {
     return stamp_at_start + std::chrono::duration<double>(instant - started).count();
   }
 
-  /// False: there was nothing to do without time going on.
+  /// Returns false if nothing can run before time advances.
   bool turn() {
     const auto tasks = std::exchange(posted, {});
     for (const auto& task : tasks) {

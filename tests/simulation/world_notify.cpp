@@ -1,4 +1,4 @@
-// What host/service.hpp tells systemd, and host/inherited.hpp, over the simulated world.
+// Implements systemd notifications (host/service.hpp) and host/inherited.hpp in the simulated world.
 #include <cstdlib>
 #include <utility>
 

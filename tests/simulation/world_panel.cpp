@@ -1,4 +1,4 @@
-// panel/lines.hpp's simulated panel over the simulated world: what it shows is of the history.
+// Implements panel/lines.hpp's simulated panel: records the lights in the history.
 #include <optional>
 
 #include "panel/lines.hpp"

@@ -1,4 +1,4 @@
-// uplink/socket.hpp over the simulated world.
+// Implements uplink/socket.hpp in the simulated world.
 #include <cerrno>
 #include <cstring>
 
@@ -72,7 +72,7 @@ int connect_error(int fd) {
   return link->error;
 }
 
-/// Is noted, and does nothing: a line delivers as it likes.
+/// Recorded only; the simulated line has its own rate.
 void set_pace(int fd, std::uint64_t bytes_per_second) {
   if (link_of(fd) == nullptr) return;
   World& world = World::current();
@@ -83,7 +83,7 @@ void set_pace(int fd, std::uint64_t bytes_per_second) {
               .stamp = world.network().map_rate()});
 }
 
-/// The exchange itself looks at what is not acknowledged, and gives up as soon.
+/// No effect: the exchange itself checks for unacknowledged bytes, with the same timeout.
 void give_up_after(int, std::chrono::milliseconds) {}
 
 void reset_on_close(int fd, bool reset) {

@@ -1,5 +1,5 @@
-// loop/workers.hpp over the simulated world: each job runs whole at a drawn time, and its end comes at a
-// later one.
+// Implements loop/workers.hpp in the simulated world: each job runs at once at a drawn time, and its end
+// follows at a later one.
 #include <algorithm>
 #include <optional>
 #include <utility>
@@ -13,7 +13,7 @@ namespace {
 
 using simulation::World;
 
-/// Seconds before a job begins, and that it takes; now and then the machine is busy.
+/// Seconds until a job begins, and that it takes. kBusy applies if the machine is busy.
 constexpr double kBegins = 0.0005, kTakes = 0.004, kBusy = 0.15;
 
 class Pool : public std::enable_shared_from_this<Pool> {
@@ -45,7 +45,7 @@ class Pool : public std::enable_shared_from_this<Pool> {
     std::function<void()> work, done, failed;
   };
 
-  /// One of the threads wakes up, and takes the job that is next then.
+  /// A thread wakes up and runs the next job in the queue.
   void begin_one() {
     if (idle_ == 0 || jobs_.size() <= waking_) return;
     --idle_;
@@ -63,7 +63,7 @@ class Pool : public std::enable_shared_from_this<Pool> {
   void work() {
     --waking_;
     auto next = jobs_.take(loop_.now());
-    if (!next) {  // enough of those that can wait are at work: the next that ends begins it
+    if (!next) {  // enough deferrable jobs run; the next one that ends begins it
       ++idle_;
       return;
     }
@@ -82,7 +82,7 @@ class Pool : public std::enable_shared_from_this<Pool> {
                  });
   }
 
-  /// The loop takes it up when it does not stand still.
+  /// Runs `end` in the loop, when the process does not stand still.
   void hand_back(Urgency urgency, std::function<void()> end) {
     ++idle_;
     jobs_.ended(urgency, loop_.now());
@@ -132,7 +132,7 @@ void Workers::submit(Urgency urgency, std::function<void()> work, std::function<
   const auto either = std::make_shared<std::function<void()>>(std::move(done));
   impl_->pool().submit(urgency, std::move(work), [either] { (*either)(); }, [either] { (*either)(); });
 }
-void Workers::give_way() {}  // a job takes no time
+void Workers::give_way() {}  // jobs take no time
 void Workers::ask() {}
 bool Workers::are_well(Duration) const {
   return true;

@@ -1,5 +1,5 @@
-// Prints, as one table, what the pages weigh, how soon they paint over a slow link, and what an open page costs the box. It asserts
-// nothing: tests/bench/README.md has figures and how to run it.
+// Prints a table of the pages' sizes, their first paint over a slow link, and the cost of an open page for the box. It asserts nothing:
+// tests/bench/README.md has figures and how to run it.
 import { launch, visit } from "../stage.js";
 import { begin, TOKENS } from "../box/box.js";
 import { eventsWith, median } from "./events.js";
@@ -10,7 +10,7 @@ const LINK = { offline: false, latency: 20, downloadThroughput: 20e6 / 8, upload
 const token = { Authorization: `Bearer ${TOKENS.team}` };
 const print = (...cells) => console.log(`| ${cells.join(" | ")} |`);
 
-/** A visit with an empty cache over the slow link: milliseconds to the first paint with something on it, and the page's own files. */
+/** A visit with an empty cache over the slow link: milliseconds until the first paint with content, and the page's own files. */
 async function paint(browser, made, path) {
   const page = await visit(browser, "about:blank", { extraHTTPHeaders: token });
   const devtools = await page.context().newCDPSession(page);

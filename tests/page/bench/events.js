@@ -1,4 +1,4 @@
-// What the events of an open page weigh and cost the box: a row of figures for a team of so many robots, with 1,000 reports on record.
+// Size and cost of an open page's events: a row of figures for a number of robots and 1,000 reports on record.
 import { once } from "node:events";
 import { readFileSync } from "node:fs";
 import { get } from "node:http";
@@ -10,17 +10,17 @@ const REPORTS = Number(process.env.BENCH_REPORTS ?? 1000), SECONDS = Number(proc
 
 export const median = (values) => [...values].sort((a, b) => a - b)[values.length >> 1];
 
-/** CPU seconds of the loop's thread so far: events are made on it, maps are packed on others. */
+/** CPU seconds of the loop's thread so far. The loop makes events; other threads pack maps. */
 const cpu = ({ pid }) => Number(readFileSync(`/proc/${pid}/task/${pid}/schedstat`, "utf8").split(" ")[0]) / 1e9;
 
-/** Per cent of a core, over some seconds. */
+/** Per cent of a core, measured over `seconds`. */
 export async function share(made, seconds = SECONDS) {
   const [before, began] = [cpu(made), performance.now()];
   await sleep(seconds * 1000);
   return (100 * (cpu(made) - before)) / ((performance.now() - began) / 1000);
 }
 
-/** Somebody who only listens: bytes and events that came, and of how many bytes the first was. */
+/** Reads the event stream: counts bytes and events, and the bytes of the first event. */
 export async function listen(made) {
   const request = get(`${made.url}adit/events`, { headers: { Authorization: `Bearer ${TOKENS.team}` } });
   const [answer] = await once(request, "response");
@@ -37,7 +37,7 @@ export async function listen(made) {
   return heard;
 }
 
-/** A box with so many robots at work and 1,000 reports on record. */
+/** A box with that many active robots and 1,000 reports on record. */
 export async function withReports(robots) {
   const made = await begin({ robots, post: ["--reports", String(2 * REPORTS), "--rate", "0"], settings: { command_post: { rates: { reports_hz: 1000, status_hz: 2 } } } });
   for (let i = 0; i < REPORTS; i += AT_ONCE) await Promise.all(Array.from({ length: AT_ONCE }, (_, j) => made.compose("Rope", 10 * (i + j), i)));
@@ -45,7 +45,7 @@ export async function withReports(robots) {
   return made;
 }
 
-/** {first, rate, events, share}: bytes of the first event; kB and events a second of the others; per cent of a core for a page. */
+/** {first, rate, events, share}: bytes of the first event; kB and events per second of the others; per cent of a core for a page. */
 export async function eventsWith(robots) {
   const made = await withReports(robots);
   try {

@@ -1,5 +1,5 @@
-// Measures what a page takes of the browser, and how smoothly its map moves: twenty robots at work, 1,000 reports on record, a hand
-// that drags and zooms, a browser that draws without a GPU. It asserts nothing: tests/bench/README.md has figures and how to run it.
+// Measures a page's load on the browser and how smoothly its map moves: twenty active robots, 1,000 reports on record, dragging and
+// zooming, a browser without a GPU. It asserts nothing: tests/bench/README.md has figures and how to run it.
 import { launch, visit } from "../stage.js";
 import { TOKENS } from "../box/box.js";
 import { withReports } from "./events.js";
@@ -10,7 +10,7 @@ const canvas = "#map .frame canvas";
 
 const sleep = (seconds) => new Promise((resolve) => setTimeout(resolve, seconds * 1000));
 
-/** Moves the map for so long, frame by frame, as a hand does: gives the milliseconds between frames. */
+/** Moves the map frame by frame, as a hand does. Returns the milliseconds between frames. */
 async function move(page, how) {
   return page.$eval(canvas, async (node, { how, seconds }) => {
     const { x, y, width, height } = node.getBoundingClientRect(), frame = () => new Promise(requestAnimationFrame);
@@ -32,8 +32,8 @@ async function move(page, how) {
   }, { how, seconds: SECONDS });
 }
 
-/** Of one run of the map: frames a second, milliseconds between frames, CPU time by the time that went by (of the
- *  main thread; of all processes of the browser, per cent of a core), and the main thread's by frames. */
+/** Figures of one run: frames per second, milliseconds between frames, CPU time per wall time (of the main thread; of all processes of
+ *  the browser, in per cent of a core), and the main thread's CPU time per frame. */
 async function measure(page, devtools, all, how) {
   const busy = async () => {
     const { processInfo } = await all.send("SystemInfo.getProcessInfo");
@@ -57,7 +57,7 @@ try {
     const page = await visit(browser, made.url, { extraHTTPHeaders: { Authorization: `Bearer ${TOKENS.team}` }, viewport: { width, height } });
     await page.waitForSelector("body[data-link=live]");
     const devtools = await page.context().newCDPSession(page);
-    await devtools.send("Performance.enable", { timeDomain: "threadTicks" }); // CPU time, whatever else the machine does
+    await devtools.send("Performance.enable", { timeDomain: "threadTicks" });  // CPU time, independent of the machine's other load
     await sleep(5);
     for (const how of ["left alone", "dragged", "zoomed"]) console.log(`| ${width} x ${height} | ${[how, ...(await measure(page, devtools, all, how))].join(" | ")} |`);
     await page.context().close();

@@ -1,4 +1,4 @@
-// What page, display and `adit status` say of one run: in the same words, at the same time.
+// Page, display and `adit status` show one run in the same words at the same time.
 import assert from "node:assert/strict";
 import { execFile } from "node:child_process";
 import { writeFileSync } from "node:fs";
@@ -11,7 +11,7 @@ import { box, look } from "./visits.js";
 
 const seconds = (clock) => clock.split(":").reduce((sum, part) => 60 * sum + Number(part), 0);
 
-/** What `adit status` prints; how it ends does not matter here. */
+/** The output of `adit status`; its exit status does not matter here. */
 function status(made) {
   const file = join(made.folder, "team.token");
   writeFileSync(file, TOKENS.team, { mode: 0o600 });
@@ -19,7 +19,7 @@ function status(made) {
   return new Promise((done) => execFile(join(BIN, "adit"), words, (error, out) => done(out)));
 }
 
-test("counts down from the length of a run that the settings say", async (t) => {
+test("counts down from the run length in the settings", async (t) => {
   const made = await box(t, { settings: { runs: { length_seconds: 1800 } } });
   const pages = [await look(t, made), await look(t, made, "display")];
   for (const page of pages) {
@@ -31,11 +31,11 @@ test("counts down from the length of a run that the settings say", async (t) => 
   assert.ok(Math.abs(seconds(gone) + seconds(left) - 1800) <= 1, `${gone} and ${left}`);
 });
 
-test("goes on with the run clock as an estimate, and says so, if the Command Post falls silent", async (t) => {
+test("continues the run clock as an estimate, and says so, if the Command Post falls silent", async (t) => {
   const made = await box(t);
   await until(async () => (await made.run()).run_clock, "the run");
   await made.misbehave({ status: ["answer-after=60,for=600"] });
-  const pages = [await look(t, made), await look(t, made, "display")]; // neither sees two answers
+  const pages = [await look(t, made), await look(t, made, "display")];  // each page gets only one answer
   await until(async () => (await made.run()).run_clock.old, "an old answer", 60_000);
   for (const page of pages) {
     const shown = () => page.$eval("#clock", (node) => (node.parentNode.dataset.stale === "true" && node.textContent.startsWith("≈") ? node.textContent.slice(1) : ""));
@@ -47,7 +47,7 @@ test("goes on with the run clock as an estimate, and says so, if the Command Pos
   assert.match(await status(made), /^Run +about \d+:\d\d +about \d+:\d\d to go .*\(heard \d+ s ago\)$/m);
 });
 
-test("says that one of three robots is silent over a kill of the service and a new run, from the first answer", async (t) => {
+test("says from the first answer on that one of three robots is silent, over a kill of the service and a new run", async (t) => {
   const made = await box(t, { robots: 2, settings: { alarms: { silent_for_ms: 2000, silent_times: 2 } } });
   for (let x = 0; x < 6; ++x) {
     const header = { stamp: Date.now() / 1000, frame_id: "darpa" }, pose = { position: { x, y: 2, z: 0 }, orientation: { x: 0, y: 0, z: 0, w: 1 } };
@@ -105,13 +105,14 @@ for (const { is, word, fault } of CASES) {
       await page.waitForSelector("#maps[data-away=true]");
       await page.waitForFunction((word) => document.querySelector('.strip .ends [data-key="mapping"] dd').textContent === word, word);
     }
-    // One that is silent is for a while as if it were well after each try that was given up: it is looked at while it is told of.
+    // If the Command Post is silent, it looks healthy for a moment after each try that timed out. So the check runs while the alarm is
+    // on.
     const blamesNobody = ({ alarms, activities }) => alarms.some(({ id }) => id === is) && activities.some(({ arrival }) => arrival === "not arriving") && !activities.some(({ level }) => level === "bad" || level === "wait");
     await until(async () => blamesNobody(await made.run()), "what waits to be nobody's fault");
     for (const page of pages) await page.waitForFunction(() => document.querySelector("#maps[data-away=true]") && !document.querySelector("#robots li:is([data-level=bad], [data-level=wait])"));
     const same = new RegExp(`^Maps +No map arrives: for \\d+:\\d\\d; the box keeps all maps$[^]*^ +mapping +\\S+ +${word} `, "m");
     await until(async () => same.test(await status(made)), "the same of `adit status`");
-    if (!fault) return; // it is gone for good
+    if (!fault) return;  // it was killed
     await made.behave();
     const blamed = [];
     await until(async () => {
@@ -120,6 +121,6 @@ for (const { is, word, fault } of CASES) {
       blamed.push(...maps.filter(({ level }) => level === "bad").map(({ kind, robot, arrival }) => `${robot} ${kind}: ${arrival}`), ...alarms.filter(({ id }) => /^maps?_behind/.test(id)).map(({ what }) => what));
       return maps.every(({ last_status: status }) => status === 200);
     }, "all to be taken again", 120_000);
-    assert.deepEqual(blamed, [], "nor as it comes back");
+    assert.deepEqual(blamed, [], "no robot may be blamed while the Command Post recovers");
   });
 }

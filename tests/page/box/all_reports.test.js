@@ -1,4 +1,4 @@
-// More reports than an event has: the page's list and count have them all, and ask for the others once.
+// More reports than an event has: the page's list and count have all of them, and load the others once.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { until } from "../box.js";
@@ -6,7 +6,7 @@ import { box, logIn, row, says } from "./visits.js";
 
 const REPORTS = 260, AT_ONCE = 20, HELD = 2;
 
-test("reaches reports beyond the newest 200, as they are, and asks for them once", async (t) => {
+test("loads reports beyond the newest 200 once, and shows them as they are", async (t) => {
   const made = await box(t, { post: ["--reports", "1000", "--rate", "0"], settings: { reports: { review: "duplicates" }, command_post: { rates: { reports_hz: 1000, status_hz: 20 } } } });
   await made.becomes(await made.compose("Rope", -50), "answered");
   assert.equal(await made.compose("Rope", -51), HELD);

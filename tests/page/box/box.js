@@ -1,4 +1,4 @@
-// The real thing for a test: aditd, a Command Post to rehearse against, and robots where they are wanted.
+// The real programs for one test: aditd, a rehearsal Command Post, and robots if wanted.
 import { spawn } from "node:child_process";
 import { once } from "node:events";
 import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -8,7 +8,7 @@ import { freePort, until } from "../box.js";
 import { BIN } from "../stage.js";
 
 export const TOKENS = { scoring: "flux230{showroom", mapping: "rust871}backdoor", team: "team-own-token-1" };
-export const PASSWORD = "correct horse battery"; // as in the examples of openapi.json
+export const PASSWORD = "correct horse battery";  // as in the examples of openapi.json
 
 async function stop(program, signal = "SIGTERM") {
   if (!program || program.exitCode !== null || program.signalCode !== null) return;
@@ -67,14 +67,14 @@ class Box {
     await until(() => fetch(this.url).then(({ ok }) => ok, () => aditd.exitCode !== null && Promise.reject(new Error(aditd.log()))), "aditd");
   }
   log = () => this.#programs.aditd.log();
-  /** Lets the robots stand still, and their programs, too; or go on. */
+  /** Stops the robots' programs; or continues them. */
   freezeRobots = () => this.#programs["adit-robots"].kill("SIGSTOP");
   thawRobots = () => this.#programs["adit-robots"].kill("SIGCONT");
-  /** The Command Post is gone for good. */
+  /** Kills the Command Post. */
   endPost = () => stop(this.#programs["adit-rehearsal"], "SIGKILL");
   killAditd = () => stop(this.#programs.aditd, "SIGKILL");
 
-  /** Asks the box, as the team's script does: {status, said}. With a body: POST. */
+  /** Sends a request as the team's script does: {status, said}. With a body: POST. */
   async ask(path, body) {
     const headers = { Authorization: `Bearer ${TOKENS.team}` };
     const request = body === undefined ? { headers } : { method: "POST", headers: { ...headers, "Content-Type": "application/json" }, body: typeof body === "string" ? body : JSON.stringify(body) };
@@ -82,17 +82,17 @@ class Box {
     return { status: answer.status, said: await answer.json().catch(() => null) };
   }
   run = async () => (await this.ask("/adit/run")).said;
-  /** The operator composes a report; its number. */
+  /** Composes a report as the operator and returns its number. */
   compose = async (type, x, y = 0, z = 0) => (await this.ask("/adit/reports", { type, x, y, z })).said.report;
   state = async (number) => (await this.ask(`/adit/reports/${number}`)).said.state;
   becomes = (number, state) => until(async () => (await this.state(number)) === state, `report ${number} to be ${state}`);
 
-  /** What the Command Post was sent and recorded, and how it is to behave. */
+  /** The Command Post's record of requests; or sets its behaviour. */
   record = async () => (await fetch(`${this.control}/record`)).json();
   misbehave = (faults) => fetch(`${this.control}/faults`, { method: "POST", body: JSON.stringify(faults) });
   behave = () => fetch(`${this.control}/faults`, { method: "DELETE" });
 
-  /** What the lights of the simulated panel show at this moment: {health: true, ...}. */
+  /** The lights of the simulated panel now: {health: true, ...}. */
   lights() {
     const lines = readFileSync(join(this.folder, "state/panel"), "utf8").trim().split("\n");
     return Object.fromEntries(lines.map((line) => line.split(" ")).map(([name, lit]) => [name, lit === "on"]));

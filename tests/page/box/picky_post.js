@@ -1,12 +1,11 @@
-// What stands before the rehearsal's mapping endpoint and would not take what names a robot that it is told of; all else
-// goes on to the rehearsal.
+// A proxy before the rehearsal's mapping endpoint. It rejects messages that name certain robots and passes on all others.
 import { once } from "node:events";
 import { createServer, request } from "node:http";
 import { gunzipSync } from "node:zlib";
 
 class PickyPost {
-  refuses = new Map(); // a robot's name to the status that it gets
-  taken = []; // the robots' names, as the rehearsal answered 200
+  refuses = new Map();  // a robot's name and the status for its messages
+  taken = [];  // names of robots whose messages the rehearsal answered 200
   #server = createServer((asked, answer) => this.#hear(asked, answer));
 
   async begin() {
@@ -42,7 +41,7 @@ class PickyPost {
   }
 }
 
-/** For the length of one test; `behind` is the port of the rehearsal's own. */
+/** For one test; `behind` is the port of the rehearsal's mapping endpoint. */
 export async function pickyPost(t) {
   const post = await new PickyPost().begin();
   t.after(() => post.end());

@@ -1,13 +1,14 @@
-// What the Command Post would not take: sent again, discarded, and kept where that is refused. As a touch does it: presses.test.js.
+// Messages that the Command Post rejected: the operator sends them again or discards them. If a message is rejected again, it stays.
+// Touch: presses.test.js.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { until } from "../box.js";
 import { pickyPost } from "./picky_post.js";
 import { box, canBeDeaf, look, openMore } from "./visits.js";
 
-/** By keyboard: the focus is what each press leaves somewhere. */
+/** Presses by keyboard, because each press then moves the focus. */
 async function press(button) {
-  await button.page().waitForSelector("[data-given]", { state: "detached" }); // a second press might be one too many
+  await button.page().waitForSelector("[data-given]", { state: "detached" });  // a second press might be one too many
   await button.press("Enter");
 }
 const REFUSED = { robot_1: 422, robot_2: 400, robot_3: 413, robot_4: 422 };
@@ -24,7 +25,7 @@ const rejectedOf = async (made) => (await made.run()).rejected;
 
 const QUICK = { map_hz: 20 };
 
-/** A page that shows one row for each robot that is refused. */
+/** A page with one row for each rejected robot. */
 async function withRefused(t, options) {
   const post = await pickyPost(t);
   const made = await box(t, { settings: { command_post: { rates: QUICK, mapping: { address: "127.0.0.1", port: post.port } } }, post: ["--rate", "0"] });
@@ -46,7 +47,7 @@ const focusIs = (page, selector) => page.waitForFunction((selector) => document.
 const counted = (page, count) => page.locator("#rejected .count", { hasText: new RegExp(`^${count}$`) }).waitFor();
 const numberOf = (page, name) => row(page, name).getAttribute("data-key");
 
-test("what is rejected is sent again or discarded, and the focus goes to what is next", async (t) => {
+test("a rejected message is sent again or discarded, and the focus moves to the next one", async (t) => {
   const { page, made, post } = await withRefused(t);
   for (const [name, status] of Object.entries(REFUSED)) assert.match(await row(page, name).innerText(), new RegExp(`${status}: .*not to my taste`));
   await counted(page, 4);
@@ -76,7 +77,7 @@ test("what is rejected is sent again or discarded, and the focus goes to what is
   assert.deepEqual(page.complaints, []);
 });
 
-test("what something newer says all of stays where it is sent again, with the box's sentence", async (t) => {
+test("a message that a newer one contains stays if it is sent again, with the box's sentence", async (t) => {
   const { page, made, post } = await withRefused(t, { prepare: canBeDeaf });
   await page.evaluate(() => (globalThis.deaf = true));
   post.refuses.clear();
@@ -97,14 +98,14 @@ test("what something newer says all of stays where it is sent again, with the bo
   assert.deepEqual(post.taken, ["robot_2"]);
 });
 
-test("what alone gets a 500 while others pass is listed, and arrives once it is sent again", async (t) => {
+test("a message that alone gets a 500 is listed, and arrives once it is sent again", async (t) => {
   const made = await box(t, { settings: { command_post: { rates: QUICK } }, post: ["--rate", "0"] });
   await made.misbehave({ mapping: ["500,robot=robot_2,for=300"] });
   await send(made, "robot_2");
   const page = await look(t, made);
   let turn = 0;
   await until(async () => {
-    await send(made, "robot_1", [turn++ % 100, 0, 0, 0]); // others pass all the while
+    await send(made, "robot_1", [turn++ % 100, 0, 0, 0]);  // other messages succeed meanwhile
     return (await rejectedOf(made)).length;
   }, "it to be rejected");
   await openMore(page);

@@ -4,11 +4,11 @@ import { until } from "../box.js";
 import { patient } from "../patience.js";
 import { box, canBeDeaf, action, logIn, look, row, says, openMore } from "./visits.js";
 
-/** The second report waits for so many seconds. */
+/** The second report is queued for that many seconds. */
 const slow = (seconds) => ({ settings: { command_post: { rates: { reports_hz: 1 / seconds } } } });
 const recorded = async (made, x) => (await made.record()).reports.filter((report) => report.x === x).length;
 
-/** A report that waits, because one before it was just sent. */
+/** A report that is queued because another was just sent. */
 async function waiting(made, x = 50, type = "Drill") {
   await made.becomes(await made.compose("Rope", -900 - x), "answered");
   const number = await made.compose(type, x);
@@ -16,7 +16,7 @@ async function waiting(made, x = 50, type = "Drill") {
   return number;
 }
 
-test("holds a report that waits, and sends it on the operator's further word", async (t) => {
+test("holds a queued report and sends it after the operator's second decision", async (t) => {
   const made = await box(t, slow(300));
   const number = await waiting(made);
   const page = await look(t, made);
@@ -36,13 +36,13 @@ test("holds a report that waits, and sends it on the operator's further word", a
   assert.deepEqual(page.complaints, []);
 });
 
-test("is sent once where two operators press send at once", async (t) => {
-  const made = await box(t, slow(patient(10))); // time enough to hold it
+test("sends once if two operators press send at once", async (t) => {
+  const made = await box(t, slow(patient(10)));  // enough time to hold it
   const number = await waiting(made);
   await made.ask(`/adit/reports/${number}/hold`, {});
   const pages = [await logIn(t, made, canBeDeaf), await logIn(t, made, canBeDeaf)];
   for (const page of pages) await action(page, "Send", number).waitFor();
-  for (const page of pages) await page.evaluate(() => (globalThis.deaf = true)); // so that the one who is slower still has his button
+  for (const page of pages) await page.evaluate(() => (globalThis.deaf = true));  // so that the slower operator still sees the button
   await Promise.all(pages.map((page) => action(page, "Send", number).click()));
   for (const page of pages) {
     await page.evaluate(() => (globalThis.deaf = false));
@@ -50,7 +50,7 @@ test("is sent once where two operators press send at once", async (t) => {
     await says(page, number, "The report will be sent.");
   }
   await made.becomes(number, "answered");
-  await made.becomes(await made.compose("Rope", 900), "answered"); // a second sending would have been before it
+  await made.becomes(await made.compose("Rope", 900), "answered");  // a second sending would have come first
   assert.equal(await recorded(made, 50), 1);
 });
 
@@ -71,7 +71,7 @@ test("shows near duplicates side by side, on the map and in words", async (t) =>
   assert.ok(await pair.isHidden());
 });
 
-/** Posts a Drill by the page's form. */
+/** Posts a Drill with the page's form. */
 async function composed(page, x) {
   await page.getByRole("button", { name: "New report" }).click();
   await page.locator("#compose .types").getByRole("button", { name: "Drill" }).click();
@@ -80,7 +80,7 @@ async function composed(page, x) {
   await page.locator("#compose .send").click();
 }
 
-test("undoes a report of the page before it is sent, or sends it now", async (t) => {
+test("withdraws a report from the page before it is sent, or sends it now", async (t) => {
   const made = await box(t, { settings: { reports: { undo_s: 60 } } });
   const page = await look(t, made);
   await composed(page, 50);
@@ -98,7 +98,7 @@ test("undoes a report of the page before it is sent, or sends it now", async (t)
   assert.deepEqual(page.complaints, []);
 });
 
-test("corrects a held report, which is sent as a new one", async (t) => {
+test("corrects a held report and sends the correction as a new one", async (t) => {
   const made = await box(t, { settings: { reports: { review: "all" } } });
   await made.becomes(await made.compose("Drill", 50, 1, 2), "held");
   const page = await look(t, made);
@@ -117,7 +117,7 @@ test("corrects a held report, which is sent as a new one", async (t) => {
   assert.deepEqual(page.complaints, []);
 });
 
-test("begins a new run on the operator's word, and says before what becomes of what was not sent", async (t) => {
+test("begins a new run if the operator declares it, and says before what happens to unsent reports", async (t) => {
   const made = await box(t, slow(300));
   const number = await waiting(made);
   const posted = Date.now();

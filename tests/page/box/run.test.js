@@ -6,7 +6,7 @@ import { until } from "../box.js";
 import { begin } from "./box.js";
 import { hears, look, openMore } from "./visits.js";
 
-// One run for all of these: five robots explore, and the operator reports.
+// One run for all tests of this file: five robots explore, and the operator reports.
 let made;
 before(async () => {
   made = await begin({ robots: 5, settings: { reports: { review: "duplicates" } }, post: ["--team", "Cerberus"] });
@@ -24,7 +24,7 @@ const off = async (page, ...names) => {
   for (const name of names) await box(page, name).uncheck();
 };
 
-/** The picture, once it keeps still. */
+/** The map's picture, once it is still. */
 async function still(page) {
   for (let last = await picture(page); ; ) {
     await hears(page, 2);
@@ -34,7 +34,7 @@ async function still(page) {
   }
 }
 
-test("fetches the markers that changed, and the tracks once", async (t) => {
+test("loads the markers that changed, and the tracks once", async (t) => {
   const began = Date.now(), page = await look(t, made);
   const asked = (part) => page.requests.filter((url) => url.includes(part));
   await until(() => asked("/adit/markers").length > 3, "markers that changed");
@@ -46,7 +46,7 @@ test("fetches the markers that changed, and the tracks once", async (t) => {
   for (const url of later) assert.doesNotMatch(url, /since=0$/);
 });
 
-test("makes the lights flash, on the box as on the page, and lets them be again", async (t) => {
+test("makes the lights flash on the box and the page, and stops it", async (t) => {
   const page = await look(t, made);
   await openMore(page);
   await page.getByRole("button", { name: "Identify" }).click();
@@ -55,14 +55,14 @@ test("makes the lights flash, on the box as on the page, and lets them be again"
   assert.equal((await made.ask("/adit/identify", { seconds: 60 })).status, 200, "a longer time, too: a busy machine is slow to look");
   const all = (lit) => until(() => Object.values(made.lights()).every((light) => light === lit), `all lights ${lit}`);
   for (const lit of [true, false, true, false]) await all(lit);
-  assert.match(await page.textContent("#lights li"), /flashes/); // in words: nothing blinks on the page
+  assert.match(await page.textContent("#lights li"), /flashes/);  // in words, because the page does not blink
   assert.equal((await made.ask("/adit/identify", { seconds: 1 })).status, 200, "a shorter time counts from now");
   await page.waitForFunction(() => [...document.querySelectorAll("#lights li")].every((light) => light.dataset.pattern !== "twice"));
   assert.equal(await page.textContent("button.identify"), "Identify");
 });
 
-test("does by every shortcut what the list of them says", async (t) => {
-  made.freezeRobots(); // the map keeps still
+test("performs each listed shortcut", async (t) => {
+  made.freezeRobots();  // so that the map stands still
   t.after(() => made.thawRobots());
   await until(async () => {
     const { reports, activities } = await made.run();
@@ -84,7 +84,7 @@ test("does by every shortcut what the list of them says", async (t) => {
   await page.locator("#compose .types button").first().click();
   await page.fill("#compose input[name=x]", "");
   await page.keyboard.type("nr0?");
-  assert.equal(await page.inputValue("#compose input[name=x]"), "nr0?", "letters are letters while somebody types");
+  assert.equal(await page.inputValue("#compose input[name=x]"), "nr0?", "shortcuts are off in text fields");
   await page.keyboard.press("Escape");
   await blur();
   await page.keyboard.press("r");
@@ -106,16 +106,16 @@ test("does by every shortcut what the list of them says", async (t) => {
   await page.keyboard.press("l");
   assert.equal(await slider.getAttribute("aria-valuetext"), "now");
   await page.keyboard.press("Control+n").catch(() => {});
-  assert.ok(!(await isOpen("compose")), "with Ctrl it is the browser's");
+  assert.ok(!(await isOpen("compose")), "a key with Ctrl is no shortcut");
   await page.keyboard.press("?");
   await page.getByRole("checkbox", { name: "Shortcuts are on" }).uncheck();
   await page.keyboard.press("Escape");
   await blur();
   for (const key of ["n", "?"]) await page.keyboard.press(key);
-  assert.ok(!(await isOpen("compose")) && !(await isOpen("help")), "they can be turned off");
+  assert.ok(!(await isOpen("compose")) && !(await isOpen("help")), "the shortcuts are turned off");
 });
 
-test("has nothing that axe finds wrong during a run, in the dark and by day", async (t) => {
+test("has no axe fault during a run, in the dark and the light theme", async (t) => {
   const page = await look(t, made, "", { bypassCSP: true });
   const isWell = async (what) => {
     for (const colorScheme of ["dark", "light"]) {

@@ -1,4 +1,4 @@
-// The spare box on the system page: the first one is put on standby and exported, the second one takes over, in a browser as a user does it.
+// The spare box on the system page: a user puts the first box on standby, exports it, and lets the second one take over.
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import { axeFindsNothing } from "../axe.js";
@@ -16,7 +16,7 @@ async function box(t) {
   return made;
 }
 
-/** Its system page, at the spare box. */
+/** The spare box's system page, for spares. */
 async function spareOf(t, made) {
   const page = await visit(browser, `${made.url}system.html#spare`, { extraHTTPHeaders: { Authorization: `Bearer ${TOKENS.team}` }, acceptDownloads: true, bypassCSP: true });
   t.after(() => leave(page));
@@ -28,7 +28,7 @@ const yes = (page) => page.locator("#confirm button.main").click();
 const no = (page) => page.locator("#confirm button").first().click();
 const notes = (section, words) => section.locator(".note", { hasText: words }).waitFor();
 
-test("one press puts the box to rest and downloads its export, and the other box takes over by it", async (t) => {
+test("one press puts the box on standby and downloads its export, with which the other box takes over", async (t) => {
   const [first, spare] = await Promise.all([box(t), box(t)]);
   await until(async () => (await first.run()).run_clock, "the run");
   const number = await first.compose("Drill", 3, 4, 5);
@@ -37,7 +37,7 @@ test("one press puts the box to rest and downloads its export, and the other box
   const here = await spareOf(t, first);
   await here.press("Start standby and export");
   await no(here.page);
-  assert.equal((await first.ask("/adit/spare")).said.standby, false, "it was asked, and answered no");
+  assert.equal((await first.ask("/adit/spare")).said.standby, false, "standby was requested without confirmation");
   const downloads = here.page.waitForEvent("download", { timeout: 90_000 });
   await here.press("Start standby and export");
   await yes(here.page);
@@ -63,18 +63,18 @@ test("one press puts the box to rest and downloads its export, and the other box
   await axeFindsNothing(there.page, "an export that is opened");
   await there.press("Take over");
   await no(there.page);
-  assert.equal((await spare.ask("/adit/reports")).said.length, 0, "nothing has changed yet");
+  assert.equal((await spare.ask("/adit/reports")).said.length, 0, "the spare box changed too early");
   await there.press("Take over");
   await yes(there.page);
 
   await there.section.getByRole("link", { name: `:${first.port}/` }).click();
   await notes(there.section, "A spare box can take over");
-  spare.port = first.port; // the settings of the first are the spare's from now on
+  spare.port = first.port;  // the spare has the first box's settings now
   const reports = await until(() => spare.ask("/adit/reports").then(({ said }) => said?.length && said, () => null), "the spare, where the first was");
   assert.deepEqual(reports.map(({ number, type, state }) => [number, type, state]), [[number, "Drill", "answered"]]);
 });
 
-test("standby is ended if the spare did not take over", async (t) => {
+test("standby ends if the spare did not take over", async (t) => {
   const made = await box(t);
   await made.ask("/adit/spare/standby", {});
   const { page, section, press } = await spareOf(t, made);

@@ -1,4 +1,4 @@
-// Many tabs of one browser share one stream of the box's events; a tab without a shared worker has its own while it is shown.
+// Many tabs of one browser share one event stream of the box. A tab without a shared worker has its own while it is visible.
 import assert from "node:assert/strict";
 import { get } from "node:http";
 import { test } from "node:test";
@@ -6,9 +6,10 @@ import { until } from "../box.js";
 import { TOKENS } from "./box.js";
 import { box, logIn } from "./visits.js";
 
-const MOST = 24; // streams that a box serves at once
+const MOST = 24;  // limit of a box's streams
 
-/** Opens streams beside those of the pages until the box rejects one, or `most` of them: their number, and what ends them. */
+/** Opens streams beside those of the pages until the box rejects one, or `most` of them. Returns their number and a function that ends
+ *  them. */
 async function fill(made, most = MOST) {
   const open = [];
   const one = () => new Promise((opened, failed) => {
@@ -22,7 +23,7 @@ async function fill(made, most = MOST) {
   return { count: open.length, end: () => open.forEach((request) => request.destroy()) };
 }
 
-/** Waits until so many streams of pages are open. */
+/** Waits until the pages have that many open streams. */
 const streamsAre = (made, count) => until(async () => {
   const { count: others, end } = await fill(made);
   end();
@@ -31,7 +32,7 @@ const streamsAre = (made, count) => until(async () => {
 
 const isLive = (page) => page.waitForSelector("body[data-link=live]");
 
-/** So many tabs of one browser, all live. */
+/** That many live tabs of one browser. */
 async function tabs(t, made, count) {
   const pages = [await logIn(t, made)];
   while (pages.length < count) {
@@ -43,7 +44,7 @@ async function tabs(t, made, count) {
   return pages;
 }
 
-test("seven tabs of one browser are live by one stream, a report is sent from the seventh, and all come back with the box", async (t) => {
+test("seven tabs of one browser share one stream, the seventh sends a report, and all recover with the box", async (t) => {
   const made = await box(t), pages = await tabs(t, made, 7), [first] = pages, last = pages.at(-1);
   await streamsAre(made, 1);
   await last.locator("#reports .compose:enabled").click();
@@ -62,7 +63,7 @@ test("seven tabs of one browser are live by one stream, a report is sent from th
   await first.locator('#reports li[data-key="2"]', { hasText: "Rope" }).waitFor();
 });
 
-test("the display and the run have one stream, and all tabs of a session that ends go to the login", async (t) => {
+test("display and run page share one stream, and all tabs of an ended session go to the login", async (t) => {
   const made = await box(t), pages = await tabs(t, made, 3);
   await pages[1].goto(`${made.url}display`);
   await isLive(pages[1]);
@@ -73,7 +74,7 @@ test("the display and the run have one stream, and all tabs of a session that en
   await streamsAre(made, 0);
 });
 
-test("a tab without a shared worker has a stream of its own while it is shown, and none while it is hidden", async (t) => {
+test("a tab without a shared worker has its own stream only while it is visible", async (t) => {
   const made = await box(t);
   const page = await logIn(t, made, (page) => page.addInitScript(() => delete globalThis.SharedWorker));
   const show = (isShown) => page.evaluate((isHidden) => {
@@ -90,7 +91,7 @@ test("a tab without a shared worker has a stream of its own while it is shown, a
   assert.equal(await page.getAttribute("body", "data-link"), "live");
 });
 
-test("a page that the box serves no stream says the box's sentence, and is live once another closes", async (t) => {
+test("a page without a stream shows the box's sentence, and is live once another page closes", async (t) => {
   const made = await box(t), pages = [await logIn(t, made), await logIn(t, made)];
   for (const page of pages) await page.goto("about:blank");
   let others;
@@ -106,7 +107,7 @@ test("a page that the box serves no stream says the box's sentence, and is live 
   await Promise.all(pages.map(isLive));
 });
 
-test("tabs have streams of their own if their worker ends, or its script does not come", async (t) => {
+test("tabs have their own streams if their worker ends or its script is lost", async (t) => {
   const made = await box(t), pages = await tabs(t, made, 2);
   const devtools = await pages[0].context().browser().newBrowserCDPSession();
   const { targetInfos } = await devtools.send("Target.getTargets");
@@ -121,7 +122,7 @@ test("tabs have streams of their own if their worker ends, or its script does no
     const { SharedWorker } = globalThis;
     globalThis.SharedWorker = class extends SharedWorker {
       constructor(name, ...more) {
-        super(name.replace(/\.[0-9a-f]+\./, ".0123456789ab."), ...more); // of another version of the box
+        super(name.replace(/\.[0-9a-f]+\./, ".0123456789ab."), ...more);  // from another version of the box
       }
     };
   }));

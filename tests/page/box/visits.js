@@ -1,4 +1,4 @@
-// What every test against the real box needs: a browser for the file, pages that look at the box, and their reports.
+// Shared by all tests against the real box: a browser for the file, and pages of the box.
 import { after, before } from "node:test";
 import { countAwaited, launch, leave, visit } from "../stage.js";
 import { begin, PASSWORD, TOKENS } from "./box.js";
@@ -11,14 +11,14 @@ let browser;
 before(async () => (browser = await launch()));
 after(() => browser?.close());
 
-/** A box for the length of one test. */
+/** A box for one test. */
 export async function box(t, options) {
   const made = await begin(options);
   t.after(() => made.end());
   return made;
 }
 
-/** A page of the box's, for who has the team's token. */
+/** A page of the box, with the team's token. */
 export async function look(t, made, path = "", { prepare, ...options } = {}) {
   const page = await visit(browser, made.url + path, { extraHTTPHeaders: { Authorization: `Bearer ${TOKENS.team}` }, ...options }, async (page) => {
     await page.addInitScript(countAwaited);
@@ -29,7 +29,7 @@ export async function look(t, made, path = "", { prepare, ...options } = {}) {
   return page;
 }
 
-/** The same for who logs in by password, in a browser of his own; `prepare(page)` before it is opened. */
+/** A page with a password log-in, in its own browser. `prepare(page)` runs before it is opened. */
 export async function logIn(t, made, prepare) {
   const page = await visit(browser, `${made.url}login.html`, {}, prepare);
   t.after(() => leave(page));

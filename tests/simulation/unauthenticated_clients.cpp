@@ -1,4 +1,4 @@
-#include "simulation/strangers.hpp"
+#include "simulation/unauthenticated_clients.hpp"
 
 #include <sys/epoll.h>
 #include <sys/socket.h>
@@ -15,7 +15,8 @@
 namespace adit::simulation {
 namespace {
 
-/// Addresses that no client of the team has: a client there would lose connections to the strangers' share.
+/// Addresses of no client of the team. A client there would lose connections to the share of
+/// unauthenticated ones.
 constexpr int kFirst = 120, kAddresses = 4, kMost = 80;
 constexpr std::string_view kBegun =
     "POST /adit/login HTTP/1.1\r\nHost: 10.0.0.1\r\nContent-Type: application/json\r\nContent-Length: "
@@ -23,7 +24,7 @@ constexpr std::string_view kBegun =
 
 }  // namespace
 
-Strangers::Strangers(World& world, double until)
+UnauthenticatedClients::UnauthenticatedClients(World& world, double until)
     : world_(world), random_(world.random("strangers")), until_(until) {
   if (world_.omits("strangers")) return;
   const double begin = random_.between(0, until_);
@@ -35,11 +36,11 @@ Strangers::Strangers(World& world, double until)
   }
 }
 
-Strangers::~Strangers() {
+UnauthenticatedClients::~UnauthenticatedClients() {
   for (const auto& socket : sockets_) close(*socket);
 }
 
-void Strangers::connect(Socket& socket) {
+void UnauthenticatedClients::connect(Socket& socket) {
   if (world_.time() > until_) return;
   socket.fd = world_.door().connect(socket.address);
   socket.watch = world_.descriptors().add(socket.fd, EPOLLIN | EPOLLRDHUP,
@@ -48,14 +49,14 @@ void Strangers::connect(Socket& socket) {
   send_a_byte(socket);
 }
 
-void Strangers::close(Socket& socket) {
+void UnauthenticatedClients::close(Socket& socket) {
   if (socket.fd < 0) return;
   world_.descriptors().remove(socket.watch);
   world_.door().closed(socket.fd);
   ::close(std::exchange(socket.fd, -1));
 }
 
-void Strangers::send_a_byte(Socket& socket) {
+void UnauthenticatedClients::send_a_byte(Socket& socket) {
   world_.after(seconds(random_.between(1, 10)), [this, one = &socket, fd = socket.fd] {
     if (fd < 0 || one->fd != fd) return;
     if (world_.time() > until_) return close(*one);
@@ -64,7 +65,7 @@ void Strangers::send_a_byte(Socket& socket) {
   });
 }
 
-void Strangers::read(Socket& socket) {
+void UnauthenticatedClients::read(Socket& socket) {
   std::array<char, 4096> bytes{};
   const ssize_t got = ::recv(socket.fd, bytes.data(), bytes.size(), MSG_DONTWAIT);
   if (got > 0 || (got < 0 && errno == EAGAIN)) return;

@@ -11,14 +11,14 @@ namespace adit::simulation {
 
 class World;
 
-/// Somebody without a token who holds sockets: from four addresses he begins a log-in on each connection,
-/// sends a byte of it now and then, and comes again where he is sent away.
-class Strangers {
+/// Clients without a token that hold connections. From four addresses they begin a log-in on each
+/// connection, send a byte now and then, and reconnect if they are cut.
+class UnauthenticatedClients {
  public:
-  Strangers(World& world, double until);
-  ~Strangers();
-  Strangers(const Strangers&) = delete;
-  Strangers& operator=(const Strangers&) = delete;
+  UnauthenticatedClients(World& world, double until);
+  ~UnauthenticatedClients();
+  UnauthenticatedClients(const UnauthenticatedClients&) = delete;
+  UnauthenticatedClients& operator=(const UnauthenticatedClients&) = delete;
 
  private:
   struct Socket {

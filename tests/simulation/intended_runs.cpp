@@ -1,21 +1,21 @@
-#include "simulation/meant.hpp"
+#include "simulation/intended_runs.hpp"
 
 #include <algorithm>
 
 #include "simulation/courses.hpp"
-#include "simulation/judge.hpp"
+#include "simulation/deciding_operator.hpp"
 #include "simulation/messages.hpp"
 #include "simulation/scoreboard.hpp"
 
 namespace adit::simulation {
 namespace {
 
-/// A report posted so shortly before a run began may be meant for it, and so long nobody may have noticed
-/// that it began.
+/// Seconds. A report posted this long before a run began may be meant for that run, and a new run may be
+/// unnoticed for as long.
 constexpr double kShortly = 25;
-/// Seconds within which a switch that was answered is made: by a timer.
+/// Seconds from the answer until a timer makes the switch.
 constexpr double kSwitching = 0.01;
-/// Seconds within which what a client asked may still count that heard nothing.
+/// Seconds in which a request may still count after its client heard no answer.
 constexpr double kUnknown = 12;
 constexpr const char* kUnwritten = "rejecting reports: the ledger cannot be written";
 
@@ -25,13 +25,13 @@ int place_of(const std::string& run) {
   return run.starts_with("other") ? 1 : 0;
 }
 
-/// Both, while it is not known which.
-std::set<int> Meant::places(double now) const {
+/// Both places, while the switch may be made or not.
+std::set<int> IntendedRuns::places(double now) const {
   if (unsure_ || now < switched_ + kSwitching) return {before_, place_};
   return {place_};
 }
 
-void Meant::switched(const Event& event) {
+void IntendedRuns::switched(const Event& event) {
   const int to = event.who == kOtherCourse ? 1 : 0;
   if (event.kind == Kind::Invoke) {
     if (!unsure_) before_ = place_;
@@ -42,7 +42,7 @@ void Meant::switched(const Event& event) {
   switched_ = event.at;
 }
 
-void Meant::posted(const Event& event) {
+void IntendedRuns::posted(const Event& event) {
   if (event.kind == Kind::Invoke) {
     postings_[event.serial].push_back({event.at, {}, false, event.request, event.what == kSend});
     open_[event.request] = {event.serial, 1e9};
@@ -54,7 +54,7 @@ void Meant::posted(const Event& event) {
   reach(event.at);
 }
 
-void Meant::reach(double now) {
+void IntendedRuns::reach(double now) {
   const std::set<int> there = places(now);
   const bool unheard = !std::ranges::all_of(there, [this](int place) { return heard_.contains(place); });
   std::erase_if(open_, [now](const auto& each) { return each.second.until < now; });
@@ -67,12 +67,12 @@ void Meant::reach(double now) {
   }
 }
 
-void Meant::add(const Event& event) {
+void IntendedRuns::add(const Event& event) {
   if (event.kind == Kind::NewRun && event.what != kSameMap) run_began_[place_of(event.who)] = event.at;
   const bool is_status = event.kind == Kind::Replied && event.what == kStatus && !event.says.empty();
   if (is_status) heard_.insert(static_cast<int>(event.serial));
   const bool is_said = event.kind == Kind::Said;
-  // What was heard while the ledger could not be written is forgotten.
+  // Runs that were noticed while the ledger could not be written are forgotten.
   if (unwritten_ && event.kind == Kind::Begins) heard_ = heard_before_;
   if (event.kind == Kind::Begins) unwritten_ = false;
   if (is_said && event.text.contains(kUnwritten)) unwritten_ = true;
@@ -86,7 +86,7 @@ void Meant::add(const Event& event) {
   if (event.what == kReports || is_word) posted(event);
 }
 
-bool Meant::is_meant(std::int64_t serial, int place, double now) const {
+bool IntendedRuns::is_intended(std::int64_t serial, int place, double now) const {
   const auto began = run_began_.find(place);
   const double since = began == run_began_.end() ? -1e9 : began->second;
   const auto found = postings_.find(serial);
@@ -98,7 +98,7 @@ bool Meant::is_meant(std::int64_t serial, int place, double now) const {
   });
 }
 
-bool Meant::is_sent_across(std::int64_t serial) const {
+bool IntendedRuns::is_sent_across(std::int64_t serial) const {
   const auto found = postings_.find(serial);
   return found != postings_.end() && std::ranges::any_of(found->second, [](const Posting& posting) {
            return posting.is_word && posting.places.size() > 1;

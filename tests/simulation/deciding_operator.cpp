@@ -1,4 +1,4 @@
-#include "simulation/judge.hpp"
+#include "simulation/deciding_operator.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include "simulation/courses.hpp"
 #include "simulation/http.hpp"
-#include "simulation/meant.hpp"
+#include "simulation/intended_runs.hpp"
 #include "simulation/messages.hpp"
 #include "simulation/scoreboard.hpp"
 #include "simulation/world.hpp"
@@ -14,8 +14,8 @@
 namespace adit::simulation {
 namespace {
 
-constexpr double kSure = 20;   // seconds after which the Command Post records no lost request any more
-constexpr double kAfter = 90;  // that he stays once the trouble is over
+constexpr double kSure = 20;   // seconds after which the Command Post does not record a lost request any more
+constexpr double kAfter = 90;  // seconds that the operator stays once the trouble is over
 constexpr const char* kHeaders =
     "Host: 10.0.0.1\r\nAuthorization: Bearer token-of-the-team\r\nContent-Type: application/json\r\n";
 
@@ -30,7 +30,7 @@ std::string drill(std::int64_t serial) {
 
 }  // namespace
 
-Judge::Judge(World& world, double trouble_for)
+DecidingOperator::DecidingOperator(World& world, double trouble_for)
     : world_(world),
       random_(world.random("judge")),
       client_(world, "10.0.0.12", {.keeps_alive = false, .patience = 20, .dribbles = 0.1},
@@ -41,87 +41,89 @@ Judge::Judge(World& world, double trouble_for)
   world_.after(seconds(looks_ ? random_.between(1, 8) : trouble_for), [this] { look(); });
 }
 
-bool Judge::is_over() const {
+bool DecidingOperator::is_over() const {
   return world_.time() > trouble_for_;
 }
 
-void Judge::look() {
+void DecidingOperator::look() {
   if (world_.time() > trouble_for_ + kAfter) return;
   world_.after(seconds(is_over() ? 10 : random_.between(2, 12)), [this] { look(); });
   if (is_over()) client_.is_needed();
-  if (client_.busy() || !words_.empty()) return;
+  if (client_.busy() || !decisions_.empty()) return;
   if (!is_over() && composes_ && random_.chance(0.3)) compose();
   client_.ask(http_request("GET", "/adit/run", kHeaders, ""), {.what = "/adit/run", .who = "reader"},
               [this](int status) {
-                if (status == 200) viewed(nlohmann::json::parse(client_.heard()));
-                say_next();
+                if (status == 200) read_view(nlohmann::json::parse(client_.heard()));
+                post_next();
               });
 }
 
-void Judge::viewed(const nlohmann::json& view) {
+void DecidingOperator::read_view(const nlohmann::json& view) {
   place_ = place_at(view.at("endpoints").front().at("address"));
   if (looks_) {
     for (const nlohmann::json& row : view.at("reports")) {
-      // What is in doubt elsewhere is found out there.
+      // A report in doubt at another course is decided there.
       const bool elsewhere = row.at("run") != view.at("run_number") && row.at("state") == "in_doubt";
-      if (!elsewhere) classify_report(row);
+      if (!elsewhere) decide(row);
     }
-    if (random_.chance(0.05)) words_.push_back({"/adit/identify", "identify", R"({"seconds": 4})", 0});
+    if (random_.chance(0.05)) decisions_.push_back({"/adit/identify", "identify", R"({"seconds": 4})", 0});
   }
-  for (const nlohmann::json& row : view.at("rejected")) judge_aside(row);
+  for (const nlohmann::json& row : view.at("rejected")) decide_rejected(row);
 }
 
-void Judge::classify_report(const nlohmann::json& row) {
-  if (row.at("position").is_null()) return;  // of a damaged ledger: nobody knows what it was
+void DecidingOperator::decide(const nlohmann::json& row) {
+  if (row.at("position").is_null()) return;  // of a damaged ledger: its content is unknown
   const std::string state = row.at("state");
   const std::int64_t id = row.at("number"),
                      serial = std::llround(row.at("position").at("x").get<double>() / 100);
   if (!is_over() && random_.chance(0.4)) return;
   if (state == "in_doubt" && !row.at("asking") && world_.time() > left_at(serial) + kSure)
-    say(id, is_recorded(serial) ? kSettle : kSend, serial);
-  if (state == "held") judge_held(id, serial);
-  if (state == "queued" && !is_over() && random_.chance(0.2)) say(id, kHold, serial);
+    push_decision(id, is_recorded(serial) ? kSettle : kSend, serial);
+  if (state == "held") decide_held(id, serial);
+  if (state == "queued" && !is_over() && random_.chance(0.2)) push_decision(id, kHold, serial);
 }
 
-/// It is worth sending where the present run has no record of it.
-void Judge::judge_held(std::int64_t id, std::int64_t serial) {
+/// The operator sends a held report if the current run has no record of it.
+void DecidingOperator::decide_held(std::int64_t id, std::int64_t serial) {
   if (serial < kCorrections && !is_recorded(serial) && random_.chance(0.2)) return correct(id, serial);
   const bool sends = !is_recorded(serial) && random_.chance(0.6);
-  say(id, sends ? kSend : kWithdraw, serial);
+  push_decision(id, sends ? kSend : kWithdraw, serial);
 }
 
-void Judge::judge_aside(const nlohmann::json& row) {
+void DecidingOperator::decide_rejected(const nlohmann::json& row) {
   const bool replaced = row.at("replaced");
   if (!is_over() && !looks_) return;
   if (replaced && random_.chance(0.5)) return;
   const std::string path = "/adit/rejected/" + number(row.at("number"));
-  words_.push_back({path + (replaced ? "/discard" : "/send"), replaced ? "discard" : kSendRejected, "", 0});
+  decisions_.push_back(
+      {path + (replaced ? "/discard" : "/send"), replaced ? "discard" : kSendRejected, "", 0});
 }
 
-/// A report of his own.
-void Judge::compose() {
+/// Reports as the operator.
+void DecidingOperator::compose() {
   const std::int64_t serial = kOwnReports + ++composed_;
-  words_.push_back({"/adit/reports", kCompose, drill(serial), serial});
+  decisions_.push_back({"/adit/reports", kCompose, drill(serial), serial});
 }
 
-void Judge::correct(std::int64_t id, std::int64_t serial) {
+void DecidingOperator::correct(std::int64_t id, std::int64_t serial) {
   const std::int64_t next = serial + kCorrections;
-  words_.push_back({"/adit/reports/" + number(id) + "/correct", kCorrect, drill(next), next});
+  decisions_.push_back({"/adit/reports/" + number(id) + "/correct", kCorrect, drill(next), next});
 }
 
-void Judge::say(std::int64_t id, const char* what, std::int64_t serial) {
-  words_.push_back({"/adit/reports/" + number(id) + "/" + what, what, "", serial});
+void DecidingOperator::push_decision(std::int64_t id, const char* what, std::int64_t serial) {
+  decisions_.push_back({"/adit/reports/" + number(id) + "/" + what, what, "", serial});
 }
 
-void Judge::say_next() {
-  if (words_.empty()) return;
-  const Word word = std::move(words_.front());
-  words_.pop_front();
-  client_.ask(http_request("POST", word.path, kHeaders, word.body),
-              {.what = word.what, .who = kOperator, .serial = word.serial}, [this](int) { say_next(); });
+void DecidingOperator::post_next() {
+  if (decisions_.empty()) return;
+  const Decision decision = std::move(decisions_.front());
+  decisions_.pop_front();
+  client_.ask(http_request("POST", decision.path, kHeaders, decision.body),
+              {.what = decision.what, .who = kOperator, .serial = decision.serial},
+              [this](int) { post_next(); });
 }
 
-bool Judge::is_recorded(std::int64_t serial) const {
+bool DecidingOperator::is_recorded(std::int64_t serial) const {
   const auto& events = world_.history().events();
   for (auto event = events.rbegin(); event != events.rend(); ++event) {
     const bool is_record = event->kind == Kind::Taken && event->what == kReports && event->serial == serial;
@@ -131,7 +133,7 @@ bool Judge::is_recorded(std::int64_t serial) const {
   return false;
 }
 
-double Judge::left_at(std::int64_t serial) const {
+double DecidingOperator::left_at(std::int64_t serial) const {
   const auto& events = world_.history().events();
   const auto left = std::find_if(events.rbegin(), events.rend(), [&](const Event& event) {
     return event.kind == Kind::Left && event.what == kReports && event.serial == serial;

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "forward/delivered_scene.hpp"
+#include "forward/record.hpp"
+#include "forward/uri_pace.hpp"
+#include "queues/stamps.hpp"
+#include "queues/state_queue.hpp"
+#include "settings/settings.hpp"
+
+namespace adit::forward {
+
+/// States: accepts them, chooses the next message, and decides what follows from its answer. Telemetry sends
+/// them.
+class States {
+ public:
+  /// A message in flight, which is not copied.
+  using Sent = std::shared_ptr<const queues::QueuedState>;
+  static constexpr icd::Uri kUri = icd::Uri::StateUpdate;
+  /// Joint failures before the search for the one at fault, also among markers.
+  static constexpr int kTriesTogether = 3;
+
+  /// `delivered` gets delivered states. Until then the journal has them. All outlive this.
+  States(loop::Loop& loop, const settings::Settings& settings, Record& record, std::mt19937_64& random,
+         journal::Journal& journal, DeliveredScene& delivered);
+
+  void carry_on(const journal::Carried& carried);
+  /// Another Command Post knows no robots yet.
+  void endpoint_turned();
+  /// Telemetry::change_run(), has_room_for(), take() and send_again().
+  void begin_run() { queue_.begin_run(); }
+  icd::Checked<void> has_room_for(const icd::StateUpdate& update);
+  icd::Checked<void> accept(const std::vector<queues::PostedPose>& poses, std::size_t bytes_received);
+  bool send_again(const icd::StateUpdate& state);
+
+  UriPace& pace() { return pace_; }
+  bool empty() const { return queue_.empty(); }
+  std::optional<loop::Instant> oldest() const { return queue_.oldest(); }
+  /// True if the robot has queued news.
+  bool wait_for(const std::string& robot) const;
+  /// The next message, stamped and journaled as sent. Null: none.
+  Sent take();
+  static icd::ChunkedBytes body_of(const queues::QueuedState& state);
+  /// Robots with news. Repeated poses do not count.
+  static std::vector<Traffic> traffic_of(const queues::QueuedState& state);
+
+  /// Counts an answer. `is_suspect`: the handler failed.
+  void count_failure(bool is_suspect);
+  void passed(const queues::QueuedState& state);
+  /// Passes an accepted message to delivered.
+  void show(const Sent& state);
+  /// Journals the answer. `is_done`: the message is not sent again.
+  void finish(const queues::QueuedState&, bool is_done) { journal_.state_answered(is_done); }
+  void put_back(const queues::QueuedState& state);
+  /// True: the message is at fault. False: it is queued again.
+  bool is_to_blame(const queues::QueuedState& state);
+  /// True: the message is to be rejected. False: several poses are queued again, each alone.
+  bool give_up(const queues::QueuedState& state);
+
+ private:
+  loop::Loop& loop_;
+  Record& record_;
+  journal::Journal& journal_;
+  DeliveredScene& delivered_;
+  UriPace pace_;
+  queues::StateQueue queue_;
+  queues::StampOrder stamps_;
+  queues::Blame blame_;
+  int failed_ = 0;  // successive handler failures
+};
+
+}  // namespace adit::forward

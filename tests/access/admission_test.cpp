@@ -33,7 +33,7 @@ class VerdictTest : public testing::Test {
     request.method = "POST";
     return request;
   }
-  /// 200 for one who may come in.
+  /// 200 if the request is admitted.
   Status verdict(const Request& request, Role role, Instant now = kNow) {
     const auto visitor = admit(request, role, tokens, sessions, now);
     return visitor ? Status::Ok : visitor.error().status;
@@ -99,13 +99,13 @@ TEST_F(VerdictTest, AcceptsEachTokenAsOperatorWithoutCsrf) {
   }
   for (const char* bad : {"Bearer", "Bearer team-", "Basic team-1", "team-1", "Bearer team-1x"}) {
     request.authorization = bad;
-    request.cookie = operators_cookie;  // who shows a token is judged by it alone
+    request.cookie = operators_cookie;  // a request with a token is judged only by the token
     request.csrf = operators_csrf;
     EXPECT_EQ(verdict(request, Role::Operator), Status::Unauthorized) << bad;
   }
   tokens.clear();
   request.authorization = "Bearer ";
-  EXPECT_EQ(verdict(request, Role::Viewer), Status::Unauthorized) << "no token is no open door";
+  EXPECT_EQ(verdict(request, Role::Viewer), Status::Unauthorized) << "a missing token must not give access";
 }
 
 TEST_F(VerdictTest, RejectsPagesOfOtherOrigins) {

@@ -37,7 +37,7 @@ TEST(Devices, AreLimitedPerRoleAndTheLongestUnseenGoes) {
   devices.add(secret(100), Role::Viewer);
   EXPECT_NE(devices.find(id(0)), nullptr);
   EXPECT_EQ(devices.find(id(1)), nullptr);
-  EXPECT_NE(devices.find(id(200)), nullptr) << "viewers take no operator's place";
+  EXPECT_NE(devices.find(id(200)), nullptr) << "viewers must not displace operators";
 }
 
 TEST(Devices, EndWithThePasswordOfTheirRole) {
@@ -53,10 +53,10 @@ TEST(Devices, EndWithThePasswordOfTheirRole) {
   EXPECT_EQ(devices.find(id(2)), nullptr);
   EXPECT_NE(devices.find(id(3)), nullptr);
   devices.end_all(Role::Operator, own);
-  EXPECT_EQ(changes, 5) << "the own one is of the new password";
+  EXPECT_EQ(changes, 5) << "the own device has the new password";
   devices.end_all(Role::Operator, 0);
   devices.end_all(Role::Operator, 0);
-  EXPECT_EQ(changes, 6) << "nothing to be kept";
+  EXPECT_EQ(changes, 6) << "no device to store";
 }
 
 TEST(Devices, ReadBackTheSame) {

@@ -40,7 +40,7 @@ TEST(Guesses, DoubleTheWaitUpToAMinute) {
   Instant now = kStart;
   for (const auto wait : {1s, 2s, 4s, 8s, 16s, 32s, 60s, 60s}) {
     EXPECT_EQ(guesses.begin(kOne, now), pause(wait));
-    EXPECT_EQ(guesses.begin(kOne, now + wait - 1ns), pause(1ns)) << "being told to wait costs nothing";
+    EXPECT_EQ(guesses.begin(kOne, now + wait - 1ns), pause(1ns)) << "a rejected attempt does not count";
     now += wait;
     EXPECT_EQ(guesses.begin(kOne, now), kAtOnce);
   }
@@ -59,7 +59,7 @@ TEST(Guesses, OfTheOperatorsAreNotClearedByTheViewers) {
     Guesses guesses;
     const Guesser viewer{.address = "10.0.0.5", .device = device};
     int tries = 0;
-    for (Instant now = kStart; now < kStart + 1h; now += 10ms) {  // a guess, a right one, a guess, ...
+    for (Instant now = kStart; now < kStart + 1h; now += 10ms) {  // wrong and right tokens alternate
       if (guesses.begin(viewer, now) != kAtOnce) continue;
       if (++tries % 2 == 0) guesses.succeeded(viewer, Role::Viewer);
     }
@@ -77,7 +77,7 @@ TEST(Guesses, AreOneASecondInTotal) {
   EXPECT_LE(tries, 1200 + Guesses::kSaved);
 }
 
-/// 120 addresses that ask all the time, and one that does as it is told.
+/// 120 addresses guess all the time, and one address waits as told.
 TEST(Guesses, GiveEachAddressATurnAtAKnownTime) {
   Guesses guesses;
   const auto all_ask = [&](Instant now) {
@@ -92,7 +92,7 @@ TEST(Guesses, GiveEachAddressATurnAtAKnownTime) {
   const Instant its = now + told.left;
   for (; now < its; now += 250ms) {
     all_ask(now);
-    EXPECT_EQ(guesses.begin(kOne, now), turn(its - now)) << "asking again neither helps nor harms";
+    EXPECT_EQ(guesses.begin(kOne, now), turn(its - now)) << "another attempt does not change the turn";
   }
   EXPECT_EQ(guesses.begin(kOne, its), kAtOnce);
 }

@@ -54,9 +54,9 @@ TEST_F(SessionsTest, AreFoundOnlyByTheirId) {
 TEST_F(SessionsTest, EndAfterTwelveIdleHours) {
   const Session session = begin(Role::Viewer, kStart);
   EXPECT_TRUE(lives(session, kStart + 12h - 1s));
-  EXPECT_TRUE(lives(session, kStart + 23h)) << "being seen puts it off";
+  EXPECT_TRUE(lives(session, kStart + 23h)) << "use extends the session";
   EXPECT_FALSE(lives(session, kStart + 35h));
-  EXPECT_FALSE(lives(session, kStart + 35h)) << "for good";
+  EXPECT_FALSE(lives(session, kStart + 35h)) << "the session has ended for good";
 }
 
 TEST_F(SessionsTest, EndAfterSevenDays) {
@@ -72,7 +72,7 @@ TEST_F(SessionsTest, AreAtMost64AndTheLongestIdleGoes) {
   const Session one_more = begin(Role::Viewer, kStart + 101s);
   EXPECT_EQ(sessions.all(kStart + 101s).size(), 64u);
   EXPECT_TRUE(lives(one_more, kStart + 101s));
-  EXPECT_TRUE(lives(all[0], kStart + 101s)) << "it was seen since";
+  EXPECT_TRUE(lives(all[0], kStart + 101s)) << "the session was used since";
   EXPECT_FALSE(lives(all[1], kStart + 101s));
 }
 
@@ -94,7 +94,7 @@ TEST_F(SessionsTest, KeepTheBrowsersNameAsShortPlainText) {
             std::string(Sessions::kLongestAgent, 'x'));
 }
 
-/// Laws, over many random steps.
+/// Invariants over many random steps.
 TEST_F(SessionsTest, HaveUniqueIdsAndEndInTime) {
   std::set<std::string> ids;
   std::set<std::uint64_t> numbers;
@@ -142,7 +142,7 @@ class SessionFileTest : public testing::Test {
   std::string written() const {
     return write_sessions({.boot = "boot-1", .last = sessions.last(), .sessions = sessions.in_order()});
   }
-  /// Those of the file, at `now`, after a restart.
+  /// The sessions in the file, read after a restart at `now`.
   Sessions restored(Instant now) const {
     auto kept = read_sessions(written()).value();
     Sessions after;
@@ -197,7 +197,7 @@ TEST_F(SessionFileTest, IsWrittenAtEachLoginAndLogout) {
   const Session mine = begin(watched, Role::Operator, kStart);
   EXPECT_EQ(told, 1);
   (void)watched.find(mine.id.reveal(), kStart);
-  EXPECT_EQ(told, 1) << "a look is not worth a write";
+  EXPECT_EQ(told, 1) << "a read access causes no write";
   EXPECT_FALSE(watched.end(99));
   EXPECT_EQ(told, 1);
   EXPECT_TRUE(watched.end(mine.number));

@@ -39,7 +39,7 @@ TEST(RequestHeaders, AcceptsOnlyHostNamesThatDnsCannotForge) {
                            "[fd00::1]x"}) {
     EXPECT_FALSE(names_this_box(host)) << host;
   }
-  // inet_pton() sees no more of these than the address before the NUL.
+  // inet_pton() only sees the address before the NUL.
   for (const std::string_view host : {"[fd00::1\0.evil.example]"sv, "10.0.0.1\0.evil.example"sv}) {
     EXPECT_FALSE(names_this_box(host));
   }

@@ -20,7 +20,7 @@ const Acknowledged kHeld{
 
 class AcknowledgedFileTest : public testing::Test {
  protected:
-  /// By a service that ends after it; how many lines were logged.
+  /// Writes in one process, which then ends. Returns the number of logged lines.
   std::uint64_t keep(const std::vector<std::vector<Acknowledged>>& each) {
     const std::uint64_t before = host::logged();
     loop::Loop loop;
@@ -45,7 +45,7 @@ class AcknowledgedFileTest : public testing::Test {
 };
 
 TEST_F(AcknowledgedFileTest, SurvivesARestart) {
-  EXPECT_TRUE(read().empty()) << "of a first start";
+  EXPECT_TRUE(read().empty()) << "at a first start";
   EXPECT_EQ(keep({{kHeld}}), 0u);
   EXPECT_EQ(read(), std::vector{kHeld});
   struct stat status{};

@@ -16,7 +16,7 @@ using testing::HasSubstr;
 
 class ClockSettingTest : public testing::Test {
  protected:
-  void say(const clock::Status& status) {
+  void write_status(const clock::Status& status) {
     ASSERT_TRUE(host::write_file(run_ / host::kStatusFile, codec::write_file(status), 0644));
     setting_.every_second(ntp_);
   }
@@ -32,7 +32,7 @@ class ClockSettingTest : public testing::Test {
     const auto ntp = text ? codec::read_file<clock::Ntp>(*text) : std::unexpected(text.error());
     return ntp ? std::optional(*ntp) : std::nullopt;
   }
-  /// The server is heard, and the system's clock is behind it.
+  /// Simulates NTP answers: the system's clock is `behind` seconds behind the server.
   void hear(double behind) {
     chronyd_.told = {.server = 0x0a000005, .heard = now(), .behind = behind};
     const int before = chronyd_.answers;
@@ -60,7 +60,7 @@ TEST_F(ClockSettingTest, ExplainsItselfIfAditClockDoesNotRun) {
   EXPECT_EQ(setting_.clock().source, std::nullopt) << "no source is known, but the time may be right";
   EXPECT_TRUE(setting_.clock().is_set);
   EXPECT_THAT(setting_.clock().why, HasSubstr("adit-clock"));
-  EXPECT_EQ(setting_.is_set(), std::nullopt) << "the machine's own affair";
+  EXPECT_EQ(setting_.is_set(), std::nullopt) << "the machine manages its clock";
   EXPECT_EQ(setting_.set_clock(now()).error().status, icd::Status::Conflict);
   setting_.offered({Source::CommandPost, now() + 60});
   EXPECT_FALSE(asked());
@@ -70,14 +70,14 @@ TEST_F(ClockSettingTest, ReportsNoTimeAndNoTroubleWhileAditClockStarts) {
   run_.put("adit-clock.service", "");
   ClockSetting starting{loop_, state_.path(), run_.path(), chronyd_.port(), run_.path()};
   starting.every_second({.server = "10.0.0.5", .clients = ""});
-  EXPECT_FALSE(starting.clock().is_set) << "the time at boot";
+  EXPECT_FALSE(starting.clock().is_set) << "the clock has the time at boot";
   EXPECT_EQ(starting.clock().why, "adit-clock is starting: wait a minute");
   EXPECT_EQ(starting.ntp_trouble(), "");
 }
 
 TEST_F(ClockSettingTest, RequestsTheOperatorsTimeAsOfItsEntry) {
   const clock::Status status{.boot = "b"};
-  say(status);
+  write_status(status);
   EXPECT_EQ(setting_.is_set(), false);
   ASSERT_TRUE(setting_.set_clock(1.8e9));
   const auto request = asked();
@@ -87,35 +87,35 @@ TEST_F(ClockSettingTest, RequestsTheOperatorsTimeAsOfItsEntry) {
   EXPECT_EQ(clock::hindrance(*request, std::chrono::duration<double>(loop_.now().time_since_epoch()).count(),
                              status),
             "");
-  say({.nonce = request->nonce, .refusal = "", .source = Source::Operator});
+  write_status({.nonce = request->nonce, .refusal = "", .source = Source::Operator});
   EXPECT_EQ(setting_.is_set(), true);
   EXPECT_EQ(setting_.clock().refusal, "");
 }
 
 TEST_F(ClockSettingTest, RejectsAnImpossibleTime) {
-  say({});
+  write_status({});
   EXPECT_EQ(setting_.set_clock(5).error().status, icd::Status::UnprocessableEntity);
   EXPECT_FALSE(asked());
 }
 
 TEST_F(ClockSettingTest, UsesTheCommandPostsTimeOnceUnlessOperatorSetIt) {
-  say({});
+  write_status({});
   setting_.offered({Source::CommandPost, now() + 600});
   const auto first = asked();
   ASSERT_TRUE(first);
   EXPECT_EQ(first->source, Source::CommandPost);
   setting_.offered({Source::CommandPost, now() + 700});
-  EXPECT_EQ(asked()->nonce, first->nonce) << "it is being set";
+  EXPECT_EQ(asked()->nonce, first->nonce) << "the request is in progress";
   ASSERT_TRUE(host::remove_file(state_ / clock::kRequestFile));
-  say({.nonce = first->nonce, .refusal = "", .source = Source::Operator});
+  write_status({.nonce = first->nonce, .refusal = "", .source = Source::Operator});
   setting_.offered({Source::CommandPost, now() + 600});
   EXPECT_FALSE(asked());
 }
 
 TEST_F(ClockSettingTest, SetsTheSystemToTheLastKnownTime) {
-  say({});
+  write_status({});
   setting_.offered({Source::LastKnown, now()});
-  EXPECT_FALSE(asked()) << "the system's own";
+  EXPECT_FALSE(asked()) << "the system's own NTP sets the clock";
   loop_.set_wall(now() + 5000);
   setting_.offered({Source::LastKnown, now()});
   ASSERT_TRUE(asked());
@@ -124,26 +124,26 @@ TEST_F(ClockSettingTest, SetsTheSystemToTheLastKnownTime) {
 }
 
 TEST_F(ClockSettingTest, TellsWhyTheClockWasNotSet) {
-  say({});
+  write_status({});
   ASSERT_TRUE(setting_.set_clock(1.8e9));
-  say({.nonce = asked()->nonce, .refusal = "cannot set the clock: no", .source = Source::None});
+  write_status({.nonce = asked()->nonce, .refusal = "cannot set the clock: no", .source = Source::None});
   EXPECT_THAT(setting_.clock().refusal, HasSubstr("cannot set the clock"));
   EXPECT_EQ(setting_.is_set(), false);
   ASSERT_TRUE(host::remove_file(state_ / clock::kRequestFile));
   setting_.offered({Source::CommandPost, now() + 600});
-  EXPECT_FALSE(asked()) << "it would be refused again, each second; a minute later it is asked again";
+  EXPECT_FALSE(asked()) << "after a rejection the next request is a minute later";
   EXPECT_TRUE(setting_.set_clock(1.8e9));
 }
 
 TEST_F(ClockSettingTest, RetriesAnUnansweredRequest) {
-  say({});
+  write_status({});
   setting_.offered({Source::CommandPost, now() + 600});
   const auto first = asked();
   ASSERT_TRUE(first);
   time_.pass(ClockSetting::kTakenUpWithin);
   setting_.every_second(ntp_);
   EXPECT_THAT(setting_.clock().refusal, HasSubstr("did not read the request"));
-  EXPECT_FALSE(asked()) << "it would be old";
+  EXPECT_FALSE(asked()) << "the request would be too old";
   setting_.offered({Source::CommandPost, now() + 600});
   const auto second = asked();
   ASSERT_TRUE(second);
@@ -151,14 +151,14 @@ TEST_F(ClockSettingTest, RetriesAnUnansweredRequest) {
 }
 
 TEST_F(ClockSettingTest, RetriesARejectedRequest) {
-  say({});
+  write_status({});
   setting_.offered({Source::CommandPost, now() + 600});
   const auto first = asked();
   ASSERT_TRUE(first);
   ASSERT_TRUE(host::remove_file(state_ / clock::kRequestFile));
-  say({.nonce = first->nonce,
-       .refusal = "at: expected a time within the last minute",
-       .source = Source::None});
+  write_status({.nonce = first->nonce,
+                .refusal = "at: expected a time within the last minute",
+                .source = Source::None});
   time_.pass(ClockSetting::kAskAgain - 1ms);
   setting_.offered({Source::CommandPost, now() + 600});
   EXPECT_FALSE(asked());
@@ -169,17 +169,17 @@ TEST_F(ClockSettingTest, RetriesARejectedRequest) {
 }
 
 TEST_F(ClockSettingTest, RequestsNtpPerSettingsAndAfterTheyChange) {
-  say({});
-  EXPECT_FALSE(asked_for_ntp()) << "it is off";
+  write_status({});
+  EXPECT_FALSE(asked_for_ntp()) << "NTP is off";
   ntp_ = {.server = "10.0.0.5", .clients = "10.0.0.0/24"};
-  say({});
+  write_status({});
   EXPECT_EQ(asked_for_ntp(), ntp_);
   ASSERT_TRUE(host::remove_file(state_ / clock::kNtpFile));
   const clock::Status done{.ntp = ntp_};
-  say(done);
-  EXPECT_FALSE(asked_for_ntp()) << "that is done";
+  write_status(done);
+  EXPECT_FALSE(asked_for_ntp()) << "the request was carried out";
   ntp_ = {};
-  say(done);
+  write_status(done);
   EXPECT_EQ(asked_for_ntp(), ntp_);
 }
 
@@ -195,7 +195,7 @@ TEST_F(ClockSettingTest, TellsThatNtpNeedsAditClock) {
 
 TEST_F(ClockSettingTest, AcceptsANtpTimeWithinTheUsualBounds) {
   ntp_ = {.server = "10.0.0.5", .clients = ""};
-  say({.source = Source::Operator, .ntp = ntp_});
+  write_status({.source = Source::Operator, .ntp = ntp_});
   hear(7776000);
   ASSERT_TRUE(asked());
   EXPECT_EQ(asked()->source, Source::Ntp);
@@ -204,9 +204,9 @@ TEST_F(ClockSettingTest, AcceptsANtpTimeWithinTheUsualBounds) {
 
 TEST_F(ClockSettingTest, AcceptsAnyStepFromANewNtpServer) {
   ntp_ = {.server = "10.0.0.5", .clients = ""};
-  say({.source = Source::Ntp, .server = "10.0.0.6", .ntp = ntp_});
+  write_status({.source = Source::Ntp, .server = "10.0.0.6", .ntp = ntp_});
   setting_.offered({Source::CommandPost, now() + 600});
-  EXPECT_FALSE(asked()) << "the one before counts as much as the operator";
+  EXPECT_FALSE(asked()) << "the earlier source is trusted like the operator";
   hear(-3600);
   ASSERT_TRUE(asked());
   EXPECT_FALSE(setting_.clock().is_kept);
@@ -217,20 +217,20 @@ TEST_F(ClockSettingTest, AcceptsAnyStepFromANewNtpServer) {
 
 TEST_F(ClockSettingTest, RejectsAnImpossibleNtpTime) {
   ntp_ = {.server = "10.0.0.5", .clients = ""};
-  say({.source = Source::None, .ntp = ntp_});
+  write_status({.source = Source::None, .ntp = ntp_});
   chronyd_.told = {.server = 0x0a000005, .heard = now(), .behind = -now()};
   ASSERT_TRUE(time_.pass_until(loop_, [&] {
     setting_.every_second(ntp_);
-    return chronyd_.answers > 1;  // the first has been read
+    return chronyd_.answers > 1;  // the first answer was read
   }));
   EXPECT_FALSE(asked());
 }
 
 TEST_F(ClockSettingTest, OperatorSetsItOnlyIfNoNtpServerIsHeard) {
   ntp_ = {.server = "10.0.0.5", .clients = ""};
-  say({.source = Source::Ntp, .server = ntp_.server, .ntp = ntp_});
-  ASSERT_TRUE(setting_.set_clock(1.8e9)) << "nobody is heard";
-  say({.nonce = asked()->nonce, .source = Source::Ntp, .server = ntp_.server, .ntp = ntp_});
+  write_status({.source = Source::Ntp, .server = ntp_.server, .ntp = ntp_});
+  ASSERT_TRUE(setting_.set_clock(1.8e9)) << "no NTP server answers";
+  write_status({.nonce = asked()->nonce, .source = Source::Ntp, .server = ntp_.server, .ntp = ntp_});
   ASSERT_TRUE(host::remove_file(state_ / clock::kRequestFile));
   hear(0.001);
   EXPECT_TRUE(setting_.clock().is_kept);
@@ -242,12 +242,12 @@ TEST_F(ClockSettingTest, OperatorSetsItOnlyIfNoNtpServerIsHeard) {
   EXPECT_FALSE(asked());
   ntp_ = {};
   setting_.every_second(ntp_);
-  EXPECT_TRUE(setting_.set_clock(1.8e9)) << "it is not asked any more";
+  EXPECT_TRUE(setting_.set_clock(1.8e9)) << "the server is not used any more";
 }
 
 TEST_F(ClockSettingTest, IgnoresOtherAndSilentNtpServers) {
   ntp_ = {.server = "10.0.0.5", .clients = ""};
-  say({.source = Source::Ntp, .server = ntp_.server, .ntp = ntp_});
+  write_status({.source = Source::Ntp, .server = ntp_.server, .ntp = ntp_});
   for (const clock::Tracking& other :
        {clock::Tracking{.server = 0x0a000006, .heard = now(), .behind = 0},
         clock::Tracking{.server = 0x0a000005, .heard = now() - NtpWatch::kSilence - 1, .behind = 0},
@@ -264,12 +264,12 @@ TEST_F(ClockSettingTest, IgnoresOtherAndSilentNtpServers) {
 
 TEST_F(ClockSettingTest, TellsWhatChronydDoesOrWhyItFails) {
   ntp_ = {.server = "", .clients = "10.0.0.0/24"};
-  say({.source = Source::None, .ntp = ntp_, .trouble = "cannot start chronyd: no"});
+  write_status({.source = Source::None, .ntp = ntp_, .trouble = "cannot start chronyd: no"});
   EXPECT_THAT(setting_.ntp_trouble(), HasSubstr("cannot start chronyd"));
-  say({.source = Source::None, .ntp = ntp_});
+  write_status({.source = Source::None, .ntp = ntp_});
   EXPECT_EQ(setting_.ntp_trouble(), "");
   EXPECT_EQ(setting_.clock().ntp, "once the time is set, NTP gives it to 10.0.0.0/24");
-  say({.source = Source::Operator, .ntp = ntp_});
+  write_status({.source = Source::Operator, .ntp = ntp_});
   EXPECT_EQ(setting_.clock().ntp, "NTP gives the time to 10.0.0.0/24");
 }
 

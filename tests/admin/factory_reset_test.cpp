@@ -32,9 +32,10 @@ class FactoryResetTest : public testing::Test {
       EXPECT_FALSE(kept(gone)) << gone;
     EXPECT_FALSE(std::filesystem::exists(runtime_ / "sessions.json"));
     for (const char* gone : {"journal", "waiting", "rejected"}) {
-      EXPECT_FALSE(std::filesystem::exists(runtime_ / gone)) << "the next team would send it";
+      EXPECT_FALSE(std::filesystem::exists(runtime_ / gone))
+          << "a leftover message would be sent by the next team";
     }
-    EXPECT_TRUE(kept("forget.json")) << "adit-network is asked to forget the addresses";
+    EXPECT_TRUE(kept("forget.json")) << "no request to adit-network to forget the addresses";
     EXPECT_TRUE(kept("ledger"));
   }
 
@@ -51,7 +52,7 @@ TEST_F(FactoryResetTest, DeletesNothingUnlessBegun) {
 
 TEST_F(FactoryResetTest, DeletesAllButTheReportsOnce) {
   ASSERT_TRUE(reset_.begin());
-  EXPECT_TRUE(kept("access.json")) << "nothing is taken away while others use it";
+  EXPECT_TRUE(kept("access.json")) << "a file in use was removed";
   EXPECT_EQ(reset_.finish(), true);
   expect_first_start();
   state_.put("access.json", "a new password");
@@ -61,7 +62,7 @@ TEST_F(FactoryResetTest, DeletesAllButTheReportsOnce) {
 
 TEST_F(FactoryResetTest, ContinuesAfterAnInterruption) {
   std::filesystem::remove(state_ / "access.json");
-  std::filesystem::create_directory(state_ / "access.json");  // stands for a file that cannot be removed
+  std::filesystem::create_directory(state_ / "access.json");  // a file that cannot be removed
   ASSERT_TRUE(reset_.begin());
   const auto done = reset_.finish();
   ASSERT_FALSE(done);

@@ -15,7 +15,7 @@
 
 namespace adit::admin {
 
-/// Tells whoever asks what it is told to tell.
+/// Answers with the values that a test sets.
 class FakeChronyd {
  public:
   explicit FakeChronyd(loop::Loop& loop) {

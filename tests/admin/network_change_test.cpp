@@ -27,11 +27,11 @@ class NetworkChangeTest : public testing::Test {
     settings.command_post.scoring = {"10.100.1.201", 8000};
     settings.command_post.mapping = {"10.100.1.200", 8000};
     status.kept = numbers();
-    tell();
+    write_status();
   }
 
-  /// As adit-network does; it is read again once it is no longer fresh.
-  void tell() {
+  /// Writes the status as adit-network does. It is read again once it is too old.
+  void write_status() {
     std::ofstream(folder / host::kStatusFile) << codec::write_file(status);
     time.pass(host::kFresh);
   }
@@ -44,7 +44,7 @@ class NetworkChangeTest : public testing::Test {
   void wait(const network::Numbers& wanted) {
     status.pending = network::Pending{std::string(32, 'a'), wanted, loop.now() + std::chrono::seconds(60),
                                       std::chrono::seconds(60)};
-    tell();
+    write_status();
   }
 
   host::Folder folder;
@@ -62,20 +62,20 @@ TEST_F(NetworkChangeTest, SendsAllEndpointsUntilAditNetworkKnowsThem) {
                       {"C", {"fd00::1", 8000}, {"10.0.0.9", 8000}}};
   change.every_second();
   const network::Endpoints all{{0x0a000009, 0x0a6401c8, 0x0a6401c9, 0x0a6402c8}};
-  EXPECT_EQ(asked(), all) << "in order, none twice, of IPv4";
+  EXPECT_EQ(asked(), all) << "sorted, unique, only IPv4";
   std::filesystem::remove(folder / network::kEndpointsFile);
   change.every_second();
-  EXPECT_EQ(asked(), std::nullopt) << "not again at once";
+  EXPECT_EQ(asked(), std::nullopt) << "a repeated request came too soon";
   status.endpoints = all;
-  tell();
+  write_status();
   NetworkChange another(loop, settings, adit_network, folder.path());
   another.every_second();
-  EXPECT_EQ(asked(), std::nullopt) << "it is known";
+  EXPECT_EQ(asked(), std::nullopt) << "the next hop is known";
 }
 
 TEST_F(NetworkChangeTest, SendsNothingIfAditNetworkHasOtherInterfaces) {
   status.team_interface = "eth7";
-  tell();
+  write_status();
   change.every_second();
   EXPECT_EQ(asked(), std::nullopt);
 }
@@ -98,7 +98,7 @@ TEST_F(NetworkChangeTest, ModeIsConfirmedAtAnyAddressButTheOld) {
 
 TEST_F(NetworkChangeTest, HidesTheLastChangeWhileAnotherIsPending) {
   status.ended = network::Ended::Confirmed;
-  tell();
+  write_status();
   EXPECT_EQ(change.network().last, "confirmed");
   wait(numbers("192.168.8.11/24"));
   EXPECT_EQ(change.network().last, "");
@@ -108,17 +108,17 @@ TEST_F(NetworkChangeTest, FindsTheHopToTheCommandPost) {
   const settings::Address endpoint{"10.100.1.201", 8000};
   EXPECT_EQ(change.next_hop(endpoint), "10.100.1.201");
   status.kept = numbers("192.168.7.11/24", "10.100.3.10/24", "10.100.3.1");
-  tell();
+  write_status();
   EXPECT_EQ(change.next_hop(endpoint), "10.100.3.1");
   status.kept = numbers("192.168.7.11/24", "10.100.3.10/24");
-  tell();
-  EXPECT_EQ(change.next_hop(endpoint), "") << "there is no route to it";
+  write_status();
+  EXPECT_EQ(change.next_hop(endpoint), "") << "no route exists";
 }
 
 TEST_F(NetworkChangeTest, TellsThatInterfacesCannotBeRead) {
   status.kept.reset();
-  tell();
-  change.network();  // reads the status, which stays fresh
+  write_status();
+  change.network();  // reads the status, which is then fresh
   rlimit before{};
   getrlimit(RLIMIT_NOFILE, &before);
   const rlimit none{.rlim_cur = 0, .rlim_max = before.rlim_max};
@@ -135,28 +135,28 @@ TEST_F(NetworkChangeTest, TellsThatInterfacesCannotBeRead) {
 TEST_F(NetworkChangeTest, TellsThatTheCommandPostSideHasNoAddress) {
   EXPECT_FALSE(change.fact().no_address);
   status.kept->command_post.clear();
-  tell();
+  write_status();
   EXPECT_TRUE(change.fact().no_address);
   wait(numbers());
-  EXPECT_FALSE(change.fact().no_address) << "the change may set it";
+  EXPECT_FALSE(change.fact().no_address) << "the pending change may set an address";
   EXPECT_GT(change.fact().confirm_within, 0);
 }
 
 class AddressConflictsTest : public NetworkChangeTest {
  protected:
-  /// As adit-network --watch does.
-  void watch_tells(const std::vector<network::AddressConflict>& taken,
-                   const std::vector<network::AddressConflict>& exchanged = {}) {
+  /// Writes the report of adit-network --watch.
+  void write_conflicts(const std::vector<network::AddressConflict>& conflicts,
+                       const std::vector<network::AddressConflict>& exchanged = {}) {
     std::ofstream(folder / network::kTakenFile)
-        << codec::write_file(network::AddressConflicts{taken, exchanged});
+        << codec::write_file(network::AddressConflicts{conflicts, exchanged});
     time.pass(host::kFresh);
   }
   network::AddressConflict on(const char* interface, const char* address, loop::Duration ago = {}) {
     return {interface, address, "02:00:00:00:00:07",
             std::chrono::floor<std::chrono::milliseconds>(loop.now() - ago)};
   }
-  /// Side by side with its address.
-  std::vector<std::string> taken() const {
+  /// Each interface with its address.
+  std::vector<std::string> conflicts() const {
     std::vector<std::string> all;
     for (const alarms::AddressConflict& each : change.fact().taken)
       all.push_back((each.is_team ? "team " : "command post ") + each.interface + " " + each.address);
@@ -165,21 +165,21 @@ class AddressConflictsTest : public NetworkChangeTest {
 };
 
 TEST_F(AddressConflictsTest, AreReportedOncePerSide) {
-  EXPECT_TRUE(taken().empty()) << "nobody listens";
-  watch_tells({on("darpa0", "10.100.1.10"), on("team0", "192.168.7.11"), on("darpa0", "10.100.2.10"),
-               on("eth7", "10.9.9.9")});
-  EXPECT_EQ(taken(),
+  EXPECT_TRUE(conflicts().empty()) << "adit-network --watch does not run";
+  write_conflicts({on("darpa0", "10.100.1.10"), on("team0", "192.168.7.11"), on("darpa0", "10.100.2.10"),
+                   on("eth7", "10.9.9.9")});
+  EXPECT_EQ(conflicts(),
             (std::vector<std::string>{"team team0 192.168.7.11", "command post darpa0 10.100.1.10"}));
   EXPECT_EQ(change.fact().taken[0].mac, "02:00:00:00:00:07");
-  watch_tells({});
-  EXPECT_TRUE(taken().empty());
+  write_conflicts({});
+  EXPECT_TRUE(conflicts().empty());
 }
 
 TEST_F(AddressConflictsTest, CountForAWhile) {
-  watch_tells({on("team0", "192.168.7.11", network::kTakenFor / 2)});
-  EXPECT_EQ(taken().size(), 1u);
-  watch_tells({on("team0", "192.168.7.11", network::kTakenFor)});
-  EXPECT_TRUE(taken().empty()) << "who listened does not run any more";
+  write_conflicts({on("team0", "192.168.7.11", network::kTakenFor / 2)});
+  EXPECT_EQ(conflicts().size(), 1u);
+  write_conflicts({on("team0", "192.168.7.11", network::kTakenFor)});
+  EXPECT_TRUE(conflicts().empty()) << "adit-network --watch has ended";
 }
 
 TEST_F(AddressConflictsTest, ShowExchangedCables) {
@@ -188,22 +188,22 @@ TEST_F(AddressConflictsTest, ShowExchangedCables) {
     return found ? found->address + ' ' + found->found_on + ' ' + found->sought_on : "";
   };
   EXPECT_EQ(exchanged(), "");
-  watch_tells({}, {on("team0", "10.100.1.77"), on("team0", "10.100.1.201")});
+  write_conflicts({}, {on("team0", "10.100.1.77"), on("team0", "10.100.1.201")});
   EXPECT_EQ(exchanged(), "10.100.1.201 team0 darpa0");
-  watch_tells({}, {on("team0", "10.100.1.201", network::kTakenFor)});
-  EXPECT_EQ(exchanged(), "") << "who listened does not run any more";
-  watch_tells({}, {on("team0", "10.100.1.77")});
-  EXPECT_EQ(exchanged(), "") << "another course's";
+  write_conflicts({}, {on("team0", "10.100.1.201", network::kTakenFor)});
+  EXPECT_EQ(exchanged(), "") << "adit-network --watch has ended";
+  write_conflicts({}, {on("team0", "10.100.1.77")});
+  EXPECT_EQ(exchanged(), "") << "the report is about another course";
   status.kept = numbers("192.168.7.11/24", "10.100.3.10/24", "10.100.3.1");
-  tell();
-  watch_tells({}, {on("team0", "10.100.3.1")});
-  EXPECT_EQ(exchanged(), "10.100.3.1 team0 darpa0") << "the gateway to it";
+  write_status();
+  write_conflicts({}, {on("team0", "10.100.3.1")});
+  EXPECT_EQ(exchanged(), "10.100.3.1 team0 darpa0") << "the gateway's address is exchanged";
 }
 
 TEST_F(AddressConflictsTest, AreEmptyIfTheFileIsDamaged) {
   std::ofstream(folder / network::kTakenFile) << R"({"format":1,"taken":[{"interface":"team0")";
   time.pass(host::kFresh);
-  EXPECT_TRUE(taken().empty());
+  EXPECT_TRUE(conflicts().empty());
 }
 
 }  // namespace

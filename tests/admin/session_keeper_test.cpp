@@ -16,7 +16,7 @@ constexpr access::Instant kStart{100h};
 
 class SessionKeeperTest : public testing::Test {
  protected:
-  /// The id of somebody who logs in.
+  /// Logs in and returns the session's id.
   std::string log_in(SessionKeeper& keeper) {
     const access::Secret id{++drawn_}, csrf{++drawn_};
     return keeper.sessions()
@@ -38,7 +38,7 @@ TEST_F(SessionKeeperTest, StoresSessionsAtOnce) {
   before.sessions().end(before.sessions().all(kStart).front().number);
   SessionKeeper after(file_, kStart);
   EXPECT_TRUE(knows(after, mine));
-  EXPECT_FALSE(knows(after, other)) << "who left has left";
+  EXPECT_FALSE(knows(after, other)) << "a logged-out session came back";
   struct stat status{};
   ASSERT_EQ(stat(file_.c_str(), &status), 0);
   EXPECT_EQ(status.st_mode & 07777, 0600u);

@@ -2,7 +2,7 @@
 
 namespace adit::admin {
 
-/// What a box must have.
+/// Minimal valid settings.
 inline constexpr const char* kSettings = R"({
   "version": 1,
   "command_post": {"scoring": {"address": "10.100.1.200", "port": 8000},

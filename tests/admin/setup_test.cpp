@@ -13,7 +13,7 @@ namespace {
 
 class SetupTest : public testing::Test {
  protected:
-  /// What the box was given.
+  /// Files that were copied to the box.
   struct Given : host::Folder {
     Given() { put("settings.json", settings::sample()); }
   };
@@ -48,7 +48,7 @@ TEST_F(SetupTest, RejectsASaveIfSavedSettingsCannotBeRead) {
   std::filesystem::create_directory(saved_file());
   setup_.runs_with(store_.load().value(), "");
   const auto saved = setup_.save(setup_.settings());
-  ASSERT_FALSE(saved) << "nobody knows whether they are the same";
+  ASSERT_FALSE(saved) << "unreadable settings cannot be compared";
   EXPECT_EQ(saved.error().status, icd::Status::ServiceUnavailable);
 }
 
@@ -68,7 +68,7 @@ TEST_F(SetupTest, TellsWhyTheLastChangeWasReverted) {
 TEST_F(SetupTest, WarnsIfPagesMayPostWithoutAToken) {
   settings::Settings next = setup_.settings();
   next.team.origins = "http://10.0.0.20:3000";
-  EXPECT_THAT(setup_.warnings(next), testing::IsEmpty()) << "all need a token";
+  EXPECT_THAT(setup_.warnings(next), testing::IsEmpty()) << "every course needs a token";
   next.team.require_token = false;
   EXPECT_THAT(setup_.warnings(next),
               testing::ElementsAre(testing::HasSubstr("every machine on the team's network"),
@@ -88,8 +88,8 @@ TEST_F(SetupTest, WarnsOfATokenOfUnusualLength) {  // ICD 4
   }
 }
 
-// A save that fails halfway may leave its settings on the disk: whoever then asks for those that the box runs
-// with has them written, lest the next start has the others.
+// A failed save may leave its settings on the disk. A save of the current settings then writes them,
+// because the next start would otherwise use the others.
 TEST_F(SetupTest, SavesCurrentSettingsAfterAFailedSave) {
   std::filesystem::create_directories(saved_file() + "/in the way");
   EXPECT_EQ(setup_.save(with_connections(30)).error().status, icd::Status::ServiceUnavailable);

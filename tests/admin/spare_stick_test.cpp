@@ -17,7 +17,7 @@ constexpr double kAt = 1795475760;
 
 class SpareStickTest : public testing::Test {
  protected:
-  void say(const spare::StickStatus& status) {
+  void write_status(const spare::StickStatus& status) {
     ASSERT_TRUE(host::write_file(run_ / host::kStatusFile, codec::write_file(status), 0644));
     time_.pass(host::kFresh);
   }
@@ -26,11 +26,11 @@ class SpareStickTest : public testing::Test {
     const auto request = text ? codec::read_file<spare::StickRequest>(*text) : std::unexpected(text.error());
     return request ? std::optional(*request) : std::nullopt;
   }
-  /// As adit-spare takes a request away, and then says that.
+  /// Removes the request as adit-spare does, and writes that status.
   void answer(spare::StickStatus status) {
     status.nonce = asked()->nonce;
     ASSERT_TRUE(host::remove_file(state_ / spare::kStickRequestFile));
-    say(status);
+    write_status(status);
     if (status.doing.empty()) EXPECT_TRUE(is_over());
   }
   bool is_over() {
@@ -54,7 +54,7 @@ TEST_F(SpareStickTest, IsAbsentIfAditSpareDoesNotRun) {
 }
 
 TEST_F(SpareStickTest, ListsExportsByTheirFileNames) {
-  say({.hindrance = "the stick is write-protected", .exports = {kName, "b.adit-spare"}});
+  write_status({.hindrance = "the stick is write-protected", .exports = {kName, "b.adit-spare"}});
   const auto view = stick_.view();
   ASSERT_TRUE(view);
   EXPECT_EQ(view->hindrance, "the stick is write-protected");
@@ -65,7 +65,7 @@ TEST_F(SpareStickTest, ListsExportsByTheirFileNames) {
 }
 
 TEST_F(SpareStickTest, WritesTheFileBeforeTheRequest) {
-  say({});
+  write_status({});
   ASSERT_TRUE(stick_.write(kName, "sealed"));
   EXPECT_EQ(host::read_file(state_ / spare::kForStickFile), "sealed");
   EXPECT_EQ(asked()->what, spare::StickRequest::What::Write);
@@ -74,7 +74,8 @@ TEST_F(SpareStickTest, WritesTheFileBeforeTheRequest) {
   EXPECT_THAT(why(stick_.take(kName)), HasSubstr("the box is already writing"));
   answer({.doing = "checking"});
   EXPECT_EQ(stick_.view()->doing, "checking");
-  say({.nonce = codec::read_file<spare::StickStatus>(*host::read_file(run_ / host::kStatusFile))->nonce,
+  write_status(
+      {.nonce = codec::read_file<spare::StickStatus>(*host::read_file(run_ / host::kStatusFile))->nonce,
        .written = kName});
   EXPECT_TRUE(is_over());
   EXPECT_EQ(stick_.view()->written, kName);
@@ -82,13 +83,13 @@ TEST_F(SpareStickTest, WritesTheFileBeforeTheRequest) {
 }
 
 TEST_F(SpareStickTest, RejectsAWriteThatCannotSucceed) {
-  say({.hindrance = "there is no stick in the box"});
+  write_status({.hindrance = "there is no stick in the box"});
   EXPECT_EQ(why(stick_.write(kName, "sealed")), "there is no stick in the box");
   EXPECT_FALSE(asked());
 }
 
 TEST_F(SpareStickTest, ReturnsTheReadFile) {
-  say({.exports = {kName}});
+  write_status({.exports = {kName}});
   ASSERT_TRUE(stick_.take(kName));
   run_.put(spare::kFromStickFile, "sealed");
   answer({.exports = {kName}});
@@ -96,19 +97,19 @@ TEST_F(SpareStickTest, ReturnsTheReadFile) {
 }
 
 TEST_F(SpareStickTest, TellsWhyARequestFailed) {
-  say({.exports = {kName}});
+  write_status({.exports = {kName}});
   ASSERT_TRUE(stick_.take(kName));
   answer({.refusal = "the file is not an export from Adit"});
   EXPECT_EQ(stick_.view()->refusal, "the file is not an export from Adit");
   ASSERT_TRUE(stick_.take(kName));
-  EXPECT_EQ(stick_.view()->refusal, "") << "while it is tried again";
+  EXPECT_EQ(stick_.view()->refusal, "") << "the error stays during a retry";
   answer({});
-  EXPECT_THAT(stick_.view()->refusal, HasSubstr("No such file")) << "adit-spare left no file";
+  EXPECT_THAT(stick_.view()->refusal, HasSubstr("No such file")) << "adit-spare wrote no file";
   EXPECT_TRUE(taken_.empty());
 }
 
 TEST_F(SpareStickTest, RejectsNamesOutsideTheStick) {
-  say({});
+  write_status({});
   for (const char* const name : {"../../etc/shadow", "a/b.adit-spare", "passwd", ""})
     EXPECT_THAT(why(stick_.take(name)), HasSubstr("name: expected")) << name;
   EXPECT_FALSE(asked());

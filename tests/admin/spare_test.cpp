@@ -16,7 +16,7 @@ namespace {
 using namespace std::chrono_literals;
 using testing::HasSubstr;
 
-/// A box in its lives: restart() is the end of one gateway and the begin of the next.
+/// A box over several gateways: restart() ends one and begins the next.
 class Box {
  public:
   Box() {
@@ -49,8 +49,8 @@ class Box {
     while (!done) loop_.turn(100ms);
     return *done;
   }
-  /// What adit-spare says, and what it is asked: the name of a file, and what is to be in it.
-  void say(const spare::StickStatus& status) const {
+  /// Writes adit-spare's status; reads its requests: the name of a file, and its content.
+  void write_status(const spare::StickStatus& status) const {
     ASSERT_TRUE(host::write_file(stick_ / host::kStatusFile, codec::write_file(status), 0644));
   }
   spare::StickRequest asked_of_stick() const {
@@ -61,11 +61,11 @@ class Box {
   }
   void read_from_stick(const std::string& file) {
     stick_.put(spare::kFromStickFile, file);
-    say({.nonce = asked_of_stick().nonce});
+    write_status({.nonce = asked_of_stick().nonce});
     while (!spare_->spare().stick->doing.empty()) loop_.turn(100ms);
   }
   Spare& spare() { return *spare_; }
-  /// Once the loop has done what was to be done at once.
+  /// Runs the loop until all immediate events are handled.
   Box& turned() {
     loop_.turn(10ms);
     return *this;
@@ -105,7 +105,7 @@ TEST(SpareBox, ExportsOnlyOnStandby) {
   EXPECT_THAT(box.exported().error().sentence, HasSubstr("not on standby"));
   ASSERT_TRUE(box.spare().stand_by());
   EXPECT_EQ(box.turned().restarts, 1);
-  EXPECT_EQ(box.spare().standby(), "") << "what is under way ends first";
+  EXPECT_EQ(box.spare().standby(), "") << "standby waits for requests in flight";
   box.restart();
   EXPECT_THAT(box.spare().standby(), HasSubstr("its spare takes over"));
   EXPECT_EQ(box.spare().spare().code.size(), 19U);
@@ -148,12 +148,12 @@ TEST(SpareBox, ImportsTheExportThatItsCodeOpens) {
   EXPECT_TRUE(second.spare().spare().asks_code);
   EXPECT_EQ(why(second.opened("12")), "code: expected 16 digits");
   EXPECT_THAT(why(second.opened("1234567890123456")), HasSubstr("not that of this export"));
-  EXPECT_TRUE(second.spare().spare().asks_code) << "it may be typed again";
+  EXPECT_TRUE(second.spare().spare().asks_code) << "the code may be typed again";
   EXPECT_EQ(why(second.spare().take_over()), "no export is open: import and open one first");
   ASSERT_TRUE(second.opened(first.spare().spare().code));
   EXPECT_EQ(second.spare().spare().taken_in->name, "192.168.7.11");
   EXPECT_EQ(second.spare().spare().taken_in->port, 8000);
-  EXPECT_EQ(second.turned().restarts, 0) << "nothing has changed yet";
+  EXPECT_EQ(second.turned().restarts, 0) << "the box restarted too early";
   ASSERT_TRUE(second.spare().take_over());
   EXPECT_EQ(second.turned().restarts, 1);
   EXPECT_EQ(why(second.spare().stand_by()), "this box is taking over just now");
@@ -161,7 +161,7 @@ TEST(SpareBox, ImportsTheExportThatItsCodeOpens) {
 
 TEST(SpareBox, ExportsToTheStickOnlyOnStandby) {
   Box box;
-  box.say({});
+  box.write_status({});
   EXPECT_THAT(why(box.to_stick()), HasSubstr("not on standby"));
   ASSERT_TRUE(box.spare().stand_by());
   box.restart();
@@ -177,7 +177,7 @@ TEST(SpareBox, ImportsFromTheStickLikeAnUpload) {
   Box first, second;
   ASSERT_TRUE(first.spare().stand_by());
   first.restart();
-  second.say({.exports = {"a.adit-spare"}});
+  second.write_status({.exports = {"a.adit-spare"}});
   ASSERT_TRUE(second.spare().take_from_stick("a.adit-spare"));
   EXPECT_FALSE(second.spare().spare().asks_code);
   second.read_from_stick(*first.exported());
@@ -201,28 +201,28 @@ TEST(SpareBox, StaysOnStandbyIfTakeOverFails) {
   box.restart();
   EXPECT_EQ(box.spare().standby(), "the take-over is not finished: no space left");
   EXPECT_THAT(box.exported().error().sentence, HasSubstr("not on standby"))
-      << "it has nothing whole to hand on";
+      << "the box has no complete state to export";
 }
 
 TEST(SpareBox, HidesExportsOfAnEarlierStandby) {
   Box box;
-  box.say({});
+  box.write_status({});
   ASSERT_TRUE(box.spare().stand_by());
   box.restart();
   ASSERT_TRUE(box.to_stick());
   const std::string file = box.for_stick().first;
-  box.say({.nonce = box.asked_of_stick().nonce, .written = file});
+  box.write_status({.nonce = box.asked_of_stick().nonce, .written = file});
   box.restart();
   EXPECT_EQ(box.spare().spare().stick->written, file);
-  box.say({.written = "adit-192.168.7.11-20200101T000000Z.adit-spare"});
+  box.write_status({.written = "adit-192.168.7.11-20200101T000000Z.adit-spare"});
   box.restart();
   EXPECT_EQ(box.spare().spare().stick->written, "");
-  box.say({.written = "named-by-hand.adit-spare"});
+  box.write_status({.written = "named-by-hand.adit-spare"});
   box.restart();
   EXPECT_EQ(box.spare().spare().stick->written, "");
 }
 
-/// That export, opened by its code.
+/// The export, opened with its code.
 spare::About about_of(Box& box) {
   const auto text = spare::unseal(*box.exported(), *spare::code_in(box.spare().spare().code));
   return spare::read(*text)->about;
@@ -236,8 +236,8 @@ TEST(SpareBox, CountsStandbysAndRecordsTheirTimes) {
     box.restart();
     const spare::About about = about_of(box);
     EXPECT_EQ(about.rest_count, count);
-    EXPECT_NEAR(about.stamp, stamp, 1) << "not that of the export";
-    EXPECT_EQ(about.told_at, std::nullopt) << "nobody set its time of day";
+    EXPECT_NEAR(about.stamp, stamp, 1) << "the stamp of standby, not of the export";
+    EXPECT_EQ(about.told_at, std::nullopt) << "the time of day was never set";
     ASSERT_TRUE(box.spare().resume());
     box.restart();
   }
@@ -259,7 +259,7 @@ TEST(SpareBox, ResumesWithADamagedButNotAnUnreadableFile) {
   std::filesystem::remove(file);
   std::filesystem::rename(elsewhere, file);
   box.restart();
-  EXPECT_NE(box.spare().standby(), "") << "it still rests";
+  EXPECT_NE(box.spare().standby(), "") << "the box is still on standby";
   box.state().put(SpareFile::kName, "no JSON");
   box.restart();
   EXPECT_TRUE(box.spare().resume());
@@ -275,7 +275,7 @@ TEST(SpareFile, NamesEarlierTakeOvers) {
   EXPECT_EQ(hindrance("third", 1), "");
   EXPECT_THAT(hindrance("other", 100), HasSubstr("already took over from this export"));
   EXPECT_THAT(hindrance("other", 99), HasSubstr("a later export of the same box"));
-  EXPECT_EQ(hindrance("counts", 50, 3), "") << "its clock was set back since";
+  EXPECT_EQ(hindrance("counts", 50, 3), "") << "the clock was set back since the export";
   EXPECT_THAT(hindrance("counts", 100, 2), HasSubstr("already took over from this export"));
   EXPECT_THAT(hindrance("counts", 150, 1), HasSubstr("a later export of the same box"));
 }

@@ -49,14 +49,14 @@ TEST_F(StoreTest, LoadsGivenSettingsUntilOthersAreSaved) {
 }
 
 TEST_F(StoreTest, RevertsToTheLastSettledSettings) {
-  EXPECT_FALSE(store_.revert()) << "nothing is on trial";
+  EXPECT_FALSE(store_.revert()) << "no settings are on trial";
   (void)store_.save(with_connections(30));
   store_.settle(with_connections(30));
   EXPECT_FALSE(store_.revert());
   (void)store_.save(with_connections(40));
   (void)store_.save(with_connections(50));
   EXPECT_TRUE(store_.revert());
-  EXPECT_EQ(connections(), 30u) << "the last that had proven itself";
+  EXPECT_EQ(connections(), 30u) << "the last settings that worked";
   EXPECT_FALSE(store_.revert());
 }
 
@@ -98,7 +98,7 @@ TEST_F(StoreTest, IgnoresUnknownSettingsOfALaterAdit) {
   EXPECT_TRUE(loaded.saved);
   EXPECT_EQ(loaded.settings.team.connections, 30u);
   EXPECT_EQ(loaded.trouble, "a later Adit saved the settings; these settings are ignored: beacons team.mesh");
-  EXPECT_EQ(host::read_file(state_ / "settings.json"), text) << "the later Adit finds it as it was";
+  EXPECT_EQ(host::read_file(state_ / "settings.json"), text) << "a later version's file must not change";
 }
 
 TEST_F(StoreTest, TellsWhyNoSettingsCanBeUsed) {
@@ -116,7 +116,7 @@ TEST_F(StoreTest, PrefersSavedTokensReadableByAditdOnly) {
   EXPECT_EQ(status.st_mode & 07777, 0600u);
   ASSERT_TRUE(store_.save_token("scoring", std::nullopt).has_value());
   EXPECT_EQ(store_.load()->secrets.token("scoring")->reveal(), "given-1");
-  EXPECT_TRUE(store_.save_token("scoring", std::nullopt).has_value()) << "there is none, and that is well";
+  EXPECT_TRUE(store_.save_token("scoring", std::nullopt).has_value()) << "removing an absent token succeeds";
 }
 
 TEST_F(StoreTest, LoadsTheTokensOfEachCourse) {
@@ -132,7 +132,7 @@ TEST_F(StoreTest, SettlingDeletesTokensOfRemovedCourses) {
   (void)store_.save_token("course.B.mapping", icd::BearerToken::parse("of-b"));
   (void)store_.save_token("team", icd::BearerToken::parse("team-1"));
   (void)store_.save(with_connections(30));
-  EXPECT_TRUE(kept("secrets/course.B.mapping.token")) << "it may be reverted yet";
+  EXPECT_TRUE(kept("secrets/course.B.mapping.token")) << "the settings may still be reverted";
   store_.settle(with_connections(30));
   EXPECT_FALSE(kept("secrets/course.B.mapping.token"));
   EXPECT_TRUE(kept("secrets/course.A.mapping.token") && kept("secrets/team.token"));
@@ -150,7 +150,8 @@ TEST_F(StoreTest, UnreadableFilesAreKeptAndPreventARevert) {
     const auto loaded = store_.load();
     ASSERT_TRUE(loaded.has_value()) << loaded.error();
     EXPECT_EQ(store_.unread(), (state_ / name) + ": is not a regular file");
-    EXPECT_EQ(store_.save(loaded->settings).error(), store_.unread()) << "on those that nobody chose";
+    EXPECT_EQ(store_.save(loaded->settings).error(), store_.unread())
+        << "default settings must not be saved over unreadable ones";
     store_.settle(loaded->settings);
     EXPECT_FALSE(store_.revert());
     EXPECT_TRUE(kept(name) && kept("settings.json.before") && kept("secrets/course.A.mapping.token")) << name;

@@ -30,7 +30,7 @@ class TakeoverTest : public testing::Test {
  protected:
   TakeoverTest() { given_.put("settings.json", kSettings); }
 
-  /// What a box with two reports hands on.
+  /// The export of a box with two reports.
   spare::Content content(std::size_t reports = 2) const {
     const host::Folder folder;
     auto ledger = ledger::Ledger::open(folder.path());
@@ -66,14 +66,14 @@ TEST_F(TakeoverTest, DoesNothingUnlessBegun) {
 TEST_F(TakeoverTest, ImportsReportsSettingsTokensAndStampsOnce) {
   store_.save_token("mapping", icd::BearerToken::parse("the-spare-s-own"));
   ASSERT_TRUE(taking_over_.begin(spare::write(content())));
-  EXPECT_FALSE(fs::exists(state_ / "ledger")) << "nothing is changed while others use it";
+  EXPECT_FALSE(fs::exists(state_ / "ledger")) << "a ledger in use was changed";
   ASSERT_EQ(taking_over_.finish(loop_), true);
   EXPECT_THAT(reports(), SizeIs(2));
   const auto loaded = store_.load();
   ASSERT_TRUE(loaded);
   EXPECT_TRUE(loaded->saved);
   EXPECT_EQ(loaded->secrets.token("scoring")->reveal(), "the-first-box-s");
-  EXPECT_FALSE(loaded->secrets.token("mapping")) << "the first box had none";
+  EXPECT_FALSE(loaded->secrets.token("mapping")) << "the first box had no token";
   EXPECT_EQ(forward::StampFloor(state_.path()).read()->least, 9e9 / 2);
   EXPECT_EQ(SpareFile::read(state_.path())->taken.at(0).at, 100);
   EXPECT_EQ(taking_over_.finish(loop_), false);
@@ -85,7 +85,7 @@ TEST_F(TakeoverTest, RecordsTheSizeOfTheOldLedger) {
   auto here = ledger::Ledger::open(state_.path());
   ASSERT_TRUE(here->write({&report, 1}));
   forward::StampFloor(state_.path()).write({.floor = 1, .ledger = here->known()});
-  here = std::unexpected(ledger::Error());  // it is closed
+  here = std::unexpected(ledger::Error());  // the ledger is closed
   ASSERT_TRUE(taking_over_.begin(spare::write(content())));
   ASSERT_EQ(taking_over_.finish(loop_), true);
   const auto kept = forward::StampFloor(state_.path()).read();
@@ -116,13 +116,11 @@ TEST_F(TakeoverTest, RejectsAnInvalidLedger) {
   const auto done = taking_over_.finish(loop_);
   ASSERT_FALSE(done);
   EXPECT_THAT(done.error(), HasSubstr("ledger"));
-  EXPECT_TRUE(fs::exists(state_ / "take-over")) << "it is tried again";
+  EXPECT_TRUE(fs::exists(state_ / "take-over")) << "a failed take-over is tried again";
   ASSERT_TRUE(taking_over_.abandon());
   EXPECT_EQ(taking_over_.finish(loop_), false);
 }
 
-/// What the Command Post said last at the first box is as old here as it was there, however the two clocks
-/// stand to each other: silence that nobody saw makes no new run.
 TEST_F(TakeoverTest, FailsWhileUsedExportsCannotBeRead) {
   ASSERT_TRUE(taking_over_.begin(spare::write(content())));
   fs::create_directory(fs::path(state_.path()) / SpareFile::kName);
@@ -132,6 +130,8 @@ TEST_F(TakeoverTest, FailsWhileUsedExportsCannotBeRead) {
   EXPECT_THAT(reports(), SizeIs(2));
 }
 
+/// The age of the Command Post's last status includes the swap only if both clocks are set. Silence that no
+/// box saw must not look like a new run.
 TEST_F(TakeoverTest, CountsTheSwapTimeOnlyIfBothClocksAreSet) {
   for (const bool are_told : {false, true}) {
     const host::Folder folder;
@@ -145,7 +145,7 @@ TEST_F(TakeoverTest, CountsTheSwapTimeOnlyIfBothClocksAreSet) {
     ASSERT_TRUE(taking_over_.begin(spare::write(content)));
     ASSERT_EQ(taking_over_.finish(loop_), true);
     const double stamp =
-        forward::StampFloor(state_.path()).read()->least;  // ahead of the clock: as all of it
+        forward::StampFloor(state_.path()).read()->least;  // ahead of the clock, like all stamps
     const auto runs = ledger::Ledger::open(state_.path())->runs();
     ASSERT_THAT(runs, SizeIs(1));
     EXPECT_NEAR(stamp - runs.at(0).heard, are_told ? 5010 : 10, 2);
@@ -178,16 +178,16 @@ TEST_F(TakeoverTest, KeepsSettingsOfThisMachine) {
   ASSERT_TRUE(taking_over_.begin(spare::write(other)));
   ASSERT_EQ(taking_over_.finish(loop_), true);
   const auto settings = store_.load()->settings;
-  EXPECT_EQ(settings.command_post.scoring.address, "10.100.2.200") << "the first box's";
+  EXPECT_EQ(settings.command_post.scoring.address, "10.100.2.200") << "the first box's address";
   EXPECT_EQ(settings.command_post.interface, "darpa0");
   EXPECT_EQ(settings.team.interface, "team0");
   EXPECT_THAT(settings.team.listen,
               testing::ElementsAre(settings::Address{"0.0.0.0", 80}, settings::Address{"::", 80}))
-      << "the first box's ports, at addresses that there are";
+      << "the first box's ports at existing addresses";
   EXPECT_TRUE(settings.panel.is_simulated());
 }
 
-/// The settings of this box and the first one's, without a team interface.
+/// The settings of this box and of the first one, without a team interface.
 class WithoutTeamInterfaceTest : public TakeoverTest {
  protected:
   static std::string settings(const std::string& command_post, const std::string& listen) {
@@ -209,7 +209,7 @@ TEST_F(WithoutTeamInterfaceTest, ListensAtOwnAddressesWithTheOtherBoxsPorts) {
   ASSERT_EQ(taking_over_.finish(loop_), true);
   EXPECT_THAT(store_.load()->settings.team.listen,
               testing::ElementsAre(settings::Address{"127.0.0.1", 80}, settings::Address{"::1", 80}))
-      << "it cannot start at an address of the first box, and would return to its own settings";
+      << "with an address of the first box, aditd would not start and would revert to its own settings";
 }
 
 TEST_F(WithoutTeamInterfaceTest, RejectsSettingsThatPostToItself) {

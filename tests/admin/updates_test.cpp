@@ -27,19 +27,19 @@ std::string content_of(const std::string& path) {
 
 class UpdatesTest : public testing::Test {
  protected:
-  UpdatesTest() { say({.running = {"adit-board", "0.1.0", "A", "B"}}); }
+  UpdatesTest() { write_status({.running = {"adit-board", "0.1.0", "A", "B"}}); }
 
-  void say(const update::Status& status) const {
+  void write_status(const update::Status& status) const {
     ASSERT_TRUE(host::write_file(run_ / host::kStatusFile, codec::write_file(status), 0644));
   }
-  /// Until what was read of the status is too old.
+  /// Waits until the status is too old.
   void wait() { time_.pass(host::kFresh); }
   std::optional<update::Request> asked() const {
     const auto text = host::read_file(state_ / update::kRequestFile);
     const auto request = text ? codec::read_file<update::Request>(*text) : std::unexpected(text.error());
     return request ? std::optional(*request) : std::nullopt;
   }
-  /// Sends `bytes` in pieces; what it ended in.
+  /// Sends `bytes` in pieces and returns the result.
   icd::Checked<void> upload(const std::string& bytes, std::uint64_t announced, bool again = false) {
     bool may_go_on = true;
     auto upload = updates_.receive(announced, again, [&may_go_on] { may_go_on = true; });
@@ -71,11 +71,11 @@ TEST_F(UpdatesTest, DeleteAnInterruptedUploadAtStart) {
 }
 
 TEST_F(UpdatesTest, ShowTheStatusOfAditUpdate) {
-  say({.running = {"adit-board", "0.1.0", "A", "B"},
-       .refusal = "the update is older",
-       .doing = "installing",
-       .progress = 40,
-       .last = {update::Stage::Installing, "0.2.0", "B", "boot", ""}});
+  write_status({.running = {"adit-board", "0.1.0", "A", "B"},
+                .refusal = "the update is older",
+                .doing = "installing",
+                .progress = 40,
+                .last = {update::Stage::Installing, "0.2.0", "B", "boot", ""}});
   const auto view = updates_.update();
   EXPECT_TRUE(view.managed);
   EXPECT_EQ(view.running.version, "0.1.0");
@@ -94,15 +94,15 @@ TEST_F(UpdatesTest, ReportIfAditUpdateIsMissing) {
     EXPECT_EQ(refused.error().status, icd::Status::Conflict);
   }
   wait();
-  say({.trouble = "RAUC does not run here: no"});
+  write_status({.trouble = "RAUC does not run here: no"});
   EXPECT_EQ(updates_.restart(true).error().sentence, "RAUC does not run here: no");
-  EXPECT_TRUE(updates_.update().runs_here) << "a fault to show";
+  EXPECT_TRUE(updates_.update().runs_here) << "the error must be shown";
   EXPECT_FALSE(asked());
 }
 
 TEST_F(UpdatesTest, ShowANewerVersionFromApt) {
   EXPECT_EQ(updates_.update().newer, std::nullopt);
-  EXPECT_EQ(updates_.update().newer_why, "") << "no apt here";
+  EXPECT_EQ(updates_.update().newer_why, "") << "apt is not installed here";
   const std::string file = run_.put(update::kNewerFile, "\n");
   EXPECT_EQ(updates_.update().newer, "");
   run_.put(update::kNewerFile, "1:0.2.0~rc1+deb13\n");
@@ -170,7 +170,7 @@ TEST_F(UpdatesTest, ReportAWriteError) {
   EXPECT_FALSE(asked());
 }
 
-/// No file may grow beyond so many bytes, as on a full disk.
+/// Limits the size of files, as a full disk does.
 class NoLargerFiles {
  public:
   explicit NoLargerFiles(rlim_t most) : before_(std::signal(SIGXFSZ, SIG_IGN)) {
@@ -201,7 +201,8 @@ TEST_F(UpdatesTest, FreeTheDiskAtOnceIfItFillsUp) {
     while (!may_go_on) loop_.turn(100ms);
     may_go_on = (*upload)->write(piece);
   }
-  EXPECT_TRUE(loop::turn_until(loop_, [&] { return fs::file_size(part) == 0; })) << "while more is to come";
+  EXPECT_TRUE(loop::turn_until(loop_, [&] { return fs::file_size(part) == 0; }))
+      << "the file is emptied before the upload ends";
   std::optional<icd::Checked<void>> ended;
   (*upload)->finish([&ended](icd::Checked<void> outcome) { ended = std::move(outcome); });
   ASSERT_TRUE(loop::turn_until(loop_, [&] { return ended.has_value(); }));
@@ -216,7 +217,7 @@ TEST_F(UpdatesTest, EndWithTheAnswerOfAditUpdate) {
   ASSERT_TRUE(request);
   EXPECT_EQ(request->what, update::Request::What::Stick);
   EXPECT_EQ(updates_.update().doing, "checking");
-  say({.nonce = request->nonce, .refusal = "no stick has an update"});
+  write_status({.nonce = request->nonce, .refusal = "no stick has an update"});
   wait();
   EXPECT_EQ(updates_.update().doing, "");
   EXPECT_EQ(updates_.update().refusal, "no stick has an update");
@@ -236,7 +237,7 @@ TEST_F(UpdatesTest, OfferGoBackAndStayInAnUnexpectedSlot) {
   EXPECT_EQ(updates_.stay().error().status, icd::Status::Conflict);
   EXPECT_FALSE(asked());
   wait();
-  say({.stray = "slot B runs, with 0.1.0"});
+  write_status({.stray = "slot B runs, with 0.1.0"});
   EXPECT_EQ(updates_.update().stray, "slot B runs, with 0.1.0");
   under_way_ = "report 7 is being sent";
   EXPECT_EQ(updates_.go_back(false).error().sentence, "report 7 is being sent");
@@ -246,13 +247,13 @@ TEST_F(UpdatesTest, OfferGoBackAndStayInAnUnexpectedSlot) {
 }
 
 TEST_F(UpdatesTest, RequestToStayInTheSlot) {
-  say({.stray = "slot B runs, with 0.1.0"});
+  write_status({.stray = "slot B runs, with 0.1.0"});
   ASSERT_TRUE(updates_.stay());
   EXPECT_EQ(asked()->what, update::Request::What::Stay);
 }
 
 TEST_F(UpdatesTest, RejectAnotherDuringATrial) {
-  say({.running = {"adit-board", "0.2.0", "B", "A"}, .trial = true});
+  write_status({.running = {"adit-board", "0.2.0", "B", "A"}, .trial = true});
   for (const auto& refused : {upload("x", 1), updates_.install_from_stick(false)}) {
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().status, icd::Status::Conflict);

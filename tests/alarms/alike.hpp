@@ -16,13 +16,13 @@ inline std::vector<std::string> ids_of(const std::vector<Condition>& conditions)
   return ids;
 }
 
-/// The condition of that id; an empty one: there is none.
+/// The condition with that id, or an empty one.
 inline Condition find(const std::vector<Condition>& conditions, const std::string& id) {
   const auto found = std::ranges::find(conditions, id, &Condition::id);
   return found == conditions.end() ? Condition{} : *found;
 }
 
-/// A run in which all is well: so many robots, each with a grid and poses.
+/// A run without alarms: that many robots, each with a grid and poses.
 inline Facts well(std::size_t robots = 2) {
   Facts facts{.now = kNow};
   facts.endpoints = {{.name = "scoring", .address = "10.100.1.200:8000"},

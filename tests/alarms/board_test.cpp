@@ -38,8 +38,8 @@ TEST(Board, RecordsTheStartOfAnAlarm) {
   Board board;
   board.take({kFew, kSilent}, 100);
   const auto shown = board.shown({kFew, kSilent}, 160);
-  EXPECT_EQ(shown[0].since, 70) << "as the rules say";
-  EXPECT_EQ(shown[1].since, 100) << "as it was found";
+  EXPECT_EQ(shown[0].since, 70) << "the rules' time";
+  EXPECT_EQ(shown[1].since, 100) << "the time at which it was found";
 }
 
 TEST(Board, RestartsAnAlarmOfAnotherSeverity) {
@@ -77,10 +77,10 @@ TEST(Board, AcknowledgedAlarmStaysQuietWhileUnchanged) {
   board.take({kSilent, kHeld}, 101);
   const auto shown = board.shown({kSilent, kHeld}, 102);
   EXPECT_TRUE(shown[0].acknowledged);
-  EXPECT_FALSE(shown[1].acknowledged) << "nobody has seen that one";
+  EXPECT_FALSE(shown[1].acknowledged) << "this alarm was never acknowledged";
 }
 
-/// A board on which that was acknowledged at 100.
+/// A board on which the condition was acknowledged at 100.
 Board acknowledged_on(const Condition& seen) {
   Board board;
   board.take({seen}, 90);
@@ -96,7 +96,7 @@ TEST(Board, AcknowledgedAlarmReturnsIfWorseOrRepeated) {
   EXPECT_FALSE(board.shown({few}, 101)[0].acknowledged);
   board.take({few}, 101);
   few.degree = 2;
-  EXPECT_FALSE(board.shown({few}, 102)[0].acknowledged) << "it was worse meanwhile";
+  EXPECT_FALSE(board.shown({few}, 102)[0].acknowledged) << "the alarm was worse meanwhile";
   ASSERT_TRUE(board.acknowledge(few.id, 100));
   few.severity = Severity::Bad;
   EXPECT_FALSE(board.shown({few}, 103)[0].acknowledged);
@@ -104,7 +104,7 @@ TEST(Board, AcknowledgedAlarmReturnsIfWorseOrRepeated) {
   board.take({kSilent}, 104);
   ASSERT_TRUE(board.acknowledge(kSilent.id, 100));
   board.take({}, 105);
-  EXPECT_FALSE(board.shown({kSilent}, 106)[0].acknowledged) << "it came again";
+  EXPECT_FALSE(board.shown({kSilent}, 106)[0].acknowledged) << "the alarm is a new one";
 }
 
 TEST(Board, ComparesWithTheLowestDegreeSinceAcknowledgement) {
@@ -113,9 +113,9 @@ TEST(Board, ComparesWithTheLowestDegreeSinceAcknowledgement) {
   Board board = acknowledged_on(few);
   few.degree = 1;
   board.take({few}, 101);
-  EXPECT_TRUE(board.shown({few}, 101)[0].acknowledged) << "better is no news";
+  EXPECT_TRUE(board.shown({few}, 101)[0].acknowledged) << "a smaller alarm stays acknowledged";
   few.degree = 5;
-  EXPECT_FALSE(board.shown({few}, 102)[0].acknowledged) << "four of them were not seen";
+  EXPECT_FALSE(board.shown({few}, 102)[0].acknowledged) << "four of the reports were not acknowledged";
 }
 
 TEST(Board, RejectsAcknowledgementOfAnAbsentAlarm) {
@@ -123,7 +123,7 @@ TEST(Board, RejectsAcknowledgementOfAnAbsentAlarm) {
   EXPECT_FALSE(board.acknowledge("robot_silent:uav5", 100));
 }
 
-/// A board that starts at `now` after one on which that was acknowledged at 100.
+/// A board that starts at `now`, after a board on which the condition was acknowledged at 100.
 Board after_a_restart(const Condition& seen, double now) {
   const Board before = acknowledged_on(seen);
   Board after;
@@ -133,7 +133,7 @@ Board after_a_restart(const Condition& seen, double now) {
   return after;
 }
 
-/// Whether somebody has seen it, as the board shows it once it is told.
+/// Whether the board shows the condition as acknowledged.
 bool is_quiet(Board& board, const Condition& condition, double now) {
   board.take({condition}, now);
   return board.shown({condition}, now).front().acknowledged;
@@ -142,14 +142,14 @@ bool is_quiet(Board& board, const Condition& condition, double now) {
 TEST(Board, AcknowledgementSurvivesARestart) {
   Board board = after_a_restart(kHeld, 130);
   board.take({}, 131);
-  EXPECT_EQ(board.acknowledged().size(), 1u) << "it may need some seconds to be found again";
+  EXPECT_EQ(board.acknowledged().size(), 1u) << "the condition may be found again after some seconds";
   EXPECT_TRUE(is_quiet(board, kHeld, 140));
-  EXPECT_TRUE(is_quiet(board, kHeld, 5000)) << "it goes on";
+  EXPECT_TRUE(is_quiet(board, kHeld, 5000)) << "the condition continues";
   ASSERT_EQ(board.acknowledged().size(), 1u);
-  EXPECT_EQ(board.acknowledged().front().at, 100) << "no restart makes it younger";
+  EXPECT_EQ(board.acknowledged().front().at, 100) << "a restart keeps the time";
   board.take({}, 5001);
   EXPECT_THAT(board.acknowledged(), IsEmpty());
-  EXPECT_FALSE(is_quiet(board, kHeld, 5002)) << "it came again";
+  EXPECT_FALSE(is_quiet(board, kHeld, 5002)) << "the alarm is a new one";
 }
 
 TEST(Board, OldAcknowledgementHidesNoNewAlarm) {
@@ -165,18 +165,19 @@ TEST(Board, OldAcknowledgementHidesNoNewAlarm) {
     EXPECT_FALSE(is_quiet(board, each, 131)) << each.id << each.headline.now() << each.why;
   }
   Board late = after_a_restart(few, 130);
-  EXPECT_FALSE(is_quiet(late, few, 131 + Acknowledged::kWaitsFor)) << "it comes a minute after the start";
+  EXPECT_FALSE(is_quiet(late, few, 131 + Acknowledged::kWaitsFor))
+      << "the condition is found a minute after the start";
   Board old = after_a_restart(few, 101 + Acknowledged::kHolds);
-  EXPECT_FALSE(is_quiet(old, few, 102 + Acknowledged::kHolds)) << "the box was off for long";
+  EXPECT_FALSE(is_quiet(old, few, 102 + Acknowledged::kHolds)) << "the box was off too long";
   Board early = after_a_restart(few, 99);
-  EXPECT_FALSE(is_quiet(early, few, 99)) << "whose clock went back";
+  EXPECT_FALSE(is_quiet(early, few, 99)) << "the clock went back";
   Board was_worse = after_a_restart(few, 130);
   was_worse.take({worse}, 131);
-  EXPECT_FALSE(is_quiet(was_worse, few, 132)) << "it was worse meanwhile";
+  EXPECT_FALSE(is_quiet(was_worse, few, 132)) << "the alarm was worse meanwhile";
   Board went = after_a_restart(few, 130);
   went.take({otherwise}, 131);
   went.take({}, 132);
-  EXPECT_FALSE(is_quiet(went, few, 133)) << "it came again";
+  EXPECT_FALSE(is_quiet(went, few, 133)) << "the alarm is a new one";
 }
 
 TEST(Board, AcknowledgementWaitsForTheSameAlarmAfterARestart) {
@@ -217,7 +218,8 @@ TEST(Words, ShowAgesAndPastForms) {
   EXPECT_EQ(age_text(7500), "2:05 h");
   EXPECT_EQ(clock_text(94), "1:34");
   EXPECT_EQ((Headline{"uav5", "silent"}.now()), "uav5 is silent");
-  EXPECT_EQ((Headline{"What is lit", "wrong"}.past()), "What is lit was wrong") << "a subject may have verbs";
+  EXPECT_EQ((Headline{"What is lit", "wrong"}.past()), "What is lit was wrong")
+      << "a subject may contain verbs";
   EXPECT_EQ((Headline{"All 20 robots", "silent", true}.past()), "All 20 robots were silent");
 }
 

@@ -1,4 +1,4 @@
-// The alarms on the card to print (board/card.html), in the words that the rules have today.
+// The alarms on the printable card (board/card.html), with the rules' current texts.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -17,7 +17,7 @@ std::string text_of(const std::string& path) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/// Two robots, of which one is shown by the word that stands for its name.
+/// Two robots. One has a placeholder as its name.
 Facts named() {
   Facts facts = well(1);
   for (Endpoint& endpoint : facts.endpoints) endpoint.address = "ADDRESS";
@@ -104,7 +104,7 @@ void the_network(std::vector<Facts>& days) {
   }
 }
 
-/// Each of the headlines once, with what is said by its side.
+/// Each headline once, with its text for each side.
 std::vector<Condition> all() {
   std::vector<Facts> days;
   for (const auto trouble : {EndpointTrouble::NoToken, EndpointTrouble::Unreachable, EndpointTrouble::Foreign,
@@ -145,7 +145,7 @@ std::string kind_of(const std::string& id) {
   return id.substr(0, id.find(':'));
 }
 
-/// Those that the README has a row of: the first of each row, and what follows it in that cell.
+/// The kinds with a row in the README: the first kind of each row, and further ones in that cell.
 std::set<std::string> kinds_in_readme() {
   const std::string text = text_of("firmware/rules/alarms/README.md");
   std::set<std::string> kinds;
@@ -171,7 +171,7 @@ TEST(AlarmsCard, NamesEachCondition) {
   }
 }
 
-/// The first cell of each kind's row in TROUBLE.md, by its first headline: the anchor is the kind.
+/// The first cell of each kind's row in TROUBLE.md, by its first headline. The anchor is the kind.
 std::string troubles(Side side) {
   constexpr std::string_view kSigns[] = {"■", "?", "○"};
   std::string cells;

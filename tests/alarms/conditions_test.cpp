@@ -16,13 +16,13 @@ using testing::IsEmpty;
 using testing::Not;
 using enum Severity;
 
-/// What makes a condition true, where all else is well.
+/// Facts that make a condition true while all others are false.
 struct ConditionCase {
   const char* id;
   Severity severity;
   Side side;
   const char* what;
-  const char* why;  // part of it
+  const char* why;  // a part of it
   void (*make)(Facts&);
 };
 
@@ -174,7 +174,7 @@ const ConditionCase kConditionCases[] = {
 
 TEST(Conditions, AreEmptyIfAllIsWell) {
   EXPECT_THAT(conditions_of(well()), IsEmpty());
-  EXPECT_THAT(conditions_of({}), IsEmpty()) << "nothing is known yet";
+  EXPECT_THAT(conditions_of({}), IsEmpty()) << "no facts are known yet";
   Facts used = well();
   used.disk.life = 9, used.disk.spares = 1;
   EXPECT_THAT(conditions_of(used), IsEmpty());
@@ -205,7 +205,7 @@ TEST(Conditions, HaveHeadlinesOfAtMostSevenWords) {
   }
 }
 
-/// Twenty robots, of which all maps are behind, and two reports that Adit asks for.
+/// Twenty robots with late maps, and two reports whose outcome Adit is finding out.
 Facts busy() {
   Facts facts = well(20);
   for (Stream& stream : facts.streams) {
@@ -339,7 +339,7 @@ TEST(Maps, AreNotBehindJustAfterAnOutage) {
   Facts facts = well(1);
   facts.streams[0].behind = 300;
   facts.endpoints[1].well_for = 20;
-  EXPECT_THAT(conditions_of(facts), IsEmpty()) << "it has its turn now";
+  EXPECT_THAT(conditions_of(facts), IsEmpty()) << "the robot has its turn now";
   facts.endpoints[1].well_for = 21;
   const auto found = conditions_of(facts);
   ASSERT_THAT(ids_of(found), ElementsAre("map_behind:uav1"));
@@ -347,7 +347,7 @@ TEST(Maps, AreNotBehindJustAfterAnOutage) {
   EXPECT_EQ(found[0].since, facts.now - 300);
   facts.endpoints[0].well_for = 1;
   facts.endpoints[1].well_for.reset();
-  EXPECT_THAT(ids_of(conditions_of(facts)), ElementsAre("map_behind:uav1")) << "scoring takes no maps";
+  EXPECT_THAT(ids_of(conditions_of(facts)), ElementsAre("map_behind:uav1")) << "scoring accepts no maps";
 }
 
 TEST(Queue, NamesThreeRejectedClientsForAMinute) {

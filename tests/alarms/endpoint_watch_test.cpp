@@ -7,7 +7,7 @@ namespace {
 
 using enum EndpointTrouble;
 
-/// One or two connections of an endpoint, looked at each second.
+/// One or two connections of an endpoint, checked each second.
 class EndpointWatchTest : public testing::Test {
  protected:
   explicit EndpointWatchTest(std::size_t ways = 1) : seen_(ways) {
@@ -17,7 +17,7 @@ class EndpointWatchTest : public testing::Test {
   void lasts(int seconds) {
     for (int i = 0; i < seconds; ++i) watch_.look(seen_, now_++);
   }
-  /// Each second a request is answered so.
+  /// One request per second gets that status.
   void answers(int status, int seconds, std::size_t way = 0) {
     ConnectionSample& seen = seen_.at(way);
     for (int i = 0; i < seconds; ++i) {
@@ -55,7 +55,7 @@ TEST_F(EndpointWatchTest, EndpointWithoutAnswersIsSilent) {
 
 TEST_F(EndpointWatchTest, TellsHowLongTheEndpointHasRecovered) {
   answers(200, 3);
-  EXPECT_EQ(watch_.endpoint(now_).well_for, std::nullopt) << "it always took all";
+  EXPECT_EQ(watch_.endpoint(now_).well_for, std::nullopt) << "it always accepted all messages";
   answers(500, 8);
   EXPECT_EQ(watch_.endpoint(now_).well_for, std::nullopt);
   answers(200, 1);
@@ -63,10 +63,10 @@ TEST_F(EndpointWatchTest, TellsHowLongTheEndpointHasRecovered) {
   answers(200, 5);
   EXPECT_EQ(watch_.endpoint(now_).well_for, 6);
   answers(500, 8);
-  EXPECT_EQ(watch_.endpoint(now_).well_for, std::nullopt) << "the next trouble";
+  EXPECT_EQ(watch_.endpoint(now_).well_for, std::nullopt) << "the next problem";
   watch_.forget();
   lasts(3);
-  EXPECT_EQ(watch_.endpoint(now_).well_for, 3) << "another place takes what waited for the one before";
+  EXPECT_EQ(watch_.endpoint(now_).well_for, 3) << "another course accepts the queued messages";
 }
 
 TEST_F(EndpointWatchTest, EndpointStaysSilentWhileRequestsTimeOut) {
@@ -74,7 +74,7 @@ TEST_F(EndpointWatchTest, EndpointStaysSilentWhileRequestsTimeOut) {
     seen_[0].busy = true;
     seen_[0].sent += 300;
     lasts(9);
-    EXPECT_EQ(trouble(), i > 0 ? Silent : None) << "what is sent again is no answer";
+    EXPECT_EQ(trouble(), i > 0 ? Silent : None) << "a retry is not an answer";
     seen_[0].busy = false;
     ++seen_[0].ended;
     seen_[0].status = 0;
@@ -117,13 +117,13 @@ TEST_F(EndpointWatchTest, EndpointThatClosesAfterErrorsIsFailing) {
     seen_[0].connected = false;
     lasts(3);
   }
-  EXPECT_EQ(trouble(), Failing) << "it is reached each time";
+  EXPECT_EQ(trouble(), Failing) << "each connection succeeds";
 }
 
 TEST_F(EndpointWatchTest, IdleConnectionIsNoTrouble) {
   seen_[0].connected = false;
   lasts(60);
-  EXPECT_EQ(trouble(), None) << "nothing was to be sent";
+  EXPECT_EQ(trouble(), None) << "no message was queued";
 }
 
 TEST_F(EndpointWatchTest, DistinguishesRefusingAndForeignEndpoints) {
@@ -149,12 +149,12 @@ TEST_F(EndpointWatchTest, EndpointWithOnlyErrorAnswersIsFailing) {
 
 TEST_F(EndpointWatchTest, EndpointThatRejectsMessagesIsNotFailing) {
   answers(422, 20);
-  EXPECT_EQ(trouble(), None) << "that is the message's fault";
+  EXPECT_EQ(trouble(), None) << "a rejected message is not the endpoint's fault";
 }
 
 TEST_F(EndpointWatchTest, SeveralThrottledAnswersAreTrouble) {
   answers(429, 2);
-  EXPECT_EQ(trouble(), None) << "now and then it is how Adit finds the rate";
+  EXPECT_EQ(trouble(), None) << "an occasional 429 is part of learning the rate";
   answers(429, 1);
   EXPECT_EQ(trouble(), Throttling);
   answers(200, 31);
@@ -178,9 +178,9 @@ TEST_F(TwoConnections, OneFailingConnectionIsNoTroubleOfTheEndpoint) {
     answers(500, 1, 0);
     answers(200, 1, 1);
   }
-  EXPECT_EQ(trouble(), None) << "the states are taken";
+  EXPECT_EQ(trouble(), None) << "states are accepted";
   answers(500, 20, 0);
-  EXPECT_EQ(trouble(), Failing) << "nothing else has been taken for long";
+  EXPECT_EQ(trouble(), Failing) << "no other message was accepted for long";
 }
 
 TEST_F(TwoConnections, BothFailingConnectionsAreTroubleOfTheEndpoint) {

@@ -10,7 +10,7 @@ using testing::IsEmpty;
 
 class HabitsTest : public testing::Test {
  protected:
-  /// It speaks each `gap` seconds, `times` times, and is looked at each second.
+  /// The robot posts `times` times, every `gap` seconds, and is checked each second.
   void speaks(const std::string& robot, double gap, int times) {
     for (int i = 0; i < times; ++i) {
       for (double later = now_ + gap; now_ < later; now_ += 1) habits_.heard(robot, count_, now_);
@@ -45,7 +45,7 @@ TEST_F(HabitsTest, FollowTheLongestGapsOfAnUnevenRobot) {
     speaks("ugv1", 1, 10);
     speaks("ugv1", 40, 1);
   }
-  EXPECT_FALSE(is_silent_after("ugv1", 60)) << "it pauses for 40 s now and then";
+  EXPECT_FALSE(is_silent_after("ugv1", 60)) << "the robot sometimes pauses for 40 s";
 }
 
 TEST_F(HabitsTest, BlameAKnownRobotSilentSinceARestart) {
@@ -54,28 +54,28 @@ TEST_F(HabitsTest, BlameAKnownRobotSilentSinceARestart) {
   EXPECT_TRUE(is_silent_after("uav5", 31));
   now_ += 20;
   habits_.heard("uav5", ++count_, now_);
-  EXPECT_FALSE(is_silent_after("uav5", 100)) << "it has no habit yet";
+  EXPECT_FALSE(is_silent_after("uav5", 100)) << "the robot has no habit yet";
   habits_.heard("ugv1", 7, now_);
   habits_.expect("ugv1", now_);
   habits_.heard("ugv1", 7, now_ + 20);
-  EXPECT_TRUE(is_silent_after("ugv1", 31)) << "its messages had waited since before";
+  EXPECT_TRUE(is_silent_after("ugv1", 31)) << "its messages were queued before";
   habits_.expect("uav6", now_);
   speaks("uav6", 1, 1);
   habits_.expect("uav6", now_);
-  EXPECT_FALSE(is_silent_after("uav6", 100)) << "it was heard";
+  EXPECT_FALSE(is_silent_after("uav6", 100)) << "the robot was heard";
 }
 
 TEST_F(HabitsTest, SurviveARestart) {
   speaks("uav5", 1, 20);
   Habits next;
-  next.carry_on("uav5", *habits_.of("uav5"), 1);  // one message that was queued before
+  next.carry_on("uav5", *habits_.of("uav5"), 1);  // a message that was queued before
   next.heard("uav5", 1, now_ + 5);
   EXPECT_FALSE(next.robots(rules_, now_ + 30).at("uav5").silent);
-  EXPECT_TRUE(next.robots(rules_, now_ + 31).at("uav5").silent) << "since its last message";
+  EXPECT_TRUE(next.robots(rules_, now_ + 31).at("uav5").silent) << "counted from its last message";
   next.expect("uav5", now_ + 40);
   EXPECT_EQ(next.robots(rules_, now_ + 60).at("uav5").quiet, 60);
   next.heard("uav5", 2, now_ + 61);
-  EXPECT_FALSE(next.robots(rules_, now_ + 62).contains("uav5")) << "it comes back";
+  EXPECT_FALSE(next.robots(rules_, now_ + 62).contains("uav5")) << "the robot comes back";
 }
 
 TEST_F(HabitsTest, IgnoreRobotsWithoutHabits) {
@@ -124,7 +124,7 @@ TEST(Growth, IsReportedOnceItLasts) {
   for (int second = 0; second < 120; ++second)
     growth.look(static_cast<std::size_t>(second) << 18, kRoom, now++);
   EXPECT_TRUE(growth.grows(now));
-  EXPECT_FALSE(growth.grows(now + Growth::kTold + Growth::kStep)) << "it is over";
+  EXPECT_FALSE(growth.grows(now + Growth::kTold + Growth::kStep)) << "the growth is over";
 }
 
 TEST(Growth, IgnoresOneLargeMap) {

@@ -48,7 +48,7 @@ TEST(RunClock, StopsIfTheLastStatusesAreEqual) {
 TEST(RunClock, ResumesWithTheFirstDifferentStatus) {
   RunClock clock;
   for (const double at : {1000.0, 1002.0, 1003.0}) clock.heard(754, at);
-  EXPECT_FALSE(clock.at(1003)->runs) << "two in one second say nothing against it";
+  EXPECT_FALSE(clock.at(1003)->runs) << "two statuses in one second are no contradiction";
   clock.heard(755, 1004);
   EXPECT_TRUE(clock.at(1004)->runs);
 }

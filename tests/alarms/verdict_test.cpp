@@ -17,7 +17,7 @@ TEST(Verdict, IgnoresMapsThatAreNoLongerSent) {
   facts.streams.push_back({.kind = "cloud", .robot = "uav1", .forwarded = 600.0, .last_status = 200});
   EXPECT_EQ(verdict_of(facts).why, "2 robots, oldest 4 s");
   facts.streams.push_back({.kind = "cloud", .robot = "uav2", .forwarded = 9.0, .last_status = 200});
-  EXPECT_EQ(verdict_of(facts).why, "2 robots, oldest 9 s") << "of one robot's maps the oldest";
+  EXPECT_EQ(verdict_of(facts).why, "2 robots, oldest 9 s") << "the oldest of each robot's maps";
 }
 
 TEST(Verdict, NamesASilentRobot) {
@@ -31,7 +31,7 @@ TEST(Verdict, NamesARobotSilentSinceARestart) {
   facts.robots["uav9"] = {.quiet = 40, .silent = true};
   EXPECT_EQ(verdict_of(facts), (Verdict{Level::Wait, "3 of 4 arrive", "not uav9; oldest other 5 s"}));
   facts.streams.push_back({.kind = "state", .robot = "uav9", .forwarded = 50.0, .last_status = 200});
-  EXPECT_EQ(verdict_of(facts).what, "Every map arrives") << "it sends none";
+  EXPECT_EQ(verdict_of(facts).what, "Every map arrives") << "the robot sends no maps";
 }
 
 TEST(Verdict, NamesAtMostThreeRobots) {
@@ -46,7 +46,7 @@ TEST(Verdict, NamesAtMostThreeRobots) {
 
 TEST(Verdict, ShowsTheAgeThatDecidesItsLevel) {
   Facts facts = well(3);
-  facts.streams[0].forwarded = 540;  // it paused, and its newest map is on its way
+  facts.streams[0].forwarded = 540;  // it paused, and its newest map is in flight
   facts.streams[0].behind = 2;
   EXPECT_EQ(verdict_of(facts), (Verdict{Level::Good, "Every map arrives", "3 robots, oldest 5 s"}));
 }
@@ -63,7 +63,7 @@ TEST(Verdict, TellsThatNoMapArrivesDuringAnOutage) {
   facts.endpoints[1].since = kNow - 72;
   EXPECT_EQ(verdict_of(facts), (Verdict{Level::Bad, "No map arrives", "for 1:12; the box keeps all maps"}));
   facts.endpoints[1].trouble = EndpointTrouble::Throttling;
-  EXPECT_EQ(verdict_of(facts).level, Level::Good) << "it takes them all the same";
+  EXPECT_EQ(verdict_of(facts).level, Level::Good) << "the endpoint accepts the maps";
 }
 
 TEST(Verdict, HasNoDurationIfTheTokenIsMissing) {
@@ -96,7 +96,7 @@ TEST(Verdict, DoesNotCountTheMergedMapAsARobot) {
   EXPECT_EQ(verdict_of(facts).why, "the merged map, 9 s");
 }
 
-/// uav1's grid, with everything else well.
+/// uav1's grid, with all other streams good.
 class StandingTest : public testing::Test {
  protected:
   Standing standing() const { return standing_of(facts_.streams.front(), facts_); }

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 constexpr const char* kNonce = "0123456789abcdef0123456789abcdef";
-/// It fails as long as there is a file "broken"; and a word that is there comes while it takes its time.
+/// Fails while a file "broken" exists. A file with a decision appears while it runs.
 constexpr const char* kNetworkctl = R"(
 ls wanted state >seen
 test ! -e broken || exit 1
@@ -33,21 +33,21 @@ class ApplierTest : public testing::Test {
     options.factory = folder / "factory.json";
     options.networkctl = folder.put("networkctl", "#!/bin/sh\ncd " + folder.path() + kNetworkctl, 0700);
   }
-  /// From its start to a kill.
+  /// One process, from its start to its kill.
   struct Life {
     explicit Life(const Options& options) : applier(loop, options), started(applier.start()) {}
     loop::Loop loop;
     Applier applier;
     std::expected<void, std::string> started;
   };
-  /// adit-network's exit status, more or less.
+  /// Whether adit-network exits with success.
   bool runs_well() {
     Life life(options);
     EXPECT_TRUE(life.started) << life.started.error();
     life.loop.run();
     return life.applier.is_done();
   }
-  /// As aditd does.
+  /// Writes a request as aditd does.
   template <class Request>
   void ask(const char* file, const Request& request) {
     fs::rename(folder.put("new", codec::write_file(request)), options.wanted + '/' + file);
@@ -68,7 +68,7 @@ class ApplierTest : public testing::Test {
   std::size_t reloads() const {
     return fs::exists(folder / "reloads") ? fs::file_size(folder / "reloads") : 0;
   }
-  /// What was in the folders when networkd was told of a change.
+  /// The content of the directories when networkd was told of a change.
   std::string seen() const {
     std::ifstream file(folder / "seen");
     return {std::istreambuf_iterator<char>(file), {}};
@@ -86,7 +86,8 @@ TEST_F(ApplierTest, DeletesAForgetRequestOnceDone) {
   EXPECT_TRUE(runs_well());
   folder.put("wanted/forget.json", codec::write_file(network::Forget{kNonce}));
   EXPECT_TRUE(runs_well());
-  EXPECT_EQ(seen(), "state:\n\nwanted:\nforget.json\n") << "a power cut now would lose it";
+  EXPECT_EQ(seen(), "state:\n\nwanted:\nforget.json\n")
+      << "the request must be removed only after its effect is on disk";
   EXPECT_TRUE(fs::is_empty(options.wanted));
 }
 
@@ -106,7 +107,7 @@ TEST_F(ApplierTest, DeletesAnInvalidForgetRequest) {
 TEST_F(ApplierTest, ReportsARequestThatCannotBeDeleted) {
   fs::create_directory(options.wanted + "/word.json");
   const pid_t child = fork();
-  if (child == 0) {  // what is mounted on cannot be taken away
+  if (child == 0) {  // a mount point cannot be removed
     const int own = geteuid() == 0 ? CLONE_NEWNS : CLONE_NEWUSER | CLONE_NEWNS;
     const bool mounted = unshare(own) == 0 && mount("", "/", "", MS_REC | MS_PRIVATE, "") == 0 &&
                          mount("none", (options.wanted + "/word.json").c_str(), "tmpfs", 0, "") == 0;
@@ -117,7 +118,7 @@ TEST_F(ApplierTest, ReportsARequestThatCannotBeDeleted) {
   ASSERT_TRUE(WIFEXITED(status));
   if (WEXITSTATUS(status) == 77) GTEST_SKIP() << "needs to mount";
   EXPECT_EQ(WEXITSTATUS(status), 0);
-  EXPECT_TRUE(runs_well()) << "once it can be";
+  EXPECT_TRUE(runs_well()) << "once the file can be removed";
 }
 
 TEST_F(ApplierTest, ReportsAFailedAddressProbe) {
@@ -159,7 +160,7 @@ class NetworkdFailureTest : public ApplierTest {
     EXPECT_TRUE(runs_well());
     before = reloads();
   }
-  /// And only once.
+  /// Checks that the next start reloads networkd, once.
   void expect_reload_by_the_next_start() {
     const std::size_t failed = reloads();
     mend_networkd();
@@ -176,7 +177,7 @@ TEST_F(NetworkdFailureTest, WhileAChangeIsRevertedAfterAKill) {
   EXPECT_TRUE(Life(options).started);
   break_networkd();
   EXPECT_FALSE(Life(options).started);
-  EXPECT_TRUE(status().pending) << "it is in use still";
+  EXPECT_TRUE(status().pending) << "the change is still in use";
   mend_networkd();
   EXPECT_TRUE(runs_well());
   EXPECT_EQ(reloads(), before + 2);
@@ -203,7 +204,7 @@ TEST_F(NetworkdFailureTest, WhileRoutesChange) {
   break_networkd();
   ask(network::kEndpointsFile, by_gateway);
   EXPECT_FALSE(runs_well());
-  EXPECT_EQ(status().endpoints, network::Endpoints{}) << "aditd asks again";
+  EXPECT_EQ(status().endpoints, network::Endpoints{}) << "aditd repeats the request";
   expect_reload_by_the_next_start();
   EXPECT_EQ(status().endpoints, by_gateway);
 }
@@ -227,7 +228,7 @@ TEST_F(NetworkdFailureTest, WhileAllIsForgotten) {
   ask(network::kForgetFile, network::Forget{kNonce});
   EXPECT_FALSE(runs_well());
   EXPECT_FALSE(Life(options).started);
-  EXPECT_EQ(status().kept, kept) << "they are in use still";
+  EXPECT_EQ(status().kept, kept) << "the addresses are still in use";
   mend_networkd();
   EXPECT_TRUE(runs_well());
   EXPECT_GT(reloads(), before);

@@ -41,7 +41,8 @@ TEST(AddressClaim, IsAnyPacketFromTheAddress) {
 }
 
 TEST(AddressClaim, IsNoOtherPacket) {
-  EXPECT_EQ(claimant(packet(1, kOurMac, 0, kOurAddress), kOurAddress, kOurMac), std::nullopt) << "one's own";
+  EXPECT_EQ(claimant(packet(1, kOurMac, 0, kOurAddress), kOurAddress, kOurMac), std::nullopt)
+      << "our own packet";
   EXPECT_EQ(claimant(packet(2, kOurMac, kOurAddress, kTheirAddress), kOurAddress, kOurMac), std::nullopt);
   EXPECT_EQ(claimant(packet(1, kOther, kTheirAddress, kOurAddress), kOurAddress, kOurMac), std::nullopt)
       << "somebody asks for it";

@@ -32,7 +32,7 @@ class ClockSetterTest : public testing::Test {
     fs::permissions(folder / "systemctl", fs::perms::owner_all);
   }
   void ask(const clock::Ntp& ntp) { folder.put("wanted/ntp.json", codec::write_file(ntp)); }
-  /// What systemd was told since the last time.
+  /// The orders to systemd since the last call.
   std::string orders() {
     const std::string all = host::read_file(folder / "orders").value_or("");
     fs::remove(folder / "orders");
@@ -93,7 +93,7 @@ TEST_F(ClockSetterTest, RejectsARequestOfAnotherBoot) {
   boot = "c";
   const clock::Status told = work();
   EXPECT_THAT(told.refusal, HasSubstr("boot:"));
-  EXPECT_EQ(told.boot, "c") << "so that it is asked again by this one";
+  EXPECT_EQ(told.boot, "c") << "so that this boot's process requests it again";
   EXPECT_THAT(set, IsEmpty());
 }
 
@@ -102,14 +102,14 @@ TEST_F(ClockSetterTest, TellsWhyItFailed) {
   ask(1.8e9, 97.5);
   const clock::Status told = work();
   EXPECT_THAT(told.refusal, HasSubstr(trouble));
-  EXPECT_EQ(told.source, Source::None) << "it is not set";
+  EXPECT_EQ(told.source, Source::None) << "the chip's clock is not set";
 }
 
 TEST_F(ClockSetterTest, RecognizesAChipThatAgreesWithTheClock) {
   EXPECT_EQ(work().source, Source::None);
   fs::remove(folder / "status/status.json");
   folder.put("chip/since_epoch", "1500000000\n");
-  EXPECT_EQ(work().source, Source::None) << "its battery is empty";
+  EXPECT_EQ(work().source, Source::None) << "the chip's battery is empty";
   fs::remove(folder / "status/status.json");
   folder.put("chip/since_epoch", "1790000001\n");
   EXPECT_EQ(work().source, Source::Chip);
@@ -125,7 +125,7 @@ TEST_F(ClockSetterTest, WritesNoGuessToTheChip) {
     work();
   }
   EXPECT_THAT(set, ElementsAre(1.8e9 + 1, 1.8e9 + 1));
-  EXPECT_THAT(chip, IsEmpty()) << "the next start would take it for the chip's own";
+  EXPECT_THAT(chip, IsEmpty()) << "the next start would take the time for the chip's";
   for (const Source known : {Source::CommandPost, Source::Operator, Source::Ntp}) {
     ask(1.8e9, 99, known);
     work();
@@ -147,15 +147,15 @@ TEST_F(ClockSetterTest, LetsChronydSetTheClockOnceItsTimeWasAccepted) {
   EXPECT_EQ(chrony("chrony.options"), "CHRONYD=-x\n");
   ask(1.8e9, 99, Source::Ntp, "10.0.0.5");
   EXPECT_EQ(work().source, Source::Ntp);
-  EXPECT_THAT(set, ElementsAre(1.8e9 + 1)) << "within the bounds of any other";
+  EXPECT_THAT(set, ElementsAre(1.8e9 + 1)) << "with the same limits as other times";
   EXPECT_EQ(orders(), "restart adit-ntp.service\n");
   EXPECT_EQ(chrony("chrony.options"), "CHRONYD=\n");
   ask({.server = "10.0.0.5", .clients = ""});
   work();
-  EXPECT_EQ(orders(), "") << "as it was";
+  EXPECT_EQ(orders(), "") << "the configuration did not change";
   ask(1.8e9, 99, Source::Operator);
   work();
-  EXPECT_EQ(chrony("chrony.options"), "CHRONYD=-x\n") << "else it would be set back";
+  EXPECT_EQ(chrony("chrony.options"), "CHRONYD=-x\n") << "otherwise chronyd would set the clock back";
   EXPECT_EQ(orders(), "restart adit-ntp.service\n");
 }
 
@@ -165,7 +165,7 @@ TEST_F(ClockSetterTest, LetsChronydOnlyMeasureANewServer) {
   EXPECT_EQ(work().server, "10.0.0.5");
   ask({.server = "10.0.0.6", .clients = ""});
   work();
-  EXPECT_EQ(chrony("chrony.options"), "CHRONYD=-x\n") << "its first time may be an hour off";
+  EXPECT_EQ(chrony("chrony.options"), "CHRONYD=-x\n") << "chronyd's first time may be an hour off";
   ask(1.7999e9, 99, Source::Ntp, "10.0.0.5");
   EXPECT_THAT(work().refusal, HasSubstr("server:"));
   ask(1.7999e9, 99, Source::Ntp, "10.0.0.6");

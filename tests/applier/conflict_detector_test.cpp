@@ -25,7 +25,7 @@ constexpr bool kAsks = true, kAnswers = false;
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// A packet of ARP as it comes, behind Ethernet's header.
+/// An ARP packet as received, after Ethernet's header.
 Bytes packet(bool asks, const Mac& sender, std::uint32_t from, std::uint32_t about) {
   Bytes bytes = {0, 1, 8, 0, 6, 4, 0, static_cast<std::uint8_t>(asks ? 1 : 2)};
   const auto put = [&bytes](std::uint32_t address) {
@@ -50,7 +50,7 @@ class AddressConflictsTest : public testing::Test {
   void hear(const Bytes& bytes) {
     if (const auto read = read_arp(bytes)) takers.hear(*read, now);
   }
-  /// Address and MAC address of what is taken.
+  /// Address and MAC address of each conflict.
   std::vector<std::pair<std::uint32_t, Mac>> taken() const {
     std::vector<std::pair<std::uint32_t, Mac>> all;
     for (const ConflictDetector::Conflict& each : takers.taken()) all.emplace_back(each.address, each.by);
@@ -110,7 +110,7 @@ TEST_F(AddressConflictsTest, NameTheFirstOfSeveralWhileItIsHeard) {
     EXPECT_THAT(taken(), ElementsAre(std::pair(kAddress, kFirst)));
     takers.take_due(now += seconds(1));
   }
-  EXPECT_THAT(taken(), ElementsAre(std::pair(kAddress, kFirst))) << "the address is taken all the time";
+  EXPECT_THAT(taken(), ElementsAre(std::pair(kAddress, kFirst))) << "the conflict lasts";
   hear(packet(kAnswers, kSecond, kAddress, kElsewhere));
   EXPECT_THAT(taken(), ElementsAre(std::pair(kAddress, kSecond)));
 }
@@ -137,9 +137,9 @@ TEST_F(AddressConflictsTest, AreProbedForANewAddressOnly) {
   }
   EXPECT_EQ(fresh.wake(), std::nullopt);
   fresh.set_own({kAddress}, {kOwn}, now);
-  EXPECT_EQ(fresh.wake(), std::nullopt) << "it has been there";
+  EXPECT_EQ(fresh.wake(), std::nullopt) << "the address was probed already";
   fresh.ask_again(now);
-  EXPECT_THAT(fresh.take_due(now), ElementsAre(kAddress)) << "the cable came";
+  EXPECT_THAT(fresh.take_due(now), ElementsAre(kAddress)) << "the cable was plugged in";
 }
 
 TEST_F(AddressConflictsTest, AreNotLostBetweenTheFirstProbes) {
@@ -151,7 +151,7 @@ TEST_F(AddressConflictsTest, AreNotLostBetweenTheFirstProbes) {
     if (!fresh.take_due(now).empty() && now > began + seconds(2)) fresh.hear(*all, now);
     ASSERT_TRUE(fresh.wake());
     const std::size_t answering = now >= began + seconds(15) ? 1 : 0;
-    ASSERT_EQ(fresh.taken().size(), answering) << "it answers whenever it is asked";
+    ASSERT_EQ(fresh.taken().size(), answering) << "the other host answers each probe";
   }
 }
 
@@ -174,7 +174,7 @@ TEST_F(AddressConflictsTest, AreSoughtAfterAForeignProbe) {
   EXPECT_THAT(taken(), ElementsAre(std::pair(kAnother, kFirst)));
 }
 
-/// Somebody who sends a thousand packets a second, each of another machine.
+/// A host sends a thousand packets per second, each with another MAC address.
 TEST_F(AddressConflictsTest, AreBoundedAndProbedSeldom) {
   const auto began = now;
   std::size_t asked = 0;
@@ -198,7 +198,7 @@ TEST_F(AddressConflictsTest, AreBoundedAndProbedSeldom) {
   EXPECT_EQ(takers.take_due(now).size(), ConflictDetector::kMost);
 }
 
-/// The kernel's own judgement, on a socket that anybody may have.
+/// The kernel runs the filter on an unprivileged socket.
 class ArpFilter : public testing::Test {
  protected:
   void SetUp() override {
@@ -227,7 +227,7 @@ TEST_F(ArpFilter, PassesPacketsFromOurAddressesAndProbesForThem) {
     EXPECT_TRUE(is_heard(packet(kAnswers, kFirst, ours, kElsewhere)));
     EXPECT_TRUE(is_heard(packet(kAsks, kFirst, ours, ours)));
     EXPECT_TRUE(is_heard(packet(kAsks, kFirst, 0, ours)));
-    EXPECT_FALSE(is_heard(packet(kAsks, kFirst, kElsewhere, ours))) << "the traffic of every day";
+    EXPECT_FALSE(is_heard(packet(kAsks, kFirst, kElsewhere, ours))) << "normal traffic";
   }
   Bytes padded = packet(kAnswers, kFirst, kAddress, kElsewhere);
   padded.resize(46);
@@ -249,7 +249,8 @@ TEST_F(ArpFilter, PassesNothingWithoutAnAddress) {
 }
 
 TEST_F(ArpFilter, HoldsAllWatchedAddresses) {
-  std::vector<std::uint32_t> many(2 * ConflictDetector::kMost);  // the box's own, and the Command Post's
+  std::vector<std::uint32_t> many(
+      2 * ConflictDetector::kMost);  // the box's own addresses, and the Command Post's
   std::iota(many.begin(), many.end(), 0x0c000000u);
   set(many);
   EXPECT_TRUE(is_heard(packet(kAnswers, kFirst, many.back(), kElsewhere)));

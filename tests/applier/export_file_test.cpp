@@ -20,7 +20,7 @@ constexpr const char* kName = "adit-a-20261123T231600Z.adit-spare";
 TEST(ExportFile, ReadsBackTheSame) {
   const host::Folder stick;
   ASSERT_TRUE(write_export(stick.path(), kName, "one"));
-  ASSERT_TRUE(write_export(stick.path(), kName, "another")) << "in its place";
+  ASSERT_TRUE(write_export(stick.path(), kName, "another")) << "a second export replaces the first";
   EXPECT_EQ(read_export(stick.path(), kName), "another");
   EXPECT_FALSE(fs::exists(stick / kUnfinished));
 }
@@ -38,7 +38,7 @@ TEST(ExportFile, ReplacesNoDirectoryAndFollowsNoLink) {
   const host::Folder stick, elsewhere;
   fs::create_directory(stick / kName);
   EXPECT_FALSE(write_export(stick.path(), kName, "one"));
-  EXPECT_FALSE(fs::exists(stick / kUnfinished)) << "what failed is taken away";
+  EXPECT_FALSE(fs::exists(stick / kUnfinished)) << "the unfinished file is removed";
   fs::remove(stick / kName);
   fs::create_symlink(elsewhere / "target", stick / kName);
   fs::create_symlink(elsewhere / "other", stick / kUnfinished);

@@ -56,7 +56,7 @@ class ImportTest : public testing::Test {
   std::string taken() const { return text(options.card + "/taken.txt"); }
   std::string state(const std::string& name) const { return text(options.state + '/' + name); }
   bool on_card(const std::string& name) const { return fs::exists(options.card + '/' + name); }
-  /// All of bring_all(), in its place.
+  /// Checks that everything from bring_all() is in its place.
   void expect_all_taken() const {
     const auto saved = settings::parse(state("settings.json"));
     ASSERT_TRUE(saved);
@@ -67,7 +67,7 @@ class ImportTest : public testing::Test {
     for (const char* gone : {"settings.json", "network.json", "secrets/scoring.token"})
       EXPECT_FALSE(on_card(gone)) << gone;
   }
-  /// What is wrong with it is told, and nothing is taken.
+  /// Checks that the error is reported and nothing is imported.
   void expect_refused(const std::string& name, const std::string& brought, const std::string& what) {
     for (const std::string& path : {options.card, options.state, options.network}) fs::remove_all(path);
     fs::create_directories(options.card + "/secrets");
@@ -257,7 +257,7 @@ TEST_F(ImportTest, PutsSettingsOnTrial) {
   EXPECT_EQ(state("settings.json.before"), "those before");
   bring("settings.json", settings::sample());
   import();
-  EXPECT_EQ(state("settings.json.before"), "those before") << "of two, the last that worked";
+  EXPECT_EQ(state("settings.json.before"), "those before") << "the last settings that worked";
 }
 
 TEST_F(ImportTest, AcceptsTokensOfCoursesInTheSettings) {
@@ -314,7 +314,7 @@ TEST_F(ImportTest, FollowsNoLinksInAForeignState) {
 
 TEST_F(ImportTest, ImportsNothingFromAReadOnlyCard) {
   bring_all();
-  fs::create_directory(options.card + "/taken.txt");  // no file can take its place
+  fs::create_directory(options.card + "/taken.txt");  // a directory in the place of the file
   const auto done = Import(options).run();
   ASSERT_FALSE(done);
   EXPECT_THAT(done.error(), HasSubstr("cannot write to the card"));
@@ -335,7 +335,7 @@ TEST_F(ImportTest, CompletesAfterAPowerCutAtAnyPoint) {
     fs::create_directories(options.card + "/secrets");
     bring_all();
     was_cut = cut_at(cuts + 1, [this] { (void)Import(options).run(); });
-    // Until all is in the state, all is on the card.
+    // Until everything is in the state directory, everything is on the card.
     const bool all_there = on_card("settings.json") && on_card("network.json") &&
                            on_card("secrets/scoring.token") &&
                            text(options.card + "/secrets/scoring.token") == "scoring-1\r\n";

@@ -57,7 +57,7 @@ class NetworkdFilesTest : public testing::Test {
     EXPECT_EQ(log.size() % 7, 0u) << log;  // "reload\n"
     return log.size() / 7;
   }
-  /// As the next start of adit-network would find it, after the machine was restarted or not.
+  /// Starts adit-network again, with or without a boot of the machine.
   void restart(bool machine) {
     if (machine) {
       for (const std::string& gone : {options.networkd, options.status})
@@ -101,9 +101,9 @@ TEST_F(NetworkdFilesTest, ConfirmWithoutAReload) {
   ASSERT_TRUE(files->keep(first));
   EXPECT_EQ(in(options.networkd).size(), 4u);
   EXPECT_EQ(text_of("05-adit-command-post.network"), network::command_post_file("darpa0", first, {}));
-  EXPECT_EQ(reloads(), 1u) << "networkd has it all already";
+  EXPECT_EQ(reloads(), 1u) << "networkd already has these files";
   ASSERT_TRUE(files->revert());
-  EXPECT_EQ(reloads(), 1u) << "there is nothing to revert";
+  EXPECT_EQ(reloads(), 1u) << "no change to revert";
 }
 
 TEST_F(NetworkdFilesTest, TouchOnlyTheInterfaceThatChanges) {
@@ -134,7 +134,7 @@ TEST_F(NetworkdFilesTest, RejectAChangeIfTheFileInUseIsUnreadable) {
   fs::remove(tried);
   fs::create_directory(tried);
   const auto applied = files->apply(first);
-  ASSERT_FALSE(applied) << "networkd may use other addresses than these";
+  ASSERT_FALSE(applied) << "networkd may use other addresses";
   EXPECT_THAT(applied.error(), HasSubstr(tried));
   EXPECT_FALSE(files->lead_to({.addresses = {1}}));
 }
@@ -144,7 +144,7 @@ TEST_F(NetworkdFilesTest, RevertToWhatThisProcessConfirmed) {
   ASSERT_TRUE(files->keep(first));
   ASSERT_TRUE(files->apply(second));
   ASSERT_TRUE(files->revert());
-  EXPECT_EQ(in(options.networkd).size(), 3u) << "of what was tried, what is confirmed may stay";
+  EXPECT_EQ(in(options.networkd).size(), 3u) << "the confirmed files may stay";
   EXPECT_EQ(text_of("04-adit-team.network"), "");
   EXPECT_EQ(text_of("05-adit-team.network"), network::team_file("team0", first));
 }
@@ -180,7 +180,7 @@ TEST_F(NetworkdFilesTest, UseFactoryAddressesUntilAChangeIsConfirmed) {
   come_with(first);
   restart(true);
   EXPECT_EQ(files->kept(), first);
-  EXPECT_EQ(reloads(), 0u) << "networkd reads them as it starts";
+  EXPECT_EQ(reloads(), 0u) << "networkd reads the files when it starts";
   EXPECT_EQ(text_of("05-adit-team.network"), network::team_file("team0", first));
   ASSERT_TRUE(files->apply(second));
   ASSERT_TRUE(files->keep(second));
@@ -217,7 +217,7 @@ TEST_F(NetworkdFilesTest, RouteToNewEndpoints) {
   ASSERT_TRUE(files->keep(routed));
   const std::size_t before = reloads();
   ASSERT_TRUE(files->lead_to(near));
-  EXPECT_EQ(reloads(), before) << "they are on the link";
+  EXPECT_EQ(reloads(), before) << "the addresses are already on the link";
   ASSERT_TRUE(files->lead_to(elsewhere));
   EXPECT_EQ(reloads(), before + 1);
   for (const char* name : {"04-adit-command-post.network", "05-adit-command-post.network"}) {
@@ -239,7 +239,7 @@ TEST_F(NetworkdFilesTest, RouteToNewEndpointsDuringATrial) {
   ASSERT_TRUE(files->lead_to({{0x0a6402c8}}));
   EXPECT_EQ(text_of("04-adit-command-post.network"),
             network::command_post_file("darpa0", routed, {0x0a6402c8}));
-  EXPECT_EQ(text_of("04-adit-team.network"), "") << "that side stays as it is";
+  EXPECT_EQ(text_of("04-adit-team.network"), "") << "that side does not change";
   ASSERT_TRUE(files->revert());
   EXPECT_THAT(in(options.networkd), UnorderedElementsAreArray(kBothKept));
 }
@@ -251,7 +251,7 @@ TEST_F(NetworkdFilesTest, ReportAFailureAndRetry) {
   fs::remove(folder / "broken");
   const std::size_t before = reloads();
   EXPECT_TRUE(files->revert());
-  EXPECT_EQ(reloads(), before + 1) << "though the files are gone already";
+  EXPECT_EQ(reloads(), before + 1) << "although the files were already removed";
   EXPECT_THAT(in(options.status), IsEmpty());
   fs::remove_all(options.networkd);
   EXPECT_THAT(files->apply(first).error(), HasSubstr(options.networkd));
@@ -275,7 +275,7 @@ TEST_F(NetworkdFilesTest, RenameADamagedConfirmationAndUseFactoryAddresses) {
 TEST_F(NetworkdFilesTest, UseFactoryAddressesIfNothingIsReadable) {
   come_with(first);
   fs::create_directory(options.state + "/confirmed.json");
-  EXPECT_FALSE(files->settle()) << "what is in use stays in use";
+  EXPECT_FALSE(files->settle()) << "the addresses in use must stay";
   EXPECT_THAT(in(options.networkd), IsEmpty());
   ASSERT_TRUE(NetworkdFiles(options, &nobody).write_at_start());
   EXPECT_EQ(text_of("05-adit-team.network"), network::team_file("team0", first));

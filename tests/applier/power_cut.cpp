@@ -9,7 +9,7 @@
 
 namespace {
 
-int calls_left = -1;  // negative: none is counted
+int calls_left = -1;  // negative: not counting
 
 void count() {
   if (calls_left > 0 && --calls_left == 0) _exit(99);
@@ -17,7 +17,7 @@ void count() {
 
 }  // namespace
 
-// These stand before the C library's, in this program alone.
+// These replace the C library's functions in this program.
 extern "C" {
 int fsync(int file) {
   count();

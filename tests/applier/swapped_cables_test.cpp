@@ -22,7 +22,7 @@ class ExchangedCablesTest : public testing::Test {
  protected:
   ExchangedCablesTest() { exchanged.set_sought({kScoring, kMapping}, {kOurs}, now); }
 
-  /// So long, with whoever is there answering what he is asked.
+  /// Passes time. Hosts that are present answer requests.
   void pass(seconds time, bool is_at_team, bool is_at_post) {
     for (const auto until = now + time; now < until; now += seconds(1)) {
       const SwappedCables::Due due = exchanged.take_due(now);
@@ -50,7 +50,7 @@ TEST_F(ExchangedCablesTest, AreFoundIfTheCommandPostAnswersOnlyAtTheTeamPort) {
   pass(seconds(10), true, false);
   EXPECT_THAT(found(), ElementsAre(kScoring, kMapping));
   pass(std::chrono::minutes(5), true, false);
-  EXPECT_THAT(found(), ElementsAre(kScoring, kMapping)) << "as long as it is so";
+  EXPECT_THAT(found(), ElementsAre(kScoring, kMapping)) << "as long as the cables are exchanged";
   pass(network::kTakenFor + seconds(6), false, true);
   EXPECT_THAT(found(), IsEmpty());
 }
@@ -58,10 +58,10 @@ TEST_F(ExchangedCablesTest, AreFoundIfTheCommandPostAnswersOnlyAtTheTeamPort) {
 TEST_F(ExchangedCablesTest, AreNotFoundIfItAnswersAtItsOwnPort) {
   pass(std::chrono::minutes(2), false, true);
   EXPECT_THAT(found(), IsEmpty());
-  EXPECT_EQ(asked_at_post, 0u) << "nobody is asked there without a cause";
+  EXPECT_EQ(asked_at_post, 0u) << "no requests on that side without a cause";
   exchanged.ask_again(now);
   pass(std::chrono::minutes(2), true, true);
-  EXPECT_THAT(found(), IsEmpty()) << "both cables are in one network, or somebody pretends";
+  EXPECT_THAT(found(), IsEmpty()) << "both cables are in one network, or a host answers falsely";
 }
 
 TEST_F(ExchangedCablesTest, AreNotFoundAfterASinglePacket) {
@@ -84,7 +84,7 @@ TEST_F(ExchangedCablesTest, IgnorePacketsOfThisMachine) {
 
 TEST_F(ExchangedCablesTest, AreSoughtAgainWhenACableComes) {
   pass(std::chrono::minutes(2), false, false);
-  EXPECT_EQ(exchanged.wake(), std::nullopt) << "nobody is asked any more";
+  EXPECT_EQ(exchanged.wake(), std::nullopt) << "requests must have ended";
   exchanged.ask_again(now);
   pass(seconds(10), true, false);
   EXPECT_THAT(found(), ElementsAre(kScoring, kMapping));

@@ -9,16 +9,16 @@
 
 namespace adit::archive {
 
-/// A run that is under way, as the gateway shows it to the archive.
+/// A running run, as the gateway shows it to the archive.
 struct ARun {
   Head head{.run = 3, .began = 990, .post = "10.100.1.200:8000"};
   picture::Easel easel;
-  double clock_ahead = 0;  // by how many seconds the time of day is ahead of the clock for stamps
+  double clock_ahead = 0;  // seconds by which the time of day is ahead of the clock for stamps
   std::vector<api::Track> tracks{{"ugv1", {{.at = 1001, .position = {1, 2, 3}, .heading = 0.5}}}};
   Sample sample{.at = 1002, .sent_mbit = 1.5, .queued_bytes = 7, .scoring_ms = 12, .map_ages = {{"ugv1", 4}}};
   api::RunRow facts{.run = 3, .course = "alpha", .post = "10.100.1.200:8000", .began = 990, .score = 5};
 
-  /// Maps of 16 m that do not compress, a hundred in places of their own.
+  /// Draws maps of 16 m that do not compress, at a hundred different places.
   void draw(int maps, int from = 0) {
     for (int i = from; i < from + maps; ++i) {
       picture::Cells cells(std::size_t{64} * 64);
@@ -48,7 +48,7 @@ struct ARun {
   double stamp() const { return now() - clock_ahead; }
 };
 
-/// Of each layer, tile and time: what a page would be shown.
+/// The picture as a page would show it: layers, tiles and times.
 inline std::string shown(const picture::Mosaic& picture, std::optional<double> at = {}) {
   std::string all;
   for (const picture::LayerView& layer : picture.layers()) {

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 class ArchiveTest : public testing::Test {
  protected:
-  /// A life that begins with nothing but what is on the disk.
+  /// Starts a process that has only the data on the disk.
   void live(const Head& head) {
     archive.reset();
     archive.emplace(loop, folder.path());
@@ -136,7 +136,7 @@ TEST_F(ArchiveTest, RestoresAllTimesAfterAClockStep) {
     const std::string before = shown(run.easel.mosaic, then), last = shown(run.easel.mosaic);
     const auto poses = run.tracks[0].poses.size();
     live(run.head);
-    EXPECT_EQ(shown(picture), last) << "the newest is not passed over";
+    EXPECT_EQ(shown(picture), last) << "the newest tile is missing";
     EXPECT_EQ(shown(picture, then), before);
     ASSERT_EQ(tracks.size(), 1U);
     EXPECT_EQ(tracks[0].poses.size(), poses);
@@ -165,7 +165,7 @@ TEST_F(ArchiveTest, WritesNothingForAnIdleRunUntilOtherDataComes) {
   std::this_thread::sleep_for(Archive::kWriteEvery);
   tick();
   EXPECT_GT(stored(), before);
-  EXPECT_EQ(fs::last_write_time(folder / "runs/3/facts.json"), facts) << "they are the same";
+  EXPECT_EQ(fs::last_write_time(folder / "runs/3/facts.json"), facts) << "the facts did not change";
   live(run.head);
   ASSERT_EQ(tracks.size(), 1U);
   EXPECT_EQ(tracks[0].poses.size(), 2U);
@@ -184,7 +184,7 @@ TEST_F(ArchiveTest, KeepsRunsApart) {
   EXPECT_EQ(picture.layers().size(), 1U);
   const Head same_number{.run = 3, .began = 5000, .post = run.head.post};
   live(same_number);
-  EXPECT_TRUE(picture.layers().empty()) << "another ledger's run 3";
+  EXPECT_TRUE(picture.layers().empty()) << "run 3 of another ledger";
 }
 
 TEST_F(ArchiveTest, ListsThePresentRunFromItsStart) {
@@ -232,9 +232,9 @@ TEST_F(ArchiveTest, TellsStartAndEndOfARunByOneClock) {
   expect_it(archive->list().runs.at(0), run.now() - kMonth);
   live({.run = 4, .began = 2000, .post = run.head.post});
   ASSERT_TRUE(loop::turn_until(loop, [&] { return archive->list().runs.size() == 2; }));
-  expect_it(archive->list().runs.at(1), run.now());  // as it was written
+  expect_it(archive->list().runs.at(1), run.now());  // unchanged
   live(run.head);
-  EXPECT_EQ(archive->list().runs.at(0).key, "3") << "it is the same run still";
+  EXPECT_EQ(archive->list().runs.at(0).key, "3") << "the run is still the same";
 }
 
 TEST_F(ArchiveTest, KeepsTheFactsOfAnEndedRun) {
@@ -242,7 +242,7 @@ TEST_F(ArchiveTest, KeepsTheFactsOfAnEndedRun) {
   write();
   run.facts.score = 7;
   archive->tick(run.seen());
-  run.facts.score = 0;  // of the run that is about to be the present one
+  run.facts.score = 0;  // of the run that is about to become the current one
   archive->end_run(run.seen());
   live({.run = 4, .began = 2000, .post = run.head.post});
   ASSERT_TRUE(loop::turn_until(loop, [&] { return archive->list().runs.size() == 2; }));
@@ -265,7 +265,7 @@ TEST_F(ArchiveTest, ListsTheLatestRunFirstAndDeletesOldRuns) {
   std::optional<std::expected<void, std::string>> outcome;
   const auto done = [&](std::expected<void, std::string> its) { outcome = std::move(its); };
   archive->remove("4", done);
-  EXPECT_FALSE(*outcome) << "it is the present one";
+  EXPECT_FALSE(*outcome) << "the current run cannot be deleted";
   archive->remove("../3", done);
   ASSERT_TRUE(loop::turn_until_idle(loop, archive->thread()));
   EXPECT_FALSE(*outcome);
@@ -294,7 +294,7 @@ TEST_F(ArchiveTest, ReadsAnEndedRun) {
   read.reset();
   archive->read("3", [&](auto its) { read = its; });
   ASSERT_TRUE(loop::turn_until(loop, [&] { return read.has_value(); }));
-  ASSERT_EQ((*read)->history.attention.size(), 1U) << "damage is told of";
+  ASSERT_EQ((*read)->history.attention.size(), 1U) << "damage must be reported";
   EXPECT_EQ((*read)->history.attention[0].sentence,
             "a part of the run's stored map, tracks and plots is lost: damaged records: 1");
   read.reset();
@@ -312,7 +312,7 @@ TEST_F(ArchiveTest, StaysWithinTheWriteAllowance) {
   archive->write_now(run.seen());
   archive->write_now(run.seen());
   ASSERT_TRUE(loop::turn_until_idle(loop, archive->thread()));
-  EXPECT_LT(stored() - before, 8192U) << "there was no time for more";
+  EXPECT_LT(stored() - before, 8192U) << "too much was written";
 }
 
 TEST_F(ArchiveTest, TellsWhyNothingIsStoredAndContinues) {
@@ -320,7 +320,7 @@ TEST_F(ArchiveTest, TellsWhyNothingIsStoredAndContinues) {
   live(run.head);
   EXPECT_NE(archive->trouble(), "");
   write();
-  EXPECT_EQ(archive->history(0).at.size(), 1U) << "plots go on";
+  EXPECT_EQ(archive->history(0).at.size(), 1U) << "plots must continue";
   EXPECT_NE(archive->trouble(), "");
 }
 

@@ -1,4 +1,4 @@
-// Files of a run as a power cut, a bad card or somebody's hands leave them: what is sound is used.
+// A run's files after a power cut, on a bad card or after edits: intact parts are used.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -28,7 +28,7 @@ class Damage : public testing::Test {
     }
     file += record_of(run.tracks[0]);
   }
-  /// Tells the file, and counts the tiles that came back; each is as it was, or absent.
+  /// Reads the file and counts the restored tiles. Each tile is unchanged or missing.
   std::size_t sound(const std::string& bytes) {
     RunRecords told(picture::Mosaic::kBudget);
     told.tell(bytes, 1);
@@ -83,7 +83,7 @@ TEST_F(Damage, IsCountedWithoutATornEnd) {
   EXPECT_EQ(torn.damaged(), 0u);
   file.back() ^= 1;
   damaged.tell(file + file, 1);
-  EXPECT_EQ(damaged.damaged(), 2u) << "the one at its end, too";
+  EXPECT_EQ(damaged.damaged(), 2u) << "including the one at the end";
 }
 
 TEST_F(Damage, EverywhereDoesNotCrash) {
@@ -114,7 +114,7 @@ TEST_F(Damage, RecordsOfAnotherRunAreIgnored) {
   EXPECT_TRUE(told.files().empty());
 }
 
-// A write that failed halfway tells its lines again.
+// A write that failed halfway writes its lines again.
 TEST_F(Damage, AClockStepWrittenTwiceCountsOnce) {
   constexpr std::uint64_t kLines = 0;
   const std::string step = record_of(Step{.seconds = 50, .when = 7});
@@ -125,7 +125,7 @@ TEST_F(Damage, AClockStepWrittenTwiceCountsOnce) {
   told.tell(record_of(run.head) + step + later, kLines);
   EXPECT_EQ(told.tracks()[0].poses[0].at, 1101);
   told.tell(record_of(run.head) + step + later, kLines);
-  EXPECT_EQ(told.tracks()[0].poses[0].at, 1101) << "both were in the write that failed";
+  EXPECT_EQ(told.tracks()[0].poses[0].at, 1101) << "both were in the failed write";
 }
 
 }  // namespace

@@ -90,7 +90,7 @@ TEST_F(DueTilesTest, OfAFileToDeleteAreWrittenAgainFirst) {
   EXPECT_FALSE(due.leave(1));
   EXPECT_EQ(due.at(2000).size(), 3U);
   write_all(2000, 2, 2);
-  EXPECT_TRUE(due.leave(1)) << "nothing newest is in it";
+  EXPECT_TRUE(due.leave(1)) << "the file has no newest tile";
 }
 
 TEST_F(DueTilesTest, WrittenBeforeARestartAreNotDue) {

@@ -57,7 +57,7 @@ TEST(Labels, OverlapNoLabelAndNoSign) {
       for (const Box& other : all) ASSERT_FALSE(box->overlaps(other));
       all.push_back(*box);
     }
-    EXPECT_GT(all.size(), taken + 5) << "some have room";
+    EXPECT_GT(all.size(), taken + 5) << "some labels fit";
   }
 }
 

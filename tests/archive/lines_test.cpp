@@ -32,7 +32,7 @@ TEST(Lines, AreDueAtOnceWithNews) {
   lines.add("3", true);
   EXPECT_TRUE(lines.is_due(at(1)));
   EXPECT_EQ(lines.take(at(1)), "23");
-  EXPECT_FALSE(lines.is_due(at(600))) << "there is nothing to write";
+  EXPECT_FALSE(lines.is_due(at(600))) << "no lines to write";
 }
 
 TEST(Lines, OfAFailedWriteAreDueAgainFirst) {

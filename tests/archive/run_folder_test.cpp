@@ -45,7 +45,8 @@ TEST_F(RunFolderTest, StaysWithinItsSizeAndKeepsTheNewest) {
     EXPECT_EQ(told.picture().tile(run.easel.layer, at, {}).tile->crc,
               run.easel.mosaic.tile(run.easel.layer, at, {}).tile->crc);
   }
-  EXPECT_EQ(told.picture().tile(run.easel.layer, {0, 0, 0}, 1001).tile, nullptr) << "the earliest is gone";
+  EXPECT_EQ(told.picture().tile(run.easel.layer, {0, 0, 0}, 1001).tile, nullptr)
+      << "the earliest tile must be gone";
 }
 
 TEST_F(RunFolderTest, ContinuesTheFileAfterARestart) {
@@ -57,12 +58,12 @@ TEST_F(RunFolderTest, ContinuesTheFileAfterARestart) {
   EXPECT_LT(files, 5U);
 }
 
-/// Without its size, an error could cut it.
+/// If the size is unknown, a repair after an error could cut the file.
 TEST_F(RunFolderTest, AppendsNothingToAFileOfUnknownSize) {
   std::filesystem::create_symlink(folder / "map-00000001", folder / "map-00000001");
   const auto written = RunFolder(folder.path(), run.head).write(tiles(0), kMost);
   ASSERT_TRUE(written) << written.error();
-  EXPECT_GT(written->bytes, std::size_t{900} << 10) << "it counts as full";
+  EXPECT_GT(written->bytes, std::size_t{900} << 10) << "the directory counts as full";
 }
 
 TEST_F(RunFolderTest, WritesTheHeadIntoAFileLeftEmptyByACrash) {

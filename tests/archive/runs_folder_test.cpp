@@ -80,7 +80,7 @@ TEST_F(RunsFolderTest, RecognizesARunWithDamagedFactsByItsFiles) {
   EXPECT_EQ(*runs.begin({.run = 5, .began = 1000, .post = "here:1"}), key);
 }
 
-/// Where there is a folder in its place, a file cannot be read.
+/// A directory in the place of a file makes the file unreadable.
 TEST_F(RunsFolderTest, RejectsAnUnreadableRunInsteadOfANewOne) {
   const std::string path = runs.folder_of(run(5, 1000, 10));
   for (const char* name : {"/facts.json", "/lines-00000001"}) {

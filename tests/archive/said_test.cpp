@@ -19,7 +19,7 @@ picture::Tile tile(std::string_view bytes) {
 
 const TileState kTile{{"ugv1", picture::Kind::Cloud}, {1, -3, 4}, 1000.5, tile("abc")};
 
-/// What a record says, in bytes.
+/// A record's content as bytes.
 std::string said(const Said& said) {
   std::string bytes;
   for_each_record(record_of(said), [&bytes](std::string_view said) { bytes = said; });
@@ -96,7 +96,7 @@ TEST(RecordBody, LongTextIsCutBetweenCharacters) {
   EXPECT_EQ(again(api::AttentionStep{1, true, sentence})->sentence, std::string(kMostText - 1, 'a'));
 }
 
-/// Whatever bytes there are: read in full, or not at all.
+/// Any bytes are read completely or not at all.
 TEST(RecordBody, WrongOrMissingBytesAreRejected) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(again(Wiped{kNone}));

@@ -47,7 +47,7 @@ TEST_F(ButtonWatchTest, ReportsAPressOnRelease) {
   EXPECT_EQ(presses, std::vector{Press::Identify});
   const int looked = wire.looked;
   time.pass(loop, 1s);
-  EXPECT_EQ(wire.looked, looked) << "nobody looks at a button that nobody touches";
+  EXPECT_EQ(wire.looked, looked) << "an untouched button must not be polled";
 }
 
 TEST_F(ButtonWatchTest, IgnoresABounce) {
@@ -92,7 +92,7 @@ TEST_F(ButtonWatchTest, CancelsAPressIfTheButtonFails) {
   EXPECT_FALSE(lights.has(State::ButtonHeld));
   wire.broken = false;
   set(false);
-  EXPECT_TRUE(presses.empty()) << "that it is lost is no release";
+  EXPECT_TRUE(presses.empty()) << "a lost button is not a release";
 }
 
 TEST_F(ButtonWatchTest, RetriesAButtonThatCouldNotBeRead) {
@@ -101,7 +101,7 @@ TEST_F(ButtonWatchTest, RetriesAButtonThatCouldNotBeRead) {
   wire.broken = false;
   const int looked = wire.looked;
   time.pass(loop, 2s);
-  EXPECT_GT(wire.looked, looked) << "though nobody touches it";
+  EXPECT_GT(wire.looked, looked) << "although the button is not touched";
   set(true);
   set(false);
   EXPECT_EQ(presses, std::vector{Press::Identify});

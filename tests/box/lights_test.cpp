@@ -46,7 +46,7 @@ TEST_F(LightsTest, SetTheLinesOnlyAfterAChange) {
 
 TEST_F(LightsTest, AreAllDarkAtFirst) {
   lights.set(State::Serving, false);
-  ASSERT_EQ(seen.shown.size(), 1u) << "whatever they showed before";
+  ASSERT_EQ(seen.shown.size(), 1u) << "independent of earlier lights";
   EXPECT_EQ(seen.shown.back(), Lit{});
 }
 
@@ -75,7 +75,7 @@ TEST_F(LightsTest, FlashTogetherWhileIdentified) {
   constexpr panel::Lights kTwice = {Pattern::Twice, Pattern::Twice, Pattern::Twice, Pattern::Twice};
   EXPECT_EQ(lights.shown(), kTwice);
   lights.set(State::MappingConnected, false);
-  EXPECT_EQ(lights.shown(), kTwice) << "whatever happens meanwhile";
+  EXPECT_EQ(lights.shown(), kTwice) << "independent of other states";
   EXPECT_GT(lights.left(State::Identify).value_or(0ms), 0ms);
   const auto showed = [&](const Lit& lit) { return std::ranges::find(seen.shown, lit) != seen.shown.end(); };
   time.pass(loop, 3s - 1ms);
@@ -125,11 +125,11 @@ TEST_F(LightsTest, RetryAFailedPanelWithoutAChange) {
   seen.fail = false;
   seen.shown.clear();
   lights.set(State::Serving, true);
-  EXPECT_TRUE(seen.shown.empty()) << "not as often as it is asked for";
+  EXPECT_TRUE(seen.shown.empty()) << "fewer updates than requests";
   time.pass(loop, panel::Painter::kAgain);
   EXPECT_EQ(seen.shown, (std::vector{Lit{true, false, false, false}}));
   time.pass(loop, panel::Painter::kMended - 1ms);
-  EXPECT_EQ(lights.trouble(), "gpiochip0: gone") << "it may be a loose contact";
+  EXPECT_EQ(lights.trouble(), "gpiochip0: gone") << "a loose contact is possible";
   time.pass(loop, panel::Painter::kConfirm);
   EXPECT_EQ(lights.trouble(), "");
 }
@@ -144,13 +144,13 @@ TEST_F(LightsTest, RepeatAsAHeartbeatIfWatched) {
     time.pass(loop, 1s);
     lights.beat();
   }
-  EXPECT_EQ(watched.shown.size(), 4u) << "and with each beat alone";
+  EXPECT_EQ(watched.shown.size(), 4u) << "then only with each beat";
   for (const Lit& lit : watched.shown) EXPECT_EQ(lit, (Lit{true, true, true, false}));
   watched.fail = true;
   const std::size_t before = watched.shown.size();
   lights.beat();
   time.pass(loop, panel::Painter::kAgain);
-  EXPECT_EQ(watched.shown.size(), before + 2) << "and tried again";
+  EXPECT_EQ(watched.shown.size(), before + 2) << "the write is repeated";
   lights.let_go();
   watched.shown.clear();
   lights.set(State::NeedsOperator, true);
@@ -170,7 +170,7 @@ TEST_F(LightsTest, ShowTheSameOnNewLines) {
   be_well();
   WatchedLines::Seen other;
   lights.let_go();
-  lights.set(State::NeedsOperator, true);  // nothing can be shown meanwhile
+  lights.set(State::NeedsOperator, true);  // the lights cannot be set meanwhile
   lights.take(std::make_unique<WatchedLines>(other));
   EXPECT_EQ(other.shown, (std::vector<Lit>{{true, true, true, true}}));
 }

@@ -72,10 +72,10 @@ TEST_F(LinksTest, ReportTheReturnOfTheCommandPostCable) {
   carriers["team0"] = true;
   links.look();
   EXPECT_EQ(changes, 4);
-  EXPECT_EQ(backs, 1) << "nothing waits for the team's";
+  EXPECT_EQ(backs, 1) << "the team's link has no waiting messages";
 }
 
-/// What the kernel's end of a socket says, and that it breaks.
+/// Events of the kernel's end of a socket, and its failure.
 class LinkEventsTest : public LinksTest {
  protected:
   LinkEventsTest() {
@@ -85,7 +85,7 @@ class LinkEventsTest : public LinksTest {
     ours = loop::FileDescriptor(ends[1]);
   }
   void tell() { EXPECT_EQ(send(kernel.get(), "news", 4, 0), 4); }
-  void turn() {  // one thing that is due at a time
+  void turn() {  // one due event per turn
     for (int each = 0; each < 4; ++each) loop.turn(std::chrono::milliseconds(0));
   }
 
@@ -96,14 +96,14 @@ TEST_F(LinkEventsTest, ReadTheCarrierAtEachKernelEvent) {
   const Links links = make(std::move(ours));
   carriers["darpa0"] = false;
   turn();
-  EXPECT_EQ(changes, 0) << "nobody looks unasked";
+  EXPECT_EQ(changes, 0) << "links are read only on events";
   tell();
   tell();
   turn();
   EXPECT_EQ(changes, 1);
   carriers["darpa0"] = true;
   turn();
-  EXPECT_EQ(backs, 0) << "what was told before is taken";
+  EXPECT_EQ(backs, 0) << "earlier events must be discarded";
   tell();
   turn();
   EXPECT_EQ(backs, 1);
@@ -115,7 +115,7 @@ TEST_F(LinkEventsTest, PollIfKernelEventsFail) {
   turn();
   carriers["darpa0"] = false;
   turn();
-  EXPECT_EQ(changes, 0) << "what is broken is not looked at again";
+  EXPECT_EQ(changes, 0) << "a broken socket is not read again";
   links.look();
   EXPECT_EQ(changes, 1);
 }

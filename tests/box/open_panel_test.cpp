@@ -47,7 +47,7 @@ TEST_F(OpenPanelTest, SimulatesLightsButNoButtonIfLinesFail) {
     EXPECT_EQ(opened.button == nullptr, button.empty());
     if (opened.button) EXPECT_FALSE(opened.button->pressed().has_value());
     EXPECT_FALSE(std::filesystem::exists(folder_ / "panel.button"))
-        << "it would be no proof of anybody's presence";
+        << "a simulated button proves no presence";
   }
 }
 

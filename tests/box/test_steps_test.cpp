@@ -14,7 +14,7 @@ const settings::Subnet kOwn{0x0a64010a, 24};
 void expect(const TestStep& step, const std::string& state, const std::string& said) {
   EXPECT_EQ(step.state, state) << step.said;
   EXPECT_THAT(step.said, HasSubstr(said));
-  EXPECT_EQ(step.advice.empty(), state != "bad") << "what is bad can be helped: " << step.advice;
+  EXPECT_EQ(step.advice.empty(), state != "bad") << "each bad step needs advice: " << step.advice;
 }
 
 TEST(LinkStep, ChecksTheCarrier) {
@@ -72,7 +72,7 @@ TEST(ReachStep, TellsHowConnectingFails) {
   for (const int error : {ECONNREFUSED, ENETUNREACH, EHOSTUNREACH, ETIMEDOUT})
     advice.push_back(reach(at, error, "").advice);
   std::ranges::sort(advice);
-  EXPECT_EQ(std::ranges::adjacent_find(advice), advice.end()) << "each is helped in its own way";
+  EXPECT_EQ(std::ranges::adjacent_find(advice), advice.end()) << "each step has its own advice";
 }
 
 TestStep with_status(Asked asked, int status, const std::string& body = "\"a sentence\"") {

@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "cli/say.hpp"
+#include "cli/run_adit.hpp"
 #include "cli/view.hpp"
 
 namespace adit::cli {
@@ -10,7 +10,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-/// What Adit says of a report in that state.
+/// Adit's row of a report in that state.
 std::string report(const std::string& state, bool asking = false) {
   api::ReportDetail detail{.row = sample_view().reports.front(), .history = {}, .answer = ""};
   detail.row.state = state;
@@ -26,15 +26,15 @@ TEST(Actions, SendRequestsByTheirNames) {
                        {"POST /adit/reports/7/settle", Server::ok("{\"report\":7}")},
                        {"POST /adit/reports/7/resubmit", Server::ok("{\"report\":12}")},
                        {"POST /adit/runs", Server::ok("{\"run\":2}")}});
-  EXPECT_EQ(say(server, {"reports", "send", "7"}).out, "report 7 is queued\n");
-  EXPECT_EQ(say(server, {"reports", "hold", "7"}).out, "report 7 is held until you send it\n");
-  EXPECT_EQ(say(server, {"reports", "withdraw", "7"}).out, "report 7 is withdrawn\n");
-  EXPECT_EQ(say(server, {"reports", "settle", "7"}).out, "report 7 is settled\n");
-  EXPECT_EQ(say(server, {"reports", "resubmit", "7"}).out, "report 7 is sent again as report 12\n");
-  EXPECT_EQ(say(server, {"reports", "resubmit", "7", "--json"}).out, "{\"report\":12}\n");
-  EXPECT_EQ(say(server, {"run", "new"}).out,
+  EXPECT_EQ(run_adit(server, {"reports", "send", "7"}).out, "report 7 is queued\n");
+  EXPECT_EQ(run_adit(server, {"reports", "hold", "7"}).out, "report 7 is held until you send it\n");
+  EXPECT_EQ(run_adit(server, {"reports", "withdraw", "7"}).out, "report 7 is withdrawn\n");
+  EXPECT_EQ(run_adit(server, {"reports", "settle", "7"}).out, "report 7 is settled\n");
+  EXPECT_EQ(run_adit(server, {"reports", "resubmit", "7"}).out, "report 7 is sent again as report 12\n");
+  EXPECT_EQ(run_adit(server, {"reports", "resubmit", "7", "--json"}).out, "{\"report\":12}\n");
+  EXPECT_EQ(run_adit(server, {"run", "new"}).out,
             "run 2 begins; unsent reports of earlier runs are held: see adit reports\n");
-  const Outcome outcome = say(server, {"run", "new", "--json"});
+  const Outcome outcome = run_adit(server, {"run", "new", "--json"});
   EXPECT_EQ(outcome.out, "{\"run\":2}\n");
   EXPECT_EQ(outcome.exit, Exit::Fine);
 }
@@ -42,14 +42,14 @@ TEST(Actions, SendRequestsByTheirNames) {
 TEST(Actions, CorrectTheNamedFieldsOfAReport) {
   const Server server({{"GET /adit/reports/7", report("held")},
                        {"POST /adit/reports/7/correct", Server::ok("{\"report\":8}")}});
-  EXPECT_EQ(say(server, {"reports", "correct", "7", "type=Rope", "y=-3.5"}).out,
+  EXPECT_EQ(run_adit(server, {"reports", "correct", "7", "type=Rope", "y=-3.5"}).out,
             "report 7 is corrected as report 8\n");
   EXPECT_THAT(server.posted(), HasSubstr(R"("type":"Rope")"));
   EXPECT_THAT(server.posted(), HasSubstr(R"("x":12.125)"));
   EXPECT_THAT(server.posted(), HasSubstr(R"("y":-3.5)"));
-  EXPECT_THAT(say(server, {"reports", "correct", "7", "x=far"}).err, HasSubstr("x: expected"));
-  EXPECT_THAT(say(server, {"reports", "correct", "7", "w=1"}).err, HasSubstr("'w=1': expected type="));
-  EXPECT_THAT(say(server, {"reports", "correct", "seven", "x=1"}).err,
+  EXPECT_THAT(run_adit(server, {"reports", "correct", "7", "x=far"}).err, HasSubstr("x: expected"));
+  EXPECT_THAT(run_adit(server, {"reports", "correct", "7", "w=1"}).err, HasSubstr("'w=1': expected type="));
+  EXPECT_THAT(run_adit(server, {"reports", "correct", "seven", "x=1"}).err,
               HasSubstr("the report's number: expected"));
 }
 
@@ -75,34 +75,34 @@ TEST(Actions, OnRejectedMessagesSendRequests) {
        {"POST /adit/rejected/3/send", Server::ok("{\"rejected\":3}")},
        {"POST /adit/rejected/3/discard", Server::ok("{\"rejected\":3}")},
        {"POST /adit/rejected/4/send", Server::reply("409 Conflict", "\"something newer was sent\"")}});
-  const Outcome listed = say(server, {"rejected"});
+  const Outcome listed = run_adit(server, {"rejected"});
   EXPECT_THAT(listed.out, HasSubstr("error 500: it failed"));
   EXPECT_THAT(listed.out, HasSubstr("replaced by a newer one"));
   EXPECT_EQ(listed.exit, Exit::Attention);
-  EXPECT_THAT(say(server, {"rejected", "--json"}).out, HasSubstr("\"replaced\":true"));
-  EXPECT_EQ(say(server, {"rejected", "send", "3"}).out, "message 3 is queued again\n");
-  EXPECT_EQ(say(server, {"rejected", "discard", "3"}).out, "message 3 is deleted\n");
-  const Outcome refused = say(server, {"rejected", "send", "4"});
+  EXPECT_THAT(run_adit(server, {"rejected", "--json"}).out, HasSubstr("\"replaced\":true"));
+  EXPECT_EQ(run_adit(server, {"rejected", "send", "3"}).out, "message 3 is queued again\n");
+  EXPECT_EQ(run_adit(server, {"rejected", "discard", "3"}).out, "message 3 is deleted\n");
+  const Outcome refused = run_adit(server, {"rejected", "send", "4"});
   EXPECT_THAT(refused.err, HasSubstr("something newer was sent"));
   EXPECT_EQ(refused.exit, Exit::Attention);
-  EXPECT_THAT(say(server, {"rejected", "send"}).err, HasSubstr("is missing after send"));
-  EXPECT_THAT(say(server, {"rejected", "keep", "3"}).err,
+  EXPECT_THAT(run_adit(server, {"rejected", "send"}).err, HasSubstr("is missing after send"));
+  EXPECT_THAT(run_adit(server, {"rejected", "keep", "3"}).err,
               HasSubstr("expected show, send or discard, got keep"));
 }
 
 TEST(Actions, MakeTheLightsFlash) {
   const Server server({{"POST /adit/identify", Server::ok("{\"identify_until\":1005.5}")}});
-  EXPECT_EQ(say(server, {"identify", "5"}).out, "all lights flash for 5 s\n");
+  EXPECT_EQ(run_adit(server, {"identify", "5"}).out, "all lights flash for 5 s\n");
   EXPECT_THAT(server.request(), HasSubstr("Authorization: Bearer sesame-1\r\n"));
   EXPECT_THAT(server.request(), testing::EndsWith("Content-Length: 13\r\n\r\n{\"seconds\":5}"));
-  EXPECT_EQ(say(server, {"identify", "--json"}).out, "{\"identify_until\":1005.5}\n");
+  EXPECT_EQ(run_adit(server, {"identify", "--json"}).out, "{\"identify_until\":1005.5}\n");
   const Server other({{"POST /adit/identify", Server::reply("403 Forbidden", "\"no\"")}});
-  EXPECT_EQ(say(other, {"identify"}).exit, Exit::Unable);
+  EXPECT_EQ(run_adit(other, {"identify"}).exit, Exit::Unable);
 }
 
 TEST(Actions, SendTheTokenOnlyToAdit) {
   const Server server({{"POST /adit/runs", Server::ok("{\"run\":2}")}});
-  say(server, {"run", "new"});
+  run_adit(server, {"run", "new"});
   EXPECT_THAT(server.request(), HasSubstr("\r\nAuthorization: Bearer sesame-1\r\n"));
 }
 
@@ -115,7 +115,7 @@ TEST(Actions, ContinueAfterAFailedOne) {
        {"POST /adit/reports/8/send",
         Server::reply("409 Conflict", "\"report 8 is answered: to send it again, resubmit it\"")},
        {"POST /adit/reports/9/send", Server::ok("{\"report\":9}")}});
-  const Outcome outcome = say(server, {"reports", "send", "7", "8", "9"});
+  const Outcome outcome = run_adit(server, {"reports", "send", "7", "8", "9"});
   EXPECT_EQ(outcome.exit, Exit::Attention);
   EXPECT_EQ(outcome.out, "report 7 is queued\nreport 9 is queued\n");
   EXPECT_EQ(outcome.err, "adit: report 8 is answered: to send it again, resubmit it\n");
@@ -125,28 +125,28 @@ TEST(Actions, OnAReportInDoubtNeedConfirmation) {
   const Server server({{"GET /adit/reports/3", report("in_doubt")},
                        {"POST /adit/reports/3/send", Server::ok("{\"report\":3}")}});
   std::string asked;
-  const Outcome refused = say(server, {"reports", "send", "3"}, answering(false, asked));
+  const Outcome refused = run_adit(server, {"reports", "send", "3"}, answering(false, asked));
   EXPECT_EQ(
       asked,
       "report 3 (Survivor) is in doubt: if the Command Post recorded it, sending it again uses up a second "
       "report.\nSend it again?");
-  EXPECT_THAT(server.request(), testing::StartsWith("GET ")) << "nothing was sent";
+  EXPECT_THAT(server.request(), testing::StartsWith("GET ")) << "a POST was sent";
   EXPECT_EQ(refused.err, "adit: report 3 was not sent\n");
   EXPECT_EQ(refused.exit, Exit::Attention);
 
-  EXPECT_EQ(say(server, {"reports", "send", "3"}, answering(true, asked)).out, "report 3 is queued\n");
+  EXPECT_EQ(run_adit(server, {"reports", "send", "3"}, answering(true, asked)).out, "report 3 is queued\n");
   EXPECT_THAT(server.request(), testing::StartsWith("POST "));
 }
 
 TEST(Actions, OnAReportInDoubtFailWithoutATerminal) {
   const Server server({{"GET /adit/reports/3", report("in_doubt", true)},
                        {"POST /adit/reports/3/send", Server::ok("{\"report\":3}")}});
-  const Outcome refused = say(server, {"reports", "send", "3"});
-  EXPECT_THAT(server.request(), testing::StartsWith("GET ")) << "nothing was sent";
+  const Outcome refused = run_adit(server, {"reports", "send", "3"});
+  EXPECT_THAT(server.request(), testing::StartsWith("GET ")) << "a POST was sent";
   EXPECT_THAT(refused.err, HasSubstr("Adit is asking the run's status to find out."));
   EXPECT_THAT(refused.err, testing::EndsWith("It was not done; to do it, add --yes\n"));
   EXPECT_EQ(refused.exit, Exit::Attention);
-  EXPECT_EQ(say(server, {"reports", "send", "3", "--yes"}).out, "report 3 is queued\n");
+  EXPECT_EQ(run_adit(server, {"reports", "send", "3", "--yes"}).out, "report 3 is queued\n");
 }
 
 TEST(Actions, OnOtherReportsNeedNoConfirmation) {
@@ -154,7 +154,7 @@ TEST(Actions, OnOtherReportsNeedNoConfirmation) {
   for (const char* const state : {"held", "rejected", "withdrawn"}) {
     const Server server({{"GET /adit/reports/3", report(state)},
                          {"POST /adit/reports/3/send", Server::ok("{\"report\":3}")}});
-    EXPECT_EQ(say(server, {"reports", "send", "3"}, answering(false, asked)).exit, Exit::Fine) << state;
+    EXPECT_EQ(run_adit(server, {"reports", "send", "3"}, answering(false, asked)).exit, Exit::Fine) << state;
   }
   EXPECT_EQ(asked, "");
 }
@@ -162,7 +162,7 @@ TEST(Actions, OnOtherReportsNeedNoConfirmation) {
 TEST(Actions, OnAnUnknownReportFail) {
   const Server server(
       {{"POST /adit/reports/8/settle", Server::reply("404 Not Found", "\"there is no report 8\"")}});
-  const Outcome outcome = say(server, {"reports", "settle", "8"});
+  const Outcome outcome = run_adit(server, {"reports", "settle", "8"});
   EXPECT_EQ(outcome.exit, Exit::Attention);
   EXPECT_EQ(outcome.err, "adit: there is no report 8\n");
 }
@@ -170,17 +170,18 @@ TEST(Actions, OnAnUnknownReportFail) {
 TEST(Actions, StopAfterAWrongToken) {
   const Server server(
       Server::reply("401 Unauthorized", "\"Authorization: expected Bearer and the team's token\""));
-  const Outcome outcome = say(server, {"reports", "send", "7", "8"});
+  const Outcome outcome = run_adit(server, {"reports", "send", "7", "8"});
   EXPECT_EQ(outcome.exit, Exit::Unable);
   EXPECT_THAT(outcome.err, testing::MatchesRegex("adit: Adit rejects the token in /.*\n"));
 }
 
 TEST(Actions, MayBeDoneIfTheAnswerIsLost) {
   const Server server("");
-  const Outcome outcome = say(server, {"reports", "resubmit", "7"});
+  const Outcome outcome = run_adit(server, {"reports", "resubmit", "7"});
   EXPECT_EQ(outcome.exit, Exit::Unable);
   EXPECT_THAT(outcome.err, HasSubstr("the action may have been done: see adit reports\n"));
-  EXPECT_THAT(say(server, {"reports", "send", "7", "--yes"}).err, HasSubstr("see adit reports show 7\n"));
+  EXPECT_THAT(run_adit(server, {"reports", "send", "7", "--yes"}).err,
+              HasSubstr("see adit reports show 7\n"));
 }
 
 TEST(Actions, AreNotDoneIfAditIsUnreachable) {

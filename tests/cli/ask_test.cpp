@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "api/updates.hpp"
-#include "cli/say.hpp"
+#include "cli/run_adit.hpp"
 #include "cli/status_text.hpp"
 #include "cli/view.hpp"
 #include "host/folder.hpp"
@@ -18,12 +18,12 @@ namespace {
 using testing::HasSubstr;
 
 Outcome asked(const std::string& json, const std::vector<std::string_view>& words) {
-  return say(Server({{"GET /adit/run", Server::ok(json)},
-                     {"GET /adit/update", Server::ok(codec::to_json(api::UpdateView{}))}}),
-             words);
+  return run_adit(Server({{"GET /adit/run", Server::ok(json)},
+                          {"GET /adit/update", Server::ok(codec::to_json(api::UpdateView{}))}}),
+                  words);
 }
 
-/// `adit status` with the options of the environment of a box.
+/// Options of `adit status` with the environment of a box.
 Options status_of_a_box() {
   return parse_options(std::vector<std::string_view>{"status"}).value();
 }
@@ -59,11 +59,12 @@ TEST(Status, NamesNewerVersions) {
   update.stick = {"adit-a-board-0.3.0.raucb", "0.3.0"};
   Server::Answers answers{{"GET /adit/run", Server::ok(codec::to_json(sample_view()))},
                           {"GET /adit/update", Server::ok(codec::to_json(update))}};
-  EXPECT_EQ(say(Server(answers), {"status"}).out, status_text(sample_view(), false) +
-                                                      "On the stick is 0.3.0 (adit-a-board-0.3.0.raucb): "
-                                                      "adit update --stick\napt has 0.2.0: apt upgrade\n");
+  EXPECT_EQ(run_adit(Server(answers), {"status"}).out,
+            status_text(sample_view(), false) +
+                "On the stick is 0.3.0 (adit-a-board-0.3.0.raucb): "
+                "adit update --stick\napt has 0.2.0: apt upgrade\n");
   answers["GET /adit/update"] = Server::reply("503 Service Unavailable", "\"not now\"");
-  EXPECT_EQ(say(Server(answers), {"status"}).out,
+  EXPECT_EQ(run_adit(Server(answers), {"status"}).out,
             status_text(sample_view(), false) + "cannot ask for newer versions: not now\n");
 }
 
@@ -90,7 +91,7 @@ TEST(Ask, RejectsAnAnswerOfAnotherProgram) {
 }
 
 TEST(Ask, PassesOnTheSentenceOfAnError) {
-  const auto status_of = [](const std::string& reply) { return say(Server(reply), {"status"}).err; };
+  const auto status_of = [](const std::string& reply) { return run_adit(Server(reply), {"status"}).err; };
   EXPECT_THAT(status_of(Server::reply("404 Not Found", "{}")),
               HasSubstr("is not Adit, or is another version (HTTP status 404)"));
   EXPECT_EQ(status_of(Server::reply("503 Service Unavailable", "\"the ledger is away\\u001b[2J\"")),
@@ -128,7 +129,7 @@ TEST(Ask, PrefersTheAddressInSavedSettings) {
   options.saved_settings = saved;
   EXPECT_NE(run(options, {}).exit, Exit::Unable);
   options.settings = "/none.json";
-  EXPECT_EQ(run(options, {}).exit, Exit::Unable) << "a file that is named is the one that is meant";
+  EXPECT_EQ(run(options, {}).exit, Exit::Unable) << "a named file must exist";
   std::filesystem::remove(saved);
 }
 
@@ -141,10 +142,11 @@ TEST(Ask, FailsIfSavedSettingsAreUnreadable) {
   std::filesystem::create_directory(options.saved_settings);
   const Outcome outcome = run(options, {});
   EXPECT_EQ(outcome.exit, Exit::Unable);
-  EXPECT_THAT(outcome.err, HasSubstr(options.saved_settings)) << "the given ones may name another address";
+  EXPECT_THAT(outcome.err, HasSubstr(options.saved_settings))
+      << "the given settings may have another address";
 }
 
-/// A variable of the environment, for the length of a test.
+/// An environment variable for one test.
 class Variable {
  public:
   Variable(const char* name, const std::string& value) : name_(name) { setenv(name, value.c_str(), 1); }
@@ -166,10 +168,10 @@ TEST(Ask, ReadsAddressAndTokenFromTheEnvironment) {
     EXPECT_EQ(exit_of({"status"}), Exit::Fine);
     EXPECT_THAT(run(std::vector<std::string_view>{"status", "--settings", "/none.json"}).err,
                 HasSubstr("/none.json"))
-        << "a file that is named counts instead";
+        << "a named file has priority";
   }
   const Variable address("ADIT_AT", "nowhere"), named("ADIT_TOKEN_FILE", "/none");
-  EXPECT_EQ(exit_of({"status", "--at", at, "--token-file", file}), Exit::Fine) << "options count instead";
+  EXPECT_EQ(exit_of({"status", "--at", at, "--token-file", file}), Exit::Fine) << "options have priority";
   EXPECT_THAT(run(std::vector<std::string_view>{"status"}).err,
               HasSubstr("adit: ADIT_AT: expected an address"));
   EXPECT_EQ(run(std::vector<std::string_view>{"status", "--at", at}).err,

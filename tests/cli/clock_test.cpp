@@ -3,7 +3,7 @@
 
 #include <chrono>
 
-#include "cli/say.hpp"
+#include "cli/run_adit.hpp"
 
 namespace adit::cli {
 namespace {
@@ -23,16 +23,16 @@ std::string clock_view(double now, const char* source, bool is_set, const char* 
 
 TEST(ClockCommand, ShowsTheTimeOfDayAndItsSource) {
   const Server server({{"GET /adit/clock", clock_view(time_of_here(), "command_post", true)}});
-  const Outcome outcome = say(server, {"clock"});
+  const Outcome outcome = run_adit(server, {"clock"});
   EXPECT_EQ(outcome.exit, Exit::Fine);
   EXPECT_THAT(outcome.out,
               HasSubstr("UTC, the same as on this computer\nset by the Command Post's answers\n"));
-  EXPECT_THAT(say(server, {"clock", "--json"}).out, HasSubstr("\"source\":\"command_post\""));
+  EXPECT_THAT(run_adit(server, {"clock", "--json"}).out, HasSubstr("\"source\":\"command_post\""));
 }
 
 TEST(ClockCommand, TellsHowToSetTheClock) {
   const Server server({{"GET /adit/clock", clock_view(time_of_here() - 7300, "last_known", false)}});
-  const Outcome outcome = say(server, {"clock", "show"});
+  const Outcome outcome = run_adit(server, {"clock", "show"});
   EXPECT_EQ(outcome.exit, Exit::Attention);
   EXPECT_THAT(outcome.out, HasSubstr("behind this computer"));
   EXPECT_THAT(outcome.out, HasSubstr("adit clock set"));
@@ -41,12 +41,12 @@ TEST(ClockCommand, TellsHowToSetTheClock) {
 TEST(ClockCommand, TellsWhyTheClockWasNotSet) {
   const Server server(
       {{"GET /adit/clock", clock_view(time_of_here(), "none", false, "cannot set the clock: no")}});
-  EXPECT_THAT(say(server, {"clock"}).out, HasSubstr("Not set: cannot set the clock: no"));
+  EXPECT_THAT(run_adit(server, {"clock"}).out, HasSubstr("Not set: cannot set the clock: no"));
 }
 
 TEST(ClockCommand, SetsTheTimeOfThisComputer) {
   const Server server({{"POST /adit/clock", clock_view(time_of_here(), "operator", true)}});
-  const Outcome outcome = say(server, {"clock", "set"});
+  const Outcome outcome = run_adit(server, {"clock", "set"});
   EXPECT_EQ(outcome.exit, Exit::Fine);
   EXPECT_EQ(outcome.out, "the clock is being set\n");
 }

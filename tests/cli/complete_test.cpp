@@ -2,7 +2,7 @@
 
 #include "api/kept_runs.hpp"
 #include "api/settings_rows.hpp"
-#include "cli/say.hpp"
+#include "cli/run_adit.hpp"
 #include "cli/view.hpp"
 
 namespace adit::cli {
@@ -42,7 +42,7 @@ class Completion : public testing::Test {
 
   Outcome listed(std::vector<std::string_view> words) const {
     words.insert(words.begin(), "complete");
-    return say(server_, words);
+    return run_adit(server_, words);
   }
 
   Server server_{answers()};
@@ -62,7 +62,7 @@ TEST_F(Completion, ListsReportsThatAllowAnAction) {
 TEST_F(Completion, ListsRejectedMessagesCoursesAndRuns) {
   EXPECT_EQ(listed({"rejected"}).out, "8\tcloud of r2\n9\tstate\n");
   EXPECT_EQ(listed({"courses"}).out, "B\t10.100.2.200\n");
-  EXPECT_EQ(listed({"runs"}).out, "2\tthe present run\n") << "and none that a shell would run";
+  EXPECT_EQ(listed({"runs"}).out, "2\tthe present run\n") << "no completion that a shell would execute";
 }
 
 TEST(CompletionOfKeys, SendsNoRequest) {

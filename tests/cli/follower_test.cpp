@@ -28,13 +28,13 @@ std::string stream(const std::string& events) {
   return "HTTP/1.1 200 OK\r\nContent-Type: text/event-stream\r\n\r\n" + events;
 }
 
-/// Follows whom a test plays.
+/// A follower of a server that the test controls.
 class Following {
  public:
   explicit Following(const Server& server)
       : adit_{server.address(), {*icd::BearerToken::parse("sesame-1"), ""}} {}
 
-  /// The next that is new; it is waited for.
+  /// Waits for the next new view.
   Look next() {
     while (true) {
       if (auto look = follower_.look()) return *std::move(look);
@@ -44,7 +44,7 @@ class Following {
       poll(&entry, 1, static_cast<int>(std::max<std::int64_t>(left.count(), 0)));
     }
   }
-  /// How many reports are left by the next view, or what is said in its place.
+  /// The number of reports left in the next view, or the message in its place.
   std::string left() {
     const Look look = next();
     return look ? std::to_string(look->view.run->remaining_reports) : look.error();
@@ -64,7 +64,7 @@ TEST(Follower, ReadsTheWholeViewAndThenItsChanges) {
   const Server server(stream(whole(sample_view()) + patch(change)), true);
   Following following(server);
   Look look = following.next();
-  if (look && look->view.run->remaining_reports == 18) look = following.next();  // they came one by one
+  if (look && look->view.run->remaining_reports == 18) look = following.next();  // they arrived one by one
   ASSERT_TRUE(look) << look.error();
   EXPECT_EQ(codec::write_json(look->told), codec::write_json(codec::parse_json(codec::to_json(now)).value()));
   EXPECT_EQ(codec::to_json(look->view), codec::to_json(now));
@@ -86,17 +86,18 @@ TEST(Follower, PollsTheViewIfEventsAreRejected) {
 }
 
 TEST(Follower, TellsWhyThereIsNoView) {
-  const auto said = [](const std::string& answer) {
+  const auto error_of = [](const std::string& answer) {
     const Server server(answer);
     return Following(server).left();
   };
-  EXPECT_THAT(said(Server::reply("401 Unauthorized", "\"who are you?\"")), HasSubstr("rejects the token"));
-  EXPECT_THAT(said(stream(whole(sample_view()) + patch(R"({"reports":{"length":-1}})"))),
+  EXPECT_THAT(error_of(Server::reply("401 Unauthorized", "\"who are you?\"")),
+              HasSubstr("rejects the token"));
+  EXPECT_THAT(error_of(stream(whole(sample_view()) + patch(R"({"reports":{"length":-1}})"))),
               HasSubstr("cannot read an event"));
-  EXPECT_THAT(said(stream("data: {\n\n")), HasSubstr("cannot read an event"));
-  EXPECT_THAT(said(stream("data: {}\n\n")), HasSubstr("it is another version"));
-  EXPECT_THAT(said(stream("")), HasSubstr("closed by the server"));
-  EXPECT_THAT(said(""), HasSubstr("did not answer"));
+  EXPECT_THAT(error_of(stream("data: {\n\n")), HasSubstr("cannot read an event"));
+  EXPECT_THAT(error_of(stream("data: {}\n\n")), HasSubstr("it is another version"));
+  EXPECT_THAT(error_of(stream("")), HasSubstr("closed by the server"));
+  EXPECT_THAT(error_of(""), HasSubstr("did not answer"));
 }
 
 TEST(Follower, ReportsThatAditIsUnreachableAndRetries) {
@@ -111,7 +112,7 @@ TEST(Follower, TreatsALongSilenceAsALoss) {
   Following following(server);
   EXPECT_EQ(following.left(), "18");
   EXPECT_GT(following.follower().due(), Follower::Clock::now() + std::chrono::seconds(2))
-      << "longer than a heartbeat";
+      << "the server was silent for longer than a heartbeat";
   EXPECT_THAT(following.left(), StartsWith("lost the connection to Adit at 127.0.0.1:"));
 }
 
@@ -119,7 +120,7 @@ constexpr std::string_view kStream =
     "retry: 1000\ndata: {\"now\":1}\n\n:\n\nevent: patch\ndata: {\"now\":2}\n\ndata: {\"now\":3}\n\ndata: "
     "{\"no";
 
-/// "type data", fed in pieces of so many bytes.
+/// Parses "type data" from pieces of `piece` bytes.
 std::vector<std::string> events(std::size_t piece) {
   EventReader reader;
   std::vector<std::string> all;

@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "cli/say.hpp"
+#include "cli/run_adit.hpp"
 #include "host/folder.hpp"
 #include "store/log.hpp"
 
@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 class LedgerDump : public testing::Test {
  protected:
-  /// With all that was printed.
+  /// With all output.
   Outcome dump(const std::string& directory) const {
     std::string printed;
     const Console console{.print = [&](const std::string& text) { printed += text; }};
@@ -103,10 +103,10 @@ TEST_F(LedgerDump, FailsIfAFileCannotBeRead) {
 
 TEST(LedgerNew, NeedsConfirmation) {
   const Server server({{"POST /adit/ledger/new", Server::ok(R"({"kept_as":"ledger.damaged-1"})")}});
-  EXPECT_THAT(say(server, {"ledger", "new"}).err,
+  EXPECT_THAT(run_adit(server, {"ledger", "new"}).err,
               HasSubstr("a report may be sent twice. It was not done; to do it, add --yes"));
   EXPECT_EQ(server.posted(), "");
-  const Outcome outcome = say(server, {"ledger", "new", "--yes"});
+  const Outcome outcome = run_adit(server, {"ledger", "new", "--yes"});
   EXPECT_EQ(outcome.exit, Exit::Fine) << outcome.err;
   EXPECT_EQ(outcome.out, "aditd restarts with another ledger: see adit status\n");
 }

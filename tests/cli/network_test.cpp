@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "cli/say.hpp"
+#include "cli/run_adit.hpp"
 
 namespace adit::cli {
 namespace {
@@ -25,11 +25,11 @@ const std::string kPending =
 
 TEST(NetworkCommand, ShowsBothSides) {
   const Server server({{"GET /adit/network", view("null", "null")}});
-  const Outcome outcome = say(server, {"network"});
+  const Outcome outcome = run_adit(server, {"network"});
   EXPECT_EQ(outcome.exit, Exit::Fine);
   EXPECT_EQ(outcome.out, "  team          team0  static  192.168.7.11/24\n  command post  darpa0  none\n");
-  EXPECT_EQ(say(server, {"network", "show"}).out, outcome.out);
-  EXPECT_THAT(say(server, {"network", "--json"}).out, HasSubstr("\"managed\":true"));
+  EXPECT_EQ(run_adit(server, {"network", "show"}).out, outcome.out);
+  EXPECT_THAT(run_adit(server, {"network", "--json"}).out, HasSubstr("\"managed\":true"));
 }
 
 TEST(NetworkCommand, ShowsTheAddressModeOfTheTeamSide) {
@@ -41,15 +41,15 @@ TEST(NetworkCommand, ShowsTheAddressModeOfTheTeamSide) {
   };
   const Server given({{"GET /adit/network",
                        with(R"({"interface":"team0","mode":"dhcp","address":"10.0.0.77","prefix":8})")}});
-  EXPECT_THAT(say(given, {"network"}).out, HasSubstr("team0  dhcp  10.0.0.77/8\n"));
+  EXPECT_THAT(run_adit(given, {"network"}).out, HasSubstr("team0  dhcp  10.0.0.77/8\n"));
   const Server none({{"GET /adit/network",
                       with(R"({"interface":"team0","mode":"link-local","address":null,"prefix":null})")}});
-  EXPECT_THAT(say(none, {"network"}).out, HasSubstr("team0  link-local  none\n"));
+  EXPECT_THAT(run_adit(none, {"network"}).out, HasSubstr("team0  link-local  none\n"));
 }
 
 TEST(NetworkCommand, ShowsAPendingChange) {
   const Server server({{"GET /adit/network", view(kPending, "null")}});
-  const Outcome outcome = say(server, {"network", "show"});
+  const Outcome outcome = run_adit(server, {"network", "show"});
   EXPECT_EQ(outcome.exit, Exit::Attention);
   EXPECT_THAT(outcome.out, HasSubstr("A change is to be confirmed within 42 s"));
   EXPECT_THAT(outcome.out, HasSubstr("static  192.168.8.11/24"));
@@ -60,7 +60,7 @@ TEST(NetworkCommand, ShowsAPendingChange) {
 TEST(NetworkCommand, RejectsAChangeWithoutAddresses) {
   const Server server(
       {{"GET /adit/network", view(R"({"until":1042,"previous":null,"page":"http://a"})", "null")}});
-  const Outcome outcome = say(server, {"network"});
+  const Outcome outcome = run_adit(server, {"network"});
   EXPECT_EQ(outcome.exit, Exit::Unable);
   EXPECT_EQ(outcome.out, "");
   EXPECT_THAT(outcome.err, HasSubstr("it is another version: pending.team: "));
@@ -68,7 +68,7 @@ TEST(NetworkCommand, RejectsAChangeWithoutAddresses) {
 
 TEST(NetworkCommand, ShowsTheLastChangeAndWhyNoneIsPossible) {
   const Server server({{"GET /adit/network", view("null", "\"reverted\"", false)}});
-  const Outcome outcome = say(server, {"network"});
+  const Outcome outcome = run_adit(server, {"network"});
   EXPECT_THAT(outcome.out, HasSubstr("Last change: reverted, nobody confirmed it\n"));
   EXPECT_THAT(outcome.out, HasSubstr("Adit cannot change the addresses: it is set elsewhere\n"));
 }
@@ -77,22 +77,22 @@ TEST(NetworkCommand, ConfirmsOrRevertsAndShowsTheOutcome) {
   const Server server({{"POST /adit/network/confirm", view(kPending, "null")},
                        {"POST /adit/network/revert", view(kPending, "null")},
                        {"GET /adit/network", view("null", "\"confirmed\"")}});
-  const Outcome confirmed = say(server, {"network", "confirm"});
+  const Outcome confirmed = run_adit(server, {"network", "confirm"});
   EXPECT_EQ(confirmed.exit, Exit::Fine) << confirmed.err;
   EXPECT_EQ(confirmed.out, "the change is confirmed\n");
-  const Outcome reverted = say(server, {"network", "revert"});
-  EXPECT_EQ(reverted.exit, Exit::Attention) << "it was confirmed meanwhile";
+  const Outcome reverted = run_adit(server, {"network", "revert"});
+  EXPECT_EQ(reverted.exit, Exit::Attention) << "the change was confirmed meanwhile";
   EXPECT_EQ(reverted.out, "the change is confirmed: nobody confirmed it\n");
 }
 
 TEST(NetworkCommand, TellsWhyAnActionFails) {
   const Server server(
       {{"POST /adit/network/confirm", Server::reply("409 Conflict", "\"no change waits to be confirmed\"")}});
-  const Outcome outcome = say(server, {"network", "confirm"});
+  const Outcome outcome = run_adit(server, {"network", "confirm"});
   EXPECT_EQ(outcome.exit, Exit::Attention);
   EXPECT_EQ(outcome.err, "adit: no change waits to be confirmed\n");
-  EXPECT_EQ(say(Server("nonsense"), {"network"}).exit, Exit::Unable);
-  EXPECT_THAT(say(Server(Server::ok("{}")), {"network"}).err, HasSubstr("it is another version"));
+  EXPECT_EQ(run_adit(Server("nonsense"), {"network"}).exit, Exit::Unable);
+  EXPECT_THAT(run_adit(Server(Server::ok("{}")), {"network"}).err, HasSubstr("it is another version"));
 }
 
 TEST(NetworkCommand, RejectsUnknownWords) {
@@ -116,14 +116,14 @@ std::string tested(const std::string& clock, bool running = false,
 
 TEST(NetworkCommand, PrintsTestStepsAndFailsIfOneIsBad) {
   const Server server({{"POST /adit/test", tested("running", true)}, {"GET /adit/test", tested("bad")}});
-  const Outcome outcome = say(server, {"test"});
+  const Outcome outcome = run_adit(server, {"test"});
   EXPECT_EQ(outcome.exit, Exit::Attention) << outcome.err;
   EXPECT_EQ(outcome.out,
             "scoring 10.100.1.200:8000\n"
             "  link     good     darpa0 has a carrier\n"
             "  clock    BAD      7 s behind\n"
             "           Set it.\n");
-  EXPECT_THAT(say(server, {"test", "--json"}).out, HasSubstr("\"running\":false"));
+  EXPECT_THAT(run_adit(server, {"test", "--json"}).out, HasSubstr("\"running\":false"));
 }
 
 TEST(NetworkCommand, TellsThatATestWasInterrupted) {
@@ -131,7 +131,7 @@ TEST(NetworkCommand, TellsThatATestWasInterrupted) {
       R"({"number":0,"running":false,"applied":true,"outdated":false,"course":"","endpoints":[]})";
   for (const std::string& left : {Server::ok(kKnowsOfNone), tested("waiting")}) {
     const Outcome outcome =
-        say(Server({{"POST /adit/test", tested("running", true)}, {"GET /adit/test", left}}), {"test"});
+        run_adit(Server({{"POST /adit/test", tested("running", true)}, {"GET /adit/test", left}}), {"test"});
     EXPECT_EQ(outcome.exit, Exit::Unable);
     EXPECT_EQ(outcome.err, "adit: the test was interrupted, perhaps by a restart of Adit: start it again\n");
   }
@@ -140,16 +140,17 @@ TEST(NetworkCommand, TellsThatATestWasInterrupted) {
 TEST(NetworkCommand, JoinsARunningTest) {
   const Server server({{"POST /adit/test", Server::reply("409 Conflict", "\"a test is running\"")},
                        {"GET /adit/test", tested("skipped")}});
-  const Outcome outcome = say(server, {"test"});
+  const Outcome outcome = run_adit(server, {"test"});
   EXPECT_EQ(outcome.exit, Exit::Fine);
   EXPECT_THAT(outcome.out, testing::AllOf(HasSubstr("skipped"), Not(HasSubstr("bad"))));
-  EXPECT_EQ(say(Server(Server::reply("401 Unauthorized", "\"no\"")), {"test"}).exit, Exit::Unable);
-  EXPECT_EQ(say(Server(Server::reply("503 Service Unavailable", "\"no\"")), {"test"}).exit, Exit::Unable);
+  EXPECT_EQ(run_adit(Server(Server::reply("401 Unauthorized", "\"no\"")), {"test"}).exit, Exit::Unable);
+  EXPECT_EQ(run_adit(Server(Server::reply("503 Service Unavailable", "\"no\"")), {"test"}).exit,
+            Exit::Unable);
 }
 
 TEST(NetworkCommand, RejectsResultsOfOtherValues) {
   const auto test = [](const std::string& of) {
-    return say(
+    return run_adit(
         Server({{"POST /adit/test", tested("running", true)}, {"GET /adit/test", tested("good", false, of)}}),
         {"test"});
   };
@@ -164,25 +165,25 @@ TEST(NetworkCommand, RejectsResultsOfOtherValues) {
 TEST(NetworkCommand, TestsTheNamedEndpointBeforeItIsApplied) {
   const TokenFile typed("typed-token-1");
   const std::string file = typed.path();
-  // What runs already is something else, and is not joined.
+  // A running test is another one, so it is not joined.
   const Server busy(Server::reply("409 Conflict", "\"a test is running\""));
   const Outcome outcome =
-      say(busy, {"test", "--scoring", "10.100.2.200:8000", "--scoring-token", file, "--course", "B"});
+      run_adit(busy, {"test", "--scoring", "10.100.2.200:8000", "--scoring-token", file, "--course", "B"});
   EXPECT_EQ(outcome.exit, Exit::Attention);
   EXPECT_EQ(outcome.err, "adit: a test is running\n");
   EXPECT_THAT(busy.request(),
               HasSubstr(R"("scoring":{"address":"10.100.2.200","port":8000,"token":"typed-token-1"})"));
   EXPECT_THAT(busy.request(), HasSubstr(R"("mapping":null,"course":"B")"));
   EXPECT_THAT(outcome.err + outcome.out, Not(HasSubstr("typed-token-1")));
-  EXPECT_EQ(say(Server(Server::reply("422 Unprocessable Content", "\"course: none is called B\"")),
-                {"test", "--mapping", "10.100.2.201:8000"})
+  EXPECT_EQ(run_adit(Server(Server::reply("422 Unprocessable Content", "\"course: none is called B\"")),
+                     {"test", "--mapping", "10.100.2.201:8000"})
                 .exit,
             Exit::Attention);
-  const Outcome none = say(busy, {"test", "--mapping-token", "/no/such/file"});
+  const Outcome none = run_adit(busy, {"test", "--mapping-token", "/no/such/file"});
   EXPECT_EQ(none.exit, Exit::Unable);
   EXPECT_THAT(none.err, HasSubstr("/no/such/file"));
-  EXPECT_EQ(say(busy, {"test", "--scoring", "10.100.2"}).exit, Exit::Unable);
-  EXPECT_THAT(say(busy, {"status", "--scoring", "10.100.2.200:8000"}).err,
+  EXPECT_EQ(run_adit(busy, {"test", "--scoring", "10.100.2"}).exit, Exit::Unable);
+  EXPECT_THAT(run_adit(busy, {"status", "--scoring", "10.100.2.200:8000"}).err,
               HasSubstr("status does not take --scoring"));
 }
 

@@ -3,7 +3,7 @@
 
 #include "api/reports_csv.hpp"
 #include "cli/reports_text.hpp"
-#include "cli/say.hpp"
+#include "cli/run_adit.hpp"
 #include "cli/view.hpp"
 
 namespace adit::cli {
@@ -19,7 +19,7 @@ api::ReportRow report(std::int64_t number, std::int64_t run, const std::string& 
   return row;
 }
 
-/// Two runs, of which the second is the present one.
+/// Two runs; the second one is the current one.
 std::vector<api::ReportRow> two_runs() {
   return {report(1, 1, "answered"), report(2, 1, "held"), report(3, 2, "settled"), report(4, 2, "queued")};
 }
@@ -39,7 +39,7 @@ Outcome asked(const std::vector<api::ReportRow>& rows, std::vector<std::string_v
                        {"GET /adit/reports.csv", Server::ok(csv_of(rows))},
                        {"GET /adit/reports/4", Server::ok(codec::to_json(detail))},
                        {"GET /adit/reports/5", Server::reply("404 Not Found", "\"there is no report 5\"")}});
-  return say(server, std::move(words));
+  return run_adit(server, std::move(words));
 }
 
 TEST(Reports, ListThePresentRunAndUnfinishedEarlierOnes) {
@@ -78,7 +78,7 @@ TEST(Reports, AreAListForScripts) {
 
 TEST(Reports, NeedAttentionIfOneAwaitsTheOperator) {
   EXPECT_EQ(asked(two_runs(), {"reports", "--run", "2"}).exit, Exit::Attention)
-      << "though it is of another run";
+      << "also a report of another run";
   EXPECT_EQ(asked({report(4, 2, "in_doubt")}, {"reports"}).exit, Exit::Attention);
   EXPECT_EQ(asked({report(4, 2, "in_doubt")}, {"reports", "show", "4"}).exit, Exit::Attention);
   api::ReportRow asking = report(4, 2, "in_doubt");
@@ -113,7 +113,7 @@ TEST(Reports, AreExportedUnchanged) {
 TEST(Reports, OfAnotherVersionAreRejected) {
   const Server server({{"GET /adit/run", Server::ok(codec::to_json(sample_view()))},
                        {"GET /adit/reports", Server::ok("[{\"number\": 1}]")}});
-  const Outcome outcome = say(server, {"reports"});
+  const Outcome outcome = run_adit(server, {"reports"});
   EXPECT_EQ(outcome.exit, Exit::Unable);
   EXPECT_THAT(outcome.err, HasSubstr("it is another version"));
 }

@@ -16,15 +16,15 @@
 
 namespace adit::cli {
 
-/// Listens on loopback and gives each connection its answer, then closes. With `silent`, it keeps the
-/// connection and says nothing more.
+/// Listens on loopback. Answers each connection once and closes it. With `silent`, keeps the connection
+/// open without further bytes.
 class Server {
  public:
   using Answers = std::map<std::string, std::string>;  // by "POST /adit/runs"
 
-  /// The same bytes, whatever it is asked.
+  /// Always sends the same answer.
   explicit Server(const std::string& answer, bool silent = false) : Server({{"", answer}}, silent) {}
-  /// What is in none of `answers` is 404.
+  /// Answers 404 to requests that are not in `answers`.
   explicit Server(Answers answers) : Server(std::move(answers), false) {}
   ~Server() {
     ended_ = true;
@@ -36,9 +36,9 @@ class Server {
 
   settings::Address address() const { return {"127.0.0.1", port_}; }
   std::string at() const { return "127.0.0.1:" + std::to_string(port_); }
-  /// What the last client sent. After the server has ended, or the client has its answer.
+  /// The last request. Call after the server has ended or the client has its answer.
   const std::string& request() const { return request_; }
-  /// The last POST of them.
+  /// The last POST.
   const std::string& posted() const { return posted_; }
 
   static std::string reply(const std::string& status, const std::string& body) {
@@ -80,7 +80,7 @@ class Server {
     while (silent_ && !ended_) std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
 
-  /// A whole request, which may come in pieces, or what there was of one.
+  /// Reads a complete request, or the part before the client closes.
   static std::string received(int client) {
     std::string request;
     char buffer[4096];

@@ -25,7 +25,7 @@ api::KeyRow key(const std::string& path, const std::string& meaning, const std::
   return row;
 }
 
-/// What Adit says, of a few keys.
+/// Adit's answer with a few keys.
 api::SetupView answer() {
   return {.settings = *codec::parse_json(R"({"reports": {"review": "off", "near_metres": 5},
             "robots": [{"name": "r1", "alias": "husky"}, {"name": "r2", "alias": ""}], "courses": []})"),

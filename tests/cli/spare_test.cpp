@@ -3,7 +3,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "cli/say.hpp"
+#include "cli/run_adit.hpp"
 #include "host/folder.hpp"
 
 namespace adit::cli {
@@ -31,9 +31,9 @@ constexpr const char* kNoStick =
 
 class SpareCommand : public testing::Test {
  protected:
-  Outcome say(const Server& server, std::vector<std::string_view> words) const {
+  Outcome run_adit(const Server& server, std::vector<std::string_view> words) const {
     words.insert(words.begin(), "spare");
-    return cli::say(server, words);
+    return cli::run_adit(server, words);
   }
   const host::Folder folder_;
   const std::string export_ = folder_ / "box.adit-spare";
@@ -41,9 +41,9 @@ class SpareCommand : public testing::Test {
 
 TEST_F(SpareCommand, ShowsTheStateOfTheBox) {
   const Server at_work({{"GET /adit/spare", Server::ok(kAtWork)}});
-  EXPECT_EQ(say(at_work, {}).exit, Exit::Fine);
+  EXPECT_EQ(run_adit(at_work, {}).exit, Exit::Fine);
   const Server standby({{"GET /adit/spare", Server::ok(kStandby)}});
-  const Outcome outcome = say(standby, {"show"});
+  const Outcome outcome = run_adit(standby, {"show"});
   EXPECT_EQ(outcome.exit, Exit::Attention);
   EXPECT_EQ(outcome.out,
             "This box is on standby: its spare takes over\nCode of its export: 1234 5678 9012 3456\n");
@@ -51,7 +51,7 @@ TEST_F(SpareCommand, ShowsTheStateOfTheBox) {
 
 TEST_F(SpareCommand, NeedsConfirmationForStandby) {
   const Server server({{"GET /adit/spare", Server::ok(kAtWork)}});
-  const Outcome outcome = say(server, {"export", export_});
+  const Outcome outcome = run_adit(server, {"export", export_});
   EXPECT_EQ(outcome.exit, Exit::Attention);
   EXPECT_THAT(outcome.err, HasSubstr("It was not done; to do it, add --yes"));
 }
@@ -60,7 +60,7 @@ TEST_F(SpareCommand, WritesTheExportAndShowsItsCode) {
   const Server server({{"POST /adit/spare/standby", Server::ok(kAtWork)},
                        {"GET /adit/spare/export", Server::ok("a sealed file")},
                        {"GET /adit/spare", Server::ok(kStandby)}});
-  const Outcome outcome = say(server, {"export", export_, "--yes"});
+  const Outcome outcome = run_adit(server, {"export", export_, "--yes"});
   EXPECT_EQ(outcome.exit, Exit::Fine) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("Code of its export: 1234 5678 9012 3456\n"));
   std::ifstream file(export_, std::ios::binary);
@@ -70,38 +70,41 @@ TEST_F(SpareCommand, WritesTheExportAndShowsItsCode) {
 TEST_F(SpareCommand, RejectsAnInvalidExportBeforeSending) {
   const Server server(Server::Answers{});
   const std::string other = folder_.put("other", "PK a zip file of more bytes");
-  EXPECT_THAT(say(server, {"take", other, "--code", "1234567890123456"}).err,
+  EXPECT_THAT(run_adit(server, {"take", other, "--code", "1234567890123456"}).err,
               HasSubstr("the file is not an export from Adit"));
-  EXPECT_THAT(say(server, {"take", folder_ / "none", "--code", "1"}).err, HasSubstr("none: cannot be read"));
-  EXPECT_THAT(say(server, {"take", other}).err, HasSubstr("the code of the export is missing: give --code"));
+  EXPECT_THAT(run_adit(server, {"take", folder_ / "none", "--code", "1"}).err,
+              HasSubstr("none: cannot be read"));
+  EXPECT_THAT(run_adit(server, {"take", other}).err,
+              HasSubstr("the code of the export is missing: give --code"));
 }
 
 TEST_F(SpareCommand, StaysInServiceIfTheStickCannotBeWritten) {
   const Server without({{"GET /adit/spare", Server::ok(kNoStick)}});
-  const Outcome outcome = say(without, {"export", "--stick", "--yes"});
+  const Outcome outcome = run_adit(without, {"export", "--stick", "--yes"});
   EXPECT_EQ(outcome.exit, Exit::Attention);
   EXPECT_THAT(outcome.err, HasSubstr("the box was not put on standby: there is no stick in the box"));
   const Server pc({{"GET /adit/spare", Server::ok(kAtWork)}});
-  EXPECT_THAT(say(pc, {"export", "--stick", "--yes"}).err, HasSubstr("cannot use a stick"));
+  EXPECT_THAT(run_adit(pc, {"export", "--stick", "--yes"}).err, HasSubstr("cannot use a stick"));
 }
 
 TEST_F(SpareCommand, ListsTheStickAndImportsTheNamedExport) {
   const Server server(
       {{"POST /adit/spare/from-stick", Server::reply("409 Conflict", R"("it cannot be read")")},
        {"GET /adit/spare", Server::ok(kStick)}});
-  EXPECT_THAT(say(server, {"show"}).out, HasSubstr("On the stick: adit-a.adit-spare\nOn the stick: adit-b"));
-  EXPECT_THAT(say(server, {"take", "--stick", "--code", "1234567890123456"}).err,
+  EXPECT_THAT(run_adit(server, {"show"}).out,
+              HasSubstr("On the stick: adit-a.adit-spare\nOn the stick: adit-b"));
+  EXPECT_THAT(run_adit(server, {"take", "--stick", "--code", "1234567890123456"}).err,
               HasSubstr("the stick has several exports: name one of adit-a.adit-spare adit-b.adit-spare"));
-  EXPECT_THAT(say(server, {"take", "adit-b.adit-spare", "--stick", "--code", "1234567890123456"}).err,
+  EXPECT_THAT(run_adit(server, {"take", "adit-b.adit-spare", "--stick", "--code", "1234567890123456"}).err,
               HasSubstr("it cannot be read"));
 }
 
 TEST_F(SpareCommand, AcceptsAFileOrTheStick) {
   const Server server(Server::Answers{});
-  EXPECT_THAT(say(server, {"export"}).err, HasSubstr("a file or --stick is missing after export"));
-  EXPECT_THAT(say(server, {"take"}).err, HasSubstr("a file or --stick is missing after take"));
-  EXPECT_THAT(say(server, {"export", "x", "--stick"}).err, HasSubstr("give FILE or --stick, not both"));
-  EXPECT_THAT(say(server, {"resume", "--stick"}).err, HasSubstr("spare resume does not take --stick"));
+  EXPECT_THAT(run_adit(server, {"export"}).err, HasSubstr("a file or --stick is missing after export"));
+  EXPECT_THAT(run_adit(server, {"take"}).err, HasSubstr("a file or --stick is missing after take"));
+  EXPECT_THAT(run_adit(server, {"export", "x", "--stick"}).err, HasSubstr("give FILE or --stick, not both"));
+  EXPECT_THAT(run_adit(server, {"resume", "--stick"}).err, HasSubstr("spare resume does not take --stick"));
 }
 
 TEST_F(SpareCommand, ShowsTheExportAndTakesOverOnlyIfConfirmed) {
@@ -110,14 +113,14 @@ TEST_F(SpareCommand, ShowsTheExportAndTakesOverOnlyIfConfirmed) {
                        {"POST /adit/spare/take", Server::ok(kAtWork)},
                        {"POST /adit/spare/open", Server::ok(kTakenIn)},
                        {"GET /adit/spare", Server::ok(kTakenIn)}});
-  const Outcome unasked = say(server, {"take", file, "--code", "1234567890123456"});
+  const Outcome unasked = run_adit(server, {"take", file, "--code", "1234567890123456"});
   EXPECT_EQ(unasked.exit, Exit::Attention);
   EXPECT_THAT(unasked.err, HasSubstr("reports may be sent twice"));
-  const Outcome meant = say(server, {"take", file, "--code", "1234567890123456", "--yes"});
+  const Outcome meant = run_adit(server, {"take", file, "--code", "1234567890123456", "--yes"});
   EXPECT_EQ(meant.exit, Exit::Fine) << meant.err;
   EXPECT_THAT(meant.out, HasSubstr("team's port 8000, at this box after the take-over"));
   EXPECT_THAT(meant.out, HasSubstr("this box is taking over"));
-  EXPECT_THAT(say(server, {"show"}).out, HasSubstr("4 reports, 1 of them unfinished"));
+  EXPECT_THAT(run_adit(server, {"show"}).out, HasSubstr("4 reports, 1 of them unfinished"));
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "cli/say.hpp"
+#include "cli/run_adit.hpp"
 #include "cli/view.hpp"
 
 namespace adit::cli {
@@ -36,7 +36,7 @@ TEST(StatusText, MarksAnEstimateOfTheRunClock) {
       StartsWith("Run   about 13:10   about 46:50 to go   score 7   18 reports left   team cave_club   "
                  "(heard 35 s ago)\n"));
   view.run_clock = {.seconds = 754, .age = 35.4, .old = true};
-  EXPECT_THAT(status_text(view, false), StartsWith("Run   12:34   47:26 to go ")) << "it stands";
+  EXPECT_THAT(status_text(view, false), StartsWith("Run   12:34   47:26 to go ")) << "the clock stands still";
 }
 
 TEST(StatusText, BeginsWithTheAlarms) {

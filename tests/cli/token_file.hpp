@@ -9,7 +9,7 @@
 
 namespace adit::cli {
 
-/// A file that holds a token, for the length of a test.
+/// A file with a token, for one test.
 class TokenFile {
  public:
   explicit TokenFile(const std::string& token = "sesame-1")

@@ -26,25 +26,25 @@ class FindToken : public testing::Test {
       if (mkdtemp(folder.data()) == nullptr) ADD_FAILURE() << folder;
     }
   }
-  /// A file among the given ones.
+  /// Writes one of the given files.
   std::string write(const std::string& name, const std::string& text) const {
     std::ofstream(folder_ + "/" + name) << text;
     return folder_ + "/" + name;
   }
-  /// The token that is found without a file being named.
+  /// The token that is found without a named file.
   std::string found() const {
     const auto token = find_token("", folders_);
     if (!token) return "error: " + token.error();
     return *token ? (*token)->token.reveal() : "none";
   }
-  std::vector<std::string> folders_{2};  // of the saved ones, and of the given
+  std::vector<std::string> folders_{2};  // of the saved files, and of the given files
   const std::string& folder_ = folders_[1];
 };
 
 TEST_F(FindToken, PrefersASavedTokenToTheGivenOne) {
   write("team.token", "given-1");
   std::ofstream(folders_[0] + "/scoring.token") << "saved-scoring";
-  EXPECT_EQ(found(), "given-1") << "the team's first";
+  EXPECT_EQ(found(), "given-1") << "the team's token has priority";
   std::ofstream(folders_[0] + "/team.token") << "saved-team";
   EXPECT_EQ(found(), "saved-team");
 }
@@ -54,7 +54,7 @@ TEST_F(FindToken, PrefersTheTeamToken) {
   write("scoring.token", "scoring-1\n");
   EXPECT_EQ(found(), "scoring-1");
   write("team.token", " \n");
-  EXPECT_EQ(found(), "scoring-1") << "an empty file is no token";
+  EXPECT_EQ(found(), "scoring-1") << "an empty file has no token";
   const std::string team = write("team.token", "team-1\n");
   EXPECT_EQ(found(), "team-1");
   EXPECT_EQ((*find_token("", folders_))->file, team);

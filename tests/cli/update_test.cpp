@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 
 #include "api/updates.hpp"
-#include "cli/say.hpp"
+#include "cli/run_adit.hpp"
 
 namespace adit::cli {
 namespace {
@@ -19,32 +19,32 @@ api::UpdateView a_box(const std::string& stray) {
   return view;
 }
 
-Outcome say_update(const Server& server, std::vector<std::string_view> words) {
+Outcome run_update(const Server& server, std::vector<std::string_view> words) {
   words.insert(words.begin(), "update");
-  return say(server, words);
+  return run_adit(server, words);
 }
 
 TEST(Update, ShowsTheRunningSlot) {
   const Server server({{"GET /adit/update", Server::ok(codec::to_json(a_box("")))}});
-  const Outcome told = say_update(server, {});
-  EXPECT_EQ(told.out, "0.1.0 runs, in slot A (an update goes into slot B) of adit-a-board\n");
-  EXPECT_EQ(told.exit, Exit::Fine);
+  const Outcome outcome = run_update(server, {});
+  EXPECT_EQ(outcome.out, "0.1.0 runs, in slot A (an update goes into slot B) of adit-a-board\n");
+  EXPECT_EQ(outcome.exit, Exit::Fine);
 }
 
 TEST(Update, ShowsAnUnexpectedSlotAndBothChoices) {
   const Server server({{"GET /adit/update", Server::ok(codec::to_json(a_box(kWhy)))}});
-  const Outcome told = say_update(server, {});
-  EXPECT_THAT(told.out, HasSubstr("An unexpected slot runs: " + std::string(kWhy)));
-  EXPECT_THAT(told.out, HasSubstr("adit update --back "));
-  EXPECT_THAT(told.out, HasSubstr("adit update --stay "));
-  EXPECT_EQ(told.exit, Exit::Attention);
+  const Outcome outcome = run_update(server, {});
+  EXPECT_THAT(outcome.out, HasSubstr("An unexpected slot runs: " + std::string(kWhy)));
+  EXPECT_THAT(outcome.out, HasSubstr("adit update --back "));
+  EXPECT_THAT(outcome.out, HasSubstr("adit update --stay "));
+  EXPECT_EQ(outcome.exit, Exit::Attention);
 }
 
 TEST(Update, OnAPcRefersToApt) {
   api::UpdateView pc;
   pc.why = "adit-update does not run here";
   const auto said_of = [&pc] {
-    return say_update(Server({{"GET /adit/update", Server::ok(codec::to_json(pc))}}), {});
+    return run_update(Server({{"GET /adit/update", Server::ok(codec::to_json(pc))}}), {});
   };
   EXPECT_EQ(said_of().out, "This box cannot be updated: adit-update does not run here\n");
   pc.newer_why = "no permission";
@@ -61,14 +61,14 @@ TEST(Update, OnAPcRefersToApt) {
 TEST(Update, GoesBackOrStaysOnRequest) {
   const std::string after = Server::ok(codec::to_json(a_box("")));
   const Server server({{"POST /adit/update/back", after}, {"POST /adit/update/stay", after}});
-  EXPECT_EQ(say_update(server, {"--back"}).out, "the box restarts into the slot that was good last\n");
+  EXPECT_EQ(run_update(server, {"--back"}).out, "the box restarts into the slot that was good last\n");
   EXPECT_THAT(server.request(), EndsWith("\r\n\r\n{}"));
-  say_update(server, {"--back", "--anyway"});
+  run_update(server, {"--back", "--anyway"});
   EXPECT_THAT(server.request(), EndsWith("\r\n\r\n{\"anyway\": true}"));
-  EXPECT_EQ(say_update(server, {"--stay"}).out, "the box keeps the slot that runs\n");
+  EXPECT_EQ(run_update(server, {"--stay"}).out, "the box keeps the slot that runs\n");
   const Server none(
       {{"POST /adit/update/stay", Server::reply("409 Conflict", "\"no unexpected slot is running\"")}});
-  const Outcome refused = say_update(none, {"--stay"});
+  const Outcome refused = run_update(none, {"--stay"});
   EXPECT_EQ(refused.err, "adit: no unexpected slot is running\n");
   EXPECT_EQ(refused.exit, Exit::Attention);
 }
@@ -76,9 +76,9 @@ TEST(Update, GoesBackOrStaysOnRequest) {
 TEST(Update, DoesOneThingAtATime) {
   const Server server(Server::Answers{});
   for (const char* other : {"--restart", "--stick", "--stay", "a.raucb"})
-    EXPECT_THAT(say_update(server, {"--back", other}).err, HasSubstr("give only one of FILE, --stick"))
+    EXPECT_THAT(run_update(server, {"--back", other}).err, HasSubstr("give only one of FILE, --stick"))
         << other;
-  EXPECT_THAT(say_update(server, {"--stay", "--anyway"}).err, HasSubstr("update does not take --anyway"));
+  EXPECT_THAT(run_update(server, {"--stay", "--anyway"}).err, HasSubstr("update does not take --anyway"));
 }
 
 }  // namespace

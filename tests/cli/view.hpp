@@ -6,7 +6,7 @@
 
 namespace adit::cli {
 
-/// A run as it might stand at 1000 s of the gateway's clock, with nothing that needs the operator.
+/// An example run at 1000 s of the gateway's clock, without anything for the operator to decide.
 inline api::RunView sample_view() {
   api::RunView view;
   view.now = 1000;
@@ -56,7 +56,7 @@ inline api::RunView sample_view() {
   return view;
 }
 
-/// Adit's answer of these settings, to GET /adit/settings.
+/// Adit's answer to GET /adit/settings with these settings.
 inline std::string setup_json(const std::string& settings, const std::string& trouble = "") {
   return R"({"settings":)" + settings +
          R"(,"tag":"0123456789abcdef","saved":true,"applying":false,"trouble":")" + trouble +

@@ -10,7 +10,7 @@ namespace {
 
 using testing::IsEmpty;
 
-/// The lines without the time that each begins with.
+/// The lines without their leading times.
 std::string changed(const api::RunView& before, const api::RunView& now) {
   std::string rest = changes_text(before, now, false), lines;
   while (!rest.empty()) {
@@ -22,7 +22,7 @@ std::string changed(const api::RunView& before, const api::RunView& now) {
   return lines;
 }
 
-/// The sample a second later.
+/// The sample one second later.
 api::RunView later() {
   api::RunView view = sample_view();
   view.now += 1;

@@ -37,7 +37,7 @@ TEST(Chrony, SetsTheClockOnlyOnceItsTimeWasAccepted) {
     EXPECT_EQ(chrony.configuration.contains("\nmaxchange 60 0 -1\n"), keeps);
   }
   EXPECT_EQ(chrony_for(kGives, Source::Ntp, "team0").options, "CHRONYD=-x\n")
-      << "its server is asked no more";
+      << "the old server must be gone";
 }
 
 TEST(Chrony, ServesNoUnsetTime) {
@@ -61,7 +61,7 @@ TEST(Chrony, AdmitsOnlyItsServerAndClients) {
   EXPECT_THAT(chrony.firewall, Not(HasSubstr("add element inet adit ntp_clients")));
 }
 
-/// As chronyd 4.3 told it, which did not set the clock; by it the clock was 90 days behind 10.0.0.5.
+/// An answer of chronyd 4.3, which did not set the clock. The clock was 90 days behind 10.0.0.5.
 constexpr std::string_view kTold =
     "060200000021000500000000000000000000000700000000000000000a0000050a00000500000000000000000000000000010000"
     "00040000"
@@ -89,7 +89,7 @@ TEST(Tracking, HasNoServerIfNoneIsHeard) {
   ASSERT_TRUE(read_tracking(silent, 7));
   EXPECT_EQ(read_tracking(silent, 7)->server, 0U);
   auto local = told();
-  local[49] = 0;  // by no address: its own clock
+  local[49] = 0;  // no address: its own clock
   ASSERT_TRUE(read_tracking(local, 7));
   EXPECT_EQ(read_tracking(local, 7)->server, 0U);
 }

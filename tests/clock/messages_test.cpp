@@ -53,7 +53,7 @@ TEST(ClockMessages, RequestIsValidForAMinuteOfTheSameBoot) {
   EXPECT_EQ(hindrance(request(), 160, kStatus), "");
   EXPECT_THAT(hindrance(request(), 161, kStatus), HasSubstr("at:"));
   EXPECT_THAT(hindrance(request(), 99, kStatus), HasSubstr("at:"));
-  EXPECT_THAT(hindrance(request(), 100, {.boot = "c"}), HasSubstr("boot:")) << "as long after its begin";
+  EXPECT_THAT(hindrance(request(), 100, {.boot = "c"}), HasSubstr("boot:")) << "a request of an earlier boot";
 }
 
 TEST(ClockMessages, NtpTimeIsValidOnlyFromTheSetServer) {
@@ -83,7 +83,8 @@ TEST(ClockMessages, TimesOutOfBoundsAreRejected) {
   }
   Request chip = request();
   chip.source = Source::Chip;
-  EXPECT_THAT(hindrance(chip, 100, kStatus), HasSubstr("source:")) << "the program finds that out itself";
+  EXPECT_THAT(hindrance(chip, 100, kStatus), HasSubstr("source:"))
+      << "the chip is read by the program itself";
 }
 
 }  // namespace

@@ -33,7 +33,7 @@ TEST(Crowding, NamesTheBusiestAddressWhileItLasts) {
   EXPECT_THAT(crowding.crowds(kFirst + 60s), ElementsAre(of("10.0.0.9")));
   EXPECT_THAT(crowding.crowds(kFirst + 90s), IsEmpty());
   crowding.ended(Ended::GaveWay, "10.0.0.7", kFirst + 9min);
-  EXPECT_THAT(crowding.crowds(kFirst + 9min), ElementsAre(of("10.0.0.7"))) << "the rest is long ago";
+  EXPECT_THAT(crowding.crowds(kFirst + 9min), ElementsAre(of("10.0.0.7"))) << "the other events are too old";
 }
 
 TEST(Crowding, ReportsWrongTokens) {

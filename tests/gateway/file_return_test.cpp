@@ -31,7 +31,7 @@ TEST_F(FileReturnTest, IsReportedOnce) {
   EXPECT_EQ(back_, 1);
 }
 
-/// A gateway that restarts for nothing turns clients away.
+/// A needless restart of the gateway would cut clients.
 TEST_F(FileReturnTest, IsNotReportedWhileAFileIsUnreadable) {
   const std::string in_the_way = folder_.path() + "/ledger";
   std::ofstream(in_the_way) << "no directory";

@@ -32,7 +32,7 @@ class Client {
     EXPECT_EQ(::send(socket_.get(), kRequest.data(), kRequest.size(), MSG_NOSIGNAL),
               static_cast<ssize_t>(kRequest.size()));
   }
-  /// What has come; "": the connection is over.
+  /// The received bytes; "": the connection has ended.
   std::optional<std::string> heard() {
     char bytes[4096];
     const ssize_t got = ::recv(socket_.get(), bytes, sizeof bytes, MSG_DONTWAIT);
@@ -51,7 +51,7 @@ class ListenersTest : public testing::Test {
     team_.listen = {{"127.0.0.1", free_port()}};
     listeners_.let_go_within(1h);
   }
-  /// Of a socket that is closed again.
+  /// The port of a socket that was closed again.
   static std::uint16_t free_port() {
     const auto socket = intake::open_listen_socket({.address = "127.0.0.1", .interface = ""});
     return intake::bound_at(socket->get())->port;
@@ -120,7 +120,7 @@ TEST_F(ListenersTest, NewLimitsApplyToNewConnections) {
   team_.connections_per_address = 1;
   ASSERT_TRUE(serve());
   listeners_.tick();
-  EXPECT_EQ(answer_to(client), kAnswered) << "its socket is served still";
+  EXPECT_EQ(answer_to(client), kAnswered) << "the socket must still be served";
   Client other(port());
   EXPECT_EQ(answer_to(other), kAnswered);
   EXPECT_EQ(listeners_.connections(), 2u);
@@ -131,7 +131,7 @@ TEST_F(ListenersTest, UnusableAddressKeepsTheOtherSockets) {
   Client client(port());
   EXPECT_EQ(answer_to(client), kAnswered);
   const settings::Team before = team_;
-  team_.listen = {{"192.0.2.1", port()}};  // no machine has it
+  team_.listen = {{"192.0.2.1", port()}};  // no machine has this address
   EXPECT_FALSE(serve());
   team_ = before;
   ASSERT_TRUE(serve());

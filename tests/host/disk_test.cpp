@@ -14,7 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-/// The kernel's tree for the disk that holds the test's folder: a disk, a partition in it, links to both by
+/// The kernel's tree for the disk of the test's directory: a disk, a partition in it, and links to both by
 /// number.
 class WearTest : public testing::Test {
  protected:

@@ -42,7 +42,7 @@ TEST(MayExist, IsFalseOnlyIfTheFileIsCertainlyAbsent) {
   EXPECT_TRUE(may_exist(folder.put("empty", "")));
   EXPECT_TRUE(may_exist(folder.path()));
   ASSERT_EQ(symlink("round", (folder / "round").c_str()), 0);
-  EXPECT_TRUE(may_exist(folder / "round")) << "who cannot look there does not know";
+  EXPECT_TRUE(may_exist(folder / "round")) << "an unreadable directory may contain the file";
 }
 
 TEST(WriteFile, CreatesAFileOfTheGivenMode) {
@@ -79,7 +79,7 @@ TEST(WriteFile, ReplacesTheFileAtomically) {
   ASSERT_TRUE(write_file(folder / "settings", "new", 0600).has_value());
   std::string seen;
   reader >> seen;
-  EXPECT_EQ(seen, "old") << "a reader that has it open keeps the old file whole";
+  EXPECT_EQ(seen, "old") << "an open reader keeps the complete old file";
   EXPECT_EQ(read_file(folder / "settings").value(), "new");
 }
 

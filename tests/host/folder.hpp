@@ -9,7 +9,7 @@
 
 namespace adit::host {
 
-/// A folder for one test, gone after it.
+/// A directory for one test, removed after it.
 class Folder {
  public:
   Folder() {

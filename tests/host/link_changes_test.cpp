@@ -30,7 +30,7 @@ bool is_told(const loop::FileDescriptor& changes, int within_ms) {
   return poll(&wait, 1, within_ms) == 1;
 }
 
-/// In a network of its own, whose one interface is down at first. What went wrong; 0: nothing.
+/// Runs in a network namespace whose one interface is down at first. Returns the failed step; 0: success.
 int tell_of_the_loopback() {
   if (unshare(CLONE_NEWUSER | CLONE_NEWNET) != 0) return kNoNamespace;
   const loop::FileDescriptor changes = link_changes();

@@ -21,7 +21,7 @@ TEST(LogMemory, ListsRecordsAfterANumber) {
   EXPECT_EQ(all[0].seq, 1);
   EXPECT_EQ(all[0].at, 1.5);
   EXPECT_EQ(all[1].level, Level::Warning);
-  EXPECT_THAT(all[1].fields, ElementsAre(Pair("report", "7"))) << "nothing is said of an empty one";
+  EXPECT_THAT(all[1].fields, ElementsAre(Pair("report", "7"))) << "an empty field is omitted";
   EXPECT_THAT(memory.after(1), SizeIs(1));
   EXPECT_THAT(memory.after(2), IsEmpty());
   EXPECT_THAT(memory.after(99), IsEmpty());

@@ -13,7 +13,7 @@ int calls_left = -1;  // negative: none fails
 
 }  // namespace
 
-// These stand before the C library's, in this program alone.
+// These replace the C library's functions in this program.
 extern "C" {
 dirent* readdir(DIR* folder) {
   static const auto real = reinterpret_cast<dirent* (*)(DIR*)>(dlsym(RTLD_NEXT, "readdir"));
@@ -51,7 +51,7 @@ TEST(NamesIn, IsBounded) {
   EXPECT_EQ(names_in(folder.path(), 2).error(), "holds more than 2 files");
 }
 
-/// A stick that is pulled out while it is read.
+/// A stick is unplugged while it is read.
 TEST(NamesIn, FailsIfADirectoryCannotBeReadToItsEnd) {
   const Folder folder;
   for (const char* name : {"a", "b", "c"}) folder.put(name, "");

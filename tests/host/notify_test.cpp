@@ -14,7 +14,7 @@
 namespace adit::host {
 namespace {
 
-/// Stands for systemd: the socket that $NOTIFY_SOCKET names.
+/// Replaces systemd: listens on the socket in $NOTIFY_SOCKET.
 class Notify : public testing::Test {
  protected:
   Notify() : socket_(socket(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)) {
@@ -101,7 +101,7 @@ TEST(InheritedDescriptors, IsEmptyOutsideSystemdOrForAnotherProcess) {
   setenv("LISTEN_PID", std::to_string(getpid()).c_str(), 1);
   setenv("LISTEN_FDS", "many", 1);
   EXPECT_FALSE(inherited());
-  EXPECT_EQ(getenv("LISTEN_FDS"), nullptr) << "a program that is started from here would take it for its own";
+  EXPECT_EQ(getenv("LISTEN_FDS"), nullptr) << "a child process would use the variable";
 }
 
 TEST(WatchdogWithin, IsTheValueOfSystemd) {
@@ -110,7 +110,7 @@ TEST(WatchdogWithin, IsTheValueOfSystemd) {
   setenv("WATCHDOG_USEC", "10000000", 1);
   EXPECT_EQ(watchdog_within(), std::chrono::seconds(10));
   setenv("WATCHDOG_PID", "1", 1);
-  EXPECT_EQ(watchdog_within(), std::nullopt) << "it is another's";
+  EXPECT_EQ(watchdog_within(), std::nullopt) << "the watchdog is another process's";
   unsetenv("WATCHDOG_USEC");
   unsetenv("WATCHDOG_PID");
 }

@@ -9,7 +9,7 @@ namespace adit::host {
 namespace {
 
 TEST(Random, FillsExactlyItsBuffer) {
-  std::array<std::uint8_t, 32> either{};  // of the bits that were ever set
+  std::array<std::uint8_t, 32> either{};  // bits that were set at least once
   for (int i = 0; i < 64; ++i) {
     std::array<std::uint8_t, 34> bytes{};
     fill_random(std::span(bytes).subspan(1, 32));

@@ -46,10 +46,10 @@ TEST(Nonce, IsNeverTheSameTwice) {
 
 class RootProgramTest : public testing::Test {
  protected:
-  /// As the program does.
+  /// Writes the status as the program does.
   void tell(const std::string& nonce) { ASSERT_TRUE(file_.tell(Status{nonce})); }
   bool is_left() const { return fs::exists(requests_ / kFile); }
-  /// What the program takes.
+  /// Takes the request as the program does.
   std::optional<Request> taken() {
     auto folder = open_requests(requests_.path());
     return take_request<Request>(**folder, kFile).value();
@@ -79,7 +79,7 @@ TEST_F(RootProgramTest, IsStartingAfterABootIfItHasAUnit) {
   EXPECT_EQ(program.why(), "");
   fs::remove(run_ / kStatusFile);
   time_.pass(kBoot);
-  EXPECT_FALSE(program.is_starting() || program.runs_here()) << "it failed to start";
+  EXPECT_FALSE(program.is_starting() || program.runs_here()) << "the program failed to start";
   EXPECT_THAT(program.why(), HasSubstr("adit-x does not run here"));
 }
 
@@ -113,13 +113,13 @@ TEST_F(RootProgramTest, IsAwaitedUntilItsStatusNamesTheRequest) {
   EXPECT_EQ(taken()->nonce, request.nonce);
   run_.put(kStatusFile, "{");
   EXPECT_FALSE(program_.check());
-  EXPECT_TRUE(program_.waits()) << "an unreadable status is no answer";
+  EXPECT_TRUE(program_.waits()) << "an unreadable status is not an answer";
   tell(request.nonce);
   EXPECT_FALSE(program_.check());
   EXPECT_FALSE(program_.waits());
   tell("");
   EXPECT_FALSE(program_.check());
-  EXPECT_FALSE(program_.waits()) << "a later start of the program knows nothing of it";
+  EXPECT_FALSE(program_.waits()) << "a later start of the program does not know the request";
 }
 
 TEST_F(RootProgramTest, IsNotAwaitedBeyondItsTimeout) {
@@ -135,7 +135,7 @@ TEST_F(RootProgramTest, IsNotAwaitedBeyondItsTimeout) {
   EXPECT_EQ(program_.trouble(), "adit-x did not read the request: see journalctl -u adit-x");
   tell(request.nonce);
   program_.check();
-  EXPECT_EQ(program_.trouble(), "") << "it was late, but it was read";
+  EXPECT_EQ(program_.trouble(), "") << "the answer was late, but it was read";
 }
 
 TEST_F(RootProgramTest, AcceptsARequestAfterATimeout) {
@@ -206,7 +206,7 @@ TEST_F(AnsweringTest, HasNoRequestsWithoutTheirDirectory) {
   fs::remove_all(requests_.path());
   EXPECT_TRUE(answer(false));
   std::ofstream(requests_.path()) << "no directory";
-  EXPECT_FALSE(answer(false)) << "not known to be empty";
+  EXPECT_FALSE(answer(false)) << "the directory is unreadable";
   fs::remove(requests_.path());
 }
 
@@ -215,7 +215,7 @@ TEST(StatusFile, TellsTheFirstStartSinceTheBoot) {
   StatusFile file(run / kStatusFile);
   EXPECT_FALSE(file.told<Status>());
   EXPECT_EQ(file.tell(Status{"a"}), true);
-  EXPECT_EQ(file.tell(Status{"a"}), false) << "it was told";
+  EXPECT_EQ(file.tell(Status{"a"}), false) << "the status was written";
   EXPECT_EQ(file.told<Status>()->nonce, "a");
   run.put(kStatusFile, "{");
   ASSERT_TRUE(file.told<Status>()) << "an unreadable status is not the first start";

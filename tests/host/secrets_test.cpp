@@ -37,7 +37,7 @@ TEST_F(ReadSecrets, TrimsEachToken) {
 }
 
 TEST_F(ReadSecrets, AllowsAMissingTeamToken) {
-  for (const std::string empty : {"", "\n"}) {  // systemd's stand-in for a credential that is not there
+  for (const std::string empty : {"", "\n"}) {  // systemd's placeholder for a missing credential
     folder_.put("team.token", empty);
     EXPECT_FALSE(read(folder_.path()).value().token("team").has_value());
   }
@@ -47,7 +47,7 @@ TEST_F(ReadSecrets, AllowsAMissingTeamToken) {
 
 TEST_F(ReadSecrets, ReadsTheCodeOfTheLabelIfPresent) {
   EXPECT_FALSE(read(folder_.path()).value().label_code.has_value());
-  folder_.put("label.code", "\n");  // systemd's stand-in
+  folder_.put("label.code", "\n");  // systemd's placeholder
   EXPECT_FALSE(read(folder_.path()).value().label_code.has_value());
   folder_.put("label.code", "31415926\n");
   EXPECT_EQ(read(folder_.path()).value().label_code->reveal(), "31415926");
@@ -64,7 +64,7 @@ TEST_F(ReadSecrets, AllowsNoTokens) {
     std::filesystem::remove(folder_ / (name + ".token"));
     EXPECT_FALSE(read(folder_.path()).value().token(name).has_value());
   }
-  EXPECT_TRUE(read(folder_ / "none").value().tokens.empty()) << "no folder at all";
+  EXPECT_TRUE(read(folder_ / "none").value().tokens.empty()) << "no directory";
 }
 
 TEST_F(ReadSecrets, PrefersSavedToGivenTokens) {

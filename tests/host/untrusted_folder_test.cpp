@@ -46,7 +46,7 @@ TEST_F(UntrustedFolderTest, FollowsNoLink) {
   const auto taken = take("wanted.json");
   ASSERT_FALSE(taken);
   EXPECT_THAT(taken.error().why, HasSubstr("wanted.json"));
-  EXPECT_FALSE(is_there("wanted.json")) << "or it would be asked for again and again";
+  EXPECT_FALSE(is_there("wanted.json")) << "the request must be removed, or it repeats";
   EXPECT_TRUE(is_there("secret"));
 }
 
@@ -88,14 +88,14 @@ TEST_F(UntrustedFolderTest, RenamesADirectoryTooDeepToDelete) {
   setrlimit(RLIMIT_NOFILE, &before);
   ASSERT_FALSE(taken);
   EXPECT_FALSE(taken.error().stays);
-  EXPECT_FALSE(is_there("wanted.json")) << "or it would be asked for again and again";
+  EXPECT_FALSE(is_there("wanted.json")) << "the request must be removed, or it repeats";
   EXPECT_EQ(take("wanted.json").value(), std::nullopt);
 }
 
 TEST_F(UntrustedFolderTest, ReportsANameThatStays) {
   ASSERT_EQ(mkdir((folder / "wanted.json").c_str(), 0700), 0);
   const pid_t child = fork();
-  if (child == 0) {  // what is mounted on cannot be taken away
+  if (child == 0) {  // a mount point cannot be removed
     const int own = geteuid() == 0 ? CLONE_NEWNS : CLONE_NEWUSER | CLONE_NEWNS;
     const bool mounted = unshare(own) == 0 && mount("", "/", "", MS_REC | MS_PRIVATE, "") == 0 &&
                          mount("none", (folder / "wanted.json").c_str(), "tmpfs", 0, "") == 0;

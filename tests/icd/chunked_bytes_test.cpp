@@ -152,7 +152,7 @@ TEST(ChunkedBytes, ReferToBytesOfAnOwnerAndKeepItAlive) {
   ASSERT_EQ(bytes.chunks().size(), 5U);
   EXPECT_EQ(bytes.chunks()[1]->data(), owner->data());
   EXPECT_EQ(bytes.size(), owner->size() + 7);
-  EXPECT_EQ(*owner, counted(2 * ChunkedBytes::kChunk + 5)) << "what is shown is never written to";
+  EXPECT_EQ(*owner, counted(2 * ChunkedBytes::kChunk + 5)) << "shared bytes must not change";
   owner.reset();
   const ChunkedBytes copy = bytes;
   while (!bytes.empty()) bytes.pop_front();

@@ -1,4 +1,4 @@
-// Tokens, robots' names, URIs, artifact types: the small words of the ICD.
+// Tokens, robots' names, URIs, artifact types: the ICD's small words.
 #include <gtest/gtest.h>
 
 #include <ostream>

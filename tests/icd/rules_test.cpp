@@ -1,4 +1,4 @@
-// The ICD's rules over several fields of a map, one row for each way to break one.
+// The ICD's rules over several fields of a map, one row for each violation.
 #include "icd/rules.hpp"
 
 #include <gtest/gtest.h>
@@ -48,7 +48,7 @@ struct GridRow {
 TEST(GridRules, TellExpectedAndActualValues) {
   const GridRow rows[] = {
       {"6.3.1", [](auto&) {}, "accepted"},
-      {"6.3.1", [](auto& g) { g.resolution = 8e-46; }, "accepted"},  // becomes the least float32
+      {"6.3.1", [](auto& g) { g.resolution = 8e-46; }, "accepted"},  // becomes the smallest float32
       {"6.3.1", [](auto& g) { g.resolution = 7e-46; },
        "msg.info.resolution: expected a finite float32 above 0, got 7e-46"},
       {"6.3.1", [](auto& g) { g.resolution = 0; },

@@ -10,8 +10,8 @@ constexpr std::string_view kKnown[] = {"status", "reports", "run", "settings", "
 TEST(Suggestion, IsTheNearestWord) {
   const struct {
     std::string_view word, meant;
-  } cases[] = {{"stat", "status"},      // the beginning of it
-               {"statuses", "status"},  // and more than it
+  } cases[] = {{"stat", "status"},      // a prefix
+               {"statuses", "status"},  // and a longer word
                {"satus", "status"},    {"reprots", "reports"}, {"seting", "settings"}, {"rum", "run"}};
   for (const auto& [word, meant] : cases) EXPECT_EQ(nearest(word, kKnown), meant) << word;
 }

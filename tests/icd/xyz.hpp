@@ -4,7 +4,7 @@
 
 namespace adit::icd {
 
-/// Points of x, y and z in float32 with nothing between them, as most robots send them.
+/// Points with x, y and z in float32 without gaps, as most robots send them.
 inline PointCloud2 xyz() {
   PointCloud2 cloud;
   cloud.fields = {

@@ -50,7 +50,7 @@ std::vector<std::string> names_in(const Carried& carried) {
   return names;
 }
 
-/// What a life to come makes of a snapshot.
+/// The state that a later process reads from a snapshot.
 Carried again(const Carried& carried) {
   Carried other;
   carried.write([&](Kind kind, std::string_view said) { ASSERT_TRUE(other.apply(kind, said)); });
@@ -63,9 +63,9 @@ TEST(CarriedState, KeepsPosesUntilDelivered) {
   tell(carried, Kind::Poses, store::bytes_of(state("r2", 2, 11)));
   EXPECT_THAT(names_in(carried), ElementsAre("r1", "r2"));
   tell(carried, Kind::StateSent, sent({"r1", "r2"}));
-  EXPECT_THAT(names_in(again(carried)), ElementsAre("r1", "r2")) << "no answer has come";
+  EXPECT_THAT(names_in(again(carried)), ElementsAre("r1", "r2")) << "the state was not answered";
   tell(carried, Kind::StateDone);
-  EXPECT_THAT(carried.robots(), IsEmpty()) << "the next life may serve another Command Post";
+  EXPECT_THAT(carried.robots(), IsEmpty()) << "the next process may serve another Command Post";
 }
 
 TEST(CarriedState, KeepsPosesUnchanged) {
@@ -120,7 +120,7 @@ TEST(CarriedState, ResendsMessagesInFlightAtARestart) {
   tell(carried, Kind::StateSent, sent({"r1"}));
   tell(carried, Kind::MarkersSent, names_of(std::vector{marker("a", 1, icd::MarkerAction::Add, 1)}));
   tell(carried, Kind::LifeBegins);
-  tell(carried, Kind::StateDone);  // of the next life: nothing is under way there
+  tell(carried, Kind::StateDone);  // of the next process, in which no state is in flight
   tell(carried, Kind::MarkersDone);
   EXPECT_THAT(carried.robots(), SizeIs(1));
   EXPECT_THAT(carried.markers().markers, SizeIs(1));
@@ -193,12 +193,12 @@ TEST(CarriedState, KeepsClocksPacesAndStamps) {
   }
   tell(carried, Kind::Clock,
        store::bytes_of(Clock{.boot = "b2", .at = pace::Instant(seconds(1)), .stamp = 1.6e9}));
-  EXPECT_THAT(carried.paces(), IsEmpty()) << "instants of another start of the machine";
+  EXPECT_THAT(carried.paces(), IsEmpty()) << "times of another boot";
   EXPECT_THAT(carried.senders().clocks(), IsEmpty());
   EXPECT_THAT(carried.stamps(), SizeIs(1));
 }
 
-/// Clocks that are set are recorded; each other stamp of a state is in its poses.
+/// Steps of clocks are recorded. Each other stamp of a state is in its poses.
 TEST(CarriedState, KeepsTheClocksOfStates) {
   std::mt19937_64 random{1};
   std::uniform_real_distribution<double> step{-7, 5};
@@ -207,7 +207,7 @@ TEST(CarriedState, KeepsTheClocksOfStates) {
   std::map<std::string, double> theirs;  // by address
   for (int i = 0; i < 2000; ++i) {
     const std::string address = "10.0.0." + std::to_string(i % 3);
-    const std::string robot = "r" + std::to_string(random() % 70);  // more than an address may have clocks
+    const std::string robot = "r" + std::to_string(random() % 70);  // more clocks than an address may have
     const double stamp = theirs[address] = std::max(1.0, theirs[address] + step(random) + 1.5);
     const icd::Stamp ours =
         live.shift({address, icd::Uri::StateUpdate, robot}, stamp, 1.5e9 + i * 0.5, random() % 2);
@@ -258,7 +258,7 @@ TEST(CarriedState, DropsTimesOfAnotherBoot) {
   EXPECT_THAT(carried.paces(), SizeIs(1));
   carried.machine_is("b2");
   EXPECT_FALSE(carried.clock());
-  EXPECT_THAT(carried.paces(), IsEmpty()) << "its clock may have said anything";
+  EXPECT_THAT(carried.paces(), IsEmpty()) << "the clock of an unknown boot";
 }
 
 TEST(CarriedState, SkipsUnknownRecords) {
@@ -287,8 +287,7 @@ TEST(CarriedState, KnowsPostedGridAreasOnceRecorded) {
                                           Pair("*", queues::Extent::everywhere()), Pair("r1", larger))));
 }
 
-/// The law: a journal that is read has the messages that are queued, after any course of sending and with a
-/// snapshot at any place.
+/// After any sequence of calls and with a snapshot at any place, a journal contains the queued messages.
 TEST(CarriedState, KeepsQueuedMessages) {
   std::mt19937_64 random{1};
   const auto pick = [&](int below) { return std::uniform_int_distribution{0, below - 1}(random); };

@@ -39,7 +39,7 @@ class JournalTest : public testing::Test {
   }
   ~JournalTest() override { fs::remove_all(folder_); }
 
-  /// A life that goes on until it is dropped; a death is no different, for it has nothing left to do.
+  /// A process that runs until it is dropped. A death is the same, because it has no work left.
   std::unique_ptr<Journal> life() {
     auto journal = std::make_unique<Journal>(loop_, folder_ / "journal");
     journal->begin({.boot = "b", .at = loop_.now(), .stamp = 1e9});
@@ -53,7 +53,7 @@ class JournalTest : public testing::Test {
     }
     return names;
   }
-  /// Until there is one snapshot and one log.
+  /// Waits until there is one snapshot and one log.
   void wait_for_snapshot() {
     const auto is_done = [this] { return files("snapshot").size() == 1 && files("log-").size() == 1; };
     ASSERT_TRUE(loop::turn_until(loop_, is_done, std::chrono::seconds{60}));
@@ -89,8 +89,7 @@ TEST_F(JournalTest, IsPrivate) {
   EXPECT_EQ(status.st_mode & 0777, 0600u);
 }
 
-/// A kill in the middle of a write: what was answered before is there, what was not may be absent, nothing
-/// else is there.
+/// A kill within a write: answered messages are there, others may be missing, and no further ones appear.
 TEST_F(JournalTest, HoldsAllAnsweredMessagesAfterAnyCut) {
   constexpr int kAnswered = 3;
   std::vector<std::uintmax_t> sizes;
@@ -108,7 +107,7 @@ TEST_F(JournalTest, HoldsAllAnsweredMessagesAfterAnyCut) {
   std::ifstream stream(file, std::ios::binary);
   const std::string whole{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
   for (std::size_t cut = 0; cut <= whole.size(); ++cut) {
-    fs::remove(file);  // ext4 flushes what takes the place of a file's content
+    fs::remove(file);  // ext4 syncs a file that replaces another one's content
     std::ofstream(file, std::ios::binary) << whole.substr(0, cut);
     std::size_t answered = 0;
     while (answered + 1 < sizes.size() && sizes[answered + 1] <= cut) ++answered;
@@ -118,7 +117,7 @@ TEST_F(JournalTest, HoldsAllAnsweredMessagesAfterAnyCut) {
     for (std::size_t i = 0; i < markers.size(); ++i) ASSERT_EQ(markers[i].id, static_cast<int>(i) + 1);
     const double x = carried.robots().empty() ? 0 : carried.robots().begin()->second.posted.pose.position.x;
     ASSERT_GE(x, static_cast<double>(answered));
-    ASSERT_LE(x, static_cast<double>(answered) + 1) << "the one that was being written";
+    ASSERT_LE(x, static_cast<double>(answered) + 1) << "the message of the current write";
   }
 }
 
@@ -130,7 +129,7 @@ TEST_F(JournalTest, ContinuesAfterATornRecord) {
   EXPECT_EQ(left().robots().size(), 1u);
 }
 
-/// A delivered record may be one that is missing: what is known waits again.
+/// The missing record may be a delivery, so known messages are queued again.
 TEST_F(JournalTest, ReportsAMissingRecordAndDistrustsLaterDeliveries) {
   std::size_t at = 0;
   {
@@ -163,7 +162,8 @@ TEST_F(JournalTest, StaysSmallAndLosesNothingAtRestarts) {
     loop_.turn(std::chrono::nanoseconds(0));
   }
   wait_for_snapshot();
-  EXPECT_LT(fs::file_size(files("snapshot").front()), 4 * kMarkers * 1100u) << "as much as waits";
+  EXPECT_LT(fs::file_size(files("snapshot").front()), 4 * kMarkers * 1100u)
+      << "the snapshot has only queued messages";
   const auto check = [&] {
     const auto markers = left().markers().markers;
     ASSERT_EQ(markers.size(), static_cast<std::size_t>(kMarkers));
@@ -198,7 +198,7 @@ TEST_F(JournalTest, ChangesNothingIfAFileCannotBeRead) {
   EXPECT_EQ(left().robots().size(), 1u);
 }
 
-/// Files that may be no larger than so many bytes, as if the folder were full.
+/// Limits the size of files, as a full directory does.
 class NoRoom {
  public:
   explicit NoRoom(std::uintmax_t bytes) {
@@ -237,8 +237,8 @@ TEST_F(JournalTest, ReportsAFullDiskAndKeepsItsRecords) {
   EXPECT_THAT(ids, testing::ElementsAre(1, 3));
 }
 
-/// What the life before had sent, and of which it knew no answer, waits again; and instants are read by the
-/// clock of this start of the machine.
+/// Messages that the process before sent without a known answer are queued again. Times are read by the
+/// clock of this boot.
 TEST_F(JournalTest, RecordsTheStartOnceTheDiskHasRoom) {
   {
     const auto journal = life();
@@ -253,7 +253,7 @@ TEST_F(JournalTest, RecordsTheStartOnceTheDiskHasRoom) {
     EXPECT_FALSE(journal->accepted(one_marker(2)));
   }
   ASSERT_TRUE(journal->accepted(one_marker(3)));
-  journal->markers_answered(true);  // of what this life sent: nothing
+  journal->markers_answered(true);  // this process sent none
   journal = nullptr;
   std::vector<std::int32_t> ids;
   for (const icd::Marker& marker : left().markers().markers) ids.push_back(marker.id);
@@ -261,7 +261,7 @@ TEST_F(JournalTest, RecordsTheStartOnceTheDiskHasRoom) {
   EXPECT_EQ(left().clock()->boot, "after");
 }
 
-/// A DeleteAll that was taken would come again after what was accepted and taken since.
+/// Otherwise a delivered DeleteAll would be sent again after later messages.
 TEST_F(JournalTest, RecordsDeliveriesFirstOnceTheDiskHasRoom) {
   const auto journal = life();
   ASSERT_TRUE(journal->accepted(one_marker(1)));
@@ -283,7 +283,7 @@ TEST_F(JournalTest, SkipsFailedSendsDuringAFullDisk) {
   ASSERT_TRUE(journal->accepted(one_marker(1)));
   {
     const NoRoom none(1);
-    // Together more than waits to be said at most.
+    // Together more than the limit of unwritten records.
     icd::MarkersUpdate sent = one_marker(1);
     sent.markers.front().ns = std::string(Journal::kMostUnsaid / 3, 'n');
     for (int round = 0; round < 10; ++round) {
@@ -303,10 +303,10 @@ TEST_F(JournalTest, ReportsAnUnwritableDirectory) {
   EXPECT_FALSE(journal->accepted(pose(1)));
   fs::remove(folder_ / "journal");
   fs::create_directory(folder_ / "journal");
-  EXPECT_TRUE(journal->accepted(pose(1))) << "once it can";
+  EXPECT_TRUE(journal->accepted(pose(1))) << "once the directory is writable";
 }
 
-/// What a post pays for it. Printed, not asserted: machines differ.
+/// The journal's cost per post. Printed, not asserted, because machines differ.
 TEST_F(JournalTest, PrintsItsCostPerState) {
   const auto journal = life();
   constexpr int kPosts = 2000;

@@ -6,8 +6,8 @@
 
 namespace adit::journal {
 
-/// What a journal's directory tells, read beside a journal that goes on: a snapshot may replace a file that
-/// is about to be read.
+/// Reads a journal's directory while the journal is in use: a snapshot may replace a file that is about to
+/// be read.
 inline Carried left_in(const std::string& path) {
   while (true) {
     const auto directory = store::Directory::look(path);

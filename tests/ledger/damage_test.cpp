@@ -1,4 +1,4 @@
-// Files of a ledger that are damaged, cut, missing or old: the ledger goes on with what is left, and says so.
+// Damaged, cut, missing or old files of a ledger: the ledger uses the rest and reports the loss.
 #include <array>
 #include <functional>
 
@@ -14,9 +14,9 @@ using dispatch::ReportState;
 using testing::AllOf;
 using testing::HasSubstr;
 
-constexpr std::size_t kRecord = 8192;  // of the log for a short record: two copies of a frame, 4 KiB each
+constexpr std::size_t kRecord = 8192;  // bytes of a short record: two copies of a frame, 4 KiB each
 
-/// A ledger of one file with these records, one each.
+/// A ledger of one file with one record for each of these.
 class DamagedLedger : public testing::Test {
  protected:
   void SetUp() override {
@@ -41,13 +41,13 @@ class DamagedLedger : public testing::Test {
   void restore() const { put_files(state_.ledger(), files_); }
   void put(const std::string& bytes) const { put_files(state_.ledger(), {{file_, bytes}}); }
   std::string& log() { return files_.at(file_); }
-  /// Both copies of it.
+  /// Damages both copies of a record.
   static void damage(std::string& log, std::size_t record, std::size_t byte = 60) {
     for (const std::size_t copy : {std::size_t{0}, kRecord / 2}) log.at(record * kRecord + copy + byte) ^= 1;
   }
 
-  /// The next start says what is missing, sends nothing again, and uses no number twice. The start after it
-  /// says nothing.
+  /// The next start reports the missing records, sends no report again, and reuses no number. The start
+  /// after it reports nothing.
   void expect_said(const Known& known, const std::string& sentence = "") const {
     std::vector<Report> reports;
     Known after;
@@ -66,7 +66,8 @@ class DamagedLedger : public testing::Test {
     EXPECT_EQ(again.reports(), reports);
     EXPECT_FALSE(again.runs().at(0).unreliable.empty());
   }
-  /// Each report is there, or a lost one stands for it; each that was not final is in doubt.
+  /// Checks that each report is there or replaced by a lost one, and that each report that was not final is
+  /// in doubt.
   void expect_safe(const std::vector<Report>& reports) const {
     for (const Report& was : all_) {
       const auto is =
@@ -98,12 +99,12 @@ TEST_F(DamagedLedger, HasAllIfOneCopyOfARecordIsDamaged) {
       put(bytes);
       const auto ledger = open_or_fail(state_.path(), known_);
       const bool is_said =
-          record != 0 && record != 9;  // a header has no report; a power cut may have torn the last one
+          record != 0 && record != 9;  // a header has no report; a power cut may have torn the last record
       EXPECT_EQ(!ledger.damage().empty(), is_said) << ledger.damage();
       if (is_said)
         EXPECT_THAT(ledger.damage(), AllOf(HasSubstr("repaired"), HasSubstr("No report is missing")));
       EXPECT_EQ(ledger.reports(), all_);
-      EXPECT_EQ(files_in(state_.ledger()), files_) << "the damaged copy is as it was";
+      EXPECT_EQ(files_in(state_.ledger()), files_) << "the damaged copy must not change";
     }
   }
 }
@@ -123,7 +124,7 @@ TEST_F(DamagedLedger, NamesLostReportsIfBothCopiesAreDamaged) {
   expect_said(known_, "report 4 is lost from the ledger; reports from 5 on may be lost");
 }
 
-/// Each byte, one bit: it costs nothing.
+/// One flipped bit in any byte loses no record.
 TEST_F(DamagedLedger, HasAllIfAnyByteIsDamaged) {
   const auto directory = store::Directory::look(state_.ledger()).value();
   const std::string path = state_.ledger() + '/' + file_;
@@ -158,7 +159,7 @@ TEST_F(DamagedLedger, ReportsAMissingDirectory) {
               "0 reports were read; reports 1 to 4 are lost from the ledger; reports from 5 on may be lost");
   EXPECT_FALSE(std::filesystem::exists(state_.ledger() + "/damaged-1")) << "there is no file to keep";
   std::filesystem::remove_all(state_.ledger());
-  EXPECT_EQ(open_or_fail(state_.path()).damage(), "") << "nothing is known of it";
+  EXPECT_EQ(open_or_fail(state_.path()).damage(), "") << "no damage is known";
 }
 
 TEST_F(DamagedLedger, ReportsAnOldCopyInItsPlace) {
@@ -191,7 +192,7 @@ TEST_F(DamagedLedger, NamesTheMissingFileOfSeveral) {
   }
 }
 
-/// The first snapshot stands for files that are still there; later ones have one before them.
+/// The first snapshot replaces files that still exist. Later snapshots have one before them.
 TEST_F(DamagedLedger, HasAllIfASnapshotIsDamagedOrMissing) {
   for (int snapshot = 1; snapshot <= 2; ++snapshot) {
     turn_log(state_.ledger());

@@ -1,4 +1,4 @@
-// A ledger on a disk that is full, read-only, fails, or of which a process is killed.
+// A ledger on a full, read-only or failing disk, and killed processes.
 #include "store/disk.hpp"
 
 #include <sys/stat.h>
@@ -74,7 +74,7 @@ TEST_F(LedgerOnDisk, FullDiskStillFillsASpareFile) {
   expect_all(ledger);
 }
 
-/// The log has no room left, and the process ends: no file says less than it did.
+/// The log is full and the process ends: no file loses records.
 TEST_F(LedgerOnDisk, FullDiskAtTheEndOfAFileIsNoDamage) {
   for (const bool is_killed : {false, true}) {
     std::int64_t last = 0;
@@ -154,7 +154,8 @@ TEST_F(LedgerOnDisk, ReadOnlyDiskShowsAllAndRejectsReports) {
   EXPECT_FALSE(Ledger::can_be_read(disk_.path()));
 }
 
-/// Wherever the disk begins to fail and for how long: an error is an error, and success is kept.
+/// Whenever the disk begins to fail, and for how long: an error is returned, and successful writes are
+/// kept.
 TEST_F(LedgerOnDisk, FailingDiskLosesNoAcceptedReport) {
   std::map<std::int64_t, Report> kept;
   for (int start = 0; start < 6; ++start) {
@@ -174,7 +175,7 @@ TEST_F(LedgerOnDisk, FailingDiskLosesNoAcceptedReport) {
         else if (write(ledger, moved))
           kept[report.number] = moved;
         else
-          kept.erase(report.number);  // either
+          kept.erase(report.number);  // either result is allowed
       }
     }
     disk_.failing_syncs = disk_.failing_writes = disk_.full = 0;
@@ -184,8 +185,8 @@ TEST_F(LedgerOnDisk, FailingDiskLosesNoAcceptedReport) {
   EXPECT_GT(kept.size(), 50u);
 }
 
-/// Damage is found while the disk is full: all can be read, nothing is written, and once there is room it
-/// goes on as if it had been there at the start.
+/// Damage is found while the disk is full: all records can be read, none is written. Once there is room,
+/// the ledger continues as if there had been room at the start.
 TEST_F(LedgerOnDisk, DamageOnAFullDiskIsReportedAndRepairedLater) {
   const Known known{.reports = 20, .log = 7};
   Known after;
@@ -201,9 +202,10 @@ TEST_F(LedgerOnDisk, DamageOnAFullDiskIsReportedAndRepairedLater) {
     for (int i = 0; i < 5; ++i) EXPECT_FALSE(ledger.make_ready());
     EXPECT_FALSE(write(ledger, in_state(backpack(1), ReportState::Withdrawn)));
     EXPECT_EQ(find_or_fail(ledger, 1).state, ReportState::InDoubt);
-    EXPECT_GE(ledger.known().reports, 20) << "the stamps go on knowing it";
+    EXPECT_GE(ledger.known().reports, 20) << "the stamp floor must keep the number";
     EXPECT_GE(ledger.known().log, 7u);
-    EXPECT_FALSE(std::filesystem::exists(disk_.log() + "/damaged-2")) << "each try keeps the files again";
+    EXPECT_FALSE(std::filesystem::exists(disk_.log() + "/damaged-2"))
+        << "each try puts the files aside again";
     disk_.full = 0;
     EXPECT_TRUE(ledger.make_ready());
     EXPECT_EQ(ledger.refusal(), "");
@@ -228,8 +230,8 @@ TEST_F(LedgerOnDisk, FailedSnapshotsLeaveNoFiles) {
   expect_all(ledger);
 }
 
-/// Wherever the process is killed while it deals with damage, with a power cut or without: the next start
-/// says damage again, or has what the one before made of it.
+/// The process is killed anywhere in its handling of damage, with or without a power cut. The next start
+/// reports the damage again, or has the result of the one before.
 class LedgerKilledAtDamage : public testing::Test {
  protected:
   void play(const std::string& damage) {

@@ -55,7 +55,7 @@ TEST(Ledger, RestoresReportsRunsAndHistories) {
   EXPECT_EQ(ledger.known().reports, 11);
 }
 
-/// What Reports needs.
+/// The output that Reports needs.
 struct ToLedger final : dispatch::Output {
   explicit ToLedger(Ledger& on) : ledger(on) {}
   bool write(std::span<const Report> steps, const dispatch::Run* run, Flush flush) override {
@@ -99,13 +99,13 @@ TEST(Ledger, WritesAllStepsOrNone) {
     const std::vector<Report> steps{backpack(2), in_state(backpack(1), ReportState::Held), backpack(0)};
     EXPECT_THAT(ledger.write(steps).error().what, HasSubstr("report 0"));
     EXPECT_THAT(ledger.reports(), ElementsAre(backpack(1)));
-    EXPECT_EQ(ledger.refusal(), "") << "the disk is well";
+    EXPECT_EQ(ledger.refusal(), "") << "the disk works";
     EXPECT_TRUE(write(ledger, backpack(2)));
   }
   EXPECT_EQ(open_or_fail(state.path()).history(1).size(), 1u);
 }
 
-/// The snapshot stands for the first file, and the records behind it are read.
+/// The snapshot replaces the first file, and the records after it are read.
 TEST(Ledger, KeepsAllThroughFullFilesAndSnapshots) {
   const State state;
   std::int64_t last = 0;
@@ -141,7 +141,7 @@ TEST(Ledger, KeepsKindsOfALaterVersionInSnapshots) {
   const auto directory = store::Directory::look(state.ledger()).value();
   const auto contents = store::Contents::read(directory, Ledger::kKeeping).value();
   const auto& record = std::get<store::Record>(contents.items.front());
-  EXPECT_EQ(record.sequence, 0u) << "it is of a snapshot";
+  EXPECT_EQ(record.sequence, 0u) << "the record is from a snapshot";
   EXPECT_EQ(record.kind, 9);
   EXPECT_EQ(record.body, "a later kind");
 }
@@ -180,7 +180,7 @@ TEST(Ledger, OpensOnceAtATime) {
   EXPECT_EQ(Ledger::open(state.path() + "/absent").error().cause, Error::Cause::Other);
 }
 
-/// The stamps are written from it: they must not forget the ledger that cannot be read.
+/// The stamp floor is written from it, so it must not forget the unreadable ledger.
 TEST(ClosedLedger, RejectsReportsAndForgetsNothing) {
   auto ledger = Ledger::closed("x: Input/output error", {.reports = 20, .log = 3});
   EXPECT_TRUE(ledger.is_closed());
@@ -192,7 +192,7 @@ TEST(ClosedLedger, RejectsReportsAndForgetsNothing) {
   EXPECT_TRUE(ledger.flush());
   EXPECT_FALSE(ledger.upkeep());
   EXPECT_THAT(ledger.copy().error().what, HasSubstr("cannot be read"))
-      << "a spare would take it for all there was";
+      << "a spare would take it for the complete ledger";
   EXPECT_EQ(ledger.refusal(), "x: Input/output error");
   EXPECT_EQ(ledger.known().reports, 20);
   EXPECT_EQ(ledger.known().log, 3u);
@@ -211,7 +211,7 @@ TEST(ClosedLedger, IsReplacedByANewOneThatContinuesItsNumbers) {
   ASSERT_FALSE(unread);
   EXPECT_THAT(unread.error().what, HasSubstr("not a regular file"));
   EXPECT_FALSE(Ledger::can_be_read(state.path()));
-  EXPECT_TRUE(std::filesystem::is_directory(file)) << "nothing is changed";
+  EXPECT_TRUE(std::filesystem::is_directory(file)) << "the directory must not change";
   EXPECT_EQ(Ledger::set_aside(state.path()), "ledger.damaged-1");
   EXPECT_TRUE(Ledger::can_be_read(state.path()));
   const auto ledger = open_or_fail(state.path(), {.reports = 1, .log = 1});

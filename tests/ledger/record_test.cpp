@@ -1,4 +1,4 @@
-// Records, and what they come to.
+// Records and the book that they add up to.
 #include "ledger/record.hpp"
 
 #include <gmock/gmock.h>
@@ -21,7 +21,7 @@ using testing::HasSubstr;
 
 constexpr std::uint8_t kSteps = 1;
 
-/// A value in every member.
+/// A report with a value in every member.
 Report full_report() {
   return {.number = 2,
           .report = {"Drill", {1.5, -0.0, 1e308}, icd::RobotName::parse("spot1")},
@@ -66,7 +66,7 @@ std::string in_hex(std::string_view bytes) {
   return hex;
 }
 
-/// The format of 0.1.0 (firmware/doors/ledger/README.md). It never changes: later members come behind these.
+/// The format of 0.1.0 (firmware/doors/ledger/README.md). It never changes. Later members come after these.
 TEST(LedgerRecord, HasTheseBytes) {
   const std::string report = said(full_report()), run = said(full_run());
   const std::string history = said(Step{10, "queued", "why"});
@@ -138,7 +138,7 @@ TEST(LedgerRecord, UnknownStateIsInDoubtAndKeepsItsWord) {
               testing::Optional(ElementsAre(Step{1, "promised", ""})));
 }
 
-/// This version writes and reads again between two starts of a later one.
+/// This version reads and writes between two starts of a later version.
 TEST(LedgerRecord, KeepsMembersAndKindsOfALaterVersion) {
   Book book;
   const std::string report = said(full_report(), "its more"), run = said(full_run(), "run's more");
@@ -201,7 +201,7 @@ TEST(LedgerBook, RejectsANonFiniteNumber) {
   EXPECT_FALSE(Book().record({}, &no_number));
 }
 
-/// A lost report's number is said, and no number is given out twice.
+/// A lost report's number is reported, and no number is used twice.
 TEST(LedgerBook, NamesLostReports) {
   Book book;
   for (const std::int64_t number : {2, 3, 6}) {

@@ -16,7 +16,7 @@
 
 namespace adit::ledger {
 
-using Files = std::map<std::string, std::string>;  // bytes by name
+using Files = std::map<std::string, std::string>;  // by name
 
 inline Files files_in(const std::string& directory) {
   Files files;
@@ -29,14 +29,14 @@ inline Files files_in(const std::string& directory) {
   }
   return files;
 }
-/// The directory has these and nothing else.
+/// Makes the directory contain exactly these files.
 inline void put_files(const std::string& directory, const Files& files) {
   std::filesystem::remove_all(directory);
   std::filesystem::create_directories(directory);
   for (const auto& [name, bytes] : files) std::ofstream(directory + '/' + name, std::ios::binary) << bytes;
 }
 
-/// A state directory of the test's own.
+/// A state directory for one test.
 class State {
  public:
   State() {
@@ -81,7 +81,8 @@ inline Result<void> write(Ledger& ledger, const dispatch::Report& report,
   return ledger.write(std::span(&report, 1), nullptr, flush);
 }
 
-/// New reports from `first` on, until the file that is written has no room for one more.
+/// Writes new reports from number `first` on, until the current file has no room for another one. Returns
+/// the next number.
 inline std::int64_t fill_file(Ledger& ledger, std::int64_t first) {
   const std::uint64_t log = ledger.known().log;
   std::int64_t number = first;
@@ -89,7 +90,7 @@ inline std::int64_t fill_file(Ledger& ledger, std::int64_t first) {
   return number;
 }
 
-/// A process that writes the log of a ledger, which no other has open.
+/// Writes the log of a ledger that no process has open.
 template <class Use>
 void use_log(const std::string& directory, Use use) {
   const auto locked = store::Directory::lock(directory).value();
@@ -104,7 +105,7 @@ inline void append(const std::string& directory, std::uint8_t kind, std::string_
   use_log(directory, [&](store::Log& log) { return log.append(kind, body, store::Durability::Now); });
 }
 
-/// What a minute after the start does.
+/// The work that follows a minute after the start.
 inline Result<void> keep_up(Ledger& ledger) {
   const auto work = ledger.upkeep();
   const Result<void> done = work ? work() : Result<void>();

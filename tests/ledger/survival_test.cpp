@@ -13,7 +13,7 @@
 namespace adit::ledger {
 namespace {
 
-/// Writes new reports as fast as it can and tells the number of each that is on the disk.
+/// Writes new reports as fast as possible, and prints each number once the report is on the disk.
 [[noreturn]] void record(const std::string& state, int told) {
   auto ledger = Ledger::open(state);
   if (!ledger) ::_exit(1);
@@ -24,7 +24,7 @@ namespace {
   ::_exit(1);
 }
 
-/// The numbers that a process told before it was killed.
+/// The numbers that a process printed before it was killed.
 std::vector<std::int64_t> kill_a_recorder(const State& state, std::chrono::microseconds after) {
   int ends[2] = {-1, -1};
   EXPECT_EQ(::pipe(ends), 0);
@@ -60,7 +60,7 @@ TEST(LedgerSurvives, AKillAtAnyTime) {
     EXPECT_EQ(ledger.damage(), "");
     const auto reports = ledger.reports();
     ASSERT_GE(reports.size(), before + told.size());
-    EXPECT_LE(reports.size(), before + told.size() + 1) << "at most the one that was being written";
+    EXPECT_LE(reports.size(), before + told.size() + 1) << "at most the report of the current write";
     for (std::size_t i = 0; i < reports.size(); ++i)
       EXPECT_EQ(reports[i], backpack(static_cast<std::int64_t>(i) + 1));
     before = reports.size();

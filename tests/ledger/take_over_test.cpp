@@ -1,4 +1,4 @@
-// A copy of a ledger, and a ledger that takes over another box's.
+// A copy of a ledger, and a take-over of another box's ledger.
 #include "ledger/state.hpp"
 
 namespace adit::ledger {
@@ -44,7 +44,7 @@ TEST(LedgerOfATakeOver, HasEachReportWithItsHistory) {
     const std::string copy = there.copy().value();
     EXPECT_TRUE(Ledger::is_copy(copy));
     ASSERT_TRUE(here.take_over(copy, {.stamp = 50}));
-    ASSERT_TRUE(here.take_over(copy, {.stamp = 60})) << "done twice, it changes nothing";
+    ASSERT_TRUE(here.take_over(copy, {.stamp = 60})) << "a second take-over changes nothing";
     EXPECT_FALSE(here.take_over(copy.substr(1), {.stamp = 50}));
   }
   const auto here = open_or_fail(spare.path());

@@ -15,7 +15,7 @@
 namespace adit::loop {
 namespace {
 
-/// What was told since the test began.
+/// The messages since the test began.
 std::string told;  // NOLINT(cppcoreguidelines-avoid-non-const-global-variables): told by a plain function
 
 class Guard : public testing::Test {
@@ -50,7 +50,7 @@ TEST_F(Guard, SurvivesALogThatThrows) {
   EXPECT_EQ(caught(), 1);
 }
 
-/// Whatever is in memory may be half done. What was accepted is on the disk.
+/// Memory may be in an inconsistent state. Accepted messages are on the disk.
 TEST(UncaughtDeathTest, EndsTheProcessAndIsLogged) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   const auto run = [](void (*begin)(Loop& loop, Source& timer)) {
@@ -77,7 +77,8 @@ TEST(FaultsDeathTest, CountExceptionsAndOwnSignals) {
   EXPECT_EXIT(end([] { std::terminate(); }), testing::ExitedWithCode(1), "");
   EXPECT_EXIT(end([] { std::abort(); }), testing::KilledBySignal(SIGABRT), "");
   EXPECT_EXIT(end([] { (void)::raise(SIGSEGV); }), testing::KilledBySignal(SIGSEGV), "");
-  EXPECT_EXIT(end([] { (void)::raise(SIGTERM); }), testing::KilledBySignal(SIGTERM), "") << "somebody else's";
+  EXPECT_EXIT(end([] { (void)::raise(SIGTERM); }), testing::KilledBySignal(SIGTERM), "")
+      << "a signal from outside";
   EXPECT_EQ(std::filesystem::file_size(file), 3u);
   std::filesystem::remove(file);
 }
@@ -96,7 +97,7 @@ TEST_F(Guard, ReportsAJobThatThrows) {
   loop.run();
   EXPECT_FALSE(done);
   EXPECT_TRUE(failed);
-  EXPECT_TRUE(next) << "the worker serves on";
+  EXPECT_TRUE(next) << "the worker must continue";
   EXPECT_EQ(caught(), 1);
 }
 

@@ -1,4 +1,4 @@
-// Which job is next, in simulated time.
+// The order of jobs, in simulated time.
 #include "loop/job_queue.hpp"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ class JobQueueTest : public testing::Test {
  protected:
   void urgent(const char* job, int ms = 0) { queue.add(job, Urgency::OnTheWay, at(ms)); }
   void patient(const char* job, int ms = 0) { queue.add(job, Urgency::CanWait, at(ms)); }
-  /// "" where there is none. Whoever takes it tells of its end.
+  /// Takes the next job; "" if there is none. The caller must report its end.
   std::string taken(int ms) {
     auto next = queue.take(at(ms));
     if (!next) return "";
@@ -29,7 +29,7 @@ class JobQueueTest : public testing::Test {
     return next->job;
   }
   void ended(int ms) { queue.ended(last, at(ms)); }
-  /// Done at once.
+  /// Takes the next job and ends it at once.
   std::string done(int ms) {
     std::string job = taken(ms);
     if (!job.empty()) ended(ms);
@@ -81,8 +81,8 @@ TEST_F(JobQueueTest, UrgentJobsHaveTheirShareBetweenPatientOnes) {
     if (job == "cloud") work_of_others += took;
     ended(time);
   }
-  EXPECT_GE(work_of_others, 400) << "of each 400 ms 100";
-  EXPECT_LT(work_of_others, time) << "and some of the bundles are made";
+  EXPECT_GE(work_of_others, 400) << "100 of each 400 ms";
+  EXPECT_LT(work_of_others, time) << "some bundles are made";
 }
 
 TEST_F(JobQueueTest, PatientJobsBeginInTimeUnderLoad) {
@@ -112,12 +112,12 @@ TEST_F(JobQueueTest, OneWorkerIsFreeOfPatientJobs) {
 TEST_F(JobQueueTest, PatientJobYieldsAndContinues) {
   patient("picture");
   ASSERT_EQ(taken(0), "picture");
-  EXPECT_FALSE(queue.take_amid(at(0), at(50), at(50))) << "nothing came";
+  EXPECT_FALSE(queue.take_amid(at(0), at(50), at(50))) << "no other job was queued";
   urgent("cloud", 1);
   urgent("grid", 1);
-  EXPECT_FALSE(queue.take_amid(at(0), at(9), at(9))) << "its turn has just begun";
+  EXPECT_FALSE(queue.take_amid(at(0), at(9), at(9))) << "the turn has just begun";
   EXPECT_EQ(queue.take_amid(at(0), at(10), at(10)), "cloud");
-  EXPECT_FALSE(queue.take_amid(at(0), at(10), at(110))) << "it has given way for long";
+  EXPECT_FALSE(queue.take_amid(at(0), at(10), at(110))) << "the job has yielded long enough";
   EXPECT_EQ(queue.take_amid(at(110), at(120), at(120)), "grid");
   EXPECT_FALSE(queue.take_amid(at(110), at(120), at(125)));
 }

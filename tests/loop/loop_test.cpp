@@ -72,7 +72,7 @@ TEST(Loop, LetsACallbackDestroyItsOwnSource) {
   int calls = 0;
   source = loop.watch(pair.ours.get(), EPOLLIN, [&, kept = std::vector<int>(100, 7)](std::uint32_t) {
     source.reset();
-    calls += kept.at(99);  // the callback itself still lives
+    calls += kept.at(99);  // the running callback is still alive
   });
   pair.tell();
   for (int i = 0; i < 5; ++i) loop.turn(milliseconds(1));
@@ -181,7 +181,7 @@ TEST(Loop, ServesSocketsDuringEndlessTasks) {
 TEST(Loop, AcceptsTasksFromManyThreads) {
   Loop loop;
   constexpr int kThreads = 4, kTasks = 2000;
-  int ran = 0;  // touched by the loop's thread alone
+  int ran = 0;  // used only by the loop's thread
   const auto post_many = [&] {
     for (int i = 0; i < kTasks; ++i) {
       loop.post([&] {
@@ -202,7 +202,7 @@ TEST(Loop, RunReturnsAtOnceIfStoppedBefore) {
   loop.run();
   bool ran = false;
   loop.post([&] { ran = true, loop.stop(); });
-  loop.run();  // and can be run again
+  loop.run();  // the loop can run again
   EXPECT_TRUE(ran);
 }
 

@@ -14,21 +14,21 @@ constexpr std::int64_t kRuns = -1;
 constexpr std::int64_t kSecond = 1'000'000'000, kDay = 86400 * kSecond;  // nanoseconds
 
 std::atomic<std::int64_t> passed = kRuns;          // nanoseconds since the clocks were stopped
-std::atomic<std::int64_t> monotonic, time_of_day;  // when they were
+std::atomic<std::int64_t> monotonic, time_of_day;  // at that time
 
 timespec kernel_time(clockid_t clock) {
   timespec now{};
   ::syscall(SYS_clock_gettime, clock, &now);
   return now;
 }
-/// Whole seconds, so that a step of the simulation is never cut by a rounding.
+/// Whole seconds, so that rounding never cuts a step of the simulation.
 std::int64_t seconds_of(clockid_t clock) {
   return kernel_time(clock).tv_sec * kSecond;
 }
 
 }  // namespace
 
-/// What libc's does. In front of it: ELF takes the program's before a library's.
+/// Replaces libc's function: in ELF, a program's symbols come before a library's.
 extern "C" [[gnu::visibility("default")]] int clock_gettime(clockid_t clock, timespec* now) noexcept {
   const std::int64_t since = passed;
   if (since == kRuns || (clock != CLOCK_MONOTONIC && clock != CLOCK_REALTIME)) {
@@ -54,7 +54,7 @@ void SimulatedTime::pass(Duration length) {
 }
 
 void SimulatedTime::pass(Loop& loop, Duration length) {
-  constexpr int kDueAtOnce = 4;  // a turn does one thing that is due
+  constexpr int kDueAtOnce = 4;  // a turn handles one due event
   for (Duration left = length; left > Duration{}; left -= kStep) {
     pass(std::min<Duration>(left, kStep));
     loop.turn(Duration{});

@@ -4,12 +4,11 @@
 
 namespace adit::loop {
 
-/// While it lives, the program's clocks (monotonic time and time of day) stand still but for pass(): a test
-/// says what time it is. It comes before any Loop that is to live by it, and there is one at a time.
-///
-/// The program's clock_gettime() comes before libc's, so libstdc++ and sd-event read this time, and the
-/// product's code is unchanged. No wait of the kernel ends by it: turn the loop after pass(). Monotonic time
-/// is a day ahead of the kernel's, so that no timer that sd-event sets in the kernel expires by itself.
+/// While it exists, the program's clocks (monotonic time and time of day) only move by pass(). Create it
+/// before any Loop that uses it; only one may exist. The program's clock_gettime() replaces libc's, so
+/// libstdc++ and sd-event read this time without changes of the product's code. Kernel waits do not end by
+/// it, so turn the loop after pass(). Monotonic time is a day ahead of the kernel's, so that no timer that
+/// sd-event sets in the kernel expires by itself.
 class SimulatedTime {
  public:
   SimulatedTime();
@@ -19,9 +18,9 @@ class SimulatedTime {
 
   /// May be called on any thread.
   void pass(Duration length);
-  /// In steps of a millisecond, and `loop` turns at each, as it would on an idle machine.
+  /// Passes in steps of a millisecond, and turns `loop` at each, as on an idle machine.
   void pass(Loop& loop, Duration length);
-  /// The same until `done`, or for `most`. Whether it is done.
+  /// The same until `done`, for `most` at the most. Returns whether it is done.
   template <class Done>
   [[nodiscard]] bool pass_until(Loop& loop, const Done& done, Duration most = std::chrono::minutes(1)) {
     for (Duration passed{}; !done() && passed < most; passed += kStep) pass(loop, kStep);

@@ -10,17 +10,17 @@
 
 namespace adit::loop {
 
-/// More than anything takes that a test waits for, on a busy machine too.
+/// Longer than any awaited event takes, even on a busy machine.
 inline constexpr std::chrono::seconds kTestPatience{30};
 
-/// The kernel's time, also while SimulatedTime stops the program's clocks: how long a test waits is its own.
+/// The kernel's time, even while SimulatedTime stops the program's clocks, for the test's own timeouts.
 inline Instant kernel_now() {
   timespec now{};
   ::clock_gettime(CLOCK_MONOTONIC_RAW, &now);
   return Instant(std::chrono::seconds(now.tv_sec) + std::chrono::nanoseconds(now.tv_nsec));
 }
 
-/// Turns the loop until `done`, or for `within` times ADIT_PATIENCE. Whether it is done.
+/// Turns the loop until `done`, for at most `within` times ADIT_PATIENCE. Returns whether it is done.
 template <class Done>
 [[nodiscard]] bool turn_until(Loop& loop, const Done& done, Duration within = kTestPatience) {
   const Instant end = kernel_now() + patient(within);
@@ -28,7 +28,7 @@ template <class Done>
   return done();
 }
 
-/// The same, until `writer` has done all that it was given, and its word has come.
+/// The same, until `writer` has finished all its jobs and their results have arrived.
 [[nodiscard]] inline bool turn_until_idle(Loop& loop, Writer& writer) {
   const auto idle = std::make_shared<bool>(false);
   writer.submit([] {}, [idle] { *idle = true; });

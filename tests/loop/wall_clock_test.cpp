@@ -11,7 +11,7 @@ constexpr double kBegan = 1.7e9;
 
 class WallClockTest : public testing::Test {
  protected:
-  /// Looks after a second by the monotonic clock, of which the system's makes so many.
+  /// Checks the clock after a second of monotonic time, in which the system's clock advances by `seconds`.
   double look(double seconds = 1, bool is_right = false) {
     at_ += milliseconds(1000);
     system_ += seconds;
@@ -32,7 +32,7 @@ TEST_F(WallClockTest, FollowsTheSystemDespiteReadJitter) {
 }
 
 TEST_F(WallClockTest, ReportsASmallStep) {
-  EXPECT_NEAR(look(1 + 0.3), 0.3, 1e-6) << "else whatever was noted before is as much too old";
+  EXPECT_NEAR(look(1 + 0.3), 0.3, 1e-6) << "the clock must follow, or earlier times seem too old";
   EXPECT_DOUBLE_EQ(now(), kBegan + 1.3);
   EXPECT_NEAR(look(1 - 0.4), -0.4, 1e-6);
   EXPECT_DOUBLE_EQ(now(), kBegan + 1.9);
@@ -62,7 +62,7 @@ TEST_F(WallClockTest, IsAheadOfALateSystemUntilThatIsSet) {
   EXPECT_DOUBLE_EQ(now(), kBegan + 5000);
   EXPECT_EQ(look(), 0);
   EXPECT_DOUBLE_EQ(now(), kBegan + 5001);
-  EXPECT_NEAR(look(1 + 5000), 0, 1e-6) << "to what was known: nobody need be told";
+  EXPECT_NEAR(look(1 + 5000), 0, 1e-6) << "the clock returned to the known time";
   EXPECT_DOUBLE_EQ(now(), kBegan + 5002);
   EXPECT_DOUBLE_EQ(look(1 + 60), 60);
 }
@@ -74,7 +74,7 @@ TEST_F(WallClockTest, ReportsTheDifferenceFromTheKnownTime) {
 
 TEST_F(WallClockTest, YieldsToASystemFoundRight) {
   clock_.set(kBegan + 5000, at_);
-  EXPECT_NEAR(look(1.004, true), -5000, 0.01) << "it is within what is no step";
+  EXPECT_NEAR(look(1.004, true), -5000, 0.01) << "the difference is too small for a step";
   EXPECT_DOUBLE_EQ(now(), kBegan + 1.004);
   EXPECT_EQ(look(0.996, true), 0);
 }

@@ -17,7 +17,7 @@ constexpr Duration kWithin = 8min, kRound = kWithin / 4;
 
 class WatchdogTest : public testing::Test {
  protected:
-  /// How often it is fed in so many rounds.
+  /// How often the watchdog is fed in `rounds`.
   int fed_in(int rounds) {
     const int before = fed;
     for (int i = 0; i < rounds; ++i) {
@@ -26,7 +26,7 @@ class WatchdogTest : public testing::Test {
     }
     return fed - before;
   }
-  /// Whether it is fed in each of so many rounds, as long as `workers` have their time to answer.
+  /// Whether it is fed in each of `rounds`, if `workers` get enough time to answer.
   bool is_fed(int rounds, const std::vector<Workers*>& workers) {
     for (int i = 0; i < rounds; ++i) {
       for (const Workers* each : workers) {
@@ -36,7 +36,7 @@ class WatchdogTest : public testing::Test {
     }
     return true;
   }
-  /// A job that has begun, and ends when it is let go.
+  /// Starts a job that ends when the promise is set.
   std::shared_ptr<std::promise<void>> hang(Workers& workers) {
     auto let_go = std::make_shared<std::promise<void>>();
     std::promise<void> begun;
@@ -91,9 +91,9 @@ TEST_F(WatchdogTest, IsFedDuringALongButNotAnEndlessJob) {
   watchdog.ask_also({&workers});
   const auto let_go = hang(workers);
   EXPECT_TRUE(is_fed(kLongestJob - 1, {&workers})) << "a job may take a while";
-  EXPECT_EQ(fed_in(4), 0) << "the other worker answers, this one does not";
+  EXPECT_EQ(fed_in(4), 0) << "only the other worker answers";
   let_go->set_value();
-  EXPECT_TRUE(is_fed(4, {&workers})) << "it was only slow";
+  EXPECT_TRUE(is_fed(4, {&workers})) << "the worker was only slow";
   watchdog.ask_also({});
 }
 

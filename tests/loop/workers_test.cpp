@@ -50,7 +50,7 @@ TEST(Workers, BeginJobsInTheOrderOfSubmission) {
   EXPECT_EQ(finished, expected);
 }
 
-/// Holds the only worker until it is let go.
+/// Occupies the only worker until it is released.
 class Held {
  public:
   Held(Workers& workers, Urgency urgency) {
@@ -123,7 +123,7 @@ TEST(Workers, PassDataWithoutLocks) {
     workers.submit(
         Urgency::OnTheWay, [data] { data->assign(1, std::accumulate(data->begin(), data->end(), 0L)); },
         [&, data] {
-          EXPECT_EQ(data.use_count(), 1) << "the worker still holds what it has handed back";
+          EXPECT_EQ(data.use_count(), 1) << "the worker still holds the returned data";
           sum += data->at(0);
           if (--left == 0) loop.stop();
         });
@@ -147,7 +147,7 @@ TEST(Workers, LetACompletionSubmitTheNextJob) {
 
 TEST(Workers, DestructorWaitsForTheRunningJobOnly) {
   Loop loop;
-  std::atomic<bool> second_ran = true;  // on a busy machine it may, before they are destroyed
+  std::atomic<bool> second_ran = true;  // on a busy machine it may run before they are destroyed
   for (int attempt = 0; attempt < 20 && second_ran; ++attempt) {
     std::promise<void> begun;
     std::atomic<bool> completed = false;

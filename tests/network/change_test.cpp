@@ -13,7 +13,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-/// Remembers what it was told, and fails as it is told. What could not be applied may be in use all the same.
+/// Records its calls, and fails if the test says so. A failed change may be in use nevertheless.
 struct FakeNumbersSetter final : NumbersSetter {
   std::expected<void, std::string> apply(const Numbers& all) override {
     in_use = host_text(all.team);
@@ -64,7 +64,7 @@ TEST_F(ChangeTest, IsAppliedAtOnceAndPendingUntilItsDeadline) {
   ASSERT_TRUE(change.status().pending);
   EXPECT_EQ(change.status().pending->until, at(90));
   EXPECT_EQ(change.wake(), at(90));
-  EXPECT_EQ(change.status().kept, numbers()) << "until it is confirmed";
+  EXPECT_EQ(change.status().kept, numbers()) << "unchanged until the confirmation";
   EXPECT_EQ(change.status().ended, Ended::NotYet);
 }
 
@@ -77,7 +77,7 @@ TEST_F(ChangeTest, IsStoredOnceConfirmed) {
   EXPECT_EQ(change.status().kept, numbers(kNew));
   EXPECT_EQ(change.wake(), std::nullopt);
   change.tick(at(1000));
-  EXPECT_EQ(hands.done.size(), 2u) << "nothing comes after it";
+  EXPECT_EQ(hands.done.size(), 2u) << "no further step";
 }
 
 TEST_F(ChangeTest, IsRevertedAtItsDeadline) {
@@ -163,7 +163,7 @@ TEST_F(ChangeTest, RetriesARevertUntilItSucceeds) {
   hands.fail_revert = 2;
   want();
   change.tick(at(90));
-  EXPECT_TRUE(change.status().pending) << "it is still in use";
+  EXPECT_TRUE(change.status().pending) << "the change is still in use";
   EXPECT_EQ(change.wake(), at(92));
   confirm(91);
   EXPECT_TRUE(change.status().pending) << "too late";
@@ -188,7 +188,7 @@ TEST_F(ChangeTest, IsNotReplacedWhilePending) {
   change.want({other, seconds(90), numbers("192.168.9.11/24")}, at(10));
   EXPECT_EQ(hands.done.size(), 1u);
   EXPECT_EQ(change.status().pending->nonce, nonce);
-  EXPECT_EQ(change.wake(), at(90)) << "nor does it last longer";
+  EXPECT_EQ(change.wake(), at(90)) << "the trial must not last longer";
 }
 
 TEST_F(ChangeTest, ToTheSameAddressTouchesNothing) {
@@ -205,7 +205,7 @@ TEST_F(ChangeTest, MayFollowAnother) {
   change.tick(at(15));
   EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "keep 192.168.8.11/24",
                                       "apply 192.168.9.11/24", "revert"));
-  EXPECT_EQ(change.status().kept, numbers(kNew)) << "the one that was confirmed";
+  EXPECT_EQ(change.status().kept, numbers(kNew)) << "the confirmed addresses";
 }
 
 TEST(FirstChange, IsRevertedToNothing) {
@@ -237,11 +237,12 @@ TEST_F(ChangeTest, IsRevertedIfForgettingFails) {
   hands.fail_keep = true;
   want();
   EXPECT_EQ(change.forget(at(1)).error(), "the disk is full");
-  EXPECT_EQ(change.status().why, "a factory reset forgets all addresses") << "nobody is to confirm it now";
+  EXPECT_EQ(change.status().why, "a factory reset forgets all addresses")
+      << "a confirmation is no longer possible";
   EXPECT_EQ(change.status().kept, numbers());
 }
 
-/// A law: whatever comes when, at the end nothing is in use that was not confirmed in time.
+/// Whatever the order of events, finally only addresses that were confirmed in time are in use.
 TEST(Changes, LeaveNoUnconfirmedAddressInUse) {
   std::uint64_t random = 1;
   const auto draw = [&random](std::uint64_t most) {
@@ -260,7 +261,7 @@ TEST(Changes, LeaveNoUnconfirmedAddressInUse) {
       const std::string nonce(32, static_cast<char>('0' + draw(3)));
       const std::string team = "192.168." + std::to_string(20 + draw(3)) + ".11/24";
       const auto before = change.status().pending;
-      const bool is_open = before && change.wake() == before->until;  // and not being reverted
+      const bool is_open = before && change.wake() == before->until;  // and is not being reverted
       switch (draw(4)) {
         case 0:
           change.want({nonce, seconds(1), numbers(team)}, now);

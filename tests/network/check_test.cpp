@@ -48,7 +48,7 @@ TEST(NetworkCheck, ListsChanges) {
   EXPECT_EQ(findings.changes[2].path, "command_post.gateway");
   EXPECT_EQ(findings.changes[2].from, "");
   EXPECT_THAT(check(numbers(), std::nullopt, usual()).changes, SizeIs(4))
-      << "all but the gateway, which stays none";
+      << "all except the gateway, which stays unset";
 }
 
 TEST(NetworkCheck, RejectsATeamInTheCommandPostSubnets) {
@@ -99,7 +99,7 @@ TEST(NetworkCheck, WarnsIfTheClientLosesItsConnection) {
                         HasSubstr("open http://192.168.8.11:8000"), HasSubstr("within 90 s"))));
   EXPECT_THAT(warnings("192.168.7.99/24", "192.168.7.12"),
               ElementsAre(HasSubstr("the page moves: open http://192.168.7.99:8000")));
-  EXPECT_THAT(warnings("192.168.7.11/24", "192.168.7.12"), IsEmpty()) << "the team's side stays as it is";
+  EXPECT_THAT(warnings("192.168.7.11/24", "192.168.7.12"), IsEmpty()) << "the team's side does not change";
   EXPECT_THAT(warnings("192.168.8.11/24", "fd00::5"), ElementsAre(HasSubstr("cuts you off")));
 }
 
@@ -115,7 +115,7 @@ TEST(NetworkCheck, WarnsOfUnreachableEndpoints) {
   around.command_post.scoring.address = "172.20.0.1";
   EXPECT_THAT(check(numbers("192.168.7.11/24", "10.100.1.10/24", "10.100.1.1"), numbers(), around).warnings,
               IsEmpty())
-      << "the gateway leads to whatever endpoints there are";
+      << "the gateway reaches all endpoints";
   Numbers both = numbers("192.168.7.11/24", "10.100.2.10/24");
   both.command_post.push_back(host("10.100.1.10/24"));
   EXPECT_THAT(check(both, numbers(), usual()).warnings, IsEmpty());

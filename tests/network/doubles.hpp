@@ -15,13 +15,13 @@ inline settings::Subnet host(const std::string& text) {
   return parsed.value_or(settings::Subnet{});
 }
 
-/// A box as it is usual.
+/// The usual addresses of a box.
 inline Numbers numbers(const std::string& team = "192.168.7.11/24",
                        const std::string& post = "10.100.1.10/24", const std::string& gateway = "") {
   return {.team = host(team), .command_post = {host(post)}, .gateway = settings::ipv4_of(gateway)};
 }
 
-/// With no address of its own on the team's side.
+/// Without an address of its own on the team's side.
 inline Numbers with_mode(Mode mode) {
   Numbers all = numbers();
   all.mode = mode;

@@ -99,14 +99,14 @@ TEST(NetworkMessages, RejectTimesBeyondTheClock) {
     json bad = json::parse(codec::write_file(status));
     bad["pending"]["until_ms"] = json::parse(until);
     const auto result = codec::read_file<Status>(bad.dump());
-    const bool fits = std::string_view(until) == "9223372036854";  // nanoseconds, in 63 bits
+    const bool fits = std::string_view(until) == "9223372036854";  // as nanoseconds, in 63 bits
     ASSERT_EQ(result.has_value(), fits) << until;
     if (fits) continue;
     EXPECT_THAT(result.error(), HasSubstr("pending.until_ms")) << until;
   }
 }
 
-/// What a gateway that has been taken over could write.
+/// Messages that a compromised gateway could write.
 TEST(NetworkMessages, AreRejectedIfHostile) {
   const json good =
       json::parse(codec::write_file(Wanted{kNonce, std::chrono::milliseconds(90000), numbers()}));
@@ -165,7 +165,7 @@ TEST(NetworkMessages, RejectInvalidEndpoints) {
   EXPECT_THAT(codec::read_file<Endpoints>(codec::write_file(many)).error(), HasSubstr("at most 64"));
 }
 
-/// What adit-network of an earlier version kept.
+/// Files of an earlier version of adit-network.
 TEST(NetworkMessages, ReadFilesOfAnEarlierVersion) {
   EXPECT_EQ(read_kept(R"({"format":1,"numbers":{"team":{"address":"192.168.7.11","prefix":24},)"
                       R"("command_post":{"address":"10.100.1.10","prefix":24,"gateway":""}}})"),

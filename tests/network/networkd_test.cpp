@@ -77,14 +77,14 @@ TEST(NetworkdFiles, HaveTheirOwnRoutingTable) {
         "[RoutingPolicyRule]\nFrom=10.100.1.11/32\nPriority=230\nTable=230\n"}) {
     EXPECT_THAT(file, HasSubstr(part));
   }
-  EXPECT_THAT(file, Not(HasSubstr("PreferredSource=10.100.1.11"))) << "one way to a subnet";
+  EXPECT_THAT(file, Not(HasSubstr("PreferredSource=10.100.1.11"))) << "only one route to a subnet";
 }
 
 TEST(NetworkdFiles, RouteOnlyRemoteEndpointsByTheGateway) {
   const std::string file = command_post_file("darpa0", several(), kEndpoints);
   EXPECT_THAT(file, HasSubstr("[Route]\nDestination=10.100.2.201/32\nGateway=10.100.1.1\n"
                               "PreferredSource=10.100.1.10\nTable=230\n"));
-  EXPECT_THAT(file, Not(HasSubstr("10.100.1.200/32"))) << "that one is in a subnet";
+  EXPECT_THAT(file, Not(HasSubstr("10.100.1.200/32"))) << "the endpoint is in a subnet";
   EXPECT_THAT(command_post_file("darpa0", numbers(), kEndpoints), Not(HasSubstr("/32\nGateway")));
 }
 

@@ -1,4 +1,4 @@
-// What a link delivers, and the pace: on a simulated link with a queue.
+// The delivery rate of a link, and the pace, on a simulated link with a queue.
 #include "pace/delivery.hpp"
 
 #include <gtest/gtest.h>
@@ -19,19 +19,19 @@ Duration lasting(double s) {
   return std::chrono::duration_cast<Duration>(std::chrono::duration<double>{s});
 }
 
-/// A sender with always enough to send, its TCP, and a link with a queue.
+/// A sender that always has data, its TCP, and a link with a queue.
 class Line {
  public:
   Line(double bytes_per_second, double round_trip) : carries(bytes_per_second), round_trip_(round_trip) {}
 
-  /// For so long; how many bytes a second were delivered.
+  /// Sends for `s` seconds and returns the delivered bytes per second.
   double runs(double s) {
     const double before = delivered_, end = time_ + s;
     most_queued = 0;
     for (; time_ < end; time_ += kStep) step();
     return (delivered_ - before) / s;
   }
-  /// Nothing is sent.
+  /// Sends nothing for `s` seconds.
   void rests(double s) {
     time_ += s;
     queue_ = 0;
@@ -39,13 +39,13 @@ class Line {
   }
 
   double carries;          // bytes a second
-  double burst = 0;        // bytes that pass at once after a while of less, as in a token bucket
-  double most_queued = 0;  // seconds that a report would have waited
-  bool starves = false;    // the sender has other things to do every now and then
+  double burst = 0;        // bytes that pass at once after a pause, as in a token bucket
+  double most_queued = 0;  // longest wait of a report in seconds
+  bool starves = false;    // the sender is sometimes busy with other work
   Delivery delivery{kMost};
 
  private:
-  /// What TCP holds, and the kernel takes, is bounded: bytes on their way or queued.
+  /// Limit of the bytes in TCP and the kernel: in flight or queued.
   static constexpr double kWindow = 512e3;
 
   void step() {
@@ -78,7 +78,7 @@ class Line {
 
   double round_trip_;
   std::deque<std::pair<double, double>>
-      told_;  // on their way back: bytes delivered, and how long they waited
+      told_;  // in flight to the sender: delivered bytes, and how long they waited
   double time_ = 10, queue_ = 0, tokens_ = 0, delivered_ = 0, smoothed_ = 0;
 };
 
@@ -123,8 +123,7 @@ TEST(Delivery, IgnoresALongFirstRoundTrip) {
   }
 }
 
-/// Small maps: TCP has sent all of each, and the ACK of the last bytes came late and made the round trip
-/// longer.
+/// Small maps: TCP has sent all bytes of each, and a late ACK of the last bytes made the round trip longer.
 TEST(Delivery, IgnoresALateAcknowledgementOfAnIdleSender) {
   Delivery delivery(kMost);
   Progress now{.at = at(10),
@@ -151,7 +150,7 @@ TEST(Delivery, IgnoresSilence) {
   EXPECT_EQ(delivery.pace(), kMost);
 }
 
-/// Whatever the link does: 2 s later 95 % of it is used, and a report waits 30 ms at the most.
+/// For any link: after 2 s, 95 % of it is used and a report waits at most 30 ms.
 TEST(Delivery, RecoversWithinTwoSecondsOnAnyLink) {
   for (unsigned seed = 1; seed <= 200; ++seed) {
     std::mt19937 random(seed);
@@ -166,7 +165,7 @@ TEST(Delivery, RecoversWithinTwoSecondsOnAnyLink) {
       line.runs(2);
       const double used = line.runs(2) / std::min(line.carries, kMost);
       EXPECT_GT(used, 0.95) << "seed " << seed << " change " << change << " link " << line.carries;
-      if (line.carries > 0.97 * kMost && line.carries < kMost) continue;  // cannot be told from the most
+      if (line.carries > 0.97 * kMost && line.carries < kMost) continue;  // indistinguishable from the limit
       EXPECT_LT(line.most_queued, 0.03 + 3 * line.burst / line.carries)
           << "seed " << seed << " change " << change << " link " << line.carries;
     }

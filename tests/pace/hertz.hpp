@@ -6,7 +6,7 @@
 
 namespace adit::pace {
 
-/// How often a limit asks that is allowed so much: what it learned, which is never more than that.
+/// The rate of requests with that limit: the learned rate, at most `allowed`.
 inline double hertz(const RateLimit& limit, double allowed) {
   const Duration learned = limit.learned().spacing;
   return learned == Duration{} ? allowed : 1 / std::chrono::duration<double>{learned}.count();

@@ -39,7 +39,7 @@ TEST(RateLimit, KeepsFirstBytesApartAndLastBytes) {
   limit.sent(at(10));
   limit.taken({.first = at(10), .last = at(10.6)}, at(10.7));
   EXPECT_EQ(limit.earliest(), (Span{.first = at(11.02), .last = at(11.62)}));
-  EXPECT_EQ(limit.next(), at(11.62)) << "where nothing is held back";
+  EXPECT_EQ(limit.next(), at(11.62)) << "without a byte that is held back";
 }
 
 TEST(RateLimit, After429CountsFromTheAnswer) {
@@ -85,7 +85,7 @@ TEST(RateLimit, ContinuesWithLearnedValues) {
   RateLimit next(1);
   next.carry_on(slowed.learned(), at(41));
   EXPECT_EQ(next.next(), slowed.next());
-  EXPECT_GE(next.next(), at(60)) << "also what the server asked for";
+  EXPECT_GE(next.next(), at(60)) << "including the server's Retry-After";
   EXPECT_EQ(next.learned().spacing, slowed.learned().spacing);
   RateLimit slower(0.01);
   slower.carry_on(slowed.learned(), at(41));
@@ -95,10 +95,10 @@ TEST(RateLimit, ContinuesWithLearnedValues) {
   free.taken(left(3), at(3));
   freed.carry_on(free.learned(), at(3));
   EXPECT_EQ(freed.next(), at(4) + milliseconds{20});
-  EXPECT_EQ(hertz(freed, 5), 5) << "nothing was learned: the new settings count";
+  EXPECT_EQ(hertz(freed, 5), 5) << "without a learned rate the new settings apply";
 }
 
-/// It may have ended a moment before: in one life the spacing counts from there.
+/// The request may have ended just before. In one process the spacing counts from there.
 TEST(RateLimit, KeepsItsSpacingAfterARestartDuringARequest) {
   RateLimit before(1);
   before.sent(at(3));  // and it took five seconds
@@ -108,7 +108,7 @@ TEST(RateLimit, KeepsItsSpacingAfterARestartDuringARequest) {
   before.taken(left(8), at(8));
   RateLimit known(1);
   known.carry_on(before.learned(), at(8.3));
-  EXPECT_EQ(known.next(), at(9) + milliseconds{20}) << "how it ended is known";
+  EXPECT_EQ(known.next(), at(9) + milliseconds{20}) << "the end of the request is known";
 }
 
 TEST(RateLimit, SurvivesTimesOfAnotherClock) {
@@ -149,7 +149,7 @@ TEST(RateLimit, KeepsRequestsApartForAnyAnswers) {
       if (answer < 0.2) limit.throttled(now, {});
       if (answer >= 0.2 && answer < 0.4) limit.lost(now);
       if (answer >= 0.4) limit.taken(sent, now);
-      if (answer > 0.98) {  // a life ends, and the next begins
+      if (answer > 0.98) {  // a process ends, and the next begins
         const Learned learned = std::exchange(limit, RateLimit{allowed}).learned();
         limit.carry_on(learned, now);
       }
@@ -200,7 +200,7 @@ TEST(Budget, IsNeverZero) {
 
 TEST(RateLimit, CountsFromTheEndOfALostRequest) {
   RateLimit limit(1);
-  limit.sent(at(10));  // its bytes left at 12.8, and nothing came back
+  limit.sent(at(10));  // its bytes left at 12.8, and no answer came
   limit.lost(at(12.9));
   EXPECT_EQ(limit.next(), at(13.9));
 }

@@ -1,4 +1,4 @@
-// RateLimit against servers of several kinds, on simulated time.
+// RateLimit with several kinds of servers, in simulated time.
 #include "pace/rate_limit.hpp"
 
 #include <gtest/gtest.h>
@@ -18,15 +18,15 @@ namespace {
 using Seconds = std::chrono::duration<double>;
 constexpr double kAnswerTakes = 0.03;
 
-/// Whether a server takes a request that comes at that second.
+/// Whether a server accepts a request at that second.
 using Server = std::function<bool(double)>;
 
-/// Nothing is taken from `begin` to `end`.
+/// Rejects everything from `begin` to `end`.
 Server storm(double begin, double end) {
   return [=](double now) { return now < begin || now >= end; };
 }
 
-/// At least `apart` seconds since the last request, or since the last that was taken.
+/// Accepts at least `apart` seconds after the last request, or after the last accepted one.
 Server spaced(double apart, bool counts_refused) {
   return [=, last = -1e9](double now) mutable {
     const bool takes = now - last >= apart;
@@ -35,7 +35,7 @@ Server spaced(double apart, bool counts_refused) {
   };
 }
 
-/// At most `most` that were taken in any `window` seconds.
+/// Accepts at most `most` requests in any `length` seconds.
 Server window(std::size_t most, double length) {
   return [=, taken = std::deque<double>{}](double now) mutable {
     while (!taken.empty() && taken.front() <= now - length) taken.pop_front();
@@ -50,7 +50,7 @@ struct Request {
   bool taken = false;
 };
 
-/// Somebody who always has something to send.
+/// A client that always has a message to send.
 std::vector<Request> played(Server server, double until,
                             std::optional<std::chrono::seconds> retry_after = {}) {
   RateLimit limit{1};
@@ -135,9 +135,9 @@ TEST(RateLimitServers, LastingLimitIsLearnedAndUsed) {
   for (const Limited& each : cases) {
     SCOPED_TRACE(each.what);
     const auto all = played(each.server, 780);
-    const Counts late = counted(all, 180, 780);  // three minutes are for learning
-    EXPECT_LE(late.refused, late.taken / 10) << "it hammers";
-    EXPECT_GE(late.taken, 0.6 * each.hertz * 600) << "it uses too little";
+    const Counts late = counted(all, 180, 780);  // the first three minutes are for learning
+    EXPECT_LE(late.refused, late.taken / 10) << "too many rejected requests";
+    EXPECT_GE(late.taken, 0.6 * each.hertz * 600) << "too few accepted requests";
   }
 }
 
@@ -161,7 +161,7 @@ struct FromAnswers {
 
 constexpr double kTransfer = 0.5, kMinutes = 10;
 
-/// Of a gateway that restarts every `lives` seconds, with what the one before has learned.
+/// A gateway that restarts every `lives` seconds, with the learned state of the one before.
 Counts learns_of_answers(double lives) {
   FromAnswers server;
   RateLimit limit{1};
@@ -189,7 +189,7 @@ Counts learns_of_answers(double lives) {
 TEST(RateLimitServers, CountingFromAnswersIsLearnedAtOnce) {
   for (const double lives : {1e9, 12.0, 13.7, 31.0}) {
     const Counts counts = learns_of_answers(lives);
-    EXPECT_EQ(counts.refused, 2) << "one at first, and one when it tries for more; " << lives;
+    EXPECT_EQ(counts.refused, 2) << "one at first, and one when it tries a higher rate; " << lives;
     EXPECT_GE(counts.taken, 0.94 * kMinutes * 60 / (1 + kTransfer)) << lives;
   }
 }
@@ -253,7 +253,7 @@ TEST(RateLimit, OfTwoInFlightTheLaterCounts) {
   }
 }
 
-/// What fills a link sends so much at a time.
+/// A request that fills the link takes that long to send.
 TEST(RateLimit, NextMayBeginAtTheEndOfALongSend) {
   RateLimit rate(1);
   rate.sent(at(0));
@@ -262,7 +262,7 @@ TEST(RateLimit, NextMayBeginAtTheEndOfALongSend) {
   EXPECT_EQ(rate.earliest().first, end);
 }
 
-/// Else the answer to it would end a pause that the server asked for since.
+/// Otherwise its answer would end a pause that the server requested later.
 TEST(RateLimit, RequestSentBeforeA429DoesNotEndTheStorm) {
   RateLimit rate(1);
   rate.sent(at(0));
@@ -293,20 +293,21 @@ TEST(RateLimit, NothingGoesAheadWhileTheRateIsLearned) {
   EXPECT_FALSE(rate.may_go_ahead());
   rate.sent(at(2));
   rate.taken({.first = at(2), .last = at(2)}, at(2.1));
-  EXPECT_FALSE(rate.may_go_ahead()) << "it may count from its answers";
+  EXPECT_FALSE(rate.may_go_ahead()) << "the server may count from its answers";
 }
 
 TEST(RateLimit, ForeignRequestTakesItsOwnTurn) {
   RateLimit rate(1);
   rate.sent(at(0));
   rate.taken({.first = at(0), .last = at(0)}, at(0.1));
-  EXPECT_EQ(rate.claim(at(0.2), at(1.2)), std::nullopt) << "its turn comes too late";
-  EXPECT_EQ(rate.next(), at(1.02)) << "and so none is taken";
-  EXPECT_EQ(rate.claim(at(0.2), at(5)), at(1.27)) << "not as soon as it might: its connection is another";
+  EXPECT_EQ(rate.claim(at(0.2), at(1.2)), std::nullopt) << "the turn is too late";
+  EXPECT_EQ(rate.next(), at(1.02)) << "so no turn is reserved";
+  EXPECT_EQ(rate.claim(at(0.2), at(5)), at(1.27))
+      << "later than possible, because it uses another connection";
   EXPECT_EQ(rate.next(), at(2.52));
   rate.claimed(at(1.4));
-  EXPECT_EQ(rate.next(), at(2.65)) << "it may have been heard as late as that";
-  EXPECT_EQ(rate.claim(at(9), at(9)), at(9)) << "at once where nothing was sent of late";
+  EXPECT_EQ(rate.next(), at(2.65)) << "the answer may have been read that late";
+  EXPECT_EQ(rate.claim(at(9), at(9)), at(9)) << "at once if no request was sent recently";
 }
 
 TEST(RateLimit, ForeignRequestTeachesNothing) {
@@ -316,10 +317,10 @@ TEST(RateLimit, ForeignRequestTeachesNothing) {
   const Instant next = rate.next();
   const auto claimed = rate.claim(at(0.2), at(30));
   ASSERT_TRUE(claimed);
-  EXPECT_GT(*claimed, next) << "a pause is kept by it, too";
+  EXPECT_GT(*claimed, next) << "a claim also keeps the pause";
   rate.claimed(*claimed + std::chrono::milliseconds{100});
   EXPECT_GE(rate.next(), *claimed + std::chrono::milliseconds{1100}) << "this server counts from its answers";
-  EXPECT_FALSE(rate.may_go_ahead()) << "the storm goes on";
+  EXPECT_FALSE(rate.may_go_ahead()) << "the storm continues";
   EXPECT_FALSE(rate.learned().under_way);
 }
 

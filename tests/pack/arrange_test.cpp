@@ -1,4 +1,4 @@
-// What pack() makes of a cloud's layout and order.
+// Layout and order of a cloud's points after pack().
 #include "pack/arrange.hpp"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@
 namespace adit::pack {
 namespace {
 
-/// Points of a survey in no order, each padded to 32 bytes.
+/// Unordered points of a survey, each padded to 32 bytes.
 icd::MapUpdate survey(std::size_t points) {
   Generator make{7};
   icd::PointCloud2 fields;
@@ -112,7 +112,7 @@ std::vector<std::uint32_t> in(Layers layers, const Layout& layout, const Places&
   return numbers_in(layers, cloud_of(layout), box, bytes);
 }
 
-/// Whole numbers, so that each is a step of its own.
+/// Whole numbers, so that each is one step.
 Places some(std::mt19937_64& random, int count, int most) {
   std::uniform_int_distribution any{0, most};
   Places places{{0, 0, 0}};
@@ -125,7 +125,7 @@ Places some(std::mt19937_64& random, int count, int most) {
   return places;
 }
 
-/// In layers along `first`, and then by the others.
+/// Checks the order: layers along `first`, then by the other axes.
 void expect_sorted(Layers layers, std::size_t first, std::size_t second, std::size_t third) {
   std::mt19937_64 random{1};
   for (const Layout& layout : kLayouts) {

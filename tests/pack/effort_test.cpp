@@ -1,4 +1,4 @@
-// With how much effort a map is packed, by what its link carries and how fast the box is.
+// The effort to pack a map, by the rate of its link and the speed of the box.
 #include "pack/effort.hpp"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@ namespace adit::pack {
 namespace {
 
 constexpr double kMegabyte = 1e6, kSlot = 1;
-/// What Quick makes of a byte, as measured.
+/// Compressed bytes per byte with Quick, as measured.
 constexpr double kNoise = 0.92, kScan = 0.7, kSurvey = 0.48, kPadded = 0.39;
 
 struct Row {
@@ -64,14 +64,14 @@ INSTANTIATE_TEST_SUITE_P(
                     Row{"10 Mbit/s, a small survey", 1.15, 0.5, kSurvey, 4, Effort::Full},
                     Row{"1 Mbit/s, small noise", 0.115, 0.3, kNoise, 10, Effort::Full}));
 
-/// From the slowest to the fastest.
+/// From slow to fast.
 std::vector<double> rates() {
   std::vector<double> all;
   for (int tenths = 40; tenths <= 100; ++tenths) all.push_back(std::pow(10, tenths / 10.0));
   return all;
 }
 
-/// The worker and the link together: the slower one delays other maps, if it takes longer than a slot.
+/// Worker and link together: the slower one delays other maps if it takes longer than a slot.
 TEST(Effort, IsNeverWorseThanFull) {
   for (const double slowness : {0.2, 1.0, 5.0, 20.0}) {
     for (const double rate : rates()) {
@@ -96,7 +96,7 @@ TEST(Effort, IsNeverWorseThanFull) {
   }
 }
 
-/// Once a slower link is Full, an even slower one is.
+/// If a link gets Full, an even slower one does.
 TEST(Effort, IsFullOnEverySlowLink) {
   for (const double quick_to : {0.05, 0.5, 0.95}) {
     bool was_full = true;

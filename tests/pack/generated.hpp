@@ -21,7 +21,7 @@ inline icd::MapUpdate update_of(icd::PointCloud2 cloud, const Bytes& bytes) {
           {icd::ChunkedBytes{bytes}, icd::Compression::None, bytes.size()}};
 }
 
-/// Clouds of any fields, with and without padding, of which only the coordinates have an order.
+/// Clouds with random fields, with and without padding. Only coordinates have an order.
 class Generator {
  public:
   explicit Generator(std::uint64_t seed) : random_(seed) {}
@@ -31,7 +31,7 @@ class Generator {
   }
   double real(double low, double high) { return std::uniform_real_distribution{low, high}(random_); }
 
-  /// x, y and z among other fields, in any order, here and there with gaps.
+  /// x, y and z among other fields, in any order, sometimes with gaps.
   icd::PointCloud2 fields(bool is_bigendian) {
     icd::PointCloud2 cloud;
     cloud.is_bigendian = is_bigendian;
@@ -45,7 +45,7 @@ class Generator {
     const bool has_gaps = any(0, 1) == 1;
     auto places = std::vector<std::size_t>(cloud.fields.size());
     for (std::size_t i = 0; i < places.size(); ++i) places[i] = i;
-    std::ranges::shuffle(places, random_);  // a field may stand before one that is listed before it
+    std::ranges::shuffle(places, random_);  // the list order may differ from the order in memory
     std::uint32_t end = 0;
     for (const std::size_t place : places) {
       icd::FieldSchema& field = cloud.fields[place];
@@ -57,7 +57,7 @@ class Generator {
     return cloud;
   }
 
-  /// `at` gives a point's coordinates; other fields and padding are of any bits.
+  /// `at` returns a point's coordinates. Other fields and padding are random.
   template <class At>
   icd::MapUpdate cloud(icd::PointCloud2 form, std::size_t points, At at) {
     Bytes bytes;
@@ -79,7 +79,7 @@ class Generator {
     return update_of(std::move(form), bytes);
   }
 
-  /// A tunnel's wall, around `middle`.
+  /// A point on a tunnel's wall around `middle`.
   std::array<double, 3> on_wall(const std::array<double, 3>& middle, double length) {
     const double along = real(0, length), angle = real(0, 6.28);
     return {middle[0] + along, middle[1] + 3 * std::cos(angle) + real(-0.02, 0.02),
@@ -90,8 +90,7 @@ class Generator {
   std::mt19937_64 random_;
 };
 
-/// The recorded clouds in the folder that ADIT_MAPS names, each x, y, z and intensity; none where it names
-/// none.
+/// The recorded clouds in the directory ADIT_MAPS, with x, y, z and intensity; empty if it is not set.
 inline std::vector<icd::MapUpdate> recorded_clouds() {
   const char* const named = std::getenv("ADIT_MAPS");
   std::vector<icd::MapUpdate> clouds;
@@ -109,7 +108,7 @@ inline std::vector<icd::MapUpdate> recorded_clouds() {
       cloud.fields.push_back({name, cloud.point_step, icd::Datatype::Float32, 1});
       cloud.point_step += 4;
     }
-    const std::string data = all.substr(begin, points * cloud.point_step);  // one file has more behind them
+    const std::string data = all.substr(begin, points * cloud.point_step);  // one file has further bytes
     const Bytes bytes(data.begin(), data.end());
     clouds.push_back(update_of(std::move(cloud), bytes));
   }

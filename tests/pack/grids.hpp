@@ -13,7 +13,7 @@
 
 namespace adit::pack {
 
-/// A grid to be packed, row by row.
+/// A grid to pack, row by row.
 struct Grid {
   std::string what;
   std::size_t width = 0, height = 0;
@@ -32,7 +32,7 @@ struct Grid {
   }
 };
 
-/// Free within a circle, and occupied at its edge where nothing was known; only what lies in the grid.
+/// Makes cells within a circle free, and unknown cells at its edge occupied. Clips at the grid's border.
 inline void dig(Grid& grid, double x, double y, double radius) {
   const auto reach = static_cast<long>(radius) + 2;
   for (long dy = -reach; dy <= reach; ++dy) {
@@ -68,7 +68,7 @@ inline Grid cave(std::size_t width, std::size_t height, std::uint64_t seed) {
   return grid;
 }
 
-/// With costs around walls, as planners inflate them: the same patterns everywhere.
+/// Adds costs around walls, as planners inflate them: the same patterns everywhere.
 inline Grid graded(Grid grid) {
   constexpr long kReach = 6;
   const std::vector<std::uint8_t> walls = grid.cells;
@@ -91,7 +91,7 @@ inline Grid graded(Grid grid) {
   return grid;
 }
 
-/// One cell in a hundred says something else.
+/// One cell in a hundred has another value.
 inline Grid speckled(Grid grid) {
   std::mt19937_64 random(grid.cells.size());
   for (std::size_t i = 0; i < grid.cells.size() / 100; ++i)
@@ -100,7 +100,7 @@ inline Grid speckled(Grid grid) {
   return grid;
 }
 
-/// Probabilities as they were measured, where something is known.
+/// Known cells get measured probabilities.
 inline Grid measured(Grid grid) {
   std::mt19937_64 random(grid.cells.size());
   for (std::uint8_t& cell : grid.cells) {
@@ -111,7 +111,7 @@ inline Grid measured(Grid grid) {
   return grid;
 }
 
-/// `values` of them, each as likely.
+/// Random cells with `values` equally likely values.
 inline Grid noise(std::size_t width, std::size_t height, unsigned values) {
   std::mt19937_64 random(values);
   Grid grid("noise of " + std::to_string(values), width, height);

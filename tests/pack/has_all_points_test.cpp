@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kStep = 12;
 
-/// Points of 12 bytes that are told apart by their number, in chunks of so many bytes.
+/// Points of 12 bytes identified by their numbers, in chunks of that size.
 icd::MapData points(const std::vector<std::uint32_t>& numbers, std::size_t chunk = 1 << 16) {
   std::vector<std::uint8_t> bytes(kStep * numbers.size());
   for (std::size_t i = 0; i < bytes.size(); i += 4) std::memcpy(&bytes[i], &numbers[i / kStep], 4);
@@ -38,7 +38,7 @@ TEST(HasAllPoints, OfAnExtendedCloud) {
 
 TEST(HasAllPoints, InAnyOrder) {
   EXPECT_TRUE(has({3, 2, 1}, {1, 2}));
-  EXPECT_TRUE(has({3, 1, 2, 1}, {1, 1, 2})) << "each is there";
+  EXPECT_TRUE(has({3, 1, 2, 1}, {1, 1, 2})) << "each point is there";
 }
 
 TEST(HasAllPoints, IsFalseIfOneIsMissing) {
@@ -93,7 +93,7 @@ TEST(HasAllPoints, ComparesOnlyPrefixesOfTooManyPoints) {
   const icd::MapData all = points(older);
   EXPECT_TRUE(has_all_points(points(newer), all, kStep));
   std::swap(newer.front(), newer.back());
-  EXPECT_FALSE(has_all_points(points(newer), all, kStep)) << "in doubt, each is to arrive";
+  EXPECT_FALSE(has_all_points(points(newer), all, kStep)) << "in doubt every point must be sent";
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ namespace adit::pack {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// A way to lay out a point: x, y and z anywhere within it, one byte "tag" at its end.
+/// A layout of a point: x, y and z anywhere within it, a byte "tag" at its end.
 struct Layout {
   const char* what;
   icd::Datatype datatype;
@@ -51,7 +51,7 @@ void put(Bytes& point, std::uint32_t offset, Float value, bool big_endian) {
 }
 
 inline Bytes point_of(const Layout& layout, double x, double y, double z, std::uint8_t tag) {
-  Bytes point(layout.step, 0xff);  // padding that would be no number
+  Bytes point(layout.step, 0xff);  // padding that would be NaN
   for (const auto& [offset, value] : {std::pair{layout.x, x}, {layout.y, y}, {layout.z, z}}) {
     if (layout.datatype == icd::Datatype::Float32) {
       put(point, offset, static_cast<float>(value), layout.big_endian);

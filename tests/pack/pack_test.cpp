@@ -48,7 +48,7 @@ TEST(WithoutInvalidPoints, DropsNonFinitePointsOfAnyLayout) {
                                : std::numeric_limits<double>::max();
     const double values[] = {0, -0.0, 1.5, -1e-30, largest, -largest, kNan, kInfinity, -kInfinity, 65504};
     const auto any = [&] {
-      // Mostly finite, so that points survive.
+      // Mostly finite values, so that points survive.
       return values[std::uniform_int_distribution{0, random() % 3 == 0 ? 9 : 5}(random)];
     };
     for (int round = 0; round < 20; ++round) {
@@ -159,7 +159,7 @@ TEST(Pack, KeepsACompressedCloud) {
   EXPECT_EQ(pack(cloud), cloud);
 }
 
-/// As it is kept.
+/// The grid as it is stored.
 icd::MapData kept(const Grid& grid) {
   return {codec::gzip(icd::ChunkedBytes(grid.cells), codec::GzipStrategy::Runs), icd::Compression::Gzip,
           grid.cells.size()};

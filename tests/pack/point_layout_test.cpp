@@ -21,7 +21,7 @@ icd::PointCloud2 cloud(std::vector<icd::FieldSchema> fields, std::uint32_t point
           .point_step = point_step};
 }
 
-/// A point whose bytes are their own offsets, in that layout.
+/// A point in that layout whose bytes are their own offsets.
 Bytes copied(const PointLayout& layout, std::uint32_t point_step) {
   Bytes point(point_step), to(layout.cloud.point_step);
   std::iota(point.begin(), point.end(), std::uint8_t{0});

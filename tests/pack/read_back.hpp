@@ -13,7 +13,7 @@
 
 namespace adit::pack {
 
-/// A cloud as the rehearsal's Command Post reads it, by code of its own.
+/// A cloud as the rehearsal's Command Post reads it, with code of its own.
 struct ReadBack {
   rehearsal::Cloud cloud;
   std::string data;
@@ -32,7 +32,7 @@ inline ReadBack read_back(const icd::MapUpdate& map) {
   return {std::get<rehearsal::Cloud>(message->msg), std::move(message->data)};
 }
 
-/// Of each point the bytes of its fields but for those named, in the order of the list.
+/// For each point the bytes of its fields, without the named ones, in the list's order.
 template <class Fields>
 std::vector<std::string> values_of(const Fields& fields, std::size_t step, const std::string& data,
                                    const std::vector<std::string>& but = {}) {

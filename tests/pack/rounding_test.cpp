@@ -1,5 +1,4 @@
-// What a receiver makes of a cloud whose coordinates were rounded, by what the rehearsal's Command Post
-// decodes of it.
+// A receiver's view of a cloud with rounded coordinates, decoded by the rehearsal's Command Post.
 #include "pack/rounding.hpp"
 
 #include <gtest/gtest.h>
@@ -29,7 +28,7 @@ icd::PointCloud2 xyz_and_number(icd::Datatype datatype) {
   return cloud;
 }
 
-/// Each point has its number, by which it is found again.
+/// Each point has its number, which identifies it.
 icd::MapUpdate numbered(const icd::PointCloud2& form, const Places& places) {
   Bytes bytes(places.size() * form.point_step);
   const auto axes = axes_of(form);
@@ -48,7 +47,7 @@ icd::MapUpdate numbered(const icd::PointCloud2& form, const Places& places) {
   return update_of(form, bytes);
 }
 
-/// In "darpa", as a receiver with float32 computes it: the quaternion's matrix as Eigen makes it.
+/// The point in "darpa" as a float32 receiver computes it: the quaternion's matrix as in Eigen.
 std::array<float, 3> in_float32(const rehearsal::Pose& origin, const std::array<float, 3>& p) {
   const auto narrow = [](double value) { return static_cast<float>(value); };
   const float x = narrow(origin.orientation.x), y = narrow(origin.orientation.y),
@@ -65,7 +64,7 @@ std::array<float, 3> in_float32(const rehearsal::Pose& origin, const std::array<
   return placed;
 }
 
-/// The largest distance of a point from where it is by `map`; nothing where the cloud was not rounded.
+/// The largest distance between a point and its place in `map`; nullopt if the cloud was not rounded.
 std::optional<double> largest_error(const icd::MapUpdate& map, double unit) {
   const auto& before = std::get<icd::PointCloud2>(map.msg);
   const ReadBack after = read_back(pack(map, {.unit = unit}));

@@ -1,5 +1,5 @@
-// What the rehearsal's Command Post decodes of a packed cloud is the same set of points: each field of each
-// point, bit for bit.
+// The rehearsal's Command Post decodes a packed cloud to the same set of points: each field of each point,
+// bit for bit.
 #include <gtest/gtest.h>
 
 #include "icd/xyz.hpp"
@@ -15,7 +15,7 @@ std::vector<std::string> sorted(std::vector<std::string> points) {
   return points;
 }
 
-/// A map that was packed in a hurry.
+/// Checks a map that was packed with little effort.
 void expect_same_in_order(const icd::MapUpdate& map, Effort effort) {
   const auto& before = std::get<icd::PointCloud2>(map.msg);
   const ReadBack after = read_back(pack(map, {.effort = effort}));
@@ -48,7 +48,7 @@ TEST_P(SamePoints, AreInACloudOfAnyFields) {
   Generator make{GetParam()};
   for (int round = 0; round < 6; ++round) {
     const icd::PointCloud2 fields = make.fields(/*is_bigendian=*/false);
-    const double cell = round % 3 == 0 ? 0.05 : 1e-9;  // surveyed, or of noise
+    const double cell = round % 3 == 0 ? 0.05 : 1e-9;  // surveyed, or noise
     expect_same_points(make.cloud(fields, make.any(0, 2000), [&](std::size_t) {
       auto at = make.on_wall({-20, 3, 1000}, 30);
       for (double& metres : at) metres = std::round(metres / cell) * cell;
@@ -76,7 +76,7 @@ TEST(SamePointsOf, ACloudOfSeveralBlocks) {
     std::memcpy(bytes.data() + at, &metres, sizeof metres);
   }
   const ReadBack after = read_back(pack(update_of(icd::xyz(), bytes)));
-  const auto sum_of = [](std::string_view points) {  // whatever their order
+  const auto sum_of = [](std::string_view points) {  // independent of their order
     std::size_t sum = 0;
     for (; !points.empty(); points.remove_prefix(12))
       sum += std::hash<std::string_view>()(points.substr(0, 12));

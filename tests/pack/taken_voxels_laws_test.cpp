@@ -1,5 +1,5 @@
-// The law of what is left out: for each point that was posted, a message with a point of its voxel was taken,
-// or it is still to be sent.
+// For each posted point, a message with a point of its voxel was delivered, or the point is still to be
+// sent.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace {
 
 using Cell = std::tuple<int, int, int>;
 
-/// A few robots whose clouds overlap go out two at a time, to a Command Post that takes only some of them.
+/// Robots with overlapping clouds, sent two at a time to a Command Post that accepts only some of them.
 class Course {
  public:
   explicit Course(std::uint64_t seed) : random_{seed}, layout_{kLayouts[seed % 6]} {}
@@ -82,7 +82,7 @@ class Course {
     taken_.add(first.message.robot, kMetres, first.rest.voxels);
     read(first);
   }
-  /// As the Command Post does: its points are some of those that were posted, in their order.
+  /// As at the Command Post: the points are a subset of the posted ones, in order.
   void read(const UnderWay& message) {
     const Bytes came = message.rest.data.bytes.to_vector(), &points = message.message.points;
     std::size_t at = 0;
@@ -92,14 +92,14 @@ class Course {
       there_[message.message.robot].insert(message.message.cells[i]);
       at += layout_.step;
     }
-    EXPECT_EQ(at, came.size()) << "points that nobody posted";
+    EXPECT_EQ(at, came.size()) << "points that were not posted";
     EXPECT_EQ(came.size(), points.size() - message.rest.left_out * layout_.step);
   }
 
   static constexpr double kMetres = 0.25;
   std::mt19937_64 random_;
   const Layout& layout_;
-  TakenVoxels taken_{48 << 10};  // so few that some are forgotten
+  TakenVoxels taken_{48 << 10};  // so small that some voxels are forgotten
   std::deque<Message> waiting_;
   std::deque<UnderWay> under_way_;
   std::map<icd::RobotName, std::set<Cell>> posted_, there_;

@@ -17,7 +17,7 @@ namespace {
 constexpr double kEdge = 0.5;
 const icd::RobotName kR1 = *icd::RobotName::parse("r1"), kR2 = *icd::RobotName::parse("r2");
 
-/// A row of points along x, each with a tag of its own.
+/// A row of points along x, each with its own tag.
 Bytes row_of(const Layout& layout, std::initializer_list<double> xs) {
   Bytes bytes;
   std::uint8_t tag = 0;
@@ -58,7 +58,7 @@ TEST_F(TakenVoxelsTest, OmitsPointsOfDeliveredVoxels) {
 
 TEST_F(TakenVoxelsTest, KeepsPointsOfUndeliveredVoxels) {
   EXPECT_EQ(rest({0.1, 0.6, 1.1}).left_out, 0u);
-  EXPECT_EQ(rest({0.1}).left_out, 0u) << "that was packed, but nobody said that it was taken";
+  EXPECT_EQ(rest({0.1}).left_out, 0u) << "the cloud was packed, but its delivery is unknown";
 }
 
 TEST_F(TakenVoxelsTest, KeepsTheFirstOfEachVoxelOfACloud) {
@@ -87,7 +87,7 @@ TEST_F(TakenVoxelsTest, ArePerRobotAndEdge) {
   EXPECT_EQ(rest({0.1}, kR1, 0.25).left_out, 0u);
   take({7}, kR1, 0.25);
   EXPECT_EQ(rest({7}, kR1, 0.25).left_out, 1u);
-  EXPECT_EQ(rest({0.1}).left_out, 0u) << "those of the other edge are forgotten";
+  EXPECT_EQ(rest({0.1}).left_out, 0u) << "voxels at the other edge are forgotten";
 }
 
 TEST_F(TakenVoxelsTest, KeepsPointsOutsideAllVoxels) {
@@ -161,7 +161,7 @@ TEST(VoxelSet, PredictsItsSizeAndGrowsByHalf) {
   EXPECT_EQ(set.bytes(), bytes) << "another voxel of a block";
 }
 
-// In which voxel a point lies, whatever its bytes are.
+// The voxel of a point, whatever its bytes.
 
 VoxelBlock voxel(const Layout& layout, double x, double y, double z, double edge = 0.5) {
   return Voxels(cloud_of(layout), edge).of(point_of(layout, x, y, z, 0));

@@ -9,7 +9,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// What somebody who counts flashes writes down: a digit for each group of short ones, a dot for a long one.
+/// The digits that a user counts: one for each group of short flashes, a dot for a long flash.
 std::string counted(const std::vector<Step>& steps) {
   std::string text;
   int flashes = 0;

@@ -15,12 +15,12 @@ using Presses = std::vector<Press>;
 
 constexpr milliseconds kEver{1'000'000};
 
-/// A button whose loop is never late: it is called at each change and whenever it is due.
+/// A button whose loop is never late: it is called at each change and at each deadline.
 class HeldButton : public testing::Test {
  protected:
   explicit HeldButton(bool pressed = false) : button(pressed, Instant{}) {}
 
-  /// Lets time pass up to `at`.
+  /// Advances time to `at`.
   void until(milliseconds at) {
     while (button.next() && *button.next() <= Instant(at)) take(button.advance(*button.next()));
   }
@@ -29,10 +29,10 @@ class HeldButton : public testing::Test {
     take(button.level(pressed, Instant(at)));
     take(button.advance(Instant(at)));
   }
-  void take(std::optional<Press> came) {
-    if (came) presses.push_back(*came);
+  void take(std::optional<Press> press) {
+    if (press) presses.push_back(*press);
   }
-  /// What comes of a press of that length.
+  /// The result of a press of that length.
   static Presses of(milliseconds length) {
     HeldButton held;
     held.level(true, 1s);
@@ -122,14 +122,14 @@ TEST_F(HeldButton, ResetsOnce) {
   level(true, 1s);
   until(kEver);
   EXPECT_EQ(presses, Presses{Press::Reset});
-  EXPECT_EQ(button.next(), std::nullopt) << "it sleeps until it is let go";
+  EXPECT_EQ(button.next(), std::nullopt) << "no deadline until the release";
   level(false, kEver);
   until(2 * kEver);
   EXPECT_EQ(presses.size(), 1u);
   level(true, 3 * kEver);
   level(false, 3 * kEver + 100ms);
   until(4 * kEver);
-  EXPECT_EQ(presses.back(), Press::Identify) << "and is a button again";
+  EXPECT_EQ(presses.back(), Press::Identify) << "the button works again";
 }
 
 class StuckButton : public HeldButton {
@@ -158,13 +158,13 @@ TEST_F(StuckButton, StaysStuckAfterABounce) {
   EXPECT_EQ(button.phase(), Phase::Ignored);
 }
 
-// A loop that is late.
+// The loop is late.
 
 TEST(LateButton, DoesNotResetByALateRelease) {
   Button button(false, Instant{});
   button.level(true, Instant(1s));
   button.advance(Instant(1s + 30ms));
-  EXPECT_EQ(button.level(false, Instant(15s)), std::nullopt) << "let go at some time since";
+  EXPECT_EQ(button.level(false, Instant(15s)), std::nullopt) << "the time of the release is unknown";
   EXPECT_EQ(button.advance(Instant(15s)), std::nullopt);
   EXPECT_EQ(button.advance(Instant(15s + 30ms)), std::nullopt);
   EXPECT_EQ(button.phase(), Phase::Idle);

@@ -1,4 +1,4 @@
-// The lights on the card to print (board/card.html), as the table of the states has them.
+// The lights on the printable card (board/card.html) match the table of states.
 #include <gtest/gtest.h>
 
 #include "panel/project_text.hpp"
@@ -7,19 +7,19 @@
 namespace adit::panel {
 namespace {
 
-/// "`adit status`" as HTML has it.
+/// "`adit status`" as HTML.
 std::string html(std::string_view text) {
-  std::string said;
+  std::string converted;
   bool code = false;
   for (const char each : text) {
     if (each != '`') {
-      said += each;
+      converted += each;
       continue;
     }
     code = !code;
-    said += code ? "<code>" : "</code>";
+    converted += code ? "<code>" : "</code>";
   }
-  return said;
+  return converted;
 }
 
 std::string states() {
@@ -39,7 +39,7 @@ std::string states() {
   return table;
 }
 
-/// When it is lit within two seconds, a pixel for each 20 ms.
+/// The light over two seconds, one pixel per 20 ms.
 std::string strip(Pattern pattern) {
   std::string svg = "<svg viewBox=\"0 0 100 8\" preserveAspectRatio=\"none\"><path d=\"";
   const Milliseconds end = std::chrono::seconds(2);
@@ -56,7 +56,7 @@ std::string strip(Pattern pattern) {
   return svg + "\"/></svg>";
 }
 
-/// What one sees, in the README's words.
+/// The visible pattern, in the README's words.
 std::string seen(Pattern pattern) {
   const std::string text = text_of("firmware/doors/panel/README.md"),
                     head = "\n| " + std::string(name_of(pattern)) + " | ";

@@ -1,4 +1,4 @@
-// The search for lines and chips, which libgpiod 2 leaves to its user.
+// The search for lines and chips, which libgpiod 2 does not offer.
 #include <gtest/gtest.h>
 
 #include <cerrno>

@@ -7,8 +7,8 @@
 
 namespace adit::panel {
 
-/// The picture of the README: when a light of each pattern is lit, over four seconds. The digits' row is the
-/// beginning of an address.
+/// The README's picture: the light of each pattern over four seconds. The row of digits shows the beginning
+/// of an address.
 inline std::string drawing() {
   constexpr int kLeft = 70, kTop = 26, kRow = 30, kHigh = 16, kSecond = 160, kSeconds = 4;
   const auto text = [](int x, int y, const std::string& words, const char* anchor) {

@@ -1,4 +1,4 @@
-// The functions of libgpiod 1 that the panel calls; the program's own definitions win over the library's.
+// The functions of libgpiod 1 that the panel calls. The program's definitions replace the library's.
 #include <gpiod.h>
 
 #include <cerrno>

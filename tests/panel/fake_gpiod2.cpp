@@ -1,5 +1,5 @@
-// The functions of libgpiod 2 that the panel calls, and glob(3) for the chips of the fake; the program's own
-// definitions win over the library's.
+// The functions of libgpiod 2 that the panel calls, and glob(3) for the fake's chips. The program's
+// definitions replace the library's.
 #include <glob.h>
 #include <gpiod.h>
 
@@ -161,7 +161,7 @@ gpiod_line_request* gpiod_chip_request_lines(gpiod_chip* chip, gpiod_request_con
   FakeLine as = lines->settings.line;
   as.consumer = config->consumer;
   if (as.output ==
-      (lines->settings.edges == GPIOD_LINE_EDGE_BOTH)) {  // the button needs edges, an output has none
+      (lines->settings.edges == GPIOD_LINE_EDGE_BOTH)) {  // a button needs edges, an output has none
     invalid();
     return nullptr;
   }

@@ -8,7 +8,7 @@ namespace {
 
 using testing::StartsWith;
 
-// By the real libgpiod.
+// Uses the real libgpiod.
 
 settings::Panel panel_at(const std::string& chip) {
   settings::Panel settings;

@@ -89,7 +89,7 @@ TEST_F(Gpio, DrivesActiveLowLines) {
   settings_.active_low = true;
   const auto lines = open();
   ASSERT_TRUE(lines.has_value()) << lines.error();
-  EXPECT_TRUE(level("HEALTH")) << "dark at first";
+  EXPECT_TRUE(level("HEALTH")) << "the light is off at first";
   ASSERT_TRUE((*lines)->set({true, false, false, false}).has_value());
   EXPECT_FALSE(level("HEALTH"));
   EXPECT_TRUE(level("SCORING"));
@@ -158,7 +158,7 @@ TEST_F(Gpio, NamesALineInUse) {
   const auto lines = open();
   ASSERT_FALSE(lines.has_value());
   EXPECT_EQ(lines.error(), "panel: line ATTENTION (attention) of chip gpiochip1: Device or resource busy");
-  EXPECT_TRUE(line("ATTENTION").requested) << "what is another's is left alone";
+  EXPECT_TRUE(line("ATTENTION").requested) << "another program's line must stay requested";
 }
 
 TEST_F(Gpio, SetsTheOtherLightsIfOneFails) {
@@ -181,7 +181,7 @@ TEST_F(Gpio, ReadsTheButtonByItsLevelNotItsEdges) {
   fake_gpio().drive("BUTTON", false);
   line("BUTTON").events = 40;  // it bounced
   EXPECT_TRUE((*button)->pressed().value());
-  EXPECT_EQ(line("BUTTON").events, 0) << "or its descriptor would stay readable";
+  EXPECT_EQ(line("BUTTON").events, 0) << "remaining events keep the descriptor readable";
   fake_gpio().drive("BUTTON", true);
   EXPECT_FALSE((*button)->pressed().value());
 }

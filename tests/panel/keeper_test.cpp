@@ -1,4 +1,4 @@
-// adit-panel's part and aditd's, over their socket, on one loop.
+// adit-panel and aditd, connected by their socket, on one loop.
 #include "panel/keeper.hpp"
 
 #include <gmock/gmock.h>
@@ -42,7 +42,7 @@ class KeeperTest : public testing::Test {
                             return Held{std::make_unique<WatchedLines>(seen_),
                                         std::make_unique<WireLine>(wire_)};
                           },
-                      .complain = [this](const std::string& sentence) { said_.push_back(sentence); }});
+                      .complain = [this](const std::string& sentence) { log_.push_back(sentence); }});
   }
   Held connect() {
     auto held = remote(socket(), {});
@@ -51,14 +51,14 @@ class KeeperTest : public testing::Test {
     loop_.turn(10ms);
     return std::move(*held);
   }
-  /// The wire changes, and its user sees it.
+  /// Changes the wire, and lets the user read it.
   void set(bool pressed) {
     const int looked = wire_.looked;
     wire_.set(pressed);
     EXPECT_TRUE(time_.pass_until(loop_, [&] { return wire_.looked > looked; }));
   }
-  long said(std::string_view part) const {
-    return std::ranges::count_if(said_, [&](const std::string& each) { return each.contains(part); });
+  long log_count(std::string_view part) const {
+    return std::ranges::count_if(log_, [&](const std::string& each) { return each.contains(part); });
   }
 
   std::filesystem::path folder_;
@@ -66,7 +66,7 @@ class KeeperTest : public testing::Test {
   loop::Loop loop_;
   WatchedLines::Seen seen_;
   Wire wire_;
-  std::vector<std::string> said_;
+  std::vector<std::string> log_;
   std::optional<Keeper> keeper_;
 };
 
@@ -86,8 +86,8 @@ TEST_F(KeeperTest, ReportsFailureAndRecoveryOfTheLights) {
   EXPECT_EQ(set.error(), "gpiochip0: gone");
   seen_.fail = false;
   EXPECT_TRUE(is_told(true));
-  EXPECT_EQ(said("cannot set the lights"), 1);
-  EXPECT_EQ(said("the lights work again"), 1);
+  EXPECT_EQ(log_count("cannot set the lights"), 1);
+  EXPECT_EQ(log_count("the lights work again"), 1);
 }
 
 TEST_F(KeeperTest, ReportsAPress) {
@@ -109,10 +109,10 @@ TEST_F(KeeperTest, LostButtonCancelsAPress) {
   set(false);
   wire_.broken = false;
   set(false);
-  EXPECT_FALSE(held.button->pressed().has_value()) << "and is no release, however late he looks";
+  EXPECT_FALSE(held.button->pressed().has_value()) << "a lost button is not a release";
   EXPECT_EQ(held.button->pressed(), false);
-  EXPECT_EQ(said("cannot read the button"), 1);
-  EXPECT_EQ(said("button works again"), 1);
+  EXPECT_EQ(log_count("cannot read the button"), 1);
+  EXPECT_EQ(log_count("button works again"), 1);
 }
 
 TEST_F(KeeperTest, SilentlyLostButtonIsNoticedAtTheNextBeat) {
@@ -153,7 +153,7 @@ TEST_F(KeeperTest, EndOfAditPanelCancelsAPress) {
   set(true);
   EXPECT_EQ(held.button->pressed(), true);
   keeper_.reset();
-  EXPECT_TRUE(held.lines->set(kTold).has_value()) << "it may come back";
+  EXPECT_TRUE(held.lines->set(kTold).has_value()) << "the lines may come back";
   wire_.pressed = false;
   begin();
   EXPECT_TRUE(held.lines->set(kTold).has_value());

@@ -47,7 +47,7 @@ TEST(Messages, CarryASimulatedPanel) {
   EXPECT_TRUE(std::get<LinesRequest>(*parsed).panel.is_simulated());
 }
 
-/// The longest that the settings allow: a chip of 255 characters would be cut.
+/// The longest message that the settings allow. A chip name of 255 characters would be cut.
 TEST(Messages, StayWithinTheirLimit) {
   settings::Panel panel;
   panel.chip = std::string(255, 'c');

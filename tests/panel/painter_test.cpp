@@ -14,7 +14,7 @@ constexpr Lit kWell{true, true, true, false}, kOther{true, false, false, true};
 class PainterTest : public testing::Test {
  protected:
   PainterTest() { painter_.take(std::make_unique<WatchedLines>(seen_)); }
-  /// What was set in so long, during which the same is shown over and over.
+  /// The levels that were set in `length` while the same lights are shown.
   std::vector<Lit> shown_for(Milliseconds length, const Lit& lit) {
     seen_.shown.clear();
     for (const Instant end = now_ + length; now_ < end; now_ += 50ms) painter_.show(lit, now_);
@@ -56,7 +56,7 @@ TEST_F(PainterTest, StaysInTroubleUntilItWorksForAWhile) {
   shown_for(100ms, kOther);
   seen_.fail = false;
   shown_for(Painter::kMended, kWell);
-  EXPECT_EQ(painter_.trouble(), "gpiochip0: gone") << "a loose contact";
+  EXPECT_EQ(painter_.trouble(), "gpiochip0: gone") << "a loose contact is an error";
   shown_for(Painter::kConfirm + Painter::kAgain, kWell);
   EXPECT_EQ(painter_.trouble(), "");
 }

@@ -10,7 +10,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// How long a pattern is lit in two seconds, and how often it is turned on in them.
+/// How long a pattern is on in two seconds, and how often it turns on.
 std::pair<Milliseconds, int> lit_and_turns(Pattern pattern) {
   Milliseconds lit{};
   int turned_on = 0;
@@ -61,7 +61,7 @@ TEST(Steps, TellWhenTheNextBegins) {
   EXPECT_EQ(once(kSteps, 399ms).lasts, 1ms);
   EXPECT_EQ(once(kSteps, 400ms).lasts, std::nullopt);
   EXPECT_FALSE(once(kSteps, 400ms).lit);
-  EXPECT_EQ(repeated(steps_of(Pattern::On), 5s).lasts, std::nullopt) << "nobody has to be woken for it";
+  EXPECT_EQ(repeated(steps_of(Pattern::On), 5s).lasts, std::nullopt) << "a steady light has no next step";
 }
 
 TEST(Frame, LastsUntilItsFirstLightChanges) {

@@ -6,7 +6,7 @@
 
 namespace adit::panel {
 
-/// A file of the project.
+/// The text of a file of the project.
 inline std::string text_of(const std::string& path) {
   std::ifstream stream(ADIT_SOURCE_DIR "/" + path);
   return {std::istreambuf_iterator<char>(stream), {}};

@@ -1,4 +1,4 @@
-// What is lost and opened again, of a libgpiod of the test's own.
+// Lost lines and chips are opened again, with the test's own libgpiod.
 #include "panel/reopened.hpp"
 
 #include <gmock/gmock.h>
@@ -34,7 +34,7 @@ class ReopenedChip : public testing::Test {
     come();
   }
   static FakeLine& line(const std::string& name) { return fake_gpio().line(name); }
-  /// The chip, whose lines go or come back with it. Whoever has one keeps what is none any more.
+  /// Removes the chip and its lines. An open handle becomes invalid.
   static void vanish() {
     fake_gpio().chips[kChip].name = "";
     for (auto& [name, line] : fake_gpio().chips[kChip].lines) line.fails_with = ENODEV;
@@ -60,7 +60,7 @@ class ReopenedChip : public testing::Test {
         },
         [this] { return std::make_unique<WatchedLines>(stand_in_); }, [this] { return now_; });
   }
-  /// What comes of setting them each half second.
+  /// The result of setting the lines each half second.
   std::string set_for(Lines& lines, std::chrono::milliseconds length) {
     std::expected<void, std::string> done;
     for (const Instant end = now_ + length; now_ < end; now_ += 500ms) done = lines.set(kWell);
@@ -75,7 +75,7 @@ class ReopenedChip : public testing::Test {
     pollfd wanted{.fd = button.descriptor(), .events = POLLIN, .revents = 0};
     return poll(&wanted, 1, 30'000) == 1;
   }
-  /// By what makes it readable alone, as its user asks it.
+  /// Reads the button only when its descriptor is readable, as its user does.
   static std::expected<bool, std::string> look(ButtonLine& button) {
     EXPECT_TRUE(is_readable_soon(button));
     return button.pressed();
@@ -154,7 +154,7 @@ TEST_F(ReopenedChip, BrieflyLostButtonCountsAsLost) {
   line("BUTTON").fails_with = EIO;
   EXPECT_FALSE(held->pressed().has_value());
   line("BUTTON").fails_with = 0;
-  EXPECT_FALSE(held->pressed().has_value()) << "not before the next time";
+  EXPECT_FALSE(held->pressed().has_value()) << "the button is opened again too early";
   EXPECT_EQ(look(*held), true);
 }
 

@@ -43,7 +43,7 @@ TEST_F(SimulatedButtonTest, IsPressedAndReleasedByTextLines) {
   write("press\n");
   EXPECT_TRUE(is_readable(**button));
   EXPECT_TRUE((*button)->pressed().value());
-  EXPECT_FALSE(is_readable(**button)) << "also when the writer has gone";
+  EXPECT_FALSE(is_readable(**button)) << "not readable after the writer closed";
   EXPECT_TRUE((*button)->pressed().value());
   write("rel");
   EXPECT_TRUE((*button)->pressed().value());

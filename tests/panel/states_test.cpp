@@ -12,7 +12,7 @@ namespace {
 constexpr auto kOff = Pattern::Off, kOn = Pattern::On, kSlow = Pattern::Slow, kFast = Pattern::Fast,
                kFlash = Pattern::Flash, kWink = Pattern::Wink;
 
-constexpr std::initializer_list<State> kWellStates = {State::Serving, State::ScoringConnected,
+constexpr std::initializer_list<State> kGoodStates = {State::Serving, State::ScoringConnected,
                                                       State::MappingConnected};
 
 Lights shown(std::initializer_list<State> asserted) {
@@ -21,10 +21,10 @@ Lights shown(std::initializer_list<State> asserted) {
   return states.shown();
 }
 
-/// All is well but for these.
-Lights well_but(std::initializer_list<State> more) {
+/// All lights are good except for `more`.
+Lights good_except(std::initializer_list<State> more) {
   States states;
-  for (const State state : kWellStates) states.set(state, true);
+  for (const State state : kGoodStates) states.set(state, true);
   for (const State state : more) states.set(state, true);
   return states.shown();
 }
@@ -34,29 +34,29 @@ Lights all(Pattern pattern) {
 }
 
 TEST(States, OfAHealthyBoxAreThreeSteadyLights) {
-  EXPECT_EQ(shown(kWellStates), (Lights{kOn, kOn, kOn, kOff}));
+  EXPECT_EQ(shown(kGoodStates), (Lights{kOn, kOn, kOn, kOff}));
 }
 
 TEST(States, AreShownEachOnItsOwnLight) {
   EXPECT_EQ(shown({}), all(kOff));
   EXPECT_EQ(shown({State::NotServing}), (Lights{kFast, kOff, kOff, kOff}));
-  EXPECT_EQ(well_but({State::ScoringFailing}), (Lights{kOn, kFast, kOn, kOff}));
-  EXPECT_EQ(well_but({State::MappingFailing}), (Lights{kOn, kOn, kFast, kOff}));
-  EXPECT_EQ(well_but({State::ReportWaiting}), (Lights{kOn, kSlow, kOn, kOff}));
-  EXPECT_EQ(well_but({State::NeedsOperator}), (Lights{kOn, kOn, kOn, kFast}));
-  EXPECT_EQ(well_but({State::CommandPostUnplugged}), (Lights{kOn, kFlash, kFlash, kOff}));
-  EXPECT_EQ(well_but({State::TeamUnplugged}), (Lights{kFlash, kOn, kOn, kOff}));
-  EXPECT_EQ(well_but({State::UpdateRunning}), (Lights{kWink, kOn, kOn, kOff}));
-  EXPECT_EQ(well_but({State::SetUpOpen}), (Lights{kOn, kOn, kOn, kSlow}));
+  EXPECT_EQ(good_except({State::ScoringFailing}), (Lights{kOn, kFast, kOn, kOff}));
+  EXPECT_EQ(good_except({State::MappingFailing}), (Lights{kOn, kOn, kFast, kOff}));
+  EXPECT_EQ(good_except({State::ReportWaiting}), (Lights{kOn, kSlow, kOn, kOff}));
+  EXPECT_EQ(good_except({State::NeedsOperator}), (Lights{kOn, kOn, kOn, kFast}));
+  EXPECT_EQ(good_except({State::CommandPostUnplugged}), (Lights{kOn, kFlash, kFlash, kOff}));
+  EXPECT_EQ(good_except({State::TeamUnplugged}), (Lights{kFlash, kOn, kOn, kOff}));
+  EXPECT_EQ(good_except({State::UpdateRunning}), (Lights{kWink, kOn, kOn, kOff}));
+  EXPECT_EQ(good_except({State::SetUpOpen}), (Lights{kOn, kOn, kOn, kSlow}));
 }
 
 TEST(States, OfHigherPriorityHideOthersOnlyOnTheirLights) {
-  EXPECT_EQ(well_but({State::ScoringFailing, State::ReportWaiting}), (Lights{kOn, kFast, kOn, kOff}));
-  EXPECT_EQ(well_but({State::CommandPostUnplugged, State::ScoringFailing, State::MappingFailing}),
+  EXPECT_EQ(good_except({State::ScoringFailing, State::ReportWaiting}), (Lights{kOn, kFast, kOn, kOff}));
+  EXPECT_EQ(good_except({State::CommandPostUnplugged, State::ScoringFailing, State::MappingFailing}),
             (Lights{kOn, kFlash, kFlash, kOff}))
-      << "why they fail";
-  EXPECT_EQ(shown({State::ReportWaiting}), (Lights{kOff, kSlow, kOff, kOff})) << "also unconnected";
-  EXPECT_EQ(well_but({State::NeedsOperator, State::SetUpOpen}), (Lights{kOn, kOn, kOn, kSlow}));
+      << "the reason of the failure";
+  EXPECT_EQ(shown({State::ReportWaiting}), (Lights{kOff, kSlow, kOff, kOff})) << "also without a connection";
+  EXPECT_EQ(good_except({State::NeedsOperator, State::SetUpOpen}), (Lights{kOn, kOn, kOn, kSlow}));
   EXPECT_EQ(shown({State::NotServing, State::TeamUnplugged}), (Lights{kFlash, kOff, kOff, kOff}));
 }
 
@@ -77,7 +77,7 @@ TEST(States, OfWholePicturesHideAllOthers) {
 TEST(States, AreGoneOnceCleared) {
   States states;
   EXPECT_TRUE(states.set(State::NeedsOperator, true));
-  EXPECT_FALSE(states.set(State::NeedsOperator, true)) << "nothing new";
+  EXPECT_FALSE(states.set(State::NeedsOperator, true)) << "the state did not change";
   EXPECT_TRUE(states.has(State::NeedsOperator));
   EXPECT_TRUE(states.set(State::NeedsOperator, false));
   EXPECT_EQ(states.shown(), all(kOff));
@@ -97,7 +97,7 @@ TEST(StateTable, HasDistinctRows) {
   }
 }
 
-/// Of the states that leave the other lights alone, no two show the same on a light.
+/// States that leave the other lights unchanged differ in their pattern on a light.
 TEST(StateTable, HasOneMeaningPerPatternOfALight) {
   for (const Light light : kLights) {
     std::set<Pattern> seen;

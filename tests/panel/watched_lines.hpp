@@ -8,7 +8,7 @@
 
 namespace adit::panel {
 
-/// Lines that remember what they were told to show, and fail when asked to.
+/// Lines that record their lights, and fail if the test says so.
 class WatchedLines final : public Lines {
  public:
   struct Seen {

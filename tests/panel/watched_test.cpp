@@ -12,7 +12,7 @@ const Instant kItBegan = Instant() + 1h;
 
 class WatchedTest : public testing::Test {
  protected:
-  /// What is seen in the two seconds from then on: the fault is health that blinks, and nothing else.
+  /// Whether only health blinks in the two seconds from `from`, which shows the fault.
   bool blinks_fault(Instant from) const {
     int lit = 0;
     for (auto at = from; at < from + 2s; at += 100ms) {
@@ -29,7 +29,7 @@ class WatchedTest : public testing::Test {
 TEST_F(WatchedTest, IsDarkUntilTheFirstMessage) {
   EXPECT_EQ(watched.frame(kItBegan + 40s).lit, kNoneLit);
   watched.came(kItBegan + 40s);
-  EXPECT_EQ(watched.frame(kItBegan + 80s).lit, kNoneLit) << "counted from when it came";
+  EXPECT_EQ(watched.frame(kItBegan + 80s).lit, kNoneLit) << "counted from the start of aditd";
   watched.lights(kAllWell, kItBegan + 81s);
   EXPECT_EQ(watched.frame(kItBegan + 81s).lit, kAllWell);
 }
@@ -60,7 +60,7 @@ TEST_F(WatchedTest, ShowsACrashUntilTheNextProcessReports) {
   watched.gone(kItBegan + 100ms);
   EXPECT_TRUE(blinks_fault(kItBegan + 100ms));
   watched.came(kItBegan + 2s);
-  EXPECT_TRUE(watched.is_faulty(kItBegan + 2s)) << "it may die before it tells";
+  EXPECT_TRUE(watched.is_faulty(kItBegan + 2s)) << "aditd may die before its first message";
   watched.gone(kItBegan + 3s);
   EXPECT_TRUE(watched.is_faulty(kItBegan + 10min));
   watched.lights(kAllWell, kItBegan + 11min);
@@ -72,10 +72,10 @@ TEST_F(WatchedTest, IsDarkAfterAnAnnouncedEnd) {
   watched.ends(kItBegan + 1s);
   watched.gone(kItBegan + 1s);
   EXPECT_EQ(watched.frame(kItBegan + 1s).lit, kNoneLit);
-  EXPECT_FALSE(watched.is_faulty(kItBegan + 24h)) << "it was stopped";
+  EXPECT_FALSE(watched.is_faulty(kItBegan + 24h)) << "aditd was stopped";
   watched.came(kItBegan + 24h);
   EXPECT_EQ(watched.frame(kItBegan + 24h).lit, kNoneLit);
-  EXPECT_TRUE(watched.is_faulty(kItBegan + 24h + Watched::kStart)) << "it came, and never told anything";
+  EXPECT_TRUE(watched.is_faulty(kItBegan + 24h + Watched::kStart)) << "aditd started without a message";
 }
 
 TEST_F(WatchedTest, ShowsACrashBeforeTheFirstMessage) {

@@ -10,7 +10,7 @@
 
 namespace adit::panel {
 
-/// A wire that a test presses.
+/// A wire whose button a test presses.
 struct Wire {
   loop::FileDescriptor changed{eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)};
   bool pressed = false, broken = false;

@@ -19,7 +19,7 @@ icd::MapUpdate of(const std::string& robot, icd::MapUpdate map) {
   return map;
 }
 
-/// A square of free cells of 0.25 m: one cell is one pixel.
+/// A square of free 0.25 m cells. One cell is one pixel.
 icd::MapUpdate square(const std::string& robot, double x, double y, std::uint32_t side) {
   return of(robot, grid_at(x, y, side, 0.25, Cells(std::size_t{side} * side, 0)));
 }
@@ -40,7 +40,7 @@ TEST(CoveredArea, CountsKnownCellsOnly) {
   EXPECT_EQ(seen.version, easel.mosaic.version());
 }
 
-/// 8 x 8 and 8 x 8 cells with 4 x 8 in common, across the border of two tiles.
+/// Two squares of 8 x 8 cells with 4 x 8 in common, across the border of two tiles.
 TEST(CoveredArea, CountsAPlaceOfTwoRobotsOnce) {
   Easel easel;
   easel.draw(square("ugv1", 63, 0, 8));
@@ -89,7 +89,7 @@ TEST(CoveredArea, CountsChangedPlacesOnly) {
   EXPECT_THAT(area.changes(easel.mosaic).places, ElementsAre(Pair(TileIndex{0, 0, 0}, testing::SizeIs(1))));
 }
 
-/// Against a set of pixels, whatever the robots map and whenever the area is counted.
+/// Compares with a set of pixels, for any maps and any times of counting.
 TEST(CoveredArea, IsTheUnionOfAllSquares) {
   std::mt19937 random{7};
   const auto below = [&](unsigned most) { return random() % most; };

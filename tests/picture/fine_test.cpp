@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kTwentieth = 0.05;
 
-/// Maps as MapPicture draws and keeps them, and their finer tiles.
+/// Maps drawn and stored as by MapPicture, and their finer tiles.
 class FineLevels : public testing::Test {
  protected:
   void forward(const icd::MapUpdate& map) {
@@ -27,7 +27,7 @@ class FineLevels : public testing::Test {
     }
     return drawn_[place_in_block(at)];
   }
-  /// The index at a pixel of a finer level; -1: there is no finer tile.
+  /// The index of a pixel of a finer level; -1: no finer tile.
   int pixel(int level, int x, int y) {
     const TileIndex at{level, x >> 8, y >> 8};
     if (at != looked_at_ || looked_number_ != number) {
@@ -48,7 +48,7 @@ class FineLevels : public testing::Test {
 
  private:
   Packer packer_;
-  FineBlock drawn_;  // the last one, of...
+  FineBlock drawn_;  // the last one
   TileIndex drawn_over_{1, 0, 0}, looked_at_{1, 0, 0};
   std::uint64_t drawn_number_ = 0, looked_number_ = 0;
   Tile looked_;
@@ -61,7 +61,7 @@ TEST_F(FineLevels, EachFiveCentimetreCellIsAPixel) {
   Cells cells(std::size_t{kWidth} * kWidth);
   for (auto& cell : cells) cell = random() % 3 == 0 ? kUnknown : static_cast<std::uint8_t>(random() % 101);
   forward(gzipped(grid_at(3.35, 2.6, kWidth, kTwentieth, cells)));
-  // A base pixel of which nothing is known is blank in the mosaic, too: no cell is filled by it.
+  // An unknown base pixel is blank in the mosaic too: no cell fills it.
   for (int y = 0; y < kWidth; y += 7) {
     for (int x = 0; x < kWidth; ++x) {
       const std::uint8_t cell = cells[static_cast<std::size_t>(y * kWidth + x)];
@@ -117,7 +117,7 @@ TEST_F(FineLevels, LaterGridReplacesItsKnownCells) {
   part[0] = kUnknown;
   forward(grid_at(2, 2, 40, kTwentieth, part));
   EXPECT_EQ(seen(3, 3), kFree);
-  EXPECT_EQ(seen(2.025, 2.025), kOccupied) << "what it does not know leaves";
+  EXPECT_EQ(seen(2.025, 2.025), kOccupied) << "unknown cells keep the older value";
   EXPECT_EQ(seen(1, 1), kOccupied);
 }
 
@@ -128,7 +128,7 @@ TEST_F(FineLevels, DiscardedGridsAreDrawnCoarsely) {
   part[0] = 0;
   forward(grid_at(0, 0, 100, kTwentieth, part));
   EXPECT_EQ(seen(0.025, 0.025), kFree);
-  EXPECT_EQ(seen(0.225, 0.225), 0) << "of that pixel of the base something finer is known";
+  EXPECT_EQ(seen(0.225, 0.225), 0) << "a finer value is known for that base pixel";
   EXPECT_EQ(seen(0.275, 0.275), kOccupied);
   EXPECT_EQ(seen(4.975, 4.975), kOccupied);
 }
@@ -145,12 +145,12 @@ TEST_F(FineLevels, HasAllCellsOfTheBase) {
   std::mt19937_64 random{22};
   const auto any = [&](int low, int high) { return std::uniform_int_distribution{low, high}(random); };
   for (int round = 0; round < 6; ++round) {
-    if (round == 3) grids.clear();  // from here on the base alone knows some
+    if (round == 3) grids.clear();  // from here on only the base knows some pixels
     const int side = any(1, 90);
     Cells cells(static_cast<std::size_t>(side * side));
     for (auto& cell : cells) cell = any(0, 2) == 0 ? kUnknown : static_cast<std::uint8_t>(any(0, 1) * 100);
     forward(grid_at(any(0, 20), any(0, 20), static_cast<std::uint32_t>(side), 0.05 * any(1, 4), cells));
-    // Where the base knows something, so does a pixel of the finer level.
+    // If the base knows a pixel, the finer level does too.
     for (int i = 0; i < 150; ++i) {
       const int x = any(0, 159), y = any(0, 159);
       int highest = -1;

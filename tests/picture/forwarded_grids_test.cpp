@@ -35,7 +35,7 @@ class ForwardedGridsTest : public testing::Test {
 TEST_F(ForwardedGridsTest, ReplaceGridsInsideThem) {
   take(square(0, 0, 20));
   take(square(-0.52, -0.51, 40));
-  EXPECT_EQ(kept(), 1U) << "though not on the same lattice";
+  EXPECT_EQ(kept(), 1U) << "although on another lattice";
   take(square(0.3, 0.3, 20));
   EXPECT_EQ(kept(), 2U);
   const auto both = grids.in(layer, kNear);
@@ -81,7 +81,7 @@ TEST_F(ForwardedGridsTest, CoarseGridsAreNotKeptAlone) {
   EXPECT_FALSE(take(square(0, 0, 20, 0.25)));
   EXPECT_EQ(grids.bytes(), 0U);
   take(square(0, 0, 20, 0.1));
-  EXPECT_TRUE(take(square(0.5, 0, 20, 0.25))) << "it lies over the other";
+  EXPECT_TRUE(take(square(0.5, 0, 20, 0.25))) << "the grid covers the other one";
   EXPECT_EQ(kept(), 2U);
   EXPECT_EQ(forwarded_grid(cloud_of({{0, 0, 0}})), nullptr);
 }
@@ -92,7 +92,7 @@ TEST_F(ForwardedGridsTest, DroppedGridRemovesOlderOnesInItsPlace) {
   for (auto& cell : noise) cell = static_cast<std::uint8_t>(random() % 101);
   const auto large = grid_at(0, 0, 2400, 0.05, noise);
   for (const auto& map : {large, gzipped(large), square(0, 0, 20, 1)}) {
-    EXPECT_FALSE(take(map)) << "there was nothing finer";
+    EXPECT_FALSE(take(map)) << "no finer cells existed";
     take(square(0, 0, 20));
     EXPECT_TRUE(take(map));
     EXPECT_FALSE(grids.finer(layer, 0));
@@ -120,7 +120,7 @@ TEST_F(ForwardedGridsTest, StayWithinTheBudgetAndDropTheOldest) {
 TEST_F(ForwardedGridsTest, LimitTheCellsReadForABlock) {
   for (int i = 0; i < 6; ++i) {
     ForwardedGrid grid = *forwarded_grid(square(-0.3 * i, 0, 20));
-    grid.data.raw_size = ForwardedGrids::kMostCells / 4;  // as if it had so many
+    grid.data.raw_size = ForwardedGrids::kMostCells / 4;  // as if it had that many
     layer = grid.layer;
     grids.take(std::make_shared<const ForwardedGrid>(std::move(grid)), ++number);
   }
@@ -139,7 +139,7 @@ TEST_F(ForwardedGridsTest, ReleaseTheBufferOfTheirMessage) {
   const auto grid = forwarded_grid(map);
   map.data.bytes = {};
   released.reset();
-  EXPECT_TRUE(watch.expired()) << "the file that it came from is free";
+  EXPECT_TRUE(watch.expired()) << "the grid's file must be released";
   EXPECT_EQ(grid->data.bytes.to_vector(), bytes);
 }
 

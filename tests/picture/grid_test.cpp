@@ -71,11 +71,11 @@ TEST(Grid, RepeatedGridChangesNoTile) {
 
 TEST(Grid, GrowingGridDoesNotFlicker) {  // 0.1 m: centres lie on the borders of pixels of 0.25 m
   Easel easel;
-  const auto wall = [](int more) {  // the same wall at x = 5 in a grid that began `more` cells further left
+  const auto wall = [](int more) {  // the same wall at x = 5 in a grid that begins `more` cells further left
     Cells cells;
     const int width = 100 + more;
     for (int i = 0; i < 20 * width; ++i) cells.push_back(i % width == 50 + more ? 100 : 0);
-    // The origin as a sender has it: a float32, of a sum.
+    // The origin as a sender computes it: a float32 of a sum.
     return grid_at(static_cast<double>(static_cast<float>(-more * 0.1)), 0, static_cast<std::uint32_t>(width),
                    0.1, cells);
   };
@@ -89,7 +89,7 @@ TEST(Grid, GrowingGridDoesNotFlicker) {  // 0.1 m: centres lie on the borders of
   }
 }
 
-/// What a pixel is to show, straight from the rule.
+/// The expected pixel, directly from the rule.
 std::uint8_t expected(const icd::OccupancyGrid& grid, const Cells& cells, int px, int py) {
   const auto shown = [](double origin, double resolution, std::uint32_t count, int pixel) {
     std::vector<std::uint32_t> those;
@@ -118,7 +118,7 @@ TEST(Grid, PixelsShowCellsCentredInThemOrAtTheirCentre) {
       const int width = any(1, 60), height = any(1, 60);
       Cells cells(static_cast<std::size_t>(width * height));
       for (auto& cell : cells) cell = any(0, 3) == 0 ? static_cast<std::uint8_t>(any(0, 100)) : kUnknown;
-      // Off the pixels' borders, where the rule is not meant to be told from rounding.
+      // Not on the pixels' borders, where rounding decides.
       const auto map = grid_at(any(-9000, 9000) * 0.01 + 0.0023, any(-9000, 9000) * 0.01 + 0.0023,
                                static_cast<std::uint32_t>(width), resolution, cells);
       const auto& grid = std::get<icd::OccupancyGrid>(map.msg);

@@ -9,7 +9,7 @@ Tile tile(std::uint8_t what, std::size_t size = 100) {
   return std::make_shared<Packed>(Packed{std::vector<std::uint8_t>(size, what), what});
 }
 
-/// A version a second, of which `what` tells the second.
+/// One version per second, with the second in `what`.
 History over(int seconds, double spacing) {
   History history;
   for (int second = 0; second < seconds; ++second) {

@@ -27,7 +27,8 @@ TEST(HostileGrid, OfAnySizeAndPlaceIsLimitedInTiles) {
         const auto drawing = draw(map, {});
         ASSERT_TRUE(drawing);
         EXPECT_LE(base_tiles(*drawing), Sheet::kMostTiles);
-        EXPECT_LE(drawing->left_out, kMostDabs + 2 * kWorldPixels + cells.size()) << "or it takes long";
+        EXPECT_LE(drawing->left_out, kMostDabs + 2 * kWorldPixels + cells.size())
+            << "otherwise drawing takes too long";
         if (drawing->area) {
           EXPECT_GE(drawing->area->left, -kWorldMetres);
           EXPECT_LE(drawing->area->top, kWorldMetres);
@@ -42,7 +43,8 @@ TEST(HostileGrid, OfAnySizeAndPlaceIsLimitedInTiles) {
 TEST(HostileGrid, FarOutsideIsOmittedAndCounted) {
   EXPECT_EQ(draw(grid_at(1e9, 0, 10, 0.1, Cells(100, 0)), {})->left_out, 100U);
   EXPECT_EQ(draw(grid_at(0, -1e9, 10, 0.1, Cells(100, 100)), {})->left_out, 100U);
-  EXPECT_EQ(draw(grid_at(1e9, 0, 10, 0.1, Cells(100, kUnknown)), {})->left_out, 0U) << "nothing was known";
+  EXPECT_EQ(draw(grid_at(1e9, 0, 10, 0.1, Cells(100, kUnknown)), {})->left_out, 0U)
+      << "the grid has only unknown cells";
   const auto half = draw(grid_at(8190, 0, 40, 0.1, Cells(40, 0)), {});
   EXPECT_EQ(half->left_out, 20U);
   EXPECT_EQ(half->area, (Area{8190, 0, 8192, 0.25}));

@@ -5,10 +5,10 @@
 namespace adit::picture {
 namespace {
 
-/// A pixel of a coarser level is the highest of the sixteen that it stands for.
+/// A pixel of a coarser level is the highest of its sixteen pixels.
 class Levels : public testing::Test {
  protected:
-  /// All pixels of a layer's level that are not 0.
+  /// All non-zero pixels of a layer's level.
   std::map<std::pair<int, int>, int> known(int level) {
     std::map<std::pair<int, int>, int> pixels;
     for (const LayerView& layer : easel.mosaic.layers()) {

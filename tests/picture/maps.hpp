@@ -35,7 +35,7 @@ inline icd::MapUpdate gzipped(icd::MapUpdate map) {
   return map;
 }
 
-/// Its cells row by row from the lower left.
+/// Cells row by row from the lower left.
 inline icd::MapUpdate grid_of(std::uint32_t width, double resolution, icd::Pose origin, const Cells& cells) {
   icd::OccupancyGrid grid;
   grid.width = width;
@@ -62,12 +62,12 @@ inline icd::MapUpdate cloud_of(const std::vector<icd::Point>& points, std::optio
   return with_data({icd::RobotName::parse("ugv1"), cloud, {}}, bytes);
 }
 
-/// Draws one map after the other, one a second, and looks at what is there.
+/// Draws one map per second, and reads pixels.
 class Easel {
  public:
   explicit Easel(std::size_t budget = Mosaic::kBudget) : mosaic(budget) {}
 
-  /// Gives the drawing that was applied.
+  /// Returns the applied drawing.
   Drawing draw(const icd::MapUpdate& map) {
     auto drawing = picture::draw(map, mosaic.canvas(layer_of(map)));
     EXPECT_TRUE(drawing) << drawing.error().sentence;
@@ -83,7 +83,7 @@ class Easel {
     return pixels;
   }
 
-  /// The index at a pixel of a level, counted from the frame's origin.
+  /// The index of a pixel of a level, counted from the frame's origin.
   int pixel(int level, int x, int y, std::optional<double> stamp = {}) {
     const TileIndex at{level, x >> 8, y >> 8};
     if (!(at == looked_at_) || stamp != looked_when_ || mosaic.version() != looked_version_) {
@@ -92,7 +92,7 @@ class Easel {
     }
     return looked_[index_of(x & 255, y & 255)];
   }
-  /// At a place in metres.
+  /// The index at a place in metres.
   int seen(double x, double y, int level = 0, std::optional<double> stamp = {}) {
     const double scale = kMetresPerPixel[static_cast<std::size_t>(level)];
     return pixel(level, static_cast<int>(std::floor(x / scale)), static_cast<int>(std::floor(y / scale)),

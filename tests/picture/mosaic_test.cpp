@@ -15,7 +15,7 @@ icd::MapUpdate of(const char* robot, icd::MapUpdate map) {
   return map;
 }
 
-/// A square of 32 m of cells that compress badly: one tile of each level.
+/// A square of 32 m with cells that compress badly: one tile of each level.
 icd::MapUpdate noisy(unsigned seed, double x = 8) {
   std::mt19937 random{seed};
   Cells cells(std::size_t{128} * 128);
@@ -46,7 +46,7 @@ TEST(Mosaic, HasALayerForEachRobotAndKind) {
   EXPECT_FALSE(layers[1].heights);
   EXPECT_EQ(layers[1].tiles.size(), 3U) << "one of each level";
   easel.layer = {"ugv1", Kind::Grid};
-  EXPECT_EQ(easel.seen(5.1, 5.1), 0) << "what another robot saw";
+  EXPECT_EQ(easel.seen(5.1, 5.1), 0) << "another robot's cells";
 }
 
 TEST(Mosaic, ShowsAnEarlierTime) {
@@ -72,9 +72,10 @@ TEST(Mosaic, FollowsAClockStep) {
     easel.mosaic.move(step);
     easel.now += 1 + step;
     easel.draw(grid_at(0, 0, 1, 0.25, {0}));
-    EXPECT_EQ(easel.seen(0.1, 0.1, 0, 1e9 + 1 + step), kOccupied) << "as it was before, by the new time";
+    EXPECT_EQ(easel.seen(0.1, 0.1, 0, 1e9 + 1 + step), kOccupied)
+        << "the earlier picture at the shifted time";
     EXPECT_EQ(easel.mosaic.tile(easel.layer, {0, 0, 0}, std::nullopt).stamp, easel.now)
-        << "and not by the old one";
+        << "not at the old time";
     EXPECT_EQ(easel.mosaic.wiped(), 1e9 + 2 + step);
     EXPECT_EQ(easel.mosaic.layers().at(0).first, 1e9 + 1 + step);
     EXPECT_EQ(easel.mosaic.layers().at(0).last, easel.now);
@@ -101,10 +102,10 @@ TEST(Mosaic, VersionGrowsWithEachChangeAndRestart) {
   Easel easel;
   easel.draw(grid_at(0, 0, 1, 0.25, {100}));
   const auto first = easel.mosaic.version();
-  EXPECT_EQ(first, 1'001'000U) << "milliseconds of its time";
+  EXPECT_EQ(first, 1'001'000U) << "its time in milliseconds";
   easel.draw(grid_at(0, 0, 1, 0.25, {100}));
-  EXPECT_EQ(easel.mosaic.version(), first) << "nothing changed";
-  EXPECT_EQ(easel.mosaic.layers()[0].last, 1002) << "though a map came";
+  EXPECT_EQ(easel.mosaic.version(), first) << "no pixel changed";
+  EXPECT_EQ(easel.mosaic.layers()[0].last, 1002) << "although a map arrived";
   easel.now = 0;
   easel.draw(grid_at(0, 0, 1, 0.25, {0}));
   EXPECT_GT(easel.mosaic.version(), first) << "a time that runs backward is the last one again";
@@ -131,7 +132,7 @@ TEST(Mosaic, WipeBlanksOnlyLaterTimes) {
   EXPECT_EQ(easel.seen(0.1, 0.1), 0);
   EXPECT_EQ(easel.seen(0.1, 0.1, 0, 1400), kOccupied);
   const auto layers = easel.mosaic.layers(before);
-  ASSERT_EQ(layers[0].tiles.size(), 3U) << "a page must learn of it";
+  ASSERT_EQ(layers[0].tiles.size(), 3U) << "a page must see the tile";
   EXPECT_TRUE(layers[0].tiles[0].blank);
   EXPECT_EQ(layers[0].bounds, std::nullopt);
   EXPECT_TRUE(easel.mosaic.canvas(easel.layer).tiles.empty());
@@ -157,7 +158,7 @@ TEST(Mosaic, StaysWithinItsBudgetAndKeepsTheNewest) {
     }());
   }
   EXPECT_GT(easel.mosaic.spacing(), 1);
-  EXPECT_GT(easel.mosaic.bytes(), kBudget / 4) << "and makes use of it";
+  EXPECT_GT(easel.mosaic.bytes(), kBudget / 4) << "the budget is used";
 }
 
 TEST(Mosaic, ThinsEvenlyOverTime) {

@@ -16,8 +16,8 @@
 namespace adit::picture {
 namespace {
 
-/// What a viewer makes of an indexed PNG; written from ISO/IEC 15948 for the tests alone. Throws where the
-/// standard is not kept.
+/// A viewer's reading of an indexed PNG, written from ISO/IEC 15948 for the tests. Throws if the standard
+/// is violated.
 struct DecodedPng {
   std::uint32_t width = 0, height = 0;
   std::string palette, alpha;         // PLTE and tRNS
@@ -180,7 +180,7 @@ TEST(Palette, SpreadsTheColoursOverTheRequestedHeights) {
   EXPECT_EQ(palette[height_index(-3)], palette[height_index(-8)]);
   EXPECT_EQ(palette[height_index(4.5)], height_ramp().back());
   EXPECT_NE(palette[height_index(1)], palette[height_index(1.5)]);
-  EXPECT_EQ(cloud_palette(7, 7)[255], height_ramp().back()) << "no heights at all are taken for one step";
+  EXPECT_EQ(cloud_palette(7, 7)[255], height_ramp().back()) << "no height range counts as one step";
 }
 
 }  // namespace

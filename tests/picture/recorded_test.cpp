@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Of the recorded maps.
+/// The directory of the recorded maps.
 fs::path folder() {
   const char* const named = std::getenv("ADIT_MAPS");
   return named == nullptr ? "" : named;

@@ -27,7 +27,7 @@ TEST(TurnedGrid, HalfTurnPutsItBelowAndLeftOfItsOrigin) {
   EXPECT_EQ(easel.seen(-0.375, -0.375), 41);
 }
 
-/// Where a cell's place (its lower left corner is 0, 0) lies in the world.
+/// A cell's place in the world; its lower left corner is (0, 0).
 icd::Point place(const icd::OccupancyGrid& grid, double yaw, double column, double row) {
   const double x = column * grid.resolution, y = row * grid.resolution;
   return {grid.origin.position.x + x * std::cos(yaw) - y * std::sin(yaw),
@@ -81,7 +81,7 @@ TEST(TurnedGrid, HasNoGapsForAnyCellSize) {
       const auto& grid = std::get<icd::OccupancyGrid>(map.msg);
       Easel easel;
       easel.draw(map);
-      const double step = 0.17 / resolution;  // so that each pixel is looked at
+      const double step = 0.17 / resolution;  // small enough to hit each pixel
       for (double row = 0.3 / resolution; row < side - 0.3 / resolution; row += step) {
         for (double column = 0.3 / resolution; column < side - 0.3 / resolution; column += step) {
           const auto at = place(grid, yaw, column, row);

@@ -1,4 +1,4 @@
-"""How old maps are when they come, and how much of what was posted is there."""
+"""The age of maps at their arrival, and the share of posted maps that arrived."""
 
 import struct
 import time
@@ -21,7 +21,7 @@ def row(posted, left=0.0):
 
 
 def cloud(*dates):
-    """A point for each date."""
+    """One point for each date."""
     data = b"".join(struct.pack("<fffI", 1, 2, n, date % 2 ** 32) for n, date in enumerate(dates))
     fields = [{"name": name, "offset": 4 * i, "datatype": 7, "count": 1} for i, name in enumerate("xyz")]
     fields.append({"name": "posted_ms", "offset": 12, "datatype": 6, "count": 1})

@@ -1,4 +1,4 @@
-"""The public test servers as they were measured, row by row."""
+"""The public test servers' measured behaviour, row by row."""
 
 import gzip
 import select
@@ -16,7 +16,7 @@ REPORT = {"x": 1, "y": 2, "z": 3, "type": "Drill"}
 
 
 def raw_map(post, body, *headers, stream=None):
-    """Posts on a bare connection, so that what becomes of it can be seen."""
+    """Posts on a bare connection, so that the test sees how it ends."""
     stream = stream or connect(post.mapping)
     lines = ["POST /map/update HTTP/1.1", "Host: here", f"Authorization: Bearer {MAPPING_TOKEN}",
              "Content-Type: application/cbor", f"Content-Length: {len(body)}", *headers]

@@ -1,4 +1,4 @@
-"""Starts the real adit-rehearsal for a test, and makes the messages that the tests send it."""
+"""Starts the real adit-rehearsal for a test, and makes messages for it."""
 
 import base64
 import copy
@@ -65,7 +65,7 @@ class CommandPost:
             raise AssertionError(f"exit code {self.process.returncode}: {err}")
 
     def stop(self, how=signal.SIGTERM):
-        """Gives the exit code and what was printed."""
+        """Returns the exit code and the output."""
         self.process.send_signal(how)
         out, err = self.process.communicate(timeout=patient(90))
         return self.process.returncode, out, err
@@ -88,7 +88,7 @@ class CommandPost:
         return self.mapping_request("POST", "/map/update", body, headers)
 
     def mapping_request(self, method, path, body=None, headers=None, **how):
-        """A body that is bytes goes as it is, any other as JSON."""
+        """A body of bytes is sent unchanged, any other as JSON."""
         all_headers = {"Authorization": f"Bearer {MAPPING_TOKEN}", "Content-Type": "application/json"}
         return self.request(self.mapping, method, path, body, {**all_headers, **(headers or {})}, **how)
 
@@ -124,8 +124,8 @@ class CommandPost:
 
 
 def two_at_once(first, second=None):
-    """The statuses of two requests within a second: `first()` and `second()`, or `first()` again. Both once more where
-    this machine took longer."""
+    """The statuses of two requests within a second: `first()` and `second()`, or `first()` twice. Repeats both if this machine took
+    longer."""
     for _ in range(20):
         begun = time.monotonic()
         statuses = [first().status_code, (second or first)().status_code]
@@ -142,7 +142,7 @@ def connect(where):
 
 
 def read_answer(stream):
-    """One answer from a bare connection: its status, its headers (lower case) and its body; None at the end."""
+    """Reads one answer from a bare connection: its status, its headers (lower case) and its body; None at the end."""
     reader = stream.makefile("rb")
     first = reader.readline().decode()
     if not first:
@@ -158,7 +158,7 @@ POSE = {"position": {"x": 1.5, "y": -2.0, "z": 0.25}, "orientation": {"x": 0, "y
 
 
 def changed(message, **changes):
-    """A copy of `message` with members set by their path: changed(grid(), msg__info__width=3). DROP drops."""
+    """A copy of `message` with members set by path: changed(grid(), msg__info__width=3). DROP removes a member."""
     result = copy.deepcopy(message)
     for path, value in changes.items():
         *parents, last = (int(part) if part.isdigit() else part for part in path.split("__"))

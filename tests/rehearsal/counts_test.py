@@ -1,4 +1,4 @@
-"""What the mapping endpoint's rate goes by (--counts): first bytes, last bytes, or answers."""
+"""The measure of the mapping endpoint's rate (--counts): first bytes, last bytes, or answers."""
 
 import json
 import subprocess
@@ -14,7 +14,7 @@ HEAD = (f"POST /state/update HTTP/1.1\r\nHost: here\r\nAuthorization: Bearer {MA
 
 
 def posted(stream, takes=0.0):
-    """The status of a request whose last byte leaves so much later than its first, and when that left."""
+    """The status of a request whose last byte leaves that much later than its first, and the time at which it left."""
     stream.sendall(HEAD + BODY[:-1])
     time.sleep(takes)
     left = time.monotonic()
@@ -23,8 +23,7 @@ def posted(stream, takes=0.0):
 
 
 def two(counts, first_takes=0.0, second_takes=0.0):
-    """The statuses of two requests, of which the second begins right after the answer to the first; once more where this
-    machine took long to begin."""
+    """The statuses of two requests, the second right after the answer to the first. Repeats both if this machine was too slow."""
     for _ in range(20):
         with CommandPost("--counts", counts, rate=1 / INTERVAL) as post, connect(post.mapping) as stream:
             first, left = posted(stream, first_takes)

@@ -1,5 +1,5 @@
-"""adit-rehearsal demo as a newcomer meets it: in a small window, in a pipe, a second one beside it, with a wrong word; however it ends,
-nothing of it runs on."""
+"""adit-rehearsal demo for a newcomer: in a small window, in a pipe, two at once, with a wrong word. No process of it survives its
+end."""
 import fcntl
 import os
 import pty
@@ -22,13 +22,13 @@ TO_THE_END = re.compile(r"\x1b\[K")
 
 
 def like_a_terminals_shell():
-    """In a child: Ctrl-C reaches it, also if this test runs in the background of a script, where SIGINT is ignored."""
+    """For the child: makes Ctrl-C work, also if this test runs in the background of a script, where SIGINT is ignored."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     fcntl.ioctl(0, termios.TIOCSCTTY, 0)
 
 
 class Window:
-    """A terminal of so many rows and columns, on which the demo runs."""
+    """A terminal with that many rows and columns, in which the demo runs."""
 
     def __init__(self, rows, columns, *words):
         self.screen, end = pty.openpty()
@@ -52,7 +52,7 @@ class Window:
         return self.said
 
     def next_frame(self):
-        """The lines of the next picture that is drawn from its beginning on, as far as they are drawn over the last one's."""
+        """The lines of the next complete picture."""
         self.read()
         self.said = b""
 
@@ -81,7 +81,7 @@ class Demo(unittest.TestCase):
             process.wait(patient(60))
 
     def nothing_runs(self):
-        """Each program of a demo holds its folder."""
+        """Every program of a demo holds a lock in its directory."""
         with open(self.folder / "of-a-demo", "ab") as held:
             try:
                 fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)

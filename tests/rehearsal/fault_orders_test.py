@@ -1,4 +1,4 @@
-"""How a Command Post is told what to do wrong: by its control port, its command line, at random; and its end."""
+"""Ways to order faults of a Command Post: control port, command line, at random; and their end."""
 
 import itertools
 import socket

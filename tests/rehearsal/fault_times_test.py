@@ -1,4 +1,4 @@
-"""Faults that last, that come late, and that go together; what is wrong with the run itself."""
+"""Faults that last, that come late, and that are combined; faults of the run itself."""
 
 import select
 import time

@@ -1,4 +1,4 @@
-"""A request that meets a fault: what is sent, what comes back, and what was recorded of it."""
+"""A request that meets a fault: its bytes, the answer, and the record."""
 
 import json
 import time
@@ -15,7 +15,7 @@ STATUS_BYTES = f"GET /api/status HTTP/1.1\r\nHost: here\r\nAuthorization: Bearer
 
 
 def exchange(where, sent=REPORT_BYTES):
-    """All the bytes that come back until the connection ends, and "closed" or "reset": how it ended."""
+    """All bytes until the connection ends, and its end: "closed" or "reset"."""
     received = b""
     with connect(where) as stream:
         stream.sendall(sent)
@@ -28,14 +28,14 @@ def exchange(where, sent=REPORT_BYTES):
 
 
 def recorded(post, report=None):
-    """How often the record has that report from the client."""
+    """How often the record has that report of the client."""
     report = report or REPORT
     return sum(1 for one in post.record()["reports"]
                if one["by"] == "client" and all(one[name] == value for name, value in report.items()))
 
 
 class OneRequest(unittest.TestCase):
-    """A Command Post with a transcript, and what it made of one request."""
+    """A Command Post with a transcript, and its handling of one request."""
 
     def setUp(self):
         self.post = self.enterContext(CommandPost(transcript=True))
@@ -44,7 +44,7 @@ class OneRequest(unittest.TestCase):
         return self.post.lines()[-1]["rehearsed_fault"]
 
     def expect_before(self, end, is_so, why):
-        """Unless `end` has come: this machine may do much besides."""
+        """Passes if `end` is over, because this machine may be busy."""
         self.assertTrue(is_so() or time.monotonic() >= end, why)
 
     def wait_until_recorded(self):

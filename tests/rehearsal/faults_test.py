@@ -1,4 +1,4 @@
-"""What a Command Post can be told to do wrong with a request, over real sockets."""
+"""Faults that a Command Post can be ordered to make with a request, over real sockets."""
 
 import json
 import unittest

@@ -17,7 +17,7 @@ class Link(unittest.TestCase):
             self.assertGreater(time.monotonic() - began, 0.9)
 
     def test_sender_waits_for_the_link(self):
-        """Little is taken before it has come in: else a client would take a map for sent."""
+        """The buffer before the slow link is small. Otherwise a client would count a map as sent too early."""
         message = cloud(data=POINTS * 100_000)
         with CommandPost("--link", "1") as post, ThreadPoolExecutor() as pool:
             sent = pool.submit(post.map, message)

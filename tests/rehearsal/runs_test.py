@@ -1,4 +1,4 @@
-"""Runs that follow one another, other senders, and a record in which each report can be counted."""
+"""Consecutive runs, other senders, and a record in which each report can be counted."""
 
 import time
 import unittest

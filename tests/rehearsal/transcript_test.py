@@ -1,4 +1,4 @@
-"""The transcript is what came in: its pictures decode back to the very bytes of the messages."""
+"""The transcript contains the received messages: its pictures decode to their exact bytes."""
 
 import glob
 import math
@@ -16,7 +16,7 @@ CBOR = {"Content-Type": "application/cbor"}
 
 
 def read_pgm(path):
-    """Cells in the order of an OccupancyGrid: its first row is the bottom one."""
+    """Cells in the order of an OccupancyGrid, whose first row is the bottom one."""
     with open(path, "rb") as file:
         magic, size, most, pixels = file.read().split(b"\n", 3)
     width, height = map(int, size.split())

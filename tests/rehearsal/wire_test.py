@@ -1,4 +1,4 @@
-"""Below the messages: HTTP, connections, signals, the command line, and whatever a broken peer sends."""
+"""Below the messages: HTTP, connections, signals, the command line, and bytes of broken peers."""
 
 import contextlib
 import email.utils

@@ -19,8 +19,8 @@ std::string text_of(const std::string& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/// The table of all keys in Markdown, as README.md has it: key, meaning, range and default. A default of ""
-/// says by itself that the text may be empty.
+/// The Markdown table of all keys in README.md: key, meaning, range and default. A default of "" also means
+/// that the text may be empty.
 std::string reference() {
   constexpr std::string_view kOrEmpty = ", or \"\"";
   const Settings defaults = with_an_item_of_each();

@@ -1,4 +1,4 @@
-// Rooms that know no settings name a setting in a refusal by its key.
+// Rooms that do not know the settings name a setting's key in a rejection.
 #include <gmock/gmock.h>
 
 #include "codec/body_decoder.hpp"
@@ -47,9 +47,9 @@ TEST(Refusals, NameASettingByItsKey) {
     EXPECT_EQ(setting, key);
     EXPECT_THAT(keys(), Contains(Field(&Key::path, setting)));
   }
-  for (const std::string_view key : {"team.origins", "queues.marker_bytes"})  // of intake and of forward
+  for (const std::string_view key : {"team.origins", "queues.marker_bytes"})  // of intake and forward
     EXPECT_THAT(keys(), Contains(Field(&Key::path, key)));
-  EXPECT_EQ(setting_of_name(""), "") << "no alias can stand for it";
+  EXPECT_EQ(setting_of_name(""), "") << "an empty name cannot have an alias";
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What of a running gateway restarts: a row for each setting there is.
+// The parts of a running gateway that each setting restarts.
 #include "settings/restarts.hpp"
 
 #include <gtest/gtest.h>

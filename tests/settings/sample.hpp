@@ -4,8 +4,8 @@
 
 namespace adit::settings {
 
-/// The least settings file that works, with more members in each of its objects: `at_command_post` and
-/// `at_team` begin with a comma where they are not empty, and so does `at_top`.
+/// The smallest valid settings file, with additional members in each object. `at_command_post`, `at_team`
+/// and `at_top` begin with a comma if they are not empty.
 inline std::string sample(const std::string& at_command_post = "", const std::string& at_team = "",
                           const std::string& at_top = "") {
   return R"({"version": 1, "command_post": {"scoring": {"address": "10.100.1.200", "port": 8000},)"

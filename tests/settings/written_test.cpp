@@ -43,7 +43,7 @@ TEST(WrittenSettings, ReadBackTheSame) {
   }
 }
 
-/// The paths of all values, as the table of keys writes them.
+/// Collects the paths of all values, as in the table of keys.
 void gather(const codec::Value& value, const std::string& path, std::vector<std::string>& paths) {
   if (const auto* members = std::get_if<codec::Value::Object>(&value.is)) {
     for (const auto& [name, member] : *members)

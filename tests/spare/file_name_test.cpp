@@ -47,7 +47,7 @@ TEST(ExportName, SortsTheLaterExportFirst) {
   const std::string earlier = file_name("b", kAt), later = file_name("a", kAt + 1);
   EXPECT_TRUE(is_before(later, earlier));
   EXPECT_FALSE(is_before(earlier, later));
-  EXPECT_TRUE(is_before(earlier, "export.adit-spare")) << "what says no time comes last";
+  EXPECT_TRUE(is_before(earlier, "export.adit-spare")) << "names without a time come last";
   EXPECT_TRUE(is_before("a.adit-spare", "b.adit-spare"));
   EXPECT_FALSE(is_before(later, later));
 }

@@ -24,7 +24,7 @@ TEST(SealedExport, IsOpenedOnlyByItsCode) {
   EXPECT_EQ(unseal(file, kCode), content);
   EXPECT_EQ(why_not(file, "1234567890123457"),
             "the code is not that of this export, or the export is damaged");
-  EXPECT_EQ(file.find("tokens"), std::string::npos) << "it is not to be read without";
+  EXPECT_EQ(file.find("tokens"), std::string::npos) << "the content is readable without the code";
 }
 
 TEST(SealedExport, MayBeEmpty) {
@@ -34,7 +34,7 @@ TEST(SealedExport, MayBeEmpty) {
 TEST(SealedExport, IsRejectedIfChangedOrTruncated) {
   const std::string file = sealed("a ledger");
   ASSERT_EQ(file.size(), 76U);
-  // The first and the last byte of each part: what it is, salt, nonce, content and tag.
+  // The first and the last byte of each part: type, salt, nonce, content and tag.
   for (const std::size_t at : {0, 9, 10, 11, 12, 27, 28, 51, 52, 59, 60, 68, 75}) {
     std::string changed = file;
     changed[at] = static_cast<char>(changed[at] ^ 0x10);

@@ -7,8 +7,8 @@
 
 namespace adit::spool {
 
-/// What was read in this process: by read(2) of whatever file, and of files that are mapped from a folder, in
-/// the pieces that a look at one byte brings (64 KiB or less).
+/// Bytes that this process has read: by read(2) from any file, and from mapped files of a directory, in
+/// pieces that one access loads (at most 64 KiB).
 struct BytesRead {
   std::uint64_t by_calls = 0, in_mappings = 0;
 
@@ -20,7 +20,7 @@ struct BytesRead {
     bool is_there = false;
     std::ifstream mappings("/proc/self/smaps");
     for (std::string line; std::getline(mappings, line);) {
-      if (line.find('-') < line.find(' ')) {  // "7f..-7f.. r--s ..", of a file or not
+      if (line.find('-') < line.find(' ')) {  // "7f..-7f.. r--s ..", mapped from a file or not
         is_there = line.contains(' ' + folder + '/');
       } else if (is_there && line.starts_with("Rss:")) {
         read.in_mappings += 1024 * std::stoull(line.substr(4));

@@ -7,7 +7,7 @@
 
 namespace adit::spool {
 
-/// Small messages of each kind, for tests that keep them somewhere.
+/// Small messages of each kind, for tests that store them.
 inline icd::StateUpdate state() {
   return {.header = {.stamp = 7.5}, .poses = {{*icd::RobotName::parse("r2"), {}}}};
 }
@@ -19,7 +19,7 @@ inline icd::MarkersUpdate markers() {
   return {.markers = {marker}};
 }
 
-/// A cloud of that many points, no two neighbours alike.
+/// A cloud of that many points; neighbours differ.
 inline icd::MapUpdate cloud(std::size_t points) {
   icd::PointCloud2 cloud = icd::xyz();
   cloud.header.stamp = 5;

@@ -6,7 +6,7 @@
 
 namespace adit::spool {
 
-/// While it lives no file grows beyond that size, as on a disk that is full.
+/// Limits the size of files, as a full disk does, while it exists.
 class NoFileAbove {
  public:
   explicit NoFileAbove(rlim_t size) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {

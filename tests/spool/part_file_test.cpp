@@ -44,7 +44,7 @@ TEST_F(PartFileTest, IsDeletedUnlessRenamed) {
 
 TEST_F(PartFileTest, KeepsUnwrittenBytesOnAFullDisk) {
   PartFile file(path_);
-  icd::ChunkedBytes pieces;  // of one chunk each
+  icd::ChunkedBytes pieces;  // one chunk each
   for (const char c : {'a', 'b', 'c'}) {
     pieces.append(icd::ChunkedBytes(std::vector<std::uint8_t>(3000, static_cast<std::uint8_t>(c))));
   }
@@ -52,7 +52,7 @@ TEST_F(PartFileTest, KeepsUnwrittenBytesOnAFullDisk) {
   EXPECT_NE(file.append(pieces), 0);
   EXPECT_EQ(pieces.to_string(), std::string(3000, 'b') + std::string(3000, 'c'));
   EXPECT_EQ(file.size(), 3000u);
-  EXPECT_EQ(file.append("d"), 0) << "in the place of what was left";
+  EXPECT_EQ(file.append("d"), 0) << "in place of the leftover file";
   const MappedFile map = file.map().value();
   EXPECT_EQ(map.bytes[3000], 'd');
 }

@@ -65,7 +65,7 @@ TEST_F(SpoolTest, RejectsMapsUntilItsDirectoryWasRead) {
   EXPECT_EQ(kept.error().sentence,
             "Adit cannot store this map: " + folder.string() + ": Not a directory; send it again later");
   EXPECT_TRUE(spool.read().empty());
-  EXPECT_TRUE(spool.keep(1, grid("r1", 1), 0)) << "it could be read";
+  EXPECT_TRUE(spool.keep(1, grid("r1", 1), 0)) << "the directory is readable";
 }
 
 TEST_F(SpoolTest, StartReadsNoDataOfMaps) {
@@ -84,7 +84,7 @@ TEST_F(SpoolTest, StartReadsNoDataOfMaps) {
   ASSERT_EQ(kept.size(), 4U);
   EXPECT_EQ(kept[0].second, cloud(1'000'000));
   EXPECT_TRUE(codec::check_data(kept[0].second));
-  EXPECT_FALSE(codec::check_data(kept[3].second)) << "it is damaged, and is to be read for that";
+  EXPECT_FALSE(codec::check_data(kept[3].second)) << "reading must find the damage";
 }
 
 TEST_F(SpoolTest, RenamesAMapOfAWrongLength) {
@@ -121,7 +121,7 @@ TEST_F(SpoolTest, RenamesAMapThatCrashedTwoProcesses) {
   EXPECT_EQ(kill_in_work_on({2}), std::pair(std::size_t{3}, std::string()));
   again();
   const auto [left, sentence] = kill_in_work_on({1});
-  EXPECT_EQ(left, 2u) << "the second one is put aside, and the first is tried again";
+  EXPECT_EQ(left, 2u) << "the second map is put aside, and the first one is tried again";
   EXPECT_EQ(sentence, (folder / "map-00000002.cbor").string() + ": two processes ended while they packed it");
   EXPECT_TRUE(fs::exists(folder / "map-00000002.cbor.damaged"));
 }
@@ -148,7 +148,7 @@ TEST_F(SpoolTest, KeepsAnUnreadableFileAndRejectsMaps) {
   Spool spool(folder_);
   ASSERT_TRUE(spool.keep(2, grid("r2", 2), 0));
   fs::create_directory(folder_ / "map-00000001.cbor");  // open succeeds, read fails
-  EXPECT_TRUE(spool.read().empty()) << "map 2 may be newer than what map 1 says";
+  EXPECT_TRUE(spool.read().empty()) << "map 2 may be newer than map 1";
   EXPECT_FALSE(can_be_read(folder_));
   EXPECT_TRUE(fs::exists(folder_ / "map-00000001.cbor"));
   const std::string why =
@@ -183,7 +183,7 @@ TEST_F(SpoolTest, StoredMapUsesItsFileEvenOnceForgotten) {
   ASSERT_EQ(again.size(), 1u);
   EXPECT_EQ(again[0].second, whole);
   EXPECT_EQ(again[0].second.data.bytes.chunks()[0].owner(), again[0].second.data.bytes.chunks()[1].owner())
-      << "in the file again, and not beside it";
+      << "in the same file, not beside it";
   spool.forget(7);
   EXPECT_TRUE(fs::is_empty(folder_));
   EXPECT_EQ(*kept, whole);

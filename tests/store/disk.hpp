@@ -13,14 +13,14 @@ namespace adit::store {
 
 using simulation::Random;
 
-/// A directory of real files between which and the program this stands: the calls of libc that change files
-/// (disk.cpp) end in a kill, fail, or are lost in a power cut. One at a time.
+/// A directory of real files with simulated faults: calls of libc that change files (disk.cpp) end in a
+/// kill, fail, or are lost in a power cut. Only one at a time.
 class Disk {
  public:
-  /// The process is killed: thrown by a call of libc.
+  /// Thrown by a call of libc in which the process is killed.
   struct Killed {};
 
-  /// `directory`: of the log, below a directory of the test's own.
+  /// `directory`: of the log, below the test's own directory.
   explicit Disk(Random random, std::string directory = "log");
   ~Disk();
   Disk(const Disk&) = delete;
@@ -28,21 +28,21 @@ class Disk {
 
   const std::string& path() const { return path_; }
   std::string log() const { return path_ + '/' + directory_; }
-  /// The process that starts next.
+  /// Starts the next process.
   void start();
-  /// What is not synced may be lost.
+  /// Unsynced changes may be lost.
   void cut_power();
-  /// One bit of the bytes that are not zero, on the disk.
+  /// Flips one bit of the non-zero bytes on the disk.
   void flip_bit();
   std::map<std::string, std::string> files() const;
 
-  // Chances, for each call.
+  // Probabilities per call.
   double kills = 0, failing_syncs = 0, failing_writes = 0, full = 0, failing_opens = 0;
   bool is_read_only = false;
-  std::string failing_file = "";  // no file whose name begins so can be opened
-  std::size_t kill_at = 0;        // so many calls from now; 0: never
+  std::string failing_file = "";  // files with this prefix cannot be opened
+  std::size_t kill_at = 0;        // calls until the kill; 0: never
 
-  // For disk.cpp alone.
+  // For disk.cpp only.
   static Disk* of(int fd, const char* name);
   int open(int folder, const char* name, int flags, mode_t mode);
   ssize_t write(int fd, const char* bytes, std::size_t size, off_t at);

@@ -73,7 +73,7 @@ TEST_F(LogTest, DroppedRecordsStayDropped) {
   small_.fill({"b", "c"}, Durability::Soon);
   files_ = small_.files();
   const std::string name = files_.begin()->first;
-  damage(name, 2 * 1024, 1024);  // a power cut tore b, and left c
+  damage(name, 2 * 1024, 1024);  // a power cut tore b and left c
   EXPECT_THAT(bodies(small_.open().contents), ElementsAre("a"));
   small_.fill({"d"}, Durability::Soon);
   EXPECT_THAT(bodies(small_.open().contents), ElementsAre("a", "d"));
@@ -91,7 +91,7 @@ TEST_F(LogTest, DamagedCopyIsReportedAndRewritten) {
   EXPECT_EQ(small_.files(), files_);
 }
 
-/// A kill or a power cut tore it: nothing followed from it.
+/// A kill or a power cut tore the copy. No later record exists.
 TEST_F(LogTest, TornCopyOfTheLastRecordIsNoDamage) {
   small_.fill({"a", "b"}, Durability::Now);
   files_ = small_.files();
@@ -101,7 +101,7 @@ TEST_F(LogTest, TornCopyOfTheLastRecordIsNoDamage) {
   EXPECT_THAT(opened.contents.notes, IsEmpty());
 }
 
-/// A start writes into the file, and may be killed before a snapshot stands for what is left.
+/// A start writes into the file, and may be killed before a snapshot replaces the rest.
 TEST_F(LogTest, TruncatedFileIsReportedAtEachStart) {
   small_.fill({"a"}, Durability::Now);
   for (const std::size_t size : {0, 700, 2048}) {
@@ -134,7 +134,7 @@ TEST_F(LogTest, UsesThePreviousSnapshotIfTheLastIsDamaged) {
   small_.fill({"c"}, Durability::Now);
   EXPECT_THAT(bodies(small_.open().contents), ElementsAre("A", "B", "c"));
   files_ = small_.files();
-  ASSERT_EQ(files_.size(), 4);  // two logs, two snapshots: the first log is gone
+  ASSERT_EQ(files_.size(), 4);  // two logs, two snapshots: the first log was removed
   damage(files_.rbegin()->first, 0, files_.rbegin()->second.size());
   const auto opened = small_.open();
   EXPECT_THAT(bodies(opened.contents), ElementsAre("A", "b", "c"));
@@ -189,7 +189,7 @@ TEST_F(LogTest, IsWrittenByOneProcessAtATime) {
   EXPECT_TRUE(Directory::look(small_.path()));
 }
 
-/// A peer that knows the format cannot put a record into the log by what it sends.
+/// A peer that knows the format cannot insert a record into the log with its message.
 TEST_F(LogTest, FrameInsideARecordIsIgnored) {
   const std::string forged =
       written({.kind = 1, .sequence = 9, .process = 99, .body = "forged"}, kSmall.layout, 0, 2048);

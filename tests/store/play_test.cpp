@@ -1,5 +1,5 @@
-// Processes of random lengths append to one log, and are killed, lose power, and meet a disk that fails. What
-// each finds is compared with what the ones before were told.
+// Processes of random lengths append to one log, and are killed, lose power, or meet a failing disk. Each
+// process's reading is compared with the results that earlier processes got.
 #include <gmock/gmock.h>
 
 #include <cstdlib>
@@ -19,10 +19,10 @@ std::uint64_t seeds() {
   return told == nullptr ? 150 : std::strtoull(told, nullptr, 10);
 }
 
-/// What a start must find.
+/// The records that a start must find.
 struct Book {
-  std::vector<std::string> kept;    // durable for certain
-  std::vector<std::string> unsure;  // accepted behind them
+  std::vector<std::string> kept;    // certainly durable
+  std::vector<std::string> unsure;  // accepted after them
   std::vector<std::string> tried;   // their appends have failed since, or were killed
   bool is_explained(const std::vector<std::string>& got) const {
     std::vector<std::string> all = kept;
@@ -61,7 +61,7 @@ class Play {
     if (!on_disk) keeping_ = {kInMemory, 0, false};
   }
 
-  /// A sentence about what is wrong, or "".
+  /// Runs a process. Returns a sentence about a violation, or "".
   std::string run() {
     const std::uint64_t processes = 1 + random_.below(6);
     for (std::uint64_t i = 0; i < processes && trouble_.empty(); ++i) {

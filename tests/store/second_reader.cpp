@@ -49,7 +49,7 @@ std::vector<FrameSeen> frames_of(std::uint64_t file, std::uint64_t salt, std::st
   return frames;
 }
 
-/// Of a snapshot: its bodies by number, if all are there.
+/// The bodies of a snapshot by number, if all of them are there.
 std::optional<std::vector<std::string>> whole(const std::vector<FrameSeen>& frames) {
   std::map<std::uint64_t, const FrameSeen*> by_number;
   for (const FrameSeen& frame : frames) by_number[frame.sequence] = &frame;
@@ -75,7 +75,7 @@ SecondReading read_again(const std::map<std::string, std::string>& files) {
   SecondReading read;
   std::uint64_t begins = 0, base = 0, durable = 0;
   std::vector<FrameSeen> frames;
-  for (const auto& [name, bytes] : files) {  // by number: the names are as long as each other
+  for (const auto& [name, bytes] : files) {  // in order of numbers, because all names have the same length
     const auto point = name.find('.'), hyphen = name.find('-');
     if (point == name.npos || name.size() != point + 17 || name.starts_with("spare")) continue;
     const std::uint64_t number = std::stoull(name.substr(hyphen + 1, point - hyphen - 1));

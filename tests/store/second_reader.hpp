@@ -9,11 +9,10 @@
 
 namespace adit::store {
 
-/// A log as firmware/doors/store/README.md describes it, read by other means than the firmware's: every
-/// multiple of 8 bytes of every file is tried, with a checksum of its own, and the answer is a set, not a
-/// walk.
+/// Reads a log as firmware/doors/store/README.md describes it, in another way than the firmware: tries
+/// every multiple of 8 bytes of every file, with its own checksum, and returns a set.
 struct SecondReading {
-  std::vector<std::string> snapshot;             // bodies, of the newest whole one
+  std::vector<std::string> snapshot;             // bodies of the newest complete one
   std::map<std::uint64_t, std::string> records;  // by sequence number
   std::set<std::uint64_t> missing;
   /// All bodies, in order.

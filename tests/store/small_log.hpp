@@ -15,10 +15,10 @@
 
 namespace adit::store {
 
-/// Frames of 512 bytes, in two copies, in files for seven of them.
+/// Frames of 512 bytes, in two copies; a file holds seven.
 inline constexpr Keeping kSmall{{512, 2}, 8192, true};
 
-/// A log in a directory of its own.
+/// A log in its own directory.
 class SmallLog {
  public:
   explicit SmallLog(const Keeping& keeps = kSmall) : keeping(keeps) {
@@ -43,16 +43,16 @@ class SmallLog {
     Contents contents;
     Log log;
   };
-  /// As a process opens it.
+  /// Opens the log as a process does.
   Opened open() const { return {path_, keeping}; }
   Result<Contents> read() const { return Contents::read(Directory::look(path_).value(), keeping); }
 
-  /// One process appends these.
+  /// Appends the records in one process.
   void fill(const std::vector<std::string>& bodies, Durability durability) const {
     auto opened = open();
     for (const std::string& body : bodies) opened.log.append(1, body, durability).value();
   }
-  /// One process lets these stand for all before.
+  /// Writes a snapshot that replaces all earlier records, in one process.
   void snapshot(const std::vector<std::string>& bodies) const {
     auto opened = open();
     opened.log.turn().value();

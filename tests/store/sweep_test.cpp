@@ -1,4 +1,4 @@
-// A log with each byte of its files flipped, cut off there, or with a file missing, in turn.
+// A log after a flipped bit in each byte, a cut at each byte, or the loss of each file, in turn.
 #include <gmock/gmock.h>
 
 #include "store/second_reader.hpp"
@@ -7,7 +7,7 @@
 namespace adit::store {
 namespace {
 
-/// A snapshot, and two files behind it.
+/// A snapshot, and two files after it.
 class SweepLog : public testing::Test {
  protected:
   void make(const Keeping& keeping) {
@@ -21,7 +21,7 @@ class SweepLog : public testing::Test {
     all_ = bodies(*small_->read());
   }
 
-  /// Each of `changes` to each byte of each file that is not zero.
+  /// Makes each of `changes` at each non-zero byte of each file.
   void for_each_byte(const std::function<void(std::string&, std::size_t)>& change,
                      const std::function<void()>& check) {
     for (const auto& [name, bytes] : files_) {
@@ -45,7 +45,7 @@ class SweepLog : public testing::Test {
     EXPECT_FALSE(has_gap(*contents));
     EXPECT_EQ(read_again(small_->files()).bodies(), all_);
   }
-  /// All that is there, and what is not is told.
+  /// Checks that all records are there or reported missing.
   void expect_told() {
     const auto contents = small_->read();
     ASSERT_TRUE(contents);
@@ -87,7 +87,7 @@ TEST_F(SweepLog, TruncatedFileOnDiskIsReported) {
   for_each_byte([](std::string& bytes, std::size_t at) { bytes.resize(at); }, [&] { expect_told(); });
 }
 
-/// But for the last one: who uses the log knows its number.
+/// Except for the last file, whose number the log's user knows.
 TEST_F(SweepLog, MissingFileIsReported) {
   make(kSmall);
   const auto missing = std::next(files_.begin());  // the first one is older than the snapshot
@@ -96,7 +96,7 @@ TEST_F(SweepLog, MissingFileIsReported) {
   EXPECT_TRUE(has_gap(*small_->read()));
 }
 
-/// But for the last record: it may have been torn.
+/// Except for the last record, which may be torn.
 TEST_F(SweepLog, DamagedRecordInMemoryIsReportedAndLostAlone) {
   make({kInMemory, 0, false});
   all_.pop_back();

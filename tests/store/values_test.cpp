@@ -69,7 +69,7 @@ TEST(Reader, ReturnsNothingAfterTheEnd) {
   EXPECT_EQ(reader.read<std::uint64_t>(), 1u);
   EXPECT_TRUE(reader.ok());
   EXPECT_EQ(reader.read<std::uint64_t>(), 0u);
-  EXPECT_FALSE(reader.ok()) << "there is no more";
+  EXPECT_FALSE(reader.ok()) << "no further values";
 }
 
 TEST(Reader, DoesNotReadPastTheEndForAWrongLength) {

@@ -36,7 +36,7 @@ TEST(Health, OfATrialIsGoodAfterAMinute) {
 
 TEST(Health, OfALateTrialIsARestart) {
   EXPECT_EQ(classify(true, std::nullopt, true), Health::Restart);
-  EXPECT_EQ(classify(true, 30s, true), Health::Restart) << "it comes and goes";
+  EXPECT_EQ(classify(true, 30s, true), Health::Restart) << "the service comes and goes";
   EXPECT_EQ(classify(true, 60s, true), Health::Good);
 }
 

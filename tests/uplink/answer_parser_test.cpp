@@ -19,7 +19,7 @@ using testing::HasSubstr;
 struct Case {
   const char* name;
   std::string bytes;
-  bool end;  // the peer closes after them
+  bool end;  // the peer then closes the connection
   State state;
   int status = 0;
   const char* body = "";
@@ -93,7 +93,7 @@ const Case kCases[] = {
 
 class AnswerParserCases : public testing::TestWithParam<Case> {};
 
-/// Feeds the bytes in portions of `portion`.
+/// Feeds the bytes in pieces of `portion`.
 State feed(AnswerParser& parser, const Case& c, std::size_t portion) {
   State state = State::Incomplete;
   for (std::size_t at = 0; at < c.bytes.size() && state == State::Incomplete; at += portion)
@@ -112,7 +112,7 @@ TEST_P(AnswerParserCases, AreReadTheSameInAnyPieces) {
       EXPECT_NE(parser.fault(), "");
     }
     if (c.state != State::Whole) continue;
-    // Cut right behind the answer, what is beyond it has not been seen yet.
+    // If the bytes were cut right after the answer, the parser has not seen the rest.
     const bool saw_all = portion > c.bytes.size();
     if (saw_all || c.keeps_alive) {
       EXPECT_EQ(parser.may_keep_alive(), c.keeps_alive);
@@ -179,7 +179,7 @@ TEST(AnswerParser, StreamsAnAnswerOfAnyLength) {
   }
 }
 
-/// Who answered is told by it.
+/// The status tells which server answered.
 TEST(AnswerParser, KnowsTheStatusOfATooLongAnswer) {
   const std::string long_body(2 * kLongest, 'x');
   const std::pair<std::string, int> cases[] = {

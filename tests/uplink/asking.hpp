@@ -21,12 +21,13 @@ inline icd::BearerToken token() {
   return *parsed;
 }
 
-/// A loop, and what a test does with connections on it.
+/// A loop and connections on it.
 class Asking : public testing::Test {
  protected:
   static inline const std::chrono::seconds kPatience = patient(std::chrono::seconds{20});
 
-  /// Sends and waits for the outcome, which never comes from within send() and never tells the token.
+  /// Sends and waits for the outcome. Checks that it never arrives within send() and never contains the
+  /// token.
   Outcome ask(Connection& connection, Request request) {
     Outcome outcome;
     bool came = false;
@@ -49,7 +50,7 @@ class Asking : public testing::Test {
     return "";
   }
 
-  /// As an Answered; where it is none, a status of 0 and the sentence as its body.
+  /// The outcome as an Answered; for other outcomes status 0 and the sentence as its body.
   static Answered answered(const Outcome& outcome) {
     if (const auto* answer = std::get_if<Answered>(&outcome)) return *answer;
     return {.status = 0, .content_type = "", .body = why(outcome), .retry_after = std::nullopt};

@@ -1,5 +1,5 @@
-// A second request goes ahead of the answer to the first, also to a server that serves one connection at a
-// time, as the peer here does.
+// A second request is sent before the answer to the first, even to a server that serves one connection at a
+// time, like this peer.
 #include "uplink/connections.hpp"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ class TwoRequests : public Asking {
  protected:
   ~TwoRequests() override { let_.release(100); }
 
-  /// Reads each request of a connection, and answers when it is let.
+  /// Reads each request of a connection, and answers when allowed.
   void serve(Wire& wire) {
     while (!wire.read_request().empty()) {
       ++came_;
@@ -37,7 +37,7 @@ class TwoRequests : public Asking {
   bool is_told(std::size_t place) {
     return loop::turn_until(loop_, [&] { return outcomes_[place].has_value(); });
   }
-  /// The first one has arrived, and there is a connection for the next.
+  /// Waits until the first request has arrived and the next has a connection.
   bool one_has_arrived() {
     send(post("first"));
     connections_.get_ready();
@@ -53,7 +53,7 @@ class TwoRequests : public Asking {
 
 TEST_F(TwoRequests, SecondIsServedOnceTheFirstIsAnswered) {
   ASSERT_TRUE(one_has_arrived());
-  send(post(megabytes(2)));  // more than a connection holds that nobody reads
+  send(post(megabytes(2)));  // more than an unread connection holds
   EXPECT_FALSE(connections_.is_ready()) << "for a third";
   EXPECT_FALSE(connections_.has_arrived());
   let_.release();
@@ -67,7 +67,7 @@ TEST_F(TwoRequests, SecondIsServedOnceTheFirstIsAnswered) {
   EXPECT_EQ(peer_.begun(), 2);
 }
 
-/// It takes the connection that is left.
+/// It uses the remaining connection.
 TEST_F(TwoRequests, ThirdGoesAheadOfTheSecond) {
   ASSERT_TRUE(one_has_arrived());
   send(post("second"));
@@ -91,7 +91,7 @@ TEST_F(TwoRequests, UnusedConnectionEnds) {
   let_.release();
   ASSERT_TRUE(is_told(1));
   EXPECT_EQ(status_of(1), 200);
-  EXPECT_EQ(peer_.begun(), 1) << "the first one is kept";
+  EXPECT_EQ(peer_.begun(), 1) << "the first connection is kept";
 }
 
 TEST_F(TwoRequests, TimeoutOfTheSecondStartsAfterTheFirst) {
@@ -118,7 +118,7 @@ TEST_F(TwoRequests, RefusedSecondConnectionLeavesOneRequest) {
   EXPECT_FALSE(connections.busy());
 }
 
-/// Or a kept connection would be closed and made again by each look.
+/// Otherwise each check would close and reopen a kept connection.
 TEST_F(TwoRequests, SecondConnectionIsTriedOncePerRequest) {
   const ListeningPeer hangs_up({[this](Wire& wire) { serve(wire); }, [](Wire&) {}});
   Connections connections(loop_, hangs_up.endpoint(), token());

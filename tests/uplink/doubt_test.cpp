@@ -15,7 +15,7 @@ using std::chrono::milliseconds;
 using testing::AllOf;
 using testing::HasSubstr;
 
-// InDoubt: bytes left, and no whole answer came.
+// InDoubt: bytes left, and no complete answer came.
 
 constexpr std::string_view kSilent = "silent for too long";
 
@@ -138,7 +138,7 @@ TEST_F(DoubtfulRequests, HaveAnEarlyAnswerThatEndsInAReset) {
   expect_doubt(peer, "");
 }
 
-/// A 2xx is a promise about a whole request.
+/// A 2xx counts only for a whole request.
 TEST_F(DoubtfulRequests, WereAcceptedHalfWayAndReset) {
   const ListeningPeer peer([](Wire& wire) {
     wire.read_some(1 << 16);
@@ -158,7 +158,7 @@ TEST_F(DoubtfulRequests, WereAcceptedHalfWayAndNotReadOn) {
   over.set_value();
 }
 
-/// The kernel has taken all of it, and the peer's has not.
+/// The sending kernel has all bytes, the receiving one has not.
 TEST_F(DoubtfulRequests, WereAcceptedBeforeTheyArrived) {
   std::promise<void> has_left;
   Peer peer({[&has_left](Wire& wire) {
@@ -181,7 +181,7 @@ TEST_F(DoubtfulRequests, WereAcceptedBeforeTheyArrived) {
   EXPECT_THAT(why(*outcome), HasSubstr("answered 200 before"));
 }
 
-/// Whether a connection that `use` uses and then leaves ended in a reset, for the peer of this script.
+/// Whether a connection ended with a reset for the peer, after `use` used and left it.
 class ConnectionEnds : public Asking {
  protected:
   bool was_reset(const Peer::Script& script, const std::function<void(Connection&)>& use) {
@@ -235,7 +235,7 @@ TEST_F(DoubtfulRequests, WereOnAKeptConnectionClosedUnanswered) {
   const ListeningPeer peer([](Wire& wire) {
     wire.read_request();
     wire.write(answer("200 OK", "null"));
-    wire.read_request();  // it has come; what becomes of it nobody knows
+    wire.read_request();  // it arrived, and its outcome is unknown
   });
   Connection connection(loop_, peer.endpoint(), token());
   EXPECT_EQ(answered(ask(connection, get())).status, 200);

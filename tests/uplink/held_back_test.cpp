@@ -1,4 +1,4 @@
-// The last bytes of a request may be held back, and its answer says when its bytes left.
+// The last bytes of a request may be held back. Its answer says when they left.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -13,7 +13,7 @@ using std::chrono::milliseconds;
 
 class HeldBackByte : public Asking {
  protected:
-  /// Answers, so long after the whole request was there.
+  /// Answers `pause` after the whole request arrived.
   Peer::Script answers_after(milliseconds pause) {
     return [this, pause](Wire& wire) {
       wire.read_request();
@@ -47,7 +47,7 @@ TEST_F(HeldBackByte, LastByteIsNotSentEarly) {
     request.last_byte_not_before = not_before;
     const Answered got = answered(ask(peer.endpoint(), std::move(request)));
     EXPECT_EQ(got.status, 200) << got.body;
-    if (size == 0) continue;  // its head alone is not held back
+    if (size == 0) continue;  // a head alone is not held back
     EXPECT_GE(whole_.load(), not_before) << size;
     EXPECT_GE(got.sent.last, not_before) << size;
     EXPECT_LE(got.sent.first, got.sent.last) << size;
@@ -62,8 +62,8 @@ TEST_F(HeldBackByte, DelayDoesNotCountAsSilence) {
   EXPECT_EQ(answered(ask(peer.endpoint(), std::move(request))).status, 200);
 }
 
-/// Where the kernel had to send something twice, the answer's time is taken, for nobody knows better: then
-/// once more. It does so for nearly each large body on a busy machine, so this one is small.
+/// If the kernel had to retransmit, the answer's time counts, because the true time is unknown; then the
+/// test repeats. On a busy machine that happens with nearly each large body, so this one is small.
 TEST_F(HeldBackByte, SendTimeOfTheLastByteIsNotTheAnswerTime) {
   for (int tries = 0; tries < 10; ++tries) {
     const ListeningPeer peer(answers_after(milliseconds(400)));

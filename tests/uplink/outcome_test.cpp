@@ -16,7 +16,7 @@ using std::chrono::milliseconds;
 using testing::AllOf;
 using testing::HasSubstr;
 
-// Answered: a whole answer came, whatever it says.
+// Answered: a complete answer came, with any status.
 
 class AnsweredRequests : public Asking {};
 
@@ -26,7 +26,7 @@ TEST_F(AnsweredRequests, WereRejectedDuringTheirBody) {
     const ListeningPeer peer([](Wire& wire) {
       wire.read_head();
       wire.write(answer("429 Too Many Requests", "\"Reduce to <1Hz.\"", "Retry-After: 2\r\n"));
-    });  // and it closes, with a reset, for most of the body is unread
+    });  // then it closes with a reset, because most of the body is unread
     Connection connection(loop_, peer.endpoint(), token());
     const Answered got = answered(ask(connection, post(body)));
     EXPECT_EQ(got.status, 429) << got.body;
@@ -46,7 +46,7 @@ TEST_F(AnsweredRequests, WereRejectedEarlyByAPeerThatStopsReading) {
   EXPECT_EQ(answered(ask(peer.endpoint(), post(megabytes(20)))).status, 413);
 }
 
-/// A 2xx counts once the whole request is there.
+/// A 2xx counts once the whole request is sent.
 TEST_F(AnsweredRequests, WereAcceptedEarlyByAPeerThatReadsOn) {
   const ListeningPeer peer([](Wire& wire) {
     wire.read_head();
@@ -59,7 +59,7 @@ TEST_F(AnsweredRequests, WereAcceptedEarlyByAPeerThatReadsOn) {
   EXPECT_EQ(answered(outcome).status, 200) << why(outcome);
   EXPECT_EQ(answered(outcome).body, "null");
   EXPECT_GT(connection.sent_bytes(), body.size());
-  EXPECT_FALSE(connection.connected()) << "nobody looked for what came behind the answer";
+  EXPECT_FALSE(connection.connected()) << "bytes after the answer were not read";
 }
 
 TEST_F(AnsweredRequests, WereAcceptedBeforeAHeldBackByte) {
@@ -131,7 +131,7 @@ TEST_F(AnsweredRequests, ReconnectIfTheKeptConnectionWasClosed) {
                                 wire.read_request();
                                 wire.write(answer("200 OK", "\"first\""));
                                 answer_read.get_future().wait();
-                                close(wire);  // though it has promised keep-alive
+                                close(wire);  // although it announced keep-alive
                               },
                               always(answer("200 OK", "\"second\""))});
     Connection connection(loop_, peer.endpoint(), token());
@@ -145,7 +145,7 @@ TEST_F(AnsweredRequests, ReconnectIfTheKeptConnectionWasClosed) {
   }
 }
 
-// NeverSent: no byte of the request was given to the kernel.
+// NeverSent: the kernel got no byte of the request.
 
 class UnsentRequests : public Asking {
  protected:
@@ -180,7 +180,7 @@ TEST_F(UnsentRequests, HadAnInvalidAddress) {
 }
 
 TEST_F(UnsentRequests, DidNotConnectInTime) {
-  // A full backlog: the kernel ignores further connections.
+  // The backlog is full, so the kernel ignores further connections.
   const loop::FileDescriptor listener(::socket(AF_INET, SOCK_STREAM, 0));
   ASSERT_TRUE(listener);
   ASSERT_EQ(::listen(listener.get(), 0), 0);
@@ -209,7 +209,7 @@ TEST_F(UnsentRequests, HadANewConnectionClosedAtOnce) {
     sentence = why(outcome);
   });
   while (peer.ended() == 0)
-    std::this_thread::sleep_for(milliseconds(1));  // before the loop sees it connected
+    std::this_thread::sleep_for(milliseconds(1));  // before the loop sees the connection
   EXPECT_TRUE(loop::turn_until(loop_, [&] { return !connection.busy(); }));
   EXPECT_THAT(sentence, AllOf(HasSubstr("closed the new connection"), HasSubstr("(0 of ")));
 }

@@ -88,7 +88,7 @@ Peer::Peer(std::vector<Script> scripts, const char* address)
   if (::getaddrinfo(address, "0", &hints, &found) != 0) throw std::runtime_error("bad address");
   listener_ = loop::FileDescriptor(::socket(found->ai_family, SOCK_STREAM | SOCK_CLOEXEC, 0));
   if (!listener_) throw std::runtime_error("the test's peer has no socket");
-  hold(256 * 1024);  // so that a body soon fills it
+  hold(256 * 1024);  // small, so that a body soon fills it
   const int bound = ::bind(listener_.get(), found->ai_addr, found->ai_addrlen);
   ::freeaddrinfo(found);
   if (bound != 0) throw std::runtime_error("the test's peer cannot bind");
@@ -124,7 +124,7 @@ Endpoint Peer::endpoint() const {
   sockaddr_storage address{};
   socklen_t size = sizeof address;
   ::getsockname(listener_.get(), reinterpret_cast<sockaddr*>(&address), &size);
-  const auto* ipv4 = reinterpret_cast<const sockaddr_in*>(&address);  // its port is where IPv6 has it, too
+  const auto* ipv4 = reinterpret_cast<const sockaddr_in*>(&address);  // IPv6 has its port at the same place
   Endpoint endpoint;
   endpoint.address = address_;
   endpoint.port = ntohs(ipv4->sin_port);

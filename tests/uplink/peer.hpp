@@ -13,18 +13,18 @@
 
 namespace adit::uplink {
 
-/// The peer's end of one connection: raw, blocking, for twenty seconds at most.
+/// The peer's end of one connection: raw, blocking, with a timeout of twenty seconds.
 class Wire {
  public:
   explicit Wire(loop::FileDescriptor fd);
 
-  /// The head of the next request, or "" where the other side has closed. Its body may follow unread.
+  /// The head of the next request; "" if the other side has closed. Its body may follow unread.
   std::string read_head();
-  /// The next request whole: head and as much body as Content-Length says.
+  /// The complete next request: head, and body by Content-Length.
   std::string read_request();
-  /// Up to `most` bytes of what comes; 0 where the other side has closed.
+  /// At most `most` bytes; 0 if the other side has closed.
   std::size_t read_some(std::size_t most);
-  /// From now on, each reading pauses first.
+  /// From now on, pauses before each read.
   void read_slowly(std::chrono::milliseconds pause) { pause_ = pause; }
   /// False where the other side is gone.
   bool write(std::string_view bytes);

@@ -12,7 +12,8 @@ using testing::HasSubstr;
 
 class WarmConnection : public Asking {
  protected:
-  /// Makes a connection that could not be made, and pauses, for once it can be made. How long `then` takes.
+  /// Makes a connection that pauses after a failed attempt, and could now succeed. Returns how long `then`
+  /// takes.
   loop::Duration of_one_that_pauses(const std::function<void(Connection&)>& then) {
     Peer peer({always(answer("200 OK", "null"))});
     Connection connection(loop_, peer.endpoint(), token());
@@ -23,7 +24,7 @@ class WarmConnection : public Asking {
     then(connection);
     return loop_.now() - before;
   }
-  /// Whether it waits for no pause, which is of a second; on a busy machine it may take as long now and then.
+  /// Whether it does not wait for the pause of a second, which a busy machine sometimes takes by itself.
   bool is_quick(const std::function<void(Connection&)>& then) {
     for (int attempt = 0; attempt < 10; ++attempt) {
       if (of_one_that_pauses(then) < milliseconds(500)) return true;
@@ -67,7 +68,7 @@ TEST_F(WarmConnection, RetriesAtOnceIfTheNetworkMayBeBack) {
     connection.hurry();
     EXPECT_TRUE(loop::turn_until(loop_, [&] { return connection.connected(); }));
     connection.hurry();
-    EXPECT_TRUE(connection.connected()) << "what is there stays";
+    EXPECT_TRUE(connection.connected()) << "an open connection stays";
   }));
 }
 

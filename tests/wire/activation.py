@@ -1,4 +1,4 @@
-"""Plays systemd for aditd: hands over listening sockets, hears its notifications, keeps what it is given to keep."""
+"""Plays systemd for aditd: passes listening sockets, receives notifications, and stores file descriptors."""
 
 import array
 import contextlib
@@ -14,7 +14,7 @@ import time
 import programs
 
 TOKEN = {"Authorization": f"Bearer {programs.TEAM_TOKEN}"}
-# A shell's own number is that of what it becomes: LISTEN_PID must be right (sd_listen_fds(3)).
+# exec keeps the shell's process number, so LISTEN_PID is right (sd_listen_fds(3)).
 HAND_OVER = 'export LISTEN_PID=$$; exec "$@" {moves}'
 FIRST_HIGH = 100  # where descriptors wait for the shell to move them down
 
@@ -28,10 +28,10 @@ def listening():
 
 
 class ServiceManager:
-    """What systemd is to one service with a socket unit."""
+    """systemd's part for one service with a socket unit."""
 
     def __init__(self, folder, doors=(), inside=()):
-        """`doors`: the socket unit's. `inside`: the command by which another is run in its network namespace."""
+        """`doors`: the socket unit's sockets. `inside`: a command prefix that runs a command in its network namespace."""
         self.folder, self.doors, self.inside = folder, list(doors), list(inside)
         self.store = []  # (name, socket), as FDSTORE=1 has it
         self.said = []  # every assignment of every notification, with the time
@@ -73,7 +73,7 @@ class ServiceManager:
             self.said += [(time.monotonic(), line) for line in lines]
 
     def start(self, settings, **environment):
-        """`settings`: the document, or None for what there was."""
+        """`settings`: a new document, or None to keep the old one."""
         if settings is not None:
             (self.folder / "settings.json").write_text(json.dumps(settings))
         given = [("team", door) for door in self.doors] + list(self.store)

@@ -1,5 +1,5 @@
-"""How an alarm is seen on the real programs: in /adit/run, in /metrics, by `adit status` and on the lights, with its words and
-whose side it is on; and how it is seen to go."""
+"""Checks an alarm on the real programs: in /adit/run, /metrics, `adit status` and the lights, with its text and its side; and its
+end."""
 
 import os
 import pathlib
@@ -22,7 +22,7 @@ EXIT = {"bad": 1, "ask": 1, "wait": 0}
 
 
 class Robot(threading.Thread):
-    """One that tells its pose a few times a second until it is to be quiet."""
+    """A robot that posts its pose a few times a second until it is silenced."""
 
     def __init__(self, stage, name):
         super().__init__(daemon=True)
@@ -66,7 +66,7 @@ class WithAlarms(unittest.TestCase):
                             headers={"Authorization": f"Bearer {programs.TEAM_TOKEN}"}).text
 
     def status(self, stage):
-        """What `adit status` prints, and its exit status."""
+        """The output of `adit status`, and its exit status."""
         done = subprocess.run([programs.BIN / "adit", "status", "--at", f"{stage.network.box_address}:{programs.PORT}",
                                "--token-file", stage.folder / "secrets/team.token"], capture_output=True, text=True, check=False)
         return done.stdout, done.returncode
@@ -75,13 +75,14 @@ class WithAlarms(unittest.TestCase):
         return next(light["pattern"] for light in self.view(stage)["lights"] if light["name"] == name)
 
     def blinks(self, stage, name):
-        """The light itself, in the simulated panel, was dark and was lit."""
+        """The light in the simulated panel blinked."""
         panel = pathlib.Path(os.environ.get("RUNTIME_DIRECTORY", stage.box.state), "panel")
         for word in ("off", "on"):
             wait_until(lambda word=word: panel.exists() and f"{name} {word}\n" in panel.read_text(), f"the {name} light to be {word}")
 
     def sees(self, stage, name, severity, side, why="", light=None, within=60, panel=True):
-        """The alarm, in the same words everywhere. `light`: one that blinks beside attention. `panel`: its file can be written."""
+        """Waits for the alarm, with the same text everywhere. `light`: a light that blinks beside attention. `panel`: its file can be
+        written."""
         wanted = {"severity": severity, "side": side}
         alarm = wait_until(lambda: (found := self.alarm(stage, name)) and {**found, **wanted} == found and found, name, within)
         self.assertIn(why, alarm["why"])
@@ -100,7 +101,7 @@ class WithAlarms(unittest.TestCase):
         return alarm
 
     def goes(self, stage, name, within=60):
-        """It is nowhere any more, but among the last that were."""
+        """Waits until the alarm is only in the list of past alarms."""
         wait_until(lambda: not self.alarm(stage, name), f"the end of {name}", within)
         wait_until(lambda: any(over["id"] == name for over in self.view(stage)["alarms_over"]), "it to be remembered")
         self.assertNotIn(f'id="{name}"', self.metrics(stage))

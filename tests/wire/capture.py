@@ -1,4 +1,4 @@
-"""What leaves an interface: every frame, as the host at the other end of its cable gets it."""
+"""Captures every frame that leaves an interface, at the host on the other end of its cable."""
 
 import contextlib
 import ctypes
@@ -16,7 +16,7 @@ ARP, IPV4, TCP = 0x0806, 0x0800, 6
 
 @contextlib.contextmanager
 def inside(host):
-    """This thread is in the namespace `host`."""
+    """Runs this thread in the namespace `host`."""
     mine = os.open("/proc/thread-self/ns/net", os.O_RDONLY)
     try:
         hosts.enter(f"/run/netns/{host}")
@@ -38,7 +38,7 @@ def open_packets(port):
 
 
 def only_from(source, packets):
-    """Has the kernel drop frames of other MAC addresses: a scan would fill the socket's buffer with its own."""
+    """Lets the kernel drop frames of other MAC addresses, because a scan would fill the socket's buffer with its own frames."""
     begins, ends = struct.unpack("!HI", source)
     load, load_half, is_equal, give = 0x20, 0x28, 0x15, 0x06  # classic BPF
     code = [(load, 0, 0, 8), (is_equal, 0, 3, ends), (load_half, 0, 0, 6), (is_equal, 0, 1, begins), (give, 0, 0, 65536), (give, 0, 0, 0)]
@@ -47,7 +47,7 @@ def only_from(source, packets):
 
 
 class Frame:
-    """Of Ethernet; what is told of it is enough to know it again."""
+    """An Ethernet frame. Its text identifies it."""
 
     def __init__(self, data):
         self.data, self.source = data, data[6:12]
@@ -59,12 +59,12 @@ class Frame:
 
     @property
     def arp(self):
-        """Who asks or answers, and about whom."""
+        """The sender's and the target's address of an ARP frame."""
         return socket.inet_ntoa(self.data[28:32]), socket.inet_ntoa(self.data[38:42])
 
     @property
     def tcp(self):
-        """(from, to, port) of a segment; None: it is none."""
+        """(from, to, port) of a TCP segment; None for other frames."""
         if self.kind != IPV4 or self.data[23] != TCP:
             return None
         size = (self.data[14] & 15) * 4
@@ -76,7 +76,7 @@ class Frame:
 
 
 class Capture:
-    """All frames that come to `port` of `host`, from `source` alone."""
+    """All frames from `source` that arrive at `port` of `host`."""
 
     def __init__(self, host, port, source):
         self.frames, self.stopping = [], threading.Event()
@@ -95,7 +95,7 @@ class Capture:
                     self.frames.append(Frame(data))
 
     def since(self, first, settle=0.5):
-        """The frames after the first `first`, once those under way have come."""
+        """The frames after the first `first`, once frames in flight have arrived."""
         time.sleep(settle)
         return self.frames[first:]
 
@@ -114,14 +114,14 @@ def checksum(data):
 
 
 def syn(source, target, port):
-    """A segment that begins a connection, for a raw socket."""
+    """A segment that opens a connection, for a raw socket."""
     head = struct.pack("!HHIIBBHHH", 40000, port, 1, 0, 5 << 4, 2, 64240, 0, 0)
     pseudo = socket.inet_aton(source) + socket.inet_aton(target) + struct.pack("!BBH", 0, TCP, len(head))
     return head[:16] + struct.pack("!H", checksum(pseudo + head)) + head[18:]
 
 
 def scan(host, source, target, ports):
-    """Knocks at each port, by TCP and by UDP."""
+    """Tries each port, by TCP and by UDP."""
     with inside(host):
         tcp = socket.socket(socket.AF_INET, socket.SOCK_RAW, socket.IPPROTO_TCP)
         udp = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -134,7 +134,7 @@ def scan(host, source, target, ports):
 
 
 def shout(host, port, source_mac):
-    """What networks ask of whoever is there: queries of multicast groups, neighbours, names, routers."""
+    """Queries that a network may send to all hosts: multicast groups, neighbours, names, routers."""
     every = {
         "IGMP": (b"\x01\x00\x5e\x00\x00\x01", IPV4, _ip("10.100.1.200", "224.0.0.1", 2, b"\x11\x64\xee\x9b\0\0\0\0")),
         "mDNS": (b"\x01\x00\x5e\x00\x00\xfb", IPV4, _udp("10.100.1.200", "224.0.0.251", 5353, DNS)),
@@ -150,7 +150,7 @@ def shout(host, port, source_mac):
 
 
 def answers_ping(host, target, within=10.0):
-    """An echo, and whether it came back."""
+    """Sends an echo request. Returns whether a reply came."""
     with inside(host):
         pinger = socket.socket(socket.AF_INET, socket.SOCK_RAW, socket.IPPROTO_ICMP)
     with pinger:
@@ -165,7 +165,7 @@ def answers_ping(host, target, within=10.0):
 
 
 def answers_arp(host, port, target, within=10.0):
-    """Whether anybody at that cable says that it has the address."""
+    """Whether a host on that cable answers that it has the address."""
     with inside(host), open_packets(port) as packets:
         own = packets.getsockname()[4]
         ask = struct.pack("!HHBBH", 1, IPV4, 6, 4, 1) + own + b"\0" * 4 + b"\0" * 6 + socket.inet_aton(target)

@@ -1,4 +1,4 @@
-"""What the tests of adit-network have in common."""
+"""Shared by the tests of adit-network."""
 
 import contextlib
 import pathlib
@@ -28,7 +28,7 @@ class Change(unittest.TestCase):
         wait_until(lambda: self.box.addresses(interface) == [address], f"{interface} to have {address}", within)
 
     def confirm_first(self):
-        """The numbers that the box has from the beginning, confirmed."""
+        """Confirms the box's initial addresses."""
         nonce = self.box.want()
         self.has(OLD)
         self.box.ask("word.json", nonce=nonce, word="confirm")

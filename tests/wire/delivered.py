@@ -1,4 +1,4 @@
-"""One message after the other through a box, and what of each reached the Command Post."""
+"""Sends messages one by one through a box, and compares each with the message at the Command Post."""
 
 import copy
 import time
@@ -19,13 +19,13 @@ def size_of(field):
 
 
 def points_of(head, data):
-    """Of each point the bytes of its fields, in the order of their list."""
+    """For each point the bytes of its fields, in the order of the field list."""
     return [b"".join(data[at + field["offset"]:at + field["offset"] + size_of(field)] for field in head["fields"])
             for at in range(0, len(data), head["point_step"])]
 
 
 def put_together(head, in_order):
-    """`head` with those fields one after the other, `in_order` of them."""
+    """`head` with those fields one after the other, laid out in the order `in_order`."""
     offsets, end = {}, 0
     for field in in_order:
         offsets[field["name"]] = end
@@ -35,17 +35,17 @@ def put_together(head, in_order):
 
 
 def without_padding(head):
-    """As Adit sends it."""
+    """The cloud as Adit sends it."""
     return put_together(head, sorted(head["fields"], key=lambda field: field["offset"]))
 
 
 def tight_list(head):
-    """As a picture of the transcript has it."""
+    """The cloud as a picture of the transcript has it."""
     return put_together(head, head["fields"])
 
 
 class Delivered(unittest.TestCase):
-    """A class of tests over one network; what a Command Post that is strict finds fault with, fails them."""
+    """Tests that share one network. A violation that the strict Command Post finds fails the test."""
 
     post_options = ("--rate", "0")
 
@@ -59,7 +59,7 @@ class Delivered(unittest.TestCase):
         self.assertEqual(self.stage.post.violations(), [])
 
     def deliver(self, uri, message, style, content=None, answered=(200, "null")):
-        """Posts it, or `content` in its place, and gives the one request that reached the Command Post for it."""
+        """Posts the message, or `content` instead, and returns the one request that reached the Command Post for it."""
         before = len(self.stage.post.requests(uri))
         answer = messages.post(self.session, self.stage.box.url, uri, message, style, content=content)
         self.assertEqual((answer.status_code, answer.text), answered)
@@ -77,7 +77,7 @@ class Delivered(unittest.TestCase):
         self.assertFalse(request["expect"])
 
     def same(self, arrived, expected, where=""):
-        """Every value of it, each of its kind: 11.0 is not 11."""
+        """Compares every value and its type: 11.0 is not 11."""
         self.assertIs(type(arrived), type(expected), f"{where}: {arrived} for {expected}")
         if isinstance(expected, dict):
             self.assertEqual(sorted(arrived), sorted(expected), where)
@@ -97,8 +97,7 @@ class Delivered(unittest.TestCase):
         return header
 
     def same_map(self, arrived, update, data, head):
-        """`head`: the members of msg, but for header and data. Of a cloud the points are the same, without padding and in
-        any order."""
+        """`head`: the members of msg except for header and data. The points of a cloud are the same, without padding, in any order."""
         arrived = copy.deepcopy(arrived)
         msg = arrived["msg"]
         msg["header"] = self.without_stamp(msg["header"])

@@ -1,18 +1,18 @@
-"""A file system that is full."""
+"""A full file system."""
 
 import errno
 import os
 
 
 class Filler:
-    """A file that takes up all the room there is but `leaves` bytes, whatever others write meanwhile."""
+    """A file that uses all free space except `leaves` bytes, whatever other programs write meanwhile."""
 
     def __init__(self, folder, leaves=0):
         self.path, self.leaves = folder / "filler", leaves
         self.fill()
 
     def fill(self):
-        """Never more than that, not even for a moment."""
+        """Never uses more than that, not even for a moment."""
         with open(self.path, "ab", buffering=0) as file:
             try:
                 while (room := self.room()) > 0:

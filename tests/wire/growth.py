@@ -1,4 +1,4 @@
-"""What a process holds, as it goes on: memory, descriptors, timers and threads."""
+"""The resources of a process over time: memory, descriptors, timers and threads."""
 
 import contextlib
 import dataclasses
@@ -18,7 +18,7 @@ class Held:
 
 
 def descriptors(pid):
-    """What its descriptors are, as the kernel says it: "socket:[12]", "/a/file"."""
+    """Its descriptors as the kernel names them: "socket:[12]", "/a/file"."""
     folder = pathlib.Path(f"/proc/{pid}/fd")
     links = []
     for name in os.listdir(folder):
@@ -28,7 +28,7 @@ def descriptors(pid):
 
 
 def held(pid):
-    """What it holds now."""
+    """Its resources now."""
     process = pathlib.Path(f"/proc/{pid}")
     status = (process / "status").read_text(encoding="ascii", errors="replace")
     links = descriptors(pid)
@@ -37,7 +37,7 @@ def held(pid):
 
 
 class Watch(threading.Thread):
-    """Looks once a second."""
+    """Measures once a second."""
 
     def __init__(self, pid):
         super().__init__(daemon=True)
@@ -52,6 +52,6 @@ class Watch(threading.Thread):
         self.join(10)
 
     def memory(self):
-        """The median at the beginning and at the end, of a third of the time each, in bytes."""
+        """The medians of the first and of the last third of the time, in bytes."""
         third = max(1, len(self.seen) // 3)
         return tuple(statistics.median(each.memory for each in part) for part in (self.seen[:third], self.seen[-third:]))

@@ -1,5 +1,5 @@
-"""Who wishes a box no good, from addresses of their own: slow heads, held sockets, floods, wrong tokens, and messages that are
-wrong. Each is a thread that goes on until stop()."""
+"""Attackers with addresses of their own: slow heads, held sockets, floods, wrong tokens, and invalid messages. Each is a thread that
+runs until stop()."""
 
 import contextlib
 import http.client
@@ -16,7 +16,7 @@ URIS = ("/map/update", "/state/update", "/markers/update")
 
 
 class Hostile(threading.Thread):
-    """`sources`: the addresses that it comes from."""
+    """`sources`: the attacker's addresses."""
 
     pause = 0.2  # seconds between two turns
 
@@ -40,7 +40,7 @@ class Hostile(threading.Thread):
         return socket.create_connection(self.address, 5, source_address=(next(self.sources), 0))
 
     def post(self, uri, body, token, kind="application/json"):
-        """The status of the answer."""
+        """Returns the status of the answer."""
         connection = http.client.HTTPConnection(*self.address, timeout=10, source_address=(next(self.sources), 0))
         with contextlib.closing(connection):
             connection.request("POST", uri, body, {"Authorization": f"Bearer {token}", "Content-Type": kind})
@@ -53,7 +53,7 @@ class Hostile(threading.Thread):
 
 
 class Holds(Hostile):
-    """Opens sockets, writes `begin` to each and then a byte now and then, and new ones for those that are closed."""
+    """Opens sockets, writes `begin` to each and then a byte now and then, and reopens closed ones."""
 
     begin, sockets = b"", 32
 
@@ -87,7 +87,7 @@ class SlowLogins(Holds):
 
 
 class Guesses(Hostile):
-    """Wrong tokens, as fast as they are answered."""
+    """Sends wrong tokens, each after the answer to the one before."""
 
     pause = 0.02
 
@@ -96,7 +96,7 @@ class Guesses(Hostile):
 
 
 class Hangs(Hostile):
-    """Begins a map with the right token and hangs up in the middle of it."""
+    """Begins a map with a valid token and hangs up within it."""
 
     def turn(self):
         with self.connect() as connection:
@@ -106,7 +106,7 @@ class Hangs(Hostile):
 
 
 class BadMessages(Hostile):
-    """The fuzzers' seeds, each with bytes changed and its end cut off, with the right token: none of them is whole."""
+    """Sends the fuzzers' seeds with changed bytes and a cut end, with a valid token. None of them is valid."""
 
     pause = 0.05
 

@@ -19,7 +19,7 @@ BOX_DARPA = "10.100.1.10"
 
 
 class Network:
-    """`team_net` is the team's /24 by its first three numbers; "10.100.1" overlaps the Command Post's."""
+    """`team_net`: the first three numbers of the team's /24; "10.100.1" overlaps the Command Post's network."""
 
     def __init__(self, team_net="192.168.7"):
         prefix = f"adit{os.getpid()}"
@@ -56,11 +56,11 @@ class Network:
             ip("-n", host, "link", "set", port, "up")
 
     def pull_cable(self, pulled=True):
-        """Takes the Command Post's cable out, or puts it back."""
+        """Unplugs the Command Post's cable, or plugs it in."""
         ip("-n", self.post, "link", "set", "eth0", "down" if pulled else "up")
 
     def exchange_cables(self):
-        """At the box: the team's is in darpa0 then, and the Command Post's in team0; or each in its own again."""
+        """Swaps the cables at the box: the team's is in darpa0 and the Command Post's in team0; or swaps them back."""
         ends = {self.team: [self.team_address], self.post: [SCORING, MAPPING]}
         for host in ends:
             ip("-n", host, "link", "set", "eth0", "name", "moved")
@@ -76,7 +76,7 @@ class Network:
 
     @staticmethod
     def made_in(host, make):
-        """What `make()` makes in the namespace `host`, whichever this thread is in: a socket that is of there."""
+        """The result of `make()` in the namespace `host`, such as a socket of that host."""
         mine = os.open("/proc/thread-self/ns/net", os.O_RDONLY)
         try:
             enter(f"/run/netns/{host}")
@@ -87,7 +87,7 @@ class Network:
 
     @staticmethod
     def connect(host, address, port, within):
-        """A connection that begins in the namespace `host`."""
+        """Opens a connection from the namespace `host`."""
         made = Network.made_in(host, socket.socket)
         try:
             made.settimeout(within)
@@ -119,7 +119,7 @@ def enter(path):
 
 
 def needs_root():
-    """Skips if this process is not root, or only within the namespace of an ordinary user (../alone)."""
+    """Skips if this process is not root, or is root only in the namespace of an ordinary user (../alone)."""
     if os.geteuid() != 0 or _ids()[1] != "0":
         raise unittest.SkipTest("needs root")
 

@@ -1,6 +1,5 @@
-"""Clients that report one thing after another while the box dies again and again, and the verdict on what became of it
-all: each report that any client was told is taken or kept is recorded exactly once, or waits where the operator sees
-it; none is there twice."""
+"""Clients that report artifacts while the box dies again and again, and a check of the result: each report that any client was told
+is accepted or kept is recorded exactly once, or is shown to the operator. No report is recorded twice."""
 
 import collections
 import dataclasses
@@ -12,7 +11,7 @@ import requests
 from programs import patient
 from reporting import submit
 
-# Given up by its client after this long; what it was told by then must be true all the same.
+# Seconds until a client gives up. Answers until then must still be true.
 GIVES_UP = patient(15.0)
 DOUBTED = patient(1.0)  # seconds after which the operator looks at a report in doubt
 ENDS = {"answered", "settled", "rejected", "withdrawn"}
@@ -20,7 +19,7 @@ ENDS = {"answered", "settled", "rejected", "withdrawn"}
 
 @dataclasses.dataclass
 class Posted:
-    """A report, and what its client was told of it."""
+    """A report and the answers to it."""
 
     report: dict
     kept: bool = False
@@ -40,8 +39,8 @@ def at_of(row):
 
 
 class Client(threading.Thread):
-    """Reports one thing after another, each again and again until it is answered 201, or given up. It begins a new one
-    at most each `pause` seconds. `life` tells which of the box's lives this is."""
+    """Posts reports one after the other, each until it is answered 201 or given up. Begins a new one at most every `pause` seconds.
+    `life`: the number of the box's current process."""
 
     def __init__(self, stage, number, patience, pause=0.0, life=lambda: 0):
         super().__init__(daemon=True)
@@ -72,7 +71,7 @@ class Client(threading.Thread):
 
 
 class Operator:
-    """Of a stage: looks at what the Command Post shows as recorded, and judges by that what waits for him."""
+    """An operator. He compares reports in doubt with the Command Post's record and decides about them."""
 
     def __init__(self, stage, looks_after=DOUBTED):
         self.stage, self.looks_after = stage, looks_after
@@ -80,8 +79,8 @@ class Operator:
         self.doubted = {}  # by the number and time of each doubt: when it was first seen, by this machine's clock
 
     def waiting(self):
-        """The held reports, and those that have been in doubt for a while, by their numbers. The box's clock may be ahead of this
-        machine's: it never goes back over a power cut."""
+        """The held reports, and those in doubt for a while, by number. The box's clock may be ahead of this machine's, because it
+        never goes back over a power cut."""
         now = time.monotonic()
         return {
             row["number"]: row
@@ -100,7 +99,7 @@ class Operator:
             self.judges(row, "settle" if done else "send")
 
     def judges(self, row, action):
-        """What he saw is a moment old: a report of which the box found something out since is not his to judge."""
+        """The view may be outdated: if the box has classified a report meanwhile, he leaves it alone."""
         number = row["number"]
         status, said = self.stage.box.judge(number, action)
         if status == 200:
@@ -111,7 +110,7 @@ class Operator:
             raise AssertionError(f"report {number}, {action}: {status} {said}; it is {now['state']}")
 
     def sees_all_at_rest(self):
-        """Nothing moves any more by itself."""
+        """Waits until no report changes by itself."""
         waiting = self.waiting()
         return all(row["state"] in ENDS or row["number"] in waiting for row in self.stage.box.reports())
 
@@ -124,9 +123,9 @@ def end(clients):
 
 
 def last_answers(all_posted, recorded):
-    """Of each life of the box the report that was sent last of those that were answered 201 in it. Before each sending
-    all is flushed, so no other answer can be lost in the cut that ended that life. `recorded`: the Command Post's, in the
-    order in which it took them, which is that of the sendings."""
+    """For each process of the box, the report that was sent last of those answered 201 by it. All data is synced before each sending,
+    so the power cut that ended the process can have lost no other answer. `recorded`: the Command Post's reports in their order,
+    which is the order of the sendings."""
     place = {(made["x"], made["y"]): number for number, made in enumerate(recorded)}
     last = {}
     for posted in all_posted:
@@ -136,9 +135,9 @@ def last_answers(all_posted, recorded):
 
 
 def judge(test, stage, operator, all_posted, cuts=False):
-    """The verdict on `all_posted`, once all is at rest. What was recorded, as a Counter by (x, y), and how many
-    wait. `cuts`: of the last answer before a power cut the bytes may be lost, never what became of the report
-    (dispatch/README): then it is found out. Every other answer is told again byte for byte."""
+    """Checks `all_posted` at rest. Returns the recorded reports as a Counter by (x, y), and the number of waiting ones. `cuts`: a
+    power cut may lose the bytes of the last answer before it, but not the outcome of the report (dispatch/README). Every other answer
+    is repeated byte for byte."""
     all_recorded = stage.post.recorded()
     recorded = collections.Counter((made["x"], made["y"]) for made in all_recorded)
     found_out = last_answers(all_posted, all_recorded) if cuts else []

@@ -1,5 +1,5 @@
-"""A reader of the ledger's files that shares no code with aditd: written from firmware/doors/store/README.md and
-firmware/doors/ledger/README.md. It repairs nothing: a missing record is an error."""
+"""A reader of the ledger's files that shares no code with aditd, written from firmware/doors/store/README.md and
+firmware/doors/ledger/README.md. It repairs no damage: a missing record is an error."""
 
 import re
 import struct
@@ -27,7 +27,7 @@ class Frame(typing.NamedTuple):
 
 
 def frames(file, align):
-    """The file's frames in their order, each once."""
+    """The file's frames in order, each once."""
     data, salt = file.read_bytes(), int(NAME.fullmatch(file.name)[3], 16)
     found, newest, at = {}, 0, 0
     while at + HEADER.size <= len(data):
@@ -44,14 +44,14 @@ def frames(file, align):
 
 
 def base(file_frames):
-    """Of the file's header; nothing if no byte was written behind the file's name."""
+    """The base in the file's header; None if the file is empty."""
     if file_frames and file_frames[0].kind != BEGINS:
         raise Damaged("a file without a header")
     return struct.unpack_from("<5Q", file_frames[0].body)[3] if file_frames else None
 
 
 def snapshot(file):
-    """Its records, and the sequence number up to which it stands for the log."""
+    """The records of a snapshot, and the sequence number up to which it replaces the log."""
     found = frames(file, IN_SNAPSHOT)
     if [each.sequence for each in found] != list(range(len(found))) or found[-1].kind != ENDS:
         raise Damaged(file.name)
@@ -83,7 +83,7 @@ def records(directory):
 
 
 class Values:
-    """The values of a record, one after the other."""
+    """Reads the values of a record one after the other."""
 
     def __init__(self, data):
         self.data, self.at = data, 0
@@ -125,7 +125,7 @@ class Values:
 
 
 def read(directory):
-    """The reports and the runs by number, as they were last; a report's `history` has its steps: (when, state, note)."""
+    """The latest reports and runs by number. A report's `history` has its steps: (when, state, note)."""
     reports, runs = {}, {}
     for kind, body in records(directory):
         if kind != STEPS:

@@ -1,4 +1,4 @@
-"""Maps to send: recorded ones from the folder that ADIT_MAPS names, and generated ones."""
+"""Maps to send: recorded ones from the directory in ADIT_MAPS, and generated ones."""
 
 import dataclasses
 import math
@@ -94,7 +94,7 @@ def read_ply(path):
 
 
 def recorded():
-    """Every recorded map, the largest last; none where no folder of them is named."""
+    """Every recorded map, the largest last; empty if ADIT_MAPS is not set."""
     if not RECORDED:
         return []
     folder = pathlib.Path(RECORDED)
@@ -105,7 +105,7 @@ def recorded():
 
 
 def made_grid(width, height, seed=1):
-    """Rooms and corridors of sorts: runs of free, occupied and unknown cells."""
+    """Generated rooms and corridors: runs of free, occupied and unknown cells."""
     chance = random.Random(seed)
     cells = bytearray()
     while len(cells) < width * height:
@@ -118,7 +118,7 @@ XYZ = [field("x", 0, 7), field("y", 4, 7), field("z", 8, 7)]
 
 
 def made_cloud(points, seed=1):
-    """A tunnel's wall, every point finite."""
+    """The wall of a tunnel. All points are finite."""
     chance = random.Random(seed)
     data = bytearray()
     for _ in range(points):

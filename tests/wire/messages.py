@@ -1,4 +1,4 @@
-"""Messages as team software writes them (every client style that is known from the field), and what they mean."""
+"""Messages as known team software writes them (every client style from the field), and their meaning."""
 
 import base64
 import dataclasses
@@ -13,7 +13,7 @@ import programs
 
 @dataclasses.dataclass(frozen=True)
 class Style:
-    """How a client writes its requests."""
+    """A client's style of writing requests."""
 
     format: str = "json"  # or cbor
     data: str = "plain"  # base64 or byte string; "gzip": the same, compressed; "integers": an array, -1 for unknown
@@ -43,7 +43,7 @@ def header(seconds, style):
 
 
 def map_update(source, name, seconds, style):
-    """The body's dictionary for a Grid or Cloud of maps.py; `name` None leaves it out."""
+    """The body's dictionary for a Grid or Cloud of maps.py. If `name` is None, the name is omitted."""
     message = {"header": header(seconds, style), **source.head(), "data": bulk(source, style)}
     if style.data == "gzip":
         message["compression"] = "gzip"
@@ -90,13 +90,13 @@ def body(message, style):
 
 
 def pieces(content):
-    """A generator, which makes requests send the body chunked."""
+    """A generator, so that `requests` sends the body chunked."""
     for at in range(0, len(content), 30000):
         yield content[at:at + 30000]
 
 
 def post(session, url, uri, message, style, token=programs.TEAM_TOKEN, timeout=60, content=None):
-    """`content`: its bytes, where they are not as body() makes them."""
+    """`content`: the bytes to send instead of body()'s."""
     content = body(message, style) if content is None else content
     if style.chunked:
         content = pieces(content)

@@ -1,5 +1,5 @@
-"""Another host on one of the box's two cables, with a kernel and a MAC address of its own: it comes by the same cable as the host
-that is at its end, as by a switch."""
+"""Another host on one of the box's two cables, with its own kernel and MAC address. It shares the cable with the host at its end, as
+behind a switch."""
 
 import os
 import socket
@@ -14,13 +14,13 @@ ASKS = 1
 
 
 def arp(mac, sender, about, operation=ASKS):
-    """A frame to everybody."""
+    """A broadcast frame."""
     return (EVERYBODY + mac + struct.pack("!HHHBBH", capture.ARP, 1, capture.IPV4, 6, 4, operation) + mac +
             socket.inet_aton(sender) + b"\0" * 6 + socket.inet_aton(about))
 
 
 class Neighbour:
-    """`host` is at the end of the cable of the box's `interface`; here the port is called the same."""
+    """`host` is at the end of the cable of the box's `interface`. The neighbour's port has the same name."""
 
     count = 0
 
@@ -37,7 +37,7 @@ class Neighbour:
         return self
 
     def plug(self, host, port):
-        """Into the cable of another host, too."""
+        """Plugs the neighbour into another host's cable as well."""
         made = f"n{Neighbour.count}{port}"
         hosts.ip("-n", host, "link", "add", "link", "eth0", "name", made, "type", "macvlan", "mode", "bridge")
         hosts.ip("-n", host, "link", "set", made, "netns", self.name, "name", port)
@@ -47,11 +47,11 @@ class Neighbour:
         subprocess.run(["ip", "netns", "delete", self.name], stderr=subprocess.DEVNULL, check=False)
 
     def has(self, address, port=None):
-        """As `ip address add` does: Linux tells nobody."""
+        """Adds an address as `ip address add` does: Linux announces it to no host."""
         hosts.ip("-n", self.name, "address", "add", f"{address}/24", "dev", port or self.port)
 
     def take(self, address):
-        """It has it, and wants to speak with somebody: its kernel asks who that is."""
+        """Has the address and starts to communicate, so its kernel sends an ARP request."""
         self.has(address)
         with capture.inside(self.name), socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as someone:
             someone.sendto(b"?", (address.rpartition(".")[0] + ".77", 9))
@@ -60,7 +60,7 @@ class Neighbour:
         hosts.ip("-n", self.name, "address", "flush", "dev", self.port)
 
     def says(self, sender, about, operation=ASKS, mac=None, port=None):
-        """ARP from that address, in a frame of this host's, or of that MAC address's."""
+        """Sends ARP from that address, with this host's MAC address or the given one."""
         with capture.inside(self.name), capture.open_packets(port or self.port) as packets:
             own = mac or packets.getsockname()[4]
             packets.send(arp(own, sender, about, operation))

@@ -1,4 +1,4 @@
-"""adit-network on the box, with a real systemd-networkd in the box's namespace or with a stand-in for it."""
+"""adit-network on the box, with a real systemd-networkd in the box's namespace or with a stand-in."""
 
 import json
 import os
@@ -13,7 +13,7 @@ import programs
 NETWORKD = "/lib/systemd/systemd-networkd"
 STAND_IN = pathlib.Path(__file__).with_name("stand_in_networkctl")
 
-# What adit-network.path looks for.
+# The files that adit-network.path watches.
 ASKED = ("wanted.json", "word.json", "probe.json", "endpoints.json", "forget.json")
 
 BUS = """<!DOCTYPE busconfig PUBLIC "-//freedesktop//DTD D-Bus Bus Configuration 1.0//EN"
@@ -22,7 +22,7 @@ BUS = """<!DOCTYPE busconfig PUBLIC "-//freedesktop//DTD D-Bus Bus Configuration
 <allow send_destination="*" eavesdrop="true"/><allow eavesdrop="true"/></policy></busconfig>
 """
 
-# A /sys that is only read tells networkd that no udev is to be waited for.
+# A read-only /sys tells networkd that it need not wait for udev.
 START = """set -e
 mount -o remount,bind,ro /sys
 mkdir -p /run/systemd
@@ -43,7 +43,7 @@ def needs_networkd():
 
 
 class Networkd:
-    """A real one, in the box's namespace, which reads folder/networkd."""
+    """A real systemd-networkd in the box's namespace, which reads folder/networkd."""
 
     def __init__(self, network, folder):
         self.network = network
@@ -77,7 +77,7 @@ class Networkd:
         return self.reload().returncode == 0
 
     def reload(self):
-        """networkctl insists on networkd's own namespace."""
+        """networkctl only works in networkd's own namespace."""
         return subprocess.run(["ip", "netns", "exec", self.network.box, self.networkctl, "reload"], capture_output=True,
                               check=False)
 
@@ -89,7 +89,7 @@ class Networkd:
 
 
 class AddressWatch(programs.Program):
-    """adit-network --watch on the box, or on another host that has two such interfaces; by its unit it is no root."""
+    """adit-network --watch on the box, or on another host with two such interfaces. As in its unit, it does not run as root."""
 
     def __init__(self, network, folder, host=None):
         self.folder = folder
@@ -98,13 +98,13 @@ class AddressWatch(programs.Program):
         programs.wait_until((folder / "taken.json").exists, "adit-network --watch")
 
     def taken(self, what="taken"):
-        """{("team0", "192.168.7.11"): mac}; or what is "exchanged"."""
+        """The conflicts as {("team0", "192.168.7.11"): mac}, or another member such as "exchanged"."""
         told = json.loads((self.folder / "taken.json").read_text())
         return {(each["interface"], each["address"]): each["mac"] for each in told[what]}
 
 
 class AditNetwork:
-    """adit-network as its units run it: started whenever something is asked for, one at a time."""
+    """Runs adit-network as its units do: once per request, one at a time."""
 
     def __init__(self, network, folder, networkctl=None):
         self.network, self.folder, self.wanted = network, folder, folder / "wanted"
@@ -135,7 +135,7 @@ class AditNetwork:
         return self.process.wait(programs.patient(20))
 
     def ask(self, file, **members):
-        """As aditd does: by a rename. Gives the request's nonce."""
+        """Writes a request with a rename, as aditd does. Returns its nonce."""
         nonce = secrets.token_hex(16)
         self.put(file, **{"nonce": nonce, **members})
         return nonce
@@ -170,14 +170,14 @@ class AditNetwork:
         return (self.folder / "adit-network.log").read_text()
 
     def addresses(self, interface):
-        """The interface's IPv4 addresses but for link-local ones: ["192.168.7.11/24"]."""
+        """The interface's IPv4 addresses without link-local ones: ["192.168.7.11/24"]."""
         shown = subprocess.run(["ip", "-n", self.network.box, "-4", "-j", "address", "show", "dev", interface],
                                capture_output=True, check=True)
         return [f"{each['local']}/{each['prefixlen']}" for link in json.loads(shown.stdout or "[]")
                 for each in link.get("addr_info", []) if each["scope"] == "global"]
 
     def routes(self, table="230"):
-        """{"10.100.2.201": ("10.100.1.200", "darpa0")}; 230 is the Command Post's own table."""
+        """The routes of a table as {"10.100.2.201": ("10.100.1.200", "darpa0")}; table 230 is the Command Post's."""
         shown = subprocess.run(["ip", "-n", self.network.box, "-4", "-j", "route", "show", "table", table], capture_output=True,
                                check=False)
         return {each["dst"]: (each.get("gateway"), each["dev"]) for each in json.loads(shown.stdout or "[]")}

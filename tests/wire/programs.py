@@ -32,7 +32,7 @@ STOPS_WITHIN = patient(30.0)  # seconds: on a busy machine more than TimeoutStop
 
 
 def patient_fault(fault):
-    """Of "answer-after=2" the seconds, times ADIT_PATIENCE; retry-after takes whole ones alone."""
+    """Multiplies the seconds in "answer-after=2" by ADIT_PATIENCE. Not in retry-after, which takes only whole seconds."""
     fault = re.sub(r"(?<=(?:rd|er)-after=)[\d.]+", lambda found: f"{patient(float(found[0])):g}", fault)
     return re.sub(r"(?<=retry-after=)\d+", lambda found: str(math.ceil(patient(int(found[0])))), fault)
 
@@ -47,7 +47,7 @@ def secrets_folder(folder):
 
 
 class Program:
-    """A process in a namespace, its log kept for when a test fails."""
+    """A process in a namespace. Its log is kept and shown if a test fails."""
 
     def __init__(self, network, host, log, command):
         self.log = log
@@ -55,7 +55,7 @@ class Program:
             self.process = network.start(host, *command, stdout=output, stderr=output)
 
     def stop(self, number=signal.SIGTERM, within=STOPS_WITHIN):
-        """Its exit status."""
+        """Ends it and returns its exit status."""
         if self.process.poll() is None:
             self.process.send_signal(number)
         try:
@@ -70,8 +70,8 @@ class Program:
 
 
 class CommandPost(Program):
-    """adit-rehearsal on both of its addresses; what it received is in requests(). Another one has other ports, and a
-    folder of its own below `folder`."""
+    """adit-rehearsal on both of its addresses. Received requests are in requests(). A second one has other ports, and a directory of
+    its own below `folder`."""
 
     def __init__(self, network, folder, *options, name="", port=PORT, control_port=CONTROL_PORT):
         self.transcript = folder / name / "transcript"
@@ -85,7 +85,7 @@ class CommandPost(Program):
         wait_until(lambda: "adit-rehearsal: scoring" in self.said(), "adit-rehearsal to listen")
 
     def control(self, request, body=None):
-        """Asks the control port: control("POST /new-run", {"run": "2"})."""
+        """Sends a request to the control port: control("POST /new-run", {"run": "2"})."""
         method, _, path = request.partition(" ")
         connection = http.client.HTTPConnection("127.0.0.1", self.control_port)
         connection.sock = self.network.connect(self.network.post, "127.0.0.1", self.control_port, patient(30))
@@ -98,12 +98,12 @@ class CommandPost(Program):
         return said
 
     def will(self, *faults, **of_others):
-        """What goes wrong with the next requests: will("drop", "ok", status=["500"]). Its seconds are multiplied by ADIT_PATIENCE."""
+        """Orders faults of the next requests: will("drop", "ok", status=["500"]). Seconds are multiplied by ADIT_PATIENCE."""
         self.control("POST /faults", {aim: [patient_fault(fault) for fault in given]
                                       for aim, given in {"reports": faults, **of_others}.items()})
 
     def recorded(self, report=None):
-        """The reports that it recorded for its client; all, or those that are as `report` is."""
+        """The reports that it recorded for its client: all, or those equal to `report`."""
         found = [made for made in self.control("GET /record")["reports"] if made["by"] == "client"]
         return [made for made in found if report is None or all(made[name] == report[name] for name in FIELDS)]
 
@@ -120,7 +120,7 @@ class CommandPost(Program):
 
 
 class Page:
-    """What is asked of a box as its page asks it. Who is one has `network` and `port`."""
+    """Requests of the box's page. A subclass has `network` and `port`."""
 
     port = PORT
 
@@ -129,11 +129,11 @@ class Page:
         return f"http://{self.network.box_address}:{self.port}"
 
     def ask(self, request, headers=(), body=None, token=TEAM_TOKEN, timeout=30):
-        """Asks what the page asks: ask("GET /adit/run"). Its status, and what its JSON says."""
+        """Sends a request of the page: ask("GET /adit/run"). Returns the status and the parsed JSON."""
         return self._answer(request, headers, body, token, timeout)[:2]
 
     def insist(self, request, headers=(), body=None, token=TEAM_TOKEN, timeout=30):
-        """As ask(), again while the change before is being applied: that is answered 409 with Retry-After."""
+        """As ask(), but retries while an earlier change is being applied, which is answered 409 with Retry-After."""
         def answer():
             status, said, again_after = self._answer(request, headers, body, token, timeout)
             return None if status == 409 and again_after else (status, said)
@@ -151,7 +151,7 @@ class Page:
             return answer.status, json.loads(answer.read()), answer.getheader("Retry-After")
 
     def apply(self, request, body):
-        """Asks for a change of what it runs with, as ask() does, and waits until it is applied, or reverted."""
+        """Requests a change of the configuration as ask() does, and waits until it is applied or reverted."""
         status, said = self.ask(request, body=body)
         if status != 200:
             raise AssertionError(f"{request}: {status} {said}")
@@ -165,21 +165,21 @@ class Page:
             return False
 
     def save(self, change):
-        """Saves settings that `change` was called with. What the answer says."""
+        """Changes the settings with `change` and saves them. Returns the parsed answer."""
         held = self.ask("GET /adit/settings")[1]
         change(held["settings"])
         return self.apply("POST /adit/settings", {"settings": held["settings"], "base": held["tag"]})
 
     def reports(self):
-        """All reports as the page shows them, oldest first."""
+        """All reports on the page, oldest first."""
         return self.ask("GET /adit/reports")[1]
 
     def alarms(self):
-        """The ids of the alarms that call the operator, which are those that do not pass by themselves."""
+        """The ids of the alarms that call the operator, without temporary ones."""
         return {alarm["id"] for alarm in self.ask("GET /adit/run")[1]["alarms"] if alarm["severity"] != "wait"}
 
     def judge(self, number, action):
-        """The operator's word on a report: send, done, withdraw or resubmit. Its status, and what its JSON says."""
+        """The operator's decision on a report: send, done, withdraw or resubmit. Returns the status and the parsed JSON."""
         return self.ask(f"POST /adit/reports/{number}/{action}", {"Content-Type": "application/json"})
 
     def knows_the_run(self):
@@ -187,7 +187,7 @@ class Page:
 
 
 def log_in(page, password):
-    """The headers that a browser sends from then on, as the operator."""
+    """Logs in as the operator and returns the headers that the browser then sends."""
     connection = http.client.HTTPConnection(page.network.box_address, page.port, timeout=patient(20))
     with contextlib.closing(connection):
         connection.request("POST", "/adit/login", json.dumps({"password": password}),
@@ -200,7 +200,7 @@ def log_in(page, password):
 
 
 class Box(Program, Page):
-    """aditd between the two."""
+    """aditd between the team and the Command Post."""
 
     def __init__(self, network, folder, **overrides):
         self.network, self.folder = network, folder
@@ -215,7 +215,7 @@ class Box(Program, Page):
         wait_until(self._answers, "aditd to listen")
 
     def on_disk(self, member="state"):
-        """This member of each report in the ledger's files, oldest first."""
+        """A member of each report in the ledger's files, oldest first."""
         reports = wait_until(lambda: [ledger_files.read(self.state / "ledger")[0]], "the ledger's files to stay",
                              tolerates=FileNotFoundError)[0]
         return [reports[number][member] for number in sorted(reports)]
@@ -231,8 +231,8 @@ class Box(Program, Page):
 
 
 def settings(network, overrides):
-    """Fast rates, so that tests do not wait for the ICD's one request a second; `overrides` by dotted path. Those in milliseconds are
-    multiplied by ADIT_PATIENCE, up to the most that a setting may be."""
+    """Settings with fast rates, so that tests do not wait for the ICD's one request per second; `overrides` by dotted path.
+    Milliseconds are multiplied by ADIT_PATIENCE, up to the limit of the setting."""
     rates = {f"{kind}_hz": 200 for kind in ("reports", "status", "map", "state", "markers")}
     document = {
         "version": 1,
@@ -254,10 +254,10 @@ def settings(network, overrides):
 
 
 class Stage:
-    """Network, Command Post and box together, and a folder for their files."""
+    """Network, Command Post and box, and a directory for their files."""
 
     def __init__(self, team_net="192.168.7", post_options=("--rate", "0"), disk=None, **overrides):
-        """`disk`: the size of a file system of its own for the state folder ("2m")."""
+        """`disk`: the size of a separate file system for the state directory ("2m")."""
         self.disk = disk
         self.network = hosts.Network(team_net)
         self.post_options, self.overrides = post_options, overrides

@@ -24,7 +24,7 @@ MISSING = object()
 
 
 def changed(message, path, value):
-    """A copy with the member at `path` ("msg.info.width") set, or taken out."""
+    """A copy with the member at `path` ("msg.info.width") set or removed."""
     made = copy.deepcopy(message)
     at = made
     *folders, last = [int(word) if word.isdigit() else word for word in path.split(".")]
@@ -100,7 +100,7 @@ UTF_16 = STATE_BODY.encode("utf-16")
 POSE = STATE["poses"][0]
 TWO_BAD = json.dumps({"poses": [{**POSE, "name": 1}, POSE, {**POSE, "position": {}}]})
 
-# (row title, method, URI, body, headers in addition)
+# (row title, method, URI, body, additional headers)
 REQUESTS = [
     ("a wrong or missing token", "POST", "/state/update", STATE_BODY, {"Authorization": "Bearer wrong"}),
     ("a URI that the ICD does not have", "POST", "/map/updates", "{}", {}),
@@ -123,7 +123,8 @@ REQUESTS = [
     ("`Adit-Resubmit: maybe`", "POST", "/api/artifact_reports", json.dumps(REPORT), {"Adit-Resubmit": "maybe"}),
 ]
 
-# Refusals that need a crowd, a full disk or a stop, and have tests of their own: (row title, status, the code's sentence).
+# Rejections that need many clients, a full disk or a stop, and have their own tests: (row title, status, the code's
+# sentence).
 ELSEWHERE = [
     ("a map, if the queue is full", 429, "the queue is full: N maps, N MB; this map was not accepted, send it again later"),
     ("markers, if the queue is full", 429,
@@ -187,7 +188,7 @@ def of_reports():
 
 
 def sentence(answer):
-    """The sentence, with "(why)" for a reason in brackets, which differs each time."""
+    """The sentence, with "(why)" in place of a varying reason in parentheses."""
     return re.sub(r"\((?!the setting)[^)]*\)", "(why)", answer.json()).partition(": no route")[0]
 
 

@@ -1,5 +1,5 @@
-"""Runs a module of tests: run.py [DIRECTORY/]MODULE[.CLASS] [ARGUMENTS]. It says of each test that is skipped why ("... skipped 'reason'").
-Exit status 77 if all of it was skipped, as ctest is told; 1 if it has no tests."""
+"""Runs a module of tests: run.py [DIRECTORY/]MODULE[.CLASS] [ARGUMENTS]. Prints the reason of each skipped test ("... skipped
+'reason'"). Exits with 77 if all tests were skipped, which ctest expects, and with 1 if there are none."""
 
 import os
 import pathlib

@@ -1,5 +1,5 @@
-"""Other hosts that take the box's addresses while it uses them, and adit-network --watch, which says so. Who counts, and when, is in
-applier/takers_test and applier/exchanged_test."""
+"""Other hosts take the box's addresses while the box uses them, and adit-network --watch reports it. Rules: applier/takers_test and
+applier/exchanged_test."""
 
 import json
 import pathlib
@@ -35,7 +35,7 @@ class AddressWatch(unittest.TestCase):
         wait_until(lambda: (interface, address) not in self.watch.taken(), f"{address} to be free")
 
     def asked(self):
-        """Whom the box has asked for on darpa0."""
+        """The addresses for which the box has sent ARP requests on darpa0."""
         return [frame.arp[1] for frame in self.heard.frames if frame.is_arp and frame.arp[0] == neighbour.NOBODY]
 
     def test_host_that_uses_our_address_is_a_conflict(self):

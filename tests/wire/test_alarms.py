@@ -1,5 +1,5 @@
-"""Alarms of the three kinds of causes: what the box cannot do, a cable, the Command Post. Each condition is made true on the real programs, is seen
-everywhere (alarming.py), and is seen to go. The other conditions are in test_alarms_*.py; their words in tests/alarms/conditions_test."""
+"""Alarms of three kinds of causes: the box itself, a cable, the Command Post. Each condition is made true with the real programs, is
+seen everywhere (alarming.py), and ends. Other conditions: test_alarms_*.py. Their texts: tests/alarms/conditions_test."""
 
 import signal
 

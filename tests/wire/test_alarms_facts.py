@@ -1,5 +1,5 @@
-"""Each source of facts about alarms reaches /adit/run: files of other programs, reports, clients, messages that are rejected, a full disk.
-The rules and the words of each alarm are in tests/alarms/conditions_test."""
+"""Each source of facts for alarms reaches /adit/run: files of other programs, reports, clients, rejected messages, a full disk. Rules
+and texts of alarms: tests/alarms/conditions_test."""
 
 import json
 import os
@@ -101,7 +101,7 @@ class Facts(WithAlarms):
         self.goes(stage, "messages_rejected")
 
     def test_the_disk_is_nearly_worn_out(self):
-        """As the kernel tells it of an eMMC at each boot."""
+        """The life-time estimate of an eMMC, as the kernel logs it at each boot."""
         stage = self.stage()
         device = os.stat(stage.box.state).st_dev
         disk = stage.folder / "block" / f"{os.major(device)}:{os.minor(device)}" / "device"
@@ -117,7 +117,7 @@ class Facts(WithAlarms):
                     self.assertIsNone(self.alarm(stage, "disk_health"))
 
     def test_three_faults_put_the_queue_aside(self):
-        """As if a queued map ended each process: the next one leaves it alone, and reports flow."""
+        """As if a queued map ended each process: the next process leaves it alone, and reports are sent."""
         runtime = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory(prefix="adit-runtime-")))
         self.enterContext(mock.patch.dict(os.environ, RUNTIME_DIRECTORY=str(runtime)))
         stage = self.stage()
@@ -136,7 +136,7 @@ class Facts(WithAlarms):
         self.assertIsNone(self.alarm(stage, "queue_put_aside"))
 
     def test_maps_and_states_cannot_be_kept(self):
-        """In a runtime folder that is a file system of its own, as with systemd."""
+        """The runtime directory is a separate file system, as with systemd."""
         runtime = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory(prefix="adit-runtime-")))
         subprocess.run(["mount", "-t", "tmpfs", "-o", "size=4m", "adit-wire", runtime], check=True)
         self.addCleanup(subprocess.run, ["umount", "--lazy", runtime], check=False)

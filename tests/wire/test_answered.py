@@ -1,6 +1,6 @@
-"""What is answered 200 arrives: the service is stopped, killed, or a setting is saved at the very instant of an answer,
-while five robots send grids and clouds, states, markers and reports, as fast as they can. ADIT_ENDS says how often; a
-count is printed."""
+"""A message that was answered 200 arrives. The service is stopped, killed, or a setting is saved exactly at an answer, while five
+robots send grids, clouds, states, markers and reports as fast as possible. ADIT_ENDS sets the number of repetitions; counts are
+printed."""
 
 import base64
 import collections
@@ -34,12 +34,12 @@ TURNED = {"x": 0.0, "y": 0.0, "z": 0.6, "w": 0.8}
 
 
 def said_of(data):
-    """As the Command Post's transcript tells of a map's data."""
+    """The identity of a map's data in the Command Post's transcript."""
     return len(data), zlib.crc32(data)
 
 
 class Bodies:
-    """The large maps as they go over the wire, made once; only the name differs."""
+    """The bytes of the large maps, made once; only the name differs."""
 
     def __init__(self):
         grown = maps.made_grid(CELLS, GROWN)
@@ -50,18 +50,18 @@ class Bodies:
 
     @staticmethod
     def parts_of(grid):
-        """Its message without its cells, its cells, and what is to arrive of them."""
+        """The message without its cells, its cells, and the identity of the data that must arrive."""
         message = messages.map_update(grid, "NAME", 1.0, JSON)
         message["msg"]["data"] = "DATA"
         return json.dumps(message), base64.b64encode(grid.data).decode(), said_of(grid.data)
 
     def grids_of(self, name):
-        """What a robot posts of its grid: the first, and then one that covers it."""
+        """The posts of a robot: its grid, and then a grid that covers it."""
         return [(name, gzip.compress(message.replace("NAME", name).replace("DATA", cells).encode(), 1), PACKED, data)
                 for message, cells, data in self.grids]
 
     def cloud_of(self, name):
-        """One whose points are its own: every thousandth is another than in any other cloud."""
+        """A cloud with unique points: every thousandth point differs from those of all other clouds."""
         own = random.Random(name).randbytes(12).translate(FINITE)
         points = bytearray(self.points)
         for byte in range(12):
@@ -72,7 +72,7 @@ class Bodies:
 
 
 class Round:
-    """What the robots of one life of the service send, and what of it was answered 200."""
+    """The messages of the robots during one process of the service, and those that were answered 200."""
 
     def __init__(self, stage, number, bodies):
         self.stage, self.number = stage, number
@@ -88,7 +88,7 @@ class Round:
         self.threads.append(threading.Thread(target=self.send_reports, daemon=True))
 
     def post(self, session, uri, content, style):
-        """The status; None where nothing was answered."""
+        """The status; None without an answer."""
         try:
             answer = session.post(self.stage.box.url + uri, data=content, headers=messages.headers(style), timeout=30)
         except requests.RequestException:
@@ -132,7 +132,7 @@ class Round:
                     self.accepted["report"][x] = 1
 
     def go(self, answers, end):
-        """Ends the service at that many answers to maps."""
+        """Ends the service after that many answers to maps."""
         for thread in self.threads:
             thread.start()
         for _ in range(answers):
@@ -162,7 +162,7 @@ class Answered(unittest.TestCase):
         self.assertEqual(status, 200, said)
 
     def look(self):
-        """What the Command Post has taken until now."""
+        """The messages that the Command Post has accepted so far."""
         for request in self.stage.post.requests():
             if request["status"] != 200:
                 continue
@@ -178,13 +178,13 @@ class Answered(unittest.TestCase):
         self.arrived["report"] = collections.Counter(made["x"] for made in self.stage.post.recorded())
 
     def lost(self, kind, accepted):
-        """Of each name the newest that was answered, or something newer, must be there; a map byte for byte."""
+        """For each name, the newest answered message or a newer one must have arrived; a map byte for byte."""
         if kind == "map":
             return {name: data for name, data in accepted.items() if not self.has_map(name, data)}
         return {name: value for name, value in accepted.items() if self.arrived[kind].get(name, -1) < value}
 
     def has_map(self, name, data):
-        """It, or the larger grid that its robot sent after it and that was not answered."""
+        """The map, or the larger grid that its robot sent after it without an answer."""
         arrived = self.arrived["map"].get(name, (0, 0))
         return arrived == data or (name.startswith("g") and arrived == self.bodies.grids[-1][-1])
 

@@ -1,5 +1,6 @@
-"""The pages for client authors (firmware/doors/intake/clients) are true: the commands and the Python of README.md are run, its C++ is in
-the example, which test_clients.py runs, and each refusal of refusals.md is made. ADIT_WRITE=1 writes the refusals into that page."""
+"""The pages for client authors (firmware/doors/intake/clients) are correct: the commands and the Python of README.md are run, its C++
+is in the example, which test_clients.py runs, and each rejection of refusals.md is made. ADIT_WRITE=1 writes the rejections into that
+page."""
 
 import doctest
 import os
@@ -18,7 +19,7 @@ SOURCE = pathlib.Path(os.environ["ADIT_SOURCE"])
 SHOWN = SOURCE / "firmware/doors/intake/clients"
 PAGE, REFUSALS = SHOWN / "README.md", SHOWN / "refusals.md"
 BLOCK = re.compile(r"^```(\w*)\n(.*?)^```", re.S | re.M)
-# What differs each time: when, how long, where.
+# Parts that differ each time: time, duration, place.
 VARIES = [(r"Date: [^\n]*", "Date:"), (r"Age: \d+", "Age:"), (r"Content-Length: \d+", "Content-Length:"),
           (r'"run_clock":[\d.]+', '"run_clock":'), (r'"submitted_datetime":"[^"]*"', '"submitted_datetime":')]
 
@@ -41,7 +42,7 @@ class ClientPage(unittest.TestCase):
         cls.blocks = BLOCK.findall(cls.text)
 
     def test_commands_and_python_lines_give_the_shown_answers(self):
-        """In the page's order, on one stage: each goes on from what those before it did."""
+        """In the page's order, on one stage, because each command continues from the ones before."""
         with Stage(**{**QUICK, "reports__answer_within_ms": 20000}) as stage:
             began(stage)
             names = {"ADIT": stage.box.url, "TOKEN": programs.TEAM_TOKEN}

@@ -1,5 +1,5 @@
-"""The clients that are shown to teams (firmware/doors/intake/clients), in Python and in C++, against the real programs: whatever
-becomes of an answer, of the service or of the Command Post, each ends with what is true, and nothing is recorded twice."""
+"""The example clients for teams (firmware/doors/intake/clients), in Python and C++, against the real programs. Whatever happens to an
+answer, the service or the Command Post, each client ends with the truth, and no report is recorded twice."""
 
 import json
 import os
@@ -32,7 +32,7 @@ def words(made):
 
 
 def refused_connections(stage):
-    """How many of the Command Post's host found nobody who listens."""
+    """The number of resets by the Command Post's host because no program listened."""
     lines = subprocess.run(["ip", "netns", "exec", stage.network.post, "cat", "/proc/net/snmp"], check=True, capture_output=True,
                            text=True).stdout.splitlines()
     names, counts = (line.split() for line in lines if line.startswith("Tcp:"))
@@ -40,7 +40,7 @@ def refused_connections(stage):
 
 
 class Run(programs.Program):
-    """A client that runs on the host `at`, and is ended with the test."""
+    """A client on the host `at`, which ends with the test."""
 
     def __init__(self, test, stage, name, given, at=None, url=None, token=programs.TEAM_TOKEN):
         command = ["env", f"ADIT_TOKEN={token}", *CLIENTS[name], url or stage.box.url, *given]
@@ -49,7 +49,7 @@ class Run(programs.Program):
         test.addCleanup(self.stop, signal.SIGKILL)
 
     def ended(self):
-        """Its exit status, and what it said."""
+        """Its exit status and its output."""
         return self.process.wait(120), self.said()
 
 
@@ -108,7 +108,7 @@ class Clients(unittest.TestCase):
 
 
 class Bare(unittest.TestCase):
-    """The same clients at the Command Post itself, from its own host."""
+    """The same clients directly at the Command Post, on its host."""
 
     def run_there(self, stage, name, given, at="scoring", port=programs.PORT):
         address, token = {"scoring": (hosts.SCORING, programs.SCORING_TOKEN),

@@ -1,5 +1,6 @@
-"""A box without a clock of its own: it goes on from the last time known, its stamps never go back, and its clock is set on a
-word of the operator. Who may set it is in clock/source_test and admin/clock_setting_test. adit-clock is the real one, without the right to set this machine's clock."""
+"""A box without a battery clock: it continues from the last known time, its stamps never go back, and the operator sets its clock.
+Who may set it: clock/source_test and admin/clock_setting_test. The real adit-clock runs, without permission to set this machine's
+clock."""
 
 import json
 import os
@@ -24,7 +25,7 @@ PASSWORD = "correct horse battery"
 
 
 class Ahead:
-    """A time of day for the programs that are started in `env`."""
+    """A simulated time of day for programs started with `env`."""
 
     def __init__(self, folder):
         self.file = folder / "ahead"
@@ -34,7 +35,7 @@ class Ahead:
         self.env = {"LD_PRELOAD": str(library), "ADIT_CLOCK_AHEAD": str(self.file)}
 
     def set(self, seconds):
-        """In place: the programs see it at once."""
+        """Written in place, so the programs see it at once."""
         with self.file.open("r+b" if self.file.exists() else "wb") as file:
             file.write(struct.pack("d", seconds))
 
@@ -44,7 +45,7 @@ class Clock(unittest.TestCase):
         self.stage = self.enterContext(Stage())
 
     def set_clock(self, chip=None):
-        """adit-clock, as its path unit would start it. `chip`: what a clock with a battery shows."""
+        """Runs adit-clock as its path unit does. `chip`: the time of a clock with a battery."""
         for name in ("clock", "chip"):
             (self.stage.folder / name).mkdir(exist_ok=True)
         if chip is not None:
@@ -59,14 +60,14 @@ class Clock(unittest.TestCase):
         return self.stage.box.ask("GET /adit/clock")[1]
 
     def lose_power(self, known):
-        """The machine starts again, in memory there is nothing, and the last time known is another than it has."""
+        """Boots the machine: memory is lost, and the last known time is changed."""
         self.assertEqual(self.stage.box.stop(), 0)
         shutil.rmtree(self.stage.box.state / "journal")
         (self.stage.box.state / "stamps").write_text(f"{known + 30:.6f}\n{known:.6f}\n")
         self.stage.restart_box()
 
     def post_state(self):
-        """The stamp that the Command Post got."""
+        """Posts a pose and returns the stamp that the Command Post got."""
         before = len(self.stage.post.requests("/state/update"))
         state = {"poses": [{"name": "R1", "position": {"x": float(before), "y": 0.0, "z": 0.0},
                             "orientation": {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0}}],
@@ -100,7 +101,7 @@ class Clock(unittest.TestCase):
 
 
 class Step(unittest.TestCase):
-    """Somebody sets the clock by years, either way, while all goes on."""
+    """The clock is set by years, forward and back, during a run."""
 
     def setUp(self):
         if not shutil.which("clang-19"):
@@ -114,7 +115,7 @@ class Step(unittest.TestCase):
         return self.stage.box.ask("GET /adit/run")[1]
 
     def ages(self):
-        """How long ago all is that the page shows with an age or on its time bar, by name."""
+        """Each age on the page and its time bar, by name."""
         box, run = self.stage.box, self.view()
         times = {"run_clock": run["run_clock"] and run["now"] - run["run_clock"]["age"]}
         times |= {f"robot {row['name']}": row["at"] for row in run["robots"]}

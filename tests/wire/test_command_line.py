@@ -1,4 +1,4 @@
-"""`adit`, beside a real aditd and a real Command Post: at a terminal, in a pipe, and for scripts. Each command by itself is in tests/cli."""
+"""`adit` with a real aditd and a real Command Post: at a terminal, in a pipe, and in scripts. Single commands: tests/cli."""
 
 import contextlib
 import fcntl
@@ -26,12 +26,12 @@ def words(stage, *said):
 
 
 def adit(stage, *said):
-    """Without a terminal, and with nobody to ask."""
+    """Runs `adit` without a terminal, so that it cannot ask."""
     return subprocess.run(words(stage, *said), stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=60, env=UTF8)
 
 
 class Terminal:
-    """`adit` at a terminal of its own, and what it drew there."""
+    """`adit` at its own terminal, and its output there."""
 
     def __init__(self, stage, *said, env=UTF8):
         self.ours, theirs = pty.openpty()
@@ -78,7 +78,7 @@ class Case(unittest.TestCase):
 
 class InDoubt(Case):
     def in_doubt(self, stage, report=REPORT):
-        """One of which nobody can tell. Its number."""
+        """Makes a report that stays in doubt. Returns its number."""
         stage.post.will("other-sender,record-then-drop")
         number = int(submit(stage, report).headers["Adit-Report"])
         wait_until(lambda: f"report_in_doubt:{number}" in stage.box.alarms(), "the report to be in doubt")
@@ -156,7 +156,7 @@ class ForScripts(Case):
 
 
 class Letters(Case):
-    """A name that is not of ASCII, from a robot's message to the log and to `adit`."""
+    """A non-ASCII name, from a robot's message to the log and to `adit`."""
 
     def test_read_back_the_same(self):
         with self.stage() as stage:

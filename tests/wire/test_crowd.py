@@ -1,5 +1,5 @@
-"""Strangers who hold sockets, and stations that open more connections than they may: who shows a token is served meanwhile,
-and what finds no room is told so."""
+"""Unauthenticated clients that hold sockets, and stations with more connections than allowed. Clients with a token are still served,
+and rejected connections get the reason."""
 
 import contextlib
 import itertools
@@ -21,7 +21,7 @@ TOKEN = f"Authorization: Bearer {programs.TEAM_TOKEN}\r\n"
 
 
 def begun(box, source, path, length, headers=""):
-    """A connection in the middle of a POST of so many bytes."""
+    """A connection in the middle of a POST of that many bytes."""
     connection = socket.create_connection((box.network.box_address, box.port), 30, source_address=(source, 0))
     connection.sendall(f"POST {path} HTTP/1.1\r\nHost: {box.network.box_address}\r\nContent-Type: application/json\r\n{headers}"
                        f"Content-Length: {length}\r\n\r\n{{".encode())
@@ -29,8 +29,7 @@ def begun(box, source, path, length, headers=""):
 
 
 class Strangers(threading.Thread):
-    """64 sockets from four addresses, each in a log-in of which a byte comes now and then; and new ones for those that are
-    closed."""
+    """64 sockets from four addresses, each in a log-in that gets a byte now and then. Closed ones are reopened."""
 
     def __init__(self, box):
         super().__init__(daemon=True)

@@ -1,4 +1,4 @@
-"""A disk that is full, and a ledger that is gone or cannot be read: no report is accepted that is not written, and it is said."""
+"""A full disk, and a missing or unreadable ledger: no unwritten report is accepted, and the client gets the reason."""
 
 import shutil
 import signal
@@ -20,7 +20,7 @@ BRIEF = {**QUICK, "reports__answer_within_ms": 1000}
 
 class Disk(unittest.TestCase):
     def until_refused(self, stage):
-        """Posts one report after another until the disk takes no more. The number of those that were accepted."""
+        """Posts reports until the disk is full. Returns the number of accepted ones."""
         for number in range(1, 1500):
             answer = submit(stage, another(number))
             if answer.status_code != 201:

@@ -1,5 +1,5 @@
-"""Whatever becomes of a report's answer: it is recorded exactly once, and its clients get a true answer. A story for each outcome;
-which fault has which is in uplink/doubt_test, dispatch/report_verdict_test and dispatch/reports_doubt_test."""
+"""Whatever happens to the answer to a report, the report is recorded exactly once, and its clients get a true answer. One story per
+outcome; which fault has which outcome: uplink/doubt_test, dispatch/report_verdict_test and dispatch/reports_doubt_test."""
 
 import json
 import time
@@ -11,8 +11,8 @@ from reporting import QUICK, REPORT, another, at_once, began, insist, submit
 
 class ExactlyOnce(unittest.TestCase):
     def played(self, fault):
-        """Two clients post the same report, one that waits and one that hangs up after 300 ms and tries again, while
-        this fault befalls it. The answer, which is the same for both, and the stage's record of it."""
+        """Two clients post the same report during this fault. One waits, the other hangs up after 300 ms and retries. Returns their
+        common answer and the stage's record."""
         with Stage(**QUICK) as stage:
             began(stage)
             named = {**another(9), "name": "spot1"}
@@ -34,7 +34,7 @@ class ExactlyOnce(unittest.TestCase):
             return waited, recorded[0]
 
     def is_true(self, answer, record):
-        """What a reconciled answer says."""
+        """Checks the content of a reconciled answer."""
         self.assertEqual(answer.headers["Adit-Reconciled"], "yes")
         said = answer.json()
         for name in ("x", "y", "z", "type", "team", "run", "report_status", "score_change"):

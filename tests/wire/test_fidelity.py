@@ -1,4 +1,4 @@
-"""Every value of every kind of message, on both sides: what goes up says what came in, and nothing else."""
+"""Every value of every kind of message arrives unchanged, and no other value does."""
 
 import copy
 import itertools
@@ -21,13 +21,13 @@ POSE = {"position": POSITION, "orientation": TURNED}
 NOWHERE = {"position": dict.fromkeys("xyz", 0.0), "orientation": maps.IDENTITY}
 JSON, CBOR, CBOR_IN_GZIP = Style(), Style("cbor"), Style("cbor", body="gzip")
 
-# struct's letter, and a value that has a fraction where there can be one, by PointField's datatype.
+# struct's letter and an example value for each datatype of PointField, with a fraction if possible.
 DATATYPES = {1: ("b", -5), 2: ("B", 250), 3: ("h", -300), 4: ("H", 60000), 5: ("i", -70000), 6: ("I", 4000000000),
              7: ("f", 0.5), 8: ("d", 1e-3)}
 
 
 def as_bytes(value):
-    """Every text as a byte string, as CBOR libraries of Python 2 write it."""
+    """Writes every text as a byte string, as CBOR libraries of Python 2 do."""
     if isinstance(value, str):
         return value.encode()
     if isinstance(value, dict):
@@ -36,7 +36,7 @@ def as_bytes(value):
 
 
 def as_whole_numbers(value):
-    """Every 11.0 as 11, as programs without types write it."""
+    """Writes every 11.0 as 11, as untyped programs do."""
     if isinstance(value, dict):
         return {key: as_whole_numbers(member) for key, member in value.items()}
     if isinstance(value, list):
@@ -45,13 +45,13 @@ def as_whole_numbers(value):
     return int(value) if whole else value
 
 
-# Not 256: cbor2 would write references to texts under it.
+# Not 256, because cbor2 would write references to texts for it.
 REMARKS = (0, 1, 21, 22, 23, 28, 32, 33, 34, 35, 36, 39, 41, 64, 68, 72, 258, 259, 275, 55799)
 OTHER_TAGS = (2, 3, 4, 5, 6, 16, 19, 20, 24, 25, 29, 31, 37, 63, 65, 85, 55798, 55800, 2**40)
 
 
 def tagged(value, tags):
-    """Each value under the next tag that only remarks on it, and a key now and then."""
+    """Puts each value under the next tag that only annotates, and sometimes a key."""
     if isinstance(value, dict):
         value = {tagged(key, tags) if number % 3 == 2 else key: tagged(member, tags)
                  for number, (key, member) in enumerate(value.items())}
@@ -60,7 +60,7 @@ def tagged(value, tags):
     return cbor2.CBORTag(next(tags), value)
 
 
-# All the ways in which the same message may come: a name, its style, and what makes bytes of it.
+# All encodings of the same message: a name, its style, and a function that makes the bytes.
 ENCODINGS = (
     ("json", JSON, lambda message: messages.body(message, JSON)),
     ("cbor", CBOR, cbor2.dumps),
@@ -74,7 +74,7 @@ ENCODINGS = (
 
 
 def whole_marker(kind):
-    """With every member of ROS's Marker, none of them its default but where `kind` is even."""
+    """Every member of ROS's Marker. If `kind` is odd, no member has its default value."""
     color = {"r": 1.0, "g": 0.5, "b": 0.25, "a": 1.0}
     odd = kind % 2 == 1
     return {"header": {"frame_id": "darpa"}, "ns": f"paths/{kind}", "id": kind - 6, "type": kind, "action": 0,
@@ -85,7 +85,7 @@ def whole_marker(kind):
 
 
 def said(marker):
-    """Without what is ROS's default anyhow: that is not sent."""
+    """Without members that have ROS's default, which are not sent."""
     return {name: value for name, value in marker.items() if value is not False}
 
 
@@ -98,7 +98,7 @@ def fields_of(datatypes, counts):
 
 
 def every_datatype(order):
-    """A cloud of 60 points with a field of each datatype, one of them of several values, and three bytes of padding."""
+    """A cloud of 60 points with a field of each datatype, one field of several values, and three bytes of padding."""
     datatypes = (7, 7, 7, 1, 2, 3, 4, 5, 6, 8)
     counts = (1, 1, 1, 1, 3, 2, 1, 1, 1, 2)
     fields, step = fields_of(datatypes, counts)
@@ -112,7 +112,7 @@ def every_datatype(order):
 
 
 class Fidelity(Delivered):
-    """Against a Command Post that is strict; test_fidelity_long.py repeats it against one that behaves as the real ones do."""
+    """With a strict Command Post. test_fidelity_long.py repeats it with one that behaves like the real ones."""
 
     def test_grids(self):
         grid = maps.made_grid(80, 60)
@@ -141,7 +141,7 @@ class Fidelity(Delivered):
             self.assertEqual(answer.status_code, 200)
 
     def check_cloud(self, cloud, origin, going_up):
-        """It comes as `cloud` says and goes up as `going_up`, bytes, with that origin; None: without one."""
+        """Posts `cloud` and expects `going_up`, bytes, with that origin; None: without an origin."""
         message = {"type": "PointCloud2", "name": "r1",
                    "msg": {"header": {"frame_id": "darpa"}, **cloud.head(), **({"origin": origin} if origin else {})}}
         head = {"fields": cloud.fields, "is_bigendian": False, "point_step": cloud.point_step,
@@ -234,7 +234,7 @@ class Fidelity(Delivered):
         bad = {"name": "r9", "position": {**POSITION, "y": "far"}, "orientation": TURNED}
         good = [{"name": f"r{n}", "position": {**POSITION, "x": float(n)}, "orientation": TURNED} for n in (1, 2, 3)]
         update = {"poses": [good[0], bad, good[1], POSE, *[bad] * 10, good[2]]}
-        # As from a relay under Python 2, too: every text of it, keys too, is a byte string.
+        # As from a relay under Python 2: every text, keys too, is a byte string.
         for style, content, got in ((JSON, messages.body(update, JSON), "a string"),
                                     (CBOR, cbor2.dumps(as_bytes(update)), "a byte string")):
             far = f"position.y: expected a number, got {got}"

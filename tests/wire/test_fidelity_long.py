@@ -1,4 +1,4 @@
-"""Fidelity against a Command Post that behaves as the real ones do, and of the largest markers."""
+"""Fidelity with a Command Post that behaves like the real ones, and with the largest markers."""
 
 
 import messages
@@ -12,7 +12,7 @@ class FidelityAsMeasured(test_fidelity.Fidelity):
 
 
 def large_marker(points, colors):
-    """Of a transcript's line, long lists are how many elements they have."""
+    """In a line of the transcript, long lists are replaced by their lengths."""
     marker = test_fidelity.said(test_fidelity.whole_marker(5)) | {"type": 6, "ns": "voxels"}
     marker["points"] = [{"x": n / 7, "y": -n / 3, "z": 0.3} for n in range(points)]
     marker["colors"] = [{"r": n % 256 / 255, "g": 0.2, "b": 0.3, "a": 1.0} for n in range(colors)]

@@ -1,5 +1,5 @@
-"""A report of which nobody can tell whether it was recorded: it is in doubt, its client is told so, the operator sees
-why and decides, and all else goes on. What leaves a report in doubt is in dispatch/inquiry_test and dispatch/reports_doubt_test."""
+"""A report whose record is unknown: it is in doubt, its client is told so, the operator sees why and decides, and other messages are
+sent. Causes of doubts: dispatch/inquiry_test and dispatch/reports_doubt_test."""
 
 import time
 import unittest

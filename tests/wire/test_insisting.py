@@ -1,4 +1,4 @@
-"""The operator of these tests, against a box that finds something out between his look and his word."""
+"""Tests of insisting.py's operator: the box classifies a report between his look and his decision."""
 
 import time
 import types
@@ -8,7 +8,7 @@ from insisting import Operator, Posted, last_answers
 
 
 class Box:
-    """Has one report, in doubt when it is looked at first and `then` from his word on, which it answers so."""
+    """Has one report, in doubt at first and in state `then` from his decision on, which it answers with `answer`."""
 
     def __init__(self, then, answer):
         self.row = {"number": 1, "state": "in_doubt", "changed": 10.0, "position": {"x": 1.0, "y": 2.0}}
@@ -28,7 +28,7 @@ class TheOperator(unittest.TestCase):
         return Operator(types.SimpleNamespace(box=Box(*box), post=post), looks_after=-1)
 
     def test_waits_by_his_own_clock(self):
-        """That of a box which has lost its power a hundred times is minutes ahead."""
+        """The clock of a box with a hundred power cuts is minutes ahead."""
         box = Box({}, (409, "no"))
         box.row["changed"] = time.time() + 3600
         operator = Operator(types.SimpleNamespace(box=box), looks_after=0.05)
@@ -57,7 +57,7 @@ class TheOperator(unittest.TestCase):
 
 
 class TheLastAnswers(unittest.TestCase):
-    """Before power cuts."""
+    """The state before power cuts."""
 
     @staticmethod
     def posted(x, life, status=201):

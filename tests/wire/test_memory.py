@@ -1,5 +1,5 @@
-"""What clients send together, however short it is in a body and long in memory, takes little of it, and the others are
-answered meanwhile. What is refused is not stored, and what a peak took is given back."""
+"""Messages that are short as bytes and long in memory use little memory, and other clients are answered meanwhile. Rejected messages
+are not stored, and memory of a peak is returned."""
 
 import concurrent.futures
 import contextlib
@@ -33,7 +33,7 @@ def filled(head, one, tail, count=BODY):
     return head + one * count + tail
 
 
-# As much as is read at all, and as much as fits.
+# The largest bodies that are read, and the largest that fit.
 HOSTILE = [
     (CBOR, filled(HEAD + b"\x9f\xbf", b"\x60\x00", b"\xff\xff", 999_000)),
     (CBOR, filled(HEAD + b"\x9f", b"\xa1\x60\x00", b"\xff", 499_000)),
@@ -54,7 +54,7 @@ def bomb(head, filler, tail):
 
 
 def bombs():
-    """Refused where its length is told, while it is inflated, and at its data's end."""
+    """Rejected by the announced length, while inflating, and at the end of the data."""
     cloud = messages.map_update(maps.Cloud("none", maps.XYZ, 12, b""), None, 1.0, Style("cbor"))
     head = cbor2.dumps(cloud)
     head = head[:head.rindex(b"\x64data") + 5]
@@ -66,7 +66,7 @@ def bombs():
 
 
 def largest_markers():
-    """A marker of as many points, and colors, as one may have."""
+    """A marker with the maximum number of points and colors."""
     color = {"r": 0.1, "g": 0.2, "b": 0.3, "a": 0.9}
     marker = {"ns": "voxels", "id": 1, "type": 6, "action": 0, "pose": POSE, "scale": {"x": 1, "y": 1, "z": 1},
               "color": color, "points": [{"x": n / 7, "y": -n / 7, "z": 0.3} for n in range(100_000)]}

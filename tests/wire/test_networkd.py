@@ -1,4 +1,4 @@
-"""Changes of the box's addresses by a real systemd-networkd."""
+"""Changes of the box's addresses with a real systemd-networkd."""
 
 import hosts
 import networkd
@@ -7,13 +7,14 @@ from programs import wait_until
 
 
 class WithNetworkd(Change):
-    """A real one."""
+    """With a real systemd-networkd."""
 
     def setUp(self):
         super().setUp()
         networkd.needs_networkd()
-        # Addresses that somebody else set. networkd would keep darpa0's route; and the kernel keeps team0's without a broadcast address, so
-        # that a networkd (252) which is restarted and has the same one to set sets it for ever, and hears nobody.
+        # Removes addresses from earlier tests. networkd would keep darpa0's route. The kernel keeps team0's address
+        # without a broadcast address, so that a restarted networkd (252) with the same address to set would set it
+        # for ever, and hear no host.
         for port in "team0", "darpa0":
             hosts.ip("-n", self.network.box, "address", "flush", "dev", port)
         self.box = networkd.AditNetwork(self.network, self.folder)

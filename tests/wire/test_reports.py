@@ -1,5 +1,5 @@
-"""Artifact reports: they wait for no map, and what becomes of them and their clients as the box or the Command Post comes and goes.
-What is told when is in dispatch/reports_clients_test and dispatch/reports_restart_test."""
+"""Artifact reports: they do not wait for maps, and clients get answers while the box or the Command Post restarts. Details:
+dispatch/reports_clients_test and dispatch/reports_restart_test."""
 
 import concurrent.futures
 import json
@@ -36,7 +36,7 @@ class Order(unittest.TestCase):
 
 
 class Ends(unittest.TestCase):
-    """The box, or the Command Post, comes and goes."""
+    """The box or the Command Post restarts."""
 
     def arrives(self, stage):
         wait_until(lambda: sendings(stage) == 1 or stage.post.control("GET /faults")["reports"] == [],
@@ -72,7 +72,7 @@ class Ends(unittest.TestCase):
             self.assertEqual((waiting.result().status_code, waiting.result().headers["Adit-Report"]), (503, "1"))
 
     def test_report_during_a_stop_is_rejected_and_not_sent(self):
-        # A status that is in flight when the Command Post stops would keep the report waiting.
+        # A status that is in flight when the Command Post stops would delay the report.
         with (Stage(**PATIENT | {"command_post__rates__status_hz": 0.01}) as stage, requests.Session() as kept,
               concurrent.futures.ThreadPoolExecutor(2) as clients):
             began(stage)

@@ -1,5 +1,5 @@
-"""The ROS node that is shown to teams (firmware/doors/intake/clients): what it makes of messages as ROS 1 and ROS 2 have them in
-Python, and the node itself on Debian's ROS 1, before the real programs."""
+"""The example ROS node for teams (firmware/doors/intake/clients): its conversion of Python messages of ROS 1 and ROS 2, and the node
+itself on Debian's ROS 1, with the real programs."""
 
 import array
 import importlib.util
@@ -31,12 +31,12 @@ MARKER = {"ns": "finds", "id": 3, "type": 2, "action": 0, "pose": POSE, "scale":
 
 
 def ros_1(members):
-    """A message as genpy makes it: its members in __slots__."""
+    """A message as genpy makes it, with its members in __slots__."""
     return type("Message", (), {"__slots__": list(members)}), {}
 
 
 def ros_2(members):
-    """As rosidl does: members behind properties, whose names a function gives."""
+    """A message as rosidl makes it: members are properties, and a function returns their names."""
     made = {name: property(lambda self, name=name: getattr(self, "_" + name)) for name in members}
     made["__slots__"] = ["_" + name for name in members] + ["_check_fields"]
     made["get_fields_and_field_types"] = classmethod(lambda cls: dict.fromkeys(members, ""))
@@ -95,7 +95,7 @@ ROBOT = Robot("husky", "map")
 
 
 class Messages(Delivered):
-    """What becomes of them, as the Command Post has it."""
+    """The messages as the Command Post receives them."""
 
     def sent(self, made):
         what, content = made

@@ -1,4 +1,4 @@
-"""The same report again is the same report."""
+"""A repeated report is the same report."""
 
 import signal
 import unittest

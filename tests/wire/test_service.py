@@ -1,4 +1,4 @@
-"""aditd as systemd sees it: readiness, watchdog, status, how it refuses to start, how it stops. On loopback."""
+"""aditd's interface to systemd: readiness, watchdog, status, failed starts, stop. On loopback."""
 
 import json
 import os
@@ -41,7 +41,7 @@ class Service(unittest.TestCase):
         return process
 
     def heard(self, word):
-        """Waits for a notification that holds `word`."""
+        """Waits for a notification that contains `word`."""
         while True:
             said = self.notify.recv(4096).decode()
             if word in said:

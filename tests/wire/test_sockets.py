@@ -1,5 +1,5 @@
-"""aditd takes its sockets from systemd, has it keep the others, and so loses nobody who connects while it is restarted:
-the tests play systemd (activation.py). On loopback."""
+"""aditd gets its sockets from systemd, which keeps the others, so no connecting client is lost during a restart. The tests play
+systemd (activation.py). On loopback."""
 
 import collections
 import contextlib
@@ -46,7 +46,7 @@ PROMPT = 0.5  # seconds: who is so slow to ask, on a busy machine, may find the 
 
 
 class Clients(threading.Thread):
-    """One connection each 5 ms, from its own thread; what became of each."""
+    """Opens a connection every 5 ms in its own thread, and records each outcome."""
 
     EVERY = 0.005
 
@@ -87,7 +87,7 @@ class Clients(threading.Thread):
             return
 
     def go_on(self):
-        """Until some more were answered, and all who came before: nobody is cut off twice, by one end and by the next."""
+        """Waits until more connections were answered, and all earlier ones. No client is cut off twice, by one end and by the next."""
         before, came = self.answered, len(self.visits)
         programs.wait_until(lambda: self.answered > before + 50 and not any(each.is_alive() for each in self.visits[:came]),
                             "more clients to be answered")
@@ -155,7 +155,7 @@ class Sockets(unittest.TestCase):
         programs.wait_until(lambda: len(manager.store) == 1, "one to be let go of")
         self.is_refused(gone)
         self.assertEqual(ask(stays)[0], 200)
-        # Every address instead of one, at the same port: the old one is in the way, and systemd has a copy.
+        # Every address instead of one, at the same port: the old socket is in the way, and systemd has a copy.
         self.restart(manager, signal.SIGTERM, settings(("0.0.0.0", stays)))
         self.assertEqual(ask(stays, address="127.0.0.2")[0], 200)
         programs.wait_until(lambda: [name for name, _ in manager.store] == [f"listen--0.0.0.0-{stays}"], "the other one")
@@ -178,7 +178,7 @@ class Sockets(unittest.TestCase):
         programs.wait_until(lambda: [s.type for _, s in manager.store] == [socket.SOCK_STREAM], "a better one")
 
     def test_restart_rejects_no_client(self):
-        """At 200 connections a second. Whoever was already taken in when the process was killed is cut off with it."""
+        """At 200 connections per second. A kill also cuts the connections that were already accepted."""
         for number in (signal.SIGTERM, signal.SIGKILL):
             door = listening()
             manager = self.started(settings(("127.0.0.1", door.getsockname()[1])), door)
@@ -220,7 +220,7 @@ class Sockets(unittest.TestCase):
         process = pathlib.Path(f"/proc/{manager.process.pid}")
 
         def descriptors():
-            """Sockets and other objects of the kernel, and files that were removed: a file of the state may open late."""
+            """Sockets, other kernel objects, and deleted files, because a file of the state may open late."""
             found = []
             for each in (process / "fd").iterdir():
                 with contextlib.suppress(FileNotFoundError):  # closed since
@@ -248,7 +248,7 @@ class Sockets(unittest.TestCase):
         self.assertEqual([name for name, _ in manager.store], [f"listen--127.0.0.1-{own}"], "systemd keeps the same one")
 
 class TeamPort(unittest.TestCase):
-    """team0 goes and comes back as another interface, as an adapter does that is pulled and plugged in again."""
+    """team0 disappears and comes back as another interface, like an adapter that is unplugged and plugged in."""
 
     def setUp(self):
         self.network = self.enterContext(hosts.Network())
@@ -284,7 +284,8 @@ class TeamPort(unittest.TestCase):
         hosts.ip("-n", self.network.box, "link", "delete", "team0")
         time.sleep(1.5)
         self.assertIsNone(self.manager.process.poll(), "it goes on while the port is away")
-        # It sees the port once that has its address: without, and without systemd's sockets, it ends, and systemd restarts it.
+        # It sees the port only once that has its address. Without the address and without systemd's sockets it ends,
+        # and systemd restarts it.
         self.manager.process.send_signal(signal.SIGSTOP)
         self.network.plug_team()
         self.manager.process.send_signal(signal.SIGCONT)

@@ -1,4 +1,4 @@
-"""A spare box takes over: each report is recorded exactly once, whenever the first box was cut off. Other courses are in
+"""A spare box takes over: each report is recorded exactly once, whenever the first box was cut off. Other cases:
 dispatch/taking_over_test, admin/taking_over_test and admin/spare_test."""
 
 import subprocess
@@ -15,7 +15,7 @@ FINISHED = ("answered", "settled", "withdrawn")
 
 
 class Swap(Stage):
-    """A stage on which the box can be replaced by a spare, which has a state of its own."""
+    """A stage whose box can be replaced by a spare with its own state."""
 
     def __enter__(self):
         super().__enter__()
@@ -30,7 +30,7 @@ class Swap(Stage):
         return self
 
     def adit(self, *words, exits=0):
-        """`adit spare`: what it prints. `exits`: its exit status."""
+        """Runs `adit spare` and returns its output. `exits`: the expected exit status."""
         done = subprocess.run([programs.BIN / "adit", "spare", *words, "--at", f"{self.network.box_address}:{programs.PORT}",
                                "--token-file", self.spare_folder / "secrets/team.token"],
                               capture_output=True, text=True, check=False, timeout=120)
@@ -39,7 +39,7 @@ class Swap(Stage):
         return done.stdout
 
     def exported(self):
-        """Puts the box on standby; the code of its export."""
+        """Puts the box on standby and returns the code of its export."""
         self.adit("export", self.export, "--yes")
         return self.box.ask("GET /adit/spare")[1]["code"]
 

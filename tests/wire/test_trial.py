@@ -1,4 +1,4 @@
-"""A Command Post is tried before it is applied, and the run goes on beside it."""
+"""A Command Post is tested before it is used, while the run continues."""
 
 import contextlib
 import threading
@@ -25,15 +25,15 @@ class Tried(unittest.TestCase):
 
     def setUp(self):
         rates = {f"{kind}_hz": 1 for kind in ("reports", "status", "map", "state", "markers")}
-        # Half as often again as Adit asks: what went without a turn of its own would still come too soon after what was before it
-        # or too soon before what comes next, whenever it went; and a busy machine has a third of a second.
+        # 1.5 times Adit's rate. A request outside the pace would come too soon after the request before or too soon
+        # before the next one, and a busy machine has a third of a second.
         self.stage = self.enterContext(Stage(post_options=("--rate", "1.5", *self.POST), command_post__rates=rates))
         self.box, self.post = self.stage.box, self.stage.post
         wait_until(self.box.knows_the_run, "the run to be known")
         self.addCleanup(lambda: self.assertEqual(self.violations(), []))
 
     def violations(self):
-        """But for the test's own question, which is an empty one."""
+        """Violations, except for those of the test's own request, which is empty."""
         return [(uri, sentences) for uri, sentences in self.post.violations()
                 if (uri.rstrip("/"), sentences) != ("/state/update", ["Missing field 'poses'"])]
 
@@ -48,7 +48,7 @@ class Tried(unittest.TestCase):
         return wait_until(view, "the test to end")
 
     def tried(self, **body):
-        """What came of a test: its view, and each step by "scoring link"."""
+        """Runs a test. Returns its view, and each step by "scoring link"."""
         self.begin(body)
         view = self.ended()
         return view, {f"{endpoint['name']} {step['name']}": step
@@ -61,7 +61,7 @@ class Tried(unittest.TestCase):
 class Trial(Tried):
     @contextlib.contextmanager
     def a_run(self):
-        """Robots that post more often than the Command Post takes."""
+        """Robots that post faster than the Command Post accepts."""
         ended = threading.Event()
         errors = []
 
@@ -89,7 +89,7 @@ class Trial(Tried):
         self.assertEqual(errors, [])
 
     def flows_on(self):
-        """After this call, too, states, maps and reports arrive at the Command Post of the run."""
+        """After this call, states, maps and reports still arrive at the Command Post of the run."""
         before = {uri: len(self.taken(uri)) for uri in ("/state/update", "/map/update")}
         for uri, count in before.items():
             wait_until(lambda uri=uri, count=count: len(self.taken(uri)) > count + 1, f"{uri} to flow on")
@@ -100,7 +100,7 @@ class Trial(Tried):
         self.assertEqual(len(self.post.recorded()), 1, "and no other report was spent")
 
     def throttled(self, post):
-        """Each with what came before it at its URI: (URI, seconds, bytes, status)."""
+        """Each request with the one before it at its URI: (URI, seconds, bytes, status)."""
         all_of_it = [(request["uri"], round(request["at"], 3), request["body_bytes"], request["status"])
                      for request in post.requests()]
         return [[one for one in all_of_it[:number + 1] if one[0] == each[0]][-3:]
@@ -121,7 +121,7 @@ class Trial(Tried):
         self.assertEqual(self.throttled(self.post), [])
 
     def other_post(self):
-        """Another Command Post on the same machine, which takes the typed tokens alone."""
+        """Another Command Post on the same machine, which accepts only the typed tokens."""
         folder = self.stage.folder / "elsewhere"
         folder.mkdir()
         programs.secrets_folder(folder / "secrets")

@@ -1,4 +1,4 @@
-"""The box between its two networks as the appliance is: a real systemd-networkd, the firewall, the kernel's settings."""
+"""The box between its two networks, like the appliance: a real systemd-networkd, the firewall, the kernel's settings."""
 
 import json
 import os
@@ -23,7 +23,7 @@ PORTS = [*range(1, 1200), 5353, 5355, 8000, 8080, 9100, 40000, 65535]
 
 
 class Appliance(unittest.TestCase):
-    """`numbers`: what was confirmed before the box starts."""
+    """`numbers`: addresses that were confirmed before the box starts."""
 
     team_net = "192.168.7"
     post_address = hosts.BOX_DARPA  # of the box
@@ -91,7 +91,7 @@ class Appliance(unittest.TestCase):
 
 class TwoNetworks(Appliance):
     def meant(self, frame):
-        """ARP about the two of them, or a segment to one of the two endpoints."""
+        """Whether it is ARP between the two, or a segment to one of the two endpoints."""
         if frame.is_arp:
             return frame.arp[0] in ("0.0.0.0", hosts.BOX_DARPA) and frame.arp[1] in (
                 hosts.SCORING, hosts.MAPPING, hosts.BOX_DARPA)
@@ -140,7 +140,7 @@ class TwoNetworks(Appliance):
             hosts.ip("-n", host, "route", "add", net, "via", gateway, "dev", port)
             with self.assertRaises(OSError):
                 self.network.connect(host, target, programs.PORT, SILENT_FOR)
-        # By the address of the other side, though this one takes the packet.
+        # By the address of the other side, although this side's interface gets the packet.
         hosts.ip("-n", self.network.team, "route", "replace", hosts.BOX_DARPA, "via", self.network.box_address, "dev", "eth0")
         with self.assertRaises(OSError):
             self.network.connect(self.network.team, hosts.BOX_DARPA, programs.PORT, SILENT_FOR)
@@ -152,7 +152,7 @@ class TwoNetworks(Appliance):
         self.network.connect(self.network.team, self.network.box_address, programs.PORT, 30).close()
 
     def test_the_team_finds_the_box_without_its_address(self):
-        """By its link-local one."""
+        """By its link-local address."""
         def link_local():
             shown = json.loads(self.in_box("ip", "-4", "-j", "address", "show", "dev", "team0"))
             return [each["local"] for each in shown[0]["addr_info"] if each["local"].startswith("169.254.")]
@@ -164,7 +164,7 @@ class TwoNetworks(Appliance):
         self.assertEqual(shown["address"], self.network.box_address, "that is not the one to tell people")
 
 class AsItComes(Appliance):
-    """Nobody has given it an address on the Command Post's side yet."""
+    """The Command Post's side has no address yet."""
 
     post_address = ()
 
@@ -187,7 +187,7 @@ class Overlapping(Appliance):
         wait_until(self.connected, "the Command Post")
         self.send_state()
         wait_until(lambda: self.post.requests("/state/update"), "the state")
-        # What is bound to nothing goes to the team.
+        # An unbound socket uses the team's network.
         self.assertTrue(capture.answers_ping(self.network.team, "10.100.1.11"))
         self.assertIn("dev team0", self.in_box("ip", "route", "get", "10.100.1.12"))
         self.assertIn("dev team0", self.in_box("ip", "route", "get", hosts.SCORING))

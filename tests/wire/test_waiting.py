@@ -1,4 +1,4 @@
-"""A pulled cable delays and loses nothing; networks that overlap do not touch; nothing listens towards the Command Post."""
+"""An unplugged cable delays messages and loses none; overlapping networks stay separate; no socket listens towards the Command Post."""
 
 import subprocess
 import time

@@ -1,4 +1,4 @@
-"""Changes of the box's addresses and the test of its links, as an operator asks for them."""
+"""Changes of the box's addresses and the test of its links, requested by an operator."""
 
 import contextlib
 import http.client
@@ -13,7 +13,7 @@ from programs import wait_until
 
 
 class WholeBox(Change):
-    """aditd asks, adit-network does; the team's host is who sits at the page."""
+    """aditd makes requests, adit-network carries them out; the team's host uses the page."""
 
     def setUp(self):
         self.stage = self.enterContext(programs.Stage(network__confirm_within_ms=20000, **{
@@ -35,7 +35,7 @@ class WholeBox(Change):
         self.addCleanup(self.stopping.set)
 
     def path_unit(self):
-        """As adit-network.path does."""
+        """Starts adit-network as adit-network.path does."""
         while not self.stopping.wait(0.05):
             if any((self.box.wanted / name).exists() for name in networkd.ASKED):
                 self.box.start()
@@ -43,7 +43,7 @@ class WholeBox(Change):
                     pass
 
     def post(self, path, body=None, at="192.168.7.11"):
-        """Its status, and what its JSON says."""
+        """The status and the parsed JSON of its answer."""
         connection = http.client.HTTPConnection(at, programs.PORT, timeout=30)
         with contextlib.closing(connection):
             connection.request("POST", path, json.dumps(body or {}), {
@@ -76,7 +76,7 @@ class WholeBox(Change):
         self.assertNotIn("network_change", self.stage.box.alarms())
 
     def steps(self):
-        """All steps of a test, by "scoring link", once it has ended."""
+        """Runs a test. Returns all steps by "scoring link", once it has ended."""
         self.assertEqual(self.post("/adit/test")[0], 200)
         wait_until(lambda: not self.stage.box.ask("GET /adit/test")[1]["running"], "the test to end")
         return {f"{endpoint['name']} {step['name']}": step

@@ -11,8 +11,8 @@
 
 namespace adit::cli {
 
-/// Runs `adit` of the words, which asks the server with a token. The output has all that was printed.
-inline Outcome say(const Server& server, std::vector<std::string_view> words, Console console = {}) {
+/// Runs `adit` with these words against the server, with a token. The outcome has all output.
+inline Outcome run_adit(const Server& server, std::vector<std::string_view> words, Console console = {}) {
   const TokenFile token;
   const std::string at = server.at();
   words.insert(words.end(), {"--at", at, "--token-file", token.path()});
@@ -20,7 +20,8 @@ inline Outcome say(const Server& server, std::vector<std::string_view> words, Co
   console.print = [&printed](const std::string& text) { printed += text; };
   Outcome outcome = run(words, console);
   outcome.out.insert(0, printed);
-  EXPECT_THAT(outcome.out + outcome.err, testing::Not(testing::HasSubstr("sesame"))) << "the token";
+  EXPECT_THAT(outcome.out + outcome.err, testing::Not(testing::HasSubstr("sesame")))
+      << "the output contains the token";
   return outcome;
 }
 
@@ -28,7 +29,7 @@ inline std::string help_of(std::string_view command) {
   return run(std::vector<std::string_view>{"help", command}).out;
 }
 
-/// A console at which an operator gives that answer; `asked` gets the question.
+/// A console whose operator answers `answer`; `asked` gets the question.
 inline Console answering(bool answer, std::string& asked) {
   return {.ask = [answer, &asked](const std::string& question) {
     asked = question;

@@ -1,4 +1,4 @@
-"""How long tests wait. On a slow machine toolchain/ctest sets ADIT_PATIENCE, which multiplies all time-outs."""
+"""Timeouts of tests. On a slow machine toolchain/ctest sets ADIT_PATIENCE, which multiplies all timeouts."""
 
 import math
 import os
@@ -25,9 +25,9 @@ def patient(time_out):
 
 
 def wait_until(condition, what, within=60.0, tolerates=(), every=0.01):
-    """The first true value of `condition()`, asked every so many seconds at first, and less often the longer it takes, down to a tenth as
-    often: to ask takes time from the same processors. After `within` seconds times ADIT_PATIENCE: an AssertionError with `what` and what
-    was seen last, a value or an exception of the types that `tolerates` names."""
+    """The first true value of `condition()`. Polls each `every` seconds at first, later less often, up to ten times that interval,
+    because polling uses the same processors. After `within` seconds times ADIT_PATIENCE: an AssertionError with `what` and the last value, or the
+    last exception of the types in `tolerates`."""
     began = time.monotonic()
     while True:
         try:

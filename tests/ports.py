@@ -6,8 +6,7 @@ import socket
 
 
 def free_port():
-    """One that nobody listens at. Below those that the kernel gives to whoever asks for any, or it might give this one away
-    meanwhile."""
+    """A free port. It is below the ephemeral ports, so the kernel does not give it to others meanwhile."""
     while True:
         with contextlib.suppress(OSError), contextlib.closing(socket.socket()) as tried:
             tried.bind(("127.0.0.1", random.randrange(11000, 32000)))

@@ -1,4 +1,4 @@
-"""A Command Post that takes everything and remembers it: both endpoints on one port of loopback."""
+"""A Command Post that accepts and records every request: both endpoints on one port of loopback."""
 
 import contextlib
 import http.server
@@ -9,7 +9,7 @@ import time
 
 
 class CommandPost:
-    """Listens from its making until close()."""
+    """Listens until close()."""
 
     def __init__(self):
         self.requests, self.clients, self.lock = [], [], threading.Lock()  # (path, token, body, when)
@@ -22,7 +22,7 @@ class CommandPost:
         return {"address": "127.0.0.1", "port": self.server.server_port}
 
     def heard(self, path):
-        """The bodies that came at `path`, each with the token that it came with."""
+        """The bodies received at `path`, each with its token."""
         with self.lock:
             return [(token, body) for at, token, body, _ in self.requests if at == path]
 
@@ -31,7 +31,7 @@ class CommandPost:
             return [when for at, _, _, when in self.requests if at == path]
 
     def close(self):
-        """As if its plug were pulled, connections and all."""
+        """Closes everything, connections too, as if its plug were pulled."""
         self.server.shutdown()
         self.server.server_close()
         for client in self.clients:

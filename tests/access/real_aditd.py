@@ -1,4 +1,4 @@
-"""The login of the real program: real_aditd.py ADITD. On loopback, with no Command Post."""
+"""The log-in of the real program: real_aditd.py ADITD. On loopback, without a Command Post."""
 
 import contextlib
 import http.client
@@ -23,12 +23,12 @@ aditd = sys.argv[1]
 
 
 def wait_until(condition, what, within=30.0):
-    """As patience.wait_until; aditd may be restarting."""
+    """As patience.wait_until, also while aditd restarts."""
     return patience.wait_until(condition, what, within, OSError)
 
 
 class Box:
-    """aditd with folders of its own, which outlive a restart."""
+    """aditd with its own directories, which outlive a restart."""
 
     def __init__(self, folder, label=None, require_token=True):
         self.folder = pathlib.Path(folder)
@@ -68,7 +68,7 @@ class Box:
         return (self.state / "first-start.code").read_text().strip()
 
     def ask(self, request, body=None, whence="127.0.0.1", **headers):
-        """ask("GET /adit/run", Cookie="adit=..."): status, JSON, headers. `_` in a header's name is `-`."""
+        """ask("GET /adit/run", Cookie="adit=..."): status, JSON, headers. `_` in a header's name stands for `-`."""
         method, _, path = request.partition(" ")
         connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=patient(30), source_address=(whence, 0))
         with contextlib.closing(connection):
@@ -84,7 +84,7 @@ class Box:
         return self.ask("POST /adit/password", {"role": "operator", "code": code or self.code(), "password": password})
 
     def log_in(self, password=OPERATOR):
-        """The headers that a browser sends from then on."""
+        """Logs in and returns the headers that a browser then sends."""
         status, said, headers = self.ask("POST /adit/login", {"password": password})
         assert status == 200, (status, said)
         return {"Cookie": headers["Set-Cookie"].partition(";")[0], "Adit_CSRF": said["csrf"]}

@@ -35,7 +35,7 @@ class Button(unittest.TestCase):
             os.close(file)
 
     def hold(self, pattern):
-        """Until all lights have this pattern: "on" after 3 s, "rush" after 6."""
+        """Presses until all lights have this pattern: "on" after 3 s, "rush" after 6."""
         self.write(b"press\n")
         wait_until(lambda: set(self.patterns().values()) == {pattern}, f"all lights to be {pattern}")
         self.write(b"release\n")
@@ -44,7 +44,7 @@ class Button(unittest.TestCase):
         return re.findall(r"listening .*port=(\d+)", self.box.said())
 
     def await_restart(self, before):
-        """Until it listens once more, at whichever port that is."""
+        """Waits until aditd listens again, at any port."""
         self.box.port = int(wait_until(lambda: self.listening()[before:], "it to restart")[-1])
 
     def run_view(self):

@@ -1,5 +1,5 @@
-"""No output of the real program shows a secret, wherever it was typed: real_outputs.py ADITD. On loopback. The routes are those of
-/adit/openapi.json, so that a new one is asked too."""
+"""No output of the real program contains a secret, wherever it was typed: real_outputs.py ADITD. On loopback. The routes come from
+/adit/openapi.json, so new routes are tested too."""
 
 import contextlib
 import gzip
@@ -37,14 +37,14 @@ MARKER = {"ns": TYPED, "id": 1, "type": 9, "action": 0, "text": TYPED, "mesh_res
 
 
 def written(secret):
-    """As each kind of output would write it, to the place where a sentence may cut it."""
+    """The forms in which outputs write the secret, up to the place where a sentence may be cut."""
     in_json = json.dumps(secret)[1:-1]
     return {form[:CUT].encode() for form in (secret, in_json, json.dumps(in_json)[1:-1], secret.replace('"', '""'),
                                              urllib.parse.quote(secret))}
 
 
 class Talkative(command_post.CommandPost):
-    """Says the secrets of the other side in all its answers, and takes no state."""
+    """A Command Post whose answers contain the other side's secrets, and which accepts no state."""
 
     def _handler(self):
         class Handler(super()._handler()):
@@ -86,7 +86,7 @@ class Outputs(unittest.TestCase):
 
     @classmethod
     def in_turn(cls, request, body, **headers):
-        """Shows a password, once those who guess let it: the answer."""
+        """Shows a password, once the limit of guesses allows it. Returns the answer."""
         def ask():
             answer = cls.box.ask(request, body, **headers)
             return answer if answer[0] != 429 else None
@@ -96,7 +96,7 @@ class Outputs(unittest.TestCase):
 
     @classmethod
     def log_in(cls, password):
-        """The headers of a browser that calls itself by the secrets."""
+        """The headers of a browser whose name contains the secrets."""
         said, headers = cls.in_turn("POST /adit/login", {"password": password}, User_Agent=TYPED)
         cookies = [each.partition(";")[0] for each in headers.get_all("Set-Cookie")]
         cls.own += [cookie.partition("=")[2] for cookie in cookies]
@@ -145,7 +145,7 @@ class Outputs(unittest.TestCase):
                     self.fail(f"{what} shows {secret}: {output[max(at - 60, 0):at + 80]}")
 
     def raw(self, method, path, headers, body=None):
-        """Status, head and body; of events the first."""
+        """Status, head and body; of events only the first."""
         connection = http.client.HTTPConnection("127.0.0.1", self.box.port, timeout=patient(30))
         with contextlib.closing(connection):
             sent = {name.replace("_", "-"): value for name, value in headers.items()}
@@ -172,7 +172,7 @@ class Outputs(unittest.TestCase):
         yield "script", lambda: self.script
 
     def routes(self):
-        """Each method, with its path to what is there, and the same with a secret in each parameter of its query."""
+        """Each method with its path to an existing object, and the same with a secret in each query parameter."""
         described = self.box.ask("GET /adit/openapi.json")[1]
         layer = self.box.ask("GET /adit/map", **self.script)[1]["layers"][0]
         values = {"number": 1, "session": 1, "kind": layer["kind"], "robot": TEAM, "level": 0, "x": 0, "y": 0,

@@ -54,7 +54,7 @@ class SetUp(unittest.TestCase):
         return said
 
     def applied(self, request, body):
-        """Asks for a change, and waits until it is applied, at whichever port that is."""
+        """Requests a change, and waits until it is applied, at any port."""
         status, said, _ = self.box.ask(request, body, **self.me)
         self.assertEqual(status, 200, said)
         wait_until(self.is_applied, "the change to be applied")
@@ -74,13 +74,13 @@ class SetUp(unittest.TestCase):
         return status == 401 or not said["applying"]  # a reset ends all sessions
 
     def change(self, edit):
-        """Changes the settings as `edit` does; what it says has changed."""
+        """Changes the settings with `edit`. Returns the answer's list of changes."""
         now = self.settings()
         edit(now["settings"])
         return self.applied("POST /adit/settings", {"settings": now["settings"], "base": now["tag"]})["changes"]
 
     def alarms(self):
-        """The ids of those that call the operator, without those of the Command Post: it has no server here."""
+        """The ids of alarms that call the operator, without those of the Command Post, which does not exist here."""
         return {alarm["id"] for alarm in self.box.ask("GET /adit/run", **self.me)[1]["alarms"]
                 if alarm["severity"] != "wait" and not alarm["id"].startswith("command_post_")}
 

@@ -16,7 +16,6 @@ constexpr access::Instant kStart{100h};
 
 class SessionKeeperTest : public testing::Test {
  protected:
-  /// Logs in and returns the session's id.
   std::string log_in(SessionKeeper& keeper) {
     const access::Secret id{++drawn_}, csrf{++drawn_};
     return keeper.sessions()

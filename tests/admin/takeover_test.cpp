@@ -30,7 +30,6 @@ class TakeoverTest : public testing::Test {
  protected:
   TakeoverTest() { given_.put("settings.json", kSettings); }
 
-  /// The export of a box with two reports.
   spare::Content content(std::size_t reports = 2) const {
     const host::Folder folder;
     auto ledger = ledger::Ledger::open(folder.path());

@@ -85,7 +85,6 @@ std::string read(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// Unpacks an archive with tar into `folder`.
 int unpack(const Folder& folder, const icd::ChunkedBytes& archive) {
   const std::string bytes = archive.to_string();
   std::ofstream(folder.path / "a.tar", std::ios::binary) << bytes;

@@ -19,7 +19,6 @@ using testing::HasSubstr;
 using testing::SizeIs;
 using testing::StartsWith;
 
-/// A view with that many robots and reports.
 RunView team(int robots, int reports) {
   RunView view = *scene("calm", 1'793'000'000.5, 0);
   view.robots.clear();

@@ -34,7 +34,6 @@ ReportRow row() {
           .note = {}};
 }
 
-/// The CSV cell of the note.
 std::string note_cell(std::string note) {
   ReportRow noted;
   noted.note = std::move(note);

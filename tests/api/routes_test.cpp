@@ -17,7 +17,6 @@ using testing::HasSubstr;
 using Status = icd::Status;
 using Headers = std::vector<intake::Header>;
 
-/// An example path for the route's pattern.
 std::string path_of(const Route& route) {
   static const std::regex kind(R"(\{kind\})"), any(R"(\{\w+\})");
   return std::regex_replace(std::regex_replace(std::string(route.path), kind, "grid"), any, "1");
@@ -27,9 +26,7 @@ std::string name_of(const Route& route) {
   return std::string(route.method) + ' ' + std::string(route.path);
 }
 
-/// A page with a visitor.
 struct VisitedPage : Page {
-  /// Headers of a browser that is logged in.
   Headers logged_in(const std::string& password, bool with_csrf = true) {
     const auto answer = request("POST", "/adit/login", {{"Content-Type", "application/json"}},
                                 json{{"password", password}}.dump());
@@ -211,7 +208,6 @@ TEST(Routes, UnknownPathsRequireALogin) {
   }
 }
 
-/// Collects all references in a document.
 void collect(const json& value, std::set<std::string>& references) {
   if (value.is_object() && value.contains("$ref")) references.insert(value["$ref"]);
   for (const json& each : value) {

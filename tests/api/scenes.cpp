@@ -57,7 +57,6 @@ ReportRow report(std::int64_t number, std::string type, Time received, std::stri
           .note = {}};
 }
 
-/// An alarm with an action.
 alarms::Alarm alarm(std::string id, alarms::Severity severity, Time since, std::string what, std::string why,
                     alarms::Action action) {
   const std::size_t colon = id.find(':');

@@ -18,7 +18,6 @@ using testing::StartsWith;
 using Status = icd::Status;
 using Headers = std::vector<intake::Header>;
 
-/// A browser's cookies.
 struct Browser {
   std::string cookie, csrf;
 };

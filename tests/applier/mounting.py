@@ -1,4 +1,4 @@
-"""Images of file systems for USB sticks, and a stand-in for systemd-mount that calls mount(8)."""
+"""Images of file systems on USB sticks, and a stand-in for systemd-mount that calls mount(8)."""
 
 import ctypes
 import os
@@ -8,7 +8,8 @@ import tempfile
 
 CLONE_NEWNS = 0x00020000
 
-# The device is named before its folder, --umount takes the folder. What it did is in `calls`; what comes to pass then is in `hook`.
+# The device comes before its directory; --umount gets the directory. Calls are logged in `calls`; `hook` runs after a
+# mount.
 MOUNT = """#!/bin/sh -eu
 folder={folder}
 if [ "$1" = --umount ]; then umount "$2"; echo "umount ${{2##*/}}" >>$folder/calls; exit; fi
@@ -47,14 +48,14 @@ def can_mount(kind):
 
 
 def be_alone():
-    """Nobody who makes a namespace of mounts meanwhile gets a copy of what is mounted from now on, which would keep it mounted."""
+    """Makes mounts private, so that a mount namespace made meanwhile does not keep them mounted."""
     if ctypes.CDLL(None, use_errno=True).unshare(CLONE_NEWNS) != 0:
         raise OSError(ctypes.get_errno(), "unshare")
     run("mount", "--make-rslave", "/")
 
 
 class Slots:
-    """Where sticks are plugged into a box of plain files."""
+    """Sticks that are plugged into a box of plain files."""
 
     def __init__(self, folder):
         self.folder = folder
@@ -66,7 +67,7 @@ class Slots:
         self.calls.touch()
 
     def options(self):
-        """adit-spare's."""
+        """adit-spare's options."""
         return ["--sticks", self.folder / "sticks", "--block", self.folder / "block", "--devices", self.folder / "dev",
                 "--mount", self.mount]
 
@@ -74,7 +75,7 @@ class Slots:
         return self.folder / "sticks" / name
 
     def plug(self, image, name="sda1"):
-        """As services/adit-stick@.service has it mounted."""
+        """Mounts the stick as services/adit-stick@.service does."""
         (self.folder / "dev" / name).symlink_to(image)
         block = self.folder / "block" / name
         block.mkdir()
@@ -87,7 +88,7 @@ class Slots:
         self.calls.write_text("")
 
     def pull(self, name="sda1"):
-        """At any moment."""
+        """Unplugs the stick, at any time."""
         for file in (self.folder / "block" / name).iterdir():
             file.unlink()
         (self.folder / "block" / name).rmdir()

@@ -1,5 +1,5 @@
-"""adit-spare and USB sticks: images of real file systems, mounted, for which a stand-in for systemd-mount calls mount(8):
-real_stick.py ADIT_SPARE. Skipped (77) where nothing can be mounted; FAT, where the kernel has none."""
+"""adit-spare and USB sticks: images of real file systems, mounted by a stand-in for systemd-mount that calls mount(8): real_stick.py
+ADIT_SPARE. Skipped (77) if mounts are not possible; FAT is skipped if the kernel lacks it."""
 
 import contextlib
 import json
@@ -46,7 +46,7 @@ class Sticks(unittest.TestCase):
         return image
 
     def put(self, files, stick="sda1"):
-        """As somebody does at a PC."""
+        """Unmounts the stick as a user does at a PC."""
         run("umount", self.place(stick))
         run("mount", "-o", "loop", self.folder / "dev" / stick, self.place(stick))
         for name, data in files.items():
@@ -58,7 +58,7 @@ class Sticks(unittest.TestCase):
         (self.folder / "hook").write_text(script)
 
     def run_it(self):
-        """adit-spare to its end, and what it tells."""
+        """Runs adit-spare to its end and returns its status."""
         done = subprocess.run([adit_spare, "--wanted", self.folder / "wanted", "--status", self.folder / "status",
                                *self.slots.options()], capture_output=True, text=True, timeout=120, check=False)
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -180,14 +180,14 @@ class Stick(Sticks):
                 (self.folder / "hook").unlink()
 
     def test_stick_that_stores_other_bytes_is_detected(self):
-        """A stick that lies: what is read back counts."""
+        """A stick that loses writes: adit-spare checks by reading back."""
         self.plug()
         lies = f'[ "$1" != ro ] || {{ umount "$2"; mount -o loop,rw {self.folder}/dev/sda1 "$2"; printf x >>"$2/{NAME}"; mount -o remount,ro "$2"; }}\n'
         self.hook(lies)
         self.expect_refused(self.write(), "the export on the stick differs from the written bytes")
 
     def test_write_error_is_reported(self):
-        """Every write beyond what its medium takes comes to nothing, as with one that dies."""
+        """Writes beyond the medium's size are lost, as on a failing stick."""
         small = self.folder / "small"
         small.mkdir()
         run("mount", "-t", "tmpfs", "-o", "size=1m", "tmpfs", small)
@@ -274,7 +274,7 @@ class Stick(Sticks):
 
 
 class FatStick(Stick):
-    """As sticks are; what only a file system of Linux can hold is left out."""
+    """The usual file systems of sticks. Tests that need a Linux file system are left out."""
 
     kind = "vfat"
     test_hostile_stick_leads_nowhere = test_write_error_is_reported = None

@@ -1,5 +1,5 @@
-"""A relay as teams write it in an hour: LISTEN MAPPING SCORING. It answers maps, states and markers at once, keeps the
-newest body of each URI, and sends one of each a second. Reports and the status it passes on."""
+"""A relay that a team writes in an hour: LISTEN MAPPING SCORING. It answers maps, states and markers at once, keeps the newest body
+of each URI, and sends one of each per second. It passes on reports and the status."""
 
 import http.client
 import http.server
@@ -50,7 +50,7 @@ class Desk(http.server.BaseHTTPRequestHandler):
 
 
 def send(path):
-    """Starts of requests are a second apart, and a little more."""
+    """Requests start a little more than a second apart."""
     mapping = http.client.HTTPConnection(sys.argv[2], timeout=30)
     while True:
         with changed:

@@ -1,4 +1,4 @@
-"""Robots, a way and a Command Post, each in a network namespace of its own, with 100 Mbit/s to the Command Post."""
+"""Robots, a way and a Command Post, each in its own network namespace, with 100 Mbit/s to the Command Post."""
 
 import dataclasses
 import json
@@ -19,7 +19,7 @@ CONTROL = ("10.91.3.2", 9002)  # on a cable of its own, on which no map goes
 
 @dataclasses.dataclass
 class Figures:
-    """Of one load on one way. Ages, in seconds, are those of the robot that fares worst of those that were served."""
+    """Figures of one load on one way. Ages are in seconds, of the robot that fares worst of those that were served."""
     served: str      # robots and kinds of which anything arrived, of all
     p50: float
     p99: float
@@ -66,7 +66,7 @@ class Stage:
         shutil.rmtree(self.folder)
 
     def fill_queues(self, space):
-        """With a congestion control that goes by losses, as Debian's does (cubic), whatever this machine has."""
+        """Uses loss-based congestion control (cubic) like Debian's, whatever this machine uses."""
         for name in ("cubic", "reno"):
             if subprocess.run(["ip", "netns", "exec", self.space(space), "sysctl", "-q",
                                f"net.ipv4.tcp_congestion_control={name}"], stderr=subprocess.DEVNULL,
@@ -101,7 +101,7 @@ class Stage:
         self.running.clear()
 
     def ask(self, space, where, path=None):
-        """Whether somebody listens there; with a path, the JSON that is there."""
+        """Whether a program listens there; with a path, the JSON there."""
         code = f"import socket; socket.create_connection({where!r}, 1).close()" if path is None else (
             f"import urllib.request as u; print(u.urlopen('http://%s:%d{path}' % {where!r}).read().decode())")
         asked = subprocess.run(["ip", "netns", "exec", self.space(space), "python3", "-c", code], capture_output=True,
@@ -119,18 +119,18 @@ class Stage:
             raise RuntimeError(f"{log} did not start: {file.read()}")
 
     def sent(self):
-        """Bytes, with the heads of all segments."""
+        """Bytes, including the heads of all segments."""
         shown = json.loads(subprocess.run(["tc", "-n", self.space("gate"), "-j", "-s", "qdisc", "show", "dev", "c2"],
                                           capture_output=True, check=True).stdout)
         return shown[0]["bytes"]
 
     def play(self, way, robots, seconds, before=lambda: None, meanwhile=time.sleep, post=(), beside=None):
-        """`before` is called right before the robots begin, `meanwhile` with the seconds that they post. `post`: more options
-        of the Command Post. `beside`: what ages_worst.py posts meanwhile; it is not in the figures of ages."""
+        """`before` is called right before the robots begin, `meanwhile` with the seconds for which they post. `post`: more options of
+        the Command Post. `beside`: posts of ages_worst.py, which are not in the figures."""
         place = tempfile.mkdtemp(dir=self.folder)
         rehearsal = [f"{self.programs}/adit-rehearsal", "--secrets", f"{self.folder}/secrets", *post]
         unused = f"{SCORING[0]}:0"
-        # A program of its own for each endpoint: the one that checks maps keeps no report waiting.
+        # A separate program for each endpoint, so that checking maps delays no report.
         self.start("post", [*rehearsal, "--scoring", "%s:%d" % SCORING, "--mapping", unused], "scoring")
         self.start("post", ["nice", "-n", "10", *rehearsal, "--scoring", unused, "--mapping", "%s:%d" % MAPPING,
                             "--control", "%s:%d" % CONTROL], "post")
@@ -140,7 +140,8 @@ class Stage:
         self.wait_for("team", LISTEN, "way")
         before()
         at_first, began = self.sent(), time.monotonic()
-        # They and the Command Post have machines of their own in the field: here they take what the way leaves of this one.
+        # In the field they and the Command Post have their own machines. Here they get the processor time that the
+        # way leaves.
         team = self.start("team", ["nice", "-n", "15", f"{self.programs}/adit-robots", "--post", "http://%s:%d" % LISTEN,
                                    "--control", "http://%s:%d" % CONTROL, "--secrets", f"{self.folder}/secrets",
                                    "--for", str(seconds), "--quiet", *robots], "team")

@@ -1,4 +1,4 @@
-"""What stands between the robots and the Command Post."""
+"""The programs between the robots and the Command Post."""
 
 import json
 import os
@@ -12,7 +12,7 @@ URIS = ("/map/update", "/state/update", "/markers/update")
 
 
 def found(name):
-    """Where the program is, or the end of this one."""
+    """The program's path; exits if it is missing."""
     program = shutil.which(name, path=os.environ["PATH"] + ":/usr/sbin")
     if program is None:
         sys.exit(f"tests/bench: no {name} here: toolchain/setup bench")
@@ -20,7 +20,7 @@ def found(name):
 
 
 class Way:
-    """Writes its files into a folder, and gives the command to run there."""
+    """Writes its files into a directory, and returns the command to run there."""
 
     def __init__(self, name):
         self.name = name
@@ -28,7 +28,7 @@ class Way:
 
 class Adit(Way):
     def __init__(self, name, program, reports_hz=1, state=None):
-        """`state`: the ledger's folder, if that is not to be in memory."""
+        """`state`: the ledger's directory, if not in memory."""
         super().__init__(name)
         self.program, self.reports_hz, self.state = program, reports_hz, state
 
@@ -46,7 +46,7 @@ class Adit(Way):
 
 
 class Nginx(Way):
-    """One request a second of each URI goes on; what comes sooner is refused with 429, as careful teams set it up."""
+    """Passes on one request per second of each URI, and rejects earlier ones with 429, as careful teams configure it."""
 
     def __init__(self):
         super().__init__("nginx")
@@ -75,7 +75,7 @@ http {{
 
 
 class Haproxy(Way):
-    """As nginx here, refuses what comes sooner than a second after the last of its URI with 429."""
+    """Like nginx here, rejects requests less than a second after the last one of their URI with 429."""
 
     def __init__(self):
         super().__init__("haproxy")
@@ -107,7 +107,7 @@ backend scoring
 
 
 class Relay(Way):
-    """A script as teams write it: it answers at once, keeps the newest body of each URI, and sends one a second."""
+    """A script like those of teams: answers at once, keeps the newest body of each URI, and sends one per second."""
 
     def __init__(self):
         super().__init__("relay")

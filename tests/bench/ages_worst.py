@@ -1,4 +1,4 @@
-"""The worst honest robot, KIND HOST PORT TOKEN: posts a large message that hardly compresses each second, until it is stopped."""
+"""The worst honest robot, KIND HOST PORT TOKEN: posts a large, hardly compressible message each second, until it is stopped."""
 
 import http.client
 import json
@@ -45,7 +45,7 @@ def points(at):
 
 
 def markers(at):
-    """As many markers as the 8.4 MB of one message hold, nearly."""
+    """As many markers as fit into the 8.4 MB of one message, nearly."""
     return json.dumps({"markers": [marker(at, number, type=1) for number in range(25_000)]}).encode()
 
 

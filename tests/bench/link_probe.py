@@ -1,6 +1,6 @@
-"""How long a small packet takes to the Command Post and back, and how much goes there. `echo ADDRESS PORT` answers;
-`ask ADDRESS PORT DEVICE` asks each 10 ms until it is told to end, and then prints [[seconds, seconds it took], ...] and
-[[seconds, bytes sent], ...] as JSON."""
+"""Measures the round trip of a small packet to the Command Post, and the traffic. `echo ADDRESS PORT` answers. `ask ADDRESS PORT
+DEVICE` sends every 10 ms until its end, and then prints [[seconds, round trip in seconds], ...] and [[seconds, bytes sent], ...] as
+JSON."""
 
 import contextlib
 import json

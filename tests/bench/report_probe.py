@@ -1,5 +1,5 @@
-"""How long reports take: HOST PORT TOKEN SECONDS FIRST posts one each 20 ms, on one connection, and prints what each took as
-JSON, in seconds. The first has the number FIRST in it, so that no two are the same."""
+"""Measures the time of reports: HOST PORT TOKEN SECONDS FIRST posts one every 20 ms on one connection, and prints each one's seconds
+as JSON. The first report contains the number FIRST, so all reports differ."""
 
 import json
 import re

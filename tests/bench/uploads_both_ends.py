@@ -1,4 +1,4 @@
-"""A robot that posts a map, and the Command Post to which it goes in the end."""
+"""A robot that posts a map, and the Command Post that finally gets it."""
 
 import socket
 import subprocess
@@ -10,7 +10,7 @@ from uploads_ways import HERE, TOKEN, free_port
 
 
 def upload(port, kind, body, mbit):
-    """Posts it as a network of so many Mbit/s brings it. When its last byte was sent, and when it was answered."""
+    """Posts it with that many Mbit/s. Returns when its last byte was sent and when it was answered."""
     head = (f"POST /map/update HTTP/1.1\r\nHost: adit\r\nAuthorization: Bearer {TOKEN}\r\nContent-Type: {kind}\r\n"
             f"Content-Length: {len(body)}\r\n\r\n").encode()
     step, each = 65536, 65536 * 8 / (mbit * 1e6)
@@ -29,7 +29,7 @@ def upload(port, kind, body, mbit):
 
 
 class Post:
-    """The Command Post, and what came to it: first byte, last byte, size."""
+    """The Command Post, and each request's first byte, last byte and size."""
 
     def __init__(self):
         self.port, self.arrivals = free_port(), []

@@ -1,4 +1,4 @@
-"""The bodies that tests/bench/uploads posts: a cave's grid and a surveyed cloud, of any size, the same ones each time."""
+"""The bodies that tests/bench/uploads posts: a cave's grid and a surveyed cloud of any size, the same each time."""
 
 import array
 import base64
@@ -17,7 +17,7 @@ def header(at):
 
 
 def cave(cells):
-    """The side of a square of so many cells, and these: passages that wander, rough walls, rock that nobody has seen."""
+    """The side of a square with that many cells, and its cells: winding passages, rough walls, unknown rock."""
     chance, side = random.Random(4), math.isqrt(cells)
     passages = [[chance.randrange(side), chance.randrange(8, 60)] for _ in range(max(side // 120, 1))]
     rows = []
@@ -40,13 +40,13 @@ def grid(side, data, at):
 
 
 def base64_grid(megabytes):
-    """JSON of so many megabytes, in base64."""
+    """JSON of that many megabytes, in base64."""
     side, cells = cave(int(megabytes * 750_000))
     return "application/json", lambda at: json.dumps(grid(side, base64.b64encode(cells).decode(), at)).encode()
 
 
 def integers_grid(megabytes):
-    """The grid that base64_grid() gives, as a list of integers, as rospy's messages are written."""
+    """base64_grid()'s grid as a list of integers, as rospy writes it."""
     side, cells = cave(int(megabytes * 750_000))
     listed = json.dumps([cell if cell != UNKNOWN else -1 for cell in cells])
     return "application/json", lambda at: json.dumps(grid(side, "HERE", at)).replace('"HERE"', listed).encode()
@@ -60,7 +60,7 @@ def cbor_integers_grid(megabytes):
 
 
 def cloud(megabytes):
-    """CBOR of so many megabytes of points, as a scanner that turns sees a passage."""
+    """CBOR with that many megabytes of points, as a rotating scanner sees a passage."""
     chance, points = random.Random(5), array.array("f")
     for i in range(int(megabytes * 1e6) // 16):
         angle, along = i % 1800 * math.pi / 900, i // 1800 * 0.05

@@ -1,5 +1,5 @@
-"""A Command Post that takes whatever comes and says when, PORT: for each request that has a body a line with the monotonic
-time of its first and of its last byte, and its size."""
+"""A Command Post that accepts all requests, PORT: prints a line for each request with a body: the monotonic times of its first and
+last byte, and its size."""
 
 import re
 import socket

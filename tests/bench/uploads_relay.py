@@ -1,4 +1,4 @@
-"""A relay as teams write it in an hour, LISTEN MAPPING TOKEN: it makes CBOR and gzip of each map, answers, and sends it."""
+"""A relay that a team writes in an hour, LISTEN MAPPING TOKEN: converts each map to CBOR and gzip, answers, and sends it."""
 
 import base64
 import gzip
@@ -15,7 +15,7 @@ session = requests.Session()
 
 
 def packed(body, kind):
-    """The message as it goes upstream."""
+    """The message for the Command Post."""
     update = cbor2.loads(body) if kind == "application/cbor" else json.loads(body)
     data = update["msg"]["data"]
     if isinstance(data, str):

@@ -1,4 +1,4 @@
-"""What a start after a kill costs until Adit listens, with maps in the queue and with none."""
+"""The cost of a start after a kill until Adit listens, with and without queued maps."""
 
 import base64
 import json
@@ -12,13 +12,13 @@ import uploads_maps
 from uploads_both_ends import upload
 from uploads_ways import Adit, free_port
 
-# How many grids wait, and of how many cells each.
+# The number of queued grids and their cells.
 QUEUES = {"no map": (0, 0), "40 grids of 6 MB": (40, 6_000_000), "500 grids of 400 bytes": (500, 400)}
 HEAD = "| way | what waits | CPU ms until it listens | by so much the time without maps | us more for each map |"
 
 
 def fill(way, count, cells):
-    """Grids of two robots beside each other, so that none replaces another."""
+    """Grids of two robots side by side, so that none replaces another."""
     if count == 0:
         return
     side, data = uploads_maps.cave(cells)
@@ -37,7 +37,7 @@ def kill(way):
 
 
 def start(way):
-    """The CPU time until it says that it is ready: then it listens."""
+    """The CPU time until it is ready, so that it listens."""
     address = way.folder / "notify"
     address.unlink(missing_ok=True)
     with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as notify, open(way.folder / "log", "a", encoding="utf-8") as log:
@@ -50,7 +50,7 @@ def start(way):
 
 
 def queued(name, folder, program, count, cells):
-    """Adit, killed while so many maps wait, and not to send them in its next lives: without a token none is packed."""
+    """Adit, killed with that many queued maps. Without a token it packs and sends none of them."""
     way = Adit(name, folder, free_port(), program)
     try:
         fill(way, count, cells)

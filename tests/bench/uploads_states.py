@@ -1,4 +1,4 @@
-"""What a state of ten poses costs: posted 200 times a second on one connection, through each way in turn."""
+"""The cost of a state with ten poses, posted 200 times per second on one connection, through each way."""
 
 import http.client
 import json
@@ -13,7 +13,7 @@ HEADERS = {"Authorization": f"Bearer {TOKEN}", "Content-Type": "application/json
 
 
 def cpu_of_states(way, first):
-    """Microseconds of processor time for each post."""
+    """Microseconds of CPU time per post."""
     client, before = http.client.HTTPConnection("127.0.0.1", way.port, timeout=30), way.cpu()
     for number in range(first, first + COUNT):
         poses = [{"name": f"r{i}", **POSE, "position": {"x": i + 0.001 * number, "y": 2.5, "z": 0.125}} for i in range(10)]

@@ -1,4 +1,4 @@
-"""How long one message of markers keeps all others waiting: the longest answer to somebody who asks all the time."""
+"""How long one message of markers delays all others: the longest answer to a client that asks all the time."""
 
 import concurrent.futures
 import http.client

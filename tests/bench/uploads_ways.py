@@ -1,4 +1,4 @@
-"""What stands between the robots and the Command Post, each as one process that is measured."""
+"""The programs between the robots and the Command Post. The CPU time of each process is measured."""
 
 import json
 import os
@@ -20,7 +20,7 @@ def free_port():
 
 
 class Way:
-    """Runs in a folder of its own, before the Command Post at a port."""
+    """Runs in its own directory, before the Command Post at a port."""
 
     def __init__(self, name, folder, post):
         self.name, self.folder, self.post, self.port = name, pathlib.Path(folder), post, free_port()
@@ -37,11 +37,11 @@ class Way:
             sys.exit(f"tests/bench/uploads: {name} did not start: " + (self.folder / "log").read_text(encoding="utf-8"))
 
     def cpu(self):
-        """Of all threads that it has and had, in milliseconds: what clock_getcpuclockid(3) reads."""
+        """CPU milliseconds of all its threads, also ended ones, by clock_getcpuclockid(3)."""
         return time.clock_gettime((~self.process.pid << 3) | 2) * 1000
 
     def memory(self, row):
-        """VmRSS or VmHWM, in megabytes. A file that is mapped from a file system in memory counts."""
+        """VmRSS or VmHWM, in megabytes. Includes files mapped from a file system in memory."""
         status = pathlib.Path(f"/proc/{self.process.pid}/status").read_text(encoding="ascii")
         return int(re.search(rf"{row}:\s+(\d+) kB", status)[1]) * 1024 / 1e6
 
@@ -50,7 +50,7 @@ class Way:
 
 
 class Adit(Way):
-    """As it ships, but that the link is wide: what is measured is Adit, not its pace."""
+    """Adit as delivered, but with a fast link, so that Adit is measured and not its pace."""
 
     def __init__(self, name, folder, post, program):
         self.program = program
@@ -71,7 +71,7 @@ class Adit(Way):
 
 
 class Nginx(Way):
-    """A plain proxy: it sends on what came, as it came."""
+    """A plain proxy that passes requests on unchanged."""
 
     def command(self):
         folder = self.folder

@@ -1,4 +1,4 @@
-"""What differs between the machines that the tests start: the emulator, what is soldered to it, where its image is."""
+"""Differences of the machines that the tests start: emulator, hardware, image."""
 
 import dataclasses
 import os
@@ -12,9 +12,9 @@ FLASH_SIZE = 64 << 20  # of each of the two flashes of arm64's virt
 
 @dataclasses.dataclass(frozen=True)
 class Board:
-    """`soldered(folder, memory)` makes what the machine is delivered with, in `folder`, and says how QEMU is told of
-    it; `card` and `ports` are QEMU's devices, the latter in their order; `words` are for the kernel, as adit/boot.env
-    has them; `memory` is in megabytes; `needs` are programs and files of the host's."""
+    """`soldered(folder, memory)` makes the delivered hardware in `folder` and returns QEMU's options for it. `card` and `ports` are
+    QEMU's devices, the ports in order. `words` are for the kernel, as in adit/boot.env. `memory` is in megabytes. `needs` are
+    programs and files of the host."""
 
     name: str
     emulator: str
@@ -31,11 +31,11 @@ class Board:
         return SOURCE / "build" / "image" / self.name
 
     def image(self):
-        """The newest."""
+        """The newest image."""
         return max(self.images.glob(f"adit-{self.name}-*.img"), key=lambda path: path.stat().st_mtime)
 
     def missing(self):
-        """What keeps this machine from starting the other, in words; or ""."""
+        """The reason why this machine cannot start the other one, or ""."""
         wanted = [self.emulator, "qemu-img", "mcopy", "setpriv", *self.needs]
         absent = [program for program in wanted if not (shutil.which(program) or os.path.exists(program))]
         if absent:
@@ -45,20 +45,20 @@ class Board:
         return "" if os.path.exists("/dev/net/tun") else "no taps here: /dev/net/tun is missing"
 
 
-# QEMU's arm64 `virt`, which U-Boot starts, with eight GPIO lines as board.json has them. Line 3 is the machine's own
-# power key.
+# QEMU's arm64 `virt`, started by U-Boot, with eight GPIO lines as in board.json. Line 3 is the machine's own power
+# key.
 VIRT = ["-M", "virt,acpi=off", "-cpu", "cortex-a53", "-smp", "2", "-nodefaults", "-display", "none"]
 LINES = ["ADIT_HEALTH", "ADIT_SCORING", "ADIT_MAPPING", "POWER_KEY", "ADIT_ATTENTION", "ADIT_BUTTON", "", ""]
 
 
 def environment_of(board):
-    """What board/BOARD/u-boot.env has, a line for each variable."""
+    """The lines of board/BOARD/u-boot.env, one per variable."""
     lines = (SOURCE / "board" / board / "u-boot.env").read_text().splitlines()
     return [line for line in lines if line and not line.startswith("#")]
 
 
 def virt(folder, memory, told=None):
-    """Boot loader, the boot loader's environment (`told`, or the board's own), device tree."""
+    """Boot loader, its environment (`told`, or the board's own), device tree."""
     loader, environment, tree = folder / "loader.bin", folder / "environment.bin", folder / "machine.dtb"
     package = next((SOURCE / "build" / "image" / "debian-arm64").glob("*/u-boot-qemu_*.deb"))
     opened = subprocess.run(["dpkg-deb", "--fsys-tarfile", package], stdout=subprocess.PIPE, check=True).stdout
@@ -75,12 +75,12 @@ def virt(folder, memory, told=None):
     return [*VIRT, "-dtb", tree, *flashes(loader, environment)]
 
 
-# A PC, which GRUB starts by UEFI, from a SATA disk; its ports are of two makes.
+# A PC that GRUB starts by UEFI from a SATA disk. Its ports are of two models.
 PC_FIRMWARE = pathlib.Path("/usr/share/OVMF")
 
 
 def pc(folder, _):
-    """UEFI, and a copy of what it remembers; and a clock whose battery is empty."""
+    """UEFI with a copy of its variables, and a clock with an empty battery."""
     variables = folder / "variables.fd"
     shutil.copy(PC_FIRMWARE / "OVMF_VARS_4M.fd", variables)
     machine = ["-M", "q35", "-cpu", "qemu64", "-smp", "2", "-nodefaults", "-display", "none", "-rtc", "base=2020-01-01T00:00:00"]
@@ -92,8 +92,8 @@ def flashes(fixed, written):
             "-drive", f"if=pflash,format=raw,unit=1,file={written}"]
 
 
-# The hardware watchdog counts the host's time, of which an emulated machine may have a tenth: after its 20 s it would restart a machine whose
-# PID 1 starts or reloads. So it counts to ten minutes, except in its own test (test_recovery.py).
+# The hardware watchdog counts the host's time, of which an emulated machine may get a tenth. After 20 s it would
+# restart a machine whose PID 1 starts or reloads. So it has ten minutes, except in its own test (test_recovery.py).
 WORDS = "adit.console systemd.watchdog_sec=600"
 
 QEMU_VIRT = Board(

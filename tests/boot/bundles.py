@@ -1,5 +1,5 @@
-"""Updates of other versions, made of the image that is there: its root with another version in it, or with something
-missing; and sticks with updates."""
+"""Updates with other versions, made from the existing image: its root with another version, or with a missing file; and sticks with
+updates."""
 
 import os
 import shutil
@@ -9,7 +9,7 @@ import boards
 
 
 def bundle(folder, version, board="qemu-virt", without=None, source=boards.QEMU_VIRT):
-    """Signed as toolchain/image signs, for `board`, of the image of `source`. `without`: a file that its root lacks."""
+    """A bundle for `board` from the image of `source`, signed as by toolchain/image. `without`: a file that its root lacks."""
     work, output = folder / f"work-{version}", folder / f"adit-{board}-{version}.raucb"
     made = source.images / "work"
     work.mkdir()
@@ -24,7 +24,7 @@ def bundle(folder, version, board="qemu-virt", without=None, source=boards.QEMU_
     release.write_text("\n".join(lines) + "\n")
     if without:
         (root / without).unlink()
-    # Quickly, and not small.
+    # Fast compression, large result.
     subprocess.run(
         [
             "mksquashfs",
@@ -50,7 +50,7 @@ def bundle(folder, version, board="qemu-virt", without=None, source=boards.QEMU_
 
 
 def bundle_of_nothing(folder, version, board):
-    """Signed as well, and small, for what is refused before a slot is written."""
+    """A small signed bundle, for rejections before a slot is written."""
     work, output = folder / f"work-{version}", folder / f"adit-{board}-{version}.raucb"
     work.mkdir()
     for name in ("root.squashfs", "boot.vfat"):

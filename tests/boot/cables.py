@@ -1,5 +1,4 @@
-"""The box's two cables: each port of the machine is the other end of `eth0` of a namespace, the team's or the Command
-Post's."""
+"""The box's two cables: each port of the machine is connected to `eth0` of a namespace, the team's or the Command Post's."""
 
 import fcntl
 import os
@@ -17,7 +16,7 @@ TEAM_ADDRESS = "10.0.0.12"
 
 
 class Cables(hosts.Network):
-    """As the wire tests' three hosts, but that the box is a machine of its own. `ports` are for it: team0, darpa0."""
+    """The wire tests' three hosts, but the box is a separate machine. `ports` are its ports: team0, darpa0."""
 
     def __init__(self):
         super().__init__("10.0.0")
@@ -37,7 +36,7 @@ class Cables(hosts.Network):
         hosts.enter(f"/run/netns/{self.team}")
 
     def open_ports(self, host, address, ports, within=4.0):
-        """Those of the TCP ports at which somebody answers to `host`."""
+        """The TCP ports at which `host` gets an answer."""
         waiting = select.poll()
         tried = {}
         try:
@@ -69,7 +68,7 @@ class Cables(hosts.Network):
 
 
 def tap(name):
-    """A new port in this namespace, and the descriptor that is the other end of its cable."""
+    """Makes a port in this namespace, and returns the descriptor of the other end of its cable."""
     end = os.open("/dev/net/tun", os.O_RDWR | os.O_CLOEXEC)
     fcntl.ioctl(end, TUNSETIFF, struct.pack("16sH22x", name.encode(), IFF_TAP | IFF_NO_PI | IFF_VNET_HDR))
     return end

@@ -1,5 +1,5 @@
-"""A root shell on the machine's console, which whoever has the card may ask for (rootfs/README.md). For what no user of
-the box can see or do: hung and killed processes, what holds memory, where the time goes."""
+"""A root shell on the machine's console, which the owner of the card can enable (rootfs/README.md). For things that a user of the box
+cannot see or do: hung and killed processes, memory, timing."""
 
 import re
 import socket
@@ -12,7 +12,7 @@ from patience import patient
 
 
 class Console:
-    """Reads all that the machine says, into a file, and types commands."""
+    """Reads the machine's output into a file, and types commands."""
 
     def __init__(self, path, log):
         self.socket = qmp.connected(path)
@@ -41,7 +41,7 @@ class Console:
             return self.heard.decode(errors="replace")
 
     def wait_for(self, pattern, within, after=0):
-        """The match of a regular expression in what was said after the `after`th byte."""
+        """The match of a regular expression in the output after byte `after`."""
         within = patient(within)
         end = time.monotonic() + within
         with self.news:
@@ -61,8 +61,7 @@ class Console:
         self.socket.sendall(line.encode() + b"\n")
 
     def wait_for_shell(self, within=180.0):
-        """Until it answers. What is typed before there is a shell is lost, and stops the boot loader if it is typed to
-        that."""
+        """Waits until the shell answers. Input before there is a shell is lost, and the boot loader stops if it gets input."""
         end = time.monotonic() + patient(within)
         self.wait_for(rb"Adit: slot .*/ # ", within)
         while True:
@@ -73,7 +72,7 @@ class Console:
                     raise
 
     def run(self, command, within=120.0):
-        """Exit status and output. The marks are typed in two halves, so that the echo of what is typed is none."""
+        """Exit status and output. The marks are typed in two halves, so that their echo does not match."""
         self.asked += 1
         with self.news:
             after = len(self.heard)
@@ -90,8 +89,8 @@ class Console:
         return said
 
     def reload(self):
-        """systemctl daemon-reload. PID 1 does not feed the hardware watchdog during it, and an emulated machine on a busy host takes longer
-        for it than the 20 s after which that restarts the machine: it has ten minutes meanwhile."""
+        """systemctl daemon-reload. PID 1 does not feed the hardware watchdog meanwhile, and an emulated machine on a busy host takes
+        longer than the watchdog's 20 s. So it gets ten minutes meanwhile."""
         watchdog = "busctl set-property org.freedesktop.systemd1 /org/freedesktop/systemd1 org.freedesktop.systemd1.Manager RuntimeWatchdogUSec t"
         self.ask(f"{watchdog} 600000000 && systemctl daemon-reload && {watchdog} 20000000")
 

@@ -1,4 +1,4 @@
-"""What the stories of a box in a container have in common: it is set up, asked, and looked at."""
+"""Shared by the stories of a box in a container: set-up, requests, checks."""
 
 import shlex
 
@@ -23,14 +23,14 @@ class Contained(stage.Story):
         return said
 
     def confirmed(self):
-        """Whether the change of the addresses could be confirmed: it is made within seconds."""
+        """Confirms the change of the addresses, which is made within seconds. Returns whether that worked."""
         session = {**self.session, "Content-Type": "application/json"}
         status, said = self.box.ask("POST /adit/network/confirm", session, None, token=None)
         self.assertIn(status, (200, 409), said)
         return status == 200
 
     def set_up(self):
-        """By its API, as the page does it, until it knows the run."""
+        """Sets the box up by its API, as the page does, until it knows the run."""
         self.asked("POST /adit/password", {"role": "operator", "code": self.box.code(), "password": PASSWORD})
         type(self).session = programs.log_in(self.box, PASSWORD)
         for name, token in (
@@ -49,7 +49,7 @@ class Contained(stage.Story):
         return done.stdout
 
     def lit(self):
-        """The lights that are lit; the panel is a simulated one."""
+        """The lights that are on; the panel is simulated."""
         said = self.box.run("cat", "/run/adit-panel/lights").stdout
         return {line.split()[0] for line in said.splitlines() if line.endswith(" on")}
 

@@ -1,6 +1,6 @@
-"""A root in a container (systemd-nspawn), for every day: this machine's own processor, the real units, seconds
-to start. What only a machine has is not in it: boot loader, kernel, disk, GPIO, hardware watchdog, and what asks for
-these (the import from the boot partition, updates)."""
+"""A root in a container (systemd-nspawn), for daily use: this machine's processor, the real units, seconds to start. It lacks the
+parts of a machine: boot loader, kernel, disk, GPIO, hardware watchdog, and features that need these (the import from the boot
+partition, updates)."""
 
 import os
 import pathlib
@@ -21,7 +21,7 @@ TREE = SOURCE / "build" / "image" / BOARD / "work" / "root"
 
 
 def missing():
-    """What keeps this machine from running it, in words; or ""."""
+    """The reason why this machine cannot run it, or ""."""
     if not shutil.which("systemd-nspawn"):
         return "not on this machine: systemd-nspawn (Debian: systemd-container)"
     if not TREE.is_dir():
@@ -32,8 +32,7 @@ def missing():
 
 
 class Cables(hosts.Network):
-    """As the wire tests' three hosts: the container takes the box's two ports, and its own network sets the
-    addresses."""
+    """The wire tests' three hosts. The container gets the box's two ports, and its own network sets the addresses."""
 
     def __init__(self):
         super().__init__("10.0.0")
@@ -48,7 +47,7 @@ class Cables(hosts.Network):
             hosts.ip("-n", self.box, "address", "flush", "dev", port)
 
     def cable_the_box(self):
-        """Again: with the container its ports went, and with them the other ends of the cables."""
+        """Connects again, because the ports and their cables vanished with the container."""
         for host, addresses, port in (
             (self.team, [self.team_address], "team0"),
             (self.post, [hosts.SCORING, hosts.MAPPING], "darpa0"),
@@ -63,7 +62,7 @@ class Cables(hosts.Network):
 
 
 class Nspawn(programs.Page):
-    """A root of its own, over `tree`, which stays as it is."""
+    """A root of its own over `tree`, which does not change."""
 
     ports = ("team0", "darpa0")  # of the network's box, which it takes
     options = ()  # systemd-nspawn's
@@ -79,7 +78,7 @@ class Nspawn(programs.Page):
         self.process = None
 
     def start(self):
-        """Until it is started; with the mounts that nspawn wants where this machine's own first process is not systemd."""
+        """Waits until it has started. Adds the mounts that nspawn needs if this machine's PID 1 is not systemd."""
         self.began = time.monotonic()
         taken = " ".join([*self.options, *(f"--network-interface={port}" for port in self.ports)])
         inside = (
@@ -119,14 +118,14 @@ class Nspawn(programs.Page):
         return self.log.read_text(errors="replace")[-4000:] if self.log.exists() else ""
 
     def leader(self):
-        """Its first process, as this machine numbers it; None while there is none yet, or no more."""
+        """This machine's number of its first process; None if there is none."""
         if self.process.poll() is not None:
             raise AssertionError(f"systemd-nspawn has ended:\n{self.said_last()}")
         found = subprocess.run(["pgrep", "-P", str(self.process.pid)], capture_output=True, text=True, check=False).stdout
         return int(found.split()[0]) if found else None
 
     def run(self, *command):
-        """A command in it, as root."""
+        """Runs a command in it as root."""
         return subprocess.run(
             ["nsenter", "-a", "-t", str(self.leader()), *command], capture_output=True, text=True, check=False
         )
@@ -150,7 +149,7 @@ class Nspawn(programs.Page):
         subprocess.run(["umount", "--lazy", self.root], check=False)
 
     def code(self):
-        """That of the first start, as it stands in the log."""
+        """The code of the first start, from the log."""
         said = self.run(
             "journalctl", "-u", "adit", "-o", "cat", "--no-pager", "--output-fields=MESSAGE,CODE,ADIT_CODE"
         ).stdout
@@ -158,7 +157,7 @@ class Nspawn(programs.Page):
 
 
 class Container(Nspawn):
-    """The tree as the image has it, and over it the programs and units of this build and the overlay as it is now."""
+    """The tree of the image, overlaid with this build's programs and units and the current overlay."""
 
     def __init__(self, network, folder):
         super().__init__(network, folder, TREE)
@@ -188,7 +187,7 @@ class Container(Nspawn):
 
 
 class Stage:
-    """A container in a folder of its own, and a Command Post."""
+    """A container in its own directory, and a Command Post."""
 
     cables, contained = Cables, Container
 
@@ -209,7 +208,7 @@ class Stage:
         return self
 
     def prepare(self):
-        """What comes before its story; not even started, if nothing is said."""
+        """Prepares the story; by default the container is not even started."""
 
     def __exit__(self, *_):
         if self.box is not None:

@@ -1,4 +1,4 @@
-"""A DHCP server as a base station has one: busybox' udhcpd, of the image's own root."""
+"""A DHCP server like a base station's: busybox's udhcpd from the image's root."""
 
 import container
 import programs
@@ -21,7 +21,7 @@ option lease {lease}
 
 
 class Server:
-    """On `eth0` of the team's host: gives `address`, for LEASE, and a router, a name server and a clock that nobody is to take."""
+    """On `eth0` of the team's host: offers `address` for LEASE, and a router, a name server and a clock that the box must ignore."""
 
     def __init__(self, network, folder, address):
         self.network, self.folder = network, folder / f"udhcpd-{address}"
@@ -39,7 +39,7 @@ class Server:
         return self.log.read_text(errors="replace")
 
     def given(self):
-        """How often it gave or renewed the lease."""
+        """How often it granted or renewed the lease."""
         return self.said().count("sending ACK")
 
     def stop(self):

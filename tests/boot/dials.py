@@ -1,16 +1,16 @@
-"""What a story asks of the box's time of day."""
+"""Helpers of stories about the box's time of day."""
 
 import time
 
 
 class Dials:
-    """Beside stage.Story. `ahead`: seconds before this machine's clock."""
+    """Mixin of stage.Story. `ahead`: seconds ahead of this machine's clock."""
 
     def clock(self):
         return self.box.ask("GET /adit/clock")[1]
 
     def source_is(self, source, within=240):
-        """An emulated adit-clock takes ten seconds of its processor's."""
+        """Waits. An emulated adit-clock needs ten seconds of its processor."""
         told = []
 
         def is_so():
@@ -26,11 +26,11 @@ class Dials:
         return float(self.box.console.ask("busybox date +%s"))
 
     def assert_close(self, seconds, ahead, told=""):
-        """That this machine's clock, and so many seconds, say the same."""
+        """Checks that the time is this machine's plus `ahead` seconds."""
         self.assertAlmostEqual(seconds, time.time() + ahead, delta=30, msg=told)
 
     def operator_sets_it(self, ahead):
-        """And with it the chip, if the box has one."""
+        """Sets the clock, and the chip if the box has one."""
         self.assertEqual(self.box.ask("POST /adit/clock", body={"time": time.time() + ahead})[0], 200)
         self.box.wait_until(lambda: abs(self.clock()["now"] - time.time() - ahead) < 30, "it to be set", 240)
         self.source_is("operator")

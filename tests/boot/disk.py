@@ -24,7 +24,7 @@ class Disk:
         subprocess.run(["truncate", "-s", size, self.file], check=True)
 
     def options(self, device):
-        """What QEMU is told, from a new copy on: a disk of this device of its."""
+        """QEMU's options for this disk, from a new copy on."""
         subprocess.run(["qemu-img", "create", "-q", "-f", "qcow2", "-b", self.file, "-F", "raw", self.copy], check=True)
         self.log.write_bytes(b"")
         quick = "cache.no-flush=on"  # what the guest flushes is in the log; the host need not wait for its own disk
@@ -35,8 +35,7 @@ class Disk:
                 "-device", f"{device},drive=disk"]
 
     def is_off(self, chance=None):
-        """Plays the log back, all of it or, with a `chance` (random.Random), as a power cut leaves it. How many writes
-        were lost."""
+        """Plays the log back: all of it, or with a `chance` (random.Random) as after a power cut. Returns the number of lost writes."""
         writes = list(entries(self.log))
         flushed = max((index for index, (flags, *_) in enumerate(writes) if flags & FLUSH), default=-1)
         lost = 0
@@ -51,7 +50,7 @@ class Disk:
         return lost
 
     def has_flushed(self, text):
-        """Whether no power cut can lose these bytes, since it is on: they were written and, after that, there was a flush."""
+        """Whether a power cut cannot lose these bytes: they were written since power-on, and flushed afterwards."""
         writes = list(entries(self.log))
         flushed = max((index for index, (flags, *_) in enumerate(writes) if flags & FLUSH), default=0)
         with open(self.log, "rb") as log:
@@ -61,7 +60,7 @@ class Disk:
                     return True
         return False
 
-    # What stands on the boot partition, as somebody with a card reader sees it.
+    # The boot partition, as seen with a card reader.
     def put(self, name, text):
         """Puts a file on the FAT partition: put("adit/settings.json", "...")."""
         subprocess.run(["mcopy", "-o", *self._boot_partition(), "-", f"::{name}"], input=text.encode(), check=True)
@@ -74,7 +73,7 @@ class Disk:
 
 
 def entries(path):
-    """Of each write in the log: its flags, sector, length, and where its bytes are."""
+    """For each write in the log: its flags, sector, length, and the place of its bytes."""
     size = path.stat().st_size
     with open(path, "rb") as log:
         head = log.read(SECTOR)
@@ -98,7 +97,7 @@ def entries(path):
 
 
 def play(log, at, disk, to, length):
-    """Copies bytes, a megabyte at a time; zeros over zeros are left out, so that the disk stays a file with holes."""
+    """Copies bytes, a megabyte at a time. Skips zeros over zeros, so that the disk stays a sparse file."""
     log.seek(at)
     for done in range(0, length, 1 << 20):
         some = log.read(min(1 << 20, length - done))

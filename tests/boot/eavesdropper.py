@@ -1,4 +1,4 @@
-"""Hears every frame on the box's cable, and says what in it the box should not have said."""
+"""Captures every frame on the box's cable, and reports those that the box should not have sent."""
 
 import contextlib
 import socket
@@ -14,7 +14,7 @@ PORT_MDNS = 5353
 
 
 class Eavesdropper:
-    """On `eth0` of a namespace, from the moment it is made."""
+    """Listens on `eth0` of a namespace from its creation on."""
 
     def __init__(self, network, host):
         self.socket = network.made_in(host, on_eth0)
@@ -41,7 +41,7 @@ class Eavesdropper:
         self.socket.close()
 
     def strangers(self, *endpoints):
-        """What is neither ARP for IPv4 nor TCP to one of the endpoints, (address, port), one line for each kind."""
+        """Frames other than ARP for IPv4 and TCP to an endpoint (address, port), one line for each kind."""
         return sorted({said for _, frame in self.frames if (said := stranger(frame, endpoints))})
 
     def count(self):
@@ -73,7 +73,7 @@ def stranger(frame, endpoints):
 
 
 def mdns_addresses(network, host, own_address, name="adit.local", within=3.0):
-    """The IPv4 addresses that anybody on `eth0` of a namespace gives for a name by multicast DNS."""
+    """The IPv4 addresses that hosts on `eth0` of a namespace answer for a name by multicast DNS."""
     question = b"".join(bytes([len(part)]) + part.encode() for part in name.split(".")) + b"\0"
     asker = network.made_in(host, lambda: socket.socket(socket.AF_INET, socket.SOCK_DGRAM))
     with asker:
@@ -95,7 +95,7 @@ def mdns_addresses(network, host, own_address, name="adit.local", within=3.0):
 
 
 def addresses_in(message, name):
-    """Of the A records of that name in a DNS message (RFC 1035, 4.1), where it is an answer."""
+    """The addresses in A records of that name in a DNS message (RFC 1035, 4.1), if it is an answer."""
     _, flags, questions, *records = struct.unpack_from("!6H", message)
     if not flags & 0x8000:
         return set()
@@ -112,7 +112,7 @@ def addresses_in(message, name):
 
 
 def name_at(message, at):
-    """A name and where it ends; a part of it may be a pointer to where that stood before."""
+    """A name and its end. A part of it may be a pointer to an earlier place."""
     parts, end = [], None
     while message[at]:
         if message[at] >= 0xC0:

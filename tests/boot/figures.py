@@ -1,4 +1,4 @@
-"""What a start of the machine costs, and what its units may do: printed, and kept for rootfs/README.md."""
+"""The cost of a boot and the privileges of its units: printed, and kept for rootfs/README.md."""
 
 import re
 
@@ -8,7 +8,7 @@ QUIET = "SYSTEMD_COLORS=0 SYSTEMD_PAGER= "
 
 
 def of_a_later_start(box):
-    """What it was made of. The box has a shell."""
+    """The parts of the boot's duration. The box has a shell."""
     box.wait_until(lambda: box.console.run("systemd-analyze time")[0] == 0, "the start to be over", 400)
     said = box.console.ask(QUIET + "systemd-analyze time --no-pager").splitlines()[0]
     note("kernel and initrd, and user space, from the kernel's start", said)
@@ -17,14 +17,14 @@ def of_a_later_start(box):
 
 
 def memory_in_use(box):
-    """In MB, now."""
+    """Used memory in MB."""
     used = int(box.console.ask("free -m | grep Mem").split()[2])
     note("RAM in use when idle", f"{used} MB of {box.memory}")
     return used
 
 
 def exposures(box):
-    """What systemd-analyze says of each unit of Adit's that a boot starts, and the most that it may say."""
+    """systemd-analyze's rating of each of Adit's units that a boot starts, and its limit."""
     units = box.console.ask("cd /usr/lib/systemd/system; ls adit*.service").split()
     for unit in (name for name in units if "@" not in name and name != "adit-console.service"):
         said = box.console.ask(f"{QUIET} systemd-analyze security --no-pager {unit} | tail -n 1")

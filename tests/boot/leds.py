@@ -1,8 +1,8 @@
-"""Reads patterns off the lights, as firmware/doors/panel/README.md names them, from what the GPIO lines do."""
+"""Recognises light patterns, named as in firmware/doors/panel/README.md, from the levels of the GPIO lines."""
 
 import math
 
-# Flashes a second; those of one rate are told apart by how much of the time they are lit.
+# Flashes per second. Patterns with the same rate differ in their share of lit time.
 RATES = {"flash": 0.5, "wink": 0.5, "slow": 1, "twice": 2, "fast": 4, "rush": 10}
 LONGEST = 4.2  # seconds of looking: two of the slowest pattern
 
@@ -22,12 +22,12 @@ def pattern(samples):
 
 
 def patterns(seen):
-    """Of all lights, from Machine.watch_lights(): {"health": "on", ...}."""
+    """The patterns of all lights from Machine.watch_lights(): {"health": "on", ...}."""
     return {name: pattern([(at, lights[name]) for at, lights in seen]) for name in seen[0][1]}
 
 
 def wait_for(machine, within=120.0, **wanted):
-    """Looks until the lights show these patterns: wait_for(machine, health="on", scoring="fast")."""
+    """Waits until the lights show these patterns: wait_for(machine, health="on", scoring="fast")."""
     shown = {}
 
     def as_wanted():

@@ -1,5 +1,5 @@
-"""The box as a machine: QEMU, started from its card by the boot loader as a board is, with two ports, a hardware
-watchdog, and, where the board has them, four lights and a button."""
+"""The box as a machine: QEMU, started from its card by the boot loader like a board, with two ports, a hardware watchdog, and, if the
+board has them, four lights and a button."""
 
 import http.client
 import os
@@ -19,7 +19,7 @@ GAVE_UP = "adit: the start failed"  # rootfs/overlay's emergency.service says so
 
 
 class Machine(programs.Page):
-    """`cables` are in its two ports from the beginning; `disk` is its card."""
+    """`cables` are plugged in from the beginning; `disk` is the card."""
 
     def __init__(self, cables, folder, disk, board=boards.QEMU_VIRT):
         self.network, self.folder, self.disk, self.board = cables, folder, disk, board
@@ -54,7 +54,7 @@ class Machine(programs.Page):
             self.pins = qmp.Pins(sockets[1], self.monitor.gpio_chip())
 
     def cut_power(self, chance=None):
-        """Off, this very moment; with `chance` the disk loses what it may. How many writes that were."""
+        """Cuts the power. With `chance`, the disk loses unflushed writes. Returns their number."""
         self.cuts += 1
         self.process.kill()
         self.process.wait()
@@ -67,15 +67,15 @@ class Machine(programs.Page):
     def is_on(self):
         return self.process is not None and self.process.poll() is None
 
-    # What hands and eyes can do at the box.
+    # Actions and observations of a user at the box.
 
     def lights(self):
-        """{"health": True, ...}; a line that is not an output is dark."""
+        """{"health": True, ...}; a line that is not an output is off."""
         levels, outputs = self.monitor.gpio()
         return {name: bool(levels & outputs & (1 << line)) for name, line in LIGHTS.items()}
 
     def watch_lights(self, seconds, every=0.02):
-        """What they showed: a list of (seconds since the first, lights)."""
+        """The lights over time: a list of (seconds since the first, lights)."""
         began, seen = time.monotonic(), []
         while time.monotonic() - began < seconds:
             seen.append((time.monotonic() - began, self.lights()))
@@ -89,11 +89,11 @@ class Machine(programs.Page):
         time.sleep(0.2)  # for less, it would be a bounce
 
     def plug(self, port, plugged=True):
-        """The cable of team0 or darpa0, in or out."""
+        """Plugs the cable of team0 or darpa0 in or out."""
         self.monitor.ask("set_link", name=port, up=plugged)
 
     def plug_stick(self, image, name="stick"):
-        """A USB stick of an image of its bytes, which cannot be written on."""
+        """Plugs in a read-only USB stick with the bytes of an image."""
         file = {"driver": "file", "filename": str(image), "read-only": True, "locking": "off"}
         self.monitor.ask("blockdev-add", **{"node-name": name, "driver": "raw", "read-only": True, "file": file})
         self.monitor.ask("device_add", driver="usb-storage", bus="usb.0", id=name, drive=name)
@@ -101,10 +101,10 @@ class Machine(programs.Page):
     def pull_stick(self, name="stick"):
         self.monitor.ask("device_del", id=name)
 
-    # What a client on the team's side sees.
+    # Observations of a client on the team's side.
 
     def wait_for_answer(self, within=400.0):
-        """Until the first answer on team0. What that took from the power switch on is in `start_took`."""
+        """Waits for the first answer on team0. `start_took` is the time since power-on."""
         self.wait_until(self.answers, "the box to answer", within)
         self.start_took = self.took((self.switched_on, 0.0))
 
@@ -116,7 +116,7 @@ class Machine(programs.Page):
 
     @staticmethod
     def wants(ask, request, **members):
-        """Whether the box answers, and these members are so."""
+        """Whether the box answers with these members."""
         try:
             said = ask(request)
         except OSError:
@@ -124,16 +124,16 @@ class Machine(programs.Page):
         return all(said[name] == value for name, value in members.items())
 
     def cpu_seconds(self):
-        """Of QEMU, so far."""
+        """QEMU's CPU seconds so far."""
         fields = pathlib.Path(f"/proc/{self.process.pid}/stat").read_text().rpartition(")")[2].split()
         return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
     def moment(self):
-        """For took(): the clock, and QEMU's seconds of this machine's processor."""
+        """For took(): the clock, and QEMU's CPU seconds."""
         return time.monotonic(), self.cpu_seconds()
 
     def took(self, began):
-        """In words, since a moment(). The processor's seconds say more than the clock's: it is often busy with other things, too."""
+        """The cost since a moment(), in words. CPU seconds say more than the clock, because the host is often busy."""
         (clock, cpu), (clock_then, cpu_then) = self.moment(), began
         return f"{clock - clock_then:.1f} s ({cpu - cpu_then:.1f} s of the host's processors)"
 
@@ -141,7 +141,7 @@ class Machine(programs.Page):
         return self.console.said()[-4000:]
 
     def wait_until(self, condition, what, within=120.0):
-        """As programs.wait_until, for a box that may be away; a machine which has ended for good is said to have."""
+        """As programs.wait_until, for a box that may be unreachable. Fails if the machine has ended."""
         def is_so():
             if not self.is_on():
                 raise AssertionError(f"QEMU has ended while waiting for {what}:\n"

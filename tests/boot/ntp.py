@@ -1,4 +1,4 @@
-"""NTP (RFC 5905) as others on a box's networks speak it: a server that may tell any time, or be silent, and a client."""
+"""NTP (RFC 5905) of other hosts: a server with any time or none, and a client."""
 
 import contextlib
 import socket
@@ -15,12 +15,12 @@ CLIENT, SERVER, VERSION = 3, 4, 4 << 3
 
 
 def stamp(seconds):
-    """Seconds in 32 bits, which begin again in 2036, and their fraction in 32."""
+    """An NTP time stamp: seconds in 32 bits, which wrap in 2036, and 32 bits of fraction."""
     return int((seconds + SINCE_1900) * 2**32) % 2**64
 
 
 class Server:
-    """In the namespace `host`; `ahead` of this machine's clock by so many seconds, or None: it says nothing."""
+    """A server in the namespace `host`, `ahead` seconds ahead of this machine's clock; None: it does not answer."""
 
     def __init__(self, host, address, ahead=0.0):
         self.ahead, self.asked = ahead, 0
@@ -48,7 +48,7 @@ class Server:
 
 
 def asked_of(host, address, within=1.0):
-    """What a client in the namespace `host` is told: stratum and seconds since 1970; None: nothing, or that it is not known."""
+    """The answer to a client in the namespace `host`: stratum and seconds since 1970; None: no answer, or not synchronised."""
     with Network.made_in(host, lambda: socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) as client:
         client.settimeout(within)
         with contextlib.suppress(OSError):

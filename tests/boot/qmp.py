@@ -1,5 +1,4 @@
-"""QEMU from outside: its monitor (QMP), through which a test reads the lights' lines, and qtest, through which it
-presses the button."""
+"""QEMU from outside: its monitor (QMP), with which a test reads the lights' lines, and qtest, with which it presses the button."""
 
 import json
 import socket
@@ -34,12 +33,12 @@ class Monitor:
         return self.ask("human-monitor-command", **{"command-line": command})
 
     def gpio(self):
-        """Levels of the PL061's lines, and which of them are outputs, as two numbers of eight bits."""
+        """Levels and directions of the PL061's lines, as two numbers of eight bits."""
         words = self.human(f"xp /2wx {PL061_REGISTERS:#x}").split(":")[1].split()
         return tuple(int(word, 16) for word in words)
 
     def gpio_chip(self):
-        """The chip's path among QEMU's objects, as qtest wants it."""
+        """The chip's path among QEMU's objects, for qtest."""
         for line in self.human("info qom-tree /machine/unattached").splitlines():
             if "(pl061)" in line:
                 return "/machine/unattached/" + line.split()[0].strip("/")
@@ -51,7 +50,7 @@ class Monitor:
 
 
 class Pins:
-    """Drives the machine's inputs, by the protocol of QEMU's own tests."""
+    """Drives the machine's inputs with the protocol of QEMU's own tests."""
 
     def __init__(self, path, chip):
         self.socket, self.chip = connected(path), chip
@@ -70,7 +69,7 @@ class Pins:
 
 
 def connected(path, within=60.0):
-    """A connection to a socket that QEMU is about to make."""
+    """Connects to a socket that QEMU is about to make."""
     end = time.monotonic() + within
     while True:
         made = socket.socket(socket.AF_UNIX)

@@ -1,4 +1,4 @@
-"""A machine with a card, between the Command Post and the team: what every scene needs."""
+"""A machine with a card, between the Command Post and the team: shared by all stories."""
 
 import functools
 import json
@@ -18,8 +18,8 @@ import machine
 import programs
 from patience import patient
 
-# What a card of this board's image is set up with; the rest is as in programs.settings(), but that a machine which is
-# emulated on a busy one is given time.
+# The settings on the card. Others are as in programs.settings(), but with more time for an emulated machine on a busy
+# host.
 LISTEN = [{"address": "0.0.0.0", "port": 80}, {"address": "0.0.0.0", "port": 8000}]
 SETTINGS = {
     "team__listen": LISTEN,
@@ -44,7 +44,7 @@ def skip_without(board):
 
 
 def load_tests(_, tests, __):
-    """A story is told in the order in which it is written."""
+    """Runs the tests of a story in the order in which they are written."""
 
     def each(suite):
         for test in suite:
@@ -59,8 +59,8 @@ def load_tests(_, tests, __):
 
 
 class Stage:
-    """`set_up`: whether the card brings settings, addresses and tokens, as from a card reader. `post_options`: None for
-    no Command Post."""
+    """`set_up`: whether the card has settings, addresses and tokens, as prepared in a card reader. `post_options`: None for no
+    Command Post."""
 
     def __init__(self, set_up=True, post_options=("--rate", "0"), board=boards.QEMU_VIRT, **overrides):
         self.temporary = tempfile.TemporaryDirectory(prefix="adit-boot-")
@@ -91,18 +91,18 @@ class Stage:
         return self
 
     def start(self):
-        """Switches it on, and waits until it answers the team."""
+        """Switches the box on, and waits until it answers the team."""
         self.box.power_on()
         self.box.wait_for_answer()
         return self
 
     def began(self):
-        """Once the box knows the run."""
+        """Waits until the box knows the run."""
         self.box.wait_until(self.box.knows_the_run, "the box to know the run", 180)
         return self
 
     def robots(self, seconds, *options):
-        """The simulated team explores for so long. Its exit status, and what it said."""
+        """Lets the simulated team explore for that time. Returns its exit status and output."""
         robots = self.network.start(
             self.network.team,
             programs.BIN / "adit-robots",
@@ -134,14 +134,13 @@ class Stage:
 
 
 class Story(unittest.TestCase):
-    """Tests that share one machine, each of which begins where the one before it ended. Where one fails, those after it
-    would only say so again: they are skipped."""
+    """Tests that share one machine, each of which continues from the one before. If one fails, the others are skipped."""
 
     broken = ""
 
     @classmethod
     def tell(cls, stage):
-        """The stage of all of them, from setUpClass."""
+        """Sets the common stage; call from setUpClass."""
         cls.stage = cls.enterClassContext(stage)
         return stage
 
@@ -162,7 +161,7 @@ class Story(unittest.TestCase):
 
 @functools.cache
 def speed_of_host():
-    """What a second of this machine's processor is worth: those that ten million turns of a loop of Python take."""
+    """The speed of this machine's processor: seconds for ten million turns of a Python loop."""
     began = time.process_time()
     for _ in range(10_000_000):
         pass
@@ -170,7 +169,7 @@ def speed_of_host():
 
 
 def note(figure, value):
-    """Prints a figure, and keeps it where CI finds it, with the host's speed."""
+    """Prints a figure, and saves it for CI, with the host's speed."""
     print(f"\n  {figure}: {value}", flush=True)
     FIGURES.parent.mkdir(parents=True, exist_ok=True)
     with open(FIGURES, "a", encoding="utf-8") as file:

@@ -1,4 +1,4 @@
-"""USB sticks for a container: images of this machine's, on loop devices, which the box's own units mount."""
+"""USB sticks for a container: images on this machine's loop devices, which the box's own units mount."""
 
 import os
 import pathlib
@@ -15,7 +15,7 @@ from mounting import can_mount, make, run  # noqa: E402
 __all__ = ["Stick", "can_mount"]
 
 DEVICES = "/run/devices"
-# No unit of a device is there to be bound to, so nothing may look like a device to systemd: what is in /dev.
+# No device unit exists to bind to, so the stick must not look like a device to systemd, as files in /dev do.
 UNITS = f"""units=/run/systemd/system
 sed '/^BindsTo=/d; /^After=dev-/d; s,/dev/%i,{DEVICES}/%i,' /usr/lib/systemd/system/adit-stick@.service >$units/adit-stick@.service
 mkdir -p $units/adit-spare.service.d {DEVICES}
@@ -24,7 +24,7 @@ systemctl daemon-reload"""
 
 
 class Stick:
-    """One with a file system of ext4."""
+    """A stick with an ext4 file system."""
 
     def __init__(self, box, folder, name):
         self.box, self.image = box, folder / f"{name}.img"
@@ -40,7 +40,7 @@ class Stick:
         return f"adit-stick@{self.device.name}.service"
 
     def plug(self):
-        """As udev does."""
+        """Starts the unit as udev does."""
         self.device = pathlib.Path(run("losetup", "--find", "--show", self.image).stdout.strip())
         number = self.device.stat().st_rdev
         here = f"{DEVICES}/{self.device.name}"
@@ -56,7 +56,7 @@ class Stick:
         self.device = None
 
     def as_it_is(self, name):
-        """A file on it, as another machine would read it that has it from now on."""
+        """Reads a file on it, as another machine would."""
         with tempfile.TemporaryDirectory() as folder:
             image, place = pathlib.Path(folder) / "image", pathlib.Path(folder) / "place"
             place.mkdir()
@@ -68,7 +68,7 @@ class Stick:
                 run("umount", place)
 
     def fill(self):
-        """To its last byte, at a PC."""
+        """Unmounts it at a PC, with all bytes written."""
         name = self.device.name
         self.shell(f"umount /run/adit-stick/{name}; systemctl stop {self.unit()}")
         with tempfile.TemporaryDirectory() as place:

@@ -1,5 +1,4 @@
-"""Every day's variant: the real root and units in a container, set up, reporting, restarted and killed, in under a
-minute."""
+"""The daily variant: the real root and units in a container, set up, reporting, restarted and killed, in under a minute."""
 
 import time
 import unittest
@@ -84,19 +83,19 @@ class Everyday(Contained):
                 tried += 1
 
     def test_sandbox_of_the_unit_holds(self):
-        # A container's systemd may load no filter of addresses into the kernel.
+        # A container's systemd may not load an address filter into the kernel.
         refused = inside_unit.check(self, self.shell, but={"connect to 203.0.113.1"})
         note("container, refused from inside adit.service", f"{refused} attempts")
 
     def flows(self, uri, message):
-        """What is posted is taken, and arrives."""
+        """A posted message is accepted and arrives."""
         before = len(self.stage.post.requests(uri))
         answer = messages.post(requests.Session(), self.box.url, uri, message, JSON)
         self.assertEqual(answer.status_code, 200, answer.text)
         programs.wait_until(lambda: len(self.stage.post.requests(uri)) > before, f"{uri} to go on", 60)
 
     def takes_no(self, report):
-        """And all else flows."""
+        """And other messages are sent."""
         refused = submit(self.stage, report)
         self.assertEqual(refused.status_code, 503, refused.text)
         self.assertEqual(self.stage.post.recorded(report), [])
@@ -139,13 +138,13 @@ class Everyday(Contained):
         self.wait_for_lights()
 
     def blink(self, lights):
-        """All of these, while health is steady: what is seen of them now and in the next looks."""
+        """Waits for all of these alarms, while health is steady."""
         seen = [self.lit() for _ in range(12)]
         each = all(any(light in lit for lit in seen) and any(light not in lit for lit in seen) for light in lights)
         return each and all("health" in lit for lit in seen)
 
     def test_exchanged_cables_show_on_the_lights_and_heal(self):
-        """No page is to be had then, and nothing else tells whoever stands at the box."""
+        """The page is unavailable then, so only the lights show the state."""
         self.wait_for_lights()
         self.stage.network.exchange_cables()
         programs.wait_until(lambda: self.blink(["scoring", "mapping", "attention"]), "the lights to tell of it", 60)
@@ -169,7 +168,7 @@ class Everyday(Contained):
 
     def test_a_watch_of_the_network_that_hangs_is_started_again(self):
         def listening():
-            """Its process, once it has said that it listens; ""."""
+            """The number of its process once it has said that it listens; otherwise ""."""
             said = self.shell("systemctl show -p ActiveState,MainPID adit-network-watch.service").splitlines()
             told = dict(line.split("=", 1) for line in said)
             return told["MainPID"] if told["ActiveState"] == "active" else ""
@@ -187,7 +186,7 @@ class Everyday(Contained):
         self.asked("POST /adit/settings", {"settings": {**held["settings"], "clock": clock}, "base": held["tag"]})
 
     def test_ntp_runs_only_on_team0_and_only_by_setting(self):
-        """Nobody in a container may set the clock: all else is as on a box."""
+        """A container may not set the clock; all else is as on a box."""
         network = self.stage.network
         for unit in ("adit-clock.service", "adit-clock.path"):
             self.drop_in(unit, "[Unit]", "ConditionVirtualization=")
@@ -221,14 +220,14 @@ class Everyday(Contained):
         self.assertNotIn("elements", self.shell("nft list set inet adit ntp_clients; nft list set inet adit ntp_servers"))
 
     def moves_to(self, address, team):
-        """A change of the team's side, confirmed at the address that the box has then."""
+        """Changes the team's side, and confirms at the box's new address."""
         self.asked("POST /adit/network", {**stage.NUMBERS, "team": team})
         self.stage.network.box_address = address
         programs.wait_until(lambda: self.reached(self.confirmed), f"the change to be confirmed at {address}", 60)
 
     @staticmethod
     def reached(asks):
-        """What it gives; False while the box is at another address."""
+        """Its answer; False while the box has another address."""
         try:
             return asks()
         except OSError:
@@ -276,8 +275,8 @@ class Everyday(Contained):
         return self.stick()
 
     def test_its_export_goes_to_a_stick_and_comes_from_it(self):
-        """By the units of the box; of FAT, and pulled out at any moment: applier/real_stick.py. No udev runs in a container,
-        which would start the stick's unit, and end it."""
+        """With the units of the box. FAT, and unplugging at any time: applier/real_stick.py. A container has no udev, which would
+        start and stop the stick's unit."""
         if not sticks.can_mount("ext4"):
             self.skipTest("nothing can be mounted here")
         stick = sticks.Stick(self.box, self.stage.folder, "stick")

@@ -1,4 +1,4 @@
-"""A card fresh from the writer, in a box between two networks: set up over the air, a run, and back to how it came."""
+"""A freshly written card in a box between two networks: set-up over the network, a run, and a factory reset."""
 
 import time
 
@@ -53,7 +53,7 @@ class FirstStart(Story):
         self.asked("POST /adit/password", {"role": "operator", "code": "00000000", "password": PASSWORD}, status=403)
 
     def open_set_up(self):
-        """By the button: pressed for longer than three seconds, and not for six."""
+        """Presses the button for between three and six seconds."""
         self.box.press(4.5)
         self.box.wait_until(lambda: self.asked("GET /adit/session")["set_up_open"], "set-up to be open")
 

@@ -1,4 +1,4 @@
-"""A box that nobody has set up, with a console that shows where its page is and the code of the first password; the card brought the code."""
+"""A box that was never set up shows on its console where its page is and the code of the first password, which the card brought."""
 
 import dataclasses
 

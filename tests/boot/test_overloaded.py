@@ -1,5 +1,5 @@
-"""A box whose processor is wanted by a crowd beside it, each as much as Adit: nothing is killed, nothing pretends, no
-report is lost or doubled. How late things are depends on this machine, so it is for long_stories."""
+"""Many processes compete with the box for its processor, each with as much weight as Adit: no process is killed, no light is wrong,
+no report is lost or recorded twice. Delays depend on this machine, so only long_stories runs it."""
 
 import os
 import pathlib
@@ -18,7 +18,7 @@ from stage import load_tests, note  # unittest looks for them here
 BUSY = int(os.environ.get("ADIT_BUSY", "12"))  # for each core
 LASTS = float(os.environ.get("ADIT_LASTS", "60"))  # seconds
 UNITS = ("adit", "adit-panel", "adit-network-watch", "systemd-networkd")
-# What may be so: a box that has no time for them is behind with maps.
+# Allowed alarms: a starved box is behind with maps.
 MAY_BE = ("map_behind", "maps_behind", "queue_growing")
 
 
@@ -29,13 +29,13 @@ def setUpModule():
 
 
 def ahead(pid):
-    """The other hosts are machines of their own: they wait for nobody here."""
+    """Gives the other hosts priority, because in the field they are separate machines."""
     for task in pathlib.Path(f"/proc/{pid}/task").iterdir():
         os.setpriority(os.PRIO_PROCESS, int(task.name), max(os.getpriority(os.PRIO_PROCESS, int(task.name)) - 15, -20))
 
 
 class Looks(threading.Thread):
-    """Of whoever watches lights and alarms all the time."""
+    """Watches lights and alarms all the time."""
 
     def __init__(self, box):
         super().__init__(daemon=True)
@@ -49,7 +49,7 @@ class Looks(threading.Thread):
         while not self.over.wait(0.1):
             lit = {line.split()[0] for line in self.lights.read_text().splitlines() if line.endswith(" on")}
             self.looks += 1
-            # In every other state one of these is lit for some of each second.
+            # In every other state one of these is lit for a part of each second.
             dark = 0 if lit & {"scoring", "mapping", "attention"} else dark + 1
             self.faults = max(self.faults, dark)
             if time.monotonic() >= self.looked_at + 1:
@@ -77,7 +77,7 @@ class Overloaded(Contained):
             ahead(pid)
 
     def ends(self):
-        """Of each unit, how often it was started again."""
+        """The number of restarts of each unit."""
         return {unit: self.shell(f"systemctl show -p NRestarts --value {unit}").strip() for unit in UNITS}
 
     def explores(self):

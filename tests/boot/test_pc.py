@@ -1,4 +1,4 @@
-"""A PC, which GRUB starts: an update is installed, GRUB counts a start of it, and RAUC marks good what GRUB counted."""
+"""A PC that GRUB starts: an update is installed, GRUB counts a start of it, and RAUC marks it good."""
 
 import pathlib
 import re
@@ -29,7 +29,7 @@ class Pc(Updating, Story):
         cls.newer = bundle(cls.folder, NEWER, board=boards.PC.name, source=boards.PC)
 
     def counts(self):
-        """What GRUB keeps: {"ORDER": "A B", "A_TRY": "1", ...}."""
+        """GRUB's environment: {"ORDER": "A B", "A_TRY": "1", ...}."""
         said = self.box.console.ask("grub-editenv /dev/disk/by-partlabel/adit-env list")
         return dict(line.split("=", 1) for line in said.splitlines() if "=" in line)
 

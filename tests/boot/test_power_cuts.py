@@ -1,5 +1,4 @@
-"""The plug pulled again and again while reports flow, on a disk that loses what was not flushed: no report is lost or sent
-twice."""
+"""The power is cut again and again while reports are sent, on a disk that loses unflushed writes: no report is lost or sent twice."""
 
 import os
 import time
@@ -81,8 +80,8 @@ class PowerCuts(Story):
         )
 
     def test_critical_journal_records_survive_a_cut(self):
-        """Of what is critical that is promised, of the rest but for its last seconds (journald.conf.d). Here the rest would be written after
-        an hour. journalctl shows a record before it is on the disk: what the disk was told is looked at."""
+        """Critical records are on the disk at once, others after some seconds (journald.conf.d), here after an hour. journalctl shows
+        a record before it is on the disk, so the test checks the disk's writes."""
         count, mark = "journalctl --list-boots -q --no-pager | wc -l", "Here it was"
         console = self.journal_on_disk()
         kept = int(console.ask(count))
@@ -90,7 +89,7 @@ class PowerCuts(Story):
                     "echo 0 >/proc/sys/vm/dirty_writeback_centisecs; systemctl restart systemd-journald.service")
 
         def is_flushed():
-            """One after the other: journald leaves it out if the next record, of another level, comes before it has begun."""
+            """One after the other: journald skips the sync if a record of another level follows before the sync has begun."""
             console.ask(f"echo {mark} {time.monotonic()} | systemd-cat -p crit")
             return self.box.disk.has_flushed(mark.encode())
 
@@ -102,7 +101,7 @@ class PowerCuts(Story):
         self.assertGreaterEqual(int(console.ask(count)), kept)
 
     def journal_on_disk(self):
-        """The console, once journald writes to the state partition and no longer to memory: what it finds there it renames first."""
+        """The console, once journald writes to the state partition instead of memory. It first renames files that it finds there."""
         console = self.box.console
         console.wait_for_shell()
         is_flushed = "systemctl is-active systemd-journal-flush.service"

@@ -1,4 +1,4 @@
-"""What is killed, hangs or panics: each comes back by itself, and the lights do not pretend."""
+"""Killed, hung and panicked parts come back by themselves, and the lights are right."""
 
 import dataclasses
 
@@ -28,7 +28,7 @@ class Recovery(Story):
         return int(self.box.console.ask(PID))
 
     def comes_back(self):
-        """Until another process answers: what that took since it was hit(), in words."""
+        """Waits until another process answers. Returns the time since hit(), in words."""
         self.box.wait_until(
             lambda: self.pid() not in (0, self.before) and self.box.answers(), "another aditd to answer", 180
         )

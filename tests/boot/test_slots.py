@@ -1,5 +1,5 @@
-"""Which slot the boot loaders start, and what they count: U-Boot and GRUB themselves, with the scripts of the image, over a small disk
-whose slots hold no kernel but a line that says which one it is. RAUC's part is played by its own programs for both environments."""
+"""The slot that the boot loaders start, and the tries that they count: real U-Boot and GRUB with the image's scripts, on a small disk
+whose slots have a line with their name instead of a kernel. RAUC's programs for both environments play RAUC's part."""
 
 import dataclasses
 import functools
@@ -14,11 +14,11 @@ import boards
 
 TOP = boards.SOURCE
 MIB = 1 << 20
-# As rootfs/disk has them: the first four partitions, each as large as FAT needs.
+# As in rootfs/disk: the first four partitions, each as large as FAT needs.
 PARTITIONS = {"adit-env": (16, 1), "adit-boot": (17, 40), "adit-boot-a": (57, 40), "adit-boot-b": (97, 40)}
 STARTED = re.compile(rb"this is slot ([abx])|(no slot has come up|cannot decide)")
 AGAIN = "again"
-# A decision that starts no slot, and texts that are no script.
+# A decision that starts no slot, and texts that are not scripts.
 HANGS = 'echo "this is slot x"\nwhile true; do true; done\n'
 BROKEN = "no_such_command\n", "if true; then\n", bytes(range(1, 256)) * 16
 
@@ -56,7 +56,7 @@ class Machine:
         self.make_partition("adit-boot", files)
 
     def fill(self, slot, decision=None):
-        """`decision`: the text of its script, or the bytes of the file; as a rule, those of the image."""
+        """`decision`: the text of the slot's script, or the bytes of the file; by default those of the image."""
         files = pathlib.Path(tempfile.mkdtemp(dir=self.folder))
         self.make_slot(files, slot)
         if isinstance(decision, bytes):
@@ -71,20 +71,20 @@ class Machine:
             disk.write(bytes(MIB))
 
     def counts(self):
-        """What adit-env holds."""
+        """The content of adit-env."""
         with open(self.disk, "rb") as disk:
             disk.seek(PARTITIONS["adit-env"][0] * MIB)
             return disk.read(4 * 512)
 
     def lose(self, *sectors):
-        """Those of adit-env."""
+        """Writes adit-env."""
         with open(self.disk, "r+b") as disk:
             for sector in sectors:
                 disk.seek(PARTITIONS["adit-env"][0] * MIB + 512 * sector)
                 disk.write(b"\xff" * 512)
 
     def start(self):
-        """Power, until the boot loader has decided: "a", "b", "x" (HANGS), or AGAIN. Then the power is cut."""
+        """Starts the machine until the boot loader has decided: "a", "b", "x" (HANGS), or AGAIN. Then cuts the power."""
         disk = ["-drive", f"if=none,id=card,format=raw,file={self.disk}", "-device", f"{self.board.card},drive=card"]
         emulator = [self.board.emulator, *self.soldered, "-m", str(self.board.memory), "-no-reboot", *disk, "-serial", "stdio"]
         with subprocess.Popen(emulator, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT) as machine:
@@ -117,12 +117,12 @@ class Arm(Machine):
         self.write({"BOOT_ORDER": "A B", "BOOT_A_LEFT": "a", "BOOT_B_LEFT": "a"})
 
     def rauc(self, slot, *, primary):
-        """What RAUC 1.8 sets: a slot was written and is to be started, or was found good."""
+        """RAUC 1.8's changes for a slot that was written and is to be started, or was found good."""
         left = {f"BOOT_{slot.upper()}_LEFT": "3" if primary else "a"}
         self.set(left | ({"BOOT_ORDER": "B A" if slot == "b" else "A B"} if primary else {}))
 
     def rauc_writes(self, slot):
-        """What RAUC 1.8 sets before it writes a slot."""
+        """RAUC 1.8's changes before it writes a slot."""
         self.set({f"BOOT_{slot.upper()}_LEFT": "0", "BOOT_ORDER": "A" if slot == "b" else "B"})
 
     def spend(self, slot, tries):
@@ -164,7 +164,7 @@ class Pc(Machine):
         file.write_text(text)
 
     def edit(self, *variables):
-        """By the image's grub-editenv, on a copy of the partition."""
+        """Runs the image's grub-editenv on a copy of the partition."""
         part, at = self.folder / "adit-env", PARTITIONS["adit-env"][0] * MIB
         with open(self.disk, "r+b") as disk:
             disk.seek(at)
@@ -185,7 +185,7 @@ class Pc(Machine):
 
 
 class Slots:
-    """For each boot loader."""
+    """Tests for each boot loader."""
 
     def setUp(self):
         missing = self.board.missing()
@@ -219,7 +219,7 @@ class Slots:
         self.machine.rauc("b", primary=True)
         self.assertEqual(self.machine.start(), "a")
         self.machine.rauc("a", primary=True)
-        # Where the only slot has no try left it is tried again at once, by one more start of the boot loader.
+        # If the only slot has no tries left, the boot loader starts once more and tries it again.
         self.assertEqual([self.machine.start() for _ in range(5)], ["a", "a", "a", AGAIN, "a"])
 
     def test_good_slot_runs_its_script_unless_it_hung(self):
@@ -259,9 +259,9 @@ class UBoot(Slots, unittest.TestCase):
 
 
 class BoardsLoaders(unittest.TestCase):
-    """boot.scr is found and does its part with what the boot loaders of the real boards are set to. The boot loader itself is virt's: where
-    a board has memory from 0 on and its card at mmc, virt has memory from RAM on and its card at virtio. What the boards' own loaders know
-    is told by tests/rootfs/test_boards.py."""
+    """boot.scr is found and works with the environments of the real boards' boot loaders. The boot loader itself is virt's: a board
+    has memory from 0 on and its card at mmc, virt has memory from RAM on and its card at virtio. tests/rootfs/test_boards.py has the
+    facts about the boards' own loaders."""
 
     RAM = 0x40000000
     ADDRESS = re.compile(r"\b0x[0-9a-f]{6,8}\b")
@@ -295,7 +295,7 @@ class Grub(Slots, unittest.TestCase):
     board, kind, sectors, one_used = boards.PC, Pc, (1, 3), b"A_TRY=1"
 
     def test_second_copy_of_the_counts_is_used_if_the_first_is_lost(self):
-        """And counts in them: one that does not come up is not started for ever."""
+        """And counts tries: a slot that does not come up is not started for ever."""
         self.machine.rauc("b", primary=True)
         self.machine.rauc("b", primary=False)
         self.machine.edit("A_OK=0", "A_TRY=0")  # it was left

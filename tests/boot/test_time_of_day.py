@@ -1,4 +1,4 @@
-"""A PC whose clock has lost its battery: who sets the time of day, and what a power cut makes of it."""
+"""A PC whose clock has lost its battery: who sets the time of day, and its time after a power cut."""
 
 import time
 
@@ -28,7 +28,7 @@ class TimeOfDay(Dials, Story):
         cls.tell(Stage(board=boards.PC))
 
     def post_state(self):
-        """The stamp by which it arrives."""
+        """The stamp of the delivered pose."""
         before = len(self.stage.post.requests("/state/update"))
         pose = {"name": "r1", "position": {"x": float(before), "y": 0.0, "z": 0.0}, "orientation": maps.IDENTITY}
         state = {"poses": [pose], "header": {"stamp": time.time(), "frame_id": "darpa"}}
@@ -71,7 +71,7 @@ class TimeOfDay(Dials, Story):
         self.assertEqual(status, 409, said)
 
     def test_box_serves_its_time_to_the_team(self):
-        # As soon as chronyd itself has heard the server again: until then it goes by what was set (10).
+        # Once chronyd has heard the server again; until then it uses the time that was set (10).
         told = []
         self.box.wait_until(lambda: told.append(ntp.asked_of(self.stage.network.team, self.stage.network.box_address))
                             or told[-1] and told[-1][0] == 3, "one more than the server's stratum")

@@ -1,5 +1,5 @@
-"""Updates: one from a stick that stays, one that is uploaded, cannot start and is left again. Settings and
-reports come along. What is refused is in update/test_update.py."""
+"""Updates: one from a stick that stays, one that is uploaded, cannot start and is abandoned. Settings and reports are kept.
+Rejections: update/test_update.py."""
 
 import pathlib
 import re
@@ -22,7 +22,7 @@ class Updates(Updating, Story):
         cls.folder = pathlib.Path(cls.enterClassContext(tempfile.TemporaryDirectory(prefix="adit-bundles-")))
 
     def install(self, ask, version):
-        """`ask`: that asks for it."""
+        """`ask`: the request for it."""
         began = self.box.moment()
         ask()
         self.box.wait_until(lambda: self.last() in (("installed", version), ("failed", version)), "the end of it", 480)

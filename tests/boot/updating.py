@@ -1,4 +1,4 @@
-"""What a story of updates does, over the API: sends one, restarts, and waits for what becomes of it."""
+"""Steps of a story about updates, by the API: send one, restart, wait for the result."""
 
 import http.client
 
@@ -7,7 +7,7 @@ from patience import patient
 
 
 class Updating:
-    """Beside stage.Story."""
+    """Mixin of stage.Story."""
 
     def stands(self):
         return self.box.ask("GET /adit/update")[1]
@@ -17,7 +17,7 @@ class Updating:
         return last and (last["stage"], last["version"])
 
     def send(self, path):
-        """As the page does."""
+        """Sends it as the page does."""
         connection = http.client.HTTPConnection(self.stage.network.box_address, self.box.port, timeout=patient(300))
         headers = {"Authorization": f"Bearer {programs.TEAM_TOKEN}", "Content-Type": "application/octet-stream"}
         with open(path, "rb") as file:

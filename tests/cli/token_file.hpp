@@ -9,7 +9,6 @@
 
 namespace adit::cli {
 
-/// A file with a token, for one test.
 class TokenFile {
  public:
   explicit TokenFile(const std::string& token = "sesame-1")

@@ -17,7 +17,6 @@ namespace adit::codec::test {
 inline constexpr BodyKind kJsonBody{Format::Json, ContentCoding::Identity};
 inline constexpr BodyKind kCborBody{Format::Cbor, ContentCoding::Identity};
 
-/// Decodes the body in chunks of `size` bytes.
 inline icd::Checked<Document> decode_in_chunks(BodyKind kind, Split split, std::string_view body,
                                                std::size_t size, const Limits& limits = {}) {
   BodyDecoder decoder(kind, split, limits);
@@ -108,7 +107,6 @@ inline bool equals(const Value& value, const nlohmann::ordered_json& expected) {
   return std::holds_alternative<std::nullptr_t>(value.is) && expected.is_null();
 }
 
-/// The value at root.msg.data, or nullptr.
 inline const Value* msg_data(const Value& root) {
   const Value* at = &root;
   for (const std::string_view name : {"msg", "data"}) {

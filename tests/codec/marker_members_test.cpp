@@ -181,7 +181,6 @@ TEST(Marker, UsesDefaultsForAbsentAndNullMembers) {
   EXPECT_EQ(through_json(marker), without);
 }
 
-/// A body with `raw` in place of the marker's points.
 std::string body_with_points(Format format, const std::string& raw) {
   json marker = least_marker();
   marker["points"] = "POINTS";

@@ -1,4 +1,4 @@
-"""The man pages and completions that toolchain/manuals makes of the programs in $ADIT_BIN, made once for a test program."""
+"""The man pages and completions that toolchain/manuals makes for the programs in $ADIT_BIN, made once per test program."""
 
 import functools
 import os
@@ -19,7 +19,7 @@ from manual.described import Program  # noqa: E402
 
 @functools.cache
 def made():
-    """Their folder, as share/ has them. It goes with the program."""
+    """Their directory, laid out as share/. It is removed with the program."""
     folder = tempfile.TemporaryDirectory(prefix="adit-manuals-")
     made.kept = folder
     subprocess.run([SOURCE / "toolchain" / "manuals", folder.name, SOURCE / "firmware/rules/settings/example.json",
@@ -34,7 +34,7 @@ def program(name):
 
 
 def options_in(text):
-    """All that --help itself, in whatever form, calls an option or a word: what a reader sees, and no parser's idea of it."""
+    """All options and words in --help, found in its text as a reader finds them."""
     block = next(block for block in text.split("\n\n") if "\n  --help " in block)
     return re.findall(r"^  ([a-z-][a-z-]*)", block, re.M)
 

@@ -1,4 +1,4 @@
-"""What the shells make of a beginning of a command line, by their own completion."""
+"""The shells' own completion of the beginning of a command line."""
 
 import contextlib
 import os
@@ -30,7 +30,7 @@ def environment(home):
 
 
 def by_bash(line):
-    """What the function that completes `line` offers."""
+    """The offers of the function that completes `line`."""
     name = line.split()[0]
     script = made() / "bash-completion/completions" / name
     told = subprocess.run(["bash", "--norc", "-c", IN_BASH, "bash", script, line, "_" + name.replace("-", "_")],
@@ -47,7 +47,7 @@ def by_fish(line):
 
 
 class Terminal:
-    """A shell at a terminal, to which somebody types. What it is to run appends what it was called with to the file `called`."""
+    """A shell at a terminal with typed input. The program that it runs appends its arguments to the file `called`."""
 
     def __init__(self, shell, folder):
         name = made() / "bash-completion/completions"
@@ -64,7 +64,7 @@ class Terminal:
         self.type("called() { printf '%s|' \"$@\" >>" + str(self.called) + "; echo >>" + str(self.called) + "; }\n")
 
     def type(self, text):
-        """And waits until it prompts again."""
+        """Types a line, and waits for the next prompt."""
         prompts = self.seen.count(PROMPT)
         os.write(self.fd, text.encode())
         end = time.monotonic() + 60
@@ -74,7 +74,7 @@ class Terminal:
             self.seen += os.read(self.fd, 65536).decode(errors="replace")
 
     def completed(self, line):
-        """What a Tab at the end of the line makes of it, as the words that the program would be given."""
+        """The result of a Tab at the end of the line, as the program's arguments."""
         name = line.split()[0]
         calls = len(self.called.read_text().splitlines())
         self.type(f"{name}() {{ called {name} \"$@\"; }}\n")

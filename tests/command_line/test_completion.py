@@ -1,4 +1,4 @@
-"""The completion of bash, zsh and fish, run by these shells; those that are not installed are left out, and said so."""
+"""Completion in bash, zsh and fish, run by these shells. Missing shells are skipped with a message."""
 
 import pathlib
 import shutil
@@ -17,10 +17,10 @@ def installed(names):
 
 
 class Offers(unittest.TestCase):
-    """What is offered, in all shells that say so."""
+    """The common offers of all shells."""
 
     def offered(self, line):
-        """By each shell."""
+        """The offers of each shell."""
         for shell in installed(LISTERS):
             with self.subTest(shell=shell, line=line):
                 yield LISTERS[shell](line)
@@ -86,7 +86,7 @@ class Offers(unittest.TestCase):
                     self.assertLessEqual(known, said | {"--help"}, f"{shell}: {name} {command}")
 
     def test_exactly_the_accepted_options_are_offered(self):
-        """Nor is one left out that is taken: what is offered is asked of the real program."""
+        """All accepted words are offered: the real program is asked."""
         about = {row.word: row.value for row in program("adit").help.options}
         for command, told in program("adit").commands.items():
             about |= {row.word: row.value for row in told.options}
@@ -110,7 +110,7 @@ class Offers(unittest.TestCase):
 
 
 class AtATerminal(unittest.TestCase):
-    """A Tab that somebody types."""
+    """A typed Tab."""
 
     def completes(self, shell):
         if not shutil.which(shell):

@@ -1,4 +1,4 @@
-"""Man pages say all that --help says, and are such as man(1) and mandoc(1) read without a complaint."""
+"""Man pages contain all of --help, and man(1) and mandoc(1) read them without warnings."""
 
 import json
 import re
@@ -14,7 +14,7 @@ def pages():
 
 
 def shown(page):
-    """As somebody reads it, in one line: on paper so wide that no word is cut."""
+    """The page as text in one line, formatted so wide that no word is cut."""
     text = subprocess.run(["groff", "-man", "-Tascii", "-P-bcu", "-rLL=2000n", page], check=True, capture_output=True, text=True).stdout
     return re.sub(r"\s+", " ", text)
 

@@ -91,7 +91,8 @@ TEST_F(CloudsThatWait, AllArriveWhereTheSettingSaysThatTheyAreParts) {
 }
 
 TEST_F(CloudsThatWait, AreComparedAlsoWhenALifeBegins) {
-  maps_.restore({{MapStore::kFirstNumber + 1, cloud_of({1, 2})}, {MapStore::kFirstNumber + 2, cloud_of({1, 2, 3})}});
+  maps_.restore(
+      {{MapStore::kFirstNumber + 1, cloud_of({1, 2})}, {MapStore::kFirstNumber + 2, cloud_of({1, 2, 3})}});
   EXPECT_TRUE(come_to_be(1));
 }
 

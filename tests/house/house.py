@@ -1,4 +1,5 @@
-"""The rooms of firmware/: their floors; and as their CMakeLists.txt say their order, whom each names, and its public headers."""
+"""The rooms of firmware/: their floors; and from their CMakeLists.txt their order, the rooms that they name, and their public
+headers."""
 import pathlib
 import re
 
@@ -38,7 +39,7 @@ def named_by(room):
 
 
 def closure(room, named):
-    """The room, those that it names, and what these name."""
+    """The room, the rooms that it names, and theirs."""
     reached, ahead = set(), {room}
     while ahead:
         each = ahead.pop()

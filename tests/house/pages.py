@@ -1,4 +1,4 @@
-"""The project's documents, *.md, and what stands in them: links, headings, code."""
+"""The project's documents, *.md, and their contents: links, headings, code."""
 import os
 import pathlib
 import re
@@ -12,7 +12,7 @@ HEADING = re.compile(r"^#{1,6} +(.*?) *#*$", re.M)
 
 
 def documents():
-    """What is made is not walked through: meanwhile other tests make it."""
+    """Skips build directories, because other tests change them meanwhile."""
     found = []
     for folder, folders, files in os.walk(ROOT):
         folders[:] = set(folders) - MADE
@@ -25,12 +25,12 @@ def without_blocks(text):
 
 
 def blocks(text, language=None):
-    """What stands between fences; of one language or of all."""
+    """The text of code blocks, of one language or of all."""
     return [body for named, body in FENCE.findall(text) if language is None or named == language]
 
 
 def spans(text):
-    """What stands in backticks within lines."""
+    """The text in backticks within lines."""
     return [span.strip() for _, span in CODE.findall(without_blocks(text))]
 
 
@@ -39,7 +39,7 @@ def links(text):
 
 
 def anchors(text):
-    """The names of a document's headings, as GitHub and Gitea make them."""
+    """The anchors of a document's headings, as on GitHub and Gitea."""
     names = []
     for heading in HEADING.findall(without_blocks(text)):
         shown = re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", heading).replace("`", "")

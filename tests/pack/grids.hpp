@@ -13,7 +13,6 @@
 
 namespace adit::pack {
 
-/// A grid to pack, row by row.
 struct Grid {
   std::string what;
   std::size_t width = 0, height = 0;

@@ -162,7 +162,6 @@ TEST_P(Rounding, ChangesOnlyCoordinates) {
   }
 }
 
-/// A tunnel of 30 m.
 icd::MapUpdate tunnel(const icd::PointCloud2& form) {
   Generator make{3};
   Places places;

@@ -1,4 +1,4 @@
-"""A PC with Debian 12 in a container (systemd-nspawn): two Ethernet ports for Adit, and a third that is none of its business."""
+"""A PC with Debian 12 in a container (systemd-nspawn): two Ethernet ports for Adit, and a third port for other use."""
 
 import os
 import pathlib
@@ -15,7 +15,7 @@ OFFICE, OFFICE_ADDRESS = "enp3s0", "172.20.0.5"
 
 
 class Cables(hosts.Network):
-    """As the three hosts of the wire tests, but that the ports have a PC's names, and the third leads to the team's host, too."""
+    """The three hosts of the wire tests. The ports have a PC's names, and the third is also connected to the team's host."""
 
     def __init__(self):
         super().__init__("10.0.0")
@@ -43,21 +43,21 @@ class Pc(container.Nspawn):
         return self.run("systemctl", "is-system-running").stdout.strip() in ("running", "degraded")
 
     def shell(self, script, good=True):
-        """What it says, on both ways out."""
+        """Its output on both streams."""
         done = self.run("bash", "-euo", "pipefail", "-c", f"exec 2>&1\n{script}")
         if good and done.returncode != 0:
             raise AssertionError(f"{script}: {done.returncode}\n{done.stdout}{self.said_last()}")
         return done.stdout
 
     def apt(self, words, good=True, **answers):
-        """As an operator who answers the questions of the packages beforehand: apt("install /x.deb", team="eth0")."""
+        """Installs packages as an operator who has answered their questions before: apt("install /x.deb", team="eth0")."""
         for name, answer in answers.items():
             kind = "boolean" if answer in ("true", "false") else "string"
             self.shell(f"echo 'adit adit/{name.replace('_', '-')} {kind} {answer}' | debconf-set-selections")
         return self.shell(f"DEBIAN_FRONTEND=noninteractive apt-get -y {words}", good)
 
     def made_inside(self, make):
-        """What `make()` makes in its network namespace: a socket that is of there."""
+        """The result of `make()` in its network namespace, such as a socket."""
         return self.network.made_in(f"../../proc/{self.leader()}/ns/net", make)
 
     def is_active(self, unit):
@@ -67,7 +67,7 @@ class Pc(container.Nspawn):
         return self.shell("dpkg-query -W -f '${Version}' adit")
 
     def listens(self):
-        """(address, interface, port) of each TCP socket that listens."""
+        """(address, interface, port) of each listening TCP socket."""
         lines = self.shell("ss -Hltn").splitlines()
         return sorted(re.fullmatch(r"(.*?)(?:%(.*))?:(\d+)", line.split()[3]).groups(default="") for line in lines)
 

@@ -1,5 +1,5 @@
-"""The package on a PC whose network is NetworkManager's, as on a desktop with Debian or Ubuntu: the two ports are taken out of its hands as
-it runs and stay so over its restarts, the third stays in them."""
+"""The package on a PC with NetworkManager, like a desktop with Debian or Ubuntu. The package takes the two ports from NetworkManager,
+which still runs, also over its restarts. The third port stays with it."""
 
 
 import pc
@@ -11,7 +11,7 @@ NETPLAN = "/run/systemd/network/10-netplan-port.network"
 
 
 class ManagedPc(pc.Stage):
-    """NetworkManager runs, and has set up all three ports."""
+    """NetworkManager runs, and manages all three ports."""
 
     def prepare(self):
         self.box.start()
@@ -23,7 +23,7 @@ class ManagedPc(pc.Stage):
             programs.wait_until(lambda port=port: self.managed(port) == "connected", f"{port} to be NetworkManager's", 60)
 
     def managed(self, port):
-        """What NetworkManager says of a port, by the name that it has now."""
+        """NetworkManager's state of a port, by its current name."""
         states = dict(line.split(":") for line in self.box.shell("nmcli -t -f DEVICE,STATE device").splitlines())
         return states.get(port, "not there")
 
@@ -46,11 +46,11 @@ class BesideNetworkManager(Story):
         self.assertEqual(self.stage.addresses(pc.OFFICE), [f"{pc.OFFICE_ADDRESS}/24"])
 
     def has_adits_addresses(self):
-        """The factory's, and sooner or later a link-local one."""
+        """The factory address, and later a link-local one."""
         return [address for address in self.stage.addresses("team0") if not address.startswith("169.254.")] == ["10.0.0.1/24"]
 
     def test_ports_are_taken_from_a_running_network_manager(self):
-        # As netplan leaves it where its renderer is networkd, which runs: by the name from before, and with a low number.
+        # As netplan leaves it with networkd as its renderer: with the earlier name and a low number.
         self.box.shell(f"""mkdir -p $(dirname {NETPLAN})
             printf '[Match]\\nName={pc.PORTS["command_post"]}\\n[Network]\\nAddress=172.29.0.5/24\\nLinkLocalAddressing=ipv6\\n' >{NETPLAN}
             systemctl start systemd-networkd""")

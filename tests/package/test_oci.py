@@ -1,5 +1,5 @@
-"""The OCI image of the packages, read by umoci and run by runc as somebody who has no right, on a root that cannot be written to: the whole
-rehearsal, its page seen from another host, and the service by itself."""
+"""The OCI image of the packages, read by umoci and run by runc as an unprivileged user with a read-only root: the whole rehearsal,
+its page from another host, and the service alone."""
 
 import json
 import pathlib
@@ -32,7 +32,7 @@ class Image(unittest.TestCase):
         subprocess.run(["umoci", "unpack", "--image", f"{LAYOUT}:{tag}", cls.folder / "bundle"], check=True, capture_output=True)
 
     def start(self, *command, mounts=()):
-        """As the image says, or another command of its programs; its port is the box's on the team's network."""
+        """Runs the image's command, or another one of its programs. Its port is the box's on the team's network."""
         bundle = self.folder / "bundle"
         config = json.loads((bundle / "config.json").read_text())
         self.assertEqual(config["process"]["user"], {"uid": 1000, "gid": 1000})
@@ -56,7 +56,7 @@ class Image(unittest.TestCase):
         return name, running, log
 
     def answer(self, running):
-        """The page's, to another host."""
+        """The page's address, from another host."""
         def asked():
             self.assertIsNone(running.poll(), "it has ended")
             try:

@@ -1,5 +1,5 @@
-"""The Debian packages on a PC that has other things to do, too: installed, named its two ports, set up, upgraded under way, not
-downgraded, removed and purged, as their user does it; and the rehearsal from its package."""
+"""The Debian packages on a PC with other uses: installed, given its two ports, set up, upgraded during use, not downgraded, removed
+and purged, as a user does it; and the rehearsal from its package."""
 
 import concurrent.futures
 import contextlib
@@ -103,7 +103,7 @@ class Packages(Story):
         self.assertIn("refused", self.box.shell("(exec 3<>/dev/tcp/172.20.0.1/9) || true"))  # so it was heard there
 
     def test_naming_no_interface_returns_both(self):
-        """As in a dialog; without one, the answers are those of the file."""
+        """As in a dialog. Without a dialog, the file has the answers."""
         none = r"""sed -i 's|^\(adit/[a-z-]*=\).*|\1""|'"""
         self.box.shell(f'DEBIAN_FRONTEND=editor VISUAL="{none}" EDITOR="{none}" dpkg-reconfigure adit </dev/null'.replace('""', r'\"\"'))
         self.assertEqual(self.box.listens(), [])
@@ -127,7 +127,7 @@ class Packages(Story):
         self.assertEqual(submit(self.stage).status_code, 201)
 
     def test_the_card_is_followed_to_its_end(self):
-        """As somebody at the machine: the Test, robots of the team, an alarm and its end."""
+        """As a user at the machine: the Test, robots of the team, an alarm and its end."""
         said = self.box.shell("adit test")
         for words in "the scoring token is accepted", "the mapping token is accepted", "scoring 10.100.1.200:8000", "mapping 10.100.1.201:8000":
             self.assertIn(words, said)
@@ -155,7 +155,7 @@ class Packages(Story):
             programs.wait_until(lambda: "address is taken" not in self.box.shell("adit status", good=False), "the alarm to go", 60)
 
     def entered(self, upgrade):
-        """How often the Command Post's side reached port 22 of the machine while `upgrade` went on, and how often it tried."""
+        """How often the Command Post's side reached port 22 of the machine during `upgrade`, and how often it tried."""
         entered = tried = 0
         while not upgrade.done():
             tried += 1
@@ -165,7 +165,7 @@ class Packages(Story):
         return entered, tried
 
     def test_network_services_cannot_reach_systemd(self):
-        """From copies of the units, and from one without their sandbox, which has."""
+        """From copies of the units, and from a copy without a sandbox, which succeeds."""
         self.box.shell("""cd /run/systemd/system; printf '[Service]\nType=oneshot\nExecStart=true\n' >adit-tried.service
             echo 'systemctl start adit-tried.service && exit 1; curl -sm 5 --unix-socket /run/systemd/private http://x; [ $? = 7 ]' >/run/adit-try.sh""")
         for unit, keeps in (("adit-nftables", False), ("adit-network", True), ("adit-network-start", True), ("adit-nftables", True)):
@@ -176,7 +176,8 @@ class Packages(Story):
         self.box.shell("rm /run/systemd/system/adit-tried.service /run/systemd/system/adit-try.service; systemctl daemon-reload; systemctl reset-failed")
 
     def test_upgrade_rejects_no_client_opens_no_port_and_keeps_all(self):
-        """Reports are posted all the while, again where a connection was open as the older aditd ended: each is recorded once."""
+        """Reports are posted all the time, and repeated if their connection was open when the older aditd ended. Each is recorded
+        once."""
         self.box.shell(f"sed -i '1i # asked {OFFICE_KEEPER}' {INTERFACES}")
         named = self.box.shell(f"cat {INTERFACES}")
         login = self.box.made_inside(lambda: socket.create_server(("0.0.0.0", 22), backlog=1000))

@@ -1,5 +1,5 @@
-"""The apt repository of toolchain/repository, served to a PC by HTTP and from a directory: Adit is installed, upgraded and purged by apt. apt
-rejects an older repository, another key, and lists and packages that were changed after they were signed."""
+"""The apt repository of toolchain/repository, served to a PC by HTTP and from a directory: apt installs, upgrades and purges Adit.
+apt rejects an older repository, another key, and lists and packages that were changed after signing."""
 
 import http.server
 import os
@@ -18,14 +18,14 @@ PORT = 8080
 
 
 def publish(packages, name="apt", **environment):
-    """Makes the repository `name` of packages that debian_root left."""
+    """Makes the repository `name` from packages of debian_root."""
     environment = {"ADIT_APT_URI": f"http://{SERVER}:{PORT}/apt", **environment}
     subprocess.run([pc.SOURCE / "toolchain/repository", FOLDER / name, f"bookworm={pc.BUILT / packages}"], check=True,
                    env={**os.environ, **environment})
 
 
 def other_key(folder):
-    """A key of another signer in the keyring `folder`."""
+    """Another signer's key in the keyring `folder`."""
     folder.mkdir(mode=0o700)
     done = subprocess.run(["gpg", "--homedir", folder, "--batch", "--status-fd", "1", "--passphrase", "", "--quick-generate-key", "Another", "rsa3072", "sign"],
                           check=True, capture_output=True, text=True)

@@ -32,7 +32,6 @@ class HeldButton : public testing::Test {
   void take(std::optional<Press> press) {
     if (press) presses.push_back(*press);
   }
-  /// The result of a press of that length.
   static Presses of(milliseconds length) {
     HeldButton held;
     held.level(true, 1s);

@@ -1,4 +1,4 @@
-"""adit-panel, which holds lights and button and watches aditd: real_panel.py ADIT_PANEL ADITD. The panel is a simulated one."""
+"""adit-panel, which drives lights and button and watches aditd: real_panel.py ADIT_PANEL ADITD. The panel is simulated."""
 
 import contextlib
 import signal
@@ -41,7 +41,7 @@ class Watching(Running):
         self.assertLessEqual(self.said().count("unknown message from aditd"), 9, "once for each that had told something before")
 
     def test_flood_blocks_neither_lights_nor_the_next_connection(self):
-        """Frames faster than they can be lit, and then silence."""
+        """Frames faster than the lights can follow, and then silence."""
         client = self.connect()
         for each in range(20000):
             client.send(b"lit 1010" if each % 2 else b"lit 0101")
@@ -95,7 +95,7 @@ class Starting(Running):
 
 
 class WithAditd(Running):
-    """What is killed, stopped, hangs, or is started in another order."""
+    """Processes are killed, stopped, hung, or started in another order."""
 
     def test_panel_starts_first(self):
         self.begin_panel()
@@ -151,7 +151,7 @@ class WithAditd(Running):
 
     @contextlib.contextmanager
     def broken(self):
-        """The simulated panel cannot be written: a directory is in the way of its file."""
+        """The simulated panel cannot be written, because a directory has its file's name."""
         obstacle = self.shown.with_name(self.shown.name + ".new")
 
         def is_made():

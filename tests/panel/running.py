@@ -1,4 +1,4 @@
-"""adit-panel with a simulated panel, and who tells it what is to be lit: aditd, or a client of the test's own."""
+"""adit-panel with a simulated panel, and its client: aditd, or a client of the test."""
 
 import json
 import os
@@ -37,12 +37,12 @@ class Running(unittest.TestCase):
         return panel
 
     def connects(self):
-        """Without telling anything: it listens once it has made its socket."""
+        """Without a message; it listens once its socket exists."""
         listening = pathlib.Path("/proc/net/unix").read_text()
         return f" 00010000 0005 01 " in "".join(line for line in listening.splitlines() if line.endswith(str(self.socket)))
 
     def wait_until(self, condition, what, within=30.0):
-        """As patience.wait_until; how long it took."""
+        """As patience.wait_until; returns the time that it took."""
         began = time.monotonic()
         try:
             patience.wait_until(condition, what, within)
@@ -63,7 +63,7 @@ class Running(unittest.TestCase):
         return self.wait_until(lambda: self.lit() == lit, f"the lights to be {lit}")
 
     def shows_fault(self):
-        """Health lit and then dark, with all others dark, twice; how long until the first of it."""
+        """Waits until health blinks twice with all others dark. Returns the time until the first."""
         took = self.wait_until(lambda: self.lit() in (DARK, "1000"), "the fault to begin")
         for lit in ("1000", DARK, "1000"):
             self.shows(lit)
@@ -99,5 +99,5 @@ class Running(unittest.TestCase):
                           "--panel", self.socket)
 
     def is_at_work(self):
-        """Health steady, while scoring blinks: nobody answers at its Command Post. In a fault it is dark."""
+        """Health is steady while scoring blinks, because its Command Post does not answer. In a fault health is dark."""
         return self.wait_until(lambda: self.lit()[1:2] == "1", "the lights to be those of an aditd that is well")

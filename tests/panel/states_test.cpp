@@ -21,7 +21,6 @@ Lights shown(std::initializer_list<State> asserted) {
   return states.shown();
 }
 
-/// All lights are good except for `more`.
 Lights good_except(std::initializer_list<State> more) {
   States states;
   for (const State state : kGoodStates) states.set(state, true);

@@ -39,7 +39,6 @@ TEST(Cloud, IsDrawnAtItsOrigin) {
   EXPECT_EQ(easel.seen(0.1, 0.1), height_index(3.1));
 }
 
-/// A layout of a point.
 struct Layout {
   const char* what;
   icd::Datatype datatype;

@@ -67,7 +67,6 @@ class Easel {
  public:
   explicit Easel(std::size_t budget = Mosaic::kBudget) : mosaic(budget) {}
 
-  /// Returns the applied drawing.
   Drawing draw(const icd::MapUpdate& map) {
     auto drawing = picture::draw(map, mosaic.canvas(layer_of(map)));
     EXPECT_TRUE(drawing) << drawing.error().sentence;

@@ -209,7 +209,6 @@ TEST(MarkerQueue, FrequentChangesDoNotDelayOtherMarkers) {
   EXPECT_THAT(queue.take()->update.markers, ElementsAre(add(2)));
 }
 
-/// A path with that many points.
 icd::Marker path(std::int32_t id, std::size_t points) {
   icd::Marker path = add(id);
   path.points.resize(points);

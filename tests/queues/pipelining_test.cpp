@@ -19,7 +19,6 @@ QueuedMap whole(QueuedMap cloud) {
 const QueuedMap kGrid = queued_map(grid_update("r1", grid(0, 0, 10, 10)));
 const QueuedMap kCloud = queued_map(cloud_update("r1", {1}));
 
-/// An Pipelining after that many accepted messages.
 Pipelining after(int accepted) {
   Pipelining ahead;
   for (int i = 0; i < accepted; ++i) ahead.taken(false);

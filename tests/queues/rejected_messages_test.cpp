@@ -38,8 +38,8 @@ RejectedMessage item(Message message, std::size_t bytes = 100) {
   return item;
 }
 
-/// The rejected messages that the accepted `message` replaces.
-std::vector<std::uint64_t> replaced_by(RejectedMessages& rejected, const Message& message) {
+/// Delivers `message`. Returns the rejected messages that it replaces.
+std::vector<std::uint64_t> deliver(RejectedMessages& rejected, const Message& message) {
   auto replaced = rejected.replaced_by(message);
   rejected.mark_replaced(replaced);
   return replaced;
@@ -76,12 +76,11 @@ TEST(RejectedMessages, MarksMapsThatANewerOneContains) {
   RejectedMessages rejected;
   rejected.add(item(grid_update("ugv1", grid(0, 0, 10, 10))));
   rejected.add(item(cloud_update("ugv1", {1})));
-  EXPECT_TRUE(replaced_by(rejected, grid_update("ugv1", grid(5, 5, 10, 10))).empty());
+  EXPECT_TRUE(deliver(rejected, grid_update("ugv1", grid(5, 5, 10, 10))).empty());
   EXPECT_EQ(rejected.replaced_by(grid_update("ugv1", grid(0, 0, 30, 30))).size(), 1u);
   EXPECT_FALSE(rejected.find(1)->replaced) << "not before it is marked";
-  EXPECT_EQ(replaced_by(rejected, grid_update("ugv1", grid(0, 0, 30, 30))), std::vector<std::uint64_t>{1});
-  EXPECT_TRUE(replaced_by(rejected, grid_update("ugv1", grid(0, 0, 30, 30))).empty())
-      << "it was marked before";
+  EXPECT_EQ(deliver(rejected, grid_update("ugv1", grid(0, 0, 30, 30))), std::vector<std::uint64_t>{1});
+  EXPECT_TRUE(deliver(rejected, grid_update("ugv1", grid(0, 0, 30, 30))).empty()) << "it was marked before";
   EXPECT_TRUE(rejected.find(1)->replaced);
   EXPECT_FALSE(rejected.find(2)->replaced);
 }
@@ -94,9 +93,9 @@ TEST(RejectedMessages, AreNotReplacedByAnOlderRetriedGrid) {
   };
   RejectedMessages rejected;
   rejected.add(item(made_at(20, 10)));
-  EXPECT_TRUE(replaced_by(rejected, made_at(10, 30)).empty());
+  EXPECT_TRUE(deliver(rejected, made_at(10, 30)).empty());
   EXPECT_TRUE(rejected.add(item(made_at(10, 30))).empty()) << "also if it is rejected again";
-  EXPECT_EQ(replaced_by(rejected, made_at(30, 30)), (std::vector<std::uint64_t>{1, 2}));
+  EXPECT_EQ(deliver(rejected, made_at(30, 30)), (std::vector<std::uint64_t>{1, 2}));
 }
 
 /// Of 30 x 10 cells; only the ten columns at each end were posted.
@@ -116,11 +115,11 @@ TEST(RejectedMessages, AreNotReplacedByTheGapOfAStitchedGrid) {
   rejected.add(item(grid_update("ugv1", grid(2, 0, 5, 5))));    // within the second part
   std::vector<std::uint64_t> replaced;
   for (const icd::MapUpdate* const map : said_by(stitched))
-    std::ranges::copy(replaced_by(rejected, *map), std::back_inserter(replaced));
+    std::ranges::copy(deliver(rejected, *map), std::back_inserter(replaced));
   EXPECT_EQ(replaced, std::vector<std::uint64_t>{2});
   stitched.has_gaps = false;
   ASSERT_EQ(said_by(stitched).size(), 1u);
-  EXPECT_EQ(replaced_by(rejected, *said_by(stitched).front()), std::vector<std::uint64_t>{1});
+  EXPECT_EQ(deliver(rejected, *said_by(stitched).front()), std::vector<std::uint64_t>{1});
 }
 
 TEST(RejectedMessages, AreRetriedIfTheSentGridHasAGapThere) {
@@ -137,8 +136,8 @@ TEST(RejectedMessages, AreRetriedIfTheSentGridHasAGapThere) {
 TEST(RejectedMessages, MarksADeleteAllOlderThanAMarker) {
   RejectedMessages rejected;
   rejected.add(item(icd::MarkersUpdate{{marker("", 0, icd::MarkerAction::DeleteAll)}}));
-  EXPECT_TRUE(replaced_by(rejected, state_of({"ugv1"})).empty());
-  EXPECT_EQ(replaced_by(rejected, icd::MarkersUpdate{{marker("a", 1)}}), std::vector<std::uint64_t>{1});
+  EXPECT_TRUE(deliver(rejected, state_of({"ugv1"})).empty());
+  EXPECT_EQ(deliver(rejected, icd::MarkersUpdate{{marker("a", 1)}}), std::vector<std::uint64_t>{1});
 }
 
 TEST(RejectedMessages, KeepsOneOfEqualMessages) {

@@ -1,4 +1,4 @@
-"""What the tests of the recipe share: where things are, and what a board says of itself."""
+"""Shared by the tests of the recipe: paths, and facts about a board."""
 import re
 import subprocess
 import unittest
@@ -8,18 +8,19 @@ TOP = Path(__file__).resolve().parents[2]
 BOARDS = sorted(path.parent.name for path in TOP.glob("board/*/board.conf"))
 IMAGES = TOP / "build/image"
 GROUP = "health", "scoring", "mapping", "attention", "button"  # of a panel
-# The commands that every boot loader knows that a board may have (board/espressobin/README.md).
+# Commands that every boot loader of a board must have (board/espressobin/README.md).
 KNOWN = {"booti", "echo", "env", "load", "part", "reset", "setenv", "size", "sleep", "source", "test", "true"}
 
 
 def conf(board: str, name: str) -> list[str]:
-    """The words of a variable of board.conf, which is Bash."""
+    """The words of a variable in board.conf, which is Bash."""
     script = f'. "{TOP}/board/{board}/board.conf"; printf "%s\\n" "${{{name}[@]}}"'
     return [word for word in subprocess.run(["bash", "-c", script], check=True, capture_output=True, text=True).stdout.split("\n") if word]
 
 
 def some(found, otherwise: str = "") -> list:
-    """The list of what was found. If it is empty, a loop over it checks nothing: the test is skipped with the reason `otherwise`, or fails."""
+    """The list of found items. If it is empty, a loop over it would check nothing, so the test is skipped with the reason
+    `otherwise`, or fails."""
     found = list(found)
     if not found:
         raise unittest.SkipTest(otherwise) if otherwise else AssertionError("there is nothing to check")
@@ -27,12 +28,12 @@ def some(found, otherwise: str = "") -> list:
 
 
 def built() -> list[str]:
-    """The boards of which there is an image."""
+    """The boards that have an image."""
     return [board for board in BOARDS if list((IMAGES / board).glob("*.spdx.json"))]
 
 
 def nodes(dtb: Path) -> dict[str, dict[str, str]]:
-    """The nodes of a device tree that are in use, by path: their properties as dtc writes them."""
+    """The enabled nodes of a device tree, by path, with their properties as dtc writes them."""
     source = subprocess.run(["dtc", "-q", "-I", "dtb", "-O", "dts", dtb], check=True, capture_output=True, text=True).stdout
     open_nodes: list[tuple[str, dict[str, str]]] = []
     found = {}

@@ -1,4 +1,4 @@
-"""Every board is whole, by what is in its folder; test_image.py has what its image must have."""
+"""Checks the files of every board; test_image.py checks the images."""
 import json
 import re
 import unittest
@@ -47,7 +47,7 @@ class Folders(unittest.TestCase):
 
 
 class Wiring(unittest.TestCase):
-    """What a board's README says of its panel is what its `lines`, its picture and its panel have; each line has its source."""
+    """A board's README describes its panel as its `lines`, its picture and its panel have it. Each line has its source."""
 
     def wired(self):
         for board in some(board for board in BOARDS if (TOP / "board" / board / "lines").exists()):
@@ -56,7 +56,7 @@ class Wiring(unittest.TestCase):
 
     @staticmethod
     def lines(board):
-        """By what they are: (node, line, comment)."""
+        """By function: (node, line, comment)."""
         found = re.findall(r"^(\S+) +(\d+) +ADIT_(\w+) *(?:# (.*))?$", (TOP / "board" / board / "lines").read_text(), re.M)
         return {name.lower(): (node, int(line), comment) for node, line, name, comment in found}
 
@@ -89,7 +89,7 @@ class Wiring(unittest.TestCase):
 
 
 class Loaders(unittest.TestCase):
-    """Of the boards' own boot loaders, what can be known without the boards."""
+    """Facts about the boards' own boot loaders that can be checked without the boards."""
 
     SCRIPTS = ["rootfs/boot/boot.cmd", "rootfs/boot/decide.cmd", "rootfs/boot/slot.cmd.in"]
     SHELL = {"if", "elif", "else", "fi", "for", "do", "done", "then"}

@@ -1,5 +1,5 @@
-"""Which cards need adit-import: rootfs/initrd/card, over folders as whoever has a card leaves them. A card that is wrongly called empty
-would be one whose settings are never taken; one that is wrongly not costs a second."""
+"""The cards that need adit-import: rootfs/initrd/card with directories as users leave them. A card that wrongly counts as empty would
+never be imported; one that wrongly does not costs a second."""
 import subprocess
 import tempfile
 import unittest

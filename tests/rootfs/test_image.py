@@ -1,4 +1,4 @@
-"""The image that was built here: small, with nothing in it that is not on its list of parts."""
+"""The image that was built here: small, and with only the parts on its list."""
 import gzip
 import json
 import os
@@ -127,7 +127,7 @@ class Parts(unittest.TestCase):
 
 class Root(unittest.TestCase):
     def test_an_image_is_at_most_40_mb_compressed(self):
-        """Where there is one: a release's, or whoever's made it without --no-xz."""
+        """If it exists: a release has it, and a build without --no-xz."""
         for image in some((image for board in BOARDS for image in (IMAGES / board).glob("*.img.xz")), "no image was compressed here"):
             with self.subTest(image.name):
                 self.assertLessEqual(image.stat().st_size, 40_000_000)
@@ -150,7 +150,7 @@ class Root(unittest.TestCase):
                     self.assertFalse(list(root.glob(f"usr/*bin/{program}")))
 
     def test_libraries_for_tls_and_downloads_are_absent(self):
-        """chronyd has libnettle's checksums, which TLS would have, too."""
+        """libnettle is allowed, because chronyd uses its checksums."""
         for board in BOARDS:
             there = {path.name.partition(".so")[0] for path in (IMAGES / board / "work/root").rglob("lib*.so*")}
             with self.subTest(board):
@@ -158,7 +158,7 @@ class Root(unittest.TestCase):
                 self.assertLessEqual({"libgcc_s", "libidn2"}, there, "opened by name")
 
     def test_programs_of_a_like_board_resolve_each_function(self):
-        """Those of the stand-ins, too: linked as they are at their start, with nothing left for later."""
+        """Including the stand-ins: linked at their start, without lazy binding."""
         alike = (board for board in BOARDS if conf(board, "architecture") == [ARCHITECTURE])
         for board in some(alike, f"no image of a board of {ARCHITECTURE} was built here"):
             root = IMAGES / board / "work/root"

@@ -1,4 +1,4 @@
-"""The image of qemu-virt is made once more in another place and time zone, of what the one that is there was made of."""
+"""The image of qemu-virt is built again in another directory and time zone, from the same parts."""
 import datetime
 import hashlib
 import os

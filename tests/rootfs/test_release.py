@@ -1,6 +1,6 @@
 #!/usr/bin/python3 -B
-"""test_release.py BUILD [--refusals]: a release as its README has it checked, of this build and one board; and what is no release is
-refused (alone, with --refusals). Needs what tests/boot's container needs."""
+"""test_release.py BUILD [--refusals]: checks a release of this build and one board as its README says. Other files are rejected (only
+these checks with --refusals). Needs the requirements of tests/boot's container."""
 import os
 import re
 import shutil
@@ -34,7 +34,7 @@ def pair(folder, name, days="30", kind=("ec", "-pkeyopt", "ec_paramgen_curve:P-2
 
 
 def refuses_who_cannot_sign():
-    """Before it builds anything."""
+    """Before it builds."""
     with tempfile.TemporaryDirectory() as folder:
         (key, certificate), (other, _), (old, at_its_end) = pair(folder, "team"), pair(folder, "other"), pair(folder, "old", days="1")
         short, of_short = pair(folder, "short", kind=["ed25519"])

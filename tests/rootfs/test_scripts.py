@@ -1,4 +1,4 @@
-"""Scripts of the recipe and of the box, called with files and folders that are made here: GRUB's environment, two disks, toolchain/image's
+"""Scripts of the recipe and of the box, called with test files and directories: GRUB's environment, two disks, toolchain/image's
 options."""
 import os
 import shutil
@@ -30,12 +30,12 @@ class GrubsEnvironment(Scripts):
         self.write(b"\0" * SECTOR, b"\0" * SECTOR)
 
     def write(self, first, second):
-        """Behind a tar's headers, and before what the initrd keeps there."""
+        """After a tar's headers, and before the initrd's own files."""
         self.rest = [b"grubenv".ljust(SECTOR, b"\0"), b"grubenv2".ljust(SECTOR, b"\0"), bytes(2048) + MACHINE_ID]
         self.partition.write_bytes(self.rest[0] + first + self.rest[1] + second + self.rest[2])
 
     def written(self):
-        """Both copies, and what is beside them."""
+        """Both copies, and the files beside them."""
         now = self.partition.read_bytes()
         first, second = (now[at:at + SECTOR] for at in (SECTOR, 3 * SECTOR))
         return first, second, [now[:SECTOR], now[2 * SECTOR:3 * SECTOR], now[4 * SECTOR:]]
@@ -146,7 +146,7 @@ class TwoDisks(Scripts):
 
 
 class Greeting(Scripts):
-    """What the consoles show, with a box of plain files, in so many seconds; `sleep` takes none, and ends it."""
+    """The consoles' output for a box of plain files, over that many seconds. `sleep` takes no time, and ends it."""
 
     def shown(self, code="12345678", passwords="", addresses=("10.0.0.1", "192.168.7.11"), consoles="tty0 ttyS0", seconds=10):
         state, devices = self.folder / "state", self.folder / "dev"
@@ -186,7 +186,7 @@ class Greeting(Scripts):
         self.assertIn("no code yet", self.shown(code=None)[0])
 
     def test_unreadable_passwords_count_as_unset(self):
-        """It asks for a code again, and writes one."""
+        """Asks for a new code, which is written."""
         self.assertIn("12345678", self.shown(passwords='{"version":1,"oper')[0])
 
     def test_greeting_ends_once_a_password_is_set(self):
@@ -197,7 +197,7 @@ LOCKED = "E: Could not get lock /var/lib/apt/lists/lock. It is held by process 7
 
 
 class SetUp(Scripts):
-    """toolchain/setup, on a machine that lacks all packages, with an apt-get that says what the lines of `says` are, one each time."""
+    """toolchain/setup on a machine without any of its packages, with an apt-get that prints the lines of `says`, one per call."""
 
     def setUp(self):
         super().setUp()
@@ -227,7 +227,7 @@ class SetUp(Scripts):
 
 
 class Options(Scripts):
-    """Of toolchain/image, in a tree whose recipe writes down what it is told."""
+    """Arguments of toolchain/image, in a tree whose recipe records its arguments."""
 
     def setUp(self):
         super().setUp()

@@ -1,6 +1,6 @@
-"""What the initrd calls in the root: which partition becomes the box's state (usr/lib/adit/state), with a disk's folder of sysfs and programs
-that are made here, and what is there before any address (usr/lib/adit/early). tests/boot starts both from a real disk; but QEMU has no eMMC,
-whose boot areas lie in that folder too."""
+"""Scripts that the initrd calls in the root: usr/lib/adit/state, which chooses the box's state partition, with a sysfs directory and
+programs made here, and usr/lib/adit/early, which runs before the network is up. tests/boot runs both from a real disk. But QEMU has
+no eMMC, whose boot areas are in that directory too."""
 import os
 import subprocess
 import tempfile
@@ -12,7 +12,7 @@ from recipe import TOP
 SCRIPTS = TOP / "rootfs/overlay/usr/lib/adit"
 SECTORS = {"env": 2048, "boot": 81920, "boot-a": 131072, "boot-b": 131072, "root-a": 262144, "root-b": 262144}
 OWN = ["unshare", "--mount"] if os.geteuid() == 0 else ["unshare", "--map-root-user", "--mount"]
-# It writes to /run, /var and the console: those of a mount namespace of its own.
+# It writes to /run, /var and the console, so it gets a mount namespace of its own.
 CALL = """mount -t tmpfs tmpfs /run && mount -t tmpfs tmpfs /var && eval "$3" && { [ ! -e /dev/console ] || mount --bind "$1/console" /dev/console; } || exit 99
 PATH="$1/bin:$PATH" sh "$2" "$1/mmcblk0" 60; cat /run/adit-notices/state 2>/dev/null
 for folder in run var; do find /$folder ! -type l -printf '%P %m\\n' -o -printf '%P %l\\n' | sort >$1/$folder; done"""
@@ -43,7 +43,7 @@ class Script(unittest.TestCase):
         path.chmod(0o755)
 
     def run_it(self, before=":"):
-        """The notice that it leaves; `before` is what somebody else has done to /run and /var."""
+        """The notice that it leaves. `before`: earlier changes of /run and /var."""
         done = subprocess.run([*OWN, "sh", "-c", CALL, "state", self.folder, SCRIPTS / self.name, before], capture_output=True, text=True)
         self.assertEqual(done.stderr, "")
         return done.stdout
@@ -53,7 +53,7 @@ class Script(unittest.TestCase):
         return [line for line in lines if line.split()[0] in name.split()]
 
     def left(self, folder):
-        """The modes and links in /run or /var, by their paths."""
+        """The modes and links in /run or /var, by path."""
         return dict(line.rsplit(" ", 1) for line in (self.folder / folder).read_text().splitlines())
 
 
@@ -91,14 +91,14 @@ class State(Script):
         (self.disk / "size").write_text(f"{self.end + sectors + 34}\n")
 
     def makes(self, number):
-        """What systemd-repart does: the kernel does not hear the label from it."""
+        """Like systemd-repart, which does not tell the kernel the label."""
         new = f"{self.disk}/mmcblk0p{number}"
         lines = [f"mkdir {new}"] + [f"echo {text} >{new}/{file}" for file, text in
                                     (("partition", number), ("start", self.end), ("size", 1_000_000), ("uevent", f"PARTN={number}"))]
         self.program("systemd-repart", "\n".join(lines) + "\n")
 
     def state_is(self, flags):
-        """What the superblock says."""
+        """The state of the superblock."""
         self.program("hexdump", f'for last; do :; done; [ "$last" = /dev/mmcblk0p7 ] && printf {flags}\n')
 
     def has_state(self):

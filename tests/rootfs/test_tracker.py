@@ -1,4 +1,4 @@
-"""toolchain/tracker names open entries of the parts, and refuses those over the network that no line excuses."""
+"""toolchain/tracker lists open entries of the parts, and rejects remote ones without an exception."""
 import json
 import pathlib
 import subprocess

@@ -21,7 +21,6 @@ namespace {
 constexpr int kInPlace = 3;
 constexpr int kNoValue = 255;
 
-/// A posted grid and its outcome.
 struct PostedGrid {
   const Asked* asked;
   std::int64_t serial;
@@ -52,7 +51,6 @@ bool holds(const Extent& outer, const Extent& inner) {
          lies_within(inner.y, inner.height, outer.y, outer.height);
 }
 
-/// Whether the extents overlap.
 bool overlap(const Extent& a, const Extent& b) {
   const auto one = [&](int a_begin, int a_size, int b_begin, int b_size) {
     return a_begin * a.centimetres < (b_begin + 2 * b_size) * b.centimetres &&

@@ -99,7 +99,6 @@ void DecidingOperator::decide_rejected(const nlohmann::json& row) {
       {path + (replaced ? "/discard" : "/send"), replaced ? "discard" : kSendRejected, "", 0});
 }
 
-/// Reports as the operator.
 void DecidingOperator::compose() {
   const std::int64_t serial = kOwnReports + ++composed_;
   decisions_.push_back({"/adit/reports", kCompose, drill(serial), serial});

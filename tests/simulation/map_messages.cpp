@@ -24,7 +24,6 @@ constexpr std::int64_t kInvalidEvery = 17;
 constexpr std::size_t kRowWidth = 4;  // every cloud has more points
 constexpr double kPacking = 0.0013;   // metres by which packing may move a point
 
-/// The place of a point.
 std::array<float, 3> place_of(std::int64_t serial, std::int64_t index) {
   return {static_cast<float>(index) * 0.37F, static_cast<float>(serial % 97) * 1.5F,
           static_cast<float>((serial * 7 + index * 13) % 100) * -0.01F};

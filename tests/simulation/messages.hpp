@@ -70,7 +70,6 @@ struct Style {
   double quaternion = 1;    // length of each
 };
 
-/// The events of the items in it.
 std::vector<Event> events_of(const Posting& posting);
 /// The whole request in that style. Reports are JSON.
 std::string request_of(const Posting& posting, const Style& style);

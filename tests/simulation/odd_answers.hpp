@@ -8,7 +8,6 @@ namespace adit::simulation {
 
 /// The same answer, chunked or after an interim answer. Requires one with a length.
 std::string in_another_form(const std::string& answer, Random& random);
-/// The answer with a wrong length.
 std::string with_wrong_length(const std::string& answer, Random& random);
 /// A 200 with unrelated JSON.
 std::string with_wrong_types(Random& random);

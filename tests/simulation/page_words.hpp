@@ -14,9 +14,7 @@ namespace adit::simulation {
 /// there is none. `count`: the number of events before the view.
 std::string disagreement(const nlohmann::json& view, const std::vector<Event>& events, std::size_t count);
 
-/// Whether an alarm of a view calls the operator.
 bool calls(const nlohmann::json& alarm);
-/// The alarm in one line.
 std::string alarm_line(const nlohmann::json& alarm);
 
 /// The number of reports in that state in the view's current run.

@@ -30,13 +30,11 @@ class Scoreboard {
   Scoreboard(World& world, const Faults& faults, Random& random, int place);
 
   int place() const { return place_; }
-  /// Returns the answer to a status.
   std::string status();
   /// Records the report of that request and returns the answer.
   std::string record(const Item& item, const HttpMessage& request);
   /// The answer to the last recorded report; nullopt if that was `item`.
   std::optional<std::string> last_answer(const Item& item) const;
-  /// Records a report of another sender.
   void record_another();
   /// Whether Adit can tell a new run from the current one. Adit must have seen the current run's clock run,
   /// with a working ledger, to a higher value than the new run's clock has when it is first seen.

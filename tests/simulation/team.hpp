@@ -39,7 +39,6 @@ class Reporter {
   int tries_ = 0;
 };
 
-/// All clients of the team.
 class Team {
  public:
   Team(World& world, double until);

@@ -12,7 +12,6 @@
 
 namespace adit::simulation {
 
-/// The content of a file.
 struct Content {
   std::string bytes;       // without the hole at its end
   std::uint64_t size = 0;  // with the hole

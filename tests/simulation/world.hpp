@@ -48,7 +48,6 @@ class World {
   Random random(std::string_view name) const { return {seed_, name}; }
   Instant now() const { return now_; }
   double time() const;  // seconds since the run began
-  /// The time on the box's clock.
   double stamp() const { return kEpoch + time() + clock_ahead_; }
   double clock_ahead() const { return clock_ahead_; }
   /// Sets the box's clock, as a person does or as a boot does.

@@ -1,4 +1,4 @@
-"""A box of files with a real RAUC, for each test of adit-update."""
+"""A box of plain files with a real RAUC, for each test of adit-update."""
 
 import os
 import pathlib
@@ -27,7 +27,7 @@ class OnABox(unittest.TestCase):
         self.before = self.box.contents()
 
     def good(self):
-        """`adit-update good`, of a box that has been healthy for long."""
+        """Runs `adit-update good` as on a box that was healthy for long."""
         since = int((time.clock_gettime(time.CLOCK_MONOTONIC) - 100) * 1e6)
         self.box.properties.write_text(f"ActiveState=active\nActiveEnterTimestampMonotonic={since}\n")
         subprocess.run(self.box.command("good"), env=self.box.environment, stderr=subprocess.DEVNULL, timeout=raucs.patient(60), check=True)
@@ -40,10 +40,10 @@ class OnABox(unittest.TestCase):
         subprocess.run([self.box.folder / "bin/fw_setenv", name, value], check=True)
 
     def cut_off(self):
-        """The power goes in the middle of the writing of slot B."""
+        """Cuts the power while slot B is written."""
         shutil.copy(self.bundles.make("0.3.0", root_size=(4 << 20) - 4096), self.box.folder / "wanted/update.raucb")
         self.box.ask("install")
-        # Its new content does not come to its end: the process that writes it is stopped where it begins.
+        # Its new content stays incomplete: the writing process is stopped at its begin.
         os.remove(self.box.slots["root-b"])
         os.mkfifo(self.box.slots["root-b"])
         with subprocess.Popen(self.box.command(), env=self.box.environment, stderr=subprocess.DEVNULL) as process:

@@ -1,5 +1,5 @@
-"""A box of plain files for adit-update: a real RAUC with its service on a bus of its own, two slots, U-Boot's environment as
-U-Boot leaves it, and a stand-in for systemctl."""
+"""A box of plain files for adit-update: a real RAUC with its service on its own bus, two slots, U-Boot's environment, and a stand-in
+for systemctl."""
 
 import json
 import os
@@ -17,7 +17,8 @@ SOURCE = pathlib.Path(os.environ["ADIT_SOURCE"])
 ADIT_UPDATE = os.path.join(os.environ["ADIT_BIN"], "adit-update")
 BOARD = "adit-test-board"
 ROOT_SIZE, BOOT_SIZE = 3 << 20, 1 << 20
-# A bundle is read through dm-verity as on a box, where the machine has the device mapper; else through its checksums.
+# A bundle is read through dm-verity as on a box if the machine has the device mapper; otherwise through its
+# checksums.
 FORMAT = "verity" if os.path.exists("/dev/mapper/control") else "plain"
 
 BUS = """<!DOCTYPE busconfig PUBLIC "-//freedesktop//DTD D-Bus Bus Configuration 1.0//EN"

@@ -13,7 +13,6 @@ using std::chrono::milliseconds;
 
 class HeldBackByte : public Asking {
  protected:
-  /// Answers `pause` after the whole request arrived.
   Peer::Script answers_after(milliseconds pause) {
     return [this, pause](Wire& wire) {
       wire.read_request();

@@ -24,7 +24,6 @@ class Wire {
   std::string read_request();
   /// At most `most` bytes; 0 if the other side has closed.
   std::size_t read_some(std::size_t most);
-  /// From now on, pauses before each read.
   void read_slowly(std::chrono::milliseconds pause) { pause_ = pause; }
   /// False where the other side is gone.
   bool write(std::string_view bytes);

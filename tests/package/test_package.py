@@ -42,9 +42,9 @@ class Packages(Story):
         self.assertEqual(status, 200, said)
         return said
 
-    def the_ports_are_the_machines(self):
+    def the_ports_are_the_machines(self, said=""):
         names = set(self.box.shell("ls /sys/class/net").split())
-        self.assertTrue(names.issuperset(pc.PORTS.values()) and names.isdisjoint(("team0", "darpa0")), names)
+        self.assertTrue(names.issuperset(pc.PORTS.values()) and names.isdisjoint(("team0", "darpa0")), f"{names} {said}")
         for port in pc.PORTS.values():
             self.assertEqual(self.box.shell(f"ip -4 -o address show dev {port}"), "")
             self.assertIn("MULTICAST", self.box.shell(f"ip -o link show dev {port}"))
@@ -241,12 +241,12 @@ class Packages(Story):
         self.box.apt("purge adit-rehearsal")
 
     def test_removal_keeps_the_state_and_stops_everything(self):
-        self.box.apt("remove adit")
+        said = self.box.apt("remove adit")
         for unit in ("adit.service", "adit.socket", "adit-network-start", "adit-network-watch", "adit-nftables"):
             self.assertFalse(self.box.is_active(unit), unit)
         self.assertEqual(self.box.listens(), [])
         self.assertEqual(self.box.shell("nft list ruleset"), "")
-        self.the_ports_are_the_machines()
+        self.the_ports_are_the_machines(said)
         self.box.shell(f"test -s {STATE}/ledger/log-* -a -s {INTERFACES}")
 
     def test_reinstallation_continues(self):

@@ -125,7 +125,7 @@ TEST_P(Barring, LeavesTheReportWaitingTellsItsClientAndSendsNothingBeforeAStatus
   EXPECT_THAT(scene.told(client).sentence, HasSubstr("is queued (the Command Post's words)"));
   EXPECT_FALSE(scene.is_told(other));
   EXPECT_EQ(scene.send_next(), 0);
-  EXPECT_EQ(scene.reports().wish(scene.time()).status, scene.time().now);
+  EXPECT_EQ(scene.reports().next_requests(scene.time()).status, scene.time().now);
   scene.reports().status_failed(true, scene.time());
   EXPECT_EQ(scene.send_next(), 0);
   scene.hear(20, 0);

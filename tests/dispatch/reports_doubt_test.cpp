@@ -92,10 +92,10 @@ TEST_F(Doubt, MakesOthersWaitWhileItMayBeDecided) {
 }
 
 TEST_F(Doubt, IsAskedAfterEverySecond) {
-  EXPECT_LE(*scene_.reports().wish(scene_.time()).status, scene_.time().now);
+  EXPECT_LE(*scene_.reports().next_requests(scene_.time()).status, scene_.time().now);
   scene_.wait(0.5);
   scene_.reports().status_failed(false, scene_.time());
-  const auto next = *scene_.reports().wish(scene_.time()).status;
+  const auto next = *scene_.reports().next_requests(scene_.time()).status;
   EXPECT_EQ(next, scene_.time().now + std::chrono::seconds(1));
 }
 

@@ -44,8 +44,8 @@ TEST(Taking, WaitsForTheFirstWordOfTheRun) {
   scene.wait(16);
   scene.post();
   EXPECT_EQ(scene.reports().sending(), nullptr);
-  EXPECT_FALSE(scene.reports().wish(scene.time()).report);
-  EXPECT_EQ(scene.reports().wish(scene.time()).status, scene.time().now);
+  EXPECT_FALSE(scene.reports().next_requests(scene.time()).report);
+  EXPECT_EQ(scene.reports().next_requests(scene.time()).status, scene.time().now);
   scene.hear(20, 0);
   EXPECT_EQ(scene.send_next(), 1);
 }

@@ -136,7 +136,7 @@ class Scene {
   }
   /// Sends the next one. Its number; 0: none may go.
   std::int64_t send_next() {
-    if (!reports_->wish(time()).report) return 0;
+    if (!reports_->next_requests(time()).report) return 0;
     const Report* const chosen = reports_->choose(time());
     return chosen != nullptr ? chosen->number : 0;
   }

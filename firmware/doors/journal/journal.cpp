@@ -82,9 +82,9 @@ void Journal::senders(const queues::StampShift::Clocks& clocks) {
   if (!clocks.empty()) note(Kind::Senders, store::bytes_of(clocks));
 }
 
-Journal::Kept Journal::accepted_markers(std::span<const std::string> records) {
-  for (const std::string& record : records) {
-    if (auto kept = append(Kind::Markers, record); !kept) return kept;
+Journal::Kept Journal::accepted(const icd::MarkersUpdate& update) {
+  for (const std::string& record : records_of(update.markers)) {
+    if (auto kept = accepted_markers(record); !kept) return kept;
   }
   return {};
 }

@@ -61,10 +61,10 @@ class Journal {
   Kept accepted(std::span<const queues::PostedPose> poses) {
     return append(Kind::Poses, store::bytes_of(poses));
   }
-  Kept accepted(const icd::MarkersUpdate& update) { return accepted_markers(records_of(update.markers)); }
-  /// `records`: records_of() a message. After an error some of them can be stored: the next process sends
-  /// these markers though the client was refused, and the client's next try replaces them.
-  Kept accepted_markers(std::span<const std::string> records);
+  Kept accepted(const icd::MarkersUpdate& update);
+  /// `record`: one of records_of() a message. If a later one fails, the next process sends the markers of the
+  /// earlier ones although the client was refused; the client's next try replaces them.
+  Kept accepted_markers(const std::string& record) { return append(Kind::Markers, record); }
 
   void senders(const queues::StampShift::Clocks& clocks);
   /// For the next process. A failed record is dropped, because the next one replaces it.

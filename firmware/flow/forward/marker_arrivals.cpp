@@ -107,7 +107,7 @@ void MarkerArrivals::make_records(const Arrival& arrival) {
 
 bool MarkerArrivals::keep(Arrival& arrival) {
   if (arrival.records.empty()) return fail(arrival, no_memory());
-  if (const auto kept = journal_.accepted_markers(std::span(&arrival.records[arrival.stored], 1)); !kept) {
+  if (const auto kept = journal_.accepted_markers(arrival.records[arrival.stored]); !kept) {
     return fail(arrival, {icd::Status::ServiceUnavailable,
                           "not accepted: it cannot be stored: " + kept.error() + "; send it again later"});
   }

@@ -106,7 +106,7 @@ bool PreparedMaps::is_packed(PreparedMap& prepared) const {
   return !prepared.packed.body.empty();
 }
 
-/// Null where it went back into the queue meanwhile.
+/// Null if it returned to the queue meanwhile.
 PreparedMaps::Place* PreparedMaps::place_of(const Place& prepared) {
   if (prepared == first_) return &first_;
   return prepared == following_ ? &following_ : nullptr;
@@ -123,7 +123,7 @@ void PreparedMaps::is_damaged(Place& place) {
   std::erase_if(rest.updates, is_gone);
   store_.set_aside(it->damaged);
   if (!rest.parts.empty()) queue_.put_back_apart(std::move(rest));
-  place.reset();  // nothing of what is damaged is tried again
+  place.reset();  // the damaged maps are not retried
   for (const MapStore::Damaged& each : it->damaged) {
     record_.not_taken(traffic_of(it->waiting.map), DeliveryFailure::Failed, 0,
                       "its stored copy is damaged: " + each.why);
@@ -131,7 +131,7 @@ void PreparedMaps::is_damaged(Place& place) {
   store_.forget(gone);
 }
 
-/// What cannot be stitched goes as it came, each part by itself.
+/// Parts that cannot be stitched return to the queue, each alone.
 void PreparedMaps::work_done(const Place& prepared) {
   const LeftOut& left_out = prepared->packed.left_out;
   if (prepared->damaged.empty()) {

@@ -143,15 +143,15 @@ void Scoring::status(std::shared_ptr<intake::Responder> responder) {
 
 /// No report goes first, and the pace allows it in time.
 bool Scoring::may_ask_soon(loop::Instant now) const {
-  const dispatch::NextRequests wish = reports_->wish(time());
-  return !channel_.busy() && !wish.report && pace_.status_ready(wish.in_doubt) <= now + kAskerWaits;
+  const dispatch::NextRequests requests = reports_->next_requests(time());
+  return !channel_.busy() && !requests.report && pace_.status_ready(requests.in_doubt) <= now + kAskerWaits;
 }
 
 /// It may be older if only reports delay a request, because the Command Post answers them.
 std::optional<intake::Answer> Scoring::known_status() const {
-  const dispatch::NextRequests wish = reports_->wish(time());
+  const dispatch::NextRequests requests = reports_->next_requests(time());
   const bool reports_go_first =
-      reports_->sending() != nullptr ? channel_.connected() : wish.report && !wish.status;
+      reports_->sending() != nullptr ? channel_.connected() : requests.report && !requests.status;
   return known_status_.answer(loop_.now(),
                               reports_go_first ? KnownStatus::kOldestBehindReports : KnownStatus::kOldest);
 }
@@ -180,25 +180,25 @@ void Scoring::pump() noexcept {
   const dispatch::Time at = time();
   const loop::Instant now = at.now;
   reports_->paced(pace_.spacing());
-  const dispatch::NextRequests wish = reports_->wish(at);
-  if (!is_free(wish, now)) return;
+  const dispatch::NextRequests requests = reports_->next_requests(at);
+  if (!is_free(requests, now)) return;
   std::array<dispatch::Candidate, 2> candidates;
-  if (wish.report) candidates[0] = {now, pace_.report_ready()};
+  if (requests.report) candidates[0] = {now, pace_.report_ready()};
   if (!askers_.empty() || poll_due_) {
-    candidates[1] = {now, pace_.status_ready(wish.in_doubt)};
-  } else if (wish.status) {
-    candidates[1] = {now, std::max(pace_.status_ready(wish.in_doubt), *wish.status)};
+    candidates[1] = {now, pace_.status_ready(requests.in_doubt)};
+  } else if (requests.status) {
+    candidates[1] = {now, std::max(pace_.status_ready(requests.in_doubt), *requests.status)};
   }
   const dispatch::Turn turn = dispatch::in_order(candidates, now);
   if (turn.wake) wake_.call_at(*turn.wake);
   if (turn.candidate == 0) send_next();
-  if (turn.candidate == 1) ask_status(/*decides=*/wish.status.has_value());
+  if (turn.candidate == 1) ask_status(/*decides=*/requests.status.has_value());
 }
 
 /// False: a request is in flight. A status that no report needs gives way to a report after a while.
-bool Scoring::is_free(const dispatch::NextRequests& wish, loop::Instant now) {
+bool Scoring::is_free(const dispatch::NextRequests& requests, loop::Instant now) {
   if (!channel_.busy()) return true;
-  if (!asked_status_ || asked_status_->decides || !wish.report) return false;
+  if (!asked_status_ || asked_status_->decides || !requests.report) return false;
   const loop::Instant gives_way = std::max(asked_status_->at + kGivesWayAfter, pace_.report_ready());
   if (gives_way > now) {
     wake_.call_at(gives_way);

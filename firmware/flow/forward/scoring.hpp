@@ -107,7 +107,7 @@ class Scoring {
   void take(const dispatch::PostedReport& posted, dispatch::ClientId client) noexcept;
   void poll();
   void pump() noexcept;
-  bool is_free(const dispatch::NextRequests& wish, loop::Instant now);
+  bool is_free(const dispatch::NextRequests& requests, loop::Instant now);
   void send(const dispatch::Report& report);
   void send_next();
   void report_answered(const uplink::Outcome& outcome);

@@ -15,8 +15,8 @@
 
 namespace adit::forward {
 
-/// States: accepts them, chooses the next message, and decides what follows from its answer. Telemetry sends
-/// them.
+/// The states: accepts them, chooses the next message, and handles the verdict of its answer. Telemetry sends
+/// it.
 class States {
  public:
   /// A message in flight, which is not copied.

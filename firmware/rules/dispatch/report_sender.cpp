@@ -40,15 +40,15 @@ std::optional<std::int64_t> ReportSender::next(Instant now) const {
   return std::nullopt;
 }
 
-NextRequests ReportSender::wish(Time time) const {
+NextRequests ReportSender::next_requests(Time time) const {
   if (book_.sending() != nullptr) return {};
-  NextRequests wish;
-  wish.status = doubts_.next_ask(time.now);
-  wish.in_doubt = wish.status.has_value();
-  if (account_.waiting_here().empty()) return wish;
-  wish.report = next(time.now).has_value();
-  if (barred_ || !account_.is_fresh(time.now)) wish.status = time.now;
-  return wish;
+  NextRequests requests;
+  requests.status = doubts_.next_ask(time.now);
+  requests.in_doubt = requests.status.has_value();
+  if (account_.waiting_here().empty()) return requests;
+  requests.report = next(time.now).has_value();
+  if (barred_ || !account_.is_fresh(time.now)) requests.status = time.now;
+  return requests;
 }
 
 /// The comparison that Reports::take() left out because the run was unknown. False: do not send it now.

@@ -38,7 +38,7 @@ class ReportSender {
   /// doubt.
   void open(Time time);
 
-  NextRequests wish(Time time) const;
+  NextRequests next_requests(Time time) const;
   /// Reports::choose().
   const Report* choose(Time time);
   /// True if a report that is posted now may be sent at once.

@@ -51,7 +51,7 @@ class Reports {
   /// rate limit allows one. True: the report is on disk as sending(); send it.
   bool take(const PostedReport& posted, ClientId client, bool may_send, Time time);
 
-  NextRequests wish(Time time) const { return sender_.wish(time); }
+  NextRequests next_requests(Time time) const { return sender_.next_requests(time); }
   /// The first queued report that may be sent, on disk as sending(). Null: no such report, or the write
   /// failed.
   const Report* choose(Time time) { return sender_.choose(time); }

@@ -16,12 +16,12 @@ constexpr Seconds kRoundTrip = 0.02;
 
 void World::pump() {
   if (busy_) return;
-  const NextRequests wish = reports_->wish(time());
-  if (wish.report && now_ >= report_ready_) {
+  const NextRequests requests = reports_->next_requests(time());
+  if (requests.report && now_ >= report_ready_) {
     if (const Report* const report = reports_->choose(time())) transmit(*report);
     return;
   }
-  const bool wanted = (wish.status && *wish.status <= time().now) || now_ >= poll_at_;
+  const bool wanted = (requests.status && *requests.status <= time().now) || now_ >= poll_at_;
   if (wanted && now_ >= status_ready_) ask();
 }
 

@@ -15,7 +15,8 @@ import programs
 import requests
 from test_package import setUpModule  # unittest looks for it here
 
-LAYOUT = pc.SOURCE / "build" / "oci" / "amd64" / "layout"
+OCI = pc.SOURCE / "build" / "oci"
+LAYOUT = OCI / "amd64" / "layout"
 PORT = 8000
 
 
@@ -77,6 +78,19 @@ class Image(unittest.TestCase):
         self.assertEqual(running.returncode, 0, said)
         for words in "The page:     http://127.0.0.1:8000/", "Its password: rehearsal-", "Your clients: http://127.0.0.1:8000":
             self.assertIn(words, said)
+
+    def test_the_list_of_parts_has_each_package_with_its_source(self):
+        """As dpkg knows them. The image has the text of each licence."""
+        root = self.folder / "bundle" / "rootfs"
+        form = "${Package}\t${Version}\tbuilt from Debian's source packages ${source:Package} (${source:Version})\n"
+        said = subprocess.run(["dpkg-query", f"--admindir={root}/var/lib/dpkg", "--show", "--showformat", form], check=True, capture_output=True, text=True)
+        installed = {tuple(line.split("\t")) for line in said.stdout.splitlines() if not line.startswith("adit")}
+        parts = json.loads(max(OCI.glob("*_amd64.oci.spdx.json"), key=lambda path: path.stat().st_mtime).read_text())["packages"]
+        listed = {(part["name"], part["versionInfo"], re.sub(r", .*", "", part["sourceInfo"])) for part in parts if "sourceInfo" in part}
+        self.assertEqual({part for part in listed if part[0] != "boost"}, installed)
+        self.assertNotIn("NOASSERTION", {part["licenseDeclared"] for part in parts})
+        for name, *_ in installed:
+            self.assertTrue((root / f"usr/share/doc/{name}/copyright").exists(), name)
 
     def test_it_runs_the_service(self):
         (self.folder / "settings.json").write_text(json.dumps(

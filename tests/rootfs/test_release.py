@@ -76,7 +76,7 @@ def main():
     listed = {line.split()[1] for line in (FOLDER / "SHA256SUMS").read_text().splitlines()}
     present = {str(path.relative_to(FOLDER)) for path in FOLDER.rglob("*") if path.is_file()}
     assert present == listed | {"SHA256SUMS", "SHA256SUMS.sig", "adit.pub"}, present ^ listed
-    for kind in ("apt/dists/bookworm/InRelease", f"adit_{VERSION}.dsc", f"adit_{VERSION}.tar.xz", f"apt/pool/bookworm/adit_{VERSION}_", f"adit_{VERSION}_", f"adit-rehearsal_{VERSION}_", ".oci.tar", ".raucb", ".img", ".spdx.json"):
+    for kind in ("apt/dists/bookworm/InRelease", f"adit_{VERSION}.dsc", f"adit_{VERSION}.tar.xz", f"apt/pool/bookworm/adit_{VERSION}_", f"adit_{VERSION}_", f"adit-rehearsal_{VERSION}_", ".oci.tar", ".oci.spdx.json", ".raucb", ".img", f"64-{VERSION}.spdx.json"):
         assert any(kind in name for name in listed), kind
     with open(FOLDER / "CHANGES.md", "a", encoding="utf-8") as changes:
         changes.write("And more.\n")

@@ -15,7 +15,7 @@ std::string meaning(const Scene& scene, const std::string& post = kThere) {
   return meaning_of_another_post(scene.reports(), post);
 }
 
-TEST(AnotherPost, MeansNothingForReportsThatAreDone) {
+TEST(ChangeOfCommandPost, AffectsNoFinalReport) {
   Scene scene;
   scene.post(1);
   scene.answer(recorded());
@@ -23,7 +23,7 @@ TEST(AnotherPost, MeansNothingForReportsThatAreDone) {
             "reports go to 10.100.2.200:8000 from then on; no report is queued, in doubt or held now");
 }
 
-TEST(AnotherPost, KeepsWhatIsNotDoneForTheOldOne) {
+TEST(ChangeOfCommandPost, KeepsOpenReportsForTheOldOne) {
   Scene scene;
   scene.post_to_wait(1);
   scene.post_to_wait(2);
@@ -39,7 +39,7 @@ TEST(AnotherPost, KeepsWhatIsNotDoneForTheOldOne) {
   EXPECT_THAT(meaning(scene), HasSubstr("; 2 reports are queued, 1 is in doubt, 1 is held: "));
 }
 
-TEST(AnotherPost, IsGoneBackToWithItsReports) {
+TEST(ChangeOfCommandPost, ContinuesTheRunOfAnEarlierOne) {
   Scene scene;
   scene.post(1);
   scene.answer(recorded());
@@ -51,7 +51,7 @@ TEST(AnotherPost, IsGoneBackToWithItsReports) {
             "is queued, in doubt or held now");
 }
 
-TEST(AnotherPost, IsSentWhatWaitsWhereNothingWasHeardOfTheOldOne) {
+TEST(ChangeOfCommandPost, TakesQueuedReportsIfTheOldOneNeverAnswered) {
   Scene scene;
   scene.restart(kThere);
   scene.post_to_wait(1);

@@ -13,7 +13,7 @@ Instant at(double s) {
   return Instant{} + milliseconds(static_cast<std::int64_t>(s * 1000));
 }
 
-/// An answer was lost at 0 s, with a run clock at 500 s that goes on.
+/// An answer was lost at 0 s, when the run clock showed 500 s.
 class InquiryTest : public testing::Test {
  protected:
   Finding hear(double now, Finding finding) { return hear(now, finding, 500 + now); }
@@ -22,7 +22,7 @@ class InquiryTest : public testing::Test {
     return inquiry_.hear({.finding = finding, .why = "", .points_each = std::nullopt}, run_clock, at(asked),
                          at(now));
   }
-  /// Each second from `from` to `to`: what was said at last.
+  /// One status each second. Returns the last finding.
   Finding hear_from(int from, int to, Finding finding) {
     Finding last = Finding::Silent;
     for (int now = from; now <= to; ++now) last = hear(now, finding);
@@ -32,30 +32,30 @@ class InquiryTest : public testing::Test {
   Inquiry inquiry_{InquiryPolicy{.doubt_for = seconds(10), .asks = 3}, at(0)};
 };
 
-TEST_F(InquiryTest, BelievesRecordedAtTheSecondStatusThatSaysSo) {
+TEST_F(InquiryTest, BelievesRecordedAtTheSecondStatus) {
   EXPECT_EQ(hear(1, Finding::Recorded), Finding::Silent);
   EXPECT_EQ(hear(2, Finding::Recorded), Finding::Recorded);
 }
 
-TEST_F(InquiryTest, BelievesNotRecordedOnlyOnceTheCommandPostHadTheTimeToRecordIt) {
+TEST_F(InquiryTest, BelievesNotRecordedAfterTenSeconds) {
   EXPECT_EQ(hear_from(1, 9, Finding::NotRecorded), Finding::Silent);
   EXPECT_EQ(hear(10, Finding::NotRecorded), Finding::NotRecorded);
 }
 
-/// The Command Post may have made it the moment it was asked for, and recorded the report since.
-TEST_F(InquiryTest, TakesAStatusThatWasLongInComingForAsOldAsItsQuestion) {
+/// The status may be as old as its request, and the report recorded since.
+TEST_F(InquiryTest, DatesAStatusByItsRequest) {
   hear_from(1, 5, Finding::NotRecorded);
   EXPECT_EQ(hear(12, Finding::NotRecorded, 512, 6), Finding::Silent);
   EXPECT_EQ(hear(13, Finding::NotRecorded, 513, 12), Finding::NotRecorded);
 }
 
-TEST_F(InquiryTest, BelievesNotRecordedOnlyAfterEnoughStatusesInARow) {
+TEST_F(InquiryTest, BelievesNotRecordedAfterThreeStatusesInARow) {
   EXPECT_EQ(hear(11, Finding::NotRecorded), Finding::Silent);
   EXPECT_EQ(hear(12, Finding::NotRecorded), Finding::Silent);
   EXPECT_EQ(hear(13, Finding::NotRecorded), Finding::NotRecorded);
 }
 
-TEST_F(InquiryTest, CountsAgainWhereStatusesDisagree) {
+TEST_F(InquiryTest, StartsAgainIfStatusesDisagree) {
   hear_from(1, 9, Finding::NotRecorded);
   EXPECT_EQ(hear(10, Finding::Recorded), Finding::Silent);
   EXPECT_EQ(hear(11, Finding::NotRecorded), Finding::Silent);
@@ -64,20 +64,20 @@ TEST_F(InquiryTest, CountsAgainWhereStatusesDisagree) {
   EXPECT_EQ(hear(15, Finding::NotRecorded), Finding::NotRecorded);
 }
 
-TEST_F(InquiryTest, TakesAContradictionAtItsWord) {
+TEST_F(InquiryTest, BelievesAContradictionAtOnce) {
   EXPECT_EQ(hear(1, Finding::Contradicts), Finding::Contradicts);
 }
 
-TEST_F(InquiryTest, DoesNotBelieveNotRecordedWhileTheRunClockStandsStill) {
+TEST_F(InquiryTest, DoubtsNotRecordedWhileTheRunClockStands) {
   for (int now = 1; now <= 30; ++now) EXPECT_EQ(hear(now, Finding::NotRecorded, 501), Finding::Silent);
 }
 
-TEST_F(InquiryTest, BelievesRecordedEvenWhileTheRunClockStandsStill) {
+TEST_F(InquiryTest, BelievesRecordedWhileTheRunClockStands) {
   EXPECT_EQ(hear(1, Finding::Recorded, 501), Finding::Silent);
   EXPECT_EQ(hear(9, Finding::Recorded, 501), Finding::Recorded);
 }
 
-TEST_F(InquiryTest, AsksAtOnceThenEverySecondAndAtLastEveryTen) {
+TEST_F(InquiryTest, AsksEverySecondAndLaterEveryTenSeconds) {
   EXPECT_EQ(inquiry_.next_ask(at(0)), at(0));
   inquiry_.asked(at(2));
   EXPECT_EQ(inquiry_.next_ask(at(2)), at(3));
@@ -85,12 +85,12 @@ TEST_F(InquiryTest, AsksAtOnceThenEverySecondAndAtLastEveryTen) {
   EXPECT_EQ(inquiry_.next_ask(at(15)), at(25));
 }
 
-TEST_F(InquiryTest, HoldsOthersBackWhileItMayStillBeDecided) {
+TEST_F(InquiryTest, BlocksOtherReportsWhileItIsPending) {
   EXPECT_TRUE(inquiry_.is_pending(at(14.9)));
   EXPECT_FALSE(inquiry_.is_pending(at(15)));
 }
 
-TEST_F(InquiryTest, HoldsOthersBackLongerOnlyWhereTheLastStatusesSayMore) {
+TEST_F(InquiryTest, BlocksLongerIfTheLastStatusHelps) {
   hear(14, Finding::NotRecorded);
   EXPECT_TRUE(inquiry_.is_pending(at(18.9)));
   EXPECT_FALSE(inquiry_.is_pending(at(19)));
@@ -146,7 +146,7 @@ const EvidenceCase kEvidenceCases[] = {
 
 class EvidenceTable : public testing::TestWithParam<EvidenceCase> {};
 
-TEST_P(EvidenceTable, SaysWhatTheCountsProve) {
+TEST_P(EvidenceTable, FollowsFromTheCounts) {
   const EvidenceCase& one = GetParam();
   const Evidence evidence = weigh(one.before, one.doubts, one.since, one.now);
   EXPECT_EQ(evidence.finding, one.finding) << evidence.why;
@@ -156,7 +156,7 @@ TEST_P(EvidenceTable, SaysWhatTheCountsProve) {
 INSTANTIATE_TEST_SUITE_P(Counts, EvidenceTable, testing::ValuesIn(kEvidenceCases),
                          [](const auto& one) { return one.param.name; });
 
-TEST(Evidence, ShowsItsFigures) {
+TEST(Evidence, ExplainsItselfWithFigures) {
   EXPECT_EQ(weigh(status(20, 3), 2, {1, 1}, status(19, 4)).why,
             "remaining_reports went from 20 to 19 and the score from 3 to 4, 1 of it by reports sent since, "
             "with 2 reports in doubt");
@@ -164,9 +164,8 @@ TEST(Evidence, ShowsItsFigures) {
               testing::HasSubstr("does another sender report"));
 }
 
-/// The law behind the table: what the same events give by themselves is never called a contradiction, and
-/// never the opposite of what happened.
-TEST(Evidence, IsTrueOfEveryHistoryWithoutAnotherSender) {
+/// The law behind the table: without another sender there is no contradiction, and no finding is wrong.
+TEST(Evidence, IsTrueWithoutAnotherSender) {
   for (std::int64_t left = 1; left <= 6; ++left) {
     for (std::int64_t doubts = 1; doubts <= 3; ++doubts) {
       for (std::int64_t done = 0; done <= doubts; ++done) {

@@ -1,5 +1,4 @@
-// Random interleavings of clients, faults and power cuts, on simulated time, against a model Command Post:
-// promise 1 holds in all of them.
+// Promise 1 holds for random clients, faults and power cuts in simulated time.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -87,7 +86,7 @@ const Profile kProfiles[] = {
                         })},
 };
 
-/// Steps for each profile; ADIT_MODEL_STEPS and ADIT_MODEL_SEED make more of it.
+/// Steps for each profile.
 std::int64_t steps_wanted() {
   const char* const text = std::getenv("ADIT_MODEL_STEPS");
   return text != nullptr ? std::atoll(text) : 40'000;

@@ -18,7 +18,7 @@ Report found() {
 
 const Run kRun{.id = "1.5.2", .last = icd::RunStatus{4, 733, 13, "subt"}};
 
-TEST(ReconciledAnswer, HasTheFieldsThatAreKnownToBeTrue) {
+TEST(ReconciledAnswer, HasTheKnownFields) {
   const std::string body = reconciled_answer(found(), kRun, 1, "from 14 to 13");
   for (const char* const field :
        {R"("x":1.5)", R"("y":-2.0)", R"("z":0.0)", R"("type":"cell phone")",
@@ -28,12 +28,12 @@ TEST(ReconciledAnswer, HasTheFieldsThatAreKnownToBeTrue) {
   }
 }
 
-TEST(ReconciledAnswer, SaysThatItIsAditsAndWhy) {
+TEST(ReconciledAnswer, NamesItsOriginAndEvidence) {
   EXPECT_THAT(reconciled_answer(found(), kRun, 1, "from 14 to 13"),
               HasSubstr(R"("adit":{"reconciled":true,"report":12,"evidence":"from 14 to 13"})"));
 }
 
-TEST(ReconciledAnswer, SaysNullToWhatIsNotKnown) {
+TEST(ReconciledAnswer, HasNullForUnknownFields) {
   const std::string body = reconciled_answer(found(), dispatch::Run{}, std::nullopt, "");
   for (const char* const field :
        {R"("url":null)", R"("id":null)", R"("team":null)", R"("run":null)", R"("score_change":null)"}) {
@@ -41,7 +41,7 @@ TEST(ReconciledAnswer, SaysNullToWhatIsNotKnown) {
   }
 }
 
-TEST(ReconciledAnswer, ReadsLikeTheCommandPostsOwn) {
+TEST(ReconciledAnswer, IsReadLikeAnAnswerOfTheCommandPost) {
   const auto reply = codec::read_report_reply(reconciled_answer(found(), kRun, 0, ""));
   ASSERT_TRUE(reply.has_value());
   EXPECT_EQ(reply->report_status, "scored");

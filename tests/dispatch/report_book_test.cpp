@@ -24,7 +24,7 @@ class ReportBookTest : public testing::Test {
   ReportBook book_{output_};
 };
 
-TEST_F(ReportBookTest, NumbersReportsFromOneAndGoesOnAfterARestart) {
+TEST_F(ReportBookTest, NumbersReportsAcrossARestart) {
   EXPECT_EQ(add(), 1);
   EXPECT_EQ(add(), 2);
   ReportBook again(output_);
@@ -32,14 +32,14 @@ TEST_F(ReportBookTest, NumbersReportsFromOneAndGoesOnAfterARestart) {
   EXPECT_EQ(again.add(Report(), {}, ""), 3);
 }
 
-TEST_F(ReportBookTest, WritesAReportThatIsSentAtOnceWithBothStepsInOneGo) {
+TEST_F(ReportBookTest, WritesAReportAndItsSendingAtOnce) {
   add({ReportEvent::Chosen});
   EXPECT_EQ(output_.writes, 1);
   EXPECT_THAT(output_.lives[1], ElementsAre(Queued, Sending));
   EXPECT_EQ(book_.at(1).state, Sending);
 }
 
-TEST_F(ReportBookTest, HasNoReportThatTheDiskRefused) {
+TEST_F(ReportBookTest, HasNoReportIfItsWriteFailed) {
   output_.full = true;
   EXPECT_EQ(add(), 0);
   EXPECT_THAT(book_.all(), IsEmpty());
@@ -47,14 +47,14 @@ TEST_F(ReportBookTest, HasNoReportThatTheDiskRefused) {
   EXPECT_EQ(add(), 1);
 }
 
-TEST_F(ReportBookTest, TakesNoStepThatIsNotInTheTable) {
+TEST_F(ReportBookTest, RejectsAStepOutsideTheTable) {
   add();
   EXPECT_FALSE(book_.move({1, ReportEvent::Found}, {}));
   EXPECT_EQ(book_.at(1).state, Queued);
   EXPECT_EQ(output_.writes, 1);
 }
 
-/// Which steps of a report's life are taken though the disk refuses them.
+/// True in `taken` if the step is accepted though its write fails.
 struct OnAFullDisk {
   ReportEvent event;
   ReportState from;
@@ -79,7 +79,7 @@ const OnAFullDisk kFullDisk[] = {
 
 class ReportBookOnAFullDisk : public testing::TestWithParam<OnAFullDisk> {};
 
-TEST_P(ReportBookOnAFullDisk, TakesOnlyTheStepsThatHaveHappenedAnyway) {
+TEST_P(ReportBookOnAFullDisk, AcceptsOnlyStepsThatHaveHappened) {
   RecordingActions output;
   ReportBook book(output);
   Report report;
@@ -94,14 +94,14 @@ TEST_P(ReportBookOnAFullDisk, TakesOnlyTheStepsThatHaveHappenedAnyway) {
 
   output.full = false;
   EXPECT_TRUE(book.catch_up());
-  EXPECT_EQ(output.ledger.contains(1), GetParam().taken) << "what has happened is written later";
+  EXPECT_EQ(output.ledger.contains(1), GetParam().taken) << "written later";
   const auto writes = output.writes;
   EXPECT_TRUE(book.catch_up());
   EXPECT_EQ(output.writes, writes) << "once";
 }
 INSTANTIATE_TEST_SUITE_P(Steps, ReportBookOnAFullDisk, testing::ValuesIn(kFullDisk));
 
-TEST_F(ReportBookTest, WritesWhatHasHappenedBeforeALaterStep) {
+TEST_F(ReportBookTest, WritesAMissedStepWithTheNextOne) {
   add({ReportEvent::Chosen});
   add();
   output_.full = true;
@@ -110,10 +110,10 @@ TEST_F(ReportBookTest, WritesWhatHasHappenedBeforeALaterStep) {
   output_.full = false;
   EXPECT_TRUE(book_.move({2, ReportEvent::Chosen}, {}));
   EXPECT_EQ(output_.ledger.at(1).state, Answered);
-  EXPECT_EQ(output_.writes, 3) << "with it";
+  EXPECT_EQ(output_.writes, 3) << "one write for both";
 }
 
-TEST_F(ReportBookTest, WritesANewRunLaterWhereTheDiskRefusesIt) {
+TEST_F(ReportBookTest, WritesANewRunLaterIfTheDiskIsFull) {
   output_.full = true;
   book_.write(dispatch::Run{.number = 2});
   EXPECT_EQ(output_.run, std::nullopt);
@@ -122,7 +122,7 @@ TEST_F(ReportBookTest, WritesANewRunLaterWhereTheDiskRefusesIt) {
   EXPECT_EQ(output_.run->number, 2);
 }
 
-TEST_F(ReportBookTest, TakesTheStepsOfSeveralReportsInOneWriteOrNone) {
+TEST_F(ReportBookTest, MovesSeveralReportsInOneWriteOrNone) {
   std::vector<Report> all(2);
   all[0] = {.number = 1, .state = InDoubt};
   all[1] = {.number = 2, .state = InDoubt};
@@ -137,7 +137,7 @@ TEST_F(ReportBookTest, TakesTheStepsOfSeveralReportsInOneWriteOrNone) {
   EXPECT_THAT(book_.doubts(0), IsEmpty());
 }
 
-TEST_F(ReportBookTest, NotesWhatIsKnownOfSeveralReportsInOneWriteOrNone) {
+TEST_F(ReportBookTest, StoresSeveralNotesInOneWriteOrNone) {
   add();
   add();
   std::vector<Report> noted = {book_.at(1), book_.at(2)};
@@ -151,7 +151,7 @@ TEST_F(ReportBookTest, NotesWhatIsKnownOfSeveralReportsInOneWriteOrNone) {
   EXPECT_EQ(output_.ledger.at(2).note, "why");
 }
 
-TEST_F(ReportBookTest, FlushesAnAnswerSoonOnlyWhereItCouldBeFoundOutAgain) {
+TEST_F(ReportBookTest, DelaysTheFlushOfARecoverableAnswer) {
   for (const bool known : {true, false}) {
     std::vector<Report> all(1);
     all[0] = {.number = 1, .state = Sending};
@@ -166,7 +166,7 @@ TEST_F(ReportBookTest, FlushesAnAnswerSoonOnlyWhereItCouldBeFoundOutAgain) {
   EXPECT_EQ(output_.last_flush, Flush::Now);
 }
 
-TEST_F(ReportBookTest, KnowsWhatWaitsAndWhatIsInDoubtInTheOrderOfSending) {
+TEST_F(ReportBookTest, ListsQueuedReportsAndDoubtsInOrderOfSending) {
   std::vector<Report> all(4);
   all[0] = {.number = 1, .state = InDoubt, .run = 2, .sending = 9};
   all[1] = {.number = 2, .state = InDoubt, .run = 2, .sending = 8};

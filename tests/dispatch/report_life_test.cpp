@@ -25,17 +25,17 @@ std::set<Event> events_between(ReportState from, ReportState to) {
   return events;
 }
 
-TEST(ReportLife, IsSentOnlyFromWaiting) {
+TEST(ReportLife, SendsOnlyQueuedReports) {
   for (const ReportState state : kStates) {
     EXPECT_EQ(transition(state, Event::Chosen) != nullptr, state == Queued) << name_of(state);
   }
 }
 
-TEST(ReportLife, IsSentAgainByItselfOnlyWhereTheCommandPostCannotHaveRecordedIt) {
+TEST(ReportLife, QueuesASentReportOnlyIfItIsNotRecorded) {
   EXPECT_EQ(events_between(Sending, Queued), (std::set{Event::Throttled, Event::Barred, Event::NeverLeft}));
 }
 
-TEST(ReportLife, LeavesDoubtOnlyByEvidenceOrTheOperator) {
+TEST(ReportLife, EndsADoubtByEvidenceOrTheOperator) {
   std::set<Event> out;
   for (const ReportTransition& row : report_life()) {
     if (row.from == InDoubt && row.to != InDoubt) out.insert(row.event);
@@ -43,11 +43,11 @@ TEST(ReportLife, LeavesDoubtOnlyByEvidenceOrTheOperator) {
   EXPECT_EQ(out, (std::set{Event::Found, Event::Missing, Event::Held, Event::Released, Event::Settled}));
 }
 
-TEST(ReportLife, IsInDoubtAfterACrashWhileSending) {
+TEST(ReportLife, PutsASendingReportInDoubtAtARestart) {
   EXPECT_EQ(transition(Sending, Event::Restarted)->to, InDoubt);
 }
 
-TEST(ReportLife, IsAsWeLeftItAfterACrashInAnyOtherState) {
+TEST(ReportLife, KeepsEachOtherStateAtARestart) {
   for (const ReportState state : kStates) {
     if (state == Sending) continue;
     const ReportTransition* const row = transition(state, Event::Restarted);
@@ -56,24 +56,24 @@ TEST(ReportLife, IsAsWeLeftItAfterACrashInAnyOtherState) {
   }
 }
 
-TEST(ReportLife, AnswersAClientOnlyWhereAnAnswerIsKnown) {
+TEST(ReportLife, AnswersClientsOnlyIfAnAnswerIsKnown) {
   for (const ReportTransition& row : report_life()) {
     if (row.action != ReportAction::AnswerClients) continue;
     EXPECT_TRUE(row.to == Answered || row.to == Rejected || row.to == Settled) << name_of(row.to);
   }
 }
 
-TEST(ReportLife, NamesEachEventOnceForAState) {
+TEST(ReportLife, HasEachEventOncePerState) {
   std::set<std::pair<ReportState, Event>> seen;
   for (const ReportTransition& row : report_life()) EXPECT_TRUE(seen.emplace(row.from, row.event).second);
 }
 
-TEST(ReportLife, NamesEachStateOnceAndFindsItByItsName) {
+TEST(ReportLife, FindsEachStateByItsName) {
   for (const ReportState state : kStates) EXPECT_EQ(state_named(name_of(state)), state);
   EXPECT_EQ(state_named("elsewhere"), std::nullopt);
 }
 
-/// What an event is called in the diagram.
+/// Name of the event in the diagram.
 std::string_view words(ReportEvent event) {
   switch (event) {
     case Event::Held:
@@ -138,7 +138,7 @@ std::string diagram() {
   std::string text = "stateDiagram-v2\n  state \"in doubt\" as in_doubt\n  [*] --> queued: posted\n";
   const auto id = [](ReportState state) { return name_of(state); };
   for (const ReportTransition& row : report_life()) {
-    if (row.from == row.to) continue;  // nothing to see
+    if (row.from == row.to) continue;
     text.append("  ").append(id(row.from)).append(" --> ").append(id(row.to)).append(": ");
     text.append(words(row.event)).append(words(row.action)).append("\n");
   }
@@ -149,7 +149,7 @@ std::string diagram() {
   return text;
 }
 
-TEST(ReportLife, IsDrawnInTheDocsAsItIs) {
+TEST(ReportLife, MatchesTheDiagramOfTheReadme) {
   std::ifstream file(ADIT_SOURCE_DIR "/firmware/rules/dispatch/README.md");
   std::stringstream text;
   text << file.rdbuf();

@@ -20,47 +20,35 @@ void PrintTo(const ReportCase& one, std::ostream* out) {
 
 const ReportCase kReportCases[] = {
     {200, kReply, ReportEvent::Recorded},
-    {201, kReply, ReportEvent::Recorded},
     {201, "", ReportEvent::Lost},
     {200, "<html>log in to the network</html>", ReportEvent::Lost},
     {200, R"({"report_status": "scored"})", ReportEvent::Lost},
     {204, "", ReportEvent::Lost},
     {302, "", ReportEvent::Lost},
-    {304, kReply, ReportEvent::Lost},
     {400, "\"bad\"", ReportEvent::Rejected},
     {401, "\"token\"", ReportEvent::Barred},
-    {402, "", ReportEvent::Rejected},
     {403, "", ReportEvent::Barred},
     {404, "<html>", ReportEvent::Barred},
     {405, "", ReportEvent::Barred},
     {407, "", ReportEvent::Barred},
     {408, "", ReportEvent::Lost},
-    {409, "", ReportEvent::Rejected},
-    {413, "", ReportEvent::Rejected},
-    {415, "", ReportEvent::Rejected},
     {422, kReply, ReportEvent::Rejected},
     {400, "<html>blocked by the firewall</html>", ReportEvent::Lost},
-    {413, "<html>too large</html>", ReportEvent::Lost},
-    {422, "<html>log in to the network</html>", ReportEvent::Lost},
     {451, "not here", ReportEvent::Lost},
     {429, "<html>slow down</html>", ReportEvent::Throttled},
     {429, "", ReportEvent::Throttled},
     {500, kReply, ReportEvent::Lost},
-    {502, "", ReportEvent::Lost},
-    {503, "", ReportEvent::Lost},
-    {504, "", ReportEvent::Lost},
-    {100, "", ReportEvent::Lost},
     {999, "", ReportEvent::Lost},
 };
 
-class VerdictTable : public testing::TestWithParam<ReportCase> {};
+class ReportVerdicts : public testing::TestWithParam<ReportCase> {};
 
-TEST_P(VerdictTable, MeansThisForAReport) {
+TEST_P(ReportVerdicts, FollowStatusAndBody) {
   const std::string body = GetParam().body;
   EXPECT_EQ(event_of(GetParam().status, codec::read_report_reply(body).has_value(), body_of(body)),
             GetParam().event);
 }
-INSTANTIATE_TEST_SUITE_P(Answers, VerdictTable, testing::ValuesIn(kReportCases));
+INSTANTIATE_TEST_SUITE_P(Answers, ReportVerdicts, testing::ValuesIn(kReportCases));
 
 Report with_answer(ReportState state, const std::string& answer, bool reconciled = false) {
   Report report{.state = state, .status = 201, .answer = answer};
@@ -74,14 +62,14 @@ icd::ReportReply unscored(const std::string& report_status) {
   return reply;
 }
 
-TEST(Effect, OfAScoredReportUsesUpOneOfTheAllotment) {
+TEST(Effect, OfAScoredReportIsItsPoints) {
   const Effect effect = effect_of(with_answer(ReportState::Answered, kReply));
   EXPECT_TRUE(effect.scored);
   EXPECT_FALSE(effect.again);
   EXPECT_EQ(effect.points, 1);
 }
 
-TEST(Effect, OfAReportInAnUnscoredPhaseIsThatItIsWorthPostingAgain) {
+TEST(Effect, AllowsARepeatAfterAnUnscoredPhase) {
   for (const std::string status : {"admin stop", "run not started"}) {
     const Effect effect = effect_of(unscored(status));
     EXPECT_FALSE(effect.scored) << status;
@@ -94,12 +82,12 @@ TEST(Effect, OfAReportInAnUnscoredPhaseIsThatItIsWorthPostingAgain) {
   }
 }
 
-TEST(Effect, OfAReconciledReportIsThatItWasScored) {
+TEST(Effect, CountsAReconciledReportAsScored) {
   EXPECT_TRUE(effect_of(with_answer(ReportState::Settled, kReply, true)).scored);
   EXPECT_TRUE(effect_of(with_answer(ReportState::Settled, R"({"score_change": null})", true)).scored);
 }
 
-TEST(Effect, IsNoneWhereNothingIsKnownToBeRecorded) {
+TEST(Effect, IsNoneIfNothingIsKnownToBeRecorded) {
   EXPECT_FALSE(effect_of(with_answer(ReportState::Settled, kReply)).scored) << "settled by the operator";
   for (const ReportState state : {ReportState::Rejected, ReportState::InDoubt, ReportState::Queued,
                                   ReportState::Sending, ReportState::Held, ReportState::Withdrawn}) {

@@ -1,4 +1,4 @@
-// What becomes of a report by what came back: the table in the README of dispatch.
+// The table of answers in the README of dispatch.
 #include <gmock/gmock.h>
 
 #include "dispatch/scene.hpp"
@@ -10,24 +10,24 @@ using enum ReportState;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-TEST(A2xx, IsTheClientsAnswerByteForByte) {
+TEST(A2xx, IsPassedOnByteForByte) {
   Scene scene;
   const ClientId client = scene.post();
   scene.answer(recorded(1));
   EXPECT_EQ(scene.state(1), Answered);
   EXPECT_EQ(scene.told(client).status, 201);
   EXPECT_EQ(scene.told(client).body, recorded(1).body);
-  EXPECT_EQ(scene.output().ledger.at(1).answer, recorded(1).body) << "and on disk";
+  EXPECT_EQ(scene.output().ledger.at(1).answer, recorded(1).body) << "on disk";
 }
 
-TEST(A2xx, ThatWasNotScoredSaysSoToTheOperator) {
+TEST(A2xx, OfAnUnscoredReportIsExplainedToTheOperator) {
   Scene scene;
   scene.post();
   scene.answer(recorded(0, "admin stop"));
   EXPECT_EQ(scene.report(1).note, "not scored (admin stop); post it again when the run continues");
 }
 
-TEST(A2xx, WithoutAReportInItsBodyIsADoubt) {
+TEST(A2xx, WithoutAReportPutsTheReportInDoubt) {
   Scene scene;
   const ClientId client = scene.post();
   scene.answer({200, "text/html", "<html>log in</html>"});
@@ -39,7 +39,7 @@ TEST(A2xx, WithoutAReportInItsBodyIsADoubt) {
   EXPECT_EQ(scene.told(client).status, 201);
 }
 
-/// An answer that tells of a report.
+/// An answer that names a report.
 HttpAnswer tells_of(double x, const std::string& type = "Drill") {
   HttpAnswer answer = recorded();
   answer.body.pop_back();
@@ -47,8 +47,8 @@ HttpAnswer tells_of(double x, const std::string& type = "Drill") {
   return answer;
 }
 
-/// A server, or a proxy, that says its last answer again, and records nothing.
-TEST(A2xx, ThatTellsOfAnotherReportIsADoubt) {
+/// A server or proxy that repeats its last answer.
+TEST(A2xx, OfAnotherReportPutsTheReportInDoubt) {
   Scene scene;
   scene.post(10);
   scene.answer(tells_of(10));
@@ -60,13 +60,13 @@ TEST(A2xx, ThatTellsOfAnotherReportIsADoubt) {
   EXPECT_THAT(scene.report(2).note, HasSubstr("the answer is for report 1, not for this report"));
   EXPECT_FALSE(scene.is_told(client));
   scene.keep_hearing(14, 19, 0);
-  EXPECT_EQ(scene.state(2), Queued) << "it was not recorded";
+  EXPECT_EQ(scene.state(2), Queued) << "not recorded";
   EXPECT_EQ(scene.send_next(), 2);
   scene.answer(tells_of(11));
   EXPECT_EQ(scene.told(client).body, tells_of(11).body);
 }
 
-TEST(A2xx, ThatTellsOfAReportOfTheRunBeforeIsADoubt) {
+TEST(A2xx, OfAReportOfTheLastRunPutsItInDoubt) {
   Scene scene;
   scene.post(10);
   scene.answer(tells_of(10));
@@ -76,50 +76,43 @@ TEST(A2xx, ThatTellsOfAReportOfTheRunBeforeIsADoubt) {
   EXPECT_EQ(scene.state(2), InDoubt);
 }
 
-TEST(A2xx, ThatTellsOfItInOtherWordsCountsAndIsNoted) {
+TEST(A2xx, WithRoundedFiguresCountsAndIsNoted) {
   Scene scene;
   scene.post(10.4);
-  scene.answer(tells_of(10));  // it rounds
+  scene.answer(tells_of(10));  // rounded
   EXPECT_EQ(scene.state(1), Answered);
   EXPECT_EQ(scene.report(1).note, R"(the answer is for "Drill" at 10, 0, 0)");
   scene.post(20);
   scene.answer(tells_of(20.0000001, "drill"));
   EXPECT_EQ(scene.report(2).note, "");
   scene.post(10.2);
-  scene.answer(recorded());  // it tells neither type nor place
+  scene.answer(recorded());  // without type and position
   EXPECT_EQ(scene.state(3), Answered);
 }
 
-TEST(A429, LeavesTheReportWaitingAndItsClientUntold) {
+TEST(A429, LeavesTheReportQueuedInItsPlace) {
   Scene scene;
-  const ClientId client = scene.post();
+  const ClientId client = scene.post(1);
+  scene.post(2);
   for (int i = 0; i < 10; ++i) {
     scene.answer(answer_of(429));
     EXPECT_EQ(scene.state(1), Queued);
     EXPECT_FALSE(scene.is_told(client));
     scene.wait(1);
-    ASSERT_EQ(scene.send_next(), 1);
+    ASSERT_EQ(scene.send_next(), 1) << "before report 2";
+    EXPECT_EQ(scene.report(1).status, 0) << "the earlier answer is cleared";
+    EXPECT_THAT(scene.report(1).answer, IsEmpty());
   }
-  EXPECT_EQ(scene.report(1).tries, 0) << "it was answered";
+  EXPECT_EQ(scene.report(1).tries, 0);
   scene.answer(recorded());
   EXPECT_EQ(scene.told(client).status, 201);
 }
 
-TEST(A429, KeepsTheReportsPlace) {
-  Scene scene;
-  scene.post(1);
-  scene.post(2);
-  scene.answer(answer_of(429));
-  EXPECT_EQ(scene.send_next(), 1);
-}
-
-class Barring : public testing::TestWithParam<int> {};
-
-TEST_P(Barring, LeavesTheReportWaitingTellsItsClientAndSendsNothingBeforeAStatusIsAnswered) {
+TEST(A401, LeavesTheReportQueuedUntilAStatusIsAnswered) {
   Scene scene;
   const ClientId client = scene.post(1);
   const ClientId other = scene.post(2);
-  scene.answer(answer_of(GetParam()));
+  scene.answer(answer_of(401));
   EXPECT_EQ(scene.state(1), Queued);
   EXPECT_EQ(scene.told(client).status, 503);
   EXPECT_THAT(scene.told(client).sentence, HasSubstr("is queued (the Command Post's words)"));
@@ -131,35 +124,28 @@ TEST_P(Barring, LeavesTheReportWaitingTellsItsClientAndSendsNothingBeforeAStatus
   scene.hear(20, 0);
   EXPECT_EQ(scene.send_next(), 1);
 }
-INSTANTIATE_TEST_SUITE_P(Token, Barring, testing::Values(401, 403, 404, 405, 407));
 
-class Refusal : public testing::TestWithParam<int> {};
-
-TEST_P(Refusal, IsTheClientsAnswerAndTheEnd) {
+TEST(A422, IsTheClientsAnswer) {
   Scene scene;
   const ClientId client = scene.post();
-  scene.answer(answer_of(GetParam()));
+  scene.answer(answer_of(422));
   EXPECT_EQ(scene.state(1), Rejected);
   EXPECT_EQ(scene.report(1).note, "the Command Post's words");
-  EXPECT_EQ(scene.told(client).status, GetParam());
-  EXPECT_EQ(scene.told(client).body, answer_of(GetParam()).body);
+  EXPECT_EQ(scene.told(client).status, 422);
+  EXPECT_EQ(scene.told(client).body, answer_of(422).body);
   EXPECT_EQ(scene.send_next(), 0);
 }
-INSTANTIATE_TEST_SUITE_P(Final, Refusal, testing::Values(400, 402, 409, 413, 415, 422));
 
-class MeansNothing : public testing::TestWithParam<int> {};
-
-TEST_P(MeansNothing, AndLeavesTheReportInDoubt) {
+TEST(A500, LeavesTheReportInDoubt) {
   Scene scene;
   const ClientId client = scene.post();
-  scene.answer(answer_of(GetParam()));
+  scene.answer(answer_of(500));
   EXPECT_EQ(scene.state(1), InDoubt);
   EXPECT_TRUE(scene.reports().is_asking(scene.report(1)));
-  EXPECT_FALSE(scene.is_told(client)) << "it waits for what is found out";
+  EXPECT_FALSE(scene.is_told(client));
 }
-INSTANTIATE_TEST_SUITE_P(FromSomethingBetween, MeansNothing, testing::Values(302, 304, 408, 500, 502, 503));
 
-TEST(NoByteLeft, LeavesTheReportWaiting) {
+TEST(NoByteLeft, LeavesTheReportQueued) {
   Scene scene;
   const ClientId client = scene.post();
   scene.reports().never_left("connecting to 10.100.1.200:8000: Connection refused", scene.time());
@@ -169,7 +155,7 @@ TEST(NoByteLeft, LeavesTheReportWaiting) {
   EXPECT_EQ(scene.send_next(), 1);
 }
 
-TEST(AReport, ThatKeepsKillingTheAnswerIsHeldForTheOperatorAtLast) {
+TEST(UnansweredReport, IsHeldAfterFiveTries) {
   ReportRules rules;
   rules.answer_within = std::chrono::minutes(5);
   Scene scene(rules);
@@ -185,10 +171,10 @@ TEST(AReport, ThatKeepsKillingTheAnswerIsHeldForTheOperatorAtLast) {
   EXPECT_EQ(scene.report(1).note, "sent 5 times without an answer, and not recorded");
   EXPECT_EQ(scene.told(client).status, 503);
   scene.post(2);
-  EXPECT_EQ(scene.state(2), Sending) << "nothing else is blocked";
+  EXPECT_EQ(scene.state(2), Sending) << "later reports are not blocked";
 }
 
-TEST(AReport, ThatIsHeldForItsTriesHasAllOfThemAgainOnceTheOperatorSendsIt) {
+TEST(UnansweredReport, HasFiveMoreTriesIfTheOperatorSendsIt) {
   Scene scene;
   scene.post();
   for (int i = 0; i < 5; ++i) {
@@ -201,15 +187,6 @@ TEST(AReport, ThatIsHeldForItsTriesHasAllOfThemAgainOnceTheOperatorSendsIt) {
   scene.lose();
   scene.keep_hearing(10, 20, 0);
   EXPECT_EQ(scene.send_next(), 1);
-}
-
-TEST(AnAnswer, OfAnEarlierTryIsForgottenBeforeTheNext) {
-  Scene scene;
-  scene.post();
-  scene.answer(answer_of(429));
-  ASSERT_EQ(scene.send_next(), 1);
-  EXPECT_EQ(scene.report(1).status, 0);
-  EXPECT_THAT(scene.report(1).answer, IsEmpty());
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What each client is told, and when: always once, never more than is known.
+// Each client is answered once.
 #include <gmock/gmock.h>
 
 #include "dispatch/scene.hpp"
@@ -13,29 +13,16 @@ using testing::HasSubstr;
 constexpr const char* kNeverTwice =
     "post the same report again to ask for its state; Adit never sends it twice";
 
-TEST(AClient, IsToldHowItsReportStandsBeforeItsTimeIsUp) {
-  Scene scene;
-  const ClientId client = scene.post_to_wait();
-  EXPECT_EQ(scene.reports().next_deadline(), scene.time().now + seconds(20));
-  scene.wait(19.9);
-  EXPECT_FALSE(scene.is_told(client));
-  scene.wait(0.1);
-  EXPECT_EQ(scene.told(client).status, 503);
-  EXPECT_THAT(scene.told(client).sentence, HasSubstr("report 1 is queued"));
-  EXPECT_EQ(scene.told(client).number, 1);
-  EXPECT_EQ(scene.reports().next_deadline(), std::nullopt);
-}
-
-TEST(AClient, IsToldOnlyOnce) {
+TEST(WaitingClient, IsAnsweredOnce) {
   Scene scene;
   const ClientId client = scene.post();
   scene.wait(20);
   scene.answer(recorded());
   EXPECT_EQ(scene.output().told[client].size(), 1);
-  EXPECT_EQ(scene.told(client).status, 504) << "and finds the answer by posting it again";
+  EXPECT_EQ(scene.told(client).status, 504) << "a repeat gets the answer";
 }
 
-/// What a client whose time is up is told in each state.
+/// Answer at the deadline for a report in this state.
 struct Telling {
   ReportState state;
   int status;
@@ -51,9 +38,9 @@ const Telling kTellings[] = {
     {InDoubt, 504, "report 1 is in doubt: it may or may not have been recorded (why)"},
 };
 
-class AtItsDeadline : public testing::TestWithParam<Telling> {};
+class ClientAtItsDeadline : public testing::TestWithParam<Telling> {};
 
-TEST_P(AtItsDeadline, AClientIsToldTheTruth) {
+TEST_P(ClientAtItsDeadline, LearnsTheStateOfItsReport) {
   Scene scene;
   Report report;
   report.number = 1;
@@ -64,14 +51,16 @@ TEST_P(AtItsDeadline, AClientIsToldTheTruth) {
   scene.output().ledger[1] = report;
   scene.restart();
   const ClientId client = scene.post_to_wait(1);
+  scene.wait(19.9);
   EXPECT_FALSE(scene.is_told(client));
-  scene.wait(20);
+  scene.wait(0.1);
   EXPECT_EQ(scene.told(client).status, GetParam().status);
+  EXPECT_EQ(scene.told(client).number, 1);
   EXPECT_EQ(scene.told(client).sentence, icd::sentence(GetParam().sentence, "; ", kNeverTwice));
 }
-INSTANTIATE_TEST_SUITE_P(States, AtItsDeadline, testing::ValuesIn(kTellings));
+INSTANTIATE_TEST_SUITE_P(States, ClientAtItsDeadline, testing::ValuesIn(kTellings));
 
-TEST(AClient, OfAReportUnderWayIsToldThatItMayBeRecorded) {
+TEST(WaitingClient, LearnsThatAReportInFlightMayBeRecorded) {
   Scene scene;
   const ClientId client = scene.post();
   scene.wait(20);
@@ -79,7 +68,7 @@ TEST(AClient, OfAReportUnderWayIsToldThatItMayBeRecorded) {
   EXPECT_THAT(scene.told(client).sentence, HasSubstr("is in flight, and may or may not have been recorded"));
 }
 
-TEST(AClient, IsNotPromisedThatAReportOfAnEarlierRunNeverGoesAgain) {
+TEST(WaitingClient, MayRepostAHeldReportOfAnEarlierRun) {
   Scene scene;
   const ClientId client = scene.post_to_wait(1);
   scene.wait(11);
@@ -91,17 +80,17 @@ TEST(AClient, IsNotPromisedThatAReportOfAnEarlierRunNeverGoesAgain) {
   EXPECT_THAT(scene.told(client).sentence, HasSubstr("post it again to send it in the present run"));
   scene.hear(25, 0, 12);
   scene.post(1);
-  EXPECT_EQ(scene.state(2), Sending) << "which is true";
+  EXPECT_EQ(scene.state(2), Sending) << "as promised";
 }
 
-TEST(AClient, ThatIsFoundToHavePostedARepeatWaitsForTheFirstAndNoLonger) {
+TEST(WaitingClient, OfARepeatWaitsForTheFirstReportWithinItsTime) {
   ReportRules rules;
   rules.answer_within = seconds(60);
   Scene scene(rules);
   scene.post_to_wait(1);
   ASSERT_TRUE(scene.reports().withdraw(1, scene.time()).has_value());
   scene.wait(16);
-  const ClientId repeat = scene.post(1);  // the run is not known: it is compared later
+  const ClientId repeat = scene.post(1);  // compared later, because the run is unknown
   const auto deadline = scene.time().now + seconds(60);
   ASSERT_TRUE(scene.reports().send(1, scene.time()).has_value());
   scene.hear(20, 0);
@@ -117,7 +106,7 @@ TEST(AClient, ThatIsFoundToHavePostedARepeatWaitsForTheFirstAndNoLonger) {
   EXPECT_EQ(scene.told(repeat).number, 1);
 }
 
-TEST(AtAStop, ClientsAreToldButThoseWhoseReportIsUnderWay) {
+TEST(StopOfReports, AnswersClientsExceptThoseOfAReportInFlight) {
   Scene scene;
   const ClientId under_way = scene.post(1);
   const ClientId joined = scene.post(1);
@@ -129,32 +118,6 @@ TEST(AtAStop, ClientsAreToldButThoseWhoseReportIsUnderWay) {
   scene.answer(recorded());
   EXPECT_EQ(scene.told(under_way).status, 201);
   EXPECT_EQ(scene.told(joined).status, 201);
-}
-
-TEST(AtAStop, TheLastClientsAreToldWhereNoAnswerCame) {
-  Scene scene;
-  const ClientId client = scene.post(1);
-  scene.reports().dismiss(false);
-  scene.reports().dismiss(true);
-  EXPECT_EQ(scene.told(client).status, 504);
-  EXPECT_EQ(scene.output().told[client].size(), 1);
-}
-
-TEST(ManyClients, AreEachToldOnceWhateverBecomesOfTheirReports) {
-  Scene scene;
-  std::vector<ClientId> clients;
-  clients.reserve(300);
-  for (int i = 0; i < 300; ++i) clients.push_back(scene.post(i % 100));
-  for (int round = 0; scene.reports().sending() != nullptr || scene.send_next() != 0; ++round) {
-    if (round % 10 == 3) {
-      scene.answer(answer_of(422));
-    } else if (round % 10 == 5) {
-      scene.answer(answer_of(429));
-    } else {
-      scene.answer(recorded());
-    }
-  }
-  for (const ClientId client : clients) EXPECT_EQ(scene.output().told[client].size(), 1) << client;
 }
 
 }  // namespace

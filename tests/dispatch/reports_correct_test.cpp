@@ -1,4 +1,4 @@
-// Held reports that the operator corrects.
+// The operator corrects held reports.
 #include <gmock/gmock.h>
 
 #include "dispatch/scene.hpp"
@@ -14,10 +14,10 @@ icd::ArtifactReport drill(double x) {
   return {.type = "Drill", .position = {x, 0, 0}};
 }
 
-class Correcting : public testing::Test {
+class Correction : public testing::Test {
  protected:
-  /// Of a client's report at 1 m, which is held.
-  Correcting() {
+  /// Report 1, at 1 m, is held.
+  Correction() {
     client_ = scene_.post_to_wait(1);
     EXPECT_TRUE(scene_.reports().hold(1, scene_.time()));
   }
@@ -33,10 +33,12 @@ class Correcting : public testing::Test {
   ClientId client_ = 0;
 };
 
-TEST_F(Correcting, SendsTheCorrectionAlone) {
+TEST_F(Correction, IsSentInsteadOfTheReport) {
+  const std::int64_t before = scene_.output().writes;
   ASSERT_EQ(correct(1, 5), 2);
+  EXPECT_EQ(scene_.output().writes, before + 1);
   EXPECT_EQ(scene_.state(1), Withdrawn);
-  EXPECT_EQ(scene_.report(1).report.position.x, 1) << "what was posted is kept";
+  EXPECT_EQ(scene_.report(1).report.position.x, 1) << "unchanged";
   EXPECT_EQ(scene_.report(1).note, "the operator corrected it: report 2, \"Drill\" at 5, 0, 0");
   EXPECT_EQ(scene_.report(2).note, "corrects report 1, \"Drill\" at 1, 0, 0");
   send(2, recorded());
@@ -44,7 +46,7 @@ TEST_F(Correcting, SendsTheCorrectionAlone) {
   EXPECT_EQ(scene_.send_next(), 0);
 }
 
-TEST_F(Correcting, KeepsTheRobot) {
+TEST_F(Correction, KeepsTheRobot) {
   scene_.post({.report = {.type = "Drill", .position = {9, 0, 0}, .robot = icd::RobotName::parse("spot1")},
                .sender = "10.0.0.7"},
               false);
@@ -53,13 +55,7 @@ TEST_F(Correcting, KeepsTheRobot) {
   EXPECT_EQ(scene_.report(3).report.robot, icd::RobotName::parse("spot1"));
 }
 
-TEST_F(Correcting, IsOneWrite) {
-  const std::int64_t before = scene_.output().writes;
-  ASSERT_TRUE(correct(1, 5));
-  EXPECT_EQ(scene_.output().writes, before + 1);
-}
-
-TEST_F(Correcting, ChangesNothingIfTheDiskIsFull) {
+TEST_F(Correction, ChangesNothingIfTheDiskIsFull) {
   const Report before = scene_.report(1);
   scene_.output().full = true;
   EXPECT_FALSE(correct(1, 5));
@@ -67,7 +63,7 @@ TEST_F(Correcting, ChangesNothingIfTheDiskIsFull) {
   EXPECT_EQ(scene_.count(), 1);
 }
 
-TEST_F(Correcting, GivesRepeatsOfTheOldReportTheCorrectionsAnswer) {
+TEST_F(Correction, AnswersRepeatsOfTheOldReport) {
   ASSERT_TRUE(correct(1, 5));
   const ClientId early = scene_.post(1);
   send(2, recorded(1));
@@ -77,16 +73,16 @@ TEST_F(Correcting, GivesRepeatsOfTheOldReportTheCorrectionsAnswer) {
   EXPECT_EQ(scene_.count(), 2);
 }
 
-TEST_F(Correcting, AnswersAClientThatStillWaits) {
+TEST_F(Correction, AnswersTheWaitingClient) {
   Scene scene({.review = Review::All, .policy = {}});
   const ClientId client = scene.post(1);
   ASSERT_EQ(scene.reports().correct(1, drill(5), scene.time()), 2);
-  ASSERT_EQ(scene.send_next(), 2) << "the operator has seen it";
+  ASSERT_EQ(scene.send_next(), 2) << "no second review";
   scene.answer(recorded(1));
   EXPECT_EQ(scene.told(client).status, 201);
 }
 
-TEST_F(Correcting, OutlivesARestart) {
+TEST_F(Correction, SurvivesARestart) {
   ASSERT_TRUE(correct(1, 5));
   scene_.restart();
   scene_.hear(20, 0);
@@ -99,7 +95,7 @@ TEST_F(Correcting, OutlivesARestart) {
   EXPECT_EQ(scene_.send_next(), 0);
 }
 
-TEST_F(Correcting, FollowsACorrectionOfTheCorrection) {
+TEST_F(Correction, CanBeCorrected) {
   ASSERT_TRUE(correct(1, 5));
   ASSERT_TRUE(scene_.reports().hold(2, scene_.time()));
   ASSERT_EQ(correct(2, 6), 3);
@@ -108,7 +104,7 @@ TEST_F(Correcting, FollowsACorrectionOfTheCorrection) {
   EXPECT_EQ(scene_.told(scene_.post(5)).number, 3);
 }
 
-TEST_F(Correcting, HoldsARepeatIfTheCommandPostRejectedTheCorrection) {
+TEST_F(Correction, HoldsARepeatIfItWasRejected) {
   ASSERT_TRUE(correct(1, 5));
   send(2, answer_of(422));
   scene_.post(1);
@@ -116,14 +112,14 @@ TEST_F(Correcting, HoldsARepeatIfTheCommandPostRejectedTheCorrection) {
   EXPECT_EQ(scene_.report(3).note, "the same as report 1, which the operator corrected as report 2");
 }
 
-TEST_F(Correcting, SaysToARepeatThatTheCorrectionWasWithdrawn) {
+TEST_F(Correction, TellsARepeatThatItWasWithdrawn) {
   ASSERT_TRUE(correct(1, 5));
   ASSERT_TRUE(scene_.reports().withdraw(2, scene_.time()));
   EXPECT_THAT(scene_.told(scene_.post(1)).sentence, HasSubstr("report 2 was withdrawn"));
   EXPECT_EQ(scene_.count(), 2);
 }
 
-TEST_F(Correcting, IsForHeldReportsAlone) {
+TEST_F(Correction, RequiresAHeldReport) {
   ASSERT_TRUE(correct(1, 5));
   EXPECT_EQ(correct(1, 6).error(), "report 1 is withdrawn: only a held report can be corrected");
   EXPECT_EQ(correct(2, 6).error(), "report 2 is queued: only a held report can be corrected");
@@ -134,12 +130,12 @@ TEST_F(Correcting, IsForHeldReportsAlone) {
   EXPECT_EQ(correct(7, 6).error(), "there is no report 7");
 }
 
-TEST_F(Correcting, IsRefusedIfItChangesNothing) {
+TEST_F(Correction, IsRejectedIfItChangesNothing) {
   EXPECT_THAT(correct(1, 1.0005).error(), HasSubstr("the correction is the same report"));
   EXPECT_EQ(scene_.state(1), Held);
 }
 
-TEST_F(Correcting, IsRefusedIfTheSameReportIsThereAlready) {
+TEST_F(Correction, IsRejectedIfTheSameReportExists) {
   scene_.post_to_wait(5);
   EXPECT_EQ(correct(1, 5).error(),
             "report 1 is held: report 2 is the same as the correction and is queued in this run");
@@ -148,24 +144,16 @@ TEST_F(Correcting, IsRefusedIfTheSameReportIsThereAlready) {
   EXPECT_EQ(scene_.state(1), Held);
 }
 
-TEST_F(Correcting, JoinsAReportOfAClientThatIsTheSameAsTheCorrection) {
-  ASSERT_TRUE(correct(1, 5));
-  const ClientId client = scene_.post_to_wait(5);
-  EXPECT_EQ(scene_.count(), 2);
-  send(2, recorded(1));
-  EXPECT_EQ(scene_.told(client).status, 201);
-}
-
-TEST_F(Correcting, MovesAReportOfAnEarlierRunIntoThisOne) {
+TEST_F(Correction, MovesAReportOfAnEarlierRunIntoThisOne) {
   scene_.wait(20);
   scene_.reports().declare_new_run(scene_.time());
   scene_.hear(20, 0);
   ASSERT_TRUE(correct(1, 5));
   send(2, recorded(1));
-  EXPECT_EQ(scene_.told(scene_.post(1)).number, 2) << "the client insists in the new run";
+  EXPECT_EQ(scene_.told(scene_.post(1)).number, 2);
 }
 
-TEST_F(Correcting, WaitsForAnUndo) {
+TEST_F(Correction, CanBeUndone) {
   Scene scene({.review = Review::All, .policy = {}, .undo = std::chrono::seconds(10)});
   scene.post(1);
   ASSERT_EQ(scene.reports().correct(1, drill(5), scene.time()), 2);
@@ -173,16 +161,6 @@ TEST_F(Correcting, WaitsForAnUndo) {
   EXPECT_THAT(scene.output().lives[2], ElementsAre(Queued, Held));
   scene.wait(10);
   EXPECT_EQ(scene.send_next(), 2);
-}
-
-TEST_F(Correcting, IsFoundOutLikeAnyReportIfItsAnswerIsLost) {
-  ASSERT_TRUE(correct(1, 5));
-  ASSERT_EQ(scene_.send_next(), 2);
-  scene_.lose();
-  const ClientId again = scene_.post(1);
-  scene_.keep_hearing(3, 19, 1);
-  EXPECT_EQ(scene_.state(2), Settled);
-  EXPECT_EQ(scene_.told(again).status, 201);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// A disk that refuses: nothing follows from what is not written; what has happened is written later.
+// A full disk: what is not stored has no effect; what has happened is written later.
 #include <gmock/gmock.h>
 
 #include "dispatch/scene.hpp"
@@ -17,7 +17,7 @@ class FullDisk : public testing::Test {
   Scene scene_;
 };
 
-TEST_F(FullDisk, TakesNoReportAndSaysSo) {
+TEST_F(FullDisk, RejectsReports) {
   fill();
   const auto told = scene_.told(scene_.post());
   EXPECT_EQ(told.status, 503);
@@ -30,7 +30,7 @@ TEST_F(FullDisk, TakesNoReportAndSaysSo) {
   EXPECT_EQ(scene_.state(1), Sending);
 }
 
-TEST_F(FullDisk, SendsNothing) {
+TEST_F(FullDisk, SendsNoReport) {
   scene_.post_to_wait();
   fill();
   EXPECT_EQ(scene_.send_next(), 0);
@@ -40,12 +40,12 @@ TEST_F(FullDisk, SendsNothing) {
   EXPECT_EQ(scene_.send_next(), 1);
 }
 
-TEST_F(FullDisk, TellsAnAnswerThatCameAndWritesItLater) {
+TEST_F(FullDisk, PassesOnAnAnswerAndWritesItLater) {
   const ClientId client = scene_.post();
   fill();
   scene_.answer(recorded(1));
   EXPECT_EQ(scene_.told(client).body, recorded(1).body);
-  EXPECT_EQ(scene_.told(scene_.post()).body, recorded(1).body) << "and to the same again";
+  EXPECT_EQ(scene_.told(scene_.post()).body, recorded(1).body) << "a repeat";
   EXPECT_EQ(on_disk(1), Sending);
   make_room();
   scene_.wait(1);
@@ -53,30 +53,7 @@ TEST_F(FullDisk, TellsAnAnswerThatCameAndWritesItLater) {
   EXPECT_EQ(scene_.output().ledger.at(1).answer, recorded(1).body);
 }
 
-TEST_F(FullDisk, AndAPowerCutLeaveAnAnsweredReportInDoubt) {
-  scene_.post();
-  fill();
-  scene_.answer(recorded(1));
-  make_room();
-  scene_.restart();
-  EXPECT_EQ(scene_.state(1), InDoubt);
-  scene_.keep_hearing(2, 19, 1);
-  EXPECT_EQ(scene_.state(1), Settled) << "and it is found out again";
-}
-
-TEST_F(FullDisk, FindsOutButSettlesOnlyOnceItIsWritten) {
-  const ClientId client = scene_.post();
-  scene_.lose();
-  fill();
-  scene_.keep_hearing(5, 19, 0);
-  EXPECT_EQ(scene_.state(1), InDoubt);
-  EXPECT_FALSE(scene_.is_told(client));
-  make_room();
-  scene_.keep_hearing(1, 19, 0);
-  EXPECT_EQ(scene_.told(client).status, 201);
-}
-
-TEST_F(FullDisk, DoesNotSendAgainWhatIsNotWrittenAsWaiting) {
+TEST_F(FullDisk, ResendsNoReportThatIsNotStoredAsQueued) {
   scene_.post();
   scene_.lose();
   fill();
@@ -88,18 +65,7 @@ TEST_F(FullDisk, DoesNotSendAgainWhatIsNotWrittenAsWaiting) {
   EXPECT_EQ(scene_.send_next(), 1);
 }
 
-TEST_F(FullDisk, KnowsOfADoubtAndWritesItLater) {
-  scene_.post();
-  fill();
-  scene_.lose();
-  EXPECT_EQ(scene_.state(1), InDoubt);
-  EXPECT_EQ(on_disk(1), Sending) << "which a restart reads as in doubt";
-  make_room();
-  scene_.wait(1);
-  EXPECT_EQ(on_disk(1), InDoubt);
-}
-
-TEST_F(FullDisk, BeginsANewRunAndWritesItWithItsReportsLater) {
+TEST_F(FullDisk, BeginsANewRunAndWritesItLater) {
   scene_.post_to_wait();
   scene_.wait(11);
   fill();
@@ -112,7 +78,7 @@ TEST_F(FullDisk, BeginsANewRunAndWritesItWithItsReportsLater) {
   EXPECT_EQ(on_disk(1), Held);
 }
 
-TEST_F(FullDisk, TakesNoWordOfTheOperators) {
+TEST_F(FullDisk, RejectsTheOperatorsActions) {
   scene_.post(1);
   scene_.lose();
   scene_.post(2);
@@ -120,13 +86,13 @@ TEST_F(FullDisk, TakesNoWordOfTheOperators) {
   EXPECT_THAT(scene_.reports().settle(1, scene_.time()).error(), HasSubstr("could not be stored"));
   EXPECT_FALSE(scene_.reports().send(1, scene_.time()).has_value());
   EXPECT_FALSE(scene_.reports().withdraw(2, scene_.time()).has_value());
+  EXPECT_FALSE(scene_.reports().hold(2, scene_.time()).has_value());
   EXPECT_EQ(scene_.state(1), InDoubt);
   EXPECT_EQ(scene_.state(2), Queued);
 }
 
-/// The disk fills up after each of the first writes of a whole life in turn: whatever was on disk by then, a
-/// restart sends nothing that the Command Post may have.
-TEST(ADiskThatFillsUp, NeverMakesAReportGoTwice) {
+/// The disk is full after each number of writes. A restart then sends nothing that may be recorded.
+TEST(FillingDisk, NeverSendsAReportTwice) {
   for (std::int64_t writes = 0; writes < 12; ++writes) {
     Scene scene;
     scene.output().writes_until_full = writes;

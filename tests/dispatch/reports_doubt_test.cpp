@@ -1,4 +1,4 @@
-// How it is found out what became of a report whose answer was lost.
+// Reports whose answer was lost.
 #include <gmock/gmock.h>
 
 #include "dispatch/scene.hpp"
@@ -10,7 +10,7 @@ using enum ReportState;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-/// A report was lost at 100 s, with 20 left and no score.
+/// A report was lost at 100 s. 20 reports were left, and the score was 0.
 class Doubt : public testing::Test {
  protected:
   Doubt() : client_(scene_.post(1)) { scene_.lose(); }
@@ -40,15 +40,15 @@ TEST_F(Doubt, IsSettledByTwoStatusesThatCountTheReport) {
             "found recorded: remaining_reports went from 20 to 19 and the score from 0 to 1");
 }
 
-TEST_F(Doubt, GivesItsReconciledAnswerToTheSameReportAgain) {
+TEST_F(Doubt, GivesARepeatTheReconciledAnswer) {
   scene_.keep_hearing(2, 19, 0);
   EXPECT_EQ(scene_.told(scene_.post(1)).body, scene_.told(client_).body);
   EXPECT_EQ(scene_.count(), 1);
 }
 
-TEST_F(Doubt, EndsWithTheReportSentAgainWhereItWasNeverCounted) {
+TEST_F(Doubt, EndsWithARetryIfTheReportIsNotCounted) {
   scene_.keep_hearing(9, 20, 0);
-  EXPECT_EQ(scene_.state(1), InDoubt) << "the Command Post may still record it";
+  EXPECT_EQ(scene_.state(1), InDoubt) << "it may still be recorded";
   scene_.keep_hearing(1, 20, 0);
   EXPECT_EQ(scene_.state(1), Queued);
   EXPECT_FALSE(scene_.is_told(client_));
@@ -58,32 +58,21 @@ TEST_F(Doubt, EndsWithTheReportSentAgainWhereItWasNeverCounted) {
   EXPECT_EQ(scene_.told(client_).body, recorded().body);
 }
 
-TEST_F(Doubt, IsSettledWhereTheCommandPostRecordsLate) {
-  scene_.keep_hearing(9, 20, 0);
-  scene_.keep_hearing(2, 19, 0);
-  EXPECT_EQ(scene_.state(1), Settled);
-}
-
-TEST_F(Doubt, IsLeftToTheOperatorWhereTheCountContradicts) {
+TEST_F(Doubt, IsLeftToTheOperatorIfTheCountContradicts) {
   scene_.wait(1);
   scene_.hear(18, 0);
   EXPECT_EQ(scene_.state(1), InDoubt);
   EXPECT_FALSE(scene_.reports().is_asking(scene_.report(1)));
   EXPECT_THAT(scene_.report(1).note, HasSubstr("does another sender report with this token?; the operator"));
-  EXPECT_NE(scene_.reports().run().unreliable, "") << "the run is no more certain than the report";
+  EXPECT_NE(scene_.reports().run().unreliable, "");
   scene_.keep_hearing(60, 19, 0);
-  EXPECT_EQ(scene_.state(1), InDoubt) << "no later count decides it";
-}
-
-TEST_F(Doubt, ThatTheCountCannotDecideBlocksNothing) {
-  scene_.wait(1);
-  scene_.hear(18, 0);
+  EXPECT_EQ(scene_.state(1), InDoubt) << "a later count decides nothing";
   scene_.post(2);
   EXPECT_EQ(scene_.state(2), Sending);
-  EXPECT_EQ(scene_.report(2).before, std::nullopt) << "the count proves nothing in this run";
+  EXPECT_EQ(scene_.report(2).before, std::nullopt);
 }
 
-TEST_F(Doubt, MakesOthersWaitWhileItMayBeDecided) {
+TEST_F(Doubt, BlocksOtherReportsWhileItIsPending) {
   scene_.post(2);
   scene_.hear_stop(14);
   EXPECT_EQ(scene_.send_next(), 0);
@@ -91,7 +80,7 @@ TEST_F(Doubt, MakesOthersWaitWhileItMayBeDecided) {
   EXPECT_EQ(scene_.send_next(), 2);
 }
 
-TEST_F(Doubt, IsAskedAfterEverySecond) {
+TEST_F(Doubt, AsksForTheStatusEverySecond) {
   EXPECT_LE(*scene_.reports().next_requests(scene_.time()).status, scene_.time().now);
   scene_.wait(0.5);
   scene_.reports().status_failed(false, scene_.time());
@@ -99,7 +88,7 @@ TEST_F(Doubt, IsAskedAfterEverySecond) {
   EXPECT_EQ(next, scene_.time().now + std::chrono::seconds(1));
 }
 
-TEST_F(Doubt, StaysWhileTheStatusIsSilent) {
+TEST_F(Doubt, StaysWhileNoStatusComes) {
   for (int i = 0; i < 100; ++i) {
     scene_.wait(1);
     scene_.reports().status_failed(i % 2 == 0, scene_.time());
@@ -110,30 +99,30 @@ TEST_F(Doubt, StaysWhileTheStatusIsSilent) {
   scene_.hear(20, 0);
   scene_.wait(1);
   scene_.hear(20, 0);
-  EXPECT_EQ(scene_.state(1), InDoubt) << "two statuses are not three";
+  EXPECT_EQ(scene_.state(1), InDoubt) << "after two of three statuses";
   scene_.wait(1);
   scene_.hear(20, 0);
   EXPECT_EQ(scene_.state(1), Queued);
 }
 
-TEST_F(Doubt, StaysWhileTheRunClockStandsStill) {
+TEST_F(Doubt, StaysWhileTheRunClockStands) {
   scene_.hear_stop(60);
-  EXPECT_EQ(scene_.state(1), InDoubt) << "in an administrative stop a record does not show";
-  EXPECT_FALSE(scene_.reports().is_asking(scene_.report(1))) << "the operator may as well decide";
+  EXPECT_EQ(scene_.state(1), InDoubt) << "an administrative stop hides a record";
+  EXPECT_FALSE(scene_.reports().is_asking(scene_.report(1))) << "the operator may decide";
   EXPECT_THAT(scene_.report(1).note, HasSubstr("the operator decides"));
 }
 
-TEST_F(Doubt, IsNotBlurredByReportsSentAndAnsweredMeanwhile) {
+TEST_F(Doubt, AccountsForReportsAnsweredSince) {
   scene_.hear_stop(16);
   scene_.post(2);
   ASSERT_EQ(scene_.state(2), Sending);
   scene_.answer(recorded(1, "scored", "1", 117));
   keep_hearing_after_stop(2, 18, 1);
   EXPECT_EQ(scene_.state(1), Settled);
-  EXPECT_THAT(scene_.report(1).answer, HasSubstr(R"("score_change":0)")) << "the point was the other's";
+  EXPECT_THAT(scene_.report(1).answer, HasSubstr(R"("score_change":0)")) << "the point is report 2's";
 }
 
-/// A second one was lost while the first was in doubt.
+/// Report 2 was lost while report 1 was in doubt.
 class TwoDoubts : public Doubt {
  protected:
   TwoDoubts() {
@@ -144,31 +133,31 @@ class TwoDoubts : public Doubt {
   ClientId other_ = 0;
 };
 
-TEST_F(TwoDoubts, AreBothSettledWhereBothWereCounted) {
-  EXPECT_EQ(scene_.report(2).before, std::nullopt) << "what was counted before it is not certain";
+TEST_F(TwoDoubts, AreSettledIfBothAreCounted) {
+  EXPECT_EQ(scene_.report(2).before, std::nullopt) << "the count is uncertain";
   keep_hearing_after_stop(2, 18, 1);
   for (const ClientId client : {client_, other_}) {
     EXPECT_EQ(scene_.told(client).status, 201);
-    EXPECT_THAT(scene_.told(client).body, HasSubstr(R"("score_change":null)")) << "whose point it was";
+    EXPECT_THAT(scene_.told(client).body, HasSubstr(R"("score_change":null)")) << "either may have the point";
   }
   EXPECT_EQ(scene_.state(1), Settled);
 }
 
-TEST_F(TwoDoubts, AreBothSentAgainInTheirOrderWhereNoneWasCounted) {
+TEST_F(TwoDoubts, AreResentInOrderIfNoneIsCounted) {
   keep_hearing_after_stop(14, 20, 0);
   EXPECT_EQ(scene_.send_next(), 1);
   scene_.answer(recorded());
   EXPECT_EQ(scene_.send_next(), 2);
 }
 
-TEST_F(TwoDoubts, StayWhereOneWasCounted) {
+TEST_F(TwoDoubts, StayIfOneIsCounted) {
   keep_hearing_after_stop(60, 19, 0);
   EXPECT_EQ(scene_.state(1), InDoubt);
   EXPECT_EQ(scene_.state(2), InDoubt);
   EXPECT_THAT(scene_.report(2).note, HasSubstr("the counts do not show which of them was recorded"));
 }
 
-TEST_F(TwoDoubts, AreDecidedInOneWriteOrNotAtAll) {
+TEST_F(TwoDoubts, AreDecidedInOneWriteOrNone) {
   keep_hearing_after_stop(1, 18, 0);
   scene_.output().full = true;
   keep_hearing_after_stop(1, 18, 0);
@@ -181,7 +170,7 @@ TEST_F(TwoDoubts, AreDecidedInOneWriteOrNotAtAll) {
   EXPECT_EQ(scene_.state(2), Settled);
 }
 
-TEST(ADoubt, IsReckonedFromWhatWasSentBeforeIt) {
+TEST(DoubtsCount, IncludesReportsSentBefore) {
   Scene scene;
   scene.post(1);
   scene.answer(recorded(1));
@@ -192,17 +181,7 @@ TEST(ADoubt, IsReckonedFromWhatWasSentBeforeIt) {
   EXPECT_THAT(scene.report(2).answer, HasSubstr(R"("score_change":0)"));
 }
 
-TEST(ADoubt, ThatIsDecidedLeavesTheCountKnown) {
-  Scene scene;
-  scene.post(1);
-  scene.lose();
-  scene.keep_hearing(2, 19, 0);
-  scene.post(2);
-  ASSERT_TRUE(scene.report(2).before.has_value());
-  EXPECT_EQ(scene.report(2).before->remaining_reports, 19);
-}
-
-TEST(ADoubt, WithoutACountFromBeforeIsLeftToTheOperator) {
+TEST(DoubtsCount, IsLeftToTheOperatorIfUnknownBefore) {
   Scene scene;
   scene.post(1);
   scene.answer(recorded(0, "admin stop"));
@@ -215,7 +194,7 @@ TEST(ADoubt, WithoutACountFromBeforeIsLeftToTheOperator) {
   EXPECT_EQ(scene.told(client).status, 504);
 }
 
-TEST(ADoubt, WithNothingLeftOfTheAllotmentIsLeftToTheOperator) {
+TEST(DoubtsCount, IsLeftToTheOperatorIfNoReportIsLeft) {
   Scene exhausted;
   exhausted.restart();
   exhausted.hear(0, 0);

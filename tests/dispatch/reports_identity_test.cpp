@@ -1,4 +1,4 @@
-// The run by the address of the Command Post, the team and the name.
+// A run has an address, a team and a name.
 #include <gmock/gmock.h>
 
 #include "dispatch/scene.hpp"
@@ -10,10 +10,10 @@ using enum ReportState;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-/// One report is recorded at the first place, then the settings name another.
-class AnotherPlace : public testing::Test {
+/// One report is recorded. Then the settings name another Command Post.
+class OtherCommandPost : public testing::Test {
  protected:
-  AnotherPlace() {
+  OtherCommandPost() {
     scene_.post(1);
     scene_.answer(recorded(1));
     scene_.hear(19, 1);
@@ -24,31 +24,31 @@ class AnotherPlace : public testing::Test {
     const ClientId again = scene_.post(1);
     scene_.wait(1);
     scene_.hear(19, 1);
-    while (scene_.send_next() != 0) FAIL() << "it is sent again";
+    while (scene_.send_next() != 0) FAIL() << "it is resent";
     EXPECT_EQ(scene_.told(again).body, recorded(1).body);
   }
   Scene scene_;
 };
 
-TEST_F(AnotherPlace, IsAnotherRun) {
+TEST_F(OtherCommandPost, HasARunOfItsOwn) {
   go();
   EXPECT_EQ(scene_.reports().run().number, 2);
   EXPECT_EQ(scene_.reports().run().post, kThere);
 }
 
-TEST_F(AnotherPlace, TheSameReportWaitsUntilItHasAnswered) {
+TEST_F(OtherCommandPost, QueuesARepeatUntilItAnswers) {
   go();
   scene_.post(1);
   EXPECT_EQ(scene_.state(2), Queued);
   EXPECT_THAT(scene_.report(2).note, HasSubstr("the same as report 1"));
   EXPECT_THAT(scene_.report(2).note, HasSubstr("10.100.2.200:8000 answers"));
   scene_.reports().status_failed(true, scene_.time());
-  EXPECT_EQ(scene_.send_next(), 0) << "who answered is not known";
+  EXPECT_EQ(scene_.send_next(), 0) << "the run is unknown";
   scene_.hear(20, 0);
-  EXPECT_EQ(scene_.send_next(), 2) << "another Command Post, another run";
+  EXPECT_EQ(scene_.send_next(), 2) << "in the new run";
 }
 
-TEST_F(AnotherPlace, BackAtTheFirstItsRunIsTakenUpWithItsReports) {
+TEST_F(OtherCommandPost, LeavesTheFirstRunForAReturn) {
   go();
   scene_.hear(20, 0);
   come_back();
@@ -56,31 +56,22 @@ TEST_F(AnotherPlace, BackAtTheFirstItsRunIsTakenUpWithItsReports) {
   expect_one_recording();
 }
 
-TEST_F(AnotherPlace, BackAtTheFirstItIsSoAlsoAfterARestart) {
-  go();
-  come_back();
-  scene_.hear(19, 1);
-  scene_.restart();
-  EXPECT_EQ(scene_.reports().run().number, 1);
-  expect_one_recording();
-}
-
-TEST_F(AnotherPlace, ThatWasMistypedIsPutRight) {
+TEST_F(OtherCommandPost, PassesItsReportsToTheFirstIfItNeverAnswered) {
   go();
   scene_.post(1);
   scene_.post(2);
   come_back();
   scene_.wait(1);
   scene_.hear(19, 1);
-  EXPECT_EQ(scene_.send_next(), 3) << "what is new was for the first that is heard of";
+  EXPECT_EQ(scene_.send_next(), 3) << "a new report is for the first Command Post that answers";
   EXPECT_EQ(scene_.state(2), Withdrawn);
   EXPECT_EQ(scene_.report(2).same_as, 1);
   scene_.answer(recorded());
   expect_one_recording();
 }
 
-/// The operator's word was for the other one.
-TEST_F(AnotherPlace, ThatWasMistypedTakesNoWordWithIt) {
+/// The action was for the other Command Post.
+TEST_F(OtherCommandPost, PassesOnNoActionOfTheOperator) {
   go();
   scene_.post(1);
   ASSERT_TRUE(scene_.reports().send(2, scene_.time()));
@@ -91,7 +82,7 @@ TEST_F(AnotherPlace, ThatWasMistypedTakesNoWordWithIt) {
   EXPECT_EQ(scene_.state(2), Withdrawn);
 }
 
-TEST_F(AnotherPlace, WhatWaitsForTheFirstIsNotSentTwiceOnTheOperatorsWord) {
+TEST_F(OtherCommandPost, CausesNoSecondReportAtTheFirst) {
   scene_.post_to_wait(3);
   go();
   scene_.post(3);
@@ -102,7 +93,7 @@ TEST_F(AnotherPlace, WhatWaitsForTheFirstIsNotSentTwiceOnTheOperatorsWord) {
   EXPECT_THAT(sent.error(), HasSubstr("report 2 is the same and is queued in this run"));
 }
 
-TEST_F(AnotherPlace, WhatWaitedForTheFirstIsKeptForIt) {
+TEST_F(OtherCommandPost, GetsNoReportQueuedForTheFirst) {
   scene_.post_to_wait(3);
   go();
   EXPECT_EQ(scene_.state(2), Queued);
@@ -119,7 +110,7 @@ TEST_F(AnotherPlace, WhatWaitedForTheFirstIsKeptForIt) {
   EXPECT_EQ(scene_.send_next(), 2);
 }
 
-TEST_F(AnotherPlace, WhatWaitedForTheFirstIsHeldWhereAnotherRunHasBegunThere) {
+TEST_F(OtherCommandPost, HoldsReportsOfTheFirstInItsNewRun) {
   scene_.post_to_wait(3);
   go();
   come_back();
@@ -127,11 +118,11 @@ TEST_F(AnotherPlace, WhatWaitedForTheFirstIsHeldWhereAnotherRunHasBegunThere) {
   EXPECT_EQ(scene_.state(2), Held);
 }
 
-TEST_F(AnotherPlace, ADoubtStaysWithTheFirstAndIsFoundOutThere) {
+TEST_F(OtherCommandPost, DecidesNoDoubtOfTheFirst) {
   scene_.post(4);
   scene_.lose();
   go();
-  EXPECT_EQ(scene_.report(2).run, 1) << "the other one cannot have it";
+  EXPECT_EQ(scene_.report(2).run, 1);
   EXPECT_THAT(scene_.report(2).note, HasSubstr("10.100.1.200:8000"));
   scene_.keep_hearing(3, 18, 0);
   EXPECT_EQ(scene_.state(2), InDoubt);
@@ -140,7 +131,7 @@ TEST_F(AnotherPlace, ADoubtStaysWithTheFirstAndIsFoundOutThere) {
   EXPECT_EQ(scene_.state(2), Settled);
 }
 
-TEST_F(AnotherPlace, TheOperatorsWordOnADoubtThereBlursTheOthersThere) {
+TEST_F(OtherCommandPost, MakesOtherDoubtsUncertainAfterASettlement) {
   scene_.post(4);
   scene_.lose();
   scene_.hear_stop(16);
@@ -151,7 +142,7 @@ TEST_F(AnotherPlace, TheOperatorsWordOnADoubtThereBlursTheOthersThere) {
   EXPECT_EQ(scene_.report(3).before, std::nullopt);
 }
 
-TEST(AnotherPlaceUnheard, LeavesADoubtOfBeforeAnyWordWhereItWasSent) {
+TEST(UnheardCommandPost, KeepsItsDoubts) {
   const Time time{.now = {}, .stamp = Scene::kEpoch};
   RecordingActions output;
   Reports reports({}, output);
@@ -167,7 +158,7 @@ TEST(AnotherPlaceUnheard, LeavesADoubtOfBeforeAnyWordWhereItWasSent) {
   EXPECT_EQ(there.runs().find(there.book().at(1).run)->post, "10.100.1.200:8000");
 }
 
-TEST(AnotherTeam, ThatIsBackGoesOnWithItsRun) {
+TEST(OtherTeam, LeavesTheFirstRunForAReturn) {
   Scene scene;
   scene.post(1);
   scene.answer(recorded(1));
@@ -182,7 +173,7 @@ TEST(AnotherTeam, ThatIsBackGoesOnWithItsRun) {
   EXPECT_EQ(scene.count(), 1u);
 }
 
-TEST(AnotherName, ThatIsBackIsTheRunThatHadIt) {
+TEST(OtherRunName, LeavesTheFirstRunForAReturn) {
   Scene scene;
   scene.record(1, "1");
   scene.record(2, "2");
@@ -192,7 +183,7 @@ TEST(AnotherName, ThatIsBackIsTheRunThatHadIt) {
   scene.post(1);
   EXPECT_EQ(scene.count(), 3u);
   scene.post(2);
-  EXPECT_EQ(scene.state(4), Sending) << "of run 2 the first knows nothing";
+  EXPECT_EQ(scene.state(4), Sending) << "run 1 does not have it";
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Reports that damage took from the ledger.
+// Reports that a damaged ledger has lost.
 #include <gmock/gmock.h>
 
 #include "dispatch/scene.hpp"
@@ -12,10 +12,10 @@ using testing::HasSubstr;
 
 constexpr const char* kNote = "report 2 is lost from the ledger: it may have been sent";
 
-/// Report 1 is answered; report 2 is lost, in the present run.
-class Lost : public testing::Test {
+/// Report 1 is answered; report 2 of the same run is lost.
+class LostReport : public testing::Test {
  protected:
-  Lost() {
+  LostReport() {
     scene_.post(1);
     scene_.answer(recorded());
     Report lost = scene_.report(1);
@@ -29,7 +29,7 @@ class Lost : public testing::Test {
   Scene scene_;
 };
 
-TEST_F(Lost, WhatIsPostedInItsRunIsHeldAsItMayBeTheSame) {
+TEST_F(LostReport, HoldsNewReportsOfItsRun) {
   const ClientId client = scene_.post(2);
   EXPECT_EQ(scene_.state(3), Held);
   EXPECT_THAT(scene_.report(3).note, HasSubstr(kNote));
@@ -40,20 +40,12 @@ TEST_F(Lost, WhatIsPostedInItsRunIsHeldAsItMayBeTheSame) {
   EXPECT_EQ(scene_.send_next(), 3);
 }
 
-TEST_F(Lost, WhatIsKnownIsNotHeld) {
+TEST_F(LostReport, HoldsNoRepeatOfAKnownReport) {
   scene_.post(1);
-  EXPECT_EQ(scene_.count(), 2u) << "it joins the first";
+  EXPECT_EQ(scene_.count(), 2u) << "it joins report 1";
 }
 
-TEST_F(Lost, HoldsWhatCameBeforeTheRunWasKnown) {
-  scene_.restart();
-  scene_.post(2);
-  scene_.hear(19, 0);
-  EXPECT_EQ(scene_.send_next(), 0);
-  EXPECT_EQ(scene_.state(3), Held);
-}
-
-TEST_F(Lost, NothingIsHeldOnceItIsSettled) {
+TEST_F(LostReport, HoldsNoReportOnceItIsSettled) {
   EXPECT_THAT(scene_.undecided(), ElementsAre(HasSubstr(kNote)));
   ASSERT_TRUE(scene_.reports().settle(2, scene_.time()));
   EXPECT_THAT(scene_.undecided(), ElementsAre());
@@ -62,15 +54,15 @@ TEST_F(Lost, NothingIsHeldOnceItIsSettled) {
   EXPECT_EQ(scene_.state(3), Sending);
 }
 
-TEST_F(Lost, NothingIsHeldInAnotherRun) {
+TEST_F(LostReport, HoldsNoReportOfAnotherRun) {
   scene_.reports().declare_new_run(scene_.time());
   scene_.hear(20, 0);
   scene_.post(2);
   EXPECT_EQ(scene_.state(3), Sending);
-  EXPECT_THAT(scene_.undecided(), ElementsAre(HasSubstr(kNote))) << "he still has to know";
+  EXPECT_THAT(scene_.undecided(), ElementsAre(HasSubstr(kNote))) << "still open";
 }
 
-TEST_F(Lost, ItCannotBeSent) {
+TEST_F(LostReport, CannotBeSent) {
   for (const auto& said :
        {scene_.reports().send(2, scene_.time()), scene_.reports().resubmit(2, scene_.time())}) {
     ASSERT_FALSE(said);
@@ -82,7 +74,7 @@ TEST_F(Lost, ItCannotBeSent) {
   EXPECT_THAT(again.error(), HasSubstr("lost from the ledger"));
 }
 
-TEST_F(Lost, ItKeepsItsNoteWhateverIsHeard) {
+TEST_F(LostReport, KeepsItsNoteAtEachStatus) {
   scene_.post(3);
   ASSERT_TRUE(scene_.reports().send(3, scene_.time()));
   scene_.keep_hearing(1, 19, 0);
@@ -90,7 +82,7 @@ TEST_F(Lost, ItKeepsItsNoteWhateverIsHeard) {
   scene_.lose();
   scene_.keep_hearing(20, 18, 0);
   EXPECT_EQ(scene_.report(2).note, kNote);
-  EXPECT_EQ(scene_.state(3), InDoubt) << "the count includes what the lost one may have used up";
+  EXPECT_EQ(scene_.state(3), InDoubt) << "the lost report may have used one";
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The settings name another Command Post while an answer of the present one is still awaited.
+// The settings name another Command Post while a report is in flight.
 #include <gmock/gmock.h>
 
 #include "dispatch/scene.hpp"
@@ -10,10 +10,10 @@ using enum ReportState;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-/// Report 1 is under way and report 2 waits when the settings change.
-class AMoveToCome : public testing::Test {
+/// Report 1 is in flight and report 2 is queued when the settings change.
+class PendingMove : public testing::Test {
  protected:
-  AMoveToCome() {
+  PendingMove() {
     scene_.post(1);
     scene_.post(2);
     say(kThere);
@@ -36,14 +36,14 @@ class AMoveToCome : public testing::Test {
   Scene scene_;
 };
 
-TEST_F(AMoveToCome, LeavesTheRunAsItIsUntilTheAnswerIsThere) {
+TEST_F(PendingMove, LeavesTheRunUntilTheAnswerArrives) {
   EXPECT_EQ(scene_.reports().run().post, kHere);
   scene_.answer(recorded());
   EXPECT_EQ(scene_.state(1), Answered);
   EXPECT_EQ(post_of(1), kHere);
 }
 
-TEST_F(AMoveToCome, MeansWhatIsPostedFromNowOnForTheOther) {
+TEST_F(PendingMove, AssignsNewReportsToTheNewCommandPost) {
   const ClientId client = scene_.post(3);
   EXPECT_EQ(post_of(3), kThere);
   EXPECT_EQ(scene_.state(3), Queued);
@@ -51,11 +51,11 @@ TEST_F(AMoveToCome, MeansWhatIsPostedFromNowOnForTheOther) {
   EXPECT_EQ(scene_.send_next(), 3);
   scene_.answer(recorded(1));
   EXPECT_EQ(scene_.told(client).status, 201);
-  EXPECT_EQ(scene_.send_next(), 0) << "what was posted before is kept";
+  EXPECT_EQ(scene_.send_next(), 0) << "report 2 is kept";
   EXPECT_EQ(post_of(2), kHere);
 }
 
-TEST_F(AMoveToCome, IsFoundByARestart) {
+TEST_F(PendingMove, SurvivesARestart) {
   scene_.post(3);
   scene_.restart(kThere);
   EXPECT_EQ(scene_.reports().run().post, kThere);
@@ -65,14 +65,14 @@ TEST_F(AMoveToCome, IsFoundByARestart) {
   EXPECT_EQ(scene_.send_next(), 3);
 }
 
-TEST_F(AMoveToCome, LetsWhoAsksAgainHearTheAnswerUnderWay) {
+TEST_F(PendingMove, GivesARepeatTheAnswerInFlight) {
   const ClientId again = scene_.post(1);
   scene_.answer(recorded(1));
   EXPECT_EQ(scene_.count(), 2u);
   EXPECT_EQ(scene_.told(again).body, recorded(1).body);
 }
 
-TEST_F(AMoveToCome, MeansWhatWaitsAndIsPostedAgainForBoth) {
+TEST_F(PendingMove, SendsARepeatOfAQueuedReportToBoth) {
   scene_.post(2);
   be_there();
   EXPECT_EQ(scene_.send_next(), 3);
@@ -81,15 +81,15 @@ TEST_F(AMoveToCome, MeansWhatWaitsAndIsPostedAgainForBoth) {
   EXPECT_EQ(scene_.send_next(), 2);
 }
 
-TEST_F(AMoveToCome, IsRevertedWithWhatWasPostedMeanwhile) {
+TEST_F(PendingMove, CanBeRevertedWithItsNewReports) {
   scene_.post(3);
   say(kHere);
-  EXPECT_EQ(post_of(3), kHere) << "of the other nothing was heard";
+  EXPECT_EQ(post_of(3), kHere) << "the other Command Post never answered";
   scene_.answer(recorded());
   EXPECT_EQ(scene_.send_next(), 2);
 }
 
-TEST_F(AMoveToCome, MeansWhatWasPostedMeanwhileForTheOtherThatIsKnown) {
+TEST_F(PendingMove, KeepsNewReportsForAKnownCommandPost) {
   be_there();
   go_back();
   ASSERT_EQ(scene_.send_next(), 2);
@@ -99,7 +99,7 @@ TEST_F(AMoveToCome, MeansWhatWasPostedMeanwhileForTheOtherThatIsKnown) {
   EXPECT_EQ(post_of(3), kThere);
 }
 
-TEST_F(AMoveToCome, MeansTheOperatorsWordForTheOther) {
+TEST_F(PendingMove, AppliesActionsToTheNewCommandPost) {
   ASSERT_TRUE(scene_.reports().send(2, scene_.time()));
   EXPECT_EQ(post_of(2), kThere);
   const std::int64_t run = scene_.reports().declare_new_run(scene_.time());
@@ -107,7 +107,7 @@ TEST_F(AMoveToCome, MeansTheOperatorsWordForTheOther) {
   EXPECT_EQ(scene_.reports().run().number, run);
 }
 
-TEST_F(AMoveToCome, IsTold) {
+TEST_F(PendingMove, CountsReportsQueuedForTheOldCommandPost) {
   EXPECT_THAT(scene_.reports().waiting_elsewhere(), ElementsAre(testing::Pair("10.100.1.200:8000", 1)));
 }
 

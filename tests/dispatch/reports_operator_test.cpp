@@ -1,4 +1,4 @@
-// The operator's word.
+// Actions of the operator.
 #include <gmock/gmock.h>
 
 #include "dispatch/scene.hpp"
@@ -10,7 +10,7 @@ using enum ReportState;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-/// In which states a word is taken.
+/// The states in which an action is accepted.
 struct Words {
   ReportState state;
   bool send, hold, withdraw, done, resubmit;
@@ -26,9 +26,9 @@ const Words kWords[] = {
     {Settled, false, false, false, false, true},  {Withdrawn, true, false, false, false, true},
 };
 
-class OperatorsWord : public testing::TestWithParam<Words> {
+class OperatorsActions : public testing::TestWithParam<Words> {
  protected:
-  /// In a world of its own: whether `say` moved a report in that state. If not, it is untouched.
+  /// True if `say` moved a report that is in that state. A rejected action changes nothing.
   template <class Say>
   bool taken(Say say) {
     Scene scene;
@@ -52,16 +52,16 @@ class OperatorsWord : public testing::TestWithParam<Words> {
   }
 };
 
-TEST_P(OperatorsWord, IsTakenWhereTheTableHasIt) {
+TEST_P(OperatorsActions, FollowTheTable) {
   EXPECT_EQ(taken([](Reports& all, Time time) { return all.send(1, time); }), GetParam().send);
   EXPECT_EQ(taken([](Reports& all, Time time) { return all.hold(1, time); }), GetParam().hold);
   EXPECT_EQ(taken([](Reports& all, Time time) { return all.withdraw(1, time); }), GetParam().withdraw);
   EXPECT_EQ(taken([](Reports& all, Time time) { return all.settle(1, time); }), GetParam().done);
   EXPECT_EQ(taken([](Reports& all, Time time) { return all.resubmit(1, time); }), GetParam().resubmit);
 }
-INSTANTIATE_TEST_SUITE_P(States, OperatorsWord, testing::ValuesIn(kWords));
+INSTANTIATE_TEST_SUITE_P(States, OperatorsActions, testing::ValuesIn(kWords));
 
-TEST(TheOperator, IsToldWhereThereIsNoSuchReport) {
+TEST(Operator, LearnsThatAReportDoesNotExist) {
   Scene scene;
   const std::string none = "there is no report 7";
   EXPECT_EQ(scene.reports().send(7, scene.time()).error(), none);
@@ -71,7 +71,7 @@ TEST(TheOperator, IsToldWhereThereIsNoSuchReport) {
   EXPECT_EQ(scene.reports().resubmit(7, scene.time()).error(), none);
 }
 
-TEST(Holding, KeepsAReportBackUntilTheOperatorSendsIt) {
+TEST(HoldAction, LastsUntilTheOperatorSendsTheReport) {
   Scene scene;
   const ClientId client = scene.post_to_wait();
   ASSERT_TRUE(scene.reports().hold(1, scene.time()).has_value());
@@ -86,36 +86,7 @@ TEST(Holding, KeepsAReportBackUntilTheOperatorSendsIt) {
   EXPECT_EQ(scene.send_next(), 1);
 }
 
-TEST(Holding, HoldsWhatOutlivesARestartToo) {
-  Scene scene;
-  scene.post_to_wait();
-  ASSERT_TRUE(scene.reports().hold(1, scene.time()).has_value());
-  scene.restart();
-  scene.hear(20, 0);
-  EXPECT_EQ(scene.state(1), Held);
-  EXPECT_EQ(scene.send_next(), 0);
-}
-
-TEST(Holding, HoldsTheSameReportPostedAgainWithIt) {
-  Scene scene;
-  scene.post_to_wait();
-  ASSERT_TRUE(scene.reports().hold(1, scene.time()).has_value());
-  const ClientId again = scene.post();
-  EXPECT_EQ(scene.count(), 1);
-  scene.wait(21);
-  EXPECT_EQ(scene.told(again).status, 503);
-  EXPECT_EQ(scene.send_next(), 0);
-}
-
-TEST(Holding, LetsTheOthersGo) {
-  Scene scene;
-  scene.post_to_wait(1);
-  scene.post_to_wait(2);
-  ASSERT_TRUE(scene.reports().hold(1, scene.time()).has_value());
-  EXPECT_EQ(scene.send_next(), 2);
-}
-
-TEST(Holding, SaysWhyItIsTooLate) {
+TEST(HoldAction, ExplainsWhyItIsTooLate) {
   Scene scene;
   scene.post(1);
   EXPECT_THAT(scene.reports().hold(1, scene.time()).error(),
@@ -126,15 +97,7 @@ TEST(Holding, SaysWhyItIsTooLate) {
   EXPECT_EQ(scene.state(1), InDoubt);
 }
 
-TEST(Holding, IsRefusedByAFullDisk) {
-  Scene scene;
-  scene.post_to_wait();
-  scene.output().full = true;
-  EXPECT_FALSE(scene.reports().hold(1, scene.time()).has_value());
-  EXPECT_EQ(scene.state(1), Queued);
-}
-
-TEST(Withdrawing, TellsTheClientsAndTheSameReportAgain) {
+TEST(WithdrawAction, AnswersClientsAndRepeats) {
   Scene scene;
   const ClientId client = scene.post_to_wait();
   ASSERT_TRUE(scene.reports().withdraw(1, scene.time()).has_value());
@@ -144,15 +107,7 @@ TEST(Withdrawing, TellsTheClientsAndTheSameReportAgain) {
   EXPECT_EQ(scene.send_next(), 0);
 }
 
-TEST(Sending, AWithdrawnReportLetsItGoAfterAll) {
-  Scene scene;
-  scene.post_to_wait();
-  ASSERT_TRUE(scene.reports().withdraw(1, scene.time()).has_value());
-  ASSERT_TRUE(scene.reports().send(1, scene.time()).has_value());
-  EXPECT_EQ(scene.send_next(), 1);
-}
-
-TEST(Sending, OneInDoubtSendsItAtOnceAndLeavesTheOthersUndecidable) {
+TEST(SendAction, LeavesOtherDoubtsToTheOperator) {
   Scene scene;
   scene.post(1);
   scene.lose();
@@ -160,13 +115,13 @@ TEST(Sending, OneInDoubtSendsItAtOnceAndLeavesTheOthersUndecidable) {
   scene.post(2);
   scene.lose();
   ASSERT_TRUE(scene.reports().send(2, scene.time()).has_value());
-  EXPECT_EQ(scene.report(1).before, std::nullopt) << "if one is counted now, whose is it?";
+  EXPECT_EQ(scene.report(1).before, std::nullopt) << "either may be counted now";
   EXPECT_FALSE(scene.reports().is_asking(scene.report(1)));
   EXPECT_THAT(scene.report(1).note, HasSubstr("the operator decides"));
   EXPECT_EQ(scene.send_next(), 2);
 }
 
-TEST(CallingDone, SettlesADoubtAndTellsTheClientsThatItsAnswerIsNotKnown) {
+TEST(SettleAction, TellsClientsThatTheAnswerIsUnknown) {
   Scene scene;
   const ClientId client = scene.post();
   scene.lose();
@@ -176,10 +131,10 @@ TEST(CallingDone, SettlesADoubtAndTellsTheClientsThatItsAnswerIsNotKnown) {
   EXPECT_EQ(scene.told(client).status, 409);
   EXPECT_THAT(scene.told(client).sentence, HasSubstr("settled by the operator; its answer is not known"));
   scene.hear(19, 0);
-  EXPECT_EQ(scene.told(scene.post()).status, 409) << "the same again";
+  EXPECT_EQ(scene.told(scene.post()).status, 409) << "a repeat";
 }
 
-TEST(CallingDone, DoesNotMakeTheCountOfTheNextStatusAContradiction) {
+TEST(SettleAction, AllowsEitherCountInTheNextStatus) {
   for (const std::int64_t remaining : {19, 20}) {
     Scene scene;
     scene.post();
@@ -190,7 +145,7 @@ TEST(CallingDone, DoesNotMakeTheCountOfTheNextStatusAContradiction) {
   }
 }
 
-TEST(CallingDone, LeavesTheNextDoubtToTheOperatorWhileTheFirstMayStillBeRecorded) {
+TEST(SettleAction, LeavesTheNextDoubtToTheOperator) {
   Scene scene;
   scene.post(1);
   scene.lose();
@@ -198,13 +153,13 @@ TEST(CallingDone, LeavesTheNextDoubtToTheOperatorWhileTheFirstMayStillBeRecorded
   scene.keep_hearing(3, 20, 0);
   scene.post(2);
   scene.lose();
-  scene.keep_hearing(20, 19, 0);  // the first, late
+  scene.keep_hearing(20, 19, 0);  // report 1 is recorded late
   EXPECT_EQ(scene.state(2), InDoubt);
 }
 
-/// Of two in doubt the operator calls the second done, and the power goes at each write in turn: the first is
-/// never found recorded by what the second did.
-TEST(CallingDone, NeverLeavesEvidenceThatMeansSomethingElse) {
+/// The operator settles the second of two doubts, and the power fails at each write: the count of the second
+/// report never settles the first.
+TEST(SettleAction, LeavesNoFalseEvidenceAtAPowerCut) {
   for (std::int64_t writes = 0; writes < 4; ++writes) {
     Scene scene;
     scene.post(1);
@@ -218,13 +173,13 @@ TEST(CallingDone, NeverLeavesEvidenceThatMeansSomethingElse) {
     scene.restart();
     for (int i = 0; i < 15; ++i) {
       scene.wait(1);
-      scene.hear(19, 0, 118 + i);  // the second was recorded
+      scene.hear(19, 0, 118 + i);  // report 2 was recorded
     }
     EXPECT_EQ(scene.state(1), InDoubt) << writes;
   }
 }
 
-TEST(Resubmitting, MakesANewReportThatNothingHoldsBack) {
+TEST(ResubmitAction, MakesANewReportThatNoReviewHolds) {
   ReportRules rules;
   rules.review = Review::All;
   Scene scene(rules);
@@ -238,16 +193,7 @@ TEST(Resubmitting, MakesANewReportThatNothingHoldsBack) {
   EXPECT_EQ(scene.send_next(), 2);
 }
 
-TEST(Resubmitting, IsRefusedByAFullDisk) {
-  Scene scene;
-  scene.post(1);
-  scene.answer(recorded());
-  scene.output().full = true;
-  EXPECT_FALSE(scene.reports().resubmit(1, scene.time()).has_value());
-  EXPECT_EQ(scene.count(), 1);
-}
-
-TEST(TheOperator, HasToDecideWhatIsInDoubtAndNotWhatIsRefused) {
+TEST(Operator, DecidesDoubtsButNoRejectedReports) {
   Scene scene;
   EXPECT_THAT(scene.undecided(), ElementsAre());
   scene.post(1);
@@ -259,7 +205,7 @@ TEST(TheOperator, HasToDecideWhatIsInDoubtAndNotWhatIsRefused) {
   EXPECT_THAT(scene.reports().run().unreliable, HasSubstr("does another sender report"));
 }
 
-TEST(Resubmitting, PressedTwiceIsSentOnce) {
+TEST(ResubmitAction, SendsOnceIfPressedTwice) {
   Scene scene;
   scene.post();
   scene.answer(recorded());
@@ -267,13 +213,16 @@ TEST(Resubmitting, PressedTwiceIsSentOnce) {
   EXPECT_EQ(scene.reports().resubmit(1, scene.time()), 2);
   EXPECT_EQ(scene.reports().resubmit(1, scene.time()), 2);
   EXPECT_EQ(scene.send_next(), 2);
-  EXPECT_EQ(scene.reports().resubmit(1, scene.time()), 2) << "it is under way";
+  EXPECT_EQ(scene.reports().resubmit(1, scene.time()), 2) << "in flight";
   scene.answer(recorded());
-  EXPECT_EQ(scene.reports().resubmit(1, scene.time()), 3) << "and that was answered";
+  scene.output().full = true;
+  EXPECT_FALSE(scene.reports().resubmit(1, scene.time()));
+  scene.output().full = false;
+  EXPECT_EQ(scene.reports().resubmit(1, scene.time()), 3) << "answered";
 }
 
-/// Report 2, which is near 1.
-class HeldSinceTheRunBefore : public testing::Test {
+/// Report 2 is near report 1.
+class ReportHeldInTheLastRun : public testing::Test {
  protected:
   void SetUp() override {
     scene.post(1);
@@ -292,7 +241,7 @@ class HeldSinceTheRunBefore : public testing::Test {
   Scene scene{rules()};
 };
 
-TEST_F(HeldSinceTheRunBefore, IsRefusedWhereTheSameWasRecordedInThisRun) {
+TEST_F(ReportHeldInTheLastRun, CannotBeSentIfARepeatIsAnswered) {
   scene.post(2);
   scene.answer(recorded());
   const auto sent = scene.reports().send(2, scene.time());
@@ -301,8 +250,7 @@ TEST_F(HeldSinceTheRunBefore, IsRefusedWhereTheSameWasRecordedInThisRun) {
   EXPECT_EQ(scene.state(2), Held);
 }
 
-/// Nobody compares what was asked for with what waits.
-TEST_F(HeldSinceTheRunBefore, IsRefusedWhereTheSameWaitsToBeSentInThisRun) {
+TEST_F(ReportHeldInTheLastRun, CannotBeSentIfARepeatIsQueued) {
   scene.post_to_wait(2);
   ASSERT_EQ(scene.state(3), Queued);
   const auto sent = scene.reports().send(2, scene.time());

@@ -1,4 +1,4 @@
-// What the next life of the program makes of what is on disk.
+// What a restart makes of the ledger.
 #include <gmock/gmock.h>
 
 #include "dispatch/scene.hpp"
@@ -9,7 +9,7 @@ namespace {
 using enum ReportState;
 using testing::HasSubstr;
 
-TEST(AfterARestart, AReportThatWasUnderWayIsInDoubtAndFoundOut) {
+TEST(Restart, PutsAReportInFlightInDoubt) {
   Scene scene;
   scene.post();
   scene.restart();
@@ -22,7 +22,7 @@ TEST(AfterARestart, AReportThatWasUnderWayIsInDoubtAndFoundOut) {
   EXPECT_THAT(scene.report(1).answer, HasSubstr(R"("score_change":1)"));
 }
 
-TEST(AfterARestart, ADoubtIsFoundOutWithWhatWasSentSince) {
+TEST(Restart, KeepsTheCountOfReportsSentSinceADoubt) {
   Scene scene;
   scene.post(1);
   scene.lose();
@@ -31,22 +31,22 @@ TEST(AfterARestart, ADoubtIsFoundOutWithWhatWasSentSince) {
   scene.answer(recorded(1, "scored", "1", 117));
   scene.restart();
   scene.keep_hearing(12, 19, 1);
-  EXPECT_EQ(scene.send_next(), 1) << "the one that was used up was the other's";
+  EXPECT_EQ(scene.send_next(), 1) << "the count is report 2's";
 }
 
-TEST(AfterARestart, ADoubtHasItsWholeTimeAgain) {
+TEST(Restart, GivesADoubtItsWholeTimeAgain) {
   Scene scene;
   scene.post();
   scene.lose();
   scene.keep_hearing(9, 20, 0);
   scene.restart();
   scene.keep_hearing(9, 20, 0);
-  EXPECT_EQ(scene.state(1), InDoubt) << "its bytes may have been on the way when the program ended";
+  EXPECT_EQ(scene.state(1), InDoubt) << "its bytes may have left before the stop";
   scene.keep_hearing(1, 20, 0);
   EXPECT_EQ(scene.state(1), Queued);
 }
 
-TEST(AfterARestart, WhatWaitsGoesOnceTheRunIsKnownToBeTheSame) {
+TEST(Restart, SendsQueuedReportsOnceTheRunIsKnown) {
   Scene scene;
   scene.post_to_wait();
   scene.restart();
@@ -55,7 +55,7 @@ TEST(AfterARestart, WhatWaitsGoesOnceTheRunIsKnownToBeTheSame) {
   EXPECT_EQ(scene.send_next(), 1);
 }
 
-TEST(AfterARestart, WhatWaitsIsHeldWhereAnotherRunIsOn) {
+TEST(Restart, HoldsQueuedReportsIfTheRunIsAnother) {
   Scene scene;
   scene.post_to_wait();
   scene.restart();
@@ -63,9 +63,9 @@ TEST(AfterARestart, WhatWaitsIsHeldWhereAnotherRunIsOn) {
   EXPECT_EQ(scene.state(1), Held);
 }
 
-/// The run's clock was seen to run, for only then does it prove anything.
-struct ARunningClock : testing::Test {
-  ARunningClock() {
+/// The run clock has advanced, so it can show a new run.
+struct RunningClock : testing::Test {
+  RunningClock() {
     scene.wait(5);
     scene.hear(20, 0);
     scene.post_to_wait();
@@ -73,22 +73,15 @@ struct ARunningClock : testing::Test {
   Scene scene;
 };
 
-TEST_F(ARunningClock, ALongSilenceIsComparedWithIt) {
-  scene.wait(3600);
-  scene.restart();
-  scene.hear(20, 0, 120);
-  EXPECT_EQ(scene.state(1), Held) << "it went on by 15 s in an hour";
-}
-
-TEST_F(ARunningClock, ALeapOfTheClockForStampsIsNoSilence) {
+TEST_F(RunningClock, ShowsNoNewRunAfterAClockStep) {
   scene.step_clock(5e6);
   scene.restart();
   scene.hear(20, 0, 110);
   EXPECT_EQ(scene.reports().run().number, 1);
-  EXPECT_EQ(scene.state(1), Queued) << "it is the same run";
+  EXPECT_EQ(scene.state(1), Queued) << "the same run";
 }
 
-TEST_F(ARunningClock, ASilenceBesideALeapIsOneStill) {
+TEST_F(RunningClock, ShowsANewRunAfterAClockStepAndASilence) {
   scene.step_clock(5e6);
   scene.wait(3600);
   scene.restart();
@@ -96,7 +89,7 @@ TEST_F(ARunningClock, ASilenceBesideALeapIsOneStill) {
   EXPECT_EQ(scene.state(1), Held);
 }
 
-TEST(AfterARestart, EveryOtherStateIsAsItWas) {
+TEST(Restart, KeepsEachOtherState) {
   for (const ReportState state : {Held, Queued, Answered, Rejected, InDoubt, Settled, Withdrawn}) {
     Scene scene;
     Report report;
@@ -110,16 +103,7 @@ TEST(AfterARestart, EveryOtherStateIsAsItWas) {
   }
 }
 
-TEST(AfterARestart, TheSameReportStillGetsTheAnswer) {
-  Scene scene;
-  scene.post();
-  scene.answer(recorded(1));
-  scene.restart();
-  scene.hear(19, 1);
-  EXPECT_EQ(scene.told(scene.post()).body, recorded(1).body);
-}
-
-TEST(AfterARestart, PlacesAmongTheSendingsGoOn) {
+TEST(Restart, ContinuesTheOrderOfSending) {
   Scene scene;
   scene.post(1);
   scene.answer(recorded());
@@ -129,7 +113,7 @@ TEST(AfterARestart, PlacesAmongTheSendingsGoOn) {
   EXPECT_EQ(scene.report(2).sending, 2);
 }
 
-TEST(AfterARestart, TheCountIsStillDistrustedInThatRun) {
+TEST(Restart, KeepsDistrustInTheCount) {
   Scene scene;
   scene.hear(18, 0);
   scene.hear(18, 0);
@@ -139,7 +123,7 @@ TEST(AfterARestart, TheCountIsStillDistrustedInThatRun) {
   EXPECT_EQ(scene.report(1).before, std::nullopt);
 }
 
-TEST(AfterARestart, EachReportThatWaitsIsComparedWithTheOnesBefore) {
+TEST(Restart, ComparesEachQueuedReportWithEarlierOnes) {
   ReportRules rules;
   rules.review = Review::Duplicates;
   Scene scene(rules);
@@ -154,19 +138,9 @@ TEST(AfterARestart, EachReportThatWaitsIsComparedWithTheOnesBefore) {
   EXPECT_EQ(scene.state(2), Held);
 }
 
-TEST(AfterARestart, ACommandPostAtAnotherPlaceIsAnotherRun) {
+TEST(MoveToAnotherCommandPost, AnswersClientsThatPostedBefore) {
   Scene scene;
-  scene.post();
-  scene.restart("10.100.2.200:8000");
-  EXPECT_EQ(scene.reports().run().number, 2);
-  scene.keep_hearing(20, 19, 0);
-  EXPECT_EQ(scene.state(1), InDoubt) << "the other one's count says nothing of it";
-  EXPECT_THAT(scene.report(1).note, HasSubstr("the operator decides"));
-}
-
-TEST(AtAnotherPlace, ClientsOfWhatIsMeantForItWaitOnAndAreAnswered) {
-  Scene scene;
-  scene.restart("10.0.0.1:1");  // nothing is heard there: what waits is meant for the first that answers
+  scene.restart("10.0.0.1:1");  // no status comes: queued reports are for the first Command Post that answers
   const ClientId client = scene.post_to_wait();
   scene.move_to("10.0.0.2:1");
   EXPECT_FALSE(scene.is_told(client));
@@ -176,7 +150,7 @@ TEST(AtAnotherPlace, ClientsOfWhatIsMeantForItWaitOnAndAreAnswered) {
   EXPECT_EQ(scene.told(client).status, 201);
 }
 
-TEST(AtAnotherPlace, ClientsOfWhatIsKeptForThePlaceBeforeAreToldInTheirTime) {
+TEST(MoveToAnotherCommandPost, AnswersClientsOfTheOldOneAtTheirDeadline) {
   Scene scene;
   const ClientId client = scene.post_to_wait();
   scene.move_to("10.0.0.2:1");
@@ -190,17 +164,7 @@ TEST(AtAnotherPlace, ClientsOfWhatIsKeptForThePlaceBeforeAreToldInTheirTime) {
   EXPECT_EQ(scene.send_next(), 1);
 }
 
-TEST(AtAnotherPlace, AReportInDoubtStaysOfTheOneThatItWasSentTo) {
-  Scene scene;
-  scene.post();
-  scene.lose();
-  scene.move_to("10.0.0.2:1");
-  scene.keep_hearing(30, 19, 1);
-  EXPECT_EQ(scene.state(1), InDoubt);
-  EXPECT_NE(scene.report(1).run, scene.reports().run().number);
-}
-
-TEST(OtherRules, CountForWhoeverComesFromThenOn) {
+TEST(NewRules, ApplyToLaterClients) {
   Scene scene;
   const ClientId before = scene.post_to_wait(1);
   ReportRules rules;
@@ -208,15 +172,15 @@ TEST(OtherRules, CountForWhoeverComesFromThenOn) {
   rules.review = Review::All;
   scene.reports().go_by(rules);
   const ClientId after = scene.post_to_wait(100);
-  EXPECT_EQ(scene.state(2), Held) << "held for review";
+  EXPECT_EQ(scene.state(2), Held);
   scene.wait(5);
   EXPECT_TRUE(scene.is_told(after));
   EXPECT_FALSE(scene.is_told(before));
 }
 
 }  // namespace
-/// The box's clock begins ahead of all stamps before: it is no silence in which another run could have begun.
-TEST(ARestartOfTheMachine, MakesNoNewRunByTheClock) {
+/// The clock starts ahead of all earlier time stamps. That is no silence.
+TEST(Reboot, IsNoSilence) {
   Scene scene;
   scene.keep_hearing(12, 20, 0);
   scene.wait(10);

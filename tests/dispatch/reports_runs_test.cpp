@@ -1,4 +1,4 @@
-// A new run, and what it does to the reports of the one before.
+// A new run and the reports of the last one.
 #include <gmock/gmock.h>
 
 #include "dispatch/scene.hpp"
@@ -10,17 +10,7 @@ using enum ReportState;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-TEST(ANewRun, IsNoticedByAClockThatRanBackward) {
-  Scene scene;
-  scene.wait(10);
-  scene.hear(20, 0);
-  scene.hear(20, 0, 3);
-  EXPECT_EQ(scene.reports().run().number, 2);
-  EXPECT_EQ(scene.output().run->number, 2);
-  EXPECT_THAT(scene.output().run->why, HasSubstr("the run clock went back"));
-}
-
-TEST(ANewRun, IsNoticedByMoreReportsLeft) {
+TEST(NewRun, ShowsByMoreReportsLeft) {
   Scene scene;
   scene.wait(10);
   scene.hear(25, 0);
@@ -29,13 +19,7 @@ TEST(ANewRun, IsNoticedByMoreReportsLeft) {
   EXPECT_EQ(scene.output().run->last->remaining_reports, 25);
 }
 
-TEST(ANewRun, IsNoticedByAnotherTeam) {
-  Scene scene;
-  scene.reports().status_heard({0, 101, 20, "other"}, scene.time().now, scene.time());
-  EXPECT_EQ(scene.reports().run().number, 2);
-}
-
-TEST(ANewRun, IsNoticedByTheRunOfAnAnswer) {
+TEST(NewRun, ShowsByTheRunOfAnAnswer) {
   Scene scene;
   scene.post(1);
   scene.answer(recorded(0, "scored", "1", 101));
@@ -45,38 +29,23 @@ TEST(ANewRun, IsNoticedByTheRunOfAnAnswer) {
   EXPECT_EQ(scene.reports().run().number, 2);
   EXPECT_EQ(scene.reports().run().id, "2");
   EXPECT_EQ(scene.report(1).run, 1);
-  EXPECT_EQ(scene.report(2).run, 2) << "it was recorded in the run that answered";
+  EXPECT_EQ(scene.report(2).run, 2);
 }
 
-TEST(ANewRun, IsNotSeenInTheClockOfTheBoxBeingSet) {
-  Scene scene;
-  scene.wait(5);
-  scene.set_box_clock_forward(7200);
-  scene.hear(20, 0);
-  EXPECT_EQ(scene.reports().run().number, 1);
-}
-
-TEST(ANewRun, IsTakenUpAfterARestart) {
-  Scene scene;
-  scene.hear(25, 0, 3);
-  scene.restart();
-  EXPECT_EQ(scene.reports().run().number, 2);
-}
-
-TEST(ANewRun, HoldsWhatWaitsFromTheRunBefore) {
+TEST(NewRun, HoldsQueuedReportsOfTheLastRun) {
   Scene scene;
   scene.post_to_wait(1);
   scene.wait(11);
   scene.hear(25, 0, 3);
   EXPECT_EQ(scene.state(1), Held);
   EXPECT_THAT(scene.report(1).note, HasSubstr("a new run began (the reports left went up"));
-  EXPECT_EQ(scene.output().ledger.at(1).state, Held) << "written down with the run";
+  EXPECT_EQ(scene.output().ledger.at(1).state, Held) << "stored with the run";
   ASSERT_TRUE(scene.reports().send(1, scene.time()).has_value());
-  EXPECT_EQ(scene.send_next(), 1) << "the operator asks for it";
+  EXPECT_EQ(scene.send_next(), 1);
   EXPECT_EQ(scene.report(1).run, 2);
 }
 
-TEST(ANewRun, IsEnteredByWhatWasPostedJustNow) {
+TEST(NewRun, TakesInReportsPostedJustBefore) {
   Scene scene;
   scene.post_to_wait(1);
   scene.wait(9);
@@ -86,7 +55,7 @@ TEST(ANewRun, IsEnteredByWhatWasPostedJustNow) {
   EXPECT_EQ(scene.send_next(), 1);
 }
 
-TEST(ANewRun, IsEnteredByAnOldReportThatWasPostedAgainJustNow) {
+TEST(NewRun, TakesInAReportRepeatedJustBefore) {
   Scene scene;
   scene.post_to_wait(1);
   scene.wait(60);
@@ -97,7 +66,7 @@ TEST(ANewRun, IsEnteredByAnOldReportThatWasPostedAgainJustNow) {
   EXPECT_EQ(scene.send_next(), 1);
 }
 
-TEST(ANewRun, HoldsEvenTheReportsThatWereSentOnPurposeInTheOneBefore) {
+TEST(NewRun, HoldsReportsThatTheOperatorSentBefore) {
   Scene scene;
   scene.post_to_wait(1);
   ASSERT_TRUE(scene.reports().send(1, scene.time()).has_value());
@@ -106,59 +75,39 @@ TEST(ANewRun, HoldsEvenTheReportsThatWereSentOnPurposeInTheOneBefore) {
   EXPECT_EQ(scene.state(1), Held);
 }
 
-TEST(ANewRun, TakesTheSameReportAsANewOne) {
-  Scene scene;
-  scene.post(1);
-  scene.answer(recorded());
-  scene.hear(19, 0);
-  scene.hear(25, 0, 3);
-  scene.post(1);
-  EXPECT_EQ(scene.state(2), Sending);
-  EXPECT_EQ(scene.report(2).run, 2);
-}
-
-TEST(ANewRun, MakesADoubtUndecidable) {
-  Scene scene;
-  scene.post(1);
-  scene.lose();
-  scene.wait(5);
-  scene.hear(25, 0, 3);
-  EXPECT_FALSE(scene.reports().is_asking(scene.report(1)));
-  scene.keep_hearing(30, 25, 0);
-  EXPECT_EQ(scene.state(1), InDoubt);
-  EXPECT_THAT(scene.report(1).note, HasSubstr("the operator decides"));
-}
-
-TEST(ADoubt, ThatMayBeRecordedInTheNewRunStandsForTheSameReportThere) {
+TEST(DoubtAtANewRun, BelongsToTheNewRun) {
   Scene scene;
   scene.post(1);
   scene.lose();
   scene.wait(5);
   scene.hear(25, 0, 3);
   EXPECT_EQ(scene.report(1).run, 2);
-  EXPECT_EQ(scene.report(1).before, std::nullopt) << "which was counted in the run before";
+  EXPECT_EQ(scene.report(1).before, std::nullopt) << "counted in the run before";
+  EXPECT_FALSE(scene.reports().is_asking(scene.report(1)));
+  EXPECT_THAT(scene.report(1).note, HasSubstr("the operator decides"));
   const ClientId again = scene.post(1);
   EXPECT_EQ(scene.count(), 1);
-  scene.wait(20);
+  scene.keep_hearing(20, 25, 0);
+  EXPECT_EQ(scene.state(1), InDoubt);
   EXPECT_EQ(scene.told(again).status, 504);
 }
 
-TEST(ADoubt, ThatIsOlderThanTheLastWordOfItsRunStaysThere) {
+TEST(DoubtAtANewRun, StaysInItsRunIfOlderThanItsLastStatus) {
   Scene scene;
   scene.post(1);
   scene.lose();
   for (int i = 0; i < 30; ++i) {
     scene.wait(1);
-    scene.hear(20, 0, 101);  // a stop: it stays in doubt
+    scene.hear(20, 0, 101);  // an administrative stop keeps it in doubt
   }
   scene.hear(25, 0, 3);
   EXPECT_EQ(scene.report(1).run, 1);
   EXPECT_THAT(scene.report(1).note, HasSubstr("a new run began before the status showed"));
   scene.post(1);
-  EXPECT_EQ(scene.state(2), Sending) << "the new run has nothing of it";
+  EXPECT_EQ(scene.state(2), Sending) << "the new run does not have it";
 }
 
-TEST(ADeclaredRun, BeginsLikeOneThatIsNoticed) {
+TEST(DeclaredRun, BeginsLikeADetectedOne) {
   Scene scene;
   scene.post_to_wait(1);
   scene.wait(11);
@@ -166,13 +115,13 @@ TEST(ADeclaredRun, BeginsLikeOneThatIsNoticed) {
   EXPECT_EQ(scene.state(1), Held);
   EXPECT_EQ(scene.output().run->why, "the operator declared it");
   scene.hear(25, 0, 3);
-  EXPECT_EQ(scene.reports().run().number, 2) << "the clock is no news";
+  EXPECT_EQ(scene.reports().run().number, 2) << "no further run";
 }
 
-/// Declared while a report was under way, which may be recorded in either.
-class DeclaredMeanwhile : public testing::Test {
+/// The operator declares a run while a report is in flight. Either run may record it.
+class ReportInFlightAtADeclaration : public testing::Test {
  protected:
-  DeclaredMeanwhile() {
+  ReportInFlightAtADeclaration() {
     scene_.post(1);
     scene_.wait(12);
     scene_.reports().declare_new_run(scene_.time());
@@ -180,7 +129,7 @@ class DeclaredMeanwhile : public testing::Test {
   Scene scene_;
 };
 
-TEST_F(DeclaredMeanwhile, ItsRepeatJoinsIt) {
+TEST_F(ReportInFlightAtADeclaration, IsJoinedByARepeat) {
   const ClientId again = scene_.post(1);
   EXPECT_EQ(scene_.count(), 1);
   scene_.answer(recorded());
@@ -188,7 +137,7 @@ TEST_F(DeclaredMeanwhile, ItsRepeatJoinsIt) {
   EXPECT_EQ(scene_.report(1).run, 2);
 }
 
-TEST_F(DeclaredMeanwhile, ItsDoubtStandsForItInTheNewRun) {
+TEST_F(ReportInFlightAtADeclaration, IsInDoubtInTheNewRunIfItsAnswerIsLost) {
   scene_.lose();
   EXPECT_EQ(scene_.report(1).run, 2);
   EXPECT_EQ(scene_.report(1).before, std::nullopt);
@@ -197,27 +146,27 @@ TEST_F(DeclaredMeanwhile, ItsDoubtStandsForItInTheNewRun) {
   EXPECT_EQ(scene_.count(), 1);
 }
 
-TEST_F(DeclaredMeanwhile, ItDoesNotGoAgainByItself) {
+TEST_F(ReportInFlightAtADeclaration, IsHeldAfterA429) {
   scene_.answer(answer_of(429));
   EXPECT_EQ(scene_.send_next(), 0);
   EXPECT_EQ(scene_.state(1), Held);
 }
 
-TEST_F(DeclaredMeanwhile, ItGoesAgainWhereSomebodyPostedItSince) {
+TEST_F(ReportInFlightAtADeclaration, IsRetriedAfterA429IfAClientRepeatedIt) {
   scene_.post(1);
   scene_.answer(answer_of(429));
   EXPECT_EQ(scene_.send_next(), 1);
   EXPECT_EQ(scene_.report(1).run, 2);
 }
 
-TEST_F(DeclaredMeanwhile, AndTheProgramEnded) {
+TEST_F(ReportInFlightAtADeclaration, IsInDoubtInTheNewRunAfterARestart) {
   scene_.restart();
   EXPECT_EQ(scene_.state(1), InDoubt);
   EXPECT_EQ(scene_.report(1).run, 2);
   EXPECT_EQ(scene_.report(1).before, std::nullopt);
 }
 
-TEST(ACommandPost, WithoutAStatusIsSentWhatIsPostedNow) {
+TEST(SilentCommandPost, GetsOnlyNewReportsIfItHasNoStatus) {
   Scene scene;
   scene.wait(16);
   scene.post(1);
@@ -227,12 +176,12 @@ TEST(ACommandPost, WithoutAStatusIsSentWhatIsPostedNow) {
   scene.answer(answer_of(429));
   scene.wait(11);
   scene.reports().status_failed(true, scene.time());
-  EXPECT_EQ(scene.send_next(), 0) << "it may be meant for a run that has ended";
+  EXPECT_EQ(scene.send_next(), 0) << "its run may be over";
   ASSERT_TRUE(scene.reports().send(1, scene.time()).has_value());
-  EXPECT_EQ(scene.send_next(), 1) << "the operator knows";
+  EXPECT_EQ(scene.send_next(), 1);
 }
 
-TEST(ACommandPost, ThatCannotBeReachedIsSentNothing) {
+TEST(SilentCommandPost, GetsNoReportIfItCannotBeReached) {
   Scene scene;
   scene.wait(16);
   scene.post(1);

@@ -1,4 +1,4 @@
-// Reports of the operator that wait for an undo.
+// Reports of the operator that can be undone.
 #include <gmock/gmock.h>
 
 #include "dispatch/scene.hpp"
@@ -34,7 +34,7 @@ TEST_F(Undo, StoresTheReportAtOnceAndSendsItLater) {
   EXPECT_EQ(scene_.send_next(), 1);
 }
 
-TEST_F(Undo, IsForTheOperatorsReportsAlone) {
+TEST_F(Undo, DelaysOnlyTheOperatorsReports) {
   scene_.post();
   EXPECT_EQ(scene_.state(1), Sending);
 }
@@ -81,16 +81,16 @@ TEST_F(Undo, EndsAtOnceIfTheOperatorSendsTheReport) {
   EXPECT_FALSE(is_to_be_sent(1));
   EXPECT_EQ(scene_.report(1).note, "the operator sent it");
   EXPECT_EQ(scene_.send_next(), 1);
-  EXPECT_FALSE(scene_.report(1).asked) << "it is compared as any other report";
+  EXPECT_FALSE(scene_.report(1).asked) << "a repeat is detected as usual";
 }
 
-TEST_F(Undo, GivesWayToTheOperatorsHold) {
+TEST_F(Undo, EndsIfTheOperatorHoldsTheReport) {
   scene_.compose();
   ASSERT_TRUE(scene_.reports().hold(1, scene_.time()));
   EXPECT_EQ(scene_.report(1).note, "the operator held it");
   scene_.keep_hearing(60, 20, 0);
   EXPECT_EQ(scene_.state(1), Held);
-  EXPECT_FALSE(scene_.reports().hold(1, scene_.time())) << "it is held already";
+  EXPECT_FALSE(scene_.reports().hold(1, scene_.time()));
 }
 
 TEST_F(Undo, LeavesTheReportHeldAfterARestart) {
@@ -129,7 +129,7 @@ TEST_F(Undo, LeavesTheReportHeldAtAnotherCommandPost) {
   EXPECT_EQ(scene_.state(1), Held);
 }
 
-TEST_F(Undo, LeavesAReportHeldThatTheReviewHolds) {
+TEST_F(Undo, LeavesAReviewedReportHeld) {
   Scene scene(with_undo(Review::All));
   scene.compose();
   EXPECT_EQ(scene.report(1).note, "every report is reviewed");
@@ -137,13 +137,13 @@ TEST_F(Undo, LeavesAReportHeldThatTheReviewHolds) {
   EXPECT_EQ(scene.state(1), Held);
 }
 
-TEST_F(Undo, ComparesTheReportWhenItsTimeIsOver) {
+TEST_F(Undo, ComparesTheReportAtItsEnd) {
   Scene scene(with_undo(Review::Duplicates));
   scene.post(1);
   scene.compose(10);
   scene.answer(recorded());
   scene.post(10.5);
-  EXPECT_EQ(scene.state(3), Held) << "it is near to the report that may still be undone";
+  EXPECT_EQ(scene.state(3), Held) << "near report 2, which can still be undone";
   ASSERT_TRUE(scene.reports().send(3, scene.time()));
   ASSERT_EQ(scene.send_next(), 3);
   scene.answer(recorded());
@@ -152,7 +152,7 @@ TEST_F(Undo, ComparesTheReportWhenItsTimeIsOver) {
   EXPECT_THAT(scene.report(2).note, HasSubstr("the same type as report 3"));
 }
 
-TEST_F(Undo, GivesTheSameReportOfAClientItsAnswer) {
+TEST_F(Undo, GivesARepeatOfAClientTheAnswer) {
   scene_.compose();
   const ClientId client = scene_.post();
   EXPECT_EQ(scene_.count(), 1);
@@ -162,7 +162,7 @@ TEST_F(Undo, GivesTheSameReportOfAClientItsAnswer) {
   EXPECT_EQ(scene_.told(client).status, 201);
 }
 
-TEST_F(Undo, LetsNoTwinGoBefore) {
+TEST_F(Undo, BlocksTheSameReport) {
   scene_.compose();
   ASSERT_TRUE(scene_.reports().withdraw(1, scene_.time()));
   scene_.compose(1, true);
@@ -170,7 +170,7 @@ TEST_F(Undo, LetsNoTwinGoBefore) {
   EXPECT_THAT(scene_.reports().send(1, scene_.time()).error(), HasSubstr("report 2 is the same and is held"));
 }
 
-TEST_F(Undo, TriesAgainIfTheDiskIsFullWhenItsTimeIsOver) {
+TEST_F(Undo, RetriesItsEndIfTheDiskIsFull) {
   scene_.compose();
   scene_.output().full = true;
   scene_.wait(10);
@@ -181,7 +181,7 @@ TEST_F(Undo, TriesAgainIfTheDiskIsFullWhenItsTimeIsOver) {
   EXPECT_EQ(scene_.send_next(), 1);
 }
 
-TEST_F(Undo, SendsTheReportToACommandPostWithoutAStatusToo) {
+TEST_F(Undo, NeedsNoStatus) {
   scene_.compose();
   scene_.wait(30);
   scene_.reports().status_failed(true, scene_.time());

@@ -10,7 +10,7 @@ namespace {
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-/// At `now_` seconds of a run with 20 reports left.
+/// At `now_` seconds of a run.
 class RunAccountTest : public testing::Test {
  protected:
   Time at(double s) const {
@@ -43,16 +43,16 @@ TEST_F(RunAccountTest, ExpectsNothingBeforeTheFirstStatus) {
   EXPECT_FALSE(account_.is_fresh(time().now));
 }
 
-TEST_F(RunAccountTest, AStatusVouchesForTheRunUntilTheNextRequestMayGo) {
+TEST_F(RunAccountTest, AStatusVouchesUntilTheNextMayBeSent) {
   hear(20, 3);
   EXPECT_TRUE(account_.is_fresh(at(now_ + 15).now));
   EXPECT_FALSE(account_.is_fresh(at(now_ + 16).now));
   account_.paced(std::chrono::seconds(20));
-  EXPECT_TRUE(account_.is_fresh(at(now_ + 22).now)) << "or a report would wait for statuses for ever";
+  EXPECT_TRUE(account_.is_fresh(at(now_ + 22).now)) << "a report would never be sent";
   EXPECT_FALSE(account_.is_fresh(at(now_ + 27).now));
 }
 
-TEST_F(RunAccountTest, ExpectsTheLastStatusLessWhatItsOwnReportsDid) {
+TEST_F(RunAccountTest, ExpectsTheLastStatusAndItsOwnReports) {
   hear(20, 3);
   answer("scored", 1);
   answer("scored", 0);
@@ -60,7 +60,7 @@ TEST_F(RunAccountTest, ExpectsTheLastStatusLessWhatItsOwnReportsDid) {
   EXPECT_EQ(account_.expected(time().now), status(18, 4));
 }
 
-TEST_F(RunAccountTest, ExpectsNothingAfterADoubtUntilTheNextStatusWithoutOne) {
+TEST_F(RunAccountTest, ExpectsNothingDuringADoubt) {
   hear(20, 3);
   account_.lose();
   EXPECT_EQ(account_.expected(time().now), std::nullopt);
@@ -68,7 +68,7 @@ TEST_F(RunAccountTest, ExpectsNothingAfterADoubtUntilTheNextStatusWithoutOne) {
   EXPECT_EQ(account_.expected(time().now), status(19, 3));
 }
 
-TEST_F(RunAccountTest, ExpectsNothingWhileWhatTheOperatorJudgedMayStillBeRecorded) {
+TEST_F(RunAccountTest, ExpectsNothingSoonAfterASettlement) {
   hear(20, 3);
   account_.lose(at(110).now);
   hear(20, 3);
@@ -81,7 +81,7 @@ TEST_F(RunAccountTest, ExpectsNothingWhileWhatTheOperatorJudgedMayStillBeRecorde
   EXPECT_THAT(account_.run().unreliable, IsEmpty());
 }
 
-TEST_F(RunAccountTest, ExpectsNothingWhileReportsAreNotBeingScored) {
+TEST_F(RunAccountTest, ExpectsNothingWhileReportsAreNotScored) {
   hear(20, 3);
   answer("admin stop", 0);
   EXPECT_EQ(account_.expected(time().now), std::nullopt);
@@ -89,18 +89,18 @@ TEST_F(RunAccountTest, ExpectsNothingWhileReportsAreNotBeingScored) {
   EXPECT_EQ(account_.expected(time().now), status(19, 3));
 }
 
-TEST_F(RunAccountTest, DistrustsACountThatIsWrongTwiceInARow) {
+TEST_F(RunAccountTest, DistrustsACountIfItIsWrongTwice) {
   hear(20, 3);
   hear(19, 3);
-  EXPECT_EQ(account_.expected(time().now), std::nullopt) << "it is odd";
+  EXPECT_EQ(account_.expected(time().now), std::nullopt) << "wrong once";
   EXPECT_THAT(account_.run().unreliable, IsEmpty());
   hear(19, 3);
   EXPECT_EQ(account_.expected(time().now), std::nullopt);
   EXPECT_THAT(account_.run().unreliable, HasSubstr("another sender reports with this token"));
-  EXPECT_EQ(output_.run->unreliable, account_.run().unreliable) << "and has that on disk";
+  EXPECT_EQ(output_.run->unreliable, account_.run().unreliable) << "on disk";
 }
 
-TEST_F(RunAccountTest, AccusesNobodyWhereTheCountsNeverMove) {
+TEST_F(RunAccountTest, AccusesNoSenderIfTheCountsNeverMove) {
   hear(20, 3);
   answer("scored", 1);
   hear(20, 3);
@@ -109,7 +109,7 @@ TEST_F(RunAccountTest, AccusesNobodyWhereTheCountsNeverMove) {
   EXPECT_EQ(account_.expected(time().now), std::nullopt);
 }
 
-TEST_F(RunAccountTest, DistrustsCountsThatMoveNoMore) {
+TEST_F(RunAccountTest, DistrustsCountsThatStopMoving) {
   hear(20, 3);
   answer("scored", 0);
   hear(19, 3);
@@ -119,7 +119,7 @@ TEST_F(RunAccountTest, DistrustsCountsThatMoveNoMore) {
   EXPECT_THAT(account_.run().unreliable, HasSubstr("another sender reports with this token"));
 }
 
-TEST_F(RunAccountTest, ForgivesACountThatLaggedBehind) {
+TEST_F(RunAccountTest, ForgivesADelayedCount) {
   hear(20, 3);
   answer("scored", 0);
   hear(20, 3);
@@ -128,7 +128,7 @@ TEST_F(RunAccountTest, ForgivesACountThatLaggedBehind) {
   EXPECT_THAT(account_.run().unreliable, IsEmpty());
 }
 
-TEST_F(RunAccountTest, LetsCountsBeSetAtTheStartOfTheRun) {
+TEST_F(RunAccountTest, AllowsNewCountsBeforeTheRunStarts) {
   now_ = 0;
   hear(5, 0);
   now_ = 10;
@@ -136,7 +136,7 @@ TEST_F(RunAccountTest, LetsCountsBeSetAtTheStartOfTheRun) {
   EXPECT_EQ(account_.expected(time().now), status(25, 0));
 }
 
-TEST_F(RunAccountTest, TrustsTheCountAgainInTheNextRun) {
+TEST_F(RunAccountTest, TrustsTheCountInTheNextRun) {
   hear(20, 3);
   account_.distrust("another sender", time().stamp);
   account_.begin("the operator declared it", 0, std::nullopt, {}, time());
@@ -146,7 +146,7 @@ TEST_F(RunAccountTest, TrustsTheCountAgainInTheNextRun) {
   EXPECT_EQ(account_.expected(time().now), status(25, 0));
 }
 
-TEST_F(RunAccountTest, IsFreshForFifteenSecondsAfterAWord) {
+TEST_F(RunAccountTest, IsFreshForFifteenSecondsAfterAnAnswer) {
   hear(20, 3);
   EXPECT_TRUE(account_.is_fresh(at(115).now));
   EXPECT_FALSE(account_.is_fresh(at(115.1).now));
@@ -155,20 +155,20 @@ TEST_F(RunAccountTest, IsFreshForFifteenSecondsAfterAWord) {
   EXPECT_TRUE(account_.is_fresh(at(129).now));
 }
 
-TEST_F(RunAccountTest, KnowsACommandPostThatAnswersNothingThatHelps) {
-  EXPECT_FALSE(account_.is_dumb(time().now)) << "it was not asked";
+TEST_F(RunAccountTest, DetectsACommandPostWithoutAStatus) {
+  EXPECT_FALSE(account_.is_dumb(time().now));
   account_.dumb(time().now);
   EXPECT_TRUE(account_.is_dumb(time().now));
-  EXPECT_FALSE(account_.is_dumb(at(116).now)) << "that is long ago";
+  EXPECT_FALSE(account_.is_dumb(at(116).now)) << "too old";
   hear(20, 3);
   EXPECT_FALSE(account_.is_dumb(time().now));
 }
 
-TEST_F(RunAccountTest, WritesTheRunClockDownOnlyNowAndThen) {
+TEST_F(RunAccountTest, WritesTheRunClockSeldom) {
   hear(20, 3);
   now_ = 101;
   hear(20, 3);
-  EXPECT_TRUE(output_.run->status_clock->runs) << "it was seen to run, which is news";
+  EXPECT_TRUE(output_.run->status_clock->runs);
   const auto writes = output_.writes;
   for (now_ = 102; now_ < 250; ++now_) hear(20, 3);
   EXPECT_EQ(output_.writes, writes);
@@ -178,14 +178,14 @@ TEST_F(RunAccountTest, WritesTheRunClockDownOnlyNowAndThen) {
   EXPECT_EQ(output_.run->last->run_clock, 252);
 }
 
-TEST_F(RunAccountTest, WritesTheReportsLeftDownAtOnce) {
+TEST_F(RunAccountTest, WritesTheReportsLeftAtOnce) {
   hear(20, 3);
   now_ = 101;
   hear(19, 3);
-  EXPECT_EQ(output_.run->last->remaining_reports, 19) << "by which a new run is told";
+  EXPECT_EQ(output_.run->last->remaining_reports, 19) << "it shows a new run";
 }
 
-TEST_F(RunAccountTest, MeasuresASilenceByTheClockThatCannotBeSet) {
+TEST_F(RunAccountTest, MeasuresASilenceByMonotonicTime) {
   now_ = 99;
   hear(20, 3);
   now_ = 100;
@@ -195,7 +195,7 @@ TEST_F(RunAccountTest, MeasuresASilenceByTheClockThatCannotBeSet) {
   EXPECT_THAT(account_.another(icd::RunStatus{3, 105, 20, "adit"}, at(3700))->why, HasSubstr("of silence"));
 }
 
-TEST_F(RunAccountTest, MeasuresASilenceOverARestartByWhatIsOnDisk) {
+TEST_F(RunAccountTest, MeasuresASilenceAcrossARestart) {
   now_ = 99;
   hear(20, 3);
   now_ = 100;
@@ -206,10 +206,10 @@ TEST_F(RunAccountTest, MeasuresASilenceOverARestartByWhatIsOnDisk) {
   EXPECT_EQ(again.another(icd::RunStatus{3, 120, 20, "adit"}, at(120)), std::nullopt);
 }
 
-TEST_F(RunAccountTest, IsOfTheLatestRunThatAReportBelongsTo) {
+TEST_F(RunAccountTest, ContinuesTheLatestRunOfAReport) {
   account_.open({dispatch::Run{.number = 2, .id = "two"}}, 3, "");
   EXPECT_EQ(account_.run().number, 3);
-  EXPECT_THAT(account_.run().id, IsEmpty()) << "what was known of the run before does not hold";
+  EXPECT_THAT(account_.run().id, IsEmpty());
 }
 
 }  // namespace

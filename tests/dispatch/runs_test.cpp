@@ -9,32 +9,32 @@ Run run(std::int64_t number, std::int64_t turn, const std::string& post = "a:1")
   return {.number = number, .post = post, .turn = turn};
 }
 
-TEST(TheRuns, HaveAFirstOneWhereNoneIsKnown) {
+TEST(Runs, HaveAFirstRunIfNoneIsKnown) {
   Runs runs;
   runs.open({}, 1);
   EXPECT_EQ(runs.present().number, 1);
 }
 
-TEST(TheRuns, AreAtTheOneThatBecameThePresentOneLast) {
+TEST(Runs, ContinueThePresentRun) {
   Runs runs;
   runs.open({run(1, 3), run(2, 2, "b:1")}, 2);
   EXPECT_EQ(runs.present().number, 1);
 }
 
-TEST(TheRuns, AreAtTheLatestOneThatAReportBelongsTo) {
+TEST(Runs, ContinueTheLatestRunOfAReport) {
   Runs runs;
   runs.open({run(1, 1), run(2, 2)}, 3);
   EXPECT_EQ(runs.present().number, 3);
 }
 
-TEST(TheRuns, AreAtOneThatWasBegunAfterAllByAnAditThatKnewNoTurns) {
+TEST(Runs, ContinueANewerRunOfAnOlderVersion) {
   Runs runs;
   runs.open({run(1, 3), run(2, 2, "b:1"), run(3, 0)}, 3);
   EXPECT_EQ(runs.present().number, 3);
-  EXPECT_EQ(runs.present().turn, 4) << "and stay there";
+  EXPECT_EQ(runs.present().turn, 4);
 }
 
-TEST(TheRuns, GoOnWhereTheyWereAfterEachStep) {
+TEST(Runs, ContinueAResumedRunAfterARestart) {
   Runs runs;
   runs.open({}, 1);
   runs.begin({.post = "b:1"});
@@ -49,7 +49,7 @@ TEST(TheRuns, GoOnWhereTheyWereAfterEachStep) {
   EXPECT_EQ(again.present().number, 3);
 }
 
-TEST(TheRuns, FindTheLatestOfAPlace) {
+TEST(Runs, FindTheLatestRunOfACommandPost) {
   Runs runs;
   runs.open({run(1, 1), run(2, 2, "b:1"), run(3, 3), run(4, 4, "b:1")}, 4);
   const auto at = [&](const std::string& post) {
@@ -57,11 +57,11 @@ TEST(TheRuns, FindTheLatestOfAPlace) {
     return found == nullptr ? 0 : found->number;
   };
   EXPECT_EQ(at("a:1"), 3);
-  EXPECT_EQ(at("b:1"), 2) << "the present one is not sought";
+  EXPECT_EQ(at("b:1"), 2) << "the present run is left out";
   EXPECT_EQ(at("c:1"), 0);
 }
 
-TEST(TheRuns, KnowWhichThePresentOneMayBeStill) {
+TEST(Runs, FindRunsThatMayStillGoOn) {
   dispatch::Run third = run(3, 3);
   third.may_be = 2;
   dispatch::Run fourth = run(4, 4);
@@ -74,12 +74,12 @@ TEST(TheRuns, KnowWhichThePresentOneMayBeStill) {
   EXPECT_FALSE(runs.may_be_present(4));
 }
 
-TEST(TheRuns, KnowWhatIsHere) {
+TEST(Runs, FindRunsOfThisCommandPost) {
   Runs runs;
   runs.open({run(1, 1), run(2, 2, "b:1")}, 2);
   EXPECT_TRUE(runs.is_here(2));
   EXPECT_FALSE(runs.is_here(1));
-  EXPECT_TRUE(runs.is_here(0)) << "from before runs were kept";
+  EXPECT_TRUE(runs.is_here(0)) << "of a version without runs";
 }
 
 }  // namespace

@@ -9,7 +9,7 @@ namespace {
 
 using icd::ArtifactReport;
 
-TEST(SameReport, IsOfTheSameTypeInAnyLetterCase) {
+TEST(SameReport, HasTheSameTypeInAnyLetterCase) {
   EXPECT_TRUE(is_same({"Cell Phone", {1, 2, 3}}, {"cell phone", {1, 2, 3}}));
   EXPECT_FALSE(is_same({"Cell Phone", {1, 2, 3}}, {"CellPhone", {1, 2, 3}}));
   EXPECT_FALSE(is_same({"Gas", {1, 2, 3}}, {"Vent", {1, 2, 3}}));
@@ -23,13 +23,13 @@ TEST(SameReport, IsWithinAMillimetreOnEachAxis) {
   EXPECT_FALSE(is_same({"Gas", {1, 2, 3}}, {"Gas", {1, 2, 2.9989}}));
 }
 
-TEST(SameReport, IsTheSameWhicheverRobotItNames) {
+TEST(SameReport, MayNameAnotherRobot) {
   const ArtifactReport one{"Gas", {1, 2, 3}, icd::RobotName::parse("spot1")};
   EXPECT_TRUE(is_same(one, {"Gas", {1, 2, 3}, icd::RobotName::parse("spot2")}));
   EXPECT_TRUE(is_same(one, {"Gas", {1, 2, 3}}));
 }
 
-TEST(NearReport, IsOfTheSameTypeWithinTheDistanceOnAllThreeAxes) {
+TEST(NearReport, HasTheSameTypeWithinTheDistance) {
   const ArtifactReport one{"Gas", {1, 2, 3}};
   EXPECT_TRUE(is_near(one, {"gas", {4, 6, 3}}, 5));
   EXPECT_FALSE(is_near(one, {"Gas", {4, 6, 3.1}}, 5));
@@ -37,7 +37,7 @@ TEST(NearReport, IsOfTheSameTypeWithinTheDistanceOnAllThreeAxes) {
   EXPECT_TRUE(is_near(one, one, 0));
 }
 
-TEST(NearReport, IsNearBothWaysAndTheSameIsAlwaysNear) {
+TEST(NearReport, IsSymmetricAndIncludesTheSame) {
   const std::array all = {ArtifactReport{"Gas", {1, 2, 3}}, ArtifactReport{"GAS", {1.001, 2, 3}},
                           ArtifactReport{"Gas", {-4, 2, 9}}, ArtifactReport{"Vent", {1, 2, 3}}};
   for (const auto& one : all) {

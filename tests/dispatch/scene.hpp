@@ -12,17 +12,16 @@
 
 namespace adit::dispatch {
 
-/// Two Command Posts.
 constexpr const char* kHere = "10.100.1.200:8000";
 constexpr const char* kThere = "10.100.2.200:8000";
 
-/// A ledger and clients that remember.
+/// Keeps the ledger and each answer to a client in memory.
 class RecordingActions final : public Output {
  public:
   struct Told {
     int status = 0;
-    std::string sentence;  // "": the report's stored answer
-    std::string body;      // of that answer
+    std::string sentence;  // empty: the stored answer of the report
+    std::string body;      // of the stored answer
     std::int64_t number = 0;
   };
 
@@ -54,13 +53,12 @@ class RecordingActions final : public Output {
   std::int64_t writes = 0;
   Flush last_flush = Flush::Now;
   std::map<std::int64_t, Report> ledger;
-  std::map<std::int64_t, std::vector<ReportState>> lives;  // as they were written
-  std::optional<Run> run;                                  // the one that was written last
+  std::map<std::int64_t, std::vector<ReportState>> lives;  // states in order of writing
+  std::optional<Run> run;                                  // last written
   std::map<std::int64_t, Run> runs;
   std::map<ClientId, std::vector<Told>> told;
 };
 
-/// The Command Post's answer to a report it recorded.
 inline HttpAnswer recorded(std::int64_t points = 0, const std::string& report_status = "scored",
                            const std::string& run = "1", double run_clock = 0) {
   return {201, "application/json",
@@ -71,8 +69,7 @@ inline HttpAnswer answer_of(int status) {
   return {status, "application/json", "\"the Command Post's words\""};
 }
 
-/// The rules of reports on simulated time: at 100 s of a run with 20 reports left, heard of just now, unless
-/// told otherwise.
+/// Reports in simulated time: at 100 s of a run, with 20 reports left and a fresh status.
 class Scene {
  public:
   static constexpr double kEpoch = 1.7e9;  // simulated time 0, as a stamp
@@ -95,34 +92,34 @@ class Scene {
     reports_->tick(time());
   }
   void set_box_clock_forward(double seconds) { clock_set_by_ += seconds; }
-  /// So it is told with the next restart.
+  /// Applied by the next restart.
   void step_clock(double seconds) {
     set_box_clock_forward(seconds);
     clock_step_ = {.to = time().stamp, .by = seconds};
   }
 
-  /// The program ends at once, and begins again with what is on disk.
+  /// Kills the process and starts it from the disk.
   void restart(const std::string& post = "10.100.1.200:8000") {
     reports_ = std::make_unique<Reports>(rules_, output_);
     reports_->clock_stepped(clock_step_);
     reports_->open(all_reports(), all_runs(), time(), post);
   }
-  /// The settings name another place, and the program goes on.
+  /// The settings name another Command Post; the process goes on.
   void move_to(const std::string& post) {
     auto next = std::make_unique<Reports>(rules_, output_);
     next->open(all_reports(), all_runs(), time(), post, reports_.get());
     reports_ = std::move(next);
   }
 
-  /// A client posts; nothing is in the way of sending it at once, unless something is under way.
+  /// A client posts. The report may be sent at once if none is in flight.
   ClientId post(double x = 1, const std::string& type = "Drill", bool resubmit = false) {
     return post(x, type, resubmit, reports_->sending() == nullptr);
   }
-  /// The same, but the rate limit does not let it go.
+  /// As post(), but the rate limit forbids sending.
   ClientId post_to_wait(double x = 1, const std::string& type = "Drill") {
     return post(x, type, false, false);
   }
-  /// The operator posts; it waits for an undo, if the rules say so.
+  /// The operator posts; the report can be undone if the rules allow it.
   ClientId compose(double x = 1, bool resubmit = false) {
     return post({.report = {.type = "Drill", .position = {x, 0, 0}},
                  .sender = "operator",
@@ -134,27 +131,27 @@ class Scene {
     reports_->take(posted, ++last_client_, may_send, time());
     return last_client_;
   }
-  /// Sends the next one. Its number; 0: none may go.
+  /// Returns the number of the sent report; 0: none.
   std::int64_t send_next() {
     if (!reports_->next_requests(time()).report) return 0;
     const Report* const chosen = reports_->choose(time());
     return chosen != nullptr ? chosen->number : 0;
   }
   void answer(const HttpAnswer& answer) { reports_->answered(answer, time()); }
-  /// A client posts, and the Command Post records it in the run that it calls so.
+  /// A client posts, and the Command Post records it in the run of that name.
   void record(double x, const std::string& run) {
     post(x);
     answer(recorded(0, "scored", run));
   }
   void lose() { reports_->lost("no answer", time()); }
 
-  /// The run's status, with the run clock at what it should be.
+  /// A status with the expected run clock.
   void hear(std::int64_t remaining, std::int64_t score) { hear(remaining, score, run_clock()); }
   void hear(std::int64_t remaining, std::int64_t score, double clock) {
     reports_->status_heard({score, clock, remaining, "adit"}, time().now, time());
   }
   double run_clock() const { return now_; }
-  /// The same status each second, for so long.
+  /// The same status each second.
   void keep_hearing(double seconds, std::int64_t remaining, std::int64_t score) {
     for (double end = now_ + seconds; now_ < end;) {
       wait(1);
@@ -162,8 +159,8 @@ class Scene {
     }
   }
 
-  /// An administrative stop, in which the count says nothing and others do not wait for it: a status each
-  /// second, of a run clock that stands still.
+  /// An administrative stop: a status each second with a standing run clock. The count decides nothing, and
+  /// other reports are not blocked.
   void hear_stop(int seconds, double clock = 101) {
     for (int i = 0; i < seconds; ++i) {
       wait(1);
@@ -173,7 +170,7 @@ class Scene {
 
   const Report& report(std::int64_t number) const { return reports_->book().at(number); }
   ReportState state(std::int64_t number) const { return report(number).state; }
-  /// Why each report waits for the operator's word.
+  /// Notes of the reports that the operator must decide.
   std::vector<std::string> undecided() const {
     std::vector<std::string> notes;
     for (const std::int64_t number : reports().book().open()) {
@@ -184,7 +181,7 @@ class Scene {
   }
   std::size_t count() const { return reports_->book().all().size(); }
   bool is_told(ClientId client) const { return output_.told.contains(client); }
-  /// What a client was told, at last; status 0: nothing yet.
+  /// The last answer to the client; status 0: none.
   RecordingActions::Told told(ClientId client) const {
     const auto found = output_.told.find(client);
     return found == output_.told.end() ? RecordingActions::Told{} : found->second.back();

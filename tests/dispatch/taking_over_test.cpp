@@ -1,4 +1,4 @@
-// What a spare knows that takes over: the two boxes as they are, and the Command Post's count.
+// A spare takes over the reports of the first box.
 #include "dispatch/taking_over.hpp"
 
 #include <gmock/gmock.h>
@@ -22,17 +22,23 @@ Books books_of(Scene& scene) {
   return books;
 }
 
-/// A box that was in use and one that takes over from it.
-class TakingOverTest : public testing::Test {
- protected:
-  TakingOverTest() { blank(spare); }
+/// As of a new box.
+void blank(Scene& scene) {
+  scene.output().ledger.clear();
+  scene.output().runs.clear();
+  scene.restart();
+}
 
-  /// It was never at a run.
-  static void blank(Scene& scene) {
-    scene.output().ledger.clear();
-    scene.output().runs.clear();
-    scene.restart();
-  }
+void restart_with(Scene& scene, const TakeOver& taken) {
+  for (const TakenOverReport& each : taken.reports) scene.output().ledger[each.report.number] = each.report;
+  for (const Run& run : taken.runs) scene.output().runs[run.number] = run;
+  scene.restart();
+}
+
+/// A box in use, and its spare.
+class TakeOverTest : public testing::Test {
+ protected:
+  TakeOverTest() { blank(spare); }
 
   static void take_over(Scene& from, Scene& to, const std::optional<icd::RunStatus>& expected) {
     const TakeOver taken = dispatch::take_over(books_of(to), books_of(from),
@@ -40,29 +46,27 @@ class TakingOverTest : public testing::Test {
     for (const TakenOverReport& each : taken.reports) {
       const auto here = to.output().ledger.find(each.report.number);
       const double received = here == to.output().ledger.end() ? each.report.received : here->second.received;
-      EXPECT_EQ(received, each.report.received) << "a number is never another's";
-      to.output().ledger[each.report.number] = each.report;
+      EXPECT_EQ(received, each.report.received) << "no number is reused";
     }
-    for (const dispatch::Run& run : taken.runs) to.output().runs[run.number] = run;
-    to.restart();
+    restart_with(to, taken);
   }
   void take_over() { take_over(first, spare, first.reports().expected(first.time().now)); }
 
   Scene first, spare;
 };
 
-TEST_F(TakingOverTest, AReportThatIsKnownThereIsKnownHere) {
+TEST_F(TakeOverTest, KeepsAnswersOfTheFirstBox) {
   first.post(1);
   first.answer(recorded(1));
   take_over();
   spare.hear(19, 1);
   const ClientId again = spare.post(1);
   EXPECT_EQ(spare.told(again).status, 201);
-  EXPECT_EQ(spare.told(again).body, first.report(1).answer) << "byte for byte";
+  EXPECT_EQ(spare.told(again).body, first.report(1).answer);
   EXPECT_EQ(spare.count(), 1U);
 }
 
-TEST_F(TakingOverTest, AReportThatWasCorrectedThereIsNotSentHere) {
+TEST_F(TakeOverTest, HoldsAReportThatTheFirstBoxCorrected) {
   spare.wait(1);
   spare.post_to_wait(1);
   first.post_to_wait(1);
@@ -74,10 +78,10 @@ TEST_F(TakingOverTest, AReportThatWasCorrectedThereIsNotSentHere) {
   spare.hear(19, 1);
   EXPECT_EQ(spare.state(1), Held);
   EXPECT_EQ(spare.send_next(), 0);
-  EXPECT_EQ(spare.report(2).same_as, 3) << "with the numbers of this box";
+  EXPECT_EQ(spare.report(2).same_as, 3) << "numbers of this box";
 }
 
-TEST_F(TakingOverTest, WhatWaitedGoesOnceTheStatusShowsThatNobodySentIt) {
+TEST_F(TakeOverTest, SendsQueuedReportsThatTheStatusLacks) {
   first.post_to_wait(1);
   take_over();
   EXPECT_EQ(spare.state(1), InDoubt);
@@ -88,14 +92,14 @@ TEST_F(TakingOverTest, WhatWaitedGoesOnceTheStatusShowsThatNobodySentIt) {
   EXPECT_EQ(spare.send_next(), 1);
 }
 
-TEST_F(TakingOverTest, WhatTheFirstBoxSentAfterItsExportIsFoundRecorded) {
+TEST_F(TakeOverTest, DetectsAReportSentAfterTheExport) {
   first.post_to_wait(1);
   take_over();
   spare.keep_hearing(3, 19, 1);
   EXPECT_EQ(spare.state(1), Settled);
 }
 
-TEST_F(TakingOverTest, WhereTheFirstBoxSentSomeOfWhatWaitedTheOperatorDecides) {
+TEST_F(TakeOverTest, AsksTheOperatorIfSomeReportsWereSent) {
   first.post_to_wait(1);
   first.post_to_wait(2);
   take_over();
@@ -104,7 +108,7 @@ TEST_F(TakingOverTest, WhereTheFirstBoxSentSomeOfWhatWaitedTheOperatorDecides) {
   EXPECT_EQ(spare.undecided().size(), 2U);
 }
 
-TEST_F(TakingOverTest, WhereTheCountIsNotKnownForCertainTheOperatorDecides) {
+TEST_F(TakeOverTest, AsksTheOperatorIfTheCountIsUncertain) {
   first.post_to_wait(1);
   take_over(first, spare, std::nullopt);
   spare.keep_hearing(60, 20, 0);
@@ -112,7 +116,7 @@ TEST_F(TakingOverTest, WhereTheCountIsNotKnownForCertainTheOperatorDecides) {
   EXPECT_THAT(spare.undecided(), testing::ElementsAre(HasSubstr("the operator decides")));
 }
 
-TEST_F(TakingOverTest, WhatWasUnderWayIsFoundOut) {
+TEST_F(TakeOverTest, DecidesAReportThatWasInFlight) {
   for (const bool was_recorded : {true, false}) {
     Scene box, other;
     blank(other);
@@ -125,7 +129,7 @@ TEST_F(TakingOverTest, WhatWasUnderWayIsFoundOut) {
   }
 }
 
-TEST_F(TakingOverTest, TheOperatorsWordStands) {
+TEST_F(TakeOverTest, KeepsTheOperatorsDecisions) {
   first.post_to_wait(1);
   ASSERT_TRUE(first.reports().hold(1, first.time()));
   first.post_to_wait(2);
@@ -136,7 +140,7 @@ TEST_F(TakingOverTest, TheOperatorsWordStands) {
   EXPECT_EQ(spare.state(2), Withdrawn);
 }
 
-TEST_F(TakingOverTest, ASpareThatWasNeverAtARunCountsAsTheFirstBoxDid) {
+TEST_F(TakeOverTest, KeepsTheNumbersIfTheSpareIsBlank) {
   first.post(1);
   first.answer(recorded());
   first.post(2);
@@ -146,7 +150,7 @@ TEST_F(TakingOverTest, ASpareThatWasNeverAtARunCountsAsTheFirstBoxDid) {
   EXPECT_EQ(spare.reports().run().number, first.reports().run().number);
 }
 
-TEST_F(TakingOverTest, DoneTwiceItChangesNothing) {
+TEST_F(TakeOverTest, ChangesNothingTheSecondTime) {
   first.post(1);
   first.answer(recorded());
   first.post_to_wait(2);
@@ -160,7 +164,7 @@ TEST_F(TakingOverTest, DoneTwiceItChangesNothing) {
   EXPECT_EQ(other.output().runs, runs);
 }
 
-TEST_F(TakingOverTest, WhatWaitsAtTheSpareGoesInTheFirstBoxsRun) {
+TEST_F(TakeOverTest, SendsReportsQueuedAtTheSpare) {
   Scene other;
   other.post_to_wait(7);
   first.post(1);
@@ -168,10 +172,10 @@ TEST_F(TakingOverTest, WhatWaitsAtTheSpareGoesInTheFirstBoxsRun) {
   take_over(first, other, first.reports().expected(first.time().now));
   other.hear(19, 0);
   EXPECT_EQ(other.send_next(), 1);
-  EXPECT_EQ(other.report(2).report.position.x, 1) << "the first box's has a number that was free";
+  EXPECT_EQ(other.report(2).report.position.x, 1) << "a free number";
 }
 
-TEST_F(TakingOverTest, TheSameReportAtBothBoxesIsSentByNobodyUnasked) {
+TEST_F(TakeOverTest, AsksTheOperatorAboutAReportOfBothBoxes) {
   for (const bool first_sent : {true, false}) {
     Scene box, other;
     box.post_to_wait(1);
@@ -187,7 +191,7 @@ TEST_F(TakingOverTest, TheSameReportAtBothBoxesIsSentByNobodyUnasked) {
   }
 }
 
-TEST_F(TakingOverTest, AReportOfARunThatIsAnotherForCertainIsNoRepeat) {
+TEST_F(TakeOverTest, SendsAReportThatADifferentRunHad) {
   Scene other;
   other.post(1);
   other.answer(recorded(0, "scored", "yesterday"));
@@ -196,11 +200,11 @@ TEST_F(TakingOverTest, AReportOfARunThatIsAnotherForCertainIsNoRepeat) {
   take_over(first, other, first.reports().expected(first.time().now));
   other.hear(19, 0);
   const ClientId again = other.post(1);
-  EXPECT_FALSE(other.is_told(again)) << "it is sent, in today's run";
+  EXPECT_FALSE(other.is_told(again)) << "sent in today's run";
   EXPECT_NE(other.reports().sending(), nullptr);
 }
 
-TEST_F(TakingOverTest, AndBackAgain) {
+TEST_F(TakeOverTest, WorksInTheOtherDirectionLater) {
   first.wait(1);
   first.post(1);
   first.answer(recorded());
@@ -216,28 +220,26 @@ TEST_F(TakingOverTest, AndBackAgain) {
   first.wait(60);
   take_over(spare, first, spare.reports().expected(spare.time().now));
   EXPECT_EQ(first.state(1), Answered);
-  EXPECT_EQ(first.state(2), Answered) << "what waited here was sent there";
+  EXPECT_EQ(first.state(2), Answered) << "the spare sent it";
   EXPECT_EQ(first.state(3), Answered);
   first.hear(17, 0);
   EXPECT_EQ(first.told(first.post(2)).status, 201);
   EXPECT_EQ(first.count(), 3U);
 }
 
-TEST_F(TakingOverTest, AClockThatIsAnotherMakesNoNewRun) {
+TEST_F(TakeOverTest, ToleratesAClockOffset) {
   first.keep_hearing(40, 20, 0);
   first.post(1);
   first.answer(recorded());
   spare.set_box_clock_forward(7200);
   const TakeOver taken = dispatch::take_over(books_of(spare), books_of(first),
                                              {.stamp = spare.time().stamp, .ahead = 7200 - 40});
-  for (const TakenOverReport& each : taken.reports) spare.output().ledger[each.report.number] = each.report;
-  for (const dispatch::Run& run : taken.runs) spare.output().runs[run.number] = run;
-  spare.restart();
+  restart_with(spare, taken);
   spare.hear(19, 0, 145);
-  EXPECT_EQ(spare.told(spare.post(1)).status, 201) << "not held as one of another run";
+  EXPECT_EQ(spare.told(spare.post(1)).status, 201);
 }
 
-TEST_F(TakingOverTest, WhatIsKnownHereStaysKnown) {
+TEST_F(TakeOverTest, IgnoresAnOlderExport) {
   first.post_to_wait(1);
   const Books before = books_of(first);
   take_over();
@@ -245,13 +247,13 @@ TEST_F(TakingOverTest, WhatIsKnownHereStaysKnown) {
   ASSERT_EQ(spare.send_next(), 1);
   spare.answer(recorded());
   const TakeOver taken = dispatch::take_over(books_of(spare), before, {.stamp = spare.time().stamp});
-  EXPECT_THAT(taken.reports, IsEmpty()) << "an older export says nothing about it";
+  EXPECT_THAT(taken.reports, IsEmpty());
 }
 
-/// A Command Post that counts, and both boxes beside it.
+/// A Command Post that counts, and both boxes.
 class World {
  public:
-  explicit World(unsigned seed) : random_(seed) { blank(); }
+  explicit World(unsigned seed) : random_(seed) { blank(spare_); }
 
   void live() {
     for (int i = 0; i < 4; ++i) post_one();
@@ -260,23 +262,15 @@ class World {
     Books here, there = books_of(first_);
     const TakeOver taken = dispatch::take_over(
         here, there, {.expected = chance(2) ? expected : std::nullopt, .stamp = spare_.time().stamp});
-    for (const TakenOverReport& each : taken.reports)
-      spare_.output().ledger[each.report.number] = each.report;
-    for (const Run& run : taken.runs) spare_.output().runs[run.number] = run;
-    spare_.restart();
+    restart_with(spare_, taken);
     for (int second = 0; second < 90; ++second) live_at_spare();
   }
 
-  /// How often each was recorded, by its x.
+  /// By x.
   const std::map<double, int>& recorded_times() const { return recorded_; }
   Scene& spare() { return spare_; }
 
  private:
-  void blank() {
-    spare_.output().ledger.clear();
-    spare_.output().runs.clear();
-    spare_.restart();
-  }
   bool chance(unsigned of) { return random_() % of == 0; }
   void record(const Report& report) { ++recorded_[report.report.position.x]; }
   std::int64_t left() const {
@@ -297,12 +291,12 @@ class World {
     if (sending == nullptr) return waiting_.push_back(x);
     const bool arrives = !chance(3);
     if (arrives) record(*sending);
-    if (chance(2)) return;  // it is under way still
+    if (chance(2)) return;  // still in flight
     if (arrives && chance(2)) return first_.answer(recorded(0));
     first_.lose();
   }
 
-  /// Somebody did, though he should not have: it sent some of what waited.
+  /// The first box was started again and sent some queued reports.
   void wake_first_box() {
     for (const double x : waiting_) {
       if (chance(2)) ++recorded_[x];
@@ -324,7 +318,7 @@ class World {
   double posted_ = 0;
 };
 
-TEST(TakingOverInAWorld, NoReportIsRecordedTwiceNorLostWhateverHappened) {
+TEST(TakeOverSimulation, RecordsEachReportOnceAndLosesNone) {
   std::size_t decided = 0;
   for (unsigned seed = 1; seed <= 200; ++seed) {
     World world(seed);
@@ -334,14 +328,14 @@ TEST(TakingOverInAWorld, NoReportIsRecordedTwiceNorLostWhateverHappened) {
     for (const auto& [number, report] : world.spare().reports().book().all()) {
       const auto found = world.recorded_times().find(report.report.position.x);
       const bool was_recorded = found != world.recorded_times().end() && found->second > 0;
-      if (!is_final(report.state)) continue;  // the operator is asked
+      if (!is_final(report.state)) continue;  // open for the operator
       ++decided;
       ASSERT_TRUE(was_recorded) << "report " << number << " is " << name_of(report.state) << ", seed "
                                 << seed;
     }
     ASSERT_EQ(world.spare().count(), 4U) << "seed " << seed;
   }
-  EXPECT_GT(decided, 200U) << "many need nobody's word";
+  EXPECT_GT(decided, 200U) << "many need no operator";
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ Instant at_ms(int ms) {
   return Instant{} + milliseconds(ms);
 }
 
-TEST(Turn, BelongsToTheOldestNewsThatMayBeSent) {
+TEST(Turn, BelongsToTheOldestMessageThatMayBeSent) {
   const std::array candidates = {Candidate{at_ms(50), at_ms(0)}, Candidate{at_ms(10), at_ms(0)},
                                  Candidate{at_ms(5), at_ms(500)}};
   const Turn turn = oldest_first(candidates, at_ms(100));
@@ -21,7 +21,7 @@ TEST(Turn, BelongsToTheOldestNewsThatMayBeSent) {
   EXPECT_FALSE(turn.wake);
 }
 
-TEST(Turn, ComesWithTheFirstRateLimitThatEnds) {
+TEST(Turn, ComesWhenTheFirstRateLimitEnds) {
   const std::array candidates = {Candidate{at_ms(50), at_ms(900)}, Candidate{at_ms(60), at_ms(300)},
                                  Candidate{std::nullopt, at_ms(0)}};
   const Turn turn = oldest_first(candidates, at_ms(100));
@@ -29,21 +29,21 @@ TEST(Turn, ComesWithTheFirstRateLimitThatEnds) {
   EXPECT_EQ(turn.wake, at_ms(300));
 }
 
-TEST(Turn, IsNobodysWithoutNews) {
+TEST(Turn, IsVacantWithoutMessages) {
   const std::array candidates = {Candidate{std::nullopt, at_ms(0)}, Candidate{std::nullopt, at_ms(0)}};
   EXPECT_FALSE(oldest_first(candidates, at_ms(1)).candidate);
   EXPECT_FALSE(oldest_first(candidates, at_ms(1)).wake);
   EXPECT_FALSE(in_order(candidates, at_ms(1)).candidate);
 }
 
-TEST(Turn, OfAStatusWaitsForAReportThatMayNotBeSentYet) {
+TEST(Turn, OfAStatusComesAfterAPendingReport) {
   const std::array candidates = {Candidate{at_ms(50), at_ms(900)}, Candidate{at_ms(10), at_ms(0)}};
   const Turn turn = in_order(candidates, at_ms(100));
   EXPECT_FALSE(turn.candidate);
   EXPECT_EQ(turn.wake, at_ms(900));
 }
 
-TEST(Turn, GoesInOrderWhereAllMaySend) {
+TEST(Turn, FollowsTheOrderIfAllMaySend) {
   const std::array candidates = {Candidate{at_ms(50), at_ms(0)}, Candidate{at_ms(10), at_ms(0)}};
   EXPECT_EQ(in_order(candidates, at_ms(100)).candidate, 0u);
 }

@@ -23,7 +23,7 @@ class WaitingClientsTest : public testing::Test {
     clients_.add(2, 8, at_second(21));
     clients_.add(3, 7, at_second(22));
   }
-  /// Each client that was told since the last call, and its report.
+  /// Answers since the last call: client and report.
   std::vector<std::pair<ClientId, std::int64_t>> told() {
     std::vector<std::pair<ClientId, std::int64_t>> all;
     for (const auto& [client, answers] : std::exchange(output_.told, {})) {
@@ -37,12 +37,12 @@ class WaitingClientsTest : public testing::Test {
   WaitingClients clients_{book_, account_, output_};
 };
 
-TEST_F(WaitingClientsTest, KnowWhichReportEachOfThemWaitsFor) {
+TEST_F(WaitingClientsTest, HaveAReportEach) {
   EXPECT_EQ(clients_.awaited_by(2), 8);
   EXPECT_EQ(clients_.awaited_by(4), std::nullopt);
 }
 
-TEST_F(WaitingClientsTest, AreToldOnceOfTheirReport) {
+TEST_F(WaitingClientsTest, AreAnsweredOnce) {
   clients_.tell_all(7);
   EXPECT_THAT(told(), ElementsAre(Pair(1, 7), Pair(3, 7)));
   clients_.tell_all(7);
@@ -50,7 +50,7 @@ TEST_F(WaitingClientsTest, AreToldOnceOfTheirReport) {
   EXPECT_THAT(told(), IsEmpty());
 }
 
-TEST_F(WaitingClientsTest, AreToldOnceTheirTimeIsUp) {
+TEST_F(WaitingClientsTest, AreAnsweredAtTheirDeadline) {
   EXPECT_EQ(clients_.next_deadline(), at_second(20));
   clients_.tick(at_second(19));
   EXPECT_THAT(told(), IsEmpty());
@@ -59,12 +59,12 @@ TEST_F(WaitingClientsTest, AreToldOnceTheirTimeIsUp) {
   EXPECT_EQ(clients_.next_deadline(), at_second(22));
 }
 
-TEST_F(WaitingClientsTest, MayWaitLessLongThanEarlierOnes) {
+TEST_F(WaitingClientsTest, MayHaveAnEarlierDeadlineThanOthers) {
   clients_.add(4, 9, at_second(5));
   EXPECT_EQ(clients_.next_deadline(), at_second(5));
 }
 
-TEST_F(WaitingClientsTest, AreDismissedButForThoseOfTheReportInFlight) {
+TEST_F(WaitingClientsTest, AreDismissedExceptThoseOfAReportInFlight) {
   clients_.dismiss(false);
   EXPECT_THAT(told(), ElementsAre(Pair(2, 8)));
   clients_.dismiss(true);
@@ -72,7 +72,7 @@ TEST_F(WaitingClientsTest, AreDismissedButForThoseOfTheReportInFlight) {
   EXPECT_EQ(clients_.next_deadline(), std::nullopt);
 }
 
-TEST_F(WaitingClientsTest, KeepTheirTimeWhereTheyAreHandedOverToAnotherReport) {
+TEST_F(WaitingClientsTest, KeepTheirDeadlineAtAHandOver) {
   clients_.hand_over(7, book_.at(8));
   EXPECT_EQ(clients_.next_deadline(), at_second(20));
   clients_.tell_all(7);

@@ -8,7 +8,7 @@
 namespace adit::dispatch::model {
 namespace {
 
-/// Every third artifact is where it was reported to be.
+/// Every third artifact scores a point.
 bool is_good(double key) {
   return std::fmod(std::abs(key), 3) < 1;
 }

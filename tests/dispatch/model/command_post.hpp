@@ -8,25 +8,24 @@
 
 namespace adit::dispatch::model {
 
-/// Seconds of simulated time.
+/// In simulated time.
 using Seconds = double;
 
-/// What one Command Post has recorded, and how.
 struct Recorded {
-  double key = 0;  // the report's x, which stands for the report; negative: another sender's
+  double key = 0;  // x of the report, which identifies it; negative: another sender's
   std::int64_t run = 0;
   bool scored = false;
   std::int64_t points = 0;
   Seconds run_began = 0, at = 0;
 };
 
-/// The Command Post by the letter of the ICD's section 5: it records whatever reaches it, scores it where the
-/// run goes on and something is left, and cannot tell a report from the same one again.
+/// As in section 5 of the ICD: records each report, scores it if the run goes on and reports are left, and
+/// does not recognise a repeat.
 class CommandPost {
  public:
   enum class Phase { NotStarted, Running, AdminStop };
-  /// Running: both URIs show one clock. Differing: each has one of its own. Standing: as the public test
-  /// server does, each shows always the same, and every run is called "1".
+  /// Running: both URIs show one clock. Differing: each URI has its own clock. Standing: as at the public
+  /// test server, each URI shows a constant, and each run is called "1".
   enum class Clocks { Running, Differing, Standing };
 
   explicit CommandPost(Clocks clocks = Clocks::Running, bool one_name = false)
@@ -46,7 +45,7 @@ class CommandPost {
   const Clocks clocks_;
   const bool one_name_;
   Phase phase_ = Phase::Running;
-  std::int64_t run_ = 1;  // as it is told apart here
+  std::int64_t run_ = 1;
   Seconds started_ = 0;
   std::int64_t remaining_ = 25, score_ = 0;
   std::vector<Recorded> recorded_;

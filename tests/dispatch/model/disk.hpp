@@ -10,10 +10,10 @@
 
 namespace adit::dispatch::model {
 
-/// Thrown where the model's power goes; nothing of the product is on the stack's other side.
+/// Power fails.
 struct PowerCut {};
 
-/// A ledger that keeps what was written over the end of the program, and what was flushed over a power cut.
+/// Keeps written records over a restart, and flushed records over a power cut.
 class Disk {
  public:
   struct Content {
@@ -49,7 +49,7 @@ class Disk {
   }
 
   bool full = false;
-  std::function<void()> cut = [] {};  // may throw PowerCut: before and after each write
+  std::function<void()> cut = [] {};  // before and after each write; may throw PowerCut
 
  private:
   Content written_, flushed_;

@@ -1,4 +1,4 @@
-// What happens to the box and to the Command Post from outside.
+// Faults from outside, and the operator.
 #include <utility>
 
 #include "dispatch/model/world.hpp"
@@ -11,8 +11,8 @@ constexpr Seconds kShortestRun = 60;
 
 }  // namespace
 
-/// The program restarts, in good order, with another place in its settings. Whoever reported before does
-/// so again, whatever he was told: a robot that was restarted, or an operator who is not sure.
+/// An orderly restart with another Command Post in the settings. Clients that posted before may repeat their
+/// reports, whatever their answers were.
 void World::switch_course() {
   if (calm_) return;
   later(between(5, 90), [this] { switch_course(); }, false);
@@ -36,7 +36,7 @@ void World::switch_course() {
 void World::cut_power() {
   tell_story("power cut");
   ++tally_.power_cuts;
-  if (chance() < 0.5) disk_.lose_unflushed();  // else only the program has died
+  if (chance() < 0.5) disk_.lose_unflushed();  // otherwise only the process is killed
   reports_.reset();
   ++life_;
   drop_connections();

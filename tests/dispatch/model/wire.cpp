@@ -1,4 +1,4 @@
-// What lies between Adit and the Command Post: what is sent, and what becomes of it.
+// The connection between Adit and the Command Post.
 #include <utility>
 
 #include "dispatch/model/world.hpp"
@@ -7,8 +7,7 @@
 namespace adit::dispatch::model {
 namespace {
 
-/// How late the Command Post may record what it has read before the connection was dropped: within the
-/// rules' patience.
+/// Longest delay until the Command Post records a request of a dropped connection. Less than `doubt_for`.
 constexpr Seconds kLatest = 9;
 constexpr Seconds kRoundTrip = 0.02;
 

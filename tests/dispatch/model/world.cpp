@@ -12,9 +12,9 @@ namespace {
 constexpr Seconds kTrouble = 600, kCalm = 240;
 constexpr std::size_t kClients = 12;
 constexpr Seconds kFlushSoon = 0.005;
-/// Rules answer a client within 20 s, looked at each second.
+/// 20 s by the rules, which are applied each second.
 constexpr Seconds kAnswered = 21.5;
-/// Single writes that fail, where the disk fills up at times.
+/// Probability that a single write fails in worlds with a full disk.
 constexpr double kRefusedWrite = 0.02;
 
 }  // namespace
@@ -112,7 +112,7 @@ void World::tell(ClientId client, const ClientAnswer& answer, const Report& repo
   }
   const int status = answer.sentence.empty() ? report.status : static_cast<int>(answer.status);
   const auto found = posts_.find(client);
-  if (found == posts_.end()) return;  // it has hung up
+  if (found == posts_.end()) return;  // disconnected
   const std::size_t who = found->second;
   posts_.erase(found);
   clients_[who].waiting = 0;

@@ -18,32 +18,31 @@
 
 namespace adit::dispatch::model {
 
-/// How often what goes wrong, as probabilities for each chance there is.
+/// Probabilities of faults.
 struct Trouble {
-  double answer_lost = 0;   // recorded, and its answer lost
-  double request_lost = 0;  // never recorded, and no answer
-  double late = 0;          // recorded only after Adit has given up waiting
+  double answer_lost = 0;   // recorded, but its answer is lost
+  double request_lost = 0;  // neither recorded nor answered
+  double late = 0;          // recorded after Adit has stopped waiting
   double never_left = 0, throttled = 0, barred = 0, refused = 0;
   double server_error = 0;  // half of them after recording
   double status_fails = 0;
-  double power_cut = 0;  // at each write, before or after it; and as often at any other event
+  double power_cut = 0;  // before or after each write; a tenth at any other event
   double disk_full = 0;  // for some seconds
   bool other_sender = false, admin_stops = false, new_runs = false;
   CommandPost::Clocks clocks = CommandPost::Clocks::Running;
   bool one_name = false;       // for all runs
-  bool courses = false;        // the settings name one Command Post, another, or none that is there; and back
-  bool operator_acts = false;  // and declares a new run that Adit has not noticed yet
+  bool courses = false;        // the settings switch between two Command Posts and an absent one
+  bool operator_acts = false;  // the operator also declares new runs early
   Review review = Review::Off;
 };
 
-/// What the product does, for tests that must not be vacuous.
+/// Counts that show that a test is not vacuous.
 struct Tally {
   std::int64_t steps = 0, posts = 0, acknowledged = 0, recorded = 0, settled = 0, sent_again = 0,
                power_cuts = 0, undecided = 0, held = 0, held_back = 0, switches = 0;
 };
 
-/// Adit's rules, clients, a Command Post and what lies between, on simulated time. Everything comes from the
-/// seed.
+/// Adit's rules, clients, a Command Post and the connection, in simulated time and from one seed.
 class World final : public Output {
  public:
   static constexpr double kEpoch = 1.7e9;  // simulated time 0, as a stamp
@@ -51,43 +50,43 @@ class World final : public Output {
   World(const Trouble& trouble, std::uint64_t seed);
   ~World() override;
 
-  /// Ten minutes of trouble, and then enough of calm for all to end.
+  /// Ten minutes of faults, then quiet until all reports are final.
   void live();
-  /// What broke promise 1, a sentence each.
+  /// Violations of promise 1, a sentence each.
   std::vector<std::string> broken_promises() const;
   const Tally& tally() const { return tally_; }
-  /// The story so far, where ADIT_MODEL_STORY is set.
+  /// Empty unless ADIT_MODEL_STORY is set.
   const std::string& story() const { return story_; }
 
  private:
   struct Event {
     Seconds at = 0;
     std::uint64_t order = 0;
-    std::int64_t life = 0;  // of the process that it belongs to; 0: to nobody's
+    std::int64_t life = 0;  // process start that it belongs to; 0: none
     std::function<void()> happen;
     bool operator<(const Event& other) const { return at != other.at ? at > other.at : order > other.order; }
   };
   struct Posting {
     Seconds at = 0;
     std::size_t place = 0;
-    bool heard = false;  // something was heard of a run at that place
+    bool heard = false;  // a run was known at that time
   };
   struct Client {
     double key = 0;
     Seconds patience = 20, pause = 1;
     std::int64_t tries_left = 20;
-    ClientId waiting = 0;  // the post under way
+    ClientId waiting = 0;  // the post in flight
     bool done = false, acknowledged = false;
     std::vector<Posting> posted;
   };
 
-  // The judge (judge.cpp): each adds what it finds broken.
+  // The oracle (oracle.cpp). Each adds the violations that it finds.
   bool was_recorded(double key) const;
   std::vector<Recorded> recorded() const;
   bool was_meant(const Recorded& record, std::size_t place) const;
-  void judge_records(std::vector<std::string>& broken) const;
-  void judge_ledger(std::vector<std::string>& broken) const;
-  void judge_clients(std::vector<std::string>& broken) const;
+  void check_records(std::vector<std::string>& broken) const;
+  void check_ledger(std::vector<std::string>& broken) const;
+  void check_clients(std::vector<std::string>& broken) const;
 
   // Output.
   bool write(std::span<const Report> steps, const Run* run, Flush flush) override;
@@ -119,7 +118,7 @@ class World final : public Output {
   void make_trouble();
 
   // The wire (wire.cpp).
-  /// A request that the Command Post has read, and will record; shared with its event.
+  /// A request that the Command Post has read and will record.
   struct Pending {
     icd::ArtifactReport report;
     CommandPost* post = nullptr;
@@ -132,7 +131,7 @@ class World final : public Output {
   void ask();
   void record_later(Seconds delay, const icd::ArtifactReport& report, std::function<void(HttpAnswer)> then);
   void record_at(const std::shared_ptr<Pending>& pending);
-  /// What has been read is recorded soon.
+  /// Requests that were read are recorded soon.
   void drop_connections();
 
   const Trouble trouble_;
@@ -143,8 +142,8 @@ class World final : public Output {
   std::priority_queue<Event> events_;
 
   Disk disk_;
-  std::vector<CommandPost> posts_there_;  // by their places; at the one after the last nobody is
-  std::size_t place_ = 0;                 // that the settings name
+  std::vector<CommandPost> posts_there_;  // one per place; the place after the last has no Command Post
+  std::size_t place_ = 0;                 // in the settings
   std::unique_ptr<Reports> reports_;
   std::int64_t life_ = 0;
   bool busy_ = false;
@@ -155,11 +154,11 @@ class World final : public Output {
   std::vector<Client> clients_;
   std::map<ClientId, std::size_t> posts_;
   ClientId last_post_ = 0;
-  std::optional<Seconds> first_heard_;  // the first status of all is on disk
-  bool declared_ = false;               // a new run, by the operator
-  std::set<double> touched_;            // the operator has said something of it
-  std::vector<Seconds> others_;         // when another sender reported
-  std::vector<std::string> broken_;     // what was seen to break a promise as it happened
+  std::optional<Seconds> first_heard_;  // time of the first status on disk
+  bool declared_ = false;               // the operator declared a run
+  std::set<double> touched_;            // reports that the operator decided
+  std::vector<Seconds> others_;         // times of another sender's reports
+  std::vector<std::string> broken_;     // violations found during the run
   Tally tally_;
   std::string story_;
   bool tells_ = false;

@@ -1,4 +1,4 @@
-// What becomes of a report that is posted: taken, joined to the same one, held, or not taken.
+// A posted report is accepted, joined to an earlier one, held or rejected.
 #include <gmock/gmock.h>
 
 #include "dispatch/scene.hpp"
@@ -16,17 +16,17 @@ ReportRules reviewing(Review review) {
   return rules;
 }
 
-TEST(Taking, SendsAReportAtOnceAfterOneWriteOfBothSteps) {
+TEST(NewReport, IsSentAfterOneWriteOfBothSteps) {
   Scene scene;
   const auto writes = scene.output().writes;
   scene.post();
   EXPECT_EQ(scene.output().writes, writes + 1);
   EXPECT_THAT(scene.output().lives[1], ElementsAre(Queued, Sending));
   ASSERT_NE(scene.reports().sending(), nullptr);
-  EXPECT_EQ(scene.reports().sending()->before->remaining_reports, 20) << "for the case of a doubt";
+  EXPECT_EQ(scene.reports().sending()->before->remaining_reports, 20) << "kept for a doubt";
 }
 
-TEST(Taking, KeepsTheOrderInWhichReportsCame) {
+TEST(NewReport, KeepsItsPlaceInTheOrder) {
   Scene scene;
   for (const double x : {1, 2, 3}) scene.post_to_wait(x);
   const ClientId late = scene.post(4);
@@ -39,7 +39,7 @@ TEST(Taking, KeepsTheOrderInWhichReportsCame) {
   EXPECT_EQ(scene.told(late).status, 201);
 }
 
-TEST(Taking, WaitsForTheFirstWordOfTheRun) {
+TEST(NewReport, IsQueuedUntilTheRunIsKnown) {
   Scene scene;
   scene.wait(16);
   scene.post();
@@ -50,7 +50,7 @@ TEST(Taking, WaitsForTheFirstWordOfTheRun) {
   EXPECT_EQ(scene.send_next(), 1);
 }
 
-TEST(Taking, DoesNotTakeMoreThanMayWait) {
+TEST(NewReport, IsRejectedByAFullQueue) {
   ReportRules rules;
   rules.most_waiting = 2;
   Scene scene(rules);
@@ -62,10 +62,10 @@ TEST(Taking, DoesNotTakeMoreThanMayWait) {
   EXPECT_EQ(told.number, 0);
   EXPECT_EQ(scene.count(), 2);
   const ClientId joined = scene.post_to_wait(2);
-  EXPECT_FALSE(scene.is_told(joined)) << "the same again takes no room";
+  EXPECT_FALSE(scene.is_told(joined)) << "a repeat needs no room";
 }
 
-TEST(TheSameReport, JoinsTheOneThatWaitsOrIsUnderWay) {
+TEST(RepeatedReport, JoinsAReportInFlight) {
   Scene scene;
   const ClientId first = scene.post(1);
   const ClientId second = scene.post(1, "dRILL");
@@ -78,7 +78,7 @@ TEST(TheSameReport, JoinsTheOneThatWaitsOrIsUnderWay) {
   }
 }
 
-TEST(TheSameReport, GetsTheAnswerByteForByteLater) {
+TEST(RepeatedReport, GetsTheStoredAnswerByteForByte) {
   Scene scene;
   scene.post(1);
   scene.answer(recorded(1));
@@ -90,37 +90,31 @@ TEST(TheSameReport, GetsTheAnswerByteForByteLater) {
   EXPECT_EQ(scene.count(), 1);
 }
 
-TEST(TheSameReport, IsSentAgainWhereItWasRefused) {
+TEST(RepeatedReport, IsSentIfTheFirstWasRejected) {
   Scene scene;
   scene.post(1);
   scene.answer(answer_of(422));
   scene.post(1);
-  ASSERT_NE(scene.reports().sending(), nullptr);
-  EXPECT_EQ(scene.reports().sending()->number, 2);
+  EXPECT_EQ(scene.state(2), Sending);
 }
 
-TEST(TheSameReport, IsSentAgainWhereItWasRecordedUnscored) {
-  for (const std::string status : {"admin stop", "run not started"}) {
-    Scene scene;
-    scene.post(1);
-    scene.answer(recorded(0, status));
-    scene.post(1);
-    ASSERT_NE(scene.reports().sending(), nullptr) << status;
-    EXPECT_EQ(scene.reports().sending()->number, 2);
-  }
+TEST(RepeatedReport, IsSentIfTheFirstWasNotScored) {
+  Scene scene;
+  scene.post(1);
+  scene.answer(recorded(0, "admin stop"));
+  scene.post(1);
+  EXPECT_EQ(scene.state(2), Sending);
 }
 
-TEST(TheSameReport, IsNotSentAgainWhereTheRunTakesNoMore) {
-  for (const std::string status : {"report limit exceeded", "time limit exceeded"}) {
-    Scene scene;
-    scene.post(1);
-    scene.answer(recorded(0, status));
-    EXPECT_EQ(scene.told(scene.post(1)).body, recorded(0, status).body);
-    EXPECT_EQ(scene.count(), 1);
-  }
+TEST(RepeatedReport, IsNotSentIfTheRunAcceptsNoMore) {
+  Scene scene;
+  scene.post(1);
+  scene.answer(recorded(0, "time limit exceeded"));
+  EXPECT_EQ(scene.told(scene.post(1)).body, scene.report(1).answer);
+  EXPECT_EQ(scene.count(), 1);
 }
 
-TEST(TheSameReport, IsComparedOnlyOnceTheRunIsKnown) {
+TEST(RepeatedReport, IsComparedOnceTheRunIsKnown) {
   Scene scene;
   scene.post(1);
   scene.answer(recorded());
@@ -135,8 +129,8 @@ TEST(TheSameReport, IsComparedOnlyOnceTheRunIsKnown) {
   EXPECT_EQ(scene.told(client).body, recorded().body);
 }
 
-/// A repeat that was found to be one stands for nobody once the first of them does not.
-TEST(TheSameReport, IsSentAgainThoughAnEarlierRepeatWasJoined) {
+/// If the first report is rejected or unscored, its joined repeat blocks no later one.
+TEST(RepeatedReport, IsSentThoughAnEarlierRepeatWasJoined) {
   for (const HttpAnswer& outcome : {answer_of(422), recorded(0, "admin stop")}) {
     Scene scene;
     scene.post_to_wait(1);
@@ -156,7 +150,7 @@ TEST(TheSameReport, IsSentAgainThoughAnEarlierRepeatWasJoined) {
   }
 }
 
-TEST(AResubmittedReport, IsSentAsANewOne) {
+TEST(ResubmittedReport, IsSentAsANewReport) {
   Scene scene;
   scene.post(1);
   scene.answer(recorded());
@@ -166,7 +160,7 @@ TEST(AResubmittedReport, IsSentAsANewOne) {
   EXPECT_TRUE(scene.reports().sending()->asked);
 }
 
-TEST(AResubmittedReport, IsItselfNotDoubledByARetryOfTheSamePost) {
+TEST(ResubmittedReport, IsNotSentTwiceIfItsPostIsRetried) {
   Scene scene;
   scene.post(1);
   scene.answer(recorded());
@@ -177,15 +171,7 @@ TEST(AResubmittedReport, IsItselfNotDoubledByARetryOfTheSamePost) {
   EXPECT_EQ(scene.told(retry).body, recorded(0, "scored", "1", 107).body);
 }
 
-TEST(ANearReport, IsSentUnlessReviewsAreOn) {
-  Scene scene;
-  scene.post(1);
-  scene.answer(recorded());
-  scene.post(4);
-  EXPECT_NE(scene.reports().sending(), nullptr);
-}
-
-TEST(ANearReport, IsHeldForTheOperatorWithTheReason) {
+TEST(NearbyReport, IsHeldWithItsReason) {
   Scene scene(reviewing(Review::Duplicates));
   scene.post(1);
   scene.answer(recorded());
@@ -197,12 +183,12 @@ TEST(ANearReport, IsHeldForTheOperatorWithTheReason) {
   EXPECT_THAT(scene.told(near).sentence, HasSubstr("is held until the operator decides (the same type"));
   scene.hear(19, 0);
   scene.post(7, "Drill");
-  EXPECT_EQ(scene.state(3), Held) << "near the one that is held";
+  EXPECT_EQ(scene.state(3), Held) << "near the held report";
   scene.post(1, "Vent");
   EXPECT_EQ(scene.state(4), Sending) << "another type";
 }
 
-TEST(ANearReport, IsNotHeldBackByOneThatWasRefusedOrNotScored) {
+TEST(NearbyReport, IsNotHeldForAnUnscoredReport) {
   Scene scene(reviewing(Review::Duplicates));
   scene.post(1);
   scene.answer(answer_of(422));
@@ -212,33 +198,15 @@ TEST(ANearReport, IsNotHeldBackByOneThatWasRefusedOrNotScored) {
   EXPECT_EQ(scene.state(3), Sending);
 }
 
-TEST(ANearReport, IsNotHeldWhereItIsAskedFor) {
-  Scene scene(reviewing(Review::Duplicates));
-  scene.post(1);
-  scene.answer(recorded());
-  scene.post(2, "Drill", true);
-  EXPECT_EQ(scene.state(2), Sending);
-}
-
-TEST(TwoNearReports, ThatCameInSilenceAreNotHeldForEachOther) {
-  Scene scene(reviewing(Review::Duplicates));
-  scene.wait(16);
-  scene.post(1);
-  scene.post(2);
-  scene.hear(20, 0);
-  EXPECT_EQ(scene.send_next(), 1);
-  scene.answer(recorded());
-  EXPECT_EQ(scene.send_next(), 0);
-  EXPECT_EQ(scene.state(2), Held);
-}
-
-TEST(AReview, OfAllReportsHoldsEachUntilTheOperatorSendsIt) {
+TEST(ReviewOfAllReports, HoldsEachUntilTheOperatorSendsIt) {
   Scene scene(reviewing(Review::All));
   scene.post(1);
-  EXPECT_EQ(scene.state(1), Held);
+  scene.post(2);
   EXPECT_EQ(scene.send_next(), 0);
   ASSERT_TRUE(scene.reports().send(1, scene.time()).has_value());
-  EXPECT_EQ(scene.send_next(), 1);
+  ASSERT_EQ(scene.send_next(), 1);
+  scene.answer(recorded());
+  EXPECT_EQ(scene.state(2), Held) << "an answer releases no other report";
 }
 
 }  // namespace

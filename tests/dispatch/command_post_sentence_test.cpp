@@ -1,18 +1,18 @@
-#include "dispatch/said.hpp"
-
 #include <gtest/gtest.h>
+
+#include "dispatch/said.hpp"
 
 namespace adit::dispatch {
 namespace {
 
-TEST(Said, IsWhatTheCommandPostSaid) {
+TEST(CommandPostSentence, IsTheTextOfTheBody) {
   EXPECT_EQ(said(422, R"("Missing field: 'y'")"), "Missing field: 'y'");
   EXPECT_EQ(said(401, R"({"detail": "Invalid token."})"), "Invalid token.");
   EXPECT_EQ(said(500, "<html>"), "the Command Post answered 500");
   EXPECT_EQ(said(200, "null"), "the Command Post answered 200");
 }
 
-TEST(Said, IsCutBetweenCharacters) {
+TEST(CommandPostSentence, IsCutBetweenCharacters) {
   std::string text = "x";
   for (int i = 0; i < 400; ++i) text += "\xC3\xA9";
   const std::string sentence = said(422, "\"" + text + "\"");

@@ -1,4 +1,4 @@
-// What broke promise 1 in a world that has come to rest.
+// Finds violations of promise 1 at the end of a world.
 #include <algorithm>
 
 #include "codec/read.hpp"
@@ -8,16 +8,16 @@
 namespace adit::dispatch::model {
 namespace {
 
-/// A report posted so shortly before a new run began may be meant for it.
+/// A report posted so shortly before a new run may be meant for the new run.
 constexpr Seconds kShortly = 25;
 
 }  // namespace
 
 std::vector<std::string> World::broken_promises() const {
   std::vector<std::string> broken = broken_;
-  judge_records(broken);
-  judge_ledger(broken);
-  judge_clients(broken);
+  check_records(broken);
+  check_ledger(broken);
+  check_clients(broken);
   return broken;
 }
 
@@ -26,7 +26,7 @@ bool World::was_recorded(double key) const {
   return key >= 0 && std::ranges::find(all, key, &Recorded::key) != all.end();
 }
 
-/// By any Command Post.
+/// By either Command Post.
 std::vector<Recorded> World::recorded() const {
   std::vector<Recorded> all;
   for (const CommandPost& post : posts_there_) {
@@ -35,8 +35,8 @@ std::vector<Recorded> World::recorded() const {
   return all;
 }
 
-/// Somebody posted it when the run was on, or shortly before; or when nothing was known of any run: then it
-/// is meant for the first that is heard of.
+/// True if a client posted it during the run or shortly before, or while no run was known. A report without
+/// a known run is for the first run that is heard of.
 bool World::was_meant(const Recorded& record, std::size_t place) const {
   const auto client = std::ranges::find(clients_, record.key, &Client::key);
   return std::ranges::any_of(client->posted, [&](const Posting& posting) {
@@ -45,8 +45,8 @@ bool World::was_meant(const Recorded& record, std::size_t place) const {
   });
 }
 
-/// Recorded twice in a run, or in a run that it was not meant for.
-void World::judge_records(std::vector<std::string>& broken) const {
+/// Finds reports recorded twice in a run, or in a run that they were not meant for.
+void World::check_records(std::vector<std::string>& broken) const {
   for (std::size_t place = 0; place < posts_there_.size(); ++place) {
     std::map<std::pair<double, std::int64_t>, std::vector<Recorded>> records;
     for (const Recorded& record : posts_there_[place].recorded()) {
@@ -54,15 +54,15 @@ void World::judge_records(std::vector<std::string>& broken) const {
     }
     for (const auto& [which, times] : records) {
       if (touched_.contains(which.first)) continue;
-      // In a stop that nobody told Adit of, a record does not show; it costs nothing there.
+      // An unannounced administrative stop hides a record. A repeat costs nothing then.
       const auto scored = std::ranges::count_if(times, &Recorded::scored);
       const std::int64_t count = trouble_.admin_stops ? scored : static_cast<std::int64_t>(times.size());
       if (count > 1) {
         broken.push_back(icd::sentence("report ", which.first, " was recorded ", count, " times"));
       }
-      // Until a status or an answer tells, nobody knows that a run has begun.
+      // A new run is unknown until a status or an answer shows it.
       const bool unnoticed = trouble_.new_runs && times.front().at < times.front().run_began + kShortly;
-      // A declared run of which no status was heard may be one that is still to begin.
+      // A declared run without a status may be one that has not begun.
       const bool tells = trouble_.courses || (trouble_.new_runs && which.second > 1);
       if (tells && !was_meant(times.front(), place) && !unnoticed && !declared_) {
         broken.push_back(icd::sentence("report ", which.first, " was sent into run ", which.second,
@@ -72,22 +72,21 @@ void World::judge_records(std::vector<std::string>& broken) const {
   }
 }
 
-/// Said to be recorded and was not, given a score that it has not, or left behind.
-void World::judge_ledger(std::vector<std::string>& broken) const {
+/// Finds reports that are falsely recorded, have a wrong score, or are stuck.
+void World::check_ledger(std::vector<std::string>& broken) const {
   const auto recorded = this->recorded();
   for (const auto& [number, report] : disk_.content().reports) {
     const double key = report.report.position.x;
     const std::string name = icd::sentence("report ", number, " of ", key, " is ", name_of(report.state));
     const bool claimed =
         report.state == ReportState::Answered || (report.state == ReportState::Settled && report.reconciled);
-    // What somebody else recorded at that very moment looks the same, be it another sender, or what the
-    // operator judged; nobody could tell.
+    // A record of another sender, or of a report that the operator decided, looks the same at that time.
     const bool blurred = std::ranges::any_of(recorded, [&](const Recorded& record) {
       const bool ours = record.key >= 0 && !touched_.contains(record.key);
       return !ours && record.at > report.sent - kEpoch - 60 && record.at < report.changed - kEpoch;
     });
     if (claimed && !was_recorded(key) && !blurred) broken.push_back(name + " and was never recorded");
-    // What waits for another Command Post is kept for it; where nobody is, nothing goes.
+    // Reports for another or absent Command Post stay queued.
     const auto runs = disk_.content().runs;
     const bool waits = report.state == ReportState::Queued &&
                        (!is_anybody_there() || runs.at(report.run).post != reports_->run().post);
@@ -105,8 +104,8 @@ void World::judge_ledger(std::vector<std::string>& broken) const {
   }
 }
 
-/// Told that it was recorded, and it was not.
-void World::judge_clients(std::vector<std::string>& broken) const {
+/// Finds clients with a false 2xx.
+void World::check_clients(std::vector<std::string>& broken) const {
   for (const Client& client : clients_) {
     if (client.acknowledged && !was_recorded(client.key) && others_.empty()) {
       broken.push_back(

@@ -1,4 +1,4 @@
-// What was answered as one run went over into another.
+// Reports that were answered between the last status of one run and the first of the next.
 #include <gmock/gmock.h>
 
 #include "dispatch/scene.hpp"
@@ -9,11 +9,11 @@ namespace {
 using enum ReportState;
 using testing::HasSubstr;
 
-/// A status shows a new run for certain, and a report was answered since the one before: which of the two
-/// runs that was, no status tells. No answer had named the first before it.
-class AnsweredAtTheTurn : public testing::Test {
+/// A status shows a new run, and a report was answered just before. The answer is the first with a run's
+/// name, so its run is unknown.
+class AnswerAtARunChange : public testing::Test {
  protected:
-  AnsweredAtTheTurn() {
+  AnswerAtARunChange() {
     scene_.wait(5);
     scene_.record(1, "1");
     scene_.wait(5);
@@ -22,7 +22,7 @@ class AnsweredAtTheTurn : public testing::Test {
   Scene scene_;
 };
 
-TEST_F(AnsweredAtTheTurn, IsHeldWhereItIsPostedAgain) {
+TEST_F(AnswerAtARunChange, HoldsARepeat) {
   ASSERT_EQ(scene_.reports().run().number, 2);
   const ClientId again = scene_.post(1);
   EXPECT_EQ(scene_.state(2), Held);
@@ -30,12 +30,12 @@ TEST_F(AnsweredAtTheTurn, IsHeldWhereItIsPostedAgain) {
   EXPECT_THAT(scene_.report(2).note, HasSubstr("the same as report 1"));
   EXPECT_THAT(scene_.report(2).note, HasSubstr("the reports left went up from 20 to 25"));
   scene_.post(1);
-  EXPECT_EQ(scene_.count(), 2u) << "it joins the one that is held";
+  EXPECT_EQ(scene_.count(), 2u) << "it joins the held one";
   scene_.wait(21);
   EXPECT_THAT(scene_.told(again).sentence, HasSubstr("is held until the operator decides"));
 }
 
-TEST_F(AnsweredAtTheTurn, IsOneOfTheNewRunWhereItsNameIsThatRuns) {
+TEST_F(AnswerAtARunChange, BelongsToTheNewRunIfItHasItsName) {
   const ClientId again = scene_.post(1);
   scene_.record(2, "1");
   EXPECT_EQ(scene_.reports().run().number, 2);
@@ -46,23 +46,23 @@ TEST_F(AnsweredAtTheTurn, IsOneOfTheNewRunWhereItsNameIsThatRuns) {
   EXPECT_EQ(scene_.count(), 3u);
 }
 
-TEST_F(AnsweredAtTheTurn, IsOneOfTheRunBeforeWhereAnotherNameIsHeard) {
+TEST_F(AnswerAtARunChange, BelongsToTheOldRunIfTheNewNameDiffers) {
   scene_.post(1);
   scene_.record(2, "2");
   EXPECT_EQ(scene_.reports().run().number, 2);
   EXPECT_EQ(scene_.report(1).run, 1);
   EXPECT_EQ(scene_.output().ledger.at(1).run, 1);
-  EXPECT_EQ(scene_.send_next(), 2) << "the new run has nothing of it";
+  EXPECT_EQ(scene_.send_next(), 2) << "the new run does not have it";
   EXPECT_EQ(scene_.report(2).same_as, 0);
 }
 
-TEST_F(AnsweredAtTheTurn, IsSentWhereItIsPostedAgainOnceThatIsKnown) {
+TEST_F(AnswerAtARunChange, HoldsNoRepeatOnceItsRunIsKnown) {
   scene_.record(2, "2");
   scene_.post(1);
   EXPECT_EQ(scene_.state(3), Sending);
 }
 
-TEST_F(AnsweredAtTheTurn, IsSentOnTheOperatorsWord) {
+TEST_F(AnswerAtARunChange, LetsTheOperatorSendTheRepeat) {
   scene_.post(1);
   ASSERT_TRUE(scene_.reports().send(2, scene_.time()));
   EXPECT_EQ(scene_.send_next(), 2);
@@ -71,7 +71,7 @@ TEST_F(AnsweredAtTheTurn, IsSentOnTheOperatorsWord) {
   EXPECT_EQ(scene_.report(1).run, 1);
 }
 
-TEST_F(AnsweredAtTheTurn, IsHeldOverARestart) {
+TEST_F(AnswerAtARunChange, HoldsARepeatAfterARestart) {
   scene_.restart();
   scene_.hear(25, 0, 4);
   scene_.post(1);
@@ -80,22 +80,14 @@ TEST_F(AnsweredAtTheTurn, IsHeldOverARestart) {
   EXPECT_EQ(scene_.state(2), Withdrawn);
 }
 
-TEST_F(AnsweredAtTheTurn, IsHeldWhereItWasPostedBeforeTheRunWasKnown) {
-  scene_.wait(16);
-  scene_.post(1);
-  scene_.hear(25, 0, 20);
-  EXPECT_EQ(scene_.send_next(), 0);
-  EXPECT_EQ(scene_.state(2), Held);
-}
-
-TEST_F(AnsweredAtTheTurn, StaysHeldWhereNoAnswerNamesARun) {
+TEST_F(AnswerAtARunChange, HoldsARepeatIfNoAnswerNamesARun) {
   scene_.post(1);
   scene_.record(2, "");
   EXPECT_EQ(scene_.state(2), Held);
   EXPECT_THAT(scene_.undecided(), testing::Contains(HasSubstr("the same as report 1")));
 }
 
-TEST(AnsweredAtTheTurnAndCut, IsHeld) {
+TEST(AnswerBeforeARestart, HoldsARepeatInALikelyNewRun) {
   Scene scene;
   scene.wait(5);
   scene.post(1);
@@ -108,7 +100,7 @@ TEST(AnsweredAtTheTurnAndCut, IsHeld) {
   EXPECT_EQ(scene.state(2), Held);
 }
 
-TEST(AnsweredBeforeTheLastStatus, IsOfTheRunBefore) {
+TEST(AnswerBeforeAStatus, BelongsToTheOldRun) {
   Scene scene;
   scene.wait(5);
   scene.post(1);
@@ -122,7 +114,7 @@ TEST(AnsweredBeforeTheLastStatus, IsOfTheRunBefore) {
   EXPECT_EQ(scene.state(2), Sending);
 }
 
-TEST(AnsweredAtTheTurnWithoutAName, IsNotSentAgainWhateverIsNamedLater) {
+TEST(UnnamedAnswerAtARunChange, BelongsToTheNewRunWhateverItsName) {
   Scene scene;
   scene.wait(5);
   scene.record(1, "");

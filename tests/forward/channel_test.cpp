@@ -19,7 +19,7 @@ constexpr const char* kRun =
 
 class ChannelTest : public testing::Test {
  protected:
-  /// The channel after one request that was answered so.
+  /// A channel after one request with this answer.
   std::unique_ptr<Channel> asked(icd::Uri uri, const std::string& answer) {
     peer_.emplace([answer](uplink::Wire& wire) { wire.read_request(), wire.write(answer); });
     auto channel = std::make_unique<Channel>(
@@ -35,8 +35,8 @@ class ChannelTest : public testing::Test {
   std::optional<uplink::ListeningPeer> peer_;
 };
 
-/// A captive portal's page has no bounds.
-TEST_F(ChannelTest, KnowsAPageForNoCommandPostsHoweverLongItIs) {
+/// A captive portal's page may have any length.
+TEST_F(ChannelTest, TakesAPageOfAnyLengthForForeign) {
   for (const char* status : {"200 OK", "302 Found", "403 Forbidden"}) {
     for (const std::size_t size : {100u, 20u << 10, 70u << 10, 1u << 20}) {
       for (const icd::Uri uri : {icd::Uri::Status, icd::Uri::MapUpdate}) {
@@ -50,8 +50,8 @@ TEST_F(ChannelTest, KnowsAPageForNoCommandPostsHoweverLongItIs) {
   }
 }
 
-/// ICD 5.1 says what a status has.
-TEST_F(ChannelTest, KnowsAServerWithoutARunsStatusForNoCommandPost) {
+/// ICD 5.1 lists the fields of a status.
+TEST_F(ChannelTest, TakesAServerWithoutARunStatusForForeign) {
   for (const char* body : {R"({"hello": "world"})", "null", "[]", "", R"({"score": 1, "run_clock": 2.5})"}) {
     const auto channel = asked(icd::Uri::Status, uplink::answer("200 OK", body));
     EXPECT_TRUE(channel->is_foreign()) << body;
@@ -61,7 +61,7 @@ TEST_F(ChannelTest, KnowsAServerWithoutARunsStatusForNoCommandPost) {
   EXPECT_FALSE(asked(icd::Uri::Status, uplink::answer("200 OK", kRun))->is_foreign());
 }
 
-TEST_F(ChannelTest, TakesTheServersOwnPageForTheCommandPosts) {
+TEST_F(ChannelTest, AcceptsErrorPagesOfTheCommandPost) {
   for (const std::size_t size : {100u, 70u << 10}) {
     const auto channel =
         asked(icd::Uri::MapUpdate, uplink::answer("502 Oops", "<html>" + std::string(size, 'x')));
@@ -70,7 +70,7 @@ TEST_F(ChannelTest, TakesTheServersOwnPageForTheCommandPosts) {
   }
 }
 
-TEST_F(ChannelTest, TakesTheTimeOfNoAnswerThatMayBeSomebodyElses) {
+TEST_F(ChannelTest, TakesTheTimeOnlyFromTheCommandPost) {
   struct Case {
     const char *status, *body;
     bool is_its_own;
@@ -92,7 +92,7 @@ TEST_F(ChannelTest, TakesTheTimeOfNoAnswerThatMayBeSomebodyElses) {
   }
 }
 
-TEST_F(ChannelTest, LeadsElsewhereOnceTheRequestUnderWayHasEnded) {
+TEST_F(ChannelTest, ChangesEndpointAfterTheRequestInFlight) {
   uplink::ListeningPeer there([](uplink::Wire& wire) {
     wire.read_request();
     wire.write(uplink::answer("200 OK", "2"));
@@ -117,15 +117,15 @@ TEST_F(ChannelTest, LeadsElsewhereOnceTheRequestUnderWayHasEnded) {
   EXPECT_EQ(channel.last_status(), 429);
   EXPECT_TRUE(channel.turns());
   EXPECT_FALSE(channel.turns());
-  EXPECT_EQ(channel.last_status(), 0) << "that was of the other place";
+  EXPECT_EQ(channel.last_status(), 0) << "of the old endpoint";
   EXPECT_EQ(channel.address(), "127.0.0.1:" + std::to_string(there.endpoint().port));
   ask();
   EXPECT_TRUE(loop::turn_until(loop_, [&] { return answers.size() == 2; }));
   EXPECT_THAT(answers, testing::ElementsAre(429, 200));
 }
 
-TEST_F(ChannelTest, GivesUpWhatIsUnderWayOnlyWhereItIsToLeadElsewhere) {
-  peer_.emplace([](uplink::Wire& wire) { wire.read_request(), wire.read_request(); });  // and says nothing
+TEST_F(ChannelTest, GivesUpARequestOnlyForANewEndpoint) {
+  peer_.emplace([](uplink::Wire& wire) { wire.read_request(), wire.read_request(); });  // does not answer
   const auto token = icd::BearerToken::parse("a-token"), another = icd::BearerToken::parse("another-token");
   Channel channel(loop_, "mapping", {peer_->endpoint(), token, std::chrono::seconds{20}});
   std::vector<uplink::Outcome> outcomes;
@@ -142,12 +142,12 @@ TEST_F(ChannelTest, GivesUpWhatIsUnderWayOnlyWhereItIsToLeadElsewhere) {
   ASSERT_EQ(outcomes.size(), 1u);
   EXPECT_TRUE(std::holds_alternative<uplink::InDoubt>(outcomes.front()));
   EXPECT_TRUE(channel.turns());
-  EXPECT_EQ(channel.trouble(), "") << "that was of the other place";
+  EXPECT_EQ(channel.trouble(), "") << "of the old endpoint";
   channel.give_up();
   EXPECT_EQ(outcomes.size(), 1u);
 }
 
-TEST_F(ChannelTest, LeadsNowhereWithoutAToken) {
+TEST_F(ChannelTest, NeedsAToken) {
   peer_.emplace([](uplink::Wire&) {});
   Channel channel(loop_, "mapping", {peer_->endpoint(), std::nullopt, std::chrono::seconds{20}});
   EXPECT_FALSE(channel.has_token());
@@ -156,7 +156,7 @@ TEST_F(ChannelTest, LeadsNowhereWithoutAToken) {
   EXPECT_TRUE(channel.has_token());
 }
 
-TEST_F(ChannelTest, TakesAnotherWayToTheSamePlaceAndKnowsWhatItKnew) {
+TEST_F(ChannelTest, KeepsItsStateIfOnlyATimeoutChanges) {
   const auto channel = asked(icd::Uri::Status, uplink::answer("200 OK", "1"));
   uplink::Endpoint slower = peer_->endpoint();
   slower.connect_within = std::chrono::seconds{7};
@@ -168,8 +168,8 @@ TEST_F(ChannelTest, TakesAnotherWayToTheSamePlaceAndKnowsWhatItKnew) {
   EXPECT_EQ(channel->last_status(), 0);
 }
 
-/// A channel to a Command Post that insists on a slash at the end of each path, or knows no such path.
-class SlashTest : public ChannelTest {
+/// A Command Post whose paths need a slash at the end, or must not have one.
+class TrailingSlash : public ChannelTest {
  protected:
   int status_of(icd::Uri uri) {
     int status = -1;
@@ -200,7 +200,7 @@ class SlashTest : public ChannelTest {
       loop_, "mapping", {here_.endpoint(), icd::BearerToken::parse("a-token"), std::chrono::seconds{20}}};
 };
 
-TEST_F(SlashTest, IsLearntFromEachRequestButAReport) {
+TEST_F(TrailingSlash, IsLearntFromEachRequestExceptReports) {
   for (const icd::Uri uri : icd::kUris) {
     SCOPED_TRACE(icd::path_of(uri));
     lead_to(there_.endpoint(), "a-token");
@@ -210,7 +210,7 @@ TEST_F(SlashTest, IsLearntFromEachRequestButAReport) {
   }
 }
 
-TEST_F(SlashTest, IsNoSignOfAnotherThanTheCommandPost) {
+TEST_F(TrailingSlash, IsNotForeign) {
   EXPECT_EQ(status_of(kFirst), 301);
   EXPECT_FALSE(channel_.is_foreign());
   EXPECT_EQ(channel_.foreign(), 0u);
@@ -219,7 +219,7 @@ TEST_F(SlashTest, IsNoSignOfAnotherThanTheCommandPost) {
   EXPECT_EQ(channel_.trouble(), "");
 }
 
-TEST_F(SlashTest, IsForgottenOnceAPathWithItIsUnknown) {
+TEST_F(TrailingSlash, IsForgottenIfAPathWithItIsUnknown) {
   for (const char* unknown : {"404 Not Found", "501 Not Implemented"}) {
     SCOPED_TRACE(unknown);
     unknown_ = uplink::answer(unknown, "");
@@ -232,7 +232,7 @@ TEST_F(SlashTest, IsForgottenOnceAPathWithItIsUnknown) {
   }
 }
 
-TEST_F(SlashTest, IsForgottenAtAnotherPlaceButNotOnAnotherWayToTheSame) {
+TEST_F(TrailingSlash, IsForgottenAtAnotherEndpoint) {
   EXPECT_EQ(status_of(kFirst), 301);
   uplink::Endpoint slower = here_.endpoint();
   slower.connect_within = std::chrono::seconds{7};

@@ -16,8 +16,8 @@ constexpr double kFar = 1000;  // seconds
 
 class ClocksTest : public testing::Test {
  protected:
-  /// A life that goes on from what the one before left.
-  void live(const std::string& boot = "b") {
+  /// Continues from the files of the last process.
+  void restart(const std::string& boot = "b") {
     clocks_.reset();
     journal_.reset();
     journal_.emplace(loop_, folder_.path() + "/journal");
@@ -26,7 +26,7 @@ class ClocksTest : public testing::Test {
     clocks_->carry_on(carried, boot);
   }
   double now() const { return loop_.stamp_now(); }
-  /// Of a robot's pose.
+  /// Stamp of a robot's pose.
   icd::Stamp stamped(double stamp, std::uint64_t connection) {
     const icd::StateUpdate update{.header = {stamp}, .poses = {{*icd::RobotName::parse("r1"), {}}}};
     return *clocks_->stamped(update, {.address = "10.0.0.5", .connection = connection}).at(0).stamp;
@@ -44,21 +44,21 @@ class ClocksTest : public testing::Test {
   std::optional<Clocks> clocks_;
 };
 
-TEST_F(ClocksTest, ASenderGoesOnAsItDidInTheLifeBefore) {
-  live();
+TEST_F(ClocksTest, KeepTheOffsetOfASenderAcrossARestart) {
+  restart();
   const icd::Stamp first = stamped(50, 1);
   EXPECT_NEAR(first, now(), 0.1);
-  live();
+  restart();
   EXPECT_NEAR(stamped(50.3, 2), first + 0.3, 1e-6);
 }
 
-TEST_F(ClocksTest, AnUnreadableBoundOfTheStampsStaysAndCountsOnceItCanBeRead) {
+TEST_F(ClocksTest, KeepAnUnreadableStampFloor) {
   const std::string file = folder_ / StampFloor::kFile, elsewhere = folder_ / "elsewhere";
   const double floor = now() + kFar;
   StampFloor(folder_.path()).write({.floor = floor, .wall = now()});
   std::filesystem::rename(file, elsewhere);
   ASSERT_EQ(mkfifo(file.c_str(), 0600), 0);
-  live();
+  restart();
   EXPECT_EQ(clocks_->unread(), "the last time stamps cannot be read: " + file + ": is not a regular file");
   clocks_->keep(disk_, {});
   bool is_written = false;
@@ -66,114 +66,105 @@ TEST_F(ClocksTest, AnUnreadableBoundOfTheStampsStaysAndCountsOnceItCanBeRead) {
   ASSERT_TRUE(loop::turn_until(loop_, [&] { return is_written; }));
   ASSERT_TRUE(std::filesystem::is_fifo(file));
   std::filesystem::rename(elsewhere, file);
-  live();
+  restart();
   EXPECT_GE(now(), floor);
 }
 
-TEST_F(ClocksTest, StampsGoOnInTheNextLifeWhateverTheTimeOfDayIsThen) {
+TEST_F(ClocksTest, KeepStampsAtAnyTimeOfDayAfterARestart) {
   for (const double set : {-kFar, kFar}) {
-    live();
+    restart();
     const icd::Stamp first = stamped(50, 1);
-    loop_.set_stamp(now() + set);  // as of a start with a clock that was set
-    live();
+    loop_.set_stamp(now() + set);  // time of day changed during the stop
+    restart();
     EXPECT_NEAR(stamped(50.3, 2), first + 0.3, 1e-6) << set;
     EXPECT_NEAR(now(), first, 1) << set;
   }
 }
 
-TEST_F(ClocksTest, AMachineWithoutAClockGoesOnFromTheFloor) {
-  live();
+TEST_F(ClocksTest, ContinueFromTheFloorWithoutAHardwareClock) {
+  restart();
   const double before = now();
   keep();
   loop_.set_stamp(before - kFar);
   loop_.set_wall(before - kFar);
-  live("another start");
+  restart("another start");
   EXPECT_GE(now(), before);
-  EXPECT_NEAR(loop_.wall_now(), before, 1) << "the last time known";
-  EXPECT_NEAR(loop_.wall_ahead(), 0, 1) << "of the system's own";
+  EXPECT_NEAR(clocks_->clock_step().between(before, now()), 0, 1) << "the time off is unknown";
+  EXPECT_NEAR(loop_.wall_now(), before, 1) << "the last known time";
+  EXPECT_NEAR(loop_.wall_ahead(), 0, 1) << "not ahead of the system's clock";
 }
 
-TEST_F(ClocksTest, ABoxThatTookOverGoesOnAfterTheStampsOfTheOther) {
-  live();
+TEST_F(ClocksTest, ContinueAfterTheStampsOfTheFirstBox) {
+  restart();
   stamped(50, 1);
   const double least = now() + kFar;
   StampFloor(folder_.path()).write({.floor = least, .wall = 0, .least = least});
-  live();
-  EXPECT_GE(stamped(50.3, 2), least) << "of a sender that was known, too";
-  live();
+  restart();
+  EXPECT_GE(stamped(50.3, 2), least) << "of a known sender";
+  restart();
   EXPECT_GE(now(), least);
 }
 
-TEST_F(ClocksTest, AMachineWithAClockGoesOnByIt) {
-  live();
+TEST_F(ClocksTest, FollowTheHardwareClockAfterABoot) {
+  restart();
   keep();
   const double later = now() + kFar;
   loop_.set_stamp(later);
   loop_.set_wall(later);
-  live("another start");
+  restart("another start");
   EXPECT_NEAR(now(), later, 1);
   EXPECT_NEAR(loop_.wall_now(), later, 1);
 }
 
-TEST_F(ClocksTest, ALeapIsWhatStampsGoAheadBeyondTheTimeThatWentBy) {
-  live();
-  EXPECT_EQ(clocks_->clock_step(), dispatch::ClockStep()) << "nothing is known of a life before";
+TEST_F(ClocksTest, DetectAClockStepWithoutElapsedTime) {
+  restart();
+  EXPECT_EQ(clocks_->clock_step(), dispatch::ClockStep()) << "first start";
   const double before = now();
   loop_.set_wall(before + 5 * kFar);
   keep();
-  loop_.set_stamp(before + 6 * kFar);  // as of a start with a clock that went on
+  loop_.set_stamp(before + 6 * kFar);  // the clock went on during the stop
   loop_.set_wall(before + 6 * kFar);
-  live("another start");
-  live("another start");  // of the service: it is to be borne out still
+  restart("another start");
+  restart("another start");  // a process start; the step is unconfirmed
   EXPECT_TRUE(clocks_->hear(loop_.wall_now()));
   EXPECT_NEAR(clocks_->clock_step().by, 5 * kFar, 1);
-  EXPECT_NEAR(clocks_->clock_step().between(before, now()), kFar, 1) << "so long it was off";
+  EXPECT_NEAR(clocks_->clock_step().between(before, now()), kFar, 1) << "time off";
   const dispatch::ClockStep step = clocks_->clock_step();
-  live("another start");
-  EXPECT_EQ(clocks_->clock_step(), step) << "the next life of the service has it, too";
+  restart("another start");
+  EXPECT_EQ(clocks_->clock_step(), step) << "kept at a process start";
   EXPECT_FALSE(clocks_->hear(loop_.wall_now() + kFar));
 }
 
-TEST_F(ClocksTest, HowLongTheMachineWasOffIsForItsClockAndTheCommandPostToSay) {
+TEST_F(ClocksTest, MeasureTheTimeThatTheMachineWasOff) {
   struct Case {
-    std::optional<double> there;  // ahead of the last time known
+    std::optional<double> there;  // ahead of the last known time
     double off;
   };
   for (const Case& each : {Case{{}, 0}, {60, 60}, {-kFar, 0}, {2 * kFar, kFar}}) {
-    live("first");
+    restart("first");
     keep();
     const double before = now(), known = loop_.wall_now();
-    loop_.set_stamp(before + kFar);  // as of a start with a clock that is ahead
+    loop_.set_stamp(before + kFar);  // the clock is ahead at the start
     loop_.set_wall(known + kFar);
-    live("second");
+    restart("second");
     if (each.there) clocks_->hear(known + *each.there);
     EXPECT_NEAR(clocks_->clock_step().between(before, now()), each.off, 1) << each.there.value_or(0);
     std::filesystem::remove(folder_.path() + '/' + StampFloor::kFile);
   }
 }
 
-TEST_F(ClocksTest, AMachineWithoutAClockWasOffForNoTimeThatIsKnown) {
-  live();
-  keep();
-  const double before = now();
-  loop_.set_stamp(before - kFar);
-  loop_.set_wall(before - kFar);
-  live("another start");
-  EXPECT_NEAR(clocks_->clock_step().between(before, now()), 0, 1);
-}
-
-TEST_F(ClocksTest, AClockThatWasSetBackStaysSoInTheNextLife) {
-  live();
+TEST_F(ClocksTest, KeepAClockThatWasSetBack) {
+  restart();
   keep();
   const double before = now();
   loop_.set_wall(before - kFar);
-  live();
+  restart();
   EXPECT_NEAR(loop_.wall_now(), before - kFar, 1);
 }
 
-/// Whether it is alone in a state or among others.
-TEST_F(ClocksTest, ARobotHasOneClockAtAnAddress) {
-  live();
+/// In a state of one robot or of several.
+TEST_F(ClocksTest, HaveOneOffsetPerRobotAndAddress) {
+  restart();
   const icd::StateUpdate both{
       .header = {50}, .poses = {{*icd::RobotName::parse("r1"), {}}, {*icd::RobotName::parse("r2"), {}}}};
   const icd::Stamp first = *clocks_->stamped(both, {.address = "10.0.0.5", .connection = 1}).at(0).stamp;
@@ -181,8 +172,8 @@ TEST_F(ClocksTest, ARobotHasOneClockAtAnAddress) {
   EXPECT_NEAR(stamped(50.5, 1), first + 0.5, 1e-6);
 }
 
-TEST_F(ClocksTest, AMessageOfMarkersTakesOneClockHoweverManyNamespacesItHas) {
-  live();
+TEST_F(ClocksTest, HaveOneOffsetPerMessageOfMarkers) {
+  restart();
   icd::MarkersUpdate update;
   for (int i = 0; i < 5000; ++i) update.markers.emplace_back().ns = std::to_string(i);
   for (icd::Marker& marker : update.markers) marker.header.stamp = 50;
@@ -190,8 +181,8 @@ TEST_F(ClocksTest, AMessageOfMarkersTakesOneClockHoweverManyNamespacesItHas) {
   EXPECT_EQ(journal::left_in(folder_.path() + "/journal").senders().clocks().size(), 1u);
 }
 
-TEST_F(ClocksTest, AStateOfAnyNumberOfRobotsTakesSoManyClocks) {
-  live();
+TEST_F(ClocksTest, LimitTheOffsetsOfAState) {
+  restart();
   icd::StateUpdate update{.header = {50}, .poses = {}};
   for (int i = 0; i < 500; ++i) update.poses.push_back({*icd::RobotName::parse(std::to_string(i)), {}});
   clocks_->stamped(update, {.address = "10.0.0.5"});

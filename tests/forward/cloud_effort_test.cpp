@@ -1,18 +1,18 @@
-// A cloud is packed only as far as that saves time.
+// A cloud is packed only if that saves time.
 #include <gtest/gtest.h>
 
 #include <cstring>
 #include <random>
 #include <vector>
 
-#include "forward/clouds.hpp"
-#include "forward/letting_post.hpp"
+#include "forward/manual_endpoint.hpp"
+#include "forward/sample_maps.hpp"
 #include "forward/stitched.hpp"
 
 namespace adit::forward {
 namespace {
 
-/// A large one of noise, which packing makes a little smaller.
+/// Noise that packs a little smaller.
 icd::MapUpdate large_cloud(const char* robot) {
   std::mt19937 random(1);
   std::vector<float> numbers(120'000);
@@ -35,14 +35,14 @@ constexpr pack::Hurry kFast{.bytes_per_second = 1e10, .slowness = 1, .longest = 
     kMedium{.bytes_per_second = 6e7, .slowness = 1, .longest = 1},
     kSlow{.bytes_per_second = 1e5, .slowness = 1, .longest = 1};
 
-TEST(HurriedCloud, GoesAsItCameWhereTheLinkIsFast) {
+TEST(CloudEffort, IsNoneOnAFastLink) {
   const icd::MapUpdate cloud = large_cloud("r1");
   const Packed hurried = packed(waiting(cloud), {}, {.hurry = kFast});
   EXPECT_EQ(hurried.effort, pack::Effort::None);
   EXPECT_GE(hurried.body.size(), cloud.data.bytes.size());
 }
 
-TEST(HurriedCloud, TellsHowSmallItWouldBe) {
+TEST(CloudEffort, EstimatesThePackedSize) {
   const icd::MapUpdate cloud = large_cloud("r1");
   const Packed full = packed(waiting(cloud)), hurried = packed(waiting(cloud), {}, {.hurry = kMedium});
   ASSERT_EQ(hurried.effort, pack::Effort::None);
@@ -51,14 +51,14 @@ TEST(HurriedCloud, TellsHowSmallItWouldBe) {
               0.2 * static_cast<double>(full.full_size));
 }
 
-TEST(HurriedCloud, IsPackedAsAnyOtherWhereTheLinkIsSlow) {
+TEST(CloudEffort, IsFullOnASlowLink) {
   const icd::MapUpdate cloud = large_cloud("r1");
   const Packed hurried = packed(waiting(cloud), {}, {.hurry = kSlow});
   EXPECT_EQ(hurried.effort, pack::Effort::Full);
   EXPECT_EQ(hurried.body, packed(waiting(cloud)).body);
 }
 
-TEST(HurriedCloud, IsRoundedWhereItIsToBe) {
+TEST(CloudEffort, RoundsAsRequested) {
   const icd::MapUpdate cloud = large_cloud("r1");
   for (const auto precision : {queues::Precision::Millimetre, queues::Precision::EightMillimetres}) {
     const Packed hurried = packed(waiting(cloud, precision), {}, {.hurry = kFast});
@@ -67,13 +67,13 @@ TEST(HurriedCloud, IsRoundedWhereItIsToBe) {
   }
 }
 
-class CloudOnAFastLink : public WithLettingPost {
+class CloudOnAFastLink : public MapsToManualEndpoint {
  protected:
   CloudOnAFastLink() {
     settings_.command_post.rates.map_hz = 10;
     settings_.command_post.budget_mbit = 100'000;
     maps_->settings_changed();
-    maps_->endpoint_changed(icd::BearerToken::parse("a-token"));  // by it the link is given the budget
+    maps_->endpoint_changed(icd::BearerToken::parse("a-token"));  // the link gets the budget
   }
   std::uint64_t sent(const char* robot) const {
     const auto found = record_.rows().find({Kind::Cloud, robot});
@@ -81,8 +81,8 @@ class CloudOnAFastLink : public WithLettingPost {
   }
 };
 
-/// On a busy machine the link may look slow: then once more.
-TEST_F(CloudOnAFastLink, LeavesAsItCameAlsoIfItHasToWait) {
+/// The link may look slow on a busy machine. Then the test tries again.
+TEST_F(CloudOnAFastLink, IsSentUnpackedAfterWaiting) {
   const icd::MapUpdate cloud = large_cloud("second");
   for (std::size_t tries = 1; tries <= 20 && sent("second") < cloud.data.bytes.size(); ++tries) {
     const std::size_t before = post_.came().size();

@@ -1,9 +1,9 @@
-// Maps whose data is damaged, mostly those that an earlier process kept: that is found when they are packed.
+// Stored maps with damaged data. Packing detects the damage.
 #include <filesystem>
 #include <fstream>
 
 #include "codec/gzip.hpp"
-#include "forward/letting_post.hpp"
+#include "forward/manual_endpoint.hpp"
 #include "host/numbered_name.hpp"
 
 namespace adit::forward {
@@ -11,9 +11,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class DamagedMap : public WithLettingPost {
+class DamagedMap : public MapsToManualEndpoint {
  protected:
-  /// A square whose lower left corner is so many of them towards +X, as a life before kept it.
+  /// Stores a square grid in this column, as an earlier process did.
   void keep(std::uint64_t number, const char* robot, int column) {
     icd::MapUpdate map = grid_of(robot, 64);
     auto& grid = std::get<icd::OccupancyGrid>(map.msg);
@@ -27,7 +27,7 @@ class DamagedMap : public WithLettingPost {
   }
   void damage(std::uint64_t number) {
     std::fstream bytes(file(number), std::ios::in | std::ios::out | std::ios::binary);
-    bytes.seekp(40);  // among the cells
+    bytes.seekp(40);  // in its cells
     bytes << "damaged";
   }
   void restore() { maps_->restore(spool_.read()); }
@@ -38,12 +38,12 @@ class DamagedMap : public WithLettingPost {
   static constexpr std::uint64_t kOne = MapStore::kFirstNumber + 1, kOther = MapStore::kFirstNumber + 2;
 };
 
-TEST_F(DamagedMap, IsToldAndRejectedMessagesAndTheNextOneGoes) {
+TEST_F(DamagedMap, IsDroppedAndTheNextOneIsSent) {
   keep(kOne, "first", 0);
   keep(kOther, "second", 0);
   damage(kOne);
   restore();
-  EXPECT_EQ(maps_->waiting({Kind::Grid, "first"}), 1U) << "nobody has looked at it";
+  EXPECT_EQ(maps_->waiting({Kind::Grid, "first"}), 1U) << "not read yet";
   post_.answer("200 OK");
   EXPECT_TRUE(come({"second"}));
   EXPECT_TRUE(loop::turn_until(loop_, [&] { return !fs::exists(file(kOne)); }));
@@ -53,7 +53,7 @@ TEST_F(DamagedMap, IsToldAndRejectedMessagesAndTheNextOneGoes) {
   EXPECT_TRUE(row().last_sentence.starts_with("its stored copy is damaged: ")) << row().last_sentence;
 }
 
-TEST_F(DamagedMap, ThatIsSentAgainByHandIsToldAndRejectedMessagesToo) {
+TEST_F(DamagedMap, IsDroppedAfterAManualRetry) {
   keep(kOne, "first", 0);
   damage(kOne);
   auto kept = spool_.read();
@@ -63,7 +63,7 @@ TEST_F(DamagedMap, ThatIsSentAgainByHandIsToldAndRejectedMessagesToo) {
   EXPECT_EQ(maps_->waiting({Kind::Grid, "first"}), 0U);
 }
 
-TEST_F(DamagedMap, ThatWasAcceptedByThisProcessIsNotSent) {
+TEST_F(DamagedMap, IsNotSentIfThisProcessAcceptedIt) {
   icd::MapUpdate map = grid_of("first", 64);
   map.data.compression = icd::Compression::Gzip;
   take(map);
@@ -72,11 +72,11 @@ TEST_F(DamagedMap, ThatWasAcceptedByThisProcessIsNotSent) {
   EXPECT_EQ(maps_->waiting({Kind::Grid, "first"}), 0U);
 }
 
-TEST_F(DamagedMap, OfTwoThatWouldBeStitchedLeavesTheOtherOne) {
+TEST_F(DamagedMap, LeavesItsStitchedNeighbour) {
   keep(kOne, "first", 0);
   keep(kOther, "first", 1);
   damage(kOne);
-  maps_->endpoint_changed(std::nullopt);  // without a token nothing leaves
+  maps_->endpoint_changed(std::nullopt);  // without a token, maps stay queued
   restore();
   maps_->endpoint_changed(icd::BearerToken::parse("a-token"));
   post_.answer("200 OK");

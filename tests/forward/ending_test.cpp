@@ -16,30 +16,30 @@ class EndingTest : public testing::Test {
   Ending ending_;
 };
 
-TEST_F(EndingTest, BeginsOnItsWordAlone) {
+TEST_F(EndingTest, BeginsOnRequest) {
   EXPECT_FALSE(Ending().has_begun());
   EXPECT_TRUE(ending_.has_begun());
 }
 
-TEST_F(EndingTest, DismissesAtOnceWhereNothingIsUnderWay) {
+TEST_F(EndingTest, DismissesAtOnceIfNothingIsInFlight) {
   EXPECT_TRUE(ending_.dismisses(began_, true, true));
   EXPECT_TRUE(ending_.is_over(began_));
 }
 
-TEST_F(EndingTest, WaitsForAnswersAndForNoLongerThanTheirTime) {
+TEST_F(EndingTest, WaitsForAnswersWithinTheirTime) {
   EXPECT_FALSE(ending_.dismisses(after(Ending::kAnswers - milliseconds{1}), false, true));
   EXPECT_FALSE(ending_.is_over(after(Ending::kAnswers)));
   EXPECT_TRUE(ending_.dismisses(after(Ending::kAnswers), false, true));
 }
 
-TEST_F(EndingTest, WaitsLongerForWhatIsBeingKept) {
+TEST_F(EndingTest, WaitsLongerForWrites) {
   EXPECT_FALSE(ending_.dismisses(after(Ending::kAnswers), true, false));
   const milliseconds longest = Ending::kAnswers + Ending::kKeepWithin;
   EXPECT_FALSE(ending_.dismisses(after(longest - milliseconds{1}), true, false));
   EXPECT_TRUE(ending_.dismisses(after(longest), true, false));
 }
 
-TEST_F(EndingTest, ComesAlsoWhereNobodyIsEverDismissed) {
+TEST_F(EndingTest, IsOverEvenIfClientsNeverLeave) {
   const milliseconds latest = Ending::kAnswers + 2 * Ending::kKeepWithin;
   EXPECT_FALSE(ending_.is_over(after(latest - milliseconds{1})));
   EXPECT_TRUE(ending_.is_over(after(latest)));

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "forward/map_picture.hpp"
+#include "forward/sample_maps.hpp"
 #include "loop/turn_until.hpp"
 
 namespace adit::forward {
@@ -16,15 +17,8 @@ namespace {
 
 using picture::TileIndex;
 
-icd::MapUpdate grid(const std::string& robot, double x, std::uint32_t side, std::uint8_t value,
-                    double resolution = 0.05) {
-  icd::OccupancyGrid grid;
-  grid.width = grid.height = side;
-  grid.resolution = resolution;
-  grid.origin.position = {x, 0, 0};
-  const std::vector<std::uint8_t> cells(std::size_t{side} * side, value);
-  return {
-      icd::RobotName::parse(robot), grid, {icd::ChunkedBytes{cells}, icd::Compression::None, cells.size()}};
+icd::MapUpdate grid(const std::string& robot, double x, std::uint32_t side, std::uint8_t value) {
+  return grid_of(robot, side, value, x, 0.05);
 }
 
 class FineTilesTest : public testing::Test {
@@ -37,14 +31,14 @@ class FineTilesTest : public testing::Test {
                          [answer](auto tile) { *answer = std::move(tile); });
     return answer;
   }
-  /// Null where there is none.
+  /// Null: no tile.
   picture::Tile tile(const std::string& robot, const TileIndex& at) {
     const auto answer = asked(robot, at);
     EXPECT_TRUE(loop::turn_until(loop, [&] { return answer->has_value(); }));
     EXPECT_TRUE(*answer && **answer);
     return *answer && **answer ? ***answer : nullptr;
   }
-  /// Of the lower left pixel.
+  /// Colour of the lower left pixel; -1: no tile.
   int index(const std::string& robot, const TileIndex& at) {
     const auto its = tile(robot, at);
     if (its == nullptr) return -1;
@@ -67,7 +61,7 @@ class FineTilesTest : public testing::Test {
   MapPicture picture{loop, workers, [this] { ++changes; }};
 };
 
-TEST_F(FineTilesTest, AreDrawnOfWhatWasForwardedAndOfTheLatest) {
+TEST_F(FineTilesTest, ShowTheLatestDeliveredGrid) {
   EXPECT_EQ(tile("r1", {-1, 0, 0}), nullptr);
   forward(grid("r1", 0, 400, 0));
   ASSERT_TRUE(finer("r1"));
@@ -76,12 +70,12 @@ TEST_F(FineTilesTest, AreDrawnOfWhatWasForwardedAndOfTheLatest) {
   EXPECT_EQ(index("r1", {-1, 1, 1}), 1);
   EXPECT_EQ(tile("r1", {-1, 2, 0}), nullptr);
   EXPECT_EQ(tile("r2", {-1, 0, 0}), nullptr);
-  EXPECT_EQ(tile("r1", {-2, 0, 0}), nullptr) << "its cells are no finer than that";
+  EXPECT_EQ(tile("r1", {-2, 0, 0}), nullptr) << "finer than its cells";
   forward(grid("r1", 0, 400, 100));
   EXPECT_EQ(index("r1", {-1, 0, 0}), 101);
 }
 
-TEST_F(FineTilesTest, AChangeThatOnlyTheyShowIsToldOf) {
+TEST_F(FineTilesTest, HaveAVersionForFineChanges) {
   std::vector<std::uint8_t> cells(400, 0);
   cells[0] = 100;
   icd::MapUpdate one = grid("r1", 0, 20, 0), other = one;
@@ -94,31 +88,31 @@ TEST_F(FineTilesTest, AChangeThatOnlyTheyShowIsToldOf) {
   forward(other);
   EXPECT_GT(picture.mosaic().version(), before);
   EXPECT_EQ(*finer("r1", before)->area, (picture::Area{0, 0, 1, 1}));
-  EXPECT_FALSE(finer("r1", picture.mosaic().version())->area) << "who has asked since knows it";
+  EXPECT_FALSE(finer("r1", picture.mosaic().version())->area) << "no newer change";
 }
 
-TEST_F(FineTilesTest, ThoseOfABlockAreDrawnOnceUntilAGridComesThere) {
+TEST_F(FineTilesTest, AreRedrawnOnlyAfterAGridInTheirBlock) {
   forward(grid("r1", 0, 2000, 0));
   const auto first = tile("r1", {-1, 0, 0});
-  EXPECT_EQ(tile("r1", {-1, 0, 0}), first) << "the same one";
+  EXPECT_EQ(tile("r1", {-1, 0, 0}), first) << "cached";
   forward(grid("r1", 200, 20, 0));
-  EXPECT_EQ(tile("r1", {-1, 0, 0}), first) << "it came elsewhere";
+  EXPECT_EQ(tile("r1", {-1, 0, 0}), first) << "the grid is in another block";
   EXPECT_EQ(index("r1", {-1, 4, 4}), 1);
   forward(grid("r1", 10, 20, 100));
   const auto again = tile("r1", {-1, 0, 0});
   EXPECT_NE(again, first);
 }
 
-TEST_F(FineTilesTest, WhoAsksAmidADrawingGetsWhatHasComeSince) {
+TEST_F(FineTilesTest, IncludeAGridThatArrivesDuringADrawing) {
   forward(grid("r1", 0, 2000, 0));
   const auto before = asked("r1", {-1, 0, 0});
   EXPECT_FALSE(before->has_value());
-  forward(grid("r1", 0, 2000, 100));  // its own drawing waits for that of the tile
+  forward(grid("r1", 0, 2000, 100));  // drawn after the tile
   EXPECT_EQ(index("r1", {-1, 0, 0}), 101);
   EXPECT_TRUE(before->has_value());
 }
 
-TEST_F(FineTilesTest, ANewRunHasNone) {
+TEST_F(FineTilesTest, AreNoneInANewRun) {
   forward(grid("r1", 0, 400, 0));
   EXPECT_EQ(index("r1", {-1, 0, 0}), 1);
   picture.begin_run();
@@ -126,7 +120,7 @@ TEST_F(FineTilesTest, ANewRunHasNone) {
   EXPECT_EQ(tile("r1", {-1, 0, 0}), nullptr);
 }
 
-TEST_F(FineTilesTest, ArePassedByAMapOnItsWay) {
+TEST_F(FineTilesTest, YieldToMapsForTheCommandPost) {
   forward(grid("r1", 0, 5000, 0));
   std::vector<std::shared_ptr<Answer>> answers;
   for (int x = 0; x < 4; ++x) answers.push_back(asked("r1", {-1, x * 5, 0}));
@@ -137,7 +131,7 @@ TEST_F(FineTilesTest, ArePassedByAMapOnItsWay) {
   EXPECT_TRUE(loop::turn_until(loop, [&] { return answers.back()->has_value(); }));
 }
 
-TEST_F(FineTilesTest, OfManyRobotsTakeNoMoreThanTheirBudget) {
+TEST_F(FineTilesTest, StayWithinTheirBudget) {
   for (int robot = 0; robot < 20; ++robot) {
     for (int part = 0; part < 3; ++part) forward(grid("r" + std::to_string(robot), part * 64.0, 1280, 0));
   }
@@ -149,7 +143,7 @@ TEST_F(FineTilesTest, OfManyRobotsTakeNoMoreThanTheirBudget) {
   }
 }
 
-TEST_F(FineTilesTest, TooManyAskersAreTurnedAway) {
+TEST_F(FineTilesTest, LimitPendingRequests) {
   forward(grid("r1", 0, 5000, 0));
   std::vector<std::shared_ptr<Answer>> answers;
   for (std::size_t i = 0; i < FineTiles::kMostAskers + 2; ++i) {

@@ -22,11 +22,11 @@ icd::NamedPose at(const char* robot, double x) {
   return {*icd::RobotName::parse(robot), {{x, 0, 0}, {}}};
 }
 
-/// Without tokens nothing leaves: what is taken waits.
+/// Without tokens, accepted messages stay queued.
 class FlowTest : public testing::Test {
  protected:
-  void SetUp() override { live(); }
-  void live() {
+  void SetUp() override { restart(); }
+  void restart() {
     flow_.reset();
     flow_.emplace(
         loop_, ledger_, settings_,
@@ -42,7 +42,7 @@ class FlowTest : public testing::Test {
     EXPECT_TRUE(loop::turn_until(loop_, [&] { return said.has_value(); }));
     return said.value_or(std::unexpected(icd::Refusal{icd::Status::Ok, "nothing was said"}));
   }
-  /// Few markers: it is said at once.
+  /// Few markers are answered at once.
   icd::Checked<void> take_markers() {
     std::optional<icd::Checked<void>> said;
     flow_->take(spool::markers(), sender_, [&](icd::Checked<void> taken) { said = std::move(taken); });
@@ -70,28 +70,28 @@ class FlowTest : public testing::Test {
   std::optional<Flow> flow_;
 };
 
-TEST_F(FlowTest, WhatItTookWaitsInTheNextLife) {
+TEST_F(FlowTest, KeepsQueuedMessagesAcrossARestart) {
   ASSERT_TRUE(take_map());
   ASSERT_TRUE(flow_->take(spool::state(), sender_));
   ASSERT_TRUE(take_markers());
   EXPECT_THAT(waiting(), ElementsAre(1, 1, 1));
-  live();
+  restart();
   EXPECT_THAT(waiting(), ElementsAre(1, 1, 1));
 }
 
-/// A start goes before the listeners: whoever posts meanwhile is not answered.
-TEST_F(FlowTest, ReadsNoDataOfWhatWaitsAsItStarts) {
+/// Listeners open after the start, so it must be short.
+TEST_F(FlowTest, StartsWithoutReadingQueuedData) {
   ASSERT_TRUE(take_map(spool::cloud(1'000'000)));  // 12 MB
   const auto before = spool::BytesRead::of(folder_ / "waiting");
-  live();
+  restart();
   EXPECT_THAT(waiting(), ElementsAre(1));
   const auto after = spool::BytesRead::of(folder_ / "waiting");
   EXPECT_LT(after.by_calls - before.by_calls, 1'000'000U);
-  EXPECT_GT(after.in_mappings, 0U) << "both ends of its file";
+  EXPECT_GT(after.in_mappings, 0U) << "both ends of the file";
   EXPECT_LT(after.in_mappings, 1'000'000U);
 }
 
-TEST_F(FlowTest, TellsSinceWhenTheCommandPostIsBehind) {
+TEST_F(FlowTest, ShowsSinceWhenTheCommandPostIsBehind) {
   const api::Time before = loop_.wall_now();
   ASSERT_TRUE(take_map());
   ASSERT_TRUE(flow_->take(spool::state(), sender_));
@@ -103,47 +103,27 @@ TEST_F(FlowTest, TellsSinceWhenTheCommandPostIsBehind) {
   }
 }
 
-TEST_F(FlowTest, TellsWhichRobotsPost) {
+TEST_F(FlowTest, ReportsWhichRobotsPost) {
   ASSERT_TRUE(take_map());
   ASSERT_TRUE(flow_->take(spool::state(), sender_));
   EXPECT_THAT(posted_, ElementsAre("r1", "r2"));
 }
 
-/// A station that posts now one robot's pose, now several, all on one connection.
-TEST_F(FlowTest, KeepsThePoseThatAStationStampedLast) {
+/// A station posts poses of one or several robots on one connection.
+TEST_F(FlowTest, KeepsThePoseWithTheLatestStampOfAStation) {
   ASSERT_TRUE(take_poses({at("a", 0), at("b", 0)}, 100));
   loop_.set_stamp(loop_.stamp_now() + 2);
-  ASSERT_TRUE(take_poses({at("a", 1)}, 101)) << "a second late";
+  ASSERT_TRUE(take_poses({at("a", 1)}, 101)) << "one second late";
   ASSERT_TRUE(take_poses({at("a", 5), at("b", 5)}, 101.5));
   EXPECT_EQ(kept_x("a"), 5);
 }
 
-TEST_F(FlowTest, KeepsThePoseThatCameLastOfTwoAddresses) {
+TEST_F(FlowTest, KeepsTheLastPoseOfTwoAddresses) {
   const intake::Sender other{.address = "10.0.0.6", .bytes = 10, .connection = 2};
   ASSERT_TRUE(take_poses({at("a", 0)}, 100));
-  ASSERT_TRUE(take_poses({at("a", 1)}, 103)) << "its clock runs ahead";
+  ASSERT_TRUE(take_poses({at("a", 1)}, 103)) << "its clock is ahead";
   ASSERT_TRUE(flow_->take({.header = {50}, .poses = {at("a", 5)}}, other));
   EXPECT_EQ(kept_x("a"), 5);
-}
-
-/// Each `ns` would be a robot, or whatever a client likes.
-TEST_F(FlowTest, OneMessageOfMarkersTakesNoOtherSendersClock) {
-  const intake::Sender other{.address = "10.0.0.6", .bytes = 10, .connection = 2};
-  ASSERT_TRUE(take_poses({at("a", 0)}, 100));
-  const double first = *kept().robots().at(*icd::RobotName::parse("a")).posted.stamp;
-  icd::MarkersUpdate many;
-  for (int i = 0; i < 2000; ++i) {
-    icd::Marker& marker = many.markers.emplace_back();
-    marker.ns = std::to_string(i);
-    marker.action = icd::MarkerAction::Delete;
-    marker.header.stamp = 50;
-  }
-  std::optional<icd::Checked<void>> said;
-  flow_->take(std::move(many), other, [&](icd::Checked<void> taken) { said = std::move(taken); });
-  ASSERT_TRUE(loop::turn_until(loop_, [&] { return said.has_value(); }));
-  EXPECT_EQ(kept().senders().clocks().size(), 2u);
-  ASSERT_TRUE(take_poses({at("a", 1)}, 104));
-  EXPECT_NEAR(*kept().robots().at(*icd::RobotName::parse("a")).posted.stamp, first + 4, 1e-6);
 }
 
 TEST_F(FlowTest, QuotesNoToken) {
@@ -152,7 +132,7 @@ TEST_F(FlowTest, QuotesNoToken) {
   EXPECT_THAT(flow_->record().refusals().front().sentence, testing::Not(testing::HasSubstr("a-secret")));
 }
 
-TEST_F(FlowTest, KeepsHowManyPartsARefusalIsAboutAndTheSettingThatCanPreventIt) {
+TEST_F(FlowTest, RecordsPartsAndSettingOfARejection) {
   flow_->refused(icd::Uri::StateUpdate, sender_,
                  {icd::Status::UnprocessableEntity, "name: got x", 3, "robots[].alias"});
   ASSERT_EQ(flow_->record().refusals().size(), 1);
@@ -160,7 +140,7 @@ TEST_F(FlowTest, KeepsHowManyPartsARefusalIsAboutAndTheSettingThatCanPreventIt) 
   EXPECT_EQ(flow_->record().refusals().front().setting, "robots[].alias");
 }
 
-TEST_F(FlowTest, EndsAndSendsNothingRejectedMessagesFromThenOn) {
+TEST_F(FlowTest, EndsAndAcceptsNoActionOnRejectedMessages) {
   bool over = false;
   EXPECT_FALSE(flow_->is_ending());
   flow_->end([&] { over = true; });
@@ -169,9 +149,9 @@ TEST_F(FlowTest, EndsAndSendsNothingRejectedMessagesFromThenOn) {
   EXPECT_TRUE(loop::turn_until(loop_, [&] { return over; }));
 }
 
-class FlowsLedger : protected loop::SimulatedTime, public FlowTest {
+class FlowLedgerTest : protected loop::SimulatedTime, public FlowTest {
  protected:
-  /// So much later, with all that was due on the disk.
+  /// Advances time and waits for the disk.
   void tick(loop::Duration passed) {
     pass(passed);
     flow_->tick(disk_);
@@ -186,7 +166,7 @@ class FlowsLedger : protected loop::SimulatedTime, public FlowTest {
   loop::Writer disk_{loop_};
 };
 
-TEST_F(FlowsLedger, HasASpareFileAMinuteAfterTheStartAndASnapshotOnceAFileIsFull) {
+TEST_F(FlowLedgerTest, GetsASpareFileAndASnapshot) {
   tick(Flow::kUpkeepEvery - std::chrono::seconds(1));
   EXPECT_FALSE(has("spare-"));
   tick(std::chrono::seconds(1));
@@ -199,13 +179,13 @@ TEST_F(FlowsLedger, HasASpareFileAMinuteAfterTheStartAndASnapshotOnceAFileIsFull
   EXPECT_TRUE(has("snapshot-"));
   tick(std::chrono::seconds(1));
   EXPECT_TRUE(has("spare-"));
-  EXPECT_FALSE(ledger_.upkeep()) << "nothing is due";
+  EXPECT_FALSE(ledger_.upkeep());
 }
 
-TEST_F(FlowsLedger, IsKnownElsewhereAlsoWhileItCannotBeRead) {
+TEST_F(FlowLedgerTest, KeepsItsSizeInTheStampFloorIfUnreadable) {
   StampFloor(folder_.path()).write({.floor = 1, .ledger = {.reports = 7, .log = 3}});
   ledger_ = ledger::Ledger::closed("it cannot be read", {.reports = 7, .log = 3});
-  live();
+  restart();
   tick(std::chrono::seconds(10));
   const auto kept = StampFloor(folder_.path()).read();
   EXPECT_GT(kept->floor, 1);
@@ -213,10 +193,10 @@ TEST_F(FlowsLedger, IsKnownElsewhereAlsoWhileItCannotBeRead) {
   EXPECT_EQ(kept->ledger.log, 3U);
 }
 
-/// States go to a Command Post that accepts them.
-class FlowThatSends : public testing::Test {
+/// The endpoint accepts each state.
+class FlowWithAnEndpoint : public testing::Test {
  protected:
-  FlowThatSends() { settings_.command_post.mapping = {post_.endpoint().address, post_.endpoint().port}; }
+  FlowWithAnEndpoint() { settings_.command_post.mapping = {post_.endpoint().address, post_.endpoint().port}; }
   void sends(Flow& flow, const char* sender, double stamp, const char* robot) {
     const icd::StateUpdate update{.header = {stamp}, .poses = {at(robot, 0)}};
     const int before = states_;
@@ -247,7 +227,7 @@ class FlowThatSends : public testing::Test {
   ledger::Ledger ledger_ = std::move(*ledger::Ledger::open(folder_.path()));
 };
 
-TEST_F(FlowThatSends, RepeatsThePosesOfTheRunAndOfNoRunBefore) {
+TEST_F(FlowWithAnEndpoint, RepeatsOnlyPosesOfTheRun) {
   Flow flow(loop_, ledger_, settings_,
             {.scoring = {}, .mapping = icd::BearerToken::parse("a-token"), .all = {}},
             {folder_.path(), folder_.path()}, {.changed = [] {}, .posted = [](const std::string&) {}});

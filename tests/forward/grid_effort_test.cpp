@@ -1,15 +1,15 @@
-// A grid leaves as it is kept unless that takes long.
+// A stored grid is sent unchanged unless that takes long.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 #include "codec/gzip.hpp"
-#include "forward/letting_post.hpp"
+#include "forward/manual_endpoint.hpp"
 
 namespace adit::forward {
 namespace {
 
-/// As it is kept: rows that are all alike, which runs of the same cell do not tell.
+/// Stored with run-length compression, which misses that its rows are equal.
 icd::MapUpdate kept_grid(const char* robot, std::uint32_t side) {
   icd::MapUpdate map = grid_of(robot, side);
   std::vector<std::uint8_t> cells(std::size_t{side} * side);
@@ -20,18 +20,13 @@ icd::MapUpdate kept_grid(const char* robot, std::uint32_t side) {
   return map;
 }
 
-class KeptGrid : public WithLettingPost {
+class StoredGrid : public MapsToManualEndpoint {
  protected:
-  KeptGrid() {
+  StoredGrid() {
     settings_.command_post.rates.map_hz = 1;
     maps_->settings_changed();
   }
-  std::uint64_t sent(const char* robot) const {
-    for (const auto& [traffic, row] : record_.rows()) {
-      if (traffic == Traffic{Kind::Grid, robot}) return row.bytes_sent;
-    }
-    return 0;
-  }
+  std::uint64_t sent(const char* robot) const { return record_.rows().at({Kind::Grid, robot}).bytes_sent; }
   bool all_are_taken() {
     return loop::turn_until(loop_, [&] {
       return maps_->waiting({Kind::Grid, "first"}) + maps_->waiting({Kind::Grid, "second"}) == 0;
@@ -39,7 +34,7 @@ class KeptGrid : public WithLettingPost {
   }
 };
 
-TEST_F(KeptGrid, LeavesAsItIsAlsoIfItHasToWait) {
+TEST_F(StoredGrid, IsSentUnchangedAfterWaiting) {
   const icd::MapUpdate first = kept_grid("first", 1100), second = kept_grid("second", 1100);
   take(first);
   ASSERT_TRUE(come({"first"}));
@@ -51,7 +46,7 @@ TEST_F(KeptGrid, LeavesAsItIsAlsoIfItHasToWait) {
   EXPECT_GT(sent("second"), second.data.bytes.size());
 }
 
-TEST_F(KeptGrid, ThatTakesLongToLeaveIsMadeSmaller) {
+TEST_F(StoredGrid, IsCompressedForASlowLink) {
   settings_.command_post.budget_mbit = 1;
   maps_->settings_changed();
   const icd::MapUpdate large = kept_grid("second", 1100);

@@ -27,14 +27,14 @@ class MapArrivalTest : public testing::Test {
         [this](icd::MapUpdate update, const intake::Sender&, std::shared_ptr<spool::MapFile> file,
                const auto&) { taken_ = spool_.keep(1, std::move(update), 0, std::move(file)); });
   }
-  /// What was left.
+  /// Returns the bytes that were not stored.
   icd::ChunkedBytes store(MapArrival& arrival, icd::ChunkedBytes bytes) {
     std::optional<icd::ChunkedBytes> said;
     arrival.store(std::move(bytes), [&](icd::ChunkedBytes left) { said = std::move(left); });
     EXPECT_TRUE(loop::turn_until(loop_, [&] { return said.has_value(); }));
     return said.value();
   }
-  /// The writer has done all that it was given.
+  /// Waits for the writer.
   void settle() { ASSERT_TRUE(loop::turn_until_idle(loop_, *writer_)); }
   std::vector<std::string> names() const { return host::names_in(folder_.path()).value(); }
 
@@ -47,7 +47,7 @@ class MapArrivalTest : public testing::Test {
   icd::Checked<icd::MapUpdate> taken_;
 };
 
-/// `map` with the first `count` bytes of its data taken away.
+/// Removes the first `count` bytes from the map's data.
 icd::ChunkedBytes take_front(icd::MapUpdate& map, std::size_t count) {
   const std::vector<std::uint8_t> all = map.data.bytes.to_vector();
   const std::span<const std::uint8_t> bytes(all);
@@ -55,21 +55,21 @@ icd::ChunkedBytes take_front(icd::MapUpdate& map, std::size_t count) {
   return icd::ChunkedBytes(bytes.first(count));
 }
 
-TEST_F(MapArrivalTest, StandsInItsFileWhenItIsTaken) {
+TEST_F(MapArrivalTest, HasAFileWhenItIsAccepted) {
   const icd::MapUpdate whole = cloud(50'000);
   icd::MapUpdate map = whole;
   const auto arriving = arrival();
   EXPECT_TRUE(store(*arriving, take_front(map, 300'001)).empty());
   EXPECT_TRUE(store(*arriving, take_front(map, 100'000)).empty());
   ASSERT_EQ(names().size(), 1u);
-  EXPECT_TRUE(names().front().ends_with(spool::PartFile::kEnding)) << "and is none before it is whole";
+  EXPECT_TRUE(names().front().ends_with(spool::PartFile::kEnding)) << "not a map yet";
   auto data = arriving->stored();
   ASSERT_TRUE(data);
   EXPECT_EQ(data->size(), 400'001u);
   data->append(map.data.bytes);
   map.data.bytes = std::move(*data);
   EXPECT_EQ(map, whole);
-  const NoFileAbove small(700'000);  // for one of it, and not for two
+  const NoFileAbove small(700'000);  // too small for a second copy
   arriving->take(std::move(map), {}, [](const icd::Checked<void>&) {});
   ASSERT_TRUE(taken_) << taken_.error().sentence;
   EXPECT_EQ(*taken_, whole);
@@ -79,7 +79,7 @@ TEST_F(MapArrivalTest, StandsInItsFileWhenItIsTaken) {
   EXPECT_EQ(kept[0].second, whole);
 }
 
-TEST_F(MapArrivalTest, WhoseDataWasTurnedIntoSomethingElseGetsAFileOfThat) {
+TEST_F(MapArrivalTest, StoresDataThatChangedAfterItsArrival) {
   icd::MapUpdate map = cloud(50'000);
   const auto arriving = arrival();
   EXPECT_TRUE(store(*arriving, take_front(map, 300'000)).empty());
@@ -91,7 +91,7 @@ TEST_F(MapArrivalTest, WhoseDataWasTurnedIntoSomethingElseGetsAFileOfThat) {
   EXPECT_EQ(names(), std::vector<std::string>{"map-00000001.cbor"});
 }
 
-TEST_F(MapArrivalTest, LeavesNoFileWhereItIsNotTaken) {
+TEST_F(MapArrivalTest, LeavesNoFileIfItIsRejected) {
   auto arriving = arrival();
   EXPECT_TRUE(store(*arriving, cloud(1000).data.bytes).empty());
   EXPECT_EQ(names().size(), 1u);
@@ -100,7 +100,7 @@ TEST_F(MapArrivalTest, LeavesNoFileWhereItIsNotTaken) {
   EXPECT_TRUE(names().empty());
 }
 
-TEST_F(MapArrivalTest, LeavesNoFileWhereItOutlivesTheGateway) {
+TEST_F(MapArrivalTest, LeavesNoFileIfItOutlivesTheGateway) {
   auto arriving = arrival();
   std::promise<void> let_go;
   writer_->submit([until = let_go.get_future().share()] { until.wait(); }, [] {});
@@ -108,23 +108,23 @@ TEST_F(MapArrivalTest, LeavesNoFileWhereItOutlivesTheGateway) {
   alive_.reset();
   let_go.set_value();
   writer_.reset();
-  EXPECT_EQ(names().size(), 1u) << "a writer finishes";
+  EXPECT_EQ(names().size(), 1u) << "the writer finishes";
   arriving->store(cloud(1000).data.bytes, [](const icd::ChunkedBytes&) {});
   arriving.reset();
   EXPECT_TRUE(names().empty());
 }
 
-TEST_F(MapArrivalTest, IsNotStoredIntoTheRoomThatIsToBeLeft) {
+TEST_F(MapArrivalTest, LeavesReservedRoomFree) {
   icd::MapUpdate map = cloud(50'000);
   const auto arriving = arrival();
   EXPECT_TRUE(store(*arriving, take_front(map, 300'000)).empty());
   spare_ = kNoSuchRoom;
   const icd::ChunkedBytes more = take_front(map, 100'000);
-  EXPECT_EQ(store(*arriving, more), more) << "all of it is left";
+  EXPECT_EQ(store(*arriving, more), more) << "nothing was stored";
   EXPECT_EQ(arriving->stored()->size(), 300'000u);
 }
 
-TEST_F(MapArrivalTest, OfWhichNothingWasStoredHasNoFile) {
+TEST_F(MapArrivalTest, HasNoFileIfNothingWasStored) {
   spare_ = kNoSuchRoom;
   const auto arriving = arrival();
   EXPECT_FALSE(store(*arriving, cloud(1000).data.bytes).empty());

@@ -11,8 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "codec/gzip.hpp"
-#include "icd/xyz.hpp"
+#include "forward/sample_maps.hpp"
 #include "loop/turn_until.hpp"
 #include "picture/maps.hpp"
 
@@ -20,24 +19,6 @@ namespace adit::forward {
 namespace {
 
 using picture::TileIndex;
-
-icd::MapUpdate grid(const char* robot, double x, std::uint32_t width, std::uint8_t value) {
-  icd::OccupancyGrid grid;
-  grid.width = grid.height = width;
-  grid.resolution = 0.25;
-  grid.origin.position = {x, 0, 0};
-  const std::vector<std::uint8_t> cells(std::size_t{width} * width, value);
-  return {
-      icd::RobotName::parse(robot), grid, {icd::ChunkedBytes{cells}, icd::Compression::None, cells.size()}};
-}
-
-/// Points at the frame's origin.
-icd::MapUpdate cloud(const char* robot, std::size_t points) {
-  const icd::PointCloud2 cloud = icd::xyz();
-  const std::vector<std::uint8_t> bytes(points * 12);
-  return {
-      icd::RobotName::parse(robot), cloud, {icd::ChunkedBytes{bytes}, icd::Compression::None, bytes.size()}};
-}
 
 class MapPictureTest : public testing::Test {
  protected:
@@ -51,25 +32,25 @@ class MapPictureTest : public testing::Test {
   MapPicture picture{loop, workers, [this] { ++changes; }};
 };
 
-TEST_F(MapPictureTest, DrawsEachMapThatWasForwardedAndSaysThatThePictureChanged) {
-  picture.forwarded(grid("r1", 0, 4, 0));
-  picture.forwarded(grid("r2", 64, 4, 0));
-  picture.forwarded(cloud("r1", 3));
+TEST_F(MapPictureTest, DrawsEachDeliveredMap) {
+  picture.forwarded(grid_of("r1", 4, 0));
+  picture.forwarded(grid_of("r2", 4, 0, 64));
+  picture.forwarded(cloud_along_x("r1", {0, 0, 0}));
   ASSERT_TRUE(loop::turn_until(loop, [&] { return drawn("r1", {0, 0, 0}, picture::Kind::Cloud); }))
-      << "the last that came";
+      << "the last map";
   EXPECT_TRUE(drawn("r1", {0, 0, 0}));
   EXPECT_TRUE(drawn("r2", {0, 1, 0}));
   EXPECT_EQ(changes, 3);
-  picture.forwarded(grid("r1", 0, 4, 0));
-  picture.forwarded(grid("r3", 0, 4, 0));
+  picture.forwarded(grid_of("r1", 4, 0));
+  picture.forwarded(grid_of("r3", 4, 0));
   ASSERT_TRUE(loop::turn_until(loop, [&] { return drawn("r3", {0, 0, 0}); }));
-  EXPECT_EQ(changes, 4) << "the same grid again changed nothing";
+  EXPECT_EQ(changes, 4) << "an equal grid changes nothing";
 }
 
 TEST_F(MapPictureTest, FreesNoMapOnTheLoop) {
   const std::vector<std::uint8_t> cells(16, 0);
   std::atomic<std::thread::id> freed_by;
-  icd::MapUpdate map = grid("r1", 0, 4, 0);
+  icd::MapUpdate map = grid_of("r1", 4, 0);
   map.data.bytes = {};
   map.data.bytes.append(
       std::shared_ptr<const void>(cells.data(), [&](const void*) { freed_by = std::this_thread::get_id(); }),
@@ -80,7 +61,7 @@ TEST_F(MapPictureTest, FreesNoMapOnTheLoop) {
   EXPECT_NE(freed_by.load(), std::this_thread::get_id());
 }
 
-/// What the thread of the only worker has used of a core.
+/// CPU time of the only worker.
 class WorkerTime {
  public:
   WorkerTime(loop::Loop& loop, loop::Workers& workers) {
@@ -100,10 +81,10 @@ class WorkerTime {
   clockid_t clock_{};
 };
 
-/// It may be drawn before that is seen: then it is tried again.
-TEST_F(MapPictureTest, GivesWayToAMapOnItsWayWhileALargeOneIsDrawn) {
+/// If the drawing ends too early, the test tries again.
+TEST_F(MapPictureTest, GivesWayToMapsForTheCommandPost) {
   const WorkerTime time(loop, workers);
-  const icd::MapUpdate large = grid("r1", 0, 1, 0);
+  const icd::MapUpdate large = grid_of("r1", 1, 0);
   const std::vector<std::uint8_t> cells(std::size_t{5000} * 5000, 0);
   bool amid = false;
   for (int attempt = 0; attempt < 50 && !amid; ++attempt) {
@@ -126,53 +107,52 @@ TEST_F(MapPictureTest, GivesWayToAMapOnItsWayWhileALargeOneIsDrawn) {
   EXPECT_TRUE(amid);
 }
 
-TEST_F(MapPictureTest, DoesNotDrawAGridThatTheNextOneCoversWhileItWaits) {
-  picture.forwarded(grid("r1", 0, 4, 0));
-  picture.forwarded(grid("r2", 64, 4, 0));
-  picture.forwarded(grid("r1", 0, 5, 100));
+TEST_F(MapPictureTest, SkipsAQueuedGridThatTheNextOneCovers) {
+  picture.forwarded(grid_of("r1", 4, 0));
+  picture.forwarded(grid_of("r2", 4, 0, 64));
+  picture.forwarded(grid_of("r1", 5, 100));
   ASSERT_TRUE(loop::turn_until(loop, [&] { return drawn("r1", {0, 0, 0}); }));
   EXPECT_TRUE(drawn("r2", {0, 1, 0}));
   EXPECT_EQ(changes, 2);
 }
 
-TEST_F(MapPictureTest, DrawsEveryCloudAndEveryGridThatIsNotCovered) {
-  picture.forwarded(grid("r1", 0, 4, 0));
-  picture.forwarded(grid("r1", 64, 4, 0));
-  picture.forwarded(cloud("r1", 3));
-  picture.forwarded(cloud("r2", 3));
+TEST_F(MapPictureTest, DrawsCloudsAndUncoveredGrids) {
+  picture.forwarded(grid_of("r1", 4, 0));
+  picture.forwarded(grid_of("r1", 4, 0, 64));
+  picture.forwarded(cloud_along_x("r1", {0, 0, 0}));
+  picture.forwarded(cloud_along_x("r2", {0, 0, 0}));
   ASSERT_TRUE(loop::turn_until(loop, [&] { return drawn("r2", {0, 0, 0}, picture::Kind::Cloud); }));
   EXPECT_TRUE(drawn("r1", {0, 0, 0}));
   EXPECT_TRUE(drawn("r1", {0, 1, 0}));
   EXPECT_TRUE(drawn("r1", {0, 0, 0}, picture::Kind::Cloud));
 }
 
-TEST_F(MapPictureTest, CountsWhatItCouldNotKeepUntilItsTurn) {
-  auto large = cloud("r1", 0);
+TEST_F(MapPictureTest, CountsMapsThatItsQueueCannotHold) {
+  auto large = cloud_along_x("r1", {});
   const icd::ChunkedBytes piece{std::vector<std::uint8_t>(60'000)};
   while (large.data.bytes.size() < MapPicture::kMostWaiting / 2) large.data.bytes.append(piece);
   large.data.raw_size = large.data.bytes.size();
   for (int i = 0; i < 3; ++i) picture.forwarded(large);
   const auto layers = picture.mosaic().layers();
   ASSERT_EQ(layers.size(), 1U);
-  EXPECT_EQ(layers[0].missed, 2U) << "two of them do not fit together";
-  EXPECT_TRUE(loop::turn_until(loop, [&] { return drawn("r1", {0, 0, 0}, picture::Kind::Cloud); }))
-      << "the last one is drawn";
+  EXPECT_EQ(layers[0].missed, 2U) << "only one fits";
+  EXPECT_TRUE(loop::turn_until(loop, [&] { return drawn("r1", {0, 0, 0}, picture::Kind::Cloud); }));
 }
 
 TEST_F(MapPictureTest, CountsAMapThatCannotBeDrawn) {
-  auto damaged = grid("r1", 0, 4, 0);
+  auto damaged = grid_of("r1", 4, 0);
   damaged.data.compression = icd::Compression::Gzip;
   picture.forwarded(damaged);
   ASSERT_TRUE(loop::turn_until(loop, [&] { return !picture.mosaic().layers().empty(); }));
   EXPECT_EQ(picture.mosaic().layers()[0].missed, 1U);
-  picture.forwarded(grid("r1", 0, 4, 0));
-  EXPECT_TRUE(loop::turn_until(loop, [&] { return drawn("r1", {0, 0, 0}); })) << "and goes on";
+  picture.forwarded(grid_of("r1", 4, 0));
+  EXPECT_TRUE(loop::turn_until(loop, [&] { return drawn("r1", {0, 0, 0}); })) << "later maps are drawn";
 }
 
-TEST_F(MapPictureTest, ANewRunBeginsBlankWhateverWaitsOrIsBeingDrawn) {
-  picture.forwarded(grid("r1", 0, 4, 0));
+TEST_F(MapPictureTest, IsEmptyInANewRun) {
+  picture.forwarded(grid_of("r1", 4, 0));
   ASSERT_TRUE(loop::turn_until(loop, [&] { return drawn("r1", {0, 0, 0}); }));
-  picture.forwarded(grid("r2", 0, 4, 0));
+  picture.forwarded(grid_of("r2", 4, 0));
   changes = 0;
   picture.begin_run();
   EXPECT_EQ(changes, 1);
@@ -180,10 +160,10 @@ TEST_F(MapPictureTest, ANewRunBeginsBlankWhateverWaitsOrIsBeingDrawn) {
   loop::turn_for(loop, std::chrono::milliseconds{100});
   EXPECT_FALSE(drawn("r2", {0, 0, 0}));
 
-  picture.forwarded(grid("r3", 0, 1000, 0));
-  loop.turn(std::chrono::milliseconds{5});  // handed to the worker
+  picture.forwarded(grid_of("r3", 1000, 0));
+  loop.turn(std::chrono::milliseconds{5});  // passed to the worker
   picture.begin_run();
-  picture.forwarded(grid("r4", 0, 4, 0));
+  picture.forwarded(grid_of("r4", 4, 0));
   ASSERT_TRUE(loop::turn_until(loop, [&] { return drawn("r4", {0, 0, 0}); }));
   EXPECT_FALSE(drawn("r3", {0, 0, 0}));
 }
@@ -194,7 +174,7 @@ class CoveredCountTest : public testing::Test {
     count.covered([this](const auto& covered) { answers.push_back(covered ? covered->all : 0); });
   }
   void draw(double x) { easel.draw(picture::grid_at(x, 0, 2, 0.25, picture::Cells(4, 0))); }
-  /// True if there are so many answers.
+  /// Waits for that many answers.
   bool answered(std::size_t wanted) {
     return loop::turn_until(loop, [&] { return answers.size() == wanted; });
   }
@@ -206,11 +186,11 @@ class CoveredCountTest : public testing::Test {
   std::vector<std::uint64_t> answers;  // pixels; 0: an error
 };
 
-TEST_F(CoveredCountTest, AnswersWithTheMapAsItIs) {
+TEST_F(CoveredCountTest, AnswersWithThePresentMap) {
   draw(0);
   ask();
   draw(10);
-  ask();  // the first count is in progress
+  ask();  // during the first count
   ASSERT_TRUE(answered(2));
   EXPECT_EQ(answers, (std::vector<std::uint64_t>{4, 8}));
 }
@@ -218,7 +198,7 @@ TEST_F(CoveredCountTest, AnswersWithTheMapAsItIs) {
 TEST_F(CoveredCountTest, RejectsRequestsBeyondTheLimit) {
   draw(0);
   for (std::size_t i = 0; i < CoveredCount::kMostAskers + 2; ++i) ask();
-  EXPECT_EQ(answers, std::vector<std::uint64_t>{0}) << "the first one is being counted, the last is rejected";
+  EXPECT_EQ(answers, std::vector<std::uint64_t>{0}) << "only the last request is rejected";
   ASSERT_TRUE(answered(CoveredCount::kMostAskers + 2));
   EXPECT_EQ(answers.back(), 4);
 }

@@ -1,32 +1,21 @@
-// What becomes of clouds that wait: nothing is sent here, for there is no token.
+// Queued clouds. Nothing is sent without a token.
 #include <gtest/gtest.h>
 
 #include <string>
 #include <vector>
 
-#include "forward/around.hpp"
-#include "forward/maps.hpp"
-#include "icd/xyz.hpp"
+#include "forward/fixtures.hpp"
+#include "forward/sample_maps.hpp"
 #include "loop/turn_until.hpp"
 
 namespace adit::forward {
 namespace {
 
-constexpr std::size_t kStep = 12;
-
-icd::MapUpdate cloud_of(const std::vector<std::uint8_t>& points) {
-  const icd::PointCloud2 cloud = icd::xyz();
-  std::vector<std::uint8_t> bytes;
-  for (const std::uint8_t point : points) bytes.insert(bytes.end(), kStep, point);
-  return {
-      icd::RobotName::parse("r1"), cloud, {icd::ChunkedBytes{bytes}, icd::Compression::None, bytes.size()}};
-}
-
-class CloudsThatWait : public testing::Test, protected AroundMaps {
+class QueuedClouds : public testing::Test, protected MapsParts {
  protected:
-  void take(const std::vector<std::uint8_t>& points) {
+  void take(const std::vector<float>& xs) {
     bool told = false;
-    maps_.take(cloud_of(points), 10, nullptr, [&](const icd::Checked<void>& taken) {
+    maps_.take(cloud_along_x("r1", xs), 10, nullptr, [&](const icd::Checked<void>& taken) {
       EXPECT_TRUE(taken);
       told = true;
     });
@@ -38,20 +27,10 @@ class CloudsThatWait : public testing::Test, protected AroundMaps {
   const api::ActivityRow& row() const { return record_.rows().at(kClouds); }
 
   const Traffic kClouds{Kind::Cloud, "r1"};
-  Maps maps_{loop_,
-             workers_,
-             writer_,
-             spool_,
-             settings_,
-             {},
-             record_,
-             rejected_,
-             random_,
-             journal_,
-             [](const icd::MapUpdate&) {}};
+  Maps maps_ = maps_with(std::nullopt);
 };
 
-TEST_F(CloudsThatWait, AreReplacedByOneWithAllTheirPoints) {
+TEST_F(QueuedClouds, AreReplacedByOneWithAllTheirPoints) {
   take({1, 2});
   EXPECT_EQ(row().clouds, "");
   take({1, 2, 3});
@@ -61,17 +40,17 @@ TEST_F(CloudsThatWait, AreReplacedByOneWithAllTheirPoints) {
   EXPECT_EQ(row().replaced, 2);
 }
 
-TEST_F(CloudsThatWait, StayWhereANewerOneLacksAPoint) {
+TEST_F(QueuedClouds, StayIfANewerOneLacksAPoint) {
   take({1, 2});
   take({3, 1, 4});
   ASSERT_TRUE(loop::turn_until(loop_, [&] { return !row().clouds.empty(); }));
   EXPECT_EQ(row().clouds, "parts");
   take({3, 1, 4, 5});
-  EXPECT_TRUE(come_to_be(2)) << "the part is still there";
+  EXPECT_TRUE(come_to_be(2)) << "the part stays";
   EXPECT_EQ(row().replaced, 1);
 }
 
-TEST_F(CloudsThatWait, AreReplacedByTheNewestWhereTheSettingSaysThatTheyAreWhole) {
+TEST_F(QueuedClouds, AreReplacedIfTheSettingIsWhole) {
   settings_.robots = {{.name = "r1", .alias = "", .clouds = queues::Clouds::Whole}};
   maps_.settings_changed();
   take({1, 2});
@@ -80,7 +59,7 @@ TEST_F(CloudsThatWait, AreReplacedByTheNewestWhereTheSettingSaysThatTheyAreWhole
   EXPECT_EQ(row().clouds, "whole");
 }
 
-TEST_F(CloudsThatWait, AllArriveWhereTheSettingSaysThatTheyAreParts) {
+TEST_F(QueuedClouds, StayIfTheSettingIsParts) {
   settings_.robots = {{.name = "r1", .alias = "", .clouds = queues::Clouds::Parts}};
   maps_.settings_changed();
   take({1, 2});
@@ -90,9 +69,9 @@ TEST_F(CloudsThatWait, AllArriveWhereTheSettingSaysThatTheyAreParts) {
   EXPECT_EQ(row().clouds, "parts");
 }
 
-TEST_F(CloudsThatWait, AreComparedAlsoWhenALifeBegins) {
-  maps_.restore(
-      {{MapStore::kFirstNumber + 1, cloud_of({1, 2})}, {MapStore::kFirstNumber + 2, cloud_of({1, 2, 3})}});
+TEST_F(QueuedClouds, AreComparedAtARestart) {
+  maps_.restore({{MapStore::kFirstNumber + 1, cloud_along_x("r1", {1, 2})},
+                 {MapStore::kFirstNumber + 2, cloud_along_x("r1", {1, 2, 3})}});
   EXPECT_TRUE(come_to_be(1));
 }
 

@@ -1,5 +1,4 @@
-// Grids that go in one message with the cells between them, where the run changes: what a Command Post has
-// there is not overwritten with unknown.
+// Stitched grids at a run change: they do not overwrite cells of the Command Post with unknown ones.
 #include <gmock/gmock.h>
 
 #include <future>
@@ -22,27 +21,26 @@ namespace {
 
 using testing::ElementsAreArray;
 
-constexpr std::uint32_t kWidth = 16;  // cells of the area that is looked at
+constexpr std::uint32_t kWidth = 16;  // cells of the observed area
 constexpr std::uint8_t kUnknown = icd::kUnknownCell;
 using Area = std::vector<std::uint8_t>;
 
-/// What the Command Post says of its run.
-struct Says {
+struct RunState {
   double clock = 600;
   int left = 14;
   std::string run = "1";
 };
 
-/// Both endpoints, at one address. Its map is made of the cells that it was sent, whatever sent them.
-class RunningPost {
+/// Both endpoints at one address. Its map has each cell that was sent.
+class CommandPostStub {
  public:
   settings::Address address() const { return {peer_.endpoint().address, peer_.endpoint().port}; }
-  void says(const Says& says) {
+  void says(const RunState& says) {
     const std::lock_guard lock(mutex_);
     says_ = says;
   }
-  /// Another run is on, with an empty map.
-  void begins_run(const Says& says) {
+  /// Begins a run with an empty map.
+  void begins_run(const RunState& says) {
     const std::lock_guard lock(mutex_);
     says_ = says;
     area_ = Area(kWidth, kUnknown);
@@ -100,7 +98,7 @@ class RunningPost {
   }
 
   mutable std::mutex mutex_;
-  Says says_;
+  RunState says_;
   Area area_ = Area(kWidth, kUnknown);
   int maps_ = 0;
   std::vector<std::jthread> connections_;
@@ -109,7 +107,7 @@ class RunningPost {
   }}};
 };
 
-/// Cells of a metre, all in one row.
+/// One row of cells of 1 m.
 icd::MapUpdate part_at(double x, std::uint32_t width, std::uint8_t value) {
   icd::OccupancyGrid grid;
   grid.resolution = 1;
@@ -121,14 +119,14 @@ icd::MapUpdate part_at(double x, std::uint32_t width, std::uint8_t value) {
       icd::RobotName::parse("r1"), grid, {icd::ChunkedBytes{cells}, icd::Compression::None, cells.size()}};
 }
 
-class MapsOverRuns : public testing::Test {
+class MapsAtARunChange : public testing::Test {
  protected:
-  MapsOverRuns() {
+  MapsAtARunChange() {
     settings_.command_post.scoring = settings_.command_post.mapping = post_.address();
     settings_.command_post.rates.map_hz = settings_.command_post.rates.status_hz = 1000;
   }
-  void SetUp() override { live(); }
-  void live() {
+  void SetUp() override { restart(); }
+  void restart() {
     flow_.reset();
     const auto token = icd::BearerToken::parse("a-token");
     flow_.emplace(loop_, ledger_, settings_, Tokens{.scoring = token, .mapping = token, .all = {*token}},
@@ -137,8 +135,7 @@ class MapsOverRuns : public testing::Test {
     flow_->start();
   }
   const dispatch::Run& run() const { return flow_->reports().run(); }
-  /// The next status.
-  void hear(const Says& says) {
+  void hear(const RunState& says) {
     post_.says(says);
     next_status();
   }
@@ -162,7 +159,7 @@ class MapsOverRuns : public testing::Test {
     take(part_at(0, kWidth, 50));
     ASSERT_TRUE(all_arrive());
   }
-  /// After one far away two parts wait at the same time. How many messages they were.
+  /// Queues two parts together while a distant one is packed. Returns the number of messages for them.
   int map_both_ends() {
     std::promise<void> let_go;
     const auto until = let_go.get_future().share();
@@ -176,7 +173,7 @@ class MapsOverRuns : public testing::Test {
     EXPECT_TRUE(all_arrive());
     return post_.maps() - before;
   }
-  /// The run goes on, and the Command Post has the area.
+  /// The Command Post has the area in a running run.
   void begin_with_the_area() {
     hear({.clock = 600});
     hear({.clock = 601});
@@ -194,7 +191,7 @@ class MapsOverRuns : public testing::Test {
   }
 
   const intake::Sender sender_{.address = "10.0.0.5", .bytes = 10, .connection = 1};
-  RunningPost post_;
+  CommandPostStub post_;
   host::Folder folder_;
   loop::Loop loop_;
   settings::Settings settings_;
@@ -202,14 +199,14 @@ class MapsOverRuns : public testing::Test {
   std::optional<Flow> flow_;
 };
 
-TEST_F(MapsOverRuns, KeepAnAreaWhereTheClockStepsBack) {
+TEST_F(MapsAtARunChange, KeepAnAreaIfTheClockGoesBack) {
   begin_with_the_area();
   hear({.clock = 541});
   ASSERT_EQ(run().number, 2);
   map_both_ends_over(50);
 }
 
-TEST_F(MapsOverRuns, KeepAnAreaWhereTheRunIsTheOldOneAfterAll) {
+TEST_F(MapsAtARunChange, KeepAnAreaIfAnAnswerNamesTheOldRun) {
   hear({.clock = 600});
   hear({.clock = 601});
   ASSERT_TRUE(flow_->report({.type = "Rope", .position = {1, 2, 3}}, false));
@@ -222,27 +219,27 @@ TEST_F(MapsOverRuns, KeepAnAreaWhereTheRunIsTheOldOneAfterAll) {
   map_both_ends_over(50);
 }
 
-TEST_F(MapsOverRuns, KeepAnAreaWhereOneMoreReportIsLeft) {
+TEST_F(MapsAtARunChange, KeepAnAreaIfOneMoreReportIsLeft) {
   begin_with_the_area();
   hear({.clock = 602, .left = 15});
   ASSERT_EQ(run().number, 2);
   map_both_ends_over(50);
 }
 
-TEST_F(MapsOverRuns, KeepAnAreaAfterAStopWithoutAWord) {
+TEST_F(MapsAtARunChange, KeepAnAreaAfterALongStop) {
   begin_with_the_area();
   flow_.reset();
   auto known = ledger_.runs();
   ASSERT_EQ(known.size(), 1U);
   known.front().heard -= 3000;
   ASSERT_TRUE(ledger_.write(known.front()));
-  live();
+  restart();
   hear({.clock = 602});
   ASSERT_EQ(run().number, 2);
   map_both_ends_over(50);
 }
 
-TEST_F(MapsOverRuns, KeepAnAreaThatANewRunHasBeforeItIsNoticed) {
+TEST_F(MapsAtARunChange, KeepAnAreaSentBeforeANewRunIsDetected) {
   hear({.clock = 600});
   hear({.clock = 601});
   hear({.clock = 602});
@@ -253,7 +250,7 @@ TEST_F(MapsOverRuns, KeepAnAreaThatANewRunHasBeforeItIsNoticed) {
   map_both_ends_over(50);
 }
 
-TEST_F(MapsOverRuns, GoTogetherInANewRunWhereOnlyTheOldOneHadAnything) {
+TEST_F(MapsAtARunChange, AreStitchedIfOnlyTheOldRunHadTheArea) {
   begin_with_the_area();
   hear({.clock = 602});
   hear({.clock = 603});

@@ -7,8 +7,8 @@
 #include <limits>
 #include <vector>
 
-#include "forward/around.hpp"
-#include "forward/clouds.hpp"
+#include "forward/fixtures.hpp"
+#include "forward/sample_maps.hpp"
 #include "host/folder.hpp"
 #include "host/numbered_name.hpp"
 #include "journal/left_in.hpp"
@@ -32,13 +32,12 @@ icd::MapUpdate grid(const char* robot, std::uint32_t width, std::size_t bytes) {
            std::size_t{width} * width}};
 }
 
-/// Without a token nothing leaves: what is taken waits.
-class MapsTest : public testing::Test, protected AroundMaps {
+/// Without a token, accepted maps stay queued.
+class MapsTest : public testing::Test, protected MapsParts {
  protected:
   MapsTest() { settings_.queues.map_bytes = 100'000; }
 
-  /// What is said of it, once it is said; `files_`: how many maps were kept at that moment. `behind`: what
-  /// the writer does right after it has kept the map.
+  /// Returns the answer. `files_`: stored maps at that time. `behind`: a job of the writer after the map's.
   icd::Checked<void> take(icd::MapUpdate update, std::function<void()> behind = [] {}) {
     std::optional<icd::Checked<void>> said;
     maps_.take(std::move(update), 10, nullptr, [&](icd::Checked<void> taken) {
@@ -51,7 +50,7 @@ class MapsTest : public testing::Test, protected AroundMaps {
   }
   std::size_t files() const {
     std::size_t count = 0;
-    std::error_code none;  // a test may have taken the folder away
+    std::error_code none;  // the directory may be missing
     for (const auto& entry : fs::directory_iterator(folder_.path(), none)) {
       count += entry.path().extension() == ".cbor" ? 1 : 0;
     }
@@ -64,26 +63,16 @@ class MapsTest : public testing::Test, protected AroundMaps {
     return said ? icd::Status::Ok : said.error().status;
   }
 
-  Maps maps_{loop_,
-             workers_,
-             writer_,
-             spool_,
-             settings_,
-             std::nullopt,
-             record_,
-             rejected_,
-             random_,
-             journal_,
-             [](const icd::MapUpdate&) {}};
+  Maps maps_ = maps_with(std::nullopt);
   std::size_t files_ = 0;
 };
 
-TEST_F(MapsTest, AreAnsweredOnceTheirFileIsThere) {
+TEST_F(MapsTest, AreAnsweredOnceTheirFileExists) {
   EXPECT_EQ(status(take(grid("r1", 10, 500))), icd::Status::Ok);
   EXPECT_EQ(files_, 1u);
 }
 
-TEST_F(MapsTest, AreNotAnsweredWhileTheWriterIsAtSomethingElse) {
+TEST_F(MapsTest, AreNotAnsweredWhileTheWriterIsBusy) {
   std::promise<void> let_go;
   writer_.submit([until = let_go.get_future().share()] { until.wait(); }, [] {});
   bool said = false;
@@ -92,24 +81,24 @@ TEST_F(MapsTest, AreNotAnsweredWhileTheWriterIsAtSomethingElse) {
   for (int i = 0; i < 10; ++i) loop_.turn(std::chrono::milliseconds{5});
   EXPECT_FALSE(said);
   EXPECT_FALSE(maps_.all_kept());
-  EXPECT_EQ(maps_.queued_bytes(), 0u) << "it does not wait to be sent before it is kept";
+  EXPECT_EQ(maps_.queued_bytes(), 0u) << "stored before queued";
   let_go.set_value();
   EXPECT_TRUE(loop::turn_until(loop_, [&] { return said; }));
   EXPECT_TRUE(maps_.all_kept());
 }
 
-TEST_F(MapsTest, ThatWereReplacedAreForgottenOnceTheNewerOneIsKept) {
+TEST_F(MapsTest, AreDeletedOnceTheNewerOneIsStored) {
   std::promise<void> let_go;
   EXPECT_EQ(status(take(grid("r1", 10, 500))), icd::Status::Ok);
   const auto waits = [until = let_go.get_future().share()] { until.wait(); };
   EXPECT_EQ(status(take(grid("r1", 20, 700), waits)), icd::Status::Ok);
-  EXPECT_EQ(files_, 2u) << "the older one goes only after";
+  EXPECT_EQ(files_, 2u) << "the older file is deleted later";
   let_go.set_value();
   EXPECT_TRUE(comes_to(1));
 }
 
-/// A life may end at any byte of what it writes.
-TEST_F(MapsTest, NeverTellThatNoGridWasSentWhereThatIsNotKnown) {
+/// A process may be killed at any byte.
+TEST_F(MapsTest, AssumeSentGridsAfterAnyTruncation) {
   journal_.begin({.boot = "boot", .at = {}, .stamp = 1});
   maps_.carry_on({}, /*ran_before=*/true);
   for (const auto& entry : fs::directory_iterator(journal_folder_.path())) {
@@ -125,54 +114,34 @@ TEST_F(MapsTest, NeverTellThatNoGridWasSentWhereThatIsNotKnown) {
   EXPECT_TRUE(journal::left_in(journal_folder_.path()).grids());
 }
 
-/// The next life takes the one of the higher number for the newer one.
-TEST_F(MapsTest, ThatAreSentAgainByHandStayBehindANewerOneThatCoversThem) {
+/// After a restart, the highest number is the newest map.
+TEST_F(MapsTest, ReplaceARetriedGridByANewerCoveringOne) {
   EXPECT_EQ(status(take(grid("r1", 20, 700))), icd::Status::Ok);
   std::optional<bool> kept;
   maps_.send_again(grid("r1", 10, 500), [&](bool is_kept) {
     kept = is_kept;
     return true;
   });
-  EXPECT_EQ(kept, true) << "the newer one says all of it";
+  EXPECT_EQ(kept, true) << "the newer grid covers it";
   EXPECT_TRUE(comes_to(1));
   EXPECT_TRUE(maps_.all_kept());
 }
 
-TEST_F(MapsTest, ThatAreSentAgainByHandAreOlderThanWhatWaitsForALifeToComeAsWell) {
+TEST_F(MapsTest, KeepARetriedGridOldestAfterARestart) {
   EXPECT_EQ(status(take(grid("r1", 10, 500))), icd::Status::Ok);
   bool kept = false;
   maps_.send_again(grid("r1", 20, 700), [&](bool well) { return kept = well; });
   ASSERT_TRUE(loop::turn_until(loop_, [&] { return kept; }));
   EXPECT_EQ(maps_.waiting({Kind::Grid, "r1"}), 2u);
-  Maps next{loop_,
-            workers_,
-            writer_,
-            spool_,
-            settings_,
-            std::nullopt,
-            record_,
-            rejected_,
-            random_,
-            journal_,
-            [](const icd::MapUpdate&) {}};
+  Maps next = maps_with(std::nullopt);
   for (const std::uint64_t number : host::numbers_in(folder_.path(), "map-", ".cbor").value())
     next.restore({{number, number == 1 ? grid("r1", 20, 700) : grid("r1", 10, 500)}});
-  EXPECT_EQ(next.waiting({Kind::Grid, "r1"}), 2u) << "it says all of the newer one, but is not newer";
+  EXPECT_EQ(next.waiting({Kind::Grid, "r1"}), 2u) << "it covers the other grid but is older";
 }
 
-/// While it is packed or under way it is not among what waits.
-TEST_F(MapsTest, ThatAreSentAgainByHandStayBehindANewerOneThatIsOnItsWay) {
-  Maps maps{loop_,
-            workers_,
-            writer_,
-            spool_,
-            settings_,
-            icd::BearerToken::parse("a-token"),
-            record_,
-            rejected_,
-            random_,
-            journal_,
-            [](const icd::MapUpdate&) {}};
+/// A map in packing or in flight is not in the queue.
+TEST_F(MapsTest, ReplaceARetriedGridByOneInPacking) {
+  Maps maps = maps_with(icd::BearerToken::parse("a-token"));
   std::promise<void> let_go;
   workers_.submit(loop::Urgency::OnTheWay, [until = let_go.get_future().share()] { until.wait(); }, [] {});
   bool taken = false;
@@ -184,13 +153,13 @@ TEST_F(MapsTest, ThatAreSentAgainByHandStayBehindANewerOneThatIsOnItsWay) {
     kept = well;
     return true;
   });
-  EXPECT_EQ(kept, true) << "the newer one says all of it";
+  EXPECT_EQ(kept, true) << "the newer grid covers it";
   EXPECT_EQ(maps.waiting({Kind::Grid, "r1"}), 1u);
   EXPECT_EQ(files(), 1u);
   let_go.set_value();
 }
 
-TEST_F(MapsTest, ThatAreSentAgainByHandStayBehindANewerOneThatWasTakenMeanwhile) {
+TEST_F(MapsTest, DropARetriedGridIfItWasReplacedMeanwhile) {
   std::optional<bool> kept;
   maps_.send_again(grid("r1", 10, 500), [&](bool well) {
     kept = well;
@@ -201,7 +170,7 @@ TEST_F(MapsTest, ThatAreSentAgainByHandStayBehindANewerOneThatWasTakenMeanwhile)
   EXPECT_TRUE(comes_to(0));
 }
 
-TEST_F(MapsTest, ThatReplaceWhatWaitsAreTakenByAFullQueueAndOthersAreNot) {
+TEST_F(MapsTest, ReplaceQueuedMapsInAFullQueue) {
   EXPECT_EQ(status(take(grid("r1", 10, 50'000))), icd::Status::Ok);
   EXPECT_EQ(status(take(grid("r2", 10, 40'000))), icd::Status::Ok);
   EXPECT_EQ(status(take(grid("r3", 10, 20'000))), icd::Status::TooManyRequests);
@@ -210,7 +179,7 @@ TEST_F(MapsTest, ThatReplaceWhatWaitsAreTakenByAFullQueueAndOthersAreNot) {
   EXPECT_TRUE(comes_to(2));
 }
 
-TEST_F(MapsTest, WithoutAValidPointAreAcceptedAndCountedAndReplaceNothing) {
+TEST_F(MapsTest, AreCountedIfTheyHaveNoValidPoint) {
   settings_.robots = {{.name = "r1", .alias = "", .clouds = queues::Clouds::Whole}};
   maps_.settings_changed();
   const Traffic traffic{Kind::Cloud, "r1"};
@@ -223,24 +192,23 @@ TEST_F(MapsTest, WithoutAValidPointAreAcceptedAndCountedAndReplaceNothing) {
   EXPECT_EQ(record_.rows().at(traffic).replaced, 0u);
   EXPECT_EQ(record_.rows().at(traffic).no_valid_point, 1u);
   ASSERT_TRUE(take(cloud_along_x("r2", {})));
-  EXPECT_EQ(maps_.waiting({Kind::Cloud, "r2"}), 1u) << "posted without points, it is forwarded so";
+  EXPECT_EQ(maps_.waiting({Kind::Cloud, "r2"}), 1u) << "posted without points";
 }
 
-TEST_F(MapsTest, WaitSinceTheOldestNewsOfTheirRobotAndKindWasAccepted) {
+TEST_F(MapsTest, WaitSinceTheOldestOfTheirRobotAndKind) {
   const Traffic traffic{Kind::Grid, "r1"};
-  EXPECT_FALSE(maps_.waits_since(traffic)) << "the Command Post lacks nothing";
+  EXPECT_FALSE(maps_.waits_since(traffic)) << "nothing is queued";
   ASSERT_TRUE(take(grid("r1", 10, 500)));
   const auto since = maps_.waits_since(traffic);
   ASSERT_TRUE(since);
   ASSERT_TRUE(take(grid("r2", 10, 500)));
   ASSERT_TRUE(take(grid("r1", 20, 500)));
-  EXPECT_EQ(maps_.waits_since(traffic), since)
-      << "what is newer makes the picture no fresher until it is there";
+  EXPECT_EQ(maps_.waits_since(traffic), since) << "the oldest counts";
   EXPECT_GT(*maps_.waits_since({Kind::Grid, "r2"}), *since);
   EXPECT_FALSE(maps_.waits_since({Kind::Cloud, "r1"}));
 }
 
-TEST_F(MapsTest, AreBoundedInNumberHoweverSmallTheyAreUnlessTheyJoinWhatWaits) {
+TEST_F(MapsTest, AreLimitedInNumberUnlessTheyMerge) {
   settings_.robots = {{.name = "r1", .alias = "", .clouds = queues::Clouds::Parts}};
   maps_.settings_changed();
   settings_.queues.map_bytes = std::size_t{1} << 30;
@@ -259,11 +227,11 @@ TEST_F(MapsTest, AreBoundedInNumberHoweverSmallTheyAreUnlessTheyJoinWhatWaits) {
   EXPECT_TRUE(loop::turn_until(loop_, [&] { return maps_.all_kept(); }, std::chrono::seconds{60}));
   EXPECT_EQ(taken, AcceptedMaps::kMostMaps);
   EXPECT_EQ(status(take(cloud_of(true))), icd::Status::TooManyRequests);
-  EXPECT_EQ(status(take(cloud_of(false))), icd::Status::Ok) << "as the last one that waits";
+  EXPECT_EQ(status(take(cloud_of(false))), icd::Status::Ok) << "merged into the last queued one";
   EXPECT_EQ(status(take(cloud_of(true))), icd::Status::TooManyRequests);
 }
 
-TEST_F(MapsTest, ThatCannotBeKeptAreRefusedAndItIsSaidWhy) {
+TEST_F(MapsTest, AreRejectedWithAReasonIfAWriteFails) {
   fs::remove_all(folder_.path());
   const std::string path = folder_.path();
   {
@@ -274,11 +242,11 @@ TEST_F(MapsTest, ThatCannotBeKeptAreRefusedAndItIsSaidWhy) {
   EXPECT_EQ(said.error().status, icd::Status::ServiceUnavailable);
   EXPECT_EQ(maps_.trouble(), said.error().sentence);
   fs::remove(path);
-  EXPECT_EQ(status(take(grid("r1", 10, 500))), icd::Status::Ok) << "the folder is made again";
+  EXPECT_EQ(status(take(grid("r1", 10, 500))), icd::Status::Ok) << "in a new directory";
   EXPECT_EQ(maps_.trouble(), "");
 }
 
-TEST_F(MapsTest, ThatAreSentAgainByHandAreKeptBeforeWhoSetThemAsideIsTold) {
+TEST_F(MapsTest, AreStoredBeforeARetryIsConfirmed) {
   std::promise<void> let_go;
   writer_.submit([until = let_go.get_future().share()] { until.wait(); }, [] {});
   std::optional<bool> kept;
@@ -298,7 +266,7 @@ TEST_F(MapsTest, ThatAreSentAgainByHandAreKeptBeforeWhoSetThemAsideIsTold) {
   EXPECT_GT(maps_.queued_bytes(), 0u);
 }
 
-TEST_F(MapsTest, ThatCannotBeKeptStayWhereTheyWereRejectedMessages) {
+TEST_F(MapsTest, StayRejectedIfARetryCannotBeStored) {
   fs::remove_all(folder_.path());
   {
     std::ofstream(folder_.path()) << "in the way";

@@ -26,7 +26,7 @@ icd::Marker change(std::int32_t id, std::string text, icd::MarkerAction action =
   return marker;
 }
 
-/// More than goes into the queue in one turn.
+/// Too many for one turn of the loop.
 icd::MarkersUpdate many(const std::string& text) {
   icd::MarkersUpdate update;
   for (std::int32_t id = 0; id < 2500; ++id) update.markers.push_back(change(id, text));
@@ -58,7 +58,7 @@ class MarkerArrivalsTest : public testing::Test {
   MarkerArrivals arrivals_{loop_, workers_, journal_, queue_, record_, [this] { ++came_; }};
 };
 
-TEST_F(MarkerArrivalsTest, AreThereAtOnceWhereTheyAreFew) {
+TEST_F(MarkerArrivalsTest, AreQueuedAtOnceIfTheyAreFew) {
   take({{change(1, "a")}});
   EXPECT_THAT(said_, ElementsAre(icd::Status::Ok));
   EXPECT_EQ(came_, 1);
@@ -66,7 +66,7 @@ TEST_F(MarkerArrivalsTest, AreThereAtOnceWhereTheyAreFew) {
   EXPECT_EQ(queue_.pending(), left());
 }
 
-TEST_F(MarkerArrivalsTest, AreCountedWhereNobodySeesThem) {  // ICD 6.6
+TEST_F(MarkerArrivalsTest, AreCountedIfTheyAreInvisible) {  // ICD 6.6
   icd::MarkersUpdate update = many("a");
   for (icd::Marker& marker : update.markers) marker.color = {1, 0, 0, 1};
   update.markers[0].color.a = update.markers[2400].color.a = 0;
@@ -75,24 +75,24 @@ TEST_F(MarkerArrivalsTest, AreCountedWhereNobodySeesThem) {  // ICD 6.6
   update.markers[3].color.a = 0, update.markers[3].action = icd::MarkerAction::Delete;
   take(std::move(update));
   ASSERT_TRUE(turn_until([this] { return !said_.empty(); }));
-  EXPECT_THAT(said_, ElementsAre(icd::Status::Ok)) << "they go on all the same";
+  EXPECT_THAT(said_, ElementsAre(icd::Status::Ok)) << "accepted";
   EXPECT_EQ(record_.rows().at({Kind::Markers, ""}).invisible, 2u);
 }
 
-TEST_F(MarkerArrivalsTest, AreAnsweredOnceAllAreKeptAndWait) {
+TEST_F(MarkerArrivalsTest, AreAnsweredOnceAllAreStoredAndQueued) {
   take(many("many"));
   EXPECT_THAT(said_, ElementsAre());
   ASSERT_TRUE(turn_until([this] { return left().size() == 2500; }));
   EXPECT_TRUE(arrivals_.is_in_part());
-  EXPECT_EQ(queue_.count(), 0u) << "the journal has all before the queue has any";
+  EXPECT_EQ(queue_.count(), 0u) << "the journal is first";
   EXPECT_THAT(said_, ElementsAre());
   ASSERT_TRUE(turn_until([this] { return !said_.empty(); }));
   EXPECT_THAT(said_, ElementsAre(icd::Status::Ok));
   EXPECT_EQ(queue_.pending(), many("many").markers);
 }
 
-/// As the journal has them, and whoever reads it in a life to come.
-TEST_F(MarkerArrivalsTest, ComeInTheOrderInWhichTheyWereTaken) {
+/// The journal has the same order.
+TEST_F(MarkerArrivalsTest, KeepTheOrderOfAcceptance) {
   take(many("older"));
   take({{change(2499, "newer")}});
   take({{change(7, "", icd::MarkerAction::Delete)}});
@@ -102,7 +102,7 @@ TEST_F(MarkerArrivalsTest, ComeInTheOrderInWhichTheyWereTaken) {
   EXPECT_EQ(queue_.pending().at(7).action, icd::MarkerAction::Delete);
 }
 
-TEST_F(MarkerArrivalsTest, OfADeleteAllNothingBeforeItIsLeft) {
+TEST_F(MarkerArrivalsTest, EndWithADeleteAll) {
   take(many("older"));
   take({{change(0, "wipe", icd::MarkerAction::DeleteAll), change(3, "newer")}});
   ASSERT_TRUE(turn_until([this] { return said_.size() == 2; }));
@@ -110,8 +110,8 @@ TEST_F(MarkerArrivalsTest, OfADeleteAllNothingBeforeItIsLeft) {
   EXPECT_EQ(queue_.pending(), left());
 }
 
-/// Its record alone would be longer than store::kMostBody.
-TEST_F(MarkerArrivalsTest, AreStoredIfTheyAreTheMostOfOneMessage) {
+/// One record would exceed store::kMostBody.
+TEST_F(MarkerArrivalsTest, AreStoredUpToTheLimitOfAMessage) {
   icd::MarkersUpdate most;
   for (std::int32_t id = 0; id < 100'000; ++id)
     most.markers.push_back(change(id, "", icd::MarkerAction::Delete));
@@ -121,7 +121,7 @@ TEST_F(MarkerArrivalsTest, AreStoredIfTheyAreTheMostOfOneMessage) {
   EXPECT_EQ(left(), most.markers);
 }
 
-TEST_F(MarkerArrivalsTest, AreRefusedAsAWholeWhereTheQueueIsFull) {
+TEST_F(MarkerArrivalsTest, AreRejectedAsAWholeByAFullQueue) {
   queue_.keep_within({.bytes = 3000 * icd::bytes_of(change(0, "12345"))});
   take(many("12345"));
   icd::MarkersUpdate others = many("12345");

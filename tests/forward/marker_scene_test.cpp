@@ -30,7 +30,7 @@ std::vector<std::string> names(const api::MarkerChanges& news) {
   return names;
 }
 
-TEST(MarkerScene, HasEachMarkerAsItWasLastForwarded) {
+TEST(MarkerScene, HasTheLastStateOfEachMarker) {
   MarkerScene scene;
   scene.forwarded(std::vector{marker("a", 1, 5), marker("a", 2), marker("b", 1)}, 100);
   scene.forwarded(std::vector{marker("a", 1, 7)}, 101);
@@ -41,12 +41,14 @@ TEST(MarkerScene, HasEachMarkerAsItWasLastForwarded) {
   EXPECT_EQ(news.markers[2].at, 101);
 }
 
-TEST(MarkerScene, TellsWhatChangedSinceAVersionAndNothingElse) {
+TEST(MarkerScene, ListsOnlyChangesSinceAVersion) {
   MarkerScene scene;
   scene.forwarded(std::vector{marker("a", 1), marker("a", 2)}, 100);
   const auto before = scene.version();
   EXPECT_THAT(scene.changes(before).markers, IsEmpty());
-  scene.forwarded(std::vector{marker("a", 2, 9), marker("a", 1, 0, MarkerAction::Delete)}, 101);
+  scene.forwarded(std::vector{marker("a", 2, 9), marker("a", 1, 0, MarkerAction::Delete),
+                              marker("absent", 1, 0, MarkerAction::Delete)},
+                  101);
   const auto news = scene.changes(before);
   EXPECT_FALSE(news.whole);
   EXPECT_THAT(names(news), ElementsAre("a2"));
@@ -54,26 +56,17 @@ TEST(MarkerScene, TellsWhatChangedSinceAVersionAndNothingElse) {
   EXPECT_EQ(news.version, scene.version());
 }
 
-TEST(MarkerScene, TellsAllAfterAllWereDeletedAndToWhoeverComesFromElsewhere) {
+TEST(MarkerScene, ListsAllAfterADeleteAllOrARestart) {
   MarkerScene scene;
   scene.forwarded(std::vector{marker("a", 1), marker("a", 2)}, 100);
   const auto before = scene.version();
   scene.forwarded(std::vector{marker("", 0, 0, MarkerAction::DeleteAll), marker("c", 1)}, 101);
   EXPECT_TRUE(scene.changes(before).whole);
   EXPECT_THAT(names(scene.changes(before)), ElementsAre("c1"));
-  EXPECT_TRUE(scene.changes(scene.version() + 5000).whole) << "a version of a box that was restarted";
+  EXPECT_TRUE(scene.changes(scene.version() + 5000).whole) << "a version of an earlier process";
 }
 
-TEST(MarkerScene, DeletingWhatIsNotThereChangesNothing) {
-  MarkerScene scene;
-  scene.forwarded(std::vector{marker("a", 1)}, 100);
-  const auto before = scene.version();
-  scene.forwarded(std::vector{marker("a", 2, 0, MarkerAction::Delete)}, 101);
-  EXPECT_THAT(scene.changes(before).gone, IsEmpty());
-  EXPECT_THAT(names(scene.changes(0)), ElementsAre("a1"));
-}
-
-TEST(MarkerScene, IsBlankInANewRun) {
+TEST(MarkerScene, IsEmptyInANewRun) {
   MarkerScene scene;
   scene.forwarded(std::vector{marker("a", 1)}, 100);
   const auto before = scene.version();
@@ -83,7 +76,7 @@ TEST(MarkerScene, IsBlankInANewRun) {
   EXPECT_THAT(scene.changes(before).markers, IsEmpty());
 }
 
-TEST(MarkerScene, LeavesOutTheOldestOfTooManyAndSaysHowMany) {
+TEST(MarkerScene, OmitsAndCountsTheOldestOfTooMany) {
   MarkerScene scene;
   for (std::int32_t id = 0; id < 2003; ++id) scene.forwarded(std::vector{marker("a", id)}, 100 + id);
   const auto news = scene.changes(0);
@@ -92,7 +85,7 @@ TEST(MarkerScene, LeavesOutTheOldestOfTooManyAndSaysHowMany) {
   EXPECT_EQ(news.markers.front().marker.id, 3);
 }
 
-TEST(MarkerScene, LeavesOutTheOldestWhereTheyAreTooLarge) {
+TEST(MarkerScene, OmitsTheOldestIfTheyAreTooLarge) {
   MarkerScene scene;
   icd::Marker line = marker("a", 0);
   line.type = static_cast<std::int32_t>(icd::MarkerType::LineStrip);
@@ -111,22 +104,22 @@ TEST(MarkerScene, LeavesOutTheOldestWhereTheyAreTooLarge) {
   for (std::int32_t id = first; id < 100; ++id) scene.forwarded(std::vector{marker("a", id)}, 300);
   line.id = 0;
   scene.forwarded(std::vector{line}, 301);
-  EXPECT_THAT(scene.changes(0).markers, SizeIs(101 - first)) << "what has become small has made room";
+  EXPECT_THAT(scene.changes(0).markers, SizeIs(101 - first)) << "smaller markers make room";
 }
 
-TEST(MarkerScene, ForgetsTheLongNamesOfThoseThatAreGone) {
+TEST(MarkerScene, LimitsTheNamesOfDeletedMarkers) {
   MarkerScene scene;
   const auto begun = (scene.forwarded(std::vector{marker("b", 0)}, 99), scene.version());
   for (char name = 'a'; name < 'z'; ++name) {
     const std::string longest(200'000, name);
     scene.forwarded(std::vector{marker(longest, 1), marker(longest, 1, 0, MarkerAction::Delete)}, 100);
   }
-  EXPECT_TRUE(scene.changes(begun).whole) << "what went since then is not told any more";
+  EXPECT_TRUE(scene.changes(begun).whole) << "older changes are forgotten";
   EXPECT_THAT(names(scene.changes(0)), ElementsAre("b0"));
 }
 
-/// Whoever follows the news has the scene at each moment, however it changed in between.
-TEST(MarkerScene, GivesNewsThatAddUpToTheWhole) {
+/// Applying all changes gives the scene at each version.
+TEST(MarkerScene, HasChangesThatAddUpToTheScene) {
   std::mt19937 random(7);
   const auto below = [&random](std::uint32_t most) {
     return std::uniform_int_distribution<std::uint32_t>(0, most - 1)(random);

@@ -5,14 +5,14 @@
 namespace adit::forward {
 namespace {
 
-TEST(MeterTest, KnowsNothingBeforeASecondHasPassed) {
+TEST(MeterTest, ShowsZeroInTheFirstSecond) {
   Meter meter;
   EXPECT_EQ(meter.mbit(), 0);
   meter.second(1'000'000);
   EXPECT_EQ(meter.mbit(), 0);
 }
 
-TEST(MeterTest, TellsTheMeanOfTheLastSeconds) {
+TEST(MeterTest, ShowsTheMeanOfTheLastSeconds) {
   Meter meter;
   meter.second(7);
   meter.second(7 + 1'000'000);
@@ -20,7 +20,7 @@ TEST(MeterTest, TellsTheMeanOfTheLastSeconds) {
   for (std::size_t i = 1; i < Meter::kSeconds; ++i) meter.second(7 + 1'000'000);
   EXPECT_DOUBLE_EQ(meter.mbit(), 8.0 / Meter::kSeconds);
   meter.second(7 + 1'000'000);
-  EXPECT_DOUBLE_EQ(meter.mbit(), 0);  // what was before is forgotten
+  EXPECT_DOUBLE_EQ(meter.mbit(), 0);
 }
 
 }  // namespace

@@ -7,7 +7,7 @@ namespace {
 
 const Traffic kCloudOfR1{Kind::Cloud, "r1"};
 
-TEST(Record, TellsWhatBecameOfEachRobotsMaps) {
+TEST(Record, CountsTheMapsOfEachRobot) {
   int changes = 0;
   Record record([&] { ++changes; });
   record.accepted(kCloudOfR1, 1000, 10.0);
@@ -36,7 +36,7 @@ TEST(Record, TellsWhatBecameOfEachRobotsMaps) {
   EXPECT_EQ(changes, 5);
 }
 
-TEST(Record, ForgetsAnOldSentenceOnceAMessageIsTaken) {
+TEST(Record, ClearsTheSentenceOnceAMessageIsDelivered) {
   Record record([] {});
   record.not_taken(kCloudOfR1, DeliveryFailure::Failed, 0, "connection reset");
   record.forwarded(kCloudOfR1, 1, 10, 200, 1.0);
@@ -55,7 +55,7 @@ TEST(Record, CountsRobotsBeyondTheLastRowTogether) {
   EXPECT_EQ(accepted, 2 * Record::kMostRows);
 }
 
-TEST(Record, KnowsWhenARobotWasRefusedForWantOfRoom) {
+TEST(Record, HasTheTimeOfTheLastFullQueue) {
   Record record([] {});
   record.no_room(kCloudOfR1, 10);
   record.no_room({Kind::Markers, ""}, 20);
@@ -65,7 +65,7 @@ TEST(Record, KnowsWhenARobotWasRefusedForWantOfRoom) {
   EXPECT_EQ(record.rows().at(kCloudOfR1).last_no_room, 10);
 }
 
-TEST(Record, KeepsTheLastRefusalsNewestFirst) {
+TEST(Record, KeepsTheLastRejectionsNewestFirst) {
   Record record([] {});
   for (std::size_t i = 0; i < Record::kMostRefusals + 5; ++i) {
     record.refused(icd::Uri::MapUpdate, {"10.0.0.5", 3},
@@ -79,7 +79,7 @@ TEST(Record, KeepsTheLastRefusalsNewestFirst) {
   EXPECT_EQ(rows.front().status, 422);
 }
 
-TEST(Record, CountsWhatWasEverRefusedByUriAndStatus) {
+TEST(Record, CountsRejectionsByUriAndStatus) {
   Record record([] {});
   for (std::size_t i = 0; i < Record::kMostRefusals + 5; ++i) {
     record.refused(icd::Uri::MapUpdate, {"10.0.0.5", 3}, {icd::Status::UnprocessableEntity, "why"}, 0);
@@ -92,7 +92,7 @@ TEST(Record, CountsWhatWasEverRefusedByUriAndStatus) {
   EXPECT_EQ((counts[{"/state/update", 401}]), 1);
 }
 
-TEST(Record, CountsRefusedPartsEach) {
+TEST(Record, CountsRejectedParts) {
   Record record([] {});
   for (const std::size_t parts : {3u, 12u}) {
     record.refused(icd::Uri::StateUpdate, {"10.0.0.5", 3},
@@ -104,7 +104,7 @@ TEST(Record, CountsRefusedPartsEach) {
   EXPECT_EQ(record.refusals()[0].parts, 12u);
 }
 
-TEST(Record, IsAsLongAgoAsItWasWhereTheTimeOfDayIsSet) {
+TEST(Record, KeepsItsAgesAtAClockStep) {
   Record record([] {});
   record.accepted(kCloudOfR1, 1000, 10.0);
   record.refused(icd::Uri::MapUpdate, {}, {icd::Status::UnprocessableEntity, "bad"}, 11.0);

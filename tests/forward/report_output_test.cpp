@@ -13,12 +13,12 @@
 #include "spool/no_file_above.hpp"
 
 namespace {
-/// How much the log had said at each flush of a file.
+/// Number of log lines at each flush.
 std::vector<std::uint64_t> flushes;
-bool fails = false;  // the disk
+bool fails = false;  // the disk fails
 }  // namespace
 
-// This one comes before the C library's for all of this program.
+// Replaces the C library's function in this program.
 extern "C" int fdatasync(int file) {
   flushes.push_back(adit::host::logged());
   if (fails) return errno = EIO, -1;
@@ -50,7 +50,7 @@ class ReportOutputTest : public testing::Test {
     const std::vector<dispatch::Report> steps{report(state)};
     return output_.write(steps, nullptr, flush);
   }
-  /// So much later.
+  /// Lines logged since the start, after this time has passed.
   std::uint64_t logged_after(loop::Duration passed) {
     time_.pass(passed - 1ms);
     time_.pass(loop_, 1ms);
@@ -65,31 +65,31 @@ class ReportOutputTest : public testing::Test {
   const std::uint64_t said_ = host::logged();
 };
 
-/// Nothing need follow it, and nobody who reads the log slowly is waited for.
-TEST_F(ReportOutputTest, FlushesByItselfWhatWasLeftForSoonAndThenLogs) {
+/// The flush needs no later event. A slow reader of the log delays nothing.
+TEST_F(ReportOutputTest, FlushesDelayedStepsAndThenLogs) {
   ASSERT_TRUE(write(ReportState::Sending, Flush::Now));
   ASSERT_EQ(logged_after(ReportOutput::kSoon), 1U);
   flushes.clear();
   ASSERT_TRUE(write(ReportState::Answered, Flush::Soon));
-  EXPECT_THAT(flushes, testing::IsEmpty()) << "the client is told first";
+  EXPECT_THAT(flushes, testing::IsEmpty()) << "the client is answered first";
   ASSERT_EQ(logged_after(ReportOutput::kSoon), 2U);
-  EXPECT_THAT(flushes, testing::ElementsAre(said_ + 1)) << "before the log says so";
+  EXPECT_THAT(flushes, testing::ElementsAre(said_ + 1)) << "before the log line";
 }
 
-TEST_F(ReportOutputTest, TriesAgainWhileTheLedgerCannotBeWrittenAndSaysOnceThatItCan) {
+TEST_F(ReportOutputTest, RetriesWritesAndLogsTheRecovery) {
   fails = true;
   EXPECT_FALSE(write(ReportState::Queued, Flush::Now));
   EXPECT_NE(output_.trouble(), "");
-  EXPECT_EQ(logged_after(ReportOutput::kTryEvery), 1U) << "the same trouble";
+  EXPECT_EQ(logged_after(ReportOutput::kTryEvery), 1U) << "the same error";
   fails = false;
-  EXPECT_EQ(logged_after(ReportOutput::kTryEvery - 1ms), 1U) << "not yet";
+  EXPECT_EQ(logged_after(ReportOutput::kTryEvery - 1ms), 1U) << "too early";
   EXPECT_EQ(logged_after(1ms), 2U);
   EXPECT_EQ(output_.trouble(), "");
   EXPECT_EQ(logged_after(2 * ReportOutput::kTryEvery), 2U);
   EXPECT_TRUE(write(ReportState::Queued, Flush::Now));
 }
 
-TEST_F(ReportOutputTest, TriesALedgerAgainThatCouldNotBeWrittenAtTheStart) {
+TEST_F(ReportOutputTest, RetriesALedgerThatFailedAtTheStart) {
   const host::Folder folder;
   fails = true;
   auto ledger = std::move(*ledger::Ledger::open(folder.path()));
@@ -100,7 +100,7 @@ TEST_F(ReportOutputTest, TriesALedgerAgainThatCouldNotBeWrittenAtTheStart) {
   EXPECT_EQ(output.trouble(), "");
 }
 
-TEST_F(ReportOutputTest, KeepsTheFilesOfADamagedLedgerOnceHoweverOftenItTries) {
+TEST_F(ReportOutputTest, KeepsADamagedLedgerOnce) {
   const host::Folder folder;
   std::ignore = ledger::Ledger::open(folder.path());
   std::optional<spool::NoFileAbove> full(64u << 10);

@@ -1,12 +1,11 @@
-// The scoring endpoint is changed while reports are under way and wait: each is answered by the Command
-// ScoringPost that it was sent to, and no client is sent away.
+// The setting of the scoring endpoint changes while reports are in flight and queued.
 #include <gmock/gmock.h>
 
 #include <atomic>
 #include <semaphore>
 
 #include "../uplink/peer.hpp"
-#include "forward/around.hpp"
+#include "forward/fixtures.hpp"
 #include "forward/scoring.hpp"
 #include "host/folder.hpp"
 #include "loop/turn_until.hpp"
@@ -16,7 +15,7 @@ namespace {
 
 using testing::ElementsAre;
 
-/// What a client was answered.
+/// Collects the statuses of answers.
 class Client final : public intake::Responder {
  public:
   explicit Client(std::vector<int>& told) : told_(told) {}
@@ -28,10 +27,10 @@ class Client final : public intake::Responder {
   std::vector<int>& told_;
 };
 
-/// A Command ScoringPost that records every report; its answer to one comes when the test says so.
-class ScoringPost {
+/// Records each report and answers it once `let` is released.
+class ScoringStub {
  public:
-  ~ScoringPost() { let.release(1000); }
+  ~ScoringStub() { let.release(1000); }
   settings::Address address() const { return {peer_.endpoint().address, peer_.endpoint().port}; }
 
   std::atomic<int> recorded = 0, reports = 0, reports_with_slash = 0;
@@ -68,7 +67,7 @@ class ScoringPost {
       std::vector<uplink::Peer::Script>(1, [this](uplink::Wire& wire) { serve(wire); })};
 };
 
-class ScoringEndpoint : public testing::Test, protected AroundScoring {
+class ScoringEndpoint : public testing::Test, protected ScoringParts {
  protected:
   ScoringEndpoint() {
     settings_.command_post.rates.reports_hz = settings_.command_post.rates.status_hz = 1000;
@@ -97,12 +96,12 @@ class ScoringEndpoint : public testing::Test, protected AroundScoring {
   const dispatch::Report& report(std::int64_t number) const { return scoring_->reports().book().at(number); }
 
   const std::optional<icd::BearerToken> token_ = icd::BearerToken::parse("a-token");
-  ScoringPost here_, there_;
+  ScoringStub here_, there_;
   std::vector<int> first_, second_;
   std::optional<Scoring> scoring_;
 };
 
-TEST_F(ScoringEndpoint, IsLeftOnlyOnceTheAnswerUnderWayIsThere) {
+TEST_F(ScoringEndpoint, IsLeftAfterTheAnswerInFlight) {
   post(1, first_);
   ASSERT_TRUE(comes([this] { return here_.recorded == 1; }));
   move();
@@ -123,7 +122,7 @@ TEST_F(ScoringEndpoint, IsLeftOnlyOnceTheAnswerUnderWayIsThere) {
   EXPECT_EQ(there_.recorded, 1);
 }
 
-TEST_F(ScoringEndpoint, WhatWaitsForItIsKeptForItAndItsClientIsNotSentAway) {
+TEST_F(ScoringEndpoint, KeepsItsQueuedReportsAndTheirClients) {
   post(1, first_);
   ASSERT_TRUE(comes([this] { return here_.recorded == 1; }));
   post(100, second_);
@@ -132,7 +131,7 @@ TEST_F(ScoringEndpoint, WhatWaitsForItIsKeptForItAndItsClientIsNotSentAway) {
   ASSERT_TRUE(comes([this] { return !first_.empty() && scoring_->run().has_value(); }));
   loop::turn_for(loop_, std::chrono::milliseconds{100});
   EXPECT_THAT(second_, testing::IsEmpty());
-  EXPECT_EQ(there_.recorded, 0) << "it is meant for the run that was on when it was posted";
+  EXPECT_EQ(there_.recorded, 0) << "it belongs to the run of the old endpoint";
   settings_.command_post.scoring = here_.address();
   scoring_->endpoint_changed(token_);
   here_.let.release();
@@ -140,7 +139,7 @@ TEST_F(ScoringEndpoint, WhatWaitsForItIsKeptForItAndItsClientIsNotSentAway) {
   EXPECT_THAT(second_, ElementsAre(201));
 }
 
-TEST_F(ScoringEndpoint, IsTheOneThatAReportIsMeantForFromItsChangeOn) {
+TEST_F(ScoringEndpoint, GetsReportsPostedAfterItsChange) {
   post(1, first_);
   ASSERT_TRUE(comes([this] { return here_.recorded == 1; }));
   move();
@@ -153,12 +152,12 @@ TEST_F(ScoringEndpoint, IsTheOneThatAReportIsMeantForFromItsChangeOn) {
   EXPECT_EQ(there_.recorded, 1);
 }
 
-TEST_F(ScoringEndpoint, IsTheSameWithAnotherToken) {
+TEST_F(ScoringEndpoint, KeepsItsRunWithAnotherToken) {
   const auto run = scoring_->reports().run().number;
   scoring_->endpoint_changed(std::nullopt);
   EXPECT_FALSE(scoring_->channel().has_token());
   post(1, first_);
-  EXPECT_THAT(first_, testing::IsEmpty()) << "it waits";
+  EXPECT_THAT(first_, testing::IsEmpty()) << "queued";
   scoring_->endpoint_changed(token_);
   here_.let.release();
   ASSERT_TRUE(comes([this] { return !first_.empty(); }));
@@ -166,7 +165,7 @@ TEST_F(ScoringEndpoint, IsTheSameWithAnotherToken) {
   EXPECT_EQ(report(1).run, run);
 }
 
-TEST_F(ScoringEndpoint, ThatWantsASlashGetsAReportOnceWithIt) {
+TEST_F(ScoringEndpoint, GetsAReportWithTheSlashOfItsStatus) {
   there_.wants_slash = there_.reports_want_slash = true;
   move();
   ASSERT_TRUE(comes([&] {
@@ -186,7 +185,7 @@ TEST_F(ScoringEndpoint, SendsNoReportByARedirect) {
   here_.reports_want_slash = true;
   post(1, first_);
   ASSERT_TRUE(comes([this] { return here_.reports == 1; }));
-  ASSERT_TRUE(comes([this] { return here_.reports > 1; })) << "a status said that it was not recorded";
+  ASSERT_TRUE(comes([this] { return here_.reports > 1; })) << "retried after a status";
   EXPECT_EQ(here_.reports_with_slash, 0);
   EXPECT_EQ(here_.recorded, 0);
 }

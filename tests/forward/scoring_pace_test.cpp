@@ -2,14 +2,14 @@
 
 #include <gtest/gtest.h>
 
-#include "forward/around.hpp"
+#include "forward/fixtures.hpp"
 
 namespace adit::forward {
 namespace {
 
 using namespace std::chrono_literals;
 
-class ScoringPaceTest : public testing::Test, protected Around {
+class ScoringPaceTest : public testing::Test, protected FlowParts {
  protected:
   static pace::Instant at(double seconds) {
     return pace::Instant{} +
@@ -30,16 +30,16 @@ class ScoringPaceTest : public testing::Test, protected Around {
   ScoringPace pace_{settings_.command_post.rates, random_, journal_};
 };
 
-TEST_F(ScoringPaceTest, AReportFollowsAStatusAtOnceAndAStatusKeepsAwayFromAReport) {
+TEST_F(ScoringPaceTest, DelaysAStatusAfterAReport) {
   ask_status(0);
   EXPECT_LE(pace_.report_ready(), at(0));
   pace_.report_sent(at(0.5));
   pace_.report_taken(left(0.5), at(0.6));
   EXPECT_GE(pace_.status_ready(false), at(1.5));
-  EXPECT_LT(pace_.status_ready(true), at(1.1)) << "it decides what became of a report";
+  EXPECT_LT(pace_.status_ready(true), at(1.1)) << "a status that decides a doubt";
 }
 
-TEST_F(ScoringPaceTest, OneLimitOverBothIsFoundOutAndThenTheyShareAPace) {
+TEST_F(ScoringPaceTest, OneLimitForBothIsDetected) {
   ask_status(0);
   refuse_report(0.1);
   EXPECT_TRUE(pace_.has_one_limit());
@@ -50,7 +50,7 @@ TEST_F(ScoringPaceTest, OneLimitOverBothIsFoundOutAndThenTheyShareAPace) {
   EXPECT_GE(pace_.status_ready(true), at(2.2));
   pace_.endpoint_turned();
   EXPECT_FALSE(pace_.has_one_limit());
-  EXPECT_GE(pace_.status_ready(true), at(2.2)) << "a status was asked for not long ago";
+  EXPECT_GE(pace_.status_ready(true), at(2.2)) << "after the last status";
 }
 
 TEST_F(ScoringPaceTest, TheFirst429OfOneLimitTeachesNoSlowerPace) {
@@ -71,10 +71,10 @@ TEST_F(ScoringPaceTest, TheFirst429OfOneLimitMayAskForAPause) {
   EXPECT_GE(pace_.report_ready(), at(7.1));
 }
 
-TEST_F(ScoringPaceTest, APauseThatOneKindWasAskedForHoldsForBothAndForTheNextEndpoint) {
+TEST_F(ScoringPaceTest, APauseHoldsForBothAndForTheNextEndpoint) {
   pace_.report_sent(at(0));
   pace_.report_taken(left(0), at(0.1));
-  pace_.status_sent(at(0.5));  // it decides what became of a report
+  pace_.status_sent(at(0.5));  // a status that decides a doubt
   pace_.status_throttled(left(0.5), 7s, at(0.6));
   EXPECT_TRUE(pace_.has_one_limit());
   EXPECT_GE(pace_.report_ready(), at(7.6));
@@ -83,14 +83,14 @@ TEST_F(ScoringPaceTest, APauseThatOneKindWasAskedForHoldsForBothAndForTheNextEnd
   EXPECT_GE(pace_.status_ready(true), at(7.6));
 }
 
-TEST_F(ScoringPaceTest, AStormOfBothKindsIsNoLimitOverBoth) {
+TEST_F(ScoringPaceTest, AStormOfBothKindsIsNotOneLimit) {
   pace_.status_sent(at(0));
   pace_.status_throttled(left(0), {}, at(0.1));
   refuse_report(0.2);
   EXPECT_FALSE(pace_.has_one_limit());
 }
 
-TEST_F(ScoringPaceTest, A429FarFromTheOtherKindIsAStormOfItsOwn) {
+TEST_F(ScoringPaceTest, ALate429IsAStorm) {
   ask_status(0);
   refuse_report(3);
   EXPECT_FALSE(pace_.has_one_limit());

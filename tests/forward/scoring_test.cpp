@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "../uplink/peer.hpp"
-#include "forward/around.hpp"
+#include "forward/fixtures.hpp"
 #include "loop/turn_until.hpp"
 
 namespace adit::forward {
@@ -17,7 +17,7 @@ using namespace std::chrono_literals;
 
 constexpr const char* kStatus = R"({"score":1,"run_clock":10.0,"remaining_reports":24,"current_team":"a"})";
 
-/// A Command Post that answers so late, and with that.
+/// Answers each request with `body` after a delay.
 uplink::Peer::Script serving(const char* body, std::chrono::milliseconds late) {
   return [body, late](uplink::Wire& wire) {
     for (auto request = wire.read_request(); !request.empty(); request = wire.read_request()) {
@@ -35,15 +35,14 @@ class Asker final : public intake::Responder {
   std::optional<intake::Answer> heard;
 };
 
-class ToPost : public testing::Test, protected AroundScoring {
+class ScoringTest : public testing::Test, protected ScoringParts {
  protected:
-  /// Starts, and asks for the status.
+  /// Starts and asks for a status.
   void lead_to(std::vector<uplink::Peer::Script> scripts) {
     peer_.emplace(std::move(scripts));
     settings_.command_post.scoring = {peer_->endpoint().address, peer_->endpoint().port};
     settings_.command_post.rates.reports_hz = settings_.command_post.rates.status_hz = 1000;
-    settings_.command_post.timeouts.scoring_answer =
-        10min;  // no time-out of Adit's ends what these tests wait for
+    settings_.command_post.timeouts.scoring_answer = 10min;  // no timeout of Adit ends a wait
     journal_.begin({.boot = "b", .at = loop_.now(), .stamp = loop_.stamp_now()});
     scoring_.emplace(loop_, ledger_, settings_, icd::BearerToken::parse("a-token"), record_, random_,
                      journal_, clocks_);
@@ -61,7 +60,7 @@ class ToPost : public testing::Test, protected AroundScoring {
                    intake::Sender{.address = "10.0.0.5"}, client);
     return client;
   }
-  /// What it hears who asks for the status before the first answer has come.
+  /// Answer to a client that asks before the first status has arrived.
   std::optional<intake::Answer> heard_from(uplink::Peer::Script post) {
     lead_to({std::move(post)});
     const auto asker = std::make_shared<Asker>();
@@ -69,10 +68,9 @@ class ToPost : public testing::Test, protected AroundScoring {
     return comes([&] { return asker->heard.has_value(); }) ? asker->heard : std::nullopt;
   }
 
-  /// Ends both sides: to be declared behind all that the Command Post's scripts refer to, which the fixture
-  /// outlives.
+  /// Ends both sides before the locals that the scripts use. Declare it after them.
   struct Ends {
-    ToPost& test;
+    ScoringTest& test;
     ~Ends() { test.scoring_.reset(), test.peer_.reset(); }
   };
 
@@ -80,7 +78,7 @@ class ToPost : public testing::Test, protected AroundScoring {
   std::optional<Scoring> scoring_;
 };
 
-TEST_F(ToPost, TellsAStatusThatCameLateWithTheAgeOfItsQuestion) {
+TEST_F(ScoringTest, DatesALateStatusByItsRequest) {
   const auto heard = heard_from(serving(kStatus, 1200ms));
   ASSERT_TRUE(heard.has_value());
   EXPECT_EQ(heard->status, icd::Status::Ok);
@@ -90,7 +88,7 @@ TEST_F(ToPost, TellsAStatusThatCameLateWithTheAgeOfItsQuestion) {
   EXPECT_EQ(heard->headers.front().value, "1");
 }
 
-TEST_F(ToPost, DoesNotPassOnWhatIsNoStatus) {
+TEST_F(ScoringTest, PassesOnNoInvalidStatus) {
   const auto heard = heard_from(serving(R"("ok")", 0ms));
   ASSERT_TRUE(heard.has_value());
   EXPECT_EQ(heard->status, icd::Status::BadGateway);
@@ -100,7 +98,7 @@ constexpr const char* kRecorded =
     R"({"url":"","id":1,"x":1.0,"y":2.0,"z":3.0,"type":"Backpack","submitted_datetime":"","team":"a",)"
     R"("run":"","report_status":"scored","score_change":1,"run_clock":11.0,"remaining_reports":23})";
 
-TEST_F(ToPost, AReportDoesNotWaitForAStatusThatIsNotAnswered) {
+TEST_F(ScoringTest, CancelsAnUnansweredStatusForAReport) {
   std::atomic<bool> asked_again = false, was_reset = false;
   const auto answers_once = [&](uplink::Wire& wire) {
     wire.read_request();
@@ -126,7 +124,7 @@ TEST_F(ToPost, AReportDoesNotWaitForAStatusThatIsNotAnswered) {
   EXPECT_TRUE(was_reset);
 }
 
-TEST_F(ToPost, AStatusThatDecidesAReportInDoubtIsWaitedFor) {
+TEST_F(ScoringTest, WaitsForAStatusThatDecidesADoubt) {
   settings_.reports.doubt_for = 100ms;
   std::atomic<int> reports = 0;
   std::atomic<bool> holds = false, is_held = false, was_waited_for = false;
@@ -153,7 +151,7 @@ TEST_F(ToPost, AStatusThatDecidesAReportInDoubtIsWaitedFor) {
   ASSERT_TRUE(comes([&] { return scoring_->run().has_value(); }));
   const auto lost = report(1);
   ASSERT_TRUE(comes([&] { return reports == 1; }));
-  loop::turn_for(loop_, 500ms);  // asked for in vain: others may go
+  loop::turn_for(loop_, 500ms);  // the doubt no longer blocks reports
   holds = true;
   ASSERT_TRUE(comes([&] { return is_held.load(); }));
   const auto next = report(100);

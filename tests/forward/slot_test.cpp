@@ -15,29 +15,29 @@ uplink::Sent sent_in(milliseconds took) {
   return {.first = kBegin, .last = kBegin + took};
 }
 
-/// Points that are exact, in so many seconds.
+/// Bytes of exact points in this time.
 std::size_t exact_in(const Slot& slot, int seconds) {
   return slot.points_within(std::chrono::seconds(seconds))[0];
 }
 
-TEST(Slot, HoldsMoreOfCloudsThatAreRounded) {
+TEST(Slot, HoldsMoreRoundedPoints) {
   Slot slot(10 * kMegabyte);
   const queues::PointsAt at_first = slot.points_within(std::chrono::seconds(1));
   EXPECT_LT(at_first[0], at_first[1]);
   EXPECT_LT(at_first[1], at_first[2]);
   slot.packed(4 * kMegabyte, kMegabyte, Precision::EightMillimetres);
   EXPECT_EQ(slot.points_within(std::chrono::seconds(1))[2], 40 * kMegabyte);
-  EXPECT_LT(exact_in(slot, 1), 40 * kMegabyte) << "exact, they would have been larger";
+  EXPECT_LT(exact_in(slot, 1), 40 * kMegabyte) << "exact points pack less well";
 }
 
-TEST(Slot, HoldsAtFirstWhatMapsMayUseOfTheLink) {
+TEST(Slot, HoldsTheBudgetOfMapsAtFirst) {
   const Slot slot(10 * kMegabyte);
   EXPECT_EQ(exact_in(slot, 1), 10 * kMegabyte);
   EXPECT_EQ(exact_in(slot, 2), 20 * kMegabyte);
   EXPECT_EQ(slot.transfer(5 * kMegabyte), milliseconds(500));
 }
 
-TEST(Slot, HoldsMoreOfCloudsThatArePackedSmaller) {
+TEST(Slot, HoldsMoreOfCloudsThatPackWell) {
   Slot slot(10 * kMegabyte);
   slot.packed(4 * kMegabyte, kMegabyte, Precision::Exact);
   EXPECT_EQ(exact_in(slot, 1), 40 * kMegabyte);
@@ -45,34 +45,34 @@ TEST(Slot, HoldsMoreOfCloudsThatArePackedSmaller) {
   EXPECT_EQ(exact_in(slot, 1), 10 * kMegabyte);
 }
 
-TEST(Slot, GoesByWhatTheLinkShows) {
+TEST(Slot, FollowsTheMeasuredLink) {
   Slot slot(10 * kMegabyte);
   slot.left(4 * kMegabyte, sent_in(std::chrono::seconds(1)), kBegin);
   EXPECT_EQ(exact_in(slot, 1), 4 * kMegabyte);
   slot.left(8 * kMegabyte, sent_in(std::chrono::seconds(1)), kBegin);
   EXPECT_EQ(exact_in(slot, 1), 8 * kMegabyte);
   slot.left(80 * kMegabyte, sent_in(std::chrono::seconds(1)), kBegin);
-  EXPECT_EQ(exact_in(slot, 1), 10 * kMegabyte) << "no more than maps may use";
+  EXPECT_EQ(exact_in(slot, 1), 10 * kMegabyte) << "the budget is the limit";
 }
 
-TEST(Slot, HoldsLessAtOnceWhereTheLinkTakesLess) {
+TEST(Slot, HoldsLessIfTheLinkDeliversLess) {
   Slot slot(10 * kMegabyte);
-  slot.link_delivers(0);  // not known
+  slot.link_delivers(0);  // unknown
   EXPECT_EQ(exact_in(slot, 1), 10 * kMegabyte);
   slot.link_delivers(6 * kMegabyte);
   slot.link_delivers(9 * kMegabyte);
-  EXPECT_EQ(exact_in(slot, 1), 6 * kMegabyte) << "until a map has left faster";
+  EXPECT_EQ(exact_in(slot, 1), 6 * kMegabyte) << "until a map leaves faster";
   slot.left(6 * kMegabyte, sent_in(milliseconds(600)), {});
   EXPECT_EQ(exact_in(slot, 1), 10 * kMegabyte);
 }
 
-TEST(Slot, TakesNoLinkForSlowThatHadToWait) {
+TEST(Slot, IgnoresTimeBeforeTheSlot) {
   Slot slot(10 * kMegabyte);
   slot.left(kMegabyte, sent_in(std::chrono::seconds(1)), kBegin + std::chrono::seconds(1));
   EXPECT_EQ(exact_in(slot, 1), 10 * kMegabyte);
 }
 
-TEST(Slot, LetsPackingBeginInTimeForTheLongestOfTheLastFew) {
+TEST(Slot, LeadsByTheLongestRecentPacking) {
   Slot slot(10 * kMegabyte);
   EXPECT_EQ(slot.lead(), loop::Duration(0));
   slot.packing_took(milliseconds(600));
@@ -83,13 +83,13 @@ TEST(Slot, LetsPackingBeginInTimeForTheLongestOfTheLastFew) {
   EXPECT_GE(slot.lead(), milliseconds(300));
 }
 
-TEST(Slot, LetsPackingBeginNoEarlierThanTheLongestLead) {
+TEST(Slot, LimitsItsLead) {
   Slot slot(10 * kMegabyte);
   slot.packing_took(std::chrono::seconds(60));
   EXPECT_EQ(slot.lead(), loop::Duration(Slot::kLongestLead));
 }
 
-TEST(Slot, FindsASlowLinkFastAgain) {
+TEST(Slot, DetectsThatASlowLinkIsFastAgain) {
   Slot slot(10 * kMegabyte);
   slot.left(kMegabyte, sent_in(std::chrono::seconds(1000)), kBegin);
   const std::size_t few = exact_in(slot, 1);
@@ -98,7 +98,7 @@ TEST(Slot, FindsASlowLinkFastAgain) {
   EXPECT_EQ(exact_in(slot, 1), 10 * kMegabyte);
 }
 
-TEST(Slot, SaysWhatDecidesTheEffort) {
+TEST(Slot, HasTheFiguresForTheEffort) {
   Slot slot(10 * kMegabyte);
   const auto hurry = [&slot] { return slot.hurry(std::chrono::seconds(2)); };
   EXPECT_EQ(hurry().bytes_per_second, 10 * kMegabyte);
@@ -112,14 +112,14 @@ TEST(Slot, LearnsHowSlowTheBoxIs) {
   const auto slowness = [&slot] { return slot.hurry(std::chrono::seconds(1)).slowness; };
   EXPECT_EQ(slowness(), 1);
   for (const double little : {0.0, 0.0004}) slot.worker_took(std::chrono::seconds(1), little);
-  EXPECT_EQ(slowness(), 1) << "these tell nothing";
+  EXPECT_EQ(slowness(), 1) << "too short to measure";
   for (int i = 0; i < 20; ++i) slot.worker_took(milliseconds(60), 0.015);
   EXPECT_NEAR(slowness(), 4, 0.01);
   for (int i = 0; i < 20; ++i) slot.worker_took(milliseconds(1), 0.1);
-  EXPECT_EQ(slowness(), 0.5) << "grids that take far less than is expected say little of the next";
+  EXPECT_EQ(slowness(), 0.5) << "the lower limit";
 }
 
-TEST(Slot, ForgetsAStallWhileNoMapIsCompressed) {
+TEST(Slot, ForgetsAStallOfTheWorker) {
   Slot slot(10 * kMegabyte);
   const auto slowness = [&slot] { return slot.hurry(std::chrono::seconds(1)).slowness; };
   slot.worker_took(std::chrono::seconds(10), 0.1);
@@ -127,7 +127,7 @@ TEST(Slot, ForgetsAStallWhileNoMapIsCompressed) {
   EXPECT_GT(stalled, 50);
   slot.worker_took(milliseconds(1), 0);
   EXPECT_LT(slowness(), stalled);
-  EXPECT_GT(slowness(), 0.9 * stalled) << "one of them says little";
+  EXPECT_GT(slowness(), 0.9 * stalled) << "one sample weighs little";
   for (int i = 0; i < 500; ++i) slot.worker_took(milliseconds(1), 0);
   EXPECT_NEAR(slowness(), 1, 0.01);
 }

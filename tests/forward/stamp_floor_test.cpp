@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "host/folder.hpp"
 #include "host/log.hpp"
 
 namespace adit::forward {
@@ -14,31 +15,26 @@ namespace fs = std::filesystem;
 
 class StampFloorTest : public testing::Test {
  protected:
-  StampFloorTest() {
-    std::string pattern = fs::temp_directory_path() / "adit-floor-XXXXXX";
-    folder_ = ::mkdtemp(pattern.data());
-  }
-  ~StampFloorTest() override { fs::remove_all(folder_); }
-
-  fs::path folder_;
+  const host::Folder its_folder_;
+  const fs::path folder_ = its_folder_.path();
 };
 
-TEST_F(StampFloorTest, IsNeverBelowAStampThatWasGivenOutWheneverThePowerIsCut) {
+TEST_F(StampFloorTest, IsAboveEachIssuedStamp) {
   StampFloor living(folder_.string());
-  for (double now = 1.7e9; now < 1.7e9 + 1000; now += 1) {  // once a second
+  for (double now = 1.7e9; now < 1.7e9 + 1000; now += 1) {  // each second
     if (const auto due = living.due(now, 5, {})) living.write(*due);
-    const double latest = now + 1 + queues::StampShift::kJump;  // until it is asked again
+    const double latest = now + 1 + queues::StampShift::kJump;  // until the next call
     ASSERT_GT(StampFloor(folder_.string()).read()->floor, latest);
-    ASSERT_LT(StampFloor(folder_.string()).read()->floor, now + 171) << "nor far ahead";
+    ASSERT_LT(StampFloor(folder_.string()).read()->floor, now + 171) << "not far ahead";
   }
 }
 
-TEST_F(StampFloorTest, KeepsTheTimeOfDayBesideIt) {
+TEST_F(StampFloorTest, KeepsTheTimeOfDay) {
   StampFloor living(folder_.string());
   living.write(*living.due(1.7e9, 1.8e9, {}));
   EXPECT_DOUBLE_EQ(StampFloor(folder_.string()).read()->wall, 1.8e9);
   EXPECT_FALSE(living.due(1.7e9 + 1, 1.6e9, {}));
-  living.is_due();  // it was set
+  living.is_due();  // the clock was set
   living.write(*living.due(1.7e9 + 1, 1.6e9, {}));
   EXPECT_DOUBLE_EQ(StampFloor(folder_.string()).read()->wall, 1.6e9);
 }
@@ -52,7 +48,7 @@ TEST_F(StampFloorTest, KeepsTheLeastUntilTheStampsHavePassedIt) {
   EXPECT_EQ(StampFloor(folder_.string()).read()->least, 0);
 }
 
-TEST_F(StampFloorTest, KeepsHowMuchTheLedgerHas) {
+TEST_F(StampFloorTest, KeepsTheSizeOfTheLedger) {
   StampFloor living(folder_.string());
   living.write(*living.due(1.7e9, 1.6e9, {.reports = 5000000000, .log = 12}));
   EXPECT_EQ(StampFloor(folder_.string()).read()->ledger.reports, 5000000000);
@@ -70,10 +66,10 @@ TEST_F(StampFloorTest, IsWrittenSeldom) {
   StampFloor floor(folder_.string());
   int written = 0;
   for (int second = 0; second < 600; ++second) written += floor.due(1.7e9 + second, 0, {}) ? 1 : 0;
-  EXPECT_EQ(written, 4) << "each time takes two flushes";
+  EXPECT_EQ(written, 4) << "each write takes two flushes";
 }
 
-TEST_F(StampFloorTest, IsWrittenTenSecondsAfterTheLastTimeWhereTheLedgerHasGrownOrThatFailed) {
+TEST_F(StampFloorTest, IsWrittenTenSecondsAfterAGrowthOrAFailure) {
   StampFloor floor(folder_.string());
   floor.write(*floor.due(1.7e9, 0, {.reports = 1}));
   EXPECT_FALSE(floor.due(1.7e9 + 9, 0, {.reports = 2}));
@@ -89,7 +85,7 @@ TEST_F(StampFloorTest, IsWrittenTenSecondsAfterTheLastTimeWhereTheLedgerHasGrown
   EXPECT_FALSE(floor.due(1.7e9 + 169, 0, {.reports = 2}));
 }
 
-TEST_F(StampFloorTest, IsComplainedOfOnceUntilItCanBeWrittenAgain) {
+TEST_F(StampFloorTest, LogsAFailureOnce) {
   StampFloor floor(folder_.string());
   StampFloor for_the_writer = floor;
   const auto logged_by = [&](double seconds) {
@@ -106,8 +102,8 @@ TEST_F(StampFloorTest, IsComplainedOfOnceUntilItCanBeWrittenAgain) {
   EXPECT_EQ(logged_by(4), 1u);
 }
 
-/// The disk is full: no new file can be made, but this one is there.
-TEST_F(StampFloorTest, IsKeptWhereThereIsNoRoomForAnotherFile) {
+/// No new file can be created, but the old one can be written.
+TEST_F(StampFloorTest, IsWrittenInPlaceOnAFullDisk) {
   StampFloor floor(folder_.string());
   floor.write({.floor = 1.7e9, .wall = 1.6e9, .least = 1.75e9});
   fs::create_directories(folder_ / "stamps.writing" / "in the way");
@@ -116,10 +112,10 @@ TEST_F(StampFloorTest, IsKeptWhereThereIsNoRoomForAnotherFile) {
   EXPECT_EQ(host::logged(), before);
   EXPECT_EQ(floor.read()->floor, 1.8e9);
   EXPECT_EQ(floor.read()->wall, 1.7e9);
-  EXPECT_EQ(floor.read()->least, 0) << "nothing is left of what was longer";
+  EXPECT_EQ(floor.read()->least, 0) << "the longer old content is gone";
 }
 
-TEST_F(StampFloorTest, SaysNothingWhereNothingIsKnown) {
+TEST_F(StampFloorTest, IsZeroIfItsFileIsInvalid) {
   EXPECT_EQ(StampFloor(folder_.string()).read()->floor, 0);
   for (const char* text : {"", "soon", "-5", "nan", "inf", "1e300"}) {
     std::ofstream(folder_ / StampFloor::kFile) << text;

@@ -42,25 +42,25 @@ std::vector<std::string> texts(const icd::MarkersUpdate& update) {
 
 const icd::Marker kWipe = marker("", "wipe", icd::MarkerAction::DeleteAll);
 
-/// What a gateway has of it, for one life of it.
-struct Life {
-  Life(loop::Loop& loop, const std::string& folder, const settings::Settings& settings,
-       std::optional<icd::BearerToken> token)
+/// Telemetry and its surroundings in one process.
+struct Process {
+  Process(loop::Loop& loop, const std::string& folder, const settings::Settings& settings,
+          std::optional<icd::BearerToken> token)
       : writer(loop),
         workers(loop, 1),
         journal(loop, folder + "/journal"),
         rejected(loop, writer, folder + "/rejected"),
-        news(loop, workers, settings, std::move(token), record, rejected, random, journal, delivered) {
+        telemetry(loop, workers, settings, std::move(token), record, rejected, random, journal, delivered) {
     const journal::Carried carried = journal.read();
     journal.begin({.boot = "b", .at = loop.now(), .stamp = loop.stamp_now()});
-    news.carry_on(carried);
-    news.start();
+    telemetry.carry_on(carried);
+    telemetry.start();
   }
 
-  /// Few markers: it is said at once.
+  /// Few markers are answered at once.
   icd::Checked<void> take(icd::MarkersUpdate update) {
     std::optional<icd::Checked<void>> said;
-    news.take(std::move(update), 10, [&](icd::Checked<void> taken) { said = std::move(taken); });
+    telemetry.take(std::move(update), 10, [&](icd::Checked<void> taken) { said = std::move(taken); });
     return said.value();
   }
 
@@ -71,27 +71,27 @@ struct Life {
   journal::Journal journal;
   RejectedStore rejected;
   DeliveredScene delivered;
-  Telemetry news;
+  Telemetry telemetry;
 };
 
-class NewsTest : public testing::Test {
+class TelemetryTest : public testing::Test {
  protected:
-  NewsTest() { settings_.command_post.rates.markers_hz = settings_.command_post.rates.state_hz = 50; }
+  TelemetryTest() { settings_.command_post.rates.markers_hz = settings_.command_post.rates.state_hz = 50; }
 
-  /// Nothing leaves: what is taken waits.
-  std::unique_ptr<Life> life_without_a_token() {
-    return std::make_unique<Life>(loop_, folder_.path(), settings_, std::nullopt);
+  /// Accepted messages stay queued.
+  std::unique_ptr<Process> process_without_a_token() {
+    return std::make_unique<Process>(loop_, folder_.path(), settings_, std::nullopt);
   }
-  std::unique_ptr<Life> life_before(const uplink::Peer& post) {
+  std::unique_ptr<Process> process_with(const uplink::Peer& post) {
     settings_.command_post.mapping = {post.endpoint().address, post.endpoint().port};
-    return std::make_unique<Life>(loop_, folder_.path(), settings_, icd::BearerToken::parse("a-token"));
+    return std::make_unique<Process>(loop_, folder_.path(), settings_, icd::BearerToken::parse("a-token"));
   }
-  /// After failures it is tried again at once.
+  /// Retries without a delay after failures.
   template <class Done>
-  bool comes(Life& life, Done done) {
+  bool comes(Process& process, Done done) {
     return loop::turn_until(loop_, [&] {
       if (done()) return true;
-      life.news.link_is_back();
+      process.telemetry.link_is_back();
       return false;
     });
   }
@@ -102,9 +102,9 @@ class NewsTest : public testing::Test {
   settings::Settings settings_;
 };
 
-/// Takes all but what deletes all, or nothing.
-struct TelemetryPost {
-  explicit TelemetryPost(bool takes_others)
+/// Accepts each message except a delete-all, or none.
+struct TelemetryStub {
+  explicit TelemetryStub(bool takes_others)
       : peer([this, takes_others](uplink::Wire& wire) {
           for (auto request = wire.read_request(); !request.empty(); request = wire.read_request()) {
             ++requests;
@@ -116,21 +116,21 @@ struct TelemetryPost {
   uplink::ListeningPeer peer;
 };
 
-TEST_F(NewsTest, LeavesNoPoseThatWasTakenToTheNextLife) {
-  TelemetryPost post(true);
-  auto life = life_before(post.peer);
-  ASSERT_TRUE(life->news.take(pose("r1", 1), 10));
-  ASSERT_TRUE(comes(*life, [&] { return !life->delivered.robots().empty(); }));
-  life.reset();
-  life = life_without_a_token();
-  EXPECT_EQ(life->news.waiting(Kind::State), 0u);
-  ASSERT_TRUE(life->news.take(pose("r2", 2), 10));
+TEST_F(TelemetryTest, KeepsNoDeliveredPoseAcrossARestart) {
+  TelemetryStub post(true);
+  auto process = process_with(post.peer);
+  ASSERT_TRUE(process->telemetry.take(pose("r1", 1), 10));
+  ASSERT_TRUE(comes(*process, [&] { return !process->delivered.robots().empty(); }));
+  process.reset();
+  process = process_without_a_token();
+  EXPECT_EQ(process->telemetry.waiting(Kind::State), 0u);
+  ASSERT_TRUE(process->telemetry.take(pose("r2", 2), 10));
   ASSERT_EQ(left().robots().size(), 1u);
   EXPECT_EQ(left().robots().begin()->first.text(), "r2");
 }
 
-/// It may have been posted in the run before.
-TEST_F(NewsTest, SendsAPoseOfTheLifeBeforeOnce) {
+/// The pose may be of the last run.
+TEST_F(TelemetryTest, SendsARestoredPoseOnce) {
   std::atomic<int> of_r1 = 0, of_r2 = 0;
   const uplink::ListeningPeer peer([&](uplink::Wire& wire) {
     for (auto request = wire.read_request(); !request.empty(); request = wire.read_request()) {
@@ -139,150 +139,152 @@ TEST_F(NewsTest, SendsAPoseOfTheLifeBeforeOnce) {
       if (request.find("r2") != std::string::npos) ++of_r2;
     }
   });
-  ASSERT_TRUE(life_without_a_token()->news.take(pose("r1", 1), 10));
-  const auto life = life_before(peer);
-  ASSERT_TRUE(comes(*life, [&] { return life->delivered.robots().size() == 1; }));
-  ASSERT_TRUE(life->news.take(pose("r2", 2), 10));
-  ASSERT_TRUE(comes(*life, [&] { return of_r2 == 1; }));
+  ASSERT_TRUE(process_without_a_token()->telemetry.take(pose("r1", 1), 10));
+  const auto process = process_with(peer);
+  ASSERT_TRUE(comes(*process, [&] { return process->delivered.robots().size() == 1; }));
+  ASSERT_TRUE(process->telemetry.take(pose("r2", 2), 10));
+  ASSERT_TRUE(comes(*process, [&] { return of_r2 == 1; }));
   EXPECT_EQ(of_r1, 1);
 }
 
-/// Killed in between, a life to come would know of neither, and an operator could send the older one.
-TEST_F(NewsTest, HasCareForWhatWasTakenUntilItIsWrittenWhatThatOvertook) {
-  TelemetryPost post(true);
-  const auto life = life_before(post.peer);
-  life->rejected.add(icd::StateUpdate{.header = {1}, .poses = {pose("r1", 1).at(0).named()}}, 422, "no", 100,
-                     {});
-  life->rejected.add(icd::MarkersUpdate{{marker("a", "older")}}, 422, "no", 100, {});
+/// A kill in between would otherwise let an operator send the older one.
+TEST_F(TelemetryTest, KeepsMessagesUntilReplacementsAreStored) {
+  TelemetryStub post(true);
+  const auto process = process_with(post.peer);
+  process->rejected.add(icd::StateUpdate{.header = {1}, .poses = {pose("r1", 1).at(0).named()}}, 422, "no",
+                        100, {});
+  process->rejected.add(icd::MarkersUpdate{{marker("a", "older")}}, 422, "no", 100, {});
   std::promise<void> held;
-  life->writer.submit([until = held.get_future().share()] { until.wait(); }, [] {});
-  const auto replaced = [&](std::size_t row) { return life->rejected.rows().at(row).replaced; };
-  ASSERT_TRUE(life->news.take(pose("r1", 2), 10));
-  ASSERT_TRUE(comes(*life, [&] { return replaced(0); }));
+  process->writer.submit([until = held.get_future().share()] { until.wait(); }, [] {});
+  const auto replaced = [&](std::size_t row) { return process->rejected.rows().at(row).replaced; };
+  ASSERT_TRUE(process->telemetry.take(pose("r1", 2), 10));
+  ASSERT_TRUE(comes(*process, [&] { return replaced(0); }));
   EXPECT_EQ(left().robots().size(), 1u);
-  EXPECT_FALSE(life->rejected.all_kept());
-  ASSERT_TRUE(life->take(icd::MarkersUpdate{{marker("a", "newer")}}));
+  EXPECT_FALSE(process->rejected.all_kept());
+  ASSERT_TRUE(process->take(icd::MarkersUpdate{{marker("a", "newer")}}));
   held.set_value();
-  ASSERT_TRUE(comes(*life, [&] { return replaced(1) && life->rejected.all_kept(); }));
+  ASSERT_TRUE(comes(*process, [&] { return replaced(1) && process->rejected.all_kept(); }));
   EXPECT_THAT(left().robots(), IsEmpty());
   EXPECT_THAT(left().markers().markers, IsEmpty());
 }
 
-TEST_F(NewsTest, SendsNoMarkerAgainOfWhichSomethingNewerWaits) {
-  const auto life = life_without_a_token();
-  ASSERT_TRUE(life->take(icd::MarkersUpdate{{marker("a", "newer"), marker("b", "other")}}));
-  EXPECT_TRUE(life->news.send_again(icd::MarkersUpdate{{marker("a", "older")}}));
+TEST_F(TelemetryTest, RetriesNoMarkerThatANewerOneReplaces) {
+  const auto process = process_without_a_token();
+  ASSERT_TRUE(process->take(icd::MarkersUpdate{{marker("a", "newer"), marker("b", "other")}}));
+  EXPECT_TRUE(process->telemetry.send_again(icd::MarkersUpdate{{marker("a", "older")}}));
   EXPECT_THAT(texts(left().markers()), ElementsAre("newer", "other"));
-  EXPECT_EQ(life->news.waiting(Kind::Markers), 2u);
+  EXPECT_EQ(process->telemetry.waiting(Kind::Markers), 2u);
 }
 
-TEST_F(NewsTest, SendsNoMarkerAgainThatWasDeletedSince) {
-  const auto life = life_without_a_token();
-  ASSERT_TRUE(life->take(icd::MarkersUpdate{{kWipe}}));
-  EXPECT_TRUE(life->news.send_again(icd::MarkersUpdate{{marker("a", "older")}}));
+TEST_F(TelemetryTest, RetriesNoMarkerThatWasDeleted) {
+  const auto process = process_without_a_token();
+  ASSERT_TRUE(process->take(icd::MarkersUpdate{{kWipe}}));
+  EXPECT_TRUE(process->telemetry.send_again(icd::MarkersUpdate{{marker("a", "older")}}));
   EXPECT_THAT(texts(left().markers()), ElementsAre("wipe"));
-  EXPECT_EQ(life->news.waiting(Kind::Markers), 1u);
+  EXPECT_EQ(process->telemetry.waiting(Kind::Markers), 1u);
 }
 
-TEST_F(NewsTest, DeletesNothingThatCameSinceWhereItDeletesAllOnceMore) {
-  const auto life = life_without_a_token();
-  ASSERT_TRUE(life->take(icd::MarkersUpdate{{marker("", "newer")}}));
-  EXPECT_TRUE(life->news.send_again(icd::MarkersUpdate{{kWipe}}));
+TEST_F(TelemetryTest, RetriesADeleteAllBeforeNewerMarkers) {
+  const auto process = process_without_a_token();
+  ASSERT_TRUE(process->take(icd::MarkersUpdate{{marker("", "newer")}}));
+  EXPECT_TRUE(process->telemetry.send_again(icd::MarkersUpdate{{kWipe}}));
   EXPECT_THAT(texts(left().markers()), ElementsAre("wipe", "newer"));
-  EXPECT_EQ(life->news.waiting(Kind::Markers), 2u);
+  EXPECT_EQ(process->telemetry.waiting(Kind::Markers), 2u);
 }
 
-TEST_F(NewsTest, SendsAMarkerAgainThatNothingSaysMoreThan) {
-  const auto life = life_without_a_token();
-  ASSERT_TRUE(life->take(icd::MarkersUpdate{{marker("b", "other")}}));
-  EXPECT_TRUE(life->news.send_again(icd::MarkersUpdate{{marker("a", "older")}}));
+TEST_F(TelemetryTest, RetriesAMarkerThatNothingReplaces) {
+  const auto process = process_without_a_token();
+  ASSERT_TRUE(process->take(icd::MarkersUpdate{{marker("b", "other")}}));
+  EXPECT_TRUE(process->telemetry.send_again(icd::MarkersUpdate{{marker("a", "older")}}));
   EXPECT_THAT(texts(left().markers()), UnorderedElementsAre("older", "other"));
 }
 
-TEST_F(NewsTest, SetsAsideADeleteAllThatAloneFails) {
-  TelemetryPost post(true);
-  const auto life = life_before(post.peer);
-  ASSERT_TRUE(life->take(icd::MarkersUpdate{{kWipe, marker("a", "1"), marker("b", "2")}}));
-  ASSERT_TRUE(comes(*life, [&] { return life->news.waiting(Kind::Markers) == 0; }));
+TEST_F(TelemetryTest, RejectsADeleteAllThatFailsAlone) {
+  TelemetryStub post(true);
+  const auto process = process_with(post.peer);
+  ASSERT_TRUE(process->take(icd::MarkersUpdate{{kWipe, marker("a", "1"), marker("b", "2")}}));
+  ASSERT_TRUE(comes(*process, [&] { return process->telemetry.waiting(Kind::Markers) == 0; }));
   ASSERT_TRUE(
-      comes(*life, [&] { return !life->rejected.rows().empty() && left().markers().markers.empty(); }));
-  EXPECT_EQ(life->rejected.rows().size(), 1u);
-  EXPECT_EQ(life->delivered.markers().changes(0).markers.size(), 2u);
+      comes(*process, [&] { return !process->rejected.rows().empty() && left().markers().markers.empty(); }));
+  EXPECT_EQ(process->rejected.rows().size(), 1u);
+  EXPECT_EQ(process->delivered.markers().changes(0).markers.size(), 2u);
 }
 
-TEST_F(NewsTest, HoldsADeleteAllWhereEverythingFails) {
-  TelemetryPost post(false);
-  const auto life = life_before(post.peer);
+TEST_F(TelemetryTest, KeepsADeleteAllIfEverythingFails) {
+  TelemetryStub post(false);
+  const auto process = process_with(post.peer);
   const icd::MarkersUpdate all{{kWipe, marker("a", "1"), marker("b", "2")}};
-  ASSERT_TRUE(life->take(all));
-  ASSERT_TRUE(comes(*life, [&] { return post.requests >= 20; }));
-  EXPECT_THAT(life->rejected.rows(), IsEmpty());
+  ASSERT_TRUE(process->take(all));
+  ASSERT_TRUE(comes(*process, [&] { return post.requests >= 20; }));
+  EXPECT_THAT(process->rejected.rows(), IsEmpty());
   EXPECT_THAT(texts(left().markers()), ElementsAre("wipe", "1", "2"));
 }
 
-TEST_F(NewsTest, OfAFullQueueTakesInWhatChangesTheMarkersThatWait) {
+TEST_F(TelemetryTest, ChangesQueuedMarkersInAFullQueue) {
   settings_.queues.marker_bytes = 2 * icd::bytes_of(marker("a", "old"));
-  const auto life = life_without_a_token();
-  ASSERT_TRUE(life->take(icd::MarkersUpdate{{marker("a", "old")}}));
-  const auto said = life->take(icd::MarkersUpdate{{marker("b", "new"), marker("a", "now")}});
+  const auto process = process_without_a_token();
+  ASSERT_TRUE(process->take(icd::MarkersUpdate{{marker("a", "old")}}));
+  const auto said = process->take(icd::MarkersUpdate{{marker("b", "new"), marker("a", "now")}});
   ASSERT_FALSE(said);
   EXPECT_EQ(said.error().status, icd::Status::TooManyRequests);
   EXPECT_EQ(said.error().parts, 1u) << said.error().sentence;
   EXPECT_EQ(said.error().setting, "queues.marker_bytes");
   EXPECT_EQ(left().markers().markers, std::vector{marker("a", "now")});
-  const auto none = life->take(icd::MarkersUpdate{{marker("b", "new")}});
+  const auto none = process->take(icd::MarkersUpdate{{marker("b", "new")}});
   ASSERT_FALSE(none);
   EXPECT_EQ(none.error().parts, 0u) << none.error().sentence;
   EXPECT_EQ(none.error().setting, "queues.marker_bytes");
 }
 
-TEST_F(NewsTest, IsMissedByTheCommandPostUntilItIsTaken) {
-  TelemetryPost post(true);
-  const auto life = life_before(post.peer);
+TEST_F(TelemetryTest, IsBehindUntilItIsDelivered) {
+  TelemetryStub post(true);
+  const auto process = process_with(post.peer);
   const Traffic robot{Kind::State, "r2"}, other{Kind::State, "r9"}, markers{Kind::Markers, ""};
-  EXPECT_FALSE(life->news.waits_since(robot));
-  ASSERT_TRUE(life->news.take(pose("r2", 7.5), 10));
-  ASSERT_TRUE(life->take(icd::MarkersUpdate{{marker("", "one")}}));
-  EXPECT_TRUE(life->news.waits_since(robot));
-  EXPECT_TRUE(life->news.waits_since(markers));
-  EXPECT_FALSE(life->news.waits_since(other)) << "it posted nothing";
-  EXPECT_TRUE(
-      comes(*life, [&] { return !life->news.waits_since(robot) && !life->news.waits_since(markers); }));
-  EXPECT_EQ(life->record.rows().at(robot).forwarded, 1u);
+  EXPECT_FALSE(process->telemetry.waits_since(robot));
+  ASSERT_TRUE(process->telemetry.take(pose("r2", 7.5), 10));
+  ASSERT_TRUE(process->take(icd::MarkersUpdate{{marker("", "one")}}));
+  EXPECT_TRUE(process->telemetry.waits_since(robot));
+  EXPECT_TRUE(process->telemetry.waits_since(markers));
+  EXPECT_FALSE(process->telemetry.waits_since(other)) << "it posted nothing";
+  EXPECT_TRUE(comes(*process, [&] {
+    return !process->telemetry.waits_since(robot) && !process->telemetry.waits_since(markers);
+  }));
+  EXPECT_EQ(process->record.rows().at(robot).forwarded, 1u);
 }
 
-/// What counts, how old it is, and its track follow what the robot itself has posted.
-TEST_F(NewsTest, CountsNoPoseAsForwardedThatOnlyGoesAlongWithAnothersNews) {
-  TelemetryPost post(true);
-  const auto life = life_before(post.peer);
+/// Counts, age and track follow the robot's own posts.
+TEST_F(TelemetryTest, CountsNoRepeatedPoseAsForwarded) {
+  TelemetryStub post(true);
+  const auto process = process_with(post.peer);
   const Traffic silent{Kind::State, "r1"}, other{Kind::State, "r2"};
   const auto forwarded = [&](const Traffic& of) {
-    const auto row = life->record.rows().find(of);
-    return row == life->record.rows().end() ? 0 : row->second.forwarded;
+    const auto row = process->record.rows().find(of);
+    return row == process->record.rows().end() ? 0 : row->second.forwarded;
   };
-  ASSERT_TRUE(life->news.take(pose("r1", 1), 10));
-  ASSERT_TRUE(comes(*life, [&] { return forwarded(silent) == 1; }));
-  const auto last = life->record.rows().at(silent).last_forwarded;
-  const api::Time seen = life->delivered.robots().at(0).at.value();
+  ASSERT_TRUE(process->telemetry.take(pose("r1", 1), 10));
+  ASSERT_TRUE(comes(*process, [&] { return forwarded(silent) == 1; }));
+  const auto last = process->record.rows().at(silent).last_forwarded;
+  const api::Time seen = process->delivered.robots().at(0).at.value();
   for (std::uint64_t i = 1; i <= 3; ++i) {
-    ASSERT_TRUE(life->news.take(pose("r2", static_cast<double>(i)), 10));
-    ASSERT_TRUE(comes(*life, [&] { return forwarded(other) == i; }));
+    ASSERT_TRUE(process->telemetry.take(pose("r2", static_cast<double>(i)), 10));
+    ASSERT_TRUE(comes(*process, [&] { return forwarded(other) == i; }));
   }
   EXPECT_EQ(forwarded(silent), 1u);
-  EXPECT_EQ(life->record.rows().at(silent).last_forwarded, last);
-  EXPECT_EQ(life->delivered.robots().at(0).at, seen);
+  EXPECT_EQ(process->record.rows().at(silent).last_forwarded, last);
+  EXPECT_EQ(process->delivered.robots().at(0).at, seen);
 }
 
-/// Nor as failed, throttled or refused.
-TEST_F(NewsTest, BlamesNoRobotForAStateThatHasNoNewsOfIt) {
-  TelemetryPost post(true);
-  const auto life = life_before(post.peer);
-  ASSERT_TRUE(life->news.take(pose("r1", 1), 10));
-  ASSERT_TRUE(
-      comes(*life, [&] { return life->news.waiting(Kind::State) == 0 && !life->news.channel().busy(); }));
-  ASSERT_TRUE(life->news.take(pose("wipe", 2), 10));  // which is not taken
-  ASSERT_TRUE(comes(*life, [&] { return life->record.rows().at({Kind::State, "wipe"}).failed >= 1; }));
-  EXPECT_EQ(life->record.rows().at({Kind::State, "r1"}).failed, 0u);
+/// Nor as throttled or rejected.
+TEST_F(TelemetryTest, BlamesOnlyRobotsWithANewPose) {
+  TelemetryStub post(true);
+  const auto process = process_with(post.peer);
+  ASSERT_TRUE(process->telemetry.take(pose("r1", 1), 10));
+  ASSERT_TRUE(comes(*process, [&] {
+    return process->telemetry.waiting(Kind::State) == 0 && !process->telemetry.channel().busy();
+  }));
+  ASSERT_TRUE(process->telemetry.take(pose("wipe", 2), 10));  // rejected by the endpoint
+  ASSERT_TRUE(comes(*process, [&] { return process->record.rows().at({Kind::State, "wipe"}).failed >= 1; }));
+  EXPECT_EQ(process->record.rows().at({Kind::State, "r1"}).failed, 0u);
 }
 
 }  // namespace

@@ -20,37 +20,37 @@ std::vector<double> times(const Tracks& tracks, double since = 0) {
   return times;
 }
 
-TEST(Tracks, KeepAPoseASecondOfARobotThatMoves) {
+TEST(Tracks, KeepAPoseASecondOfAMovingRobot) {
   Tracks tracks;
   for (int i = 0; i <= 50; ++i) tracks.forwarded("r", pose(100 + i * 0.1, i));
   EXPECT_THAT(times(tracks), SizeIs(6));
   EXPECT_EQ(times(tracks).front(), 100);
 }
 
-TEST(Tracks, KeepOneEachTenSecondsOfARobotThatStandsStill) {
+TEST(Tracks, KeepAPoseEachTenSecondsOfAStandingRobot) {
   Tracks tracks;
   for (int i = 0; i <= 60; ++i) tracks.forwarded("r", pose(100 + i, 0));
   EXPECT_THAT(times(tracks), SizeIs(7));
 }
 
-TEST(Tracks, KnowARobotThatTurnsOnTheSpotAsMoving) {
+TEST(Tracks, CountTurningOnTheSpotAsMoving) {
   Tracks tracks;
   for (int i = 0; i <= 10; ++i) tracks.forwarded("r", pose(100 + i, 0, i));
   EXPECT_THAT(times(tracks), SizeIs(11));
 }
 
-TEST(Tracks, GiveWhatCameAfterATime) {
+TEST(Tracks, ListPosesAfterATime) {
   Tracks tracks;
   for (int i = 0; i < 5; ++i) tracks.forwarded("r", pose(100 + i, i));
   tracks.forwarded("old", pose(90, 0));
   EXPECT_EQ(times(tracks, 102), (std::vector<double>{103, 104}));
-  EXPECT_THAT(tracks.since(102), SizeIs(1)) << "a robot without any is left out";
+  EXPECT_THAT(tracks.since(102), SizeIs(1)) << "no newer pose";
   EXPECT_THAT(tracks.since(200), IsEmpty());
   tracks.wipe();
   EXPECT_THAT(tracks.since(0), IsEmpty());
 }
 
-TEST(Tracks, AreBoundedAndStillBeginWhereTheRobotDid) {
+TEST(Tracks, AreLimitedAndKeepTheirBeginning) {
   Tracks tracks;
   for (int i = 0; i < 30000; ++i) tracks.forwarded("r", pose(100 + i, i));
   const auto kept = times(tracks);
@@ -60,7 +60,7 @@ TEST(Tracks, AreBoundedAndStillBeginWhereTheRobotDid) {
   EXPECT_GT(kept.back(), 100 + 30000 - 20);
 }
 
-TEST(Tracks, GoOnWhereTheTimeOfDayIsSetBack) {
+TEST(Tracks, ContinueAfterAClockStepBack) {
   Tracks tracks;
   for (int i = 0; i < 3; ++i) tracks.forwarded("r", pose(100 + i, i));
   tracks.move(-50);

@@ -12,7 +12,7 @@ uplink::Answered answered(int status, std::string type, std::string body) {
           .retry_after = std::nullopt};
 }
 
-TEST(ClientAnswer, IsTheCommandPostsOwnBytesWhereTheseAreJson) {
+TEST(ClientAnswer, HasTheBytesOfTheCommandPostIfTheyAreJson) {
   const std::string body = R"({"id": 7,  "report_status":"scored","score_change":1})";
   const intake::Answer answer = client_answer(answered(201, "application/json", body));
   EXPECT_EQ(answer.status, icd::Status::Created);
@@ -20,7 +20,7 @@ TEST(ClientAnswer, IsTheCommandPostsOwnBytesWhereTheseAreJson) {
   EXPECT_EQ(answer.content_type, "application/json");
 }
 
-TEST(ClientAnswer, IsAJsonStringOfARefusalWhateverJsonItsBodyWas) {  // ICD 4.1
+TEST(ClientAnswer, IsAJsonStringForARejection) {  // ICD 4.1
   const auto told = [](int status, const char* body) {
     const intake::Answer answer = client_answer(answered(status, "application/json", body));
     EXPECT_EQ(static_cast<int>(answer.status), status);
@@ -40,7 +40,7 @@ struct NotJson {
   std::string sentence;
 };
 
-TEST(ClientAnswer, IsAJsonStringWhateverElseCame) {
+TEST(ClientAnswer, IsAJsonStringForAnyOtherBody) {
   for (const NotJson& row : {
            NotJson{404, "<h1>Not Found</h1>", 404,
                    "\"the Command Post answered 404 with a body that is not JSON\""},

@@ -3,6 +3,7 @@
 #include <random>
 
 #include "forward/clocks.hpp"
+#include "forward/maps.hpp"
 #include "forward/record.hpp"
 #include "forward/rejected.hpp"
 #include "host/folder.hpp"
@@ -15,8 +16,8 @@
 
 namespace adit::forward {
 
-/// What each part of the flow stands among.
-struct Around {
+/// The surroundings of each part of the flow.
+struct FlowParts {
   host::Folder folder_, journal_folder_;
   loop::Loop loop_;
   settings::Settings settings_;
@@ -25,15 +26,30 @@ struct Around {
   journal::Journal journal_{loop_, journal_folder_.path()};
 };
 
-struct AroundMaps : Around {
+struct MapsParts : FlowParts {
   host::Folder rejected_folder_;
   spool::Spool spool_{folder_.path()};
   loop::Workers workers_{loop_, 1};
   loop::Writer writer_{loop_};
   RejectedStore rejected_{loop_, writer_, rejected_folder_.path()};
+
+  /// Without a token, maps stay queued.
+  Maps maps_with(std::optional<icd::BearerToken> token) {
+    return {loop_,
+            workers_,
+            writer_,
+            spool_,
+            settings_,
+            std::move(token),
+            record_,
+            rejected_,
+            random_,
+            journal_,
+            [](const icd::MapUpdate&) {}};
+  }
 };
 
-struct AroundScoring : Around {
+struct ScoringParts : FlowParts {
   Clocks clocks_{loop_, journal_, folder_.path()};
   ledger::Ledger ledger_ = std::move(*ledger::Ledger::open(folder_.path()));
 };

@@ -1,5 +1,3 @@
-#include "forward/rejected.hpp"
-
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -8,6 +6,8 @@
 #include <memory>
 #include <optional>
 
+#include "forward/rejected.hpp"
+#include "forward/sample_maps.hpp"
 #include "host/folder.hpp"
 #include "host/service.hpp"
 #include "loop/turn_until.hpp"
@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 using spool::markers;
 using spool::state;
 
-/// What an origin has been told.
+/// Calls that an origin got.
 struct Told {
   int kept = 0, not_kept = 0, let_go = 0;
 };
@@ -31,15 +31,15 @@ class RejectedStoreTest : public testing::Test {
   RejectedStoreTest() { restart(); }
   ~RejectedStoreTest() override { let_go(); }
 
-  /// As another service finds what this one left, which has ended as it should.
+  /// An orderly restart.
   void restart() {
     let_go();
     rejected_.reset();
-    writer_ = std::make_unique<loop::Writer>(loop_);  // the one before finishes first
+    writer_ = std::make_unique<loop::Writer>(loop_);  // the old writer finishes first
     rejected_ = std::make_unique<RejectedStore>(loop_, *writer_, folder_.path());
     rejected_->restore();
   }
-  /// What another service would find if this one were killed now.
+  /// What a process would find after a kill at this time.
   std::vector<api::RejectedRow> found_after_a_kill() {
     loop::Writer writer(loop_);
     RejectedStore other(loop_, writer, folder_.path());
@@ -54,7 +54,7 @@ class RejectedStoreTest : public testing::Test {
                     .let_go = [this] { ++told_.let_go; }});
   }
 
-  /// The writer does nothing until let_go().
+  /// Blocks the writer until let_go().
   void hold() {
     held_.emplace();
     writer_->submit([until = held_->get_future().share()] { until.wait(); }, [] {});
@@ -63,7 +63,7 @@ class RejectedStoreTest : public testing::Test {
     if (held_) held_->set_value();
     held_.reset();
   }
-  /// The writer has done all that it was given, and its word has come.
+  /// Waits for the writer.
   void settle() { ASSERT_TRUE(loop::turn_until_idle(loop_, *writer_)); }
 
   host::Folder folder_;
@@ -75,16 +75,12 @@ class RejectedStoreTest : public testing::Test {
 };
 
 icd::MapUpdate grid(double x = 0, std::uint32_t side = 2) {
-  icd::OccupancyGrid grid;
-  grid.resolution = 0.1;
-  grid.width = grid.height = side;
-  grid.origin.position = {x, 0, 0};
-  const std::vector<std::uint8_t> cells(std::size_t{side} * side, 7);
-  return {
-      icd::RobotName::parse("r1"), grid, {icd::ChunkedBytes{cells}, icd::Compression::Gzip, cells.size()}};
+  icd::MapUpdate map = grid_of("r1", side, 7, x, 0.1);
+  map.data.compression = icd::Compression::Gzip;  // as stored grids say
+  return map;
 }
 
-TEST_F(RejectedStoreTest, OutlivesTheServiceWithItsReason) {
+TEST_F(RejectedStoreTest, KeepsMessagesAndReasonsAcrossARestart) {
   add(grid(), 422, "no \"such\" robot", 100);
   add(state(), 500, "it failed", 200);
   add(markers(), 413, "too long", 300);
@@ -108,7 +104,7 @@ TEST_F(RejectedStoreTest, OutlivesTheServiceWithItsReason) {
   EXPECT_EQ(std::get<icd::MapUpdate>(*map).data.raw_size, 4);
 }
 
-TEST_F(RejectedStoreTest, IsAsLongAgoAsItWasWhereverTheClockIsSet) {
+TEST_F(RejectedStoreTest, KeepsItsAgesAtAClockStep) {
   add(grid());
   for (const double step : {3e8, -6e8}) {
     loop_.set_wall(loop_.wall_now() + step);
@@ -116,10 +112,10 @@ TEST_F(RejectedStoreTest, IsAsLongAgoAsItWasWhereverTheClockIsSet) {
   }
   settle();
   restart();
-  EXPECT_NEAR(rejected_->rows().at(0).at, loop_.wall_now(), 60) << "nor by a restart";
+  EXPECT_NEAR(rejected_->rows().at(0).at, loop_.wall_now(), 60) << "after a restart";
 }
 
-TEST_F(RejectedStoreTest, ForgetsWhatIsSentAgainOrDiscarded) {
+TEST_F(RejectedStoreTest, ForgetsRetriedAndDiscardedMessages) {
   add(grid());
   add(state(), 500);
   EXPECT_TRUE(rejected_->to_be_sent(1));
@@ -135,7 +131,7 @@ TEST_F(RejectedStoreTest, ForgetsWhatIsSentAgainOrDiscarded) {
   EXPECT_TRUE(rejected_->rows().empty());
 }
 
-TEST_F(RejectedStoreTest, RefusesToSendWhatSomethingNewerSaysAllOf) {
+TEST_F(RejectedStoreTest, RetriesNoReplacedMessage) {
   add(grid());
   rejected_->taken(grid(0, 5));
   EXPECT_TRUE(rejected_->rows().front().replaced);
@@ -143,18 +139,18 @@ TEST_F(RejectedStoreTest, RefusesToSendWhatSomethingNewerSaysAllOf) {
   ASSERT_FALSE(sent);
   EXPECT_NE(sent.error().find("newer"), std::string::npos);
   restart();
-  EXPECT_TRUE(rejected_->rows().front().replaced) << "over a restart, too";
+  EXPECT_TRUE(rejected_->rows().front().replaced) << "after a restart";
   EXPECT_TRUE(rejected_->discard(1));
 }
 
-TEST_F(RejectedStoreTest, SaysWhenItIsWrittenThatSomethingWasOvertaken) {
+TEST_F(RejectedStoreTest, ConfirmsThatAReplacementIsStored) {
   add(grid());
   settle();
   int written = 0;
-  EXPECT_FALSE(rejected_->taken(state(), [&] { ++written; })) << "it replaces nothing";
+  EXPECT_FALSE(rejected_->taken(state(), [&] { ++written; })) << "replaces nothing";
   hold();
   EXPECT_TRUE(rejected_->taken(grid(), [&] { ++written; }));
-  EXPECT_FALSE(rejected_->taken(grid(), [&] { ++written; })) << "it was replaced before";
+  EXPECT_FALSE(rejected_->taken(grid(), [&] { ++written; })) << "replaced before";
   EXPECT_FALSE(found_after_a_kill().front().replaced);
   EXPECT_FALSE(rejected_->all_kept());
   EXPECT_EQ(written, 0);
@@ -165,16 +161,16 @@ TEST_F(RejectedStoreTest, SaysWhenItIsWrittenThatSomethingWasOvertaken) {
   EXPECT_TRUE(found_after_a_kill().front().replaced);
 }
 
-TEST_F(RejectedStoreTest, CountsWhatMadePlaceAndWasNotSaidAgain) {
+TEST_F(RejectedStoreTest, CountsDroppedMessages) {
   for (int i = 0; i < 5; ++i) add(state());
-  EXPECT_EQ(rejected_->dropped(), 0) << "the newer state says all of it";
+  EXPECT_EQ(rejected_->dropped(), 0) << "the newer state replaces them";
   for (std::size_t i = 0; i < queues::RejectedMessages::kMostItems + 3; ++i) {
     add(grid(static_cast<double>(i)));
   }
   EXPECT_EQ(rejected_->dropped(), 4);
 }
 
-TEST_F(RejectedStoreTest, PassesOverWhatCannotBeRead) {
+TEST_F(RejectedStoreTest, KeepsDamagedFilesAside) {
   add(grid());
   add(state());
   settle();
@@ -185,17 +181,17 @@ TEST_F(RejectedStoreTest, PassesOverWhatCannotBeRead) {
   ASSERT_EQ(rejected_->rows().size(), 1);
   EXPECT_EQ(rejected_->rows().front().number, 2);
   EXPECT_TRUE(std::filesystem::exists(folder_ / "1.json.damaged"));
-  EXPECT_TRUE(std::filesystem::exists(folder_ / "1.cbor.damaged")) << "the message is not gone";
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "1.cbor.damaged")) << "the message is kept";
 }
 
-TEST_F(RejectedStoreTest, LetsTheOriginGoOnceItIsKeptAndNotBefore) {
+TEST_F(RejectedStoreTest, ReleasesTheOriginOnceTheMessageIsStored) {
   hold();
   add(grid());
   for (int i = 0; i < 10; ++i) loop_.turn(std::chrono::milliseconds{5});
-  EXPECT_EQ(rejected_->rows().size(), 1u) << "it is seen at once";
+  EXPECT_EQ(rejected_->rows().size(), 1u) << "listed at once";
   EXPECT_FALSE(rejected_->all_kept());
   EXPECT_EQ(told_.kept + told_.let_go, 0);
-  EXPECT_TRUE(found_after_a_kill().empty()) << "so the origin's is the one to be found";
+  EXPECT_TRUE(found_after_a_kill().empty()) << "the origin still has it";
   let_go();
   settle();
   EXPECT_TRUE(rejected_->all_kept());
@@ -204,18 +200,18 @@ TEST_F(RejectedStoreTest, LetsTheOriginGoOnceItIsKeptAndNotBefore) {
   EXPECT_EQ(found_after_a_kill().size(), 1u);
 }
 
-TEST_F(RejectedStoreTest, IsFinishedWhenTheServiceStops) {
+TEST_F(RejectedStoreTest, FinishesItsWritesAtAStop) {
   hold();
   add(grid());
   restart();
   EXPECT_EQ(rejected_->rows().size(), 1u);
 }
 
-TEST_F(RejectedStoreTest, KeepsWhatIsSentAgainUntilItIsKeptElsewhere) {
+TEST_F(RejectedStoreTest, KeepsARetriedMessageUntilItIsQueued) {
   add(grid());
   settle();
   ASSERT_TRUE(rejected_->to_be_sent(1));
-  EXPECT_TRUE(rejected_->rows().empty()) << "nobody sends it twice";
+  EXPECT_TRUE(rejected_->rows().empty()) << "it cannot be sent twice";
   settle();
   EXPECT_EQ(found_after_a_kill().size(), 1u);
   rejected_->sent_again(1, true);
@@ -223,7 +219,7 @@ TEST_F(RejectedStoreTest, KeepsWhatIsSentAgainUntilItIsKeptElsewhere) {
   EXPECT_TRUE(found_after_a_kill().empty());
 }
 
-TEST_F(RejectedStoreTest, SaysWhatWasOvertakenOnItsWay) {
+TEST_F(RejectedStoreTest, DetectsAReplacementDuringARetry) {
   add(grid());
   add(state());
   ASSERT_TRUE(rejected_->to_be_sent(1));
@@ -233,7 +229,7 @@ TEST_F(RejectedStoreTest, SaysWhatWasOvertakenOnItsWay) {
   EXPECT_TRUE(rejected_->sent_again(2, true));
 }
 
-TEST_F(RejectedStoreTest, TakesBackWhatCouldNotBeSentAgain) {
+TEST_F(RejectedStoreTest, RestoresAMessageIfItsRetryFails) {
   add(grid());
   settle();
   ASSERT_TRUE(rejected_->to_be_sent(1));
@@ -242,13 +238,13 @@ TEST_F(RejectedStoreTest, TakesBackWhatCouldNotBeSentAgain) {
   EXPECT_TRUE(rejected_->to_be_sent(1));
 }
 
-TEST_F(RejectedStoreTest, LetsTheOriginOfWhatCannotBeKeptGoOnlyWhenTheMessageGoes) {
+TEST_F(RejectedStoreTest, KeepsTheOriginIfAWriteFails) {
   folder_.put("in the way", "");
   rejected_ = std::make_unique<RejectedStore>(loop_, *writer_, folder_ / "in the way/rejected");
   add(grid());
   add(state());
   settle();
-  EXPECT_EQ(rejected_->rows().size(), 2u) << "in memory alone";
+  EXPECT_EQ(rejected_->rows().size(), 2u) << "in memory";
   EXPECT_EQ(told_.not_kept, 2);
   EXPECT_EQ(told_.let_go, 0);
   ASSERT_TRUE(rejected_->discard(1));
@@ -259,7 +255,7 @@ TEST_F(RejectedStoreTest, LetsTheOriginOfWhatCannotBeKeptGoOnlyWhenTheMessageGoe
   EXPECT_EQ(told_.let_go, 2);
 }
 
-TEST_F(RejectedStoreTest, ReadsNoDataOfMapsAsItRestoresThem) {
+TEST_F(RejectedStoreTest, StartsWithoutReadingMapData) {
   add(spool::cloud(1'000'000));  // 12 MB
   const auto before = spool::BytesRead::of(folder_.path());
   restart();
@@ -271,7 +267,7 @@ TEST_F(RejectedStoreTest, ReadsNoDataOfMapsAsItRestoresThem) {
   EXPECT_EQ(std::get<icd::MapUpdate>(*map), spool::cloud(1'000'000));
 }
 
-TEST_F(RejectedStoreTest, WritesOverNothingThatItCouldNotRead) {
+TEST_F(RejectedStoreTest, OverwritesNoUnreadFile) {
   folder_.put("rejected", "no folder");
   rejected_ = std::make_unique<RejectedStore>(loop_, *writer_, folder_ / "rejected");
   rejected_->restore();
@@ -286,8 +282,8 @@ TEST_F(RejectedStoreTest, WritesOverNothingThatItCouldNotRead) {
   EXPECT_EQ(host::read_file(folder_ / "rejected/1.cbor"), "of a life before");
 }
 
-/// Else a life to come would send it of itself, behind the newer one.
-TEST_F(RejectedStoreTest, LetsTheOriginOfWhatCannotBeKeptGoOnceItIsOvertaken) {
+/// Otherwise a restart would send the older message after the newer one.
+TEST_F(RejectedStoreTest, ReleasesTheOriginOfAReplacedMessage) {
   folder_.put("in the way", "");
   rejected_ = std::make_unique<RejectedStore>(loop_, *writer_, folder_ / "in the way/rejected");
   add(grid());
@@ -297,7 +293,7 @@ TEST_F(RejectedStoreTest, LetsTheOriginOfWhatCannotBeKeptGoOnceItIsOvertaken) {
   hold();
   add(grid(9));
   rejected_->taken(grid(9));
-  EXPECT_EQ(told_.let_go, 1) << "whether it can be kept is not known yet";
+  EXPECT_EQ(told_.let_go, 1) << "its write is pending";
   let_go();
   settle();
   EXPECT_EQ(told_.not_kept, 2);

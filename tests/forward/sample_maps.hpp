@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <cstring>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "codec/map_pieces.hpp"
@@ -11,7 +12,7 @@
 
 namespace adit::forward {
 
-/// A cloud with points on the x axis; "": of no robot.
+/// A cloud with points on the x axis; "": without a robot.
 inline icd::MapUpdate cloud_along_x(const char* robot, const std::vector<float>& xs) {
   const icd::PointCloud2 cloud = icd::xyz();
   std::vector<std::uint8_t> bytes(12 * xs.size());
@@ -20,7 +21,19 @@ inline icd::MapUpdate cloud_along_x(const char* robot, const std::vector<float>&
       icd::RobotName::parse(robot), cloud, {icd::ChunkedBytes{bytes}, icd::Compression::None, bytes.size()}};
 }
 
-/// Of such a cloud's data, packed or not.
+inline icd::MapUpdate grid_of(const std::string& robot, std::uint32_t side, std::uint8_t value = 1,
+                              double x = 0, double resolution = 0.25) {
+  icd::OccupancyGrid grid;
+  grid.header.stamp = 1;
+  grid.resolution = resolution;
+  grid.width = grid.height = side;
+  grid.origin.position.x = x;
+  const std::vector<std::uint8_t> cells(std::size_t{side} * side, value);
+  return {
+      icd::RobotName::parse(robot), grid, {icd::ChunkedBytes{cells}, icd::Compression::None, cells.size()}};
+}
+
+/// The x of each point of such a cloud, compressed or not.
 inline std::vector<float> xs_of(const icd::MapData& data) {
   std::vector<std::uint8_t> bytes;
   (void)codec::for_each_piece(data, [&](std::span<const std::uint8_t> piece) -> icd::Checked<void> {

@@ -1,6 +1,6 @@
-#include "forward/known_status.hpp"
-
 #include <gtest/gtest.h>
+
+#include "forward/known_status.hpp"
 
 namespace adit::forward {
 namespace {
@@ -11,13 +11,13 @@ loop::Instant at(int ms) {
   return loop::Instant{} + milliseconds(1'000'000 + ms);
 }
 
-TEST(KnownStatus, IsNothingBeforeItWasHeard) {
+TEST(KnownStatus, IsEmptyAtFirst) {
   const KnownStatus known;
   EXPECT_FALSE(known.is_fresh(at(0)));
   EXPECT_FALSE(known.answer(at(0)));
 }
 
-TEST(KnownStatus, IsFreshForASecondAndAnAnswerForFifteen) {
+TEST(KnownStatus, IsFreshForOneSecondAndUsableForFifteen) {
   KnownStatus known;
   known.heard("{\"score\": 1}", at(0));
   EXPECT_TRUE(known.is_fresh(at(999)));
@@ -26,14 +26,14 @@ TEST(KnownStatus, IsFreshForASecondAndAnAnswerForFifteen) {
   EXPECT_FALSE(known.answer(at(15'001)));
 }
 
-TEST(KnownStatus, IsAnAnswerForAMinuteWhileReportsGoFirst) {
+TEST(KnownStatus, IsUsableForAMinuteWhileReportsGoFirst) {
   KnownStatus known;
   known.heard("{}", at(0));
   EXPECT_TRUE(known.answer(at(60'000), KnownStatus::kOldestBehindReports));
   EXPECT_FALSE(known.answer(at(60'001), KnownStatus::kOldestBehindReports));
 }
 
-TEST(KnownStatus, TellsItsAgeInWholeSeconds) {
+TEST(KnownStatus, HasAnAgeInWholeSeconds) {
   KnownStatus known;
   known.heard("{\"score\": 1}", at(0));
   const std::pair<int, const char*> cases[] = {{0, "0"}, {999, "0"}, {1000, "1"}, {14'999, "14"}};
@@ -47,7 +47,7 @@ TEST(KnownStatus, TellsItsAgeInWholeSeconds) {
   }
 }
 
-TEST(KnownStatus, IsStillAnAnswerOnceItMayHaveChanged) {
+TEST(KnownStatus, IsUsableAfterItMayHaveChanged) {
   KnownStatus known;
   known.heard("{}", at(0));
   known.no_longer_fresh();

@@ -1,4 +1,4 @@
-// Clouds of a robot with robots[].voxel_metres on their way to a mapping endpoint.
+// Clouds of a robot with robots[].voxel_metres.
 #include <gmock/gmock.h>
 
 #include <atomic>
@@ -9,9 +9,8 @@
 #include <vector>
 
 #include "../uplink/peer.hpp"
-#include "forward/around.hpp"
-#include "forward/clouds.hpp"
-#include "forward/maps.hpp"
+#include "forward/fixtures.hpp"
+#include "forward/sample_maps.hpp"
 #include "loop/turn_until.hpp"
 
 namespace adit::forward {
@@ -20,10 +19,10 @@ namespace {
 using testing::ElementsAre;
 using Points = std::vector<float>;
 
-/// A mapping endpoint that says 200 unless it is told otherwise, and may be told to wait.
-class PatientPost {
+/// Answers 200 unless says() names another status. After waits() it answers once go_on() is called.
+class SlowEndpoint {
  public:
-  ~PatientPost() {
+  ~SlowEndpoint() {
     over_ = true;
     go_on();
   }
@@ -60,9 +59,9 @@ class PatientPost {
   uplink::ListeningPeer peer_{[this](uplink::Wire& wire) { serve(wire); }};
 };
 
-class PointsLeftOut : public testing::Test, protected AroundMaps {
+class LeftOutPoints : public testing::Test, protected MapsParts {
  protected:
-  PointsLeftOut() {
+  LeftOutPoints() {
     settings_.command_post.rates.map_hz = 1000;
     settings_.command_post.mapping = post_.address();
     settings_.robots = {{.name = "r1", .alias = "", .voxel_metres = 0.5}};
@@ -88,19 +87,19 @@ class PointsLeftOut : public testing::Test, protected AroundMaps {
 
   const Traffic kClouds{Kind::Cloud, "r1"};
   const std::optional<icd::BearerToken> token_ = icd::BearerToken::parse("a-token");
-  PatientPost post_;
+  SlowEndpoint post_;
   std::vector<Points> taken_;
   std::optional<Maps> maps_;
 };
 
-TEST_F(PointsLeftOut, AreThoseOfVoxelsThatWereTaken) {
+TEST_F(LeftOutPoints, LieInDeliveredVoxels) {
   arrive({0.1F, 0.2F, 1.1F});
   arrive({0.3F, 2.1F});
   EXPECT_THAT(taken_, ElementsAre(Points{0.1F, 1.1F}, Points{2.1F}));
   EXPECT_EQ(row().points_left_out, 2);
 }
 
-TEST_F(PointsLeftOut, CanBeAllSoThatNothingIsSent) {
+TEST_F(LeftOutPoints, CanBeAllOfACloud) {
   arrive({0.1F});
   arrive({0.2F});
   EXPECT_EQ(post_.came, 1);
@@ -111,7 +110,7 @@ TEST_F(PointsLeftOut, CanBeAllSoThatNothingIsSent) {
   EXPECT_TRUE(spool_.read().empty());
 }
 
-TEST_F(PointsLeftOut, AreNotThoseOfAMessageThatFailed) {
+TEST_F(LeftOutPoints, AreNoneAfterAFailure) {
   post_.says("500 Oops");
   post_.waits();
   take({0.1F});
@@ -119,25 +118,24 @@ TEST_F(PointsLeftOut, AreNotThoseOfAMessageThatFailed) {
   take({0.2F});
   post_.go_on();
   ASSERT_TRUE(none_waits());
-  EXPECT_FALSE(taken_.empty())
-      << "one of the two is enough; the second may be packed before the first is taken";
+  EXPECT_FALSE(taken_.empty()) << "one of the two is enough";
 }
 
-TEST_F(PointsLeftOut, GoAgainInAnotherRun) {
+TEST_F(LeftOutPoints, AreNoneInANewRun) {
   arrive({0.1F});
   maps_->change_run(dispatch::NextMap::Empty);
   arrive({0.2F});
   EXPECT_THAT(taken_, ElementsAre(Points{0.1F}, Points{0.2F}));
 }
 
-TEST_F(PointsLeftOut, GoAgainToAnotherEndpoint) {
+TEST_F(LeftOutPoints, AreNoneAtAnotherEndpoint) {
   arrive({0.1F});
   maps_->endpoint_changed(token_);
   arrive({0.2F});
   EXPECT_EQ(taken_.size(), 2);
 }
 
-TEST_F(PointsLeftOut, GoAgainWhereTheRunBeganWhileTheRestWasUnderWay) {
+TEST_F(LeftOutPoints, AreSentIfANewRunBeginsMeanwhile) {
   arrive({0.1F});
   post_.waits();
   take({0.2F, 5});
@@ -148,7 +146,7 @@ TEST_F(PointsLeftOut, GoAgainWhereTheRunBeganWhileTheRestWasUnderWay) {
   EXPECT_THAT(taken_, ElementsAre(Points{0.1F}, Points{0.2F, 5}));
 }
 
-TEST_F(PointsLeftOut, AreNoneWhereTheSettingIsOff) {
+TEST_F(LeftOutPoints, AreNoneIfTheSettingIsOff) {
   settings_.robots.clear();
   maps_->settings_changed();
   arrive({0.1F});

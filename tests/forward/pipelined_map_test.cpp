@@ -1,18 +1,18 @@
-// The next map goes ahead of the answer to the one before, on a second connection, to a Command Post that
-// serves one connection at a time.
+// The next map is sent on a second connection before the first is answered. The Command Post serves one
+// connection at a time.
 #include <gtest/gtest.h>
 
 #include <string>
 #include <vector>
 
-#include "forward/letting_post.hpp"
+#include "forward/manual_endpoint.hpp"
 
 namespace adit::forward {
 namespace {
 
-class MapAhead : public WithLettingPost {
+class PipelinedMap : public MapsToManualEndpoint {
  protected:
-  /// The Command Post has taken enough maps to be trusted.
+  /// Delivers enough maps to allow pipelining.
   void has_answered_well() {
     for (int i = 0; i < queues::Pipelining::kWell; ++i) {
       post_.answer("200 OK");
@@ -31,8 +31,8 @@ class MapAhead : public WithLettingPost {
     }
     return waiting == 0;
   }
-  /// Of the second map, once it follows the first one: whether bytes of it have left before that is answered.
-  /// On a machine so busy that the answer is called late, nothing goes ahead: then once more.
+  /// True if bytes of the next map leave before the first map is answered. If a busy machine delays the
+  /// answer, Adit sends nothing ahead and the caller tries again.
   bool goes_ahead(const char* robot, const icd::MapUpdate& next, std::uint32_t width = 10) {
     take(grid_of(robot, width));
     if (!loop::turn_until(loop_, [&] { return post_.came().size() > before_; })) return false;
@@ -54,13 +54,13 @@ class MapAhead : public WithLettingPost {
       for (int i = 0; i < 2; ++i) post_.answer("200 OK");
       ASSERT_TRUE(are_gone());
     }
-    FAIL() << "ten times";
+    FAIL() << "no map was sent ahead";
   }
 
   std::size_t before_ = 0;
 };
 
-TEST_F(MapAhead, IsTakenOnceTheOneBeforeIsAnswered) {
+TEST_F(PipelinedMap, IsDeliveredAfterTheFirstMap) {
   one_is_ahead();
   EXPECT_EQ(maps_->waiting({Kind::Grid, "first"}), 1u);
   EXPECT_EQ(maps_->waiting({Kind::Grid, "second"}), 1u);
@@ -69,52 +69,51 @@ TEST_F(MapAhead, IsTakenOnceTheOneBeforeIsAnswered) {
   EXPECT_EQ(came_since(), (std::vector<std::string>{"first", "second"}));
 }
 
-TEST_F(MapAhead, StaysUnderWayWhereTheOneBeforeFails) {
+TEST_F(PipelinedMap, StaysInFlightIfTheFirstFails) {
   one_is_ahead();
   for (const char* answer : {"500 Oops", "200 OK", "200 OK"}) post_.answer(answer);
   EXPECT_TRUE(are_gone());
   EXPECT_EQ(came_since(), (std::vector<std::string>{"first", "second", "first"}));
 }
 
-TEST_F(MapAhead, IsSentAgainWhereItFails) {
+TEST_F(PipelinedMap, IsRetriedIfItFails) {
   one_is_ahead();
   for (const char* answer : {"200 OK", "500 Oops", "200 OK"}) post_.answer(answer);
   EXPECT_TRUE(are_gone());
   EXPECT_EQ(came_since(), (std::vector<std::string>{"first", "second", "second"}));
 }
 
-TEST_F(MapAhead, StaysUnderWayWhereTheOneBeforeIsRefused) {
+TEST_F(PipelinedMap, StaysInFlightIfTheFirstIsRejected) {
   one_is_ahead();
   for (const char* answer : {"422 No", "200 OK"}) post_.answer(answer);
   EXPECT_TRUE(are_gone());
   EXPECT_EQ(rejected_.rows().size(), 1u);
 }
 
-TEST_F(MapAhead, GoesNotAheadOfAnOlderGridOfItsRobot) {
+TEST_F(PipelinedMap, WaitsForAnOlderGridOfItsRobot) {
   has_answered_well();
   EXPECT_FALSE(goes_ahead("first", grid_of("first", 5)));
   for (int i = 0; i < 2; ++i) post_.answer("200 OK");
   EXPECT_TRUE(are_gone());
 }
 
-/// A Command Post that reads both at once would check the small one first: the other one's stamp would run
-/// backward.
-TEST_F(MapAhead, GoesNotAheadOfALargeMapThatMayStillBeRead) {
+/// A Command Post that reads both would check the small map first, and stamps would go back.
+TEST_F(PipelinedMap, WaitsForALargeMap) {
   has_answered_well();
   EXPECT_FALSE(goes_ahead("first", grid_of("second", 10), 4000));
   for (int i = 0; i < 2; ++i) post_.answer("200 OK");
   EXPECT_TRUE(are_gone());
 }
 
-TEST_F(MapAhead, BothAreGivenUpWhereTheEndpointIsAnother) {
+TEST_F(PipelinedMap, IsSentToANewEndpointWithTheFirst) {
   one_is_ahead();
-  LettingPost other;
+  ManualEndpoint other;
   settings_.command_post.mapping = other.address();
   maps_->endpoint_changed(icd::BearerToken::parse("a-token"));
   for (int i = 0; i < 2; ++i) other.answer("200 OK");
   EXPECT_TRUE(are_gone());
   EXPECT_EQ(other.came(), (std::vector<std::string>{"first", "second"}));
-  maps_.reset();  // else the other one waits for more
+  maps_.reset();  // closes the connections that `other` reads
 }
 
 }  // namespace

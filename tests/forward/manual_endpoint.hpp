@@ -11,32 +11,22 @@
 #include <vector>
 
 #include "../uplink/peer.hpp"
-#include "forward/around.hpp"
-#include "forward/maps.hpp"
+#include "forward/fixtures.hpp"
+#include "forward/sample_maps.hpp"
 #include "loop/turn_until.hpp"
 
 namespace adit::forward {
 
-inline icd::MapUpdate grid_of(const char* robot, std::uint32_t side) {
-  icd::OccupancyGrid grid;
-  grid.header.stamp = 1;
-  grid.resolution = 0.25;
-  grid.width = grid.height = side;
-  const std::vector<std::uint8_t> cells(std::size_t{side} * side, 1);
-  return {
-      icd::RobotName::parse(robot), grid, {icd::ChunkedBytes{cells}, icd::Compression::None, cells.size()}};
-}
-
-/// A mapping endpoint that says each time what it is let say.
-class LettingPost {
+/// A mapping endpoint that answers a request once answer() gives a status.
+class ManualEndpoint {
  public:
-  LettingPost() = default;
-  ~LettingPost() {
+  ManualEndpoint() = default;
+  ~ManualEndpoint() {
     over_ = true;
-    let_.release(100);  // also for a connection that waits to be served
+    let_.release(100);  // also ends connections that are not served yet
   }
-  LettingPost(const LettingPost&) = delete;
-  LettingPost& operator=(const LettingPost&) = delete;
+  ManualEndpoint(const ManualEndpoint&) = delete;
+  ManualEndpoint& operator=(const ManualEndpoint&) = delete;
 
   void answer(std::string status) {
     {
@@ -46,7 +36,7 @@ class LettingPost {
     let_.release();
   }
   settings::Address address() const { return {peer_.endpoint().address, peer_.endpoint().port}; }
-  /// The robots of the maps that came, in order.
+  /// Robots of the received maps in order.
   std::vector<std::string> came() {
     const std::lock_guard lock(mutex_);
     return came_;
@@ -80,10 +70,10 @@ class LettingPost {
   uplink::ListeningPeer peer_{[this](uplink::Wire& wire) { serve(wire); }};
 };
 
-/// Maps on their way to it.
-class WithLettingPost : public testing::Test, protected AroundMaps {
+/// Maps that are sent to a ManualEndpoint.
+class MapsToManualEndpoint : public testing::Test, protected MapsParts {
  protected:
-  WithLettingPost() {
+  MapsToManualEndpoint() {
     settings_.command_post.rates.map_hz = 1000;
     settings_.command_post.mapping = post_.address();
     maps_.emplace(loop_, workers_, writer_, spool_, settings_, icd::BearerToken::parse("a-token"), record_,
@@ -99,7 +89,7 @@ class WithLettingPost : public testing::Test, protected AroundMaps {
     return loop::turn_until(loop_, [&] { return post_.came() == robots; });
   }
 
-  LettingPost post_;
+  ManualEndpoint post_;
   std::optional<Maps> maps_;
 };
 

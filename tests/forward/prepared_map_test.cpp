@@ -1,16 +1,16 @@
-// The next map is packed while one is under way, and goes back with it.
+// The next map is packed while the first is in flight.
 #include <gtest/gtest.h>
 
 #include <optional>
 
-#include "forward/letting_post.hpp"
+#include "forward/manual_endpoint.hpp"
 
 namespace adit::forward {
 namespace {
 
-class FollowingMap : public WithLettingPost {
+class PreparedMap : public MapsToManualEndpoint {
  protected:
-  /// One is under way, and one is packed.
+  /// The first map is in flight, the second is packed.
   void two_are_out_of_the_queue() {
     take(grid_of("first", 10));
     ASSERT_TRUE(come({"first"}));
@@ -19,7 +19,7 @@ class FollowingMap : public WithLettingPost {
   }
 };
 
-TEST_F(FollowingMap, IsPackedWhileTheOneBeforeIsUnderWay) {
+TEST_F(PreparedMap, IsPackedWhileTheFirstIsInFlight) {
   two_are_out_of_the_queue();
   EXPECT_EQ(post_.came().size(), 1u);
   EXPECT_EQ(maps_->waiting({Kind::Grid, "first"}), 1u);
@@ -29,7 +29,7 @@ TEST_F(FollowingMap, IsPackedWhileTheOneBeforeIsUnderWay) {
   EXPECT_EQ(maps_->waiting({Kind::Grid, "first"}), 0u);
 }
 
-TEST_F(FollowingMap, GoesBackWithTheOneBefore) {
+TEST_F(PreparedMap, ReturnsToTheQueueWithTheFirst) {
   two_are_out_of_the_queue();
   for (const char* answer : {"500 Oops", "200 OK", "200 OK"}) post_.answer(answer);
   EXPECT_TRUE(loop::turn_until(loop_, [&] {
@@ -38,15 +38,15 @@ TEST_F(FollowingMap, GoesBackWithTheOneBefore) {
   EXPECT_EQ(post_.came().size(), 3u);
 }
 
-TEST_F(FollowingMap, GoesWhereTheOneBeforeIsRefused) {
+TEST_F(PreparedMap, IsSentIfTheFirstIsRejected) {
   two_are_out_of_the_queue();
   post_.answer("422 No");
   EXPECT_TRUE(come({"first", "second"}));
   EXPECT_EQ(rejected_.rows().size(), 1u);
 }
 
-/// Else the newer grid, which covers the older one, would be followed by its old cells.
-TEST_F(FollowingMap, TakesThePlaceOfTheOneBeforeThatComesBackAndThatItCovers) {
+/// Otherwise older cells would follow newer ones.
+TEST_F(PreparedMap, ReplacesAFailedGridThatItCovers) {
   take(grid_of("first", 10));
   ASSERT_TRUE(come({"first"}));
   take(grid_of("first", 20));
@@ -58,7 +58,7 @@ TEST_F(FollowingMap, TakesThePlaceOfTheOneBeforeThatComesBackAndThatItCovers) {
   EXPECT_EQ(post_.came().size(), 2u);
 }
 
-TEST_F(FollowingMap, SaysWhatIsSentAgainByHand) {
+TEST_F(PreparedMap, ReplacesAnOlderGridSentByTheOperator) {
   take(grid_of("first", 10));
   ASSERT_TRUE(come({"first"}));
   take(grid_of("second", 20));
@@ -68,7 +68,7 @@ TEST_F(FollowingMap, SaysWhatIsSentAgainByHand) {
     kept = well;
     return true;
   });
-  EXPECT_EQ(kept, true) << "the newer one says all of it";
+  EXPECT_EQ(kept, true) << "the newer grid covers it";
   EXPECT_EQ(maps_->waiting({Kind::Grid, "second"}), 1u);
 }
 

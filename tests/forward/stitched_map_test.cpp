@@ -1,17 +1,16 @@
-#include "forward/stitched.hpp"
-
 #include <gmock/gmock.h>
 
 #include "codec/gzip.hpp"
 #include "codec/map_pieces.hpp"
-#include "forward/clouds.hpp"
+#include "forward/sample_maps.hpp"
+#include "forward/stitched.hpp"
 
 namespace adit::forward {
 namespace {
 
 using testing::ElementsAre;
 
-/// A row of cells of 1 m that begins at `x`.
+/// A row of cells of 1 m from `x` on.
 icd::MapUpdate row_at(double x, const std::vector<std::uint8_t>& values) {
   icd::OccupancyGrid grid;
   grid.width = static_cast<std::uint32_t>(values.size());
@@ -50,7 +49,7 @@ TEST(StitchedMap, HasTheCellsOfItsParts) {
   EXPECT_THAT(cells_of(map.stitched), ElementsAre(1, 2, 5, 6, 7));
 }
 
-TEST(StitchedMap, ThatWasPackedOnceIsNotStitchedAnotherTime) {
+TEST(StitchedMap, IsStitchedOnce) {
   auto waiting = taken_of({row_at(0, {1, 2, 3}), row_at(3, {4})});
   const Packed first = packed(waiting);
   waiting.map.data = first.stitched;
@@ -59,18 +58,18 @@ TEST(StitchedMap, ThatWasPackedOnceIsNotStitchedAnotherTime) {
   EXPECT_EQ(second.stitched.raw_size, 0);
 }
 
-TEST(StitchedMap, HasNoBodyIfItsDataOrThatOfAPartIsDamaged) {
+TEST(StitchedMap, HasNoBodyIfAPartIsDamaged) {
   auto damaged = row_at(3, {4, 5, 6});
   auto bytes = damaged.data.bytes.to_vector();
   bytes[bytes.size() - 6] ^= 1;
   damaged.data.bytes = icd::ChunkedBytes{bytes};
   EXPECT_TRUE(packed(taken_of({row_at(0, {1, 2, 3}), damaged})).body.empty());
   const auto alone = taken_of({damaged});
-  EXPECT_TRUE(packed(alone).body.empty()) << "packing shows it";
-  EXPECT_TRUE(packed(alone, {}, {.hurry = {.longest = 0}}).body.empty()) << "drawing shows it";
+  EXPECT_TRUE(packed(alone).body.empty()) << "detected by packing";
+  EXPECT_TRUE(packed(alone, {}, {.hurry = {.longest = 0}}).body.empty()) << "detected by drawing";
 }
 
-TEST(StitchedMap, HasWhatWasSentLastInTheGapsBetweenItsParts) {
+TEST(StitchedMap, FillsItsGapsWithSentCells) {
   queues::MapQueue queue{0};
   std::uint64_t number = 0;
   const auto take = [&](const std::vector<icd::MapUpdate>& maps) {
@@ -89,14 +88,14 @@ TEST(StitchedMap, HasWhatWasSentLastInTheGapsBetweenItsParts) {
       << "never sent";
 }
 
-/// A cloud of `points` from `begin` metres on, as it was taken to be sent.
+/// A cloud from `begin` metres on, as taken from the queue.
 queues::QueuedMap cloud_at(float begin, int points, queues::Precision precision) {
   std::vector<float> xs;
   for (int i = 0; i < points; ++i) xs.push_back(begin + 0.0137F * static_cast<float>(i * i % 997));
   return {.map = cloud_along_x("r1", xs), .accepted = {}, .updates = {1}, .precision = precision};
 }
 
-TEST(PackedCloud, SaysHowFarItWasRounded) {
+TEST(PackedCloud, HasItsPrecision) {
   using queues::Precision;
   for (const Precision each : {Precision::Exact, Precision::Millimetre, Precision::EightMillimetres}) {
     const Packed map = packed(cloud_at(5, 2000, each));
@@ -105,7 +104,7 @@ TEST(PackedCloud, SaysHowFarItWasRounded) {
   }
 }
 
-TEST(PackedCloud, IsExactWhereItCannotBeRounded) {
+TEST(PackedCloud, IsExactIfItCannotBeRounded) {
   const auto precision_of = [](const queues::QueuedMap& waiting, bool arranges) {
     return packed(waiting, {}, {.arranges_clouds = arranges}).precision;
   };
@@ -113,10 +112,10 @@ TEST(PackedCloud, IsExactWhereItCannotBeRounded) {
   EXPECT_EQ(precision_of(cloud_at(5, 2000, Precision::Millimetre), /*arranges=*/false), Precision::Exact);
   EXPECT_EQ(precision_of(cloud_at(9000, 2000, Precision::Millimetre), /*arranges=*/true), Precision::Exact);
   EXPECT_EQ(precision_of(cloud_at(5, 2, Precision::Millimetre), /*arranges=*/true), Precision::Exact)
-      << "which gzip does not make smaller";
+      << "gzip does not make it smaller";
 }
 
-TEST(PackedCloud, IsAsItCameIfPackingWouldTakeTooMuchMemory) {
+TEST(PackedCloud, IsUnchangedIfPackingNeedsTooMuchMemory) {
   constexpr std::size_t kMost = pack::kMostPacked / 12;
   for (const auto precision : {queues::Precision::Exact, queues::Precision::Millimetre}) {
     queues::QueuedMap waiting = cloud_at(5, 2000, precision);

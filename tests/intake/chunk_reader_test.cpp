@@ -8,7 +8,7 @@ namespace {
 
 using State = ChunkReader::State;
 
-TEST(Chunks, ThatTheRfcHasRefusedAreRefusedHoweverTheyCome) {
+TEST(Chunks, AreRejectedIfTheRfcForbidsThem) {
   RecordProperty("cases", static_cast<int>(odd_chunks().size()));  // tests/hostile/run counts them
   for (const OddChunks& odd : odd_chunks()) {
     for (const std::size_t piece : {odd.body.size(), std::size_t{1}, std::size_t{3}}) {
@@ -17,7 +17,7 @@ TEST(Chunks, ThatTheRfcHasRefusedAreRefusedHoweverTheyCome) {
   }
 }
 
-TEST(Chunks, AreReadHoweverTheyCome) {
+TEST(Chunks, AreReadInPiecesOfAnySize) {
   const std::string bodies[] = {
       "3\r\nin \r\n6\r\nchunks\r\n0\r\n\r\n",
       "0003;ext=1;b\r\nin \r\n6 ; quoted=\"a;b\"\r\nchunks\r\n000\r\n\r\n",
@@ -33,7 +33,7 @@ TEST(Chunks, AreReadHoweverTheyCome) {
   }
 }
 
-TEST(Chunks, AreNotWholeBeforeTheirLastLine) {
+TEST(Chunks, EndWithTheirLastLine) {
   const std::string body = "A\r\n0123456789\r\n0\r\n\r\n";
   for (std::size_t size = 0; size < body.size(); ++size) {
     EXPECT_EQ(read_chunks(std::string_view(body).substr(0, size), 1).state, State::More) << size;

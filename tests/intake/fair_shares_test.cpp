@@ -1,5 +1,4 @@
-// Memory and turns are shared by addresses, by real sockets: one that sends as much as it can, with or
-// without a token, leaves room for others.
+// A client that sends all it can leaves memory and turns for other addresses.
 #include <gtest/gtest.h>
 
 #include "intake/team.hpp"
@@ -17,18 +16,15 @@ class FairShares : public testing::Test {
     options.upload_bytes = options.small_bytes = 1'000'000;
     return options;
   }
-  /// Connections of the greedy address, each of which has sent all but the end of `body`.
-  void send_greedily(std::string_view path, const std::string& body) {
-    for (int i = 0; i < 20; ++i) send_one_more(path, body);
-  }
+  /// Sends all but the last byte of `body` on a new connection of the greedy address.
   void send_one_more(std::string_view path, const std::string& body) {
     const std::string length = "Content-Length: " + std::to_string(body.size()) + "\r\n";
     greedy.push_back(std::make_unique<RawClient>(team.served.port(), kGreedy));
     greedy.back()->send(request("POST", path, std::string(kJsonType) + length) +
                         body.substr(0, body.size() - 1));
   }
-  /// Of one more and one more of the greedy, the first that is answered though it is not whole. What was
-  /// refused before has given its memory back, so some may find room first.
+  /// The first rejection of further connections of the greedy address. Earlier rejections return memory, so
+  /// some connections may find room first.
   std::optional<Reply> next_refused(std::string_view path, const std::string& body) {
     using namespace std::chrono_literals;
     for (int i = 0; i < 20; ++i) {
@@ -37,48 +33,34 @@ class FairShares : public testing::Test {
     }
     return std::nullopt;
   }
-  std::optional<Reply> ask_from(const std::string& address, std::string_view path, const std::string& body) {
-    RawClient client(team.served.port(), address);
-    client.send(request("POST", path, kJsonType, body));
-    return client.reply();
-  }
-  /// Those of the greedy that were refused, once one was.
-  std::size_t refusals() {
+  /// Another address has room for `body` although the greedy one has used its share. Returns the greedy one's
+  /// rejection.
+  Reply expect_room(std::string_view path, const std::string& body) {
+    for (int i = 0; i < 20; ++i) send_one_more(path, body);
     EXPECT_TRUE(team.served.eventually([&] { return !team.desk.refusals.empty(); }));
-    return team.served.on_loop([&] { return team.desk.refusals.size(); });
+    RawClient other(team.served.port(), kOther);
+    other.send(request("POST", path, kJsonType, body));
+    const auto reply = other.reply();
+    EXPECT_TRUE(reply && reply->status == 200);
+    return next_refused(path, body).value_or(Reply());
   }
 
   Team team{options()};
   std::vector<std::unique_ptr<RawClient>> greedy;
 };
 
-TEST_F(FairShares, OfMapsAreLeftForAnotherAddress) {
-  const std::string body = grid_body(300, 300);
-  send_greedily("/map/update", body);
-  EXPECT_GE(refusals(), 1u);
-  const auto reply = ask_from(kOther, "/map/update", body);
-  ASSERT_TRUE(reply);
-  EXPECT_EQ(reply->status, 200) << reply->body;
-  const auto refused = next_refused("/map/update", body);
-  ASSERT_TRUE(refused);
-  EXPECT_EQ(refused->status, 429);
+TEST_F(FairShares, AcceptMapsOfAnotherAddress) {
+  EXPECT_EQ(expect_room("/map/update", grid_body(300, 300)).status, 429);
 }
 
-TEST_F(FairShares, OfStatesAreLeftForAnotherAddress) {
-  const std::string body = std::string(kStateBody).insert(1, 100'000, ' ');
-  send_greedily("/state/update", body);
-  EXPECT_GE(refusals(), 1u);
-  const auto reply = ask_from(kOther, "/state/update", body);
-  ASSERT_TRUE(reply);
-  EXPECT_EQ(reply->status, 200) << reply->body;
-  const auto refused = next_refused("/state/update", body);
-  ASSERT_TRUE(refused);
-  EXPECT_EQ(refused->status, 503);
-  EXPECT_EQ(refused->header("retry-after"), "1");
-  EXPECT_TRUE(is_json_string(refused->body)) << refused->body;
+TEST_F(FairShares, AcceptStatesOfAnotherAddress) {
+  const Reply refused = expect_room("/state/update", std::string(kStateBody).insert(1, 100'000, ' '));
+  EXPECT_EQ(refused.status, 503);
+  EXPECT_EQ(refused.header("retry-after"), "1");
+  EXPECT_TRUE(is_json_string(refused.body)) << refused.body;
 }
 
-TEST(FairTurns, OfLargeMarkersAreOfOneAddressAfterTheOther) {
+TEST(FairTurns, AlternateBetweenAddresses) {
   Team team;
   const std::string large =
       R"({"markers":[{"action":3,"text":")" + std::string(std::size_t{11} << 17, 'x') + R"("}]})";

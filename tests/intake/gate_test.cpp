@@ -1,4 +1,4 @@
-// What of a connection's requests reaches a handler, and what is said of the others.
+// Requests that the gate passes to a handler or rejects.
 #include "intake/gate.hpp"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ class GateTest : public testing::Test {
   ScriptedHandler handler;
   Served served{handler};
 
-  /// One answer, as Adit writes it, and nothing behind it.
+  /// One answer of Adit, then the end of the connection.
   static void expect_refused(RawClient& client, int status, std::string_view word) {
     const auto reply = client.reply();
     ASSERT_TRUE(reply);
@@ -35,7 +35,7 @@ class GateTest : public testing::Test {
   }
 };
 
-TEST_F(GateTest, OddHeadsAreRefusedAsTheFirstAndAsALaterOne) {
+TEST_F(GateTest, RejectsOddHeadsFirstAndLater) {
   RecordProperty("cases", static_cast<int>(2 * odd_heads().size()));  // tests/hostile/run counts them
   for (const OddHead& odd : odd_heads()) {
     SCOPED_TRACE(std::string(odd.clause) + " " + std::string(odd.what));
@@ -48,10 +48,10 @@ TEST_F(GateTest, OddHeadsAreRefusedAsTheFirstAndAsALaterOne) {
     later.send(odd.head);
     expect_refused(later, odd.status, odd.word);
   }
-  EXPECT_EQ(handler.ends, static_cast<int>(odd_heads().size()));  // those that were fine
+  EXPECT_EQ(handler.ends, static_cast<int>(odd_heads().size()));  // the valid requests
 }
 
-TEST_F(GateTest, NothingFollowsAnOddHeadThatComesTogetherWithAPlainOne) {
+TEST_F(GateTest, ReadsNothingAfterAPipelinedOddHead) {
   RecordProperty("cases", static_cast<int>(odd_heads().size()));  // tests/hostile/run counts them
   for (const OddHead& odd : odd_heads()) {
     SCOPED_TRACE(odd.what);
@@ -67,7 +67,7 @@ TEST_F(GateTest, NothingFollowsAnOddHeadThatComesTogetherWithAPlainOne) {
   }
 }
 
-TEST_F(GateTest, OddChunksAreRefused) {
+TEST_F(GateTest, RejectsOddChunks) {
   RecordProperty("cases", static_cast<int>(odd_chunks().size()));  // tests/hostile/run counts them
   for (const OddChunks& odd : odd_chunks()) {
     SCOPED_TRACE(odd.what);
@@ -79,7 +79,7 @@ TEST_F(GateTest, OddChunksAreRefused) {
   EXPECT_TRUE(served.eventually([&] { return handler.exchanges == 0; }));
 }
 
-TEST_F(GateTest, AChunkedBodyIsAnsweredLaterAndThenTheConnectionEnds) {
+TEST_F(GateTest, ClosesAfterTheAnswerToAChunkedBody) {
   RawClient client(served.port());
   client.send(request("POST", "/later", "Transfer-Encoding: chunked\r\n") + "4\r\nbody\r\n0\r\n\r\n");
   ASSERT_TRUE(served.eventually([&] { return handler.responders.size() == 1; }));
@@ -91,7 +91,7 @@ TEST_F(GateTest, AChunkedBodyIsAnsweredLaterAndThenTheConnectionEnds) {
   EXPECT_EQ(client.rest(), "");
 }
 
-TEST_F(GateTest, AChunkedBodyIsHeldBackToItsLastByte) {
+TEST_F(GateTest, HoldsAChunkedBodyBack) {
   RawClient client(served.port());
   client.send(request("POST", "/held", "Transfer-Encoding: chunked\r\n") + "4\r\nbody\r\n0\r\n\r\n");
   ASSERT_TRUE(served.eventually([&] { return handler.flows.size() == 1; }));
@@ -101,7 +101,7 @@ TEST_F(GateTest, AChunkedBodyIsHeldBackToItsLastByte) {
   EXPECT_EQ(client.reply()->body, "POST /held  127.0.0.1 body");
 }
 
-TEST_F(GateTest, AChunkedBodyIsContinuedForAClientThatWaits) {
+TEST_F(GateTest, SendsContinueForAChunkedBody) {
   RawClient client(served.port());
   client.send(request("POST", "/echo", "Expect: 100-continue\r\nTransfer-Encoding: chunked\r\n"));
   ASSERT_TRUE(client.wait_for("HTTP/1.1 100 Continue\r\n\r\n"));
@@ -109,7 +109,7 @@ TEST_F(GateTest, AChunkedBodyIsContinuedForAClientThatWaits) {
   EXPECT_EQ(client.reply()->body, "POST /echo  127.0.0.1 body");
 }
 
-TEST_F(GateTest, NothingFollowsAChunkedBody) {
+TEST_F(GateTest, ReadsNothingAfterAChunkedBody) {
   RawClient client(served.port());
   client.send(request("POST", "/echo", "Transfer-Encoding: chunked\r\n") + "1\r\nx\r\n0\r\n\r\n" +
               request("GET", "/echo?q=next"));
@@ -118,7 +118,7 @@ TEST_F(GateTest, NothingFollowsAChunkedBody) {
   EXPECT_EQ(handler.ends, 1);
 }
 
-TEST_F(GateTest, AChunkedRequestThatWasReadWithTheOneBeforeItIsNotTaken) {
+TEST_F(GateTest, DropsAPipelinedChunkedRequest) {
   RawClient client(served.port());
   client.send(request("POST", "/echo", {}, "x") + request("POST", "/echo", "Transfer-Encoding: chunked\r\n") +
               "1\r\ny\r\n0\r\n\r\n");
@@ -130,7 +130,7 @@ TEST_F(GateTest, AChunkedRequestThatWasReadWithTheOneBeforeItIsNotTaken) {
   EXPECT_EQ(handler.ends, 1);
 }
 
-TEST_F(GateTest, AHeadThatWasReadWithTheRequestBeforeItIsNotTaken) {
+TEST_F(GateTest, DropsAPipelinedPartOfAHead) {
   RawClient client(served.port());
   client.send(request("POST", "/echo", {}, "x") + "GET /echo HTTP/1.1\r\nHo");
   const auto reply = client.reply();
@@ -140,7 +140,7 @@ TEST_F(GateTest, AHeadThatWasReadWithTheRequestBeforeItIsNotTaken) {
   EXPECT_EQ(client.rest(), "");
 }
 
-TEST_F(GateTest, AHeadOfAllThatIsAllowedIsTakenWithItsBody) {
+TEST_F(GateTest, AcceptsTheLargestHeadWithItsBody) {
   std::string fields = "Content-Length: 50000\r\nCookie: ";
   for (int i = 0; i < 40; ++i) fields += "a" + std::to_string(i) + "=" + std::string(80, 'c') + "; ";
   fields.resize(8 + 26 + 4000, 'c');
@@ -160,21 +160,21 @@ TEST_F(GateTest, AHeadOfAllThatIsAllowedIsTakenWithItsBody) {
   }
 }
 
-TEST_F(GateTest, ARefusedHeadIsSaidWithoutABody) {
+TEST_F(GateTest, RejectsAHeadRequestWithoutABody) {
   RawClient client(served.port());
   client.send("HEAD /echo HTTP/1.1\r\n\r\n");
   EXPECT_EQ(client.reply(milliseconds(10000), true)->status, 400);
   EXPECT_EQ(client.rest(), "");
 }
 
-TEST_F(GateTest, AnEndedClientWithHalfAHeadIsLetGo) {
+TEST_F(GateTest, ClosesIfTheClientEndsInItsHead) {
   RawClient client(served.port());
   client.send("GET /echo HTTP/1.1\r\nHost: ad");
   client.half_close();
   EXPECT_EQ(client.rest(), "");
 }
 
-TEST(GateOfDrips, LooksAtWhatHasGrownOrAfterAWhile) {
+TEST(GateWithDrips, ChecksAHeadAfterGrowthOrAWhile) {
   std::array<int, 2> ends{};
   ASSERT_EQ(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()), 0);
   const loop::FileDescriptor client(ends[0]), server(ends[1]);
@@ -185,12 +185,12 @@ TEST(GateOfDrips, LooksAtWhatHasGrownOrAfterAWhile) {
     return gate.look(now, false);
   };
   EXPECT_EQ(come("GET /echo HTTP/1.1\r\nHost: adit\r\nX: " + std::string(2000, 'x')), Gate::Finding::Begun);
-  EXPECT_EQ(gate.look(now, false), Gate::Finding::Begun) << "nothing has come";
+  EXPECT_EQ(gate.look(now, false), Gate::Finding::Begun);
   int looks = 0;
   for (int i = 0; i < 150; ++i) looks += come("x") == Gate::Finding::Later ? 0 : 1;
   EXPECT_LE(looks, 1);
   EXPECT_EQ(come("\r\n\r\n"), Gate::Finding::Later);
-  EXPECT_EQ(gate.look(now, true), Gate::Finding::Whole) << "where no more will come";
+  EXPECT_EQ(gate.look(now, true), Gate::Finding::Whole) << "the client has ended";
 }
 
 }  // namespace

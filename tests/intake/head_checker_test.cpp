@@ -9,18 +9,18 @@ namespace {
 
 using Verdict = HeadChecker::Verdict;
 
-/// As it comes in pieces of that size.
+/// Checks `bytes` in pieces of this size.
 Verdict look(HeadChecker& checker, const std::string& bytes, std::size_t piece) {
   Verdict verdict = Verdict::More;
   for (std::size_t size = piece; verdict == Verdict::More; size += piece) {
-    const std::string copy = bytes.substr(0, size);  // at another place each time
+    const std::string copy = bytes.substr(0, size);  // at a new address each time
     verdict = checker.look(copy);
     if (size >= bytes.size()) break;
   }
   return verdict;
 }
 
-TEST(Heads, ThatTheRfcHasRefusedAreRefusedHoweverTheyCome) {
+TEST(Heads, AreRejectedIfTheRfcForbidsThem) {
   RecordProperty("cases", static_cast<int>(odd_heads().size()));  // tests/hostile/run counts them
   for (const OddHead& odd : odd_heads()) {
     for (const std::size_t piece : {odd.head.size(), std::size_t{1000}, std::size_t{1}}) {
@@ -41,7 +41,7 @@ struct Plain {
   std::optional<std::uint64_t> length = 0;
 };
 
-TEST(Heads, ThatAreAsTheyShouldBeAreTaken) {
+TEST(Heads, AreAcceptedIfTheyAreValid) {
   const std::string to = " /echo HTTP/1.1\r\nHost: adit\r\n";
   const Plain rows[] = {
       {"GET" + to + "\r\n"},
@@ -74,14 +74,14 @@ TEST(Heads, ThatAreAsTheyShouldBeAreTaken) {
   }
 }
 
-TEST(Heads, EndWhereTheirBlankLineEnds) {
+TEST(Heads, EndWithTheirBlankLine) {
   const std::string head = "POST /echo HTTP/1.1\r\nHost: adit\r\nContent-Length: 3\r\n\r\n";
   HeadChecker checker;
   EXPECT_EQ(checker.look(head + "\nGET /"), Verdict::Whole);
   EXPECT_EQ(checker.size(), head.size());
 }
 
-TEST(Heads, OfTheMostBytesAreTakenAndOfOneMoreAreNot) {
+TEST(Heads, HaveALimitedSize) {
   const std::string begin = "GET /echo HTTP/1.1\r\nHost: adit\r\nX: ";
   const std::string most = begin + std::string(HeadChecker::kMostBytes - begin.size() - 4, 'x') + "\r\n\r\n";
   HeadChecker whole, longer;

@@ -15,7 +15,7 @@ std::string cbor_of_json(std::string_view json) {
   return bytes;
 }
 
-TEST(IcdBodies, OfStateAndMarkersAreTakenInEveryForm) {
+TEST(IcdBodies, MayBeJsonOrCborWithGzip) {
   Team team;
   const std::pair<std::string_view, std::string_view> posts[] = {{"/state/update", kStateBody},
                                                                  {"/markers/update", kMarkersBody}};
@@ -42,23 +42,6 @@ TEST(IcdBodies, OfStateAndMarkersAreTakenInEveryForm) {
   });
 }
 
-TEST(IcdBodies, InChunksOfAnySizeAreTheSame) {
-  Team team;
-  for (const std::size_t size : {1u, 7u, 64u}) {
-    RawClient client(team.served.port());
-    client.send(
-        authorized("POST", "/state/update", std::string(kJsonType) + "Transfer-Encoding: chunked\r\n"));
-    for (std::string_view rest = kStateBody; !rest.empty(); rest.remove_prefix(std::min(size, rest.size()))) {
-      const std::string_view chunk = rest.substr(0, size);
-      std::array<char, 16> head{};
-      std::snprintf(head.data(), head.size(), "%zx\r\n", chunk.size());
-      client.send(head.data() + std::string(chunk) + "\r\n");
-    }
-    client.send("0\r\n\r\n");
-    EXPECT_EQ(client.reply()->status, 200);
-  }
-}
-
 TEST(IcdBodies, OfReportsAreAnsweredByTheDesk) {
   Team team;
   for (const auto& [headers, body] : {std::pair(std::string(kJsonType), std::string(kReportBody)),
@@ -82,7 +65,7 @@ TEST(IcdBodies, OfReportsAreAnsweredByTheDesk) {
   }
 }
 
-TEST(IcdBodies, OfReportsWithoutAGoodNameAreTakenAndTheDeskIsTold) {
+TEST(IcdBodies, OfReportsMayHaveAnInvalidRobotName) {
   Team team;
   RawClient client(team.served.port());
   client.send(authorized("POST", "/api/artifact_reports", kJsonType,
@@ -97,7 +80,7 @@ TEST(IcdBodies, OfReportsWithoutAGoodNameAreTakenAndTheDeskIsTold) {
   EXPECT_EQ(client.reply()->status, 200);
 }
 
-TEST(IcdBodies, AreNotAskedForByStatus) {
+TEST(IcdBodies, AreIgnoredByAStatusRequest) {
   Team team;
   RawClient client(team.served.port());
   for (const std::string_view body : {"", "ignored"}) {
@@ -117,7 +100,7 @@ TEST(IcdBodies, AreNotAskedForByStatus) {
   }
 }
 
-TEST(IcdBodies, ThatAreWrongAreRefusedWithASentence) {
+TEST(IcdBodies, AreRejectedWithASentenceIfTheyAreWrong) {
   Team team;
   struct Case {
     std::string_view path, body;
@@ -126,14 +109,10 @@ TEST(IcdBodies, ThatAreWrongAreRefusedWithASentence) {
   };
   const Case cases[] = {
       {"/state/update", "{", 400, ""},
-      {"/state/update", "{} x", 400, ""},
       {"/state/update", "{}", 422, "poses"},
-      {"/state/update", "[]", 422, ""},
       {"/markers/update", R"({"markers": 1})", 422, "markers"},
       {"/api/artifact_reports", R"({"x": 1, "y": 2, "type": "Rope"})", 422, "z"},
-      {"/api/artifact_reports", R"({"x": 1, "y": 2, "z": 3, "type": "Rop"})", 422, "type"},
       {"/map/update", "{}", 422, ""},
-      {"/map/update", "nul", 400, ""},
       {"/map/update", R"({"type": "Octree", "msg": {}})", 422, "type"},
   };
   for (const Case& c : cases) {
@@ -151,7 +130,7 @@ TEST(IcdBodies, ThatAreWrongAreRefusedWithASentence) {
   });
 }
 
-TEST(IcdBodies, AreRefusedAsSoonAsTheyAreWrong) {
+TEST(IcdBodies, AreRejectedAtTheFirstError) {
   Team team;
   for (const std::string_view path : {"/state/update", "/map/update"}) {
     RawClient client(team.served.port());
@@ -162,10 +141,10 @@ TEST(IcdBodies, AreRefusedAsSoonAsTheyAreWrong) {
   }
 }
 
-TEST(IcdBodies, AreReadToTheirEndOnceRefusedSoThatTheAnswerIsNotLost) {
+TEST(IcdBodies, AreReadToTheirEndAfterARejection) {
   Team team;
   const std::string rest(20u << 20,
-                         ' ');  // more than sockets hold: who sends it looks for no answer before its end
+                         ' ');  // more than the sockets hold; the client reads no answer before its end
   for (const std::string_view framing : {"Content-Length: 20971522\r\n", "Transfer-Encoding: chunked\r\n"}) {
     const bool chunked = framing.starts_with("Transfer");
     RawClient client(team.served.port());
@@ -181,14 +160,14 @@ TEST(IcdBodies, AreReadToTheirEndOnceRefusedSoThatTheAnswerIsNotLost) {
   }
 }
 
-TEST(IcdBodies, OfStrangersAreNotReadToTheirEnd) {
+TEST(IcdBodies, OfUnauthenticatedClientsAreNotReadToTheEnd) {
   Team team;
   RawClient client(team.served.port());
   client.send("POST /map/update HTTP/1.1\r\nHost: x\r\nContent-Length: 20971522\r\n\r\n");
   EXPECT_FALSE(client.send(std::string(20u << 20, ' ')));
 }
 
-TEST(IcdBodies, ThatGrowOverAMegabyteAreRefused) {
+TEST(IcdBodies, AreRejectedIfTheyInflateTooFar) {
   Team team;
   const std::string bomb = gzipped("{\"poses\": [" + std::string(3u << 20, ' ') + "]}");
   const auto reply = team.ask(authorized("POST", "/state/update", std::string(kJsonType) + kGzip, bomb));
@@ -196,7 +175,7 @@ TEST(IcdBodies, ThatGrowOverAMegabyteAreRefused) {
   EXPECT_EQ(reply->status, 413);
 }
 
-/// Three robots of which the second does not say its name.
+/// Three poses; the second has no name.
 const std::string kOneBadPose = [] {
   auto state = nlohmann::json::parse(kStateBody);
   const auto pose = state["poses"][0];
@@ -206,7 +185,7 @@ const std::string kOneBadPose = [] {
   return state.dump();
 }();
 
-TEST(IcdBodies, OfGoodAndBadPartsAreTakenForTheGoodOnesAndAnsweredForTheBad) {
+TEST(IcdBodies, AreAcceptedForTheirGoodParts) {
   Team team;
   const auto reply = team.ask(authorized("POST", "/state/update", kJsonType, kOneBadPose));
   ASSERT_TRUE(reply);
@@ -222,11 +201,13 @@ TEST(IcdBodies, OfGoodAndBadPartsAreTakenForTheGoodOnesAndAnsweredForTheBad) {
     ASSERT_EQ(team.desk.markers.size(), 1u);
     EXPECT_EQ(team.desk.markers[0].markers.size(), markers["markers"].size() - 1);
     ASSERT_EQ(team.desk.refusals.size(), 2u);
+    EXPECT_EQ(team.desk.refusals[0].first, icd::Uri::StateUpdate);
+    EXPECT_EQ(team.desk.refusals[0].second.status, icd::Status::UnprocessableEntity);
     EXPECT_EQ(team.desk.refusals[0].second.sentence, "poses[1].name: missing (the other 2 were accepted)");
   });
 }
 
-TEST(IcdBodies, OfGoodAndBadPartsAreAnsweredAsTheDeskSaysWhereItTakesNone) {
+TEST(IcdBodies, HaveTheDesksAnswerIfItRejectsGoodParts) {
   Team team;
   team.served.on_loop([&] { team.desk.full = {icd::Status::TooManyRequests, "full"}; });
   const auto reply = team.ask(authorized("POST", "/state/update", kJsonType, kOneBadPose));
@@ -235,7 +216,7 @@ TEST(IcdBodies, OfGoodAndBadPartsAreAnsweredAsTheDeskSaysWhereItTakesNone) {
   EXPECT_EQ(reply->body, "\"full\"");
 }
 
-TEST(IcdBodies, AreRefusedWhereTheDeskIsFull) {
+TEST(IcdBodies, AreRejectedByAFullDesk) {
   Team team;
   team.served.on_loop([&] { team.desk.full = {icd::Status::TooManyRequests, "the queue is full"}; });
   for (const auto& [path, body] :
@@ -248,7 +229,7 @@ TEST(IcdBodies, AreRefusedWhereTheDeskIsFull) {
   }
 }
 
-TEST(IcdBodies, OfSeveralRequestsAreTakenOnOneConnection) {
+TEST(IcdBodies, OfSeveralRequestsMayShareAConnection) {
   Team team;
   RawClient client(team.served.port());
   const std::string state = authorized("POST", "/state/update", kJsonType, kStateBody);
@@ -259,18 +240,6 @@ TEST(IcdBodies, OfSeveralRequestsAreTakenOnOneConnection) {
     ASSERT_TRUE(reply);
     EXPECT_EQ(reply->status, status);
   }
-}
-
-TEST(IcdBodies, ReachTheDeskOnlyWhole) {
-  Team team;
-  const std::string whole = authorized("POST", "/state/update", kJsonType, kStateBody);
-  for (const std::size_t cut : {std::size_t{10}, whole.size() - kStateBody.size(), whole.size() - 1}) {
-    RawClient client(team.served.port());
-    client.send(whole.substr(0, cut));
-    if (cut % 2 == 0) client.reset();
-  }
-  EXPECT_TRUE(team.served.eventually([&] { return team.served.server().connections() == 0; }));
-  team.served.on_loop([&] { EXPECT_TRUE(team.desk.states.empty()); });
 }
 
 }  // namespace

@@ -9,7 +9,7 @@ using namespace std::chrono_literals;
 
 constexpr loop::Instant kStart{100h};
 
-/// Moves `bytes` every `every` for `total`; when it was found too slow, or nothing.
+/// Moves `bytes` every `every` for `total`. Returns when the rate is too slow, or nothing.
 std::optional<loop::Duration> too_slow_after(std::uint64_t bytes, loop::Duration every,
                                              loop::Duration total) {
   LeastRate rate(10s, kStart);
@@ -20,23 +20,23 @@ std::optional<loop::Duration> too_slow_after(std::uint64_t bytes, loop::Duration
   return std::nullopt;
 }
 
-TEST(LeastRate, LetsASlowRadioTakeAnHour) {
+TEST(LeastRate, AllowsASlowRadioForAnHour) {
   EXPECT_FALSE(too_slow_after(1100, 1s, 1h));
 }
 
-TEST(LeastRate, LetsARadioThatComesInFitsTakeAnHour) {
+TEST(LeastRate, AllowsABurstyRadioForAnHour) {
   EXPECT_FALSE(too_slow_after(12'000, 5s, 1h));
 }
 
-TEST(LeastRate, FindsAByteEachTenSecondsOut) {
+TEST(LeastRate, DetectsAByteEachTenSeconds) {
   EXPECT_EQ(too_slow_after(1, 10s, 1h), 10s);
 }
 
-TEST(LeastRate, FindsWhoIsABitTooSlowOut) {
+TEST(LeastRate, DetectsAClientThatIsALittleTooSlow) {
   EXPECT_EQ(too_slow_after(900, 1s, 1h), 10s);
 }
 
-TEST(LeastRate, FindsWhoStopsOutSoonHoweverMuchCameBefore) {
+TEST(LeastRate, DetectsAStopAfterAnyAmount) {
   LeastRate rate(10s, kStart);
   rate.moved(1'000'000);
   EXPECT_FALSE(rate.is_too_slow(kStart + 5s));
@@ -44,10 +44,10 @@ TEST(LeastRate, FindsWhoStopsOutSoonHoweverMuchCameBefore) {
   EXPECT_TRUE(rate.is_too_slow(kStart + 15s));
 }
 
-TEST(LeastRate, IsLookedAtAgainHalfAWindowLater) {
+TEST(LeastRate, IsCheckedAgainHalfAWindowLater) {
   LeastRate rate(10s, kStart);
   EXPECT_EQ(rate.look_at(), kStart + 5s);
-  EXPECT_FALSE(rate.is_too_slow(kStart + 6s)) << "half a window tells nothing";
+  EXPECT_FALSE(rate.is_too_slow(kStart + 6s)) << "half a window is too short";
   EXPECT_EQ(rate.look_at(), kStart + 11s);
 }
 

@@ -14,7 +14,7 @@ Listen at(std::string address, std::uint16_t port, std::string interface = "") {
   return {.address = std::move(address), .port = port, .interface = std::move(interface)};
 }
 
-TEST(AListenSocket, SaysWhereItListens) {
+TEST(ListenSocket, HasItsAddress) {
   const auto opened = open_listen_socket(at("127.0.0.1", 0, "lo"));
   ASSERT_TRUE(opened) << opened.error();
   const auto bound = bound_at(opened->get());
@@ -28,7 +28,7 @@ TEST(AListenSocket, SaysWhereItListens) {
   EXPECT_FALSE(bound_at(everywhere->get())->only_v6);
 }
 
-TEST(AListenSocket, MayComeBeforeItsAddress) {
+TEST(ListenSocket, MayBeOpenedBeforeItsAddressExists) {
   for (const char* address : {"192.0.2.1", "2001:db8::1"}) {
     Listen listen = at(address, 0);
     EXPECT_THAT(open_listen_socket(listen).error(), HasSubstr("Cannot assign requested address"));
@@ -39,7 +39,7 @@ TEST(AListenSocket, MayComeBeforeItsAddress) {
   }
 }
 
-TEST(AListenSocket, IsNothingElse) {
+TEST(ListenSocket, IsNoOtherDescriptor) {
   const loop::FileDescriptor idle(socket(AF_INET, SOCK_STREAM, 0)), datagrams(socket(AF_INET, SOCK_DGRAM, 0)),
       local(socket(AF_UNIX, SOCK_STREAM, 0)), file(open("/dev/null", O_RDONLY));
   EXPECT_THAT(bound_at(idle.get()).error(), HasSubstr("a socket that does not listen"));
@@ -49,7 +49,7 @@ TEST(AListenSocket, IsNothingElse) {
   EXPECT_THAT(bound_at(-1).error(), HasSubstr("no socket"));
 }
 
-TEST(AListenSocket, TakenOverNeverKeepsTheLoopWaiting) {
+TEST(ListenSocket, DoesNotBlockIfItIsAdopted) {
   const loop::FileDescriptor theirs(socket(AF_INET, SOCK_STREAM, 0));
   ASSERT_EQ(listen(theirs.get(), 1), 0);
   ASSERT_TRUE(adopt_listen_socket(theirs.get(), {}));
@@ -61,7 +61,7 @@ TEST(AListenSocket, TakenOverNeverKeepsTheLoopWaiting) {
   EXPECT_FALSE(adopt_listen_socket(-1, {}));
 }
 
-TEST(AListenSocket, CoversWhatComesToIt) {
+TEST(ListenSocket, CoversItsAddresses) {
   struct Case {
     Bound bound;
     Listen wanted;

@@ -1,4 +1,4 @@
-// A map's data goes to the desk as it arrives, so that little of it is in memory.
+// The desk stores a map's data as it arrives.
 #include <gtest/gtest.h>
 
 #include "codec/body_decoder.hpp"
@@ -14,7 +14,7 @@ using codec::test::gzipped;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-/// The one map that the desk has, as it is decoded in one go.
+/// The desk has one map, equal to the decoded `body`.
 void expect_the_map_of(Team& team, const std::string& body) {
   auto document =
       codec::decode({codec::Format::Json, codec::ContentCoding::Identity}, codec::Split::MapData, body);
@@ -39,7 +39,7 @@ TEST(MapUpload, IsStoredAsItArrives) {
   }
 }
 
-TEST(MapUpload, OfAGridIsPressedAsItArrivesAndLittleOfItHeldOrStored) {
+TEST(MapUpload, CompressesAGridAsItArrives) {
   for (const bool is_compressed : {false, true}) {
     Team team;
     const std::string body = grid_body(1500, 1500);
@@ -48,18 +48,18 @@ TEST(MapUpload, OfAGridIsPressedAsItArrivesAndLittleOfItHeldOrStored) {
     ASSERT_TRUE(reply);
     EXPECT_EQ(reply->status, 200) << reply->body;
     expect_the_map_of(team, body);
-    EXPECT_EQ(team.served.on_loop([&] { return team.desk.stored; }), 0u) << "cells as they came";
+    EXPECT_EQ(team.served.on_loop([&] { return team.desk.stored; }), 0u) << "uncompressed cells";
   }
 }
 
-TEST(MapUpload, MakesTheClientWaitWhileItCannotBeStored) {
+TEST(MapUpload, DelaysTheClientWhileNothingCanBeStored) {
   Team team;
   team.served.on_loop([&] { team.desk.stores_pieces = false; });
   const std::string body = cloud_body(1'300'000);
   RawClient client(team.served.port());
   client.send(map_head(body));
   const std::size_t sent = client.send_until_stalled(body, milliseconds(500));
-  EXPECT_LT(sent, body.size()) << "taken into memory though nobody stores it";
+  EXPECT_LT(sent, body.size()) << "the server must not buffer the body";
   EXPECT_EQ(team.served.on_loop([&] { return team.desk.storing.size(); }), 1u);
   team.served.on_loop([&] {
     team.desk.stores_pieces = true;
@@ -72,7 +72,7 @@ TEST(MapUpload, MakesTheClientWaitWhileItCannotBeStored) {
   expect_the_map_of(team, body);
 }
 
-TEST(MapUpload, IsHeldInMemoryWhereThereIsNoRoomForMoreUntilTheDeskJudges) {
+TEST(MapUpload, StaysInMemoryIfThereIsNoRoomOnDisk) {
   for (const std::size_t room : {std::size_t{0}, std::size_t{500'000}}) {
     Team team;
     team.served.on_loop([&] { team.desk.room = room; });
@@ -83,13 +83,13 @@ TEST(MapUpload, IsHeldInMemoryWhereThereIsNoRoomForMoreUntilTheDeskJudges) {
   }
 }
 
-TEST(MapUpload, ThatIsSmallIsNotStoredBeforeItIsWhole) {
+TEST(MapUpload, StoresNoPartOfASmallMap) {
   Team team;
   EXPECT_EQ(team.ask(authorized("POST", "/map/update", kJsonType, cloud_body(1000)))->status, 200);
   EXPECT_EQ(team.served.on_loop([&] { return team.desk.stored; }), 0u);
 }
 
-TEST(MapUpload, ThatIsCompressedIsStoredAsItIsInflatedAndNoMoreOfItHeld) {
+TEST(MapUpload, StoresACompressedMapAsItIsInflated) {
   Team team;
   team.served.on_loop([&] { team.desk.stores_pieces = false; });
   const std::string body = cloud_body(300'000);
@@ -109,7 +109,7 @@ TEST(MapUpload, ThatIsCompressedIsStoredAsItIsInflatedAndNoMoreOfItHeld) {
   expect_the_map_of(team, body);
 }
 
-TEST(MapUpload, IsRefusedWhereMoreOfItWouldBeHeldThanThereIsFor) {
+TEST(MapUpload, IsRejectedIfItNeedsTooMuchMemory) {
   Team team;
   team.served.on_loop([&] { team.desk.room = 1'000'000; });
   const std::string sent = gzipped(cloud_body(2'400'000));
@@ -122,10 +122,10 @@ TEST(MapUpload, IsRefusedWhereMoreOfItWouldBeHeldThanThereIsFor) {
   }
   EXPECT_TRUE(team.served.eventually([&] { return team.desk.arriving == 0; }));
   const std::string small = gzipped(cloud_body(500'000));
-  EXPECT_EQ(team.ask(map_head(small, kGzip) + small)->status, 200) << "what was held is given back";
+  EXPECT_EQ(team.ask(map_head(small, kGzip) + small)->status, 200) << "the memory is returned";
 }
 
-TEST(MapUpload, LeavesNothingStoredWhereItIsCutOffOrRefused) {
+TEST(MapUpload, LeavesNothingStoredIfItFails) {
   Team team;
   const std::string body = cloud_body(200'000);
   RawClient half(team.served.port());

@@ -29,25 +29,16 @@ TEST(MapUpload, ReachesTheDeskDecoded) {
   });
 }
 
-TEST(MapUpload, TakesAWholeBodyThatIsCompressed) {
-  Team team;
-  const std::string body = gzipped(grid_body(1000, 1000));
-  const auto reply = team.ask(authorized("POST", "/map/update", std::string(kJsonType) + kGzip, body));
-  ASSERT_TRUE(reply);
-  EXPECT_EQ(reply->status, 200) << reply->body;
-  EXPECT_EQ(team.served.on_loop([&] { return team.desk.maps.at(0).data.raw_size; }), 1000u * 1000u);
-}
-
-TEST(MapUpload, MakesTheClientWaitWhileTheWorkerIsBusy) {
+TEST(MapUpload, DelaysTheClientWhileTheWorkerIsBusy) {
   Team team;
   Team::Busy busy(team);
   const std::string body = grid_body(4000, 4000);
   RawClient client(team.served.port());
   client.send(map_head(body));
   const std::size_t sent = client.send_until_stalled(body, milliseconds(500));
-  EXPECT_LT(sent, body.size()) << "taken into memory though nobody works on it";
+  EXPECT_LT(sent, body.size()) << "the server must not buffer the body";
   EXPECT_EQ(team.ask(authorized("POST", "/state/update", kJsonType, kStateBody))->status, 200)
-      << "the loop waits for the worker";
+      << "the loop must not wait for the worker";
   busy.end();
   client.send(std::string_view(body).substr(sent));
   const auto reply = client.reply(seconds(30));
@@ -55,7 +46,7 @@ TEST(MapUpload, MakesTheClientWaitWhileTheWorkerIsBusy) {
   EXPECT_EQ(reply->status, 200) << reply->body;
 }
 
-TEST(MapUpload, IsNotTakenOnceItsClientIsGone) {
+TEST(MapUpload, IsDroppedIfItsClientDisconnects) {
   Team team;
   const std::string body = grid_body(300, 300);
   {
@@ -77,19 +68,7 @@ TEST(MapUpload, IsNotTakenOnceItsClientIsGone) {
   });
 }
 
-TEST(MapUpload, IsTakenWhereItsClientHasOnlyEndedItsOwnDirection) {
-  Team team;
-  const std::string body = grid_body(300, 300);
-  Team::Busy busy(team);
-  RawClient client(team.served.port());
-  client.send(map_head(body) + body);
-  client.half_close();
-  team.served.turn_often();
-  busy.end();
-  EXPECT_EQ(client.reply()->status, 200);
-}
-
-TEST(MapUpload, IsAnsweredWhenTheDeskHasKeptItAndNotBefore) {
+TEST(MapUpload, IsAnsweredOnceTheDeskHasStoredIt) {
   Team team;
   team.served.on_loop([&] { team.desk.stores_at_once = false; });
   const std::string body = grid_body(300, 300);
@@ -101,21 +80,21 @@ TEST(MapUpload, IsAnsweredWhenTheDeskHasKeptItAndNotBefore) {
   EXPECT_EQ(client.reply()->status, 200);
 }
 
-/// It is the desk's by then: nothing else would ever answer its client.
-TEST(MapUpload, IsRefusedWhereTheDeskFailsAtIt) {
+/// The desk owns the map then and must answer.
+TEST(MapUpload, IsRejectedIfTheDeskFails) {
   Team team;
   const std::string sent = authorized("POST", "/map/update", kJsonType, grid_body(300, 300));
   team.served.on_loop([&] { team.desk.fails = true; });
   const auto reply = team.ask(sent);
-  ASSERT_TRUE(reply) << "its client waits for ever";
+  ASSERT_TRUE(reply) << "no answer";
   EXPECT_EQ(reply->status, 503);
-  EXPECT_TRUE(team.served.eventually([&] { return team.desk.arriving == 0; })) << "its file is let go";
+  EXPECT_TRUE(team.served.eventually([&] { return team.desk.arriving == 0; })) << "its file is released";
   team.served.on_loop([&] { team.desk.fails = false; });
   EXPECT_EQ(team.ask(sent)->status, 200);
   EXPECT_EQ(team.served.on_loop([&] { return team.desk.maps.size(); }), 1u);
 }
 
-TEST(MapUpload, StaysTakenWhereItsClientIsGoneWhileTheDeskKeepsIt) {
+TEST(MapUpload, IsStoredIfItsClientDisconnectsMeanwhile) {
   Team team;
   team.served.on_loop([&] { team.desk.stores_at_once = false; });
   const std::string body = grid_body(300, 300);
@@ -134,7 +113,7 @@ TEST(MapUpload, StaysTakenWhereItsClientIsGoneWhileTheDeskKeepsIt) {
   });
 }
 
-TEST(MapUpload, IsToldThatItIsNotTakenOnceAStopHasBegunUnlessItIsTheDesks) {
+TEST(MapUpload, IsRejectedDuringAStopUnlessTheDeskHasIt) {
   Team team;
   team.served.on_loop([&] { team.desk.stores_at_once = false; });
   const std::string body = grid_body(300, 300);
@@ -164,7 +143,7 @@ TEST(MapUpload, IsToldThatItIsNotTakenOnceAStopHasBegunUnlessItIsTheDesks) {
   });
 }
 
-TEST(MapUpload, IsRefusedOverTheBudgetOfAll) {
+TEST(MapUpload, IsRejectedIfTheBudgetIsUsedUp) {
   IcdOptions options = Team::with_tokens();
   options.upload_bytes = 200'000;
   Team team(options);
@@ -181,16 +160,17 @@ TEST(MapUpload, IsRefusedOverTheBudgetOfAll) {
     busy.end();
     EXPECT_EQ(first.reply()->status, 200);
   }
-  for (int i = 0; i < 5; ++i) EXPECT_EQ(team.ask(map_head(body) + body)->status, 200) << "not given back";
+  for (int i = 0; i < 5; ++i)
+    EXPECT_EQ(team.ask(map_head(body) + body)->status, 200) << "the budget is not returned";
 }
 
-TEST(MapUpload, GivesItsBudgetBackWhenItIsRefusedOrLost) {
+TEST(MapUpload, ReturnsItsBudgetIfItFails) {
   IcdOptions options = Team::with_tokens();
   options.upload_bytes = 200'000;
   Team team(options);
   const std::string body = grid_body(300, 300);
   for (int i = 0; i < 10; ++i) {
-    // A worker may still hold what the lost one brought.
+    // The worker may still hold a part of the lost upload.
     bool given_back = false;
     for (int tries = 0; tries < 100 && !given_back; ++tries) {
       given_back = team.ask(map_head(body) + "{]" + body.substr(2))->status == 400;
@@ -208,7 +188,7 @@ TEST(MapUpload, GivesItsBudgetBackWhenItIsRefusedOrLost) {
   EXPECT_EQ(status, 200);
 }
 
-TEST(MapUpload, CountsInTheBudgetWhatItHasGrownTo) {
+TEST(MapUpload, CountsItsInflatedSizeInTheBudget) {
   IcdOptions options = Team::with_tokens();
   options.upload_bytes = 1'500'000;
   Team team(options);
@@ -220,13 +200,13 @@ TEST(MapUpload, CountsInTheBudgetWhatItHasGrownTo) {
   for (int i = 0; i < 3; ++i) {
     EXPECT_EQ(status_of(grid_said_late(1000, 1000)), 200);
     EXPECT_EQ(status_of(grid_said_late(2000, 1000)), 429);
-    EXPECT_EQ(status_of(grid_body(2000, 1000)), 200) << "pressed as it came";
+    EXPECT_EQ(status_of(grid_body(2000, 1000)), 200) << "compressed as it arrives";
   }
   const std::string body = grid_body(1100, 1100);
-  EXPECT_EQ(team.ask(map_head(body) + body)->status, 429) << "the body is more";
+  EXPECT_EQ(team.ask(map_head(body) + body)->status, 429) << "the body is too large";
 }
 
-TEST(MapUpload, RefusesAMapThatGrowsOverTheLimit) {
+TEST(MapUpload, IsRejectedIfItInflatesTooFar) {
   IcdOptions options = Team::with_tokens();
   options.rules.map_bytes = 100'000;
   Team team(options);
@@ -258,15 +238,15 @@ TEST(MapUpload, EndsWithTheServerInEveryPhase) {
   team.served.on_loop([&] { EXPECT_TRUE(team.desk.maps.empty()); });
 }
 
-TEST(MapUpload, EndsWithTheWorkersWhileOneIsAtWork) {
+TEST(MapUpload, EndsWithABusyWorker) {
   Team team;
   const std::string body = grid_body(3000, 3000);
   RawClient client(team.served.port());
   client.send(map_head(body));
-  // Not its last byte: all of it may be taken by now.
+  // Without its last byte, the map cannot be accepted yet.
   client.send_until_stalled(std::string_view(body).substr(0, body.size() - 1), milliseconds(20));
   team.served.on_loop([&] {
-    team.front.workers = nullptr;  // waits for the one at work
+    team.front.workers = nullptr;  // waits for the busy one
     team.served.destroy_server();
     EXPECT_TRUE(team.desk.maps.empty());
   });

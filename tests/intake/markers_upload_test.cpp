@@ -14,7 +14,7 @@ namespace {
 using codec::test::gzipped;
 using nlohmann::json;
 
-constexpr double kFar = 1000.0 / 7;  // has many digits
+constexpr double kFar = 1000.0 / 7;  // many digits
 const json kPoint = {{"x", kFar}, {"y", -kFar}, {"z", 0.3}};
 const json kColor = {{"r", 0.1}, {"g", 0.2}, {"b", 0.3}, {"a", 0.9}};
 
@@ -37,10 +37,9 @@ std::string cbor_of(const json& message) {
   return bytes;
 }
 
-/// In CBOR: `one`, that often. What a test sends is large, and made of JSON values it would take longer than
-/// what is tried.
+/// A CBOR list of `count` copies of `one`. Encoding JSON values would take too long.
 std::string list_of(std::uint32_t count, const json& one) {
-  std::string list = "\x9a";  // an array, and how many in four bytes
+  std::string list = "\x9a";  // an array with a length of four bytes
   for (const int shift : {24, 16, 8, 0}) list += static_cast<char>(count >> shift & 0xff);
   const std::string bytes = cbor_of(one);
   list.reserve(list.size() + count * bytes.size());
@@ -48,7 +47,7 @@ std::string list_of(std::uint32_t count, const json& one) {
   return list;
 }
 
-/// The list in the place of the member `name` whose value is its name.
+/// Replaces the value of the member `name`, which is its name, by `list`.
 std::string put(std::string cbor, const std::string& name, const std::string& list) {
   const std::string text = cbor_of(name);
   return cbor.replace(cbor.find(text + text) + text.size(), text.size(), list);
@@ -58,7 +57,7 @@ std::string message_of(std::uint32_t points) {
   return put(cbor_of({{"markers", {marker("points")}}}), "points", list_of(points, kPoint));
 }
 
-/// A message with the largest marker there can be is taken whole. Reading it takes long under a sanitizer.
+/// The desk accepts a message with the largest marker.
 void is_taken(std::string_view headers, const std::string& body, bool colored) {
   Team team;
   const auto reply =
@@ -76,25 +75,14 @@ void is_taken(std::string_view headers, const std::string& body, bool colored) {
   });
 }
 
-const std::string& largest_in_cbor() {
-  static const std::string made = [] {
-    json colored = marker("points");
-    colored["colors"] = "colors";
-    const std::string points =
-        put(cbor_of({{"markers", {colored}}}), "points", list_of(icd::kMostMarkerPoints, kPoint));
-    std::string cbor = put(points, "colors", list_of(icd::kMostMarkerPoints, kColor));
-    EXPECT_GT(cbor.size(), 7u << 20);
-    return cbor;
-  }();
-  return made;
-}
-
-TEST(MarkersUpload, HasRoomForTheLargestMarkerThereCanBe) {
-  is_taken(kCborType, largest_in_cbor(), true);
-}
-
 TEST(MarkersUpload, HasRoomForTheLargestMarkerUnderGzip) {
-  is_taken(std::string(kCborType) + kGzip, gzipped(largest_in_cbor()), true);
+  json colored = marker("points");
+  colored["colors"] = "colors";
+  const std::string points =
+      put(cbor_of({{"markers", {colored}}}), "points", list_of(icd::kMostMarkerPoints, kPoint));
+  const std::string cbor = put(points, "colors", list_of(icd::kMostMarkerPoints, kColor));
+  EXPECT_GT(cbor.size(), 7u << 20);
+  is_taken(std::string(kCborType) + kGzip, gzipped(cbor), true);
 }
 
 TEST(MarkersUpload, HasRoomForTheLargestMarkerInJson) {
@@ -107,7 +95,7 @@ TEST(MarkersUpload, HasRoomForTheLargestMarkerInJson) {
   is_taken(kJsonType, text, false);
 }
 
-TEST(MarkersUpload, IsRefusedAboveItsLimitHoweverItComes) {
+TEST(MarkersUpload, IsRejectedAboveItsLimit) {
   Team team;
   const std::string head = std::string(kJsonType) + "Content-Length: 8388609\r\n";
   EXPECT_EQ(team.ask(authorized("POST", "/markers/update", head))->body,
@@ -120,11 +108,11 @@ TEST(MarkersUpload, IsRefusedAboveItsLimitHoweverItComes) {
   EXPECT_EQ(team.served.on_loop([&] { return team.desk.refusals.size(); }), 2u);
 }
 
-TEST(MarkersUpload, WaitsForAWorkerOnlyWhereItIsLarge) {
+TEST(MarkersUpload, NeedsAWorkerOnlyIfItIsLarge) {
   Team team;
   Team::Busy busy(team);
   const std::string bodies[] = {message_of(2'000), message_of(50'000)};
-  RawClient middling(team.served.port()), large(team.served.port());  // each has 5 s to say who it is
+  RawClient middling(team.served.port()), large(team.served.port());  // each has 5 s to authenticate
   middling.send(authorized("POST", "/markers/update", kCborType, bodies[0]));
   large.send(authorized("POST", "/markers/update", kCborType, bodies[1]));
   EXPECT_EQ(team.ask(authorized("POST", "/markers/update", kJsonType, kMarkersBody))->status, 200);
@@ -137,7 +125,7 @@ TEST(MarkersUpload, WaitsForAWorkerOnlyWhereItIsLarge) {
   EXPECT_EQ(large.reply()->status, 200);
 }
 
-TEST(MarkersUpload, OfALargeOneWithBadPartsTheGoodOnesAreTaken) {
+TEST(MarkersUpload, IsAcceptedForItsGoodParts) {
   Team team;
   json markers = {marker("points"), 7, marker({kPoint, kPoint, kPoint})};
   markers[2]["id"] = 2;
@@ -150,7 +138,7 @@ TEST(MarkersUpload, OfALargeOneWithBadPartsTheGoodOnesAreTaken) {
   EXPECT_EQ(team.served.on_loop([&] { return team.desk.markers.at(0).markers.size(); }), 2u);
 }
 
-TEST(MarkersUpload, IsNotTakenOnceItsClientIsGoneOrAStopHasBegun) {
+TEST(MarkersUpload, IsDroppedAfterADisconnectOrAStop) {
   Team team;
   const std::string body = message_of(50'000);
   const std::string sent = authorized("POST", "/markers/update", kCborType, body);
@@ -194,7 +182,7 @@ TEST(MarkersUpload, WaitsWhileAnotherIsRead) {
   EXPECT_EQ(second.reply()->status, 200);
 }
 
-TEST(MarkersUpload, IsRefusedOverTheBudgetOfAll) {
+TEST(MarkersUpload, IsRejectedIfTheBudgetIsUsedUp) {
   IcdOptions options = Team::with_tokens();
   options.marker_bytes = 1'000'000;
   Team team(options);
@@ -205,23 +193,23 @@ TEST(MarkersUpload, IsRefusedOverTheBudgetOfAll) {
     EXPECT_EQ(refused->status, 429) << refused->body;
   }
   EXPECT_EQ(team.ask(authorized("POST", "/markers/update", kJsonType, kMarkersBody))->status, 200)
-      << "it was given back";
+      << "the budget is returned";
 }
 
-TEST(MarkersUpload, IsRefusedWhereTheDeskFailsAtIt) {
+TEST(MarkersUpload, IsRejectedIfTheDeskFails) {
   Team team;
   const std::string large = message_of(50'000);
   team.served.on_loop([&] { team.desk.fails = true; });
   const auto reply = team.ask(authorized("POST", "/markers/update", kCborType, large));
-  ASSERT_TRUE(reply) << "its client waits for ever";
+  ASSERT_TRUE(reply) << "no answer";
   EXPECT_EQ(reply->status, 503);
   ASSERT_TRUE(team.ask(authorized("POST", "/markers/update", kJsonType, kMarkersBody)));
   team.served.on_loop([&] { team.desk.fails = false; });
   EXPECT_EQ(team.ask(authorized("POST", "/markers/update", kCborType, large))->status, 200);
 }
 
-/// Whatever is short in the body and long in memory.
-TEST(MarkersUpload, IsRefusedWhereItHasMoreValuesThanAnyMarkerHas) {
+/// Bodies that are short but need much memory.
+TEST(MarkersUpload, IsRejectedIfItHasTooManyValues) {
   Team team;
   const auto many = [](const std::string& head, const std::string& one, const std::string& tail) {
     std::string body = head;

@@ -6,17 +6,17 @@
 
 namespace adit::intake {
 
-/// A head that RFC 9110 or 9112 has refused.
+/// A head that RFC 9110 or 9112 forbids.
 struct OddHead {
   std::string_view clause, what;
   std::string head;
   int status;
-  std::string_view word;  // of the sentence
+  std::string_view word;  // in the sentence
 };
 
 const std::vector<OddHead>& odd_heads();
 
-/// A chunked body that RFC 9112 7.1 has refused.
+/// A chunked body that RFC 9112 7.1 forbids.
 struct OddChunks {
   std::string_view what;
   std::string body;

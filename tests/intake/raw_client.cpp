@@ -38,7 +38,7 @@ std::size_t number_in(std::string_view text, int base) {
   return number;
 }
 
-/// The chunks of a whole chunked body at the start of `bytes`, and where it ends; nothing where it is cut.
+/// The complete chunked body at the start of `bytes` and its end; nothing if it is cut.
 std::optional<std::pair<std::string, std::size_t>> unchunk(std::string_view bytes) {
   std::string body;
   std::size_t at = 0;

@@ -14,7 +14,7 @@ struct ReadChunks {
   friend bool operator==(const ReadChunks&, const ReadChunks&) = default;
 };
 
-/// What a chunked body comes to that arrives in pieces of that size.
+/// Reads a chunked body in pieces of this size.
 inline ReadChunks read_chunks(std::string_view body, std::size_t piece) {
   ChunkReader reader;
   std::string data;

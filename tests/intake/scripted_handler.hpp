@@ -11,13 +11,13 @@
 
 namespace adit::intake {
 
-/// Does what the path asks for:
+/// Acts by path:
 ///   /echo     answers with method, path, query `q`, peer and body
 ///   /refuse   401 before the body
 ///   /midway   422 at the first piece of the body
-///   /later    keeps the responder, for the test to answer
-///   /eager    the same, but from the start
-///   /held     takes one piece of the body and no more until the test resumes
+///   /later    keeps the responder for the test
+///   /eager    as /later, from the head on
+///   /held     accepts one piece of the body each time that the test resumes
 ///   /stream   keeps a stream
 ///   /nothing  neither answers nor takes the body
 class ScriptedHandler final : public Handler {
@@ -27,7 +27,7 @@ class ScriptedHandler final : public Handler {
   std::vector<std::shared_ptr<Stream>> streams;
   std::atomic<std::size_t> body_bytes = 0;
   std::atomic<int> ends = 0, gone = 0, exchanges = 0;
-  bool asks_token = false;  // any that does not begin with "wrong"
+  bool asks_token = false;  // accepts tokens that do not begin with "wrong"
 
   Credentials shown(const RequestHead& head) override {
     if (!asks_token) return Credentials::Enough;

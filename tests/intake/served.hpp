@@ -14,7 +14,7 @@
 
 namespace adit::intake {
 
-/// A Server on a Loop of its own thread; the test is the client.
+/// A Server on a loop in its own thread.
 class Served {
  public:
   explicit Served(Handler& handler, Listen listen = {}) {
@@ -46,7 +46,7 @@ class Served {
     thread_.join();
   }
 
-  /// Runs `task` on the loop's thread and gives what it returns.
+  /// Runs `task` on the loop's thread and returns its result.
   template <class Task>
   auto on_loop(Task task) {
     std::promise<std::invoke_result_t<Task>> done;
@@ -61,7 +61,7 @@ class Served {
     return done.get_future().get();
   }
 
-  /// Waits until `condition`, asked on the loop, holds.
+  /// Waits until `condition` holds. It is called on the loop's thread.
   template <class Condition>
   bool eventually(Condition condition, std::chrono::milliseconds within = std::chrono::seconds(10)) {
     const auto until = loop::kernel_now() + patient(within);
@@ -72,12 +72,12 @@ class Served {
     return true;
   }
 
-  /// Until the loop has seen whatever came before: each turn takes a piece from each connection.
+  /// Turns the loop until it has seen all earlier input. A turn reads one piece of each connection.
   void turn_often() {
     for (int i = 0; i < 100; ++i) on_loop([] {});
   }
 
-  /// Connections that the server did not go on with.
+  /// Connections that the server ended for this reason.
   std::uint64_t ended(Ended why) {
     return on_loop([&] { return ended_[static_cast<std::size_t>(why)]; });
   }
@@ -86,7 +86,7 @@ class Served {
   const std::string& error() const { return error_; }
   loop::Loop& loop() { return *loop_; }
   Server& server() { return *server_; }
-  /// On the loop.
+  /// Call on the loop's thread.
   void destroy_server() { server_ = nullptr; }
 
  private:

@@ -1,4 +1,4 @@
-// What a handler throws ends its request, and nothing else.
+// An exception of a handler ends only its request.
 #include <gtest/gtest.h>
 
 #include <new>
@@ -12,7 +12,7 @@
 namespace adit::intake {
 namespace {
 
-/// Throws where the path says: /open, /body, /end; drops its responder at /drop; answers anywhere else.
+/// Throws at /open, /body or /end, drops its responder at /drop, and answers any other path.
 class ThrowingHandler final : public Handler {
  public:
   Credentials shown(const RequestHead&) override { return Credentials::Enough; }
@@ -50,7 +50,7 @@ class ServerGuardTest : public testing::Test {
   Served served{handler};
 };
 
-TEST_F(ServerGuardTest, AnswersARequestWhoseHandlerThrewAndServesOn) {
+TEST_F(ServerGuardTest, AnswersARequestIfItsHandlerThrows) {
   for (const char* const path : {"/open", "/body", "/end"}) {
     SCOPED_TRACE(path);
     const auto before = loop::caught_so_far();
@@ -68,7 +68,7 @@ TEST_F(ServerGuardTest, AnswersARequestWhoseHandlerThrewAndServesOn) {
   EXPECT_EQ(client.reply()->status, 200);
 }
 
-TEST_F(ServerGuardTest, AnswersARequestThatItsHandlerForgot) {
+TEST_F(ServerGuardTest, AnswersARequestIfItsHandlerForgetsIt) {
   RawClient client(served.port());
   client.send(request("POST", "/drop", {}, "{}"));
   EXPECT_EQ(client.reply()->status, 500);

@@ -17,7 +17,7 @@ bool answers(std::uint16_t port, const std::string& source) {
   return reply && reply->status == 200;
 }
 
-TEST(ServerLimits, LeaveOthersServedThoughOneAddressOpensThousandsOfConnections) {
+TEST(ServerLimits, KeepOtherAddressesServedInAFloodOfConnections) {
   ScriptedHandler handler;
   Served served(handler);
   std::vector<std::unique_ptr<RawClient>> flood;
@@ -33,75 +33,6 @@ TEST(ServerLimits, LeaveOthersServedThoughOneAddressOpensThousandsOfConnections)
   }
 }
 
-TEST(ServerLimits, MakeRoomWhereManyAddressesFillAllConnections) {
-  ScriptedHandler handler;
-  Served served(handler);
-  std::vector<std::unique_ptr<RawClient>> flood;
-  for (int i = 0; i < 300; ++i) {
-    flood.push_back(std::make_unique<RawClient>(served.port(), "127.0.1." + std::to_string(1 + i % 200)));
-    flood.back()->send("GET /echo HTTP/1.1\r\nX-Slow: ");
-  }
-  EXPECT_TRUE(answers(served.port(), "127.0.0.1"));
-  EXPECT_TRUE(served.eventually([&] { return served.server().connections() <= 33; }));
-}
-
-TEST(ServerLimits, DoNotEndARequestUnderWayToMakeRoom) {
-  ScriptedHandler handler;
-  Served served(handler, {.address = "127.0.0.1", .interface = {}, .connections = 4});
-  RawClient waiting(served.port());
-  waiting.send(request("GET", "/later"));
-  ASSERT_TRUE(served.eventually([&] { return handler.responders.size() == 1; }));
-  std::vector<std::unique_ptr<RawClient>> idle;
-  for (int i = 0; i < 3; ++i) {
-    idle.push_back(std::make_unique<RawClient>(served.port()));
-  }
-  EXPECT_TRUE(answers(served.port(), "127.0.0.1"));
-  EXPECT_TRUE(idle[0]->closes());
-  served.on_loop([&] { handler.responders[0]->answer({.body = "1", .headers = {}}); });
-  EXPECT_EQ(waiting.reply()->body, "1");
-}
-
-TEST(ServerLimits, SurviveGarbage) {
-  ScriptedHandler handler;
-  Served served(handler);
-  const std::string nul("GET /\0 HTTP/1.1\r\n\r\n", 19);
-  const std::string requests[] = {
-      "\r\n\r\n\r\n",
-      "GET\r\n\r\n",
-      "GET /echo\r\n\r\n",
-      "GET /echo HTTP/0.9\r\n\r\n",
-      "GET /echo HTTP/9.9\r\n\r\n",
-      "GET  /echo  HTTP/1.1\r\n\r\n",
-      nul,
-      "GET /echo HTTP/1.1\r\nno colon\r\n\r\n",
-      "GET /echo HTTP/1.1\r\n: no name\r\n\r\n",
-      "GET /echo HTTP/1.1\r\n folded: x\r\n\r\n",
-      "GET /echo HTTP/1.1\nHost: x\n\n",
-      "PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n",
-      "\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03",
-      std::string(100000, 'A'),
-      "GET /" + std::string(200000, 'a') + " HTTP/1.1\r\n\r\n",
-      "GET /echo HTTP/1.1\r\nX: " + std::string(300000, 'a') + "\r\n\r\n",
-      request("POST", "/echo", "Transfer-Encoding: chunked\r\n") + "zz\r\n",
-      request("POST", "/echo", "Transfer-Encoding: chunked\r\n") + "-5\r\nhello\r\n",
-      request("POST", "/echo", "Transfer-Encoding: chunked\r\n") + "ffffffffffffffffff\r\n",
-      request("POST", "/echo", "Transfer-Encoding: chunked\r\n") + "5\r\nhelloXX",
-  };
-  RecordProperty("cases", static_cast<int>(std::size(requests)));  // tests/hostile/run counts them
-  for (const std::string& each : requests) {
-    RawClient client(served.port());
-    client.send(each);
-    client.half_close();
-    while (const auto reply = client.reply()) {
-      EXPECT_TRUE(reply->status == 200 || reply->body.starts_with('"'))
-          << each.substr(0, 80) << " -> " << reply->status << " " << reply->body;
-    }
-    EXPECT_TRUE(answers(served.port(), "127.0.0.1")) << each.substr(0, 80);
-  }
-  EXPECT_TRUE(served.eventually([&] { return served.server().connections() == 0; }));
-  EXPECT_EQ(handler.exchanges, 0);
-}
-
 TEST(ServerLimits, SurviveRequestsChangedAtRandom) {
   ScriptedHandler handler;
   Served served(handler);
@@ -112,6 +43,7 @@ TEST(ServerLimits, SurviveRequestsChangedAtRandom) {
   const std::string originals[] = {
       request("POST", "/echo", "Content-Type: application/json\r\n", "{\"x\": 1}"),
       request("GET", "/echo?q=%20"),
+      "\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03",  // TLS
       request("POST", "/echo", "Transfer-Encoding: chunked\r\n") + "5\r\nhello\r\n0\r\n\r\n",
       request("POST", "/refuse", "Expect: 100-continue\r\n", std::string(100, 'x')),
   };

@@ -1,4 +1,4 @@
-// Who has room at the server, by real sockets: what shares_test.cpp has as a rule.
+// The rules of shares_test.cpp with real sockets.
 #include <gtest/gtest.h>
 
 #include "intake/raw_client.hpp"
@@ -12,7 +12,7 @@ using Clients = std::vector<std::unique_ptr<RawClient>>;
 
 constexpr std::string_view kToken = "Authorization: Bearer x\r\n";
 
-/// In the middle of a body that takes long.
+/// A request in the middle of its body.
 std::string begun(std::string_view headers = {}) {
   return request("POST", "/echo", std::string(headers) + "Content-Length: 4000\r\n") + "x";
 }
@@ -36,12 +36,12 @@ class ServerRoom : public testing::Test {
                 {.address = "127.0.0.1", .interface = {}, .connections = 8, .connections_per_address = 3}};
 };
 
-class RoomAsItIs : public ServerRoom {
+class DefaultServerRoom : public ServerRoom {
  protected:
   Served served{handler};
 };
 
-TEST_F(RoomAsItIs, IsThereForWhoShowsATokenWhileStrangersHoldAHundredSockets) {
+TEST_F(DefaultServerRoom, IsReservedForAuthenticatedClients) {
   RawClient known(served.port());
   known.send(request("POST", "/echo", kToken, "1"));
   ASSERT_EQ(known.reply()->status, 200);
@@ -65,7 +65,7 @@ TEST_F(RoomAsItIs, IsThereForWhoShowsATokenWhileStrangersHoldAHundredSockets) {
   EXPECT_TRUE(told->body.starts_with('"')) << told->body;
 }
 
-TEST_F(ServerRoom, OfOneAddressIsUsedUpByItsRequestsUnderWayAndSaidSo) {
+TEST_F(ServerRoom, IsLimitedForRequestsOfOneAddress) {
   Clients busy;
   for (int i = 0; i < 3; ++i) connect(busy, "127.0.0.2", request("GET", "/later", kToken));
   ASSERT_TRUE(known_come_to(3));
@@ -83,7 +83,7 @@ TEST_F(ServerRoom, OfOneAddressIsUsedUpByItsRequestsUnderWayAndSaidSo) {
   EXPECT_EQ(other.reply()->status, 200);
 }
 
-TEST_F(ServerRoom, IsMadeByAnIdleConnectionOfTheSameAddress) {
+TEST_F(ServerRoom, ComesFromAnIdleConnectionOfTheAddress) {
   Clients idle;
   for (int i = 0; i < 3; ++i)
     ASSERT_TRUE(connect(idle, "127.0.0.2", request("POST", "/echo", kToken, "1")).reply());
@@ -96,7 +96,7 @@ TEST_F(ServerRoom, IsMadeByAnIdleConnectionOfTheSameAddress) {
   EXPECT_EQ(served.ended(Ended::Idle), 1u);
 }
 
-TEST_F(ServerRoom, IsNotHeldByWhoHungUpBeforeHeWasLetIn) {
+TEST_F(ServerRoom, IsNotHeldByDisconnectedClients) {
   std::promise<void> all_there;
   served.loop().post([&] { all_there.get_future().wait(); });
   for (int i = 0; i < 3; ++i) RawClient(served.port(), "127.0.0.2").send(request("GET", "/later", kToken));
@@ -106,7 +106,7 @@ TEST_F(ServerRoom, IsNotHeldByWhoHungUpBeforeHeWasLetIn) {
   EXPECT_EQ(stays.reply()->status, 200);
 }
 
-TEST_F(ServerRoom, IsSharedByAddressesWhereEverybodyIsKnown) {
+TEST_F(ServerRoom, IsSharedByAddressesIfAllAreAuthenticated) {
   handler.asks_token = false;
   Clients greedy;
   for (int i = 0; i < 3; ++i) connect(greedy, "127.0.0.2", begun());
@@ -118,7 +118,7 @@ TEST_F(ServerRoom, IsSharedByAddressesWhereEverybodyIsKnown) {
   EXPECT_EQ(served.ended(Ended::GaveWay), 1u);
 }
 
-TEST_F(ServerRoom, OfStrangersIsThatOfThoseWhoCameLast) {
+TEST_F(ServerRoom, GoesToTheLatestUnauthenticatedClients) {
   Clients strangers;
   for (int i = 0; i < 3; ++i) {
     connect(strangers, "127.0.0." + std::to_string(2 + i), begun());

@@ -34,73 +34,73 @@ std::vector<Held> together(std::initializer_list<std::vector<Held>> parts) {
   return held;
 }
 
-TEST(Shares, AreAQuarterForStrangersAndTheRestForThoseWhoAreKnown) {
+TEST(Shares, ReserveMostRoomForAuthenticatedClients) {
   const auto usual = Shares::of(128, 64);
   EXPECT_EQ(usual.unauthenticated, 32u);
   EXPECT_EQ(usual.known, 96u);
   EXPECT_EQ(usual.known_of_address, 64u);
-  EXPECT_EQ(Shares::of(1024, 1024).unauthenticated, 32u) << "however many there are";
+  EXPECT_EQ(Shares::of(1024, 1024).unauthenticated, 32u) << "an absolute limit";
   EXPECT_EQ(Shares::of(20, 64).known_of_address, 15u);
   EXPECT_EQ(Shares::of(1, 1).known, 1u);
   EXPECT_EQ(Shares::of(1, 1).unauthenticated, 1u);
 }
 
-TEST(StrangerToGo, IsNobodyWhileTheShareLasts) {
+TEST(ConnectionToClose, IsNoneWithinTheShare) {
   const auto held =
       together({several(1, 4, "a", false, Doing::Sending), several(10, 6, "b", true, Doing::Idle)});
   EXPECT_FALSE(unauthenticated_to_close(held, kShares));
 }
 
-TEST(StrangerToGo, IsTheOldestOfTheAddressThatHasMost) {
+TEST(ConnectionToClose, IsTheOldestOfTheAddressWithMost) {
   const auto held =
       together({several(1, 2, "a", false, Doing::Sending), several(5, 3, "b", false, Doing::Sending)});
   EXPECT_EQ(unauthenticated_to_close(held, kShares), 5u);
   EXPECT_EQ(unauthenticated_to_close(several(1, 5, "a", false, Doing::Waiting), kShares), 1u);
 }
 
-TEST(StrangerToGo, IsOneThatIsIdleWhereThereIsOne) {
+TEST(ConnectionToClose, IsAnIdleOneIfThereIsOne) {
   const auto held =
       together({several(1, 4, "a", false, Doing::Waiting), several(5, 1, "a", false, Doing::Idle)});
   EXPECT_EQ(unauthenticated_to_close(held, kShares), 5u);
 }
 
-TEST(StrangerToGo, IsNotOneWhoMayBeAboutToShowAToken) {
+TEST(ConnectionToClose, IsNotAFreshOne) {
   const auto fresh = several(1, 5, "a", false, Doing::Fresh);
   EXPECT_FALSE(unauthenticated_to_close(fresh, kShares));
   EXPECT_EQ(unauthenticated_to_close(together({fresh, several(10, 1, "b", false, Doing::Sending)}), kShares),
             10u);
 }
 
-TEST(StrangerToGo, IsNeverOneWhoIsKnown) {
+TEST(ConnectionToClose, IsNotAnAuthenticatedOne) {
   const auto held =
       together({several(1, 6, "a", true, Doing::Idle), several(10, 5, "b", false, Doing::Sending)});
   EXPECT_EQ(unauthenticated_to_close(held, kShares), 10u);
 }
 
-TEST(RoomForWhoIsKnown, IsThereHoweverManyStrangersThereAre) {
+TEST(RoomForAuthenticatedClients, ExistsBesideAnyNumberOfOthers) {
   const auto others = several(1, 200, "new", false, Doing::Sending);
   EXPECT_TRUE(room_for(kNew, others, kShares).is_there);
   EXPECT_FALSE(room_for(kNew, others, kShares).gives_way);
 }
 
-TEST(RoomForWhoIsKnown, IsMadeByTheLongestIdleOfAll) {
+TEST(RoomForAuthenticatedClients, ComesFromTheLongestIdleConnection) {
   const auto others =
       together({several(1, 3, "a", true, Doing::Waiting), several(7, 3, "b", true, Doing::Idle)});
   EXPECT_EQ(room_for(kNew, others, kShares).gives_way, 7u);
 }
 
-TEST(RoomForWhoIsKnown, IsMadeByWhoMayHaveHungUpWhereNobodyIsIdle) {
+TEST(RoomForAuthenticatedClients, ComesFromAClosedConnectionIfNoneIsIdle) {
   const auto others =
       together({several(1, 3, "a", true, Doing::Waiting), several(7, 3, "b", true, Doing::Left)});
   EXPECT_EQ(room_for(kNew, others, kShares).gives_way, 7u);
 }
 
-TEST(RoomForWhoIsKnown, IsNotThereWhereAllWaitForAnswers) {
+TEST(RoomForAuthenticatedClients, IsNoneIfAllWaitForAnswers) {
   const auto others = several(1, 6, "a", true, Doing::Waiting);
   EXPECT_FALSE(room_for(kNew, others, {.unauthenticated = 4, .known = 6, .known_of_address = 6}).is_there);
 }
 
-TEST(RoomForWhoIsKnown, IsMadeByAnAddressWithMoreThanItsShareWhoseRequestIsNotWhole) {
+TEST(RoomForAuthenticatedClients, ComesFromAnAddressWithMoreThanItsShare) {
   const auto others =
       together({several(1, 1, "a", true, Doing::Sending), several(3, 2, "b", true, Doing::Waiting),
                 several(5, 3, "c", true, Doing::Sending)});
@@ -111,10 +111,10 @@ TEST(RoomForWhoIsKnown, IsMadeByAnAddressWithMoreThanItsShareWhoseRequestIsNotWh
                together({several(1, 1, "a", true, Doing::Sending), several(3, 1, "b", true, Doing::Sending)}),
                even)
           .is_there)
-      << "nobody has more than his share";
+      << "no address exceeds its share";
 }
 
-TEST(RoomForWhoIsKnown, IsBoundedForOneAddressWhoseOwnIdleOnesGiveWay) {
+TEST(RoomForAuthenticatedClients, IsLimitedForOneAddress) {
   const auto busy = several(1, 3, "new", true, Doing::Sending);
   EXPECT_FALSE(room_for(kNew, busy, kShares).is_there);
   const auto idle =
@@ -123,7 +123,7 @@ TEST(RoomForWhoIsKnown, IsBoundedForOneAddressWhoseOwnIdleOnesGiveWay) {
   EXPECT_EQ(room_for(kNew, idle, kShares).gives_way, 8u);
 }
 
-TEST(RoomFor, KeepsTheSharesWhateverComes) {
+TEST(RoomFor, KeepsTheSharesInAnyOrder) {
   std::mt19937_64 random(20210917);
   const auto any = [&](std::uint64_t below) { return random() % below; };
   const std::string addresses[] = {"a", "b", "c", "d", "e"};

@@ -32,7 +32,7 @@ TEST(Target, IsDecodedOnce) {
   }
 }
 
-TEST(Target, IsRefusedWhereItIsNoPathOfText) {
+TEST(Target, IsRejectedIfItIsNoPathOfText) {
   for (const std::string_view raw :
        {"", "map/update", "/%", "/%4", "/%zz", "/a%00b", "/%ff", "/%c3", "/%ed%a0%80", "?q=1", "/a?q=%00",
         "/a?%ff=1", "/a?q=%g0", "*x", "CONNECT:80"}) {

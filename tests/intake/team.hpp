@@ -18,7 +18,7 @@ namespace adit::intake {
 inline constexpr std::string_view kToken = "flux230{showroom";
 inline constexpr std::string_view kOtherToken = "the-posts-own-token";
 
-/// Keeps what it is given. Its members are for the loop's thread.
+/// Keeps accepted messages. Use its members on the loop's thread.
 class FakeDesk final : public Desk {
  public:
   std::vector<icd::MapUpdate> maps;
@@ -29,16 +29,16 @@ class FakeDesk final : public Desk {
   std::vector<Sender> senders;
   std::vector<std::shared_ptr<Responder>> responders;  // of reports and status
   std::vector<std::pair<icd::Uri, icd::Refusal>> refusals;
-  std::optional<icd::Refusal> full;  // what take() says
+  std::optional<icd::Refusal> full;  // answer of take()
 
-  std::vector<std::function<void()>> storing;  // answers of maps that wait until the test lets them be kept
+  std::vector<std::function<void()>> storing;  // pending answers of maps and pieces, for the test to call
   bool stores_at_once = true;
   bool fails = false;  // take() throws
 
-  int arriving = 0;             // maps on their way
-  std::size_t stored = 0;       // bytes of their data that were stored, ever
-  std::size_t room = 1u << 30;  // for them
-  bool stores_pieces = true;    // at once; else they wait in `storing`
+  int arriving = 0;             // uploads in progress
+  std::size_t stored = 0;       // all stored bytes of map data
+  std::size_t room = 1u << 30;  // left for map data
+  bool stores_pieces = true;    // otherwise they wait in `storing`
 
   std::shared_ptr<MapArrival> map_arrives() override { return std::make_shared<Arrival>(*this); }
   icd::Checked<void> take(icd::StateUpdate update, const Sender& sender) override {
@@ -67,7 +67,7 @@ class FakeDesk final : public Desk {
   }
 
  private:
-  /// Keeps in memory what is to be stored.
+  /// Stores map data in memory.
   class Arrival final : public MapArrival {
    public:
     explicit Arrival(FakeDesk& desk) : desk_(desk) { ++desk_.arriving; }
@@ -124,7 +124,7 @@ class Team {
     return options;
   }
 
-  /// Sends it on a connection of its own and gives the answer.
+  /// Sends `text` on a new connection and returns the answer.
   std::optional<Reply> ask(const std::string& text,
                            std::chrono::milliseconds patience = std::chrono::seconds(10)) {
     RawClient client(served.port());
@@ -132,7 +132,7 @@ class Team {
     return client.reply(patience);
   }
 
-  /// Keeps the worker busy until the guard ends.
+  /// Keeps the worker busy until end() or the destructor.
   class Busy {
    public:
     explicit Busy(Team& team) : held_(std::make_shared<std::promise<void>>()) {
@@ -153,7 +153,7 @@ class Team {
   };
 
  private:
-  /// Makes workers and routes on the loop, at the first request.
+  /// Forwards to the routes, which need the loop's thread.
   struct Front final : Handler {
     explicit Front(Team& owner) : team(owner) {}
     Credentials shown(const RequestHead& head) override { return routes->shown(head); }
@@ -198,7 +198,7 @@ inline constexpr std::string_view kStateBody =
         "orientation": {"x": 0, "y": 0, "z": 0, "w": 1}}]})";
 inline constexpr std::string_view kMarkersBody = R"({"markers": [{"ns": "a", "id": 1, "action": 2}]})";
 
-/// An OccupancyGrid of width x height cells, all unknown, as the ICD's clients write it in JSON.
+/// A grid of unknown cells in JSON.
 inline std::string grid_body(std::uint32_t width, std::uint32_t height) {
   const std::size_t cells = static_cast<std::size_t>(width) * height;
   std::string data(cells / 3 * 4, '/');
@@ -211,7 +211,7 @@ inline std::string grid_body(std::uint32_t width, std::uint32_t height) {
          data + R"("}})";
 }
 
-/// A cloud of that many points, as the ICD's clients write it in JSON.
+/// A cloud in JSON.
 inline std::string cloud_body(std::size_t points) {
   const auto field = [](const char* name, int offset) {
     return std::string(R"({"name": ")") + name + R"(", "offset": )" + std::to_string(offset) +
@@ -223,8 +223,7 @@ inline std::string cloud_body(std::size_t points) {
          field("y", 4) + ", " + field("z", 8) + R"(], "point_step": 12, "data": ")" + data + R"("}})";
 }
 
-/// The grid of grid_body(), which says only after its data that it is one: its cells are kept as they came
-/// until then.
+/// As grid_body(), but its type follows the data, so cells stay uncompressed until then.
 inline std::string grid_said_late(std::uint32_t width, std::uint32_t height) {
   constexpr std::string_view kType = R"("type": "OccupancyGrid", )";
   std::string body = grid_body(width, height);
@@ -233,14 +232,14 @@ inline std::string grid_said_late(std::uint32_t width, std::uint32_t height) {
   return body;
 }
 
-/// The head of a map of that body, with `more` header fields.
+/// The head of a map upload with `more` header fields.
 inline std::string map_head(const std::string& body, std::string_view more = {}) {
   return authorized(
       "POST", "/map/update",
       std::string(kJsonType) + std::string(more) + "Content-Length: " + std::to_string(body.size()) + "\r\n");
 }
 
-/// True for a JSON string and nothing else: the body of every refusal (ICD 4).
+/// True for a JSON string, the body of each rejection (ICD 4).
 inline bool is_json_string(const std::string& body) {
   return nlohmann::json::parse(body, nullptr, false).is_string();
 }

@@ -13,7 +13,7 @@ const TokenGuesses::Verdict kLetIn{Looked::Right, false}, kNotLookedAt{Looked::N
 
 class TokenGuessesTest : public testing::Test {
  protected:
-  /// A new guess each time. Whether it was looked at.
+  /// A new guess. True if it was checked.
   bool guess(const std::string& address, loop::Instant now) {
     return guesses_.wrong(address, "guess " + std::to_string(++guessed_), now).looked == Looked::Wrong;
   }
@@ -24,7 +24,7 @@ class TokenGuessesTest : public testing::Test {
   int guessed_ = 0;
 };
 
-TEST_F(TokenGuessesTest, AreLookedAtOnceASecondAfterAFew) {
+TEST_F(TokenGuessesTest, AreCheckedOnceASecondAfterAFew) {
   for (int i = 0; i < TokenGuesses::kFree; ++i) EXPECT_TRUE(guess("10.0.0.9", kBegin)) << i;
   int looked_at = 0;
   for (auto after = 0ms; after < 60s; after += 1ms) looked_at += guess("10.0.0.9", kBegin + after) ? 1 : 0;
@@ -32,13 +32,13 @@ TEST_F(TokenGuessesTest, AreLookedAtOnceASecondAfterAFew) {
   EXPECT_EQ(guesses_.wrong("10.0.0.9", "another", kBegin + 60s - 1ms), kNotLookedAt);
 }
 
-TEST_F(TokenGuessesTest, OfAStrangerTakeNothingFromAnotherAddress) {
+TEST_F(TokenGuessesTest, DoNotDelayAnotherAddress) {
   guess_on("10.0.0.9", 10'000, kBegin);
   EXPECT_EQ(guesses_.right("10.0.0.5", kBegin), kLetIn);
   EXPECT_EQ(guesses_.wrong("10.0.0.6", "old", kBegin), (TokenGuesses::Verdict{Looked::Wrong, false}));
 }
 
-TEST_F(TokenGuessesTest, TakeNothingFromWhoHasShownARightOneBehindTheSameRouter) {
+TEST_F(TokenGuessesTest, DoNotDelayAnAuthenticatedAddress) {
   EXPECT_EQ(guesses_.right("10.0.0.9", kBegin), kLetIn);
   for (int i = 0; i < 1000; ++i) {
     guess("10.0.0.9", kBegin + i * 1ms);
@@ -46,36 +46,36 @@ TEST_F(TokenGuessesTest, TakeNothingFromWhoHasShownARightOneBehindTheSameRouter)
   }
 }
 
-TEST_F(TokenGuessesTest, HideARightOneAmongThemUntilTheyAreFewAgain) {
+TEST_F(TokenGuessesTest, DelayARightTokenUntilTheyAreFew) {
   guess_on("10.0.0.9", 1000, kBegin);
-  EXPECT_EQ(guesses_.right("10.0.0.9", kBegin), kNotLookedAt) << "as a wrong one";
-  EXPECT_EQ(guesses_.right("10.0.0.9", kBegin + 1s), kLetIn) << "no more than a moment after the last guess";
+  EXPECT_EQ(guesses_.right("10.0.0.9", kBegin), kNotLookedAt) << "like a wrong one";
+  EXPECT_EQ(guesses_.right("10.0.0.9", kBegin + 1s), kLetIn) << "soon after the last guess";
   guess_on("10.0.0.9", 1000, kBegin + 1s);
-  EXPECT_EQ(guesses_.right("10.0.0.9", kBegin + 1s), kLetIn) << "it is known now";
+  EXPECT_EQ(guesses_.right("10.0.0.9", kBegin + 1s), kLetIn) << "now authenticated";
 }
 
-TEST_F(TokenGuessesTest, AreNotMadeByARobotWithAnOldToken) {
+TEST_F(TokenGuessesTest, DoNotIncludeARepeatedOldToken) {
   for (int i = 0; i < 1000; ++i) {
     const TokenGuesses::Verdict verdict =
         guesses_.wrong("10.0.0.9", i % 2 == 0 ? "old" : "", kBegin + i * 10ms);
     EXPECT_EQ(verdict.looked, Looked::Wrong) << i;
     EXPECT_EQ(verdict.late, i >= TokenGuesses::kFree && i % 100 != 0) << i;
   }
-  EXPECT_EQ(guesses_.right("10.0.0.9", kBegin + 10s), kLetIn) << "of another robot behind the same router";
+  EXPECT_EQ(guesses_.right("10.0.0.9", kBegin + 10s), kLetIn) << "another robot behind the same router";
 }
 
-TEST_F(TokenGuessesTest, AreForgottenWhereWhatIsRightIsAnother) {
+TEST_F(TokenGuessesTest, AreForgottenIfTheTokensChange) {
   guess_on("10.0.0.9", 1000, kBegin);
   guesses_.forget();
   EXPECT_EQ(guesses_.right("10.0.0.9", kBegin), kLetIn);
 }
 
-TEST_F(TokenGuessesTest, OfManyAddressesMakeNoneForgottenThatWasRight) {
+TEST_F(TokenGuessesTest, OfManyAddressesForgetNoAuthenticatedOne) {
   EXPECT_EQ(guesses_.right("10.0.0.9", kBegin), kLetIn);
   guess_on("10.0.0.9", 1000, kBegin);
   for (int i = 0; i < 10'000; ++i) guess(std::to_string(i), kBegin + 1ms);
   EXPECT_EQ(guesses_.right("10.0.0.9", kBegin + 1ms), kLetIn);
-  EXPECT_EQ(guesses_.right("10.0.0.5", kBegin + 1ms), kLetIn) << "nor keep a new one out";
+  EXPECT_EQ(guesses_.right("10.0.0.5", kBegin + 1ms), kLetIn) << "nor delay a new address";
 }
 
 }  // namespace

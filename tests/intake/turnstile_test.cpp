@@ -1,4 +1,4 @@
-// Who shows wrong tokens, at a real server: what token_guesses_test.cpp has as a rule.
+// The rules of token_guesses_test.cpp at a real server.
 #include "intake/turnstile.hpp"
 
 #include <gtest/gtest.h>
@@ -39,7 +39,7 @@ class TurnstileTest : public testing::Test {
   int guessed_ = 0;
 };
 
-TEST_F(TurnstileTest, AnswersAFewAtOnceAndLooksAtNoMore) {
+TEST_F(TurnstileTest, ChecksAFewTokensAtOnceAndNoMore) {
   for (int i = 0; i < TokenGuesses::kFree; ++i) ASSERT_EQ(status_of(guess("127.0.1.1")), 401) << i;
   std::optional<Reply> reply;
   for (int i = 0; i < 1000 && status_of(reply) != 429; ++i) reply = guess("127.0.1.1");
@@ -49,7 +49,7 @@ TEST_F(TurnstileTest, AnswersAFewAtOnceAndLooksAtNoMore) {
   EXPECT_GT(served_.ended(Ended::WrongToken), static_cast<unsigned>(TokenGuesses::kFree));
 }
 
-TEST_F(TurnstileTest, LetsInAtOnceWhoHasBeenIn) {
+TEST_F(TurnstileTest, AdmitsAnAuthenticatedAddressAtOnce) {
   ASSERT_EQ(status_of(ask("/echo", kRight, "127.0.1.1")), 200);
   for (int i = 0; i < 30; ++i) {
     guess("127.0.1.1");
@@ -57,7 +57,7 @@ TEST_F(TurnstileTest, LetsInAtOnceWhoHasBeenIn) {
   }
 }
 
-TEST_F(TurnstileTest, TakesNoBodyOfWhoIsAnsweredLate) {
+TEST_F(TurnstileTest, ReadsNoBodyIfItsAnswerIsDelayed) {
   const std::string large(3u << 20, 'x');
   for (int i = 0; i < TokenGuesses::kFree; ++i) guess("127.0.1.1");
   for (int i = 0; i < 20; ++i) {
@@ -67,7 +67,7 @@ TEST_F(TurnstileTest, TakesNoBodyOfWhoIsAnsweredLate) {
   EXPECT_EQ(handler_.body_bytes, 0u);
 }
 
-TEST_F(TurnstileTest, HoldsNothingOfWhoDoesNotWait) {
+TEST_F(TurnstileTest, KeepsNothingOfDisconnectedClients) {
   for (int i = 0; i < 50; ++i) {
     RawClient client(served_.port(), "127.0.1.1");
     client.send(request("POST", "/refuse", "Authorization: Bearer wrong\r\n", "1"));

@@ -7,7 +7,7 @@
 namespace adit::intake {
 namespace {
 
-TEST(TypeHint, NamesTheTypeThatAnotherResembles) {
+TEST(TypeHint, SuggestsASimilarType) {
   const struct {
     std::string_view type, meant;
   } rows[] = {{"Cellphone", "Cell Phone"},
@@ -30,7 +30,7 @@ TEST(TypeHint, NamesTheTypeThatAnotherResembles) {
     EXPECT_EQ(type_hint(known), "; did you mean " + std::string(known) + "?");
 }
 
-TEST(TypeHint, SaysNothingOfATypeThatResemblesNone) {
+TEST(TypeHint, IsEmptyIfNoTypeIsSimilar) {
   for (const std::string_view type :
        {"", " ", "as", "test", "Radio", "Toolbox", "12345", "gate", "hope chest", "\xff"})
     EXPECT_EQ(type_hint(type), "") << type;

@@ -7,17 +7,17 @@
 namespace adit::intake {
 namespace {
 
-TEST(UploadShare, TakesNoMoreThanIsLeftForAll) {
+TEST(UploadShare, StaysWithinTheBudget) {
   const auto budget = std::make_shared<UploadBudget>(100);
   UploadShare one(budget, "a"), other(budget, "b");
   EXPECT_TRUE(one.grow_to(60));
   EXPECT_FALSE(other.grow_to(41));
-  EXPECT_TRUE(other.grow_to(15)) << "what was not taken is left";
-  EXPECT_TRUE(one.grow_to(50)) << "it has that";
+  EXPECT_TRUE(other.grow_to(15)) << "a failed attempt takes nothing";
+  EXPECT_TRUE(one.grow_to(50)) << "a smaller size";
   EXPECT_FALSE(one.grow_to(76));
 }
 
-TEST(UploadShare, OfOneAddressLeavesRoomForOthersHoweverManyItHas) {
+TEST(UploadShare, LeavesRoomForOtherAddresses) {
   const auto budget = std::make_shared<UploadBudget>(100);
   UploadShare one(budget, "a"), two(budget, "a"), three(budget, "a");
   EXPECT_TRUE(one.grow_to(60));
@@ -25,11 +25,11 @@ TEST(UploadShare, OfOneAddressLeavesRoomForOthersHoweverManyItHas) {
   EXPECT_FALSE(three.grow_to(1));
   UploadShare other(budget, "b"), third(budget, "c");
   EXPECT_TRUE(other.grow_to(12));
-  EXPECT_FALSE(other.grow_to(13)) << "it would have more than it leaves";
-  EXPECT_TRUE(third.grow_to(6)) << "though the first has not given anything back";
+  EXPECT_FALSE(other.grow_to(13)) << "it would exceed the rest";
+  EXPECT_TRUE(third.grow_to(6)) << "before the first has returned anything";
 }
 
-TEST(UploadShare, IsGivenBackWholeAtItsEndAndOnlyOnce) {
+TEST(UploadShare, IsReturnedOnceAtItsEnd) {
   const auto budget = std::make_shared<UploadBudget>(100);
   {
     std::optional<UploadShare> share(std::in_place, budget, "a");
@@ -42,7 +42,7 @@ TEST(UploadShare, IsGivenBackWholeAtItsEndAndOnlyOnce) {
   EXPECT_TRUE(budget->take("a", 75));
 }
 
-TEST(UploadShare, KeepsTheBudgetThatItGivesBackTo) {
+TEST(UploadShare, KeepsItsBudgetAlive) {
   auto budget = std::make_shared<UploadBudget>(100);
   const std::weak_ptr<UploadBudget> watched = budget;
   std::optional<UploadShare> share(std::in_place, std::move(budget), "a");

@@ -80,8 +80,9 @@ TEST_F(ServerLifetimes, ClientClosesAfterItsLastBytes) {
     brief.close();
   }
   client.close();
-  EXPECT_TRUE(served.eventually([&] { return served.server().connections() == 0; }));
+  EXPECT_TRUE(served.eventually([&] { return handler.gone == 1 && served.server().connections() == 0; }));
   EXPECT_EQ(handler.exchanges, 0);
+  EXPECT_EQ(handler.ends, 0);
 }
 
 TEST_F(ServerLifetimes, ClientResetsWhileItsBodyIsHeldBack) {

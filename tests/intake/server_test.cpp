@@ -110,6 +110,11 @@ TEST_F(ServerTest, RejectsInTheMiddleOfABody) {
   EXPECT_EQ(handler.ends, 0);
 }
 
+TEST_F(ServerTest, RejectsInTheMiddleOfAChunkedBody) {
+  client.send(request("POST", "/midway", "Transfer-Encoding: chunked\r\n") + "5\r\nfirst\r\n");
+  EXPECT_EQ(client.reply()->body, "\"midway\"");
+}
+
 TEST_F(ServerTest, AnswersLater) {
   client.send(request("POST", "/later", {}, "x"));
   ASSERT_TRUE(served.eventually([&] { return handler.responders.size() == 1; }));

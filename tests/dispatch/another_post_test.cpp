@@ -18,15 +18,15 @@ std::string meaning(const Scene& scene, const std::string& post = kThere) {
 TEST(ChangeOfCommandPost, AffectsNoFinalReport) {
   Scene scene;
   scene.post(1);
-  scene.answer(recorded());
+  scene.answer(recorded_answer());
   EXPECT_EQ(meaning(scene),
             "reports go to 10.100.2.200:8000 from then on; no report is queued, in doubt or held now");
 }
 
 TEST(ChangeOfCommandPost, KeepsOpenReportsForTheOldOne) {
   Scene scene;
-  scene.post_to_wait(1);
-  scene.post_to_wait(2);
+  scene.post_queued(1);
+  scene.post_queued(2);
   ASSERT_TRUE(scene.reports().hold(1, scene.time()));
   EXPECT_EQ(meaning(scene),
             "reports go to 10.100.2.200:8000 from then on; 1 report is queued, 1 is held: Adit keeps them "
@@ -34,16 +34,16 @@ TEST(ChangeOfCommandPost, KeepsOpenReportsForTheOldOne) {
   scene.send_next();
   EXPECT_THAT(meaning(scene), HasSubstr("; 1 report is in doubt, 1 is held: "));
   scene.lose();
-  scene.post_to_wait(3);
-  scene.post_to_wait(4);
+  scene.post_queued(3);
+  scene.post_queued(4);
   EXPECT_THAT(meaning(scene), HasSubstr("; 2 reports are queued, 1 is in doubt, 1 is held: "));
 }
 
 TEST(ChangeOfCommandPost, ContinuesTheRunOfAnEarlierOne) {
   Scene scene;
   scene.post(1);
-  scene.answer(recorded());
-  scene.post_to_wait(2);
+  scene.answer(recorded_answer());
+  scene.post_queued(2);
   scene.restart(kThere);
   scene.hear(20, 0);
   EXPECT_EQ(meaning(scene, kHere),
@@ -54,7 +54,7 @@ TEST(ChangeOfCommandPost, ContinuesTheRunOfAnEarlierOne) {
 TEST(ChangeOfCommandPost, TakesQueuedReportsIfTheOldOneNeverAnswered) {
   Scene scene;
   scene.restart(kThere);
-  scene.post_to_wait(1);
+  scene.post_queued(1);
   EXPECT_THAT(meaning(scene, kHere),
               AllOf(HasSubstr("1 report is queued: the Command Post at 10.100.2.200:8000"),
                     EndsWith("queued reports are sent to the first Command Post that answers")));

@@ -20,7 +20,7 @@ class ReportBookTest : public testing::Test {
     report.report = {"Drill", {1, 2, 3}};
     return book_.add(report, events, "");
   }
-  RecordingActions output_;
+  FakeOutput output_;
   ReportBook book_{output_};
 };
 
@@ -35,7 +35,7 @@ TEST_F(ReportBookTest, NumbersReportsAcrossARestart) {
 TEST_F(ReportBookTest, WritesAReportAndItsSendingAtOnce) {
   add({ReportEvent::Chosen});
   EXPECT_EQ(output_.writes, 1);
-  EXPECT_THAT(output_.lives[1], ElementsAre(Queued, Sending));
+  EXPECT_THAT(output_.states[1], ElementsAre(Queued, Sending));
   EXPECT_EQ(book_.at(1).state, Sending);
 }
 
@@ -80,7 +80,7 @@ const OnAFullDisk kFullDisk[] = {
 class ReportBookOnAFullDisk : public testing::TestWithParam<OnAFullDisk> {};
 
 TEST_P(ReportBookOnAFullDisk, AcceptsOnlyStepsThatHaveHappened) {
-  RecordingActions output;
+  FakeOutput output;
   ReportBook book(output);
   Report report;
   report.number = 1;

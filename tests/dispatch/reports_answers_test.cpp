@@ -13,17 +13,17 @@ using testing::IsEmpty;
 TEST(A2xx, IsPassedOnByteForByte) {
   Scene scene;
   const ClientId client = scene.post();
-  scene.answer(recorded(1));
+  scene.answer(recorded_answer(1));
   EXPECT_EQ(scene.state(1), Answered);
-  EXPECT_EQ(scene.told(client).status, 201);
-  EXPECT_EQ(scene.told(client).body, recorded(1).body);
-  EXPECT_EQ(scene.output().ledger.at(1).answer, recorded(1).body) << "on disk";
+  EXPECT_EQ(scene.answer_to(client).status, 201);
+  EXPECT_EQ(scene.answer_to(client).body, recorded_answer(1).body);
+  EXPECT_EQ(scene.output().ledger.at(1).answer, recorded_answer(1).body) << "on disk";
 }
 
 TEST(A2xx, OfAnUnscoredReportIsExplainedToTheOperator) {
   Scene scene;
   scene.post();
-  scene.answer(recorded(0, "admin stop"));
+  scene.answer(recorded_answer(0, "admin stop"));
   EXPECT_EQ(scene.report(1).note, "not scored (admin stop); post it again when the run continues");
 }
 
@@ -32,16 +32,16 @@ TEST(A2xx, WithoutAReportPutsTheReportInDoubt) {
   const ClientId client = scene.post();
   scene.answer({200, "text/html", "<html>log in</html>"});
   EXPECT_EQ(scene.state(1), InDoubt);
-  EXPECT_FALSE(scene.is_told(client));
+  EXPECT_FALSE(scene.is_answered(client));
   scene.hear(19, 0);
   scene.wait(1);
   scene.hear(19, 0);
-  EXPECT_EQ(scene.told(client).status, 201);
+  EXPECT_EQ(scene.answer_to(client).status, 201);
 }
 
 /// An answer that names a report.
-HttpAnswer tells_of(double x, const std::string& type = "Drill") {
-  HttpAnswer answer = recorded();
+HttpAnswer answer_about(double x, const std::string& type = "Drill") {
+  HttpAnswer answer = recorded_answer();
   answer.body.pop_back();
   answer.body += icd::sentence(R"(, "type": ")", type, R"(", "x": )", x, R"(, "y": 0, "z": 0})");
   return answer;
@@ -51,42 +51,42 @@ HttpAnswer tells_of(double x, const std::string& type = "Drill") {
 TEST(A2xx, OfAnotherReportPutsTheReportInDoubt) {
   Scene scene;
   scene.post(10);
-  scene.answer(tells_of(10));
+  scene.answer(answer_about(10));
   scene.hear(19, 0);
   scene.wait(1);
   const ClientId client = scene.post(11);
-  scene.answer(tells_of(10));
+  scene.answer(answer_about(10));
   EXPECT_EQ(scene.state(2), InDoubt);
   EXPECT_THAT(scene.report(2).note, HasSubstr("the answer is for report 1, not for this report"));
-  EXPECT_FALSE(scene.is_told(client));
-  scene.keep_hearing(14, 19, 0);
+  EXPECT_FALSE(scene.is_answered(client));
+  scene.repeat_status(14, 19, 0);
   EXPECT_EQ(scene.state(2), Queued) << "not recorded";
   EXPECT_EQ(scene.send_next(), 2);
-  scene.answer(tells_of(11));
-  EXPECT_EQ(scene.told(client).body, tells_of(11).body);
+  scene.answer(answer_about(11));
+  EXPECT_EQ(scene.answer_to(client).body, answer_about(11).body);
 }
 
 TEST(A2xx, OfAReportOfTheLastRunPutsItInDoubt) {
   Scene scene;
   scene.post(10);
-  scene.answer(tells_of(10));
+  scene.answer(answer_about(10));
   scene.reports().declare_new_run(scene.time());
   scene.post(11);
-  scene.answer(tells_of(10));
+  scene.answer(answer_about(10));
   EXPECT_EQ(scene.state(2), InDoubt);
 }
 
 TEST(A2xx, WithRoundedFiguresCountsAndIsNoted) {
   Scene scene;
   scene.post(10.4);
-  scene.answer(tells_of(10));  // rounded
+  scene.answer(answer_about(10));  // rounded
   EXPECT_EQ(scene.state(1), Answered);
   EXPECT_EQ(scene.report(1).note, R"(the answer is for "Drill" at 10, 0, 0)");
   scene.post(20);
-  scene.answer(tells_of(20.0000001, "drill"));
+  scene.answer(answer_about(20.0000001, "drill"));
   EXPECT_EQ(scene.report(2).note, "");
   scene.post(10.2);
-  scene.answer(recorded());  // without type and position
+  scene.answer(recorded_answer());  // without type and position
   EXPECT_EQ(scene.state(3), Answered);
 }
 
@@ -97,15 +97,15 @@ TEST(A429, LeavesTheReportQueuedInItsPlace) {
   for (int i = 0; i < 10; ++i) {
     scene.answer(answer_of(429));
     EXPECT_EQ(scene.state(1), Queued);
-    EXPECT_FALSE(scene.is_told(client));
+    EXPECT_FALSE(scene.is_answered(client));
     scene.wait(1);
     ASSERT_EQ(scene.send_next(), 1) << "before report 2";
     EXPECT_EQ(scene.report(1).status, 0) << "the earlier answer is cleared";
     EXPECT_THAT(scene.report(1).answer, IsEmpty());
   }
   EXPECT_EQ(scene.report(1).tries, 0);
-  scene.answer(recorded());
-  EXPECT_EQ(scene.told(client).status, 201);
+  scene.answer(recorded_answer());
+  EXPECT_EQ(scene.answer_to(client).status, 201);
 }
 
 TEST(A401, LeavesTheReportQueuedUntilAStatusIsAnswered) {
@@ -114,9 +114,9 @@ TEST(A401, LeavesTheReportQueuedUntilAStatusIsAnswered) {
   const ClientId other = scene.post(2);
   scene.answer(answer_of(401));
   EXPECT_EQ(scene.state(1), Queued);
-  EXPECT_EQ(scene.told(client).status, 503);
-  EXPECT_THAT(scene.told(client).sentence, HasSubstr("is queued (the Command Post's words)"));
-  EXPECT_FALSE(scene.is_told(other));
+  EXPECT_EQ(scene.answer_to(client).status, 503);
+  EXPECT_THAT(scene.answer_to(client).sentence, HasSubstr("is queued (the Command Post's words)"));
+  EXPECT_FALSE(scene.is_answered(other));
   EXPECT_EQ(scene.send_next(), 0);
   EXPECT_EQ(scene.reports().next_requests(scene.time()).status, scene.time().now);
   scene.reports().status_failed(true, scene.time());
@@ -131,8 +131,8 @@ TEST(A422, IsTheClientsAnswer) {
   scene.answer(answer_of(422));
   EXPECT_EQ(scene.state(1), Rejected);
   EXPECT_EQ(scene.report(1).note, "the Command Post's words");
-  EXPECT_EQ(scene.told(client).status, 422);
-  EXPECT_EQ(scene.told(client).body, answer_of(422).body);
+  EXPECT_EQ(scene.answer_to(client).status, 422);
+  EXPECT_EQ(scene.answer_to(client).body, answer_of(422).body);
   EXPECT_EQ(scene.send_next(), 0);
 }
 
@@ -142,7 +142,7 @@ TEST(A500, LeavesTheReportInDoubt) {
   scene.answer(answer_of(500));
   EXPECT_EQ(scene.state(1), InDoubt);
   EXPECT_TRUE(scene.reports().is_asking(scene.report(1)));
-  EXPECT_FALSE(scene.is_told(client));
+  EXPECT_FALSE(scene.is_answered(client));
 }
 
 TEST(NoByteLeft, LeavesTheReportQueued) {
@@ -151,7 +151,7 @@ TEST(NoByteLeft, LeavesTheReportQueued) {
   scene.reports().never_left("connecting to 10.100.1.200:8000: Connection refused", scene.time());
   EXPECT_EQ(scene.state(1), Queued);
   EXPECT_EQ(scene.report(1).tries, 0);
-  EXPECT_FALSE(scene.is_told(client));
+  EXPECT_FALSE(scene.is_answered(client));
   EXPECT_EQ(scene.send_next(), 1);
 }
 
@@ -164,12 +164,12 @@ TEST(UnansweredReport, IsHeldAfterFiveTries) {
     EXPECT_EQ(scene.state(1), Sending) << tries;
     scene.answer(answer_of(500));
     EXPECT_EQ(scene.report(1).tries, tries);
-    scene.keep_hearing(10, 20, 0);
+    scene.repeat_status(10, 20, 0);
     EXPECT_EQ(scene.send_next(), tries < Doubts::kMostTries ? 1 : 0);
   }
   EXPECT_EQ(scene.state(1), Held);
   EXPECT_EQ(scene.report(1).note, "sent 5 times without an answer, and not recorded");
-  EXPECT_EQ(scene.told(client).status, 503);
+  EXPECT_EQ(scene.answer_to(client).status, 503);
   scene.post(2);
   EXPECT_EQ(scene.state(2), Sending) << "later reports are not blocked";
 }
@@ -179,13 +179,13 @@ TEST(UnansweredReport, HasFiveMoreTriesIfTheOperatorSendsIt) {
   scene.post();
   for (int i = 0; i < 5; ++i) {
     scene.lose();
-    scene.keep_hearing(10, 20, 0);
+    scene.repeat_status(10, 20, 0);
     scene.send_next();
   }
   ASSERT_TRUE(scene.reports().send(1, scene.time()).has_value());
   ASSERT_EQ(scene.send_next(), 1);
   scene.lose();
-  scene.keep_hearing(10, 20, 0);
+  scene.repeat_status(10, 20, 0);
   EXPECT_EQ(scene.send_next(), 1);
 }
 

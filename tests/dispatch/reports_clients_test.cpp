@@ -17,9 +17,9 @@ TEST(WaitingClient, IsAnsweredOnce) {
   Scene scene;
   const ClientId client = scene.post();
   scene.wait(20);
-  scene.answer(recorded());
-  EXPECT_EQ(scene.output().told[client].size(), 1);
-  EXPECT_EQ(scene.told(client).status, 504) << "a repeat gets the answer";
+  scene.answer(recorded_answer());
+  EXPECT_EQ(scene.output().answers[client].size(), 1);
+  EXPECT_EQ(scene.answer_to(client).status, 504) << "a repeat gets the answer";
 }
 
 /// Answer at the deadline for a report in this state.
@@ -50,13 +50,13 @@ TEST_P(ClientAtItsDeadline, LearnsTheStateOfItsReport) {
   report.note = "why";
   scene.output().ledger[1] = report;
   scene.restart();
-  const ClientId client = scene.post_to_wait(1);
+  const ClientId client = scene.post_queued(1);
   scene.wait(19.9);
-  EXPECT_FALSE(scene.is_told(client));
+  EXPECT_FALSE(scene.is_answered(client));
   scene.wait(0.1);
-  EXPECT_EQ(scene.told(client).status, GetParam().status);
-  EXPECT_EQ(scene.told(client).number, 1);
-  EXPECT_EQ(scene.told(client).sentence, icd::sentence(GetParam().sentence, "; ", kNeverTwice));
+  EXPECT_EQ(scene.answer_to(client).status, GetParam().status);
+  EXPECT_EQ(scene.answer_to(client).number, 1);
+  EXPECT_EQ(scene.answer_to(client).sentence, icd::sentence(GetParam().sentence, "; ", kNeverTwice));
 }
 INSTANTIATE_TEST_SUITE_P(States, ClientAtItsDeadline, testing::ValuesIn(kTellings));
 
@@ -64,20 +64,21 @@ TEST(WaitingClient, LearnsThatAReportInFlightMayBeRecorded) {
   Scene scene;
   const ClientId client = scene.post();
   scene.wait(20);
-  EXPECT_EQ(scene.told(client).status, 504);
-  EXPECT_THAT(scene.told(client).sentence, HasSubstr("is in flight, and may or may not have been recorded"));
+  EXPECT_EQ(scene.answer_to(client).status, 504);
+  EXPECT_THAT(scene.answer_to(client).sentence,
+              HasSubstr("is in flight, and may or may not have been recorded"));
 }
 
 TEST(WaitingClient, MayRepostAHeldReportOfAnEarlierRun) {
   Scene scene;
-  const ClientId client = scene.post_to_wait(1);
+  const ClientId client = scene.post_queued(1);
   scene.wait(11);
   scene.hear(25, 0, 3);
   ASSERT_EQ(scene.state(1), Held);
   scene.wait(9);
-  EXPECT_EQ(scene.told(client).status, 503);
-  EXPECT_THAT(scene.told(client).sentence, Not(HasSubstr(kNeverTwice)));
-  EXPECT_THAT(scene.told(client).sentence, HasSubstr("post it again to send it in the present run"));
+  EXPECT_EQ(scene.answer_to(client).status, 503);
+  EXPECT_THAT(scene.answer_to(client).sentence, Not(HasSubstr(kNeverTwice)));
+  EXPECT_THAT(scene.answer_to(client).sentence, HasSubstr("post it again to send it in the present run"));
   scene.hear(25, 0, 12);
   scene.post(1);
   EXPECT_EQ(scene.state(2), Sending) << "as promised";
@@ -87,7 +88,7 @@ TEST(WaitingClient, OfARepeatWaitsForTheFirstReportWithinItsTime) {
   ReportRules rules;
   rules.answer_within = seconds(60);
   Scene scene(rules);
-  scene.post_to_wait(1);
+  scene.post_queued(1);
   ASSERT_TRUE(scene.reports().withdraw(1, scene.time()).has_value());
   scene.wait(16);
   const ClientId repeat = scene.post(1);  // compared later, because the run is unknown
@@ -96,14 +97,14 @@ TEST(WaitingClient, OfARepeatWaitsForTheFirstReportWithinItsTime) {
   scene.hear(20, 0);
   ASSERT_EQ(scene.send_next(), 1);
   scene.lose();
-  scene.hear_stop(16, 117);
+  scene.repeat_stop(16, 117);
   scene.send_next();
   ASSERT_EQ(scene.report(2).same_as, 1);
-  EXPECT_FALSE(scene.is_told(repeat));
+  EXPECT_FALSE(scene.is_answered(repeat));
   EXPECT_EQ(scene.reports().next_deadline(), deadline);
-  scene.keep_hearing(2, 19, 0);
-  EXPECT_EQ(scene.told(repeat).status, 201);
-  EXPECT_EQ(scene.told(repeat).number, 1);
+  scene.repeat_status(2, 19, 0);
+  EXPECT_EQ(scene.answer_to(repeat).status, 201);
+  EXPECT_EQ(scene.answer_to(repeat).number, 1);
 }
 
 TEST(StopOfReports, AnswersClientsExceptThoseOfAReportInFlight) {
@@ -112,12 +113,12 @@ TEST(StopOfReports, AnswersClientsExceptThoseOfAReportInFlight) {
   const ClientId joined = scene.post(1);
   const ClientId waiting = scene.post(2);
   scene.reports().dismiss(false);
-  EXPECT_EQ(scene.told(waiting).status, 503);
-  EXPECT_THAT(scene.told(waiting).sentence, HasSubstr("aditd is stopping; report 2 is queued"));
-  EXPECT_FALSE(scene.is_told(under_way));
-  scene.answer(recorded());
-  EXPECT_EQ(scene.told(under_way).status, 201);
-  EXPECT_EQ(scene.told(joined).status, 201);
+  EXPECT_EQ(scene.answer_to(waiting).status, 503);
+  EXPECT_THAT(scene.answer_to(waiting).sentence, HasSubstr("aditd is stopping; report 2 is queued"));
+  EXPECT_FALSE(scene.is_answered(under_way));
+  scene.answer(recorded_answer());
+  EXPECT_EQ(scene.answer_to(under_way).status, 201);
+  EXPECT_EQ(scene.answer_to(joined).status, 201);
 }
 
 }  // namespace

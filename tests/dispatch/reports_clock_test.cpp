@@ -20,7 +20,7 @@ class StandingClocks : public testing::Test {
   void hear(std::int64_t remaining) { scene_.hear(remaining, 0, 25.98); }
   void record(double x) {
     scene_.post(x);
-    scene_.answer(recorded(0, "scored", "1", 3.14));
+    scene_.answer(recorded_answer(0, "scored", "1", 3.14));
   }
   Scene scene_;
 };
@@ -29,7 +29,7 @@ TEST_F(StandingClocks, GiveARepeatTheRecordedAnswer) {
   record(2);
   const ClientId again = scene_.post(1);
   EXPECT_EQ(scene_.count(), 2u);
-  EXPECT_EQ(scene_.told(again).body, recorded(0, "scored", "1", 3.14).body);
+  EXPECT_EQ(scene_.answer_to(again).body, recorded_answer(0, "scored", "1", 3.14).body);
 }
 
 TEST_F(StandingClocks, AreOneRunAcrossARestart) {
@@ -63,7 +63,7 @@ TEST_F(ClockSetBack, MakesANewRunLikelyAndHoldsARepeat) {
   EXPECT_THAT(scene_.report(2).note, HasSubstr("the same as report 1"));
   EXPECT_THAT(scene_.report(2).note, HasSubstr("the run clock went back"));
   scene_.wait(21);
-  EXPECT_THAT(scene_.told(again).sentence, HasSubstr("is held until the operator decides"));
+  EXPECT_THAT(scene_.answer_to(again).sentence, HasSubstr("is held until the operator decides"));
   EXPECT_THAT(scene_.undecided(), testing::Contains(HasSubstr("the same as report 1")));
 }
 
@@ -155,9 +155,9 @@ TEST_F(ClockSetBack, IsNoNewRunIfAnAnswerHasTheOldName) {
   EXPECT_EQ(scene_.state(2), Withdrawn);
   EXPECT_EQ(scene_.report(2).same_as, 1);
   EXPECT_EQ(scene_.report(3).run, 1) << "all are of one run";
-  EXPECT_EQ(scene_.told(again).status, 201);
-  EXPECT_EQ(scene_.told(scene_.post(1)).status, 201);
-  EXPECT_EQ(scene_.told(scene_.post(2)).status, 201);
+  EXPECT_EQ(scene_.answer_to(again).status, 201);
+  EXPECT_EQ(scene_.answer_to(scene_.post(1)).status, 201);
+  EXPECT_EQ(scene_.answer_to(scene_.post(2)).status, 201);
   EXPECT_EQ(scene_.count(), 3u);
 }
 
@@ -165,7 +165,7 @@ TEST_F(ClockSetBack, IsNoNewRunIfAnAnswerHasTheOldName) {
 TEST(DoubtAndClockSetBack, DoesNotResendAReportThatTheOperatorSent) {
   Scene scene;
   scene.post(7);
-  scene.answer(recorded(0, "scored", "1"));
+  scene.answer(recorded_answer(0, "scored", "1"));
   scene.wait(1);
   scene.hear(19, 0);
   scene.post(1);
@@ -180,10 +180,10 @@ TEST(DoubtAndClockSetBack, DoesNotResendAReportThatTheOperatorSent) {
   ASSERT_EQ(scene.state(3), Held);
   ASSERT_TRUE(scene.reports().send(3, scene.time()));
   ASSERT_EQ(scene.send_next(), 3);
-  scene.answer(recorded(0, "scored", "1"));
+  scene.answer(recorded_answer(0, "scored", "1"));
   ASSERT_EQ(scene.reports().run().number, 1) << "the old run";
   ASSERT_EQ(scene.state(2), InDoubt);
-  scene.keep_hearing(30, 18, 0);
+  scene.repeat_status(30, 18, 0);
   EXPECT_EQ(scene.send_next(), 0);
   EXPECT_EQ(scene.state(2), Held);
   EXPECT_THAT(scene.report(2).note, HasSubstr("report 3 is the same and is answered in this run"));

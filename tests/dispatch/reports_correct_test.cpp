@@ -18,7 +18,7 @@ class Correction : public testing::Test {
  protected:
   /// Report 1, at 1 m, is held.
   Correction() {
-    client_ = scene_.post_to_wait(1);
+    client_ = scene_.post_queued(1);
     EXPECT_TRUE(scene_.reports().hold(1, scene_.time()));
   }
   Reports::Outcome correct(std::int64_t number, double x) {
@@ -41,8 +41,8 @@ TEST_F(Correction, IsSentInsteadOfTheReport) {
   EXPECT_EQ(scene_.report(1).report.position.x, 1) << "unchanged";
   EXPECT_EQ(scene_.report(1).note, "the operator corrected it: report 2, \"Drill\" at 5, 0, 0");
   EXPECT_EQ(scene_.report(2).note, "corrects report 1, \"Drill\" at 1, 0, 0");
-  send(2, recorded());
-  scene_.keep_hearing(60, 19, 0);
+  send(2, recorded_answer());
+  scene_.repeat_status(60, 19, 0);
   EXPECT_EQ(scene_.send_next(), 0);
 }
 
@@ -66,10 +66,10 @@ TEST_F(Correction, ChangesNothingIfTheDiskIsFull) {
 TEST_F(Correction, AnswersRepeatsOfTheOldReport) {
   ASSERT_TRUE(correct(1, 5));
   const ClientId early = scene_.post(1);
-  send(2, recorded(1));
+  send(2, recorded_answer(1));
   const ClientId late = scene_.post(1);
-  EXPECT_EQ(scene_.told(early).status, 201);
-  EXPECT_EQ(scene_.told(late).body, scene_.report(2).answer);
+  EXPECT_EQ(scene_.answer_to(early).status, 201);
+  EXPECT_EQ(scene_.answer_to(late).body, scene_.report(2).answer);
   EXPECT_EQ(scene_.count(), 2);
 }
 
@@ -78,8 +78,8 @@ TEST_F(Correction, AnswersTheWaitingClient) {
   const ClientId client = scene.post(1);
   ASSERT_EQ(scene.reports().correct(1, drill(5), scene.time()), 2);
   ASSERT_EQ(scene.send_next(), 2) << "no second review";
-  scene.answer(recorded(1));
-  EXPECT_EQ(scene.told(client).status, 201);
+  scene.answer(recorded_answer(1));
+  EXPECT_EQ(scene.answer_to(client).status, 201);
 }
 
 TEST_F(Correction, SurvivesARestart) {
@@ -87,11 +87,11 @@ TEST_F(Correction, SurvivesARestart) {
   scene_.restart();
   scene_.hear(20, 0);
   const ClientId again = scene_.post(1);
-  send(2, recorded(1));
-  EXPECT_EQ(scene_.told(again).status, 201);
+  send(2, recorded_answer(1));
+  EXPECT_EQ(scene_.answer_to(again).status, 201);
   scene_.restart();
   scene_.hear(19, 1);
-  EXPECT_EQ(scene_.told(scene_.post(1)).number, 2);
+  EXPECT_EQ(scene_.answer_to(scene_.post(1)).number, 2);
   EXPECT_EQ(scene_.send_next(), 0);
 }
 
@@ -99,9 +99,9 @@ TEST_F(Correction, CanBeCorrected) {
   ASSERT_TRUE(correct(1, 5));
   ASSERT_TRUE(scene_.reports().hold(2, scene_.time()));
   ASSERT_EQ(correct(2, 6), 3);
-  send(3, recorded(1));
-  EXPECT_EQ(scene_.told(scene_.post(1)).number, 3);
-  EXPECT_EQ(scene_.told(scene_.post(5)).number, 3);
+  send(3, recorded_answer(1));
+  EXPECT_EQ(scene_.answer_to(scene_.post(1)).number, 3);
+  EXPECT_EQ(scene_.answer_to(scene_.post(5)).number, 3);
 }
 
 TEST_F(Correction, HoldsARepeatIfItWasRejected) {
@@ -115,7 +115,7 @@ TEST_F(Correction, HoldsARepeatIfItWasRejected) {
 TEST_F(Correction, TellsARepeatThatItWasWithdrawn) {
   ASSERT_TRUE(correct(1, 5));
   ASSERT_TRUE(scene_.reports().withdraw(2, scene_.time()));
-  EXPECT_THAT(scene_.told(scene_.post(1)).sentence, HasSubstr("report 2 was withdrawn"));
+  EXPECT_THAT(scene_.answer_to(scene_.post(1)).sentence, HasSubstr("report 2 was withdrawn"));
   EXPECT_EQ(scene_.count(), 2);
 }
 
@@ -136,10 +136,10 @@ TEST_F(Correction, IsRejectedIfItChangesNothing) {
 }
 
 TEST_F(Correction, IsRejectedIfTheSameReportExists) {
-  scene_.post_to_wait(5);
+  scene_.post_queued(5);
   EXPECT_EQ(correct(1, 5).error(),
             "report 1 is held: report 2 is the same as the correction and is queued in this run");
-  send(2, recorded());
+  send(2, recorded_answer());
   EXPECT_THAT(correct(1, 5).error(), HasSubstr("is answered in this run"));
   EXPECT_EQ(scene_.state(1), Held);
 }
@@ -149,8 +149,8 @@ TEST_F(Correction, MovesAReportOfAnEarlierRunIntoThisOne) {
   scene_.reports().declare_new_run(scene_.time());
   scene_.hear(20, 0);
   ASSERT_TRUE(correct(1, 5));
-  send(2, recorded(1));
-  EXPECT_EQ(scene_.told(scene_.post(1)).number, 2);
+  send(2, recorded_answer(1));
+  EXPECT_EQ(scene_.answer_to(scene_.post(1)).number, 2);
 }
 
 TEST_F(Correction, CanBeUndone) {
@@ -158,7 +158,7 @@ TEST_F(Correction, CanBeUndone) {
   scene.post(1);
   ASSERT_EQ(scene.reports().correct(1, drill(5), scene.time()), 2);
   EXPECT_TRUE(scene.reports().sends_at(scene.report(2)).has_value());
-  EXPECT_THAT(scene.output().lives[2], ElementsAre(Queued, Held));
+  EXPECT_THAT(scene.output().states[2], ElementsAre(Queued, Held));
   scene.wait(10);
   EXPECT_EQ(scene.send_next(), 2);
 }

@@ -19,7 +19,7 @@ class FullDisk : public testing::Test {
 
 TEST_F(FullDisk, RejectsReports) {
   fill();
-  const auto told = scene_.told(scene_.post());
+  const auto told = scene_.answer_to(scene_.post());
   EXPECT_EQ(told.status, 503);
   EXPECT_EQ(told.sentence, "the report could not be stored and was not accepted; post it again");
   EXPECT_EQ(told.number, 0);
@@ -31,7 +31,7 @@ TEST_F(FullDisk, RejectsReports) {
 }
 
 TEST_F(FullDisk, SendsNoReport) {
-  scene_.post_to_wait();
+  scene_.post_queued();
   fill();
   EXPECT_EQ(scene_.send_next(), 0);
   EXPECT_EQ(scene_.reports().sending(), nullptr);
@@ -43,30 +43,30 @@ TEST_F(FullDisk, SendsNoReport) {
 TEST_F(FullDisk, PassesOnAnAnswerAndWritesItLater) {
   const ClientId client = scene_.post();
   fill();
-  scene_.answer(recorded(1));
-  EXPECT_EQ(scene_.told(client).body, recorded(1).body);
-  EXPECT_EQ(scene_.told(scene_.post()).body, recorded(1).body) << "a repeat";
+  scene_.answer(recorded_answer(1));
+  EXPECT_EQ(scene_.answer_to(client).body, recorded_answer(1).body);
+  EXPECT_EQ(scene_.answer_to(scene_.post()).body, recorded_answer(1).body) << "a repeat";
   EXPECT_EQ(on_disk(1), Sending);
   make_room();
   scene_.wait(1);
   EXPECT_EQ(on_disk(1), Answered);
-  EXPECT_EQ(scene_.output().ledger.at(1).answer, recorded(1).body);
+  EXPECT_EQ(scene_.output().ledger.at(1).answer, recorded_answer(1).body);
 }
 
 TEST_F(FullDisk, ResendsNoReportThatIsNotStoredAsQueued) {
   scene_.post();
   scene_.lose();
   fill();
-  scene_.keep_hearing(20, 20, 0);
+  scene_.repeat_status(20, 20, 0);
   EXPECT_EQ(scene_.state(1), InDoubt);
   EXPECT_EQ(scene_.send_next(), 0);
   make_room();
-  scene_.keep_hearing(1, 20, 0);
+  scene_.repeat_status(1, 20, 0);
   EXPECT_EQ(scene_.send_next(), 1);
 }
 
 TEST_F(FullDisk, BeginsANewRunAndWritesItLater) {
-  scene_.post_to_wait();
+  scene_.post_queued();
   scene_.wait(11);
   fill();
   scene_.hear(25, 0, 3);
@@ -99,12 +99,12 @@ TEST(FillingDisk, NeverSendsAReportTwice) {
     const ClientId client = scene.post();
     const bool left = scene.reports().sending() != nullptr;
     EXPECT_EQ(left, writes >= 1);
-    EXPECT_EQ(scene.told(client).status, left ? 0 : 503);
+    EXPECT_EQ(scene.answer_to(client).status, left ? 0 : 503);
     if (left) scene.lose();
-    scene.keep_hearing(2, left ? 19 : 20, 0);
+    scene.repeat_status(2, left ? 19 : 20, 0);
     scene.output().writes_until_full = -1;
     scene.restart();
-    scene.keep_hearing(20, left ? 19 : 20, 0);
+    scene.repeat_status(20, left ? 19 : 20, 0);
     EXPECT_EQ(scene.send_next(), 0) << writes;
     if (left) {
       EXPECT_EQ(scene.state(1), Settled) << writes;

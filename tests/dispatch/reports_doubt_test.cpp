@@ -14,7 +14,7 @@ using testing::IsEmpty;
 class Doubt : public testing::Test {
  protected:
   Doubt() : client_(scene_.post(1)) { scene_.lose(); }
-  void keep_hearing_after_stop(int times, std::int64_t remaining, std::int64_t score) {
+  void repeat_status_after_stop(int times, std::int64_t remaining, std::int64_t score) {
     for (int i = 0; i < times; ++i) {
       scene_.wait(1);
       scene_.hear(remaining, score, clock_++);
@@ -32,7 +32,7 @@ TEST_F(Doubt, IsSettledByTwoStatusesThatCountTheReport) {
   scene_.wait(1);
   scene_.hear(19, 1);
   EXPECT_EQ(scene_.state(1), Settled);
-  const auto told = scene_.told(client_);
+  const auto told = scene_.answer_to(client_);
   EXPECT_EQ(told.status, 201);
   EXPECT_THAT(told.body, HasSubstr(R"("score_change":1)"));
   EXPECT_THAT(told.body, HasSubstr(R"("reconciled":true)"));
@@ -41,21 +41,21 @@ TEST_F(Doubt, IsSettledByTwoStatusesThatCountTheReport) {
 }
 
 TEST_F(Doubt, GivesARepeatTheReconciledAnswer) {
-  scene_.keep_hearing(2, 19, 0);
-  EXPECT_EQ(scene_.told(scene_.post(1)).body, scene_.told(client_).body);
+  scene_.repeat_status(2, 19, 0);
+  EXPECT_EQ(scene_.answer_to(scene_.post(1)).body, scene_.answer_to(client_).body);
   EXPECT_EQ(scene_.count(), 1);
 }
 
 TEST_F(Doubt, EndsWithARetryIfTheReportIsNotCounted) {
-  scene_.keep_hearing(9, 20, 0);
+  scene_.repeat_status(9, 20, 0);
   EXPECT_EQ(scene_.state(1), InDoubt) << "it may still be recorded";
-  scene_.keep_hearing(1, 20, 0);
+  scene_.repeat_status(1, 20, 0);
   EXPECT_EQ(scene_.state(1), Queued);
-  EXPECT_FALSE(scene_.is_told(client_));
+  EXPECT_FALSE(scene_.is_answered(client_));
   EXPECT_EQ(scene_.send_next(), 1);
   EXPECT_EQ(scene_.report(1).before->remaining_reports, 20);
-  scene_.answer(recorded());
-  EXPECT_EQ(scene_.told(client_).body, recorded().body);
+  scene_.answer(recorded_answer());
+  EXPECT_EQ(scene_.answer_to(client_).body, recorded_answer().body);
 }
 
 TEST_F(Doubt, IsLeftToTheOperatorIfTheCountContradicts) {
@@ -65,7 +65,7 @@ TEST_F(Doubt, IsLeftToTheOperatorIfTheCountContradicts) {
   EXPECT_FALSE(scene_.reports().is_asking(scene_.report(1)));
   EXPECT_THAT(scene_.report(1).note, HasSubstr("does another sender report with this token?; the operator"));
   EXPECT_NE(scene_.reports().run().unreliable, "");
-  scene_.keep_hearing(60, 19, 0);
+  scene_.repeat_status(60, 19, 0);
   EXPECT_EQ(scene_.state(1), InDoubt) << "a later count decides nothing";
   scene_.post(2);
   EXPECT_EQ(scene_.state(2), Sending);
@@ -74,9 +74,9 @@ TEST_F(Doubt, IsLeftToTheOperatorIfTheCountContradicts) {
 
 TEST_F(Doubt, BlocksOtherReportsWhileItIsPending) {
   scene_.post(2);
-  scene_.hear_stop(14);
+  scene_.repeat_stop(14);
   EXPECT_EQ(scene_.send_next(), 0);
-  scene_.hear_stop(1);
+  scene_.repeat_stop(1);
   EXPECT_EQ(scene_.send_next(), 2);
 }
 
@@ -106,18 +106,18 @@ TEST_F(Doubt, StaysWhileNoStatusComes) {
 }
 
 TEST_F(Doubt, StaysWhileTheRunClockStands) {
-  scene_.hear_stop(60);
+  scene_.repeat_stop(60);
   EXPECT_EQ(scene_.state(1), InDoubt) << "an administrative stop hides a record";
   EXPECT_FALSE(scene_.reports().is_asking(scene_.report(1))) << "the operator may decide";
   EXPECT_THAT(scene_.report(1).note, HasSubstr("the operator decides"));
 }
 
 TEST_F(Doubt, AccountsForReportsAnsweredSince) {
-  scene_.hear_stop(16);
+  scene_.repeat_stop(16);
   scene_.post(2);
   ASSERT_EQ(scene_.state(2), Sending);
-  scene_.answer(recorded(1, "scored", "1", 117));
-  keep_hearing_after_stop(2, 18, 1);
+  scene_.answer(recorded_answer(1, "scored", "1", 117));
+  repeat_status_after_stop(2, 18, 1);
   EXPECT_EQ(scene_.state(1), Settled);
   EXPECT_THAT(scene_.report(1).answer, HasSubstr(R"("score_change":0)")) << "the point is report 2's";
 }
@@ -126,7 +126,7 @@ TEST_F(Doubt, AccountsForReportsAnsweredSince) {
 class TwoDoubts : public Doubt {
  protected:
   TwoDoubts() {
-    scene_.hear_stop(16);
+    scene_.repeat_stop(16);
     other_ = scene_.post(2);
     scene_.lose();
   }
@@ -135,37 +135,38 @@ class TwoDoubts : public Doubt {
 
 TEST_F(TwoDoubts, AreSettledIfBothAreCounted) {
   EXPECT_EQ(scene_.report(2).before, std::nullopt) << "the count is uncertain";
-  keep_hearing_after_stop(2, 18, 1);
+  repeat_status_after_stop(2, 18, 1);
   for (const ClientId client : {client_, other_}) {
-    EXPECT_EQ(scene_.told(client).status, 201);
-    EXPECT_THAT(scene_.told(client).body, HasSubstr(R"("score_change":null)")) << "either may have the point";
+    EXPECT_EQ(scene_.answer_to(client).status, 201);
+    EXPECT_THAT(scene_.answer_to(client).body, HasSubstr(R"("score_change":null)"))
+        << "either may have the point";
   }
   EXPECT_EQ(scene_.state(1), Settled);
 }
 
 TEST_F(TwoDoubts, AreResentInOrderIfNoneIsCounted) {
-  keep_hearing_after_stop(14, 20, 0);
+  repeat_status_after_stop(14, 20, 0);
   EXPECT_EQ(scene_.send_next(), 1);
-  scene_.answer(recorded());
+  scene_.answer(recorded_answer());
   EXPECT_EQ(scene_.send_next(), 2);
 }
 
 TEST_F(TwoDoubts, StayIfOneIsCounted) {
-  keep_hearing_after_stop(60, 19, 0);
+  repeat_status_after_stop(60, 19, 0);
   EXPECT_EQ(scene_.state(1), InDoubt);
   EXPECT_EQ(scene_.state(2), InDoubt);
   EXPECT_THAT(scene_.report(2).note, HasSubstr("the counts do not show which of them was recorded"));
 }
 
 TEST_F(TwoDoubts, AreDecidedInOneWriteOrNone) {
-  keep_hearing_after_stop(1, 18, 0);
+  repeat_status_after_stop(1, 18, 0);
   scene_.output().full = true;
-  keep_hearing_after_stop(1, 18, 0);
+  repeat_status_after_stop(1, 18, 0);
   EXPECT_EQ(scene_.state(1), InDoubt);
   EXPECT_EQ(scene_.state(2), InDoubt);
   scene_.output().full = false;
   scene_.output().writes_until_full = 1;
-  keep_hearing_after_stop(1, 18, 0);
+  repeat_status_after_stop(1, 18, 0);
   EXPECT_EQ(scene_.state(1), Settled);
   EXPECT_EQ(scene_.state(2), Settled);
 }
@@ -173,10 +174,10 @@ TEST_F(TwoDoubts, AreDecidedInOneWriteOrNone) {
 TEST(DoubtsCount, IncludesReportsSentBefore) {
   Scene scene;
   scene.post(1);
-  scene.answer(recorded(1));
+  scene.answer(recorded_answer(1));
   scene.post(2);
   scene.lose();
-  scene.keep_hearing(2, 18, 1);
+  scene.repeat_status(2, 18, 1);
   EXPECT_EQ(scene.state(2), Settled);
   EXPECT_THAT(scene.report(2).answer, HasSubstr(R"("score_change":0)"));
 }
@@ -184,14 +185,14 @@ TEST(DoubtsCount, IncludesReportsSentBefore) {
 TEST(DoubtsCount, IsLeftToTheOperatorIfUnknownBefore) {
   Scene scene;
   scene.post(1);
-  scene.answer(recorded(0, "admin stop"));
+  scene.answer(recorded_answer(0, "admin stop"));
   const ClientId client = scene.post(2);
   scene.lose();
   EXPECT_FALSE(scene.reports().is_asking(scene.report(2)));
-  scene.keep_hearing(20, 20, 0);
+  scene.repeat_status(20, 20, 0);
   EXPECT_EQ(scene.state(2), InDoubt);
   EXPECT_THAT(scene.report(2).note, HasSubstr("are not certain; the operator decides"));
-  EXPECT_EQ(scene.told(client).status, 504);
+  EXPECT_EQ(scene.answer_to(client).status, 504);
 }
 
 TEST(DoubtsCount, IsLeftToTheOperatorIfNoReportIsLeft) {
@@ -200,7 +201,7 @@ TEST(DoubtsCount, IsLeftToTheOperatorIfNoReportIsLeft) {
   exhausted.hear(0, 0);
   exhausted.post(1);
   exhausted.lose();
-  exhausted.keep_hearing(60, 0, 0);
+  exhausted.repeat_status(60, 0, 0);
   EXPECT_EQ(exhausted.state(1), InDoubt);
   EXPECT_THAT(exhausted.report(1).note, HasSubstr("the counts do not show a recorded report"));
   EXPECT_THAT(exhausted.reports().run().unreliable, IsEmpty());

@@ -15,29 +15,29 @@ class OtherCommandPost : public testing::Test {
  protected:
   OtherCommandPost() {
     scene_.post(1);
-    scene_.answer(recorded(1));
+    scene_.answer(recorded_answer(1));
     scene_.hear(19, 1);
   }
-  void go() { scene_.restart(kThere); }
+  void move_away() { scene_.restart(kThere); }
   void come_back() { scene_.restart(); }
   void expect_one_recording() {
     const ClientId again = scene_.post(1);
     scene_.wait(1);
     scene_.hear(19, 1);
     while (scene_.send_next() != 0) FAIL() << "it is resent";
-    EXPECT_EQ(scene_.told(again).body, recorded(1).body);
+    EXPECT_EQ(scene_.answer_to(again).body, recorded_answer(1).body);
   }
   Scene scene_;
 };
 
 TEST_F(OtherCommandPost, HasARunOfItsOwn) {
-  go();
+  move_away();
   EXPECT_EQ(scene_.reports().run().number, 2);
   EXPECT_EQ(scene_.reports().run().post, kThere);
 }
 
 TEST_F(OtherCommandPost, QueuesARepeatUntilItAnswers) {
-  go();
+  move_away();
   scene_.post(1);
   EXPECT_EQ(scene_.state(2), Queued);
   EXPECT_THAT(scene_.report(2).note, HasSubstr("the same as report 1"));
@@ -49,7 +49,7 @@ TEST_F(OtherCommandPost, QueuesARepeatUntilItAnswers) {
 }
 
 TEST_F(OtherCommandPost, LeavesTheFirstRunForAReturn) {
-  go();
+  move_away();
   scene_.hear(20, 0);
   come_back();
   EXPECT_EQ(scene_.reports().run().number, 1);
@@ -57,7 +57,7 @@ TEST_F(OtherCommandPost, LeavesTheFirstRunForAReturn) {
 }
 
 TEST_F(OtherCommandPost, PassesItsReportsToTheFirstIfItNeverAnswered) {
-  go();
+  move_away();
   scene_.post(1);
   scene_.post(2);
   come_back();
@@ -66,13 +66,13 @@ TEST_F(OtherCommandPost, PassesItsReportsToTheFirstIfItNeverAnswered) {
   EXPECT_EQ(scene_.send_next(), 3) << "a new report is for the first Command Post that answers";
   EXPECT_EQ(scene_.state(2), Withdrawn);
   EXPECT_EQ(scene_.report(2).same_as, 1);
-  scene_.answer(recorded());
+  scene_.answer(recorded_answer());
   expect_one_recording();
 }
 
 /// The action was for the other Command Post.
 TEST_F(OtherCommandPost, PassesOnNoActionOfTheOperator) {
-  go();
+  move_away();
   scene_.post(1);
   ASSERT_TRUE(scene_.reports().send(2, scene_.time()));
   come_back();
@@ -83,8 +83,8 @@ TEST_F(OtherCommandPost, PassesOnNoActionOfTheOperator) {
 }
 
 TEST_F(OtherCommandPost, CausesNoSecondReportAtTheFirst) {
-  scene_.post_to_wait(3);
-  go();
+  scene_.post_queued(3);
+  move_away();
   scene_.post(3);
   ASSERT_TRUE(scene_.reports().hold(3, scene_.time()));
   come_back();
@@ -94,8 +94,8 @@ TEST_F(OtherCommandPost, CausesNoSecondReportAtTheFirst) {
 }
 
 TEST_F(OtherCommandPost, GetsNoReportQueuedForTheFirst) {
-  scene_.post_to_wait(3);
-  go();
+  scene_.post_queued(3);
+  move_away();
   EXPECT_EQ(scene_.state(2), Queued);
   EXPECT_EQ(scene_.report(2).run, 1);
   scene_.hear(20, 0);
@@ -111,8 +111,8 @@ TEST_F(OtherCommandPost, GetsNoReportQueuedForTheFirst) {
 }
 
 TEST_F(OtherCommandPost, HoldsReportsOfTheFirstInItsNewRun) {
-  scene_.post_to_wait(3);
-  go();
+  scene_.post_queued(3);
+  move_away();
   come_back();
   scene_.hear(25, 0, 4);
   EXPECT_EQ(scene_.state(2), Held);
@@ -121,30 +121,30 @@ TEST_F(OtherCommandPost, HoldsReportsOfTheFirstInItsNewRun) {
 TEST_F(OtherCommandPost, DecidesNoDoubtOfTheFirst) {
   scene_.post(4);
   scene_.lose();
-  go();
+  move_away();
   EXPECT_EQ(scene_.report(2).run, 1);
   EXPECT_THAT(scene_.report(2).note, HasSubstr("10.100.1.200:8000"));
-  scene_.keep_hearing(3, 18, 0);
+  scene_.repeat_status(3, 18, 0);
   EXPECT_EQ(scene_.state(2), InDoubt);
   come_back();
-  scene_.keep_hearing(3, 18, 1);
+  scene_.repeat_status(3, 18, 1);
   EXPECT_EQ(scene_.state(2), Settled);
 }
 
 TEST_F(OtherCommandPost, MakesOtherDoubtsUncertainAfterASettlement) {
   scene_.post(4);
   scene_.lose();
-  scene_.hear_stop(16);
+  scene_.repeat_stop(16);
   scene_.post(5);
   scene_.lose();
-  go();
+  move_away();
   ASSERT_TRUE(scene_.reports().settle(2, scene_.time()));
   EXPECT_EQ(scene_.report(3).before, std::nullopt);
 }
 
 TEST(UnheardCommandPost, KeepsItsDoubts) {
   const Time time{.now = {}, .stamp = Scene::kEpoch};
-  RecordingActions output;
+  FakeOutput output;
   Reports reports({}, output);
   reports.open({}, {}, time, "10.100.1.200:8000");
   reports.status_failed(true, time);
@@ -161,7 +161,7 @@ TEST(UnheardCommandPost, KeepsItsDoubts) {
 TEST(OtherTeam, LeavesTheFirstRunForAReturn) {
   Scene scene;
   scene.post(1);
-  scene.answer(recorded(1));
+  scene.answer(recorded_answer(1));
   scene.hear(19, 1);
   scene.wait(1);
   scene.reports().status_heard({0, 5, 25, "other"}, scene.time().now, scene.time());

@@ -17,14 +17,14 @@ class LostReport : public testing::Test {
  protected:
   LostReport() {
     scene_.post(1);
-    scene_.answer(recorded());
+    scene_.answer(recorded_answer());
     Report lost = scene_.report(1);
     lost = {.number = 2, .report = {"?", {}}, .sender = std::string(Report::kLost), .state = InDoubt};
     lost.run = 1;
     lost.note = kNote;
     scene_.output().ledger[2] = lost;
     scene_.restart();
-    scene_.keep_hearing(2, 19, 0);
+    scene_.repeat_status(2, 19, 0);
   }
   Scene scene_;
 };
@@ -34,9 +34,10 @@ TEST_F(LostReport, HoldsNewReportsOfItsRun) {
   EXPECT_EQ(scene_.state(3), Held);
   EXPECT_THAT(scene_.report(3).note, HasSubstr(kNote));
   scene_.wait(21);
-  EXPECT_THAT(scene_.output().told[client].at(0).sentence, HasSubstr("is held until the operator decides"));
+  EXPECT_THAT(scene_.output().answers[client].at(0).sentence,
+              HasSubstr("is held until the operator decides"));
   EXPECT_TRUE(scene_.reports().send(3, scene_.time()));
-  scene_.keep_hearing(1, 19, 0);
+  scene_.repeat_status(1, 19, 0);
   EXPECT_EQ(scene_.send_next(), 3);
 }
 
@@ -49,7 +50,7 @@ TEST_F(LostReport, HoldsNoReportOnceItIsSettled) {
   EXPECT_THAT(scene_.undecided(), ElementsAre(HasSubstr(kNote)));
   ASSERT_TRUE(scene_.reports().settle(2, scene_.time()));
   EXPECT_THAT(scene_.undecided(), ElementsAre());
-  scene_.keep_hearing(1, 19, 0);
+  scene_.repeat_status(1, 19, 0);
   scene_.post(2);
   EXPECT_EQ(scene_.state(3), Sending);
 }
@@ -77,10 +78,10 @@ TEST_F(LostReport, CannotBeSent) {
 TEST_F(LostReport, KeepsItsNoteAtEachStatus) {
   scene_.post(3);
   ASSERT_TRUE(scene_.reports().send(3, scene_.time()));
-  scene_.keep_hearing(1, 19, 0);
+  scene_.repeat_status(1, 19, 0);
   ASSERT_EQ(scene_.send_next(), 3);
   scene_.lose();
-  scene_.keep_hearing(20, 18, 0);
+  scene_.repeat_status(20, 18, 0);
   EXPECT_EQ(scene_.report(2).note, kNote);
   EXPECT_EQ(scene_.state(3), InDoubt) << "the lost report may have used one";
 }

@@ -16,11 +16,11 @@ class PendingMove : public testing::Test {
   PendingMove() {
     scene_.post(1);
     scene_.post(2);
-    say(kThere);
+    announce(kThere);
   }
-  void say(const std::string& post) { scene_.reports().will_move(post, scene_.time()); }
-  void be_there() {
-    scene_.answer(recorded());
+  void announce(const std::string& post) { scene_.reports().will_move(post, scene_.time()); }
+  void arrive() {
+    scene_.answer(recorded_answer());
     scene_.move_to(kThere);
     scene_.wait(1);
     scene_.hear(20, 0);
@@ -38,7 +38,7 @@ class PendingMove : public testing::Test {
 
 TEST_F(PendingMove, LeavesTheRunUntilTheAnswerArrives) {
   EXPECT_EQ(scene_.reports().run().post, kHere);
-  scene_.answer(recorded());
+  scene_.answer(recorded_answer());
   EXPECT_EQ(scene_.state(1), Answered);
   EXPECT_EQ(post_of(1), kHere);
 }
@@ -47,10 +47,10 @@ TEST_F(PendingMove, AssignsNewReportsToTheNewCommandPost) {
   const ClientId client = scene_.post(3);
   EXPECT_EQ(post_of(3), kThere);
   EXPECT_EQ(scene_.state(3), Queued);
-  be_there();
+  arrive();
   EXPECT_EQ(scene_.send_next(), 3);
-  scene_.answer(recorded(1));
-  EXPECT_EQ(scene_.told(client).status, 201);
+  scene_.answer(recorded_answer(1));
+  EXPECT_EQ(scene_.answer_to(client).status, 201);
   EXPECT_EQ(scene_.send_next(), 0) << "report 2 is kept";
   EXPECT_EQ(post_of(2), kHere);
 }
@@ -67,35 +67,35 @@ TEST_F(PendingMove, SurvivesARestart) {
 
 TEST_F(PendingMove, GivesARepeatTheAnswerInFlight) {
   const ClientId again = scene_.post(1);
-  scene_.answer(recorded(1));
+  scene_.answer(recorded_answer(1));
   EXPECT_EQ(scene_.count(), 2u);
-  EXPECT_EQ(scene_.told(again).body, recorded(1).body);
+  EXPECT_EQ(scene_.answer_to(again).body, recorded_answer(1).body);
 }
 
 TEST_F(PendingMove, SendsARepeatOfAQueuedReportToBoth) {
   scene_.post(2);
-  be_there();
+  arrive();
   EXPECT_EQ(scene_.send_next(), 3);
-  scene_.answer(recorded());
+  scene_.answer(recorded_answer());
   go_back();
   EXPECT_EQ(scene_.send_next(), 2);
 }
 
 TEST_F(PendingMove, CanBeRevertedWithItsNewReports) {
   scene_.post(3);
-  say(kHere);
+  announce(kHere);
   EXPECT_EQ(post_of(3), kHere) << "the other Command Post never answered";
-  scene_.answer(recorded());
+  scene_.answer(recorded_answer());
   EXPECT_EQ(scene_.send_next(), 2);
 }
 
 TEST_F(PendingMove, KeepsNewReportsForAKnownCommandPost) {
-  be_there();
+  arrive();
   go_back();
   ASSERT_EQ(scene_.send_next(), 2);
-  say(kThere);
+  announce(kThere);
   scene_.post(3);
-  say(kHere);
+  announce(kHere);
   EXPECT_EQ(post_of(3), kThere);
 }
 
@@ -103,7 +103,7 @@ TEST_F(PendingMove, AppliesActionsToTheNewCommandPost) {
   ASSERT_TRUE(scene_.reports().send(2, scene_.time()));
   EXPECT_EQ(post_of(2), kThere);
   const std::int64_t run = scene_.reports().declare_new_run(scene_.time());
-  be_there();
+  arrive();
   EXPECT_EQ(scene_.reports().run().number, run);
 }
 

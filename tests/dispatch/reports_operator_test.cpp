@@ -73,14 +73,14 @@ TEST(Operator, LearnsThatAReportDoesNotExist) {
 
 TEST(HoldAction, LastsUntilTheOperatorSendsTheReport) {
   Scene scene;
-  const ClientId client = scene.post_to_wait();
+  const ClientId client = scene.post_queued();
   ASSERT_TRUE(scene.reports().hold(1, scene.time()).has_value());
   EXPECT_EQ(scene.state(1), Held);
   EXPECT_EQ(scene.report(1).note, "the operator held it");
-  EXPECT_EQ(scene.told(client).status, 503);
-  EXPECT_THAT(scene.told(client).sentence, HasSubstr("is held until the operator decides"));
+  EXPECT_EQ(scene.answer_to(client).status, 503);
+  EXPECT_THAT(scene.answer_to(client).sentence, HasSubstr("is held until the operator decides"));
   EXPECT_THAT(scene.undecided(), ElementsAre("the operator held it"));
-  scene.keep_hearing(60, 20, 0);
+  scene.repeat_status(60, 20, 0);
   EXPECT_EQ(scene.send_next(), 0);
   ASSERT_TRUE(scene.reports().send(1, scene.time()).has_value());
   EXPECT_EQ(scene.send_next(), 1);
@@ -99,11 +99,11 @@ TEST(HoldAction, ExplainsWhyItIsTooLate) {
 
 TEST(WithdrawAction, AnswersClientsAndRepeats) {
   Scene scene;
-  const ClientId client = scene.post_to_wait();
+  const ClientId client = scene.post_queued();
   ASSERT_TRUE(scene.reports().withdraw(1, scene.time()).has_value());
-  EXPECT_EQ(scene.told(client).status, 409);
-  EXPECT_THAT(scene.told(client).sentence, HasSubstr("report 1 was withdrawn by the operator"));
-  EXPECT_EQ(scene.told(scene.post()).status, 409);
+  EXPECT_EQ(scene.answer_to(client).status, 409);
+  EXPECT_THAT(scene.answer_to(client).sentence, HasSubstr("report 1 was withdrawn by the operator"));
+  EXPECT_EQ(scene.answer_to(scene.post()).status, 409);
   EXPECT_EQ(scene.send_next(), 0);
 }
 
@@ -111,7 +111,7 @@ TEST(SendAction, LeavesOtherDoubtsToTheOperator) {
   Scene scene;
   scene.post(1);
   scene.lose();
-  scene.hear_stop(16);
+  scene.repeat_stop(16);
   scene.post(2);
   scene.lose();
   ASSERT_TRUE(scene.reports().send(2, scene.time()).has_value());
@@ -128,10 +128,11 @@ TEST(SettleAction, TellsClientsThatTheAnswerIsUnknown) {
   ASSERT_TRUE(scene.reports().settle(1, scene.time()).has_value());
   EXPECT_EQ(scene.state(1), Settled);
   EXPECT_FALSE(scene.report(1).reconciled);
-  EXPECT_EQ(scene.told(client).status, 409);
-  EXPECT_THAT(scene.told(client).sentence, HasSubstr("settled by the operator; its answer is not known"));
+  EXPECT_EQ(scene.answer_to(client).status, 409);
+  EXPECT_THAT(scene.answer_to(client).sentence,
+              HasSubstr("settled by the operator; its answer is not known"));
   scene.hear(19, 0);
-  EXPECT_EQ(scene.told(scene.post()).status, 409) << "a repeat";
+  EXPECT_EQ(scene.answer_to(scene.post()).status, 409) << "a repeat";
 }
 
 TEST(SettleAction, AllowsEitherCountInTheNextStatus) {
@@ -140,7 +141,7 @@ TEST(SettleAction, AllowsEitherCountInTheNextStatus) {
     scene.post();
     scene.lose();
     ASSERT_TRUE(scene.reports().settle(1, scene.time()).has_value());
-    scene.keep_hearing(5, remaining, 0);
+    scene.repeat_status(5, remaining, 0);
     EXPECT_EQ(scene.reports().run().unreliable, "");
   }
 }
@@ -150,10 +151,10 @@ TEST(SettleAction, LeavesTheNextDoubtToTheOperator) {
   scene.post(1);
   scene.lose();
   ASSERT_TRUE(scene.reports().settle(1, scene.time()).has_value());
-  scene.keep_hearing(3, 20, 0);
+  scene.repeat_status(3, 20, 0);
   scene.post(2);
   scene.lose();
-  scene.keep_hearing(20, 19, 0);  // report 1 is recorded late
+  scene.repeat_status(20, 19, 0);  // report 1 is recorded late
   EXPECT_EQ(scene.state(2), InDoubt);
 }
 
@@ -164,7 +165,7 @@ TEST(SettleAction, LeavesNoFalseEvidenceAtAPowerCut) {
     Scene scene;
     scene.post(1);
     scene.lose();
-    scene.hear_stop(16);
+    scene.repeat_stop(16);
     scene.post(2);
     scene.lose();
     scene.output().writes_until_full = writes;
@@ -184,7 +185,7 @@ TEST(ResubmitAction, MakesANewReportThatNoReviewHolds) {
   rules.review = Review::All;
   Scene scene(rules);
   scene.post(1, "Drill", true);
-  scene.answer(recorded());
+  scene.answer(recorded_answer());
   const auto made = scene.reports().resubmit(1, scene.time());
   ASSERT_TRUE(made.has_value());
   EXPECT_EQ(*made, 2);
@@ -208,13 +209,13 @@ TEST(Operator, DecidesDoubtsButNoRejectedReports) {
 TEST(ResubmitAction, SendsOnceIfPressedTwice) {
   Scene scene;
   scene.post();
-  scene.answer(recorded());
+  scene.answer(recorded_answer());
   scene.wait(1);
   EXPECT_EQ(scene.reports().resubmit(1, scene.time()), 2);
   EXPECT_EQ(scene.reports().resubmit(1, scene.time()), 2);
   EXPECT_EQ(scene.send_next(), 2);
   EXPECT_EQ(scene.reports().resubmit(1, scene.time()), 2) << "in flight";
-  scene.answer(recorded());
+  scene.answer(recorded_answer());
   scene.output().full = true;
   EXPECT_FALSE(scene.reports().resubmit(1, scene.time()));
   scene.output().full = false;
@@ -226,7 +227,7 @@ class ReportHeldInTheLastRun : public testing::Test {
  protected:
   void SetUp() override {
     scene.post(1);
-    scene.answer(recorded());
+    scene.answer(recorded_answer());
     scene.post(2);
     ASSERT_EQ(scene.state(2), Held);
     scene.reports().declare_new_run(scene.time());
@@ -243,7 +244,7 @@ class ReportHeldInTheLastRun : public testing::Test {
 
 TEST_F(ReportHeldInTheLastRun, CannotBeSentIfARepeatIsAnswered) {
   scene.post(2);
-  scene.answer(recorded());
+  scene.answer(recorded_answer());
   const auto sent = scene.reports().send(2, scene.time());
   ASSERT_FALSE(sent);
   EXPECT_THAT(sent.error(), HasSubstr("report 3 is the same and is answered in this run"));
@@ -251,7 +252,7 @@ TEST_F(ReportHeldInTheLastRun, CannotBeSentIfARepeatIsAnswered) {
 }
 
 TEST_F(ReportHeldInTheLastRun, CannotBeSentIfARepeatIsQueued) {
-  scene.post_to_wait(2);
+  scene.post_queued(2);
   ASSERT_EQ(scene.state(3), Queued);
   const auto sent = scene.reports().send(2, scene.time());
   ASSERT_FALSE(sent);

@@ -21,22 +21,22 @@ TEST(NewReport, IsSentAfterOneWriteOfBothSteps) {
   const auto writes = scene.output().writes;
   scene.post();
   EXPECT_EQ(scene.output().writes, writes + 1);
-  EXPECT_THAT(scene.output().lives[1], ElementsAre(Queued, Sending));
+  EXPECT_THAT(scene.output().states[1], ElementsAre(Queued, Sending));
   ASSERT_NE(scene.reports().sending(), nullptr);
   EXPECT_EQ(scene.reports().sending()->before->remaining_reports, 20) << "kept for a doubt";
 }
 
 TEST(NewReport, KeepsItsPlaceInTheOrder) {
   Scene scene;
-  for (const double x : {1, 2, 3}) scene.post_to_wait(x);
+  for (const double x : {1, 2, 3}) scene.post_queued(x);
   const ClientId late = scene.post(4);
   EXPECT_EQ(scene.reports().sending(), nullptr) << "it does not overtake";
   for (const std::int64_t number : {1, 2, 3, 4}) {
     EXPECT_EQ(scene.send_next(), number);
-    EXPECT_FALSE(scene.is_told(late));
-    scene.answer(recorded());
+    EXPECT_FALSE(scene.is_answered(late));
+    scene.answer(recorded_answer());
   }
-  EXPECT_EQ(scene.told(late).status, 201);
+  EXPECT_EQ(scene.answer_to(late).status, 201);
 }
 
 TEST(NewReport, IsQueuedUntilTheRunIsKnown) {
@@ -54,15 +54,15 @@ TEST(NewReport, IsRejectedByAFullQueue) {
   ReportRules rules;
   rules.most_waiting = 2;
   Scene scene(rules);
-  scene.post_to_wait(1);
-  scene.post_to_wait(2);
-  const auto told = scene.told(scene.post_to_wait(3));
+  scene.post_queued(1);
+  scene.post_queued(2);
+  const auto told = scene.answer_to(scene.post_queued(3));
   EXPECT_EQ(told.status, 429);
   EXPECT_THAT(told.sentence, HasSubstr("not accepted"));
   EXPECT_EQ(told.number, 0);
   EXPECT_EQ(scene.count(), 2);
-  const ClientId joined = scene.post_to_wait(2);
-  EXPECT_FALSE(scene.is_told(joined)) << "a repeat needs no room";
+  const ClientId joined = scene.post_queued(2);
+  EXPECT_FALSE(scene.is_answered(joined)) << "a repeat needs no room";
 }
 
 TEST(RepeatedReport, JoinsAReportInFlight) {
@@ -70,22 +70,22 @@ TEST(RepeatedReport, JoinsAReportInFlight) {
   const ClientId first = scene.post(1);
   const ClientId second = scene.post(1, "dRILL");
   EXPECT_EQ(scene.count(), 1);
-  scene.answer(recorded(1));
+  scene.answer(recorded_answer(1));
   for (const ClientId client : {first, second}) {
-    EXPECT_EQ(scene.told(client).status, 201);
-    EXPECT_EQ(scene.told(client).body, recorded(1).body);
-    EXPECT_EQ(scene.output().told[client].size(), 1);
+    EXPECT_EQ(scene.answer_to(client).status, 201);
+    EXPECT_EQ(scene.answer_to(client).body, recorded_answer(1).body);
+    EXPECT_EQ(scene.output().answers[client].size(), 1);
   }
 }
 
 TEST(RepeatedReport, GetsTheStoredAnswerByteForByte) {
   Scene scene;
   scene.post(1);
-  scene.answer(recorded(1));
+  scene.answer(recorded_answer(1));
   scene.wait(5);
-  const auto told = scene.told(scene.post(1));
+  const auto told = scene.answer_to(scene.post(1));
   EXPECT_EQ(told.status, 201);
-  EXPECT_EQ(told.body, recorded(1).body);
+  EXPECT_EQ(told.body, recorded_answer(1).body);
   EXPECT_EQ(told.number, 1);
   EXPECT_EQ(scene.count(), 1);
 }
@@ -101,7 +101,7 @@ TEST(RepeatedReport, IsSentIfTheFirstWasRejected) {
 TEST(RepeatedReport, IsSentIfTheFirstWasNotScored) {
   Scene scene;
   scene.post(1);
-  scene.answer(recorded(0, "admin stop"));
+  scene.answer(recorded_answer(0, "admin stop"));
   scene.post(1);
   EXPECT_EQ(scene.state(2), Sending);
 }
@@ -109,38 +109,38 @@ TEST(RepeatedReport, IsSentIfTheFirstWasNotScored) {
 TEST(RepeatedReport, IsNotSentIfTheRunAcceptsNoMore) {
   Scene scene;
   scene.post(1);
-  scene.answer(recorded(0, "time limit exceeded"));
-  EXPECT_EQ(scene.told(scene.post(1)).body, scene.report(1).answer);
+  scene.answer(recorded_answer(0, "time limit exceeded"));
+  EXPECT_EQ(scene.answer_to(scene.post(1)).body, scene.report(1).answer);
   EXPECT_EQ(scene.count(), 1);
 }
 
 TEST(RepeatedReport, IsComparedOnceTheRunIsKnown) {
   Scene scene;
   scene.post(1);
-  scene.answer(recorded());
+  scene.answer(recorded_answer());
   scene.wait(16);
   const ClientId client = scene.post(1);
-  EXPECT_FALSE(scene.is_told(client)) << "it may be meant for another run";
+  EXPECT_FALSE(scene.is_answered(client)) << "it may be meant for another run";
   EXPECT_EQ(scene.state(2), Queued);
   scene.hear(19, 0);
   EXPECT_EQ(scene.send_next(), 0);
   EXPECT_EQ(scene.state(2), Withdrawn);
   EXPECT_EQ(scene.report(2).same_as, 1);
-  EXPECT_EQ(scene.told(client).body, recorded().body);
+  EXPECT_EQ(scene.answer_to(client).body, recorded_answer().body);
 }
 
 /// If the first report is rejected or unscored, its joined repeat blocks no later one.
 TEST(RepeatedReport, IsSentThoughAnEarlierRepeatWasJoined) {
-  for (const HttpAnswer& outcome : {answer_of(422), recorded(0, "admin stop")}) {
+  for (const HttpAnswer& outcome : {answer_of(422), recorded_answer(0, "admin stop")}) {
     Scene scene;
-    scene.post_to_wait(1);
+    scene.post_queued(1);
     ASSERT_TRUE(scene.reports().withdraw(1, scene.time()).has_value());
     scene.wait(16);
     const ClientId repeat = scene.post(1);
     scene.hear(20, 0);
     scene.send_next();
     ASSERT_EQ(scene.report(2).same_as, 1);
-    EXPECT_EQ(scene.told(repeat).status, 409);
+    EXPECT_EQ(scene.answer_to(repeat).status, 409);
     ASSERT_TRUE(scene.reports().send(1, scene.time()).has_value());
     ASSERT_EQ(scene.send_next(), 1);
     scene.answer(outcome);
@@ -153,7 +153,7 @@ TEST(RepeatedReport, IsSentThoughAnEarlierRepeatWasJoined) {
 TEST(ResubmittedReport, IsSentAsANewReport) {
   Scene scene;
   scene.post(1);
-  scene.answer(recorded());
+  scene.answer(recorded_answer());
   scene.post(1, "Drill", true);
   ASSERT_NE(scene.reports().sending(), nullptr);
   EXPECT_EQ(scene.reports().sending()->number, 2);
@@ -163,24 +163,24 @@ TEST(ResubmittedReport, IsSentAsANewReport) {
 TEST(ResubmittedReport, IsNotSentTwiceIfItsPostIsRetried) {
   Scene scene;
   scene.post(1);
-  scene.answer(recorded());
+  scene.answer(recorded_answer());
   scene.post(1, "Drill", true);
   const ClientId retry = scene.post(1, "Drill", true);
   EXPECT_EQ(scene.count(), 2);
-  scene.answer(recorded(0, "scored", "1", 107));
-  EXPECT_EQ(scene.told(retry).body, recorded(0, "scored", "1", 107).body);
+  scene.answer(recorded_answer(0, "scored", "1", 107));
+  EXPECT_EQ(scene.answer_to(retry).body, recorded_answer(0, "scored", "1", 107).body);
 }
 
 TEST(NearbyReport, IsHeldWithItsReason) {
   Scene scene(reviewing(Review::Duplicates));
   scene.post(1);
-  scene.answer(recorded());
+  scene.answer(recorded_answer());
   const ClientId near = scene.post(4.26);
   EXPECT_EQ(scene.state(2), Held);
   EXPECT_EQ(scene.report(2).note, "the same type as report 1, 3.3 m from it");
   scene.wait(20);
-  EXPECT_EQ(scene.told(near).status, 503);
-  EXPECT_THAT(scene.told(near).sentence, HasSubstr("is held until the operator decides (the same type"));
+  EXPECT_EQ(scene.answer_to(near).status, 503);
+  EXPECT_THAT(scene.answer_to(near).sentence, HasSubstr("is held until the operator decides (the same type"));
   scene.hear(19, 0);
   scene.post(7, "Drill");
   EXPECT_EQ(scene.state(3), Held) << "near the held report";
@@ -193,7 +193,7 @@ TEST(NearbyReport, IsNotHeldForAnUnscoredReport) {
   scene.post(1);
   scene.answer(answer_of(422));
   scene.post(2);
-  scene.answer(recorded(0, "admin stop"));
+  scene.answer(recorded_answer(0, "admin stop"));
   scene.post(3);
   EXPECT_EQ(scene.state(3), Sending);
 }
@@ -205,7 +205,7 @@ TEST(ReviewOfAllReports, HoldsEachUntilTheOperatorSendsIt) {
   EXPECT_EQ(scene.send_next(), 0);
   ASSERT_TRUE(scene.reports().send(1, scene.time()).has_value());
   ASSERT_EQ(scene.send_next(), 1);
-  scene.answer(recorded());
+  scene.answer(recorded_answer());
   EXPECT_EQ(scene.state(2), Held) << "an answer releases no other report";
 }
 

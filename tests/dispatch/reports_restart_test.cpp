@@ -17,7 +17,7 @@ TEST(Restart, PutsAReportInFlightInDoubt) {
   EXPECT_EQ(scene.report(1).tries, 1);
   EXPECT_EQ(scene.report(1).note, "aditd stopped while it was in flight");
   EXPECT_TRUE(scene.reports().is_asking(scene.report(1)));
-  scene.keep_hearing(2, 19, 1);
+  scene.repeat_status(2, 19, 1);
   EXPECT_EQ(scene.state(1), Settled);
   EXPECT_THAT(scene.report(1).answer, HasSubstr(R"("score_change":1)"));
 }
@@ -26,11 +26,11 @@ TEST(Restart, KeepsTheCountOfReportsSentSinceADoubt) {
   Scene scene;
   scene.post(1);
   scene.lose();
-  scene.hear_stop(16);
+  scene.repeat_stop(16);
   scene.post(2);
-  scene.answer(recorded(1, "scored", "1", 117));
+  scene.answer(recorded_answer(1, "scored", "1", 117));
   scene.restart();
-  scene.keep_hearing(12, 19, 1);
+  scene.repeat_status(12, 19, 1);
   EXPECT_EQ(scene.send_next(), 1) << "the count is report 2's";
 }
 
@@ -38,17 +38,17 @@ TEST(Restart, GivesADoubtItsWholeTimeAgain) {
   Scene scene;
   scene.post();
   scene.lose();
-  scene.keep_hearing(9, 20, 0);
+  scene.repeat_status(9, 20, 0);
   scene.restart();
-  scene.keep_hearing(9, 20, 0);
+  scene.repeat_status(9, 20, 0);
   EXPECT_EQ(scene.state(1), InDoubt) << "its bytes may have left before the stop";
-  scene.keep_hearing(1, 20, 0);
+  scene.repeat_status(1, 20, 0);
   EXPECT_EQ(scene.state(1), Queued);
 }
 
 TEST(Restart, SendsQueuedReportsOnceTheRunIsKnown) {
   Scene scene;
-  scene.post_to_wait();
+  scene.post_queued();
   scene.restart();
   EXPECT_EQ(scene.send_next(), 0);
   scene.hear(20, 0);
@@ -57,7 +57,7 @@ TEST(Restart, SendsQueuedReportsOnceTheRunIsKnown) {
 
 TEST(Restart, HoldsQueuedReportsIfTheRunIsAnother) {
   Scene scene;
-  scene.post_to_wait();
+  scene.post_queued();
   scene.restart();
   scene.hear(25, 0, 3);
   EXPECT_EQ(scene.state(1), Held);
@@ -68,7 +68,7 @@ struct RunningClock : testing::Test {
   RunningClock() {
     scene.wait(5);
     scene.hear(20, 0);
-    scene.post_to_wait();
+    scene.post_queued();
   }
   Scene scene;
 };
@@ -106,7 +106,7 @@ TEST(Restart, KeepsEachOtherState) {
 TEST(Restart, ContinuesTheOrderOfSending) {
   Scene scene;
   scene.post(1);
-  scene.answer(recorded());
+  scene.answer(recorded_answer());
   scene.restart();
   scene.hear(19, 0);
   scene.post(2);
@@ -133,7 +133,7 @@ TEST(Restart, ComparesEachQueuedReportWithEarlierOnes) {
   scene.restart();
   scene.hear(20, 0);
   EXPECT_EQ(scene.send_next(), 1);
-  scene.answer(recorded());
+  scene.answer(recorded_answer());
   scene.send_next();
   EXPECT_EQ(scene.state(2), Held);
 }
@@ -141,24 +141,24 @@ TEST(Restart, ComparesEachQueuedReportWithEarlierOnes) {
 TEST(MoveToAnotherCommandPost, AnswersClientsThatPostedBefore) {
   Scene scene;
   scene.restart("10.0.0.1:1");  // no status comes: queued reports are for the first Command Post that answers
-  const ClientId client = scene.post_to_wait();
+  const ClientId client = scene.post_queued();
   scene.move_to("10.0.0.2:1");
-  EXPECT_FALSE(scene.is_told(client));
+  EXPECT_FALSE(scene.is_answered(client));
   scene.hear(20, 0);
   ASSERT_EQ(scene.send_next(), 1);
-  scene.answer(recorded(1));
-  EXPECT_EQ(scene.told(client).status, 201);
+  scene.answer(recorded_answer(1));
+  EXPECT_EQ(scene.answer_to(client).status, 201);
 }
 
 TEST(MoveToAnotherCommandPost, AnswersClientsOfTheOldOneAtTheirDeadline) {
   Scene scene;
-  const ClientId client = scene.post_to_wait();
+  const ClientId client = scene.post_queued();
   scene.move_to("10.0.0.2:1");
   scene.hear(20, 0);
   EXPECT_EQ(scene.send_next(), 0);
-  EXPECT_FALSE(scene.is_told(client));
+  EXPECT_FALSE(scene.is_answered(client));
   scene.wait(20);
-  EXPECT_EQ(scene.told(client).status, 503);
+  EXPECT_EQ(scene.answer_to(client).status, 503);
   scene.move_to("10.100.1.200:8000");
   scene.hear(20, 0);
   EXPECT_EQ(scene.send_next(), 1);
@@ -166,23 +166,23 @@ TEST(MoveToAnotherCommandPost, AnswersClientsOfTheOldOneAtTheirDeadline) {
 
 TEST(NewRules, ApplyToLaterClients) {
   Scene scene;
-  const ClientId before = scene.post_to_wait(1);
+  const ClientId before = scene.post_queued(1);
   ReportRules rules;
   rules.answer_within = std::chrono::seconds{5};
   rules.review = Review::All;
   scene.reports().go_by(rules);
-  const ClientId after = scene.post_to_wait(100);
+  const ClientId after = scene.post_queued(100);
   EXPECT_EQ(scene.state(2), Held);
   scene.wait(5);
-  EXPECT_TRUE(scene.is_told(after));
-  EXPECT_FALSE(scene.is_told(before));
+  EXPECT_TRUE(scene.is_answered(after));
+  EXPECT_FALSE(scene.is_answered(before));
 }
 
 }  // namespace
 /// The clock starts ahead of all earlier time stamps. That is no silence.
 TEST(Reboot, IsNoSilence) {
   Scene scene;
-  scene.keep_hearing(12, 20, 0);
+  scene.repeat_status(12, 20, 0);
   scene.wait(10);
   scene.set_box_clock_forward(30);
   scene.restart();

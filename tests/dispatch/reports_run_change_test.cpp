@@ -32,7 +32,7 @@ TEST_F(AnswerAtARunChange, HoldsARepeat) {
   scene_.post(1);
   EXPECT_EQ(scene_.count(), 2u) << "it joins the held one";
   scene_.wait(21);
-  EXPECT_THAT(scene_.told(again).sentence, HasSubstr("is held until the operator decides"));
+  EXPECT_THAT(scene_.answer_to(again).sentence, HasSubstr("is held until the operator decides"));
 }
 
 TEST_F(AnswerAtARunChange, BelongsToTheNewRunIfItHasItsName) {
@@ -41,8 +41,8 @@ TEST_F(AnswerAtARunChange, BelongsToTheNewRunIfItHasItsName) {
   EXPECT_EQ(scene_.reports().run().number, 2);
   EXPECT_EQ(scene_.state(2), Withdrawn);
   EXPECT_EQ(scene_.report(1).run, 2);
-  EXPECT_EQ(scene_.told(again).body, recorded(0, "scored", "1").body);
-  EXPECT_EQ(scene_.told(scene_.post(1)).status, 201);
+  EXPECT_EQ(scene_.answer_to(again).body, recorded_answer(0, "scored", "1").body);
+  EXPECT_EQ(scene_.answer_to(scene_.post(1)).status, 201);
   EXPECT_EQ(scene_.count(), 3u);
 }
 
@@ -66,7 +66,7 @@ TEST_F(AnswerAtARunChange, LetsTheOperatorSendTheRepeat) {
   scene_.post(1);
   ASSERT_TRUE(scene_.reports().send(2, scene_.time()));
   EXPECT_EQ(scene_.send_next(), 2);
-  scene_.answer(recorded(0, "scored", "2"));
+  scene_.answer(recorded_answer(0, "scored", "2"));
   EXPECT_EQ(scene_.state(2), Answered);
   EXPECT_EQ(scene_.report(1).run, 1);
 }
@@ -91,7 +91,7 @@ TEST(AnswerBeforeARestart, HoldsARepeatInALikelyNewRun) {
   Scene scene;
   scene.wait(5);
   scene.post(1);
-  scene.answer(recorded(0, "scored", "1", 105));
+  scene.answer(recorded_answer(0, "scored", "1", 105));
   scene.restart();
   scene.wait(5);
   scene.hear(25, 0, 3);
@@ -104,7 +104,7 @@ TEST(AnswerBeforeAStatus, BelongsToTheOldRun) {
   Scene scene;
   scene.wait(5);
   scene.post(1);
-  scene.answer(recorded());
+  scene.answer(recorded_answer());
   scene.wait(5);
   scene.hear(19, 0);
   scene.wait(5);
@@ -126,7 +126,7 @@ TEST(UnnamedAnswerAtARunChange, BelongsToTheNewRunWhateverItsName) {
   EXPECT_EQ(scene.report(1).run, 2);
   EXPECT_EQ(scene.send_next(), 0);
   EXPECT_EQ(scene.state(2), Withdrawn);
-  EXPECT_EQ(scene.told(again).status, 201);
+  EXPECT_EQ(scene.answer_to(again).status, 201);
 }
 
 }  // namespace

@@ -22,10 +22,10 @@ TEST(NewRun, ShowsByMoreReportsLeft) {
 TEST(NewRun, ShowsByTheRunOfAnAnswer) {
   Scene scene;
   scene.post(1);
-  scene.answer(recorded(0, "scored", "1", 101));
+  scene.answer(recorded_answer(0, "scored", "1", 101));
   scene.post(2);
   scene.wait(12);
-  scene.answer(recorded(0, "scored", "2", 113));
+  scene.answer(recorded_answer(0, "scored", "2", 113));
   EXPECT_EQ(scene.reports().run().number, 2);
   EXPECT_EQ(scene.reports().run().id, "2");
   EXPECT_EQ(scene.report(1).run, 1);
@@ -34,7 +34,7 @@ TEST(NewRun, ShowsByTheRunOfAnAnswer) {
 
 TEST(NewRun, HoldsQueuedReportsOfTheLastRun) {
   Scene scene;
-  scene.post_to_wait(1);
+  scene.post_queued(1);
   scene.wait(11);
   scene.hear(25, 0, 3);
   EXPECT_EQ(scene.state(1), Held);
@@ -47,7 +47,7 @@ TEST(NewRun, HoldsQueuedReportsOfTheLastRun) {
 
 TEST(NewRun, TakesInReportsPostedJustBefore) {
   Scene scene;
-  scene.post_to_wait(1);
+  scene.post_queued(1);
   scene.wait(9);
   scene.hear(25, 0, 3);
   EXPECT_EQ(scene.report(1).run, 2);
@@ -57,7 +57,7 @@ TEST(NewRun, TakesInReportsPostedJustBefore) {
 
 TEST(NewRun, TakesInAReportRepeatedJustBefore) {
   Scene scene;
-  scene.post_to_wait(1);
+  scene.post_queued(1);
   scene.wait(60);
   scene.post(1);
   scene.wait(5);
@@ -68,7 +68,7 @@ TEST(NewRun, TakesInAReportRepeatedJustBefore) {
 
 TEST(NewRun, HoldsReportsThatTheOperatorSentBefore) {
   Scene scene;
-  scene.post_to_wait(1);
+  scene.post_queued(1);
   ASSERT_TRUE(scene.reports().send(1, scene.time()).has_value());
   scene.wait(11);
   scene.hear(25, 0, 3);
@@ -87,9 +87,9 @@ TEST(DoubtAtANewRun, BelongsToTheNewRun) {
   EXPECT_THAT(scene.report(1).note, HasSubstr("the operator decides"));
   const ClientId again = scene.post(1);
   EXPECT_EQ(scene.count(), 1);
-  scene.keep_hearing(20, 25, 0);
+  scene.repeat_status(20, 25, 0);
   EXPECT_EQ(scene.state(1), InDoubt);
-  EXPECT_EQ(scene.told(again).status, 504);
+  EXPECT_EQ(scene.answer_to(again).status, 504);
 }
 
 TEST(DoubtAtANewRun, StaysInItsRunIfOlderThanItsLastStatus) {
@@ -109,7 +109,7 @@ TEST(DoubtAtANewRun, StaysInItsRunIfOlderThanItsLastStatus) {
 
 TEST(DeclaredRun, BeginsLikeADetectedOne) {
   Scene scene;
-  scene.post_to_wait(1);
+  scene.post_queued(1);
   scene.wait(11);
   EXPECT_EQ(scene.reports().declare_new_run(scene.time()), 2);
   EXPECT_EQ(scene.state(1), Held);
@@ -132,8 +132,8 @@ class ReportInFlightAtADeclaration : public testing::Test {
 TEST_F(ReportInFlightAtADeclaration, IsJoinedByARepeat) {
   const ClientId again = scene_.post(1);
   EXPECT_EQ(scene_.count(), 1);
-  scene_.answer(recorded());
-  EXPECT_EQ(scene_.told(again).status, 201);
+  scene_.answer(recorded_answer());
+  EXPECT_EQ(scene_.answer_to(again).status, 201);
   EXPECT_EQ(scene_.report(1).run, 2);
 }
 

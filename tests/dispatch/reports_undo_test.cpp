@@ -50,11 +50,11 @@ TEST_F(Undo, NeverSendsAReportThatTheOperatorUndid) {
   scene_.wait(9);
   ASSERT_TRUE(scene_.reports().withdraw(1, scene_.time()));
   EXPECT_EQ(scene_.report(1).note, "the operator undid it");
-  scene_.keep_hearing(60, 20, 0);
+  scene_.repeat_status(60, 20, 0);
   scene_.restart();
-  scene_.keep_hearing(60, 20, 0);
+  scene_.repeat_status(60, 20, 0);
   EXPECT_EQ(scene_.state(1), Withdrawn);
-  EXPECT_THAT(scene_.output().lives[1], ElementsAre(Queued, Held, Withdrawn));
+  EXPECT_THAT(scene_.output().states[1], ElementsAre(Queued, Held, Withdrawn));
 }
 
 TEST_F(Undo, IsPossibleUntilTheSendingBegins) {
@@ -71,7 +71,7 @@ TEST_F(Undo, IsRefusedOnceTheSendingHasBegun) {
   ASSERT_EQ(scene_.send_next(), 1);
   EXPECT_EQ(scene_.reports().withdraw(1, scene_.time()).error(),
             "report 1 is sending: its sending has begun, so it cannot be undone");
-  scene_.answer(recorded());
+  scene_.answer(recorded_answer());
   EXPECT_EQ(scene_.state(1), Answered);
 }
 
@@ -88,7 +88,7 @@ TEST_F(Undo, EndsIfTheOperatorHoldsTheReport) {
   scene_.compose();
   ASSERT_TRUE(scene_.reports().hold(1, scene_.time()));
   EXPECT_EQ(scene_.report(1).note, "the operator held it");
-  scene_.keep_hearing(60, 20, 0);
+  scene_.repeat_status(60, 20, 0);
   EXPECT_EQ(scene_.state(1), Held);
   EXPECT_FALSE(scene_.reports().hold(1, scene_.time()));
 }
@@ -97,7 +97,7 @@ TEST_F(Undo, LeavesTheReportHeldAfterARestart) {
   scene_.compose();
   scene_.restart();
   EXPECT_FALSE(is_to_be_sent(1));
-  scene_.keep_hearing(60, 20, 0);
+  scene_.repeat_status(60, 20, 0);
   EXPECT_EQ(scene_.state(1), Held);
   EXPECT_EQ(scene_.reports().next_deadline(), std::nullopt);
   ASSERT_TRUE(scene_.reports().send(1, scene_.time()));
@@ -118,14 +118,14 @@ TEST_F(Undo, LeavesTheReportHeldInANewRun) {
   scene_.reports().declare_new_run(scene_.time());
   EXPECT_EQ(scene_.report(1).note, "a new run began (the operator declared it)");
   EXPECT_FALSE(is_to_be_sent(1));
-  scene_.keep_hearing(60, 20, 0);
+  scene_.repeat_status(60, 20, 0);
   EXPECT_EQ(scene_.state(1), Held);
 }
 
 TEST_F(Undo, LeavesTheReportHeldAtAnotherCommandPost) {
   scene_.compose();
   scene_.move_to(kThere);
-  scene_.keep_hearing(60, 20, 0);
+  scene_.repeat_status(60, 20, 0);
   EXPECT_EQ(scene_.state(1), Held);
 }
 
@@ -133,7 +133,7 @@ TEST_F(Undo, LeavesAReviewedReportHeld) {
   Scene scene(with_undo(Review::All));
   scene.compose();
   EXPECT_EQ(scene.report(1).note, "every report is reviewed");
-  scene.keep_hearing(60, 20, 0);
+  scene.repeat_status(60, 20, 0);
   EXPECT_EQ(scene.state(1), Held);
 }
 
@@ -141,12 +141,12 @@ TEST_F(Undo, ComparesTheReportAtItsEnd) {
   Scene scene(with_undo(Review::Duplicates));
   scene.post(1);
   scene.compose(10);
-  scene.answer(recorded());
+  scene.answer(recorded_answer());
   scene.post(10.5);
   EXPECT_EQ(scene.state(3), Held) << "near report 2, which can still be undone";
   ASSERT_TRUE(scene.reports().send(3, scene.time()));
   ASSERT_EQ(scene.send_next(), 3);
-  scene.answer(recorded());
+  scene.answer(recorded_answer());
   scene.wait(10);
   EXPECT_EQ(scene.send_next(), 0);
   EXPECT_THAT(scene.report(2).note, HasSubstr("the same type as report 3"));
@@ -158,8 +158,8 @@ TEST_F(Undo, GivesARepeatOfAClientTheAnswer) {
   EXPECT_EQ(scene_.count(), 1);
   scene_.wait(10);
   ASSERT_EQ(scene_.send_next(), 1);
-  scene_.answer(recorded(1));
-  EXPECT_EQ(scene_.told(client).status, 201);
+  scene_.answer(recorded_answer(1));
+  EXPECT_EQ(scene_.answer_to(client).status, 201);
 }
 
 TEST_F(Undo, BlocksTheSameReport) {

@@ -32,7 +32,7 @@ class RunAccountTest : public testing::Test {
     account_.answered(reply, time());
   }
 
-  RecordingActions output_;
+  FakeOutput output_;
   ReportBook book_{output_};
   RunAccount account_{book_};
   double now_ = 100;

@@ -16,9 +16,9 @@ constexpr const char* kHere = "10.100.1.200:8000";
 constexpr const char* kThere = "10.100.2.200:8000";
 
 /// Keeps the ledger and each answer to a client in memory.
-class RecordingActions final : public Output {
+class FakeOutput final : public Output {
  public:
-  struct Told {
+  struct Reply {
     int status = 0;
     std::string sentence;  // empty: the stored answer of the report
     std::string body;      // of the stored answer
@@ -32,7 +32,7 @@ class RecordingActions final : public Output {
     last_flush = flush;
     for (const Report& report : steps) {
       ledger[report.number] = report;
-      lives[report.number].push_back(report.state);
+      states[report.number].push_back(report.state);
     }
     if (last != nullptr) {
       run = *last;
@@ -42,7 +42,7 @@ class RecordingActions final : public Output {
   }
   void tell(ClientId client, const ClientAnswer& answer, const Report& report) override {
     const bool own = !answer.sentence.empty();
-    told[client].push_back({.status = own ? static_cast<int>(answer.status) : report.status,
+    answers[client].push_back({.status = own ? static_cast<int>(answer.status) : report.status,
                             .sentence = answer.sentence,
                             .body = own ? "" : report.answer,
                             .number = answer.number});
@@ -53,14 +53,14 @@ class RecordingActions final : public Output {
   std::int64_t writes = 0;
   Flush last_flush = Flush::Now;
   std::map<std::int64_t, Report> ledger;
-  std::map<std::int64_t, std::vector<ReportState>> lives;  // states in order of writing
-  std::optional<Run> run;                                  // last written
+  std::map<std::int64_t, std::vector<ReportState>> states;  // states in order of writing
+  std::optional<Run> run;                                   // last written
   std::map<std::int64_t, Run> runs;
-  std::map<ClientId, std::vector<Told>> told;
+  std::map<ClientId, std::vector<Reply>> answers;
 };
 
-inline HttpAnswer recorded(std::int64_t points = 0, const std::string& report_status = "scored",
-                           const std::string& run = "1", double run_clock = 0) {
+inline HttpAnswer recorded_answer(std::int64_t points = 0, const std::string& report_status = "scored",
+                                  const std::string& run = "1", double run_clock = 0) {
   return {201, "application/json",
           icd::sentence("{\"run\": \"", run, "\", \"run_clock\": ", run_clock, ", \"report_status\": \"",
                         report_status, "\", \"score_change\": ", points, "}")};
@@ -81,7 +81,7 @@ class Scene {
 
   Reports& reports() { return *reports_; }
   const Reports& reports() const { return *reports_; }
-  RecordingActions& output() { return output_; }
+  FakeOutput& output() { return output_; }
   Time time() const {
     return {Instant(std::chrono::milliseconds(static_cast<std::int64_t>(now_ * 1000))),
             kEpoch + now_ + clock_set_by_};
@@ -116,7 +116,7 @@ class Scene {
     return post(x, type, resubmit, reports_->sending() == nullptr);
   }
   /// As post(), but the rate limit forbids sending.
-  ClientId post_to_wait(double x = 1, const std::string& type = "Drill") {
+  ClientId post_queued(double x = 1, const std::string& type = "Drill") {
     return post(x, type, false, false);
   }
   /// The operator posts; the report can be undone if the rules allow it.
@@ -141,7 +141,7 @@ class Scene {
   /// A client posts, and the Command Post records it in the run of that name.
   void record(double x, const std::string& run) {
     post(x);
-    answer(recorded(0, "scored", run));
+    answer(recorded_answer(0, "scored", run));
   }
   void lose() { reports_->lost("no answer", time()); }
 
@@ -152,7 +152,7 @@ class Scene {
   }
   double run_clock() const { return now_; }
   /// The same status each second.
-  void keep_hearing(double seconds, std::int64_t remaining, std::int64_t score) {
+  void repeat_status(double seconds, std::int64_t remaining, std::int64_t score) {
     for (double end = now_ + seconds; now_ < end;) {
       wait(1);
       hear(remaining, score);
@@ -161,7 +161,7 @@ class Scene {
 
   /// An administrative stop: a status each second with a standing run clock. The count decides nothing, and
   /// other reports are not blocked.
-  void hear_stop(int seconds, double clock = 101) {
+  void repeat_stop(int seconds, double clock = 101) {
     for (int i = 0; i < seconds; ++i) {
       wait(1);
       hear(20, 0, clock);
@@ -180,11 +180,11 @@ class Scene {
     return notes;
   }
   std::size_t count() const { return reports_->book().all().size(); }
-  bool is_told(ClientId client) const { return output_.told.contains(client); }
+  bool is_answered(ClientId client) const { return output_.answers.contains(client); }
   /// The last answer to the client; status 0: none.
-  RecordingActions::Told told(ClientId client) const {
-    const auto found = output_.told.find(client);
-    return found == output_.told.end() ? RecordingActions::Told{} : found->second.back();
+  FakeOutput::Reply answer_to(ClientId client) const {
+    const auto found = output_.answers.find(client);
+    return found == output_.answers.end() ? FakeOutput::Reply{} : found->second.back();
   }
 
  private:
@@ -207,7 +207,7 @@ class Scene {
   }
 
   const ReportRules rules_;
-  RecordingActions output_;
+  FakeOutput output_;
   std::unique_ptr<Reports> reports_;
   double now_ = 100;
   double clock_set_by_ = 0;

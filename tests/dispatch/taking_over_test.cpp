@@ -57,23 +57,23 @@ class TakeOverTest : public testing::Test {
 
 TEST_F(TakeOverTest, KeepsAnswersOfTheFirstBox) {
   first.post(1);
-  first.answer(recorded(1));
+  first.answer(recorded_answer(1));
   take_over();
   spare.hear(19, 1);
   const ClientId again = spare.post(1);
-  EXPECT_EQ(spare.told(again).status, 201);
-  EXPECT_EQ(spare.told(again).body, first.report(1).answer);
+  EXPECT_EQ(spare.answer_to(again).status, 201);
+  EXPECT_EQ(spare.answer_to(again).body, first.report(1).answer);
   EXPECT_EQ(spare.count(), 1U);
 }
 
 TEST_F(TakeOverTest, HoldsAReportThatTheFirstBoxCorrected) {
   spare.wait(1);
-  spare.post_to_wait(1);
-  first.post_to_wait(1);
+  spare.post_queued(1);
+  first.post_queued(1);
   ASSERT_TRUE(first.reports().hold(1, first.time()));
   ASSERT_TRUE(first.reports().correct(1, {.type = "Drill", .position = {5, 0, 0}}, first.time()));
   ASSERT_EQ(first.send_next(), 2);
-  first.answer(recorded(1));
+  first.answer(recorded_answer(1));
   take_over();
   spare.hear(19, 1);
   EXPECT_EQ(spare.state(1), Held);
@@ -82,36 +82,36 @@ TEST_F(TakeOverTest, HoldsAReportThatTheFirstBoxCorrected) {
 }
 
 TEST_F(TakeOverTest, SendsQueuedReportsThatTheStatusLacks) {
-  first.post_to_wait(1);
+  first.post_queued(1);
   take_over();
   EXPECT_EQ(spare.state(1), InDoubt);
   EXPECT_THAT(spare.report(1).note, HasSubstr("may have sent it since"));
-  spare.keep_hearing(5, 20, 0);
+  spare.repeat_status(5, 20, 0);
   EXPECT_EQ(spare.send_next(), 0);
-  spare.keep_hearing(7, 20, 0);
+  spare.repeat_status(7, 20, 0);
   EXPECT_EQ(spare.send_next(), 1);
 }
 
 TEST_F(TakeOverTest, DetectsAReportSentAfterTheExport) {
-  first.post_to_wait(1);
+  first.post_queued(1);
   take_over();
-  spare.keep_hearing(3, 19, 1);
+  spare.repeat_status(3, 19, 1);
   EXPECT_EQ(spare.state(1), Settled);
 }
 
 TEST_F(TakeOverTest, AsksTheOperatorIfSomeReportsWereSent) {
-  first.post_to_wait(1);
-  first.post_to_wait(2);
+  first.post_queued(1);
+  first.post_queued(2);
   take_over();
-  spare.keep_hearing(60, 19, 1);
+  spare.repeat_status(60, 19, 1);
   EXPECT_EQ(spare.send_next(), 0);
   EXPECT_EQ(spare.undecided().size(), 2U);
 }
 
 TEST_F(TakeOverTest, AsksTheOperatorIfTheCountIsUncertain) {
-  first.post_to_wait(1);
+  first.post_queued(1);
   take_over(first, spare, std::nullopt);
-  spare.keep_hearing(60, 20, 0);
+  spare.repeat_status(60, 20, 0);
   EXPECT_EQ(spare.send_next(), 0);
   EXPECT_THAT(spare.undecided(), testing::ElementsAre(HasSubstr("the operator decides")));
 }
@@ -124,25 +124,25 @@ TEST_F(TakeOverTest, DecidesAReportThatWasInFlight) {
     take_over(box, other, std::nullopt);
     EXPECT_EQ(other.state(1), InDoubt);
     EXPECT_EQ(other.report(1).tries, 1);
-    other.keep_hearing(12, was_recorded ? 19 : 20, 0);
+    other.repeat_status(12, was_recorded ? 19 : 20, 0);
     EXPECT_EQ(other.state(1), was_recorded ? Settled : Queued);
   }
 }
 
 TEST_F(TakeOverTest, KeepsTheOperatorsDecisions) {
-  first.post_to_wait(1);
+  first.post_queued(1);
   ASSERT_TRUE(first.reports().hold(1, first.time()));
-  first.post_to_wait(2);
+  first.post_queued(2);
   ASSERT_TRUE(first.reports().withdraw(2, first.time()));
   take_over();
-  spare.keep_hearing(30, 20, 0);
+  spare.repeat_status(30, 20, 0);
   EXPECT_EQ(spare.state(1), Held);
   EXPECT_EQ(spare.state(2), Withdrawn);
 }
 
 TEST_F(TakeOverTest, KeepsTheNumbersIfTheSpareIsBlank) {
   first.post(1);
-  first.answer(recorded());
+  first.answer(recorded_answer());
   first.post(2);
   take_over();
   EXPECT_EQ(spare.report(1).report.position.x, 1);
@@ -152,10 +152,10 @@ TEST_F(TakeOverTest, KeepsTheNumbersIfTheSpareIsBlank) {
 
 TEST_F(TakeOverTest, ChangesNothingTheSecondTime) {
   first.post(1);
-  first.answer(recorded());
-  first.post_to_wait(2);
+  first.answer(recorded_answer());
+  first.post_queued(2);
   Scene other;
-  other.post_to_wait(3);
+  other.post_queued(3);
   take_over(first, other, first.reports().expected(first.time().now));
   const auto reports = other.output().ledger;
   const auto runs = other.output().runs;
@@ -166,9 +166,9 @@ TEST_F(TakeOverTest, ChangesNothingTheSecondTime) {
 
 TEST_F(TakeOverTest, SendsReportsQueuedAtTheSpare) {
   Scene other;
-  other.post_to_wait(7);
+  other.post_queued(7);
   first.post(1);
-  first.answer(recorded());
+  first.answer(recorded_answer());
   take_over(first, other, first.reports().expected(first.time().now));
   other.hear(19, 0);
   EXPECT_EQ(other.send_next(), 1);
@@ -178,14 +178,14 @@ TEST_F(TakeOverTest, SendsReportsQueuedAtTheSpare) {
 TEST_F(TakeOverTest, AsksTheOperatorAboutAReportOfBothBoxes) {
   for (const bool first_sent : {true, false}) {
     Scene box, other;
-    box.post_to_wait(1);
+    box.post_queued(1);
     other.wait(0.25);
-    other.post_to_wait(1);
+    other.post_queued(1);
     Scene& sends = first_sent ? box : other;
     ASSERT_EQ(sends.send_next(), 1);
-    sends.answer(recorded());
+    sends.answer(recorded_answer());
     take_over(box, other, box.reports().expected(box.time().now));
-    other.keep_hearing(60, 19, 0);
+    other.repeat_status(60, 19, 0);
     EXPECT_EQ(other.send_next(), 0);
     EXPECT_THAT(other.undecided(), testing::ElementsAre(HasSubstr("the same as report")));
   }
@@ -194,58 +194,58 @@ TEST_F(TakeOverTest, AsksTheOperatorAboutAReportOfBothBoxes) {
 TEST_F(TakeOverTest, SendsAReportThatADifferentRunHad) {
   Scene other;
   other.post(1);
-  other.answer(recorded(0, "scored", "yesterday"));
+  other.answer(recorded_answer(0, "scored", "yesterday"));
   first.post(2);
-  first.answer(recorded(0, "scored", "today"));
+  first.answer(recorded_answer(0, "scored", "today"));
   take_over(first, other, first.reports().expected(first.time().now));
   other.hear(19, 0);
   const ClientId again = other.post(1);
-  EXPECT_FALSE(other.is_told(again)) << "sent in today's run";
+  EXPECT_FALSE(other.is_answered(again)) << "sent in today's run";
   EXPECT_NE(other.reports().sending(), nullptr);
 }
 
 TEST_F(TakeOverTest, WorksInTheOtherDirectionLater) {
   first.wait(1);
   first.post(1);
-  first.answer(recorded());
-  first.post_to_wait(2);
+  first.answer(recorded_answer());
+  first.post_queued(2);
   take_over();
   spare.wait(5);
-  spare.keep_hearing(12, 19, 0);
+  spare.repeat_status(12, 19, 0);
   ASSERT_EQ(spare.send_next(), 2);
-  spare.answer(recorded());
+  spare.answer(recorded_answer());
   spare.hear(18, 0);
   spare.post(3);
-  spare.answer(recorded());
+  spare.answer(recorded_answer());
   first.wait(60);
   take_over(spare, first, spare.reports().expected(spare.time().now));
   EXPECT_EQ(first.state(1), Answered);
   EXPECT_EQ(first.state(2), Answered) << "the spare sent it";
   EXPECT_EQ(first.state(3), Answered);
   first.hear(17, 0);
-  EXPECT_EQ(first.told(first.post(2)).status, 201);
+  EXPECT_EQ(first.answer_to(first.post(2)).status, 201);
   EXPECT_EQ(first.count(), 3U);
 }
 
 TEST_F(TakeOverTest, ToleratesAClockOffset) {
-  first.keep_hearing(40, 20, 0);
+  first.repeat_status(40, 20, 0);
   first.post(1);
-  first.answer(recorded());
+  first.answer(recorded_answer());
   spare.set_box_clock_forward(7200);
   const TakeOver taken = dispatch::take_over(books_of(spare), books_of(first),
                                              {.stamp = spare.time().stamp, .ahead = 7200 - 40});
   restart_with(spare, taken);
   spare.hear(19, 0, 145);
-  EXPECT_EQ(spare.told(spare.post(1)).status, 201);
+  EXPECT_EQ(spare.answer_to(spare.post(1)).status, 201);
 }
 
 TEST_F(TakeOverTest, IgnoresAnOlderExport) {
-  first.post_to_wait(1);
+  first.post_queued(1);
   const Books before = books_of(first);
   take_over();
-  spare.keep_hearing(12, 20, 0);
+  spare.repeat_status(12, 20, 0);
   ASSERT_EQ(spare.send_next(), 1);
-  spare.answer(recorded());
+  spare.answer(recorded_answer());
   const TakeOver taken = dispatch::take_over(books_of(spare), before, {.stamp = spare.time().stamp});
   EXPECT_THAT(taken.reports, IsEmpty());
 }
@@ -282,7 +282,7 @@ class World {
   void post_one() {
     const double x = ++posted_;
     if (first_.reports().sending() != nullptr || chance(3)) {
-      first_.post_to_wait(x);
+      first_.post_queued(x);
       waiting_.push_back(x);
       return;
     }
@@ -292,7 +292,7 @@ class World {
     const bool arrives = !chance(3);
     if (arrives) record(*sending);
     if (chance(2)) return;  // still in flight
-    if (arrives && chance(2)) return first_.answer(recorded(0));
+    if (arrives && chance(2)) return first_.answer(recorded_answer(0));
     first_.lose();
   }
 
@@ -308,7 +308,7 @@ class World {
     if (spare_.reports().sending() == nullptr) spare_.hear(left(), 0);
     if (spare_.send_next() == 0) return;
     record(*spare_.reports().sending());
-    spare_.answer(recorded(0));
+    spare_.answer(recorded_answer(0));
   }
 
   std::mt19937 random_;

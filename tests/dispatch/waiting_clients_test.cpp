@@ -26,12 +26,12 @@ class WaitingClientsTest : public testing::Test {
   /// Answers since the last call: client and report.
   std::vector<std::pair<ClientId, std::int64_t>> told() {
     std::vector<std::pair<ClientId, std::int64_t>> all;
-    for (const auto& [client, answers] : std::exchange(output_.told, {})) {
+    for (const auto& [client, answers] : std::exchange(output_.answers, {})) {
       for (const auto& answer : answers) all.emplace_back(client, answer.number);
     }
     return all;
   }
-  RecordingActions output_;
+  FakeOutput output_;
   ReportBook book_{output_};
   RunAccount account_{book_};
   WaitingClients clients_{book_, account_, output_};

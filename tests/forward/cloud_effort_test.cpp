@@ -85,9 +85,9 @@ class CloudOnAFastLink : public MapsToManualEndpoint {
 TEST_F(CloudOnAFastLink, IsSentUnpackedAfterWaiting) {
   const icd::MapUpdate cloud = large_cloud("second");
   for (std::size_t tries = 1; tries <= 20 && sent("second") < cloud.data.bytes.size(); ++tries) {
-    const std::size_t before = post_.came().size();
+    const std::size_t before = post_.received().size();
     take(grid_of("first", 10));
-    ASSERT_TRUE(loop::turn_until(loop_, [&] { return post_.came().size() > before; }));
+    ASSERT_TRUE(loop::turn_until(loop_, [&] { return post_.received().size() > before; }));
     take(cloud);
     for (int i = 0; i < 2; ++i) post_.answer("200 OK");
     ASSERT_TRUE(loop::turn_until(loop_, [&] { return maps_->waiting({Kind::Cloud, "second"}) == 0; }));

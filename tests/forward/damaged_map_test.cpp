@@ -45,7 +45,7 @@ TEST_F(DamagedMap, IsDroppedAndTheNextOneIsSent) {
   restore();
   EXPECT_EQ(maps_->waiting({Kind::Grid, "first"}), 1U) << "not read yet";
   post_.answer("200 OK");
-  EXPECT_TRUE(come({"second"}));
+  EXPECT_TRUE(receives({"second"}));
   EXPECT_TRUE(loop::turn_until(loop_, [&] { return !fs::exists(file(kOne)); }));
   EXPECT_TRUE(fs::exists(file(kOne) + ".damaged"));
   EXPECT_EQ(maps_->waiting({Kind::Grid, "first"}), 0U);
@@ -80,7 +80,7 @@ TEST_F(DamagedMap, LeavesItsStitchedNeighbour) {
   restore();
   maps_->endpoint_changed(icd::BearerToken::parse("a-token"));
   post_.answer("200 OK");
-  EXPECT_TRUE(come({"first"}));
+  EXPECT_TRUE(receives({"first"}));
   EXPECT_TRUE(loop::turn_until(loop_, [&] { return row().forwarded == 1; }));
   EXPECT_TRUE(loop::turn_until(loop_, [&] { return fs::exists(file(kOne) + ".damaged"); }));
   EXPECT_EQ(row().failed, 1U);

@@ -27,7 +27,7 @@ class StoredGrid : public MapsToManualEndpoint {
     maps_->settings_changed();
   }
   std::uint64_t sent(const char* robot) const { return record_.rows().at({Kind::Grid, robot}).bytes_sent; }
-  bool all_are_taken() {
+  bool are_delivered() {
     return loop::turn_until(loop_, [&] {
       return maps_->waiting({Kind::Grid, "first"}) + maps_->waiting({Kind::Grid, "second"}) == 0;
     });
@@ -37,11 +37,11 @@ class StoredGrid : public MapsToManualEndpoint {
 TEST_F(StoredGrid, IsSentUnchangedAfterWaiting) {
   const icd::MapUpdate first = kept_grid("first", 1100), second = kept_grid("second", 1100);
   take(first);
-  ASSERT_TRUE(come({"first"}));
+  ASSERT_TRUE(receives({"first"}));
   take(second);
   ASSERT_TRUE(loop::turn_until(loop_, [&] { return maps_->queued_bytes() == 0 && !maps_->packing(); }));
   for (int i = 0; i < 2; ++i) post_.answer("200 OK");
-  ASSERT_TRUE(all_are_taken());
+  ASSERT_TRUE(are_delivered());
   EXPECT_GT(sent("first"), first.data.bytes.size());
   EXPECT_GT(sent("second"), second.data.bytes.size());
 }
@@ -52,7 +52,7 @@ TEST_F(StoredGrid, IsCompressedForASlowLink) {
   const icd::MapUpdate large = kept_grid("second", 1100);
   take(large);
   post_.answer("200 OK");
-  ASSERT_TRUE(all_are_taken());
+  ASSERT_TRUE(are_delivered());
   EXPECT_LT(sent("second"), large.data.bytes.size() / 2);
 }
 

@@ -76,12 +76,12 @@ class LeftOutPoints : public testing::Test, protected MapsParts {
     });
     ASSERT_TRUE(loop::turn_until(loop_, [&] { return told; }));
   }
-  bool none_waits() {
+  bool are_delivered() {
     return loop::turn_until(loop_, [&] { return maps_->waiting(kClouds) == 0; });
   }
   void arrive(const Points& xs) {
     take(xs);
-    ASSERT_TRUE(none_waits());
+    ASSERT_TRUE(are_delivered());
   }
   const api::ActivityRow& row() const { return record_.rows().at(kClouds); }
 
@@ -117,7 +117,7 @@ TEST_F(LeftOutPoints, AreNoneAfterAFailure) {
   ASSERT_TRUE(loop::turn_until(loop_, [&] { return post_.came == 1; }));
   take({0.2F});
   post_.go_on();
-  ASSERT_TRUE(none_waits());
+  ASSERT_TRUE(are_delivered());
   EXPECT_FALSE(taken_.empty()) << "one of the two is enough";
 }
 
@@ -142,7 +142,7 @@ TEST_F(LeftOutPoints, AreSentIfANewRunBeginsMeanwhile) {
   ASSERT_TRUE(loop::turn_until(loop_, [&] { return post_.came == 2; }));
   maps_->change_run(dispatch::NextMap::Empty);
   post_.go_on();
-  ASSERT_TRUE(none_waits());
+  ASSERT_TRUE(are_delivered());
   EXPECT_THAT(taken_, ElementsAre(Points{0.1F}, Points{0.2F, 5}));
 }
 

@@ -37,9 +37,9 @@ class ManualEndpoint {
   }
   settings::Address address() const { return {peer_.endpoint().address, peer_.endpoint().port}; }
   /// Robots of the received maps in order.
-  std::vector<std::string> came() {
+  std::vector<std::string> received() {
     const std::lock_guard lock(mutex_);
-    return came_;
+    return received_;
   }
 
  private:
@@ -53,7 +53,7 @@ class ManualEndpoint {
   void note(const std::string& request) {
     const std::lock_guard lock(mutex_);
     for (const char* robot : {"first", "second", "third"}) {
-      if (request.contains(robot)) came_.emplace_back(robot);
+      if (request.contains(robot)) received_.emplace_back(robot);
     }
   }
   std::string next_answer() {
@@ -64,7 +64,7 @@ class ManualEndpoint {
   }
 
   std::mutex mutex_;
-  std::vector<std::string> came_, answers_;
+  std::vector<std::string> received_, answers_;
   std::atomic<bool> over_ = false;
   std::counting_semaphore<> let_{0};
   uplink::ListeningPeer peer_{[this](uplink::Wire& wire) { serve(wire); }};
@@ -85,8 +85,8 @@ class MapsToManualEndpoint : public testing::Test, protected MapsParts {
                 [&](const icd::Checked<void>& said) { taken = said.has_value(); });
     ASSERT_TRUE(loop::turn_until(loop_, [&] { return taken; }));
   }
-  bool come(const std::vector<std::string>& robots) {
-    return loop::turn_until(loop_, [&] { return post_.came() == robots; });
+  bool receives(const std::vector<std::string>& robots) {
+    return loop::turn_until(loop_, [&] { return post_.received() == robots; });
   }
 
   ManualEndpoint post_;

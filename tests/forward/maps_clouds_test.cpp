@@ -21,7 +21,7 @@ class QueuedClouds : public testing::Test, protected MapsParts {
     });
     ASSERT_TRUE(loop::turn_until(loop_, [&] { return told; }));
   }
-  bool come_to_be(std::size_t count) {
+  bool becomes(std::size_t count) {
     return loop::turn_until(loop_, [&] { return maps_.waiting(kClouds) == count; });
   }
   const api::ActivityRow& row() const { return record_.rows().at(kClouds); }
@@ -35,7 +35,7 @@ TEST_F(QueuedClouds, AreReplacedByOneWithAllTheirPoints) {
   EXPECT_EQ(row().clouds, "");
   take({1, 2, 3});
   take({3, 4, 2, 1});
-  EXPECT_TRUE(come_to_be(1));
+  EXPECT_TRUE(becomes(1));
   EXPECT_EQ(row().clouds, "whole");
   EXPECT_EQ(row().replaced, 2);
 }
@@ -46,7 +46,7 @@ TEST_F(QueuedClouds, StayIfANewerOneLacksAPoint) {
   ASSERT_TRUE(loop::turn_until(loop_, [&] { return !row().clouds.empty(); }));
   EXPECT_EQ(row().clouds, "parts");
   take({3, 1, 4, 5});
-  EXPECT_TRUE(come_to_be(2)) << "the part stays";
+  EXPECT_TRUE(becomes(2)) << "the part stays";
   EXPECT_EQ(row().replaced, 1);
 }
 
@@ -72,7 +72,7 @@ TEST_F(QueuedClouds, StayIfTheSettingIsParts) {
 TEST_F(QueuedClouds, AreComparedAtARestart) {
   maps_.restore({{MapStore::kFirstNumber + 1, cloud_along_x("r1", {1, 2})},
                  {MapStore::kFirstNumber + 2, cloud_along_x("r1", {1, 2, 3})}});
-  EXPECT_TRUE(come_to_be(1));
+  EXPECT_TRUE(becomes(1));
 }
 
 }  // namespace

@@ -56,7 +56,7 @@ class MapsTest : public testing::Test, protected MapsParts {
     }
     return count;
   }
-  bool comes_to(std::size_t count) {
+  bool has_files(std::size_t count) {
     return loop::turn_until(loop_, [&] { return files() == count; });
   }
   static icd::Status status(const icd::Checked<void>& said) {
@@ -94,7 +94,7 @@ TEST_F(MapsTest, AreDeletedOnceTheNewerOneIsStored) {
   EXPECT_EQ(status(take(grid("r1", 20, 700), waits)), icd::Status::Ok);
   EXPECT_EQ(files_, 2u) << "the older file is deleted later";
   let_go.set_value();
-  EXPECT_TRUE(comes_to(1));
+  EXPECT_TRUE(has_files(1));
 }
 
 /// A process may be killed at any byte.
@@ -123,7 +123,7 @@ TEST_F(MapsTest, ReplaceARetriedGridByANewerCoveringOne) {
     return true;
   });
   EXPECT_EQ(kept, true) << "the newer grid covers it";
-  EXPECT_TRUE(comes_to(1));
+  EXPECT_TRUE(has_files(1));
   EXPECT_TRUE(maps_.all_kept());
 }
 
@@ -167,7 +167,7 @@ TEST_F(MapsTest, DropARetriedGridIfItWasReplacedMeanwhile) {
   });
   EXPECT_TRUE(loop::turn_until(loop_, [&] { return kept.has_value(); }));
   EXPECT_EQ(maps_.queued_bytes(), 0u);
-  EXPECT_TRUE(comes_to(0));
+  EXPECT_TRUE(has_files(0));
 }
 
 TEST_F(MapsTest, ReplaceQueuedMapsInAFullQueue) {
@@ -176,7 +176,7 @@ TEST_F(MapsTest, ReplaceQueuedMapsInAFullQueue) {
   EXPECT_EQ(status(take(grid("r3", 10, 20'000))), icd::Status::TooManyRequests);
   EXPECT_EQ(record_.rows().at({Kind::Grid, "r3"}).no_room, 1u);
   EXPECT_EQ(status(take(grid("r1", 20, 60'000))), icd::Status::Ok);
-  EXPECT_TRUE(comes_to(2));
+  EXPECT_TRUE(has_files(2));
 }
 
 TEST_F(MapsTest, AreCountedIfTheyHaveNoValidPoint) {
@@ -187,7 +187,7 @@ TEST_F(MapsTest, AreCountedIfTheyHaveNoValidPoint) {
   ASSERT_TRUE(take(cloud_along_x("r1", {1, 2})));
   EXPECT_TRUE(take(cloud_along_x("r1", {nan, nan, nan})));
   EXPECT_EQ(maps_.waiting(traffic), 1u);
-  EXPECT_TRUE(comes_to(1));
+  EXPECT_TRUE(has_files(1));
   EXPECT_EQ(record_.rows().at(traffic).accepted, 2u);
   EXPECT_EQ(record_.rows().at(traffic).replaced, 0u);
   EXPECT_EQ(record_.rows().at(traffic).no_valid_point, 1u);

@@ -13,18 +13,18 @@ namespace {
 class PipelinedMap : public MapsToManualEndpoint {
  protected:
   /// Delivers enough maps to allow pipelining.
-  void has_answered_well() {
+  void deliver_several() {
     for (int i = 0; i < queues::Pipelining::kWell; ++i) {
       post_.answer("200 OK");
       take(grid_of("first", 10));
-      ASSERT_TRUE(are_gone());
+      ASSERT_TRUE(are_delivered());
     }
-    before_ = post_.came().size();
+    before_ = post_.received().size();
   }
-  bool are_gone() {
-    return loop::turn_until(loop_, [&] { return nothing_waits(); });
+  bool are_delivered() {
+    return loop::turn_until(loop_, [&] { return is_queue_empty(); });
   }
-  bool nothing_waits() const {
+  bool is_queue_empty() const {
     std::size_t waiting = 0;
     for (const char* robot : {"first", "second", "third"}) {
       for (const Kind kind : {Kind::Grid, Kind::Cloud}) waiting += maps_->waiting({kind, robot});
@@ -33,9 +33,9 @@ class PipelinedMap : public MapsToManualEndpoint {
   }
   /// True if bytes of the next map leave before the first map is answered. If a busy machine delays the
   /// answer, Adit sends nothing ahead and the caller tries again.
-  bool goes_ahead(const char* robot, const icd::MapUpdate& next, std::uint32_t width = 10) {
+  bool is_sent_ahead(const char* robot, const icd::MapUpdate& next, std::uint32_t width = 10) {
     take(grid_of(robot, width));
-    if (!loop::turn_until(loop_, [&] { return post_.came().size() > before_; })) return false;
+    if (!loop::turn_until(loop_, [&] { return post_.received().size() > before_; })) return false;
     const std::uint64_t sent = maps_->channel().bytes_sent();
     take(next);
     const loop::Instant late = loop_.now() + queues::Pipelining::kLate;
@@ -43,16 +43,16 @@ class PipelinedMap : public MapsToManualEndpoint {
                             [&] { return maps_->channel().bytes_sent() > sent || loop_.now() > late; }) &&
            maps_->channel().bytes_sent() > sent;
   }
-  std::vector<std::string> came_since() {
-    auto came = post_.came();
+  std::vector<std::string> received_since() {
+    auto came = post_.received();
     return {came.begin() + static_cast<std::ptrdiff_t>(before_), came.end()};
   }
-  void one_is_ahead() {
+  void send_one_ahead() {
     for (int tries = 0; tries < 10; ++tries) {
-      has_answered_well();
-      if (goes_ahead("first", grid_of("second", 10))) return;
+      deliver_several();
+      if (is_sent_ahead("first", grid_of("second", 10))) return;
       for (int i = 0; i < 2; ++i) post_.answer("200 OK");
-      ASSERT_TRUE(are_gone());
+      ASSERT_TRUE(are_delivered());
     }
     FAIL() << "no map was sent ahead";
   }
@@ -61,58 +61,58 @@ class PipelinedMap : public MapsToManualEndpoint {
 };
 
 TEST_F(PipelinedMap, IsDeliveredAfterTheFirstMap) {
-  one_is_ahead();
+  send_one_ahead();
   EXPECT_EQ(maps_->waiting({Kind::Grid, "first"}), 1u);
   EXPECT_EQ(maps_->waiting({Kind::Grid, "second"}), 1u);
   for (int i = 0; i < 2; ++i) post_.answer("200 OK");
-  EXPECT_TRUE(are_gone());
-  EXPECT_EQ(came_since(), (std::vector<std::string>{"first", "second"}));
+  EXPECT_TRUE(are_delivered());
+  EXPECT_EQ(received_since(), (std::vector<std::string>{"first", "second"}));
 }
 
 TEST_F(PipelinedMap, StaysInFlightIfTheFirstFails) {
-  one_is_ahead();
+  send_one_ahead();
   for (const char* answer : {"500 Oops", "200 OK", "200 OK"}) post_.answer(answer);
-  EXPECT_TRUE(are_gone());
-  EXPECT_EQ(came_since(), (std::vector<std::string>{"first", "second", "first"}));
+  EXPECT_TRUE(are_delivered());
+  EXPECT_EQ(received_since(), (std::vector<std::string>{"first", "second", "first"}));
 }
 
 TEST_F(PipelinedMap, IsRetriedIfItFails) {
-  one_is_ahead();
+  send_one_ahead();
   for (const char* answer : {"200 OK", "500 Oops", "200 OK"}) post_.answer(answer);
-  EXPECT_TRUE(are_gone());
-  EXPECT_EQ(came_since(), (std::vector<std::string>{"first", "second", "second"}));
+  EXPECT_TRUE(are_delivered());
+  EXPECT_EQ(received_since(), (std::vector<std::string>{"first", "second", "second"}));
 }
 
 TEST_F(PipelinedMap, StaysInFlightIfTheFirstIsRejected) {
-  one_is_ahead();
+  send_one_ahead();
   for (const char* answer : {"422 No", "200 OK"}) post_.answer(answer);
-  EXPECT_TRUE(are_gone());
+  EXPECT_TRUE(are_delivered());
   EXPECT_EQ(rejected_.rows().size(), 1u);
 }
 
 TEST_F(PipelinedMap, WaitsForAnOlderGridOfItsRobot) {
-  has_answered_well();
-  EXPECT_FALSE(goes_ahead("first", grid_of("first", 5)));
+  deliver_several();
+  EXPECT_FALSE(is_sent_ahead("first", grid_of("first", 5)));
   for (int i = 0; i < 2; ++i) post_.answer("200 OK");
-  EXPECT_TRUE(are_gone());
+  EXPECT_TRUE(are_delivered());
 }
 
 /// A Command Post that reads both would check the small map first, and stamps would go back.
 TEST_F(PipelinedMap, WaitsForALargeMap) {
-  has_answered_well();
-  EXPECT_FALSE(goes_ahead("first", grid_of("second", 10), 4000));
+  deliver_several();
+  EXPECT_FALSE(is_sent_ahead("first", grid_of("second", 10), 4000));
   for (int i = 0; i < 2; ++i) post_.answer("200 OK");
-  EXPECT_TRUE(are_gone());
+  EXPECT_TRUE(are_delivered());
 }
 
 TEST_F(PipelinedMap, IsSentToANewEndpointWithTheFirst) {
-  one_is_ahead();
+  send_one_ahead();
   ManualEndpoint other;
   settings_.command_post.mapping = other.address();
   maps_->endpoint_changed(icd::BearerToken::parse("a-token"));
   for (int i = 0; i < 2; ++i) other.answer("200 OK");
-  EXPECT_TRUE(are_gone());
-  EXPECT_EQ(other.came(), (std::vector<std::string>{"first", "second"}));
+  EXPECT_TRUE(are_delivered());
+  EXPECT_EQ(other.received(), (std::vector<std::string>{"first", "second"}));
   maps_.reset();  // closes the connections that `other` reads
 }
 

@@ -11,56 +11,56 @@ namespace {
 class PreparedMap : public MapsToManualEndpoint {
  protected:
   /// The first map is in flight, the second is packed.
-  void two_are_out_of_the_queue() {
+  void send_one_and_pack_one() {
     take(grid_of("first", 10));
-    ASSERT_TRUE(come({"first"}));
+    ASSERT_TRUE(receives({"first"}));
     take(grid_of("second", 10));
     ASSERT_TRUE(loop::turn_until(loop_, [&] { return maps_->queued_bytes() == 0 && !maps_->packing(); }));
   }
 };
 
 TEST_F(PreparedMap, IsPackedWhileTheFirstIsInFlight) {
-  two_are_out_of_the_queue();
-  EXPECT_EQ(post_.came().size(), 1u);
+  send_one_and_pack_one();
+  EXPECT_EQ(post_.received().size(), 1u);
   EXPECT_EQ(maps_->waiting({Kind::Grid, "first"}), 1u);
   EXPECT_EQ(maps_->waiting({Kind::Grid, "second"}), 1u);
   post_.answer("200 OK");
-  EXPECT_TRUE(come({"first", "second"}));
+  EXPECT_TRUE(receives({"first", "second"}));
   EXPECT_EQ(maps_->waiting({Kind::Grid, "first"}), 0u);
 }
 
 TEST_F(PreparedMap, ReturnsToTheQueueWithTheFirst) {
-  two_are_out_of_the_queue();
+  send_one_and_pack_one();
   for (const char* answer : {"500 Oops", "200 OK", "200 OK"}) post_.answer(answer);
   EXPECT_TRUE(loop::turn_until(loop_, [&] {
     return maps_->waiting({Kind::Grid, "first"}) + maps_->waiting({Kind::Grid, "second"}) == 0;
   }));
-  EXPECT_EQ(post_.came().size(), 3u);
+  EXPECT_EQ(post_.received().size(), 3u);
 }
 
 TEST_F(PreparedMap, IsSentIfTheFirstIsRejected) {
-  two_are_out_of_the_queue();
+  send_one_and_pack_one();
   post_.answer("422 No");
-  EXPECT_TRUE(come({"first", "second"}));
+  EXPECT_TRUE(receives({"first", "second"}));
   EXPECT_EQ(rejected_.rows().size(), 1u);
 }
 
 /// Otherwise older cells would follow newer ones.
 TEST_F(PreparedMap, ReplacesAFailedGridThatItCovers) {
   take(grid_of("first", 10));
-  ASSERT_TRUE(come({"first"}));
+  ASSERT_TRUE(receives({"first"}));
   take(grid_of("first", 20));
   ASSERT_TRUE(loop::turn_until(loop_, [&] { return maps_->queued_bytes() == 0 && !maps_->packing(); }));
   post_.answer("500 Oops");
-  ASSERT_TRUE(come({"first", "first"}));
+  ASSERT_TRUE(receives({"first", "first"}));
   post_.answer("200 OK");
   EXPECT_TRUE(loop::turn_until(loop_, [&] { return maps_->waiting({Kind::Grid, "first"}) == 0; }));
-  EXPECT_EQ(post_.came().size(), 2u);
+  EXPECT_EQ(post_.received().size(), 2u);
 }
 
 TEST_F(PreparedMap, ReplacesAnOlderGridSentByTheOperator) {
   take(grid_of("first", 10));
-  ASSERT_TRUE(come({"first"}));
+  ASSERT_TRUE(receives({"first"}));
   take(grid_of("second", 20));
   ASSERT_TRUE(loop::turn_until(loop_, [&] { return maps_->queued_bytes() == 0; }));
   std::optional<bool> kept;

@@ -75,10 +75,10 @@ class ScoringEndpoint : public testing::Test, protected ScoringParts {
     journal_.begin({.boot = "b", .at = loop_.now(), .stamp = loop_.stamp_now()});
     scoring_.emplace(loop_, ledger_, settings_, token_, record_, random_, journal_, clocks_);
     scoring_->start();
-    EXPECT_TRUE(comes([this] { return scoring_->run().has_value(); }));
+    EXPECT_TRUE(eventually([this] { return scoring_->run().has_value(); }));
   }
 
-  bool comes(const std::function<bool()>& done) {
+  bool eventually(const std::function<bool()>& done) {
     return loop::turn_until(loop_, [&] {
       scoring_->tick();
       return done();
@@ -103,20 +103,21 @@ class ScoringEndpoint : public testing::Test, protected ScoringParts {
 
 TEST_F(ScoringEndpoint, IsLeftAfterTheAnswerInFlight) {
   post(1, first_);
-  ASSERT_TRUE(comes([this] { return here_.recorded == 1; }));
+  ASSERT_TRUE(eventually([this] { return here_.recorded == 1; }));
   move();
   const auto run = report(1).run;
   loop::turn_for(loop_, std::chrono::milliseconds{50});
   EXPECT_THAT(first_, testing::IsEmpty());
   here_.let.release();
-  ASSERT_TRUE(comes([this] { return !first_.empty(); }));
+  ASSERT_TRUE(eventually([this] { return !first_.empty(); }));
   EXPECT_THAT(first_, ElementsAre(201));
   EXPECT_EQ(report(1).state, dispatch::ReportState::Answered);
   EXPECT_EQ(report(1).run, run);
-  ASSERT_TRUE(comes([&] { return scoring_->reports().run().number != run && scoring_->run().has_value(); }));
+  ASSERT_TRUE(
+      eventually([&] { return scoring_->reports().run().number != run && scoring_->run().has_value(); }));
   post(100, second_);
   there_.let.release();
-  ASSERT_TRUE(comes([this] { return !second_.empty(); }));
+  ASSERT_TRUE(eventually([this] { return !second_.empty(); }));
   EXPECT_THAT(second_, ElementsAre(201));
   EXPECT_EQ(here_.recorded, 1);
   EXPECT_EQ(there_.recorded, 1);
@@ -124,29 +125,29 @@ TEST_F(ScoringEndpoint, IsLeftAfterTheAnswerInFlight) {
 
 TEST_F(ScoringEndpoint, KeepsItsQueuedReportsAndTheirClients) {
   post(1, first_);
-  ASSERT_TRUE(comes([this] { return here_.recorded == 1; }));
+  ASSERT_TRUE(eventually([this] { return here_.recorded == 1; }));
   post(100, second_);
   move();
   here_.let.release();
-  ASSERT_TRUE(comes([this] { return !first_.empty() && scoring_->run().has_value(); }));
+  ASSERT_TRUE(eventually([this] { return !first_.empty() && scoring_->run().has_value(); }));
   loop::turn_for(loop_, std::chrono::milliseconds{100});
   EXPECT_THAT(second_, testing::IsEmpty());
   EXPECT_EQ(there_.recorded, 0) << "it belongs to the run of the old endpoint";
   settings_.command_post.scoring = here_.address();
   scoring_->endpoint_changed(token_);
   here_.let.release();
-  ASSERT_TRUE(comes([this] { return !second_.empty(); }));
+  ASSERT_TRUE(eventually([this] { return !second_.empty(); }));
   EXPECT_THAT(second_, ElementsAre(201));
 }
 
 TEST_F(ScoringEndpoint, GetsReportsPostedAfterItsChange) {
   post(1, first_);
-  ASSERT_TRUE(comes([this] { return here_.recorded == 1; }));
+  ASSERT_TRUE(eventually([this] { return here_.recorded == 1; }));
   move();
   post(100, second_);
   there_.let.release();
   here_.let.release();
-  ASSERT_TRUE(comes([this] { return !second_.empty(); }));
+  ASSERT_TRUE(eventually([this] { return !second_.empty(); }));
   EXPECT_THAT(second_, ElementsAre(201));
   EXPECT_EQ(here_.recorded, 1);
   EXPECT_EQ(there_.recorded, 1);
@@ -160,7 +161,7 @@ TEST_F(ScoringEndpoint, KeepsItsRunWithAnotherToken) {
   EXPECT_THAT(first_, testing::IsEmpty()) << "queued";
   scoring_->endpoint_changed(token_);
   here_.let.release();
-  ASSERT_TRUE(comes([this] { return !first_.empty(); }));
+  ASSERT_TRUE(eventually([this] { return !first_.empty(); }));
   EXPECT_THAT(first_, ElementsAre(201));
   EXPECT_EQ(report(1).run, run);
 }
@@ -168,12 +169,12 @@ TEST_F(ScoringEndpoint, KeepsItsRunWithAnotherToken) {
 TEST_F(ScoringEndpoint, GetsAReportWithTheSlashOfItsStatus) {
   there_.wants_slash = there_.reports_want_slash = true;
   move();
-  ASSERT_TRUE(comes([&] {
+  ASSERT_TRUE(eventually([&] {
     return scoring_->channel().address() == address_text(there_.address()) && scoring_->run().has_value();
   }));
   post(1, first_);
   there_.let.release();
-  ASSERT_TRUE(comes([this] { return !first_.empty(); }));
+  ASSERT_TRUE(eventually([this] { return !first_.empty(); }));
   EXPECT_THAT(first_, ElementsAre(201));
   EXPECT_EQ(there_.reports, 1);
 }
@@ -184,8 +185,8 @@ TEST_F(ScoringEndpoint, SendsNoReportByARedirect) {
   scoring_->settings_changed();
   here_.reports_want_slash = true;
   post(1, first_);
-  ASSERT_TRUE(comes([this] { return here_.reports == 1; }));
-  ASSERT_TRUE(comes([this] { return here_.reports > 1; })) << "retried after a status";
+  ASSERT_TRUE(eventually([this] { return here_.reports == 1; }));
+  ASSERT_TRUE(eventually([this] { return here_.reports > 1; })) << "retried after a status";
   EXPECT_EQ(here_.reports_with_slash, 0);
   EXPECT_EQ(here_.recorded, 0);
 }

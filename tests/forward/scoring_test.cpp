@@ -18,7 +18,7 @@ using namespace std::chrono_literals;
 constexpr const char* kStatus = R"({"score":1,"run_clock":10.0,"remaining_reports":24,"current_team":"a"})";
 
 /// Answers each request with `body` after a delay.
-uplink::Peer::Script serving(const char* body, std::chrono::milliseconds late) {
+uplink::Peer::Script late_server(const char* body, std::chrono::milliseconds late) {
   return [body, late](uplink::Wire& wire) {
     for (auto request = wire.read_request(); !request.empty(); request = wire.read_request()) {
       std::this_thread::sleep_for(late);
@@ -48,7 +48,7 @@ class ScoringTest : public testing::Test, protected ScoringParts {
                      journal_, clocks_);
     scoring_->start();
   }
-  bool comes(const std::function<bool()>& done) {
+  bool eventually(const std::function<bool()>& done) {
     return loop::turn_until(loop_, [&] {
       scoring_->tick();
       return done();
@@ -61,11 +61,11 @@ class ScoringTest : public testing::Test, protected ScoringParts {
     return client;
   }
   /// Answer to a client that asks before the first status has arrived.
-  std::optional<intake::Answer> heard_from(uplink::Peer::Script post) {
+  std::optional<intake::Answer> answer_from(uplink::Peer::Script post) {
     lead_to({std::move(post)});
     const auto asker = std::make_shared<Asker>();
     scoring_->status(asker);
-    return comes([&] { return asker->heard.has_value(); }) ? asker->heard : std::nullopt;
+    return eventually([&] { return asker->heard.has_value(); }) ? asker->heard : std::nullopt;
   }
 
   /// Ends both sides before the locals that the scripts use. Declare it after them.
@@ -79,7 +79,7 @@ class ScoringTest : public testing::Test, protected ScoringParts {
 };
 
 TEST_F(ScoringTest, DatesALateStatusByItsRequest) {
-  const auto heard = heard_from(serving(kStatus, 1200ms));
+  const auto heard = answer_from(late_server(kStatus, 1200ms));
   ASSERT_TRUE(heard.has_value());
   EXPECT_EQ(heard->status, icd::Status::Ok);
   EXPECT_EQ(heard->body, kStatus);
@@ -89,7 +89,7 @@ TEST_F(ScoringTest, DatesALateStatusByItsRequest) {
 }
 
 TEST_F(ScoringTest, PassesOnNoInvalidStatus) {
-  const auto heard = heard_from(serving(R"("ok")", 0ms));
+  const auto heard = answer_from(late_server(R"("ok")", 0ms));
   ASSERT_TRUE(heard.has_value());
   EXPECT_EQ(heard->status, icd::Status::BadGateway);
 }
@@ -115,11 +115,11 @@ TEST_F(ScoringTest, CancelsAnUnansweredStatusForAReport) {
   };
   const Ends ends{*this};
   lead_to({answers_once, records});
-  ASSERT_TRUE(comes([&] { return scoring_->run().has_value(); }));
+  ASSERT_TRUE(eventually([&] { return scoring_->run().has_value(); }));
   scoring_->link_is_back();  // asks again
-  ASSERT_TRUE(comes([&] { return asked_again.load(); }));
+  ASSERT_TRUE(eventually([&] { return asked_again.load(); }));
   const auto client = report(1);
-  ASSERT_TRUE(comes([&] { return client->heard.has_value(); }));
+  ASSERT_TRUE(eventually([&] { return client->heard.has_value(); }));
   EXPECT_EQ(client->heard->status, icd::Status::Created);
   EXPECT_TRUE(was_reset);
 }
@@ -148,17 +148,17 @@ TEST_F(ScoringTest, WaitsForAStatusThatDecidesADoubt) {
   };
   const Ends ends{*this};
   lead_to({loses_a_report, says_nothing_of_it});
-  ASSERT_TRUE(comes([&] { return scoring_->run().has_value(); }));
+  ASSERT_TRUE(eventually([&] { return scoring_->run().has_value(); }));
   const auto lost = report(1);
-  ASSERT_TRUE(comes([&] { return reports == 1; }));
+  ASSERT_TRUE(eventually([&] { return reports == 1; }));
   loop::turn_for(loop_, 500ms);  // the doubt no longer blocks reports
   holds = true;
-  ASSERT_TRUE(comes([&] { return is_held.load(); }));
+  ASSERT_TRUE(eventually([&] { return is_held.load(); }));
   const auto next = report(100);
   loop::turn_for(loop_, 3 * Scoring::kGivesWayAfter);
   EXPECT_FALSE(next->heard);
   let.release();
-  EXPECT_TRUE(comes([&] { return reports == 2; }));
+  EXPECT_TRUE(eventually([&] { return reports == 2; }));
   EXPECT_TRUE(was_waited_for);
 }
 

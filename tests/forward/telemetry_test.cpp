@@ -88,7 +88,7 @@ class TelemetryTest : public testing::Test {
   }
   /// Retries without a delay after failures.
   template <class Done>
-  bool comes(Process& process, Done done) {
+  bool eventually(Process& process, Done done) {
     return loop::turn_until(loop_, [&] {
       if (done()) return true;
       process.telemetry.link_is_back();
@@ -120,7 +120,7 @@ TEST_F(TelemetryTest, KeepsNoDeliveredPoseAcrossARestart) {
   TelemetryStub post(true);
   auto process = process_with(post.peer);
   ASSERT_TRUE(process->telemetry.take(pose("r1", 1), 10));
-  ASSERT_TRUE(comes(*process, [&] { return !process->delivered.robots().empty(); }));
+  ASSERT_TRUE(eventually(*process, [&] { return !process->delivered.robots().empty(); }));
   process.reset();
   process = process_without_a_token();
   EXPECT_EQ(process->telemetry.waiting(Kind::State), 0u);
@@ -141,9 +141,9 @@ TEST_F(TelemetryTest, SendsARestoredPoseOnce) {
   });
   ASSERT_TRUE(process_without_a_token()->telemetry.take(pose("r1", 1), 10));
   const auto process = process_with(peer);
-  ASSERT_TRUE(comes(*process, [&] { return process->delivered.robots().size() == 1; }));
+  ASSERT_TRUE(eventually(*process, [&] { return process->delivered.robots().size() == 1; }));
   ASSERT_TRUE(process->telemetry.take(pose("r2", 2), 10));
-  ASSERT_TRUE(comes(*process, [&] { return of_r2 == 1; }));
+  ASSERT_TRUE(eventually(*process, [&] { return of_r2 == 1; }));
   EXPECT_EQ(of_r1, 1);
 }
 
@@ -158,12 +158,12 @@ TEST_F(TelemetryTest, KeepsMessagesUntilReplacementsAreStored) {
   process->writer.submit([until = held.get_future().share()] { until.wait(); }, [] {});
   const auto replaced = [&](std::size_t row) { return process->rejected.rows().at(row).replaced; };
   ASSERT_TRUE(process->telemetry.take(pose("r1", 2), 10));
-  ASSERT_TRUE(comes(*process, [&] { return replaced(0); }));
+  ASSERT_TRUE(eventually(*process, [&] { return replaced(0); }));
   EXPECT_EQ(left().robots().size(), 1u);
   EXPECT_FALSE(process->rejected.all_kept());
   ASSERT_TRUE(process->take(icd::MarkersUpdate{{marker("a", "newer")}}));
   held.set_value();
-  ASSERT_TRUE(comes(*process, [&] { return replaced(1) && process->rejected.all_kept(); }));
+  ASSERT_TRUE(eventually(*process, [&] { return replaced(1) && process->rejected.all_kept(); }));
   EXPECT_THAT(left().robots(), IsEmpty());
   EXPECT_THAT(left().markers().markers, IsEmpty());
 }
@@ -203,9 +203,9 @@ TEST_F(TelemetryTest, RejectsADeleteAllThatFailsAlone) {
   TelemetryStub post(true);
   const auto process = process_with(post.peer);
   ASSERT_TRUE(process->take(icd::MarkersUpdate{{kWipe, marker("a", "1"), marker("b", "2")}}));
-  ASSERT_TRUE(comes(*process, [&] { return process->telemetry.waiting(Kind::Markers) == 0; }));
-  ASSERT_TRUE(
-      comes(*process, [&] { return !process->rejected.rows().empty() && left().markers().markers.empty(); }));
+  ASSERT_TRUE(eventually(*process, [&] { return process->telemetry.waiting(Kind::Markers) == 0; }));
+  ASSERT_TRUE(eventually(
+      *process, [&] { return !process->rejected.rows().empty() && left().markers().markers.empty(); }));
   EXPECT_EQ(process->rejected.rows().size(), 1u);
   EXPECT_EQ(process->delivered.markers().changes(0).markers.size(), 2u);
 }
@@ -215,7 +215,7 @@ TEST_F(TelemetryTest, KeepsADeleteAllIfEverythingFails) {
   const auto process = process_with(post.peer);
   const icd::MarkersUpdate all{{kWipe, marker("a", "1"), marker("b", "2")}};
   ASSERT_TRUE(process->take(all));
-  ASSERT_TRUE(comes(*process, [&] { return post.requests >= 20; }));
+  ASSERT_TRUE(eventually(*process, [&] { return post.requests >= 20; }));
   EXPECT_THAT(process->rejected.rows(), IsEmpty());
   EXPECT_THAT(texts(left().markers()), ElementsAre("wipe", "1", "2"));
 }
@@ -246,7 +246,7 @@ TEST_F(TelemetryTest, IsBehindUntilItIsDelivered) {
   EXPECT_TRUE(process->telemetry.waits_since(robot));
   EXPECT_TRUE(process->telemetry.waits_since(markers));
   EXPECT_FALSE(process->telemetry.waits_since(other)) << "it posted nothing";
-  EXPECT_TRUE(comes(*process, [&] {
+  EXPECT_TRUE(eventually(*process, [&] {
     return !process->telemetry.waits_since(robot) && !process->telemetry.waits_since(markers);
   }));
   EXPECT_EQ(process->record.rows().at(robot).forwarded, 1u);
@@ -262,12 +262,12 @@ TEST_F(TelemetryTest, CountsNoRepeatedPoseAsForwarded) {
     return row == process->record.rows().end() ? 0 : row->second.forwarded;
   };
   ASSERT_TRUE(process->telemetry.take(pose("r1", 1), 10));
-  ASSERT_TRUE(comes(*process, [&] { return forwarded(silent) == 1; }));
+  ASSERT_TRUE(eventually(*process, [&] { return forwarded(silent) == 1; }));
   const auto last = process->record.rows().at(silent).last_forwarded;
   const api::Time seen = process->delivered.robots().at(0).at.value();
   for (std::uint64_t i = 1; i <= 3; ++i) {
     ASSERT_TRUE(process->telemetry.take(pose("r2", static_cast<double>(i)), 10));
-    ASSERT_TRUE(comes(*process, [&] { return forwarded(other) == i; }));
+    ASSERT_TRUE(eventually(*process, [&] { return forwarded(other) == i; }));
   }
   EXPECT_EQ(forwarded(silent), 1u);
   EXPECT_EQ(process->record.rows().at(silent).last_forwarded, last);
@@ -279,11 +279,12 @@ TEST_F(TelemetryTest, BlamesOnlyRobotsWithANewPose) {
   TelemetryStub post(true);
   const auto process = process_with(post.peer);
   ASSERT_TRUE(process->telemetry.take(pose("r1", 1), 10));
-  ASSERT_TRUE(comes(*process, [&] {
+  ASSERT_TRUE(eventually(*process, [&] {
     return process->telemetry.waiting(Kind::State) == 0 && !process->telemetry.channel().busy();
   }));
   ASSERT_TRUE(process->telemetry.take(pose("wipe", 2), 10));  // rejected by the endpoint
-  ASSERT_TRUE(comes(*process, [&] { return process->record.rows().at({Kind::State, "wipe"}).failed >= 1; }));
+  ASSERT_TRUE(
+      eventually(*process, [&] { return process->record.rows().at({Kind::State, "wipe"}).failed >= 1; }));
   EXPECT_EQ(process->record.rows().at({Kind::State, "r1"}).failed, 0u);
 }
 

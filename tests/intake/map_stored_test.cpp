@@ -26,7 +26,7 @@ void expect_the_map_of(Team& team, const std::string& body) {
 }
 
 TEST(MapUpload, IsStoredAsItArrives) {
-  for (const std::string& body : {cloud_body(200'000), grid_said_late(2000, 1000)}) {
+  for (const std::string& body : {cloud_body(200'000), grid_with_late_type(2000, 1000)}) {
     Team team;
     RawClient client(team.served.port());
     client.send(map_head(body) + body.substr(0, body.size() / 2));

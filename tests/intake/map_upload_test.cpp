@@ -198,8 +198,8 @@ TEST(MapUpload, CountsItsInflatedSizeInTheBudget) {
     return team.ask(map_head(sent, kGzip) + sent)->status;
   };
   for (int i = 0; i < 3; ++i) {
-    EXPECT_EQ(status_of(grid_said_late(1000, 1000)), 200);
-    EXPECT_EQ(status_of(grid_said_late(2000, 1000)), 429);
+    EXPECT_EQ(status_of(grid_with_late_type(1000, 1000)), 200);
+    EXPECT_EQ(status_of(grid_with_late_type(2000, 1000)), 429);
     EXPECT_EQ(status_of(grid_body(2000, 1000)), 200) << "compressed as it arrives";
   }
   const std::string body = grid_body(1100, 1100);

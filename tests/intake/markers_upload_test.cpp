@@ -58,7 +58,7 @@ std::string message_of(std::uint32_t points) {
 }
 
 /// The desk accepts a message with the largest marker.
-void is_taken(std::string_view headers, const std::string& body, bool colored) {
+void expect_accepted(std::string_view headers, const std::string& body, bool colored) {
   Team team;
   const auto reply =
       team.ask(authorized("POST", "/markers/update", headers, body), std::chrono::seconds(100));
@@ -82,7 +82,7 @@ TEST(MarkersUpload, HasRoomForTheLargestMarkerUnderGzip) {
       put(cbor_of({{"markers", {colored}}}), "points", list_of(icd::kMostMarkerPoints, kPoint));
   const std::string cbor = put(points, "colors", list_of(icd::kMostMarkerPoints, kColor));
   EXPECT_GT(cbor.size(), 7u << 20);
-  is_taken(std::string(kCborType) + kGzip, gzipped(cbor), true);
+  expect_accepted(std::string(kCborType) + kGzip, gzipped(cbor), true);
 }
 
 TEST(MarkersUpload, HasRoomForTheLargestMarkerInJson) {
@@ -92,7 +92,7 @@ TEST(MarkersUpload, HasRoomForTheLargestMarkerInJson) {
   std::string text = json{{"markers", {marker("points")}}}.dump();
   text.replace(text.find(member) + member.size(), sizeof "points" + 1, list + "]");
   ASSERT_GT(text.size(), 5u << 20);
-  is_taken(kJsonType, text, false);
+  expect_accepted(kJsonType, text, false);
 }
 
 TEST(MarkersUpload, IsRejectedAboveItsLimit) {

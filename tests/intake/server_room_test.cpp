@@ -13,7 +13,7 @@ using Clients = std::vector<std::unique_ptr<RawClient>>;
 constexpr std::string_view kToken = "Authorization: Bearer x\r\n";
 
 /// A request in the middle of its body.
-std::string begun(std::string_view headers = {}) {
+std::string unfinished_request(std::string_view headers = {}) {
   return request("POST", "/echo", std::string(headers) + "Content-Length: 4000\r\n") + "x";
 }
 
@@ -26,7 +26,7 @@ class ServerRoom : public testing::Test {
     clients.back()->send(bytes);
     return *clients.back();
   }
-  bool known_come_to(std::size_t count) {
+  bool has_authenticated(std::size_t count) {
     return served.eventually(
         [&] { return served.server().connections() - served.server().unauthenticated() == count; });
   }
@@ -48,7 +48,7 @@ TEST_F(DefaultServerRoom, IsReservedForAuthenticatedClients) {
   Clients held;
   for (int i = 0; i < 100; ++i) {
     held.push_back(std::make_unique<RawClient>(served.port(), "127.0.1." + std::to_string(1 + i % 4)));
-    held.back()->send(begun());
+    held.back()->send(unfinished_request());
     if (i % 10 != 9) continue;
     RawClient one(served.port());
     one.send(request("POST", "/echo", kToken, "2"));
@@ -68,7 +68,7 @@ TEST_F(DefaultServerRoom, IsReservedForAuthenticatedClients) {
 TEST_F(ServerRoom, IsLimitedForRequestsOfOneAddress) {
   Clients busy;
   for (int i = 0; i < 3; ++i) connect(busy, "127.0.0.2", request("GET", "/later", kToken));
-  ASSERT_TRUE(known_come_to(3));
+  ASSERT_TRUE(has_authenticated(3));
   RawClient more(served.port(), "127.0.0.2");
   more.send(request("POST", "/echo", kToken, std::string(2000, 'x')));
   const auto told = more.reply();
@@ -109,9 +109,9 @@ TEST_F(ServerRoom, IsNotHeldByDisconnectedClients) {
 TEST_F(ServerRoom, IsSharedByAddressesIfAllAreAuthenticated) {
   handler.asks_token = false;
   Clients greedy;
-  for (int i = 0; i < 3; ++i) connect(greedy, "127.0.0.2", begun());
-  for (int i = 0; i < 3; ++i) connect(greedy, "127.0.0.3", begun());
-  ASSERT_TRUE(known_come_to(6));
+  for (int i = 0; i < 3; ++i) connect(greedy, "127.0.0.2", unfinished_request());
+  for (int i = 0; i < 3; ++i) connect(greedy, "127.0.0.3", unfinished_request());
+  ASSERT_TRUE(has_authenticated(6));
   RawClient other(served.port(), "127.0.0.4");
   other.send(request("POST", "/echo", {}, "1"));
   ASSERT_EQ(other.reply()->status, 200);
@@ -121,7 +121,7 @@ TEST_F(ServerRoom, IsSharedByAddressesIfAllAreAuthenticated) {
 TEST_F(ServerRoom, GoesToTheLatestUnauthenticatedClients) {
   Clients strangers;
   for (int i = 0; i < 3; ++i) {
-    connect(strangers, "127.0.0." + std::to_string(2 + i), begun());
+    connect(strangers, "127.0.0." + std::to_string(2 + i), unfinished_request());
     ASSERT_TRUE(served.eventually([&] { return handler.body_bytes == static_cast<std::size_t>(i + 1); }));
   }
   EXPECT_EQ(strangers[0]->reply()->status, 503);

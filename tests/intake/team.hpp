@@ -224,7 +224,7 @@ inline std::string cloud_body(std::size_t points) {
 }
 
 /// As grid_body(), but its type follows the data, so cells stay uncompressed until then.
-inline std::string grid_said_late(std::uint32_t width, std::uint32_t height) {
+inline std::string grid_with_late_type(std::uint32_t width, std::uint32_t height) {
   constexpr std::string_view kType = R"("type": "OccupancyGrid", )";
   std::string body = grid_body(width, height);
   body.erase(body.find(kType), kType.size());

@@ -9,7 +9,7 @@ using namespace std::chrono_literals;
 using Looked = TokenGuesses::Looked;
 
 constexpr loop::Instant kBegin{100h};
-const TokenGuesses::Verdict kLetIn{Looked::Right, false}, kNotLookedAt{Looked::NotLookedAt, true};
+const TokenGuesses::Verdict kAdmitted{Looked::Right, false}, kUnchecked{Looked::NotLookedAt, true};
 
 class TokenGuessesTest : public testing::Test {
  protected:
@@ -17,7 +17,7 @@ class TokenGuessesTest : public testing::Test {
   bool guess(const std::string& address, loop::Instant now) {
     return guesses_.wrong(address, "guess " + std::to_string(++guessed_), now).looked == Looked::Wrong;
   }
-  void guess_on(const std::string& address, int times, loop::Instant now) {
+  void guess_often(const std::string& address, int times, loop::Instant now) {
     for (int i = 0; i < times; ++i) guess(address, now);
   }
   TokenGuesses guesses_;
@@ -29,29 +29,29 @@ TEST_F(TokenGuessesTest, AreCheckedOnceASecondAfterAFew) {
   int looked_at = 0;
   for (auto after = 0ms; after < 60s; after += 1ms) looked_at += guess("10.0.0.9", kBegin + after) ? 1 : 0;
   EXPECT_EQ(looked_at, 59);
-  EXPECT_EQ(guesses_.wrong("10.0.0.9", "another", kBegin + 60s - 1ms), kNotLookedAt);
+  EXPECT_EQ(guesses_.wrong("10.0.0.9", "another", kBegin + 60s - 1ms), kUnchecked);
 }
 
 TEST_F(TokenGuessesTest, DoNotDelayAnotherAddress) {
-  guess_on("10.0.0.9", 10'000, kBegin);
-  EXPECT_EQ(guesses_.right("10.0.0.5", kBegin), kLetIn);
+  guess_often("10.0.0.9", 10'000, kBegin);
+  EXPECT_EQ(guesses_.right("10.0.0.5", kBegin), kAdmitted);
   EXPECT_EQ(guesses_.wrong("10.0.0.6", "old", kBegin), (TokenGuesses::Verdict{Looked::Wrong, false}));
 }
 
 TEST_F(TokenGuessesTest, DoNotDelayAnAuthenticatedAddress) {
-  EXPECT_EQ(guesses_.right("10.0.0.9", kBegin), kLetIn);
+  EXPECT_EQ(guesses_.right("10.0.0.9", kBegin), kAdmitted);
   for (int i = 0; i < 1000; ++i) {
     guess("10.0.0.9", kBegin + i * 1ms);
-    EXPECT_EQ(guesses_.right("10.0.0.9", kBegin + i * 1ms), kLetIn);
+    EXPECT_EQ(guesses_.right("10.0.0.9", kBegin + i * 1ms), kAdmitted);
   }
 }
 
 TEST_F(TokenGuessesTest, DelayARightTokenUntilTheyAreFew) {
-  guess_on("10.0.0.9", 1000, kBegin);
-  EXPECT_EQ(guesses_.right("10.0.0.9", kBegin), kNotLookedAt) << "like a wrong one";
-  EXPECT_EQ(guesses_.right("10.0.0.9", kBegin + 1s), kLetIn) << "soon after the last guess";
-  guess_on("10.0.0.9", 1000, kBegin + 1s);
-  EXPECT_EQ(guesses_.right("10.0.0.9", kBegin + 1s), kLetIn) << "now authenticated";
+  guess_often("10.0.0.9", 1000, kBegin);
+  EXPECT_EQ(guesses_.right("10.0.0.9", kBegin), kUnchecked) << "like a wrong one";
+  EXPECT_EQ(guesses_.right("10.0.0.9", kBegin + 1s), kAdmitted) << "soon after the last guess";
+  guess_often("10.0.0.9", 1000, kBegin + 1s);
+  EXPECT_EQ(guesses_.right("10.0.0.9", kBegin + 1s), kAdmitted) << "now authenticated";
 }
 
 TEST_F(TokenGuessesTest, DoNotIncludeARepeatedOldToken) {
@@ -61,21 +61,21 @@ TEST_F(TokenGuessesTest, DoNotIncludeARepeatedOldToken) {
     EXPECT_EQ(verdict.looked, Looked::Wrong) << i;
     EXPECT_EQ(verdict.late, i >= TokenGuesses::kFree && i % 100 != 0) << i;
   }
-  EXPECT_EQ(guesses_.right("10.0.0.9", kBegin + 10s), kLetIn) << "another robot behind the same router";
+  EXPECT_EQ(guesses_.right("10.0.0.9", kBegin + 10s), kAdmitted) << "another robot behind the same router";
 }
 
 TEST_F(TokenGuessesTest, AreForgottenIfTheTokensChange) {
-  guess_on("10.0.0.9", 1000, kBegin);
+  guess_often("10.0.0.9", 1000, kBegin);
   guesses_.forget();
-  EXPECT_EQ(guesses_.right("10.0.0.9", kBegin), kLetIn);
+  EXPECT_EQ(guesses_.right("10.0.0.9", kBegin), kAdmitted);
 }
 
 TEST_F(TokenGuessesTest, OfManyAddressesForgetNoAuthenticatedOne) {
-  EXPECT_EQ(guesses_.right("10.0.0.9", kBegin), kLetIn);
-  guess_on("10.0.0.9", 1000, kBegin);
+  EXPECT_EQ(guesses_.right("10.0.0.9", kBegin), kAdmitted);
+  guess_often("10.0.0.9", 1000, kBegin);
   for (int i = 0; i < 10'000; ++i) guess(std::to_string(i), kBegin + 1ms);
-  EXPECT_EQ(guesses_.right("10.0.0.9", kBegin + 1ms), kLetIn);
-  EXPECT_EQ(guesses_.right("10.0.0.5", kBegin + 1ms), kLetIn) << "nor delay a new address";
+  EXPECT_EQ(guesses_.right("10.0.0.9", kBegin + 1ms), kAdmitted);
+  EXPECT_EQ(guesses_.right("10.0.0.5", kBegin + 1ms), kAdmitted) << "nor delay a new address";
 }
 
 }  // namespace

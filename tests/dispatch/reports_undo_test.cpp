@@ -65,7 +65,7 @@ TEST_F(Undo, IsPossibleUntilTheSendingBegins) {
   EXPECT_TRUE(scene_.reports().withdraw(2, scene_.time()));
 }
 
-TEST_F(Undo, IsRefusedOnceTheSendingHasBegun) {
+TEST_F(Undo, IsRejectedOnceTheSendingHasBegun) {
   scene_.compose();
   scene_.wait(10);
   ASSERT_EQ(scene_.send_next(), 1);

@@ -1,8 +1,6 @@
 // A stored grid is sent unchanged unless that takes long.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 #include "codec/gzip.hpp"
 #include "forward/manual_endpoint.hpp"
 

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <string>
 
 #include "../uplink/peer.hpp"
 #include "forward/delivered_scene.hpp"

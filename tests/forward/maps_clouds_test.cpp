@@ -1,7 +1,6 @@
 // Queued clouds. Nothing is sent without a token.
 #include <gtest/gtest.h>
 
-#include <string>
 #include <vector>
 
 #include "forward/fixtures.hpp"

@@ -273,13 +273,13 @@ TEST_F(RejectedStoreTest, OverwritesNoUnreadFile) {
   rejected_->restore();
   fs::remove(folder_ / "rejected");
   fs::create_directory(folder_ / "rejected");
-  folder_.put("rejected/1.cbor", "of a life before");
+  folder_.put("rejected/1.cbor", "of an earlier process");
   add(grid());
   settle();
   EXPECT_EQ(told_.not_kept, 1);
   ASSERT_TRUE(rejected_->discard(1));
   settle();
-  EXPECT_EQ(host::read_file(folder_ / "rejected/1.cbor"), "of a life before");
+  EXPECT_EQ(host::read_file(folder_ / "rejected/1.cbor"), "of an earlier process");
 }
 
 /// Otherwise a restart would send the older message after the newer one.

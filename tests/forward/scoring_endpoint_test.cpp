@@ -7,7 +7,6 @@
 #include "../uplink/peer.hpp"
 #include "forward/fixtures.hpp"
 #include "forward/scoring.hpp"
-#include "host/folder.hpp"
 #include "loop/turn_until.hpp"
 
 namespace adit::forward {

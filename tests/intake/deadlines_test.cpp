@@ -73,7 +73,7 @@ TEST_F(Deadlines, CloseAClientThatDripsItsHeaders) {
   EXPECT_TRUE(client.closes());
 }
 
-TEST_F(Deadlines, CloseAClientThatDripsTheHeadersOfItsSecondRequest) {
+TEST_F(Deadlines, CloseAClientThatDripsItsSecondHead) {
   client.send(request("GET", "/echo"));
   ASSERT_TRUE(client.reply());
   drip("GET /echo", kHere.rate_over / 10);

@@ -2,8 +2,6 @@
 
 #include <functional>
 #include <map>
-#include <optional>
-#include <utility>
 #include <vector>
 
 #include "dispatch/output.hpp"

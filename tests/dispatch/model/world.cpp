@@ -1,6 +1,5 @@
 #include "dispatch/model/world.hpp"
 
-#include <algorithm>
 #include <cstdlib>
 #include <utility>
 

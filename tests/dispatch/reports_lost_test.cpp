@@ -46,6 +46,14 @@ TEST_F(LostReport, HoldsNoRepeatOfAKnownReport) {
   EXPECT_EQ(scene_.count(), 2u) << "it joins report 1";
 }
 
+TEST_F(LostReport, HoldsReportsPostedBeforeTheRunIsKnown) {
+  scene_.restart();
+  scene_.post(2);
+  scene_.hear(19, 0);
+  EXPECT_EQ(scene_.send_next(), 0);
+  EXPECT_EQ(scene_.state(3), Held);
+}
+
 TEST_F(LostReport, HoldsNoReportOnceItIsSettled) {
   EXPECT_THAT(scene_.undecided(), ElementsAre(HasSubstr(kNote)));
   ASSERT_TRUE(scene_.reports().settle(2, scene_.time()));

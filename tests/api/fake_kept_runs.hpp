@@ -17,12 +17,14 @@ struct FakeKeptRuns final : KeptRuns {
     asked_since = since;
     return plots;
   }
-  void read(const std::string& key, std::function<void(std::shared_ptr<const KeptRun>)> done) override {
+  void read(const std::string& key, ReadDone done) override {
+    if (!unreadable.empty()) return done(std::unexpected(unreadable));
     done(kept != nullptr && kept->facts.key == key ? kept : nullptr);
   }
   void report(const std::string& key, std::vector<ReportDetail> reports, std::vector<ColourRow> /*colours*/,
-              std::function<void(std::string)> done) override {
+              ReportDone done) override {
     reported = std::move(reports);
+    if (!unreadable.empty()) return done(std::unexpected(unreadable));
     done(kept != nullptr && kept->facts.key == key ? "<!doctype html>" : "");
   }
   void remove(const std::string& key, std::function<void(std::expected<void, std::string>)> done) override {
@@ -36,6 +38,7 @@ struct FakeKeptRuns final : KeptRuns {
   History plots;
   std::shared_ptr<KeptRun> kept;
   std::vector<ReportDetail> reported;
+  std::string unreadable;  // why no run can be read; empty: all can
   mutable Time asked_since = 0;
 };
 

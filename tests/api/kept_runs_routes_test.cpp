@@ -34,6 +34,16 @@ TEST_F(KeptRunsRoutesTest, RejectAnUnknownRun) {
   EXPECT_EQ(get("/adit/runs/3/map?since=x").status, icd::Status::BadRequest);
 }
 
+TEST_F(KeptRunsRoutesTest, DoNotCallAnUnreadableRunAbsent) {
+  runs.unreadable = "cannot read the stored run: runs/3: Input/output error";
+  for (const char* path : {"/adit/runs/3/map", "/adit/runs/3/tracks", "/adit/runs/3/report.html"}) {
+    EXPECT_EQ(get(path).status, icd::Status::ServiceUnavailable) << path;
+    EXPECT_THAT(get(path).body, HasSubstr("Input/output error")) << path;
+  }
+  runs.all.trouble = "cannot list stored runs";
+  EXPECT_EQ(get("/adit/runs/9").status, icd::Status::ServiceUnavailable);
+}
+
 TEST_F(KeptRunsRoutesTest, PrintOnlyTheReportsOfThatRun) {
   source.details[1].row.number = 1;
   source.details[1].row.run = 3;

@@ -95,7 +95,7 @@ TEST_F(ArchiveTest, KeepsThePictureOfAnEndedRun) {
   archive->end_run(run.seen());
   live({.run = 4, .began = 2000, .post = run.head.post});
   std::string kept;
-  archive->read("3", [&](auto its) { kept = shown(its->picture); });
+  archive->read("3", [&](auto its) { kept = shown(its.value()->picture); });
   ASSERT_TRUE(loop::turn_until(loop, [&] { return !kept.empty(); }));
   EXPECT_EQ(kept, shown(run.easel.mosaic));
 }
@@ -204,9 +204,9 @@ TEST_F(ArchiveTest, ShowsThePresentRunAsItIsNow) {
   EXPECT_EQ(archive->list().runs.at(0).score, 7);
   EXPECT_TRUE(loop::turn_until(loop, [&] { return archive->list().runs.at(0).bytes > 0; }));
   std::optional<api::RunRow> read;
-  archive->read("3", [&](auto its) { read = its->facts; });
+  archive->read("3", [&](auto its) { read = its.value()->facts; });
   std::string html;
-  archive->report("3", {}, {}, [&](std::string its) { html = std::move(its); });
+  archive->report("3", {}, {}, [&](auto its) { html = its.value(); });
   ASSERT_TRUE(loop::turn_until(loop, [&] { return !html.empty(); }));
   EXPECT_EQ(read->score, 7);
   EXPECT_THAT(html, testing::HasSubstr("<dt>Score</dt><dd>7</dd>"));
@@ -225,7 +225,7 @@ TEST_F(ArchiveTest, TellsStartAndEndOfARunByOneClock) {
   };
   expect_it(archive->list().runs.at(0), run.now());
   std::optional<api::RunRow> read;
-  archive->read("3", [&](auto its) { read = its->facts; });
+  archive->read("3", [&](auto its) { read = its.value()->facts; });
   ASSERT_TRUE(loop::turn_until(loop, [&] { return read.has_value(); }));
   expect_it(*read, run.now());
   archive->move(-kMonth);
@@ -276,12 +276,44 @@ TEST_F(ArchiveTest, ListsTheLatestRunFirstAndDeletesOldRuns) {
   EXPECT_FALSE(fs::exists(folder / "runs/3"));
 }
 
+TEST_F(ArchiveTest, KeepsItsListIfTheDirectoryCannotBeListed) {
+  live(run.head);
+  write();
+  ASSERT_TRUE(loop::turn_until(loop, [&] { return archive->list().runs.at(0).bytes > 0; }));
+  fs::remove_all(folder / "runs");
+  std::ofstream(folder / "runs") << "no directory";
+  archive->begin({.run = 4, .began = 2000, .post = run.head.post},
+                 [&](auto&&...) -> const picture::Mosaic& { return picture; });
+  ASSERT_TRUE(loop::turn_until_idle(loop, archive->thread()));
+  const api::RunList all = archive->list();
+  EXPECT_NE(std::ranges::find(all.runs, "3", &api::RunRow::key), all.runs.end());
+  EXPECT_THAT(all.trouble, testing::HasSubstr("runs"));
+}
+
+TEST_F(ArchiveTest, DoesNotTakeAnUnreadableRunForAnAbsentOne) {
+  live(run.head);
+  write();
+  ASSERT_TRUE(loop::turn_until_idle(loop, archive->thread()));
+  for (const auto& file : fs::directory_iterator(folder / "runs/3")) {
+    fs::remove(file);
+    fs::create_directory(file);
+  }
+  std::optional<std::string> read, reported, absent;
+  archive->read("3", [&](auto its) { read = its.error(); });
+  archive->report("3", {}, {}, [&](auto its) { reported = its.error(); });
+  archive->read("9", [&](auto its) { absent = its && !*its ? "absent" : "read"; });
+  ASSERT_TRUE(loop::turn_until(loop, [&] { return absent.has_value(); }));
+  EXPECT_THAT(*read, testing::HasSubstr("runs/3"));
+  EXPECT_EQ(reported, read);
+  EXPECT_EQ(absent, "absent");
+}
+
 TEST_F(ArchiveTest, ReadsAnEndedRun) {
   live(run.head);
   run.draw(2);
   write();
   std::optional<std::shared_ptr<const api::KeptRun>> read;
-  archive->read("3", [&](auto its) { read = its; });
+  archive->read("3", [&](auto its) { read = its.value(); });
   ASSERT_TRUE(loop::turn_until(loop, [&] { return read.has_value(); }));
   ASSERT_NE(*read, nullptr);
   EXPECT_EQ(shown((*read)->picture), shown(run.easel.mosaic));
@@ -292,13 +324,13 @@ TEST_F(ArchiveTest, ReadsAnEndedRun) {
       .seekp(-1, std::ios::end)
       .put('x');
   read.reset();
-  archive->read("3", [&](auto its) { read = its; });
+  archive->read("3", [&](auto its) { read = its.value(); });
   ASSERT_TRUE(loop::turn_until(loop, [&] { return read.has_value(); }));
   ASSERT_EQ((*read)->history.attention.size(), 1U) << "damage must be reported";
   EXPECT_EQ((*read)->history.attention[0].sentence,
             "a part of the run's stored map, tracks and plots is lost: damaged records: 1");
   read.reset();
-  archive->read("7", [&](auto its) { read = its; });
+  archive->read("7", [&](auto its) { read = its.value(); });
   ASSERT_TRUE(loop::turn_until(loop, [&] { return read.has_value(); }));
   EXPECT_EQ(*read, nullptr);
 }

@@ -31,7 +31,7 @@ class RunsFolderTest : public testing::Test {
   }
   std::vector<std::string> keys() const {
     std::vector<std::string> keys;
-    for (const api::RunRow& row : runs.list()) keys.push_back(row.key);
+    for (const api::RunRow& row : runs.list().value().runs) keys.push_back(row.key);
     return keys;
   }
   host::Folder folder;
@@ -73,7 +73,7 @@ TEST_F(RunsFolderTest, SortsRunsWithoutAStampByTimeOfDay) {
 TEST_F(RunsFolderTest, RecognizesARunWithDamagedFactsByItsFiles) {
   const std::string key = run(5, 1000, 10);
   std::ofstream(runs.folder_of(key) + "/facts.json") << "{\"version\": 1";
-  const auto rows = runs.list();
+  const auto rows = runs.list().value().runs;
   ASSERT_EQ(rows.size(), 1U);
   EXPECT_EQ(rows[0].run, 5);
   EXPECT_EQ(rows[0].began, 1000);
@@ -90,6 +90,9 @@ TEST_F(RunsFolderTest, RejectsAnUnreadableRunInsteadOfANewOne) {
   const auto begun = runs.begin({.run = 5, .began = 1000, .post = "here:1"});
   ASSERT_FALSE(begun) << *begun;
   EXPECT_THAT(begun.error(), testing::HasSubstr(path));
+  run(6, 1000, 10);
+  EXPECT_THAT(keys(), ElementsAre("6"));
+  EXPECT_THAT(runs.list()->trouble, testing::HasSubstr(path));
 }
 
 TEST_F(RunsFolderTest, ReportsARunWhoseFilesCannotBeListed) {
@@ -103,6 +106,21 @@ TEST_F(RunsFolderTest, ReportsARunWhoseFilesCannotBeListed) {
   fs::permissions(path, fs::perms{0700});
   ASSERT_FALSE(facts) << (*facts)->bytes;
   EXPECT_EQ(facts.error(), path + ": Permission denied");
+}
+
+TEST_F(RunsFolderTest, DoesNotTakeAnUnreadableRunForAnAbsentOne) {
+  const std::string path = runs.folder_of(run(5, 1000, 10));
+  fs::permissions(folder / "runs", fs::perms{0600});
+  const int before = setfsuid(65534);  // root may search all directories
+  const auto exists = runs.has("5");
+  const auto removed = runs.remove("5");
+  const auto list = runs.list();
+  setfsuid(before);
+  fs::permissions(folder / "runs", fs::perms{0700});
+  ASSERT_FALSE(exists) << *exists;
+  EXPECT_EQ(exists.error(), path + ": Permission denied");
+  EXPECT_EQ(removed.error(), exists.error());
+  EXPECT_FALSE(list) << list->runs.size();
 }
 
 TEST_F(RunsFolderTest, DoesNotContinueADirectoryOfAnUnknownRun) {

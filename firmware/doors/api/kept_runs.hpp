@@ -88,11 +88,15 @@ class KeptRuns {
   virtual RunList list() const = 0;
   /// The plots of the present run, after `since`.
   virtual History history(Time since) const = 0;
-  /// Reads a run and calls `done` on the loop. Null: no run has that key.
-  virtual void read(const std::string& key, std::function<void(std::shared_ptr<const KeptRun>)> done) = 0;
-  /// The run's report for printing as HTML; "": no run has that key.
+  /// Null: no run has that key. Error, as a sentence: the run cannot be read.
+  using ReadDone = std::function<void(std::expected<std::shared_ptr<const KeptRun>, std::string>)>;
+  /// Reads a run and calls `done` on the loop.
+  virtual void read(const std::string& key, ReadDone done) = 0;
+  /// HTML; "": no run has that key. Error, as a sentence: the run cannot be read.
+  using ReportDone = std::function<void(std::expected<std::string, std::string>)>;
+  /// The run's report for printing. Calls `done` on the loop.
   virtual void report(const std::string& key, std::vector<ReportDetail> reports,
-                      std::vector<ColourRow> colours, std::function<void(std::string html)> done) = 0;
+                      std::vector<ColourRow> colours, ReportDone done) = 0;
   /// Deletes a run, except the present one. Its reports stay in the ledger. Error: a sentence.
   virtual void remove(const std::string& key, std::function<void(std::expected<void, std::string>)> done) = 0;
 };

@@ -15,8 +15,10 @@ namespace {
 
 constexpr std::size_t kDetailsInATurn = 16;  // each is a query of the ledger
 
-intake::Answer no_such_run() {
-  return refusal(icd::Status::NotFound, "there is no such run");
+/// Of a run that does not exist; or `trouble`: why that is not known.
+intake::Answer not_found(const std::string& trouble) {
+  if (trouble.empty()) return refusal(icd::Status::NotFound, "there is no such run");
+  return refusal(icd::Status::ServiceUnavailable, trouble);
 }
 
 /// A run's report contains its style and images, and no script. Other content must not load.
@@ -54,7 +56,7 @@ intake::Answer KeptRunsRoutes::list() const {
 intake::Answer KeptRunsRoutes::one(const Call& call) const {
   const RunList all = runs_.list();
   const RunRow* row = row_of(all, call.parameters.front());
-  return row != nullptr ? fresh(*row) : no_such_run();
+  return row != nullptr ? fresh(*row) : not_found(all.trouble);
 }
 
 void KeptRunsRoutes::with_run(const Call& call, Answering answer) {
@@ -69,17 +71,19 @@ void KeptRunsRoutes::with_run(const Call& call, Answering answer) {
   }
   waiting.push_back({call.responder, std::move(answer)});
   if (waiting.size() > 1) return;
-  runs_.read(key, [this, key](const std::shared_ptr<const KeptRun>& run) { came(key, run); });
+  runs_.read(key, [this, key](const auto& run) { came(key, run); });
 }
 
-void KeptRunsRoutes::came(const std::string& key, const std::shared_ptr<const KeptRun>& run) {
+void KeptRunsRoutes::came(const std::string& key,
+                          const std::expected<std::shared_ptr<const KeptRun>, std::string>& run) {
   const auto waiting = std::exchange(waiting_[key], {});
   waiting_.erase(key);
-  for (const Waiting& each : waiting) each.responder->answer(run ? each.answer(*run) : no_such_run());
+  for (const Waiting& each : waiting)
+    each.responder->answer(run && *run ? each.answer(**run) : not_found(run ? "" : run.error()));
   const RunList all = runs_.list();
   const RunRow* row = row_of(all, key);
-  if (!run || row == nullptr || row->is_present) return;  // the present run changes
-  held_ = run;
+  if (!run || !*run || row == nullptr || row->is_present) return;  // the present run changes
+  held_ = *run;
   forget_.call_at(loop_.now() + kHeld);
 }
 
@@ -114,7 +118,7 @@ struct KeptRunsRoutes::Gathering {
 void KeptRunsRoutes::report(const Call& call) {
   const RunList all = runs_.list();
   const RunRow* row = row_of(all, call.parameters.front());
-  if (row == nullptr) return call.responder->answer(no_such_run());
+  if (row == nullptr) return call.responder->answer(not_found(all.trouble));
   gather(std::make_shared<Gathering>(row->key, row->run, 0, std::vector<ReportDetail>(), call.responder));
 }
 
@@ -129,15 +133,16 @@ void KeptRunsRoutes::gather(const std::shared_ptr<Gathering>& gathering) {
     return loop_.post([this, gathering] { gather(gathering); });
   }
   runs_.report(gathering->key, std::move(gathering->reports), source_.view().colours,
-               [responder = gathering->responder](std::string html) {
-                 responder->answer(html.empty() ? no_such_run() : printed(std::move(html)));
+               [responder = gathering->responder](std::expected<std::string, std::string> html) {
+                 responder->answer(html && !html->empty() ? printed(*std::move(html))
+                                                          : not_found(html ? "" : html.error()));
                });
 }
 
 void KeptRunsRoutes::remove(const Call& call) {
   const RunList all = runs_.list();
   const RunRow* row = row_of(all, call.parameters.front());
-  if (row == nullptr) return call.responder->answer(no_such_run());
+  if (row == nullptr) return call.responder->answer(not_found(all.trouble));
   if (held_ && held_->facts.key == row->key) held_.reset();
   runs_.remove(row->key,
                [key = row->key, responder = call.responder](const std::expected<void, std::string>& done) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <expected>
 #include <functional>
 #include <map>
 #include <memory>
@@ -44,7 +45,7 @@ class KeptRunsRoutes {
   };
   struct Gathering;
   void with_run(const Call& call, Answering answer);
-  void came(const std::string& key, const std::shared_ptr<const KeptRun>& run);
+  void came(const std::string& key, const std::expected<std::shared_ptr<const KeptRun>, std::string>& run);
   void gather(const std::shared_ptr<Gathering>& gathering);
   const RunRow* row_of(const RunList& list, const std::string& key) const;
 

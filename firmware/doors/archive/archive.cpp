@@ -158,8 +158,16 @@ void Archive::be_due() {
 }
 
 void Archive::look_at_disk() {
-  const auto rows = std::make_shared<std::vector<api::RunRow>>();
-  writer_.submit([rows, runs = runs_] { *rows = runs.list(); }, [this, rows] { list_ = std::move(*rows); },
+  const auto listed = std::make_shared<std::expected<RunsFolder::List, std::string>>();
+  writer_.submit([listed, runs = runs_] { *listed = runs.list(); },
+                 [this, listed] {
+                   if (*listed) {
+                     list_ = std::move(**listed);
+                   } else {
+                     host::log(host::Level::Warning, "cannot list stored runs", {{"why", listed->error()}});
+                     list_.trouble = listed->error();  // the runs remain those of the last time
+                   }
+                 },
                  [] {});
 }
 
@@ -177,9 +185,9 @@ api::RunRow as_told(const api::RunRow& row, const api::RunRow& present) {
 }  // namespace
 
 api::RunList Archive::list() const {
-  api::RunList all{.runs = list_, .bytes = 0, .trouble = trouble_};
+  api::RunList all{.runs = list_.runs, .bytes = 0, .trouble = trouble_.empty() ? list_.trouble : trouble_};
   // a new run has no files yet
-  if (!key_.empty() && std::ranges::find(list_, key_, &api::RunRow::key) == list_.end()) {
+  if (!key_.empty() && std::ranges::find(all.runs, key_, &api::RunRow::key) == all.runs.end()) {
     all.runs.insert(all.runs.begin(), {.key = key_,
                                        .run = head_.run,
                                        .post = head_.post,
@@ -197,12 +205,19 @@ api::RunList Archive::list() const {
 
 namespace {
 
+constexpr const char* kUnread = "the stored run was not read";
+
+using ReadRun = std::expected<std::shared_ptr<api::KeptRun>, std::string>;
+
 /// Blocks on the disk. Null if there is no such run.
-std::shared_ptr<api::KeptRun> kept_run(const RunsFolder& runs, const std::string& key,
-                                       const api::RunRow& present, const std::function<bool()>& enough) {
+ReadRun kept_run(const RunsFolder& runs, const std::string& key, const api::RunRow& present,
+                 const std::function<bool()>& enough) {
   const auto known = runs.facts_of(key);
-  if (!known) host::log(host::Level::Warning, "cannot read a stored run", {{"why", known.error()}});
-  if (!known || !*known) return nullptr;
+  if (!known) {
+    host::log(host::Level::Warning, "cannot read a stored run", {{"why", known.error()}});
+    return std::unexpected("cannot read the stored run: " + known.error());
+  }
+  if (!*known) return nullptr;
   const api::RunRow& facts = **known;
   RunRecords told(Archive::kLookedAt);
   tell_all(runs, key, told, enough);
@@ -212,25 +227,28 @@ std::shared_ptr<api::KeptRun> kept_run(const RunsFolder& runs, const std::string
 
 }  // namespace
 
-void Archive::read(const std::string& key, std::function<void(std::shared_ptr<const api::KeptRun>)> done) {
-  const auto run = std::make_shared<std::shared_ptr<const api::KeptRun>>();
+void Archive::read(const std::string& key, ReadDone done) {
+  const auto run = std::make_shared<ReadRun>();
   writer_.submit([run, key, present = row_, runs = runs_,
                   enough = enough()] { *run = kept_run(runs, key, present, enough); },
-                 [run, done] { done(*run); }, [done] { done(nullptr); });
+                 [run, done] { done(*run); }, [done] { done(std::unexpected(kUnread)); });
 }
 
 void Archive::report(const std::string& key, std::vector<api::ReportDetail> reports,
-                     std::vector<api::ColourRow> colours, std::function<void(std::string html)> done) {
-  const auto html = std::make_shared<std::string>();
+                     std::vector<api::ColourRow> colours, ReportDone done) {
+  const auto html = std::make_shared<std::expected<std::string, std::string>>();
   writer_.submit(
       [html, key, present = row_, runs = runs_, enough = enough(), reports = std::move(reports),
        colours = std::move(colours)] {
         const auto run = kept_run(runs, key, present, enough);
-        if (!run) return;
-        run->colours = colours;
-        *html = run_report(*run, reports);
+        if (!run) {
+          *html = std::unexpected(run.error());
+        } else if (*run) {
+          (*run)->colours = colours;
+          *html = run_report(**run, reports);
+        }
       },
-      [html, done] { done(std::move(*html)); }, [done] { done(""); });
+      [html, done] { done(std::move(*html)); }, [done] { done(std::unexpected(kUnread)); });
 }
 
 void Archive::remove(const std::string& key, std::function<void(std::expected<void, std::string>)> done) {
@@ -238,7 +256,8 @@ void Archive::remove(const std::string& key, std::function<void(std::expected<vo
   const auto outcome = std::make_shared<std::expected<void, std::string>>(std::unexpected("no memory"));
   writer_.submit([outcome, key, runs = runs_]() mutable { *outcome = runs.remove(key); },
                  [this, key, outcome, done = std::move(done)] {
-                   if (*outcome) std::erase_if(list_, [&](const api::RunRow& row) { return row.key == key; });
+                   if (*outcome)
+                     std::erase_if(list_.runs, [&](const api::RunRow& row) { return row.key == key; });
                    done(*outcome);
                  });
 }

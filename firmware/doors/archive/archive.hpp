@@ -74,9 +74,9 @@ class Archive final : public api::KeptRuns {
 
   api::RunList list() const override;
   api::History history(api::Time since) const override { return samples_.since(since); }
-  void read(const std::string& key, std::function<void(std::shared_ptr<const api::KeptRun>)> done) override;
+  void read(const std::string& key, ReadDone done) override;
   void report(const std::string& key, std::vector<api::ReportDetail> reports,
-              std::vector<api::ColourRow> colours, std::function<void(std::string html)> done) override;
+              std::vector<api::ColourRow> colours, ReportDone done) override;
   void remove(const std::string& key, std::function<void(std::expected<void, std::string>)> done) override;
 
  private:
@@ -129,7 +129,7 @@ class Archive final : public api::KeptRuns {
   Head head_;        // of the present run
   std::string key_;  // of the present run; "": not known yet
   std::shared_ptr<RunFolder> folder_;
-  std::vector<api::RunRow> list_;
+  RunsFolder::List list_;
   std::string trouble_;
   std::shared_ptr<std::atomic<bool>> ending_ = std::make_shared<std::atomic<bool>>(false);
   loop::Writer writer_;  // last, so that its jobs end first

@@ -194,8 +194,8 @@ void Archive::written(const Writing& writing) {
     lines_.give_back(writing.batch.lines);
     return;
   }
-  const auto row = std::ranges::find(list_, key_, &api::RunRow::key);
-  if (row != list_.end()) {
+  const auto row = std::ranges::find(list_.runs, key_, &api::RunRow::key);
+  if (row != list_.runs.end()) {
     row->bytes = outcome->bytes;
   } else {
     look_at_disk();

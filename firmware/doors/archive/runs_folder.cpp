@@ -20,16 +20,18 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kGone = "gone-";
 
-/// Total size of the files, or why the directory cannot be listed.
+/// Total size of the files, or why one of them or the directory cannot be read.
 std::expected<std::uint64_t, std::string> bytes_in(const std::string& folder) {
   std::uint64_t bytes = 0;
+  std::error_code error;
   const auto listed = host::for_each_name(folder, [&](std::string_view name) {
-    std::error_code unknown;  // a file may be gone
-    const auto size = fs::file_size(fs::path(folder) / name, unknown);
-    if (!unknown) bytes += size;
-    return true;
+    const auto size = fs::file_size(fs::path(folder) / name, error);
+    if (!error) bytes += size;
+    if (error == std::errc::no_such_file_or_directory || error == std::errc::is_a_directory) error.clear();
+    return !error;
   });
   if (!listed) return std::unexpected(host::trouble(folder, listed.error()));
+  if (error) return std::unexpected(folder + ": " + error.message());
   return bytes;
 }
 
@@ -50,13 +52,18 @@ bool RunsFolder::is_key(std::string_view name) {
          std::ranges::all_of(number, icd::is_digit) && std::ranges::all_of(more, icd::is_digit);
 }
 
-bool RunsFolder::has(const std::string& key) const {
-  std::error_code unknown;
-  return is_key(key) && fs::is_directory(folder_of(key), unknown);
+std::expected<bool, std::string> RunsFolder::has(const std::string& key) const {
+  if (!is_key(key)) return false;
+  std::error_code error;
+  const auto type = fs::status(folder_of(key), error).type();
+  if (error && type != fs::file_type::not_found)
+    return std::unexpected(folder_of(key) + ": " + error.message());
+  return type == fs::file_type::directory;
 }
 
 std::expected<std::optional<api::RunRow>, std::string> RunsFolder::facts_of(const std::string& key) const {
-  if (!has(key)) return std::nullopt;
+  const bool exists = ADIT_TRY(has(key));
+  if (!exists) return std::nullopt;
   const std::string folder = folder_of(key), file = folder + '/' + RunFolder::kFacts;
   std::optional<api::RunRow> row;
   std::expected<void, std::string> all_read;
@@ -84,23 +91,22 @@ std::expected<std::optional<api::RunRow>, std::string> RunsFolder::facts_of(cons
   return row;
 }
 
-std::vector<api::RunRow> RunsFolder::list() const {
-  std::vector<api::RunRow> rows;
+std::expected<RunsFolder::List, std::string> RunsFolder::list() const {
   const auto names = host::names_in(path_, kMostRuns);
-  if (!names)
-    host::log(host::Level::Warning, "cannot list stored runs", {{"why", path_ + ": " + names.error()}});
-  for (const std::string& name : names.value_or(std::vector<std::string>())) {
-    if (!has(name)) continue;
+  if (!names) return std::unexpected(path_ + ": " + names.error());
+  List list;
+  for (const std::string& name : *names) {
     auto row = facts_of(name);
     if (!row) {
+      list.trouble = "cannot read a stored run: " + row.error();
       host::log(host::Level::Warning, "cannot read a stored run", {{"why", row.error()}});
     } else if (*row) {
-      rows.push_back(**std::move(row));
+      list.runs.push_back(**std::move(row));
     }
   }
-  std::ranges::sort(rows, std::ranges::greater(),
+  std::ranges::sort(list.runs, std::ranges::greater(),
                     [](const api::RunRow& row) { return std::pair(row.stamp.value_or(row.last), row.run); });
-  return rows;
+  return list;
 }
 
 std::expected<std::string, std::string> RunsFolder::begin(const Head& head) {
@@ -109,7 +115,8 @@ std::expected<std::string, std::string> RunsFolder::begin(const Head& head) {
   fs::permissions(path_, fs::perms::owner_all, error);
   for (int more = 1; more < 1000; ++more) {
     std::string key = std::to_string(head.run) + (more == 1 ? "" : '-' + std::to_string(more));
-    if (!has(key)) {
+    const bool exists = ADIT_TRY(has(key));
+    if (!exists) {
       if (!fs::create_directory(folder_of(key), error)) break;
       fs::permissions(folder_of(key), fs::perms::owner_all, error);
       return key;
@@ -127,7 +134,8 @@ std::expected<std::string, std::string> RunsFolder::begin(const Head& head) {
 }
 
 std::expected<void, std::string> RunsFolder::remove(const std::string& key) {
-  if (!has(key)) return std::unexpected("there is no such run");
+  const bool exists = ADIT_TRY(has(key));
+  if (!exists) return std::unexpected("there is no such run");
   const std::string gone = path_ + '/' + std::string(kGone) + key;
   std::error_code error;
   fs::rename(folder_of(key), gone, error);  // first, so that a crash does not leave half a run
@@ -142,7 +150,9 @@ void RunsFolder::tidy(std::uint64_t most, const std::string& present) {
     std::error_code error;
     if (name.starts_with(kGone)) fs::remove_all(path_ + '/' + name, error);
   }
-  auto rows = list();
+  const auto listed = list();
+  if (!listed) return host::log(host::Level::Warning, "cannot delete old runs", {{"why", listed.error()}});
+  const auto& rows = listed->runs;
   std::uint64_t all = 0;
   for (const api::RunRow& row : rows) all += row.bytes;
   if (const auto disk = host::disk_of(path_)) most = std::min(most, (disk->free + all) / 2);

@@ -22,14 +22,19 @@ class RunsFolder {
 
   explicit RunsFolder(const std::string& state_folder) : path_(state_folder + '/' + kName) {}
 
-  /// All runs, the latest first. A run with damaged facts is read from its other files. An unreadable run is
-  /// logged and skipped.
-  std::vector<api::RunRow> list() const;
+  struct List {
+    std::vector<api::RunRow> runs;  // the latest first
+    std::string trouble;            // why a run is missing; empty: none is
+  };
+  /// All runs. A run with damaged facts is read from its other files; an unreadable run is logged. Error: the
+  /// directory cannot be listed.
+  std::expected<List, std::string> list() const;
   /// Creates the run's directory if it does not exist, and returns its key. Error: the directory cannot be
   /// created, or a directory that may be the run's cannot be read.
   std::expected<std::string, std::string> begin(const Head& head);
   std::string folder_of(const std::string& key) const { return path_ + '/' + key; }
-  bool has(const std::string& key) const;
+  /// Whether the run has a directory. Error: unknown.
+  std::expected<bool, std::string> has(const std::string& key) const;
   /// std::nullopt if the run does not exist, or its files do not identify it. An error names the unreadable
   /// file.
   std::expected<std::optional<api::RunRow>, std::string> facts_of(const std::string& key) const;

@@ -95,8 +95,8 @@ bool Sticks::is_in(const std::string& name) const {
 
 bool Sticks::is_mounted(const std::string& name) const {
   struct stat mounted{}, around{};
-  return stat(folder(name).c_str(), &mounted) == 0 && stat(options_.sticks.c_str(), &around) == 0 &&
-         mounted.st_dev != around.st_dev;
+  if (stat(folder(name).c_str(), &mounted) != 0) return errno != ENOENT;  // as of a damaged file system
+  return stat(options_.sticks.c_str(), &around) != 0 || mounted.st_dev != around.st_dev;
 }
 
 std::expected<std::vector<spare::Medium>, std::string> Sticks::media() const {

@@ -53,6 +53,7 @@ class Sticks {
   void settle() const;
 
  private:
+  /// False only if it is known not to be mounted.
   bool is_mounted(const std::string& name) const;
   std::expected<void, std::string> unmount(const std::string& name) const;
 

@@ -4,7 +4,7 @@ import { until } from "./box.js";
 import { COUNT, withMany } from "./many_reports.js";
 import { retell } from "./retold.js";
 import { kept, spans, withHistory } from "./kept_history.js";
-import { said, showsTheClock, text, watch } from "./watch.js";
+import { axeFindsNothing, said, showsTheClock, text, watch } from "./watch.js";
 
 const SCREENS = [[1280, 720], [1920, 1080], [3840, 2160]];
 
@@ -35,6 +35,11 @@ test("fits 720p, 1080p and 4K, with all text large enough", async (t) => {
     const clock = await page.$eval("#clock", (node) => parseFloat(getComputedStyle(node).fontSize));
     assert.ok(clock >= height / 15, `${clock}`);
   }
+});
+
+test("has no axe fault on a phone", async (t) => {
+  const { page } = await watch(t, "trouble", { path: "display", bypassCSP: true, viewport: { width: 390, height: 844 } });  // axe is a script
+  await axeFindsNothing(page);
 });
 
 test("shows each report as a whole or not at all, because the display does not scroll", async (t) => {

@@ -19,7 +19,7 @@ TEST(KnownStatus, IsEmptyAtFirst) {
 
 TEST(KnownStatus, IsFreshForOneSecondAndUsableForFifteen) {
   KnownStatus known;
-  known.heard("{\"score\": 1}", at(0));
+  known.heard("{\"score\": 1}", {}, at(0), 0);
   EXPECT_TRUE(known.is_fresh(at(999)));
   EXPECT_FALSE(known.is_fresh(at(1000)));
   EXPECT_TRUE(known.answer(at(15'000)));
@@ -28,14 +28,14 @@ TEST(KnownStatus, IsFreshForOneSecondAndUsableForFifteen) {
 
 TEST(KnownStatus, IsUsableForAMinuteWhileReportsGoFirst) {
   KnownStatus known;
-  known.heard("{}", at(0));
+  known.heard("{}", {}, at(0), 0);
   EXPECT_TRUE(known.answer(at(60'000), KnownStatus::kOldestBehindReports));
   EXPECT_FALSE(known.answer(at(60'001), KnownStatus::kOldestBehindReports));
 }
 
 TEST(KnownStatus, HasAnAgeInWholeSeconds) {
   KnownStatus known;
-  known.heard("{\"score\": 1}", at(0));
+  known.heard("{\"score\": 1}", {}, at(0), 0);
   const std::pair<int, const char*> cases[] = {{0, "0"}, {999, "0"}, {1000, "1"}, {14'999, "14"}};
   for (const auto& [ms, age] : cases) {
     const auto answer = known.answer(at(ms));
@@ -49,11 +49,11 @@ TEST(KnownStatus, HasAnAgeInWholeSeconds) {
 
 TEST(KnownStatus, IsUsableAfterItMayHaveChanged) {
   KnownStatus known;
-  known.heard("{}", at(0));
+  known.heard("{}", {}, at(0), 0);
   known.no_longer_fresh();
   EXPECT_FALSE(known.is_fresh(at(1)));
   EXPECT_TRUE(known.answer(at(1)));
-  known.heard("{}", at(2));
+  known.heard("{}", {}, at(2), 0);
   EXPECT_TRUE(known.is_fresh(at(3)));
 }
 

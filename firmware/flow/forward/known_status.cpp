@@ -6,8 +6,10 @@
 
 namespace adit::forward {
 
-void KnownStatus::heard(std::string body, loop::Instant asked) {
+void KnownStatus::heard(std::string body, const icd::RunStatus& run, loop::Instant asked, icd::Stamp now) {
   body_ = std::move(body);
+  run_ = run;
+  run_clock_.heard(run.run_clock, now);
   asked_ = asked;
   fresh_ = true;
 }

@@ -40,6 +40,14 @@ dispatch::Reports::Outcome carry_out(dispatch::Reports& reports, std::int64_t nu
   std::unreachable();
 }
 
+/// Without a recent status.
+intake::Answer no_status(const std::string& why) {
+  intake::Answer answer =
+      intake::error_answer(icd::Status::ServiceUnavailable, "the status of the run is not known: " + why);
+  answer.headers.push_back({"Retry-After", "1"});
+  return answer;
+}
+
 /// If the Command Post answered without a status.
 intake::Answer no_status_in(const uplink::Answered& answered) {
   if (answered.status >= 400) return client_answer(answered);
@@ -94,8 +102,6 @@ void Scoring::endpoint_changed(std::optional<icd::BearerToken> token) {
 
 void Scoring::endpoint_turned() {
   pace_.endpoint_turned();
-  run_.reset();
-  run_clock_ = {};
   known_status_ = {};
   poll_due_ = true;
   open_reports();
@@ -135,16 +141,17 @@ void Scoring::status(std::shared_ptr<intake::Responder> responder) {
   const auto known =
       known_status_.is_fresh(now) || pace_.has_one_limit() ? known_status_.answer(now) : std::nullopt;
   if (known) return responder->answer(*known);
-  askers_.push_back({std::move(responder), now + kAskerWaits});
+  status_clients_.add(std::move(responder), now);
   pump();
-  if (!askers_.empty() && !asked_status_ && !may_ask_soon(now)) tell_askers(now + kAskerWaits);
+  if (!asked_status_ && !may_ask_soon(now)) answer_clients(now + StatusClients::kWait);
   watch_deadlines();
 }
 
 /// No report goes first, and the pace allows it in time.
 bool Scoring::may_ask_soon(loop::Instant now) const {
   const dispatch::NextRequests requests = reports_->next_requests(time());
-  return !channel_.busy() && !requests.report && pace_.status_ready(requests.in_doubt) <= now + kAskerWaits;
+  return !channel_.busy() && !requests.report &&
+         pace_.status_ready(requests.in_doubt) <= now + StatusClients::kWait;
 }
 
 /// It may be older if only reports delay a request, because the Command Post answers them.
@@ -166,14 +173,6 @@ std::string Scoring::why_no_status() const {
   return asked_status_ ? "the Command Post has not answered yet" : "reports go first";
 }
 
-/// Without a recent status.
-intake::Answer Scoring::no_status(const std::string& why) {
-  intake::Answer answer =
-      intake::error_answer(icd::Status::ServiceUnavailable, "the status of the run is not known: " + why);
-  answer.headers.push_back({"Retry-After", "1"});
-  return answer;
-}
-
 void Scoring::pump() noexcept {
   if (!stopping_ && channel_.turns()) endpoint_turned();
   if (stopping_ || !channel_.has_token()) return;
@@ -184,7 +183,7 @@ void Scoring::pump() noexcept {
   if (!is_free(requests, now)) return;
   std::array<dispatch::Candidate, 2> candidates;
   if (requests.report) candidates[0] = {now, pace_.report_ready()};
-  if (!askers_.empty() || poll_due_) {
+  if (!status_clients_.empty() || poll_due_) {
     candidates[1] = {now, pace_.status_ready(requests.in_doubt)};
   } else if (requests.status) {
     candidates[1] = {now, std::max(pace_.status_ready(requests.in_doubt), *requests.status)};
@@ -265,32 +264,20 @@ void Scoring::classify_report(const uplink::Outcome& outcome) {
 
 void Scoring::watch_deadlines() {
   std::optional<loop::Instant> first = reports_->next_deadline();
-  if (const auto asker = first_asker()) first = std::min(first.value_or(*asker), *asker);
+  if (const auto end = status_clients_.first_end()) first = std::min(first.value_or(*end), *end);
   if (first) deadline_.call_at(*first);
 }
 
-std::optional<loop::Instant> Scoring::first_asker() const {
-  if (askers_.empty()) return std::nullopt;
-  return std::ranges::min_element(askers_, {}, &Asker::until)->until;
-}
-
 /// By the known status; else they wait longer for the request in flight.
-void Scoring::tell_askers(loop::Instant now) {
+void Scoring::answer_clients(loop::Instant now) {
+  if (status_clients_.empty()) return;
   const auto known = known_status();
-  const loop::Instant longest = asked_status_ ? asked_status_->at + kSlow : now;
-  std::erase_if(askers_, [&](Asker& asker) {
-    if (asker.until > now) return false;
-    if (!known && longest > now) {
-      asker.until = longest;
-      return false;
-    }
-    asker.responder->answer(known ? *known : no_status(why_no_status()));
-    return true;
-  });
+  const loop::Instant longest = !known && asked_status_ ? asked_status_->at + kSlow : now;
+  status_clients_.answer_due(now, longest, known ? *known : no_status(why_no_status()));
 }
 
 void Scoring::deadline_came() {
-  tell_askers(loop_.now());
+  answer_clients(loop_.now());
   tick();
   record_.changed();
   watch_deadlines();
@@ -326,24 +313,22 @@ void Scoring::classify_status(const uplink::Outcome& outcome, loop::Instant aske
                                                                   : std::unexpected<std::string>("");
   if (answered != nullptr && answered->wants_slash) {
     pace_.status_taken(answered->sent, now);
-    poll_due_ = true;  // askers keep waiting
+    poll_due_ = true;  // clients keep waiting
     return;
   }
-  if (run) known_status_.heard(answered->body, asked);  // sent with its age
+  if (run) known_status_.heard(answered->body, *run, asked, loop_.stamp_now());  // sent with its age
   if (answered == nullptr) {
     pace_.status_failed(outcome, now);
-    answer_askers(known_or(no_status(sentence_of(outcome))));
+    status_clients_.answer_all(known_or(no_status(sentence_of(outcome))));
   } else if (answered->status == 429) {
     pace_.status_throttled(answered->sent, answered->retry_after, now);
-    answer_askers(known_or(client_answer(*answered)));
+    status_clients_.answer_all(known_or(client_answer(*answered)));
   } else {
     pace_.status_taken(answered->sent, now);
     const bool refused = answered->status >= 400 && answered->status < 500 && !channel_.is_foreign();
-    answer_askers(refused ? client_answer(*answered) : known_or(no_status_in(*answered)));
+    status_clients_.answer_all(refused ? client_answer(*answered) : known_or(no_status_in(*answered)));
   }
   if (run) {
-    run_ = *run;
-    run_clock_.heard(run->run_clock, loop_.stamp_now());
     reports_->status_heard(*run, asked, time());
   } else {
     reports_->status_failed(!std::holds_alternative<uplink::NeverSent>(outcome), time());
@@ -353,10 +338,6 @@ void Scoring::classify_status(const uplink::Outcome& outcome, loop::Instant aske
 /// Failures may end within a second.
 intake::Answer Scoring::known_or(intake::Answer failure) const {
   return known_status().value_or(std::move(failure));
-}
-
-void Scoring::answer_askers(const intake::Answer& answer) {
-  for (const Asker& asker : std::exchange(askers_, {})) asker.responder->answer(answer);
 }
 
 dispatch::Reports::Outcome Scoring::decide(std::int64_t number, api::Action action) noexcept {
@@ -399,7 +380,7 @@ void Scoring::link_is_back() {
 
 bool Scoring::stop() {
   stopping_ = true;
-  answer_askers(intake::error_answer(icd::Status::ServiceUnavailable, "aditd is stopping"));
+  status_clients_.answer_all(intake::error_answer(icd::Status::ServiceUnavailable, "aditd is stopping"));
   reports_->dismiss(false);
   return reports_->sending() == nullptr;
 }

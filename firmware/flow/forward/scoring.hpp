@@ -1,12 +1,10 @@
 #pragma once
 
-#include <deque>
 #include <memory>
 #include <optional>
 #include <random>
 #include <string>
 
-#include "alarms/run_clock.hpp"
 #include "api/source.hpp"
 #include "dispatch/reports.hpp"
 #include "forward/channel.hpp"
@@ -15,8 +13,8 @@
 #include "forward/record.hpp"
 #include "forward/report_output.hpp"
 #include "forward/scoring_pace.hpp"
+#include "forward/status_clients.hpp"
 #include "icd/artifact_report.hpp"
-#include "icd/run_status.hpp"
 #include "intake/desk.hpp"
 #include "ledger/ledger.hpp"
 #include "loop/loop.hpp"
@@ -32,8 +30,6 @@ namespace adit::forward {
 /// 429 shows one limit over both.
 class Scoring {
  public:
-  /// A client waits so long for a new status. Then it gets the last known one.
-  static constexpr std::chrono::milliseconds kAskerWaits{100};
   /// Without a known status the client waits for the request in flight, until so long after its start.
   static constexpr std::chrono::seconds kSlow{2};
   static constexpr std::chrono::seconds kAskEvery{10};  // longest interval between status requests
@@ -82,8 +78,8 @@ class Scoring {
   void dismiss();
 
   const Channel& channel() const { return channel_; }
-  const std::optional<icd::RunStatus>& run() const { return run_; }
-  std::optional<alarms::ShownClock> run_clock() const { return run_clock_.at(loop_.stamp_now()); }
+  const std::optional<icd::RunStatus>& run() const { return known_status_.run(); }
+  std::optional<alarms::ShownClock> run_clock() const { return known_status_.run_clock(loop_.stamp_now()); }
   const dispatch::Reports& reports() const { return *reports_; }
   /// Why the ledger cannot be written, or "".
   const std::string& trouble() const { return output_.trouble(); }
@@ -93,10 +89,6 @@ class Scoring {
   struct AskedStatus {
     loop::Instant at;
     bool decides;  // a report waits for it
-  };
-  struct Asker {
-    std::shared_ptr<intake::Responder> responder;
-    loop::Instant until;  // end of the wait
   };
 
   void hear_time();
@@ -115,15 +107,12 @@ class Scoring {
   void ask_status(bool decides);
   void status_answered(const uplink::Outcome& outcome);
   void classify_status(const uplink::Outcome& outcome, loop::Instant asked);
-  void answer_askers(const intake::Answer& answer);
   void watch_deadlines();
-  void tell_askers(loop::Instant now);
-  std::optional<loop::Instant> first_asker() const;
+  void answer_clients(loop::Instant now);
   bool may_ask_soon(loop::Instant now) const;
   std::optional<intake::Answer> known_status() const;
   void deadline_came();
   std::string why_no_status() const;
-  static intake::Answer no_status(const std::string& why);
   intake::Answer known_or(intake::Answer failure) const;
 
   loop::Loop& loop_;
@@ -137,11 +126,8 @@ class Scoring {
   ScoringPace pace_;
   loop::Source wake_, poll_, deadline_;
 
-  std::deque<Asker> askers_;
+  StatusClients status_clients_;
   bool poll_due_ = false;  // Adit needs a status
-
-  std::optional<icd::RunStatus> run_;
-  alarms::RunClock run_clock_;
   KnownStatus known_status_;
   std::optional<AskedStatus> asked_status_;
   bool stopping_ = false;

@@ -54,7 +54,7 @@ Maps::Maps(loop::Loop& loop, loop::Workers& workers, loop::Writer& writer, spool
       accepted_(
           loop, workers, settings, record, journal, queue_, store_, [this] { pump(); },
           [this](const queues::QueuedMap& back) { return prepared_.contain(back); }),
-      prepared_(loop, workers, settings, record, journal, queue_, store_,
+      prepared_(loop, workers, settings, record, pace_, queue_, store_,
                 [this](bool is_done) { packed(is_done); }) {
   take_settings();
   queue_.canvases().lead_to(channel_.address());
@@ -63,7 +63,6 @@ Maps::Maps(loop::Loop& loop, loop::Workers& workers, loop::Writer& writer, spool
 void Maps::carry_on(const journal::Carried& carried, bool ran_before) {
   accepted_.carry_on(carried, ran_before);
   pace_.carry_on(carried, loop_.now());
-  prepared_.carry_on(carried);
 }
 
 void Maps::take_settings() {
@@ -105,7 +104,7 @@ void Maps::go_on() {
   const bool follows = channel_.busy();
   const Place& next = follows ? prepared_.following() : prepared_.first();
   if (next && next->is_under_way) return;
-  if (next && !prepared_.is_packed(*next)) return prepared_.pack(next, pace_.spacing());
+  if (next && !prepared_.is_packed(*next)) return prepared_.pack(next);
   if (next && follows) return go_ahead(now);
   if (next) {
     if (now >= starts()) return send(next);
@@ -114,7 +113,7 @@ void Maps::go_on() {
   }
   if (queue_.count() == 0) return;
   const loop::Instant begin = begins_to_pack(now);
-  if (now >= begin) return prepared_.prepare(follows, pace_.spacing(), channel_.delivers());
+  if (now >= begin) return prepared_.prepare(follows, channel_.delivers());
   wake_.call_at(begin);
 }
 

@@ -34,9 +34,6 @@ Markers::Markers(loop::Loop& loop, loop::Workers& workers, const settings::Setti
 
 void Markers::carry_on(const journal::Carried& carried) {
   pace_.carry_on(carried, loop_.now());
-  if (const auto last = carried.stamps().find(kUri); last != carried.stamps().end()) {
-    stamps_.carry_on(last->second);
-  }
   if (icd::MarkersUpdate markers = carried.markers(); !markers.markers.empty()) {
     record_.accepted({Kind::Markers, ""}, 0, loop_.wall_now());
     queue_.add(std::move(markers), loop_.now());
@@ -81,10 +78,10 @@ Markers::Sent Markers::take() {
   auto waiting = queue_.take();
   if (!waiting) return nullptr;
   for (icd::Marker& marker : waiting->update.markers) {
-    marker.header.stamp = stamps_.next(marker.header.stamp.value_or(loop_.stamp_now()));
+    marker.header.stamp = pace_.next_stamp(marker.header.stamp.value_or(loop_.stamp_now()));
   }
   if (!waiting->update.markers.empty()) {
-    journal_.stamped(kUri, *waiting->update.markers.back().header.stamp);
+    pace_.keep_stamp(*waiting->update.markers.back().header.stamp);
   }
   if (!waiting->is_ahead) journal_.markers_sent(waiting->update);
   under_way_ = std::make_shared<const queues::QueuedMarkers>(std::move(*waiting));

@@ -11,7 +11,6 @@
 #include "forward/delivered_scene.hpp"
 #include "forward/marker_arrivals.hpp"
 #include "forward/uri_pace.hpp"
-#include "queues/stamps.hpp"
 #include "settings/settings.hpp"
 
 namespace adit::forward {
@@ -75,7 +74,6 @@ class Markers {
   UriPace pace_;
   queues::MarkerQueue queue_;
   MarkerArrivals arrivals_;
-  queues::StampOrder stamps_;
   Sent under_way_;         // null: not in flight
   Sent to_show_;           // null: all are shown
   std::size_t shown_ = 0;  // of to_show_

@@ -27,23 +27,17 @@ std::vector<MapStore::Damaged> damaged_in(const queues::QueuedMap& waiting,
 }  // namespace
 
 PreparedMaps::PreparedMaps(loop::Loop& loop, loop::Workers& workers, const settings::Settings& settings,
-                           Record& record, journal::Journal& journal, queues::MapQueue& queue,
-                           MapStore& store, std::function<void(bool is_done)> packed)
+                           Record& record, UriPace& pace, queues::MapQueue& queue, MapStore& store,
+                           std::function<void(bool is_done)> packed)
     : loop_(loop),
       workers_(workers),
       settings_(settings),
       record_(record),
-      journal_(journal),
+      pace_(pace),
       queue_(queue),
       store_(store),
       packed_(std::move(packed)),
       slot_(pace::map_bytes_per_second(settings.command_post.budget_mbit)) {}
-
-void PreparedMaps::carry_on(const journal::Carried& carried) {
-  if (const auto last = carried.stamps().find(icd::Uri::MapUpdate); last != carried.stamps().end()) {
-    stamps_.carry_on(last->second);
-  }
-}
 
 std::vector<const PreparedMap*> PreparedMaps::of(const Traffic& traffic) const {
   std::vector<const PreparedMap*> all;
@@ -58,23 +52,23 @@ bool PreparedMaps::contain(const queues::QueuedMap& back) const {
          (following_ && queues::replaces(following_->waiting, back));
 }
 
-void PreparedMaps::prepare(bool follows, loop::Duration spacing, std::uint64_t delivers) {
+void PreparedMaps::prepare(bool follows, std::uint64_t delivers) {
   slot_.link_delivers(delivers);
-  queue_.a_message_holds(slot_.points_within(spacing));
+  queue_.a_message_holds(slot_.points_within(pace_.spacing()));
   auto waiting = queue_.take(loop_.now());
   if (!waiting) return;
   Place& place = follows ? following_ : first_;
   place = std::make_shared<PreparedMap>(PreparedMap{.waiting = std::move(*waiting)});
-  pack(place, spacing);
+  pack(place);
 }
 
-void PreparedMaps::pack(const Place& prepared, loop::Duration spacing) {
+void PreparedMaps::pack(const Place& prepared) {
   icd::Header& header = prepared->waiting.map.header();
-  header.stamp = stamps_.next(header.stamp.value_or(loop_.stamp_now()));
-  journal_.stamped(icd::Uri::MapUpdate, *header.stamp);
+  header.stamp = pace_.next_stamp(header.stamp.value_or(loop_.stamp_now()));
+  pace_.keep_stamp(*header.stamp);
   const loop::Instant began = loop_.now();
   const auto leaving_out = std::make_shared<LeavingOut>(points_.leaving_out(prepared->waiting.map));
-  const Packing packing{settings_.command_post.arrange_clouds, slot_.hurry(spacing)};
+  const Packing packing{settings_.command_post.arrange_clouds, slot_.hurry(pace_.spacing())};
   const auto unread = store_.work_begins(prepared->waiting);
   workers_.submit(
       loop::Urgency::OnTheWay,

@@ -6,9 +6,8 @@
 #include "forward/record.hpp"
 #include "forward/slot.hpp"
 #include "forward/stitched.hpp"
-#include "journal/journal.hpp"
+#include "forward/uri_pace.hpp"
 #include "queues/map_queue.hpp"
-#include "queues/stamps.hpp"
 #include "settings/settings.hpp"
 
 namespace adit::forward {
@@ -31,10 +30,8 @@ class PreparedMaps {
 
   /// `packed`: called after the work, with false if it failed. All outlive this.
   PreparedMaps(loop::Loop& loop, loop::Workers& workers, const settings::Settings& settings, Record& record,
-               journal::Journal& journal, queues::MapQueue& queue, MapStore& store,
+               UriPace& pace, queues::MapQueue& queue, MapStore& store,
                std::function<void(bool is_done)> packed);
-
-  void carry_on(const journal::Carried& carried);
 
   const Place& first() const { return first_; }
   const Place& following() const { return following_; }
@@ -42,10 +39,9 @@ class PreparedMaps {
   /// True if one of them contains `back`, which was not delivered.
   bool contain(const queues::QueuedMap& back) const;
 
-  /// Takes the next map from the queue, and packs it. `spacing`: between two maps. `delivers`: the link's
-  /// bytes per second, or 0.
-  void prepare(bool follows, loop::Duration spacing, std::uint64_t delivers);
-  void pack(const Place& prepared, loop::Duration spacing);
+  /// Takes the next map from the queue, and packs it. `delivers`: the link's bytes per second, or 0.
+  void prepare(bool follows, std::uint64_t delivers);
+  void pack(const Place& prepared);
   bool is_packing() const { return is_packing_; }
   /// False: pack the map, because it is not packed, or points that it leaves out were forgotten.
   bool is_packed(PreparedMap& prepared) const;
@@ -77,12 +73,11 @@ class PreparedMaps {
   loop::Workers& workers_;
   const settings::Settings& settings_;
   Record& record_;
-  journal::Journal& journal_;
+  UriPace& pace_;
   queues::MapQueue& queue_;
   MapStore& store_;
   std::function<void(bool is_done)> packed_;
   Slot slot_;
-  queues::StampOrder stamps_;
   TakenPoints points_;
   Place first_, following_;
   bool is_packing_ = false;

@@ -17,9 +17,6 @@ States::States(loop::Loop& loop, const settings::Settings& settings, Record& rec
 
 void States::carry_on(const journal::Carried& carried) {
   pace_.carry_on(carried, loop_.now());
-  if (const auto last = carried.stamps().find(kUri); last != carried.stamps().end()) {
-    stamps_.carry_on(last->second);
-  }
   for (const auto& [name, robot] : carried.robots()) {
     queue_.add({&robot.posted, 1}, loop_.now());
     record_.accepted({Kind::State, name.text()}, 0,
@@ -67,8 +64,8 @@ States::Sent States::take() {
   auto waiting = queue_.take(loop_.now());
   if (!waiting) return nullptr;
   icd::Header& header = waiting->update.header;
-  header.stamp = stamps_.next(header.stamp.value_or(loop_.stamp_now()));
-  journal_.stamped(kUri, *header.stamp);
+  header.stamp = pace_.next_stamp(header.stamp.value_or(loop_.stamp_now()));
+  pace_.keep_stamp(*header.stamp);
   journal_.state_sent(waiting->update);
   return std::make_shared<const queues::QueuedState>(std::move(*waiting));
 }

@@ -9,7 +9,6 @@
 #include "forward/delivered_scene.hpp"
 #include "forward/record.hpp"
 #include "forward/uri_pace.hpp"
-#include "queues/stamps.hpp"
 #include "queues/state_queue.hpp"
 #include "settings/settings.hpp"
 
@@ -69,7 +68,6 @@ class States {
   DeliveredScene& delivered_;
   UriPace pace_;
   queues::StateQueue queue_;
-  queues::StampOrder stamps_;
   queues::Blame blame_;
   int failed_ = 0;  // successive handler failures
 };

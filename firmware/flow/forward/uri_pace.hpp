@@ -9,11 +9,13 @@
 #include "journal/journal.hpp"
 #include "pace/backoff.hpp"
 #include "pace/rate_limit.hpp"
+#include "queues/stamps.hpp"
 #include "uplink/connection.hpp"
 
 namespace adit::forward {
 
-/// When a URI's next request may go: its rate limit, which the journal keeps, and its back-off.
+/// When a URI's next request may go, and with which stamp: its rate limit and its last stamp, which the
+/// journal keeps, and its back-off.
 class UriPace {
  public:
   UriPace(icd::Uri uri, double hertz, std::mt19937_64& random, journal::Journal& journal)
@@ -39,6 +41,8 @@ class UriPace {
   void carry_on(const journal::Carried& carried, pace::Instant now) {
     const auto learned = carried.paces().find(uri_);
     if (learned != carried.paces().end()) rate_.carry_on(learned->second, now);
+    const auto last = carried.stamps().find(uri_);
+    if (last != carried.stamps().end()) stamps_.carry_on(last->second);
   }
 
   /// Not before the next request of `other`.
@@ -56,6 +60,11 @@ class UriPace {
     rate_.claimed(now);
     keep();
   }
+
+  /// `stamp`, or the last stamp if that is later (promise 5). Call keep_stamp() with the message's last
+  /// stamp.
+  icd::Stamp next_stamp(icd::Stamp stamp) { return stamps_.next(stamp); }
+  void keep_stamp(icd::Stamp last) { journal_.stamped(uri_, last); }
 
   /// Call before it leaves, so that the journal has it if the process ends.
   void sent(pace::Instant now, bool ahead = false) {
@@ -106,6 +115,7 @@ class UriPace {
   icd::Uri uri_;
   journal::Journal& journal_;
   pace::RateLimit rate_;
+  queues::StampOrder stamps_;
   pace::Backoff backoff_;
   pace::Instant retry_at_{};
   std::mt19937_64& random_;

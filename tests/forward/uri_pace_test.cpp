@@ -1,0 +1,33 @@
+#include "forward/uri_pace.hpp"
+
+#include <gtest/gtest.h>
+
+#include "host/folder.hpp"
+#include "loop/loop.hpp"
+
+namespace adit::forward {
+namespace {
+
+TEST(UriPace, StampsDoNotGoBackAfterARestart) {
+  const host::Folder folder;
+  loop::Loop loop;
+  std::mt19937_64 random{1};
+  {
+    journal::Journal journal(loop, folder.path() + "/journal");
+    journal.read();
+    journal.begin({.boot = "b", .at = loop.now(), .stamp = loop.stamp_now()});
+    UriPace pace(icd::Uri::StateUpdate, 1, random, journal);
+    pace.keep_stamp(pace.next_stamp(10));
+  }
+  journal::Journal journal(loop, folder.path() + "/journal");
+  UriPace pace(icd::Uri::StateUpdate, 1, random, journal), of_maps(icd::Uri::MapUpdate, 1, random, journal);
+  const journal::Carried carried = journal.read();
+  pace.carry_on(carried, loop.now());
+  of_maps.carry_on(carried, loop.now());
+  EXPECT_EQ(pace.next_stamp(8), 10);
+  EXPECT_EQ(pace.next_stamp(12), 12);
+  EXPECT_EQ(of_maps.next_stamp(8), 8) << "each URI has its own order";
+}
+
+}  // namespace
+}  // namespace adit::forward

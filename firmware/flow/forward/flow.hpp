@@ -170,8 +170,6 @@ class Flow final : public intake::Desk {
   bool status_came();
   void keep_the_run();
   archive::Seen seen() const;
-  archive::Sample sample() const;
-  api::RunRow facts() const;
   void drain();
   std::string without_tokens(std::string sentence) const;
 

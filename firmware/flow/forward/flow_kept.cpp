@@ -8,6 +8,50 @@
 #include "forward/flow.hpp"
 
 namespace adit::forward {
+namespace {
+
+archive::Sample sample_of(const Flow& flow, double now) {
+  std::map<std::string, double> ages;
+  for (const auto& [traffic, row] : flow.record().rows()) {
+    const auto age = api::age_of(row, now);
+    if (!is_map(traffic.kind) || !age) continue;
+    const auto [its, is_new] = ages.emplace(traffic.robot, *age);
+    its->second = std::min(its->second, *age);
+  }
+  const Channel& mapping = flow.maps().channel().heard() > flow.telemetry().channel().heard()
+                               ? flow.maps().channel()
+                               : flow.telemetry().channel();
+  return {.at = now,
+          .sent_mbit = flow.sent_mbit(),
+          .queued_bytes = flow.maps().queued_bytes(),
+          .scoring_ms = flow.scoring().channel().answer_ms(),
+          .mapping_ms = mapping.answer_ms(),
+          .throttled = flow.scoring().channel().throttled() + flow.maps().channel().throttled() +
+                       flow.telemetry().channel().throttled(),
+          .map_ages = {ages.begin(), ages.end()}};
+}
+
+api::RunRow facts_of(const Flow& flow, const std::string& course) {
+  const dispatch::Run& run = flow.reports().run();
+  std::set<std::string> robots;
+  for (const api::RobotRow& robot : flow.delivered().robots()) robots.insert(robot.name);
+  for (const auto& [traffic, row] : flow.record().rows()) robots.insert(traffic.robot);
+  robots.erase("");
+  api::RunRow facts{.run = run.number,
+                    .id = run.id,
+                    .course = course,
+                    .post = run.post,
+                    .began = run.began,
+                    .robots = {robots.begin(), robots.end()}};
+  if (run.last) {
+    facts.score = run.last->score;
+    facts.remaining_reports = run.last->remaining_reports;
+    facts.team = run.last->current_team;
+  }
+  return facts;
+}
+
+}  // namespace
 
 /// Restores the present run, then records it.
 void Flow::keep_the_run() {
@@ -26,49 +70,8 @@ archive::Seen Flow::seen() const {
           .stamp = loop_.stamp_now(),
           .picture = picture_.mosaic(),
           .tracks = [this](api::Time since) { return delivered_.tracks().since(since); },
-          .sample = [this] { return sample(); },
-          .facts = [this] { return facts(); }};
-}
-
-archive::Sample Flow::sample() const {
-  const double now = loop_.wall_now();
-  std::map<std::string, double> ages;
-  for (const auto& [traffic, row] : record_.rows()) {
-    const auto age = api::age_of(row, now);
-    if (!is_map(traffic.kind) || !age) continue;
-    const auto [its, is_new] = ages.emplace(traffic.robot, *age);
-    its->second = std::min(its->second, *age);
-  }
-  const Channel& mapping =
-      maps_.channel().heard() > telemetry_.channel().heard() ? maps_.channel() : telemetry_.channel();
-  return {.at = now,
-          .sent_mbit = meter_.mbit(),
-          .queued_bytes = maps_.queued_bytes(),
-          .scoring_ms = scoring_.channel().answer_ms(),
-          .mapping_ms = mapping.answer_ms(),
-          .throttled =
-              scoring_.channel().throttled() + maps_.channel().throttled() + telemetry_.channel().throttled(),
-          .map_ages = {ages.begin(), ages.end()}};
-}
-
-api::RunRow Flow::facts() const {
-  const dispatch::Run& run = reports().run();
-  std::set<std::string> robots;
-  for (const api::RobotRow& robot : delivered_.robots()) robots.insert(robot.name);
-  for (const auto& [traffic, row] : record_.rows()) robots.insert(traffic.robot);
-  robots.erase("");
-  api::RunRow facts{.run = run.number,
-                    .id = run.id,
-                    .course = settings_.command_post.course,
-                    .post = run.post,
-                    .began = run.began,
-                    .robots = {robots.begin(), robots.end()}};
-  if (run.last) {
-    facts.score = run.last->score;
-    facts.remaining_reports = run.last->remaining_reports;
-    facts.team = run.last->current_team;
-  }
-  return facts;
+          .sample = [this] { return sample_of(*this, loop_.wall_now()); },
+          .facts = [this] { return facts_of(*this, settings_.command_post.course); }};
 }
 
 }  // namespace adit::forward

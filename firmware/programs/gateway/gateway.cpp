@@ -7,6 +7,7 @@
 #include "box/version.hpp"
 #include "dispatch/another_post.hpp"
 #include "forward/stamp_floor.hpp"
+#include "gateway/team_address.hpp"
 #include "host/files.hpp"
 #include "host/interfaces.hpp"
 #include "host/link_changes.hpp"
@@ -288,7 +289,7 @@ std::expected<spare::Content, std::string> Gateway::content() const {
   if (!ledger) return std::unexpected(std::move(ledger.error().what));
   const dispatch::Reports& reports = flow_.reports();
   spare::Content content;
-  content.about.name = team_address();
+  content.about.name = team_address(settings_.team);
   content.about.version = box::kVersion;
   content.about.stamps = loop_.stamp_now() + forward::StampFloor::kAhead;
   content.about.reports = static_cast<std::int64_t>(reports.book().all().size());

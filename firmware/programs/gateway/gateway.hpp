@@ -79,10 +79,8 @@ class Gateway final : public api::Operator {
   forward::Tokens tokens() const;
   icd::Redaction redaction() const;
   std::string unread() const;
-  void assert_states();
   void pressed(panel::Press press);
   void show_address();
-  std::string team_address() const;
   std::string report_under_way() const;
   std::expected<spare::Content, std::string> content() const;
 

@@ -1,5 +1,7 @@
 #include "gateway/overview.hpp"
 
+#include <algorithm>
+
 #include "alarms/alarm.hpp"
 #include "alarms/conditions.hpp"
 #include "api/verdicts.hpp"
@@ -54,6 +56,34 @@ std::expected<void, std::string> Overview::acknowledge(const std::string& id) {
   auto done = board_.acknowledge(id, looked_at_);
   acknowledged_.keep(board_.acknowledged());
   return done;
+}
+
+void Overview::show_on(box::Lights& lights) const {
+  using panel::State;
+  const bool serving = rooms_.listeners.serves() && rooms_.flow.scoring().trouble().empty();
+  lights.set(State::Serving, serving);
+  lights.set(State::NotServing, !serving);
+  const auto posts = endpoints();
+  lights.set(State::ScoringConnected, posts[0].connected);
+  lights.set(State::ScoringFailing, !posts[0].trouble.empty());
+  lights.set(State::ReportWaiting, !rooms_.flow.reports().waiting_here().empty());
+  lights.set(State::MappingConnected, posts[1].connected);
+  lights.set(State::MappingFailing, !posts[1].trouble.empty());
+  const auto all = alarms();
+  const auto calling = std::ranges::count_if(all, alarms::calls);
+  const auto seen = std::ranges::count_if(
+      all, [](const alarms::Alarm& alarm) { return alarms::calls(alarm) && alarm.acknowledged; });
+  lights.set(State::NeedsOperator, calling > seen);
+  lights.set(State::Acknowledged, calling > 0);
+  lights.set(State::UpdateRunning, rooms_.updates.running());
+  for (const api::LinkRow& link : rooms_.links.rows()) {
+    lights.set(link.side == "team" ? State::TeamUnplugged : State::CommandPostUnplugged,
+               !link.carrier.value_or(false));
+  }
+  if (lights.has(State::SetUpOpen) && !rooms_.accounts.set_up_open()) {
+    host::log(host::Level::Notice, "set-up is closed");
+  }
+  lights.set(State::SetUpOpen, rooms_.accounts.set_up_open());
 }
 
 void Overview::posted(const std::string& robot) {

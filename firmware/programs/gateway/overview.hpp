@@ -55,6 +55,8 @@ class Overview final : public api::Source {
   /// Reads the notices, finds the alarms, logs rejected connections. Call once a second.
   void look();
   std::expected<void, std::string> acknowledge(const std::string& id);
+  /// Shows the state as of the last second, and logs the end of set-up.
+  void show_on(box::Lights& lights) const;
   /// A robot's message was accepted.
   void posted(const std::string& robot);
   /// A connection of the team was rejected or closed.

@@ -33,6 +33,7 @@ struct Doubles {
   Served served() {
     return {.source = source,
             .decisions = decisions,
+            .caretaker = decisions,
             .keys = keys,
             .setup = setup,
             .network = network,

@@ -28,7 +28,7 @@
 namespace adit::api {
 namespace {
 
-class Stage final : public Source, public Operator {
+class Stage final : public Source, public Operator, public Caretaker {
  public:
   Stage(loop::Loop& loop, std::string name) : loop_(loop), began_(loop.wall_now()), name_(std::move(name)) {
     draw_scene(map_, began_);
@@ -145,6 +145,7 @@ int serve(std::uint16_t port, const std::string& first, const std::string& more)
   Api page{loop,
            {.source = stage,
             .decisions = stage,
+            .caretaker = stage,
             .keys = keys,
             .setup = setup,
             .network = network,

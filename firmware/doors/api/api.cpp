@@ -39,7 +39,7 @@ Api::Api(loop::Loop& loop, const Served& served, std::vector<icd::BearerToken> t
       entrance_(loop, served.keys, std::move(tokens)),
       live_(loop, served.source),
       sessions_(loop, entrance_, served.keys, served.setup),
-      run_(served.source, served.decisions, live_, entrance_),
+      run_(served.source, served.decisions, served.caretaker, live_, entrance_),
       maps_(served.source, served.finer, served.covered),
       lists_(loop, served.source),
       reports_(lists_, served.source, served.decisions),

@@ -31,6 +31,7 @@ namespace adit::api {
 struct Served {
   const Source& source;
   Operator& decisions;
+  Caretaker& caretaker;
   Keys& keys;
   Setup& setup;
   Network& network;

@@ -20,7 +20,7 @@ intake::Answer RunRoutes::begin_run() {
 }
 
 intake::Answer RunRoutes::begin_ledger() {
-  const auto kept_as = operator_.begin_ledger();
+  const auto kept_as = caretaker_.begin_ledger();
   return kept_as ? object({{"kept_as", json(*kept_as)}}) : refused(kept_as.error());
 }
 
@@ -32,7 +32,7 @@ intake::Answer RunRoutes::rejected(std::uint64_t number, RejectedAction action) 
 intake::Answer RunRoutes::acknowledge(const std::string& body) {
   const auto id = read_text(body, "id");
   if (!id) return refused(id.error());
-  const auto done = operator_.acknowledge(*id);
+  const auto done = caretaker_.acknowledge(*id);
   return done ? object({{"acknowledged", json(*id)}}) : refusal(icd::Status::Conflict, done.error());
 }
 
@@ -40,7 +40,7 @@ intake::Answer RunRoutes::identify(const std::string& body) {
   const auto seconds = read_body<double>(
       body, [](const codec::Field& root) { return root.member("seconds").number(kLeast, kMost); });
   if (!seconds) return refused(seconds.error());
-  return object({{"identify_until", json(operator_.identify(*seconds))}});
+  return object({{"identify_until", json(caretaker_.identify(*seconds))}});
 }
 
 }  // namespace adit::api

@@ -16,8 +16,8 @@ class RunRoutes {
   static constexpr double kLeast = 1, kMost = 60;  // seconds of flashing lights
 
   /// All must outlive this object.
-  RunRoutes(const Source& source, Operator& decisions, Live& live, Entrance& entrance)
-      : source_(source), operator_(decisions), live_(live), entrance_(entrance) {}
+  RunRoutes(const Source& source, Operator& decisions, Caretaker& caretaker, Live& live, Entrance& entrance)
+      : source_(source), operator_(decisions), caretaker_(caretaker), live_(live), entrance_(entrance) {}
 
   intake::Answer run() const;
   std::unique_ptr<intake::BodySink> events(const Call& call);
@@ -39,6 +39,7 @@ class RunRoutes {
 
   const Source& source_;
   Operator& operator_;
+  Caretaker& caretaker_;
   Live& live_;
   Entrance& entrance_;
 };

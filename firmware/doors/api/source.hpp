@@ -39,7 +39,7 @@ enum class Action : std::uint8_t { Send, Hold, Withdraw, Settle, Resubmit };
 /// An operator's action on a rejected message.
 enum class RejectedAction : std::uint8_t { Send, Discard };
 
-/// Executes the operator's actions.
+/// Executes the operator's actions on reports, rejected messages and runs.
 class Operator {
  public:
   virtual ~Operator() = default;
@@ -54,10 +54,16 @@ class Operator {
                                                            const icd::ArtifactReport& to) = 0;
   /// An error is a sentence.
   virtual std::expected<void, std::string> rejected(std::uint64_t number, RejectedAction action) = 0;
-  /// Silences an alarm until it gets worse or ends. An error is a sentence.
-  virtual std::expected<void, std::string> acknowledge(const std::string& id) = 0;
   /// Returns the new run's number.
   virtual std::int64_t begin_run() = 0;
+};
+
+/// Executes the operator's actions on the gateway itself.
+class Caretaker {
+ public:
+  virtual ~Caretaker() = default;
+  /// Silences an alarm until it gets worse or ends. An error is a sentence.
+  virtual std::expected<void, std::string> acknowledge(const std::string& id) = 0;
   /// Replaces a ledger that cannot be read; the gateway restarts. Returns the new name of the old files.
   /// Error: 409 if it can be read, 503 if its files cannot be renamed.
   virtual icd::Checked<std::string> begin_ledger() = 0;

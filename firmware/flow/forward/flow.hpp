@@ -45,7 +45,7 @@ struct Tokens {
 };
 
 /// The team's messages from intake (this is its Desk) to uplink, sent by Scoring, Maps and Telemetry.
-class Flow final : public intake::Desk {
+class Flow final : public intake::Desk, public api::Operator {
  public:
   /// Delay of the ledger's upkeep after a start or a failure. The first messages have priority.
   static constexpr std::chrono::seconds kUpkeepEvery{60};
@@ -108,21 +108,21 @@ class Flow final : public intake::Desk {
   }
   void claimed(icd::Uri uri) { pace_of(uri).claimed(loop_.now()); }
 
-  /// Operator's actions: api::Operator.
-  std::expected<std::int64_t, std::string> decide(std::int64_t number, api::Action action) {
+  std::expected<std::int64_t, std::string> decide(std::int64_t number, api::Action action) override {
     if (!standby_.empty()) return std::unexpected(standby_);
     return scoring_.decide(number, action);
   }
-  std::expected<std::int64_t, std::string> report(const icd::ArtifactReport& report, bool resubmit) {
+  std::expected<std::int64_t, std::string> report(const icd::ArtifactReport& report, bool resubmit) override {
     if (!standby_.empty()) return std::unexpected(standby_);
     return scoring_.report(report, resubmit);
   }
-  std::expected<std::int64_t, std::string> correct(std::int64_t number, const icd::ArtifactReport& to) {
+  std::expected<std::int64_t, std::string> correct(std::int64_t number,
+                                                   const icd::ArtifactReport& to) override {
     if (!standby_.empty()) return std::unexpected(standby_);
     return scoring_.correct(number, to);
   }
-  std::expected<void, std::string> rejected(std::uint64_t number, api::RejectedAction action);
-  std::int64_t begin_run() { return scoring_.begin_run(); }
+  std::expected<void, std::string> rejected(std::uint64_t number, api::RejectedAction action) override;
+  std::int64_t begin_run() override { return scoring_.begin_run(); }
 
   const Scoring& scoring() const { return scoring_; }
   const dispatch::Reports& reports() const { return scoring_.reports(); }

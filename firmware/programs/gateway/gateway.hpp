@@ -19,7 +19,7 @@
 namespace adit::gateway {
 
 /// Adit at work: the flow, the listeners, the page and the box.
-class Gateway final : public api::Operator {
+class Gateway final : public api::Caretaker {
  public:
   Gateway(loop::Loop& loop, Parts parts);
 
@@ -36,21 +36,7 @@ class Gateway final : public api::Operator {
   /// A line for systemd.
   std::string status_line() const { return overview_.status_line(); }
 
-  std::expected<std::int64_t, std::string> decide(std::int64_t number, api::Action action) override {
-    return flow_.decide(number, action);
-  }
-  std::expected<std::int64_t, std::string> report(const icd::ArtifactReport& report, bool resubmit) override {
-    return flow_.report(report, resubmit);
-  }
-  std::expected<std::int64_t, std::string> correct(std::int64_t number,
-                                                   const icd::ArtifactReport& to) override {
-    return flow_.correct(number, to);
-  }
-  std::expected<void, std::string> rejected(std::uint64_t number, api::RejectedAction action) override {
-    return flow_.rejected(number, action);
-  }
   std::expected<void, std::string> acknowledge(const std::string& id) override;
-  std::int64_t begin_run() override { return flow_.begin_run(); }
   icd::Checked<std::string> begin_ledger() override;
   api::Time identify(double seconds) override;
 

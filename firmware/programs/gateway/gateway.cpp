@@ -204,15 +204,13 @@ void Gateway::make_way() {
 
 void Gateway::end() {
   if (flow_.is_ending()) return;
-  flow_.end([this] { finish(); });
+  flow_.end([this] {
+    loop_.stop();
+    spare_.ends(flow_.reports().expected(loop_.now()));
+    if (!sessions_.sessions().in_order().empty()) sessions_.keep();
+  });
   listeners_.stop();
   routes_.stop();
-}
-
-void Gateway::finish() {
-  loop_.stop();
-  spare_.ends(flow_.reports().expected(loop_.now()));
-  if (!sessions_.sessions().in_order().empty()) sessions_.keep();
 }
 
 void Gateway::every_second() {

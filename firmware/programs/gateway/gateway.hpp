@@ -43,7 +43,6 @@ class Gateway final : public api::Caretaker {
  private:
   void make_way();
   void end();
-  void finish();
   void every_second();
   void look_at_clock();
   void keep_sessions();
@@ -66,7 +65,6 @@ class Gateway final : public api::Caretaker {
   icd::Redaction redaction() const;
   std::string unread() const;
   void pressed(panel::Press press);
-  void show_address();
   std::string report_under_way() const;
   std::expected<spare::Content, std::string> content() const;
 

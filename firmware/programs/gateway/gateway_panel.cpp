@@ -38,11 +38,14 @@ void Gateway::pressed(panel::Press press) {
       host::log(host::Level::Notice, "the button was pressed");
       identify(std::chrono::duration<double>(kIdentify).count());
       return;
-    case panel::Press::ShowAddress:
+    case panel::Press::ShowAddress: {
+      const std::string address = team_address(settings_.team);
       accounts_.open_set_up();
-      show_address();
+      host::log(host::Level::Notice, "the lights show the address", {{"address", address}});
+      if (!address.empty()) lights_.play_digits(panel::address_digits(address));
       show_lights();
       return;
+    }
     case panel::Press::Reset:
       host::log(host::Level::Warning, "button held: factory reset");
       if (const auto done = setup_.reset(); !done) {
@@ -50,12 +53,6 @@ void Gateway::pressed(panel::Press press) {
                   {{"why", done.error().sentence}});
       }
   }
-}
-
-void Gateway::show_address() {
-  const std::string address = team_address(settings_.team);
-  host::log(host::Level::Notice, "the lights show the address", {{"address", address}});
-  if (!address.empty()) lights_.play_digits(panel::address_digits(address));
 }
 
 }  // namespace adit::gateway

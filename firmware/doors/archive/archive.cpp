@@ -58,7 +58,6 @@ void Archive::begin(const Head& head, GoOn go_on) {
   samples_.clear();
   attention_.clear();
   lines_ = {};
-  last_poses_.clear();
   moved_ = 0;
   steps_.clear();
   row_ = {};
@@ -90,8 +89,7 @@ void Archive::opened(Opening& opening) {
   attention_.go_on(samples_.since(0).attention);
   wiped_ = told.picture().wiped();
   auto tracks = told.tracks();
-  last_pose_ = 0;
-  for (const api::Track& track : tracks) last_pose_ = std::max(last_pose_, track.poses.back().at);
+  poses_ = Poses(tracks);
   const picture::Mosaic& now = std::exchange(go_on_, nullptr)(std::move(told.picture()), std::move(tracks));
   due_.begin(now, told.files());
   layers_seen_ = now.version();
@@ -131,7 +129,7 @@ void Archive::make_folder() {
 /// step goes with them.
 void Archive::move(double seconds) {
   samples_.move(seconds);
-  last_pose_ += seconds;
+  poses_.move(seconds);
   row_.last += seconds;
   if (wiped_) *wiped_ += seconds;
   due_.move(seconds);

@@ -3,7 +3,6 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,6 +12,7 @@
 #include "archive/allowance.hpp"
 #include "archive/due_tiles.hpp"
 #include "archive/lines.hpp"
+#include "archive/poses.hpp"
 #include "archive/runs_folder.hpp"
 #include "archive/samples.hpp"
 #include "loop/loop.hpp"
@@ -90,8 +90,6 @@ class Archive final : public api::KeptRuns {
   void be_due();
   void sample(const Seen& seen);
   void note(const Seen& seen);
-  void note_poses(const Seen& seen);
-  bool moves(const api::Track& track);
   bool write(const Seen& seen, std::size_t most, api::Time tiles_of);
   void put_facts(Batch& batch);
   void put_layers(const Seen& seen, Batch& batch);
@@ -109,11 +107,10 @@ class Archive final : public api::KeptRuns {
   Samples samples_;
   Attention attention_;
   Lines lines_;
-  std::uint64_t throttled_ = 0;                       // last count
-  api::Time last_pose_ = 0;                           // newest stored or queued pose
-  std::map<std::string, api::TrackPose> last_poses_;  // by robot
-  std::uint64_t layers_seen_ = 0;                     // Mosaic::version()
-  std::optional<double> wiped_;                       // as stored
+  Poses poses_;
+  std::uint64_t throttled_ = 0;    // last count
+  std::uint64_t layers_seen_ = 0;  // Mosaic::version()
+  std::optional<double> wiped_;    // as stored
   loop::Instant next_write_{}, next_facts_{};
   api::RunRow row_;                      // the present run at the last tick, without its bytes
   std::string facts_;                    // as written last, without the time

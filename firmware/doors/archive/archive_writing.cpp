@@ -32,7 +32,7 @@ void Archive::tick(const Seen& seen) {
   note(seen);
   if (writing_ > 0 || loop_.now() < next_write_) return;
   if (folder_) {
-    note_poses(seen);
+    poses_.add_to(lines_, seen.tracks(poses_.last()), seen.now);
     write(seen, allowance_.at(loop_.now()), seen.now);
   } else if (!trouble_.empty()) {
     make_folder();
@@ -42,14 +42,14 @@ void Archive::tick(const Seen& seen) {
 void Archive::write_now(const Seen& seen) {
   if (opening_ || !folder_) return;
   note(seen);
-  note_poses(seen);
+  poses_.add_to(lines_, seen.tracks(poses_.last()), seen.now);
   be_due();
   write(seen, allowance_.at(loop_.now()), kNoneRests);
 }
 
 void Archive::end_run(const Seen& seen) {
   if (opening_ || !folder_) return;
-  note_poses(seen);
+  poses_.add_to(lines_, seen.tracks(poses_.last()), seen.now);
   be_due();
   const Allowance of_the_next = allowance_;
   while (write(seen, static_cast<std::size_t>(Allowance::kMost), kNoneRests)) {
@@ -116,31 +116,6 @@ void Archive::put_facts(Batch& batch) {
   facts_ = std::move(text);
   batch.facts = codec::write_file(row_);
   allowance_.spend(batch.facts.size());
-}
-
-/// Call once for each `seen`. If the time of day was set back, a second call would store the same poses
-/// again.
-void Archive::note_poses(const Seen& seen) {
-  for (const api::Track& track : seen.tracks(last_pose_)) {
-    const bool is_news = moves(track);
-    for (auto from = track.poses.begin(), end = track.poses.end(); from != end;) {
-      const auto to = from + std::min<std::ptrdiff_t>(end - from, kLargestPoses);
-      lines_.add(record_of(api::Track{track.robot, {from, to}}), is_news);
-      from = to;
-    }
-  }
-  last_pose_ = seen.now;
-}
-
-/// The first pose of a robot counts as a move.
-bool Archive::moves(const api::Track& track) {
-  bool moves = false;
-  for (const api::TrackPose& pose : track.poses) {
-    const auto [last, is_new] = last_poses_.try_emplace(track.robot, pose);
-    moves = moves || is_new || api::has_moved(last->second, pose);
-    last->second = pose;
-  }
-  return moves;
 }
 
 void Archive::put_layers(const Seen& seen, Batch& batch) {

@@ -29,7 +29,6 @@ class Samples {
   /// Call if the time of day was advanced by `seconds`.
   void move(double seconds);
 
-  bool empty() const { return samples_.empty() && steps_.empty(); }
   api::History since(api::Time since) const;
 
  private:

@@ -43,9 +43,9 @@ class FakeOutput final : public Output {
   void tell(ClientId client, const ClientAnswer& answer, const Report& report) override {
     const bool own = !answer.sentence.empty();
     answers[client].push_back({.status = own ? static_cast<int>(answer.status) : report.status,
-                            .sentence = answer.sentence,
-                            .body = own ? "" : report.answer,
-                            .number = answer.number});
+                               .sentence = answer.sentence,
+                               .body = own ? "" : report.answer,
+                               .number = answer.number});
   }
 
   bool full = false;

@@ -280,6 +280,7 @@ TEST_F(ArchiveTest, KeepsItsListIfTheDirectoryCannotBeListed) {
   live(run.head);
   write();
   ASSERT_TRUE(loop::turn_until(loop, [&] { return archive->list().runs.at(0).bytes > 0; }));
+  ASSERT_TRUE(loop::turn_until_idle(loop, archive->thread()));
   fs::remove_all(folder / "runs");
   std::ofstream(folder / "runs") << "no directory";
   archive->begin({.run = 4, .began = 2000, .post = run.head.post},

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -18,20 +19,26 @@ struct FakeKeptRuns final : KeptRuns {
     return plots;
   }
   void read(const std::string& key, ReadDone done) override {
-    if (!unreadable.empty()) return done(std::unexpected(unreadable));
-    done(kept != nullptr && kept->facts.key == key ? kept : nullptr);
+    if (const auto why = refusal(key)) return done(std::unexpected(*why));
+    done(kept);
   }
   void report(const std::string& key, std::vector<ReportDetail> reports, std::vector<ColourRow> /*colours*/,
               ReportDone done) override {
     reported = std::move(reports);
-    if (!unreadable.empty()) return done(std::unexpected(unreadable));
-    done(kept != nullptr && kept->facts.key == key ? "<!doctype html>" : "");
+    if (const auto why = refusal(key)) return done(std::unexpected(*why));
+    done("<!doctype html>");
   }
   void remove(const std::string& key, std::function<void(std::expected<void, std::string>)> done) override {
     const auto run = std::ranges::find(all.runs, key, &RunRow::key);
     if (run == all.runs.end()) return done(std::unexpected("there is no such run"));
     all.runs.erase(run);
     done({});
+  }
+
+  std::optional<icd::Refusal> refusal(const std::string& key) const {
+    if (!unreadable.empty()) return icd::Refusal{icd::Status::ServiceUnavailable, unreadable};
+    if (kept == nullptr || kept->facts.key != key) return no_such_run();
+    return std::nullopt;
   }
 
   RunList all;

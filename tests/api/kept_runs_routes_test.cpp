@@ -40,7 +40,7 @@ TEST_F(KeptRunsRoutesTest, DoNotCallAnUnreadableRunAbsent) {
     EXPECT_EQ(get(path).status, icd::Status::ServiceUnavailable) << path;
     EXPECT_THAT(get(path).body, HasSubstr("Input/output error")) << path;
   }
-  runs.all.trouble = "cannot list stored runs";
+  runs.all.unreadable = "cannot list stored runs";
   EXPECT_EQ(get("/adit/runs/9").status, icd::Status::ServiceUnavailable);
 }
 

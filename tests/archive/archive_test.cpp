@@ -285,10 +285,10 @@ TEST_F(ArchiveTest, KeepsItsListIfTheDirectoryCannotBeListed) {
   std::ofstream(folder / "runs") << "no directory";
   archive->begin({.run = 4, .began = 2000, .post = run.head.post},
                  [&](auto&&...) -> const picture::Mosaic& { return picture; });
-  ASSERT_TRUE(loop::turn_until_idle(loop, archive->thread()));
+  ASSERT_TRUE(loop::turn_until(loop, [&] { return !archive->list().unreadable.empty(); }));
   const api::RunList all = archive->list();
   EXPECT_NE(std::ranges::find(all.runs, "3", &api::RunRow::key), all.runs.end());
-  EXPECT_THAT(all.trouble, testing::HasSubstr("runs"));
+  EXPECT_THAT(all.unreadable, testing::HasSubstr("runs"));
 }
 
 TEST_F(ArchiveTest, DoesNotTakeAnUnreadableRunForAnAbsentOne) {
@@ -299,14 +299,15 @@ TEST_F(ArchiveTest, DoesNotTakeAnUnreadableRunForAnAbsentOne) {
     fs::remove(file);
     fs::create_directory(file);
   }
-  std::optional<std::string> read, reported, absent;
-  archive->read("3", [&](auto its) { read = its.error(); });
-  archive->report("3", {}, {}, [&](auto its) { reported = its.error(); });
-  archive->read("9", [&](auto its) { absent = its && !*its ? "absent" : "read"; });
+  std::optional<std::string> read, reported;
+  std::optional<icd::Status> absent;
+  archive->read("3", [&](auto its) { read = its.error().sentence; });
+  archive->report("3", {}, {}, [&](auto its) { reported = its.error().sentence; });
+  archive->read("9", [&](auto its) { absent = its.error().status; });
   ASSERT_TRUE(loop::turn_until(loop, [&] { return absent.has_value(); }));
   EXPECT_THAT(*read, testing::HasSubstr("runs/3"));
   EXPECT_EQ(reported, read);
-  EXPECT_EQ(absent, "absent");
+  EXPECT_EQ(absent, icd::Status::NotFound);
 }
 
 TEST_F(ArchiveTest, ReadsAnEndedRun) {
@@ -331,7 +332,10 @@ TEST_F(ArchiveTest, ReadsAnEndedRun) {
   EXPECT_EQ((*read)->history.attention[0].sentence,
             "a part of the run's stored map, tracks and plots is lost: damaged records: 1");
   read.reset();
-  archive->read("7", [&](auto its) { read = its.value(); });
+  archive->read("7", [&](auto its) {
+    read = its ? *its : nullptr;
+    EXPECT_EQ(its.error().status, icd::Status::NotFound);
+  });
   ASSERT_TRUE(loop::turn_until(loop, [&] { return read.has_value(); }));
   EXPECT_EQ(*read, nullptr);
 }

@@ -92,7 +92,7 @@ TEST_F(RunsFolderTest, RejectsAnUnreadableRunInsteadOfANewOne) {
   EXPECT_THAT(begun.error(), testing::HasSubstr(path));
   run(6, 1000, 10);
   EXPECT_THAT(keys(), ElementsAre("6"));
-  EXPECT_THAT(runs.list()->trouble, testing::HasSubstr(path));
+  EXPECT_THAT(runs.list()->unreadable, testing::HasSubstr(path));
 }
 
 TEST_F(RunsFolderTest, ReportsARunWhoseFilesCannotBeListed) {

@@ -1,4 +1,4 @@
-// A full disk: what is not stored has no effect; what has happened is written later.
+// A full disk: an action that is not stored has no effect, and an event that happened is written later.
 #include <gmock/gmock.h>
 
 #include "dispatch/scene.hpp"

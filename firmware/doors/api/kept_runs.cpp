@@ -52,6 +52,7 @@ constexpr Member kRunList[] = {
     member<&RunList::runs>("runs", "latest first"),
     member<&RunList::bytes>("bytes", "size of all runs on the disk"),
     member<&RunList::trouble>("trouble", "why runs cannot be stored now, or empty"),
+    member<&RunList::unreadable>("unreadable", "why a run may be missing from the list, or empty"),
 };
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "api/run_view.hpp"
 #include "api/scene.hpp"
 #include "codec/row.hpp"
+#include "icd/status.hpp"
 #include "picture/mosaic.hpp"
 
 namespace adit::api {
@@ -68,9 +69,14 @@ struct RunList {
   std::vector<RunRow> runs;  // the latest first
   std::uint64_t bytes = 0;
   std::string trouble;
+  std::string unreadable = {};
 
   static const codec::Row kRow;
 };
+
+inline icd::Refusal no_such_run() {
+  return {icd::Status::NotFound, "there is no such run"};
+}
 
 /// All stored data of a run.
 struct KeptRun {
@@ -88,13 +94,12 @@ class KeptRuns {
   virtual RunList list() const = 0;
   /// The plots of the present run, after `since`.
   virtual History history(Time since) const = 0;
-  /// Null: no run has that key. Error, as a sentence: the run cannot be read.
-  using ReadDone = std::function<void(std::expected<std::shared_ptr<const KeptRun>, std::string>)>;
+  /// Error: 404, no run has that key; 503, the run cannot be read.
+  using ReadDone = std::function<void(icd::Checked<std::shared_ptr<const KeptRun>>)>;
+  using ReportDone = std::function<void(icd::Checked<std::string>)>;
   /// Reads a run and calls `done` on the loop.
   virtual void read(const std::string& key, ReadDone done) = 0;
-  /// HTML; "": no run has that key. Error, as a sentence: the run cannot be read.
-  using ReportDone = std::function<void(std::expected<std::string, std::string>)>;
-  /// The run's report for printing. Calls `done` on the loop.
+  /// The run's report for printing, as HTML. Calls `done` on the loop.
   virtual void report(const std::string& key, std::vector<ReportDetail> reports,
                       std::vector<ColourRow> colours, ReportDone done) = 0;
   /// Deletes a run, except the present one. Its reports stay in the ledger. Error: a sentence.

@@ -15,10 +15,9 @@ namespace {
 
 constexpr std::size_t kDetailsInATurn = 16;  // each is a query of the ledger
 
-/// Of a run that does not exist; or `trouble`: why that is not known.
-intake::Answer not_found(const std::string& trouble) {
-  if (trouble.empty()) return refusal(icd::Status::NotFound, "there is no such run");
-  return refusal(icd::Status::ServiceUnavailable, trouble);
+intake::Answer not_listed(const RunList& all) {
+  return all.unreadable.empty() ? refused(no_such_run())
+                                : refusal(icd::Status::ServiceUnavailable, all.unreadable);
 }
 
 /// A run's report contains its style and images, and no script. Other content must not load.
@@ -56,7 +55,7 @@ intake::Answer KeptRunsRoutes::list() const {
 intake::Answer KeptRunsRoutes::one(const Call& call) const {
   const RunList all = runs_.list();
   const RunRow* row = row_of(all, call.parameters.front());
-  return row != nullptr ? fresh(*row) : not_found(all.trouble);
+  return row != nullptr ? fresh(*row) : not_listed(all);
 }
 
 void KeptRunsRoutes::with_run(const Call& call, Answering answer) {
@@ -74,15 +73,13 @@ void KeptRunsRoutes::with_run(const Call& call, Answering answer) {
   runs_.read(key, [this, key](const auto& run) { came(key, run); });
 }
 
-void KeptRunsRoutes::came(const std::string& key,
-                          const std::expected<std::shared_ptr<const KeptRun>, std::string>& run) {
+void KeptRunsRoutes::came(const std::string& key, const icd::Checked<std::shared_ptr<const KeptRun>>& run) {
   const auto waiting = std::exchange(waiting_[key], {});
   waiting_.erase(key);
-  for (const Waiting& each : waiting)
-    each.responder->answer(run && *run ? each.answer(**run) : not_found(run ? "" : run.error()));
+  for (const Waiting& each : waiting) each.responder->answer(run ? each.answer(**run) : refused(run.error()));
   const RunList all = runs_.list();
   const RunRow* row = row_of(all, key);
-  if (!run || !*run || row == nullptr || row->is_present) return;  // the present run changes
+  if (!run || row == nullptr || row->is_present) return;  // the present run changes
   held_ = *run;
   forget_.call_at(loop_.now() + kHeld);
 }
@@ -118,7 +115,7 @@ struct KeptRunsRoutes::Gathering {
 void KeptRunsRoutes::report(const Call& call) {
   const RunList all = runs_.list();
   const RunRow* row = row_of(all, call.parameters.front());
-  if (row == nullptr) return call.responder->answer(not_found(all.trouble));
+  if (row == nullptr) return call.responder->answer(not_listed(all));
   gather(std::make_shared<Gathering>(row->key, row->run, 0, std::vector<ReportDetail>(), call.responder));
 }
 
@@ -133,16 +130,15 @@ void KeptRunsRoutes::gather(const std::shared_ptr<Gathering>& gathering) {
     return loop_.post([this, gathering] { gather(gathering); });
   }
   runs_.report(gathering->key, std::move(gathering->reports), source_.view().colours,
-               [responder = gathering->responder](std::expected<std::string, std::string> html) {
-                 responder->answer(html && !html->empty() ? printed(*std::move(html))
-                                                          : not_found(html ? "" : html.error()));
+               [responder = gathering->responder](icd::Checked<std::string> html) {
+                 responder->answer(html ? printed(*std::move(html)) : refused(html.error()));
                });
 }
 
 void KeptRunsRoutes::remove(const Call& call) {
   const RunList all = runs_.list();
   const RunRow* row = row_of(all, call.parameters.front());
-  if (row == nullptr) return call.responder->answer(not_found(all.trouble));
+  if (row == nullptr) return call.responder->answer(not_listed(all));
   if (held_ && held_->facts.key == row->key) held_.reset();
   runs_.remove(row->key,
                [key = row->key, responder = call.responder](const std::expected<void, std::string>& done) {

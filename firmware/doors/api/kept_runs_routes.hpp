@@ -1,6 +1,5 @@
 #pragma once
 
-#include <expected>
 #include <functional>
 #include <map>
 #include <memory>
@@ -45,7 +44,7 @@ class KeptRunsRoutes {
   };
   struct Gathering;
   void with_run(const Call& call, Answering answer);
-  void came(const std::string& key, const std::expected<std::shared_ptr<const KeptRun>, std::string>& run);
+  void came(const std::string& key, const icd::Checked<std::shared_ptr<const KeptRun>>& run);
   void gather(const std::shared_ptr<Gathering>& gathering);
   const RunRow* row_of(const RunList& list, const std::string& key) const;
 

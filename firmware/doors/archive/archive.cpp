@@ -163,7 +163,7 @@ void Archive::look_at_disk() {
                      list_ = std::move(**listed);
                    } else {
                      host::log(host::Level::Warning, "cannot list stored runs", {{"why", listed->error()}});
-                     list_.trouble = listed->error();  // the runs remain those of the last time
+                     list_.unreadable = "cannot list stored runs: " + listed->error();
                    }
                  },
                  [] {});
@@ -183,7 +183,7 @@ api::RunRow as_told(const api::RunRow& row, const api::RunRow& present) {
 }  // namespace
 
 api::RunList Archive::list() const {
-  api::RunList all{.runs = list_.runs, .bytes = 0, .trouble = trouble_.empty() ? list_.trouble : trouble_};
+  api::RunList all{.runs = list_.runs, .bytes = 0, .trouble = trouble_, .unreadable = list_.unreadable};
   // a new run has no files yet
   if (!key_.empty() && std::ranges::find(all.runs, key_, &api::RunRow::key) == all.runs.end()) {
     all.runs.insert(all.runs.begin(), {.key = key_,
@@ -203,19 +203,21 @@ api::RunList Archive::list() const {
 
 namespace {
 
-constexpr const char* kUnread = "the stored run was not read";
+using ReadRun = icd::Checked<std::shared_ptr<api::KeptRun>>;
 
-using ReadRun = std::expected<std::shared_ptr<api::KeptRun>, std::string>;
+std::unexpected<icd::Refusal> unread(const std::string& why) {
+  return std::unexpected(icd::Refusal{icd::Status::ServiceUnavailable, "cannot read the stored run: " + why});
+}
 
-/// Blocks on the disk. Null if there is no such run.
+/// Blocks on the disk.
 ReadRun kept_run(const RunsFolder& runs, const std::string& key, const api::RunRow& present,
                  const std::function<bool()>& enough) {
   const auto known = runs.facts_of(key);
   if (!known) {
     host::log(host::Level::Warning, "cannot read a stored run", {{"why", known.error()}});
-    return std::unexpected("cannot read the stored run: " + known.error());
+    return unread(known.error());
   }
-  if (!*known) return nullptr;
+  if (!*known) return std::unexpected(api::no_such_run());
   const api::RunRow& facts = **known;
   RunRecords told(Archive::kLookedAt);
   tell_all(runs, key, told, enough);
@@ -229,24 +231,24 @@ void Archive::read(const std::string& key, ReadDone done) {
   const auto run = std::make_shared<ReadRun>();
   writer_.submit([run, key, present = row_, runs = runs_,
                   enough = enough()] { *run = kept_run(runs, key, present, enough); },
-                 [run, done] { done(*run); }, [done] { done(std::unexpected(kUnread)); });
+                 [run, done] { done(*run); }, [done] { done(unread("no memory")); });
 }
 
 void Archive::report(const std::string& key, std::vector<api::ReportDetail> reports,
                      std::vector<api::ColourRow> colours, ReportDone done) {
-  const auto html = std::make_shared<std::expected<std::string, std::string>>();
+  const auto html = std::make_shared<icd::Checked<std::string>>();
   writer_.submit(
       [html, key, present = row_, runs = runs_, enough = enough(), reports = std::move(reports),
        colours = std::move(colours)] {
         const auto run = kept_run(runs, key, present, enough);
         if (!run) {
           *html = std::unexpected(run.error());
-        } else if (*run) {
-          (*run)->colours = colours;
-          *html = run_report(**run, reports);
+          return;
         }
+        (*run)->colours = colours;
+        *html = run_report(**run, reports);
       },
-      [html, done] { done(std::move(*html)); }, [done] { done(std::unexpected(kUnread)); });
+      [html, done] { done(std::move(*html)); }, [done] { done(unread("no memory")); });
 }
 
 void Archive::remove(const std::string& key, std::function<void(std::expected<void, std::string>)> done) {

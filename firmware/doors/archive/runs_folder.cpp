@@ -98,7 +98,7 @@ std::expected<RunsFolder::List, std::string> RunsFolder::list() const {
   for (const std::string& name : *names) {
     auto row = facts_of(name);
     if (!row) {
-      list.trouble = "cannot read a stored run: " + row.error();
+      list.unreadable = "cannot read a stored run: " + row.error();
       host::log(host::Level::Warning, "cannot read a stored run", {{"why", row.error()}});
     } else if (*row) {
       list.runs.push_back(**std::move(row));

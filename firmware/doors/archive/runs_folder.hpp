@@ -24,7 +24,7 @@ class RunsFolder {
 
   struct List {
     std::vector<api::RunRow> runs;  // the latest first
-    std::string trouble;            // why a run is missing; empty: none is
+    std::string unreadable;         // why a run may be missing; empty: none is
   };
   /// All runs. A run with damaged facts is read from its other files; an unreadable run is logged. Error: the
   /// directory cannot be listed.

@@ -60,7 +60,8 @@ async function show() {
   const items = [...byCourse].map(([name, runs]) => ({ name, runs }));
   list(courses, items, ({ name }) => name, createCourse, updateCourse);
   section.querySelector(".empty").hidden = items.length > 0;
-  say(section.querySelector(".kept"), all.trouble ? `Runs are not kept now: ${clip(all.trouble)}` : `All runs take ${bytes(all.bytes)}.`);
+  const missing = all.unreadable && ` A run may be missing: ${clip(all.unreadable)}`;
+  say(section.querySelector(".kept"), (all.trouble ? `Runs are not kept now: ${clip(all.trouble)}` : `All runs take ${bytes(all.bytes)}.`) + missing);
   badge(link, "good", "Live");
 }
 

@@ -22,9 +22,6 @@
 namespace adit::intake {
 namespace {
 
-/// How long libmicrohttpd may take to read the last bytes of a client that has closed its direction.
-constexpr std::chrono::milliseconds kAfterEnd(100);
-
 /// Reads of a chunked body per turn of the loop, and the bytes of each.
 constexpr int kPiecesAtOnce = 4;
 constexpr std::size_t kPieceBytes = 16 * 1024;
@@ -54,13 +51,13 @@ Client::Client(Engine& engine, loop::Loop& loop, MHD_Connection* connection, int
       number_(next_number()),
       peer_(std::move(peer)),
       local_(std::move(local)),
-      gate_(fd) {
+      gate_(fd),
+      deadline_(engine, gate_) {
   // libmicrohttpd does not watch the sockets of suspended connections, and misses an end that arrives
   // together with the last bytes. Edge-triggered, because unread bytes would be reported again and again.
   arrivals_ =
       loop.watch(fd, EPOLLIN | EPOLLRDHUP | EPOLLET, [this](std::uint32_t events) { happened(events); });
-  enter(Phase::Head);
-  expect_head();
+  await_head();
 }
 
 std::optional<Held> Client::held() const {
@@ -72,7 +69,7 @@ Held::Doing Client::doing() const {
   if (phase_ == Phase::Idle) return Held::Doing::Idle;
   if (phase_ == Phase::Head && gate_.has_unseen()) return Held::Doing::Fresh;
   if (phase_ == Phase::Head || request_->is_sending()) return Held::Doing::Sending;
-  return ended_ && suspended_ ? Held::Doing::Left : Held::Doing::Waiting;
+  return deadline_.has_client_ended() && suspended_ ? Held::Doing::Left : Held::Doing::Waiting;
 }
 
 void Client::give_way() {
@@ -93,9 +90,7 @@ void Client::happened(std::uint32_t events) {
     resume();
     return;
   }
-  if ((events & EPOLLRDHUP) != 0 && !std::exchange(ended_, true)) {
-    if (bytes_expected_) expect_bytes(kAfterEnd);
-  }
+  if ((events & EPOLLRDHUP) != 0) deadline_.client_ended();
   if (reads_) return read_on();
   look_at_head();
 }
@@ -106,16 +101,17 @@ void Client::hold_back() {
   suspend();
   if (phase_ == Phase::Head) {
     happened(state_of(fd_));
-  } else if (arrived_ || ended_) {  // happened() will tell later bytes
+  } else if (arrived_ || deadline_.has_client_ended()) {  // happened() will tell later bytes
     look_at_head();
   }
 }
 
 void Client::look_at_head() {
-  if (gate_.has_refused() && (!gate_.read_away() || ended_)) cut();
+  const bool has_ended = deadline_.has_client_ended();
+  if (gate_.has_refused() && (!gate_.read_away() || has_ended)) cut();
   if (!gate_.is_waiting() || !suspended_) return;
   arrived_ = false;
-  switch (gate_.look(engine_.now(), ended_)) {
+  switch (gate_.look(engine_.now(), has_ended)) {
     case Gate::Finding::Whole:
       reads_ = gate_.next_is_chunked();
       resume();
@@ -129,13 +125,12 @@ void Client::look_at_head() {
       break;
     case Gate::Finding::Begun:
       if (phase_ != Phase::Idle) break;
-      enter(Phase::Head);
-      expect_head();
+      await_head();
       break;
     case Gate::Finding::Nothing:
       break;
   }
-  if (ended_) cut();
+  if (has_ended) cut();
 }
 
 void Client::refuse_head() {
@@ -143,7 +138,7 @@ void Client::refuse_head() {
   const Answer answer = error_answer(head.refusal().status, head.refusal().sentence);
   say_last(last_answer_text(answer, !head.is_head_method()));
   enter(Phase::Head);
-  expect_reading(kLingerWithin);
+  deadline_.expect_last_reading();
   look_at_head();
 }
 
@@ -195,14 +190,14 @@ void Client::enter(Phase phase) {
 void Client::request_begun(std::shared_ptr<Request> request) {
   request_ = std::move(request);
   enter(Phase::Request);
-  expect_nothing();
+  deadline_.expect_nothing();
 }
 
 void Client::request_over(bool is_answered) {
   const bool stays = is_answered && request_->keeps_connection() && client_keeps_connection();
   request_ = nullptr;
   enter(Phase::Idle);
-  expect_bytes(engine_.listen().idle);
+  deadline_.expect_bytes(engine_.listen().idle);
   gate_.request_over();
   if (!gate_.is_waiting()) return;
   if (stays) {
@@ -217,90 +212,20 @@ bool Client::client_keeps_connection() const {
   return !gate_.framing().is_version_1_0 && (said.empty() || icd::same_but_for_case(said, "keep-alive"));
 }
 
-void Client::expect_head() {
-  const Listen& listen = engine_.listen();
-  expect_bytes(known_ ? listen.rate_over : listen.unauthenticated_within);
-}
-
-void Client::expect_body() {
-  expect_bytes(engine_.listen().unauthenticated_within);
-  if (!known_ || ended_) return;
-  rate_.emplace(engine_.listen().rate_over, engine_.now());
-  set_deadline(rate_->look_at());
-}
-
-void Client::body_came(std::size_t bytes) {
-  if (rate_) rate_->moved(bytes);
-}
-
-bool Client::is_last_answer() {
-  const Gate::Traffic traffic = gate_.traffic();
-  taken_before_ = traffic.taken;
-  return gate_.is_passed_by(traffic.received);
-}
-
-void Client::expect_steady_reading() {
-  expect_nothing();
-  rate_.emplace(engine_.listen().rate_over, engine_.now());
-  set_deadline(rate_->look_at());
-}
-
-void Client::expect_bytes(std::chrono::milliseconds within) {
-  expect_nothing();
-  bytes_expected_ = true;
-  set_deadline(engine_.now() + (ended_ ? std::min(within, kAfterEnd) : within));
-}
-
-void Client::expect_reading(std::chrono::milliseconds within) {
-  expect_nothing();
-  set_deadline(engine_.now() + within);
+void Client::await_head() {
+  enter(Phase::Head);
+  deadline_.expect_bytes(known_ ? engine_.listen().rate_over : engine_.listen().unauthenticated_within);
 }
 
 void Client::expect_stream() {
   constexpr int kUnsent = 16 * 1024, kUntaken = static_cast<int>(kStreamWithin.count());
-  expect_nothing();
+  deadline_.expect_nothing();
   ::setsockopt(fd_, IPPROTO_TCP, TCP_NOTSENT_LOWAT, &kUnsent, sizeof kUnsent);
   ::setsockopt(fd_, IPPROTO_TCP, TCP_USER_TIMEOUT, &kUntaken, sizeof kUntaken);
 }
 
-void Client::expect_nothing() {
-  bytes_expected_ = false;
-  rate_.reset();
-  deadline_ = loop::Instant::max();
-}
-
-void Client::set_deadline(loop::Instant when) {
-  deadline_ = when;
-  engine_.look_at(deadline_);
-}
-
-bool Client::keeps_up() {
-  if (!rate_) return false;
-  if (!bytes_expected_) {
-    const std::uint64_t before = std::exchange(taken_before_, gate_.traffic().taken);
-    rate_->moved(taken_before_ - before);
-  }
-  if (rate_->is_too_slow(engine_.now())) return false;
-  set_deadline(rate_->look_at());
-  return true;
-}
-
-int Client::unread() const {
-  int unread = 0;
-  return ::ioctl(fd_, FIONREAD, &unread) == 0 ? unread : 0;
-}
-
-bool Client::has_said_all() const {
-  return ended_ && unread() == 0;
-}
-
 void Client::late() {
-  if (bytes_expected_ && ended_ && !has_said_all()) {
-    expect_bytes(kAfterEnd);
-    return;
-  }
-  if (keeps_up()) return;
-  expect_nothing();
+  if (!deadline_.is_late()) return;
   if (gate_.has_refused()) return cut();
   switch (phase_) {
     case Phase::Request:

@@ -18,12 +18,12 @@ constexpr std::size_t kMostThrownAway = 256 * 1024;
 constexpr std::size_t kWorthALook = 16;
 constexpr std::chrono::milliseconds kBetweenLooks(10);
 
-std::size_t unread(int fd) {
-  int bytes = 0;
-  return ::ioctl(fd, FIONREAD, &bytes) == 0 && bytes > 0 ? static_cast<std::size_t>(bytes) : 0;
-}
-
 }  // namespace
+
+std::size_t Gate::unread() const {
+  int bytes = 0;
+  return ::ioctl(fd_, FIONREAD, &bytes) == 0 && bytes > 0 ? static_cast<std::size_t>(bytes) : 0;
+}
 
 void Gate::request_over() {
   if (stage_ == Stage::Refused) return;
@@ -37,12 +37,12 @@ void Gate::request_over() {
 }
 
 bool Gate::has_unseen() const {
-  return stage_ == Stage::Open || (stage_ == Stage::Waiting && looked_at_ == 0 && unread(fd_) > 0);
+  return stage_ == Stage::Open || (stage_ == Stage::Waiting && looked_at_ == 0 && unread() > 0);
 }
 
 Gate::Finding Gate::look(loop::Instant now, bool at_once) {
   if (looked_at_ > 0 && !at_once) {
-    const std::size_t there = unread(fd_);
+    const std::size_t there = unread();
     if (there == looked_at_) return Finding::Begun;
     again_at_ = looked_ + kBetweenLooks;
     if (there < looked_at_ + looked_at_ / kWorthALook && now < again_at_) return Finding::Later;
@@ -110,7 +110,7 @@ Gate::Traffic Gate::traffic() const {
 
 bool Gate::is_passed_by(std::uint64_t received) const {
   if (next_ < sound_.size() || received == requests_end_) return false;
-  const std::size_t waits = unread(fd_);  // first: bytes that arrive between the calls count as read
+  const std::size_t waits = unread();  // first: bytes that arrive between the calls count as read
   return traffic().received - waits != requests_end_;
 }
 

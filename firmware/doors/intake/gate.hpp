@@ -53,6 +53,8 @@ class Gate {
     std::uint64_t taken;     // bytes to the client that its machine has acknowledged
   };
   Traffic traffic() const;
+  /// The bytes that the kernel has received and that nothing has read. 0 if it does not say.
+  std::size_t unread() const;
   /// True if libmicrohttpd has read beyond the end of the last request that was let in, so that a part of the
   /// next head would not be checked. Only for a request with a length that has been read. `received`: of
   /// traffic(), just now.

@@ -70,7 +70,7 @@ void Request::open(Handler& handler) {
   if (answered()) {
     turn_away();
   } else {
-    client_->expect_body();
+    client_->deadline().expect_body(client_->is_known());
     if (chunks_ && icd::same_but_for_case(head_->header("Expect"), "100-continue")) {
       client_->say("HTTP/1.1 100 Continue\r\n\r\n");
     }
@@ -108,7 +108,7 @@ bool Request::has_unended_body() const {
 Next Request::throw_away(std::size_t bytes) {
   if (answered()) sink_.reset();  // frees its data, because discarding may take long
   thrown_away_ += bytes;
-  client_->body_came(bytes);
+  client_->deadline().body_came(bytes);
   return thrown_away_ > (client_->is_known() ? kLinger : kLingerUnauthenticated) ? Next::Close : Next::GoOn;
 }
 
@@ -130,9 +130,9 @@ void Request::take(std::span<const std::uint8_t> piece) {
   if (answered()) {
     turn_away();
   } else if (more || resumed_) {
-    client_->body_came(piece.size());
+    client_->deadline().body_came(piece.size());
   } else {
-    client_->expect_nothing();
+    client_->deadline().expect_nothing();
     client_->suspend();
   }
 }
@@ -141,7 +141,7 @@ Next Request::end() {
   if (stage_ == Stage::Refusing) return Next::Close;
   if (stage_ == Stage::Body) {
     stage_ = Stage::Whole;
-    client_->expect_nothing();
+    client_->deadline().expect_nothing();
     if (!answered()) {
       in_call_ = true;
       sink_->on_end();
@@ -158,7 +158,7 @@ void Request::turn_away() {
   if (stream_) {
     client_->cut();  // a stream in the middle of a body is not supported
   } else if (left_ && *left_ <= kReadAway) {
-    client_->expect_bytes(kReadAwayWithin);
+    client_->deadline().expect_bytes(kReadAwayWithin);
     client_->resume();
   } else {
     refuse(*answer_);
@@ -169,9 +169,9 @@ void Request::refuse(const Answer& answer) {
   client_->say_last(last_answer_text(answer, !is_head_));
   stage_ = Stage::Refusing;
   if (client_->is_known() && has_body_) {
-    client_->expect_body();
+    client_->deadline().expect_body(client_->is_known());
   } else {
-    client_->expect_reading(Client::kLingerWithin);
+    client_->deadline().expect_last_reading();
   }
   client_->resume();
 }
@@ -184,7 +184,8 @@ Next Request::hand_over() {
   MHD_Response* response = stream_ ? ReplyStream::make_response(stream_) : make_response(*answer_);
   if (response == nullptr) return Next::Close;
   const unsigned status = stream_ ? MHD_HTTP_OK : static_cast<unsigned>(answer_->status);
-  is_last_ = client_->is_last_answer();
+  const Gate::Traffic traffic = client_->gate().traffic();
+  is_last_ = client_->gate().is_passed_by(traffic.received);
   if (is_last_) MHD_add_response_header(response, MHD_HTTP_HEADER_CONNECTION, "close");
   const MHD_Result queued = MHD_queue_response(client_->connection(), status, response);
   MHD_destroy_response(response);
@@ -193,7 +194,7 @@ Next Request::hand_over() {
   if (stream_) {
     client_->expect_stream();
   } else {
-    client_->expect_steady_reading();
+    client_->deadline().expect_steady_reading(traffic.taken);
   }
   return Next::GoOn;
 }
@@ -262,7 +263,7 @@ bool Request::client_gone() const {
 void Request::resume() {
   resumed_ = true;
   if (stage_ != Stage::Body || !client_->suspended()) return;
-  client_->expect_body();
+  client_->deadline().expect_body(client_->is_known());
   client_->resume();
 }
 

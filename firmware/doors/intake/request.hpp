@@ -43,9 +43,9 @@ class Request final : public Responder, public Flow, public std::enable_shared_f
   bool is_sending() const {
     return stage_ == Stage::Head || stage_ == Stage::Body || stage_ == Stage::Refusing;
   }
-  /// True if libmicrohttpd has no part of an answer yet.
   /// An answer without `Connection: close` was given to libmicrohttpd.
   bool keeps_connection() const { return stage_ == Stage::Answering && !stream_ && !is_last_; }
+  /// True if libmicrohttpd has no part of an answer yet.
   bool is_unanswered() const { return !answered() && (stage_ == Stage::Body || stage_ == Stage::Whole); }
   /// A callback of the handler threw. Answers 500, unless an answer was being sent, and closes the
   /// connection.

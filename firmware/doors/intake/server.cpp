@@ -186,10 +186,10 @@ void Server::Impl::look_at_deadlines() {
   look_due_ = loop::Instant::max();
   const loop::Instant now = loop_.now();
   for (const auto& [number, client] : clients_) {
-    if (client->deadline() <= now) client->late();
+    if (client->deadline().at() <= now) client->late();
   }
   loop::Instant next = loop::Instant::max();
-  for (const auto& [number, client] : clients_) next = std::min(next, client->deadline());
+  for (const auto& [number, client] : clients_) next = std::min(next, client->deadline().at());
   if (next != loop::Instant::max()) look_at(next);
 }
 

@@ -12,7 +12,7 @@ using Records = std::vector<std::string>;
 
 Records records_in(std::string_view bytes) {
   Records all;
-  for_each_record(bytes, [&](std::string_view said) { all.emplace_back(said); });
+  for_each_record(bytes, [&](std::string_view body) { all.emplace_back(body); });
   return all;
 }
 
@@ -20,7 +20,7 @@ const Records kThree = {"poses", "w", std::string(300, '\0')};
 
 std::string written(const Records& records) {
   std::string bytes;
-  for (const std::string& said : records) bytes += framed(said);
+  for (const std::string& body : records) bytes += framed(body);
   return bytes;
 }
 

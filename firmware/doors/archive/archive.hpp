@@ -1,6 +1,5 @@
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -13,8 +12,8 @@
 #include "archive/due_tiles.hpp"
 #include "archive/lines.hpp"
 #include "archive/poses.hpp"
-#include "archive/runs_folder.hpp"
 #include "archive/samples.hpp"
+#include "archive/stored_runs.hpp"
 #include "loop/loop.hpp"
 #include "loop/workers.hpp"
 #include "picture/mosaic.hpp"
@@ -42,12 +41,9 @@ struct Seen {
 class Archive final : public api::KeptRuns {
  public:
   static constexpr std::chrono::seconds kWriteEvery{5}, kFactsEvery{30};
-  /// Most bytes of a stored run's map when it is shown again.
-  static constexpr std::size_t kLookedAt = std::size_t{12} << 20;
 
   /// `loop` must outlive this object.
   Archive(loop::Loop& loop, const std::string& state_folder);
-  ~Archive() override;
 
   void limit(const Limits& limits) { limits_ = limits; }
 
@@ -74,9 +70,11 @@ class Archive final : public api::KeptRuns {
 
   api::RunList list() const override;
   api::History history(api::Time since) const override { return samples_.since(since); }
-  void read(const std::string& key, ReadDone done) override;
+  void read(const std::string& key, ReadDone done) override { stored_.read(key, row_, std::move(done)); }
   void report(const std::string& key, std::vector<api::ReportDetail> reports,
-              std::vector<api::ColourRow> colours, ReportDone done) override;
+              std::vector<api::ColourRow> colours, ReportDone done) override {
+    stored_.report(key, row_, std::move(reports), std::move(colours), std::move(done));
+  }
   void remove(const std::string& key, std::function<void(std::expected<void, std::string>)> done) override;
 
  private:
@@ -95,12 +93,8 @@ class Archive final : public api::KeptRuns {
   void put_layers(const Seen& seen, Batch& batch);
   void put_tiles(const Seen& seen, Batch& batch, std::size_t left, api::Time tiles_of);
   void written(const Writing& writing);
-  void look_at_disk();
-  /// A function that returns true once this object ends.
-  std::function<bool()> enough() const;
 
   loop::Loop& loop_;
-  RunsFolder runs_;
   Limits limits_;
   Allowance allowance_;
   DueTiles due_;
@@ -126,10 +120,9 @@ class Archive final : public api::KeptRuns {
   Head head_;        // of the present run
   std::string key_;  // of the present run; "": not known yet
   std::shared_ptr<RunFolder> folder_;
-  RunsFolder::List list_;
   std::string trouble_;
-  std::shared_ptr<std::atomic<bool>> ending_ = std::make_shared<std::atomic<bool>>(false);
-  loop::Writer writer_;  // last, so that its jobs end first
+  loop::Writer writer_;  // after what its jobs use
+  StoredRuns stored_;    // ends first, because it tells the jobs to end early
 };
 
 }  // namespace adit::archive

@@ -169,12 +169,7 @@ void Archive::written(const Writing& writing) {
     lines_.give_back(writing.batch.lines);
     return;
   }
-  const auto row = std::ranges::find(list_.runs, key_, &api::RunRow::key);
-  if (row != list_.runs.end()) {
-    row->bytes = outcome->bytes;
-  } else {
-    look_at_disk();
-  }
+  if (!stored_.resize(key_, outcome->bytes)) stored_.look();
   // Shortly before the limit, the newest tiles of the first file are written again. Then the file is removed.
   if (outcome->bytes > limits_.run / 8 * 7 && outcome->first_file != 0) leaves_ = outcome->first_file;
   if (leaves_) is_left_ = due_.leave(*leaves_);

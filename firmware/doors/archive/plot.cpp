@@ -21,9 +21,9 @@ std::string line(double x1, double y1, double x2, double y2, const char* kind) {
                        " ", fixed(y2, 2), "\"/>");
 }
 
-std::string text(double x, double y, const char* anchor, const std::string& said) {
+std::string text(double x, double y, const char* anchor, const std::string& words) {
   return icd::sentence("<text x=\"", fixed(x, 2), "\" y=\"", fixed(y, 2), "\" text-anchor=\"", anchor, "\">",
-                       icd::in_html(said), "</text>");
+                       icd::in_html(words), "</text>");
 }
 
 /// The axes' scales: to millimetres.

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "archive/said.hpp"
+#include "archive/record_kinds.hpp"
 
 namespace adit::archive {
 

@@ -33,9 +33,9 @@ bool is_whole(std::string_view bytes) {
 
 }  // namespace
 
-std::string framed(std::string_view said) {
-  icd::require(!said.empty() && said.size() <= kLargestRecord);
-  return store::written({.body = said}, kPacked, kSalt, kPlace);
+std::string framed(std::string_view body) {
+  icd::require(!body.empty() && body.size() <= kLargestRecord);
+  return store::written({.body = body}, kPacked, kSalt, kPlace);
 }
 
 std::size_t for_each_record(std::string_view bytes, const std::function<void(std::string_view)>& told) {

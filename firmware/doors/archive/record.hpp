@@ -10,9 +10,9 @@ namespace adit::archive {
 /// Largest record: a tile that cannot be compressed.
 inline constexpr std::size_t kLargestRecord = std::size_t{72} << 10;
 
-/// A record in a file: a frame of store/, with a body (said.hpp) that must not be empty. It is valid at any
-/// place of any file.
-std::string framed(std::string_view said);
+/// A record in a file: a frame of store/, with a body (record_kinds.hpp) that must not be empty. It is valid
+/// at any place of any file.
+std::string framed(std::string_view body);
 
 /// Calls `told` with the body of each complete record in `bytes`, in order. Skips damaged bytes up to the
 /// next complete record or the end. Returns the number of damaged records, without a torn last one, which a

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "api/kept_runs.hpp"
+#include "archive/record_kinds.hpp"
 #include "archive/run_records.hpp"
-#include "archive/said.hpp"
 #include "loop/file_descriptor.hpp"
 
 namespace adit::archive {

@@ -6,9 +6,9 @@ namespace adit::archive {
 
 void RunRecords::tell(std::string_view bytes, std::uint64_t file) {
   damaged_ += for_each_record(bytes, [&](std::string_view record) {
-    const auto said = read(record);
-    if (said && (is_ours_ || std::holds_alternative<Head>(*said)))
-      std::visit([&](const auto& one) { add(one, file); }, *said);
+    const auto known = read(record);
+    if (known && (is_ours_ || std::holds_alternative<Head>(*known)))
+      std::visit([&](const auto& one) { add(one, file); }, *known);
   });
 }
 

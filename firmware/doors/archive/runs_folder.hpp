@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "api/kept_runs.hpp"
+#include "archive/record_kinds.hpp"
 #include "archive/run_folder.hpp"
-#include "archive/said.hpp"
 #include "codec/row_file.hpp"
 
 namespace adit::archive {

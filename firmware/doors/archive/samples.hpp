@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "api/kept_runs.hpp"
-#include "archive/said.hpp"
+#include "archive/record_kinds.hpp"
 
 namespace adit::archive {
 

@@ -1,4 +1,4 @@
-#include "archive/said.hpp"
+#include "archive/record_kinds.hpp"
 
 #include <gtest/gtest.h>
 
@@ -20,15 +20,15 @@ picture::Tile tile(std::string_view bytes) {
 const TileState kTile{{"ugv1", picture::Kind::Cloud}, {1, -3, 4}, 1000.5, tile("abc")};
 
 /// A record's content as bytes.
-std::string said(const Said& said) {
+std::string body_of(const Record& record) {
   std::string bytes;
-  for_each_record(record_of(said), [&bytes](std::string_view said) { bytes = said; });
+  for_each_record(record_of(record), [&bytes](std::string_view body) { bytes = body; });
   return bytes;
 }
 
 template <class Of>
 std::optional<Of> again(const Of& one) {
-  const auto read_again = read(said(one));
+  const auto read_again = read(body_of(one));
   return read_again ? std::optional(std::get<Of>(*read_again)) : std::nullopt;
 }
 
@@ -108,11 +108,11 @@ TEST(RecordBody, WrongOrMissingBytesAreRejected) {
   EXPECT_FALSE(again(TileState{kTile.layer, {9, 0, 0}, 1, nullptr})) << "no such level";
   EXPECT_FALSE(again(TileState{kTile.layer, {0, 1 << 19, 0}, 1, nullptr})) << "out of the world";
   EXPECT_FALSE(again(api::AttentionStep{1, true, "\xff"})) << "no UTF-8";
-  for (const Said& one :
-       {Said(kTile), Said(picture::LayerView{}), Said(Wiped{}), Said(Step{}),
-        Said(api::Track{"r", std::vector<api::TrackPose>(2)}), Said(Sample{.map_ages = {{"r", 1}}}),
-        Said(api::AttentionStep{1, true, "s"}), Said(Head{})}) {
-    const std::string bytes = said(one);
+  for (const Record& one :
+       {Record(kTile), Record(picture::LayerView{}), Record(Wiped{}), Record(Step{}),
+        Record(api::Track{"r", std::vector<api::TrackPose>(2)}), Record(Sample{.map_ages = {{"r", 1}}}),
+        Record(api::AttentionStep{1, true, "s"}), Record(Head{})}) {
+    const std::string bytes = body_of(one);
     EXPECT_TRUE(read(bytes)) << one.index();
     for (std::size_t cut = 1; cut < bytes.size(); ++cut)
       EXPECT_FALSE(read(std::string_view(bytes).substr(0, cut))) << one.index() << " cut at " << cut;

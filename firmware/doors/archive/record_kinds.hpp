@@ -64,13 +64,13 @@ struct Step {
 
 /// The kinds of records. Their positions are numbers in files: keep them and append new kinds. LayerView: a
 /// layer without its tiles. Track: poses of one robot. AttentionStep: start or end of a need for attention.
-using Said =
+using Record =
     std::variant<Head, TileState, picture::LayerView, Wiped, api::Track, Sample, api::AttentionStep, Step>;
 
 /// The framed record.
-std::string record_of(const Said& said);
+std::string record_of(const Record& record);
 /// Reads any bytes: a complete value, or std::nullopt.
-std::optional<Said> read(std::string_view said);
+std::optional<Record> read(std::string_view body);
 
 /// Most poses in a record, which then has 40 kB.
 inline constexpr std::size_t kLargestPoses = 1000;

@@ -1,4 +1,4 @@
-#include "archive/said.hpp"
+#include "archive/record_kinds.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -144,27 +144,27 @@ bool is_good(const Step& step) {
 }
 
 template <class Of>
-std::optional<Said> read_one(std::string_view values) {
+std::optional<Record> read_one(std::string_view values) {
   Of one{};
   if (!store::read<Take>(values, one) || !is_good(one)) return std::nullopt;
   return one;
 }
 
 template <class... Of>
-std::optional<Said> read_any(std::size_t kind, std::string_view values, const std::variant<Of...>& /*of*/) {
-  constexpr std::optional<Said> (*kReaders[])(std::string_view) = {read_one<Of>...};
+std::optional<Record> read_any(std::size_t kind, std::string_view values, const std::variant<Of...>& /*of*/) {
+  constexpr std::optional<Record> (*kReaders[])(std::string_view) = {read_one<Of>...};
   return kind < sizeof...(Of) ? kReaders[kind](values) : std::nullopt;
 }
 
 }  // namespace
 
-std::string record_of(const Said& said) {
-  const std::string kind(1, static_cast<char>(said.index()));
-  return framed(kind + std::visit([](const auto& one) { return store::bytes_of<Put>(one); }, said));
+std::string record_of(const Record& record) {
+  const std::string kind(1, static_cast<char>(record.index()));
+  return framed(kind + std::visit([](const auto& one) { return store::bytes_of<Put>(one); }, record));
 }
 
-std::optional<Said> read(std::string_view said) {
-  return read_any(static_cast<unsigned char>(said.at(0)), said.substr(1), Said());
+std::optional<Record> read(std::string_view body) {
+  return read_any(static_cast<unsigned char>(body.at(0)), body.substr(1), Record());
 }
 
 }  // namespace archive

@@ -35,6 +35,34 @@ bool can_be_read(const std::string& state_folder) {
   return true;
 }
 
+/// Why a restart is harmful now, or "".
+std::string report_under_way(const dispatch::Reports& reports) {
+  if (const auto* report = reports.sending())
+    return icd::sentence("report ", report->number, " is in flight; a restart would leave it in doubt");
+  const std::size_t waiting = reports.waiting_here().size();
+  if (waiting == 0) return "";
+  return icd::sentence(waiting, waiting == 1 ? " report is" : " reports are", " queued");
+}
+
+/// What another box needs to take over. `stamp`: now; no stamp is used after the export.
+std::expected<spare::Content, std::string> export_of(const Parts& parts, const dispatch::Reports& reports,
+                                                     const settings::Team& team, double stamp) {
+  auto ledger = parts.ledger.copy();
+  if (!ledger) return std::unexpected(std::move(ledger.error().what));
+  spare::Content content;
+  content.about.name = team_address(team);
+  content.about.version = box::kVersion;
+  content.about.stamps = stamp + forward::StampFloor::kAhead;
+  content.about.reports = static_cast<std::int64_t>(reports.book().all().size());
+  content.about.open = static_cast<std::int64_t>(reports.book().open().size());
+  content.about.post = reports.run().post;
+  content.about.run = reports.run().last;
+  content.settings = settings::file_of(parts.loaded.settings);
+  content.tokens = {parts.loaded.secrets.tokens.begin(), parts.loaded.secrets.tokens.end()};
+  content.ledger = *std::move(ledger);
+  return content;
+}
+
 }  // namespace
 
 Gateway::Gateway(loop::Loop& loop, Parts parts)
@@ -74,11 +102,12 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
            .claimed = [this](icd::Uri uri) { flow_.claimed(uri); }},
           adit_network_, network_, [this] { api_.changed(); }),
       updates_(loop, disk_writer_, parts_.options.state, parts_.options.update,
-               [this] { return report_under_way(); }),
+               [this] { return report_under_way(flow_.reports()); }),
       clock_(loop, parts_.options.state, parts_.options.clock, admin::ClockSetting::kChronyd),
       spare_(loop, log_ins_, parts_.taking_over, parts_.options.state, parts_.options.spare,
              unread().empty() ? parts_.stuck : unread(),
-             {.content = [this] { return content(); },
+             {.content =
+                  [this] { return export_of(parts_, flow_.reports(), settings_.team, loop_.stamp_now()); },
               .is_time_set = [this] { return clock_.is_set().value_or(false); },
               .restart = [this] { make_way(); }}),
       overview_({loop, parts_, settings_, flow_, lights_, links_, accounts_, network_, updates_, clock_,
@@ -270,35 +299,6 @@ void Gateway::keep_sessions() {
   if (loop_.now() < sessions_kept_ + kKeepSessionsEvery) return;
   sessions_kept_ = loop_.now();
   if (!sessions_.sessions().in_order().empty()) sessions_.keep();
-}
-
-/// Why a restart is harmful now, or "".
-std::string Gateway::report_under_way() const {
-  const dispatch::Reports& reports = flow_.reports();
-  if (const auto* report = reports.sending())
-    return icd::sentence("report ", report->number, " is in flight; a restart would leave it in doubt");
-  const std::size_t waiting = reports.waiting_here().size();
-  if (waiting == 0) return "";
-  return icd::sentence(waiting, waiting == 1 ? " report is" : " reports are", " queued");
-}
-
-/// For the export. No stamp is used after it.
-std::expected<spare::Content, std::string> Gateway::content() const {
-  auto ledger = parts_.ledger.copy();
-  if (!ledger) return std::unexpected(std::move(ledger.error().what));
-  const dispatch::Reports& reports = flow_.reports();
-  spare::Content content;
-  content.about.name = team_address(settings_.team);
-  content.about.version = box::kVersion;
-  content.about.stamps = loop_.stamp_now() + forward::StampFloor::kAhead;
-  content.about.reports = static_cast<std::int64_t>(reports.book().all().size());
-  content.about.open = static_cast<std::int64_t>(reports.book().open().size());
-  content.about.post = reports.run().post;
-  content.about.run = reports.run().last;
-  content.settings = settings::file_of(parts_.loaded.settings);
-  content.tokens = {parts_.loaded.secrets.tokens.begin(), parts_.loaded.secrets.tokens.end()};
-  content.ledger = *std::move(ledger);
-  return content;
 }
 
 }  // namespace adit::gateway

@@ -65,8 +65,6 @@ class Gateway final : public api::Caretaker {
   icd::Redaction redaction() const;
   std::string unread() const;
   void pressed(panel::Press press);
-  std::string report_under_way() const;
-  std::expected<spare::Content, std::string> content() const;
 
   loop::Loop& loop_;
   Parts parts_;

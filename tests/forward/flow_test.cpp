@@ -167,7 +167,7 @@ class FlowLedgerTest : protected loop::SimulatedTime, public FlowTest {
 };
 
 TEST_F(FlowLedgerTest, GetsASpareFileAndASnapshot) {
-  tick(Flow::kUpkeepEvery - std::chrono::seconds(1));
+  tick(LedgerUpkeep::kEvery - std::chrono::seconds(1));
   EXPECT_FALSE(has("spare-"));
   tick(std::chrono::seconds(1));
   EXPECT_TRUE(has("spare-"));

@@ -3,8 +3,8 @@
 #include <utility>
 
 #include "codec/read.hpp"
+#include "dispatch/answer_text.hpp"
 #include "dispatch/mapping_verdict.hpp"
-#include "dispatch/said.hpp"
 #include "host/log.hpp"
 #include "icd/require.hpp"
 #include "icd/sentence.hpp"
@@ -203,7 +203,7 @@ std::string sentence_of(const uplink::Outcome& outcome) {
   if (answered.wants_slash)
     return icd::sentence("the Command Post answered ", answered.status, ": the path must end with a slash");
   if (dispatch::may_be_the_command_post(answered.status, dispatch::body_of(answered.body)))
-    return dispatch::said(answered.status, answered.body);
+    return dispatch::answer_text(answered.status, answered.body);
   return icd::sentence(
       "the server that answered ", answered.status,
       answered.status < 400 && answered.status >= 300 ? " (a redirect)" : " with a body that is not JSON",

@@ -53,22 +53,22 @@ void Flow::status(const intake::Sender&, std::shared_ptr<intake::Responder> resp
   scoring_.status(std::move(responder));
 }
 
-/// A sentence may quote a client's token from a wrong field.
-std::string Flow::without_tokens(std::string sentence) const {
-  for (const icd::BearerToken& token : tokens_.all) token.strike_from(sentence);
+std::string Tokens::strike_from(std::string sentence) const {
+  for (const icd::BearerToken& token : all) token.strike_from(sentence);
   return sentence;
 }
 
 void Flow::left_out(icd::Uri uri, const intake::Sender& sender, const std::string& why) {
-  host::log(
-      host::Level::Info, "parts of a message rejected",
-      {{"uri", std::string(icd::path_of(uri))}, {"sender", sender.address}, {"why", without_tokens(why)}});
+  host::log(host::Level::Info, "parts of a message rejected",
+            {{"uri", std::string(icd::path_of(uri))},
+             {"sender", sender.address},
+             {"why", tokens_.strike_from(why)}});
 }
 
 /// gateway::Crowding logs wrong tokens together.
 void Flow::refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusal& told) {
   icd::Refusal refusal = told;
-  refusal.sentence = without_tokens(told.sentence);
+  refusal.sentence = tokens_.strike_from(told.sentence);
   if (refusal.status != icd::Status::Unauthorized) {
     host::log(host::Level::Info, "message rejected",
               {{"uri", std::string(icd::path_of(uri))},
@@ -98,57 +98,44 @@ void Flow::changed() {
   told_.changed();
 }
 
-/// Runs may have begun before this process or before a change of the Command Post.
-dispatch::NextMap Flow::next_map(std::int64_t before, const dispatch::Run& run) const {
-  const dispatch::Run* const known = reports().runs().find(before);
-  const bool is_here = known != nullptr && reports().runs().is_here(before) && is_by_settings(run);
-  return is_here ? dispatch::next_map(*known, run) : dispatch::NextMap::MayBeTheSame;
-}
-
-/// At the Command Post in the settings.
-bool Flow::is_by_settings(const dispatch::Run& run) const {
-  return run.post == address_text(settings_.command_post.scoring);
-}
-
-/// True if the clock of the status has changed.
-bool Flow::status_came() {
-  const auto& clock = reports().run().status_clock;
-  const double shows = clock ? clock->shows : 0;
-  return std::exchange(clock_shown_, shows) != shows;
-}
-
 void Flow::picture_the_run() {
   if (!has_started_) return;
-  const dispatch::Run& run = reports().run();
-  const std::int64_t before = std::exchange(pictured_run_, run.number);
-  const bool is_heard = status_came();
-  if (before == run.number) {
-    if (is_heard && is_by_settings(run) && dispatch::tells_of_another(run)) maps_.heard();
-    return;
+  switch (run_news_.look(reports())) {
+    case RunNews::Change::None:
+      return;
+    case RunNews::Change::LikelyAnother:
+      maps_.heard();
+      return;
+    case RunNews::Change::FirstLook:
+      break;
+    case RunNews::Change::Another:
+      archive_.end_run(seen());
+      maps_.change_run(run_news_.next_map());
+      telemetry_.change_run();
+      delivered_.begin_run(loop_.wall_now());
+      picture_.begin_run();
+      break;
   }
-  if (before == 0) return keep_the_run();
-  archive_.end_run(seen());
-  maps_.change_run(next_map(before, run));
-  telemetry_.change_run();
-  delivered_.begin_run(loop_.wall_now());
-  picture_.begin_run();
   keep_the_run();
 }
 
+namespace {
+
 /// Rounded, because each view reads two clocks.
-std::optional<api::Time> Flow::behind_since(const Traffic& traffic) const {
-  const auto since = is_map(traffic.kind) ? maps_.waits_since(traffic) : telemetry_.waits_since(traffic);
-  if (!since) return std::nullopt;
-  const api::Time at = loop_.wall_now() - std::chrono::duration<double>(loop_.now() - *since).count();
+api::Time wall_time_of(const loop::Loop& loop, loop::Instant since) {
+  const api::Time at = loop.wall_now() - std::chrono::duration<double>(loop.now() - since).count();
   return std::round(at * 1000) / 1000;
 }
+
+}  // namespace
 
 std::vector<api::ActivityRow> Flow::activities() const {
   std::vector<api::ActivityRow> rows;
   for (const auto& [traffic, counted] : record_.rows()) {
     api::ActivityRow& row = rows.emplace_back(counted);
     row.queued = is_map(traffic.kind) ? maps_.waiting(traffic) : telemetry_.waiting(traffic.kind);
-    row.behind_since = behind_since(traffic);
+    const auto since = is_map(traffic.kind) ? maps_.waits_since(traffic) : telemetry_.waits_since(traffic);
+    if (since) row.behind_since = wall_time_of(loop_, *since);
   }
   return rows;
 }

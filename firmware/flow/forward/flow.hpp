@@ -14,11 +14,13 @@
 #include "forward/clocks.hpp"
 #include "forward/delivered_scene.hpp"
 #include "forward/ending.hpp"
+#include "forward/ledger_upkeep.hpp"
 #include "forward/map_picture.hpp"
 #include "forward/maps.hpp"
 #include "forward/meter.hpp"
 #include "forward/record.hpp"
 #include "forward/rejected.hpp"
+#include "forward/run_news.hpp"
 #include "forward/scoring.hpp"
 #include "forward/telemetry.hpp"
 #include "icd/bearer_token.hpp"
@@ -42,13 +44,14 @@ struct KnownTimes {
 struct Tokens {
   std::optional<icd::BearerToken> scoring, mapping;
   std::vector<icd::BearerToken> all;
+
+  /// A sentence may quote a client's token from a wrong field.
+  std::string strike_from(std::string sentence) const;
 };
 
 /// The team's messages from intake (this is its Desk) to uplink, sent by Scoring, Maps and Telemetry.
 class Flow final : public intake::Desk, public api::Operator {
  public:
-  /// Delay of the ledger's upkeep after a start or a failure. The first messages have priority.
-  static constexpr std::chrono::seconds kUpkeepEvery{60};
   /// Directories of messages, below the runtime directory.
   static constexpr const char *kJournal = "/journal", *kWaiting = "/waiting", *kRejected = "/rejected";
   struct Folders {
@@ -156,27 +159,19 @@ class Flow final : public intake::Desk, public api::Operator {
   UriPace& pace_of(icd::Uri uri) {
     return uri == icd::Uri::Status ? scoring_.status_pace() : telemetry_.state_pace();
   }
-  std::optional<api::Time> behind_since(const Traffic& traffic) const;
   void carry_on();
-  void keep_ledger(loop::Writer& disk);
   void restore(bool is_first);
-  void restore_record();
   void take(icd::MapUpdate update, const intake::Sender& sender, std::shared_ptr<spool::MapFile> file,
             std::function<void(icd::Checked<void>)> done);
   void changed();
   void picture_the_run();
-  dispatch::NextMap next_map(std::int64_t before, const dispatch::Run& run) const;
-  bool is_by_settings(const dispatch::Run& run) const;
-  bool status_came();
   void keep_the_run();
   archive::Seen seen() const;
   void drain();
-  std::string without_tokens(std::string sentence) const;
 
   loop::Loop& loop_;
   ledger::Ledger& ledger_;
-  loop::Instant upkeep_at_ = loop_.now() + kUpkeepEvery;  // of the ledger
-  std::string upkeep_trouble_;                            // why it failed, or ""
+  LedgerUpkeep upkeep_;
   const settings::Settings& settings_;
   Tokens tokens_;
   Told told_;
@@ -190,15 +185,14 @@ class Flow final : public intake::Desk, public api::Operator {
   RejectedStore rejected_;
   Record record_;
   Scoring scoring_;
+  RunNews run_news_;
   MapPicture picture_;
   Maps maps_;
   DeliveredScene delivered_;
   Telemetry telemetry_;
   Meter meter_;
-  std::int64_t pictured_run_ = 0;  // 0: not set
-  double clock_shown_ = 0;         // clock of its last status
-  std::string standby_;            // why the flow stands by, or ""
-  bool has_started_ = false;       // before that the run is unknown
+  std::string standby_;       // why the flow stands by, or ""
+  bool has_started_ = false;  // before that the run is unknown
   archive::Archive archive_;
   Ending ending_;
   std::function<void()> over_;

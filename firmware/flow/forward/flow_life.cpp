@@ -27,12 +27,25 @@ std::uint64_t seed() {
   return seed;
 }
 
+/// Call after queued messages are restored, which the record counts.
+void restore_record(Record& record, const std::map<std::string, journal::Heard>& heard_before,
+                    const loop::Loop& loop) {
+  for (const auto& [robot, heard] : heard_before) {
+    for (std::size_t kind = 0; kind < heard.kinds.size(); ++kind) {
+      const auto [accepted, forwarded] = heard.kinds[kind];
+      if (std::isnan(accepted)) continue;
+      record.restore({static_cast<Kind>(kind), robot}, time_of(loop, accepted), time_of(loop, forwarded));
+    }
+  }
+}
+
 }  // namespace
 
 Flow::Flow(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& settings, Tokens tokens,
            const Folders& folders, Told told)
     : loop_(loop),
       ledger_(ledger),
+      upkeep_(loop, ledger),
       settings_(settings),
       tokens_(std::move(tokens)),
       told_(std::move(told)),
@@ -45,6 +58,7 @@ Flow::Flow(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& s
       rejected_(loop, writer_, folders.runtime + kRejected),
       record_([this] { changed(); }),
       scoring_(loop, ledger, settings, tokens_.scoring, record_, random_, journal_, clocks_),
+      run_news_(settings),
       picture_(loop, workers_, [this] { changed(); }),
       maps_(loop, workers_, writer_, spool_, settings, tokens_.mapping, record_, rejected_, random_, journal_,
             [this](icd::MapUpdate map) { picture_.forwarded(std::move(map)); }),
@@ -70,7 +84,6 @@ void Flow::start() {
   scoring_.start();
   telemetry_.start();
   has_started_ = true;
-  status_came();  // the previous process's status does not count
   picture_the_run();
 }
 
@@ -91,7 +104,7 @@ void Flow::carry_on() {
   telemetry_.carry_on(carried);
   restore(is_first);
   heard_before_ = carried.heard();
-  restore_record();
+  restore_record(record_, heard_before_, loop_);
 }
 
 /// Messages in files. Without a journal the last sending is unknown: maps get new stamps, all requests wait.
@@ -107,17 +120,6 @@ void Flow::restore(bool is_first) {
     if (is_first) map.header().stamp = loop_.stamp_now();
   }
   maps_.restore(std::move(kept));
-}
-
-/// After restore(), which records queued messages.
-void Flow::restore_record() {
-  for (const auto& [robot, heard] : heard_before_) {
-    for (std::size_t kind = 0; kind < heard.kinds.size(); ++kind) {
-      const auto [accepted, forwarded] = heard.kinds[kind];
-      if (std::isnan(accepted)) continue;
-      record_.restore({static_cast<Kind>(kind), robot}, time_of(loop_, accepted), time_of(loop_, forwarded));
-    }
-  }
 }
 
 void Flow::settings_changed(const settings::Restarts& restarts, Tokens tokens) {
@@ -143,7 +145,7 @@ void Flow::tick(loop::Writer& disk) {
   meter_.second(sent_bytes());
   scoring_.tick();
   clocks_.keep(disk, ledger_.known());
-  keep_ledger(disk);
+  if (!is_ending()) upkeep_.tick(disk);
   archive_.tick(seen());
 }
 
@@ -158,23 +160,6 @@ void Flow::wall_was_set(double seconds) {
   delivered_.move(seconds);
   picture_.move(seconds);
   archive_.move(seconds);
-}
-
-void Flow::keep_ledger(loop::Writer& disk) {
-  if (loop_.now() < upkeep_at_ || is_ending()) return;
-  auto work = ledger_.upkeep();
-  if (!work) return;
-  upkeep_at_ = loop_.now() + kUpkeepEvery;  // in case of failure
-  const auto result =
-      std::make_shared<ledger::Result<void>>(std::unexpected(ledger::Error{.what = "an exception"}));
-  disk.submit([work = std::move(work), result] { *result = work(); },
-              [this, result] {
-                ledger_.upkeep_done(*result);
-                if (*result) upkeep_at_ = loop_.now();
-                const std::string why = *result ? "" : result->error().what;
-                if (std::exchange(upkeep_trouble_, why) != why && !*result)
-                  host::log(host::Level::Warning, "the ledger has no room in reserve", {{"why", why}});
-              });
 }
 
 void Flow::end(std::function<void()> over) {

@@ -6,7 +6,7 @@
 
 #include "codec/read.hpp"
 #include "codec/write.hpp"
-#include "dispatch/said.hpp"
+#include "dispatch/answer_text.hpp"
 #include "dispatch/turn.hpp"
 #include "forward/upstream_answer.hpp"
 #include "host/log.hpp"

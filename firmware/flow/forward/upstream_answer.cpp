@@ -2,7 +2,7 @@
 
 #include "codec/json.hpp"
 #include "codec/write.hpp"
-#include "dispatch/said.hpp"
+#include "dispatch/answer_text.hpp"
 #include "intake/icd_routes.hpp"
 
 namespace adit::forward {
@@ -10,7 +10,8 @@ intake::Answer client_answer(const uplink::Answered& answered) {
   const auto status = static_cast<icd::Status>(answered.status);
   if (const auto json = codec::parse_json(answered.body)) {
     const bool as_it_came = answered.status < 300 || std::holds_alternative<std::string>(json->is);
-    if (!as_it_came) return intake::error_answer(status, dispatch::said(answered.status, answered.body));
+    if (!as_it_came)
+      return intake::error_answer(status, dispatch::answer_text(answered.status, answered.body));
     return {
         .status = status, .content_type = std::string(codec::kJson), .body = answered.body, .headers = {}};
   }

@@ -52,16 +52,16 @@ class Box:
                                              self.folder / "secrets", "--state", self.state],
                                             stdout=log, stderr=log)
         try:
-            found = wait_until(lambda: re.search(r"listening .*port=(\d+)", self.said()[begun:]), "aditd to listen")
+            found = wait_until(lambda: re.search(r"listening .*port=(\d+)", self.output()[begun:]), "aditd to listen")
         except AssertionError as error:
-            raise AssertionError(f"{error}:\n{self.said()}") from None
+            raise AssertionError(f"{error}:\n{self.output()}") from None
         self.port = int(found.group(1))
 
     def stop(self):
         self.process.send_signal(signal.SIGTERM)
         self.process.wait(patient(30))
 
-    def said(self):
+    def output(self):
         return self.log.read_text()
 
     def code(self):
@@ -106,7 +106,7 @@ class Login(unittest.TestCase):
         self.assertEqual(box.ask("GET /adit/session")[1], {"role": None, "csrf": None, "first_start": True,
                                                              "set_up_open": False})
         self.assertRegex(box.code(), r"^\d{8}$")
-        self.assertIn(f"code={box.code()}", box.said())
+        self.assertIn(f"code={box.code()}", box.output())
         self.assertEqual(stat.S_IMODE((box.state / "first-start.code").stat().st_mode), 0o600)
         wrong = "00000000" if box.code() != "00000000" else "11111111"
         self.assertEqual(box.set_first(code=wrong)[0], 403)
@@ -117,10 +117,10 @@ class Login(unittest.TestCase):
         self.assertEqual(box.set_first()[0], 200)
         self.assertFalse((box.state / "first-start.code").exists())
         self.assertEqual(box.set_first(code=code)[0], 401, "it has done its service")
-        before = len(box.said())
+        before = len(box.output())
         box.stop()
         box.start()
-        self.assertNotIn("code=", box.said()[before:])
+        self.assertNotIn("code=", box.output()[before:])
         self.assertEqual(box.ask("GET /adit/session")[1]["first_start"], False)
         self.assertEqual(box.ask("GET /adit/run", **box.log_in())[0], 200)
 
@@ -148,7 +148,7 @@ class Login(unittest.TestCase):
     def test_code_of_the_label_is_not_printed(self):
         box = self.box(first=False, label="31415926")
         self.assertFalse((box.state / "first-start.code").exists())
-        self.assertNotIn("31415926", box.said())
+        self.assertNotIn("31415926", box.output())
         self.assertEqual(box.set_first(code="31415926")[0], 200)
 
     def test_passwords_are_hashed_private_and_not_logged(self):
@@ -166,7 +166,7 @@ class Login(unittest.TestCase):
             self.assertTrue(kept[role].startswith("$y$j9T$"), role)
         secret = by_operator["Cookie"].partition("=")[2]
         for text in (OPERATOR, VIEWER, "an untrue password", secret, by_operator["Adit_CSRF"], "$y$"):
-            self.assertNotIn(text, box.said())
-        self.assertIn("login rejected: wrong password", box.said())
+            self.assertNotIn(text, box.output())
+        self.assertIn("login rejected: wrong password", box.output())
         self.assertEqual(box.ask("POST /adit/password", {"role": "viewer", "current": OPERATOR, "password": OPERATOR},
                                  **by_operator)[0], 422, "one password for two roles")

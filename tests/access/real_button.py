@@ -41,7 +41,7 @@ class Button(unittest.TestCase):
         self.write(b"release\n")
 
     def listening(self):
-        return re.findall(r"listening .*port=(\d+)", self.box.said())
+        return re.findall(r"listening .*port=(\d+)", self.box.output())
 
     def await_restart(self, before):
         """Waits until aditd listens again, at any port."""
@@ -77,7 +77,7 @@ class Button(unittest.TestCase):
         view = self.run_view()
         self.assertTrue(570 < view["setup_open_until"] - view["now"] <= 600.1, view)
         self.assertEqual(self.patterns(), {"health": "off", "scoring": "off", "mapping": "off", "attention": "digits"})
-        self.assertIn("the lights show the address address=127.0.0.1", box.said())
+        self.assertIn("the lights show the address address=127.0.0.1", box.output())
 
         self.assertEqual(box.ask("GET /adit/sessions", **self.me)[0], 200, "nothing has changed yet")
         self.assertEqual(box.log_in().keys(), self.me.keys())
@@ -94,9 +94,9 @@ class Button(unittest.TestCase):
         self.assertEqual(box.ask("GET /adit/sessions", **self.me)[0], 401)
         self.assertEqual(box.ask("POST /adit/login", {"password": OPERATOR})[0], 403)
         box.log_in(NEW)
-        wait_until(lambda: "set-up is closed" in box.said(), "that to be logged")
-        self.assertIn("set-up opened at the box", box.said())
-        self.assertNotIn(NEW, box.said())
+        wait_until(lambda: "set-up is closed" in box.output(), "that to be logged")
+        self.assertIn("set-up opened at the box", box.output())
+        self.assertNotIn(NEW, box.output())
 
     def test_press_of_ten_seconds_resets_all_but_the_reports(self):
         box = self.start_box()
@@ -116,7 +116,7 @@ class Button(unittest.TestCase):
         for gone in ("settings.json", "secrets", "access.json"):
             self.assertFalse((box.state / gone).exists(), gone)
         self.assertEqual(box.ask("GET /adit/sessions", **self.me)[0], 401)
-        self.assertIn("button held: factory reset", box.said())
+        self.assertIn("button held: factory reset", box.output())
         self.assertEqual(box.set_first(password=NEW)[0], 200)
         report, = box.ask("GET /adit/reports", **box.log_in(NEW))[1]
         self.assertEqual(report["type"], "Drill")

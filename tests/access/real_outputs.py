@@ -230,7 +230,7 @@ class Outputs(unittest.TestCase):
                 self.shows_none("why it does not start", ended.stdout + ended.stderr)
 
     def test_wrong_tokens_are_counted_and_logged_together(self):
-        lines = self.box.said().count("requests with wrong tokens")
+        lines = self.box.output().count("requests with wrong tokens")
         self.assertTrue(1 <= lines <= 6, f"{lines}: one a minute")
         metrics = self.box.ask("GET /metrics", **self.script)[1].decode()
         self.assertGreaterEqual(float(re.search(r"^adit_wrong_tokens_total (\S+)$", metrics, re.M).group(1)), 26)

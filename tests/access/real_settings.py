@@ -61,7 +61,7 @@ class SetUp(unittest.TestCase):
         return said
 
     def listens_at(self):
-        return int(re.findall(r"listening .*port=(\d+)", self.box.said())[-1])
+        return int(re.findall(r"listening .*port=(\d+)", self.box.output())[-1])
 
     def is_applied(self):
         self.box.port = self.listens_at()
@@ -199,5 +199,5 @@ class SetUp(unittest.TestCase):
         self.assertEqual(self.box.ask("POST /state/update", state("x"), **TEAM)[0], 200)
         self.assertEqual(self.box.ask("POST /state/update", state("x"), **TEAM)[0], 200)
         self.assertEqual(self.alarms(), {"robot_unknown:x"})
-        self.assertEqual(self.box.said().count("unknown robot"), 1)
+        self.assertEqual(self.box.output().count("unknown robot"), 1)
         self.assertEqual(self.box.ask("POST /state/update", state("husky-number-9"), **TEAM)[0], 422, "the ICD's rule")

@@ -1,9 +1,9 @@
 // An answer of the Command Post, or of whoever answers in its place.
 #include "codec/read.hpp"
 #include "codec/row.hpp"
+#include "dispatch/answer_text.hpp"
 #include "dispatch/mapping_verdict.hpp"
 #include "dispatch/report_verdict.hpp"
-#include "dispatch/said.hpp"
 #include "target.hpp"
 #include "uplink/answer_parser.hpp"
 
@@ -13,7 +13,7 @@ namespace {
 using uplink::AnswerParser;
 using State = AnswerParser::State;
 
-constexpr std::size_t kLongestBody = 4096, kLongestSaid = 300;
+constexpr std::size_t kLongestBody = 4096, kLongestText = 300;
 
 struct ReadAnswer {
   AnswerParser parser{kLongestBody};
@@ -38,7 +38,7 @@ void judge_body(int status, std::string_view text) {
     require(!reply && !reply.error().empty());
     require(dispatch::event_of(status, false, body) != dispatch::ReportEvent::Recorded);
   }
-  require(dispatch::said(status, text).size() <= kLongestSaid);
+  require(dispatch::answer_text(status, text).size() <= kLongestText);
   settles(text, codec::read_run_status, codec::to_json<icd::RunStatus>);
 }
 

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { said, toTab, watch } from "./watch.js";
+import { waitForText, toTab, watch } from "./watch.js";
 
 const row = (page, number) => page.locator(`#reports li[data-key="${number}"]`);
 const button = (page, name, number) => page.getByRole("button", { name: `${name}: report ${number}` });
@@ -102,7 +102,7 @@ test("shows the box's sentence if an action is impossible", async (t) => {
 test("shows a viewer the reports and why he has no actions", async (t) => {
   const prepare = (page) => page.route("**/adit/session", (route) => route.fulfill({ json: { role: "viewer", csrf: "x", first_start: false } }));
   const { page } = await watch(t, "reports", { prepare });
-  await said(page, "Only an operator can act");
+  await waitForText(page, "Only an operator can act");
   for (const one of await page.locator("#reports .actions button, #reports button.compose").all()) assert.ok(await one.isDisabled());
   await page.keyboard.press("n");
   assert.ok(await page.locator("#compose").isHidden());
@@ -112,7 +112,7 @@ test("offers no action while the box is lost, and all once it is back", async (t
   const { stage, page } = await watch(t, "reports");
   stage.freeze();
   await page.waitForSelector("body[data-link=lost]");
-  await said(page, "The box sends no data to this page, so you cannot act");
+  await waitForText(page, "The box sends no data to this page, so you cannot act");
   assert.ok(await button(page, "Send", 24).isDisabled());
   stage.thaw();
   await page.waitForSelector("body[data-link=live]");

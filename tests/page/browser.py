@@ -13,8 +13,8 @@ CHROMIUM = os.environ.get("CHROMIUM", "/usr/bin/chromium-headless-shell")
 FIND = """(kind, words) => {
   const top = [...document.querySelectorAll("dialog[open]")].at(-1) ?? document;
   const said = (node) => (node?.innerText ?? node?.textContent ?? "").trim();
-  const all = kind === "button" ? [...top.querySelectorAll("button")].filter((each) => (each.getAttribute("aria-label") ?? said(each)) === words)
-    : kind === "field" ? [...top.querySelectorAll("input, select")].filter((each) => [...(each.labels ?? [])].some((label) => said(label) === words) || each.getAttribute("aria-label") === words)
+  const all = kind === "button" ? [...top.querySelectorAll("button")].filter((each) => (each.getAttribute("aria-label") ?? waitForText(each)) === words)
+    : kind === "field" ? [...top.querySelectorAll("input, select")].filter((each) => [...(each.labels ?? [])].some((label) => waitForText(label) === words) || each.getAttribute("aria-label") === words)
     : [...top.querySelectorAll(words)];
   return all.find((each) => each.checkVisibility() && each.getBoundingClientRect().width);
 }"""

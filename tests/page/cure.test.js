@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { retell } from "./retold.js";
-import { axeFindsNothing, openMore, said, watch } from "./watch.js";
+import { axeFindsNothing, openMore, waitForText, watch } from "./watch.js";
 
 const cures = (page) => page.locator("#refusals .cure:visible");
 /** A page whose box names `setting` for each rejection. */
@@ -32,15 +32,15 @@ test("links from a rejected robot name to the robots and their aliases", async (
 test("has no link if the box names no setting, even if its sentence does", async (t) => {
   const { page } = await watch(t, "trouble", { prepare: naming("") });
   await openMore(page);
-  await said(page, "the setting rules.map_bytes");
+  await waitForText(page, "the setting rules.map_bytes");
   assert.equal(await cures(page).count(), 0);
 });
 
 test("shows a viewer no link", async (t) => {
   const prepare = (page) => page.route("**/adit/session", (route) => route.fulfill({ json: { role: "viewer", csrf: "x", first_start: false } }));
   const { page } = await watch(t, "trouble", { prepare });
-  await said(page, "Only an operator can act");
+  await waitForText(page, "Only an operator can act");
   await openMore(page);
-  await said(page, "the setting rules.rewrite_frame_id accepts any frame");
+  await waitForText(page, "the setting rules.rewrite_frame_id accepts any frame");
   assert.equal(await cures(page).count(), 0);
 });

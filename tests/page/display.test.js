@@ -4,7 +4,7 @@ import { until } from "./box.js";
 import { COUNT, withMany } from "./many_reports.js";
 import { retell } from "./retold.js";
 import { kept, spans, withHistory } from "./kept_history.js";
-import { axeFindsNothing, said, showsTheClock, text, watch } from "./watch.js";
+import { axeFindsNothing, waitForText, showsTheClock, text, watch } from "./watch.js";
 
 const SCREENS = [[1280, 720], [1920, 1080], [3840, 2160]];
 
@@ -127,7 +127,7 @@ test("says that the box is lost, and recovers by itself", async (t) => {
   const { stage, page } = await watch(t, "calm", { path: "display" });
   stage.freeze();
   await page.waitForSelector("body[data-link=lost]");
-  await said(page, "The box does not answer");
+  await waitForText(page, "The box does not answer");
   assert.match(await text(page, "#arriving"), /Unknown/);
   stage.thaw();
   await page.waitForSelector("body[data-link=live]");

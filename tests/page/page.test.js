@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { serve } from "./stage.js";
 import { retell } from "./retold.js";
-import { hears, said, settled, showsTheClock, text, toTab, visitor, watch } from "./watch.js";
+import { hears, waitForText, settled, showsTheClock, text, toTab, visitor, watch } from "./watch.js";
 
 test("shows the state of the run, and that every map arrives", async (t) => {
   const began = Date.now(), { page } = await watch(t, "calm");
@@ -89,7 +89,7 @@ test("follows changes, and announces them to screen readers", async (t) => {
   assert.equal(await alert.getAttribute("aria-live"), "assertive");
   assert.match(await alert.textContent(), /^No alarm/);
   stage.play("trouble");
-  await said(page, "Report 8 is in doubt");
+  await waitForText(page, "Report 8 is in doubt");
   assert.match(await text(page, "#arriving"), /3 of 4 arrive.*not ANYmal1; oldest other \d+ s/);
   await page.locator("#robots li[data-level=wait]").filter({ hasText: /ANYmal2 grid \d+ (s|min) behind/ }).and(page.getByTitle(/grid: 247 queued/)).waitFor();  // although a grid was just sent
   assert.match(await text(page, "#sayings"), /ANYmal2 cloud: 429 "Cloud updates too frequent/);
@@ -186,7 +186,7 @@ test("shows the state of each report, and which reports need the operator", asyn
 
 test("inserts text from outside as text", async (t) => {
   const { page } = await watch(t, "hostile");
-  await said(page, "<script>window.pwned=1</script>");
+  await waitForText(page, "<script>window.pwned=1</script>");
   assert.equal(await page.evaluate(() => window.pwned), undefined);
   assert.equal(await page.locator("main img, main script").count(), 0);
   assert.deepEqual(page.complaints, []);
@@ -271,7 +271,7 @@ test("says that a silent box is lost, and recovers by itself", async (t) => {
   const { stage, page } = await watch(t, "calm");
   stage.freeze();
   await page.waitForSelector("body[data-link=lost]");
-  await said(page, "The box does not answer");
+  await waitForText(page, "The box does not answer");
   assert.match(await text(page, "#link"), /Box lost/);
   assert.match(await page.getAttribute('#robots li[data-key="ANYmal2"]', "title"), /^ANYmal2: unknown\n/);
   await page.locator('#robots li[data-key="ANYmal2"][data-level=quiet] .age .text', { hasText: /^1\d s$/ }).waitFor();
@@ -295,5 +295,5 @@ test("says at once that a stopped box is lost, and finds the next one at its add
   t.after(() => next.end());
   await page.clock.resume();
   await page.waitForSelector("body[data-link=live]");
-  await said(page, "Report 8 is in doubt");
+  await waitForText(page, "Report 8 is in doubt");
 });

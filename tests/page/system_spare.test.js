@@ -22,13 +22,13 @@ test("one press puts the box on standby and writes its export to the stick; a fa
   assert.equal(asked(page, "/adit/spare/standby"), 0, "a cancelled action was requested");
   await press("Start standby, export to the stick");
   await yes();
-  await said("The stick is full.");
+  await waitForText("The stick is full.");
   assert.equal(await section.locator(".stick p").getAttribute("data-bad"), "true");
   assert.equal(await section.locator("dd").first().innerText(), "1234 5678 9012 3456");
   await press("Export to the stick");
   const onlyWrites = { hasText: "Leave the stick in.", hasNot: page.getByRole("button", { name: "Export to the stick" }) };
   await page.locator("#spare").filter(onlyWrites).waitFor();  // one at a time
-  await said(`The export is on the stick and was read back: ${STAGED}. You can unplug the stick.`);
+  await waitForText(`The export is on the stick and was read back: ${STAGED}. You can unplug the stick.`);
   assert.equal(await section.locator(".stick p").getAttribute("data-bad"), "false");
   await axeFindsNothing(page, "an export on a stick");
   assert.deepEqual(page.complaints, []);
@@ -41,7 +41,7 @@ test("a box is not put on standby if its stick could not be written", async (t) 
     await route.fulfill({ response: answer, json: { ...view, stick: { ...view.stick, hindrance: "there is no stick in the box" } } });
   });
   await press("Start standby, export to the stick");
-  await said("The box does not start standby: there is no stick in the box.");
+  await waitForText("The box does not start standby: there is no stick in the box.");
   assert.equal(asked(page, "/adit/spare/standby"), 0);
 });
 
@@ -50,9 +50,9 @@ test("an export on the stick is offered by its box and time, and asks for its co
   const when = await page.evaluate(() => new Date(1.75e12).toLocaleString());
   await section.getByRole("button", { name: `Take in from the stick: the box at 10.0.0.7, ${when}` }).waitFor();
   await press("Take in from the stick: zip.adit-spare");
-  await said("The file is not an export from Adit.");
+  await waitForText("The file is not an export from Adit.");
   await press("Take in from the stick: the box at 10.0.0.7");
-  await said("An export was taken in.");
+  await waitForText("An export was taken in.");
   await section.getByLabel("Code of the export").waitFor();
   assert.equal(await section.getByRole("button", { name: /from the stick|to the stick/ }).count(), 0);
   await axeFindsNothing(page, "an export from a stick");
@@ -64,7 +64,7 @@ test("an export on the stick is offered by its box and time, and asks for its co
 test("repeated presses count once until the page shows the first one's result", async (t) => {
   const { page, section, said } = await spareOf(t);
   const count = await pressThrice(page, /\/adit\/spare/, section.getByRole("button", { name: "Take in from the stick: zip.adit-spare" }));
-  await said("The file is not an export from Adit.");
+  await waitForText("The file is not an export from Adit.");
   assert.deepEqual(count, { presses: 3, posts: 1 });
   assert.deepEqual(page.complaints, []);
 });

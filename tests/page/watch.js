@@ -35,7 +35,7 @@ export async function visitor(t, url, options = {}, prepare = () => {}) {
 }
 
 export const text = (page, selector) => page.textContent(selector);
-export const said = (page, words) => page.waitForFunction((words) => document.body.innerText.includes(words), words);
+export const waitForText = (page, words) => page.waitForFunction((words) => document.body.innerText.includes(words), words);
 
 /** Fails unless the clock is the scene's: 12:34 at first, plus at most the time since `began`. */
 export async function showsTheClock(page, began) {

@@ -38,7 +38,7 @@ class Watching(Running):
         self.connect("lit 0110")
         self.shows("0110")
         self.assertIsNone(self.panel.poll())
-        self.assertLessEqual(self.said().count("unknown message from aditd"), 9, "once for each that had told something before")
+        self.assertLessEqual(self.output().count("unknown message from aditd"), 9, "once for each that had told something before")
 
     def test_flood_blocks_neither_lights_nor_the_next_connection(self):
         """Frames faster than the lights can follow, and then silence."""
@@ -60,8 +60,8 @@ class Watching(Running):
         client = self.connect("lit 1110")
         self.shows("1110")
         client.send(b'panel {"name":"s","title":"S","panel":{"chip":"no-such-chip","health":"H","button":"B"}}')
-        self.wait_until(lambda: "cannot set the lights, retrying: panel: chip no-such-chip: No such file" in self.said(), "to be told")
-        self.wait_until(lambda: "cannot read the button, retrying: panel: chip no-such-chip" in self.said(), "to be told of the button")
+        self.wait_until(lambda: "cannot set the lights, retrying: panel: chip no-such-chip: No such file" in self.output(), "to be told")
+        self.wait_until(lambda: "cannot read the button, retrying: panel: chip no-such-chip" in self.output(), "to be told of the button")
         client.send(b"lit 0110")
         self.shows("0110")
         self.assertFalse(self.button.exists(), "no other takes a real one's place")
@@ -72,19 +72,19 @@ class Starting(Running):
         board = self.folder / "board.json"
         board.write_text('{"name": "b", "title": "B", "panel": {"chip": "no-such-chip", "health": "H"}}')
         self.begin_panel("--board", board)
-        self.wait_until(lambda: "no-such-chip" in self.said(), "the board's chip to be looked for")
+        self.wait_until(lambda: "no-such-chip" in self.output(), "the board's chip to be looked for")
         client = self.enterContext(socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET))
         client.connect(str(self.socket))
         client.send(b'panel {"name":"s","title":"S","panel":{"chip":"another-chip","health":"H"}}')
         client.send(b"lit 1000")
         self.shows("1000")
-        self.assertNotIn("another-chip", self.said())
+        self.assertNotIn("another-chip", self.output())
 
     def test_invalid_board_is_reported(self):
         board = self.folder / "board.json"
         board.write_text('{"name": "b", "title": "B", "panle": {}}')
         self.begin_panel("--board", board)
-        self.wait_until(lambda: "board.json: panle: no such key; did you mean panel?" in self.said(), "the key to be told")
+        self.wait_until(lambda: "board.json: panle: no such key; did you mean panel?" in self.output(), "the key to be told")
 
     def test_failed_start_is_explained(self):
         for words, code, why in (((), 1, "--socket is missing"), (("--socket", "/nowhere/socket"), 1, "/nowhere/socket: No such file"),
@@ -104,7 +104,7 @@ class WithAditd(Running):
 
     def test_aditd_starts_first(self):
         self.begin_aditd()
-        self.wait_until(lambda: "listening address" in self.said(), "aditd to start")
+        self.wait_until(lambda: "listening address" in self.output(), "aditd to start")
         self.begin_panel()
         self.is_at_work()
 
@@ -168,19 +168,19 @@ class WithAditd(Running):
         self.begin_aditd()
         self.is_at_work()
         with self.broken():
-            self.wait_until(lambda: "cannot set the panel lights" in self.said(), "aditd to say so")
+            self.wait_until(lambda: "cannot set the panel lights" in self.output(), "aditd to say so")
         self.is_at_work()
-        self.wait_until(lambda: "panel lights work again" in self.said(), "aditd to say so")
+        self.wait_until(lambda: "panel lights work again" in self.output(), "aditd to say so")
 
     def test_a_press_reaches_aditd_through_any_panel(self):
         self.begin_aditd()
         for _ in range(2):
             panel = self.begin_panel()
             self.is_at_work()
-            before = self.said().count("the button was pressed")
+            before = self.output().count("the button was pressed")
             for word in ("press", "release"):
                 self.press(word)
                 time.sleep(0.2)  # somebody's finger
-            self.wait_until(lambda: self.said().count("the button was pressed") > before, "aditd to be told")
+            self.wait_until(lambda: self.output().count("the button was pressed") > before, "aditd to be told")
             panel.kill()
             panel.wait(PATIENCE)

@@ -47,10 +47,10 @@ class Running(unittest.TestCase):
         try:
             patience.wait_until(condition, what, within)
         except AssertionError as error:
-            self.fail(f"{error}:\n{self.said()}")
+            self.fail(f"{error}:\n{self.output()}")
         return time.monotonic() - began
 
-    def said(self):
+    def output(self):
         return self.log.read_text(errors="replace")
 
     def lit(self):

@@ -22,7 +22,7 @@ class Change(unittest.TestCase):
 
     def ends(self, within=50.0):
         wait_until(lambda: self.box.process.poll() is not None, "adit-network to end", within)
-        self.assertEqual(self.box.process.returncode, 0, self.box.said())
+        self.assertEqual(self.box.process.returncode, 0, self.box.output())
 
     def has(self, address, interface="team0", within=50.0):
         wait_until(lambda: self.box.addresses(interface) == [address], f"{interface} to have {address}", within)

@@ -166,7 +166,7 @@ class AditNetwork:
         status = self.status()
         return status and status["pending"]
 
-    def said(self):
+    def output(self):
         return (self.folder / "adit-network.log").read_text()
 
     def addresses(self, interface):

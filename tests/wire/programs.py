@@ -63,9 +63,9 @@ class Program:
         except subprocess.TimeoutExpired:
             self.process.kill()
             self.process.wait()
-            raise AssertionError(f"did not stop within {within:g} s:\n{self.said()}") from None
+            raise AssertionError(f"did not stop within {within:g} s:\n{self.output()}") from None
 
-    def said(self):
+    def output(self):
         return pathlib.Path(self.log).read_text(errors="replace")
 
 
@@ -82,7 +82,7 @@ class CommandPost(Program):
                    "--artifacts", ARTIFACTS, "--transcript", self.transcript, *options]
         self.network = network
         super().__init__(network, network.post, folder / name / "rehearsal.log", command)
-        wait_until(lambda: "adit-rehearsal: scoring" in self.said(), "adit-rehearsal to listen")
+        wait_until(lambda: "adit-rehearsal: scoring" in self.output(), "adit-rehearsal to listen")
 
     def control(self, request, body=None):
         """Sends a request to the control port: control("POST /new-run", {"run": "2"})."""
@@ -222,7 +222,7 @@ class Box(Program, Page):
 
     def _answers(self):
         if self.process.poll() is not None:
-            raise AssertionError(f"aditd ended with {self.process.returncode}:\n{self.said()}")
+            raise AssertionError(f"aditd ended with {self.process.returncode}:\n{self.output()}")
         try:
             socket.create_connection((self.network.box_address, PORT), 0.2).close()
         except OSError:

@@ -45,8 +45,8 @@ class AddressWatch(unittest.TestCase):
         self.assertEqual(list(self.watch.taken()), [("darpa0", hosts.BOX_DARPA)])
         other.leave()
         self.is_free(hosts.BOX_DARPA)
-        self.assertEqual(self.watch.said().count("another machine uses the box's address"), 1, self.watch.said())
-        self.assertEqual(self.watch.said().count("no other machine uses"), 1, self.watch.said())
+        self.assertEqual(self.watch.output().count("another machine uses the box's address"), 1, self.watch.output())
+        self.assertEqual(self.watch.output().count("no other machine uses"), 1, self.watch.output())
 
     def test_conflict_after_a_cable_is_plugged_is_found(self):
         wait_until(lambda: self.asked().count(SECOND) >= 3, "the first questions to be over")

@@ -50,7 +50,7 @@ class Run(programs.Program):
 
     def ended(self):
         """Its exit status and its output."""
-        return self.process.wait(120), self.said()
+        return self.process.wait(120), self.output()
 
 
 class Clients(unittest.TestCase):

@@ -172,4 +172,4 @@ class Step(unittest.TestCase):
         self.assertEqual(self.stage.box.ask("GET /adit/session", session, token=None)[1]["role"], "operator")
 
     def code(self):
-        return self.stage.box.said().split("code=")[1].split()[0].strip('"')
+        return self.stage.box.output().split("code=")[1].split()[0].strip('"')

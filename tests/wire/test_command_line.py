@@ -167,7 +167,7 @@ class Letters(Case):
                            "orientation": {"x": 0, "y": 0, "z": 0, "w": 1}}]})
             self.assertEqual(status, 422)
             self.assertIn(name, adit(stage, "status").stdout)
-            wait_until(lambda: name in stage.box.said(), "the log to have it")
+            wait_until(lambda: name in stage.box.output(), "the log to have it")
             terminal = self.at_a_terminal(stage, "status", env={**UTF8, "LC_ALL": "C"})
             terminal.end()
             self.assertIn("H\\xc3\\xb6hle", terminal.seen, "a terminal without UTF-8 gets ASCII")

@@ -85,8 +85,8 @@ class Crowd(unittest.TestCase):
         self.assertGreaterEqual(self.metric(stage, 'adit_connections_ended_total{why="gave_way"}'), SOCKETS)
         self.assertEqual(self.metric(stage, 'adit_connections_ended_total{why="no_room"}'), 0)
         self.assertIn("unauthenticated", [alarm["id"] for alarm in stage.box.ask("GET /adit/run")[1]["alarms"]])
-        wait_until(lambda: "too many unauthenticated connections" in stage.box.said(), "a line of the log")
-        self.assertLessEqual(stage.box.said().count("too many unauthenticated connections"), 2, "one a minute")
+        wait_until(lambda: "too many unauthenticated connections" in stage.box.output(), "a line of the log")
+        self.assertLessEqual(stage.box.output().count("too many unauthenticated connections"), 2, "one a minute")
 
     def test_address_with_too_many_requests_is_told_so(self):
         stage = self.stage(team__connections_per_address=4)

@@ -60,7 +60,7 @@ class Disk(unittest.TestCase):
             self.assertEqual(stage.box.stop(), 0)
             shutil.rmtree(stage.box.state / "ledger")
             stage.restart_box()
-            self.assertIn("may be lost from the ledger", began(stage).box.said())
+            self.assertIn("may be lost from the ledger", began(stage).box.output())
             self.assertIn("ledger_damaged", stage.box.alarms())
             self.assertEqual(submit(stage).status_code, 503, "it may be the same as a report that is lost")
             self.assertEqual([(each["number"], each["state"]) for each in stage.box.reports()], [(1000, "in_doubt"), (1001, "held")])
@@ -99,11 +99,11 @@ class Disk(unittest.TestCase):
             with open(log, "r+b") as file:
                 file.seek(8192)
                 file.write(bytes(8192))  # both copies of the first record
-            filler, before = Filler(stage.box.state), len(stage.box.said())
+            filler, before = Filler(stage.box.state), len(stage.box.output())
             stage.restart_box()
             self.assertEqual([submit(began(stage), another(1)).status_code for _ in range(5)], [503] * 5)
             self.assertEqual(sorted(each.name for each in ledger.iterdir()), ["damaged-1", log.name])
-            self.assertEqual(stage.box.said()[before:].count("the ledger cannot be written"), 1)
+            self.assertEqual(stage.box.output()[before:].count("the ledger cannot be written"), 1)
             filler.make_room()
             wait_until(lambda: submit(stage, another(1)).status_code == 201, "room to be found")
             self.assertEqual(stage.box.on_disk(), ["answered", "answered"])

@@ -189,8 +189,8 @@ class Node(unittest.TestCase):
             self.start(stage, "publisher", *python, "-c", made)
             post = stage.post
             for uri, count in (("/map/update", 2), ("/state/update", 1), ("/markers/update", 1)):
-                wait_until(lambda uri=uri, count=count: len(post.requests(uri)) >= count, f"{uri}: {node.said()}", 60)
-            wait_until(post.recorded, f"the report: {node.said()}", 60)
+                wait_until(lambda uri=uri, count=count: len(post.requests(uri)) >= count, f"{uri}: {node.output()}", 60)
+            wait_until(post.recorded, f"the report: {node.output()}", 60)
             self.assertEqual(post.violations(), [])
             self.assertEqual([(made["x"], made["y"], made["z"], made["type"]) for made in post.recorded()],
                              [(1.5, -2.0, 0.0, "Backpack")])

@@ -55,7 +55,7 @@ class Appliance(unittest.TestCase):
         self.confirmed(self.box.numbers(self.network.box_address, self.post_address))
         programs.secrets_folder(self.folder / "secrets")
         self.box.start("--start")
-        self.assertEqual(self.box.process.wait(programs.patient(5)), 0, self.box.said())
+        self.assertEqual(self.box.process.wait(programs.patient(5)), 0, self.box.output())
         self.networkd = networkd.Networkd(self.network, files)
         self.addCleanup(self.networkd.stop)
         wait_until(lambda: self.box.addresses("team0") and (self.box.addresses("darpa0") or not self.post_address),

@@ -24,7 +24,7 @@ class WholeBox(Change):
         self.box = networkd.AditNetwork(self.network, self.folder)
         self.addCleanup(self.box.stop)
         self.box.wanted = self.stage.folder / "state"
-        self.assertEqual(self.box.run(), 0, self.box.said())
+        self.assertEqual(self.box.run(), 0, self.box.output())
         self.confirm_first()
         self.stage.box.stop()
         self.stage.restart_box()

@@ -18,7 +18,7 @@ TestStep bad(std::string name, std::string said, std::string advice) {
 }
 
 std::string answered(int status, const std::string& body) {
-  return icd::sentence("the answer is ", status, ": ", dispatch::said(status, body));
+  return icd::sentence("the answer is ", status, ": ", dispatch::answer_text(status, body));
 }
 
 /// An error about the empty request shows that the token passed.

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "api/self_test.hpp"
-#include "dispatch/said.hpp"
+#include "dispatch/answer_text.hpp"
 #include "network/messages.hpp"
 #include "settings/settings.hpp"
 #include "uplink/connection.hpp"

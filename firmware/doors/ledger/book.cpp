@@ -48,7 +48,7 @@ bool Book::apply(std::uint8_t kind, std::string_view body) {
   for (const Steps::Entry& entry : steps->reports) {
     const std::int64_t number = report_in(entry.report)->number;
     Kept& kept = reports_[number];
-    kept.said = entry.report;
+    kept.record = entry.report;
     kept.history += entry.history;
     highest_ = std::max(highest_, number);
   }
@@ -60,10 +60,10 @@ std::vector<std::pair<std::uint8_t, std::string>> Book::records() const {
   auto records = unknown_;
   for (const auto& [number, kept] : reports_) {
     records.emplace_back(
-        kSteps, said(Steps{.highest = highest_, .reports = {{kept.said, kept.history}}, .runs = {}}));
+        kSteps, encoded(Steps{.highest = highest_, .reports = {{kept.record, kept.history}}, .runs = {}}));
   }
   for (const auto& [number, run] : runs_)
-    records.emplace_back(kSteps, said(Steps{.highest = highest_, .reports = {}, .runs = {run}}));
+    records.emplace_back(kSteps, encoded(Steps{.highest = highest_, .reports = {}, .runs = {run}}));
   return records;
 }
 
@@ -75,30 +75,30 @@ std::string Book::record_of(const Reports& reports, const Runs& runs) const {
   Steps all{.highest = highest_, .reports = {}, .runs = {}};
   for (const auto& [number, kept] : reports) {
     all.highest = std::max(all.highest, number);
-    all.reports.push_back({kept.said, kept.history});
+    all.reports.push_back({kept.record, kept.history});
   }
   for (const auto& [number, run] : runs) all.runs.push_back(run);
-  return said(all);
+  return encoded(all);
 }
 
 store::Result<std::string> Book::record(std::span<const Report> steps, const Run* run) const {
   Reports written;
   for (const Report& step : steps) {
     Kept& kept = written[step.number];
-    if (const auto known = reports_.find(step.number); kept.said.empty() && known != reports_.end())
-      kept.said = known->second.said;
+    if (const auto known = reports_.find(step.number); kept.record.empty() && known != reports_.end())
+      kept.record = known->second.record;
     if (step.number < 1 || !is_number(step))
       return std::unexpected(Error{.what = doing(step.number) + ": a value is not a number"});
-    if (!kept.said.empty() && !is_same(*report_in(kept.said), step))
+    if (!kept.record.empty() && !is_same(*report_in(kept.record), step))
       return std::unexpected(Error{.what = doing(step.number) + ": another report has this number"});
-    kept.said = said(step, more_of_report(kept.said));
+    kept.record = encoded(step, more_of_report(kept.record));
     kept.history += step_of(step);
   }
   if (run != nullptr && (run->number < 1 || !is_number(run->last)))
     return std::unexpected(
         Error{.what = "recording run " + std::to_string(run->number) + ": a value is not a number"});
   Runs runs;
-  if (run != nullptr) runs[run->number] = said_again(*run);
+  if (run != nullptr) runs[run->number] = encoded_again(*run);
   return record_of(written, runs);
 }
 
@@ -112,29 +112,29 @@ store::Result<std::string> Book::record(const dispatch::TakeOver& taken, const B
     Kept& kept = reports[each.report.number];
     if (before != from.end()) kept = before->second;
     if (!is_new) kept.history.clear();
-    kept.said = said(each.report, more_of_report(kept.said));
+    kept.record = encoded(each.report, more_of_report(kept.record));
     if (each.has_stepped) kept.history += step_of(each.report);
   }
-  for (const Run& run : taken.runs) runs[run.number] = said_again(run);
+  for (const Run& run : taken.runs) runs[run.number] = encoded_again(run);
   return record_of(reports, runs);
 }
 
-std::string Book::said_again(const Run& run) const {
+std::string Book::encoded_again(const Run& run) const {
   const auto known = runs_.find(run.number);
-  return said(run, known == runs_.end() ? std::string_view() : more_of_run(known->second));
+  return encoded(run, known == runs_.end() ? std::string_view() : more_of_run(known->second));
 }
 
 std::vector<Report> Book::reports() const {
   std::vector<Report> all;
   all.reserve(reports_.size());
-  for (const auto& [number, kept] : reports_) all.push_back(*report_in(kept.said));
+  for (const auto& [number, kept] : reports_) all.push_back(*report_in(kept.record));
   return all;
 }
 
 std::vector<Run> Book::runs() const {
   std::vector<Run> all;
   all.reserve(runs_.size());
-  for (const auto& [number, said] : runs_) all.push_back(*run_in(said));
+  for (const auto& [number, record] : runs_) all.push_back(*run_in(record));
   return all;
 }
 

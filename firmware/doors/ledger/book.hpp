@@ -20,7 +20,7 @@ namespace adit::ledger {
 class Book {
  public:
   struct Kept {
-    std::string said, history;  // as in records (record.hpp)
+    std::string record, history;  // as in records (record.hpp)
   };
 
   /// False: the record is invalid and has no effect.
@@ -52,7 +52,7 @@ class Book {
   /// One record of these reports and runs.
   std::string record_of(const Reports& reports, const Runs& runs) const;
   /// With members of a later version that the run has here.
-  std::string said_again(const dispatch::Run& run) const;
+  std::string encoded_again(const dispatch::Run& run) const;
   void put(const dispatch::Report& report);
   void lose(std::int64_t last, const std::string& note, double now);
 

@@ -36,9 +36,9 @@ Value dumped(const Steps::Entry& entry) {
 void put(Value::Object& line, const Steps& steps) {
   Value::Array reports, runs;
   for (const Steps::Entry& entry : steps.reports) reports.push_back(dumped(entry));
-  for (const std::string_view said : steps.runs) {
-    Value run = shown(*run_in(said));
-    put_more(run, more_of_run(said));
+  for (const std::string_view record : steps.runs) {
+    Value run = shown(*run_in(record));
+    put_more(run, more_of_run(record));
     runs.push_back(std::move(run));
   }
   line.emplace_back("highest", json(steps.highest));

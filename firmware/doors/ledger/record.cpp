@@ -136,8 +136,8 @@ std::string put(const Of& what, std::string_view more) {
 }
 
 template <class Of>
-std::optional<Of> take(std::string_view said) {
-  Take take(said);
+std::optional<Of> take(std::string_view record) {
+  Take take(record);
   Of what;
   members(take, what);
   if (!take.ok() || what.number < 1) return std::nullopt;
@@ -159,8 +159,8 @@ codec::Value show(const Of& what) {
 }
 
 template <class Of>
-std::string_view left_behind(std::string_view said) {
-  Take take(said);
+std::string_view left_behind(std::string_view record) {
+  Take take(record);
   Of what;
   members(take, what);
   return take.left();
@@ -168,28 +168,28 @@ std::string_view left_behind(std::string_view said) {
 
 }  // namespace
 
-std::string said(const Report& report, std::string_view more) {
+std::string encoded(const Report& report, std::string_view more) {
   return put(report, more);
 }
 
-std::string said(const Run& run, std::string_view more) {
+std::string encoded(const Run& run, std::string_view more) {
   return put(run, more);
 }
 
-std::optional<Report> report_in(std::string_view said) {
-  return take<Report>(said);
+std::optional<Report> report_in(std::string_view record) {
+  return take<Report>(record);
 }
 
-std::optional<Run> run_in(std::string_view said) {
-  return take<Run>(said);
+std::optional<Run> run_in(std::string_view record) {
+  return take<Run>(record);
 }
 
-std::string_view more_of_report(std::string_view said) {
-  return left_behind<Report>(said);
+std::string_view more_of_report(std::string_view record) {
+  return left_behind<Report>(record);
 }
 
-std::string_view more_of_run(std::string_view said) {
-  return left_behind<Run>(said);
+std::string_view more_of_run(std::string_view record) {
+  return left_behind<Run>(record);
 }
 
 codec::Value shown(const Report& report) {
@@ -200,31 +200,31 @@ codec::Value shown(const Run& run) {
   return show(run);
 }
 
-std::string said(const Step& step) {
+std::string encoded(const Step& step) {
   return store::bytes_of(step);
 }
 
 std::string step_of(const Report& report) {
-  return said(Step{report.changed, std::string(dispatch::name_of(report.state)), report.note});
+  return encoded(Step{report.changed, std::string(dispatch::name_of(report.state)), report.note});
 }
 
-std::optional<std::vector<Step>> steps_in(std::string_view said) {
+std::optional<std::vector<Step>> steps_in(std::string_view record) {
   std::vector<Step> steps;
-  store::Reader reader(said);
+  store::Reader reader(record);
   while (reader.ok() && !reader.at_end()) steps.push_back(reader.read<Step>());
   return reader.ok() ? std::optional(std::move(steps)) : std::nullopt;
 }
 
-std::string said(const Steps& steps) {
+std::string encoded(const Steps& steps) {
   return store::bytes_of(steps);
 }
 
-std::optional<Steps> steps_record_in(std::string_view said) {
+std::optional<Steps> steps_record_in(std::string_view record) {
   Steps steps;
   const auto is_entry = [](const Steps::Entry& entry) {
     return report_in(entry.report) && steps_in(entry.history);
   };
-  const bool is_whole = store::read(said, steps) && std::ranges::all_of(steps.reports, is_entry) &&
+  const bool is_whole = store::read(record, steps) && std::ranges::all_of(steps.reports, is_entry) &&
                         std::ranges::all_of(steps.runs, [](std::string_view run) { return !!run_in(run); });
   return is_whole ? std::optional(std::move(steps)) : std::nullopt;
 }

@@ -42,12 +42,12 @@ std::string Book::salvage(double now, std::int64_t expected, bool end_is_lost) {
   std::int64_t last_run = runs_.empty() ? 1 : runs_.rbegin()->first;
   for (const Report& report : all) last_run = std::max(last_run, report.run);
   if (!runs_.contains(last_run)) {
-    runs_[last_run] = said(Run{.number = last_run, .began = now, .why = "the ledger was damaged"});
+    runs_[last_run] = encoded(Run{.number = last_run, .began = now, .why = "the ledger was damaged"});
   }
   for (auto& [number, kept] : runs_) {
     Run run = *run_in(kept);
     if (run.unreliable.empty()) run.unreliable = kDamaged;
-    kept = said(run, more_of_run(kept));
+    kept = encoded(run, more_of_run(kept));
   }
   highest_ = std::max(highest_, expected);
   std::string missing;
@@ -73,7 +73,7 @@ std::string Book::salvage(double now, std::int64_t expected, bool end_is_lost) {
 
 void Book::put(const Report& report) {
   Kept& kept = reports_[report.number];
-  kept.said = said(report, more_of_report(kept.said));
+  kept.record = encoded(report, more_of_report(kept.record));
   kept.history += step_of(report);
   highest_ = std::max(highest_, report.number);
 }

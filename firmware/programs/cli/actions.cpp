@@ -69,7 +69,7 @@ Result<Outcome> decide_on(const Call& call, std::int64_t number) {
       told<DecidedReport>(call.adit, post(call.adit, {.target = target + "/" + verb, .check = check})));
   const char* const done = std::ranges::find(kDecisions, verb, &Decision::verb)->done;
   const std::string moved = is_new ? std::to_string(answer.row.report) : "";
-  return said(call, answer.json, icd::sentence("report ", number, done, moved, "\n"));
+  return printed(call, answer.json, icd::sentence("report ", number, done, moved, "\n"));
 }
 
 }  // namespace
@@ -110,16 +110,16 @@ Result<Outcome> correct_report(const Call& call) {
       post(call.adit, {.target = target + "/correct",
                        .check = icd::sentence("adit reports show ", number),
                        .body = codec::write_json({codec::Value::Object(body.begin(), body.end())})})));
-  return said(call, answer.json,
-              icd::sentence("report ", number, " is corrected as report ", answer.row.report, "\n"));
+  return printed(call, answer.json,
+                 icd::sentence("report ", number, " is corrected as report ", answer.row.report, "\n"));
 }
 
 Result<Outcome> begin_run(const Call& call) {
   const auto answer =
       ADIT_TRY(told<BegunRun>(call.adit, post(call.adit, {.target = "/adit/runs", .check = "adit reports"})));
-  return said(call, answer.json,
-              icd::sentence("run ", answer.row.run,
-                            " begins; unsent reports of earlier runs are held: see adit reports\n"));
+  return printed(call, answer.json,
+                 icd::sentence("run ", answer.row.run,
+                               " begins; unsent reports of earlier runs are held: see adit reports\n"));
 }
 
 Result<Outcome> identify(const Call& call) {

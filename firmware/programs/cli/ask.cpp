@@ -123,13 +123,13 @@ Result<codec::Value> json_in(const Adit& adit, std::string_view body) {
   return *std::move(value);
 }
 
-Outcome said(const Call& call, const std::string& json, const std::string& text, Exit exit) {
+Outcome printed(const Call& call, const std::string& json, const std::string& text, Exit exit) {
   return {exit, call.options.json ? json + '\n' : text, ""};
 }
 
 Result<Outcome> act(const Call& call, Post action, const std::string& done) {
   const auto answer = ADIT_TRY(post(call.adit, std::move(action)));
-  return said(call, answer, done);
+  return printed(call, answer, done);
 }
 
 Outcome act_on_each(const Call& call, const std::function<Result<Outcome>(std::int64_t number)>& act_on) {

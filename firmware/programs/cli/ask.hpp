@@ -107,7 +107,7 @@ Result<Told<Row>> fetch_until(const Adit& adit, const std::string& target, const
 }
 
 /// With --json `json` (without its newline), else `text`.
-Outcome said(const Call& call, const std::string& json, const std::string& text, Exit exit = Exit::Fine);
+Outcome printed(const Call& call, const std::string& json, const std::string& text, Exit exit = Exit::Fine);
 
 /// Shows a row of Adit's. The exit status is 1 unless `is_fine`.
 template <class Row>
@@ -115,8 +115,8 @@ Result<Outcome> show(
     const Call& call, const std::string& target, std::string (*text_of)(const Row& row, bool colour),
     bool (*is_fine)(const Row& row) = [](const Row& /*row*/) { return true; }) {
   const auto answer = ADIT_TRY(fetch<Row>(call.adit, target));
-  return said(call, answer.json, text_of(answer.row, call.console.colour),
-              is_fine(answer.row) ? Exit::Fine : Exit::Attention);
+  return printed(call, answer.json, text_of(answer.row, call.console.colour),
+                 is_fine(answer.row) ? Exit::Fine : Exit::Attention);
 }
 
 /// Executes an action, and prints Adit's JSON or `done`.

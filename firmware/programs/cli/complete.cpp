@@ -48,7 +48,7 @@ Result<Outcome> listed(const Call& call, const char* target,
                        const std::function<std::vector<Candidate>(const Row&)>& candidates_of) {
   const auto told = ADIT_TRY(fetch<Row>(call.adit, target));
   const auto all = candidates_of(told.row);
-  return said(call, json_of(all), lines(all));
+  return printed(call, json_of(all), lines(all));
 }
 
 }  // namespace
@@ -83,7 +83,7 @@ Result<Outcome> complete_courses(const Call& call) {
   all.reserve(settings.courses.size());
   for (const settings::Course& course : settings.courses)
     all.push_back({course.name, course.scoring.address});
-  return said(call, json_of(all), lines(all));
+  return printed(call, json_of(all), lines(all));
 }
 
 Result<Outcome> complete_runs(const Call& call) {

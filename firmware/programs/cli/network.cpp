@@ -62,11 +62,11 @@ Result<Outcome> decide_on_network(const Call& call) {
   const auto told = fetch_until<api::NetworkView>(call.adit, "/adit/network", kConfirming,
                                                   [](const api::NetworkView& view) { return !view.pending; });
   // After a revert, the box may no longer have the address that was asked.
-  if (!told && !confirms) return said(call, "{}", "the box is returning to the old addresses\n");
+  if (!told && !confirms) return printed(call, "{}", "the box is returning to the old addresses\n");
   if (!told) return std::unexpected(told.error());
   const api::NetworkView& view = told->row;
   const bool done = view.last == (confirms ? "confirmed" : "reverted");
-  return said(
+  return printed(
       call, told->json,
       line("the change is ", view.last, done || view.last_why.empty() ? "" : ": ", done ? "" : view.last_why),
       done ? Exit::Fine : Exit::Attention);

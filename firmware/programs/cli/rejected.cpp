@@ -38,8 +38,8 @@ Result<Outcome> list_rejected(const Call& call) {
   const api::RunView view = ADIT_TRY(fetch<api::RunView>(call.adit, "/adit/run")).row;
   const bool waits =
       std::ranges::any_of(view.rejected, [](const api::RejectedRow& row) { return !row.replaced; });
-  return said(call, codec::to_json(view.rejected), table_of(view, call.console.colour),
-              waits ? Exit::Attention : Exit::Fine);
+  return printed(call, codec::to_json(view.rejected), table_of(view, call.console.colour),
+                 waits ? Exit::Attention : Exit::Fine);
 }
 
 Result<Outcome> decide_on_rejected(const Call& call) {

@@ -29,7 +29,8 @@ Result<Outcome> list_reports(const Call& call) {
   const auto all = static_cast<std::int64_t>(rows.size()), shown = std::min(all, options.last.value_or(all));
   rows.resize(static_cast<std::size_t>(shown));
   const OmittedReports rest{.older = static_cast<std::size_t>(all - shown), .of_other_runs = others};
-  return said(call, codec::to_json(rows), reports_text(rows, rest, run.row.now, call.console.colour), exit);
+  return printed(call, codec::to_json(rows), reports_text(rows, rest, run.row.now, call.console.colour),
+                 exit);
 }
 
 Result<Outcome> show_report(const Call& call) {
@@ -41,7 +42,7 @@ Result<Outcome> show_report(const Call& call) {
 Result<Outcome> export_reports(const Call& call) {
   const bool json = call.options.json;
   const auto text = ADIT_TRY(get(call.adit, json ? "/adit/reports" : "/adit/reports.csv"));
-  return said(call, text, text);
+  return printed(call, text, text);
 }
 
 }  // namespace adit::cli

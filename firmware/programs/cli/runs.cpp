@@ -118,7 +118,7 @@ Result<void> confirm_deletion(const Call& call, const std::string& path) {
 
 Result<Outcome> show_present_run(const Call& call) {
   const api::RunView view = ADIT_TRY(fetch<api::RunView>(call.adit, "/adit/run")).row;
-  return said(call, json_of(view), text_of(view, call.console.colour));
+  return printed(call, json_of(view), text_of(view, call.console.colour));
 }
 
 Result<Outcome> list_runs(const Call& call) {
@@ -139,7 +139,7 @@ Result<Outcome> print_run(const Call& call) {
   if (!file || !(file << html).flush()) return failed(to + ": cannot be written");
   const codec::Value json{
       codec::Value::Object{{"key", {key}}, {"file", {to}}, {"bytes", {std::uint64_t{html.size()}}}}};
-  return said(call, codec::write_json(json), line("wrote the report of run ", key, " to ", to));
+  return printed(call, codec::write_json(json), line("wrote the report of run ", key, " to ", to));
 }
 
 Result<Outcome> delete_run(const Call& call) {

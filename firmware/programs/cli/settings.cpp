@@ -101,7 +101,7 @@ Result<Outcome> apply(const Call& call, const api::SetupView& now, const Value& 
     return Outcome{Exit::Attention, "", errors_text(errors)};
   const auto done =
       ADIT_TRY(change(call.adit, kSettings, {{"settings", settings}, {"base", {now.tag}}}, kSee));
-  return said(call, done.json, text_of(checked.row.changes, call.console.colour));
+  return printed(call, done.json, text_of(checked.row.changes, call.console.colour));
 }
 
 /// "" stands for the endpoints of command_post.
@@ -126,7 +126,7 @@ Result<Outcome> list_courses(const Call& call) {
   const Value* const courses = value_at(all, "courses");
   const Value::Object listed{{"course", {settings.command_post.course}},
                              {"courses", courses == nullptr ? Value{} : *courses}};
-  return said(call, codec::write_json({listed}), courses_text(settings, call.console.colour));
+  return printed(call, codec::write_json({listed}), courses_text(settings, call.console.colour));
 }
 
 }  // namespace
@@ -142,10 +142,10 @@ Result<Outcome> show_settings(const Call& call) {
   const auto setup = ADIT_TRY(fetch<api::SetupView>(call.adit, kSettings));
   if (const std::string key = call.options.argument(); !key.empty()) {
     const auto keys = ADIT_TRY(keys_named(setup.row, key));
-    return said(call, codec::write_json(json_of(keys)), text_of(keys, colour));
+    return printed(call, codec::write_json(json_of(keys)), text_of(keys, colour));
   }
   const auto settings = ADIT_TRY(settings_in(setup.row));
-  return said(call, setup.json, text_of(setup.row, settings, colour));
+  return printed(call, setup.json, text_of(setup.row, settings, colour));
 }
 
 Result<Outcome> check_settings(const Call& call) {
@@ -153,8 +153,8 @@ Result<Outcome> check_settings(const Call& call) {
   const auto checked = ADIT_TRY(ask_check(call.adit, settings));
   const auto& [errors, changes] = checked.row;
   if (!errors.empty() && !call.options.json) return Outcome{Exit::Attention, "", errors_text(errors)};
-  return said(call, checked.json, text_of(changes, call.console.colour),
-              errors.empty() ? Exit::Fine : Exit::Attention);
+  return printed(call, checked.json, text_of(changes, call.console.colour),
+                 errors.empty() ? Exit::Fine : Exit::Attention);
 }
 
 Result<Outcome> apply_settings(const Call& call) {
@@ -187,7 +187,7 @@ Result<Outcome> course(const Call& call) {
   const auto done = ADIT_TRY(change(call.adit, "/adit/course", {{"name", {name}}}, "adit course"));
   const std::string used = name.empty() ? "no course is in use: the endpoints are those of command_post"
                                         : "course " + name + " is in use";
-  return said(call, done.json, line(used) + warnings_text(done.row.warnings, call.console.colour));
+  return printed(call, done.json, line(used) + warnings_text(done.row.warnings, call.console.colour));
 }
 
 }  // namespace adit::cli

@@ -96,10 +96,10 @@ Result<api::StickRow> stick_of(const Adit& adit) {
 
 /// `where`: place of the export.
 Outcome on_standby(const Call& call, const SpareView& view, const std::string& where) {
-  return said(call, codec::to_json(view),
-              line("This box is on standby. Its export is ", where) +
-                  line("Code of its export: ", view.code) +
-                  line("Unplug this box before the spare takes over."));
+  return printed(call, codec::to_json(view),
+                 line("This box is on standby. Its export is ", where) +
+                     line("Code of its export: ", view.code) +
+                     line("Unplug this box before the spare takes over."));
 }
 
 Result<Outcome> write_to_stick(const Call& call) {
@@ -187,7 +187,7 @@ Result<Outcome> take_spare(const Call& call) {
                    "Is that box unplugged, and should this box take over?"));
   ADIT_TRY(
       post(adit, {.target = "/adit/spare/take-over", .check = kSeeSpare, .body = R"({"unplugged": true})"}));
-  return said(call, opened, "this box is taking over\n");
+  return printed(call, opened, "this box is taking over\n");
 }
 
 Result<Outcome> resume_service(const Call& call) {

@@ -199,11 +199,11 @@ Result<Outcome> status(const Call& call) {
   const auto run = ADIT_TRY(fetch<RunView>(call.adit, "/adit/run"));
   const auto update = fetch<api::UpdateView>(call.adit, "/adit/update");
   const bool is_fine = std::ranges::none_of(run.row.alarms, alarms::calls);
-  return said(call, run.json,
-              status_text(run.row, call.console.colour) +
-                  (update ? newer_lines(update->row)
-                          : line("cannot ask for newer versions: ", update.error().sentence)),
-              is_fine ? Exit::Fine : Exit::Attention);
+  return printed(call, run.json,
+                 status_text(run.row, call.console.colour) +
+                     (update ? newer_lines(update->row)
+                             : line("cannot ask for newer versions: ", update.error().sentence)),
+                 is_fine ? Exit::Fine : Exit::Attention);
 }
 
 }  // namespace adit::cli

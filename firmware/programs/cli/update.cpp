@@ -73,20 +73,20 @@ Result<std::string> read_bundle(const std::string& path) {
 
 /// Prints the progress until the box has finished.
 Result<Outcome> follow(const Call& call) {
-  std::string printed;
+  std::string last;
   const auto told =
       ADIT_TRY(fetch_until<UpdateView>(call.adit, kUpdate, kInstalling, [&](const UpdateView& view) {
         if (view.doing.empty()) return true;
         const std::string progress = view.progress ? icd::sentence(" ", *view.progress, " %") : "";
         const std::string now = line(view.doing, progress);
-        if (!call.options.json && now != printed) call.console.print(now);
-        printed = now;
+        if (!call.options.json && now != last) call.console.print(now);
+        last = now;
         return false;
       }));
   const UpdateView& view = told.row;
-  return said(call, told.json,
-              view.refusal.empty() ? last_line(view) : line("the update was rejected: ", view.refusal),
-              is_fine(view) ? Exit::Fine : Exit::Attention);
+  return printed(call, told.json,
+                 view.refusal.empty() ? last_line(view) : line("the update was rejected: ", view.refusal),
+                 is_fine(view) ? Exit::Fine : Exit::Attention);
 }
 
 Result<Outcome> upload(const Call& call) {

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "codec/read.hpp"
+#include "dispatch/answer_text.hpp"
 #include "dispatch/report_verdict.hpp"
-#include "dispatch/said.hpp"
 #include "dispatch/same_report.hpp"
 #include "icd/sentence.hpp"
 
@@ -136,7 +136,7 @@ ReportEvent ReportSender::answered(const HttpAnswer& answer, Time time) {
     const std::string note =
         another != nullptr && event == ReportEvent::Lost
             ? icd::sentence("the answer is for report ", another->number, ", not for this report")
-            : said(answer.status, answer.body);
+            : answer_text(answer.status, answer.body);
     ended(event, note, time, keep);
   }
   return event;

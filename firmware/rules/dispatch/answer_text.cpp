@@ -1,4 +1,4 @@
-#include "dispatch/said.hpp"
+#include "dispatch/answer_text.hpp"
 
 #include "codec/json.hpp"
 #include "icd/sentence.hpp"
@@ -23,7 +23,7 @@ std::string answered_with(int status) {
   return icd::sentence("the Command Post answered ", status);
 }
 
-std::string said(int status, std::string_view body) {
+std::string answer_text(int status, std::string_view body) {
   const auto value = codec::parse_json(body);
   if (!value) return answered_with(status);
   if (const auto* text = std::get_if<std::string>(&value->is)) return cut(*text);

@@ -6,7 +6,7 @@
 namespace adit::dispatch {
 
 /// The answer's text for people: a JSON string, an object's `detail`, or else the status. Cut at 300 bytes.
-std::string said(int status, std::string_view body);
+std::string answer_text(int status, std::string_view body);
 
 /// "the Command Post answered 404"
 std::string answered_with(int status);

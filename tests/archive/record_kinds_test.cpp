@@ -5,7 +5,7 @@
 #include <limits>
 #include <memory>
 
-#include "archive/record.hpp"
+#include "archive/framed_records.hpp"
 
 namespace adit::archive {
 namespace {

@@ -42,8 +42,8 @@ TEST_F(ChannelTest, TakesAPageOfAnyLengthForForeign) {
       for (const icd::Uri uri : {icd::Uri::Status, icd::Uri::MapUpdate}) {
         SCOPED_TRACE(std::string(status) + ", " + std::to_string(size));
         const auto channel = asked(uri, uplink::answer(status, "<html>" + std::string(size, 'x')));
-        EXPECT_TRUE(channel->is_foreign());
-        EXPECT_EQ(channel->foreign(), 1u);
+        EXPECT_TRUE(channel->last().is_foreign());
+        EXPECT_EQ(channel->last().foreign(), 1u);
         EXPECT_THAT(channel->trouble(), testing::Not(testing::IsEmpty()));
       }
     }
@@ -54,18 +54,18 @@ TEST_F(ChannelTest, TakesAPageOfAnyLengthForForeign) {
 TEST_F(ChannelTest, TakesAServerWithoutARunStatusForForeign) {
   for (const char* body : {R"({"hello": "world"})", "null", "[]", "", R"({"score": 1, "run_clock": 2.5})"}) {
     const auto channel = asked(icd::Uri::Status, uplink::answer("200 OK", body));
-    EXPECT_TRUE(channel->is_foreign()) << body;
+    EXPECT_TRUE(channel->last().is_foreign()) << body;
     EXPECT_THAT(channel->trouble(), testing::HasSubstr("status of a run")) << body;
-    EXPECT_FALSE(asked(icd::Uri::MapUpdate, uplink::answer("200 OK", body))->is_foreign()) << body;
+    EXPECT_FALSE(asked(icd::Uri::MapUpdate, uplink::answer("200 OK", body))->last().is_foreign()) << body;
   }
-  EXPECT_FALSE(asked(icd::Uri::Status, uplink::answer("200 OK", kRun))->is_foreign());
+  EXPECT_FALSE(asked(icd::Uri::Status, uplink::answer("200 OK", kRun))->last().is_foreign());
 }
 
 TEST_F(ChannelTest, AcceptsErrorPagesOfTheCommandPost) {
   for (const std::size_t size : {100u, 70u << 10}) {
     const auto channel =
         asked(icd::Uri::MapUpdate, uplink::answer("502 Oops", "<html>" + std::string(size, 'x')));
-    EXPECT_FALSE(channel->is_foreign());
+    EXPECT_FALSE(channel->last().is_foreign());
     EXPECT_NE(channel->trouble(), "");
   }
 }
@@ -88,7 +88,7 @@ TEST_F(ChannelTest, TakesTheTimeOnlyFromTheCommandPost) {
                            {"503 Service Unavailable", R"({"error": "upstream"})", false}}) {
     const auto channel = asked(
         icd::Uri::Status, uplink::answer(each.status, each.body, "Date: Sun, 06 Nov 2033 08:49:37 GMT\r\n"));
-    EXPECT_EQ(channel->time_there().has_value(), each.is_its_own) << each.status << ' ' << each.body;
+    EXPECT_EQ(channel->last().time_there().has_value(), each.is_its_own) << each.status << ' ' << each.body;
   }
 }
 
@@ -114,10 +114,10 @@ TEST_F(ChannelTest, ChangesEndpointAfterTheRequestInFlight) {
   channel.lead_to({there.endpoint(), token, std::chrono::seconds{20}});
   EXPECT_FALSE(channel.turns());
   EXPECT_TRUE(loop::turn_until(loop_, [&] { return answers.size() == 1; }));
-  EXPECT_EQ(channel.last_status(), 429);
+  EXPECT_EQ(channel.last().status(), 429);
   EXPECT_TRUE(channel.turns());
   EXPECT_FALSE(channel.turns());
-  EXPECT_EQ(channel.last_status(), 0) << "of the old endpoint";
+  EXPECT_EQ(channel.last().status(), 0) << "of the old endpoint";
   EXPECT_EQ(channel.address(), "127.0.0.1:" + std::to_string(there.endpoint().port));
   ask();
   EXPECT_TRUE(loop::turn_until(loop_, [&] { return answers.size() == 2; }));
@@ -162,10 +162,10 @@ TEST_F(ChannelTest, KeepsItsStateIfOnlyATimeoutChanges) {
   slower.connect_within = std::chrono::seconds{7};
   channel->lead_to({slower, icd::BearerToken::parse("a-token"), std::chrono::seconds{20}});
   EXPECT_FALSE(channel->turns());
-  EXPECT_EQ(channel->last_status(), 200);
+  EXPECT_EQ(channel->last().status(), 200);
   channel->lead_to({slower, icd::BearerToken::parse("another-token"), std::chrono::seconds{20}});
   EXPECT_TRUE(channel->turns());
-  EXPECT_EQ(channel->last_status(), 0);
+  EXPECT_EQ(channel->last().status(), 0);
 }
 
 /// A Command Post whose paths need a slash at the end, or must not have one.
@@ -212,8 +212,8 @@ TEST_F(TrailingSlash, IsLearntFromEachRequestExceptReports) {
 
 TEST_F(TrailingSlash, IsNotForeign) {
   EXPECT_EQ(status_of(kFirst), 301);
-  EXPECT_FALSE(channel_.is_foreign());
-  EXPECT_EQ(channel_.foreign(), 0u);
+  EXPECT_FALSE(channel_.last().is_foreign());
+  EXPECT_EQ(channel_.last().foreign(), 0u);
   EXPECT_THAT(channel_.trouble(), testing::HasSubstr("slash"));
   EXPECT_EQ(status_of(kFirst), 200);
   EXPECT_EQ(channel_.trouble(), "");

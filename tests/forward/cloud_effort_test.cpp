@@ -76,8 +76,8 @@ class CloudOnAFastLink : public MapsToManualEndpoint {
     maps_->endpoint_changed(icd::BearerToken::parse("a-token"));  // the link gets the budget
   }
   std::uint64_t sent(const char* robot) const {
-    const auto found = record_.rows().find({Kind::Cloud, robot});
-    return found == record_.rows().end() ? 0 : found->second.bytes_sent;
+    const auto found = counts_.rows().find({Kind::Cloud, robot});
+    return found == counts_.rows().end() ? 0 : found->second.bytes_sent;
   }
 };
 

@@ -32,8 +32,8 @@ class DamagedMap : public MapsToManualEndpoint {
   }
   void restore() { maps_->restore(spool_.read()); }
   api::ActivityRow row() const {
-    const auto found = record_.rows().find({Kind::Grid, "first"});
-    return found == record_.rows().end() ? api::ActivityRow{} : found->second;
+    const auto found = counts_.rows().find({Kind::Grid, "first"});
+    return found == counts_.rows().end() ? api::ActivityRow{} : found->second;
   }
   static constexpr std::uint64_t kOne = MapStore::kFirstNumber + 1, kOther = MapStore::kFirstNumber + 2;
 };

@@ -4,8 +4,8 @@
 
 #include "forward/clocks.hpp"
 #include "forward/maps.hpp"
-#include "forward/record.hpp"
 #include "forward/rejected.hpp"
+#include "forward/traffic_counts.hpp"
 #include "host/folder.hpp"
 #include "journal/journal.hpp"
 #include "ledger/ledger.hpp"
@@ -22,7 +22,7 @@ struct FlowParts {
   loop::Loop loop_;
   settings::Settings settings_;
   std::mt19937_64 random_{1};
-  Record record_{[] {}};
+  TrafficCounts counts_{[] {}};
   journal::Journal journal_{loop_, journal_folder_.path()};
 };
 
@@ -41,7 +41,7 @@ struct MapsParts : FlowParts {
             spool_,
             settings_,
             std::move(token),
-            record_,
+            counts_,
             rejected_,
             random_,
             journal_,

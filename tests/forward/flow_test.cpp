@@ -128,16 +128,16 @@ TEST_F(FlowTest, KeepsTheLastPoseOfTwoAddresses) {
 
 TEST_F(FlowTest, QuotesNoToken) {
   flow_->refused(icd::Uri::StateUpdate, sender_, {icd::Status::UnprocessableEntity, "name: got a-secret", 0});
-  ASSERT_EQ(flow_->record().refusals().size(), 1);
-  EXPECT_THAT(flow_->record().refusals().front().sentence, testing::Not(testing::HasSubstr("a-secret")));
+  ASSERT_EQ(flow_->counts().refusals().size(), 1);
+  EXPECT_THAT(flow_->counts().refusals().front().sentence, testing::Not(testing::HasSubstr("a-secret")));
 }
 
 TEST_F(FlowTest, RecordsPartsAndSettingOfARejection) {
   flow_->refused(icd::Uri::StateUpdate, sender_,
                  {icd::Status::UnprocessableEntity, "name: got x", 3, "robots[].alias"});
-  ASSERT_EQ(flow_->record().refusals().size(), 1);
-  EXPECT_EQ(flow_->record().refusals().front().parts, 3u);
-  EXPECT_EQ(flow_->record().refusals().front().setting, "robots[].alias");
+  ASSERT_EQ(flow_->counts().refusals().size(), 1);
+  EXPECT_EQ(flow_->counts().refusals().front().parts, 3u);
+  EXPECT_EQ(flow_->counts().refusals().front().setting, "robots[].alias");
 }
 
 TEST_F(FlowTest, EndsAndAcceptsNoActionOnRejectedMessages) {

@@ -24,7 +24,7 @@ class StoredGrid : public MapsToManualEndpoint {
     settings_.command_post.rates.map_hz = 1;
     maps_->settings_changed();
   }
-  std::uint64_t sent(const char* robot) const { return record_.rows().at({Kind::Grid, robot}).bytes_sent; }
+  std::uint64_t sent(const char* robot) const { return counts_.rows().at({Kind::Grid, robot}).bytes_sent; }
   bool are_delivered() {
     return loop::turn_until(loop_, [&] {
       return maps_->waiting({Kind::Grid, "first"}) + maps_->waiting({Kind::Grid, "second"}) == 0;

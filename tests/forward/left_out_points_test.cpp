@@ -65,7 +65,7 @@ class LeftOutPoints : public testing::Test, protected MapsParts {
     settings_.command_post.rates.map_hz = 1000;
     settings_.command_post.mapping = post_.address();
     settings_.robots = {{.name = "r1", .alias = "", .voxel_metres = 0.5}};
-    maps_.emplace(loop_, workers_, writer_, spool_, settings_, token_, record_, rejected_, random_, journal_,
+    maps_.emplace(loop_, workers_, writer_, spool_, settings_, token_, counts_, rejected_, random_, journal_,
                   [this](const icd::MapUpdate& map) { taken_.push_back(xs_of(map.data)); });
   }
   void take(const Points& xs) {
@@ -83,7 +83,7 @@ class LeftOutPoints : public testing::Test, protected MapsParts {
     take(xs);
     ASSERT_TRUE(are_delivered());
   }
-  const api::ActivityRow& row() const { return record_.rows().at(kClouds); }
+  const api::ActivityRow& row() const { return counts_.rows().at(kClouds); }
 
   const Traffic kClouds{Kind::Cloud, "r1"};
   const std::optional<icd::BearerToken> token_ = icd::BearerToken::parse("a-token");

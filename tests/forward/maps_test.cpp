@@ -174,7 +174,7 @@ TEST_F(MapsTest, ReplaceQueuedMapsInAFullQueue) {
   EXPECT_EQ(status(take(grid("r1", 10, 50'000))), icd::Status::Ok);
   EXPECT_EQ(status(take(grid("r2", 10, 40'000))), icd::Status::Ok);
   EXPECT_EQ(status(take(grid("r3", 10, 20'000))), icd::Status::TooManyRequests);
-  EXPECT_EQ(record_.rows().at({Kind::Grid, "r3"}).no_room, 1u);
+  EXPECT_EQ(counts_.rows().at({Kind::Grid, "r3"}).no_room, 1u);
   EXPECT_EQ(status(take(grid("r1", 20, 60'000))), icd::Status::Ok);
   EXPECT_TRUE(has_files(2));
 }
@@ -188,9 +188,9 @@ TEST_F(MapsTest, AreCountedIfTheyHaveNoValidPoint) {
   EXPECT_TRUE(take(cloud_along_x("r1", {nan, nan, nan})));
   EXPECT_EQ(maps_.waiting(traffic), 1u);
   EXPECT_TRUE(has_files(1));
-  EXPECT_EQ(record_.rows().at(traffic).accepted, 2u);
-  EXPECT_EQ(record_.rows().at(traffic).replaced, 0u);
-  EXPECT_EQ(record_.rows().at(traffic).no_valid_point, 1u);
+  EXPECT_EQ(counts_.rows().at(traffic).accepted, 2u);
+  EXPECT_EQ(counts_.rows().at(traffic).replaced, 0u);
+  EXPECT_EQ(counts_.rows().at(traffic).no_valid_point, 1u);
   ASSERT_TRUE(take(cloud_along_x("r2", {})));
   EXPECT_EQ(maps_.waiting({Kind::Cloud, "r2"}), 1u) << "posted without points";
 }

@@ -51,10 +51,10 @@ class MarkerArrivalsTest : public testing::Test {
   loop::Workers workers_{loop_, 1};
   journal::Journal journal_{loop_, folder_.path() + "/journal"};
   queues::MarkerQueue queue_{{}};
-  Record record_{[] {}};
+  TrafficCounts counts_{[] {}};
   int came_ = 0;
   std::vector<icd::Status> said_;
-  MarkerArrivals arrivals_{loop_, workers_, journal_, queue_, record_, [this] { ++came_; }};
+  MarkerArrivals arrivals_{loop_, workers_, journal_, queue_, counts_, [this] { ++came_; }};
 };
 
 TEST_F(MarkerArrivalsTest, AreQueuedAtOnceIfTheyAreFew) {
@@ -75,7 +75,7 @@ TEST_F(MarkerArrivalsTest, AreCountedIfTheyAreInvisible) {  // ICD 6.6
   take(std::move(update));
   ASSERT_TRUE(turn_until([this] { return !said_.empty(); }));
   EXPECT_THAT(said_, ElementsAre(icd::Status::Ok)) << "accepted";
-  EXPECT_EQ(record_.rows().at({Kind::Markers, ""}).invisible, 2u);
+  EXPECT_EQ(counts_.rows().at({Kind::Markers, ""}).invisible, 2u);
 }
 
 TEST_F(MarkerArrivalsTest, AreAnsweredOnceAllAreStoredAndQueued) {

@@ -50,7 +50,7 @@ struct Process {
         workers(loop, 1),
         journal(loop, folder + "/journal"),
         rejected(loop, writer, folder + "/rejected"),
-        telemetry(loop, workers, settings, std::move(token), record, rejected, random, journal, delivered) {
+        telemetry(loop, workers, settings, std::move(token), counts, rejected, random, journal, delivered) {
     const journal::Carried carried = journal.read();
     journal.begin({.boot = "b", .at = loop.now(), .stamp = loop.stamp_now()});
     telemetry.carry_on(carried);
@@ -65,7 +65,7 @@ struct Process {
   }
 
   std::mt19937_64 random{1};
-  Record record{[] {}};
+  TrafficCounts counts{[] {}};
   loop::Writer writer;
   loop::Workers workers;
   journal::Journal journal;
@@ -249,7 +249,7 @@ TEST_F(TelemetryTest, IsBehindUntilItIsDelivered) {
   EXPECT_TRUE(eventually(*process, [&] {
     return !process->telemetry.waits_since(robot) && !process->telemetry.waits_since(markers);
   }));
-  EXPECT_EQ(process->record.rows().at(robot).forwarded, 1u);
+  EXPECT_EQ(process->counts.rows().at(robot).forwarded, 1u);
 }
 
 /// Counts, age and track follow the robot's own posts.
@@ -258,19 +258,19 @@ TEST_F(TelemetryTest, CountsNoRepeatedPoseAsForwarded) {
   const auto process = process_with(post.peer);
   const Traffic silent{Kind::State, "r1"}, other{Kind::State, "r2"};
   const auto forwarded = [&](const Traffic& of) {
-    const auto row = process->record.rows().find(of);
-    return row == process->record.rows().end() ? 0 : row->second.forwarded;
+    const auto row = process->counts.rows().find(of);
+    return row == process->counts.rows().end() ? 0 : row->second.forwarded;
   };
   ASSERT_TRUE(process->telemetry.take(pose("r1", 1), 10));
   ASSERT_TRUE(eventually(*process, [&] { return forwarded(silent) == 1; }));
-  const auto last = process->record.rows().at(silent).last_forwarded;
+  const auto last = process->counts.rows().at(silent).last_forwarded;
   const api::Time seen = process->delivered.robots().at(0).at.value();
   for (std::uint64_t i = 1; i <= 3; ++i) {
     ASSERT_TRUE(process->telemetry.take(pose("r2", static_cast<double>(i)), 10));
     ASSERT_TRUE(eventually(*process, [&] { return forwarded(other) == i; }));
   }
   EXPECT_EQ(forwarded(silent), 1u);
-  EXPECT_EQ(process->record.rows().at(silent).last_forwarded, last);
+  EXPECT_EQ(process->counts.rows().at(silent).last_forwarded, last);
   EXPECT_EQ(process->delivered.robots().at(0).at, seen);
 }
 
@@ -284,8 +284,8 @@ TEST_F(TelemetryTest, BlamesOnlyRobotsWithANewPose) {
   }));
   ASSERT_TRUE(process->telemetry.take(pose("wipe", 2), 10));  // rejected by the endpoint
   ASSERT_TRUE(
-      eventually(*process, [&] { return process->record.rows().at({Kind::State, "wipe"}).failed >= 1; }));
-  EXPECT_EQ(process->record.rows().at({Kind::State, "r1"}).failed, 0u);
+      eventually(*process, [&] { return process->counts.rows().at({Kind::State, "wipe"}).failed >= 1; }));
+  EXPECT_EQ(process->counts.rows().at({Kind::State, "r1"}).failed, 0u);
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 
 #include <vector>
 
-#include "host/record.hpp"
+#include "host/log_line.hpp"
 
 namespace adit::host {
 namespace {

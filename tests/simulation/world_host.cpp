@@ -2,10 +2,10 @@
 // carrier() in the simulated world.
 #include "host/link_changes.hpp"
 #include "host/log.hpp"
+#include "host/log_line.hpp"
 #include "host/memory.hpp"
 #include "host/process.hpp"
 #include "host/random.hpp"
-#include "host/record.hpp"
 #include "host/service.hpp"
 #include "simulation/world.hpp"
 

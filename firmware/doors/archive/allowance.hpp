@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "archive/record.hpp"
+#include "archive/framed_records.hpp"
 #include "loop/loop.hpp"
 
 namespace adit::archive {

@@ -5,7 +5,7 @@
 #include <deque>
 #include <string>
 
-#include "archive/record.hpp"
+#include "archive/framed_records.hpp"
 #include "loop/loop.hpp"
 
 namespace adit::archive {

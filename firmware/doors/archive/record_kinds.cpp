@@ -4,7 +4,7 @@
 #include <cmath>
 #include <memory>
 
-#include "archive/record.hpp"
+#include "archive/framed_records.hpp"
 #include "codec/utf8.hpp"
 #include "store/values.hpp"
 

@@ -11,7 +11,7 @@
 
 #include "api/scene.hpp"
 #include "archive/due_tiles.hpp"
-#include "archive/record.hpp"
+#include "archive/framed_records.hpp"
 #include "archive/record_kinds.hpp"
 #include "archive/samples.hpp"
 #include "picture/mosaic.hpp"

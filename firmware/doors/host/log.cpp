@@ -12,8 +12,8 @@
 #include <mutex>
 #include <utility>
 
+#include "host/log_line.hpp"
 #include "host/memory.hpp"
-#include "host/record.hpp"
 
 namespace adit::host {
 namespace {

@@ -1,7 +1,7 @@
 #include <systemd/sd-daemon.h>
 
 #include "host/log.hpp"
-#include "host/record.hpp"
+#include "host/log_line.hpp"
 #include "host/service.hpp"
 
 namespace adit::host {

@@ -88,6 +88,9 @@ icd::Checked<icd::MapUpdate> Spool::keep(std::uint64_t number, icd::MapUpdate ma
 void Spool::forget(std::uint64_t number) {
   std::error_code error;
   fs::remove(file_of(number), error);
+  if (error)
+    host::log(host::Level::Warning, "the file of a map that is not queued any more remains",
+              {{"file", file_of(number)}, {"why", error.message()}});
 }
 
 void Spool::set_aside(std::uint64_t number, const std::string& why) {

@@ -61,7 +61,7 @@ void AcceptedMaps::take(icd::MapUpdate update, std::size_t bytes_received,
     done(std::unexpected(std::move(why)));
   };
   if (!has_room_for(update, replaces)) {
-    record_.no_room(traffic_of(update), loop_.wall_now());
+    counts_.no_room(traffic_of(update), loop_.wall_now());
     return refuse(
         {icd::Status::TooManyRequests, icd::sentence("the queue is full: ", queue_.count() + store_.count(),
                                                      " maps, ", (queue_.bytes() + store_.bytes()) / 1000000,
@@ -84,16 +84,16 @@ void AcceptedMaps::take(icd::MapUpdate update, std::size_t bytes_received,
 void AcceptedMaps::stored(MapStore::Stored& stored, std::size_t bytes_received,
                           const std::function<void(icd::Checked<void>)>& done) {
   if (stored.has_no_valid_point) {
-    record_.no_valid_point(traffic_of(*stored.map), bytes_received, loop_.wall_now());
+    counts_.no_valid_point(traffic_of(*stored.map), bytes_received, loop_.wall_now());
     store_.forget({&stored.number, 1});
     return done({});
   }
   if (!stored.map) return done(std::unexpected(std::move(stored.map.error())));
   const Traffic traffic = traffic_of(*stored.map);
-  record_.accepted(traffic, bytes_received, loop_.wall_now());
+  counts_.accepted(traffic, bytes_received, loop_.wall_now());
   tell_clouds(*stored.map);
   const auto replaced = queue_.add(stored.number, std::move(*stored.map), loop_.now());
-  record_.replaced(traffic, replaced.size());
+  counts_.replaced(traffic, replaced.size());
   store_.forget(replaced);
   done({});
   compare();
@@ -108,7 +108,7 @@ void AcceptedMaps::restore(spool::Spool::Kept kept) {
 void AcceptedMaps::restore(std::uint64_t number, icd::MapUpdate update) {
   const bool again = store_.restored(number);
   const icd::Stamp stamp = update.header().stamp.value_or(loop_.stamp_now());
-  record_.accepted(traffic_of(update), update.data.bytes.size(), time_of(loop_, stamp));
+  counts_.accepted(traffic_of(update), update.data.bytes.size(), time_of(loop_, stamp));
   if (again) {
     store_.forget(queue_.put_back(waiting_again(number, std::move(update), stamp)));
   } else {
@@ -121,7 +121,7 @@ void AcceptedMaps::restore(std::uint64_t number, icd::MapUpdate update) {
 
 void AcceptedMaps::tell_clouds(const icd::MapUpdate& update) {
   const queues::Clouds clouds = queue_.clouds_of(queues::Sender::of(update));
-  if (clouds != queues::Clouds::Auto) record_.clouds_are(traffic_of(update), clouds);
+  if (clouds != queues::Clouds::Auto) counts_.clouds_are(traffic_of(update), clouds);
 }
 
 /// It must not follow a newer map that contains it.
@@ -180,12 +180,12 @@ void AcceptedMaps::compared(const queues::Successive& two, bool has_all) {
   const Traffic traffic{Kind::Cloud, two.sender.name ? two.sender.name->text() : ""};
   if (has_all) {
     const auto replaced = queue_.replace(two);
-    record_.replaced(traffic, replaced.size());
+    counts_.replaced(traffic, replaced.size());
     store_.forget(replaced);
   } else {
     queue_.keep_both(two);
   }
-  record_.clouds_are(traffic, has_all ? queues::Clouds::Whole : queues::Clouds::Parts);
+  counts_.clouds_are(traffic, has_all ? queues::Clouds::Whole : queues::Clouds::Parts);
   compare();
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "forward/map_store.hpp"
-#include "forward/record.hpp"
+#include "forward/traffic_counts.hpp"
 #include "journal/journal.hpp"
 #include "queues/map_queue.hpp"
 #include "settings/settings.hpp"
@@ -18,13 +18,13 @@ class AcceptedMaps {
 
   /// `queued`: called after each change of `queue`. `is_sent`: true if a prepared map contains this one,
   /// which the operator sends again. All outlive this.
-  AcceptedMaps(loop::Loop& loop, loop::Workers& workers, const settings::Settings& settings, Record& record,
-               journal::Journal& journal, queues::MapQueue& queue, MapStore& store,
+  AcceptedMaps(loop::Loop& loop, loop::Workers& workers, const settings::Settings& settings,
+               TrafficCounts& counts, journal::Journal& journal, queues::MapQueue& queue, MapStore& store,
                std::function<void()> queued, std::function<bool(const queues::QueuedMap&)> is_sent)
       : loop_(loop),
         workers_(workers),
         settings_(settings),
-        record_(record),
+        counts_(counts),
         journal_(journal),
         queue_(queue),
         store_(store),
@@ -55,7 +55,7 @@ class AcceptedMaps {
   loop::Loop& loop_;
   loop::Workers& workers_;
   const settings::Settings& settings_;
-  Record& record_;
+  TrafficCounts& counts_;
   journal::Journal& journal_;
   queues::MapQueue& queue_;
   MapStore& store_;

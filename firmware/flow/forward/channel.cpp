@@ -2,13 +2,8 @@
 
 #include <utility>
 
-#include "codec/read.hpp"
-#include "dispatch/answer_text.hpp"
-#include "dispatch/mapping_verdict.hpp"
 #include "host/log.hpp"
 #include "icd/require.hpp"
-#include "icd/sentence.hpp"
-#include "icd/success.hpp"
 
 namespace adit::forward {
 
@@ -19,30 +14,10 @@ std::size_t longest_answer_to(icd::Uri uri) {
   return uri == icd::Uri::Status ? 16u << 10 : uplink::Request::kLongestAnswer;
 }
 
-/// Other without a complete answer.
-dispatch::Body body_of(const uplink::Outcome& outcome) {
-  const auto* answered = std::get_if<uplink::Answered>(&outcome);
-  return answered != nullptr ? dispatch::body_of(answered->body) : dispatch::Body::Other;
-}
-
-/// A 2xx to GET /api/status must be a run's status (ICD 5.1).
-bool lacks_status(icd::Uri uri, const uplink::Outcome& outcome) {
-  const auto* answered = std::get_if<uplink::Answered>(&outcome);
-  return uri == icd::Uri::Status && answered != nullptr && icd::is_success(answered->status) &&
-         !codec::read_run_status(answered->body);
-}
-
-bool comes_from_another(const uplink::Outcome& outcome, dispatch::Body body) {
-  if (const auto* answered = std::get_if<uplink::Answered>(&outcome))
-    return !answered->wants_slash && !dispatch::may_be_the_command_post(answered->status, body);
-  const auto* doubt = std::get_if<uplink::InDoubt>(&outcome);
-  return doubt != nullptr && doubt->too_long_status != 0 &&
-         !dispatch::may_be_the_command_post(doubt->too_long_status, body);
-}
-
 }  // namespace
 
-Channel::Channel(loop::Loop& loop, const char* name, EndpointAccess way) : loop_(loop), name_(name) {
+Channel::Channel(loop::Loop& loop, const char* name, EndpointAccess way)
+    : loop_(loop), name_(name), last_(loop) {
   take(std::move(way));
 }
 
@@ -71,10 +46,8 @@ bool Channel::turns() {
   const bool is_elsewhere = leads_elsewhere(*next_);
   take(*std::exchange(next_, std::nullopt));
   if (!is_elsewhere) return false;
-  last_status_ = 0;
-  foreign_now_ = wants_slash_ = false;
-  answer_ms_.reset();
-  trouble_.clear();
+  wants_slash_ = false;
+  last_.forget();
   return true;
 }
 
@@ -113,37 +86,11 @@ std::optional<uplink::Sent> Channel::has_arrived() const {
 }
 
 void Channel::ended(const std::shared_ptr<UnderWay>& request, uplink::Outcome outcome) {
-  note(*request, outcome);
+  last_.note({.uri = request->uri, .sent_at = request->sent_at}, outcome);
+  if (const auto* answered = std::get_if<uplink::Answered>(&outcome)) learn_path(*request, *answered);
   std::erase(under_way_, request);
   const auto done = std::move(request->done);
   done(std::move(outcome));
-}
-
-void Channel::note(const UnderWay& request, const uplink::Outcome& outcome) {
-  heard_ = loop_.now();
-  ++ended_;
-  last_status_ = 0;
-  const dispatch::Body body = body_of(outcome);
-  const bool no_status = lacks_status(request.uri, outcome);
-  foreign_now_ = no_status || comes_from_another(outcome, body);
-  if (foreign_now_) ++foreign_;
-  const auto* answered = std::get_if<uplink::Answered>(&outcome);
-  if (answered != nullptr) {
-    last_status_ = answered->status;
-    learn_path(request, *answered);
-    if (last_status_ == 429) ++throttled_;
-    // Only the Command Post's own clock counts.
-    if (answered->date && !foreign_now_ && dispatch::is_the_command_post(answered->status, body)) {
-      constexpr double kHalf = 0.5;  // Date has whole seconds
-      date_ = static_cast<double>(answered->date->time_since_epoch().count()) + kHalf;
-      dated_ = heard_;
-    }
-    answer_ms_ = std::chrono::duration<double, std::milli>(heard_ - request.sent_at).count();
-  }
-  const bool is_well = answered != nullptr && !answered->wants_slash && !foreign_now_ && last_status_ < 400;
-  trouble_ = is_well     ? ""
-             : no_status ? "the server that answered without the status of a run is not the Command Post"
-                         : forward::sentence_of(outcome);
 }
 
 void Channel::learn_path(const UnderWay& request, const uplink::Answered& answered) {
@@ -160,14 +107,9 @@ void Channel::learn_path(const UnderWay& request, const uplink::Answered& answer
       {{"endpoint", name_}, {"address", address_}, {"status", std::to_string(answered.status)}});
 }
 
-std::optional<double> Channel::time_there() const {
-  if (!date_) return std::nullopt;
-  return *date_ + std::chrono::duration<double>(loop_.now() - dated_).count();
-}
-
 std::string Channel::trouble() const {
   if (!connection_) return std::string("no ") + name_ + " token is set";
-  if (!trouble_.empty()) return trouble_;
+  if (!last_.trouble().empty()) return last_.trouble();
   return connected() ? "" : connection_->trouble();
 }
 
@@ -194,20 +136,6 @@ uplink::Endpoint endpoint_of(const settings::CommandPost& command_post, const se
 
 std::string address_text(const settings::Address& address) {
   return address.address + ":" + std::to_string(address.port);
-}
-
-std::string sentence_of(const uplink::Outcome& outcome) {
-  if (const auto* never = std::get_if<uplink::NeverSent>(&outcome)) return never->why;
-  if (const auto* doubt = std::get_if<uplink::InDoubt>(&outcome)) return doubt->why;
-  const auto& answered = std::get<uplink::Answered>(outcome);
-  if (answered.wants_slash)
-    return icd::sentence("the Command Post answered ", answered.status, ": the path must end with a slash");
-  if (dispatch::may_be_the_command_post(answered.status, dispatch::body_of(answered.body)))
-    return dispatch::answer_text(answered.status, answered.body);
-  return icd::sentence(
-      "the server that answered ", answered.status,
-      answered.status < 400 && answered.status >= 300 ? " (a redirect)" : " with a body that is not JSON",
-      " is not the Command Post");
 }
 
 }  // namespace adit::forward

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "forward/last_answer.hpp"
 #include "icd/uri.hpp"
 #include "loop/loop.hpp"
 #include "settings/settings.hpp"
@@ -65,16 +66,7 @@ class Channel {
 
   /// Why there is no good answer or no connection; or "".
   std::string trouble() const;
-  int last_status() const { return last_status_; }
-  std::optional<double> answer_ms() const { return answer_ms_; }
-  /// True if the last answer came from another machine than a Command Post. foreign() counts such answers.
-  bool is_foreign() const { return foreign_now_; }
-  std::uint64_t foreign() const { return foreign_; }
-  std::uint64_t ended() const { return ended_; }
-  std::uint64_t throttled() const { return throttled_; }
-  /// The Command Post's time of day now, in seconds since 1970, by the last Date that is certainly its own.
-  std::optional<double> time_there() const;
-  loop::Instant heard() const { return heard_; }
+  const LastAnswer& last() const { return last_; }
   /// 0 without a connection.
   std::uint64_t delivers() const { return connection_ ? connection_->delivers() : 0; }
   /// Bytes of the last request that the kernel has accepted.
@@ -92,7 +84,6 @@ class Channel {
   void take(EndpointAccess way);
   bool leads_elsewhere(const EndpointAccess& way) const;
   void ended(const std::shared_ptr<UnderWay>& request, uplink::Outcome outcome);
-  void note(const UnderWay& request, const uplink::Outcome& outcome);
   void learn_path(const UnderWay& request, const uplink::Answered& answered);
 
   loop::Loop& loop_;
@@ -105,14 +96,8 @@ class Channel {
   bool wants_slash_ = false;  // at the end of each path
   std::optional<EndpointAccess> next_;
   std::vector<std::shared_ptr<UnderWay>> under_way_;  // at most two, oldest first
-  loop::Instant heard_{};
-  std::uint64_t finished_bytes_ = 0, ended_ = 0, throttled_ = 0, foreign_ = 0;
-  bool foreign_now_ = false;
-  int last_status_ = 0;
-  std::optional<double> answer_ms_;
-  std::optional<double> date_;  // seconds since 1970
-  loop::Instant dated_{};
-  std::string trouble_;
+  std::uint64_t finished_bytes_ = 0;
+  LastAnswer last_;
 };
 
 /// Maps are paced within the link's budget.
@@ -125,8 +110,5 @@ uplink::Endpoint endpoint_of(const settings::CommandPost& command_post, const se
 
 /// "10.100.1.200:8000"
 std::string address_text(const settings::Address& address);
-
-/// Why a request has no answer, or the text of its answer.
-std::string sentence_of(const uplink::Outcome& outcome);
 
 }  // namespace adit::forward

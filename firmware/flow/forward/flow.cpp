@@ -76,7 +76,7 @@ void Flow::refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusa
                {"status", std::to_string(static_cast<int>(refusal.status))},
                {"why", refusal.sentence}});
   }
-  record_.refused(uri, sender, refusal, loop_.wall_now());
+  counts_.refused(uri, sender, refusal, loop_.wall_now());
 }
 
 std::expected<void, std::string> Flow::rejected(std::uint64_t number, api::RejectedAction action) {
@@ -131,7 +131,7 @@ api::Time wall_time_of(const loop::Loop& loop, loop::Instant since) {
 
 std::vector<api::ActivityRow> Flow::activities() const {
   std::vector<api::ActivityRow> rows;
-  for (const auto& [traffic, counted] : record_.rows()) {
+  for (const auto& [traffic, counted] : counts_.rows()) {
     api::ActivityRow& row = rows.emplace_back(counted);
     row.queued = is_map(traffic.kind) ? maps_.waiting(traffic) : telemetry_.waiting(traffic.kind);
     const auto since = is_map(traffic.kind) ? maps_.waits_since(traffic) : telemetry_.waits_since(traffic);

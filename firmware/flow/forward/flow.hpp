@@ -18,11 +18,11 @@
 #include "forward/map_picture.hpp"
 #include "forward/maps.hpp"
 #include "forward/meter.hpp"
-#include "forward/record.hpp"
 #include "forward/rejected.hpp"
 #include "forward/run_news.hpp"
 #include "forward/scoring.hpp"
 #include "forward/telemetry.hpp"
+#include "forward/traffic_counts.hpp"
 #include "icd/bearer_token.hpp"
 #include "intake/desk.hpp"
 #include "journal/journal.hpp"
@@ -136,7 +136,7 @@ class Flow final : public intake::Desk, public api::Operator {
   /// Stores `heard` for the next process.
   void keep(const journal::Heard& heard) { journal_.heard(heard); }
   const RejectedStore& rejected() const { return rejected_; }
-  const Record& record() const { return record_; }
+  const TrafficCounts& counts() const { return counts_; }
   const DeliveredScene& delivered() const { return delivered_; }
   const picture::Mosaic& picture() const { return picture_.mosaic(); }
   api::FinerMap& finer() { return picture_.finer(); }
@@ -183,7 +183,7 @@ class Flow final : public intake::Desk, public api::Operator {
   Clocks clocks_;
   std::map<std::string, journal::Heard> heard_before_;
   RejectedStore rejected_;
-  Record record_;
+  TrafficCounts counts_;
   Scoring scoring_;
   RunNews run_news_;
   MapPicture picture_;

@@ -12,22 +12,23 @@ namespace {
 
 archive::Sample sample_of(const Flow& flow, double now) {
   std::map<std::string, double> ages;
-  for (const auto& [traffic, row] : flow.record().rows()) {
+  for (const auto& [traffic, row] : flow.counts().rows()) {
     const auto age = api::age_of(row, now);
     if (!is_map(traffic.kind) || !age) continue;
     const auto [its, is_new] = ages.emplace(traffic.robot, *age);
     its->second = std::min(its->second, *age);
   }
-  const Channel& mapping = flow.maps().channel().heard() > flow.telemetry().channel().heard()
+  const Channel& mapping = flow.maps().channel().last().heard() > flow.telemetry().channel().last().heard()
                                ? flow.maps().channel()
                                : flow.telemetry().channel();
   return {.at = now,
           .sent_mbit = flow.sent_mbit(),
           .queued_bytes = flow.maps().queued_bytes(),
-          .scoring_ms = flow.scoring().channel().answer_ms(),
-          .mapping_ms = mapping.answer_ms(),
-          .throttled = flow.scoring().channel().throttled() + flow.maps().channel().throttled() +
-                       flow.telemetry().channel().throttled(),
+          .scoring_ms = flow.scoring().channel().last().answer_ms(),
+          .mapping_ms = mapping.last().answer_ms(),
+          .throttled = flow.scoring().channel().last().throttled() +
+                       flow.maps().channel().last().throttled() +
+                       flow.telemetry().channel().last().throttled(),
           .map_ages = {ages.begin(), ages.end()}};
 }
 
@@ -35,7 +36,7 @@ api::RunRow facts_of(const Flow& flow, const std::string& course) {
   const dispatch::Run& run = flow.reports().run();
   std::set<std::string> robots;
   for (const api::RobotRow& robot : flow.delivered().robots()) robots.insert(robot.name);
-  for (const auto& [traffic, row] : flow.record().rows()) robots.insert(traffic.robot);
+  for (const auto& [traffic, row] : flow.counts().rows()) robots.insert(traffic.robot);
   robots.erase("");
   api::RunRow facts{.run = run.number,
                     .id = run.id,

@@ -28,13 +28,13 @@ std::uint64_t seed() {
 }
 
 /// Call after queued messages are restored, which the record counts.
-void restore_record(Record& record, const std::map<std::string, journal::Heard>& heard_before,
+void restore_counts(TrafficCounts& counts, const std::map<std::string, journal::Heard>& heard_before,
                     const loop::Loop& loop) {
   for (const auto& [robot, heard] : heard_before) {
     for (std::size_t kind = 0; kind < heard.kinds.size(); ++kind) {
       const auto [accepted, forwarded] = heard.kinds[kind];
       if (std::isnan(accepted)) continue;
-      record.restore({static_cast<Kind>(kind), robot}, time_of(loop, accepted), time_of(loop, forwarded));
+      counts.restore({static_cast<Kind>(kind), robot}, time_of(loop, accepted), time_of(loop, forwarded));
     }
   }
 }
@@ -56,13 +56,13 @@ Flow::Flow(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& s
       journal_(loop, folders.runtime + kJournal),
       clocks_(loop, journal_, folders.state),
       rejected_(loop, writer_, folders.runtime + kRejected),
-      record_([this] { changed(); }),
-      scoring_(loop, ledger, settings, tokens_.scoring, record_, random_, journal_, clocks_),
+      counts_([this] { changed(); }),
+      scoring_(loop, ledger, settings, tokens_.scoring, counts_, random_, journal_, clocks_),
       run_news_(settings),
       picture_(loop, workers_, [this] { changed(); }),
-      maps_(loop, workers_, writer_, spool_, settings, tokens_.mapping, record_, rejected_, random_, journal_,
+      maps_(loop, workers_, writer_, spool_, settings, tokens_.mapping, counts_, rejected_, random_, journal_,
             [this](icd::MapUpdate map) { picture_.forwarded(std::move(map)); }),
-      telemetry_(loop, workers_, settings, tokens_.mapping, record_, rejected_, random_, journal_,
+      telemetry_(loop, workers_, settings, tokens_.mapping, counts_, rejected_, random_, journal_,
                  delivered_),
       archive_(loop, folders.state),
       drained_(loop.timer([this] { drain(); })) {
@@ -104,7 +104,7 @@ void Flow::carry_on() {
   telemetry_.carry_on(carried);
   restore(is_first);
   heard_before_ = carried.heard();
-  restore_record(record_, heard_before_, loop_);
+  restore_counts(counts_, heard_before_, loop_);
 }
 
 /// Messages in files. Without a journal the last sending is unknown: maps get new stamps, all requests wait.
@@ -150,13 +150,13 @@ void Flow::tick(loop::Writer& disk) {
 }
 
 KnownTimes Flow::known_times() const {
-  return {.command_post = scoring_.channel().time_there(), .robots = clocks_.told_by_robots()};
+  return {.command_post = scoring_.channel().last().time_there(), .robots = clocks_.told_by_robots()};
 }
 
 /// Stamps, the ledger and earlier runs keep their times.
 void Flow::wall_was_set(double seconds) {
   clocks_.wall_was_set();
-  record_.move(seconds);
+  counts_.move(seconds);
   delivered_.move(seconds);
   picture_.move(seconds);
   archive_.move(seconds);

@@ -36,12 +36,12 @@ std::string whose(const icd::MapUpdate& map) {
 }  // namespace
 
 Maps::Maps(loop::Loop& loop, loop::Workers& workers, loop::Writer& writer, spool::Spool& spool,
-           const settings::Settings& settings, std::optional<icd::BearerToken> token, Record& record,
+           const settings::Settings& settings, std::optional<icd::BearerToken> token, TrafficCounts& counts,
            RejectedStore& rejected, std::mt19937_64& random, journal::Journal& journal,
            std::function<void(icd::MapUpdate)> taken)
     : loop_(loop),
       settings_(settings),
-      record_(record),
+      counts_(counts),
       rejected_(rejected),
       taken_(std::move(taken)),
       channel_(loop, "mapping",
@@ -52,9 +52,9 @@ Maps::Maps(loop::Loop& loop, loop::Workers& workers, loop::Writer& writer, spool
       queue_(settings.queues.merge_bytes),
       store_(writer, spool),
       accepted_(
-          loop, workers, settings, record, journal, queue_, store_, [this] { pump(); },
+          loop, workers, settings, counts, journal, queue_, store_, [this] { pump(); },
           [this](const queues::QueuedMap& back) { return prepared_.contain(back); }),
-      prepared_(loop, workers, settings, record, pace_, queue_, store_,
+      prepared_(loop, workers, settings, counts, pace_, queue_, store_,
                 [this](bool is_done) { packed(is_done); }) {
   take_settings();
   queue_.canvases().lead_to(channel_.address());
@@ -165,7 +165,7 @@ void Maps::answered(const Place& sent, const uplink::Outcome& outcome) {
 void Maps::classify(const Place& sent, const uplink::Outcome& outcome) {
   if (const auto* answer = std::get_if<uplink::Answered>(&outcome)) return verdict(sent, *answer);
   pace_.failed(outcome, loop_.now());
-  record_.not_taken(traffic_of(sent->waiting.map), DeliveryFailure::Failed, 0, sentence_of(outcome));
+  counts_.not_taken(traffic_of(sent->waiting.map), DeliveryFailure::Failed, 0, sentence_of(outcome));
   again(sent);
 }
 
@@ -183,15 +183,15 @@ void Maps::taken(const Place& sent, const uplink::Answered& answered) {
   forget(sent->waiting.updates);
   blame_.passed(whose(map), loop_.now());
   queue_.carried(queues::Sender::of(map), sent->packed.body.size());
-  record_.forwarded(traffic_of(map), updates, sent->packed.body.size(), answered.status, loop_.wall_now());
-  if (!map.is_grid()) record_.rounded_to(traffic_of(map), sent->packed.precision);
+  counts_.forwarded(traffic_of(map), updates, sent->packed.body.size(), answered.status, loop_.wall_now());
+  if (!map.is_grid()) counts_.rounded_to(traffic_of(map), sent->packed.precision);
   prepared_.points_taken(*sent);
   taken_(std::move(map));
 }
 
 /// Delivered, but the points left out were forgotten since.
 void Maps::goes_whole(const Place& sent, int status) {
-  record_.forwarded(traffic_of(sent->waiting.map), 0, sent->packed.body.size(), status, loop_.wall_now());
+  counts_.forwarded(traffic_of(sent->waiting.map), 0, sent->packed.body.size(), status, loop_.wall_now());
   again(sent);
 }
 
@@ -204,7 +204,7 @@ void Maps::verdict(const Place& sent, const uplink::Answered& answered) {
       return taken(sent, answered);
     case MappingVerdict::Throttled:
       pace_.throttled(now, answered.retry_after);
-      record_.not_taken(traffic, DeliveryFailure::Throttled, answered.status, sentence);
+      counts_.not_taken(traffic, DeliveryFailure::Throttled, answered.status, sentence);
       return again(sent);
     case MappingVerdict::Refused:
       pace_.taken(answered.sent, now);
@@ -214,11 +214,11 @@ void Maps::verdict(const Place& sent, const uplink::Answered& answered) {
       if (blame_.failed(whose(sent->waiting.map), sent->waiting.trial, now) == queues::Blame::Next::Reject)
         return give_up(sent, answered.status,
                        sentence + " (other maps were delivered, this map failed repeatedly)");
-      record_.not_taken(traffic, DeliveryFailure::Failed, answered.status, sentence);
+      counts_.not_taken(traffic, DeliveryFailure::Failed, answered.status, sentence);
       return again(sent);
     case MappingVerdict::Failing:
       pace_.lost(now);
-      record_.not_taken(traffic, DeliveryFailure::Failed, answered.status, sentence);
+      counts_.not_taken(traffic, DeliveryFailure::Failed, answered.status, sentence);
       return again(sent);
   }
 }
@@ -232,7 +232,7 @@ void Maps::again(const Place& sent) {
 void Maps::give_up(const Place& sent, int status, const std::string& sentence) {
   ahead_.failed(false);
   queues::QueuedMap& waiting = sent->waiting;
-  record_.not_taken(traffic_of(waiting.map), DeliveryFailure::Refused, status, sentence);
+  counts_.not_taken(traffic_of(waiting.map), DeliveryFailure::Refused, status, sentence);
   if (waiting.again) waiting.map.header().stamp = waiting.again;
   if (waiting.parts.empty()) {
     rejected_.add(waiting.map, status, sentence, waiting.map.data.bytes.size(),

@@ -26,7 +26,7 @@ class Maps {
  public:
   /// `taken` gets delivered maps. `spool` outlives the writer.
   Maps(loop::Loop& loop, loop::Workers& workers, loop::Writer& writer, spool::Spool& spool,
-       const settings::Settings& settings, std::optional<icd::BearerToken> token, Record& record,
+       const settings::Settings& settings, std::optional<icd::BearerToken> token, TrafficCounts& counts,
        RejectedStore& rejected, std::mt19937_64& random, journal::Journal& journal,
        std::function<void(icd::MapUpdate)> taken);
 
@@ -107,7 +107,7 @@ class Maps {
 
   loop::Loop& loop_;
   const settings::Settings& settings_;
-  Record& record_;
+  TrafficCounts& counts_;
   RejectedStore& rejected_;
   std::function<void(icd::MapUpdate)> taken_;
   Channel channel_;

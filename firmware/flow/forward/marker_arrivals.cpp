@@ -26,12 +26,12 @@ icd::Refusal no_memory() {
 }  // namespace
 
 MarkerArrivals::MarkerArrivals(loop::Loop& loop, loop::Workers& workers, journal::Journal& journal,
-                               queues::MarkerQueue& queue, Record& record, std::function<void()> came)
+                               queues::MarkerQueue& queue, TrafficCounts& counts, std::function<void()> came)
     : loop_(loop),
       workers_(workers),
       journal_(journal),
       queue_(queue),
-      record_(record),
+      counts_(counts),
       came_(std::move(came)),
       next_turn_(loop.timer([this] { go(next_step()); })) {}
 
@@ -80,7 +80,7 @@ bool MarkerArrivals::begin(Arrival& arrival) {
 }
 
 bool MarkerArrivals::takes_some(Arrival& arrival) {
-  record_.no_room({Kind::Markers, ""}, loop_.wall_now());
+  counts_.no_room({Kind::Markers, ""}, loop_.wall_now());
   icd::MarkersUpdate known = queue_.those_that_wait(*arrival.update);
   if (known.markers.empty() || !queue_.has_room_for(known)) return false;
   const std::size_t taken = known.markers.size(), all = arrival.update->markers.size();
@@ -117,7 +117,7 @@ bool MarkerArrivals::keep(Arrival& arrival) {
     return false;
   }
   arrival.records = {};
-  record_.accepted({Kind::Markers, ""}, arrival.bytes_received, loop_.wall_now());
+  counts_.accepted({Kind::Markers, ""}, arrival.bytes_received, loop_.wall_now());
   if (arrival.update->markers.size() <= kPart) return add_part(arrival);
   next_turn_.call_at(loop_.now());
   return false;
@@ -127,7 +127,7 @@ bool MarkerArrivals::add_part(Arrival& arrival) {
   const std::span<icd::Marker> markers = arrival.update->markers;
   const auto part = markers.subspan(arrival.added, std::min(kPart, markers.size() - arrival.added));
   const auto invisible = static_cast<std::size_t>(std::ranges::count_if(part, icd::is_invisible));
-  record_.invisible(invisible);
+  counts_.invisible(invisible);
   arrival.last = queue_.add_part(part, arrival.last);
   arrival.added += part.size();
   free_needless();

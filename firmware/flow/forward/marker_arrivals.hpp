@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "forward/record.hpp"
+#include "forward/traffic_counts.hpp"
 #include "icd/markers_update.hpp"
 #include "icd/status.hpp"
 #include "journal/journal.hpp"
@@ -30,7 +30,7 @@ class MarkerArrivals {
 
   /// `came` is called after each update.
   MarkerArrivals(loop::Loop& loop, loop::Workers& workers, journal::Journal& journal,
-                 queues::MarkerQueue& queue, Record& record, std::function<void()> came);
+                 queues::MarkerQueue& queue, TrafficCounts& counts, std::function<void()> came);
 
   void take(icd::MarkersUpdate update, std::size_t bytes_received, Done done);
 
@@ -70,7 +70,7 @@ class MarkerArrivals {
   loop::Workers& workers_;
   journal::Journal& journal_;
   queues::MarkerQueue& queue_;
-  Record& record_;
+  TrafficCounts& counts_;
   std::function<void()> came_;
   std::deque<Arrival> arrivals_;  // the first is in progress
   loop::Source next_turn_;

@@ -21,21 +21,21 @@ queues::MarkerBounds bounds_of(const settings::Queues& queues) {
 
 }  // namespace
 
-Markers::Markers(loop::Loop& loop, loop::Workers& workers, const settings::Settings& settings, Record& record,
-                 std::mt19937_64& random, journal::Journal& journal, DeliveredScene& delivered,
-                 std::function<void()> came)
+Markers::Markers(loop::Loop& loop, loop::Workers& workers, const settings::Settings& settings,
+                 TrafficCounts& counts, std::mt19937_64& random, journal::Journal& journal,
+                 DeliveredScene& delivered, std::function<void()> came)
     : loop_(loop),
-      record_(record),
+      counts_(counts),
       journal_(journal),
       delivered_(delivered),
       pace_(kUri, settings.command_post.rates.markers_hz, random, journal),
       queue_(bounds_of(settings.queues)),
-      arrivals_(loop, workers, journal, queue_, record, std::move(came)) {}
+      arrivals_(loop, workers, journal, queue_, counts, std::move(came)) {}
 
 void Markers::carry_on(const journal::Carried& carried) {
   pace_.carry_on(carried, loop_.now());
   if (icd::MarkersUpdate markers = carried.markers(); !markers.markers.empty()) {
-    record_.accepted({Kind::Markers, ""}, 0, loop_.wall_now());
+    counts_.accepted({Kind::Markers, ""}, 0, loop_.wall_now());
     queue_.add(std::move(markers), loop_.now());
   }
 }

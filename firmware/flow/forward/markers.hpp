@@ -24,7 +24,7 @@ class Markers {
   static constexpr std::size_t kAtOnce = 500;  // markers to write or to show in one turn
 
   /// `came` is called after each arrival. All outlive this.
-  Markers(loop::Loop& loop, loop::Workers& workers, const settings::Settings& settings, Record& record,
+  Markers(loop::Loop& loop, loop::Workers& workers, const settings::Settings& settings, TrafficCounts& counts,
           std::mt19937_64& random, journal::Journal& journal, DeliveredScene& delivered,
           std::function<void()> came);
 
@@ -68,7 +68,7 @@ class Markers {
 
  private:
   loop::Loop& loop_;
-  Record& record_;
+  TrafficCounts& counts_;
   journal::Journal& journal_;
   DeliveredScene& delivered_;
   UriPace pace_;

@@ -27,12 +27,12 @@ std::vector<MapStore::Damaged> damaged_in(const queues::QueuedMap& waiting,
 }  // namespace
 
 PreparedMaps::PreparedMaps(loop::Loop& loop, loop::Workers& workers, const settings::Settings& settings,
-                           Record& record, UriPace& pace, queues::MapQueue& queue, MapStore& store,
+                           TrafficCounts& counts, UriPace& pace, queues::MapQueue& queue, MapStore& store,
                            std::function<void(bool is_done)> packed)
     : loop_(loop),
       workers_(workers),
       settings_(settings),
-      record_(record),
+      counts_(counts),
       pace_(pace),
       queue_(queue),
       store_(store),
@@ -119,7 +119,7 @@ void PreparedMaps::is_damaged(Place& place) {
   if (!rest.parts.empty()) queue_.put_back_apart(std::move(rest));
   place.reset();  // the damaged maps are not retried
   for (const MapStore::Damaged& each : it->damaged) {
-    record_.not_taken(traffic_of(it->waiting.map), DeliveryFailure::Failed, 0,
+    counts_.not_taken(traffic_of(it->waiting.map), DeliveryFailure::Failed, 0,
                       "its stored copy is damaged: " + each.why);
   }
   store_.forget(gone);
@@ -155,8 +155,8 @@ void PreparedMaps::is_there(Place& place) {
   if (!points_.hold(left_out)) return;
   const auto there = std::exchange(place, nullptr);
   const Traffic traffic = traffic_of(there->waiting.map);
-  record_.left_out(traffic, there->packed.left_out.points);
-  record_.replaced(traffic, there->waiting.updates.size());
+  counts_.left_out(traffic, there->packed.left_out.points);
+  counts_.replaced(traffic, there->waiting.updates.size());
   store_.forget(there->waiting.updates);
 }
 
@@ -165,7 +165,7 @@ void PreparedMaps::work_failed(const Place& prepared) {
   store_.work_ends({});
   prepared->packed = {};
   if (Place* const place = place_of(prepared)) {
-    record_.not_taken(traffic_of(prepared->waiting.map), DeliveryFailure::Failed, 0,
+    counts_.not_taken(traffic_of(prepared->waiting.map), DeliveryFailure::Failed, 0,
                       "it could not be compressed");
     put_back(*place);
   }
@@ -199,7 +199,7 @@ void PreparedMaps::pack_again() {
 void PreparedMaps::points_taken(PreparedMap& sent) {
   icd::MapUpdate& map = sent.waiting.map;
   LeftOut& left_out = sent.packed.left_out;
-  record_.left_out(traffic_of(map), left_out.points);
+  counts_.left_out(traffic_of(map), left_out.points);
   if (left_out.sent) {
     left_out.sent->header() = map.header();
     map = *std::exchange(left_out.sent, std::nullopt);

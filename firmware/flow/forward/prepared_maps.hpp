@@ -3,9 +3,9 @@
 #include <optional>
 
 #include "forward/map_store.hpp"
-#include "forward/record.hpp"
 #include "forward/slot.hpp"
 #include "forward/stitched.hpp"
+#include "forward/traffic_counts.hpp"
 #include "forward/uri_pace.hpp"
 #include "queues/map_queue.hpp"
 #include "settings/settings.hpp"
@@ -29,8 +29,8 @@ class PreparedMaps {
   using Place = std::shared_ptr<PreparedMap>;
 
   /// `packed`: called after the work, with false if it failed. All outlive this.
-  PreparedMaps(loop::Loop& loop, loop::Workers& workers, const settings::Settings& settings, Record& record,
-               UriPace& pace, queues::MapQueue& queue, MapStore& store,
+  PreparedMaps(loop::Loop& loop, loop::Workers& workers, const settings::Settings& settings,
+               TrafficCounts& counts, UriPace& pace, queues::MapQueue& queue, MapStore& store,
                std::function<void(bool is_done)> packed);
 
   const Place& first() const { return first_; }
@@ -72,7 +72,7 @@ class PreparedMaps {
   loop::Loop& loop_;
   loop::Workers& workers_;
   const settings::Settings& settings_;
-  Record& record_;
+  TrafficCounts& counts_;
   UriPace& pace_;
   queues::MapQueue& queue_;
   MapStore& store_;

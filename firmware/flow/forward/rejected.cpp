@@ -7,7 +7,7 @@
 #include "codec/field.hpp"
 #include "codec/json.hpp"
 #include "codec/write.hpp"
-#include "forward/record.hpp"
+#include "forward/traffic_counts.hpp"
 #include "host/files.hpp"
 #include "host/log.hpp"
 #include "host/numbered_name.hpp"

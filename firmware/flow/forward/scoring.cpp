@@ -58,12 +58,12 @@ intake::Answer no_status_in(const uplink::Answered& answered) {
 }  // namespace
 
 Scoring::Scoring(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& settings,
-                 std::optional<icd::BearerToken> token, Record& record, std::mt19937_64& random,
+                 std::optional<icd::BearerToken> token, TrafficCounts& counts, std::mt19937_64& random,
                  journal::Journal& journal, Clocks& clocks)
     : loop_(loop),
       ledger_(ledger),
       settings_(settings),
-      record_(record),
+      counts_(counts),
       output_(loop, ledger),
       clocks_(clocks),
       reports_(std::make_unique<dispatch::Reports>(rules_of(settings.reports), output_)),
@@ -106,7 +106,7 @@ void Scoring::endpoint_turned() {
   poll_due_ = true;
   open_reports();
   watch_deadlines();
-  record_.changed();
+  counts_.changed();
 }
 
 void Scoring::take(const icd::ArtifactReport& report, const intake::Sender& sender,
@@ -124,7 +124,7 @@ void Scoring::take(const dispatch::PostedReport& posted, dispatch::ClientId clie
   const bool may_send = !channel_.busy() && channel_.connected() && pace_.report_ready() <= loop_.now();
   if (reports_->take(posted, client, may_send, time())) send(*reports_->sending());
   watch_deadlines();
-  record_.changed();
+  counts_.changed();
   pump();
 }
 
@@ -227,7 +227,7 @@ void Scoring::send(const dispatch::Report& report) {
 
 /// First, because judging uses the length of the silence.
 void Scoring::hear_time() {
-  const auto there = channel_.time_there();
+  const auto there = channel_.last().time_there();
   if (there && clocks_.hear(*there)) reports_->clock_stepped(clocks_.clock_step());
 }
 
@@ -236,7 +236,7 @@ void Scoring::report_answered(const uplink::Outcome& outcome) {
   known_status_.no_longer_fresh();  // score and remaining reports may have changed
   poll_due_ = true;
   watch_deadlines();
-  record_.changed();
+  counts_.changed();
   pump();
 }
 
@@ -279,7 +279,7 @@ void Scoring::answer_clients(loop::Instant now) {
 void Scoring::deadline_came() {
   answer_clients(loop_.now());
   tick();
-  record_.changed();
+  counts_.changed();
   watch_deadlines();
 }
 
@@ -301,7 +301,7 @@ void Scoring::status_answered(const uplink::Outcome& outcome) {
   poll_.call_at(loop_.now() + kAskEvery);
   classify_status(outcome, asked);
   watch_deadlines();
-  record_.changed();
+  counts_.changed();
   pump();
 }
 
@@ -325,7 +325,7 @@ void Scoring::classify_status(const uplink::Outcome& outcome, loop::Instant aske
     status_clients_.answer_all(known_or(client_answer(*answered)));
   } else {
     pace_.status_taken(answered->sent, now);
-    const bool refused = answered->status >= 400 && answered->status < 500 && !channel_.is_foreign();
+    const bool refused = answered->status >= 400 && answered->status < 500 && !channel_.last().is_foreign();
     status_clients_.answer_all(refused ? client_answer(*answered) : known_or(no_status_in(*answered)));
   }
   if (run) {
@@ -342,7 +342,7 @@ intake::Answer Scoring::known_or(intake::Answer failure) const {
 
 dispatch::Reports::Outcome Scoring::decide(std::int64_t number, api::Action action) noexcept {
   const dispatch::Reports::Outcome outcome = carry_out(*reports_, number, action, time());
-  record_.changed();
+  counts_.changed();
   pump();
   return outcome;
 }
@@ -360,14 +360,14 @@ dispatch::Reports::Outcome Scoring::report(const icd::ArtifactReport& report, bo
 dispatch::Reports::Outcome Scoring::correct(std::int64_t number, const icd::ArtifactReport& to) noexcept {
   const dispatch::Reports::Outcome outcome = reports_->correct(number, to, time());
   watch_deadlines();
-  record_.changed();
+  counts_.changed();
   pump();
   return outcome;
 }
 
 std::int64_t Scoring::begin_run() noexcept {
   const std::int64_t number = reports_->declare_new_run(time());
-  record_.changed();
+  counts_.changed();
   poll();
   return number;
 }

@@ -10,10 +10,10 @@
 #include "forward/channel.hpp"
 #include "forward/clocks.hpp"
 #include "forward/known_status.hpp"
-#include "forward/record.hpp"
 #include "forward/report_output.hpp"
 #include "forward/scoring_pace.hpp"
 #include "forward/status_clients.hpp"
+#include "forward/traffic_counts.hpp"
 #include "icd/artifact_report.hpp"
 #include "intake/desk.hpp"
 #include "ledger/ledger.hpp"
@@ -38,7 +38,7 @@ class Scoring {
 
   /// `clocks`: has the step of the stamp clock since the ledger was written. All outlive this.
   Scoring(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& settings,
-          std::optional<icd::BearerToken> token, Record& record, std::mt19937_64& random,
+          std::optional<icd::BearerToken> token, TrafficCounts& counts, std::mt19937_64& random,
           journal::Journal& journal, Clocks& clocks);
 
   void carry_on(const journal::Carried& carried) { pace_.carry_on(carried, loop_.now()); }
@@ -118,7 +118,7 @@ class Scoring {
   loop::Loop& loop_;
   ledger::Ledger& ledger_;
   const settings::Settings& settings_;
-  Record& record_;
+  TrafficCounts& counts_;
   ReportOutput output_;
   Clocks& clocks_;
   std::unique_ptr<dispatch::Reports> reports_;  // never null

@@ -7,10 +7,10 @@
 
 namespace adit::forward {
 
-States::States(loop::Loop& loop, const settings::Settings& settings, Record& record, std::mt19937_64& random,
-               journal::Journal& journal, DeliveredScene& delivered)
+States::States(loop::Loop& loop, const settings::Settings& settings, TrafficCounts& counts,
+               std::mt19937_64& random, journal::Journal& journal, DeliveredScene& delivered)
     : loop_(loop),
-      record_(record),
+      counts_(counts),
       journal_(journal),
       delivered_(delivered),
       pace_(kUri, settings.command_post.rates.state_hz, random, journal) {}
@@ -19,7 +19,7 @@ void States::carry_on(const journal::Carried& carried) {
   pace_.carry_on(carried, loop_.now());
   for (const auto& [name, robot] : carried.robots()) {
     queue_.add({&robot.posted, 1}, loop_.now());
-    record_.accepted({Kind::State, name.text()}, 0,
+    counts_.accepted({Kind::State, name.text()}, 0,
                      time_of(loop_, robot.posted.stamp.value_or(loop_.stamp_now())));
   }
   queue_.begin_run();  // perhaps from before this run: each goes once
@@ -35,7 +35,7 @@ void States::endpoint_turned() {
 icd::Checked<void> States::has_room_for(const icd::StateUpdate& update) {
   if (queue_.has_room_for(update)) return {};
   for (const icd::NamedPose& pose : update.poses)
-    record_.no_room({Kind::State, pose.name.text()}, loop_.wall_now());
+    counts_.no_room({Kind::State, pose.name.text()}, loop_.wall_now());
   return icd::refuse(icd::Status::TooManyRequests, "not accepted: too many robots; send it again later");
 }
 
@@ -45,7 +45,7 @@ icd::Checked<void> States::accept(const std::vector<queues::PostedPose>& poses, 
     return icd::refuse(icd::Status::ServiceUnavailable, "not accepted: it cannot be stored: ", kept.error(),
                        "; send it again later");
   for (const queues::PostedPose& pose : poses)
-    record_.accepted({Kind::State, pose.name.text()}, bytes_received, loop_.wall_now());
+    counts_.accepted({Kind::State, pose.name.text()}, bytes_received, loop_.wall_now());
   queue_.add(news, loop_.now());
   return {};
 }

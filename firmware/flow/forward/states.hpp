@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "forward/delivered_scene.hpp"
-#include "forward/record.hpp"
+#include "forward/traffic_counts.hpp"
 #include "forward/uri_pace.hpp"
 #include "queues/state_queue.hpp"
 #include "settings/settings.hpp"
@@ -25,7 +25,7 @@ class States {
   static constexpr int kTriesTogether = 3;
 
   /// `delivered` gets delivered states. Until then the journal has them. All outlive this.
-  States(loop::Loop& loop, const settings::Settings& settings, Record& record, std::mt19937_64& random,
+  States(loop::Loop& loop, const settings::Settings& settings, TrafficCounts& counts, std::mt19937_64& random,
          journal::Journal& journal, DeliveredScene& delivered);
 
   void carry_on(const journal::Carried& carried);
@@ -63,7 +63,7 @@ class States {
 
  private:
   loop::Loop& loop_;
-  Record& record_;
+  TrafficCounts& counts_;
   journal::Journal& journal_;
   DeliveredScene& delivered_;
   UriPace pace_;

@@ -21,16 +21,16 @@ DeliveryFailure why_not(MappingVerdict verdict) {
 }  // namespace
 
 Telemetry::Telemetry(loop::Loop& loop, loop::Workers& workers, const settings::Settings& settings,
-                     std::optional<icd::BearerToken> token, Record& record, RejectedStore& rejected,
+                     std::optional<icd::BearerToken> token, TrafficCounts& counts, RejectedStore& rejected,
                      std::mt19937_64& random, journal::Journal& journal, DeliveredScene& delivered)
     : loop_(loop),
       settings_(settings),
-      record_(record),
+      counts_(counts),
       rejected_(rejected),
       channel_(loop, "mapping", access_to_mapping(settings.command_post, std::move(token))),
       wake_(loop.timer([this] { pump(); })),
-      states_(loop, settings, record, random, journal, delivered),
-      markers_(loop, workers, settings, record, random, journal, delivered, [this] { pump(); }) {}
+      states_(loop, settings, counts, random, journal, delivered),
+      markers_(loop, workers, settings, counts, random, journal, delivered, [this] { pump(); }) {}
 
 void Telemetry::carry_on(const journal::Carried& carried) {
   states_.carry_on(carried);
@@ -122,9 +122,9 @@ void Telemetry::classify(Of& of, const typename Of::Sent& sent, std::size_t byte
   const std::string sentence = verdict == MappingVerdict::Taken ? "" : sentence_of(outcome);
   for (const Traffic& traffic : Of::traffic_of(*sent)) {
     if (verdict == MappingVerdict::Taken) {
-      record_.forwarded(traffic, 1, bytes, status, loop_.wall_now());
+      counts_.forwarded(traffic, 1, bytes, status, loop_.wall_now());
     } else {
-      record_.not_taken(traffic, why_not(verdict), status, sentence);
+      counts_.not_taken(traffic, why_not(verdict), status, sentence);
     }
   }
   of.count_failure(verdict == MappingVerdict::Suspect);

@@ -17,7 +17,7 @@ class Telemetry {
  public:
   /// `delivered` gets delivered messages. Until then the journal has them.
   Telemetry(loop::Loop& loop, loop::Workers& workers, const settings::Settings& settings,
-            std::optional<icd::BearerToken> token, Record& record, RejectedStore& rejected,
+            std::optional<icd::BearerToken> token, TrafficCounts& counts, RejectedStore& rejected,
             std::mt19937_64& random, journal::Journal& journal, DeliveredScene& delivered);
 
   /// Restores the messages of earlier processes.
@@ -88,7 +88,7 @@ class Telemetry {
 
   loop::Loop& loop_;
   const settings::Settings& settings_;
-  Record& record_;
+  TrafficCounts& counts_;
   RejectedStore& rejected_;
   Channel channel_;
   loop::Source wake_;

@@ -10,11 +10,11 @@ namespace {
 alarms::ConnectionSample seen(const forward::Channel& channel) {
   return {.connected = channel.connected(),
           .busy = channel.busy(),
-          .ended = channel.ended(),
-          .throttled = channel.throttled(),
+          .ended = channel.last().ended(),
+          .throttled = channel.last().throttled(),
           .sent = channel.bytes_sent(),
-          .status = channel.last_status(),
-          .foreign = channel.is_foreign(),
+          .status = channel.last().status(),
+          .foreign = channel.last().is_foreign(),
           .said = channel.trouble()};
 }
 

@@ -110,7 +110,7 @@ std::vector<api::EndpointRow> Overview::endpoints() const {
   const forward::Channel& scoring = rooms_.flow.scoring().channel();
   const forward::Channel& maps = rooms_.flow.maps().channel();
   const forward::Channel& telemetry = rooms_.flow.telemetry().channel();
-  const forward::Channel& latest = maps.heard() > telemetry.heard() ? maps : telemetry;
+  const forward::Channel& latest = maps.last().heard() > telemetry.last().heard() ? maps : telemetry;
   const settings::CommandPost& command_post = rooms_.settings.command_post;
   const auto seen = observed_.endpoints(rooms_.flow, command_post, rooms_.loop.stamp_now());
   const auto trouble = [](std::string said, const alarms::Endpoint& endpoint) {
@@ -120,18 +120,18 @@ std::vector<api::EndpointRow> Overview::endpoints() const {
            .address = forward::address_text(command_post.scoring),
            .connected = scoring.connected(),
            .trouble = trouble(scoring.trouble(), seen[0]),
-           .last_status = scoring.last_status(),
-           .answer_ms = scoring.answer_ms(),
-           .throttled = scoring.throttled(),
-           .foreign = scoring.foreign()},
+           .last_status = scoring.last().status(),
+           .answer_ms = scoring.last().answer_ms(),
+           .throttled = scoring.last().throttled(),
+           .foreign = scoring.last().foreign()},
           {.name = "mapping",
            .address = forward::address_text(command_post.mapping),
            .connected = maps.connected() || telemetry.connected(),
            .trouble = trouble(maps.trouble().empty() ? telemetry.trouble() : maps.trouble(), seen[1]),
-           .last_status = latest.last_status(),
-           .answer_ms = latest.answer_ms(),
-           .throttled = maps.throttled() + telemetry.throttled(),
-           .foreign = maps.foreign() + telemetry.foreign()}};
+           .last_status = latest.last().status(),
+           .answer_ms = latest.last().answer_ms(),
+           .throttled = maps.last().throttled() + telemetry.last().throttled(),
+           .foreign = maps.last().foreign() + telemetry.last().foreign()}};
 }
 
 api::RunView Overview::view() const {
@@ -153,7 +153,7 @@ api::RunView Overview::view() const {
                     .activities = rooms_.flow.activities(),
                     .standings = {},
                     .colours = chosen_colours(rooms_.settings.robots),
-                    .refusals = rooms_.flow.record().refusals(),
+                    .refusals = rooms_.flow.counts().refusals(),
                     .rejected = rooms_.flow.rejected().rows(),
                     .lights = {},
                     .links = rooms_.links.rows(),
@@ -218,7 +218,7 @@ void Overview::add_to(api::Usage& usage) const {
   usage.sent_bytes = rooms_.flow.sent_bytes();
   usage.exceptions = loop::caught_so_far();
   usage.rejected_dropped = rooms_.flow.rejected().dropped();
-  usage.refused = rooms_.flow.record().refused_counts();
+  usage.refused = rooms_.flow.counts().refused_counts();
 }
 
 }  // namespace adit::gateway

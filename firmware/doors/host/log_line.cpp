@@ -1,4 +1,4 @@
-#include "host/record.hpp"
+#include "host/log_line.hpp"
 
 #include <sys/stat.h>
 

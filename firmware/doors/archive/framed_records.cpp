@@ -1,4 +1,4 @@
-#include "archive/record.hpp"
+#include "archive/framed_records.hpp"
 
 #include "icd/require.hpp"
 #include "store/frame.hpp"

@@ -1,4 +1,4 @@
-#include "forward/record.hpp"
+#include "forward/traffic_counts.hpp"
 
 #include <cmath>
 
@@ -18,7 +18,7 @@ Traffic traffic_of(const icd::MapUpdate& update) {
   return {update.is_grid() ? Kind::Grid : Kind::Cloud, update.name ? update.name->text() : ""};
 }
 
-api::ActivityRow& Record::row(const Traffic& traffic) {
+api::ActivityRow& TrafficCounts::row(const Traffic& traffic) {
   const auto known = rows_.find(traffic);
   if (known != rows_.end()) return known->second;
   const bool full = rows_.size() >= kMostRows;
@@ -28,7 +28,7 @@ api::ActivityRow& Record::row(const Traffic& traffic) {
   return made;
 }
 
-void Record::accepted(const Traffic& traffic, std::size_t bytes, api::Time now) {
+void TrafficCounts::accepted(const Traffic& traffic, std::size_t bytes, api::Time now) {
   api::ActivityRow& activity = row(traffic);
   ++activity.accepted;
   activity.last_accepted = now;
@@ -36,51 +36,51 @@ void Record::accepted(const Traffic& traffic, std::size_t bytes, api::Time now) 
   changed_();
 }
 
-void Record::restore(const Traffic& traffic, api::Time accepted, api::Time forwarded) {
+void TrafficCounts::restore(const Traffic& traffic, api::Time accepted, api::Time forwarded) {
   api::ActivityRow& activity = row(traffic);
   activity.last_accepted = std::max(accepted, activity.last_accepted.value_or(accepted));
   if (!std::isnan(forwarded)) activity.last_forwarded = forwarded;
 }
 
-void Record::no_room(const Traffic& traffic, api::Time now) {
+void TrafficCounts::no_room(const Traffic& traffic, api::Time now) {
   api::ActivityRow& activity = row(traffic);
   ++activity.no_room;
   activity.last_no_room = now;
   changed_();
 }
 
-void Record::replaced(const Traffic& traffic, std::size_t updates) {
+void TrafficCounts::replaced(const Traffic& traffic, std::size_t updates) {
   row(traffic).replaced += updates;
 }
 
-void Record::left_out(const Traffic& traffic, std::size_t points) {
+void TrafficCounts::left_out(const Traffic& traffic, std::size_t points) {
   if (points == 0) return;
   row(traffic).points_left_out += points;
   changed_();
 }
 
-void Record::no_valid_point(const Traffic& traffic, std::size_t bytes, api::Time now) {
+void TrafficCounts::no_valid_point(const Traffic& traffic, std::size_t bytes, api::Time now) {
   ++row(traffic).no_valid_point;
   accepted(traffic, bytes, now);
 }
 
-void Record::invisible(std::size_t markers) {
+void TrafficCounts::invisible(std::size_t markers) {
   if (markers == 0) return;
   row({Kind::Markers, ""}).invisible += markers;
   changed_();
 }
 
-void Record::rounded_to(const Traffic& traffic, queues::Precision precision) {
+void TrafficCounts::rounded_to(const Traffic& traffic, queues::Precision precision) {
   row(traffic).precision = queues::kPrecisionWords[static_cast<std::size_t>(precision)];
 }
 
-void Record::clouds_are(const Traffic& traffic, queues::Clouds clouds) {
+void TrafficCounts::clouds_are(const Traffic& traffic, queues::Clouds clouds) {
   if (traffic.kind == Kind::Cloud)
     row(traffic).clouds = queues::kCloudsWords[static_cast<std::size_t>(clouds)];
 }
 
-void Record::forwarded(const Traffic& traffic, std::size_t updates, std::size_t bytes, int status,
-                       api::Time now) {
+void TrafficCounts::forwarded(const Traffic& traffic, std::size_t updates, std::size_t bytes, int status,
+                              api::Time now) {
   api::ActivityRow& activity = row(traffic);
   ++activity.forwarded;
   if (traffic.kind == Kind::Cloud && updates > 1) activity.merged += updates - 1;
@@ -91,7 +91,8 @@ void Record::forwarded(const Traffic& traffic, std::size_t updates, std::size_t 
   changed_();
 }
 
-void Record::not_taken(const Traffic& traffic, DeliveryFailure how, int status, const std::string& sentence) {
+void TrafficCounts::not_taken(const Traffic& traffic, DeliveryFailure how, int status,
+                              const std::string& sentence) {
   api::ActivityRow& activity = row(traffic);
   if (how == DeliveryFailure::Throttled) ++activity.throttled;
   if (how == DeliveryFailure::Failed) ++activity.failed;
@@ -101,7 +102,8 @@ void Record::not_taken(const Traffic& traffic, DeliveryFailure how, int status, 
   changed_();
 }
 
-void Record::refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusal& refusal, api::Time now) {
+void TrafficCounts::refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusal& refusal,
+                            api::Time now) {
   api::RefusedCount& counted = refused_[{uri, refusal.status}];
   ++counted.count;
   counted.parts += refusal.parts;
@@ -116,7 +118,7 @@ void Record::refused(icd::Uri uri, const intake::Sender& sender, const icd::Refu
   changed_();
 }
 
-void Record::move(double seconds) {
+void TrafficCounts::move(double seconds) {
   for (auto& [traffic, activity] : rows_) {
     for (auto* const time : {&activity.last_accepted, &activity.last_forwarded, &activity.last_no_room}) {
       if (*time) **time += seconds;
@@ -126,7 +128,7 @@ void Record::move(double seconds) {
   changed_();
 }
 
-std::vector<api::RefusedCount> Record::refused_counts() const {
+std::vector<api::RefusedCount> TrafficCounts::refused_counts() const {
   std::vector<api::RefusedCount> all;
   all.reserve(refused_.size());
   for (const auto& [what, counted] : refused_) {

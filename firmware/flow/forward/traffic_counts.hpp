@@ -48,13 +48,13 @@ inline bool is_map(Kind kind) {
 
 /// Counts and reasons for the page: messages accepted, forwarded, replaced, delayed, refused (promise 7). At
 /// most kMostRows and kMostRefusals.
-class Record {
+class TrafficCounts {
  public:
   static constexpr std::size_t kMostRows = 200;
   static constexpr std::size_t kMostRefusals = 50;
 
   /// `changed`: the page's contents changed.
-  explicit Record(std::function<void()> changed) : changed_(std::move(changed)) {}
+  explicit TrafficCounts(std::function<void()> changed) : changed_(std::move(changed)) {}
 
   void accepted(const Traffic& traffic, std::size_t bytes, api::Time now);
   /// Restores times from before a restart (NaN: never). Call after accepted() for queued messages, which may

@@ -2,17 +2,15 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <utility>
 
-#include "codec/row_file.hpp"
 #include "host/log.hpp"
 
 namespace adit::archive {
 
 Archive::Archive(loop::Loop& loop, const std::string& state_folder)
-    : loop_(loop), writer_(loop), stored_(writer_, RunsFolder(state_folder)) {
-  stored_.look();
-}
+    : loop_(loop), queue_(loop), writer_(loop), stored_(writer_, RunsFolder(state_folder)) {}
 
 /// Result of opening a run on disk.
 struct Archive::Opening {
@@ -23,18 +21,13 @@ struct Archive::Opening {
 };
 
 void Archive::begin(const Head& head, GoOn go_on) {
-  ++begun_;
-  opening_ = true;
-  key_.clear();
-  folder_.reset();
-  go_on_ = std::move(go_on);
+  ++begins_;
+  begun_ = Begun{.go_on = std::move(go_on)};
+  present_ = {};
+  present_.head = head;
   samples_.clear();
   attention_.clear();
-  lines_ = {};
-  moved_ = 0;
-  steps_.clear();
-  row_ = {};
-  be_due();
+  queue_.begin();
   const auto opening = std::make_shared<Opening>();
   opening->head = head;
   writer_.submit(
@@ -46,26 +39,22 @@ void Archive::begin(const Head& head, GoOn go_on) {
         opening->told.emplace(picture::Mosaic::kBudget);
         read_all(runs, *opening->key, *opening->told, enough);
       },
-      [this, opening, begun = begun_] {
-        if (begun == begun_) opened(*opening);
+      [this, opening, begins = begins_] {
+        if (begins == begins_) opened(*opening);
       });
 }
 
 void Archive::opened(Opening& opening) {
-  opening_ = false;
+  Begun begun = *std::exchange(begun_, std::nullopt);
   if (!opening.told) opening.told.emplace(0);
-  head_ = opening.head;
   has_folder(opening);
   RunRecords& told = *opening.told;
-  told.move(std::exchange(moved_, 0));
+  told.move(begun.moved);
   samples_ = std::move(told.samples());
   attention_.go_on(samples_.since(0).attention);
-  wiped_ = told.picture().wiped();
-  auto tracks = told.tracks();
-  poses_ = Poses(tracks);
-  const picture::Mosaic& now = std::exchange(go_on_, nullptr)(std::move(told.picture()), std::move(tracks));
-  due_.begin(now, told.files());
-  layers_seen_ = now.version();
+  const auto wiped = told.picture().wiped();
+  const auto tracks = told.tracks();
+  queue_.go_on_from(told, tracks, wiped, begun.go_on(std::move(told.picture()), tracks));
   next_write_ = loop_.now();
   stored_.look();
 }
@@ -73,8 +62,8 @@ void Archive::opened(Opening& opening) {
 /// A run without a directory is not written.
 void Archive::has_folder(const Opening& opening) {
   if (opening.key) {
-    key_ = *opening.key;
-    folder_ = opening.folder;
+    present_.key = *opening.key;
+    present_.folder = opening.folder;
     trouble_.clear();
   } else if (std::exchange(trouble_, opening.key.error()) != opening.key.error()) {
     host::log(host::Level::Warning, "cannot store the run's map and tracks", {{"why", trouble_}});
@@ -84,7 +73,7 @@ void Archive::has_folder(const Opening& opening) {
 void Archive::make_folder() {
   next_write_ = loop_.now() + kWriteEvery;
   const auto opening = std::make_shared<Opening>();
-  opening->head = head_;
+  opening->head = present_.head;
   ++writing_;
   writer_.submit(
       [opening, runs = stored_.folder()]() mutable {
@@ -92,64 +81,128 @@ void Archive::make_folder() {
         if (opening->key)
           opening->folder = std::make_shared<RunFolder>(runs.folder_of(*opening->key), opening->head);
       },
-      [this, opening, begun = begun_] {
+      [this, opening, begins = begins_] {
         --writing_;
-        if (begun == begun_) has_folder(*opening);
+        if (begins == begins_) has_folder(*opening);
       });
 }
 
-/// Call before other functions use the new time. Keeps only as many lines as one write holds, so that the
-/// step goes with them.
 void Archive::move(double seconds) {
   samples_.move(seconds);
-  poses_.move(seconds);
-  row_.last += seconds;
-  if (wiped_) *wiped_ += seconds;
-  due_.move(seconds);
-  if (opening_) moved_ += seconds;
-  const Step step{seconds, std::chrono::duration<double>(loop_.now().time_since_epoch()).count()};
-  facts_.clear();
-  lines_.add(record_of(step), true);
-  lines_.keep_below(kLargestRecord);
-  steps_ += record_of(step);
+  present_.row.last += seconds;
+  if (begun_) begun_->moved += seconds;
+  queue_.move(seconds);
 }
 
-void Archive::needs_attention(const std::vector<std::string>& sentences, api::Time now) {
-  if (opening_) return;
-  for (api::AttentionStep& step : attention_.look(sentences, now)) {
-    lines_.add(record_of(step), true);
-    samples_.add(std::move(step));
+namespace {
+
+/// Makes every changed tile due.
+constexpr api::Time kNoneRests = std::numeric_limits<api::Time>::infinity();
+
+}  // namespace
+
+void Archive::tick(const Seen& seen) {
+  if (begun_) return;
+  sample(seen);
+  note(seen);
+  if (writing_ > 0 || loop_.now() < next_write_) return;
+  if (present_.folder) {
+    queue_.add_poses(seen);
+    write(seen, queue_.allowance().at(loop_.now()), seen.now);
+  } else if (!trouble_.empty()) {
+    make_folder();
   }
 }
 
-void Archive::be_due() {
-  next_facts_ = loop_.now();
-  facts_.clear();
-  lines_.be_due();
+void Archive::write_now(const Seen& seen) {
+  if (begun_ || !present_.folder) return;
+  note(seen);
+  queue_.add_poses(seen);
+  queue_.be_due();
+  write(seen, queue_.allowance().at(loop_.now()), kNoneRests);
+}
+
+void Archive::end_run(const Seen& seen) {
+  if (begun_ || !present_.folder) return;
+  queue_.add_poses(seen);
+  queue_.be_due();
+  const Allowance of_the_next = queue_.allowance();
+  while (write(seen, static_cast<std::size_t>(Allowance::kMost), kNoneRests)) {
+  }
+  queue_.allowance() = of_the_next;
+}
+
+void Archive::note(const Seen& seen) {
+  present_.row = seen.facts();
+  present_.row.key = present_.key;
+  present_.row.last = seen.now;
+  present_.row.stamp = seen.stamp;
+}
+
+void Archive::sample(const Seen& seen) {
+  if (samples_.wants(seen.now)) samples_.add(queue_.add(seen.sample()));
+}
+
+/// False: no data was due.
+bool Archive::write(const Seen& seen, std::size_t most, api::Time tiles_of) {
+  next_write_ = loop_.now() + kWriteEvery;
+  auto write = queue_.next(seen, present_.row, most, tiles_of);
+  if (!write) return false;
+  ++writing_;
+  writer_.submit(
+      [write, folder = present_.folder, limit = limits_.run] {
+        if (write->goes) folder->remove_first(*write->goes);
+        write->outcome = folder->write(write->batch, limit);
+      },
+      [this, write, begins = begins_] {
+        --writing_;
+        if (begins == begins_) return written(*write);
+        if (!write->outcome)
+          host::log(host::Level::Warning, "cannot store the end of the previous run",
+                    {{"why", write->outcome.error()}});
+      });
+  return true;
+}
+
+void Archive::written(const Write& write) {
+  const std::string why = write.outcome ? "" : write.outcome.error();
+  if (std::exchange(trouble_, why) != why && !why.empty())
+    host::log(host::Level::Warning, "cannot store the run's map and tracks", {{"why", why}});
+  queue_.done(write, limits_.run);
+  if (write.outcome && !stored_.resize(present_.key, write.outcome->bytes)) stored_.look();
+}
+
+void Archive::needs_attention(const std::vector<std::string>& sentences, api::Time now) {
+  if (begun_) return;
+  for (api::AttentionStep& step : attention_.look(sentences, now)) {
+    queue_.add(record_of(step), true);
+    samples_.add(std::move(step));
+  }
 }
 
 api::RunList Archive::list() const {
   api::RunList all{
       .runs = stored_.list().runs, .bytes = 0, .trouble = trouble_, .unreadable = stored_.list().unreadable};
   // a new run has no files yet
-  if (!key_.empty() && std::ranges::find(all.runs, key_, &api::RunRow::key) == all.runs.end()) {
-    all.runs.insert(all.runs.begin(), {.key = key_,
-                                       .run = head_.run,
-                                       .post = head_.post,
-                                       .began = head_.began,
+  if (!present_.key.empty() &&
+      std::ranges::find(all.runs, present_.key, &api::RunRow::key) == all.runs.end()) {
+    all.runs.insert(all.runs.begin(), {.key = present_.key,
+                                       .run = present_.head.run,
+                                       .post = present_.head.post,
+                                       .began = present_.head.began,
                                        .last = loop_.wall_now(),
                                        .stamp = loop_.stamp_now()});
   }
   for (api::RunRow& row : all.runs) {
-    row = with_times(row, row_);
-    row.is_present = row.key == key_;
+    row = with_times(row, present_.row);
+    row.is_present = row.key == present_.key;
     all.bytes += row.bytes;
   }
   return all;
 }
 
 void Archive::remove(const std::string& key, std::function<void(std::expected<void, std::string>)> done) {
-  if (key == key_) return done(std::unexpected("the present run cannot be deleted"));
+  if (key == present_.key) return done(std::unexpected("the present run cannot be deleted"));
   stored_.remove(key, std::move(done));
 }
 

@@ -8,12 +8,9 @@
 #include <vector>
 
 #include "api/kept_runs.hpp"
-#include "archive/allowance.hpp"
-#include "archive/due_tiles.hpp"
-#include "archive/lines.hpp"
-#include "archive/poses.hpp"
 #include "archive/samples.hpp"
 #include "archive/stored_runs.hpp"
+#include "archive/write_queue.hpp"
 #include "loop/loop.hpp"
 #include "loop/workers.hpp"
 #include "picture/mosaic.hpp"
@@ -26,21 +23,11 @@ struct Limits {
   std::uint64_t all = std::uint64_t{512} << 20;  // for all runs
 };
 
-/// State of the present run.
-struct Seen {
-  api::Time now = 0;
-  double stamp = 0;  // `now` by the stamp clock
-  const picture::Mosaic& picture;
-  std::function<std::vector<api::Track>(api::Time since)> tracks;
-  std::function<Sample()> sample;      // its `throttled` counts since the service started
-  std::function<api::RunRow()> facts;  // `began` by the stamp clock; the archive sets key, end and bytes
-};
-
 /// Stores the runs' maps, tracks and plots on disk across restarts and power cuts: README.md. A thread
 /// writes; the loop never blocks.
 class Archive final : public api::KeptRuns {
  public:
-  static constexpr std::chrono::seconds kWriteEvery{5}, kFactsEvery{30};
+  static constexpr std::chrono::seconds kWriteEvery{5};
 
   /// `loop` must outlive this object.
   Archive(loop::Loop& loop, const std::string& state_folder);
@@ -70,56 +57,49 @@ class Archive final : public api::KeptRuns {
 
   api::RunList list() const override;
   api::History history(api::Time since) const override { return samples_.since(since); }
-  void read(const std::string& key, ReadDone done) override { stored_.read(key, row_, std::move(done)); }
+  void read(const std::string& key, ReadDone done) override {
+    stored_.read(key, present_.row, std::move(done));
+  }
   void report(const std::string& key, std::vector<api::ReportDetail> reports,
               std::vector<api::ColourRow> colours, ReportDone done) override {
-    stored_.report(key, row_, std::move(reports), std::move(colours), std::move(done));
+    stored_.report(key, present_.row, std::move(reports), std::move(colours), std::move(done));
   }
   void remove(const std::string& key, std::function<void(std::expected<void, std::string>)> done) override;
 
  private:
   struct Opening;
-  struct Writing;
+  /// The data of a run on disk is being read.
+  struct Begun {
+    GoOn go_on;
+    double moved = 0;  // clock steps meanwhile, in seconds
+  };
+  /// The run that is recorded.
+  struct Present {
+    Head head;
+    std::string key;                    // "": not known yet
+    std::shared_ptr<RunFolder> folder;  // null: it has no directory
+    api::RunRow row;                    // at the last tick, without its bytes
+  };
+
   void opened(Opening& opening);
   void has_folder(const Opening& opening);
   /// Retries if the run has no directory.
   void make_folder();
-  /// The next write has all.
-  void be_due();
   void sample(const Seen& seen);
   void note(const Seen& seen);
   bool write(const Seen& seen, std::size_t most, api::Time tiles_of);
-  void put_facts(Batch& batch);
-  void put_layers(const Seen& seen, Batch& batch);
-  void put_tiles(const Seen& seen, Batch& batch, std::size_t left, api::Time tiles_of);
-  void written(const Writing& writing);
+  void written(const Write& write);
 
   loop::Loop& loop_;
   Limits limits_;
-  Allowance allowance_;
-  DueTiles due_;
+  WriteQueue queue_;
   Samples samples_;
   Attention attention_;
-  Lines lines_;
-  Poses poses_;
-  std::uint64_t throttled_ = 0;    // last count
-  std::uint64_t layers_seen_ = 0;  // Mosaic::version()
-  std::optional<double> wiped_;    // as stored
-  loop::Instant next_write_{}, next_facts_{};
-  api::RunRow row_;                      // the present run at the last tick, without its bytes
-  std::string facts_;                    // as written last, without the time
-  std::optional<std::uint64_t> leaves_;  // the file to remove
-  bool is_left_ = false;                 // it may be removed
-  std::uint64_t writes_ = 0;
+  Present present_;
+  std::optional<Begun> begun_;
+  std::uint64_t begins_ = 0;  // number of begin() calls
+  loop::Instant next_write_{};
   int writing_ = 0;  // writes in flight
-  bool opening_ = false;
-  double moved_ = 0;         // clock steps during the opening, in seconds
-  std::string steps_;        // records of clock steps for the tile files
-  std::uint64_t begun_ = 0;  // number of begin() calls
-  GoOn go_on_;
-  Head head_;        // of the present run
-  std::string key_;  // of the present run; "": not known yet
-  std::shared_ptr<RunFolder> folder_;
   std::string trouble_;
   loop::Writer writer_;  // after what its jobs use
   StoredRuns stored_;    // ends first, because it tells the jobs to end early

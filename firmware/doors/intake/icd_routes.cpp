@@ -190,18 +190,23 @@ std::unique_ptr<BodySink> IcdRoutes::take_in(Visit visit, const RequestHead& hea
                   icd::sentence("Content-Length: expected at most ", most, ", got ", *length)});
     return nullptr;
   }
-  if (visit.uri == icd::Uri::MarkersUpdate) {
-    return std::make_unique<MarkersUpload>(std::move(visit), *kind, options_.rules, workers_, markers_,
-                                           large_markers_, under_way_);
+  switch (visit.uri) {
+    case icd::Uri::MapUpdate:
+      return std::make_unique<MapUpload>(
+          std::move(visit),
+          MapUploadOptions{
+              .kind = *kind, .rules = options_.rules, .most_bytes = most, .without_room = without_room_},
+          std::move(flow), workers_, maps_, under_way_);
+    case icd::Uri::MarkersUpdate:
+      return std::make_unique<MarkersUpload>(std::move(visit), *kind, options_.rules, workers_, markers_,
+                                             large_markers_, under_way_);
+    case icd::Uri::ArtifactReports:
+    case icd::Uri::StateUpdate:
+      return std::make_unique<SmallUpload>(std::move(visit), *kind, options_.rules, small_, under_way_);
+    case icd::Uri::Status:
+      break;  // has no body
   }
-  if (visit.uri != icd::Uri::MapUpdate) {
-    return std::make_unique<SmallUpload>(std::move(visit), *kind, options_.rules, small_, under_way_);
-  }
-  return std::make_unique<MapUpload>(
-      std::move(visit),
-      MapUploadOptions{
-          .kind = *kind, .rules = options_.rules, .most_bytes = most, .without_room = without_room_},
-      std::move(flow), workers_, maps_, under_way_);
+  return nullptr;
 }
 
 void IcdRoutes::stop() {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "codec/read.hpp"
+#include "icd/require.hpp"
 #include "intake/take_parts.hpp"
 #include "intake/type_hint.hpp"
 
@@ -32,14 +33,23 @@ void SmallUpload::on_end() {
 }
 
 void SmallUpload::give_to_desk(const codec::Document& document) {
-  if (visit_.uri == icd::Uri::StateUpdate) {
-    take_parts(visit_, codec::read_state_parts(document, rules_));
-  } else if (const auto read = codec::read_artifact_report(document, rules_, type_hint); read) {
-    if (!read->left_out.empty()) visit_.desk.left_out(visit_.uri, visit_.sender, read->left_out);
-    visit_.desk.take(read->report, visit_.sender, visit_.responder);
-  } else {
-    visit_.refuse(read.error());
+  switch (visit_.uri) {
+    case icd::Uri::StateUpdate:
+      return take_parts(visit_, codec::read_state_parts(document, rules_));
+    case icd::Uri::ArtifactReports:
+      return take_report(document);
+    case icd::Uri::Status:
+    case icd::Uri::MapUpdate:
+    case icd::Uri::MarkersUpdate:
+      icd::require(false);
   }
+}
+
+void SmallUpload::take_report(const codec::Document& document) {
+  const auto read = codec::read_artifact_report(document, rules_, type_hint);
+  if (!read) return visit_.refuse(read.error());
+  if (!read->left_out.empty()) visit_.desk.left_out(visit_.uri, visit_.sender, read->left_out);
+  visit_.desk.take(read->report, visit_.sender, visit_.responder);
 }
 
 }  // namespace adit::intake

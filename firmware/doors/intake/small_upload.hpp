@@ -29,6 +29,7 @@ class SmallUpload final : public Upload {
 
  private:
   void give_to_desk(const codec::Document& document);
+  void take_report(const codec::Document& document);
 
   Visit visit_;
   UploadShare share_;

@@ -39,18 +39,14 @@ void Keeper::accept() {
   auto caller = accepted_at(listening_);
   if (!caller) return;
   if (client_) lose();
-  client_ = std::move(*caller);
-  words_ = loop_.watch(client_.get(), EPOLLIN, [this](std::uint32_t) { hear(); });
-  is_for_him_ = !pressed_.value_or(false);
-  told_button_ = ButtonState{false};
-  told_lights_ = {};
+  client_ = Client{.socket = std::move(*caller), .owns_press = !pressed_.value_or(false)};
+  client_->messages = loop_.watch(client_->socket.get(), EPOLLIN, [this](std::uint32_t) { hear(); });
   watched_.came(loop_.now());
   show();
 }
 
 void Keeper::lose() {
-  words_ = {};
-  client_ = {};
+  client_.reset();
   watched_.gone(loop_.now());
   tick_.call_at(loop_.now());
 }
@@ -58,7 +54,7 @@ void Keeper::lose() {
 void Keeper::hear() {
   std::array<char, kLongestMessage> bytes{};
   for (int i = 0; client_ && i < kHeardAtOnce; ++i) {
-    const ssize_t size = recv(client_.get(), bytes.data(), bytes.size(), MSG_DONTWAIT | MSG_TRUNC);
+    const ssize_t size = recv(client_->socket.get(), bytes.data(), bytes.size(), MSG_DONTWAIT | MSG_TRUNC);
     // If the peer closed with unread data, ECONNRESET is reported before its last messages.
     if (size < 0 && (errno == ECONNRESET || errno == EINTR)) continue;
     if (size < 0 && errno == EAGAIN) break;
@@ -125,17 +121,12 @@ void Keeper::look_at_button() {
   pressed_ = level ? std::optional(*level) : std::nullopt;
   if (!pressed_) return;
   if (is_first && *pressed_) world_.complain("button is pressed at the start: release it before use");
-  if (is_first || !*pressed_) is_for_him_ = !*pressed_;
+  if (client_ && (is_first || !*pressed_)) client_->owns_press = !*pressed_;
 }
 
 void Keeper::log_button(const std::expected<bool, std::string>& level) {
   if (std::exchange(button_broken_, !level) == !level) return;
   world_.complain(level ? "button works again" : "cannot read the button, retrying: " + level.error());
-}
-
-/// A press that began before aditd connected counts as not pressed until it is released.
-ButtonState Keeper::button_for_him() const {
-  return pressed_ ? ButtonState{*pressed_ && is_for_him_} : ButtonState{};
 }
 
 /// Also reads a held button, because a chip that has vanished reports no release and aditd counts the time
@@ -163,17 +154,19 @@ void Keeper::paint() {
   if (next) tick_.call_at(*next);
 }
 
+/// A press that began before aditd connected counts as not pressed until it is released.
 void Keeper::tell_what_is_new() {
-  if (const ButtonState button = button_for_him(); client_ && std::exchange(told_button_, button) != button)
-    tell(message_of(button));
-  if (const LightsState lights{painter_.trouble()}; client_ && std::exchange(told_lights_, lights) != lights)
-    tell(message_of(lights));
+  if (!client_) return;
+  const ButtonState button = pressed_ ? ButtonState{*pressed_ && client_->owns_press} : ButtonState{};
+  if (std::exchange(client_->told_button, button) != button) tell(message_of(button));
+  const LightsState lights{painter_.trouble()};
+  if (client_ && std::exchange(client_->told_lights, lights) != lights) tell(message_of(lights));
 }
 
 /// Closes the connection if the message cannot be sent, so that a release is never skipped.
 void Keeper::tell(const std::string& message) {
   const int flags = MSG_DONTWAIT | MSG_NOSIGNAL;
-  if (send(client_.get(), message.data(), message.size(), flags) < 0) lose();
+  if (send(client_->socket.get(), message.data(), message.size(), flags) < 0) lose();
 }
 
 }  // namespace adit::panel

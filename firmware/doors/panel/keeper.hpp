@@ -32,6 +32,15 @@ class Keeper {
   Keeper& operator=(const Keeper&) = delete;
 
  private:
+  /// The connected aditd, and the last reports to it.
+  struct Client {
+    loop::FileDescriptor socket;
+    bool owns_press = false;  // the present press began after it connected
+    ButtonState told_button{false};
+    LightsState told_lights = {};
+    loop::Source messages = {};  // ended before the socket is closed
+  };
+
   void accept();
   void hear();
   void take(std::string_view message);
@@ -43,7 +52,6 @@ class Keeper {
   void watch_button();
   void look_at_button();
   void log_button(const std::expected<bool, std::string>& level);
-  ButtonState button_for_him() const;
   void show();
   void paint();
   void tell_what_is_new();
@@ -57,13 +65,11 @@ class Keeper {
   Painter painter_;
   std::unique_ptr<ButtonLine> button_;   // null: there is none
   std::optional<bool> pressed_ = false;  // the line's level; nullopt: it cannot be read
-  bool is_for_him_ = false;              // the press began after the present aditd connected
-  ButtonState told_button_{false};       // the last report to aditd
-  LightsState told_lights_;              // the last report to aditd
   bool complained_ = false;              // a wrong message of aditd was logged
   bool button_broken_ = false;           // the button cannot be read; this was logged
-  loop::FileDescriptor listening_, client_;
-  loop::Source tick_, edges_, callers_, words_;  // ended before their descriptors are closed
+  std::optional<Client> client_;
+  loop::FileDescriptor listening_;
+  loop::Source tick_, edges_, callers_;  // ended before their descriptors are closed
 };
 
 }  // namespace adit::panel

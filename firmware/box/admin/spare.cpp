@@ -12,11 +12,8 @@
 #include "spare/sealed.hpp"
 
 namespace adit::admin {
-namespace {
 
 using icd::Status;
-
-}  // namespace
 
 Spare::Spare(loop::Loop& loop, loop::Workers& workers, Takeover& taking_over, std::string state_folder,
              const std::string& status_folder, const std::string& stuck, Asked asked)
@@ -70,8 +67,8 @@ api::SpareView Spare::spare() const {
   if (view.stick && !is_of_this_rest(view.stick->written)) view.stick->written.clear();
   if (file_.rest) view.since = file_.rest->since;
   if (view.standby && file_.rest) view.code = spare::spoken(file_.rest->code);
-  if (!taken_in_) return view;
-  const spare::About& about = taken_in_->about;
+  if (!opened_) return view;
+  const spare::About& about = opened_->content.about;
   view.taken_in = {.name = about.name,
                    .version = about.version,
                    .at = about.at,
@@ -79,8 +76,8 @@ api::SpareView Spare::spare() const {
                    .open = about.open,
                    .post = about.post,
                    .run = about.run,
-                   .port = taken_settings_.settings.team.listen.front().port,
-                   .left_out = taken_settings_.passed_over};
+                   .port = opened_->settings.settings.team.listen.front().port,
+                   .left_out = opened_->settings.passed_over};
   return view;
 }
 
@@ -168,7 +165,7 @@ void Spare::taken_from_stick(std::string file) {
 
 icd::Checked<void> Spare::take_in(std::string file) {
   if (takes_over_) return conflict("this box is taking over just now");
-  taken_in_.reset();
+  opened_.reset();
   sealed_ = std::make_shared<const std::string>(std::move(file));
   return {};
 }
@@ -186,23 +183,23 @@ void Spare::open(const std::string& code, Done done) {
       [sealed = sealed_, text, code = *typed] { *text = spare::unseal(*sealed, code); },
       [this, sealed = sealed_, text, done = std::move(done)] {
         if (sealed != sealed_) return done(conflict("another export was imported meanwhile"));
-        auto checked = opened(std::move(*text));
-        if (checked) sealed_.reset();
-        done(std::move(checked));
+        auto checked = check(*text);
+        if (!checked) return done(std::unexpected(std::move(checked.error())));
+        opened_ = *std::move(checked);
+        sealed_.reset();
+        done({});
       });
 }
 
 /// After a wrong code, the user may try again.
-icd::Checked<void> Spare::opened(std::expected<std::string, std::string> text) {
-  if (!text) return refuse(Status::UnprocessableEntity, std::move(text.error()));
+icd::Checked<Spare::Opened> Spare::check(const std::expected<std::string, std::string>& text) const {
+  if (!text) return refuse(Status::UnprocessableEntity, text.error());
   auto content = spare::read(*text);
   if (!content) return refuse(Status::UnprocessableEntity, std::move(content.error()));
   if (std::string why = file_.hindrance(content->about); !why.empty()) return conflict(std::move(why));
   auto settings = taking_over_.check(*content);
   if (!settings) return refuse(Status::UnprocessableEntity, std::move(settings.error()));
-  taken_settings_ = *std::move(settings);
-  taken_in_ = *std::move(content);
-  return {};
+  return Opened{*std::move(content), *std::move(settings)};
 }
 
 /// Also abandons a takeover that cannot be finished.
@@ -213,15 +210,15 @@ icd::Checked<void> Spare::forget() {
       return refuse(Status::ServiceUnavailable, std::move(done.error()));
     restart_.call_at(loop_.now());
   }
-  taken_in_.reset();
+  opened_.reset();
   sealed_.reset();
   return {};
 }
 
 icd::Checked<void> Spare::take_over() {
   if (takes_over_) return {};
-  if (!taken_in_) return conflict("no export is open: import and open one first");
-  spare::Content content = *taken_in_;
+  if (!opened_) return conflict("no export is open: import and open one first");
+  spare::Content content = opened_->content;
   if (!asked_.is_time_set()) content.about.told_at.reset();  // an unset time of day cannot be compared
   if (auto begun = taking_over_.begin(spare::write(content)); !begun)
     return refuse(Status::ServiceUnavailable, std::move(begun.error()));

@@ -54,13 +54,19 @@ class Spare final : public api::Spare {
   icd::Checked<void> take_over() override;
 
  private:
+  /// An imported export that was opened.
+  struct Opened {
+    spare::Content content;
+    settings::Saved settings;
+  };
+
   icd::Checked<void> keep(const SpareFile& next);
   bool is_of_this_rest(const std::string& file) const;
   /// `file`: the export. `name`: the box's address for the team.
   using Named = std::function<void(icd::Checked<std::string> file, const std::string& name)>;
   void seal(const Named& done);
   void taken_from_stick(std::string file);
-  icd::Checked<void> opened(std::expected<std::string, std::string> text);
+  icd::Checked<Opened> check(const std::expected<std::string, std::string>& text) const;
 
   loop::Loop& loop_;
   loop::Workers& workers_;
@@ -75,8 +81,7 @@ class Spare final : public api::Spare {
   bool goes_on_standby_ = false;  // when this gateway ends
   bool takes_over_ = false;
   std::shared_ptr<const std::string> sealed_;  // imported and not opened yet, or null
-  std::optional<spare::Content> taken_in_;
-  settings::Saved taken_settings_;  // of taken_in_
+  std::optional<Opened> opened_;
 };
 
 }  // namespace adit::admin

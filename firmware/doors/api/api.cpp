@@ -43,15 +43,10 @@ Api::Api(loop::Loop& loop, const Served& served, std::vector<icd::BearerToken> t
       maps_(served.source, served.finer, served.covered),
       lists_(loop, served.source),
       reports_(lists_, served.source, served.decisions),
-      settings_(served.setup),
-      network_(served.network),
-      updates_(served.updates),
       box_(served.source, lists_, served.box, entrance_, *redaction_, loop),
       kept_(loop, served.runs, served.source),
-      spare_(served.spare),
-      handlers_(&pages_, &sessions_, &run_, &maps_, &reports_, &settings_, &network_, &updates_, &box_,
-                &kept_, &spare_, &served.clock, &served.network, &served.test, &served.spare,
-                &served.updates) {}
+      handlers_(&pages_, &sessions_, &run_, &maps_, &reports_, &box_, &kept_, &served.clock, &served.network,
+                &served.test, &served.setup, &served.spare, &served.updates) {}
 
 std::unique_ptr<intake::BodySink> Api::open(const intake::RequestHead& head,
                                             std::shared_ptr<intake::Responder> asked_by,

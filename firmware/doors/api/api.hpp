@@ -9,7 +9,6 @@
 #include "api/kept_runs_routes.hpp"
 #include "api/live.hpp"
 #include "api/map_routes.hpp"
-#include "api/network_routes.hpp"
 #include "api/page_routes.hpp"
 #include "api/redacted.hpp"
 #include "api/report_list.hpp"
@@ -17,9 +16,6 @@
 #include "api/route.hpp"
 #include "api/run_routes.hpp"
 #include "api/session_routes.hpp"
-#include "api/settings_routes.hpp"
-#include "api/spare_routes.hpp"
-#include "api/update_routes.hpp"
 #include "icd/bearer_token.hpp"
 #include "icd/redaction.hpp"
 #include "intake/server.hpp"
@@ -80,12 +76,8 @@ class Api final : public intake::Handler {
   MapRoutes maps_;
   const ReportLists lists_;
   ReportRoutes reports_;
-  SettingsRoutes settings_;
-  NetworkRoutes network_;
-  UpdateRoutes updates_;
   BoxRoutes box_;
   KeptRunsRoutes kept_;
-  SpareRoutes spare_;
   const Handlers handlers_;
 };
 

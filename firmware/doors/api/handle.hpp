@@ -1,6 +1,7 @@
 #pragma once
 
 #include <concepts>
+#include <functional>
 #include <memory>
 #include <string>
 #include <type_traits>
@@ -29,6 +30,12 @@ struct Signature<Gives (Class::*)() const> : Signature<Gives (Class::*)()> {};
 template <class Class, class Gives, class Parameter>
 struct Signature<Gives (Class::*)(Parameter) const> : Signature<Gives (Class::*)(Parameter)> {};
 
+template <class Class, class Gives>
+struct Signature<Gives (*)(Class&)> : Signature<Gives (std::remove_const_t<Class>::*)()> {};
+template <class Class, class Gives, class Parameter>
+struct Signature<Gives (*)(Class&, Parameter)> : Signature<Gives (std::remove_const_t<Class>::*)(Parameter)> {
+};
+
 /// The result of a handler's function, as the Answer if it is a row or the success of an action.
 template <class Handler, class Result>
 auto answered(const Handler& handler, Result result) {
@@ -47,25 +54,25 @@ auto call_of(const Handlers& handlers, const Call& call) {
   auto& handler = *std::get<typename Signature<decltype(function)>::Handler*>(handlers);
   if constexpr (!std::is_null_pointer_v<decltype(reader)>) {
     const auto read = reader(call.body);
-    return read ? answered(handler, (handler.*function)(*read)) : refused(read.error());
+    return read ? answered(handler, std::invoke(function, handler, *read)) : refused(read.error());
   } else if constexpr (std::is_void_v<Argument>) {
-    return answered(handler, (handler.*function)());
+    return answered(handler, std::invoke(function, handler));
   } else if constexpr (std::integral<Argument>) {
     const auto number = icd::number_in<Argument>(call.parameters.front());
-    return number ? (handler.*function)(*number) : nothing_at(call.head.path());
+    return number ? std::invoke(function, handler, *number) : nothing_at(call.head.path());
   } else if constexpr (std::same_as<Argument, std::string>) {
-    return (handler.*function)(call.body);
+    return std::invoke(function, handler, call.body);
   } else if constexpr (std::same_as<Argument, intake::RequestHead>) {
-    return (handler.*function)(call.head);
+    return std::invoke(function, handler, call.head);
   } else {
-    return (handler.*function)(call);
+    return std::invoke(function, handler, call);
   }
 }
 
-/// Wraps a member function of one of the Handlers. Its parameter is what `reader` reads from the body;
-/// without a reader the number in the path (404 if it is not a number), the body (std::string), the
-/// RequestHead or the Call. It returns the Answer, a row, or the success of an action (api/after.hpp), or
-/// void and answers by Call::responder, or the object that receives the body.
+/// Wraps a function on one of the Handlers: a member, or with the handler as first parameter. Its parameter
+/// is what `reader` reads from the body; without a reader the number in the path (404 if it is not a number),
+/// the body (std::string), the RequestHead or the Call. It returns the Answer, a row, or the success of an
+/// action (api/after.hpp), or void and answers by Call::responder, or the object that receives the body.
 template <auto function, auto reader = nullptr>
 consteval Handle by() {
   constexpr auto kCall = call_of<function, reader>;

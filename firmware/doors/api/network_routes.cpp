@@ -24,26 +24,29 @@ intake::Answer unfit(const std::vector<settings::Error>& errors) {
 
 }  // namespace
 
-intake::Answer NetworkRoutes::check(const Call& call) const {
+namespace network_routes {
+
+intake::Answer check(Network& network, const Call& call) {
   const auto wanted = numbers_in(call.body);
   const auto findings =
-      wanted ? network_.check(*wanted, call.head.peer()) : network::Findings{wanted.error(), {}, {}};
+      wanted ? network.check(*wanted, call.head.peer()) : network::Findings{wanted.error(), {}, {}};
   CheckView checked{.errors = findings.errors, .changes = {.changes = {}, .warnings = findings.warnings}};
   for (const network::Difference& each : findings.changes)
     checked.changes.changes.push_back({each.path, {each.from}, {each.to}});
   return fresh(checked);
 }
 
-intake::Answer NetworkRoutes::change(const Call& call) {
+intake::Answer change(Network& network, const Call& call) {
   const auto wanted = numbers_in(call.body);
   if (!wanted) return unfit(wanted.error());
-  const auto findings = network_.check(*wanted, call.head.peer());
+  const auto findings = network.check(*wanted, call.head.peer());
   if (!findings.errors.empty()) return unfit(findings.errors);
-  return after(network_, network_.change(*wanted));
+  return after(network, network.change(*wanted));
 }
 
-intake::Answer NetworkRoutes::confirm(const Call& call) {
-  return after(network_, network_.confirm(call.head.local()));
+intake::Answer confirm(Network& network, const Call& call) {
+  return after(network, network.confirm(call.head.local()));
 }
 
+}  // namespace network_routes
 }  // namespace adit::api

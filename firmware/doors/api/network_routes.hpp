@@ -6,18 +6,12 @@
 namespace adit::api {
 
 /// The box's addresses: README.md.
-class NetworkRoutes {
- public:
-  /// `network` must outlive this object.
-  explicit NetworkRoutes(Network& network) : network_(network) {}
+namespace network_routes {
 
-  intake::Answer check(const Call& call) const;
-  intake::Answer change(const Call& call);
-  /// Uses the address of the request's connection.
-  intake::Answer confirm(const Call& call);
+intake::Answer check(Network& network, const Call& call);
+intake::Answer change(Network& network, const Call& call);
+/// Uses the address of the request's connection.
+intake::Answer confirm(Network& network, const Call& call);
 
- private:
-  Network& network_;
-};
-
+}  // namespace network_routes
 }  // namespace adit::api

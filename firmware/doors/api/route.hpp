@@ -17,22 +17,18 @@ class Clock;
 class KeptRunsRoutes;
 class MapRoutes;
 class Network;
-class NetworkRoutes;
 class PageRoutes;
 class ReportRoutes;
 class RunRoutes;
 class SelfTest;
 class SessionRoutes;
-class SettingsRoutes;
+class Setup;
 class Spare;
-class SpareRoutes;
-class UpdateRoutes;
 class Updates;
 
 /// All handlers.
-using Handlers = std::tuple<PageRoutes*, SessionRoutes*, RunRoutes*, MapRoutes*, ReportRoutes*,
-                            SettingsRoutes*, NetworkRoutes*, UpdateRoutes*, BoxRoutes*, KeptRunsRoutes*,
-                            SpareRoutes*, Clock*, Network*, SelfTest*, Spare*, Updates*>;
+using Handlers = std::tuple<PageRoutes*, SessionRoutes*, RunRoutes*, MapRoutes*, ReportRoutes*, BoxRoutes*,
+                            KeptRunsRoutes*, Clock*, Network*, SelfTest*, Setup*, Spare*, Updates*>;
 
 /// Clients that may use a route. A script with a token is an operator.
 enum class RouteAccess : std::uint8_t {
@@ -66,7 +62,7 @@ struct Call {
   std::string body;
 };
 
-/// A member of one of the Handlers. Exactly one pointer is set.
+/// A function on one of the Handlers. Exactly one pointer is set.
 struct Handle {
   intake::Answer (*answer)(const Handlers& handlers, const Call& call) = nullptr;
   /// Answers by Call::responder, at once or later.

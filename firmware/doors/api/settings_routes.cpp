@@ -76,68 +76,72 @@ icd::Checked<PostedToken> read_token(const std::string& body) {
   });
 }
 
-}  // namespace
-
-intake::Answer SettingsRoutes::shown() const {
-  return fresh(setup_view(setup_));
+/// Answers with the changes.
+intake::Answer apply(Setup& setup, const settings::Settings& next) {
+  const auto changes = settings::changes(setup.settings(), next);
+  const auto warnings = setup.warnings(next);
+  if (const auto saved = setup.save(next); !saved) return refused_change(saved.error());
+  return fresh(ChangesView{changes, warnings});
 }
 
-intake::Answer SettingsRoutes::exported() const {
-  auto answer = fresh("application/json", settings::file_of(setup_.settings()));
+}  // namespace
+
+namespace settings_routes {
+
+intake::Answer shown(const Setup& setup) {
+  return fresh(setup_view(setup));
+}
+
+intake::Answer exported(const Setup& setup) {
+  auto answer = fresh("application/json", settings::file_of(setup.settings()));
   answer.headers.push_back({"Content-Disposition", "attachment; filename=\"adit-settings.json\""});
   return answer;
 }
 
-intake::Answer SettingsRoutes::check(const std::string& body) const {
+intake::Answer check(const Setup& setup, const std::string& body) {
   const auto posted = read_posted(body, false);
   if (!posted) return refused(posted.error());
   const auto next = settings::parse(posted->settings);
   if (!next) return fresh(CheckView{.errors = next.error(), .changes = {}});
-  const auto unfit = unfit_to_save(setup_.settings(), *next);
+  const auto unfit = unfit_to_save(setup.settings(), *next);
   if (!unfit.empty()) return fresh(CheckView{.errors = unfit, .changes = {}});
   return fresh(CheckView{.errors = {},
-                         .changes = {settings::changes(setup_.settings(), *next), setup_.warnings(*next)}});
+                         .changes = {settings::changes(setup.settings(), *next), setup.warnings(*next)}});
 }
 
-intake::Answer SettingsRoutes::save(const std::string& body) {
+intake::Answer save(Setup& setup, const std::string& body) {
   const auto posted = read_posted(body, true);
   if (!posted) return refused(posted.error());
-  if (posted->base != settings::tag_of(setup_.settings())) {
+  if (posted->base != settings::tag_of(setup.settings())) {
     return refusal(icd::Status::Conflict, "another user has changed the settings meanwhile: reload them");
   }
   const auto next = settings::parse(posted->settings);
   if (!next) return refusal(icd::Status::UnprocessableEntity, settings::sentence_of(next.error()));
-  const auto unfit = unfit_to_save(setup_.settings(), *next);
+  const auto unfit = unfit_to_save(setup.settings(), *next);
   if (!unfit.empty()) return refusal(icd::Status::UnprocessableEntity, settings::sentence_of(unfit));
-  return apply(*next);
+  return apply(setup, *next);
 }
 
-intake::Answer SettingsRoutes::switch_course(const std::string& name) {
-  settings::Settings next = setup_.settings();
+intake::Answer switch_course(Setup& setup, const std::string& name) {
+  settings::Settings next = setup.settings();
   next.command_post.course = name;
   const auto checked = settings::parse(settings::value_of(next));
   if (!checked) return refusal(icd::Status::UnprocessableEntity, settings::sentence_of(checked.error()));
-  return apply(*checked);
+  return apply(setup, *checked);
 }
 
-intake::Answer SettingsRoutes::apply(const settings::Settings& next) {
-  const auto changes = settings::changes(setup_.settings(), next);
-  const auto warnings = setup_.warnings(next);
-  if (const auto saved = setup_.save(next); !saved) return refused_change(saved.error());
-  return fresh(ChangesView{changes, warnings});
-}
-
-intake::Answer SettingsRoutes::set_token(const std::string& body) {
+intake::Answer set_token(Setup& setup, const std::string& body) {
   const auto posted = read_token(body);
   if (!posted) return refused(posted.error());
-  const auto rows = setup_.tokens();
+  const auto rows = setup.tokens();
   if (std::ranges::find(rows, posted->name, &TokenRow::name) == rows.end())
     return refusal(icd::Status::UnprocessableEntity,
                    icd::sentence("name: expected one of ", icd::listed(rows, &TokenRow::name), ", got ",
                                  icd::in_quotes(posted->name)));
-  if (const auto kept = setup_.set_token(posted->name, posted->token); !kept)
+  if (const auto kept = setup.set_token(posted->name, posted->token); !kept)
     return refused_change(kept.error());
   return object({{"name", {posted->name}}, {"set", {posted->token.has_value()}}});
 }
 
+}  // namespace settings_routes
 }  // namespace adit::api

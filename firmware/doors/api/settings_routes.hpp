@@ -8,23 +8,14 @@
 namespace adit::api {
 
 /// Settings, tokens and courses. Routes: README.md.
-class SettingsRoutes {
- public:
-  /// `setup` must outlive this object.
-  explicit SettingsRoutes(Setup& setup) : setup_(setup) {}
+namespace settings_routes {
 
-  intake::Answer shown() const;
-  intake::Answer exported() const;
-  intake::Answer check(const std::string& body) const;
-  intake::Answer save(const std::string& body);
-  intake::Answer set_token(const std::string& body);
-  intake::Answer switch_course(const std::string& name);
+intake::Answer shown(const Setup& setup);
+intake::Answer exported(const Setup& setup);
+intake::Answer check(const Setup& setup, const std::string& body);
+intake::Answer save(Setup& setup, const std::string& body);
+intake::Answer set_token(Setup& setup, const std::string& body);
+intake::Answer switch_course(Setup& setup, const std::string& name);
 
- private:
-  /// Answers with the changes.
-  intake::Answer apply(const settings::Settings& next);
-
-  Setup& setup_;
-};
-
+}  // namespace settings_routes
 }  // namespace adit::api

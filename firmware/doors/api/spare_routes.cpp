@@ -44,8 +44,10 @@ class ReceivingExport final : public intake::BodySink {
 
 }  // namespace
 
-void SpareRoutes::exported(const Call& call) {
-  spare_.export_to([responder = call.responder](icd::Checked<std::string> file) {
+namespace spare_routes {
+
+void exported(Spare& spare, const Call& call) {
+  spare.export_to([responder = call.responder](icd::Checked<std::string> file) {
     if (!file) return responder->answer(refused(file.error()));
     auto answer = fresh("application/octet-stream", *std::move(file));
     answer.headers.push_back(
@@ -54,39 +56,40 @@ void SpareRoutes::exported(const Call& call) {
   });
 }
 
-void SpareRoutes::to_stick(const Call& call) {
-  spare_.export_to_stick([this, responder = call.responder](const icd::Checked<void>& done) {
-    responder->answer(after(spare_, done));
+void to_stick(Spare& spare, const Call& call) {
+  spare.export_to_stick([&spare, responder = call.responder](const icd::Checked<void>& done) {
+    responder->answer(after(spare, done));
   });
 }
 
-std::unique_ptr<intake::BodySink> SpareRoutes::take_in(const Call& call) {
+std::unique_ptr<intake::BodySink> take_in(Spare& spare, const Call& call) {
   if (call.head.content_length().value_or(spare::kLargestExport + 1) > spare::kLargestExport) {
     call.responder->answer(SmallBody::too_long(spare::kLargestExport, "export"));
     return nullptr;
   }
   return std::make_unique<ReceivingExport>(
-      [this, responder = call.responder](icd::Checked<std::string> file) {
-        responder->answer(file ? after(spare_, spare_.take_in(*std::move(file))) : refused(file.error()));
+      [&spare, responder = call.responder](icd::Checked<std::string> file) {
+        responder->answer(file ? after(spare, spare.take_in(*std::move(file))) : refused(file.error()));
       });
 }
 
-void SpareRoutes::open(const Call& call) {
+void open(Spare& spare, const Call& call) {
   const auto code = read_text(call.body, "code");
   if (!code) return call.responder->answer(refused(code.error()));
-  spare_.open(*code, [this, responder = call.responder](const icd::Checked<void>& done) {
-    responder->answer(after(spare_, done));
+  spare.open(*code, [&spare, responder = call.responder](const icd::Checked<void>& done) {
+    responder->answer(after(spare, done));
   });
 }
 
-intake::Answer SpareRoutes::take_over(const std::string& body) {
+intake::Answer take_over(Spare& spare, const std::string& body) {
   const auto unplugged =
       read_body<bool>(body, [](const codec::Field& root) { return root.member("unplugged").truth(); });
   if (!unplugged) return refused(unplugged.error());
   if (!*unplugged)
     return refusal(icd::Status::UnprocessableEntity,
                    "unplugged: expected true, because the box that made the export must be off");
-  return after(spare_, spare_.take_over());
+  return after(spare, spare.take_over());
 }
 
+}  // namespace spare_routes
 }  // namespace adit::api

@@ -9,20 +9,14 @@
 
 namespace adit::api {
 
-/// Spare and standby. Routes: README.md.
-class SpareRoutes {
- public:
-  /// `spare` must outlive this object.
-  explicit SpareRoutes(Spare& spare) : spare_(spare) {}
+/// Spare and standby. Routes: README.md. `spare` must outlive the answers.
+namespace spare_routes {
 
-  void exported(const Call& call);
-  void to_stick(const Call& call);
-  std::unique_ptr<intake::BodySink> take_in(const Call& call);
-  void open(const Call& call);
-  intake::Answer take_over(const std::string& body);
+void exported(Spare& spare, const Call& call);
+void to_stick(Spare& spare, const Call& call);
+std::unique_ptr<intake::BodySink> take_in(Spare& spare, const Call& call);
+void open(Spare& spare, const Call& call);
+intake::Answer take_over(Spare& spare, const std::string& body);
 
- private:
-  Spare& spare_;
-};
-
+}  // namespace spare_routes
 }  // namespace adit::api

@@ -49,7 +49,7 @@ class Receiving final : public intake::BodySink {
 
 }  // namespace
 
-std::unique_ptr<intake::BodySink> UpdateRoutes::receive(const Call& call) {
+std::unique_ptr<intake::BodySink> update_routes::receive(Updates& updates, const Call& call) {
   const auto refuse = [&call](intake::Answer answer) {
     call.responder->answer(std::move(answer));
     return nullptr;
@@ -61,11 +61,11 @@ std::unique_ptr<intake::BodySink> UpdateRoutes::receive(const Call& call) {
   if (!size || *size == 0) return refuse(unprocessable("Content-Length: expected the bundle's size"));
   const std::string_view again = call.head.query("again");
   if (!again.empty() && again != "0" && again != "1") return refuse(unprocessable("again: expected 0 or 1"));
-  auto upload = updates_.receive(*size, again == "1", [flow = call.flow] { flow->resume(); });
+  auto upload = updates.receive(*size, again == "1", [flow = call.flow] { flow->resume(); });
   if (!upload) return refuse(refused(upload.error()));
   return std::make_unique<Receiving>(std::move(*upload), *size,
-                                     [this, responder = call.responder](const icd::Checked<void>& done) {
-                                       responder->answer(after(updates_, done));
+                                     [&updates, responder = call.responder](const icd::Checked<void>& done) {
+                                       responder->answer(after(updates, done));
                                      });
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <memory>
-#include <string>
 
 #include "api/route.hpp"
 #include "api/updates.hpp"
@@ -9,16 +8,10 @@
 namespace adit::api {
 
 /// Updates of the box: README.md.
-class UpdateRoutes {
- public:
-  /// `updates` must outlive this object.
-  explicit UpdateRoutes(Updates& updates) : updates_(updates) {}
+namespace update_routes {
 
-  /// Receives a bundle as a stream.
-  std::unique_ptr<intake::BodySink> receive(const Call& call);
+/// Receives a bundle as a stream. `updates` must outlive the result.
+std::unique_ptr<intake::BodySink> receive(Updates& updates, const Call& call);
 
- private:
-  Updates& updates_;
-};
-
+}  // namespace update_routes
 }  // namespace adit::api

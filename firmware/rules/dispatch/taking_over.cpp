@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <tuple>
 #include <utility>
 
+#include "dispatch/merged_runs.hpp"
 #include "dispatch/report_verdict.hpp"
-#include "dispatch/run_watch.hpp"
-#include "dispatch/runs.hpp"
 #include "dispatch/same_report.hpp"
 #include "icd/sentence.hpp"
 
@@ -19,7 +19,17 @@ auto identity_of(const Report& report) {
   const icd::Point& at = report.report.position;
   return std::tuple(report.received, report.report.type, at.x, at.y, at.z);
 }
-using Identity = decltype(identity_of(std::declval<Report>()));
+
+SameReports same_reports(const Books& here, const Books& there) {
+  std::map<decltype(identity_of(std::declval<Report>())), const Report*> known;
+  for (const Report& report : here.reports) known.emplace(identity_of(report), &report);
+  SameReports same;
+  for (const Report& report : there.reports) {
+    if (const auto found = known.find(identity_of(report)); found != known.end())
+      same.emplace(&report, found->second);
+  }
+  return same;
+}
 
 bool was_recorded(const Report& report) {
   return report.state == ReportState::Answered || report.state == ReportState::Settled;
@@ -32,44 +42,15 @@ bool stands(const Report& report) {
   return was_sent && !effect_of(report).again;
 }
 
-bool are_told_apart(const Run& one, const Run& other) {
-  const bool other_name = !one.id.empty() && !other.id.empty() && one.id != other.id;
-  const bool other_team =
-      one.last && other.last && are_other_teams(one.last->current_team, other.last->current_team);
-  return other_name || other_team;
-}
-
-Runs runs_of(const Books& books) {
-  std::int64_t latest = 1;
-  for (const Report& report : books.reports) latest = std::max(latest, report.run);
-  Runs runs;
-  runs.open(books.runs, latest);
-  return runs;
-}
-
-/// The later box wins. No field becomes empty.
-Run joined(Run here, const Run& there) {
-  if (there.heard > here.heard) {
-    here.heard = there.heard;
-    here.last = there.last;
-    here.status_clock = there.status_clock;
-    here.answer_clock = there.answer_clock;
-  }
-  if (here.id.empty()) here.id = there.id;
-  if (here.unreliable.empty()) here.unreliable = there.unreliable;
-  return here;
-}
-
 class TakingOver {
  public:
   TakingOver(const Books& here, const Books& there, const Handover& handover)
       : here_(here),
         there_(there),
-        here_runs_(runs_of(here)),
-        there_runs_(runs_of(there)),
-        handover_(handover) {
+        handover_(handover),
+        same_(same_reports(here, there)),
+        runs_(here, there, same_, handover.ahead) {
     for (const Report& report : here_.reports) {
-      known_.emplace(identity_of(report), &report);
       next_number_ = std::max(next_number_, report.number + 1);
       sendings_here_ = std::max(sendings_here_, report.sending);
       next_sending_ = std::max(next_sending_, report.sending);
@@ -79,118 +60,25 @@ class TakingOver {
   }
 
   TakeOver run() {
-    take_runs();
+    for (const auto& [number, run] : runs_.all()) result_.runs.push_back(run);
     for (const Report& report : there_.reports) number(report);
     for (const Report& report : there_.reports) take(report);
+    std::set<const Report*> met;
+    for (const auto& [there, here] : same_) met.insert(here);
     for (const Report& report : here_.reports) {
-      if (!met_.contains(&report)) meet_first_box(report);
+      if (!met.contains(&report)) meet_first_box(report);
     }
     return std::move(result_);
   }
 
  private:
   const Report* known(const Report& report) const {
-    const auto found = known_.find(identity_of(report));
-    return found == known_.end() ? nullptr : found->second;
+    const auto found = same_.find(&report);
+    return found == same_.end() ? nullptr : found->second;
   }
-
-  /// No report and no heard run: the first box's numbers stay.
-  bool is_blank() const { return here_.reports.empty() && std::ranges::none_of(here_.runs, &Run::was_heard); }
-
-  // Runs.
-
-  /// By common reports, or by address and begin. 0: unknown here.
-  std::int64_t run_known_as(const Run& run) const {
-    std::int64_t found = 0;
-    for (const Report& report : there_.reports) {
-      const Report* const here = report.run == run.number ? known(report) : nullptr;
-      if (here == nullptr || here_runs_.find(here->run) == nullptr) continue;
-      if (found == 0 || here_runs_.find(here->run)->place() > here_runs_.find(found)->place())
-        found = here->run;
-    }
-    if (found != 0) return found;
-    // First runs have no begin.
-    const auto is_it = [&run](const Run& here) {
-      return here.post == run.post && here.began == run.began && here.why == run.why &&
-             (run.began != 0 || (here.last == run.last && here.id == run.id));
-    };
-    const auto same = std::ranges::find_if(here_.runs, is_it);
-    return same == here_.runs.end() ? 0 : same->number;
-  }
-
-  void take_runs() {
-    std::int64_t next = is_blank() ? 1 : here_runs_.next_number();
-    std::int64_t turn = 0;
-    for (const auto& [number, run] : here_runs_.all()) turn = std::max(turn, run.place());
-    std::vector<const Run*> in_turn;
-    for (const auto& [number, run] : there_runs_.all()) {
-      const std::int64_t as = run_known_as(run);
-      is_new_run_[number] = as == 0;
-      if (as == 0 && is_blank()) next = number;
-      runs_[number] = as != 0 ? as : next++;
-      in_turn.push_back(&run);
-    }
-    std::ranges::stable_sort(in_turn, {}, &Run::place);
-    for (const Run* const run : in_turn) {
-      const bool is_present = run->number == there_runs_.present().number;
-      take_run(*run, ++turn, is_present);
-    }
-    link_to_own();
-    for (const auto& [number, run] : merged_) result_.runs.push_back(run);
-  }
-
-  void take_run(const Run& run, std::int64_t turn, bool is_present) {
-    const std::int64_t number = runs_.at(run.number);
-    Run next = run;
-    if (run.heard != 0) next.heard += handover_.ahead;
-    if (is_new_run_.at(run.number)) {
-      next.number = number;
-      next.turn = turn;
-      const auto may_be = runs_.find(run.may_be);
-      next.may_be = may_be == runs_.end() ? 0 : may_be->second;
-    } else {
-      const auto before = merged_.find(number);
-      next = joined(before != merged_.end() ? before->second : *here_runs_.find(number), next);
-      const bool is_present_already = here_runs_.present().number == number;
-      if (is_present && !is_present_already) next.turn = turn;
-    }
-    merged_[number] = std::move(next);
-  }
-
-  /// The last own run at the same Command Post that the first box does not know; or null.
-  const Run* own_run() const {
-    const Run& present = merged_.at(runs_.at(there_runs_.present().number));
-    const Run* own = nullptr;
-    for (const auto& [number, run] : here_runs_.all()) {
-      const bool is_there = run.post == present.post && !merged_.contains(number);
-      const bool counts = run.was_heard() || has_reports(number);
-      if (is_there && counts && (own == nullptr || run.place() > own->place())) own = &run;
-    }
-    return own;
-  }
-
-  bool has_reports(std::int64_t run) const {
-    return std::ranges::find(here_.reports, run, &Report::run) != here_.reports.end();
-  }
-
-  /// The first box's present run may be the spare's own.
-  void link_to_own() {
-    present_ = runs_.at(there_runs_.present().number);
-    const Run* const own = own_run();
-    if (own == nullptr || !is_new_run_.at(there_runs_.present().number)) return;
-    own_ = own->number;
-    own_is_another_ = are_told_apart(*own, merged_.at(present_));
-    if (own_is_another_) return;
-    Run* first = &merged_.at(present_);
-    while (first->may_be != 0 && merged_.contains(first->may_be)) first = &merged_.at(first->may_be);
-    if (first->may_be == 0 && own_ < first->number) first->may_be = own_;
-  }
-
-  // Reports.
 
   void number(const Report& report) {
     const Report* const here = known(report);
-    if (here != nullptr) met_.emplace(here, &report);
     if (here == nullptr && here_.reports.empty()) next_number_ = report.number;
     numbers_[report.number] = here != nullptr ? here->number : next_number_++;
   }
@@ -198,7 +86,7 @@ class TakingOver {
   Report renumbered(const Report& report) const {
     Report next = report;
     next.number = numbers_.at(report.number);
-    if (const auto run = runs_.find(report.run); run != runs_.end()) next.run = run->second;
+    next.run = runs_.number_here(report.run);
     const auto same = numbers_.find(report.same_as);
     next.same_as = same == numbers_.end() ? 0 : same->second;
     if (report.sending != 0) next.sending = sendings_here_ + report.sending;
@@ -235,7 +123,7 @@ class TakingOver {
       return step(next, ReportState::Held,
                   icd::sentence("the same as report ", own->number, ", which this box had"));
     }
-    next.before = there.run == there_runs_.present().number ? handover_.expected : std::nullopt;
+    next.before = runs_.is_present_there(there.run) ? handover_.expected : std::nullopt;
     next.sending = ++next_sending_;
     next.sent = handover_.stamp;
     return step(next, ReportState::InDoubt, "it was queued at the first box, which may have sent it since");
@@ -250,29 +138,28 @@ class TakingOver {
 
   /// The same report that this box may have sent in the first box's present run, or null.
   const Report* sent_here(const Report& report) const {
-    if (own_ == 0 || own_is_another_ || report.run != present_ || report.asked) return nullptr;
+    if (runs_.own() == 0 || runs_.own_is_another() || report.run != runs_.present() || report.asked)
+      return nullptr;
     for (const Report& own : here_.reports) {
-      if (own.run == own_ && stands(own) && is_same(own.report, report.report)) return &own;
+      if (own.run == runs_.own() && stands(own) && is_same(own.report, report.report)) return &own;
     }
     return nullptr;
   }
 
   /// A report queued here belongs to the present run, which the first box knew.
   void meet_first_box(const Report& own) {
-    const Run* const its = here_runs_.find(own.run);
-    const bool is_of_own = own_ != 0 && own.run == own_;
-    const bool is_of_none = its != nullptr && !its->was_heard() && !merged_.contains(own.run);
-    if (own.state != ReportState::Queued || (!is_of_own && !is_of_none)) return;
+    const bool is_of_own = runs_.own() != 0 && own.run == runs_.own();
+    if (own.state != ReportState::Queued || (!is_of_own && !runs_.is_unheard(own.run))) return;
     Report next = own;
-    if (is_of_own && own_is_another_) {
+    if (is_of_own && runs_.own_is_another()) {
       step(next, ReportState::Held, "the run of the first box goes on");
     } else if (const TakenOverReport* const same = taken_like(own); same != nullptr && !own.asked) {
-      next.run = present_;
+      next.run = runs_.present();
       next.same_as = same->report.number;
       step(next, ReportState::Held,
            icd::sentence("the same as report ", same->report.number, ", which the first box had"));
     } else {
-      next.run = present_;
+      next.run = runs_.present();
       step(next, ReportState::Queued, "");
     }
     result_.reports.push_back({.report = std::move(next), .there = 0, .has_stepped = true});
@@ -280,7 +167,7 @@ class TakingOver {
 
   const TakenOverReport* taken_like(const Report& own) const {
     const auto is_like = [&](const TakenOverReport& taken) {
-      return taken.there != 0 && taken.report.run == present_ &&
+      return taken.there != 0 && taken.report.run == runs_.present() &&
              (stands(taken.report) || taken.report.is_corrected()) &&
              is_same(taken.report.report, own.report);
     };
@@ -290,16 +177,10 @@ class TakingOver {
 
   const Books& here_;
   const Books& there_;
-  const Runs here_runs_, there_runs_;
   const Handover& handover_;
-  std::map<Identity, const Report*> known_;
-  std::map<const Report*, const Report*> met_;           // a report here, and the same report there
-  std::map<std::int64_t, std::int64_t> runs_, numbers_;  // from numbers there to numbers here
-  std::map<std::int64_t, bool> is_new_run_;              // by the number there
-  std::map<std::int64_t, Run> merged_;                   // number here
-  std::int64_t present_ = 0;                             // number here
-  std::int64_t own_ = 0;  // own run at the same Command Post, unknown to the first box
-  bool own_is_another_ = false;
+  const SameReports same_;
+  const MergedRuns runs_;
+  std::map<std::int64_t, std::int64_t> numbers_;  // of reports, from there to here
   std::int64_t next_number_ = 1, sendings_here_ = 0, next_sending_ = 0;
   TakeOver result_;
 };

@@ -61,33 +61,11 @@ Judgement judge_safely(Endpoint& endpoint, const Request& request) {
   }
 }
 
-/// Takes out of a document what is too long to look at in a line.
-void shorten(Json& value) {
-  constexpr std::size_t longest_text = 4096;
-  constexpr std::size_t longest_list = 10'000;
-  if (value.is_binary()) {
-    value = {{"bytes", value.get_binary().size()}};
-  } else if (value.is_string() && value.get_ref<const std::string&>().size() > longest_text) {
-    value = {{"characters", value.get_ref<const std::string&>().size()}};
-  } else if (value.is_structured() && value.size() > longest_list) {
-    value = {{"elements", value.size()}};
-  } else if (value.is_structured()) {
-    for (Json& element : value) shorten(element);
-  }
-}
-
-OrderedJson text_or_null(const std::optional<std::string>& text) {
-  return text ? OrderedJson(*text) : nullptr;
-}
-
 }  // namespace
 
 CommandPost::CommandPost(const Options& options, const Secrets& secrets, std::vector<Artifact> artifacts,
                          std::unique_ptr<Transcript> transcript)
-    : manner_(options.manner),
-      verbose_(options.verbose),
-      slash_(options.slash),
-      roster_(options.roster),
+    : options_(options),
       run_(options.run, std::move(artifacts)),
       record_(options.manner),
       faults_(options.seed),
@@ -95,11 +73,11 @@ CommandPost::CommandPost(const Options& options, const Secrets& secrets, std::ve
       mapping_{mapping_of(options, secrets), "mapping"},
       transcript_(std::move(transcript)),
       number_(transcript_ ? transcript_->requests() : 0) {
-  if (!options.not_started) run_.start(launched_);
+  if (!options.not_started) run_.start(Clock::now());
 }
 
 Outcome CommandPost::scoring(const Request& request) {
-  return receive(scoring_, scoring_aim(request, manner_), request);
+  return receive(scoring_, scoring_aim(request, options_.manner), request);
 }
 
 Outcome CommandPost::mapping(const Request& request) {
@@ -108,7 +86,7 @@ Outcome CommandPost::mapping(const Request& request) {
 
 /// Before anything of it is judged, as a framework does; no fault is spent on it.
 bool CommandPost::redirects(const Request& request) const {
-  return slash_ && !request.fault && lacks_slash(request);
+  return options_.slash && !request.fault && lacks_slash(request);
 }
 
 /// ICD 6.4 and 6.5: a name is one of the robots' that are registered. A state says each of them once.
@@ -116,7 +94,8 @@ void CommandPost::note_names(Judgement& judgement) const {
   std::set<std::string> posed;
   for (const Accepted& part : judgement.accepted) {
     const bool is_robot = part.kind != "marker" && part.kind != "report" && !part.robot.empty();
-    if (is_robot && !roster_.empty() && std::ranges::find(roster_, part.robot) == roster_.end()) {
+    if (is_robot && !options_.roster.empty() &&
+        std::ranges::find(options_.roster, part.robot) == options_.roster.end()) {
       judgement.findings.tells("name: '" + part.robot + "' is not on the roster (ICD 2)");
     }
     if (part.kind == "pose" && !posed.insert(part.robot).second) {
@@ -158,7 +137,7 @@ Outcome CommandPost::receive(Side& side, std::optional<Aim> aim, const Request& 
 Judgement CommandPost::judge(Side& side, std::optional<Aim> aim, const Fault& fault, const Request& request) {
   if (request.fault) return judge_fault(*request.fault);
   if (redirects(request)) return sent_on(request, aim);
-  Judgement judgement = aim && !fault.records() ? unjudged(fault, *aim, request, manner_)
+  Judgement judgement = aim && !fault.records() ? unjudged(fault, *aim, request, options_.manner)
                                                 : judge_safely(*side.endpoint, request);
   note_names(judgement);
   display_.show(judgement.markers, judgement.findings);
@@ -177,18 +156,14 @@ Outcome CommandPost::decide(Side& side, std::optional<Aim> aim, const Fault& fau
   std::unique_lock scoring_lock(scoring_mutex_, std::defer_lock);
   if (&side == &scoring_) scoring_lock.lock();
   Judgement judgement = judge(side, aim, fault, request);
-  std::uint64_t number = 0;
-  {
-    const std::lock_guard lock(number_mutex_);
-    number = ++number_;
-  }
-  if (transcript_) write_down(number, side.name, request, judgement);
+  const std::uint64_t number = ++number_;
+  if (transcript_) transcript_->request(number, side.name, request, judgement);
   record_.note(number, judgement);
   if (judgement.map)
     arrivals_.note(*judgement.map, std::chrono::floor<std::chrono::milliseconds>(request.ended));
   if (judgement.report) keep(std::move(*judgement.report), kByClient, number);
   if (scoring_lock) scoring_lock.unlock();
-  if (verbose_) show(number, request, judgement);
+  if (options_.verbose) show(number, request, judgement);
   if (judgement.outcome.kind == Outcome::Kind::Dies) {
     std::fprintf(stderr, "adit-rehearsal: mapping killed by %s\n", record_.killed_by().c_str());
   }
@@ -221,42 +196,6 @@ OrderedJson CommandPost::other_sender(const std::optional<Json>& sent) {
   OrderedJson body = report_body(ruling, report, kNoAuthority);
   keep(body, kByOther, nullptr);
   return body;
-}
-
-void CommandPost::write_down(std::uint64_t number, const char* endpoint, const Request& request,
-                             Judgement& judgement) {
-  constexpr std::size_t longest_message = std::size_t{1} << 20;
-  OrderedJson message;
-  if (judgement.message) {
-    if (judgement.map) {
-      const auto picture = transcript_->picture(number, *judgement.map);
-      (*judgement.message)["msg"]["data"]["file"] = picture ? Json(*picture) : Json(nullptr);
-    }
-    shorten(*judgement.message);
-    message = *judgement.message;
-    const std::size_t length = line_of(message).size();
-    if (length > longest_message) message = {{"characters", length}};
-  }
-  const Outcome& outcome = judgement.outcome;
-  const bool answered = outcome.kind == Outcome::Kind::Answered && outcome.answer.status != 0;
-  const OrderedJson line = {
-      {"number", number},
-      {"at", std::chrono::duration<double>(request.at - launched_).count()},
-      {"endpoint", endpoint},
-      {"method", request.method},
-      {"uri", request.target},
-      {"content_type", text_or_null(request.content_type)},
-      {"content_encoding", text_or_null(request.content_encoding)},
-      {"expect", request.expects_continue},
-      {"authorization", request.authorization.has_value()},
-      {"body_bytes", request.body.size()},
-      {"status", answered ? OrderedJson(outcome.answer.status) : OrderedJson(nullptr)},
-      {"answer", answered ? OrderedJson(outcome.answer.body) : OrderedJson(nullptr)},
-      {"message", std::move(message)},
-      {"fault", request.fault ? OrderedJson(request.fault->sentence) : OrderedJson(nullptr)},
-      {"rehearsed_fault", judgement.fault.empty() ? OrderedJson(nullptr) : OrderedJson(judgement.fault)},
-      {"violations", judgement.findings.violations()}};
-  transcript_->request(line);
 }
 
 void CommandPost::show(std::uint64_t number, const Request& request, const Judgement& judgement) const {

@@ -64,15 +64,10 @@ class CommandPost {
   Outcome receive(Side& side, std::optional<Aim> aim, const Request& request);
   Judgement judge(Side& side, std::optional<Aim> aim, const Fault& fault, const Request& request);
   Outcome decide(Side& side, std::optional<Aim> aim, const Fault& fault, const Request& request);
-  void write_down(std::uint64_t number, const char* endpoint, const Request& request, Judgement& judgement);
   void keep(OrderedJson report, const char* by, const OrderedJson& request);
   void show(std::uint64_t number, const Request& request, const Judgement& judgement) const;
 
-  const Clock::time_point launched_ = Clock::now();
-  const Manner manner_;
-  const bool verbose_;
-  const bool slash_;
-  const std::vector<std::string> roster_;
+  const Options options_;
   Run run_;
   Record record_;
   Faults faults_;
@@ -86,8 +81,7 @@ class CommandPost {
   mutable std::mutex scoring_mutex_;
   std::mutex answers_mutex_;
   std::array<std::optional<Answer>, kAims.size()> answers_;  // the last good one of each aim
-  std::mutex number_mutex_;
-  std::uint64_t number_;
+  std::atomic<std::uint64_t> number_;
   std::atomic<int> by_others_ = 0;
 };
 

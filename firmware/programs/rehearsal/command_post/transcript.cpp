@@ -23,6 +23,25 @@ std::string stem_of(std::uint64_t number, const MapMessage& map) {
          (map.name.empty() ? "merged" : tame(map.name));
 }
 
+/// Takes out of a document what is too long to look at in a line.
+void shorten(Json& value) {
+  constexpr std::size_t longest_text = 4096;
+  constexpr std::size_t longest_list = 10'000;
+  if (value.is_binary()) {
+    value = {{"bytes", value.get_binary().size()}};
+  } else if (value.is_string() && value.get_ref<const std::string&>().size() > longest_text) {
+    value = {{"characters", value.get_ref<const std::string&>().size()}};
+  } else if (value.is_structured() && value.size() > longest_list) {
+    value = {{"elements", value.size()}};
+  } else if (value.is_structured()) {
+    for (Json& element : value) shorten(element);
+  }
+}
+
+OrderedJson text_or_null(const std::optional<std::string>& text) {
+  return text ? OrderedJson(*text) : nullptr;
+}
+
 }  // namespace
 
 std::expected<std::unique_ptr<Transcript>, std::string> Transcript::open(const std::string& folder,
@@ -57,6 +76,42 @@ std::optional<std::string> Transcript::picture(std::uint64_t number, const MapMe
                                     : write_cloud_picture(std::get<Cloud>(map.msg), map.data, path);
   if (!good) return std::nullopt;
   return stem + (grid != nullptr ? ".pgm" : ".pcd");
+}
+
+void Transcript::request(std::uint64_t number, const char* endpoint, const Request& request,
+                         Judgement& judgement) {
+  constexpr std::size_t longest_message = std::size_t{1} << 20;
+  OrderedJson message;
+  if (judgement.message) {
+    if (judgement.map) {
+      const auto file = picture(number, *judgement.map);
+      (*judgement.message)["msg"]["data"]["file"] = file ? Json(*file) : Json(nullptr);
+    }
+    shorten(*judgement.message);
+    message = *judgement.message;
+    const std::size_t length = line_of(message).size();
+    if (length > longest_message) message = {{"characters", length}};
+  }
+  const Outcome& outcome = judgement.outcome;
+  const bool answered = outcome.kind == Outcome::Kind::Answered && outcome.answer.status != 0;
+  const OrderedJson line = {
+      {"number", number},
+      {"at", std::chrono::duration<double>(request.at - opened_).count()},
+      {"endpoint", endpoint},
+      {"method", request.method},
+      {"uri", request.target},
+      {"content_type", text_or_null(request.content_type)},
+      {"content_encoding", text_or_null(request.content_encoding)},
+      {"expect", request.expects_continue},
+      {"authorization", request.authorization.has_value()},
+      {"body_bytes", request.body.size()},
+      {"status", answered ? OrderedJson(outcome.answer.status) : OrderedJson(nullptr)},
+      {"answer", answered ? OrderedJson(outcome.answer.body) : OrderedJson(nullptr)},
+      {"message", std::move(message)},
+      {"fault", request.fault ? OrderedJson(request.fault->sentence) : OrderedJson(nullptr)},
+      {"rehearsed_fault", judgement.fault.empty() ? OrderedJson(nullptr) : OrderedJson(judgement.fault)},
+      {"violations", judgement.findings.violations()}};
+  append(requests_file_, line);
 }
 
 void Transcript::append(std::ofstream& file, const OrderedJson& line) {

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "rehearsal/command_post/json.hpp"
+#include "rehearsal/command_post/judgement.hpp"
 #include "rehearsal/command_post/messages.hpp"
 
 namespace adit::rehearsal {
@@ -25,17 +26,18 @@ class Transcript {
   /// How many requests are written down.
   std::uint64_t requests() const { return requests_; }
 
-  /// Writes a map's picture; gives its name within the folder ("grids/000012-X1.pgm"), or nothing where the
-  /// budget or the disk is full.
-  std::optional<std::string> picture(std::uint64_t number, const MapMessage& map);
-
-  void request(const OrderedJson& line) { append(requests_file_, line); }
+  /// Writes a request, and the picture of its map. Shortens `judgement.message`.
+  void request(std::uint64_t number, const char* endpoint, const Request& request, Judgement& judgement);
   void report(const OrderedJson& line) { append(reports_file_, line); }
 
  private:
   Transcript(std::string folder, std::uint64_t most) : folder_(std::move(folder)), most_(most) {}
+  /// Writes a map's picture; gives its name within the folder ("grids/000012-X1.pgm"), or nothing where the
+  /// budget or the disk is full.
+  std::optional<std::string> picture(std::uint64_t number, const MapMessage& map);
   void append(std::ofstream& file, const OrderedJson& line);
 
+  const Clock::time_point opened_ = Clock::now();
   const std::string folder_;
   const std::uint64_t most_;
   std::uint64_t requests_ = 0;

@@ -42,17 +42,15 @@ std::uint32_t state_of(int fd) {
 
 }  // namespace
 
-Client::Client(Engine& engine, loop::Loop& loop, MHD_Connection* connection, int fd, std::string peer,
-               std::string local)
+Client::Client(Engine& engine, loop::Loop& loop, MHD_Connection* connection, int fd, Addresses addresses)
     : engine_(engine),
-      loop_(loop),
       connection_(connection),
       fd_(fd),
       number_(next_number()),
-      peer_(std::move(peer)),
-      local_(std::move(local)),
+      addresses_(std::move(addresses)),
       gate_(fd),
-      deadline_(engine, gate_) {
+      deadline_(engine, gate_),
+      look_again_(loop.timer([this] { look_at_head(); })) {
   // libmicrohttpd does not watch the sockets of suspended connections, and misses an end that arrives
   // together with the last bytes. Edge-triggered, because unread bytes would be reported again and again.
   arrivals_ =
@@ -62,19 +60,23 @@ Client::Client(Engine& engine, loop::Loop& loop, MHD_Connection* connection, int
 
 std::optional<Held> Client::held() const {
   if (leaving_ || hung_up_) return std::nullopt;
-  return Held{.number = number_, .address = peer_, .known = known_, .doing = doing(), .since = since_};
+  return Held{.number = number_,
+              .address = addresses_.peer,
+              .known = deadline_.is_authenticated(),
+              .doing = doing(),
+              .since = stage_.since};
 }
 
 Held::Doing Client::doing() const {
-  if (phase_ == Phase::Idle) return Held::Doing::Idle;
-  if (phase_ == Phase::Head && gate_.has_unseen()) return Held::Doing::Fresh;
-  if (phase_ == Phase::Head || request_->is_sending()) return Held::Doing::Sending;
+  if (stage_.phase == Phase::Idle) return Held::Doing::Idle;
+  if (stage_.phase == Phase::Head && gate_.has_unseen()) return Held::Doing::Fresh;
+  if (stage_.phase == Phase::Head || request_->is_sending()) return Held::Doing::Sending;
   return deadline_.has_client_ended() && suspended_ ? Held::Doing::Left : Held::Doing::Waiting;
 }
 
 void Client::give_way() {
-  engine_.tell(phase_ == Phase::Idle ? Ended::Idle : Ended::GaveWay, peer_);
-  if (phase_ == Phase::Head || (phase_ == Phase::Request && request_->is_unanswered())) {
+  engine_.tell(stage_.phase == Phase::Idle ? Ended::Idle : Ended::GaveWay, addresses_.peer);
+  if (stage_.phase == Phase::Head || (stage_.phase == Phase::Request && request_->is_unanswered())) {
     say_last(last_answer_text(
         no_room("too many connections are open; this connection was closed for another; try again"), true));
   }
@@ -82,7 +84,7 @@ void Client::give_way() {
 }
 
 void Client::happened(std::uint32_t events) {
-  arrived_ = arrived_ || (events & EPOLLIN) != 0;
+  if ((events & EPOLLIN) != 0) gate_.bytes_came();
   if ((events & (EPOLLHUP | EPOLLERR)) != 0) {
     hung_up_ = true;
     if (reads_ && suspended_) return cut();
@@ -99,9 +101,9 @@ void Client::hold_back() {
   if (reads_) return read_on();
   if (hung_up_ || leaving_) return;
   suspend();
-  if (phase_ == Phase::Head) {
+  if (stage_.phase == Phase::Head) {
     happened(state_of(fd_));
-  } else if (arrived_ || deadline_.has_client_ended()) {  // happened() will tell later bytes
+  } else if (gate_.has_new_bytes() || deadline_.has_client_ended()) {  // happened() will tell later bytes
     look_at_head();
   }
 }
@@ -110,7 +112,6 @@ void Client::look_at_head() {
   const bool has_ended = deadline_.has_client_ended();
   if (gate_.has_refused() && (!gate_.read_away() || has_ended)) cut();
   if (!gate_.is_waiting() || !suspended_) return;
-  arrived_ = false;
   switch (gate_.look(engine_.now(), has_ended)) {
     case Gate::Finding::Whole:
       reads_ = gate_.next_is_chunked();
@@ -120,11 +121,10 @@ void Client::look_at_head() {
       refuse_head();
       return;
     case Gate::Finding::Later:
-      if (!look_again_) look_again_ = loop_.timer([this] { look_at_head(); });
       look_again_.call_at(gate_.again_at());
       break;
     case Gate::Finding::Begun:
-      if (phase_ != Phase::Idle) break;
+      if (stage_.phase != Phase::Idle) break;
       await_head();
       break;
     case Gate::Finding::Nothing:
@@ -154,7 +154,7 @@ bool Client::begin_chunked() {
 /// libmicrohttpd does not take part: version 0.9 accepts chunks that RFC 9112 does not allow, and version 1
 /// misreads extensions and refuses without a sentence.
 void Client::read_on() {
-  if (phase_ != Phase::Request && !begin_chunked()) return cut();
+  if (stage_.phase != Phase::Request && !begin_chunked()) return cut();
   std::array<std::uint8_t, kPieceBytes> bytes;  // NOLINT(cppcoreguidelines-pro-type-member-init)
   for (int left = kPiecesAtOnce; reads_ && !suspended_; --left) {
     if (left == 0) {
@@ -183,8 +183,7 @@ Next Client::fail() {
 }
 
 void Client::enter(Phase phase) {
-  phase_ = phase;
-  since_ = engine_.now();
+  stage_ = {.phase = phase, .since = engine_.now()};
 }
 
 void Client::request_begun(std::shared_ptr<Request> request) {
@@ -214,7 +213,7 @@ bool Client::client_keeps_connection() const {
 
 void Client::await_head() {
   enter(Phase::Head);
-  deadline_.expect_bytes(known_ ? engine_.listen().rate_over : engine_.listen().unauthenticated_within);
+  deadline_.expect_head();
 }
 
 void Client::expect_stream() {
@@ -227,7 +226,7 @@ void Client::expect_stream() {
 void Client::late() {
   if (!deadline_.is_late()) return;
   if (gate_.has_refused()) return cut();
-  switch (phase_) {
+  switch (stage_.phase) {
     case Phase::Request:
       request_->late();
       return;
@@ -235,7 +234,7 @@ void Client::late() {
       cut();
       return;
     case Phase::Head:
-      engine_.tell(Ended::Slow, peer_);
+      engine_.tell(Ended::Slow, addresses_.peer);
       say_last(last_answer_text(
           error_answer(icd::Status::RequestTimeout, "the head of the request took too long"), true));
       cut();
@@ -265,7 +264,7 @@ void Client::say(std::string_view text) {
 }
 
 void Client::say_last(std::string_view text) {
-  if (phase_ != Phase::Request) gate_.read_away();
+  if (stage_.phase != Phase::Request) gate_.read_away();
   say(text);
   ::shutdown(fd_, SHUT_WR);
 }

@@ -23,6 +23,9 @@ enum class Next : std::uint8_t;
 /// One client's connection, from accept to close. Lives as long as libmicrohttpd's connection.
 class Client {
  public:
+  struct Addresses {
+    std::string peer, local;
+  };
   /// The state of the connection. Each has its own deadline.
   enum class Phase : std::uint8_t {
     Head,     // a head is arriving, or the first one is awaited
@@ -30,20 +33,17 @@ class Client {
     Request,  // Request sets the deadlines
   };
 
-  Client(Engine& engine, loop::Loop& loop, MHD_Connection* connection, int fd, std::string peer,
-         std::string local);
+  Client(Engine& engine, loop::Loop& loop, MHD_Connection* connection, int fd, Addresses addresses);
   Client(const Client&) = delete;
   Client& operator=(const Client&) = delete;
 
   MHD_Connection* connection() const { return connection_; }
   std::uint64_t number() const { return number_; }  // RequestHead::connection()
-  const std::string& peer() const { return peer_; }
-  const std::string& local() const { return local_; }
+  const std::string& peer() const { return addresses_.peer; }
+  const std::string& local() const { return addresses_.local; }
   Engine& engine() const { return engine_; }
   /// For the shares; nullopt if the connection is closing.
   std::optional<Held> held() const;
-  bool is_known() const { return known_; }
-  void is_known(bool known) { known_ = known; }
   /// Closes the connection to make room for another one. If a request is not answered yet, the client gets a
   /// 503.
   void give_way();
@@ -102,16 +102,15 @@ class Client {
   void read_on();
 
   Engine& engine_;
-  loop::Loop& loop_;
   MHD_Connection* connection_;
   int fd_;
   std::uint64_t number_;
-  std::string peer_, local_;
-  Phase phase_ = Phase::Head;
-  loop::Instant since_;
-  bool known_ = false;
+  Addresses addresses_;
+  struct {
+    Phase phase;
+    loop::Instant since;
+  } stage_;
   bool leaving_ = false;  // cut() was called
-  bool arrived_ = false;  // bytes arrived since the last look at the head
   /// The next or present request is chunked, and Adit reads it. libmicrohttpd stays suspended until cut();
   /// suspended_ says if Adit reads.
   bool reads_ = false;

@@ -25,9 +25,13 @@ void Deadline::expect_last_reading() {
   set(engine_.now() + kLastReading);
 }
 
-void Deadline::expect_body(bool known) {
+void Deadline::expect_head() {
+  expect_bytes(authenticated_ ? engine_.listen().rate_over : engine_.listen().unauthenticated_within);
+}
+
+void Deadline::expect_body() {
   expect_bytes(engine_.listen().unauthenticated_within);
-  if (known && !ended_) expect_rate();
+  if (authenticated_ && !ended_) expect_rate();
 }
 
 void Deadline::body_came(std::size_t bytes) {

@@ -18,13 +18,17 @@ class Deadline {
   Deadline(Engine& engine, const Gate& gate) : engine_(engine), gate_(gate) {}
 
   loop::Instant at() const { return at_; }
+  /// The client has shown a token.
+  bool is_authenticated() const { return authenticated_; }
+  void set_authenticated(bool authenticated) { authenticated_ = authenticated; }
   /// The client must send bytes within that time.
   void expect_bytes(std::chrono::milliseconds within);
   /// The client must read the last answer of its connection within 2 s.
   void expect_last_reading();
-  /// The client must send the rest of the body: an unauthenticated client within
-  /// Listen::unauthenticated_within, a `known` one at the least rate.
-  void expect_body(bool known);
+  /// The client must send a head, or the rest of the body: an unauthenticated client within
+  /// Listen::unauthenticated_within, an authenticated one within Listen::rate_over, or at the least rate.
+  void expect_head();
+  void expect_body();
   void body_came(std::size_t bytes);
   /// The client must read its answer at the least rate. `taken`: of Gate::traffic() before the answer.
   void expect_steady_reading(std::uint64_t taken);
@@ -45,6 +49,7 @@ class Deadline {
   Engine& engine_;
   const Gate& gate_;
   loop::Instant at_ = loop::Instant::max();
+  bool authenticated_ = false;
   bool bytes_expected_ = false;  // false: the client must read
   bool ended_ = false;           // the client has closed its direction
   std::optional<LeastRate> rate_;

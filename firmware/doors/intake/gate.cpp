@@ -41,6 +41,7 @@ bool Gate::has_unseen() const {
 }
 
 Gate::Finding Gate::look(loop::Instant now, bool at_once) {
+  has_new_bytes_ = false;
   if (looked_at_ > 0 && !at_once) {
     const std::size_t there = unread();
     if (there == looked_at_) return Finding::Begun;

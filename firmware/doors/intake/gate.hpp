@@ -27,6 +27,9 @@ class Gate {
   /// A request has ended. Waits for the next head, unless that was checked together with the previous one
   /// because the client does not wait for answers.
   void request_over();
+  /// Bytes have arrived since the last look().
+  void bytes_came() { has_new_bytes_ = true; }
+  bool has_new_bytes() const { return has_new_bytes_; }
   bool is_waiting() const { return stage_ == Stage::Waiting; }
   /// True if the first bytes were not checked yet, or libmicrohttpd has not yet read a valid head.
   bool has_unseen() const;
@@ -75,6 +78,7 @@ class Gate {
 
   int fd_;
   Stage stage_ = Stage::Waiting;
+  bool has_new_bytes_ = false;
   HeadChecker head_;
   std::vector<Sound> sound_;  // requests whose heads libmicrohttpd may read
   std::size_t next_ = 0;      // the next one of sound_

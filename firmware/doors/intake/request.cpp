@@ -70,7 +70,7 @@ void Request::open(Handler& handler) {
   if (answered()) {
     turn_away();
   } else {
-    client_->deadline().expect_body(client_->is_known());
+    client_->deadline().expect_body();
     if (chunks_ && icd::same_but_for_case(head_->header("Expect"), "100-continue")) {
       client_->say("HTTP/1.1 100 Continue\r\n\r\n");
     }
@@ -109,7 +109,9 @@ Next Request::throw_away(std::size_t bytes) {
   if (answered()) sink_.reset();  // frees its data, because discarding may take long
   thrown_away_ += bytes;
   client_->deadline().body_came(bytes);
-  return thrown_away_ > (client_->is_known() ? kLinger : kLingerUnauthenticated) ? Next::Close : Next::GoOn;
+  return thrown_away_ > (client_->deadline().is_authenticated() ? kLinger : kLingerUnauthenticated)
+             ? Next::Close
+             : Next::GoOn;
 }
 
 void Request::take_chunks(std::span<const std::uint8_t> piece) {
@@ -168,8 +170,8 @@ void Request::turn_away() {
 void Request::refuse(const Answer& answer) {
   client_->say_last(last_answer_text(answer, !is_head_));
   stage_ = Stage::Refusing;
-  if (client_->is_known() && has_body_) {
-    client_->deadline().expect_body(client_->is_known());
+  if (client_->deadline().is_authenticated() && has_body_) {
+    client_->deadline().expect_body();
   } else {
     client_->deadline().expect_last_reading();
   }
@@ -263,7 +265,7 @@ bool Request::client_gone() const {
 void Request::resume() {
   resumed_ = true;
   if (stage_ != Stage::Body || !client_->suspended()) return;
-  client_->deadline().expect_body(client_->is_known());
+  client_->deadline().expect_body();
   client_->resume();
 }
 

@@ -198,8 +198,8 @@ void Server::Impl::connected(MHD_Connection* connection, void** client_cls) {
   const sockaddr* const address =
       MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CLIENT_ADDRESS)->client_addr;
   const int socket = MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD)->connect_fd;
-  auto client = std::make_unique<Client>(*this, loop_, connection, socket, address_text(address),
-                                         local_address(socket));
+  auto client = std::make_unique<Client>(*this, loop_, connection, socket,
+                                         Client::Addresses{address_text(address), local_address(socket)});
   Client* const known = client.get();
   clients_.emplace(known->number(), std::move(client));
   *client_cls = known;
@@ -211,8 +211,8 @@ void Server::Impl::tell(Ended why, const std::string& address) {
 }
 
 std::size_t Server::Impl::unauthenticated() const {
-  return static_cast<std::size_t>(
-      std::ranges::count_if(clients_, [](const auto& each) { return !each.second->is_known(); }));
+  return static_cast<std::size_t>(std::ranges::count_if(
+      clients_, [](const auto& each) { return !each.second->deadline().is_authenticated(); }));
 }
 
 std::vector<Held> Server::Impl::held_but(const Client* one) const {
@@ -248,8 +248,8 @@ void Server::Impl::begin_request(Client& client) {
     request->begin(std::move(head), std::move(*target), client.gate().framing());
     const Credentials shown = turnstile_.shown(request->head());
     const bool known = shown == Credentials::Token || shown == Credentials::Enough;
-    const bool has_room = !known || client.is_known() || make_room_for(client);
-    client.is_known(known && has_room);
+    const bool has_room = !known || client.deadline().is_authenticated() || make_room_for(client);
+    client.deadline().set_authenticated(known && has_room);
     if (has_room) return request->open(turnstile_);
     tell(Ended::NoRoom, client.peer());
     request->refuse_for_room("too many requests at once, from this address or in total; try again");

@@ -70,14 +70,13 @@ Scoring::Scoring(loop::Loop& loop, ledger::Ledger& ledger, const settings::Setti
       channel_(loop, "scoring", access_to_scoring(settings.command_post, std::move(token))),
       pace_(settings.command_post.rates, random, journal),
       wake_(loop.timer([this] { pump(); })),
-      poll_(loop.timer([this] { poll(); })),
       deadline_(loop.timer([this] { deadline_came(); })) {}
 
 void Scoring::start() {
   open_reports();
   if (stopping_) return;
   channel_.keep_warm();
-  poll();
+  ask_soon();
 }
 
 /// On standby without the address, so that no run begins.
@@ -103,7 +102,7 @@ void Scoring::endpoint_changed(std::optional<icd::BearerToken> token) {
 void Scoring::endpoint_turned() {
   pace_.endpoint_turned();
   known_status_ = {};
-  poll_due_ = true;
+  ask_at_ = loop_.now();
   open_reports();
   watch_deadlines();
   counts_.changed();
@@ -163,8 +162,8 @@ std::optional<intake::Answer> Scoring::known_status() const {
                               reports_go_first ? KnownStatus::kOldestBehindReports : KnownStatus::kOldest);
 }
 
-void Scoring::poll() {
-  poll_due_ = true;
+void Scoring::ask_soon() {
+  ask_at_ = loop_.now();
   pump();
 }
 
@@ -183,11 +182,10 @@ void Scoring::pump() noexcept {
   if (!is_free(requests, now)) return;
   std::array<dispatch::Candidate, 2> candidates;
   if (requests.report) candidates[0] = {now, pace_.report_ready()};
-  if (!status_clients_.empty() || poll_due_) {
-    candidates[1] = {now, pace_.status_ready(requests.in_doubt)};
-  } else if (requests.status) {
-    candidates[1] = {now, std::max(pace_.status_ready(requests.in_doubt), *requests.status)};
-  }
+  const loop::Instant status_at =
+      status_clients_.empty() ? std::min(ask_at_, requests.status.value_or(ask_at_)) : now;
+  if (status_at != loop::Instant::max())
+    candidates[1] = {now, std::max(pace_.status_ready(requests.in_doubt), status_at)};
   const dispatch::Turn turn = dispatch::in_order(candidates, now);
   if (turn.wake) wake_.call_at(*turn.wake);
   if (turn.candidate == 0) send_next();
@@ -206,7 +204,7 @@ bool Scoring::is_free(const dispatch::NextRequests& requests, loop::Instant now)
   channel_.give_way();
   asked_status_.reset();
   pace_.status_lost(now);
-  poll_due_ = true;
+  ask_at_ = now;
   return true;
 }
 
@@ -234,7 +232,7 @@ void Scoring::hear_time() {
 void Scoring::report_answered(const uplink::Outcome& outcome) {
   classify_report(outcome);
   known_status_.no_longer_fresh();  // score and remaining reports may have changed
-  poll_due_ = true;
+  ask_at_ = loop_.now();
   watch_deadlines();
   counts_.changed();
   pump();
@@ -289,7 +287,7 @@ void Scoring::tick() {
 }
 
 void Scoring::ask_status(bool decides) {
-  poll_due_ = false;
+  ask_at_ = loop::Instant::max();
   asked_status_ = {.at = loop_.now(), .decides = decides};
   pace_.status_sent(asked_status_->at);
   channel_.send(icd::Uri::Status, "", {},
@@ -298,7 +296,7 @@ void Scoring::ask_status(bool decides) {
 
 void Scoring::status_answered(const uplink::Outcome& outcome) {
   const loop::Instant asked = std::exchange(asked_status_, std::nullopt)->at;
-  poll_.call_at(loop_.now() + kAskEvery);
+  ask_at_ = loop_.now() + kAskEvery;
   classify_status(outcome, asked);
   watch_deadlines();
   counts_.changed();
@@ -313,7 +311,7 @@ void Scoring::classify_status(const uplink::Outcome& outcome, loop::Instant aske
                                                                   : std::unexpected<std::string>("");
   if (answered != nullptr && answered->wants_slash) {
     pace_.status_taken(answered->sent, now);
-    poll_due_ = true;  // clients keep waiting
+    ask_at_ = now;  // clients keep waiting
     return;
   }
   if (run) known_status_.heard(answered->body, *run, asked, loop_.stamp_now());  // sent with its age
@@ -368,14 +366,14 @@ dispatch::Reports::Outcome Scoring::correct(std::int64_t number, const icd::Arti
 std::int64_t Scoring::begin_run() noexcept {
   const std::int64_t number = reports_->declare_new_run(time());
   counts_.changed();
-  poll();
+  ask_soon();
   return number;
 }
 
 void Scoring::link_is_back() {
   pace_.link_is_back();
   channel_.hurry();
-  poll();  // its state is news
+  ask_soon();  // its state is news
 }
 
 bool Scoring::stop() {

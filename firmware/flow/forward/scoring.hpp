@@ -97,7 +97,7 @@ class Scoring {
   void open_reports();
   void endpoint_turned();
   void take(const dispatch::PostedReport& posted, dispatch::ClientId client) noexcept;
-  void poll();
+  void ask_soon();
   void pump() noexcept;
   bool is_free(const dispatch::NextRequests& requests, loop::Instant now);
   void send(const dispatch::Report& report);
@@ -124,10 +124,10 @@ class Scoring {
   std::unique_ptr<dispatch::Reports> reports_;  // never null
   Channel channel_;
   ScoringPace pace_;
-  loop::Source wake_, poll_, deadline_;
+  loop::Source wake_, deadline_;
 
   StatusClients status_clients_;
-  bool poll_due_ = false;  // Adit needs a status
+  loop::Instant ask_at_ = loop::Instant::max();  // Adit needs a status from then on
   KnownStatus known_status_;
   std::optional<AskedStatus> asked_status_;
   bool stopping_ = false;

@@ -54,23 +54,23 @@ void Connection::Impl::give_up() {
 }
 
 void Connection::Impl::begin_sending() {
-  if (phase_ == Phase::Closed) connect();
-  if (phase_ == Phase::Open && exchange_) begin();
+  open();
+  if (connected() && exchange_) begin();
 }
 
 void Connection::Impl::ready() {
-  if (phase_ == Phase::Connecting) return connecting_ended(connect_error(fd_.get()));
+  if (!connected()) return connecting_ended(connect_error(socket_->fd.get()));
   if (!exchange_) return idle_ended();
   if (answer_came()) return;
   if (exchange_->wants_to_write()) write();
 }
 
 void Connection::Impl::time_came() {
-  if (phase_ == Phase::Closed) return connect();
-  if (phase_ == Phase::Connecting) return connecting_failed("no answer in time");
+  if (!socket_) return connect();
+  if (!connected()) return connecting_failed("no answer in time");
   if (!exchange_) return idle_ended();
   if (answer_came()) return;
-  exchange_->listen(fd_.get(), loop_.now());
+  exchange_->listen(socket_->fd.get(), loop_.now());
   if (exchange_->is_silent_at(loop_.now()))
     return in_doubt({.why = exchange_->sentence("the peer was silent for too long")});
   const bool has_more = exchange_->release(loop_.now());
@@ -80,24 +80,23 @@ void Connection::Impl::time_came() {
 
 /// Updates the pace while the kernel's buffer is full.
 void Connection::Impl::look() {
-  if (!exchange_ || phase_ != Phase::Open || !exchange_->wants_to_write()) return;
-  pace_->goes_on(fd_.get(), loop_.now());
+  if (!exchange_ || !connected() || !exchange_->wants_to_write()) return;
+  pace_->goes_on(socket_->fd.get(), loop_.now());
   look_.call_at(loop_.now() + LinkPace::kLook);
 }
 
 void Connection::Impl::begin() {
   // The peer may have closed a kept connection, or a new one at once. No byte of this request was sent, so
   // NeverSent is true, and a retry on a new connection is safe.
-  if (!is_quiet(fd_.get()))
-    return fresh_ ? never_sent("the peer closed the new connection, or sent bytes before the request")
-                  : begin_again();
-  if (std::exchange(gives_up_after_, exchange_->longest_silence()) != exchange_->longest_silence()) {
-    give_up_after(fd_.get(), exchange_->longest_silence());
-  }
+  if (!is_quiet(socket_->fd.get()))
+    return socket_->is_fresh
+               ? never_sent("the peer closed the new connection, or sent bytes before the request")
+               : begin_again();
+  give_up_after(socket_->fd.get(), exchange_->longest_silence());
   // A request that is given up must not arrive after the next request on another connection, and must not be
   // recorded later.
-  reset_on_close(fd_.get(), true);
-  exchange_->begin(loop_.now(), sent_twice_);
+  reset_on_close(socket_->fd.get(), true);
+  exchange_->begin(loop_.now(), socket_->sent_twice);
   listen_again();
   write();
 }
@@ -109,24 +108,24 @@ void Connection::Impl::begin_again() {
 
 void Connection::Impl::write() {
   const bool begins = exchange_->sent() == 0;
-  if (!begins) pace_->goes_on(fd_.get(), loop_.now());
-  const int error = exchange_->write(fd_.get());
+  if (!begins) pace_->goes_on(socket_->fd.get(), loop_.now());
+  const int error = exchange_->write(socket_->fd.get());
   if (begins) began_to_leave();
-  if (error == 0) return watch(exchange_->wants_to_write() ? kComing | EPOLLOUT : kComing);
-  if (exchange_->sent() == 0) return fresh_ ? never_sent(std::strerror(error)) : begin_again();
-  if (!answer_came()) watch(kComing);
+  if (error == 0) return socket_->source.wait_for(exchange_->wants_to_write() ? kComing | EPOLLOUT : kComing);
+  if (exchange_->sent() == 0) return socket_->is_fresh ? never_sent(std::strerror(error)) : begin_again();
+  if (!answer_came()) socket_->source.wait_for(kComing);
 }
 
 void Connection::Impl::began_to_leave() {
   exchange_->began_to_leave(loop_.now());
   if (!exchange_->wants_to_write()) return;  // too short to measure the link
-  pace_->begins(fd_.get(), loop_.now());
+  pace_->begins(socket_->fd.get(), loop_.now());
   look_.call_at(loop_.now() + LinkPace::kLook);
 }
 
 /// Reads. True if that ended the exchange.
 bool Connection::Impl::answer_came() {
-  switch (exchange_->read(fd_.get())) {
+  switch (exchange_->read(socket_->fd.get())) {
     case Exchange::Answer::Waiting:
       if (exchange_->is_early()) listen_again();
       return false;
@@ -143,12 +142,12 @@ bool Connection::Impl::answer_came() {
 void Connection::Impl::is_next() {
   if (!exchange_) return;
   exchange_->is_next(loop_.now());
-  if (phase_ == Phase::Open) listen_again();
+  if (connected()) listen_again();
 }
 
 std::optional<Sent> Connection::Impl::has_arrived() const {
-  if (!exchange_ || phase_ != Phase::Open || !exchange_->has_arrived(fd_.get())) return {};
-  return exchange_->left(transmission(fd_.get()), loop_.now());
+  if (!exchange_ || !connected() || !exchange_->has_arrived(socket_->fd.get())) return {};
+  return exchange_->left(transmission(socket_->fd.get()), loop_.now());
 }
 
 void Connection::Impl::listen_again() {
@@ -157,14 +156,14 @@ void Connection::Impl::listen_again() {
 
 void Connection::Impl::answered() {
   Answered answer = exchange_->take_answer();
-  const Transmission seen = transmission(fd_.get());
+  const Transmission seen = transmission(socket_->fd.get());
   answer.sent = exchange_->left(seen, loop_.now());
-  sent_twice_ = seen.sent_twice;
-  reset_on_close(fd_.get(), exchange_->sent() < exchange_->total());
+  reset_on_close(socket_->fd.get(), exchange_->sent() < exchange_->total());
   // The measured mapping server promises keep-alive with a 4xx and still closes.
   const bool keep = exchange_->may_keep_alive() && answer.status < 400;
   if (keep) {
-    fresh_ = false;
+    socket_->is_fresh = false;
+    socket_->sent_twice = seen.sent_twice;
     rest();
   } else {
     drop();

@@ -2,7 +2,6 @@
 
 #include <sys/epoll.h>
 
-#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -10,6 +9,7 @@
 #include <string>
 
 #include "loop/file_descriptor.hpp"
+#include "uplink/connect_attempts.hpp"
 #include "uplink/connection.hpp"
 #include "uplink/exchange.hpp"
 #include "uplink/link_pace.hpp"
@@ -34,16 +34,22 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
   void abandon();
 
   bool busy() const { return done_ != nullptr; }
-  bool connected() const { return phase_ == Phase::Open; }
-  const std::string& trouble() const { return trouble_; }
+  bool connected() const { return socket_ && socket_->is_open; }
+  const std::string& trouble() const { return attempts_.trouble(); }
   std::size_t sent_bytes() const { return exchange_ ? exchange_->sent() : sent_; }
   std::uint64_t delivers() const { return pace_->delivers(); }
 
  private:
-  enum class Phase : std::uint8_t { Closed, Connecting, Open };
-  /// The shortest pause between two attempts to keep the connection warm, and the longest while they fail.
-  static constexpr std::chrono::seconds kFirstPause{1}, kLongestPause{5};
   static constexpr std::uint32_t kComing = EPOLLIN | EPOLLRDHUP;
+
+  /// A socket that is connecting or open.
+  struct Socket {
+    loop::FileDescriptor fd;
+    loop::Source source = {};  // of fd; destroyed before it
+    bool is_open = false;
+    bool is_fresh = false;         // connected for the request in flight
+    std::uint64_t sent_twice = 0;  // Transmission::sent_twice while it is idle
+  };
 
   void call(void (Impl::*part)());
 
@@ -61,7 +67,6 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
   void idle_ended();
   void drop();
   void close();
-  void watch(std::uint32_t events);
 
   // A request and its answer.
   void begin_sending();
@@ -82,18 +87,10 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
   const Endpoint endpoint_;
   const icd::BearerToken token_;
 
-  Phase phase_ = Phase::Closed;
-  loop::FileDescriptor fd_;
-  std::chrono::milliseconds gives_up_after_{};  // TCP_USER_TIMEOUT of fd_; 0: not set
-  std::uint64_t sent_twice_ = 0;                // Transmission::sent_twice of fd_ while it is idle
-  loop::Source source_;                         // of fd_; destroyed before it
-  std::uint32_t watched_ = 0;
-  loop::Source timer_;  // the end of a pause, connecting, idling or waiting for the peer
+  std::optional<Socket> socket_;  // none: closed
+  loop::Source timer_;            // the end of a pause, connecting, idling or waiting for the peer
   bool warm_ = false;
-  bool fresh_ = false;   // connected for the request in flight
-  loop::Instant began_;  // the last attempt to connect
-  std::chrono::seconds pause_ = kFirstPause;
-  std::string trouble_;
+  ConnectAttempts attempts_;
 
   std::unique_ptr<Exchange> exchange_;
   std::function<void(Outcome)> done_;

@@ -17,14 +17,15 @@ bool same_in_any_case(std::string_view one, std::string_view other) {
 }
 
 /// Chunks written at once: about a megabyte, so that the loop stays quick.
-constexpr std::size_t kChunksAtOnce = 16;
+constexpr std::size_t kChunksAtOnce = 17;
 /// Calls of listen() within answer_within.
 constexpr int kListenings = 8;
 
 /// RFC 9112 2.1. Sends no Expect, because the measured mapping server never answers it. Sends no chunks,
 /// because the length is known. The measured servers want a canonical `Bearer` and a content type without
 /// parameters.
-std::string head_of(const std::string& authority, const icd::BearerToken& token, const Request& request) {
+icd::ChunkedBytes head_of(const std::string& authority, const icd::BearerToken& token,
+                          const Request& request) {
   std::string head = request.method + " " + request.target + " HTTP/1.1\r\n";
   head += "Host: " + authority + "\r\n";
   head += "Authorization: Bearer " + token.reveal() + "\r\n";
@@ -32,11 +33,8 @@ std::string head_of(const std::string& authority, const icd::BearerToken& token,
   head += "Accept: application/json\r\n";
   if (!request.content_type.empty()) head += "Content-Type: " + request.content_type + "\r\n";
   if (request.method != "GET") head += "Content-Length: " + std::to_string(request.body.size()) + "\r\n";
-  return head + "\r\n";
-}
-
-iovec piece(const void* data, std::size_t size) {
-  return {const_cast<void*>(data), size};
+  head += "\r\n";
+  return icd::ChunkedBytes({reinterpret_cast<const std::uint8_t*>(head.data()), head.size()});
 }
 
 /// The first `bytes` bytes of the pieces, or all pieces.
@@ -70,13 +68,15 @@ bool redirects_to_slash(int status, std::string_view location, std::string_view 
 Exchange::Exchange(const Endpoint& endpoint, const icd::BearerToken& token, Request request)
     : authority_(authority_of(endpoint)),
       request_(std::move(request)),
-      head_(head_of(authority_, token, request_)),
+      chunks_(head_of(authority_, token, request_)),
       bytes_per_second_(endpoint.bytes_per_second),
-      total_(head_.size() + request_.body.size()),
+      total_(chunks_.size() + request_.body.size()),
       may_go_(request_.last_byte_not_before == loop::Instant{}
                   ? total_
                   : total_ - std::min(request_.body.size(), Request::kHeldBack)),
-      parser_(request_.longest_answer) {}
+      parser_(request_.longest_answer) {
+  chunks_.append(std::exchange(request_.body, {}));
+}
 
 void Exchange::begin(loop::Instant now, std::uint64_t sent_twice) {
   heard_ = now;
@@ -91,13 +91,11 @@ bool Exchange::release(loop::Instant now) {
 }
 
 int Exchange::write(int fd) {
-  std::array<iovec, kChunksAtOnce + 1> pieces{};
+  std::array<iovec, kChunksAtOnce> pieces{};
   std::size_t count = 0;
-  if (sent_ < head_.size()) pieces[count++] = piece(head_.data() + sent_, head_.size() - sent_);
-  const auto& chunks = request_.body.chunks();
-  for (std::size_t i = chunk_; i < chunks.size() && count < pieces.size(); ++i) {
-    const std::size_t skip = i == chunk_ ? within_chunk_ : 0;
-    pieces[count++] = piece(chunks[i]->data() + skip, chunks[i]->size() - skip);
+  for (const auto& chunk : chunks_.chunks().first(std::min(kChunksAtOnce, chunks_.chunks().size()))) {
+    const auto unsent = chunk->subspan(count == 0 ? within_chunk_ : 0);
+    pieces[count++] = {const_cast<std::uint8_t*>(unsent.data()), unsent.size()};
   }
   const std::span<iovec> may_go = first_of(std::span(pieces).first(count), may_go_ - sent_);
   const auto taken =
@@ -113,12 +111,10 @@ int Exchange::write(int fd) {
 }
 
 void Exchange::advance(std::size_t bytes) {
-  const std::size_t of_head = std::min(bytes, head_.size() - std::min(sent_, head_.size()));
   sent_ += bytes;
-  const auto& chunks = request_.body.chunks();
-  within_chunk_ += bytes - of_head;
-  while (chunk_ < chunks.size() && within_chunk_ >= chunks[chunk_]->size())
-    within_chunk_ -= chunks[chunk_++]->size();
+  within_chunk_ += bytes;
+  while (!chunks_.empty() && within_chunk_ >= chunks_.chunks().front()->size())
+    within_chunk_ -= chunks_.pop_front()->size();
 }
 
 bool Exchange::has_arrived(int fd) const {

@@ -85,14 +85,13 @@ class Exchange {
   bool holds_back() const { return may_go_ < total_; }
 
   std::string authority_;
-  Request request_;
-  std::string head_;
+  Request request_;                     // its body: in chunks_
+  icd::ChunkedBytes chunks_;            // of head and body; without those that are wholly sent
+  std::size_t within_chunk_ = 0;        // bytes of the first one that are sent
   std::uint64_t bytes_per_second_ = 0;  // 0: not paced
   std::size_t total_ = 0;
   std::size_t may_go_ = 0;  // bytes of total_; the rest is held back
   std::size_t sent_ = 0;
-  std::size_t chunk_ = 0;         // the first chunk of the body that is not wholly sent
-  std::size_t within_chunk_ = 0;  // bytes of that chunk that are sent
   bool write_broken_ = false;
   bool is_early_ = false;  // a 2xx arrived before the whole request was acknowledged
   std::size_t acknowledged_ = 0;

@@ -56,7 +56,7 @@ Instant RateLimit::next() const {
 }
 
 void RateLimit::sent(Instant now, bool ahead) {
-  if (storm_ && sent_) worked_ = now - *sent_;
+  if (storm_ && sent_) storm_->worked = now - *sent_;
   sent_ = now;
   under_way_ = ahead ? 2 : 1;
   count({.first = now, .last = now});
@@ -88,12 +88,11 @@ bool RateLimit::end_one() {
 void RateLimit::taken(const Span& sent, Instant now) {
   const bool sent_before = end_one();
   if (storm_ && !sent_before) {
-    last_was_short_ = now - storm_->began <= kShort;
     if (storm_->counts_anew && storm_->is_one) ++single_;
-    if (calm_since_) on_average_ = (now - *calm_since_) / (taken_since_ + 1);
-    calm_since_ = now;
+    if (last_storm_) storm_->on_average = (now - last_storm_->ended) / (taken_since_ + 1);
+    storm_->ended = now;
     taken_since_ = 0;
-    storm_.reset();
+    last_storm_ = std::exchange(storm_, std::nullopt);
   } else {
     ++taken_since_;
     if (!sent_before) speed_up(now);
@@ -135,7 +134,7 @@ void RateLimit::claimed(Instant now) {
 
 void RateLimit::begin_storm(Instant now) {
   const bool counted_from_answers = rule_.from_answers;
-  soon_again_ = calm_since_ && now - *calm_since_ <= kSoonAgain ? soon_again_ + 1 : 0;
+  soon_again_ = last_storm_ && now - last_storm_->ended <= kSoonAgain ? soon_again_ + 1 : 0;
   const auto tried_from = std::exchange(tried_from_, std::nullopt);
   if (tried_from && now - learned_at_ <= kSoonAgain) {  // the last step was one too many
     rule_ = *tried_from;
@@ -155,14 +154,17 @@ void RateLimit::begin_storm(Instant now) {
 
 bool RateLimit::is_a_limit() const {
   if (soon_again_ == 0) return false;
-  return taken_since_ == 0 || last_was_short_ || soon_again_ > 1;
+  const bool was_short = last_storm_->ended - last_storm_->began <= kShort;
+  return taken_since_ == 0 || was_short || soon_again_ > 1;
 }
 
 void RateLimit::slow_down(Instant now) {
   const Duration slowest = std::max(allowed_, spacing_at(kSlowest));
   // The pause that worked last, or the average time per accepted request including the storm, shows the
   // server's rate.
-  const Duration as_seen = taken_since_ == 0 ? worked_ : soon_again_ > 1 ? on_average_ : Duration{0};
+  const Duration as_seen = taken_since_ == 0 ? last_storm_->worked
+                           : soon_again_ > 1 ? last_storm_->on_average
+                                             : Duration{0};
   const double factor = taken_since_ == 0 ? kFarOff : kSlightlyOff;
   rule_.spacing = std::min(slowest, std::max(times(rule_.spacing, factor), times(as_seen, kMargin)));
   learned_at_ = now;

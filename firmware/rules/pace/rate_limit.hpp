@@ -101,6 +101,9 @@ class RateLimit {
     int sent_before = 0;       // requests in flight when it began; their answers do not end it
     bool counts_anew = false;  // from_answers was set when it began
     bool is_one = true;        // it is a single 429
+    Duration worked{0};        // the pause before the last request; if it has ended: of the one that ended it
+    Instant ended{};
+    Duration on_average{0};  // time per accepted request, from the end of the storm before to its own end
   };
 
   /// The distance between two requests.
@@ -116,20 +119,17 @@ class RateLimit {
   void slow_down(Instant now);
   void speed_up(Instant now);
 
-  Duration allowed_;             // the least spacing that the settings allow
-  Rule rule_;                    // learned
-  Span floor_{};                 // asked for by a server, or restored
-  std::optional<Span> counted_;  // the spacing counts from here
-  std::optional<Storm> storm_;
-  std::optional<Instant> sent_;  // the last time
+  Duration allowed_;                 // the least spacing that the settings allow
+  Rule rule_;                        // learned
+  Span floor_{};                     // asked for by a server, or restored
+  std::optional<Span> counted_;      // the spacing counts from here
+  std::optional<Storm> storm_;       // the present one
+  std::optional<Storm> last_storm_;  // the last that ended
+  std::optional<Instant> sent_;      // the last time
   int under_way_ = 0;
-  Duration worked_{0};                 // the pause before the request that ended the last storm
-  std::optional<Instant> calm_since_;  // the end of the last storm
-  bool last_was_short_ = false;
-  int taken_since_ = 0;     // requests accepted since the last storm
-  int soon_again_ = 0;      // successive storms, each of which began soon after the previous one
-  Duration on_average_{0};  // time per accepted request, from the end of one storm to the end of the next
-  Instant learned_at_{};    // when rule_ changed last
+  int taken_since_ = 0;             // requests accepted since the last storm
+  int soon_again_ = 0;              // successive storms, each of which began soon after the previous one
+  Instant learned_at_{};            // when rule_ changed last
   std::optional<Rule> tried_from_;  // the rule before the step that is on trial
   Duration hold_ = kFirstHold;      // time until the next step
   int single_ = 0;                  // storms of one 429 that led to from_answers

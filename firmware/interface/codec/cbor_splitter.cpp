@@ -10,7 +10,7 @@
 namespace adit::codec {
 
 CborSplitter::CborSplitter(Split split, Most most, BulkData& data)
-    : split_(split), most_(most), data_(data), path_(split) {
+    : split_(split), data_(data), path_(split), rest_(most) {
   nests_.reserve(BodyDecoder::kDeepest);
 }
 
@@ -19,7 +19,7 @@ icd::Checked<void> CborSplitter::feed(std::string_view bytes) {
     const auto taken = ADIT_TRY(piece_left_ > 0 ? string(bytes) : head(bytes));
     bytes.remove_prefix(taken);
     at_ += taken;
-    if (rest_.size() > most_.text) return std::unexpected(text_too_large(most_.text));
+    if (!rest_.fits()) return std::unexpected(rest_.too_large());
   }
   return {};
 }
@@ -27,8 +27,8 @@ icd::Checked<void> CborSplitter::feed(std::string_view bytes) {
 icd::Checked<Value> CborSplitter::finish() {
   if (at_ == 0) return std::unexpected(fault_at(at_, "an empty document"));
   if (!whole_) return std::unexpected(fault_at(at_, "the document is cut short"));
-  if (split_ == Split::Lists) return cbor_value_with_lists(std::move(rest_));
-  Value root = cbor_value(rest_);
+  if (split_ == Split::Lists) return cbor_value_with_lists(rest_.take());
+  Value root = cbor_value(rest_.text());
   if (data_.form() != DataForm::Absent) mark_split_out(root);
   return root;
 }
@@ -63,7 +63,10 @@ icd::Checked<void> CborSplitter::check_head() const {
 icd::Checked<void> CborSplitter::item() {
   if (head_.is_break()) return end_of_nest();
   const bool is_key = at_key() && !leaves_out();
-  if (is_key) path_.key({});  // in case the key is not a string
+  if (is_key) {
+    path_.begin_key();
+    path_.end_key();  // in case the key is not a string
+  }
   Into into = is_key ? Into::Key : Into::Rest;
   if (elements()) {
     if (auto taken = element(); !taken) return taken;
@@ -95,7 +98,7 @@ icd::Checked<void> CborSplitter::item() {
 }
 
 icd::Checked<void> CborSplitter::count() {
-  if (!leaves_out() && ++values_ > most_.values) return std::unexpected(too_many_values(most_.values));
+  if (!leaves_out() && !rest_.count()) return std::unexpected(rest_.too_many_values());
   return {};
 }
 

@@ -60,7 +60,7 @@ class CborSplitter final : public Splitter {
   bool elements() const { return elements_of_ > 0; }
   bool leaves_out() const { return left_out_of_ > 0; }
   void keep(std::string_view raw) {
-    if (!elements() && !leaves_out()) rest_ += raw;
+    if (!elements() && !leaves_out()) rest_.add(raw);
   }
   /// The array or map of the next item; null at the top level.
   const Nest* container() const;
@@ -70,8 +70,6 @@ class CborSplitter final : public Splitter {
   static icd::Refusal fault_at(std::size_t at, std::string_view what);
 
   const Split split_;
-  const Most most_;
-  std::size_t values_ = 0;  // kept so far, with chunks of strings
   BulkData& data_;
   DataPath path_;
 
@@ -86,7 +84,6 @@ class CborSplitter final : public Splitter {
   std::uint64_t piece_left_ = 0;  // bytes before its next head
   Into into_ = Into::Rest;
   Utf8Checker utf8_;
-  std::string key_;  // its first characters
 
   std::size_t elements_of_ = 0;  // nesting depth of the map's data if it is an array
 
@@ -94,7 +91,7 @@ class CborSplitter final : public Splitter {
 
   /// The document without annotating tags. The map's data is null. Simple values without meaning (RFC 8949
   /// 3.3) are undefined.
-  std::string rest_;
+  KeptText rest_;
 };
 
 }  // namespace adit::codec

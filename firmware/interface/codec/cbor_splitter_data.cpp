@@ -40,11 +40,11 @@ icd::Checked<void> CborSplitter::divert() {
   if (auto only = data_.appear(); !only) return only;
   switch (head_.major()) {
     case Major::Bytes:
-      rest_ += '\xF6';
+      rest_.add("\xF6");
       data_.begin(DataForm::ByteString, path_.is_grid());
       break;
     case Major::Array:
-      rest_ += '\xF6';
+      rest_.add("\xF6");
       data_.begin(DataForm::Integers, path_.is_grid());
       elements_of_ = nests_.size() + 1;
       break;
@@ -94,7 +94,6 @@ icd::Checked<void> CborSplitter::begin_string(Into into) {
   string_ = head_.major();
   chunked_ = head_.indefinite();
   into_ = into;
-  key_.clear();
   if (into_ != Into::Data) keep(head_.raw());
   return chunked_ ? icd::Checked<void>{} : begin_piece();
 }
@@ -133,9 +132,7 @@ icd::Checked<std::size_t> CborSplitter::string(std::string_view in) {
     keep(run);
   }
   if (into_ == Into::Rest) path_.text(run);
-  if (into_ == Into::Key && key_.size() < DataPath::kLongestKey) {
-    key_ += run.substr(0, DataPath::kLongestKey);
-  }
+  if (into_ == Into::Key) path_.key_text(run);
   piece_left_ -= run.size();
   if (piece_left_ == 0) {
     ADIT_TRY(end_of_piece());
@@ -151,7 +148,7 @@ icd::Checked<void> CborSplitter::end_of_piece() {
 }
 
 void CborSplitter::string_ended() {
-  if (into_ == Into::Key) path_.key(key_);
+  if (into_ == Into::Key) path_.end_key();
   string_.reset();
   item_ended();
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -24,8 +25,15 @@ class DataPath {
     in_msg_ = in_msg_ && depth_ >= 2;
     data_named_ = false;
   }
-  /// The key of the next member; "" if not a text.
-  void key(std::string_view name) {
+  /// Open objects and arrays.
+  std::size_t depth() const { return depth_; }
+  /// The key of the next member. It is "" if it is not a text.
+  void begin_key() { key_.clear(); }
+  void key_text(std::string_view piece) {
+    if (key_.size() < kLongestKey) key_ += piece.substr(0, kLongestKey);
+  }
+  void end_key() {
+    const std::string_view name = key_;
     if (depth_ == 1) msg_named_ = name == "msg";
     if (depth_ == 1) type_named_ = name == "type";
     if (depth_ == 2) data_named_ = in_msg_ && name == "data";
@@ -42,18 +50,18 @@ class DataPath {
   /// the repeated member.
   bool is_grid() const { return type_ == kGrid; }
 
+ private:
   /// Characters of a key to keep: longer keys cannot match.
   static constexpr std::size_t kLongestKey = 5;
-
- private:
   static constexpr std::string_view kGrid = "OccupancyGrid";  // ICD 6.3.1
 
   bool wanted_;
-  int depth_ = 0;
+  std::size_t depth_ = 0;
   bool msg_named_ = false;
   bool in_msg_ = false;
   bool data_named_ = false;
   bool type_named_ = false;
+  std::string key_;   // its first characters
   std::string type_;  // its first characters
 };
 

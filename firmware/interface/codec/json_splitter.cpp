@@ -23,18 +23,18 @@ bool starts_number(char c) {
 }  // namespace
 
 JsonSplitter::JsonSplitter(Split split, Most most, BulkData& data)
-    : split_(split), most_(most), data_(data), path_(split) {}
+    : split_(split), data_(data), path_(split), rest_(most) {}
 
 icd::Checked<void> JsonSplitter::feed(std::string_view bytes) {
-  const bool is_first = at_ == 0 && !root_;
-  if (is_first && split_ != Split::MapData && bytes.size() <= most_.text) {
-    first_ = std::make_shared<const std::string>(bytes);
-    root_ = split_ == Split::Lists ? json_value_with_lists(first_, most_.values)
-                                   : json_value(*first_, most_.values);
-    return root_ ? icd::Checked<void>() : read(*std::exchange(first_, {}));
-  }
-  if (root_.reset(); first_) {
-    if (auto read_first = read(*std::exchange(first_, {})); !read_first) return read_first;
+  if (whole_) {
+    const SharedText text = std::exchange(whole_, std::nullopt)->text;
+    ADIT_TRY(read(*text));
+  } else if (at_ == 0 && split_ != Split::MapData && bytes.size() <= rest_.most().text) {
+    const auto text = std::make_shared<const std::string>(bytes);
+    auto root = split_ == Split::Lists ? json_value_with_lists(text, rest_.most().values)
+                                       : json_value(*text, rest_.most().values);
+    if (root) whole_ = {.text = text, .root = *std::move(root)};
+    if (whole_) return {};
   }
   return read(bytes);
 }
@@ -45,7 +45,7 @@ icd::Checked<void> JsonSplitter::read(std::string_view bytes) {
     const auto taken = ADIT_TRY(step(bytes));
     bytes.remove_prefix(taken);
     at_ += taken;
-    if (rest_.size() + number_.size() > most_.text) return std::unexpected(text_too_large(most_.text));
+    if (!rest_.fits(number_.text.size())) return std::unexpected(rest_.too_large());
   }
   return {};
 }
@@ -55,21 +55,21 @@ icd::Checked<void> JsonSplitter::end() {
     if (auto ended = number_ended(std::nullopt); !ended) return ended;
   }
   if (at_ == 0) return std::unexpected(fault("an empty document"));
-  if (depth_ > 0 || token_ != Token::None || expect_ != Expect::Separator) {
+  if (path_.depth() > 0 || token_ != Token::None || expect_ != Expect::Separator) {
     return std::unexpected(fault("the document is cut short"));
   }
   return {};
 }
 
 icd::Checked<Value> JsonSplitter::finish() {
-  if (root_) return *std::move(root_);
+  if (whole_) return std::move(whole_->root);
   ADIT_TRY(end());
   if (split_ == Split::Lists) {
-    const auto text = std::make_shared<const std::string>(std::move(rest_));
-    if (auto root = json_value_with_lists(text, values_)) return *std::move(root);
+    const auto text = std::make_shared<const std::string>(rest_.take());
+    if (auto root = json_value_with_lists(text, rest_.values())) return *std::move(root);
     return std::unexpected(too_many_outside_lists(kMostOutsideLists));
   }
-  auto root = json_value(rest_);
+  auto root = json_value(rest_.text());
   icd::require(root.has_value());
   if (data_.form() != DataForm::Absent) mark_split_out(*root);
   return *std::move(root);
@@ -119,7 +119,7 @@ icd::Checked<std::size_t> JsonSplitter::structure(std::string_view in) {
     case Expect::Key:
       if (c != '"') return std::unexpected(expected("a member's name", c));
       keep("\"");
-      key_.clear();
+      path_.begin_key();
       token_ = Token::Key;
       return 1;
     case Expect::FirstElement:
@@ -132,7 +132,7 @@ icd::Checked<std::size_t> JsonSplitter::structure(std::string_view in) {
 }
 
 icd::Checked<std::size_t> JsonSplitter::separator(char c) {
-  if (depth_ == 0) return std::unexpected(expected("the end of the document", c));
+  if (path_.depth() == 0) return std::unexpected(expected("the end of the document", c));
   if (c == (in_object() ? '}' : ']')) return close(c);
   if (c != ',') return std::unexpected(expected(in_object() ? "',' or '}'" : "',' or ']'", c));
   keep(",");
@@ -144,12 +144,10 @@ icd::Checked<std::size_t> JsonSplitter::value(char first) {
   if (path_.at_data() || diverted_ == Diverted::Elements) {
     ADIT_TRY(divert(first));
   }
-  if (diverted_ == Diverted::No && ++values_ > most_.values) {
-    return std::unexpected(too_many_values(most_.values));
-  }
+  if (diverted_ == Diverted::No && !rest_.count()) return std::unexpected(rest_.too_many_values());
   if (starts_number(first)) {
-    number_grammar_ = {};
-    number_at_ = at_;
+    number_.grammar = {};
+    number_.at = at_;
     token_ = Token::Number;
     return 0;
   }
@@ -173,12 +171,12 @@ icd::Checked<std::size_t> JsonSplitter::value(char first) {
 }
 
 icd::Checked<std::size_t> JsonSplitter::open(char bracket) {
-  if (depth_ == objects_.size()) {
+  if (path_.depth() == objects_.size()) {
     return std::unexpected(fault(icd::sentence("nested deeper than ", BodyDecoder::kDeepest)));
   }
   const bool object = bracket == '{';
   keep(object ? "{" : "[");
-  objects_[depth_++] = object;
+  objects_[path_.depth()] = object;
   path_.open();
   expect_ = object ? Expect::FirstKey : Expect::FirstElement;
   return 1;
@@ -186,7 +184,6 @@ icd::Checked<std::size_t> JsonSplitter::open(char bracket) {
 
 icd::Checked<std::size_t> JsonSplitter::close(char bracket) {
   keep(bracket == '}' ? "}" : "]");
-  --depth_;
   path_.close();
   diverted_ = Diverted::No;  // elements contain no brackets, so this one ends them
   value_ended();
@@ -220,9 +217,7 @@ icd::Checked<std::size_t> JsonSplitter::string(std::string_view in) {
     keep(piece->raw);
     if (token_ == Token::String) path_.text(piece->text);
   }
-  if (token_ == Token::Key && key_.size() < DataPath::kLongestKey) {
-    key_ += piece->text.substr(0, DataPath::kLongestKey);
-  }
+  if (token_ == Token::Key) path_.key_text(piece->text);
   if (piece->ended) {
     ADIT_TRY(string_ended());
   }
@@ -241,7 +236,7 @@ icd::Checked<void> JsonSplitter::string_ended() {
   }
   keep("\"");
   if (token_ == Token::Key) {
-    path_.key(key_);
+    path_.end_key();
     token_ = Token::None;
     expect_ = Expect::Colon;
   } else {

@@ -32,6 +32,17 @@ class JsonSplitter final : public Splitter {
   enum class Expect : std::uint8_t { Value, FirstElement, FirstKey, Key, Colon, Separator };
   enum class Token : std::uint8_t { None, Key, String, Number, Literal };
   enum class Diverted : std::uint8_t { No, Base64, Elements };
+  /// The first piece, if it is a whole document so far.
+  struct Whole {
+    SharedText text;
+    Value root;
+  };
+  /// The present number so far.
+  struct Number {
+    JsonNumber grammar;
+    std::string text;
+    std::size_t at = 0;
+  };
 
   icd::Checked<void> read(std::string_view bytes);
   /// Call after the last feed. Error: the document is incomplete.
@@ -59,41 +70,33 @@ class JsonSplitter final : public Splitter {
   icd::Checked<void> divert_number();
   void value_ended();
   void keep(std::string_view raw) {
-    if (diverted_ == Diverted::No) rest_ += raw;
+    if (diverted_ == Diverted::No) rest_.add(raw);
   }
-  bool in_object() const { return depth_ > 0 && objects_[depth_ - 1]; }
+  bool in_object() const { return path_.depth() > 0 && objects_[path_.depth() - 1]; }
 
   icd::Refusal fault(std::string_view what) const { return fault_at(at_, what); }
   static icd::Refusal fault_at(std::size_t at, std::string_view what);
   icd::Refusal expected(std::string_view what, char got) const;
 
   const Split split_;
-  const Most most_;
-  std::size_t values_ = 0;  // kept so far
   BulkData& data_;
   DataPath path_;
 
-  std::optional<Value> root_;  // the document, if it came in one piece
-  SharedText first_;           // the first piece
+  std::optional<Whole> whole_;
 
   Expect expect_ = Expect::Value;
   Token token_ = Token::None;
   Diverted diverted_ = Diverted::No;
-  std::size_t depth_ = 0;
   std::bitset<BodyDecoder::kDeepest> objects_;  // open brackets that are braces
   std::size_t at_ = 0;                          // bytes read so far
   std::size_t mark_ = 0;                        // size of the byte order mark
 
   JsonString string_;
-  std::string key_;  // its first characters
-  JsonNumber number_grammar_;
-  std::string number_;
-  std::size_t number_at_ = 0;
+  Number number_;
   std::string_view word_;  // rest of a literal
   Base64Decoder base64_;
 
-  /// The document without white space; the map's data is null.
-  std::string rest_;
+  KeptText rest_;  // without white space; the map's data is null
 };
 
 }  // namespace adit::codec

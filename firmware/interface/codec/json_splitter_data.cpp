@@ -60,8 +60,8 @@ icd::Checked<std::size_t> JsonSplitter::plain_elements(std::string_view in) {
 }
 
 icd::Checked<std::size_t> JsonSplitter::number(std::string_view in) {
-  const std::size_t taken = number_grammar_.next(in);
-  number_ += in.substr(0, taken);
+  const std::size_t taken = number_.grammar.next(in);
+  number_.text += in.substr(0, taken);
   if (taken < in.size()) {
     ADIT_TRY(number_ended(in[taken]));
   }
@@ -69,35 +69,35 @@ icd::Checked<std::size_t> JsonSplitter::number(std::string_view in) {
 }
 
 icd::Checked<void> JsonSplitter::number_ended(std::optional<char> next) {
-  if (!number_grammar_.complete()) return std::unexpected(fault_at(number_at_, "a number that is cut short"));
-  if (number_grammar_.zero() && next >= '0' && next <= '9') {
-    return std::unexpected(fault_at(number_at_, "a number with a leading zero"));
+  if (!number_.grammar.complete()) return std::unexpected(fault_at(number_.at, "a number that is cut short"));
+  if (number_.grammar.zero() && next >= '0' && next <= '9') {
+    return std::unexpected(fault_at(number_.at, "a number with a leading zero"));
   }
   if (auto taken = diverted_ == Diverted::No ? keep_number() : divert_number(); !taken) return taken;
-  number_.clear();
+  number_.text.clear();
   value_ended();
   return {};
 }
 
 icd::Checked<void> JsonSplitter::keep_number() {
-  if (!is_finite(number_grammar_, number_))
-    return std::unexpected(fault_at(number_at_, "a number too large for a double"));
-  keep(number_);
+  if (!is_finite(number_.grammar, number_.text))
+    return std::unexpected(fault_at(number_.at, "a number too large for a double"));
+  keep(number_.text);
   return {};
 }
 
 icd::Checked<void> JsonSplitter::divert_number() {
-  const char* const first = number_.data();
-  const char* const last = first + number_.size();
+  const char* const first = number_.text.data();
+  const char* const last = first + number_.text.size();
   int whole = 0;
   if (const auto [end, error] = std::from_chars(first, last, whole); error == std::errc{} && end == last) {
-    return data_.append_element(whole, number_);
+    return data_.append_element(whole, number_.text);
   }
   double value = 0;
   if (const auto [end, error] = std::from_chars(first, last, value); error == std::errc{} && end == last) {
-    return data_.append_element(value, number_);
+    return data_.append_element(value, number_.text);
   }
-  return std::unexpected(data_.bad_element(number_));  // too long, so out of range
+  return std::unexpected(data_.bad_element(number_.text));  // too long, so out of range
 }
 
 }  // namespace adit::codec

@@ -21,14 +21,16 @@ icd::Refusal bad_data(std::string_view why) {
   return {icd::Status::UnprocessableEntity, icd::sentence("msg.data: ", why)};
 }
 
-icd::Refusal text_too_large(std::size_t most) {
-  return {icd::Status::ContentTooLarge,
-          icd::sentence("the document without its bulk data is larger than the limit of ", most, " bytes")};
+icd::Refusal KeptText::too_large() const {
+  return {
+      icd::Status::ContentTooLarge,
+      icd::sentence("the document without its bulk data is larger than the limit of ", most_.text, " bytes")};
 }
 
-icd::Refusal too_many_values(std::size_t most) {
+icd::Refusal KeptText::too_many_values() const {
   return {icd::Status::ContentTooLarge,
-          icd::sentence("the document without its bulk data has more than the limit of ", most, " values")};
+          icd::sentence("the document without its bulk data has more than the limit of ", most_.values,
+                        " values")};
 }
 
 icd::Refusal too_many_outside_lists(std::size_t most) {

@@ -2,7 +2,9 @@
 
 #include <cstddef>
 #include <limits>
+#include <string>
 #include <string_view>
+#include <utility>
 
 #include "codec/value.hpp"
 #include "icd/status.hpp"
@@ -29,11 +31,34 @@ class Splitter {
   virtual icd::Checked<Value> finish() = 0;
 };
 
+/// The document without the map's data, within its limits.
+class KeptText {
+ public:
+  explicit KeptText(Most most) : most_(most) {}
+
+  const Most& most() const { return most_; }
+  void add(std::string_view raw) { text_ += raw; }
+  void reserve(std::size_t bytes) { text_.reserve(bytes); }
+  /// Counts a value. False: too_many_values().
+  bool count() { return ++values_ <= most_.values; }
+  /// Whether the text may have `more` bytes. False: too_large().
+  bool fits(std::size_t more = 0) const { return text_.size() + more <= most_.text; }
+  /// 413.
+  icd::Refusal too_many_values() const;
+  icd::Refusal too_large() const;
+  std::size_t values() const { return values_; }
+  const std::string& text() const { return text_; }
+  std::string take() { return std::move(text_); }
+
+ private:
+  const Most most_;
+  std::size_t values_ = 0;
+  std::string text_;
+};
+
 /// 422: the value at "msg.data" cannot be decoded.
 icd::Refusal bad_data(std::string_view why);
-/// 413: the rest exceeds `most` bytes or values.
-icd::Refusal text_too_large(std::size_t most);
-icd::Refusal too_many_values(std::size_t most);
+/// 413.
 icd::Refusal too_many_outside_lists(std::size_t most);
 
 /// Replaces the splitter's null at "msg.data" by SplitOut.

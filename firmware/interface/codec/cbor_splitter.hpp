@@ -35,6 +35,11 @@ class CborSplitter final : public Splitter {
   };
   /// Destination of a string's bytes.
   enum class Into : std::uint8_t { Rest, Key, Data };
+  struct String {
+    Major kind = Major::Bytes;  // Bytes or Text
+    bool chunked = false;       // its length is indefinite
+    Into into = Into::Rest;
+  };
 
   /// These functions read a part of `in` (not empty) and return its length.
   icd::Checked<std::size_t> head(std::string_view in);
@@ -79,10 +84,8 @@ class CborSplitter final : public Splitter {
   bool whole_ = false;
   CborHead head_;
 
-  std::optional<Major> string_;   // the present string: Bytes or Text
-  bool chunked_ = false;          // its length is indefinite
+  std::optional<String> string_;  // the present one
   std::uint64_t piece_left_ = 0;  // bytes before its next head
-  Into into_ = Into::Rest;
   Utf8Checker utf8_;
 
   std::size_t elements_of_ = 0;  // nesting depth of the map's data if it is an array

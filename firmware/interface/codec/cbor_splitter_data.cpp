@@ -91,18 +91,16 @@ icd::Checked<std::size_t> CborSplitter::plain_elements(std::string_view in) {
 }
 
 icd::Checked<void> CborSplitter::begin_string(Into into) {
-  string_ = head_.major();
-  chunked_ = head_.indefinite();
-  into_ = into;
-  if (into_ != Into::Data) keep(head_.raw());
-  return chunked_ ? icd::Checked<void>{} : begin_piece();
+  string_ = {.kind = head_.major(), .chunked = head_.indefinite(), .into = into};
+  if (into != Into::Data) keep(head_.raw());
+  return string_->chunked ? icd::Checked<void>{} : begin_piece();
 }
 
 icd::Checked<void> CborSplitter::chunk_of_string() {
-  if (!head_.is_break() && (head_.indefinite() || string_ != head_.major())) {
+  if (!head_.is_break() && (head_.indefinite() || string_->kind != head_.major())) {
     return std::unexpected(fault("a string in chunks holds something else"));
   }
-  if (into_ != Into::Data) {
+  if (string_->into != Into::Data) {
     if (auto counted = count(); !counted) return counted;
     keep(head_.raw());
   }
@@ -113,7 +111,7 @@ icd::Checked<void> CborSplitter::chunk_of_string() {
 
 icd::Checked<void> CborSplitter::begin_piece() {
   piece_left_ = head_.argument();
-  if (into_ == Into::Data) {
+  if (string_->into == Into::Data) {
     if (auto fit = data_.fits(piece_left_); !fit) return fit;
   }
   return piece_left_ == 0 ? end_of_piece() : icd::Checked<void>{};
@@ -121,18 +119,18 @@ icd::Checked<void> CborSplitter::begin_piece() {
 
 icd::Checked<std::size_t> CborSplitter::string(std::string_view in) {
   const std::string_view run = in.substr(0, std::min<std::uint64_t>(piece_left_, in.size()));
-  if (string_ == Major::Text) {
+  if (string_->kind == Major::Text) {
     if (const auto bad = utf8_.feed(run)) {
       return std::unexpected(fault_at(at_ + *bad, "a text that is not UTF-8"));
     }
   }
-  if (into_ == Into::Data) {
+  if (string_->into == Into::Data) {
     ADIT_TRY(data_.append(bytes_of(run)));
   } else {
     keep(run);
   }
-  if (into_ == Into::Rest) path_.text(run);
-  if (into_ == Into::Key) path_.key_text(run);
+  if (string_->into == Into::Rest) path_.text(run);
+  if (string_->into == Into::Key) path_.key_text(run);
   piece_left_ -= run.size();
   if (piece_left_ == 0) {
     ADIT_TRY(end_of_piece());
@@ -143,12 +141,12 @@ icd::Checked<std::size_t> CborSplitter::string(std::string_view in) {
 icd::Checked<void> CborSplitter::end_of_piece() {
   // RFC 8949 3.2.3: a chunk must not split a character.
   if (!utf8_.complete()) return std::unexpected(fault("a text that ends within a character"));
-  if (!chunked_) string_ended();
+  if (!string_->chunked) string_ended();
   return {};
 }
 
 void CborSplitter::string_ended() {
-  if (into_ == Into::Key) path_.end_key();
+  if (string_->into == Into::Key) path_.end_key();
   string_.reset();
   item_ended();
 }

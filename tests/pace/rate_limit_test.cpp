@@ -285,6 +285,34 @@ TEST(RateLimit, TwoThrottledRequestsAreOneStorm) {
   EXPECT_EQ(once.next(), twice.next());
 }
 
+/// A storm from a request at 0 s to an answer at `end`.
+RateLimit after_a_storm(double end) {
+  RateLimit rate(1);
+  rate.sent(at(0));
+  rate.throttled(at(0.1), {});
+  rate.sent(at(end - 0.1));
+  rate.taken({.first = at(end - 0.1), .last = at(end - 0.1)}, at(end));
+  return rate;
+}
+
+TEST(RateLimit, A429RightAfterAStormLearnsThePauseThatEndedIt) {
+  RateLimit rate = after_a_storm(5.1);
+  rate.sent(at(6.2));
+  rate.throttled(at(6.3), {});
+  EXPECT_EQ(rate.spacing(), std::chrono::milliseconds(5250));
+}
+
+TEST(RateLimit, OnlyAShortStormShowsALimit) {
+  for (const double end : {5.0, 7.0}) {
+    RateLimit rate = after_a_storm(end);
+    rate.sent(at(end + 1.1));
+    rate.taken({.first = at(end + 1.1), .last = at(end + 1.1)}, at(end + 1.2));
+    rate.sent(at(end + 2.3));
+    rate.throttled(at(end + 2.4), {});
+    EXPECT_EQ(rate.spacing(), std::chrono::milliseconds(end < 6 ? 1250 : 1000)) << end;
+  }
+}
+
 TEST(RateLimit, NothingGoesAheadWhileTheRateIsLearned) {
   RateLimit rate(1);
   EXPECT_TRUE(rate.may_go_ahead());

@@ -1,0 +1,25 @@
+#include "uplink/connect_attempts.hpp"
+
+#include <gtest/gtest.h>
+
+namespace adit::uplink {
+namespace {
+
+using std::chrono::seconds;
+
+TEST(ConnectAttempts, PauseDoublesUpToFiveSecondsWhileTheyFail) {
+  ConnectAttempts attempts;
+  const loop::Instant now(seconds{100});
+  attempts.begins(now);
+  for (const int pause : {1, 2, 4, 5, 5}) EXPECT_EQ(attempts.failed("refused"), now + seconds{pause});
+  EXPECT_EQ(attempts.trouble(), "refused");
+  attempts.hurry();
+  EXPECT_EQ(attempts.failed("no route"), now + seconds{1});
+  EXPECT_EQ(attempts.trouble(), "no route");
+  attempts.succeeded();
+  EXPECT_EQ(attempts.next(), now + seconds{1});
+  EXPECT_EQ(attempts.trouble(), "");
+}
+
+}  // namespace
+}  // namespace adit::uplink

@@ -36,7 +36,7 @@ class Console:
                     self.heard += some
                     self.news.notify_all()
 
-    def output(self):
+    def said(self):
         with self.news:
             return self.heard.decode(errors="replace")
 

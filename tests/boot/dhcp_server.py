@@ -33,14 +33,14 @@ class Server:
         busybox = container.TREE / "usr/bin/busybox"
         with open(self.log, "wb") as said:
             self.process = network.start(network.team, busybox, "udhcpd", "-f", configuration, stdout=said, stderr=said)
-        programs.wait_until(lambda: "started" in self.output(), "udhcpd")
+        programs.wait_until(lambda: "started" in self.said(), "udhcpd")
 
-    def output(self):
+    def said(self):
         return self.log.read_text(errors="replace")
 
     def given(self):
         """How often it granted or renewed the lease."""
-        return self.output().count("sending ACK")
+        return self.said().count("sending ACK")
 
     def stop(self):
         self.process.kill()

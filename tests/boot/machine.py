@@ -138,7 +138,7 @@ class Machine(programs.Page):
         return f"{clock - clock_then:.1f} s ({cpu - cpu_then:.1f} s of the host's processors)"
 
     def said_last(self):
-        return self.console.output()[-4000:]
+        return self.console.said()[-4000:]
 
     def wait_until(self, condition, what, within=120.0):
         """As programs.wait_until, for a box that may be unreachable. Fails if the machine has ended."""
@@ -146,7 +146,7 @@ class Machine(programs.Page):
             if not self.is_on():
                 raise AssertionError(f"QEMU has ended while waiting for {what}:\n"
                                      + (self.folder / "qemu.log").read_text(errors="replace"))
-            if GAVE_UP in self.console.output():
+            if GAVE_UP in self.console.said():
                 raise AssertionError(f"systemd has given up while waiting for {what}:\n{self.said_last()}")
             try:
                 return condition()

@@ -77,7 +77,7 @@ class Updates(Updating, Story):
         self.restart()
         self.settled("left", BROKEN, within=600)
         self.assertEqual((self.stands()["version"], self.stands()["slot"]), (NEWER, "B"))
-        self.assertEqual(self.box.console.output().count("Adit: slot a"), 1 + 3)
+        self.assertEqual(self.box.console.said().count("Adit: slot a"), 1 + 3)
         self.box.console.wait_for_shell()
         order = self.box.console.ask("fw_printenv -n BOOT_ORDER")
         self.assertEqual(order.split(), ["B"], "it is never started again")

@@ -12,9 +12,9 @@ CHROMIUM = os.environ.get("CHROMIUM", "/usr/bin/chromium-headless-shell")
 # Finds an element as a user does: a field by its label, a button by its text. If a dialog is open, searches only there.
 FIND = """(kind, words) => {
   const top = [...document.querySelectorAll("dialog[open]")].at(-1) ?? document;
-  const said = (node) => (node?.innerText ?? node?.textContent ?? "").trim();
-  const all = kind === "button" ? [...top.querySelectorAll("button")].filter((each) => (each.getAttribute("aria-label") ?? waitForText(each)) === words)
-    : kind === "field" ? [...top.querySelectorAll("input, select")].filter((each) => [...(each.labels ?? [])].some((label) => waitForText(label) === words) || each.getAttribute("aria-label") === words)
+  const textOf = (node) => (node?.innerText ?? node?.textContent ?? "").trim();
+  const all = kind === "button" ? [...top.querySelectorAll("button")].filter((each) => (each.getAttribute("aria-label") ?? textOf(each)) === words)
+    : kind === "field" ? [...top.querySelectorAll("input, select")].filter((each) => [...(each.labels ?? [])].some((label) => textOf(label) === words) || each.getAttribute("aria-label") === words)
     : [...top.querySelectorAll(words)];
   return all.find((each) => each.checkVisibility() && each.getBoundingClientRect().width);
 }"""

@@ -8,15 +8,15 @@ const STAGED = "adit-10.0.0.1-20250615T150640Z.adit-spare";
 
 async function spareOf(t) {
   const { page } = await come(t, OPERATOR, { bypassCSP: true });  // for axe
-  const section = page.locator("#spare"), said = (words) => section.getByText(words).waitFor();
+  const section = page.locator("#spare"), waitForText = (words) => section.getByText(words).waitFor();
   await section.getByRole("button", { name: "Start standby, export to the stick" }).waitFor();
-  return { page, section, said, press: (name) => section.getByRole("button", { name }).click(), yes: () => page.locator("#confirm button.main").click() };
+  return { page, section, waitForText, press: (name) => section.getByRole("button", { name }).click(), yes: () => page.locator("#confirm button.main").click() };
 }
 
 const asked = (page, path) => page.requests.filter((url) => url.endsWith(path)).length;
 
 test("one press puts the box on standby and writes its export to the stick; a failure can be retried, and it says when the stick may be removed", async (t) => {
-  const { page, section, said, press, yes } = await spareOf(t);
+  const { page, section, waitForText, press, yes } = await spareOf(t);
   await press("Start standby, export to the stick");
   await page.locator("#confirm").getByRole("button", { name: "Cancel" }).click();
   assert.equal(asked(page, "/adit/spare/standby"), 0, "a cancelled action was requested");
@@ -35,7 +35,7 @@ test("one press puts the box on standby and writes its export to the stick; a fa
 });
 
 test("a box is not put on standby if its stick could not be written", async (t) => {
-  const { page, said, press } = await spareOf(t);
+  const { page, waitForText, press } = await spareOf(t);
   await page.route("**/adit/spare", async (route) => {
     const answer = await route.fetch(), view = await answer.json();
     await route.fulfill({ response: answer, json: { ...view, stick: { ...view.stick, hindrance: "there is no stick in the box" } } });
@@ -46,7 +46,7 @@ test("a box is not put on standby if its stick could not be written", async (t) 
 });
 
 test("an export on the stick is offered by its box and time, and asks for its code like an uploaded one", async (t) => {
-  const { page, section, said, press } = await spareOf(t);
+  const { page, section, waitForText, press } = await spareOf(t);
   const when = await page.evaluate(() => new Date(1.75e12).toLocaleString());
   await section.getByRole("button", { name: `Take in from the stick: the box at 10.0.0.7, ${when}` }).waitFor();
   await press("Take in from the stick: zip.adit-spare");
@@ -62,7 +62,7 @@ test("an export on the stick is offered by its box and time, and asks for its co
 });
 
 test("repeated presses count once until the page shows the first one's result", async (t) => {
-  const { page, section, said } = await spareOf(t);
+  const { page, section, waitForText } = await spareOf(t);
   const count = await pressThrice(page, /\/adit\/spare/, section.getByRole("button", { name: "Take in from the stick: zip.adit-spare" }));
   await waitForText("The file is not an export from Adit.");
   assert.deepEqual(count, { presses: 3, posts: 1 });

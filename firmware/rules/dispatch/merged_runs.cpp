@@ -54,7 +54,6 @@ MergedRuns::MergedRuns(const Books& here, const Books& there, const SameReports&
   }
   std::ranges::stable_sort(in_turn, {}, &Run::place);
   for (const Run* const run : in_turn) take(*run, ++turn);
-  present_ = numbers_.at(there_runs_.present().number);
   link_to_own();
 }
 
@@ -111,10 +110,10 @@ void MergedRuns::take(const Run& run, std::int64_t turn) {
 
 /// own(), or null.
 const Run* MergedRuns::own_run() const {
-  const Run& present = merged_.at(present_);
+  const Run& last = merged_.at(present());
   const Run* own = nullptr;
   for (const auto& [number, run] : here_runs_.all()) {
-    const bool is_there = run.post == present.post && !merged_.contains(number);
+    const bool is_there = run.post == last.post && !merged_.contains(number);
     const bool counts = run.was_heard() || has_reports(number);
     if (is_there && counts && (own == nullptr || run.place() > own->place())) own = &run;
   }
@@ -130,9 +129,9 @@ void MergedRuns::link_to_own() {
   const Run* const own = own_run();
   if (own == nullptr || !is_new_.at(there_runs_.present().number)) return;
   own_ = own->number;
-  own_is_another_ = are_told_apart(*own, merged_.at(present_));
+  own_is_another_ = are_told_apart(*own, merged_.at(present()));
   if (own_is_another_) return;
-  Run* first = &merged_.at(present_);
+  Run* first = &merged_.at(present());
   while (first->may_be != 0 && merged_.contains(first->may_be)) first = &merged_.at(first->may_be);
   if (first->may_be == 0 && own_ < first->number) first->may_be = own_;
 }

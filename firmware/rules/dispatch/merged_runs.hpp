@@ -25,7 +25,7 @@ class MergedRuns {
   bool is_present_there(std::int64_t there) const { return there_runs_.present().number == there; }
 
   /// The number here of the first box's present run.
-  std::int64_t present() const { return present_; }
+  std::int64_t present() const { return numbers_.at(there_runs_.present().number); }
   /// The spare's last run at the same Command Post that the first box does not know; 0: none.
   std::int64_t own() const { return own_; }
   /// True if own() is certainly not present().
@@ -48,7 +48,6 @@ class MergedRuns {
   std::map<std::int64_t, std::int64_t> numbers_;  // from numbers there to numbers here
   std::map<std::int64_t, bool> is_new_;           // by the number there
   std::map<std::int64_t, Run> merged_;            // by the number here
-  std::int64_t present_ = 0;
   std::int64_t own_ = 0;
   bool own_is_another_ = false;
 };

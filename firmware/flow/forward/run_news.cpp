@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "forward/channel.hpp"
+
 namespace adit::forward {
 
 RunNews::Change RunNews::look(const dispatch::Reports& reports) {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "admin/factory_reset.hpp"
 #include "admin/store.hpp"
 #include "admin/takeover.hpp"
 #include "gateway/listen_sockets.hpp"

@@ -18,6 +18,12 @@ struct Archive::Opening {
   std::expected<std::string, std::string> key = std::unexpected("no memory");
   std::shared_ptr<RunFolder> folder;
   std::optional<RunRecords> told;
+
+  /// Finds or creates the run's directory. Blocks on the disk.
+  void open_folder(RunsFolder& runs) {
+    key = runs.begin(head);
+    if (key) folder = std::make_shared<RunFolder>(runs.folder_of(*key), head);
+  }
 };
 
 void Archive::begin(const Head& head, GoOn go_on) {
@@ -32,10 +38,9 @@ void Archive::begin(const Head& head, GoOn go_on) {
   opening->head = head;
   writer_.submit(
       [opening, runs = stored_.folder(), enough = stored_.enough(), most = limits_.all]() mutable {
-        opening->key = runs.begin(opening->head);
+        opening->open_folder(runs);
         if (!opening->key) return;
         runs.tidy(most, *opening->key);
-        opening->folder = std::make_shared<RunFolder>(runs.folder_of(*opening->key), opening->head);
         opening->told.emplace(picture::Mosaic::kBudget);
         read_all(runs, *opening->key, *opening->told, enough);
       },
@@ -75,16 +80,11 @@ void Archive::make_folder() {
   const auto opening = std::make_shared<Opening>();
   opening->head = present_.head;
   ++writing_;
-  writer_.submit(
-      [opening, runs = stored_.folder()]() mutable {
-        opening->key = runs.begin(opening->head);
-        if (opening->key)
-          opening->folder = std::make_shared<RunFolder>(runs.folder_of(*opening->key), opening->head);
-      },
-      [this, opening, begins = begins_] {
-        --writing_;
-        if (begins == begins_) has_folder(*opening);
-      });
+  writer_.submit([opening, runs = stored_.folder()]() mutable { opening->open_folder(runs); },
+                 [this, opening, begins = begins_] {
+                   --writing_;
+                   if (begins == begins_) has_folder(*opening);
+                 });
 }
 
 void Archive::move(double seconds) {

@@ -23,7 +23,7 @@ std::string stem_of(std::uint64_t number, const MapMessage& map) {
          (map.name.empty() ? "merged" : tame(map.name));
 }
 
-/// Takes out of a document what is too long to look at in a line.
+/// Replaces long texts and lists of a document by their sizes, so that a line of it can be read.
 void shorten(Json& value) {
   constexpr std::size_t longest_text = 4096;
   constexpr std::size_t longest_list = 10'000;

@@ -32,8 +32,8 @@ class Transcript {
 
  private:
   Transcript(std::string folder, std::uint64_t most) : folder_(std::move(folder)), most_(most) {}
-  /// Writes a map's picture; gives its name within the folder ("grids/000012-X1.pgm"), or nothing where the
-  /// budget or the disk is full.
+  /// Writes a map's picture, and returns its name within the folder ("grids/000012-X1.pgm"). std::nullopt if
+  /// the budget is used up or the disk is full.
   std::optional<std::string> picture(std::uint64_t number, const MapMessage& map);
   void append(std::ofstream& file, const OrderedJson& line);
 

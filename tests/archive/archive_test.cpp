@@ -127,6 +127,7 @@ TEST_F(ArchiveTest, RestoresAllTimesAfterAClockStep) {
     archive->move(step);
     run.easel.mosaic.move(step);
     run.easel.now += step;
+    run.clock_ahead += step;
     for (api::TrackPose& pose : run.tracks[0].poses) pose.at += step;
     const double then = run.easel.now;
     run.easel.now += 100;

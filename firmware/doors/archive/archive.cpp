@@ -97,7 +97,7 @@ void Archive::move(double seconds) {
 namespace {
 
 /// Makes every changed tile due.
-constexpr api::Time kNoneRests = std::numeric_limits<api::Time>::infinity();
+constexpr double kNoneRests = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
@@ -108,7 +108,7 @@ void Archive::tick(const Seen& seen) {
   if (writing_ > 0 || loop_.now() < next_write_) return;
   if (present_.folder) {
     queue_.add_poses(seen);
-    write(seen, queue_.allowance().at(loop_.now()), seen.now);
+    write(seen, queue_.allowance().at(loop_.now()), seen.stamp);
   } else if (!trouble_.empty()) {
     make_folder();
   }
@@ -144,7 +144,7 @@ void Archive::sample(const Seen& seen) {
 }
 
 /// False: no data was due.
-bool Archive::write(const Seen& seen, std::size_t most, api::Time tiles_of) {
+bool Archive::write(const Seen& seen, std::size_t most, double tiles_of) {
   next_write_ = loop_.now() + kWriteEvery;
   auto write = queue_.next(seen, present_.row, most, tiles_of);
   if (!write) return false;

@@ -87,7 +87,7 @@ class Archive final : public api::KeptRuns {
   void make_folder();
   void sample(const Seen& seen);
   void note(const Seen& seen);
-  bool write(const Seen& seen, std::size_t most, api::Time tiles_of);
+  bool write(const Seen& seen, std::size_t most, double tiles_of);
   void written(const Write& write);
 
   loop::Loop& loop_;

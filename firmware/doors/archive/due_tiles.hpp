@@ -25,19 +25,12 @@ class DueTiles {
 
   /// Marks tiles that changed since the last look.
   void look(const picture::Mosaic& picture);
-  /// Tiles to write at `now` (seconds since 1970), in order.
+  /// Tiles to write at `now` (seconds that never step), in order.
   std::vector<TileKey> at(double now) const;
   /// Records that write number `write` takes the tile's state at `now`.
   void being_written(const TileKey& tile, std::uint64_t write, double now);
   /// Records the write's file. std::nullopt: the write failed, and its tiles are due again.
   void done(std::uint64_t write, std::optional<std::uint64_t> file);
-
-  /// Call if the time of day was advanced by `seconds`.
-  void move(double seconds) {
-    for (auto& [at, tile] : tiles_) {
-      if (tile.written != 0) tile.written += seconds;
-    }
-  }
   /// Makes the tiles of that file due, so that the file can be removed. True: it has no newest states.
   bool leave(std::uint64_t file);
   /// Starts with the tiles of `picture` that are stored in `files`.

@@ -32,7 +32,6 @@ void WriteQueue::be_due() {
 void WriteQueue::move(double seconds) {
   poses_.move(seconds);
   if (wiped_) *wiped_ += seconds;
-  due_.move(seconds);
   facts_.clear();
   const Step step{seconds, std::chrono::duration<double>(loop_.now().time_since_epoch()).count()};
   lines_.add(record_of(step), true);
@@ -51,7 +50,7 @@ Sample WriteQueue::add(Sample sample) {
 /// Lines go with any write, and have room before tiles, because they are small and not replaced by newer
 /// ones.
 std::shared_ptr<Write> WriteQueue::next(const Seen& seen, const api::RunRow& row, std::size_t most,
-                                        api::Time tiles_of) {
+                                        double tiles_of) {
   auto write = std::make_shared<Write>();
   Batch& batch = write->batch;
   write->number = ++writes_;
@@ -95,7 +94,7 @@ void WriteQueue::put_layers(const picture::Mosaic& picture, Batch& batch) {
   allowance_.spend(batch.beside.size());
 }
 
-void WriteQueue::put_tiles(const Seen& seen, Batch& batch, std::size_t left, api::Time tiles_of) {
+void WriteQueue::put_tiles(const Seen& seen, Batch& batch, std::size_t left, double tiles_of) {
   constexpr std::size_t kFraming = 200;  // most bytes of a record beside the tile, with a robot's name
   due_.look(seen.picture);
   for (const TileKey& key : due_.at(tiles_of)) {
@@ -105,7 +104,7 @@ void WriteQueue::put_tiles(const Seen& seen, Batch& batch, std::size_t left, api
     state.stamp = shown.stamp;
     const std::size_t bytes = kFraming + (state.tile ? state.tile->deflated.size() : 0);
     if (bytes > left) return;
-    due_.being_written(key, writes_, seen.now);
+    due_.being_written(key, writes_, seen.stamp);
     left -= bytes;
     allowance_.spend(bytes);
     batch.tiles.push_back(std::move(state));

@@ -64,15 +64,15 @@ class WriteQueue {
 
   Allowance& allowance() { return allowance_; }
   /// The next write, or null if no data is due. `row`: the run's facts. `most`: bytes. `tiles_of`: the tiles
-  /// that are due then.
-  std::shared_ptr<Write> next(const Seen& seen, const api::RunRow& row, std::size_t most, api::Time tiles_of);
+  /// that are due at that stamp.
+  std::shared_ptr<Write> next(const Seen& seen, const api::RunRow& row, std::size_t most, double tiles_of);
   /// Call after the write. `limit`: of the run, in bytes.
   void done(const Write& write, std::uint64_t limit);
 
  private:
   void put_facts(const api::RunRow& row, Batch& batch);
   void put_layers(const picture::Mosaic& picture, Batch& batch);
-  void put_tiles(const Seen& seen, Batch& batch, std::size_t left, api::Time tiles_of);
+  void put_tiles(const Seen& seen, Batch& batch, std::size_t left, double tiles_of);
 
   const loop::Loop& loop_;
   Allowance allowance_;

@@ -5,6 +5,7 @@
 #include "simulation/asked.hpp"
 #include "simulation/checks.hpp"
 #include "simulation/courses.hpp"
+#include "simulation/deciding_operator.hpp"
 #include "simulation/messages.hpp"
 #include "simulation/upstream_view.hpp"
 
@@ -33,6 +34,7 @@ PageAccount::PageAccount(const std::vector<Event>& events) : events_(events) {
     // A process that stands still for its disk records nothing in that time.
     const bool forgets = disk.forgets_at(event) || event.kind == Kind::PowerCut || event.kind == Kind::Slow;
     if (forgets || event.what == kCourse) forgotten_.push_back(i);
+    if (event.kind == Kind::Invoke && event.what == kSendRejected) sent_again_.push_back(i);
     disk.add(event);
     // A gateway that begins listens.
     const bool begins = event.kind == Kind::Begins ||
@@ -163,10 +165,14 @@ PageAccount::Age PageAccount::age(const Stream& stream, Moment at) const {
   };
   const std::size_t start = begun(at);
   std::size_t sure = last(forwarded_, at.asked);
+  const bool is_restored =
+      sure != kNever && sure >= start && age_from_.at({stream, sure}) < events_[start].at;
+  const auto again = std::ranges::lower_bound(sent_again_, start);
+  // A rejected message has no time of its own.
+  if (is_restored && again != sent_again_.end() && *again < sure) sure = last(forwarded_, start);
   if (sure == kNever) return age;
   if (sure >= start) {
-    age.most = since(sure);
-    if (age_from_.at({stream, sure}) < events_[start].at) age.most += kRestored;
+    age.most = since(sure) + (is_restored ? kRestored : 0);
     return age;
   }
   // A restart loses no recorded time.

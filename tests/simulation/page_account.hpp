@@ -87,6 +87,7 @@ class PageAccount {
   Places begun_;
   std::vector<double>
       recorded_until_;  // for each of begun_: the process before recorded everything until then
+  Places sent_again_;   // where the operator asked for a rejected message to be sent
   Places forgotten_;    // where a process lost its records, or the course changed
 };
 

@@ -26,7 +26,7 @@ class Box {
 
   void restart() {
     restarts = 0;
-    spare_.emplace(loop_, workers_, taking_over_, state_.path(), stick_.path(), trouble,
+    spare_.emplace(loop_, workers_, takeover_, state_.path(), stick_.path(), trouble,
                    Spare::Asked{.content = [] { return content(); },
                                 .is_time_set = [this] { return is_time_set; },
                                 .restart = [this] { ++restarts; }});
@@ -92,7 +92,7 @@ class Box {
   loop::Loop loop_;
   loop::Workers workers_{loop_, 1};
   Store store_{given_ / "settings.json", given_.path(), state_.path()};
-  Takeover taking_over_{store_, state_.path()};
+  Takeover takeover_{store_, state_.path()};
   std::optional<Spare> spare_;
 };
 

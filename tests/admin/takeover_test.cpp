@@ -53,20 +53,20 @@ class TakeoverTest : public testing::Test {
 
   host::Folder given_, state_;
   Store store_{given_ / "settings.json", given_.path(), state_.path()};
-  Takeover taking_over_{store_, state_.path()};
+  Takeover takeover_{store_, state_.path()};
   loop::Loop loop_;
 };
 
 TEST_F(TakeoverTest, DoesNothingUnlessBegun) {
-  EXPECT_EQ(taking_over_.finish(loop_), false);
+  EXPECT_EQ(takeover_.finish(loop_), false);
   EXPECT_FALSE(fs::exists(state_ / "ledger"));
 }
 
 TEST_F(TakeoverTest, ImportsReportsSettingsTokensAndStampsOnce) {
   store_.save_token("mapping", icd::BearerToken::parse("the-spare-s-own"));
-  ASSERT_TRUE(taking_over_.begin(spare::write(content())));
+  ASSERT_TRUE(takeover_.begin(spare::write(content())));
   EXPECT_FALSE(fs::exists(state_ / "ledger")) << "a ledger in use was changed";
-  ASSERT_EQ(taking_over_.finish(loop_), true);
+  ASSERT_EQ(takeover_.finish(loop_), true);
   EXPECT_THAT(reports(), SizeIs(2));
   const auto loaded = store_.load();
   ASSERT_TRUE(loaded);
@@ -75,7 +75,7 @@ TEST_F(TakeoverTest, ImportsReportsSettingsTokensAndStampsOnce) {
   EXPECT_FALSE(loaded->secrets.token("mapping")) << "the first box had no token";
   EXPECT_EQ(forward::StampFloor(state_.path()).read()->least, 9e9 / 2);
   EXPECT_EQ(SpareFile::read(state_.path())->taken.at(0).at, 100);
-  EXPECT_EQ(taking_over_.finish(loop_), false);
+  EXPECT_EQ(takeover_.finish(loop_), false);
   EXPECT_FALSE(fs::exists(state_ / "../../escaped.token"));
 }
 
@@ -85,8 +85,8 @@ TEST_F(TakeoverTest, RecordsTheSizeOfTheOldLedger) {
   ASSERT_TRUE(here->write({&report, 1}));
   forward::StampFloor(state_.path()).write({.floor = 1, .ledger = here->known()});
   here = std::unexpected(ledger::Error());  // the ledger is closed
-  ASSERT_TRUE(taking_over_.begin(spare::write(content())));
-  ASSERT_EQ(taking_over_.finish(loop_), true);
+  ASSERT_TRUE(takeover_.begin(spare::write(content())));
+  ASSERT_EQ(takeover_.finish(loop_), true);
   const auto kept = forward::StampFloor(state_.path()).read();
   EXPECT_EQ(kept->ledger.reports, 1);
   EXPECT_EQ(kept->ledger.log, 1U);
@@ -95,37 +95,37 @@ TEST_F(TakeoverTest, RecordsTheSizeOfTheOldLedger) {
 TEST_F(TakeoverTest, RepeatsAfterAPowerCut) {
   const std::string text = spare::write(content());
   for (int cut = 0; cut < 3; ++cut) {
-    ASSERT_TRUE(taking_over_.begin(text));
-    ASSERT_EQ(taking_over_.finish(loop_), true);
+    ASSERT_TRUE(takeover_.begin(text));
+    ASSERT_EQ(takeover_.finish(loop_), true);
     EXPECT_THAT(reports(), SizeIs(2));
   }
 }
 
 TEST_F(TakeoverTest, EndsStandby) {
   ASSERT_TRUE((SpareFile{.box = "b", .rest = Rest{.code = "1", .since = 5}}.write(state_.path())));
-  ASSERT_TRUE(taking_over_.begin(spare::write(content())));
-  ASSERT_EQ(taking_over_.finish(loop_), true);
+  ASSERT_TRUE(takeover_.begin(spare::write(content())));
+  ASSERT_EQ(takeover_.finish(loop_), true);
   EXPECT_FALSE(SpareFile::read(state_.path())->rest);
 }
 
 TEST_F(TakeoverTest, RejectsAnInvalidLedger) {
   spare::Content other = content();
   other.ledger = "no ledger";
-  ASSERT_TRUE(taking_over_.begin(spare::write(other)));
-  const auto done = taking_over_.finish(loop_);
+  ASSERT_TRUE(takeover_.begin(spare::write(other)));
+  const auto done = takeover_.finish(loop_);
   ASSERT_FALSE(done);
   EXPECT_THAT(done.error(), HasSubstr("ledger"));
   EXPECT_TRUE(fs::exists(state_ / "take-over")) << "a failed take-over is tried again";
-  ASSERT_TRUE(taking_over_.abandon());
-  EXPECT_EQ(taking_over_.finish(loop_), false);
+  ASSERT_TRUE(takeover_.abandon());
+  EXPECT_EQ(takeover_.finish(loop_), false);
 }
 
 TEST_F(TakeoverTest, FailsWhileUsedExportsCannotBeRead) {
-  ASSERT_TRUE(taking_over_.begin(spare::write(content())));
+  ASSERT_TRUE(takeover_.begin(spare::write(content())));
   fs::create_directory(fs::path(state_.path()) / SpareFile::kName);
-  EXPECT_FALSE(taking_over_.finish(loop_));
+  EXPECT_FALSE(takeover_.finish(loop_));
   fs::remove(fs::path(state_.path()) / SpareFile::kName);
-  EXPECT_EQ(taking_over_.finish(loop_), true);
+  EXPECT_EQ(takeover_.finish(loop_), true);
   EXPECT_THAT(reports(), SizeIs(2));
 }
 
@@ -141,8 +141,8 @@ TEST_F(TakeoverTest, CountsTheSwapTimeOnlyIfBothClocksAreSet) {
     content.about.at = loop_.wall_now() - 5000;
     content.about.stamp = 1000;
     if (are_told) content.about.told_at = content.about.at;
-    ASSERT_TRUE(taking_over_.begin(spare::write(content)));
-    ASSERT_EQ(taking_over_.finish(loop_), true);
+    ASSERT_TRUE(takeover_.begin(spare::write(content)));
+    ASSERT_EQ(takeover_.finish(loop_), true);
     const double stamp =
         forward::StampFloor(state_.path()).read()->least;  // ahead of the clock, like all stamps
     const auto runs = ledger::Ledger::open(state_.path())->runs();
@@ -155,15 +155,15 @@ TEST_F(TakeoverTest, CountsTheSwapTimeOnlyIfBothClocksAreSet) {
 TEST_F(TakeoverTest, FailsWhileStampsCannotBeRead) {
   const std::string file = state_ / forward::StampFloor::kFile;
   ASSERT_EQ(mkfifo(file.c_str(), 0600), 0);
-  ASSERT_TRUE(taking_over_.begin(spare::write(content())));
-  EXPECT_EQ(taking_over_.finish(loop_).error(), file + ": is not a regular file");
+  ASSERT_TRUE(takeover_.begin(spare::write(content())));
+  EXPECT_EQ(takeover_.finish(loop_).error(), file + ": is not a regular file");
   EXPECT_TRUE(fs::is_fifo(file));
 }
 
 TEST_F(TakeoverTest, TellsWhyItsRequestCannotBeRead) {
   fs::create_directory(state_ / Takeover::kFile);
-  EXPECT_FALSE(taking_over_.finish(loop_));
-  EXPECT_EQ(taking_over_.unread(), (state_ / Takeover::kFile) + ": is not a regular file");
+  EXPECT_FALSE(takeover_.finish(loop_));
+  EXPECT_EQ(takeover_.unread(), (state_ / Takeover::kFile) + ": is not a regular file");
 }
 
 TEST_F(TakeoverTest, KeepsSettingsOfThisMachine) {
@@ -174,8 +174,8 @@ TEST_F(TakeoverTest, KeepsSettingsOfThisMachine) {
       R"("team":{"interface":"enp4s0","listen":[{"address":"10.9.9.9","port":80},{"address":"fd00::1","port":80},)"
       R"({"address":"0.0.0.0","port":80}]},)"
       R"("panel":{"chip":"gpiochip0","health":"H"}})";
-  ASSERT_TRUE(taking_over_.begin(spare::write(other)));
-  ASSERT_EQ(taking_over_.finish(loop_), true);
+  ASSERT_TRUE(takeover_.begin(spare::write(other)));
+  ASSERT_EQ(takeover_.finish(loop_), true);
   const auto settings = store_.load()->settings;
   EXPECT_EQ(settings.command_post.scoring.address, "10.100.2.200") << "the first box's address";
   EXPECT_EQ(settings.command_post.interface, "darpa0");
@@ -199,13 +199,13 @@ class WithoutTeamInterfaceTest : public TakeoverTest {
                                                  R"({"address":"::1","port":8001})"));
     spare::Content other = content();
     other.settings = of_the_first;
-    ASSERT_TRUE(taking_over_.begin(spare::write(other)));
+    ASSERT_TRUE(takeover_.begin(spare::write(other)));
   }
 };
 
 TEST_F(WithoutTeamInterfaceTest, ListensAtOwnAddressesWithTheOtherBoxsPorts) {
   begin(settings("9000", R"({"address":"10.9.9.9","port":80})"));
-  ASSERT_EQ(taking_over_.finish(loop_), true);
+  ASSERT_EQ(takeover_.finish(loop_), true);
   EXPECT_THAT(store_.load()->settings.team.listen,
               testing::ElementsAre(settings::Address{"127.0.0.1", 80}, settings::Address{"::1", 80}))
       << "with an address of the first box, aditd would not start and would revert to its own settings";
@@ -213,7 +213,7 @@ TEST_F(WithoutTeamInterfaceTest, ListensAtOwnAddressesWithTheOtherBoxsPorts) {
 
 TEST_F(WithoutTeamInterfaceTest, RejectsSettingsThatPostToItself) {
   begin(settings("8000", R"({"address":"10.9.9.9","port":8000})"));
-  const auto done = taking_over_.finish(loop_);
+  const auto done = takeover_.finish(loop_);
   ASSERT_FALSE(done);
   EXPECT_THAT(done.error(), HasSubstr("the two boxes' settings do not fit: team.listen[0]"));
   EXPECT_EQ(store_.load()->settings.team.listen.front().port, 8001);
@@ -222,16 +222,16 @@ TEST_F(WithoutTeamInterfaceTest, RejectsSettingsThatPostToItself) {
 TEST_F(TakeoverTest, NamesOmittedSettings) {
   spare::Content other = content();
   other.settings.insert(other.settings.find("\"version\""), "\"later\": 1, ");
-  EXPECT_EQ(taking_over_.check(other)->passed_over, std::vector<std::string>{"later"});
+  EXPECT_EQ(takeover_.check(other)->passed_over, std::vector<std::string>{"later"});
 }
 
 TEST_F(TakeoverTest, RejectsUnusableSettings) {
   spare::Content other = content();
   other.settings = R"({"version": 9})";
-  const auto checked = taking_over_.check(other);
+  const auto checked = takeover_.check(other);
   ASSERT_FALSE(checked);
   EXPECT_THAT(checked.error(), HasSubstr("this box cannot use the export's settings"));
-  EXPECT_TRUE(taking_over_.check(content()));
+  EXPECT_TRUE(takeover_.check(content()));
 }
 
 }  // namespace

@@ -1,4 +1,6 @@
 // Points in voxels that the Command Post has are left out of later clouds.
+#include "forward/delivered_points.hpp"
+
 #include <gmock/gmock.h>
 
 #include <limits>
@@ -6,7 +8,6 @@
 #include "codec/gzip.hpp"
 #include "forward/sample_maps.hpp"
 #include "forward/stitched.hpp"
-#include "forward/taken_points.hpp"
 
 namespace adit::forward {
 namespace {
@@ -25,7 +26,7 @@ class DeliveredPointsTest : public testing::Test {
   Packed pack(const std::vector<float>& xs) { return pack(cloud_along_x("r1", xs)); }
   void take(const std::vector<float>& xs) { points_.taken(cloud_along_x("r1", xs), pack(xs).left_out); }
 
-  TakenPoints points_;
+  DeliveredPoints points_;
 };
 
 TEST_F(DeliveredPointsTest, AreLeftOutOfTheNextCloud) {

@@ -1,6 +1,6 @@
-#include <gtest/gtest.h>
+#include "forward/status_cache.hpp"
 
-#include "forward/known_status.hpp"
+#include <gtest/gtest.h>
 
 namespace adit::forward {
 namespace {
@@ -11,14 +11,14 @@ loop::Instant at(int ms) {
   return loop::Instant{} + milliseconds(1'000'000 + ms);
 }
 
-TEST(KnownStatus, IsEmptyAtFirst) {
-  const KnownStatus known;
+TEST(StatusCache, IsEmptyAtFirst) {
+  const StatusCache known;
   EXPECT_FALSE(known.is_fresh(at(0)));
   EXPECT_FALSE(known.answer(at(0)));
 }
 
-TEST(KnownStatus, IsFreshForOneSecondAndUsableForFifteen) {
-  KnownStatus known;
+TEST(StatusCache, IsFreshForOneSecondAndUsableForFifteen) {
+  StatusCache known;
   known.heard("{\"score\": 1}", {}, at(0), 0);
   EXPECT_TRUE(known.is_fresh(at(999)));
   EXPECT_FALSE(known.is_fresh(at(1000)));
@@ -26,15 +26,15 @@ TEST(KnownStatus, IsFreshForOneSecondAndUsableForFifteen) {
   EXPECT_FALSE(known.answer(at(15'001)));
 }
 
-TEST(KnownStatus, IsUsableForAMinuteWhileReportsGoFirst) {
-  KnownStatus known;
+TEST(StatusCache, IsUsableForAMinuteWhileReportsGoFirst) {
+  StatusCache known;
   known.heard("{}", {}, at(0), 0);
-  EXPECT_TRUE(known.answer(at(60'000), KnownStatus::kOldestBehindReports));
-  EXPECT_FALSE(known.answer(at(60'001), KnownStatus::kOldestBehindReports));
+  EXPECT_TRUE(known.answer(at(60'000), StatusCache::kOldestBehindReports));
+  EXPECT_FALSE(known.answer(at(60'001), StatusCache::kOldestBehindReports));
 }
 
-TEST(KnownStatus, HasAnAgeInWholeSeconds) {
-  KnownStatus known;
+TEST(StatusCache, HasAnAgeInWholeSeconds) {
+  StatusCache known;
   known.heard("{\"score\": 1}", {}, at(0), 0);
   const std::pair<int, const char*> cases[] = {{0, "0"}, {999, "0"}, {1000, "1"}, {14'999, "14"}};
   for (const auto& [ms, age] : cases) {
@@ -47,8 +47,8 @@ TEST(KnownStatus, HasAnAgeInWholeSeconds) {
   }
 }
 
-TEST(KnownStatus, IsUsableAfterItMayHaveChanged) {
-  KnownStatus known;
+TEST(StatusCache, IsUsableAfterItMayHaveChanged) {
+  StatusCache known;
   known.heard("{}", {}, at(0), 0);
   known.no_longer_fresh();
   EXPECT_FALSE(known.is_fresh(at(1)));

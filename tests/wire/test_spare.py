@@ -1,5 +1,5 @@
 """A spare box takes over: each report is recorded exactly once, whenever the first box was cut off. Other cases:
-dispatch/taking_over_test, admin/taking_over_test and admin/spare_test."""
+dispatch/merged_reports_test, admin/takeover_test and admin/spare_test."""
 
 import subprocess
 import time

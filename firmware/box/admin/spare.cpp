@@ -15,11 +15,11 @@ namespace adit::admin {
 
 using icd::Status;
 
-Spare::Spare(loop::Loop& loop, loop::Workers& workers, Takeover& taking_over, std::string state_folder,
+Spare::Spare(loop::Loop& loop, loop::Workers& workers, Takeover& takeover, std::string state_folder,
              const std::string& status_folder, const std::string& stuck, Asked asked)
     : loop_(loop),
       workers_(workers),
-      taking_over_(taking_over),
+      takeover_(takeover),
       state_(std::move(state_folder)),
       stick_(loop, state_, status_folder, [this](std::string file) { taken_from_stick(std::move(file)); }),
       stuck_(stuck),
@@ -197,7 +197,7 @@ icd::Checked<Spare::Opened> Spare::check(const std::expected<std::string, std::s
   auto content = spare::read(*text);
   if (!content) return refuse(Status::UnprocessableEntity, std::move(content.error()));
   if (std::string why = file_.hindrance(content->about); !why.empty()) return conflict(std::move(why));
-  auto settings = taking_over_.check(*content);
+  auto settings = takeover_.check(*content);
   if (!settings) return refuse(Status::UnprocessableEntity, std::move(settings.error()));
   return Opened{*std::move(content), *std::move(settings)};
 }
@@ -206,7 +206,7 @@ icd::Checked<Spare::Opened> Spare::check(const std::expected<std::string, std::s
 icd::Checked<void> Spare::forget() {
   if (takes_over_) return conflict("this box is taking over just now");
   if (is_stuck()) {
-    if (auto done = taking_over_.abandon(); !done)
+    if (auto done = takeover_.abandon(); !done)
       return refuse(Status::ServiceUnavailable, std::move(done.error()));
     restart_.call_at(loop_.now());
   }
@@ -220,7 +220,7 @@ icd::Checked<void> Spare::take_over() {
   if (!opened_) return conflict("no export is open: import and open one first");
   spare::Content content = opened_->content;
   if (!asked_.is_time_set()) content.about.told_at.reset();  // an unset time of day cannot be compared
-  if (auto begun = taking_over_.begin(spare::write(content)); !begun)
+  if (auto begun = takeover_.begin(spare::write(content)); !begun)
     return refuse(Status::ServiceUnavailable, std::move(begun.error()));
   takes_over_ = true;
   restart_.call_at(loop_.now());

@@ -29,9 +29,9 @@ class Spare final : public api::Spare {
   };
 
   /// `status_folder`: of adit-spare. `stuck`: why the box is a standby in spite of its file (an unfinished
-  /// takeover, unreadable settings), or "". `workers`: for jobs of 0.1 s. `loop`, `workers` and `taking_over`
+  /// takeover, unreadable settings), or "". `workers`: for jobs of 0.1 s. `loop`, `workers` and `takeover`
   /// must outlive this object.
-  Spare(loop::Loop& loop, loop::Workers& workers, Takeover& taking_over, std::string state_folder,
+  Spare(loop::Loop& loop, loop::Workers& workers, Takeover& takeover, std::string state_folder,
         const std::string& status_folder, const std::string& stuck, Asked asked);
 
   /// Why the box is a standby, or "".
@@ -70,7 +70,7 @@ class Spare final : public api::Spare {
 
   loop::Loop& loop_;
   loop::Workers& workers_;
-  Takeover& taking_over_;
+  Takeover& takeover_;
   std::string state_;
   SpareStick stick_;
   std::string stuck_, unread_;

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "admin/store.hpp"
-#include "dispatch/taking_over.hpp"
+#include "dispatch/merged_reports.hpp"
 #include "ledger/ledger.hpp"
 #include "loop/loop.hpp"
 #include "settings/settings.hpp"

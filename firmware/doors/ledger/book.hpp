@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "dispatch/taking_over.hpp"
+#include "dispatch/merged_reports.hpp"
 #include "ledger/record.hpp"
 #include "store/contents.hpp"
 #include "store/error.hpp"

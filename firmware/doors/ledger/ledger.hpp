@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "dispatch/merged_reports.hpp"
 #include "dispatch/output.hpp"
 #include "dispatch/report.hpp"
 #include "dispatch/run.hpp"
-#include "dispatch/taking_over.hpp"
 #include "ledger/record.hpp"
 #include "store/contents.hpp"
 #include "store/error.hpp"

@@ -57,7 +57,7 @@ class PreparedMaps {
   /// Keeps only the points of a delivered cloud that were sent.
   void points_taken(PreparedMap& sent);
 
-  TakenPoints& points() { return points_; }
+  DeliveredPoints& points() { return points_; }
   Slot& slot() { return slot_; }
   const Slot& slot() const { return slot_; }
 
@@ -78,7 +78,7 @@ class PreparedMaps {
   MapStore& store_;
   std::function<void(bool is_done)> packed_;
   Slot slot_;
-  TakenPoints points_;
+  DeliveredPoints points_;
   Place first_, following_;
   bool is_packing_ = false;
 };

@@ -101,7 +101,7 @@ void Scoring::endpoint_changed(std::optional<icd::BearerToken> token) {
 
 void Scoring::endpoint_turned() {
   pace_.endpoint_turned();
-  known_status_ = {};
+  status_cache_ = {};
   ask_at_ = loop_.now();
   open_reports();
   watch_deadlines();
@@ -138,7 +138,7 @@ void Scoring::status(std::shared_ptr<intake::Responder> responder) {
   }
   const loop::Instant now = loop_.now();
   const auto known =
-      known_status_.is_fresh(now) || pace_.has_one_limit() ? known_status_.answer(now) : std::nullopt;
+      status_cache_.is_fresh(now) || pace_.has_one_limit() ? status_cache_.answer(now) : std::nullopt;
   if (known) return responder->answer(*known);
   status_clients_.add(std::move(responder), now);
   pump();
@@ -154,12 +154,12 @@ bool Scoring::may_ask_soon(loop::Instant now) const {
 }
 
 /// It may be older if only reports delay a request, because the Command Post answers them.
-std::optional<intake::Answer> Scoring::known_status() const {
+std::optional<intake::Answer> Scoring::status_cache() const {
   const dispatch::NextRequests requests = reports_->next_requests(time());
   const bool reports_go_first =
       reports_->sending() != nullptr ? channel_.connected() : requests.report && !requests.status;
-  return known_status_.answer(loop_.now(),
-                              reports_go_first ? KnownStatus::kOldestBehindReports : KnownStatus::kOldest);
+  return status_cache_.answer(loop_.now(),
+                              reports_go_first ? StatusCache::kOldestBehindReports : StatusCache::kOldest);
 }
 
 void Scoring::ask_soon() {
@@ -231,7 +231,7 @@ void Scoring::hear_time() {
 
 void Scoring::report_answered(const uplink::Outcome& outcome) {
   classify_report(outcome);
-  known_status_.no_longer_fresh();  // score and remaining reports may have changed
+  status_cache_.no_longer_fresh();  // score and remaining reports may have changed
   ask_at_ = loop_.now();
   watch_deadlines();
   counts_.changed();
@@ -269,7 +269,7 @@ void Scoring::watch_deadlines() {
 /// By the known status; else they wait longer for the request in flight.
 void Scoring::answer_clients(loop::Instant now) {
   if (status_clients_.empty()) return;
-  const auto known = known_status();
+  const auto known = status_cache();
   const loop::Instant longest = !known && asked_status_ ? asked_status_->at + kSlow : now;
   status_clients_.answer_due(now, longest, known ? *known : no_status(why_no_status()));
 }
@@ -314,7 +314,7 @@ void Scoring::classify_status(const uplink::Outcome& outcome, loop::Instant aske
     ask_at_ = now;  // clients keep waiting
     return;
   }
-  if (run) known_status_.heard(answered->body, *run, asked, loop_.stamp_now());  // sent with its age
+  if (run) status_cache_.heard(answered->body, *run, asked, loop_.stamp_now());  // sent with its age
   if (answered == nullptr) {
     pace_.status_failed(outcome, now);
     status_clients_.answer_all(known_or(no_status(sentence_of(outcome))));
@@ -335,7 +335,7 @@ void Scoring::classify_status(const uplink::Outcome& outcome, loop::Instant aske
 
 /// Failures may end within a second.
 intake::Answer Scoring::known_or(intake::Answer failure) const {
-  return known_status().value_or(std::move(failure));
+  return status_cache().value_or(std::move(failure));
 }
 
 dispatch::Reports::Outcome Scoring::decide(std::int64_t number, api::Action action) noexcept {

@@ -9,9 +9,9 @@
 #include "dispatch/reports.hpp"
 #include "forward/channel.hpp"
 #include "forward/clocks.hpp"
-#include "forward/known_status.hpp"
 #include "forward/report_output.hpp"
 #include "forward/scoring_pace.hpp"
+#include "forward/status_cache.hpp"
 #include "forward/status_clients.hpp"
 #include "forward/traffic_counts.hpp"
 #include "icd/artifact_report.hpp"
@@ -78,8 +78,8 @@ class Scoring {
   void dismiss();
 
   const Channel& channel() const { return channel_; }
-  const std::optional<icd::RunStatus>& run() const { return known_status_.run(); }
-  std::optional<alarms::ShownClock> run_clock() const { return known_status_.run_clock(loop_.stamp_now()); }
+  const std::optional<icd::RunStatus>& run() const { return status_cache_.run(); }
+  std::optional<alarms::ShownClock> run_clock() const { return status_cache_.run_clock(loop_.stamp_now()); }
   const dispatch::Reports& reports() const { return *reports_; }
   /// Why the ledger cannot be written, or "".
   const std::string& trouble() const { return output_.trouble(); }
@@ -110,7 +110,7 @@ class Scoring {
   void watch_deadlines();
   void answer_clients(loop::Instant now);
   bool may_ask_soon(loop::Instant now) const;
-  std::optional<intake::Answer> known_status() const;
+  std::optional<intake::Answer> status_cache() const;
   void deadline_came();
   std::string why_no_status() const;
   intake::Answer known_or(intake::Answer failure) const;
@@ -128,7 +128,7 @@ class Scoring {
 
   StatusClients status_clients_;
   loop::Instant ask_at_ = loop::Instant::max();  // Adit needs a status from then on
-  KnownStatus known_status_;
+  StatusCache status_cache_;
   std::optional<AskedStatus> asked_status_;
   bool stopping_ = false;
 };

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <optional>
 
-#include "forward/taken_points.hpp"
+#include "forward/delivered_points.hpp"
 #include "icd/chunked_bytes.hpp"
 #include "icd/status.hpp"
 #include "pack/effort.hpp"

@@ -5,7 +5,7 @@
 
 #include "box/candidate.hpp"
 #include "box/version.hpp"
-#include "dispatch/another_post.hpp"
+#include "dispatch/other_command_post.hpp"
 #include "forward/stamp_floor.hpp"
 #include "gateway/team_address.hpp"
 #include "host/files.hpp"
@@ -87,7 +87,7 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
       setup_(
           parts_.store, parts_.reset, parts_.loaded, parts_.trouble,
           [this](const std::string& post) {
-            return dispatch::meaning_of_another_post(flow_.reports(), post);
+            return dispatch::meaning_of_other_command_post(flow_.reports(), post);
           },
           [this] { change_.call_at(loop_.now()); }, [this] { make_way(); }),
       box_(loop, flow_.workers(), parts_.board, settings::file_of(parts_.loaded.settings),
@@ -104,7 +104,7 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
       updates_(loop, disk_writer_, parts_.options.state, parts_.options.update,
                [this] { return report_under_way(flow_.reports()); }),
       clock_(loop, parts_.options.state, parts_.options.clock, admin::ClockSetting::kChronyd),
-      spare_(loop, log_ins_, parts_.taking_over, parts_.options.state, parts_.options.spare,
+      spare_(loop, log_ins_, parts_.takeover, parts_.options.state, parts_.options.spare,
              unread().empty() ? parts_.stuck : unread(),
              {.content =
                   [this] { return export_of(parts_, flow_.reports(), settings_.team, loop_.stamp_now()); },
@@ -165,8 +165,8 @@ std::string Gateway::unread() const {
   if (!settings.empty()) return "the saved settings or tokens cannot be read: " + settings;
   const std::string& reset = parts_.reset.unread();
   if (!reset.empty()) return "it is not known whether a factory reset was begun: " + reset;
-  const std::string& taking_over = parts_.taking_over.unread();
-  if (!taking_over.empty()) return "the take-over cannot be read: " + taking_over;
+  const std::string& takeover = parts_.takeover.unread();
+  if (!takeover.empty()) return "the take-over cannot be read: " + takeover;
   return accounts_.unread().empty() ? flow_.unread() : accounts_.unread();
 }
 

@@ -19,11 +19,11 @@ namespace adit::gateway {
 
 /// Checked parts of a gateway.
 struct Parts {
-  const Options& options;        // outlives the gateway
-  admin::Store& store;           // outlives the gateway
-  admin::FactoryReset& reset;    // outlives the gateway
-  admin::Takeover& taking_over;  // outlives the gateway
-  ListenSockets& sockets;        // outlives the gateway
+  const Options& options;      // outlives the gateway
+  admin::Store& store;         // outlives the gateway
+  admin::FactoryReset& reset;  // outlives the gateway
+  admin::Takeover& takeover;   // outlives the gateway
+  ListenSockets& sockets;      // outlives the gateway
   admin::Store::Loaded loaded;
   std::string trouble;    // why other settings are in use than wanted, or ""
   std::string put_aside;  // queued messages put aside, and why; or ""

@@ -83,7 +83,7 @@ Service::Service(const Options& options, char* const* arguments)
       arguments_(arguments),
       store_(options.settings, options.secrets, options.state),
       reset_(store_, options.state, runtime_folder(options)),
-      taking_over_(store_, options.state),
+      takeover_(store_, options.state),
       trouble_(take_variable(kTrouble)),
       file_rest_(std::strtol(take_variable(kFileRest).c_str(), nullptr, 10)) {
   if (file_rest_ < FileReturn::kRest) file_rest_ = FileReturn::kRest;
@@ -156,7 +156,7 @@ std::expected<bool, std::string> Service::run_gateway() {
     host::log(host::Level::Error, trouble_);
   }
   std::string put_aside = put_queue_aside();
-  std::string stuck = finish_taking_over();
+  std::string stuck = finish_takeover();
   host::keep_out_of_log(store_.redaction());
   auto loaded = ADIT_TRY(store_.load());
   auto ledger = open_ledger(options_);
@@ -171,7 +171,7 @@ std::expected<bool, std::string> Service::run_gateway() {
   Gateway gateway(loop_, {.options = options_,
                           .store = store_,
                           .reset = reset_,
-                          .taking_over = taking_over_,
+                          .takeover = takeover_,
                           .sockets = sockets_,
                           .loaded = std::move(loaded),
                           .trouble = trouble_,
@@ -189,8 +189,8 @@ std::expected<bool, std::string> Service::run_gateway() {
 }
 
 /// Why it is unfinished, or "".
-std::string Service::finish_taking_over() {
-  const auto done = taking_over_.finish(loop_);
+std::string Service::finish_takeover() {
+  const auto done = takeover_.finish(loop_);
   if (done) return "";
   host::log(host::Level::Error, "the take-over is incomplete", {{"why", done.error()}});
   return "the take-over is not finished: " + done.error();

@@ -36,7 +36,7 @@ class Service {
   std::expected<bool, std::string> run_gateway();
   std::expected<bool, std::string> run(Gateway& gateway, const settings::Settings& settings);
   std::expected<void, std::string> take_over_sockets();
-  std::string finish_taking_over();
+  std::string finish_takeover();
   /// One byte per fault.
   std::string faults_file() const;
   std::string put_queue_aside();
@@ -47,7 +47,7 @@ class Service {
   char* const* const arguments_;
   admin::Store store_;
   admin::FactoryReset reset_;
-  admin::Takeover taking_over_;
+  admin::Takeover takeover_;
   ListenSockets sockets_;
   loop::Loop loop_;
   loop::FileDescriptor announced_;  // to adit-panel, until the lights are opened

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <map>
 
+#include "dispatch/merged_reports.hpp"
 #include "dispatch/runs.hpp"
-#include "dispatch/taking_over.hpp"
 
 namespace adit::dispatch {
 

@@ -25,7 +25,7 @@ bool ReportSender::may_go(const Report& report, Instant now) const {
   if (barred_) return false;
   if (doubts_.is_pending(now)) return false;
   if (account_.is_fresh(now)) return true;
-  if (!account_.is_dumb(now) || review_.sent_to_another_post(report) != nullptr) return false;
+  if (!account_.is_dumb(now) || review_.sent_to_other_command_post(report) != nullptr) return false;
   return report.asked || clients_.is_young(report, now);
 }
 

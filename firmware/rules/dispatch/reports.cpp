@@ -77,7 +77,7 @@ bool Reports::take(const PostedReport& posted, ClientId client, bool may_send, T
   }
   Hold hold = fresh ? review_.reason_to_hold(report) : Hold{};
   if (posted.can_be_undone && hold.why.empty()) hold = review_.hold_for_undo();
-  if (const Report* const other = review_.sent_to_another_post(report); other != nullptr) {
+  if (const Report* const other = review_.sent_to_other_command_post(report); other != nullptr) {
     report.note = icd::sentence("the same as report ", other->number,
                                 ", which was sent to another Command Post; queued until the Command Post at ",
                                 run().post, " answers");

@@ -1,4 +1,4 @@
-#include "forward/known_status.hpp"
+#include "forward/status_cache.hpp"
 
 #include <utility>
 
@@ -6,7 +6,7 @@
 
 namespace adit::forward {
 
-void KnownStatus::heard(std::string body, const icd::RunStatus& run, loop::Instant asked, icd::Stamp now) {
+void StatusCache::heard(std::string body, const icd::RunStatus& run, loop::Instant asked, icd::Stamp now) {
   body_ = std::move(body);
   run_ = run;
   run_clock_.heard(run.run_clock, now);
@@ -14,11 +14,11 @@ void KnownStatus::heard(std::string body, const icd::RunStatus& run, loop::Insta
   fresh_ = true;
 }
 
-bool KnownStatus::is_fresh(loop::Instant now) const {
+bool StatusCache::is_fresh(loop::Instant now) const {
   return fresh_ && asked_ && now - *asked_ < kFresh;
 }
 
-std::optional<intake::Answer> KnownStatus::answer(loop::Instant now, std::chrono::seconds oldest) const {
+std::optional<intake::Answer> StatusCache::answer(loop::Instant now, std::chrono::seconds oldest) const {
   if (!asked_ || now - *asked_ > oldest) return std::nullopt;
   const auto age = std::chrono::floor<std::chrono::seconds>(now - *asked_).count();
   return intake::Answer{.status = icd::Status::Ok,

@@ -1,4 +1,4 @@
-#include "dispatch/another_post.hpp"
+#include "dispatch/other_command_post.hpp"
 
 #include <algorithm>
 
@@ -52,7 +52,7 @@ std::string what_is_known_at(const Reports& reports, const std::string& post) {
 
 }  // namespace
 
-std::string meaning_of_another_post(const Reports& reports, const std::string& post) {
+std::string meaning_of_other_command_post(const Reports& reports, const std::string& post) {
   const std::string& here = reports.meant_run().post;
   std::string text = "reports go to " + post + " from then on" + what_is_known_at(reports, post);
   const Open open = open_here(reports);

@@ -1,5 +1,5 @@
 // A spare takes over the reports of the first box.
-#include "dispatch/taking_over.hpp"
+#include "dispatch/merged_reports.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "dispatch/another_post.hpp"
+#include "dispatch/other_command_post.hpp"
 
 #include <gmock/gmock.h>
 
@@ -12,7 +12,7 @@ using testing::EndsWith;
 using testing::HasSubstr;
 
 std::string meaning(const Scene& scene, const std::string& post = kThere) {
-  return meaning_of_another_post(scene.reports(), post);
+  return meaning_of_other_command_post(scene.reports(), post);
 }
 
 TEST(ChangeOfCommandPost, AffectsNoFinalReport) {

@@ -1,4 +1,4 @@
-#include "forward/taken_points.hpp"
+#include "forward/delivered_points.hpp"
 
 #include <utility>
 #include <variant>
@@ -27,26 +27,26 @@ LeftOut LeavingOut::operator()(icd::MapUpdate& map) {
           .sent = {}};
 }
 
-void TakenPoints::edges_are(std::map<icd::RobotName, double> edges) {
+void DeliveredPoints::edges_are(std::map<icd::RobotName, double> edges) {
   if (edges == edges_) return;
   edges_ = std::move(edges);
   forget();
 }
 
-void TakenPoints::forget() {
+void DeliveredPoints::forget() {
   ++epoch_;
   taken_.clear();
 }
 
 /// Without edges the worker clears its voxels.
-LeavingOut TakenPoints::leaving_out(const icd::MapUpdate& map) {
+LeavingOut DeliveredPoints::leaving_out(const icd::MapUpdate& map) {
   if (edges_.empty()) return {std::exchange(known_, nullptr), epoch_, 0, {}};
   if (!known_) known_ = std::make_shared<LeavingOut::Known>();
   const auto edge = map.name && !map.is_grid() ? edges_.find(*map.name) : edges_.end();
   return {known_, epoch_, edge == edges_.end() ? 0 : edge->second, std::exchange(taken_, {})};
 }
 
-void TakenPoints::taken(const icd::MapUpdate& map, LeftOut left_out) {
+void DeliveredPoints::taken(const icd::MapUpdate& map, LeftOut left_out) {
   if (left_out.edge == 0 || left_out.epoch != epoch_ || left_out.voxels.empty()) return;
   taken_.push_back({*map.name, left_out.edge, std::move(left_out.voxels)});
 }

@@ -18,7 +18,7 @@ namespace adit::forward {
 struct LeftOut {
   std::size_t points = 0;
   bool is_all = false;                   // no point remains
-  std::uint64_t epoch = 0;               // of TakenPoints when the points were left out
+  std::uint64_t epoch = 0;               // of DeliveredPoints when the points were left out
   double edge = 0;                       // of a voxel, metres; 0: the robot's clouds are sent whole
   std::vector<pack::VoxelBlock> voxels;  // of sent points
   std::optional<icd::MapUpdate> sent;    // if points were left out
@@ -57,7 +57,7 @@ class LeavingOut {
 /// worker owns the voxels.
 ///
 /// A cloud reduced in an earlier epoch must be sent whole, because the Command Post may lack the points.
-class TakenPoints {
+class DeliveredPoints {
  public:
   /// Metres, per robot. A change forgets all points.
   void edges_are(std::map<icd::RobotName, double> edges);

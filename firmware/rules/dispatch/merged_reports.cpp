@@ -1,4 +1,4 @@
-#include "dispatch/taking_over.hpp"
+#include "dispatch/merged_reports.hpp"
 
 #include <algorithm>
 #include <map>
@@ -42,9 +42,9 @@ bool stands(const Report& report) {
   return was_sent && !effect_of(report).again;
 }
 
-class TakingOver {
+class MergedReports {
  public:
-  TakingOver(const Books& here, const Books& there, const Handover& handover)
+  MergedReports(const Books& here, const Books& there, const Handover& handover)
       : here_(here),
         there_(there),
         handover_(handover),
@@ -188,7 +188,7 @@ class TakingOver {
 }  // namespace
 
 TakeOver take_over(const Books& here, const Books& there, const Handover& handover) {
-  return TakingOver(here, there, handover).run();
+  return MergedReports(here, there, handover).run();
 }
 
 }  // namespace adit::dispatch

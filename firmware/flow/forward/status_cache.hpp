@@ -13,7 +13,7 @@ namespace adit::forward {
 
 /// The last known status of the run: for the page, and with its age (RFC 9111 5.1) for clients while Adit
 /// cannot ask.
-class KnownStatus {
+class StatusCache {
  public:
   static constexpr std::chrono::seconds kFresh{1};                 // no request needed
   static constexpr std::chrono::seconds kOldest{15};               // better than no answer

@@ -79,6 +79,14 @@ TEST_F(FlowTest, KeepsQueuedMessagesAcrossARestart) {
   EXPECT_THAT(waiting(), ElementsAre(1, 1, 1));
 }
 
+TEST_F(FlowTest, TellsThatRejectedMessagesCannotBeRead) {
+  EXPECT_EQ(flow_->put_aside(), "");
+  std::filesystem::create_directory(folder_ / "rejected/1.json");
+  restart();
+  EXPECT_EQ(flow_->put_aside(), "rejected messages cannot be read: cannot read " +
+                                    folder_ / "rejected/1.json" + ": is not a regular file");
+}
+
 /// Listeners open after the start, so it must be short.
 TEST_F(FlowTest, StartsWithoutReadingQueuedData) {
   ASSERT_TRUE(take_map(spool::cloud(1'000'000)));  // 12 MB

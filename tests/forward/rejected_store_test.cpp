@@ -182,6 +182,20 @@ TEST_F(RejectedStoreTest, KeepsDamagedFilesAside) {
   EXPECT_EQ(rejected_->rows().front().number, 2);
   EXPECT_TRUE(std::filesystem::exists(folder_ / "1.json.damaged"));
   EXPECT_TRUE(std::filesystem::exists(folder_ / "1.cbor.damaged")) << "the message is kept";
+  EXPECT_TRUE(
+      rejected_->missing().starts_with("rejected messages are damaged: " + (folder_ / "1.cbor") + ": "))
+      << rejected_->missing();
+  restart();
+  EXPECT_EQ(rejected_->missing(), "");
+}
+
+TEST_F(RejectedStoreTest, NamesAFileThatCannotBeRead) {
+  add(grid());
+  settle();
+  fs::create_directory(folder_ / "2.json");
+  restart();
+  EXPECT_EQ(rejected_->missing(), "rejected messages cannot be read: cannot read " + (folder_ / "2.json") +
+                                      ": is not a regular file");
 }
 
 TEST_F(RejectedStoreTest, ReleasesTheOriginOnceTheMessageIsStored) {

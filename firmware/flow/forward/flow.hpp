@@ -69,8 +69,8 @@ class Flow final : public intake::Desk, public api::Operator {
 
   /// Continues the work of the previous process, and connects.
   void start();
-  /// Which queued messages of the previous process are not sent, because they are damaged or processes ended
-  /// while they worked on them; or "".
+  /// Which queued or rejected messages of the previous process are missing, because they are damaged or
+  /// cannot be read, or processes ended while they worked on them; or "".
   std::string put_aside() const;
   /// Why a file that sending needs is unreadable, or "".
   std::string unread() const { return clocks_.unread(); }

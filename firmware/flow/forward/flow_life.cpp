@@ -75,8 +75,11 @@ bool Flow::can_be_read(const std::string& runtime_folder) {
 }
 
 std::string Flow::put_aside() const {
-  const std::string &maps = spool_.put_aside(), &records = journal_.damage();
-  return maps.empty() || records.empty() ? maps + records : maps + "; " + records;
+  std::string all;
+  for (const std::string& each : {spool_.put_aside(), journal_.damage(), rejected_.missing()}) {
+    if (!each.empty()) all += (all.empty() ? "" : "; ") + each;
+  }
+  return all;
 }
 
 void Flow::start() {

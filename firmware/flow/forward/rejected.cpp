@@ -138,8 +138,13 @@ void RejectedStore::restore() {
     }
     for (const char* const ending : {kMessage, kReason})
       host::set_damaged_aside(path(number, ending), "a rejected message", restored.error().sentence);
+    if (missing_.empty())
+      missing_ = icd::sentence("rejected messages are damaged: ", path(number, kMessage), ": ",
+                               restored.error().sentence);
   }
-  if (!unread_.empty()) host::log(host::Level::Error, "rejected messages cannot be read", {{"why", unread_}});
+  if (unread_.empty()) return;
+  host::log(host::Level::Error, "rejected messages cannot be read", {{"why", unread_}});
+  missing_ = "rejected messages cannot be read: " + unread_;
 }
 
 icd::Checked<void> RejectedStore::restore_one(std::uint64_t number) {

@@ -37,6 +37,8 @@ class RejectedStore {
   void restore();
   /// Why restore() could not read a file, or "".
   const std::string& unread() const { return unread_; }
+  /// Which messages of the previous process are missing in rows(), and why; or "".
+  const std::string& missing() const { return missing_; }
 
   void add(queues::Message message, int status, const std::string& why, std::size_t bytes, Origin origin);
   /// The Command Post accepted `message`: marks older rejected messages that it contains, so that they are
@@ -70,6 +72,7 @@ class RejectedStore {
   loop::Writer& writer_;
   const std::string folder_;
   std::string unread_;  // why restore() failed; file numbers may be reused then
+  std::string missing_;
   queues::RejectedMessages items_;
   int being_written_ = 0;
   std::set<std::uint64_t> leaving_;                           // between to_be_sent() and sent_again()

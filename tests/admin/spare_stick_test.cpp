@@ -64,6 +64,14 @@ TEST_F(SpareStickTest, ListsExportsByTheirFileNames) {
   EXPECT_EQ(view->exports[1].box, "");
 }
 
+TEST_F(SpareStickTest, TellsWhyTheStickCannotBeRead) {
+  write_status({.unreadable = "cannot read the stick sda1: Input/output error"});
+  EXPECT_EQ(stick_.view()->unreadable, "cannot read the stick sda1: Input/output error");
+  ASSERT_TRUE(host::write_file(run_ / host::kStatusFile, "damaged", 0644));
+  time_.pass(host::kFresh);
+  EXPECT_THAT(stick_.view()->unreadable, HasSubstr("cannot read the status of adit-spare"));
+}
+
 TEST_F(SpareStickTest, WritesTheFileBeforeTheRequest) {
   write_status({});
   ASSERT_TRUE(stick_.write(kName, "sealed"));

@@ -12,6 +12,7 @@ struct PlayedSpare final : Spare {
   PlayedSpare() {
     view.stick = StickRow{
         .hindrance = "",
+        .unreadable = "",
         .doing = "",
         .refusal = "",
         .written = "",

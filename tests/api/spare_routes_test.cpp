@@ -54,6 +54,7 @@ TEST_F(SpareRoutesTest, GivesTheExportAsAFile) {
 TEST_F(SpareRoutesTest, ListsTheStick) {
   EXPECT_THAT(get("/adit/spare").body, HasSubstr(R"("stick":null)"));
   spare.view.stick = StickRow{.hindrance = "",
+                              .unreadable = "",
                               .doing = "",
                               .refusal = "",
                               .written = "",

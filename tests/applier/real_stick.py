@@ -139,8 +139,17 @@ class Stick(Sticks):
         run("umount", self.place())
         (self.folder / "sda1.img").write_bytes(bytes(1 << 20))
         self.mount_stick()
-        self.assertIn("expected FAT32 or ext4", self.run_it()["hindrance"])
+        status = self.run_it()
+        self.assertIn("expected FAT32 or ext4", status["hindrance"])
+        self.assertIn("expected FAT32 or ext4", status["unreadable"], "of a spare that is not on standby")
         self.expect_refused(self.write(), "the box cannot read the stick's file system")
+
+    def test_stick_with_too_many_names_is_not_taken_for_an_empty_one(self):
+        self.plug(size=32 << 20)
+        self.put({f"photo{i}": b"" for i in range(4097)})
+        status = self.run_it()
+        self.assertEqual((status["exports"], status["unreadable"]), ([], "cannot read the stick sda1: holds more than 4096 files"))
+        self.assertEqual(status["hindrance"], "")
 
     def test_missing_stick_is_reported(self):
         self.expect_refused(self.write(), "there is no stick in the box")
@@ -274,10 +283,10 @@ class Stick(Sticks):
 
 
 class FatStick(Stick):
-    """The usual file systems of sticks. Tests that need a Linux file system are left out."""
+    """The usual file systems of sticks. Tests that need a Linux file system, or many names at the top, are left out."""
 
     kind = "vfat"
-    test_hostile_stick_leads_nowhere = test_write_error_is_reported = None
+    test_hostile_stick_leads_nowhere = test_write_error_is_reported = test_stick_with_too_many_names_is_not_taken_for_an_empty_one = None
 
     @classmethod
     def setUpClass(cls):

@@ -23,11 +23,16 @@ constexpr const char* kTakenIn =
 
 constexpr const char* kStick =
     R"({"standby":false,"why":"","since":null,"code":"","asks_code":false,"taken_in":null,"takes_over":false,)"
-    R"("stick":{"hindrance":"","doing":"","refusal":"","written":"","exports":[)"
+    R"("stick":{"hindrance":"","unreadable":"","doing":"","refusal":"","written":"","exports":[)"
     R"({"name":"adit-a.adit-spare","box":"","at":null},{"name":"adit-b.adit-spare","box":"","at":null}]}})";
 constexpr const char* kNoStick =
     R"({"standby":false,"why":"","since":null,"code":"","asks_code":false,"taken_in":null,"takes_over":false,)"
-    R"("stick":{"hindrance":"there is no stick in the box","doing":"","refusal":"","written":"","exports":[]}})";
+    R"("stick":{"hindrance":"there is no stick in the box","unreadable":"","doing":"","refusal":"","written":"","exports":[]}})";
+
+constexpr const char* kUnreadableStick =
+    R"({"standby":false,"why":"","since":null,"code":"","asks_code":false,"taken_in":null,"takes_over":false,)"
+    R"("stick":{"hindrance":"","unreadable":"cannot read the stick sda1: Input/output error","doing":"","refusal":"",)"
+    R"("written":"","exports":[]}})";
 
 class SpareCommand : public testing::Test {
  protected:
@@ -85,6 +90,13 @@ TEST_F(SpareCommand, StaysInServiceIfTheStickCannotBeWritten) {
   EXPECT_THAT(outcome.err, HasSubstr("the box was not put on standby: there is no stick in the box"));
   const Server pc({{"GET /adit/spare", Server::ok(kAtWork)}});
   EXPECT_THAT(run_adit(pc, {"export", "--stick", "--yes"}).err, HasSubstr("cannot use a stick"));
+}
+
+TEST_F(SpareCommand, TellsWhyTheStickCannotBeRead) {
+  const Server server({{"GET /adit/spare", Server::ok(kUnreadableStick)}});
+  const std::string why = "cannot read the stick sda1: Input/output error";
+  EXPECT_THAT(run_adit(server, {"show"}).out, HasSubstr("The stick: " + why));
+  EXPECT_THAT(run_adit(server, {"take", "--stick", "--code", "1234567890123456"}).err, HasSubstr(why));
 }
 
 TEST_F(SpareCommand, ListsTheStickAndImportsTheNamedExport) {

@@ -45,6 +45,15 @@ test("a box is not put on standby if its stick could not be written", async (t) 
   assert.equal(asked(page, "/adit/spare/standby"), 0);
 });
 
+test("a box in service says why the stick cannot be read", async (t) => {
+  const { page, waitForText } = await spareOf(t);
+  await page.route("**/adit/spare", async (route) => {
+    const answer = await route.fetch(), view = await answer.json();
+    await route.fulfill({ response: answer, json: { ...view, stick: { ...view.stick, exports: [], unreadable: "the stick is damaged" } } });
+  });
+  await waitForText("The stick is damaged.");
+});
+
 test("an export on the stick is offered by its box and time, and asks for its code like an uploaded one", async (t) => {
   const { page, section, waitForText, press } = await spareOf(t);
   const when = await page.evaluate(() => new Date(1.75e12).toLocaleString());

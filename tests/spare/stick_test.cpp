@@ -20,6 +20,7 @@ TEST(StickMessages, ReadBackTheSame) {
                            .doing = "writing",
                            .written = "a.adit-spare",
                            .hindrance = "there is no stick in the box",
+                           .unreadable = "cannot read the stick sda1: Input/output error",
                            .exports = {"b.adit-spare", "a.adit-spare"}};
   EXPECT_EQ(codec::read_file<StickStatus>(codec::write_file(status)), status);
 }

@@ -46,11 +46,13 @@ std::optional<api::StickRow> SpareStick::view() const {
   if (!adit_spare_.runs_here()) return std::nullopt;
   const auto now = adit_spare_.status();
   api::StickRow row{.hindrance = now ? now->hindrance : adit_spare_.why(),
+                    .unreadable = now ? now->unreadable : "",
                     .doing = now ? now->doing : "",
                     .refusal = refusal_,
                     .written = now && !asked_ ? now->written : "",
                     .exports = {}};
   if (asked_ && row.doing.empty()) row.doing = doing_of(*asked_);
+  if (!now && !adit_spare_.is_starting()) row.unreadable = adit_spare_.why();
   if (!now) return row;
   for (const std::string& name : now->exports) {
     spare::NamedFor named = spare::named_for(name);

@@ -34,6 +34,7 @@ struct StickExportRow {
 /// The stick in the box.
 struct StickRow {
   std::string hindrance;                // why no export can be written, or ""
+  std::string unreadable;               // without exports: why the stick cannot be read, or ""
   std::string doing;                    // "writing", "checking", "reading" or ""
   std::string refusal;                  // why the last request failed, or ""
   std::string written;                  // the verified file of this box's export, or ""

@@ -27,6 +27,8 @@ constexpr codec::Member kStickExportMembers[] = {
 
 constexpr codec::Member kStickMembers[] = {
     codec::member<&StickRow::hindrance>("hindrance", "why no export can be written to the stick, or empty"),
+    codec::member<&StickRow::unreadable>(
+        "unreadable", "why the stick cannot be read; empty if it can, or if exports were found"),
     codec::member<&StickRow::doing>("doing", "writing, checking or reading, or empty"),
     codec::member<&StickRow::refusal>("refusal", "why the last action failed, or empty"),
     codec::member<&StickRow::written>(

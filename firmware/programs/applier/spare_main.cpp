@@ -150,13 +150,13 @@ void SpareKeeper::doing(const char* what) {
 void SpareKeeper::look() {
   const auto media = sticks_.media();
   if (!media) {
-    status_.hindrance = media.error();
+    status_.hindrance = status_.unreadable = media.error();
     status_.exports.clear();
     return;
   }
   const auto medium = spare::medium_for(*media, 0);
   status_.hindrance = medium ? "" : medium.error();
-  status_.exports = sticks_.exports(*media);
+  status_.exports = sticks_.exports(*media, status_.unreadable);
 }
 
 bool SpareKeeper::tell() {

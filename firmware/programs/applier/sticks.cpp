@@ -57,13 +57,6 @@ constexpr std::chrono::milliseconds kBetween{100};
 /// The options of adit-stick@.service after the first one.
 constexpr const char* kOptions = ",nosuid,nodev,noexec,noatime";
 
-std::vector<std::string> names_at(const std::string& folder, std::size_t most) {
-  auto names = host::names_in(folder, most);
-  if (names) return *std::move(names);
-  host::log(host::Level::Warning, "cannot read a stick", {{"folder", folder}, {"why", names.error()}});
-  return {};
-}
-
 }  // namespace
 
 std::expected<void, std::string> write_export(const std::string& folder, const std::string& name,
@@ -118,15 +111,22 @@ std::expected<std::vector<spare::Medium>, std::string> Sticks::media() const {
   return media;
 }
 
-std::vector<std::string> Sticks::exports(std::span<const spare::Medium> media) const {
+std::vector<std::string> Sticks::exports(std::span<const spare::Medium> media,
+                                         std::string& unreadable) const {
   std::vector<std::string> found;
+  unreadable.clear();
   for (const spare::Medium& medium : media) {
-    if (!medium.is_mounted) continue;
-    for (std::string& name : names_at(folder(medium.name), kMostAtTop)) {
-      if (spare::is_file_name(name) && std::ranges::find(found, name) == found.end())
-        found.push_back(std::move(name));
+    if (!medium.is_mounted) {
+      unreadable = spare::kUnknownFileSystem;
+      continue;
+    }
+    const auto names = host::names_in(folder(medium.name), kMostAtTop);
+    if (!names) unreadable = "cannot read the stick " + medium.name + ": " + names.error();
+    for (const std::string& name : names.value_or(std::vector<std::string>())) {
+      if (spare::is_file_name(name) && std::ranges::find(found, name) == found.end()) found.push_back(name);
     }
   }
+  if (!found.empty()) unreadable.clear();
   std::ranges::sort(found, spare::is_before);
   if (found.size() > kMost) found.resize(kMost);
   return found;

@@ -41,9 +41,10 @@ class Sticks {
 
   /// Names read at the top of a stick.
   static constexpr std::size_t kMostAtTop = 4096;
-  /// Names of exports on all mounted sticks, the latest first, at most kMost.
+  /// Names of exports on all mounted sticks, the latest first, at most kMost. `unreadable`: without an
+  /// export, why a stick cannot be read, or "".
   static constexpr std::size_t kMost = 8;
-  std::vector<std::string> exports(std::span<const spare::Medium> media) const;
+  std::vector<std::string> exports(std::span<const spare::Medium> media, std::string& unreadable) const;
   /// The directory that has an export of that name. An error is a sentence.
   std::expected<std::string, std::string> folder_with(const std::string& name) const;
 

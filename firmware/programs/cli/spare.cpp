@@ -44,6 +44,7 @@ std::string text_of(const api::StickRow& stick, bool standby) {
   std::string out;
   if (!stick.doing.empty()) out += line("The stick: ", stick.doing);
   if (!stick.refusal.empty()) out += line("The stick: ", stick.refusal);
+  if (!stick.unreadable.empty()) out += line("The stick: ", stick.unreadable);
   if (standby && !stick.written.empty())
     out += line("Its export is on the stick, which you may now unplug: ", stick.written);
   for (const api::StickExportRow& each : stick.exports) {
@@ -132,6 +133,7 @@ Result<std::string> name_on_stick(const Call& call) {
   if (!call.options.argument().empty()) return call.options.argument();
   const auto stick = ADIT_TRY(stick_of(call.adit));
   if (stick.exports.size() == 1) return stick.exports.front().name;
+  if (!stick.unreadable.empty()) return failed(stick.unreadable, Exit::Attention);
   std::string why = stick.exports.empty() ? "the box has no stick with an export"
                                           : "the stick has several exports: name one of";
   for (const api::StickExportRow& each : stick.exports) why += ' ' + each.name;

@@ -16,8 +16,7 @@ std::expected<Medium, std::string> medium_for(std::span<const Medium> media, std
   for (const Medium& each : media) {
     if (each.is_mounted && (best == nullptr || each.room > best->room)) best = &each;
   }
-  if (best == nullptr)
-    return std::unexpected("the box cannot read the stick's file system: expected FAT32 or ext4");
+  if (best == nullptr) return std::unexpected(kUnknownFileSystem);
   if (best->is_write_protected) return std::unexpected("the stick is write-protected");
   if (best->room < size)
     return std::unexpected(
@@ -45,7 +44,8 @@ constexpr codec::Member kRequestMembers[] = {
 constexpr codec::Member kStatusMembers[] = {
     member<&StickStatus::nonce>("nonce"),         member<&StickStatus::refusal>("refusal"),
     member<&StickStatus::doing>("doing"),         member<&StickStatus::written>("written"),
-    member<&StickStatus::hindrance>("hindrance"), member<&StickStatus::exports>("exports"),
+    member<&StickStatus::hindrance>("hindrance"), member<&StickStatus::unreadable>("unreadable"),
+    member<&StickStatus::exports>("exports"),
 };
 
 }  // namespace

@@ -22,6 +22,10 @@ struct Medium {
   std::uint64_t room = 0;  // free bytes
 };
 
+/// Why a stick is not mounted.
+inline constexpr const char* kUnknownFileSystem =
+    "the box cannot read the stick's file system: expected FAT32 or ext4";
+
 /// Where to write an export of `size` bytes: the partition with the most room of the only stick. An error is
 /// a sentence for the user at the box: no stick, several sticks (the export must not have to be searched
 /// for), a stick that cannot be read or written, or no room.
@@ -47,6 +51,7 @@ struct StickStatus {
   std::string doing = "";                 // "", "writing", "checking", "reading"
   std::string written = "";               // by the last request: the verified file on the stick
   std::string hindrance = "";             // why no export can be written, or ""
+  std::string unreadable = "";            // without exports: why a stick cannot be read, or ""
   std::vector<std::string> exports = {};  // on the sticks, the latest first
   bool names(std::string_view request) const { return nonce == request; }
   static const codec::Row kRow;

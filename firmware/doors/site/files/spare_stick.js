@@ -12,11 +12,12 @@ const DOING = {
 };
 
 /** {text, bad} of the stick; `standby`: this box has an export to write. */
-function wordOf({ doing, refusal, written, hindrance }, standby) {
+function wordOf({ doing, refusal, written, hindrance, unreadable }, standby) {
   if (doing) return { text: DOING[doing] ?? sentence(doing) };
   if (refusal) return { text: sentence(refusal), bad: true };
   if (standby && written) return { text: `The export is on the stick and was read back: ${written}. You can unplug the stick. Note the code, and unplug this box before the spare takes over.` };
-  return { text: standby && hindrance ? sentence(hindrance) : "" };
+  const why = (standby && hindrance) || unreadable;
+  return { text: why ? sentence(why) : "" };
 }
 
 function nameOf({ name, box, at }) {

@@ -2,6 +2,9 @@
 
 #include <gmock/gmock.h>
 
+#include "host/folder.hpp"
+#include "host/root_program.hpp"
+#include "loop/simulated_time.hpp"
 #include "network/messages.hpp"
 
 namespace adit::applier {
@@ -120,6 +123,22 @@ TEST(SoughtAddresses, AreEndpointsOnTheLinkAndTheGateway) {
   EXPECT_THAT(sought_in(status(), {}, team), ElementsAre(kScoring, kMapping));
   EXPECT_THAT(sought_in(status("10.100.1.1"), {}, team), ElementsAre(0x0a640101u, kScoring, kMapping));
   EXPECT_THAT(sought_in({}, {}, team), IsEmpty());
+}
+
+TEST(ToldStatus, StaysTheLastOneWhileTheFileCannotBeRead) {
+  const host::Folder folder;
+  loop::SimulatedTime time;
+  loop::Loop loop;
+  int changes = 0;
+  ToldStatus told(loop, folder.path(), [&] { ++changes; });
+  EXPECT_THAT(told.read().endpoints.addresses, IsEmpty());
+  folder.put(host::kStatusFile, codec::write_file(status()));
+  EXPECT_EQ(told.read(), status());
+  folder.put(host::kStatusFile, "damaged");
+  EXPECT_EQ(told.read(), status()) << "the endpoints are sought on";
+  EXPECT_TRUE(time.pass_until(
+      loop, [&] { return changes > 0; }, std::chrono::seconds(11)))
+      << "it is read again";
 }
 
 TEST(SoughtAddresses, FollowTheBoxsAddressesIfNoneIsSet) {

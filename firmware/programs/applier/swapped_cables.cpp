@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "host/log.hpp"
 #include "host/root_program.hpp"
 
 namespace adit::applier {
@@ -47,9 +48,16 @@ void ToldStatus::watch_folder() {
   });
 }
 
-network::Status ToldStatus::read() const {
-  const host::StatusFile file(folder_ + '/' + host::kStatusFile);
-  return file.told<network::Status>().value_or(network::Status{});
+const network::Status& ToldStatus::read() {
+  auto read = host::read_row<network::Status>(folder_ + '/' + host::kStatusFile);
+  if (read) {
+    status_ = (*std::move(read)).value_or(network::Status{});
+  } else {
+    host::log(host::Level::Error, "cannot read the Command Post's endpoints: using the last ones",
+              {{"why", read.error()}});
+    due_.call_at(loop_.now() + kLookAgain);
+  }
+  return status_;
 }
 
 void SwappedCables::set_sought(const std::vector<std::uint32_t>& addresses, const std::vector<Mac>& macs,

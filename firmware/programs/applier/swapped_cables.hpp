@@ -25,11 +25,12 @@ class ToldStatus {
   /// outlive this object.
   ToldStatus(loop::Loop& loop, std::string folder, std::function<void()> changed);
 
-  /// Without a status: no endpoints.
-  network::Status read() const;
+  /// Without a status: no endpoints. If the status cannot be read: logs that, returns the last one, and calls
+  /// `changed` later.
+  const network::Status& read();
 
  private:
-  /// Interval of looks for a missing directory.
+  /// Interval of looks for a missing directory or a readable status.
   static constexpr std::chrono::seconds kLookAgain{10};
   void watch_folder();
 
@@ -38,6 +39,7 @@ class ToldStatus {
   const std::function<void()> changed_;
   loop::FileDescriptor notices_;
   loop::Source noticed_, due_;
+  network::Status status_;
 };
 
 /// Detects exchanged cables by ARP: addresses of the Command Post answer at the team's port and not at their

@@ -278,6 +278,17 @@ TEST_F(ImportTest, AcceptsTokensOfCoursesInLaterSettings) {
   EXPECT_EQ(state("secrets/course.A.scoring.token"), "token-1\n");
 }
 
+TEST_F(ImportTest, ImportsNothingIfTheSettingsInUseCannotBeRead) {
+  fs::create_directories(options.state + "/settings.json");
+  bring("network.json", network::json_of(numbers));
+  const auto done = Import(options).run();
+  ASSERT_FALSE(done) << "the addresses were checked against the settings of the image";
+  EXPECT_THAT(done.error(), StartsWith("cannot read the settings in use: settings.json"));
+  EXPECT_THAT(taken(), StartsWith("Adit accepted no file, because it cannot read the settings in use: "));
+  EXPECT_TRUE(on_card("network.json"));
+  EXPECT_FALSE(fs::exists(options.network + "/confirmed.json"));
+}
+
 TEST_F(ImportTest, ImportsSettingsOnceDespiteADirectoryInTheWay) {
   fs::create_directories(options.card + "/settings.json.taken/of/somebody");
   bring("settings.json", settings::sample());

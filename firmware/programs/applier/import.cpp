@@ -13,6 +13,7 @@
 #include "access/password.hpp"
 #include "host/files.hpp"
 #include "host/log.hpp"
+#include "host/root_program.hpp"
 #include "host/service.hpp"
 #include "icd/sentence.hpp"
 #include "icd/try.hpp"
@@ -140,7 +141,13 @@ Done Import::run() {
     return {};
   }
   wipe_taken(*card);
-  const Found found = read_card(*card, in_force());
+  const auto now = in_force();
+  if (!now) {
+    const std::string why = "cannot read the settings in use: " + now.error();
+    (void)tell(*card, "Adit accepted no file, because it " + why + '\n');  // also logged
+    return std::unexpected(why);
+  }
+  const Found found = read_card(*card, *now);
   const bool lasting = ::access(options_.in_memory.c_str(), F_OK) != 0;
   const std::string said = said_of(found, lasting);
   if (said.empty()) return {};
@@ -163,16 +170,15 @@ Done Import::run() {
   return {};
 }
 
-settings::Settings Import::in_force() const {
+std::expected<settings::Settings, std::string> Import::in_force() const {
   std::optional<std::string> text;
-  if (const auto state = UntrustedFolder::open(options_.state)) {
-    if (const auto saved = state->read(settings::kSavedFile)) text = *saved;
+  if (host::may_exist(options_.state)) {
+    const auto state = ADIT_TRY(UntrustedFolder::open(options_.state));
+    text = ADIT_TRY(state.read(settings::kSavedFile));
   }
-  if (!text) {
-    const auto given = host::slurp(options_.given);
-    text = given ? given->text : "";
-  }
-  auto saved = settings::parse_saved(*text);  // as aditd reads it: a later Adit may have written it
+  if (!text) text = ADIT_TRY(host::read_if_there(options_.given));
+  // As aditd reads it: a later Adit may have written it.
+  auto saved = settings::parse_saved(text.value_or(""));
   return saved ? std::move(saved->settings) : settings::Settings{};
 }
 

@@ -25,7 +25,7 @@ class Import {
   std::expected<void, std::string> run();
 
  private:
-  settings::Settings in_force() const;
+  std::expected<settings::Settings, std::string> in_force() const;
   std::expected<void, std::string> save(const CardContents& brought);
   std::expected<void, std::string> save_tokens(host::UntrustedFolder& state, const CardContents& brought);
   std::expected<void, std::string> save_settings(host::UntrustedFolder& state,

@@ -66,6 +66,14 @@ TEST_F(ClockSettingTest, ExplainsItselfIfAditClockDoesNotRun) {
   EXPECT_FALSE(asked());
 }
 
+TEST_F(ClockSettingTest, TakesTheTimeForUnsetIfTheStatusCannotBeRead) {
+  run_.put(host::kStatusFile, "damaged");
+  setting_.every_second(ntp_);
+  EXPECT_EQ(setting_.is_set(), false) << "an alarm tells the operator";
+  EXPECT_FALSE(setting_.clock().is_set);
+  EXPECT_THAT(setting_.clock().why, HasSubstr("cannot read the status of adit-clock"));
+}
+
 TEST_F(ClockSettingTest, ReportsNoTimeAndNoTroubleWhileAditClockStarts) {
   run_.put("adit-clock.service", "");
   ClockSetting starting{loop_, state_.path(), run_.path(), chronyd_.port(), run_.path()};

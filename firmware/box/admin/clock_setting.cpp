@@ -92,6 +92,7 @@ api::ClockView ClockSetting::clock() const {
 
 std::optional<bool> ClockSetting::is_set() const {
   if (const auto status = adit_clock_.status()) return clock::is_set(status->source);
+  if (adit_clock_.runs_here() && !adit_clock_.is_starting()) return false;  // its status cannot be read
   return loop_.wall_now() < clock::kEarliest ? std::optional(false) : std::nullopt;
 }
 

@@ -166,6 +166,16 @@ TEST_F(TakeoverTest, TellsWhyItsRequestCannotBeRead) {
   EXPECT_EQ(takeover_.unread(), (state_ / Takeover::kFile) + ": is not a regular file");
 }
 
+TEST_F(TakeoverTest, FailsWhileSettingsOfThisMachineCannotBeRead) {
+  given_.put("settings.json", "damaged");
+  ASSERT_TRUE(takeover_.begin(spare::write(content())));
+  const auto done = takeover_.finish(loop_);
+  ASSERT_FALSE(done) << "this machine's interfaces would be lost";
+  EXPECT_THAT(done.error(), HasSubstr(given_ / "settings.json"));
+  given_.put("settings.json", kSettings);
+  EXPECT_EQ(takeover_.finish(loop_), true);
+}
+
 TEST_F(TakeoverTest, KeepsSettingsOfThisMachine) {
   spare::Content other = content();
   other.settings =

@@ -115,9 +115,9 @@ std::expected<void, std::string> Takeover::take_ledger(const spare::Content& con
 std::expected<void, std::string> Takeover::take_settings(const spare::Content& content) {
   auto saved = settings::parse_saved(content.settings);
   if (!saved) return std::unexpected("the first box's settings: " + settings::sentence_of(saved.error()));
-  auto here = store_.load();
+  auto here = ADIT_TRY(store_.load());
   if (!store_.unread().empty()) return std::unexpected(store_.unread());
-  if (here) keep_hardware(here->settings, saved->settings);
+  keep_hardware(here.settings, saved->settings);
   if (const auto both = settings::parse(settings::file_of(saved->settings)); !both)
     return std::unexpected("the two boxes' settings do not fit: " + settings::sentence_of(both.error()));
   for (const std::string& name : token_names(saved->settings)) {

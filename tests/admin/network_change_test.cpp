@@ -115,6 +115,16 @@ TEST_F(NetworkChangeTest, FindsTheHopToTheCommandPost) {
   EXPECT_EQ(change.next_hop(endpoint), "") << "no route exists";
 }
 
+TEST_F(NetworkChangeTest, TellsWhyAditNetworkCannotWork) {
+  status.trouble = "confirmed.json: Input/output error";
+  write_status();
+  const api::NetworkView view = change.network();
+  EXPECT_TRUE(view.runs_here) << "the error must be shown";
+  EXPECT_FALSE(view.managed);
+  EXPECT_EQ(view.why, "adit-network cannot work: confirmed.json: Input/output error");
+  EXPECT_FALSE(change.change(numbers()));
+}
+
 TEST_F(NetworkChangeTest, TellsThatInterfacesCannotBeRead) {
   status.kept.reset();
   write_status();

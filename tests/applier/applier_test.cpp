@@ -104,6 +104,18 @@ TEST_F(ApplierTest, DeletesAnInvalidForgetRequest) {
   EXPECT_TRUE(fs::exists(options.state + "/confirmed.json"));
 }
 
+TEST_F(ApplierTest, TellsWhyItCannotWork) {
+  want();
+  fs::create_directory(options.state + "/confirmed.json");
+  EXPECT_FALSE(Life(options).started);
+  EXPECT_THAT(status().trouble, testing::HasSubstr("confirmed.json: is not a regular file"));
+  EXPECT_EQ(status().team_interface, options.team);
+  fs::remove(options.state + "/confirmed.json");
+  EXPECT_TRUE(runs_well());
+  EXPECT_EQ(status().trouble, "");
+  EXPECT_TRUE(fs::is_empty(options.wanted)) << "a request of an earlier boot is dropped";
+}
+
 TEST_F(ApplierTest, ReportsARequestThatCannotBeDeleted) {
   fs::create_directory(options.wanted + "/word.json");
   const pid_t child = fork();

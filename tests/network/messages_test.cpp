@@ -53,6 +53,7 @@ TEST(NetworkMessages, HaveTheWholeStatus) {
   status.ended = Ended::Reverted;
   status.ended_nonce = kNonce;
   status.why = "the change was not confirmed";
+  status.trouble = "networkctl reload: exit status 1";
   EXPECT_EQ(codec::read_file<Status>(codec::write_file(status)), status);
   EXPECT_EQ(json::parse(codec::write_file(status))["pending"]["until_ms"], 123456);
 }

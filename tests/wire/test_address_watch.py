@@ -73,7 +73,7 @@ class AddressWatch(unittest.TestCase):
 
     def tell_of_endpoints(self):
         told = {"format": 1, "team_interface": "team0", "command_post_interface": "darpa0", "kept": networkd.AditNetwork.numbers(),
-                "endpoints": [hosts.SCORING, hosts.MAPPING], "pending": None, "last": "", "last_nonce": "", "why": ""}
+                "endpoints": [hosts.SCORING, hosts.MAPPING], "pending": None, "last": "", "last_nonce": "", "why": "", "trouble": ""}
         folder = self.watch.folder
         (folder / ".new").write_text(json.dumps(told))
         (folder / ".new").rename(folder / "status.json")

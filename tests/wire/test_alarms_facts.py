@@ -24,7 +24,7 @@ UPDATE = {"format": 1, "trouble": "", "running": {"compatible": "adit-x", "versi
           "last": {"stage": "installed", "version": "1.2.0", "slot": "B", "boot": "b", "why": ""},
           "trial": False, "stray": "", "stick": None, "stick_trouble": ""}
 NETWORK = {"format": 1, "team_interface": "team0", "command_post_interface": "darpa0", "kept": AditNetwork.numbers(),
-           "endpoints": [], "pending": None, "last": "", "last_nonce": "", "why": ""}
+           "endpoints": [], "pending": None, "last": "", "last_nonce": "", "why": "", "trouble": ""}
 
 
 def pending():

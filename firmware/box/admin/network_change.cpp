@@ -59,6 +59,7 @@ std::string NetworkChange::hindrance() const {
   }
   const auto status = adit_network_.status();
   if (!status) return adit_network_.why();
+  if (!status->trouble.empty()) return "adit-network cannot work: " + status->trouble;
   if (status->team_interface != team || status->command_post_interface != post) {
     return icd::sentence("adit-network has ", status->team_interface, " and ", status->command_post_interface,
                          ", but the settings name ", team, " and ", post);

@@ -28,7 +28,14 @@ Applier::Applier(loop::Loop& loop, const Options& options)
 
 std::expected<void, std::string> Applier::start() {
   const auto before = file_.told<network::Status>();
-  ADIT_TRY(files_.settle());
+  if (auto settled = files_.settle(); !settled) {
+    network::Status status = before.value_or(network::Status{});
+    status.team_interface = options_.team;
+    status.command_post_interface = options_.command_post;
+    status.trouble = settled.error();
+    (void)file_.tell(status);  // a failure is logged
+    return settled;
+  }
   change_.emplace(files_, files_.kept());
   change_->set_endpoints(files_.endpoints());
   change_->set_interfaces(options_.team, options_.command_post);
@@ -42,7 +49,7 @@ std::expected<void, std::string> Applier::start() {
   auto folder = ADIT_TRY(host::open_requests(options_.wanted));
   folder_ = std::move(folder);
   if (folder_) watch_folder();
-  if (folder_ && !before) drop_requests();
+  if (folder_ && (!before || !before->trouble.empty())) drop_requests();
   look();
   return {};
 }

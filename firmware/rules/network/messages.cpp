@@ -138,6 +138,7 @@ constexpr Member kStatusMembers[] = {
     member<&Status::ended>("last"),
     member<&Status::ended_nonce>("last_nonce"),
     member<&Status::why>("why"),
+    member<&Status::trouble>("trouble"),
 };
 constexpr Member kProbedMembers[] = {
     member<&Probed::nonce>("nonce").as(codec::kNonce),

@@ -97,6 +97,7 @@ struct Status {
   Ended ended = Ended::NotYet;   // of the last change since this process started
   std::string ended_nonce = "";  // nonce of that change
   std::string why = "";          // reason of that end
+  std::string trouble = "";      // why adit-network cannot work, or ""
   bool names(std::string_view change) const {
     return ended_nonce == change || (pending && pending->nonce == change);
   }

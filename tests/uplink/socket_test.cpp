@@ -48,7 +48,8 @@ TEST(Socket, SendsLargerBurstsAtAFasterPace) {
     EXPECT_EQ(::poll(&writable, 1, 10'000), 1);
     EXPECT_EQ(write_evenly(fd.get(), {&piece, 1}, bytes_per_second), bytes.size());
     for (int i = 0; i < 10'000 && unacknowledged_bytes(fd.get()) > 0; ++i) ::usleep(1000);
-    return option<tcp_info>(fd, IPPROTO_TCP, TCP_INFO).tcpi_data_segs_out;
+    const auto sent = option<tcp_info>(fd, IPPROTO_TCP, TCP_INFO);
+    return sent.tcpi_data_segs_out - sent.tcpi_total_retrans;  // a busy machine acknowledges late
   };
   EXPECT_EQ(segments(11'800'000), 20);
   EXPECT_LE(segments(118'000'000), 5);

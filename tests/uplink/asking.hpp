@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "loop/simulated_time.hpp"
 #include "loop/turn_until.hpp"
 #include "patience.hpp"
 #include "peer.hpp"
@@ -20,6 +21,11 @@ inline icd::BearerToken token() {
   if (!parsed) throw std::runtime_error("the test's token is none");
   return *parsed;
 }
+
+/// The program's clocks stand still, and move only by pass(). A base before Asking, whose loop needs it.
+struct StandingTime {
+  loop::SimulatedTime time;
+};
 
 /// A loop and connections on it.
 class Asking : public testing::Test {

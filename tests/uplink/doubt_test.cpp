@@ -93,24 +93,15 @@ INSTANTIATE_TEST_SUITE_P(, RequestsInDoubt, testing::ValuesIn(kDoubts),
 
 class DoubtfulRequests : public Asking {
  protected:
-  void expect_doubt(const Peer& peer, std::string_view sentence, milliseconds answer_within = kPatience) {
+  void expect_doubt(const Peer& peer, std::string_view sentence) {
     Connection connection(loop_, peer.endpoint(), token());
     const std::string body = megabytes(20);
-    Request request = post(body);
-    request.answer_within = answer_within;
-    const Outcome outcome = ask(connection, std::move(request));
+    const Outcome outcome = ask(connection, post(body));
     EXPECT_TRUE(std::holds_alternative<InDoubt>(outcome)) << answered(outcome).status;
     EXPECT_THAT(why(outcome), HasSubstr(std::string(sentence)));
     EXPECT_LT(connection.sent_bytes(), body.size());
   }
 };
-
-TEST_F(DoubtfulRequests, HaveAPeerThatNeverReads) {
-  std::promise<void> over;
-  const ListeningPeer peer([&over](Wire&) { over.get_future().wait(); });
-  expect_doubt(peer, kSilent, milliseconds(200));
-  over.set_value();
-}
 
 TEST_F(DoubtfulRequests, HaveAPeerThatDribblesWithoutReading) {
   const ListeningPeer peer([](Wire& wire) {
@@ -147,17 +138,6 @@ TEST_F(DoubtfulRequests, WereAcceptedHalfWayAndReset) {
   expect_doubt(peer, "answered 200 before");
 }
 
-TEST_F(DoubtfulRequests, WereAcceptedHalfWayAndNotReadOn) {
-  std::promise<void> over;
-  const ListeningPeer peer([&over](Wire& wire) {
-    wire.read_head();
-    wire.write(answer("200 OK", "null"));
-    over.get_future().wait();
-  });
-  expect_doubt(peer, kSilent, milliseconds(200));
-  over.set_value();
-}
-
 /// The sending kernel has all bytes, the receiving one has not.
 TEST_F(DoubtfulRequests, WereAcceptedBeforeTheyArrived) {
   std::promise<void> has_left;
@@ -179,6 +159,43 @@ TEST_F(DoubtfulRequests, WereAcceptedBeforeTheyArrived) {
   ASSERT_TRUE(loop::turn_until(loop_, [&] { return outcome.has_value(); }));
   EXPECT_TRUE(std::holds_alternative<InDoubt>(*outcome)) << answered(*outcome).status;
   EXPECT_THAT(why(*outcome), HasSubstr("answered 200 before"));
+}
+
+/// Large requests to a peer that reads their beginning at most.
+class UnreadRequests : protected StandingTime, public Asking {
+ protected:
+  /// `begin` reads and writes. The peer then waits for the end.
+  void expect_silence(const Peer::Script& begin) {
+    std::promise<void> over;
+    std::atomic<bool> has_begun = false;
+    const ListeningPeer peer([&](Wire& wire) {
+      begin(wire);
+      has_begun = true;
+      over.get_future().wait();
+    });
+    Connection connection(loop_, peer.endpoint(), token());
+    Outcome outcome;
+    connection.send(post(megabytes(20)), [&](Outcome got) { outcome = std::move(got); });
+    EXPECT_TRUE(loop::turn_until(loop_, [&] { return has_begun.load(); }));
+    EXPECT_TRUE(loop::turn_until(loop_, [&] {
+      time.pass(kPatience / 20);
+      return !connection.busy();
+    }));
+    over.set_value();
+    EXPECT_TRUE(std::holds_alternative<InDoubt>(outcome)) << answered(outcome).status;
+    EXPECT_THAT(why(outcome), HasSubstr(std::string(kSilent)));
+  }
+};
+
+TEST_F(UnreadRequests, HaveAPeerThatNeverReads) {
+  expect_silence([](Wire&) {});
+}
+
+TEST_F(UnreadRequests, WereAcceptedHalfWay) {
+  expect_silence([](Wire& wire) {
+    wire.read_head();
+    wire.write(answer("200 OK", "null"));
+  });
 }
 
 /// Whether a connection ended with a reset for the peer, after `use` used and left it.

@@ -84,18 +84,6 @@ TEST_F(AnsweredRequests, RedactTheTokenOfAnEchoingServer) {
   EXPECT_EQ(answered(ask(peer.endpoint(), post("{}"))).body, "\"Authorization: Bearer [token]\"");
 }
 
-TEST_F(AnsweredRequests, MayHaveASlowPeer) {
-  const ListeningPeer peer([](Wire& wire) {
-    wire.read_slowly(patient(milliseconds(25)));
-    wire.read_request();
-    wire.write(answer("200 OK", "null"));
-  });
-  Request request = post(megabytes(20));
-  request.answer_within = patient(milliseconds(1200));  // and the whole takes longer
-  const Outcome outcome = ask(peer.endpoint(), std::move(request));
-  EXPECT_EQ(answered(outcome).status, 200) << why(outcome);
-}
-
 TEST_F(AnsweredRequests, KeepAnAnswerThatIsNoJson) {
   const ListeningPeer peer(
       always(answer("500 Internal Server Error", "<html>Oops</html>", "Content-Type: text/html\r\n")));

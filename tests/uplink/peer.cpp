@@ -32,7 +32,6 @@ Wire::Wire(loop::FileDescriptor fd) : fd_(std::move(fd)) {
 }
 
 std::size_t Wire::read_some(std::size_t most) {
-  if (pause_.count() > 0) std::this_thread::sleep_for(pause_);
   std::string bytes(most, '\0');
   const ssize_t got = ::recv(fd_.get(), bytes.data(), bytes.size(), 0);
   was_reset_ = got < 0 && errno == ECONNRESET;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <atomic>
-#include <chrono>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -24,7 +23,6 @@ class Wire {
   std::string read_request();
   /// At most `most` bytes; 0 if the other side has closed.
   std::size_t read_some(std::size_t most);
-  void read_slowly(std::chrono::milliseconds pause) { pause_ = pause; }
   /// False where the other side is gone.
   bool write(std::string_view bytes);
   void wait_for_close();
@@ -39,7 +37,6 @@ class Wire {
   loop::FileDescriptor fd_;
   std::string unread_;
   bool was_reset_ = false;
-  std::chrono::milliseconds pause_{0};
 };
 
 /// A scripted Command Post in a thread of its own. It serves one connection after the other: the first by the

@@ -72,6 +72,20 @@ test("shows robots, tracks and markers as they were at a time", async (t) => {
   await changed(page, begun, "the tracks as far as they have come now");
 });
 
+test("hides the newest part of the tracks with the tracks", async (t) => {
+  const { stage, page } = await watch(t, "calm");
+  await hide(page, "Robots");
+  await hears(page, 4);  // they move
+  await settled(page);
+  stage.freeze();
+  await hide(page, "Tracks");
+  const without = await picture(page);
+  await hide(page, "Reports");
+  await changed(page, without, "the reports to go");
+  await box(page, "Reports").check();
+  await becomes(page, without, "the same map, drawn again", 0);
+});
+
 test("moves by hand, wheel, keys and buttons, and fits again", async (t) => {
   const { page } = await watch(t, "empty");
   await settled(page);

@@ -100,7 +100,7 @@ export class MapDrawing {
 
   #signsKey = () => {
     const { key, time, tracks, shown } = this.#scene, { followed, pair, isTapped } = this.#marks;
-    const seen = [key, time, tracks.changes, shown.robots, shown.reports, shown.pointless, this.#markersKey()];
+    const seen = [key, time, tracks.changes, shown.robots, shown.tracks, shown.reports, shown.pointless, this.#markersKey()];
     const numbers = pair?.map(({ number }) => number);
     return [...seen, followed, numbers, isTapped, this.#covers.boxes(), this.picture.hasNames].join();
   };

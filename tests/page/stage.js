@@ -76,7 +76,7 @@ export async function leave(page) {
   await page.context().close();
 }
 
-/** An init script for settled() and hears(): counts the page's pending requests and the box's events. */
+/** An init script for settled() and hears(): counts the page's pending requests and frames, and the box's events. */
 export function countAwaited() {
   globalThis.awaited = globalThis.still = globalThis.heard = 0;
   const { EventSource } = globalThis;
@@ -94,6 +94,14 @@ export function countAwaited() {
       return real.apply(this, words).finally(() => --globalThis.awaited);
     };
   }
+  const { requestAnimationFrame } = globalThis;
+  globalThis.requestAnimationFrame = (draw) => {
+    ++globalThis.awaited;
+    return requestAnimationFrame((at) => {
+      --globalThis.awaited;  // before draw(), which may be settled() looking
+      draw(at);
+    });
+  };
 }
 
 /** Waits until a watched page has no pending request for three frames, so that it has drawn everything. */

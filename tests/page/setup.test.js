@@ -26,6 +26,9 @@ test("tests each endpoint step by step, and says what to do if a step fails", as
   const { settings, tag } = (await ask("/adit/settings")).said;
   Object.assign(settings.command_post.scoring, { port: box.scoring });
   Object.assign(settings.command_post.mapping, { port: box.mapping });
+  let learn;
+  const learns = new Promise((done) => (learn = done));
+  await page.route("**/adit/settings", (route) => learns.then(() => route.continue()));
   await ask("/adit/settings", { settings, base: tag });
   const free = async () => (await ask("/adit/settings").catch(() => ({}))).said?.applying === false;
   await until(free, "the settings to be applied");
@@ -34,6 +37,9 @@ test("tests each endpoint step by step, and says what to do if a step fails", as
   await hears(page, "Live");
   const [scoring, mapping] = await tried(page);
   assert.deepEqual([scoring[3], scoring[4], mapping[4]], ["good", "bad", "good"]);
+  learn();  // of the other operator's settings, only now: they are those that were tested
+  await page.waitForFunction((port) => document.querySelector('[data-path="command_post.scoring.port"] input').value === port, String(box.scoring));
+  assert.match(await page.locator("#step-test .outcome").innerText(), /No report was spent/);
   assert.notEqual(await page.locator(".trial li", { hasText: "The token is accepted" }).first().locator(".advice").innerText(), "");
 });
 

@@ -59,8 +59,8 @@ function placeOf({ applied, course }) {
   return isOwn() ? own.where : course ? "course" : "typed";
 }
 
-/** Whether the result is of what the page shows; another's may be. */
-const isCurrent = ({ outdated }) => !outdated && (!isOwn() || isOfThese(own));
+/** Whether the result is of what the page shows; another's may be. For settings in use, the box knows. */
+const isCurrent = ({ applied, outdated }) => !outdated && (applied || !isOwn() || isOfThese(own));
 
 /** Of a result that is not of the settings in use; "" if they are the same. */
 function ofWhat() {

@@ -28,13 +28,16 @@ std::vector<Event> with_losses(const std::vector<Event>& events) {
 
 Window window_of(const Evidence& evidence, double first, double last) {
   constexpr double kForever = 1e12;
-  /// Seconds by which the stored time may be behind at a power cut if the disk was faulty before it.
-  constexpr double kBehind = 200;
+  /// At most seconds by which the stored time is behind at a power cut if the disk was faulty before it, and
+  /// by which the next gateway's clock for stamps is ahead.
+  constexpr double kOff = 200;
   double behind = 0;  // how far the box's clock is behind after a start
   DiskFaultsSeen disk;
   for (const Event& event : evidence.events) {
-    // The clock for stamps of the next gateway is ahead, and older times seem older by as much.
-    if (event.kind == Kind::PowerCut || disk.forgets_at(event)) last += kBehind;
+    if (event.kind == Kind::PowerCut || disk.forgets_at(event)) {
+      first -= kOff;
+      last += kOff;
+    }
     disk.add(event);
     const bool by_a_start = event.stamp == -event.at;
     if (event.kind == Kind::ClockSet && !by_a_start) return {0, kForever};

@@ -47,6 +47,11 @@ class Taken(unittest.TestCase):
             body = changed(cloud(), msg__is_dense=True, msg__header__seq=4, **rows)
             self.assertEqual(self.post.map(body).status_code, 200)
 
+    def test_empty_object_is_rejected_without_a_violation(self):
+        for headers, body in (({}, {}), (CBOR, cbor2.dumps({}))):
+            self.assertEqual(self.post.mapping_request("POST", "/state/update", body, headers).status_code, 422)
+        self.assertEqual(self.post.record()["violation_count"], 0)
+
     def test_quaternion_has_length_1_within_noise(self):
         for length in (0.999999, 1, 1.000001):
             self.assertEqual(self.post.map(changed(grid(), msg__info__origin__orientation__w=length)).status_code, 200)

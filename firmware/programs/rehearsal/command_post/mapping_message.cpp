@@ -53,6 +53,7 @@ std::optional<MappingMessage> read_mapping(const std::string& body, Format forma
     findings.breaks("'" + *repeated + "' is given twice", Measured::Takes);
   }
   Json& document = judgement.message.emplace(std::move(read->value));
+  if (document.is_object() && document.empty()) return std::nullopt;  // asks if the token is accepted
   if (judgement.uri == kMapUri) {
     auto map = read_map(document, format, findings);
     describe_data(document, map);

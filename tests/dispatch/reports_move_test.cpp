@@ -107,6 +107,18 @@ TEST_F(PendingMove, AppliesActionsToTheNewCommandPost) {
   EXPECT_EQ(scene_.reports().run().number, run);
 }
 
+TEST_F(PendingMove, HoldsADoubtThatTheOperatorSentToACommandPostWithoutAnswer) {
+  scene_.lose();
+  scene_.move_to(kThere);
+  ASSERT_TRUE(scene_.reports().send(1, scene_.time()));
+  EXPECT_EQ(post_of(1), kThere);
+  go_back();
+  EXPECT_EQ(post_of(1), kHere);
+  EXPECT_EQ(scene_.state(1), Held) << "it may be recorded here";
+  EXPECT_THAT(scene_.report(1).note, HasSubstr("did not answer"));
+  EXPECT_EQ(scene_.send_next(), 2);
+}
+
 TEST_F(PendingMove, CountsReportsQueuedForTheOldCommandPost) {
   EXPECT_THAT(scene_.reports().waiting_elsewhere(), ElementsAre(testing::Pair("10.100.1.200:8000", 1)));
 }

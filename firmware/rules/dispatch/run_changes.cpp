@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <ranges>
 #include <set>
+#include <utility>
 
 #include "codec/read.hpp"
 #include "icd/sentence.hpp"
@@ -11,12 +12,15 @@ namespace adit::dispatch {
 namespace {
 
 /// Moves a report from a run without any status to run `run`. The operator's order to send it applied to the
-/// other run alone.
+/// other run alone. If it was sent before that order, this run may have it, so it is held.
 Report passed_on(Report report, std::int64_t run, Time time) {
-  if (report.run != run) report.asked = false;
+  const bool was_ordered = report.run != run && std::exchange(report.asked, false);
   report.run = run;
   report.note = "";
   report.changed = time.stamp;
+  if (!was_ordered || report.sending == 0) return report;
+  report.state = transition(report.state, ReportEvent::Held)->to;
+  report.note = "the operator sent it to another Command Post, which did not answer";
   return report;
 }
 

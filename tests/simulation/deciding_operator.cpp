@@ -109,7 +109,9 @@ void DecidingOperator::correct(std::int64_t id, std::int64_t serial) {
   decisions_.push_back({"/adit/reports/" + number(id) + "/correct", kCorrect, drill(next), next});
 }
 
+/// He decides about one of several equal reports at a time, and then looks again.
 void DecidingOperator::push_decision(std::int64_t id, const char* what, std::int64_t serial) {
+  if (std::ranges::any_of(decisions_, [&](const Decision& each) { return each.serial == serial; })) return;
   decisions_.push_back({"/adit/reports/" + number(id) + "/" + what, what, "", serial});
 }
 

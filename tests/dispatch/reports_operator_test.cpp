@@ -180,6 +180,30 @@ TEST(SettleAction, LeavesNoFalseEvidenceAtAPowerCut) {
   }
 }
 
+TEST(SendAction, IsRejectedForADoubtIfTheSameReportWasRecordedLater) {
+  Scene scene;
+  scene.post(1);
+  scene.lose();
+  scene.repeat_stop(16);
+  scene.post(1, "Drill", true);
+  scene.answer(recorded_answer());
+  ASSERT_EQ(scene.state(1), InDoubt);
+  const auto sent = scene.reports().send(1, scene.time());
+  ASSERT_FALSE(sent);
+  EXPECT_THAT(sent.error(), HasSubstr("report 2 is the same"));
+  EXPECT_EQ(scene.state(1), InDoubt);
+}
+
+TEST(SendAction, IsAcceptedForADoubtThatRepeatsARecordedReportOnPurpose) {
+  Scene scene;
+  scene.post(1);
+  scene.answer(recorded_answer());
+  scene.post(1, "Drill", true);
+  scene.lose();
+  ASSERT_EQ(scene.state(2), InDoubt);
+  EXPECT_TRUE(scene.reports().send(2, scene.time()));
+}
+
 TEST(ResubmitAction, MakesANewReportThatNoReviewHolds) {
   ReportRules rules;
   rules.review = Review::All;

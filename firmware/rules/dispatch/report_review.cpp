@@ -71,6 +71,13 @@ const Report* ReportReview::twin(const Report& report) const {
   return nullptr;
 }
 
+const Report* ReportReview::recorded_later(const Report& report) const {
+  for (const Report* const other : same_in_run(report.report)) {
+    if (other->state == ReportState::Answered && other->sending > report.sending) return other;
+  }
+  return nullptr;
+}
+
 /// The same report, sent in another run that satisfies `counts`, or null.
 const Report* ReportReview::sent_elsewhere(const Report& report,
                                            const std::function<bool(const Run&)>& counts) const {

@@ -32,7 +32,8 @@ Reports::Outcome Reports::send(std::int64_t number, Time time) {
     return end_undo(number, kSent, time) ? Outcome(number) : std::unexpected(kDisk);
   }
   const bool decided = report->state == ReportState::InDoubt;
-  if (const Report* const other = decided ? nullptr : review_.twin(*report); other != nullptr) {
+  const Report* const other = decided ? review_.recorded_later(*report) : review_.twin(*report);
+  if (other != nullptr) {
     return cannot(*report,
                   icd::sentence("report ", other->number, " is the same and is ", shown_name_of(other->state),
                                 " in this run; to send it again, resubmit that report"));

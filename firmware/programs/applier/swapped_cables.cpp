@@ -37,6 +37,7 @@ ToldStatus::ToldStatus(loop::Loop& loop, std::string folder, std::function<void(
 }
 
 void ToldStatus::watch_folder() {
+  noticed_ = {};  // before its descriptor is closed
   notices_ = loop::FileDescriptor(inotify_init1(IN_NONBLOCK | IN_CLOEXEC));
   if (!notices_ || inotify_add_watch(notices_.get(), folder_.c_str(), IN_MOVED_TO) < 0)
     return due_.call_at(loop_.now() + kLookAgain);
@@ -50,11 +51,13 @@ void ToldStatus::watch_folder() {
 
 const network::Status& ToldStatus::read() {
   auto read = host::read_row<network::Status>(folder_ + '/' + host::kStatusFile);
+  const std::string trouble = read ? "" : read.error();
+  if (std::exchange(trouble_, trouble) != trouble && !trouble.empty())
+    host::log(host::Level::Error, "cannot read the Command Post's endpoints: using the last ones",
+              {{"why", trouble}});
   if (read) {
     status_ = (*std::move(read)).value_or(network::Status{});
   } else {
-    host::log(host::Level::Error, "cannot read the Command Post's endpoints: using the last ones",
-              {{"why", read.error()}});
     due_.call_at(loop_.now() + kLookAgain);
   }
   return status_;

@@ -25,8 +25,8 @@ class ToldStatus {
   /// outlive this object.
   ToldStatus(loop::Loop& loop, std::string folder, std::function<void()> changed);
 
-  /// Without a status: no endpoints. If the status cannot be read: logs that, returns the last one, and calls
-  /// `changed` later.
+  /// Without a status: no endpoints. If the status cannot be read: logs that once, returns the last one, and
+  /// calls `changed` later.
   const network::Status& read();
 
  private:
@@ -40,6 +40,7 @@ class ToldStatus {
   loop::FileDescriptor notices_;
   loop::Source noticed_, due_;
   network::Status status_;
+  std::string trouble_;  // why the last read failed, or ""
 };
 
 /// Detects exchanged cables by ARP: addresses of the Command Post answer at the team's port and not at their

@@ -180,7 +180,7 @@ TEST(SettleAction, LeavesNoFalseEvidenceAtAPowerCut) {
   }
 }
 
-TEST(SendAction, IsRejectedForADoubtIfTheSameReportWasRecordedLater) {
+TEST(SendAction, IsRejectedForADoubtIfTheSameReportWasAnsweredLater) {
   Scene scene;
   scene.post(1);
   scene.lose();

@@ -154,7 +154,7 @@ bool Scoring::may_ask_soon(loop::Instant now) const {
 }
 
 /// It may be older if only reports delay a request, because the Command Post answers them.
-std::optional<intake::Answer> Scoring::status_cache() const {
+std::optional<intake::Answer> Scoring::cached_status() const {
   const dispatch::NextRequests requests = reports_->next_requests(time());
   const bool reports_go_first =
       reports_->sending() != nullptr ? channel_.connected() : requests.report && !requests.status;
@@ -269,7 +269,7 @@ void Scoring::watch_deadlines() {
 /// By the known status; else they wait longer for the request in flight.
 void Scoring::answer_clients(loop::Instant now) {
   if (status_clients_.empty()) return;
-  const auto known = status_cache();
+  const auto known = cached_status();
   const loop::Instant longest = !known && asked_status_ ? asked_status_->at + kSlow : now;
   status_clients_.answer_due(now, longest, known ? *known : no_status(why_no_status()));
 }
@@ -335,7 +335,7 @@ void Scoring::classify_status(const uplink::Outcome& outcome, loop::Instant aske
 
 /// Failures may end within a second.
 intake::Answer Scoring::known_or(intake::Answer failure) const {
-  return status_cache().value_or(std::move(failure));
+  return cached_status().value_or(std::move(failure));
 }
 
 dispatch::Reports::Outcome Scoring::decide(std::int64_t number, api::Action action) noexcept {

@@ -110,7 +110,7 @@ class Scoring {
   void watch_deadlines();
   void answer_clients(loop::Instant now);
   bool may_ask_soon(loop::Instant now) const;
-  std::optional<intake::Answer> status_cache() const;
+  std::optional<intake::Answer> cached_status() const;
   void deadline_came();
   std::string why_no_status() const;
   intake::Answer known_or(intake::Answer failure) const;

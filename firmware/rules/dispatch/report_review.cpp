@@ -71,7 +71,7 @@ const Report* ReportReview::twin(const Report& report) const {
   return nullptr;
 }
 
-const Report* ReportReview::recorded_later(const Report& report) const {
+const Report* ReportReview::answered_later(const Report& report) const {
   for (const Report* const other : same_in_run(report.report)) {
     if (other->state == ReportState::Answered && other->sending > report.sending) return other;
   }

@@ -44,7 +44,7 @@ class ReportReview {
   /// Another same report of that run, queued or sent, or null.
   const Report* twin(const Report& report) const;
   /// The same report of that run, sent after this one and answered, or null.
-  const Report* recorded_later(const Report& report) const;
+  const Report* answered_later(const Report& report) const;
   /// The same report, sent to another Command Post, if this one has not answered yet. Otherwise null.
   const Report* sent_to_other_command_post(const Report& report) const;
   Hold reason_to_hold(const Report& report) const;

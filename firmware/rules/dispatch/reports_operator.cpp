@@ -32,7 +32,7 @@ Reports::Outcome Reports::send(std::int64_t number, Time time) {
     return end_undo(number, kSent, time) ? Outcome(number) : std::unexpected(kDisk);
   }
   const bool decided = report->state == ReportState::InDoubt;
-  const Report* const other = decided ? review_.recorded_later(*report) : review_.twin(*report);
+  const Report* const other = decided ? review_.answered_later(*report) : review_.twin(*report);
   if (other != nullptr) {
     return cannot(*report,
                   icd::sentence("report ", other->number, " is the same and is ", shown_name_of(other->state),

@@ -2,20 +2,14 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <fstream>
-#include <iterator>
 #include <set>
 #include <sstream>
 
 #include "alarms/alike.hpp"
+#include "project_files.hpp"
 
 namespace adit::alarms {
 namespace {
-
-std::string text_of(const std::string& path) {
-  std::ifstream stream(ADIT_SOURCE_DIR "/" + path);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 /// Two robots. One has a placeholder as its name.
 Facts named() {
@@ -147,7 +141,7 @@ std::string kind_of(const std::string& id) {
 
 /// The kinds with a row in the README: the first kind of each row, and further ones in that cell.
 std::set<std::string> kinds_in_readme() {
-  const std::string text = text_of("firmware/rules/alarms/README.md");
+  const std::string text = project_text("firmware/rules/alarms/README.md");
   std::set<std::string> kinds;
   for (std::size_t at = text.find("\n| `"); at != std::string::npos; at = text.find("\n| `", at + 1)) {
     const std::string cell = text.substr(at + 3, text.find(" | ", at + 3) - at - 3);
@@ -161,7 +155,7 @@ std::set<std::string> kinds_in_readme() {
 }
 
 TEST(AlarmsCard, NamesEachCondition) {
-  const std::string card = text_of("board/card.html");
+  const std::string card = project_text("board/card.html");
   for (std::size_t side = 0; side < std::size(kSideWords); ++side) {
     const std::string part = rows(static_cast<Side>(side));
     EXPECT_NE(card.find("<ul class=\"" + std::string(kSideWords[side]) + "\">\n" + part + "</ul>"),
@@ -186,7 +180,7 @@ std::string troubles(Side side) {
 }
 
 TEST(AlarmsTroubles, HaveARowForEachKind) {
-  const std::string page = text_of("firmware/rules/alarms/TROUBLE.md");
+  const std::string page = project_text("firmware/rules/alarms/TROUBLE.md");
   for (std::size_t side = 0; side < std::size(kSideWords); ++side) {
     const std::string title = std::string("\n<!-- ") + std::string(kSideWords[side]) + " -->\n";
     const std::size_t from = page.find(title);

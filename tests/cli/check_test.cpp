@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cli/command.hpp"
+#include "project_files.hpp"
 
 namespace adit::cli {
 namespace {
@@ -52,17 +53,18 @@ TEST_F(Check, NamesEachErrorByItsPath) {
 }
 
 TEST_F(Check, SummarizesGoodSettings) {
-  const Outcome outcome =
-      run(std::vector<std::string_view>{"check", ADIT_SOURCE_DIR "/firmware/rules/settings/example.json"});
+  const std::string example = project_file("firmware/rules/settings/example.json");
+  const Outcome outcome = run(std::vector<std::string_view>{"check", example});
   EXPECT_EQ(outcome.exit, Exit::Fine);
-  EXPECT_EQ(outcome.out, ADIT_SOURCE_DIR
-            "/firmware/rules/settings/example.json: correct\n"
-            "  scoring  10.100.1.200:8000  on darpa0 only\n"
-            "  mapping  10.100.1.201:8000  on darpa0 only\n"
-            "  team     0.0.0.0:8000       on team0 only\n"
-            "  link     100 Mbit/s\n"
-            "  panel    gpiochip0          ADIT_HEALTH, ADIT_SCORING, ADIT_MAPPING, ADIT_ATTENTION, "
-            "ADIT_BUTTON\n");
+  EXPECT_EQ(outcome.out,
+            example +
+                ": correct\n"
+                "  scoring  10.100.1.200:8000  on darpa0 only\n"
+                "  mapping  10.100.1.201:8000  on darpa0 only\n"
+                "  team     0.0.0.0:8000       on team0 only\n"
+                "  link     100 Mbit/s\n"
+                "  panel    gpiochip0          ADIT_HEALTH, ADIT_SCORING, ADIT_MAPPING, ADIT_ATTENTION, "
+                "ADIT_BUTTON\n");
 }
 
 TEST_F(Check, GivesScriptsTheSameAsJson) {
@@ -71,8 +73,8 @@ TEST_F(Check, GivesScriptsTheSameAsJson) {
   EXPECT_EQ(wrong.out,
             "{\"good\":false,\"errors\":[{\"path\":\"version\",\"what\":\"expected 1, got 2\"}],"
             "\"warnings\":[]}\n");
-  const Outcome good = run(std::vector<std::string_view>{
-      "check", ADIT_SOURCE_DIR "/firmware/rules/settings/example.json", "--json"});
+  const std::string example = project_file("firmware/rules/settings/example.json");
+  const Outcome good = run(std::vector<std::string_view>{"check", example, "--json"});
   EXPECT_EQ(good.exit, Exit::Fine);
   EXPECT_EQ(good.out, "{\"good\":true,\"errors\":[],\"warnings\":[]}\n");
 }

@@ -3,11 +3,11 @@
 #include <gmock/gmock.h>
 
 #include <array>
-#include <fstream>
 #include <set>
-#include <sstream>
 #include <string>
 #include <string_view>
+
+#include "project_files.hpp"
 
 namespace adit::dispatch {
 namespace {
@@ -150,10 +150,8 @@ std::string diagram() {
 }
 
 TEST(ReportLife, MatchesTheDiagramOfTheReadme) {
-  std::ifstream file(ADIT_SOURCE_DIR "/firmware/rules/dispatch/README.md");
-  std::stringstream text;
-  text << file.rdbuf();
-  EXPECT_THAT(text.str(), testing::HasSubstr("```mermaid\n" + diagram() + "```\n"));
+  EXPECT_THAT(project_text("firmware/rules/dispatch/README.md"),
+              testing::HasSubstr("```mermaid\n" + diagram() + "```\n"));
 }
 
 }  // namespace

@@ -1,8 +1,8 @@
 // The lights on the printable card (board/card.html) match the table of states.
 #include <gtest/gtest.h>
 
-#include "panel/project_text.hpp"
 #include "panel/states.hpp"
+#include "project_files.hpp"
 
 namespace adit::panel {
 namespace {
@@ -58,7 +58,7 @@ std::string strip(Pattern pattern) {
 
 /// The visible pattern, in the README's words.
 std::string seen(Pattern pattern) {
-  const std::string text = text_of("firmware/doors/panel/README.md"),
+  const std::string text = project_text("firmware/doors/panel/README.md"),
                     head = "\n| " + std::string(name_of(pattern)) + " | ";
   const std::size_t at = text.find(head) + head.size();
   return text.substr(at, text.find(" |", at) - at);
@@ -79,14 +79,14 @@ std::string patterns() {
 }
 
 TEST(PanelCard, HasTheTableOfTheStates) {
-  EXPECT_NE(text_of("board/card.html").find("<tbody class=\"states\">\n" + states() + "</tbody>"),
+  EXPECT_NE(project_text("board/card.html").find("<tbody class=\"states\">\n" + states() + "</tbody>"),
             std::string::npos)
       << "put this into board/card.html:\n<tbody class=\"states\">\n"
       << states() << "</tbody>";
 }
 
 TEST(PanelCard, DrawsThePatterns) {
-  EXPECT_NE(text_of("board/card.html").find("<tbody class=\"patterns\">\n" + patterns() + "</tbody>"),
+  EXPECT_NE(project_text("board/card.html").find("<tbody class=\"patterns\">\n" + patterns() + "</tbody>"),
             std::string::npos)
       << "put this into board/card.html:\n<tbody class=\"patterns\">\n"
       << patterns() << "</tbody>";

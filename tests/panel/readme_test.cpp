@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
 #include "panel/drawing.hpp"
-#include "panel/project_text.hpp"
 #include "panel/states.hpp"
+#include "project_files.hpp"
 
 namespace adit::panel {
 namespace {
@@ -21,22 +21,23 @@ std::string table_of_states() {
 }
 
 TEST(PanelReadme, HasTheTableOfTheStates) {
-  EXPECT_NE(text_of("firmware/doors/panel/README.md").find(table_of_states()), std::string::npos)
+  EXPECT_NE(project_text("firmware/doors/panel/README.md").find(table_of_states()), std::string::npos)
       << "put this table into firmware/doors/panel/README.md:\n"
       << table_of_states();
 }
 
 TEST(PanelReadme, DrawsThePatterns) {
-  EXPECT_NE(text_of("firmware/doors/panel/README.md").find("](patterns.svg)"), std::string::npos);
-  EXPECT_TRUE(text_of("firmware/doors/panel/patterns.svg") == drawing())
+  EXPECT_NE(project_text("firmware/doors/panel/README.md").find("](patterns.svg)"), std::string::npos);
+  EXPECT_TRUE(project_text("firmware/doors/panel/patterns.svg") == drawing())
       << "put this into firmware/doors/panel/patterns.svg:\n"
       << drawing();
 }
 
 TEST(PanelReadme, HasARowForEachPattern) {
   for (const Pattern pattern : kPatterns) {
-    EXPECT_NE(text_of("firmware/doors/panel/README.md").find("\n| " + std::string(name_of(pattern)) + " | "),
-              std::string::npos)
+    EXPECT_NE(
+        project_text("firmware/doors/panel/README.md").find("\n| " + std::string(name_of(pattern)) + " | "),
+        std::string::npos)
         << name_of(pattern);
   }
 }

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
-#include <iterator>
+
+#include "project_files.hpp"
 
 namespace adit::settings {
 namespace {
@@ -104,10 +104,10 @@ TEST(Board, ReportsAllFaultsAtOnce) {
 
 TEST(Board, FilesInTheSourceAreValid) {
   int boards = 0;
-  for (const auto& folder : std::filesystem::directory_iterator(ADIT_SOURCE_DIR "/board")) {
+  for (const auto& folder : std::filesystem::directory_iterator(project_file("board"))) {
     if (!folder.is_directory()) continue;
-    std::ifstream stream(folder.path() / "board.json");
-    const auto board = parse_board(std::string(std::istreambuf_iterator<char>(stream), {}));
+    const auto board =
+        parse_board(project_text("board/" + folder.path().filename().string() + "/board.json"));
     ASSERT_TRUE(board) << folder.path() << ": " << sentence_of(board.error());
     EXPECT_EQ(board->name, folder.path().filename().string());
     ++boards;

@@ -1,12 +1,11 @@
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <iterator>
 #include <regex>
 #include <string>
 #include <string_view>
 
 #include "codec/json.hpp"
+#include "project_files.hpp"
 #include "settings/keys.hpp"
 #include "settings/settings.hpp"
 
@@ -14,9 +13,7 @@ namespace adit::settings {
 namespace {
 
 std::string text_of(const std::string& file) {
-  std::ifstream stream(ADIT_SOURCE_DIR "/firmware/rules/settings/" + file);
-  EXPECT_TRUE(stream.is_open()) << file;
-  return {std::istreambuf_iterator<char>(stream), {}};
+  return project_text("firmware/rules/settings/" + file);
 }
 
 /// The Markdown table of all keys in README.md: key, meaning, range and default. A default of "" also means

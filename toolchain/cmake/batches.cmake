@@ -1,5 +1,50 @@
-# Compile up to 16 files of a target as one: most of the time of a file goes into headers that its neighbours include too. So no two
-# files of a room may define a helper of the same name, not even in unnamed namespaces. Files with options of their own are compiled
-# by themselves. -DCMAKE_UNITY_BUILD=OFF compiles each file by itself.
-option(CMAKE_UNITY_BUILD "Compile several files of a target as one" ON)
-set(CMAKE_UNITY_BUILD_BATCH_SIZE 16)
+# Compiles up to ADIT_BATCH_SIZE files of a target as one: most of the time of a file goes into headers that its neighbours include too.
+# So no two files of a room may define a helper of the same name, not even in unnamed namespaces. A file with the property
+# ADIT_ALONE, or that is written during the build, is compiled alone. A size of 1 compiles each file alone.
+#
+# Unlike CMake's own unity builds, a batch names its files relative to itself, so that its bytes are the same in every clone. The compiler
+# cache (cache.cmake) needs that.
+set(ADIT_BATCH_SIZE 16 CACHE STRING "How many files of a target are compiled as one")
+
+# To be called once for a target of this directory. Its sources may still be added afterwards.
+function(adit_batches target)
+  cmake_language(EVAL CODE "cmake_language(DEFER CALL adit_batches_of_all_sources [[${target}]])")
+endfunction()
+
+function(adit_batches_of_all_sources target)
+  if(ADIT_BATCH_SIZE LESS 2)
+    return()
+  endif()
+  get_target_property(sources ${target} SOURCES)
+  set(alone "")
+  set(joined "")
+  foreach(source IN LISTS sources)
+    cmake_path(ABSOLUTE_PATH source OUTPUT_VARIABLE path)
+    get_source_file_property(single ${source} ADIT_ALONE)
+    if(source MATCHES "^\\$<" OR single OR NOT EXISTS ${path} OR path MATCHES "^${CMAKE_BINARY_DIR}/")
+      list(APPEND alone ${source})
+    else()
+      list(APPEND joined ${path})
+    endif()
+  endforeach()
+  list(LENGTH joined count)
+  if(count LESS 2)
+    return()
+  endif()
+  set(directory ${CMAKE_CURRENT_BINARY_DIR}/batches)
+  set(number 0)
+  while(joined)
+    list(SUBLIST joined 0 ${ADIT_BATCH_SIZE} files)
+    list(REMOVE_ITEM joined ${files})
+    set(text "")
+    foreach(file IN LISTS files)
+      cmake_path(RELATIVE_PATH file BASE_DIRECTORY ${directory})
+      string(APPEND text "#include \"${file}\"  // NOLINT(bugprone-suspicious-include)\n")
+    endforeach()
+    set(batch ${directory}/${target}_${number}.cpp)
+    file(CONFIGURE OUTPUT ${batch} CONTENT "${text}" @ONLY)
+    list(APPEND alone ${batch})
+    math(EXPR number "${number} + 1")
+  endwhile()
+  set_property(TARGET ${target} PROPERTY SOURCES ${alone})
+endfunction()

@@ -3,15 +3,19 @@
 #   adit_way(fast HEADERS <vector> OPTIONS -O3 LIBRARIES ZLIB::ZLIB)
 # OPTIONS hold for every target of that way (adit_compiled), and are those of the headers.
 find_program(ADIT_JQ jq REQUIRED)  # for renewed
+if(CMAKE_CXX_COMPILER_ID STREQUAL Clang)  # renewed compares headers by their content
+  list(APPEND CMAKE_CXX_COMPILE_OPTIONS_CREATE_PCH -Xclang -fno-pch-timestamp)
+endif()
 function(adit_way name)
   cmake_parse_arguments(WAY "" "" "HEADERS;OPTIONS;LIBRARIES" ${ARGN})
   set(source ${CMAKE_BINARY_DIR}/headers/${name}.cpp)
   set(stamp ${CMAKE_BINARY_DIR}/headers/${name}.hpp)
   file(CONFIGURE OUTPUT ${source} CONTENT "")
   add_custom_target(adit_renewed_${name} BYPRODUCTS ${stamp} COMMENT "Checking precompiled header ${name}" VERBATIM
-    COMMAND ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/renewed ${stamp} ${CMAKE_BINARY_DIR}/compile_commands.json ${source})
+    COMMAND ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/renewed ${stamp} ${CMAKE_BINARY_DIR}/compile_commands.json
+      ${CMAKE_CURRENT_BINARY_DIR}/CMakeFiles/adit_way_${name}.dir/cmake_pch.hxx)
   add_library(adit_way_${name} OBJECT EXCLUDE_FROM_ALL ${source})
-  set_target_properties(adit_way_${name} PROPERTIES UNITY_BUILD OFF)
+  set_target_properties(adit_way_${name} PROPERTIES CXX_COMPILER_LAUNCHER "")  # cache.cmake
   add_dependencies(adit_way_${name} adit_renewed_${name})
   target_compile_options(adit_way_${name} PUBLIC ${WAY_OPTIONS})
   target_link_libraries(adit_way_${name} PRIVATE adit_options ${WAY_LIBRARIES})
@@ -23,6 +27,7 @@ endfunction()
 function(adit_compiled target way)
   target_compile_options(${target} PRIVATE $<TARGET_PROPERTY:adit_way_${way},INTERFACE_COMPILE_OPTIONS>)
   target_precompile_headers(${target} REUSE_FROM adit_way_${way})
+  adit_batches(${target})
 endfunction()
 
 adit_way(small)

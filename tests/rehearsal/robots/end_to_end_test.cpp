@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "program.hpp"
+#include "project_files.hpp"
 #include "rehearsal/robots/cave.hpp"
 #include "server.hpp"
 
@@ -27,7 +28,7 @@ struct Programs : testing::Test {
   ~Programs() override { fs::remove_all(folder_); }
 
   std::vector<std::string> robots(std::vector<std::string> more) const {
-    std::vector<std::string> arguments = {ADIT_ROBOTS, "--secrets", folder_.string()};
+    std::vector<std::string> arguments = {built_program("adit-robots"), "--secrets", folder_.string()};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;
   }
@@ -37,7 +38,7 @@ struct Programs : testing::Test {
 
 TEST_F(Programs, TruthIsWrittenWithoutARun) {
   const fs::path csv = folder_ / "truth.csv";
-  Program program({ADIT_ROBOTS, "--generate-only", "--seed", "12", "--truth", csv.string()});
+  Program program({built_program("adit-robots"), "--generate-only", "--seed", "12", "--truth", csv.string()});
   EXPECT_EQ(program.wait(), 0);
   std::ifstream stream(csv);
   const std::string text{std::istreambuf_iterator<char>(stream), {}};
@@ -85,9 +86,11 @@ std::string url_after(const std::string& line, const std::string& word) {
 
 TEST_F(Programs, TeamWorksWithACommandPostAsMeasured) {
   const fs::path csv = folder_ / "truth.csv";
-  ASSERT_EQ(Program({ADIT_ROBOTS, "--generate-only", "--seed", "2", "--truth", csv.string()}).wait(), 0);
-  Program post({ADIT_REHEARSAL, "--scoring", "127.0.0.1:0", "--mapping", "127.0.0.1:0", "--secrets",
-                folder_.string(), "--artifacts", csv.string(), "--as-measured"});
+  ASSERT_EQ(Program({built_program("adit-robots"), "--generate-only", "--seed", "2", "--truth", csv.string()})
+                .wait(),
+            0);
+  Program post({built_program("adit-rehearsal"), "--scoring", "127.0.0.1:0", "--mapping", "127.0.0.1:0",
+                "--secrets", folder_.string(), "--artifacts", csv.string(), "--as-measured"});
   const std::string line = post.line();
   ASSERT_NE(line.find("mapping"), std::string::npos) << line;
   Program team(robots({"--post", url_after(line, "mapping"), "--scoring", url_after(line, "scoring"),
@@ -101,8 +104,8 @@ TEST_F(Programs, TeamWorksWithACommandPostAsMeasured) {
 }
 
 TEST_F(Programs, TeamStopsWhenAllIsPosted) {
-  Program post({ADIT_REHEARSAL, "--scoring", "127.0.0.1:0", "--mapping", "127.0.0.1:0", "--secrets",
-                folder_.string(), "--control", "127.0.0.1:0", "--as-measured"});
+  Program post({built_program("adit-rehearsal"), "--scoring", "127.0.0.1:0", "--mapping", "127.0.0.1:0",
+                "--secrets", folder_.string(), "--control", "127.0.0.1:0", "--as-measured"});
   const std::string line = post.line();
   ASSERT_NE(line.find("mapping"), std::string::npos) << line;
   Program team(

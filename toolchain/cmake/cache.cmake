@@ -1,12 +1,18 @@
 # Compiles nothing twice: ccache, if it is installed (toolchain/setup test), keeps what each compiler run made, for every clone on this
 # machine. Two clones in different directories share it, because all paths that reach the compiler are relative: batches (batches.cmake),
-# ccache's base_dir, and no absolute path in a definition. It is never used for what ships (link-time optimization).
+# ccache's base_dir, and no absolute path in a definition. It is never used for a release: what ships (link-time optimization) does
+# without, but for an image that toolchain/image makes for tests.
 #
 # Clang writes absolute paths into a precompiled header. So these are compiled in each clone, without the cache, and ccache compares the
 # sum of their headers that `renewed` (headers.cmake) keeps beside them.
 find_program(ADIT_CCACHE ccache)
-option(ADIT_CACHE "Use the compiler cache if it is installed" ON)
-if(ADIT_CACHE AND ADIT_CCACHE AND NOT CMAKE_INTERPROCEDURAL_OPTIMIZATION)
+if(CMAKE_INTERPROCEDURAL_OPTIMIZATION)
+  set(cache_usual OFF)
+else()
+  set(cache_usual ON)
+endif()
+option(ADIT_CACHE "Use the compiler cache if it is installed" ${cache_usual})
+if(ADIT_CACHE AND ADIT_CCACHE)
   set(directory $ENV{XDG_CACHE_HOME})
   if(NOT directory)
     set(directory $ENV{HOME}/.cache)

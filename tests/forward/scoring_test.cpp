@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <mutex>
 #include <semaphore>
 #include <thread>
 
@@ -160,6 +161,76 @@ TEST_F(ScoringTest, WaitsForAStatusThatDecidesADoubt) {
   let.release();
   EXPECT_TRUE(eventually([&] { return reports == 2; }));
   EXPECT_TRUE(was_waited_for);
+}
+
+constexpr const char* kScored =
+    R"({"id":1,"run":"1","run_clock":11.0,"report_status":"scored","score_change":1})";
+
+/// A scoring endpoint that records each report for a point, and answers each request once it may.
+class Scorer {
+ public:
+  void may_answer(int requests) { let_.release(requests); }
+  /// "S" for a status, "R" for a report.
+  std::string requests() {
+    const std::lock_guard lock(mutex_);
+    return requests_;
+  }
+  uplink::Peer::Script script() {
+    return [this](uplink::Wire& wire) {
+      for (auto request = wire.read_request(); !request.empty(); request = wire.read_request()) {
+        const bool is_report = request.starts_with("POST");
+        note(is_report);
+        let_.acquire();
+        if (!wire.write(is_report ? uplink::answer("201 CREATED", kScored)
+                                  : uplink::answer("200 OK", kStatus)))
+          return;
+      }
+    };
+  }
+
+ private:
+  void note(bool is_report) {
+    const std::lock_guard lock(mutex_);
+    requests_ += is_report ? 'R' : 'S';
+  }
+
+  std::mutex mutex_;
+  std::string requests_;
+  std::counting_semaphore<> let_{0};
+};
+
+TEST_F(ScoringTest, AStatusOfAClientHasReportsThatWereAnswered) {
+  Scorer scorer;
+  const Ends ends{*this};
+  lead_to({scorer.script()});
+  scorer.may_answer(2);
+  ASSERT_TRUE(eventually([&] { return scoring_->run().has_value(); }));
+  const auto first = report(1), second = report(100);
+  ASSERT_TRUE(eventually([&] { return scorer.requests() == "SRR" && first->heard; }));
+  const auto asker = std::make_shared<Asker>();
+  scoring_->status(asker);
+  ASSERT_TRUE(eventually([&] { return asker->heard.has_value(); }));
+  EXPECT_EQ(asker->heard->status, icd::Status::Ok);
+  EXPECT_EQ(asker->heard->body, R"({"score":2,"run_clock":11.0,"remaining_reports":23,"current_team":"a"})");
+  EXPECT_FALSE(second->heard);
+  scorer.may_answer(1000);
+}
+
+TEST_F(ScoringTest, AStatusGoesAfterThreeReportsIfAClientAsks) {
+  Scorer scorer;
+  const Ends ends{*this};
+  lead_to({scorer.script()});
+  scorer.may_answer(1);
+  ASSERT_TRUE(eventually([&] { return scoring_->run().has_value(); }));
+  for (int i = 0; i < 8; ++i) report(100 * i);
+  ASSERT_TRUE(eventually([&] { return scorer.requests() == "SR"; }));
+  loop::turn_for(loop_, 1s);  // the status is no longer fresh
+  const auto asker = std::make_shared<Asker>();
+  scoring_->status(asker);
+  ASSERT_TRUE(eventually([&] { return asker->heard.has_value(); }));
+  scorer.may_answer(1000);
+  ASSERT_TRUE(eventually([&] { return scorer.requests().size() >= 11; }));
+  EXPECT_EQ(scorer.requests().substr(0, 11), "SRRRSRRRRRS") << "nobody asks for the second one";
 }
 
 }  // namespace

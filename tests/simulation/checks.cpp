@@ -48,11 +48,29 @@ Window window_of(const Evidence& evidence, double first, double last) {
 
 Broken all_checks(const Evidence& evidence) {
   Broken broken;
-  for (const auto check :
-       {starts,      settings_kept, once,   not_lost, paced,   reports_go_first, status_keeps_away,
-        learned,     stamps,        kept,   answered, not_cut, refused,          clean,
-        status_true, live,          honest, lights,   alive,   obeyed,           bounded,
-        has_room})
+  for (const auto check : {starts,
+                           settings_kept,
+                           once,
+                           not_lost,
+                           paced,
+                           reports_go_first,
+                           status_keeps_away,
+                           status_has_its_turn,
+                           learned,
+                           stamps,
+                           kept,
+                           answered,
+                           not_cut,
+                           refused,
+                           clean,
+                           status_true,
+                           live,
+                           honest,
+                           lights,
+                           alive,
+                           obeyed,
+                           bounded,
+                           has_room})
     check(evidence, broken);
   const std::vector<Event> told = with_losses(evidence.events);
   const Evidence with_them{told, evidence.reports, evidence.readings, evidence.most_map_bytes,

@@ -39,6 +39,7 @@ void not_lost(const Evidence& evidence, Broken& broken);
 void paced(const Evidence& evidence, Broken& broken);
 void reports_go_first(const Evidence& evidence, Broken& broken);
 void status_keeps_away(const Evidence& evidence, Broken& broken);
+void status_has_its_turn(const Evidence& evidence, Broken& broken);
 void learned(const Evidence& evidence, Broken& broken);
 void stamps(const Evidence& evidence, Broken& broken);
 void kept(const Evidence& evidence, Broken& broken);

@@ -201,6 +201,50 @@ void status_keeps_away(const Evidence& evidence, Broken& broken) {
   }
 }
 
+/// If a client asks for a newer status, one goes after at most three reports. Not checked if the last status
+/// failed, because Adit then pauses, nor after a 429 in this process.
+void status_has_its_turn(const Evidence& evidence, Broken& broken) {
+  constexpr int kInARow = 3;
+  struct Process {
+    double status = 0, report = 0;  // when the last ones left
+    int in_a_row = 0;               // reports since the last status
+    bool is_well = false;           // the last status was answered with a status
+    bool is_slowed = false;
+    std::optional<double> wanted;           // since when a client has an older status
+    std::map<std::uint64_t, double> asked;  // clients' requests for the status
+  };
+  Process process;
+  for (const Event& event : evidence.events) {
+    std::set<std::uint64_t> mapping;        // connections
+    if (event.kind == Kind::Begins || event.what == kCourse) process = {};
+    const bool is_report = event.what == kReports, is_status = event.what == kStatus;
+    if (event.kind == Kind::Replied && event.status == 429 && (is_report || is_status))
+      process.is_slowed = true;
+    if (is_status && event.kind == Kind::Leaves)
+      process.status = event.at, process.in_a_row = 0, process.is_well = false, process.wanted.reset();
+    if (is_status && event.kind == Kind::Replied)
+      process.is_well = event.status == 200 && !event.says.empty();
+    if (is_status && event.kind == Kind::Invoke) process.asked[event.request] = event.at;
+    const bool is_old = is_status && event.kind == Kind::Answered && event.status == 200 && event.stamp >= 1;
+    if (is_old && process.asked[event.request] > process.status)
+    const bool is_upstream = event.kind == Kind::Leaves && !is_report && !is_status;
+    if (is_upstream) process.mapping.insert(event.request);
+    if (event.kind == Kind::Closes && !process.mapping.contains(event.request)) process.is_well = false;
+      process.wanted = process.wanted.value_or(event.at);
+    if (!is_report || event.kind != Kind::Leaves) continue;
+    const bool is_due =
+        process.is_well && !process.is_slowed && process.wanted.value_or(1e9) < process.report;
+    if (is_due && process.in_a_row >= kInARow)
+      broken.push_back(
+          icd::sentence("Paced: ", process.in_a_row + 1,
+                        " reports in a row were sent, although a client has asked for the status "
+                        "since ",
+                        *process.wanted, ", at ", event.at));
+    ++process.in_a_row;
+    process.report = event.at;
+  }
+}
+
 /// A Command Post that counts from its answers is detected by its first 429 that Adit reads. Adit tries
 /// again after 10 s at the earliest, and once until a kill or a power cut (pace/rate_limit.hpp).
 void learned(const Evidence& evidence, Broken& broken) {

@@ -4,6 +4,7 @@
 
 #include "simulation/bytes.hpp"
 #include "simulation/map_messages.hpp"
+#include "simulation/scoreboard.hpp"
 
 namespace adit::simulation {
 namespace {
@@ -144,6 +145,15 @@ Says status_in(const std::string& body) {
     return {};
   return {status["score"], status.at("remaining_reports"),
           static_cast<int>(std::lround(status.at("run_clock").get<double>() * 1000))};
+}
+
+Says reply_in(const std::string& body) {
+  const Json reply = Json::parse(body, nullptr, false);
+  if (!reply.is_object() || !reply.value("score_change", Json()).is_number_integer() ||
+      !reply.value("report_status", Json()).is_string())
+    return {};
+  return {static_cast<int>(report_item(reply).serial), reply.at("report_status") == kScored ? 1 : 0,
+          reply.at("score_change"), static_cast<int>(std::lround(reply.value("run_clock", 0.0) * 1000))};
 }
 
 std::string request_of(const Posting& posting, const Style& style) {

@@ -52,6 +52,9 @@ enum MarkerAction { kAdd = 0, kDelete = 2, kDeleteAll = 3 };
 std::vector<Item> items_of(const HttpMessage& request);
 /// A status's score, its remaining reports, and its run clock in milliseconds.
 Says status_in(const std::string& body);
+/// Of the answer to a report: the serial of its report, 1 if it used up a report or else 0, its points, and
+/// its run clock in milliseconds. Empty if it is no such answer.
+Says reply_in(const std::string& body);
 
 /// A client's message before it is serialised.
 struct Posting {

@@ -14,6 +14,10 @@ constexpr std::int64_t kSerialsOfOne = 1000;
 
 }  // namespace
 
+std::string status_request() {
+  return http_request("GET", kStatus, "Host: 10.0.0.1\r\nAuthorization: Bearer token-of-the-team\r\n", "");
+}
+
 Blunderer::Blunderer(World& world, int number)
     : world_(world),
       random_(world.random("blunderer " + std::to_string(number))),
@@ -70,10 +74,8 @@ void Watcher::ask_until(double end) {
 
 void Watcher::ask() {
   if (world_.time() > end_) return;
-  client_.ask(
-      http_request("GET", kStatus, "Host: 10.0.0.1\r\nAuthorization: Bearer token-of-the-team\r\n", ""),
-      {.what = kStatus, .who = "watcher"},
-      [this](int) { world_.after(seconds(every_ * random_.between(0.2, 1.8)), [this] { ask(); }); });
+  client_.ask(status_request(), {.what = kStatus, .who = "watcher"},
+              [this](int) { world_.after(seconds(every_ * random_.between(0.2, 1.8)), [this] { ask(); }); });
 }
 
 }  // namespace adit::simulation

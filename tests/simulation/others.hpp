@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "simulation/client.hpp"
 #include "simulation/random.hpp"
@@ -41,6 +42,8 @@ class Staller {
   double end_ = 0;
   std::int64_t serial_ = 0;
 };
+
+std::string status_request();
 
 /// A client that asks for the status of the run.
 class Watcher {

@@ -9,6 +9,8 @@ namespace {
 
 constexpr int kMostPosts = 12;
 constexpr std::int64_t kReportsOfOne = 1000;  // serials of one reporter
+constexpr int kOfABurst = 12;                 // reports
+constexpr std::int64_t kSerialsOfABurst = 7000;
 
 }  // namespace
 
@@ -52,6 +54,36 @@ void Reporter::answered(int status) {
   world_.after(seconds(every_ * random_.between(0.2, 1.8)), [this] { report(); });
 }
 
+Burst::Burst(World& world, double until)
+    : world_(world),
+      random_(world.random("burst")),
+      watching_(world, address(150), {.patience = 3}, world.random("watcher of the burst")) {
+  for (int i = 0; i < kOfABurst; ++i) {
+    reporting_.push_back(std::make_unique<Client>(world, address(151 + i / 4), Manners{.patience = 30},
+                                                  world.random("burst " + std::to_string(i))));
+  }
+  world.after(seconds(random_.between(0, until)), [this] { begin(); });
+}
+
+void Burst::begin() {
+  ends_ = world_.time() + kOfABurst + 3;
+  for (std::size_t i = 0; i < reporting_.size(); ++i) {
+    const std::int64_t serial = kSerialsOfABurst + static_cast<std::int64_t>(i);
+    const double when = random_.between(0, 0.5);
+    world_.after(seconds(when), [this, i, serial] {
+      reporting_[i]->ask(request_of({kReports, {{.who = "", .serial = serial}}}, {}),
+                         {.what = kReports, .who = "", .serial = serial}, [](int) {});
+    });
+  }
+  watch();
+}
+
+void Burst::watch() {
+  if (world_.time() > ends_) return;
+  watching_.ask(status_request(), {.what = kStatus, .who = "burst"},
+                [this](int) { world_.after(seconds(0.5), [this] { watch(); }); });
+}
+
 Team::Team(World& world, double until) {
   Random random = world.random("team");
   const auto robots = static_cast<int>(random.below(4)), reporters = static_cast<int>(random.below(3));
@@ -65,6 +97,7 @@ Team::Team(World& world, double until) {
   if (random.chance(0.15)) unauthenticated_.push_back(std::make_unique<UnauthenticatedClients>(world, until));
   if (world.random("whether there is a station").chance(0.3))
     station_ = std::make_unique<Station>(world, until);
+  if (world.random("whether there is a burst").chance(0.25)) burst_ = std::make_unique<Burst>(world, until);
   for (const auto& robot : robots_) robot->post_until(until);
   for (const auto& reporter : reporters_) reporter->report_until(until);
   for (const auto& blunderer : blunderers_) blunderer->post_until(until);

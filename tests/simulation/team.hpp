@@ -39,6 +39,23 @@ class Reporter {
   int tries_ = 0;
 };
 
+/// Posts a dozen reports at once, each on a connection of its own, while one of its clients asks for the
+/// status every half second.
+class Burst {
+ public:
+  Burst(World& world, double until);
+
+ private:
+  void begin();
+  void watch();
+
+  World& world_;
+  Random random_;
+  std::vector<std::unique_ptr<Client>> reporting_;
+  Client watching_;
+  double ends_ = 0;
+};
+
 class Team {
  public:
   Team(World& world, double until);
@@ -51,6 +68,7 @@ class Team {
   std::vector<std::unique_ptr<Watcher>> watchers_;
   std::vector<std::unique_ptr<Staller>> stallers_;
   std::vector<std::unique_ptr<Flood>> floods_;
+  std::unique_ptr<Burst> burst_;  // may be null
   std::vector<std::unique_ptr<UnauthenticatedClients>> unauthenticated_;
 };
 

@@ -57,7 +57,9 @@ void UpstreamView::came(std::string_view bytes) {
                            .stamp = std::atof(answer->header("retry-after").c_str()),
                            .text = path_ == kStatus ? answer->body : "",
                            .request = connection_,
-                           .says = path_ == kStatus ? status_in(answer->body) : Says()});
+                           .says = path_ == kStatus    ? status_in(answer->body)
+                                   : path_ == kReports ? reply_in(answer->body)
+                                                       : Says()});
   }
   if (!answers_.head() || answers_.length() <= kLongestBody) return;
   World::current().note({.kind = Kind::Replied,

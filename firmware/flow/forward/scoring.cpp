@@ -120,7 +120,9 @@ void Scoring::take(const icd::ArtifactReport& report, const intake::Sender& send
 }
 
 void Scoring::take(const dispatch::PostedReport& posted, dispatch::ClientId client) noexcept {
-  const bool may_send = !channel_.busy() && channel_.connected() && pace_.report_ready() <= loop_.now();
+  const loop::Instant now = loop_.now();
+  const bool may_send =
+      !channel_.busy() && channel_.connected() && pace_.report_ready() <= now && !is_status_first(now);
   if (reports_->take(posted, client, may_send, time())) send(*reports_->sending());
   watch_deadlines();
   counts_.changed();
@@ -140,6 +142,7 @@ void Scoring::status(std::shared_ptr<intake::Responder> responder) {
   const auto known =
       status_cache_.is_fresh(now) || pace_.has_one_limit() ? status_cache_.answer(now) : std::nullopt;
   if (known) return responder->answer(*known);
+  is_status_wanted_ = true;
   status_clients_.add(std::move(responder), now);
   pump();
   if (!asked_status_ && !may_ask_soon(now)) answer_clients(now + StatusClients::kWait);
@@ -149,17 +152,14 @@ void Scoring::status(std::shared_ptr<intake::Responder> responder) {
 /// No report goes first, and the pace allows it in time.
 bool Scoring::may_ask_soon(loop::Instant now) const {
   const dispatch::NextRequests requests = reports_->next_requests(time());
-  return !channel_.busy() && !requests.report &&
+  return !channel_.busy() && (!requests.report || is_status_first(now)) &&
          pace_.status_ready(requests.in_doubt) <= now + StatusClients::kWait;
 }
 
-/// It may be older if only reports delay a request, because the Command Post answers them.
-std::optional<intake::Answer> Scoring::cached_status() const {
-  const dispatch::NextRequests requests = reports_->next_requests(time());
-  const bool reports_go_first =
-      reports_->sending() != nullptr ? channel_.connected() : requests.report && !requests.status;
-  return status_cache_.answer(loop_.now(),
-                              reports_go_first ? StatusCache::kOldestBehindReports : StatusCache::kOldest);
+/// A status that no report needs goes before the next report. It never delays the report by its own pace.
+bool Scoring::is_status_first(loop::Instant now) const {
+  return is_status_wanted_ && reports_in_a_row_ >= kReportsInARow && !pace_.has_one_limit() &&
+         pace_.status_ready(/*decides=*/false) <= std::max(now, pace_.report_ready());
 }
 
 void Scoring::ask_soon() {
@@ -180,16 +180,18 @@ void Scoring::pump() noexcept {
   reports_->paced(pace_.spacing());
   const dispatch::NextRequests requests = reports_->next_requests(at);
   if (!is_free(requests, now)) return;
+  const bool is_first = is_status_first(now);
+  const std::size_t report = is_first ? 1 : 0, status = is_first ? 0 : 1;
   std::array<dispatch::Candidate, 2> candidates;
-  if (requests.report) candidates[0] = {now, pace_.report_ready()};
+  if (requests.report) candidates[report] = {now, pace_.report_ready()};
   const loop::Instant status_at =
-      status_clients_.empty() ? std::min(ask_at_, requests.status.value_or(ask_at_)) : now;
+      status_clients_.empty() && !is_first ? std::min(ask_at_, requests.status.value_or(ask_at_)) : now;
   if (status_at != loop::Instant::max())
-    candidates[1] = {now, std::max(pace_.status_ready(requests.in_doubt), status_at)};
+    candidates[status] = {now, std::max(pace_.status_ready(requests.in_doubt), status_at)};
   const dispatch::Turn turn = dispatch::in_order(candidates, now);
   if (turn.wake) wake_.call_at(*turn.wake);
-  if (turn.candidate == 0) send_next();
-  if (turn.candidate == 1) ask_status(/*decides=*/requests.status.has_value());
+  if (turn.candidate == report) send_next();
+  if (turn.candidate == status) ask_status(/*decides=*/requests.status.has_value());
 }
 
 /// False: a request is in flight. A status that no report needs gives way to a report after a while.
@@ -216,6 +218,7 @@ void Scoring::send_next() {
 }
 
 void Scoring::send(const dispatch::Report& report) {
+  ++reports_in_a_row_;
   pace_.report_sent(loop_.now());
   const std::string body = codec::write_artifact_report(report.report);
   channel_.send(icd::Uri::ArtifactReports, codec::kJson,
@@ -242,8 +245,10 @@ void Scoring::classify_report(const uplink::Outcome& outcome) {
   hear_time();
   const loop::Instant now = loop_.now();
   if (const auto* answered = std::get_if<uplink::Answered>(&outcome)) {
+    const std::int64_t number = reports_->sending()->number;
     const dispatch::ReportEvent event = reports_->answered(
         {.status = answered->status, .content_type = answered->content_type, .body = answered->body}, time());
+    correct_status(reports_->book().at(number));
     if (event == dispatch::ReportEvent::Throttled) {
       pace_.report_throttled(answered->sent, answered->retry_after, now);
     } else if (event == dispatch::ReportEvent::Barred) {
@@ -260,6 +265,14 @@ void Scoring::classify_report(const uplink::Outcome& outcome) {
   }
 }
 
+/// So that a client whose report was scored sees that in the next status. An answer of another run says
+/// nothing about the cached status.
+void Scoring::correct_status(const dispatch::Report& answered) {
+  if (answered.state != dispatch::ReportState::Answered || answered.run != status_run_) return;
+  if (const auto reply = codec::read_report_reply(answered.answer))
+    status_cache_.add_report(dispatch::effect_of(*reply), reply->run_clock, loop_.now());
+}
+
 void Scoring::watch_deadlines() {
   std::optional<loop::Instant> first = reports_->next_deadline();
   if (const auto end = status_clients_.first_end()) first = std::min(first.value_or(*end), *end);
@@ -269,7 +282,7 @@ void Scoring::watch_deadlines() {
 /// By the known status; else they wait longer for the request in flight.
 void Scoring::answer_clients(loop::Instant now) {
   if (status_clients_.empty()) return;
-  const auto known = cached_status();
+  const auto known = status_cache_.answer(loop_.now());
   const loop::Instant longest = !known && asked_status_ ? asked_status_->at + kSlow : now;
   status_clients_.answer_due(now, longest, known ? *known : no_status(why_no_status()));
 }
@@ -288,6 +301,8 @@ void Scoring::tick() {
 
 void Scoring::ask_status(bool decides) {
   ask_at_ = loop::Instant::max();
+  is_status_wanted_ = false;
+  reports_in_a_row_ = 0;
   asked_status_ = {.at = loop_.now(), .decides = decides};
   pace_.status_sent(asked_status_->at);
   channel_.send(icd::Uri::Status, "", {},
@@ -328,6 +343,7 @@ void Scoring::classify_status(const uplink::Outcome& outcome, loop::Instant aske
   }
   if (run) {
     reports_->status_heard(*run, asked, time());
+    status_run_ = reports_->run().number;
   } else {
     reports_->status_failed(!std::holds_alternative<uplink::NeverSent>(outcome), time());
   }
@@ -335,7 +351,7 @@ void Scoring::classify_status(const uplink::Outcome& outcome, loop::Instant aske
 
 /// Failures may end within a second.
 intake::Answer Scoring::known_or(intake::Answer failure) const {
-  return cached_status().value_or(std::move(failure));
+  return status_cache_.answer(loop_.now()).value_or(std::move(failure));
 }
 
 dispatch::Reports::Outcome Scoring::decide(std::int64_t number, api::Action action) noexcept {

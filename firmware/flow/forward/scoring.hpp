@@ -25,9 +25,10 @@ namespace adit::forward {
 /// The scoring endpoint. Sends reports one at a time by dispatch::Reports (promise 1), and requests the
 /// status behind them. A status that no report needs gives way after a while.
 ///
-/// The ICD limits API requests (5), and a report's answer shows as much as a status. A status keeps a
-/// report's distance after a report, unless it decides a doubt. A report follows a status at once, until a
-/// 429 shows one limit over both.
+/// The ICD limits API requests (5). A status keeps a report's distance after a report, unless it decides a
+/// doubt. A report follows a status at once, until a 429 shows one limit over both. A status waits for queued
+/// reports, because their answers show as much. If a client asks, one goes after kReportsInARow reports, but
+/// not with one limit over both.
 class Scoring {
  public:
   /// Without a known status the client waits for the request in flight, until so long after its start.
@@ -35,6 +36,7 @@ class Scoring {
   static constexpr std::chrono::seconds kAskEvery{10};  // longest interval between status requests
   /// A report waits so long for a status that no report needs. Then Adit gives up the status.
   static constexpr std::chrono::milliseconds kGivesWayAfter{200};
+  static constexpr int kReportsInARow = 3;
 
   /// `clocks`: has the step of the stamp clock since the ledger was written. All outlive this.
   Scoring(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& settings,
@@ -104,13 +106,14 @@ class Scoring {
   void send_next();
   void report_answered(const uplink::Outcome& outcome);
   void classify_report(const uplink::Outcome& outcome);
+  void correct_status(const dispatch::Report& answered);
   void ask_status(bool decides);
   void status_answered(const uplink::Outcome& outcome);
   void classify_status(const uplink::Outcome& outcome, loop::Instant asked);
   void watch_deadlines();
   void answer_clients(loop::Instant now);
   bool may_ask_soon(loop::Instant now) const;
-  std::optional<intake::Answer> cached_status() const;
+  bool is_status_first(loop::Instant now) const;
   void deadline_came();
   std::string why_no_status() const;
   intake::Answer known_or(intake::Answer failure) const;
@@ -129,7 +132,10 @@ class Scoring {
   StatusClients status_clients_;
   loop::Instant ask_at_ = loop::Instant::max();  // Adit needs a status from then on
   StatusCache status_cache_;
+  std::int64_t status_run_ = 0;  // Run::number of the cached status
   std::optional<AskedStatus> asked_status_;
+  bool is_status_wanted_ = false;  // a client has asked for a newer status than the last one
+  int reports_in_a_row_ = 0;       // sent since the last request for a status
   bool stopping_ = false;
 };
 

@@ -45,5 +45,33 @@ TEST(EndpointTest, ComparesADateWithTheTimeOfItsOwnAnswer) {
   EXPECT_EQ(step->state, "good") << step->said;
 }
 
+/// CoSTAR's stand-in for the Command Post has a web page at paths without a slash, and never redirects.
+TEST(EndpointTest, TriesASlashIfTheStatusIsAWebPage) {
+  const std::string run =
+      R"({"score": 1, "run_clock": 2.5, "remaining_reports": 44, "current_team": "subt"})";
+  for (const bool is_stand_in : {true, false}) {
+    loop::SimulatedTime time;
+    loop::Loop loop;
+    uplink::ListeningPeer peer([&](uplink::Wire& wire) {
+      const bool has_slash = wire.read_request().starts_with("GET /api/status/ ");
+      wire.write(!has_slash    ? uplink::answer("200 OK", "<html>")
+                 : is_stand_in ? uplink::answer("200 OK", run)
+                               : uplink::answer("404 Not Found", "<html>"));
+    });
+    TestTarget tried{.post = {}, .scoring = icd::BearerToken::parse("typed"), .mapping = {}};
+    tried.post.interface = "";
+    tried.post.scoring = {peer.endpoint().address, peer.endpoint().port};
+    const EndpointTest::Turns turns;
+    const settings::CommandPost in_use;
+    std::optional<api::TestStep> step;
+    EndpointTest test(loop, turns, in_use, tried, steps::Asked::Scoring,
+                      [&](api::TestStep each) { step = std::move(each); });
+    test.check_token();
+    ASSERT_TRUE(time.pass_until(loop, [&] { return step.has_value(); }));
+    EXPECT_EQ(step->state, is_stand_in ? "good" : "bad") << step->said;
+    EXPECT_TRUE(step->said.contains(is_stand_in ? "slash" : "200")) << step->said;
+  }
+}
+
 }  // namespace
 }  // namespace adit::box

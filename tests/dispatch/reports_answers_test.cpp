@@ -119,9 +119,50 @@ TEST(A401, LeavesTheReportQueuedUntilAStatusIsAnswered) {
   EXPECT_FALSE(scene.is_answered(other));
   EXPECT_EQ(scene.send_next(), 0);
   EXPECT_EQ(scene.reports().next_requests(scene.time()).status, scene.time().now);
-  scene.reports().status_failed(true, scene.time());
+  scene.reports().status_failed(NoStatus::Other, scene.time());
   EXPECT_EQ(scene.send_next(), 0);
   scene.hear(20, 0);
+  EXPECT_EQ(scene.send_next(), 1);
+}
+
+TEST(APageForAStatus, HoldsReportsBackUntilAStatusIsAnswered) {
+  Scene scene;
+  scene.reports().status_failed(NoStatus::Page, scene.time());
+  scene.post(1);
+  scene.post(2, "Drill", /*resubmit=*/true);
+  EXPECT_EQ(scene.state(1), Queued) << "although a status proves the run";
+  EXPECT_EQ(scene.send_next(), 0);
+  EXPECT_EQ(scene.reports().next_requests(scene.time()).status, scene.time().now);
+  scene.wait(20);
+  scene.reports().status_failed(NoStatus::Page, scene.time());
+  EXPECT_EQ(scene.send_next(), 0);
+  scene.hear(20, 0);
+  EXPECT_EQ(scene.send_next(), 1);
+}
+
+TEST(APageForAStatus, HoldsNoReportThatTheOperatorSends) {
+  Scene scene;
+  scene.wait(20);
+  scene.reports().status_failed(NoStatus::Page, scene.time());
+  scene.post(1);
+  scene.post(2);
+  ASSERT_TRUE(scene.reports().hold(2, scene.time()));
+  ASSERT_TRUE(scene.reports().send(2, scene.time()));
+  EXPECT_EQ(scene.send_next(), 2);
+  scene.answer({200, "text/html", "<html>"});
+  EXPECT_EQ(scene.state(2), InDoubt);
+  scene.hear(20, 0);
+  scene.reports().status_failed(NoStatus::Page, scene.time());
+  EXPECT_EQ(scene.send_next(), 0) << "the order was for the page before";
+}
+
+TEST(AnotherFailureOfTheStatus, DelaysNoYoungReport) {
+  Scene scene;
+  scene.wait(20);
+  scene.reports().status_failed(NoStatus::Page, scene.time());
+  scene.post(1);
+  EXPECT_EQ(scene.send_next(), 0);
+  scene.reports().status_failed(NoStatus::Other, scene.time());
   EXPECT_EQ(scene.send_next(), 1);
 }
 

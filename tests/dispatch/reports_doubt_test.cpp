@@ -83,7 +83,7 @@ TEST_F(Doubt, BlocksOtherReportsWhileItIsPending) {
 TEST_F(Doubt, AsksForTheStatusEverySecond) {
   EXPECT_LE(*scene_.reports().next_requests(scene_.time()).status, scene_.time().now);
   scene_.wait(0.5);
-  scene_.reports().status_failed(false, scene_.time());
+  scene_.reports().status_failed(NoStatus::NoAnswer, scene_.time());
   const auto next = *scene_.reports().next_requests(scene_.time()).status;
   EXPECT_EQ(next, scene_.time().now + std::chrono::seconds(1));
 }
@@ -91,7 +91,7 @@ TEST_F(Doubt, AsksForTheStatusEverySecond) {
 TEST_F(Doubt, StaysWhileNoStatusComes) {
   for (int i = 0; i < 100; ++i) {
     scene_.wait(1);
-    scene_.reports().status_failed(i % 2 == 0, scene_.time());
+    scene_.reports().status_failed(i % 2 == 0 ? NoStatus::Other : NoStatus::NoAnswer, scene_.time());
   }
   EXPECT_EQ(scene_.state(1), InDoubt);
   EXPECT_THAT(scene_.report(1).note,

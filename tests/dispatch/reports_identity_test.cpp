@@ -42,7 +42,7 @@ TEST_F(OtherCommandPost, QueuesARepeatUntilItAnswers) {
   EXPECT_EQ(scene_.state(2), Queued);
   EXPECT_THAT(scene_.report(2).note, HasSubstr("the same as report 1"));
   EXPECT_THAT(scene_.report(2).note, HasSubstr("10.100.2.200:8000 answers"));
-  scene_.reports().status_failed(true, scene_.time());
+  scene_.reports().status_failed(NoStatus::Other, scene_.time());
   EXPECT_EQ(scene_.send_next(), 0) << "the run is unknown";
   scene_.hear(20, 0);
   EXPECT_EQ(scene_.send_next(), 2) << "in the new run";
@@ -147,7 +147,7 @@ TEST(UnheardCommandPost, KeepsItsDoubts) {
   FakeOutput output;
   Reports reports({}, output);
   reports.open({}, {}, time, "10.100.1.200:8000");
-  reports.status_failed(true, time);
+  reports.status_failed(NoStatus::Other, time);
   reports.take({.report = {.type = "Drill", .position = {1, 2, 3}}, .sender = "10.0.0.7"}, 1, true, time);
   ASSERT_NE(reports.choose(time), nullptr);
   reports.lost("no answer", time);

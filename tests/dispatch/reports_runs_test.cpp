@@ -171,11 +171,11 @@ TEST(SilentCommandPost, GetsOnlyNewReportsIfItHasNoStatus) {
   scene.wait(16);
   scene.post(1);
   EXPECT_EQ(scene.send_next(), 0);
-  scene.reports().status_failed(true, scene.time());
+  scene.reports().status_failed(NoStatus::Other, scene.time());
   EXPECT_EQ(scene.send_next(), 1);
   scene.answer(answer_of(429));
   scene.wait(11);
-  scene.reports().status_failed(true, scene.time());
+  scene.reports().status_failed(NoStatus::Other, scene.time());
   EXPECT_EQ(scene.send_next(), 0) << "its run may be over";
   ASSERT_TRUE(scene.reports().send(1, scene.time()).has_value());
   EXPECT_EQ(scene.send_next(), 1);
@@ -185,7 +185,7 @@ TEST(SilentCommandPost, GetsNoReportIfItCannotBeReached) {
   Scene scene;
   scene.wait(16);
   scene.post(1);
-  scene.reports().status_failed(false, scene.time());
+  scene.reports().status_failed(NoStatus::NoAnswer, scene.time());
   EXPECT_EQ(scene.send_next(), 0);
   EXPECT_THAT(scene.undecided(), IsEmpty());
 }

@@ -184,7 +184,7 @@ TEST_F(Undo, RetriesItsEndIfTheDiskIsFull) {
 TEST_F(Undo, NeedsNoStatus) {
   scene_.compose();
   scene_.wait(30);
-  scene_.reports().status_failed(true, scene_.time());
+  scene_.reports().status_failed(NoStatus::Other, scene_.time());
   EXPECT_EQ(scene_.send_next(), 1);
 }
 

@@ -242,5 +242,79 @@ TEST_F(TrailingSlash, IsForgottenAtAnotherEndpoint) {
   EXPECT_EQ(status_of(kFirst), 301);
 }
 
+/// A server with a web page in place of the status, unless its path ends with a slash.
+class PageForAStatus : public TrailingSlash {
+ protected:
+  PageForAStatus() {
+    script_ = [this](uplink::Wire& wire) {
+      for (auto request = wire.read_request(); !request.empty(); request = wire.read_request()) {
+        const bool has_slash = uplink::without_slash(request).empty();
+        paths_ += has_slash ? '/' : '-';
+        wire.write(has_slash ? with_slash_ : uplink::answer("200 OK", "<html>" + std::string(size_, 'x')));
+      }
+    };
+    server_.emplace(script_);
+    lead_to(server_->endpoint(), "a-token");
+  }
+  ~PageForAStatus() override { server_.reset(); }
+
+  static constexpr icd::Uri kStatus = icd::Uri::Status, kReport = icd::Uri::ArtifactReports;
+  std::size_t size_ = 100;
+  std::string with_slash_ = uplink::answer("200 OK", kRun);
+  std::string paths_;  // of the requests: '/' with a slash at the end, '-' without
+  std::optional<uplink::ListeningPeer> server_;
+};
+
+/// CoSTAR's stand-in for the Command Post wants a slash and never redirects.
+TEST_F(PageForAStatus, IsFollowedByATrialOfThePathWithASlash) {
+  for (const std::size_t size : {100u, 20u << 10}) {
+    size_ = size;
+    status_of(kStatus);
+    EXPECT_TRUE(channel_.has_page_for_status());
+    EXPECT_TRUE(channel_.last().is_foreign());
+    EXPECT_EQ(status_of(kStatus), 200);
+    EXPECT_FALSE(channel_.has_page_for_status());
+    EXPECT_FALSE(channel_.last().is_foreign());
+    status_of(kReport);
+    EXPECT_EQ(paths_, "-//");
+    paths_.clear();
+    lead_to(here_.endpoint(), "a-token");
+    lead_to(server_->endpoint(), "a-token");
+  }
+}
+
+TEST_F(PageForAStatus, StaysIfTheTrialFails) {
+  for (const std::string& fails :
+       {uplink::answer("200 OK", "<html>"), uplink::answer("404 Not Found", "\"no such URI\""),
+        uplink::answer("501 Not Implemented", ""), uplink::answer("500 Oops", "<html>"),
+        uplink::answer("429 Too Many Requests", "\"wait\""), uplink::answer("200 OK", "{}"),
+        std::string("x")}) {
+    SCOPED_TRACE(fails);
+    with_slash_ = fails;
+    for (int i = 0; i < 4; ++i) {
+      status_of(kStatus);
+      EXPECT_TRUE(channel_.has_page_for_status());
+      EXPECT_EQ(channel_.last().status(), 200) << "of the page";
+      EXPECT_TRUE(channel_.last().is_foreign());
+    }
+    status_of(kReport);
+    EXPECT_EQ(paths_, "-/-/-");
+    paths_.clear();
+    lead_to(here_.endpoint(), "a-token");
+    EXPECT_FALSE(channel_.has_page_for_status());
+    lead_to(server_->endpoint(), "a-token");
+  }
+}
+
+TEST_F(PageForAStatus, EndsIfTheTrialShowsAWrongToken) {
+  with_slash_ = uplink::answer("401 Unauthorized", "\"wrong token\"");
+  status_of(kStatus);
+  EXPECT_EQ(status_of(kStatus), 401);
+  EXPECT_FALSE(channel_.has_page_for_status());
+  EXPECT_FALSE(channel_.last().is_foreign());
+  EXPECT_EQ(status_of(kStatus), 401);
+  EXPECT_EQ(paths_, "-//");
+}
+
 }  // namespace
 }  // namespace adit::forward

@@ -166,6 +166,33 @@ TEST_F(ScoringTest, WaitsForAStatusThatDecidesADoubt) {
 constexpr const char* kScored =
     R"({"id":1,"run":"1","run_clock":11.0,"report_status":"scored","score_change":1})";
 
+/// CoSTAR's stand-in for the Command Post has a web page at paths without a slash.
+TEST_F(ScoringTest, SendsNoReportToAWebPage) {
+  std::atomic<int> reports_to_pages = 0;
+  std::atomic<bool> is_up = false;
+  const auto stand_in = [&](uplink::Wire& wire) {
+    for (auto request = wire.read_request(); !request.empty(); request = wire.read_request()) {
+      const bool is_report = request.starts_with("POST");
+      const bool is_page = !is_up || !uplink::without_slash(request).empty();
+      if (is_page && is_report) ++reports_to_pages;
+      wire.write(is_page     ? uplink::answer("200 OK", "<html>")
+                 : is_report ? uplink::answer("201 CREATED", kRecorded)
+                             : uplink::answer("200 OK", kStatus));
+    }
+  };
+  const Ends ends{*this};
+  lead_to({stand_in});
+  ASSERT_TRUE(eventually([&] { return scoring_->channel().last().ended() > 0; }));
+  const auto client = report(1);
+  ASSERT_TRUE(eventually([&] { return scoring_->channel().last().ended() > 5; }));
+  EXPECT_FALSE(client->heard);
+  EXPECT_TRUE(scoring_->channel().last().is_foreign());
+  is_up = true;
+  ASSERT_TRUE(eventually([&] { return client->heard.has_value(); }));
+  EXPECT_EQ(client->heard->status, icd::Status::Created);
+  EXPECT_EQ(reports_to_pages, 0);
+}
+
 /// A scoring endpoint that records each report for a point, and answers each request once it may.
 class Scorer {
  public:

@@ -51,6 +51,7 @@ Broken all_checks(const Evidence& evidence) {
   for (const auto check : {starts,
                            settings_kept,
                            once,
+                           addressed,
                            not_lost,
                            paced,
                            reports_go_first,

@@ -35,6 +35,7 @@ using Broken = std::vector<std::string>;
 void settings_kept(const Evidence& evidence, Broken& broken);
 void starts(const Evidence& evidence, Broken& broken);
 void once(const Evidence& evidence, Broken& broken);
+void addressed(const Evidence& evidence, Broken& broken);
 void not_lost(const Evidence& evidence, Broken& broken);
 void paced(const Evidence& evidence, Broken& broken);
 void reports_go_first(const Evidence& evidence, Broken& broken);

@@ -133,9 +133,10 @@ void check_runs(const Evidence& evidence, const std::vector<Asked>& states, Brok
   std::set<std::uint64_t> asks;  // requests for a status of this run
   std::map<std::uint64_t, std::set<std::int64_t>> under_way;
   std::set<std::int64_t> taken;  // in this process; the next one may not know them
+  bool has_status = false;       // before its first status a process notices no other run
   for (const Event& event : evidence.events) {
     if (event.what == kCourse) return;
-    if (event.kind == Kind::Begins) taken.clear();
+    if (event.kind == Kind::Begins) taken.clear(), has_status = false;
     if (event.kind == Kind::NewRun && event.what != kSameMap) {
       began = event.at;
       is_heard = false;
@@ -145,9 +146,9 @@ void check_runs(const Evidence& evidence, const std::vector<Asked>& states, Brok
     if (event.kind == Kind::Leaves && event.what == kState) under_way[event.request].clear();
     const bool is_good = event.kind == Kind::Replied && event.status == 200 && event.who.empty();
     if (is_good && event.what == kStatus && !event.says.empty() && asks.erase(event.request) > 0)
-      is_heard = true;
+      is_heard = has_status = true;
     if (event.what != kState) continue;
-    if (is_good) taken.merge(under_way[event.request]);
+    if (is_good && has_status) taken.merge(under_way[event.request]);
     if (event.kind != Kind::Left) continue;
     under_way[event.request].insert(event.serial);
     if (is_heard && posted[event.serial] < began && taken.contains(event.serial))

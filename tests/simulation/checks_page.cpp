@@ -166,15 +166,37 @@ void check_reports(const Evidence& evidence, const Reading& reading, Broken& bro
   }
 }
 
+/// After a web page in place of the status, Adit tries the other form of the path. The page shows no answer
+/// of a trial that failed.
+class Trials {
+ public:
+  bool has_failed(const Event& event) {
+    if (event.what != kStatus) return false;
+    if (event.kind == Kind::Leaves) {
+      is_trial_ = is_page_ && event.status != form_;
+      form_ = event.status;
+    }
+    if (event.kind != Kind::Replied) return false;
+    is_page_ = event.status / 100 == 2 && (event.who == kForeign || event.who == kTooLong);
+    return is_trial_ && event.says.empty();
+  }
+
+ private:
+  bool is_page_ = false, is_trial_ = false;
+  int form_ = 0;
+};
+
 /// If nothing is in flight, an endpoint's last status is that of its last answer, or `trouble` says why no
 /// answer came.
 void check_last_answers(const Evidence& evidence, std::size_t begun, const Reading& reading, Broken& broken) {
   std::map<std::string, std::string> under_way;  // path by endpoint
   std::map<std::string, const Event*> last;
+  Trials trials;
   const int place = place_at(reading.view.at("endpoints").front().at("address"));
   for (std::size_t i = begun; i < reading.heard; ++i) {
     const Event& event = evidence.events[i];
     if (event.kind != Kind::Leaves && event.kind != Kind::Replied) continue;
+    if (trials.has_failed(event)) continue;
     const std::string endpoint = endpoint_of(event.what);
     if (event.kind == Kind::Leaves || (i >= reading.asked && event.kind == Kind::Replied))
       last[endpoint] = nullptr;

@@ -1,15 +1,19 @@
-// Once, NotLost and Live, about reports.
+// Once, Addressed, NotLost and Live, about reports.
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "icd/sentence.hpp"
 #include "simulation/checks.hpp"
+#include "simulation/courses.hpp"
+#include "simulation/deciding_operator.hpp"
 #include "simulation/intended_runs.hpp"
 #include "simulation/messages.hpp"
 #include "simulation/scoreboard.hpp"
+#include "simulation/upstream_view.hpp"
 #include "simulation/world.hpp"
 
 namespace adit::simulation {
@@ -117,6 +121,25 @@ void live(const Evidence& evidence, Broken& broken) {
     if (report.state != ReportState::Queued && report.state != ReportState::Sending) continue;
     broken.push_back(
         icd::sentence("Live: report ", serial_of(report), " is still ", dispatch::name_of(report.state)));
+  }
+}
+
+/// While the status is a web page, no report is sent that the operator has not sent since. A 404 is of
+/// another form of the path.
+void addressed(const Evidence& evidence, Broken& broken) {
+  std::optional<double> page;      // since when the status is a page
+  std::set<std::int64_t> ordered;  // serials
+  for (const Event& event : evidence.events) {
+    if (event.kind == Kind::Begins || event.what == kCourse) page.reset();
+    if (event.kind == Kind::Invoke && event.what == kSend) ordered.insert(event.serial);
+    if (event.what == kStatus && event.kind == Kind::Replied && event.status != 404) {
+      const bool is_page = event.who == kForeign && event.status / 100 == 2;
+      page = is_page ? std::optional(page.value_or(event.at)) : std::nullopt;
+    }
+    const bool leaves = event.what == kReports && event.kind == Kind::Left;
+    if (!leaves || !page || ordered.contains(event.serial)) continue;
+    broken.push_back(icd::sentence("Addressed: report ", event.serial, " was sent at ", event.at,
+                                   ", although the status is a web page since ", *page));
   }
 }
 

@@ -158,6 +158,8 @@ void reports_go_first(const Evidence& evidence, Broken& broken) {
           !others_are_open && event.at - left > kSpacing && event.at - heard < kVouches && !is_slowed;
       if (status && may_go) status->waits.emplace(serial->second, event.at);
     }
+    // Reports wait while the status is a web page.
+    if (event.what == kStatus && event.kind == Kind::Replied && event.says.empty()) heard = -kVouches;
     if (event.what == kReports && event.kind == Kind::Leaves) left = event.at;
     const auto its = waited.find(event.serial);
     if (event.what == kReports && event.kind == Kind::Left && its != waited.end()) {

@@ -14,7 +14,7 @@ namespace {
 constexpr double kLatest = 8;  // seconds after which a lost request is not recorded any more
 constexpr double kLongest = 8, kLongestOutage = 25;
 constexpr std::chrono::milliseconds kOneLimit{950};  // "approximately" one request a second
-constexpr const char *kEarly = "Early", *kRepeats = "Repeats";
+constexpr const char *kEarly = "Early", *kRepeats = "Repeats", *kPortal = "Portal";
 constexpr const char* kPage = "Content-Type: text/html\r\n";
 constexpr const char* kHtml = "<html><body>Please log in</body></html>";
 constexpr Fault kPeriods[] = {Fault::Storm,       Fault::PoliteStorm, Fault::Refused, Fault::Deaf,
@@ -61,6 +61,9 @@ CommandPost::CommandPost(World& world, const Faults& faults, double trouble_for,
       has_one_limit_(world.random(numbered("one limit", place)).chance(0.125)),
       scoreboard_(world, faults_, random_, place),
       counting_(world.random("counting")) {
+  Random slash = world.random(numbered("slash", place));
+  slash_ = slash.chance(0.15) ? Slash::Wanted : slash.chance(0.5) ? Slash::Unknown : Slash::Either;
+  plan_portal(trouble_for);
   for (const Fault fault : kPeriods) {
     // Runs cannot be told apart if their clocks stand still.
     const bool untold = fault == Fault::NewRun && faults_.has(Fault::ConstantClocks);
@@ -78,6 +81,22 @@ void CommandPost::plan_clerk(double trouble_for) {
     const double when = random.between(1, trouble_for);
     if (world_.omits("clerk")) continue;
     world_.after(seconds(when), [this, grants] { let_clerk(grants); });
+  }
+}
+
+/// In one of six runs, once or twice.
+void CommandPost::plan_portal(double trouble_for) {
+  Random random = world_.random(numbered("portal", scoreboard_.place()));
+  if (!random.chance(0.17)) return;
+  for (std::uint64_t i = 1 + random.below(2); i > 0; --i) {
+    const double begins = random.between(0, trouble_for), takes = random.between(1, 15);
+    if (world_.omits(kPortal)) continue;
+    world_.after(seconds(begins), [this, takes] {
+      if (calm_) return;
+      world_.note({.actor = Actor::Post, .kind = Kind::Fault, .what = "begins", .who = kPortal});
+      has_portal_ = true;
+      world_.after(seconds(takes), [this] { has_portal_ = false; });
+    });
   }
 }
 
@@ -130,6 +149,7 @@ void CommandPost::cut_all() {
 void CommandPost::calm() {
   calm_ = true;
   on_.clear();
+  has_portal_ = false;
   scoreboard_.stop(false);
   world_.note({.actor = Actor::Post, .kind = Kind::Calm, .what = "", .who = ""});
 }
@@ -149,7 +169,7 @@ void CommandPost::asked(const HttpMessage& request, const WhenLeft& left, Link& 
   connection_ = link.number();
   if (is_on(Fault::Mute) || is_on(Fault::Outage)) return;
   if (is_on(Fault::StatusDown) && request.path() == kStatus) return;
-  if (refuses(request, left, link)) return;
+  if (has_page_for(request, link) || refuses(request, left, link)) return;
   answer(request, link);
   if (!is_mapping(request) || link.is_closed()) return;
   const auto count = [this, path = request.path(), left, self = link.shared_from_this()] {
@@ -157,6 +177,17 @@ void CommandPost::asked(const HttpMessage& request, const WhenLeft& left, Link& 
   };
   count();
   if (link.answers_until() > world_.now()) world_.at(link.answers_until(), count);
+}
+
+/// Answers with a web page, or 404 to a path that scoring does not know.
+bool CommandPost::has_page_for(const HttpMessage& request, Link& link) {
+  if (is_mapping(request)) return false;
+  const bool is_unknown = slash_ == Slash::Unknown && request.has_slash();
+  const bool is_page = has_portal_ || (slash_ == Slash::Wanted && !request.has_slash());
+  if (is_page || is_unknown)
+    link.send(is_page ? http_answer("200 OK", kPage, kHtml)
+                      : http_answer("404 Not Found", kJson, "\"no such URI\""));
+  return is_page || is_unknown;
 }
 
 /// Answers 429.

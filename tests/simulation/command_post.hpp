@@ -35,6 +35,7 @@ class CommandPost final : public Host {
   class Conversation;
   void asked(const HttpMessage& request, const WhenLeft& left, Link& link);
   bool refuses(const HttpMessage& request, const WhenLeft& left, Link& link);
+  bool has_page_for(const HttpMessage& request, Link& link);
   bool is_beyond_one_limit(const HttpMessage& request, const WhenLeft& left);
   void answer(const HttpMessage& request, Link& link);
   void may_answer_early(const HttpMessage& head, Link& link);
@@ -48,6 +49,7 @@ class CommandPost final : public Host {
   void plan_periods(Fault fault, double trouble_for);
   void begin(Fault period, double takes);
   void plan_clerk(double trouble_for);
+  void plan_portal(double trouble_for);
   void let_clerk(bool grants);
   void begin_run();
   void cut_all();
@@ -64,6 +66,9 @@ class CommandPost final : public Host {
   Scoreboard scoreboard_;
   std::uint64_t connection_ = 0;  // of the last request
   Counting counting_;
+  /// The form of scoring's paths. The official server knows both.
+  enum class Slash : std::uint8_t { Either, Unknown, Wanted } slash_;
+  bool has_portal_ = false;  // a web server answers in place of scoring
   bool calm_ = false;
   std::set<Fault> on_;  // faults that last for a period
   std::vector<std::weak_ptr<Link>> links_;

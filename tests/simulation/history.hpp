@@ -68,6 +68,8 @@ struct Event {
 inline constexpr const char *kConnect = "connect", *kListen = "listen", *kTooMuch = "too much";
 /// Event::what of Opens and Closes.
 inline constexpr const char* kConnection = "a connection";
+/// Event::status of Leaves.
+inline constexpr int kWithSlash = 1;
 /// Event::status of Stalls.
 inline constexpr int kInHead = 1, kInBody = 2;
 

@@ -12,9 +12,26 @@ std::string HttpMessage::header(const std::string& name) const {
   return found == headers.end() ? "" : found->second;
 }
 
-std::string HttpMessage::path() const {
+namespace {
+
+std::string target_of(const std::string& first) {
   const std::size_t from = first.find(' ') + 1;
   return first.substr(from, first.find(' ', from) - from);
+}
+
+}  // namespace
+
+std::string without_slash(std::string target) {
+  if (target.size() > 1 && target.ends_with('/')) target.pop_back();
+  return target;
+}
+
+std::string HttpMessage::path() const {
+  return without_slash(target_of(first));
+}
+
+bool HttpMessage::has_slash() const {
+  return target_of(first).ends_with('/');
 }
 
 int HttpMessage::status() const {

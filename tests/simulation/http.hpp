@@ -16,7 +16,8 @@ struct HttpMessage {
   std::string body;
 
   std::string header(const std::string& name) const;
-  std::string path() const;  // of a request
+  std::string path() const;  // of a request, without a slash at its end
+  bool has_slash() const;    // at the end of its path
   int status() const;        // of an answer
 };
 
@@ -43,6 +44,8 @@ class HttpStream {
   std::size_t length_ = 0;
 };
 
+/// A target without a slash at its end.
+std::string without_slash(std::string target);
 std::string http_request(std::string_view method, std::string_view path, std::string_view headers,
                          std::string_view body);
 /// `status_line`: "200 OK".

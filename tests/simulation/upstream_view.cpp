@@ -23,8 +23,13 @@ void UpstreamView::left(std::string_view bytes) {
   World& world = World::current();
   if (requests_.is_between()) {
     const std::size_t from = bytes.find(' ') + 1;
-    path_ = bytes.substr(from, bytes.find(' ', from) - from);
-    world.note({.kind = Kind::Leaves, .what = path_, .who = "", .request = connection_});
+    const std::string target(bytes.substr(from, bytes.find(' ', from) - from));
+    path_ = without_slash(target);
+    world.note({.kind = Kind::Leaves,
+                .what = path_,
+                .who = "",
+                .status = target == path_ ? 0 : kWithSlash,
+                .request = connection_});
   }
   requests_.feed(bytes);
   while (const auto request = requests_.next()) {

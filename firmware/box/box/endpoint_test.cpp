@@ -8,6 +8,7 @@
 
 #include "codec/read.hpp"
 #include "codec/write.hpp"
+#include "dispatch/mapping_verdict.hpp"
 #include "forward/channel.hpp"
 #include "uplink/socket.hpp"
 
@@ -21,6 +22,11 @@ std::optional<double> run_clock_in(const uplink::Answered& answer) {
   if (answer.status != 200) return std::nullopt;
   const auto status = codec::read_run_status(answer.body);
   return status ? std::optional(status->run_clock) : std::nullopt;
+}
+
+/// In place of the status.
+bool is_page(const uplink::Answered& answer) {
+  return answer.status == 200 && dispatch::body_of(answer.body) == dispatch::Body::Other;
 }
 
 icd::ChunkedBytes empty_object() {
@@ -97,13 +103,18 @@ void EndpointTest::check_token() {
   ask("token", [this](const uplink::Outcome& outcome) { token_answered(outcome); });
 }
 
-/// Repeats once after a 429, because Adit requests the status too. Follows a redirect to a slash.
+/// Repeats once after a 429, because Adit requests the status too. Follows a redirect to a slash, and tries a
+/// slash if the status is a web page, as forward::Channel does.
 void EndpointTest::token_answered(const uplink::Outcome& outcome) {
   const auto* answer = std::get_if<uplink::Answered>(&outcome);
   if (answer != nullptr) {
     clocks_ = {.date = answer->date, .run_clock = run_clock_in(*answer), .answered_at = loop_.wall_now()};
   }
-  const bool is_redirected = answer != nullptr && answer->wants_slash;
+  const bool is_status = answer != nullptr && codec::read_run_status(answer->body).has_value();
+  if (page_ && !is_status) return done_(steps::token(asked_, *page_, false));
+  if (asked_ == steps::Asked::Scoring && answer != nullptr && is_page(*answer) && !wants_slash_)
+    page_ = *answer;
+  const bool is_redirected = answer != nullptr && (answer->wants_slash || (page_ && !wants_slash_));
   if (is_redirected) wants_slash_ = true;
   const bool is_throttled =
       answer != nullptr && answer->status == kTooMany && !std::exchange(asked_again_, true);

@@ -77,7 +77,8 @@ class EndpointTest {
   std::unique_ptr<uplink::Connection> connection_;
   Clocks clocks_;
   bool asked_again_ = false;
-  bool wants_slash_ = false;  // at the end of each path
+  bool wants_slash_ = false;                  // at the end of each path
+  std::optional<uplink::Outcome> page_ = {};  // the answer without a slash, if that was a web page
 };
 
 }  // namespace adit::box

@@ -2,8 +2,11 @@
 
 #include <utility>
 
+#include "codec/read.hpp"
+#include "dispatch/mapping_verdict.hpp"
 #include "host/log.hpp"
 #include "icd/require.hpp"
+#include "icd/success.hpp"
 
 namespace adit::forward {
 
@@ -12,6 +15,21 @@ namespace {
 /// Bytes. A status is small, a mapping answer is null or a wrong address's text.
 std::size_t longest_answer_to(icd::Uri uri) {
   return uri == icd::Uri::Status ? 16u << 10 : uplink::Request::kLongestAnswer;
+}
+
+/// A 2xx with a web page, of any length.
+bool is_success_page(const uplink::Outcome& outcome) {
+  if (const auto* doubt = std::get_if<uplink::InDoubt>(&outcome))
+    return icd::is_success(doubt->too_long_status);
+  const auto* answered = std::get_if<uplink::Answered>(&outcome);
+  return answered != nullptr && icd::is_success(answered->status) &&
+         dispatch::body_of(answered->body) == dispatch::Body::Other;
+}
+
+/// The server has a status at this path, or rejects the token there.
+bool knows_path(const uplink::Outcome& outcome) {
+  const auto* answered = std::get_if<uplink::Answered>(&outcome);
+  return answered != nullptr && (answered->status == 401 || codec::read_run_status(answered->body));
 }
 
 }  // namespace
@@ -46,7 +64,7 @@ bool Channel::turns() {
   const bool is_elsewhere = leads_elsewhere(*next_);
   take(*std::exchange(next_, std::nullopt));
   if (!is_elsewhere) return false;
-  wants_slash_ = false;
+  wants_slash_ = has_page_ = is_trial_due_ = false;
   last_.forget();
   return true;
 }
@@ -65,9 +83,11 @@ void Channel::send(icd::Uri uri, std::string_view content_type, icd::ChunkedByte
                    std::function<void(uplink::Outcome)> done, loop::Instant last_byte_not_before) {
   icd::require(has_token() && (!busy() || can_go_ahead()));
   finished_bytes_ += connection_->sent_bytes();
-  const auto under_way = std::make_shared<UnderWay>(loop_.now(), uri, wants_slash_, std::move(done));
+  const bool is_trial = uri == icd::Uri::Status && is_trial_due_;
+  const bool has_slash = wants_slash_ != is_trial;
+  const auto under_way = std::make_shared<UnderWay>(loop_.now(), uri, has_slash, is_trial, std::move(done));
   connection_->send({.method = std::string(icd::method_of(uri)),
-                     .target = std::string(icd::path_of(uri)) + (wants_slash_ ? "/" : ""),
+                     .target = std::string(icd::path_of(uri)) + (has_slash ? "/" : ""),
                      .content_type = std::string(content_type),
                      .body = std::move(body),
                      .answer_within = answer_within_,
@@ -86,25 +106,39 @@ std::optional<uplink::Sent> Channel::has_arrived() const {
 }
 
 void Channel::ended(const std::shared_ptr<UnderWay>& request, uplink::Outcome outcome) {
-  last_.note({.uri = request->uri, .sent_at = request->sent_at}, outcome);
-  if (const auto* answered = std::get_if<uplink::Answered>(&outcome)) learn_path(*request, *answered);
+  const bool is_vain = request->is_trial && !knows_path(outcome);
+  last_.note({.uri = request->uri, .sent_at = request->sent_at, .is_vain = is_vain}, outcome);
+  learn_path(*request, outcome);
   std::erase(under_way_, request);
   const auto done = std::move(request->done);
   done(std::move(outcome));
 }
 
-void Channel::learn_path(const UnderWay& request, const uplink::Answered& answered) {
-  // The measured mapping server answers 501 to an unknown path.
-  const bool is_unknown = answered.status == 404 || answered.status == 501;
-  bool wants_slash = wants_slash_ && !(request.has_slash && is_unknown);
-  if (answered.wants_slash && request.uri != icd::Uri::ArtifactReports) wants_slash = true;
+void Channel::learn_path(const UnderWay& request, const uplink::Outcome& outcome) {
+  const bool is_status = request.uri == icd::Uri::Status;
+  const bool is_page = is_status && is_success_page(outcome);
+  if (is_status) is_trial_due_ = is_page && !request.is_trial;
+  if (is_page) has_page_ = true;
+  const auto* answered = std::get_if<uplink::Answered>(&outcome);
+  if (answered == nullptr) return;
+  bool wants_slash = wants_slash_;
+  if (request.is_trial) {
+    if (!knows_path(outcome)) return;
+    wants_slash = request.has_slash;
+  } else {
+    // The measured mapping server answers 501 to an unknown path.
+    const bool is_unknown = answered->status == 404 || answered->status == 501;
+    if (request.has_slash && is_unknown) wants_slash = false;
+    if (answered->wants_slash && request.uri != icd::Uri::ArtifactReports) wants_slash = true;
+  }
+  if (is_status && !is_page) has_page_ = false;
   if (std::exchange(wants_slash_, wants_slash) == wants_slash) return;
   host::log(
       host::Level::Notice,
       wants_slash
-          ? "the Command Post redirects; paths end with a slash from now on"
+          ? "the Command Post wants a slash at the end of paths; paths have one from now on"
           : "the Command Post does not know paths with a slash at the end; paths have no slash from now on",
-      {{"endpoint", name_}, {"address", address_}, {"status", std::to_string(answered.status)}});
+      {{"endpoint", name_}, {"address", address_}, {"status", std::to_string(answered->status)}});
 }
 
 std::string Channel::trouble() const {

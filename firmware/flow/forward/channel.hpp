@@ -24,7 +24,9 @@ struct EndpointAccess {
 /// ahead (uplink::Connections). Without a token no connection is opened.
 ///
 /// After a redirect to the same path with a slash, later paths end with a slash, until the endpoint does not
-/// know such a path. Redirects of reports do not count. The channel repeats no request.
+/// know such a path. Redirects of reports do not count. If a status is a web page, the next request for it
+/// has the other form of the path, as a trial: some servers want a slash and do not redirect. The channel
+/// repeats no request.
 class Channel {
  public:
   /// `name`: "scoring" or "mapping".
@@ -67,6 +69,10 @@ class Channel {
   /// Why there is no good answer or no connection; or "".
   std::string trouble() const;
   const LastAnswer& last() const { return last_; }
+  /// True if the last status was a 2xx web page in place of a status.
+  bool has_page_for_status() const { return has_page_; }
+  /// True if the next status tries the other form of the path.
+  bool is_trial_due() const { return is_trial_due_; }
   /// 0 without a connection.
   std::uint64_t delivers() const { return connection_ ? connection_->delivers() : 0; }
   /// Bytes of the last request that the kernel has accepted.
@@ -79,12 +85,13 @@ class Channel {
     loop::Instant sent_at;
     icd::Uri uri;
     bool has_slash;
+    bool is_trial;  // of the other form of the path
     std::function<void(uplink::Outcome)> done;
   };
   void take(EndpointAccess way);
   bool leads_elsewhere(const EndpointAccess& way) const;
   void ended(const std::shared_ptr<UnderWay>& request, uplink::Outcome outcome);
-  void learn_path(const UnderWay& request, const uplink::Answered& answered);
+  void learn_path(const UnderWay& request, const uplink::Outcome& outcome);
 
   loop::Loop& loop_;
   const char* name_;
@@ -94,6 +101,8 @@ class Channel {
   std::chrono::milliseconds answer_within_{};
   bool keeps_warm_ = false;
   bool wants_slash_ = false;  // at the end of each path
+  bool has_page_ = false;
+  bool is_trial_due_ = false;  // for the next status
   std::optional<EndpointAccess> next_;
   std::vector<std::shared_ptr<UnderWay>> under_way_;  // at most two, oldest first
   std::uint64_t finished_bytes_ = 0;

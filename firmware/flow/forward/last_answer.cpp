@@ -38,15 +38,17 @@ bool comes_from_another(const uplink::Outcome& outcome, dispatch::Body body) {
 void LastAnswer::note(const Request& request, const uplink::Outcome& outcome) {
   heard_ = loop_.now();
   ++ended_;
-  status_ = 0;
   const dispatch::Body body = body_of(outcome);
   const bool no_status = lacks_status(request.uri, outcome);
-  is_foreign_ = no_status || comes_from_another(outcome, body);
-  if (is_foreign_) ++foreign_;
+  const bool is_foreign = no_status || comes_from_another(outcome, body);
+  if (is_foreign) ++foreign_;
   const auto* answered = std::get_if<uplink::Answered>(&outcome);
+  if (answered != nullptr && answered->status == 429) ++throttled_;
+  if (request.is_vain) return;
+  is_foreign_ = is_foreign;
+  status_ = 0;
   if (answered != nullptr) {
     status_ = answered->status;
-    if (status_ == 429) ++throttled_;
     // Only the Command Post's own clock counts.
     if (answered->date && !is_foreign_ && dispatch::is_the_command_post(status_, body)) {
       constexpr double kHalf = 0.5;  // Date has whole seconds

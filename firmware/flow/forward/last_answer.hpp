@@ -16,6 +16,7 @@ class LastAnswer {
   struct Request {
     icd::Uri uri;
     loop::Instant sent_at;
+    bool is_vain = false;  // a trial of another path that failed: only counted
   };
 
   explicit LastAnswer(loop::Loop& loop) : loop_(loop) {}

@@ -311,7 +311,7 @@ void Scoring::ask_status(bool decides) {
 
 void Scoring::status_answered(const uplink::Outcome& outcome) {
   const loop::Instant asked = std::exchange(asked_status_, std::nullopt)->at;
-  ask_at_ = loop_.now() + kAskEvery;
+  ask_at_ = channel_.is_trial_due() ? loop_.now() : loop_.now() + kAskEvery;
   classify_status(outcome, asked);
   watch_deadlines();
   counts_.changed();
@@ -345,7 +345,11 @@ void Scoring::classify_status(const uplink::Outcome& outcome, loop::Instant aske
     reports_->status_heard(*run, asked, time());
     status_run_ = reports_->run().number;
   } else {
-    reports_->status_failed(!std::holds_alternative<uplink::NeverSent>(outcome), time());
+    reports_->status_failed(channel_.has_page_for_status() ? dispatch::NoStatus::Page
+                            : std::holds_alternative<uplink::NeverSent>(outcome)
+                                ? dispatch::NoStatus::NoAnswer
+                                : dispatch::NoStatus::Other,
+                            time());
   }
 }
 

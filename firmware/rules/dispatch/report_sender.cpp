@@ -22,7 +22,7 @@ void ReportSender::open(Time time) {
 /// The report is certainly meant for the present run. If no status comes, a young one or one sent on purpose
 /// may go.
 bool ReportSender::may_go(const Report& report, Instant now) const {
-  if (barred_) return false;
+  if (barred_ || (is_page_ && !ordered_.contains(report.number))) return false;
   if (doubts_.is_pending(now)) return false;
   if (account_.is_fresh(now)) return true;
   if (!account_.is_dumb(now) || review_.sent_to_other_command_post(report) != nullptr) return false;
@@ -47,7 +47,7 @@ NextRequests ReportSender::next_requests(Time time) const {
   requests.in_doubt = requests.status.has_value();
   if (account_.waiting_here().empty()) return requests;
   requests.report = next(time.now).has_value();
-  if (barred_ || !account_.is_fresh(time.now)) requests.status = time.now;
+  if (barred_ || is_page_ || !account_.is_fresh(time.now)) requests.status = time.now;
   return requests;
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "dispatch/run_changes.hpp"
@@ -19,6 +21,13 @@ struct NextRequests {
   /// When to request the run's status. nullopt: not needed.
   std::optional<Instant> status;
   bool in_doubt = false;  // the status decides a doubt
+};
+
+/// Why a request for the status has none.
+enum class NoStatus : std::uint8_t {
+  NoAnswer,  // the Command Post was not reached
+  Page,      // it is a web page with 2xx: the address is another server's
+  Other,     // an answer without a usable status, or a doubt
 };
 
 /// Chooses the next report to send, and decides what its answer means.
@@ -50,7 +59,13 @@ class ReportSender {
   /// Recorded, Rejected and the like come by answered().
   void ended(ReportEvent event, const std::string& note, Time time, const ReportBook::Edit& edit = nullptr);
   /// A status arrived: the token and the address are right.
-  void status_heard() { barred_ = false; }
+  void status_heard() {
+    barred_ = is_page_ = false;
+    ordered_.clear();
+  }
+  void status_failed(NoStatus why) { is_page_ = why == NoStatus::Page; }
+  /// The operator sends the report, even to a server whose status is a web page.
+  void order(std::int64_t number) { ordered_.insert(number); }
 
  private:
   std::optional<std::int64_t> next(Instant now) const;
@@ -67,6 +82,8 @@ class ReportSender {
   RunChanges& changes_;
   std::int64_t last_sending_ = 0;  // Report::sending of the last sending
   bool barred_ = false;            // no report is sent before a status arrives
+  bool is_page_ = false;           // the status is a web page: only ordered_ reports are sent
+  std::set<std::int64_t> ordered_;
 };
 
 }  // namespace adit::dispatch

@@ -144,8 +144,9 @@ void Reports::status_heard(const icd::RunStatus& status, Instant asked, Time tim
   account_.settle(status, time);
 }
 
-void Reports::status_failed(bool reached, Time time) {
-  if (reached) account_.dumb(time.now);
+void Reports::status_failed(NoStatus why, Time time) {
+  if (why != NoStatus::NoAnswer) account_.dumb(time.now);
+  sender_.status_failed(why);
   doubts_.failed(time);
 }
 

@@ -60,8 +60,7 @@ class Reports {
   void lost(const std::string& why, Time time) { sender_.ended(ReportEvent::Lost, why, time); }
   /// `asked`: time of the request.
   void status_heard(const icd::RunStatus& status, Instant asked, Time time);
-  /// `reached`: the Command Post answered, without a usable status.
-  void status_failed(bool reached, Time time);
+  void status_failed(NoStatus why, Time time);
 
   /// Answers clients whose time is up, repeats failed writes. Call at next_deadline() at the latest.
   void tick(Time time);

@@ -48,6 +48,7 @@ Reports::Outcome Reports::send(std::int64_t number, Time time) {
                                  }},
                                 time);
   if (!moved) return std::unexpected(kDisk);
+  sender_.order(number);
   if (decided) doubts_.ask_for_others(time);
   return number;
 }

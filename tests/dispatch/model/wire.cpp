@@ -107,9 +107,12 @@ void World::ask() {
   poll_at_ = now_ + 10;
   const bool fails = !calm_ && chance() < trouble_.status_fails;
   if (fails || !is_anybody_there()) {
-    later(between(0, 3), [this, reached = chance() < 0.5 && is_anybody_there()] {
+    const NoStatus why = chance() < 0.5 || !is_anybody_there() ? NoStatus::NoAnswer
+                         : chance() < 0.5                      ? NoStatus::Page
+                                                               : NoStatus::Other;
+    later(between(0, 3), [this, why] {
       busy_ = false;
-      reports_->status_failed(reached, time());
+      reports_->status_failed(why, time());
     });
     return;
   }

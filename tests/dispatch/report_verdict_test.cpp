@@ -62,6 +62,20 @@ icd::ReportReply unscored(const std::string& report_status) {
   return reply;
 }
 
+TEST(AnAnswer, IsAboutAnotherReportIfThatIsOfAnotherTypeOrPlace) {
+  const icd::ArtifactReport sent{.type = "Drill", .position = {10, 20, 3}};
+  const auto answer_about = [](const char* type, double x) {
+    icd::ReportReply reply;
+    reply.report = {.type = type, .position = {x, 20, 3}};
+    return reply;
+  };
+  EXPECT_FALSE(is_about_another({}, sent)) << "it names no report";
+  EXPECT_FALSE(is_about_another(answer_about("Drill", 10), sent));
+  EXPECT_FALSE(is_about_another(answer_about("drill", 10.9), sent)) << "rounded";
+  EXPECT_TRUE(is_about_another(answer_about("Drill", 11.1), sent));
+  EXPECT_TRUE(is_about_another(answer_about("Rope", 10), sent));
+}
+
 TEST(Effect, OfAScoredReportIsItsPoints) {
   const Effect effect = effect_of(with_answer(ReportState::Answered, kReply));
   EXPECT_TRUE(effect.scored);

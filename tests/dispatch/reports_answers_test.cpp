@@ -66,6 +66,16 @@ TEST(A2xx, OfAnotherReportPutsTheReportInDoubt) {
   EXPECT_EQ(scene.answer_to(client).body, answer_about(11).body);
 }
 
+TEST(A2xx, OfAStrangeReportLeavesTheCountsUncertain) {
+  Scene scene;
+  scene.post(10);
+  scene.answer(answer_about(500));
+  EXPECT_EQ(scene.state(1), Answered);
+  EXPECT_FALSE(scene.reports().expected(scene.time().now)) << "its score is another report's";
+  scene.hear(19, 0);
+  EXPECT_TRUE(scene.reports().expected(scene.time().now));
+}
+
 TEST(A2xx, OfAReportOfTheLastRunPutsItInDoubt) {
   Scene scene;
   scene.post(10);

@@ -166,6 +166,51 @@ TEST_F(ScoringTest, WaitsForAStatusThatDecidesADoubt) {
 constexpr const char* kScored =
     R"({"id":1,"run":"1","run_clock":11.0,"report_status":"scored","score_change":1})";
 
+/// Answers requests in turn, the last answer again and again.
+class InTurn {
+ public:
+  explicit InTurn(std::vector<std::string> answers) : answers_(std::move(answers)) {}
+  std::size_t answered() const { return next_; }
+  uplink::Peer::Script script() {
+    return [this](uplink::Wire& wire) {
+      while (!wire.read_request().empty()) {
+        const std::size_t next = next_++;
+        if (!wire.write(answers_[std::min(next, answers_.size() - 1)])) return;
+      }
+    };
+  }
+
+ private:
+  const std::vector<std::string> answers_;
+  std::atomic<std::size_t> next_ = 0;
+};
+
+constexpr const char* kWait = "Retry-After: 3600\r\n";
+
+TEST_F(ScoringTest, ObeysTheRetryAfterOfA503ForAStatusThatNoReportNeeds) {
+  InTurn server({uplink::answer("200 OK", kStatus), uplink::answer("503 Busy", "null", kWait)});
+  const Ends ends{*this};
+  lead_to({server.script()});
+  ASSERT_TRUE(eventually([&] { return scoring_->run().has_value(); }));
+  scoring_->link_is_back();  // asks again
+  ASSERT_TRUE(eventually([&] { return scoring_->channel().last().status() == 503; }));
+  const std::size_t before = server.answered();
+  scoring_->link_is_back();
+  loop::turn_for(loop_, 200ms);
+  EXPECT_EQ(server.answered(), before);
+}
+
+TEST_F(ScoringTest, AsksForAStatusThatDecidesADoubtInThePauseOfA503) {
+  settings_.reports.doubt_for = 100ms;
+  InTurn server({uplink::answer("200 OK", kStatus), uplink::answer("503 Busy", "null", kWait)});
+  const Ends ends{*this};
+  lead_to({server.script()});
+  ASSERT_TRUE(eventually([&] { return scoring_->run().has_value(); }));
+  report(1);
+  EXPECT_TRUE(eventually([&] { return server.answered() >= 5; }));
+  EXPECT_EQ(scoring_->reports().book().at(1).state, dispatch::ReportState::InDoubt);
+}
+
 /// CoSTAR's stand-in for the Command Post has a web page at paths without a slash.
 TEST_F(ScoringTest, SendsNoReportToAWebPage) {
   std::atomic<int> reports_to_pages = 0;

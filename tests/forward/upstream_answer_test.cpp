@@ -28,7 +28,8 @@ TEST(ClientAnswer, IsAJsonStringForARejection) {  // ICD 4.1
   };
   EXPECT_EQ(told(401, R"({"detail": "Invalid token."})"), R"("Invalid token.")");
   EXPECT_EQ(told(400, R"( "Missing  \u0022x\u0022" )"), R"( "Missing  \u0022x\u0022" )");
-  EXPECT_EQ(told(422, R"({"x": ["not a number"]})"), R"("the Command Post answered 422")");
+  EXPECT_EQ(told(422, R"({"x": ["not a number"]})"),
+            R"("the Command Post answered 422: {\"x\":[\"not a number\"]}")");
   EXPECT_EQ(told(400, "[1]"), R"("the Command Post answered 400")");
   EXPECT_EQ(told(503, "null"), R"("the Command Post answered 503")");
 }

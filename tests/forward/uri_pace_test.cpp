@@ -29,5 +29,27 @@ TEST(UriPace, StampsDoNotGoBackAfterARestart) {
   EXPECT_EQ(of_maps.next_stamp(8), 8) << "each URI has its own order";
 }
 
+TEST(UriPace, ObeysTheRetryAfterOfA503) {
+  using std::chrono::seconds;
+  const host::Folder folder;
+  loop::Loop loop;
+  std::mt19937_64 random{1};
+  journal::Journal journal(loop, folder.path() + "/journal");
+  journal.begin({.boot = "b", .at = loop.now(), .stamp = loop.stamp_now()});
+  const auto wait = [&](int status, std::optional<seconds> retry_after) {
+    UriPace pace(icd::Uri::MapUpdate, 1, random, journal);
+    pace.sent(loop.now());
+    const auto now = loop.now();
+    pace.failed(
+        uplink::Answered{.status = status, .content_type = "", .body = "", .retry_after = retry_after}, now);
+    return pace.ready() - now;
+  };
+  EXPECT_GE(wait(503, seconds(12)), seconds(12));
+  EXPECT_LE(wait(503, seconds(12)), seconds(13));
+  EXPECT_LE(wait(503, seconds(1'000'000)), seconds(30));
+  EXPECT_LE(wait(503, std::nullopt), seconds(5));
+  EXPECT_LE(wait(502, seconds(12)), seconds(5)) << "a proxy's";
+}
+
 }  // namespace
 }  // namespace adit::forward

@@ -61,6 +61,29 @@ TEST(ReadAnswers, AreReadAgainAfterAChange) {
   EXPECT_FALSE(answers.of(report));
 }
 
+/// A proxy may repeat the answer to another report.
+TEST(ReportRow, ShowsNoScoreOfAnotherReport) {
+  NoOutput output;
+  const dispatch::Reports reports({}, output);
+  const auto score = [&](ReportState state, const char* type, double x) {
+    ReadAnswers answers;
+    const std::string answer = R"({"id": 1, "run": "2", "team": "t", "run_clock": 3.5, "type": ")" +
+                               std::string(type) + R"(", "x": )" + std::to_string(x) +
+                               R"(, "y": 2, "z": 3, "report_status": "scored", "score_change": 1})";
+    const api::ReportRow row = row_of(
+        reports,
+        {.number = 1, .report = {.type = "Drill", .position = {10, 2, 3}}, .state = state, .answer = answer},
+        answers);
+    EXPECT_EQ(row.report_status, row.score_change ? "scored" : "");
+    return row.score_change;
+  };
+  EXPECT_EQ(score(ReportState::Answered, "Drill", 10), 1);
+  EXPECT_EQ(score(ReportState::Answered, "Rope", 10), std::nullopt);
+  EXPECT_EQ(score(ReportState::Answered, "Drill", 20), std::nullopt);
+  EXPECT_EQ(score(ReportState::InDoubt, "Drill", 20), std::nullopt);
+  EXPECT_EQ(score(ReportState::InDoubt, "Drill", 10), std::nullopt);
+}
+
 TEST(ReadAnswers, AreKeptPerReport) {
   ReadAnswers answers;
   const auto report = [](std::int64_t number) {

@@ -74,7 +74,9 @@ void paced(const Evidence& evidence, Broken& broken) {
   struct Asked {
     double at, pause;
     int process;
+    bool is_busy;  // by a 503
   };
+  OpenReports reports;
   std::map<std::string, Asked> asked;
   DiskFaultsSeen disk;
   double forgotten_until = 0;
@@ -89,9 +91,14 @@ void paced(const Evidence& evidence, Broken& broken) {
       asked.clear();
     }
     disk.add(event);
+    if (event.kind == Kind::Begins || event.what == kCourse)
+      std::erase_if(asked, [](const auto& each) { return each.second.is_busy; });
     if (event.kind == Kind::Dies) asked.clear();  // the answer may have been read and not yet processed
-    if (event.kind == Kind::Replied && event.status == 429)
-      asked[event.what] = {event.at, std::min(event.stamp, kLongestPause), event.process};
+    reports.add(event);
+    // A status may be needed by a report.
+    const bool is_busy = event.status == 503 && event.stamp > 0 && event.what != kReports;
+    if (event.kind == Kind::Replied && (event.status == 429 || is_busy))
+      asked[event.what] = {event.at, std::min(event.stamp, kLongestPause), event.process, is_busy};
     if (event.kind != Kind::Leaves && event.kind != Kind::Complete) continue;
     const auto before = last[event.kind].find(event.what);
     if (before != last[event.kind].end() && event.at - before->second < kSpacing - kRounding) {
@@ -103,9 +110,11 @@ void paced(const Evidence& evidence, Broken& broken) {
     last[event.kind][event.what] = event.at;
     if (event.kind == Kind::Complete) continue;
     const auto pause = asked.find(event.what);
-    if (pause != asked.end() && event.at - pause->second.at < pause->second.pause - kRounding) {
+    const bool is_needed =
+        event.what == kStatus && pause != asked.end() && pause->second.is_busy && reports.any();
+    if (pause != asked.end() && !is_needed && event.at - pause->second.at < pause->second.pause - kRounding) {
       broken.push_back(icd::sentence("Paced: ", event.what, " was requested ", event.at - pause->second.at,
-                                     " s after a 429 that asked for ", pause->second.pause, " s, at ",
+                                     " s after an answer that asked for ", pause->second.pause, " s, at ",
                                      event.at));
     }
     asked.erase(event.what);
@@ -204,7 +213,8 @@ void status_keeps_away(const Evidence& evidence, Broken& broken) {
 }
 
 /// If a client asks for a newer status, one goes after at most three reports. Not checked if the last status
-/// failed, because Adit then pauses, nor after a 429 in this process.
+/// failed, because Adit then pauses, nor after a 429 in this process. A status may fail before it leaves:
+/// then a connection ends.
 void status_has_its_turn(const Evidence& evidence, Broken& broken) {
   constexpr int kInARow = 3;
   struct Process {
@@ -214,10 +224,10 @@ void status_has_its_turn(const Evidence& evidence, Broken& broken) {
     bool is_slowed = false;
     std::optional<double> wanted;           // since when a client has an older status
     std::map<std::uint64_t, double> asked;  // clients' requests for the status
+    std::set<std::uint64_t> mapping;        // connections
   };
   Process process;
   for (const Event& event : evidence.events) {
-    std::set<std::uint64_t> mapping;        // connections
     if (event.kind == Kind::Begins || event.what == kCourse) process = {};
     const bool is_report = event.what == kReports, is_status = event.what == kStatus;
     if (event.kind == Kind::Replied && event.status == 429 && (is_report || is_status))
@@ -226,12 +236,12 @@ void status_has_its_turn(const Evidence& evidence, Broken& broken) {
       process.status = event.at, process.in_a_row = 0, process.is_well = false, process.wanted.reset();
     if (is_status && event.kind == Kind::Replied)
       process.is_well = event.status == 200 && !event.says.empty();
-    if (is_status && event.kind == Kind::Invoke) process.asked[event.request] = event.at;
-    const bool is_old = is_status && event.kind == Kind::Answered && event.status == 200 && event.stamp >= 1;
-    if (is_old && process.asked[event.request] > process.status)
     const bool is_upstream = event.kind == Kind::Leaves && !is_report && !is_status;
     if (is_upstream) process.mapping.insert(event.request);
     if (event.kind == Kind::Closes && !process.mapping.contains(event.request)) process.is_well = false;
+    if (is_status && event.kind == Kind::Invoke) process.asked[event.request] = event.at;
+    const bool is_old = is_status && event.kind == Kind::Answered && event.status == 200 && event.stamp >= 1;
+    if (is_old && process.asked[event.request] > process.status)
       process.wanted = process.wanted.value_or(event.at);
     if (!is_report || event.kind != Kind::Leaves) continue;
     const bool is_due =

@@ -56,6 +56,8 @@ CommandPost::CommandPost(World& world, const Faults& faults, double trouble_for,
       random_(world.random(numbered("command post", place))),
       early_(world.random(numbered("early answers", place))),
       repeating_(world.random(numbered("repeated answers", place))),
+      pausing_(world.random(numbered("pauses", place))),
+      gzips_(world.random(numbered("gzipped answers", place)).chance(0.15)),
       answers_early_(early_.chance(0.125) ? early_.between(0.05, 0.3) : 0),
       repeats_(repeating_.chance(0.125) ? repeating_.between(0.1, 0.4) : 0),
       has_one_limit_(world.random(numbered("one limit", place)).chance(0.125)),
@@ -194,7 +196,7 @@ bool CommandPost::has_page_for(const HttpMessage& request, Link& link) {
 bool CommandPost::refuses(const HttpMessage& request, const WhenLeft& left, Link& link) {
   if (is_on(Fault::Storm) || is_on(Fault::PoliteStorm)) {
     const std::string after = is_on(Fault::PoliteStorm)
-                                  ? "Retry-After: " + std::to_string(1 + random_.below(4)) + "\r\n"
+                                  ? retry_after(pausing_, World::kEpoch + world_.time(), 1 + random_.below(4))
                                   : std::string();
     link.send(http_answer("429 Too Many Requests", kJson + after, "\"too many requests\""));
     return true;
@@ -228,7 +230,8 @@ void CommandPost::answer(const HttpMessage& request, Link& link) {
                        : fault == Fault::TakenThrottled ? is_mapping(request)
                                                         : true;
   if (fault != Fault::End && befalls && !world_.omits(name_of(fault))) return misbehave(fault, request, link);
-  link.send(take(request), seconds(random_.between(0, 0.01)));
+  const std::string said = take(request);
+  link.send(gzips_ ? gzipped(said) : said, seconds(random_.between(0, 0.01)));
 }
 
 /// Answers 200 to an incomplete message. Its rest never arrives, so it is not accepted.
@@ -320,7 +323,9 @@ std::string CommandPost::bad_answer(Fault fault, const HttpMessage& request) {
       return redirect(random_);
     case Fault::Between:
       maybe_take();
-      return from_between(random_);
+      return from_between(random_, pausing_.chance(0.5) ? retry_after(pausing_, World::kEpoch + world_.time(),
+                                                                      1 + pausing_.below(10))
+                                                        : "");
     case Fault::Unwanted:
       return http_answer("422 Unprocessable Entity", kJson, "\"Unknown field: 'x'\"");
     case Fault::TakenThrottled:

@@ -58,7 +58,8 @@ class CommandPost final : public Host {
 
   World& world_;
   Faults faults_;
-  Random random_, early_, repeating_;
+  Random random_, early_, repeating_, pausing_;
+  const bool gzips_;                    // its answers, though Adit asks for none
   double answers_early_;                // probability per piece of a request
   double repeats_;                      // probability per report
   const bool has_one_limit_;            // one rate limit over reports and statuses

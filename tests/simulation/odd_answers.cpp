@@ -1,8 +1,11 @@
 #include "simulation/odd_answers.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <ctime>
 
+#include "simulation/bytes.hpp"
 #include "simulation/http.hpp"
 
 namespace adit::simulation {
@@ -62,15 +65,40 @@ std::string with_wrong_types(Random& random) {
 }
 
 std::string redirect(Random& random) {
-  constexpr const char* kLines[] = {"301 Moved Permanently", "302 Found", "307 Temporary Redirect"};
+  constexpr const char* kLines[] = {"301 Moved Permanently", "302 Found", "307 Temporary Redirect",
+                                    "308 Permanent Redirect"};
   return http_answer(kLines[random.below(std::size(kLines))],
                      "Location: http://portal.example/\r\nContent-Type: text/html\r\n",
                      random.chance(0.5) ? kElsewhere : "");
 }
 
-std::string from_between(Random& random) {
+std::string from_between(Random& random, const std::string& fields) {
   constexpr const char* kLines[] = {"502 Bad Gateway", "503 Service Unavailable", "504 Gateway Timeout"};
-  return http_answer(kLines[random.below(std::size(kLines))], "Content-Type: text/html\r\n", kElsewhere);
+  return http_answer(kLines[random.below(std::size(kLines))], "Content-Type: text/html\r\n" + fields,
+                     kElsewhere);
+}
+
+std::string retry_after(Random& random, double now, std::uint64_t seconds) {
+  constexpr double kOff = 1e7;  // seconds
+  const auto date = [](double time) {
+    const auto whole = static_cast<std::time_t>(time);
+    std::tm parts{};
+    char text[64];
+    std::strftime(text, sizeof text, "%a, %d %b %Y %H:%M:%S GMT", gmtime_r(&whole, &parts));
+    return std::string(text);
+  };
+  const bool is_date = random.chance(0.4), is_long = random.chance(0.03);
+  if (is_long) return "Retry-After: 99999999999\r\n";
+  if (!is_date) return "Retry-After: " + std::to_string(seconds) + "\r\n";
+  const double there = std::floor(now - kOff);
+  return "Date: " + date(there) + "\r\nRetry-After: " + date(there + static_cast<double>(seconds)) + "\r\n";
+}
+
+std::string gzipped(const std::string& answer) {
+  const Parts parts = parts_of(answer);
+  const std::string member = deflated(parts.body);
+  return parts.head + "Content-Encoding: gzip\r\n" + kLength + std::to_string(member.size()) + "\r\n\r\n" +
+         member;
 }
 
 }  // namespace adit::simulation

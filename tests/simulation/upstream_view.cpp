@@ -1,8 +1,10 @@
 #include "simulation/upstream_view.hpp"
 
 #include <cstdlib>
+#include <ctime>
 #include <nlohmann/json.hpp>
 
+#include "simulation/bytes.hpp"
 #include "simulation/icd_reading.hpp"
 #include "simulation/messages.hpp"
 #include "simulation/world.hpp"
@@ -15,6 +17,17 @@ constexpr std::size_t kLongestBody = 64u << 10;  // bytes of an answer's body
 /// Neither JSON nor empty.
 bool is_page(const std::string& body) {
   return !body.empty() && !nlohmann::json::accept(body);
+}
+
+/// Seconds that the answer asks for, by its Retry-After.
+double pause_in(const HttpMessage& answer) {
+  const auto time = [&answer](const char* field) {
+    std::tm parts{};
+    const char* const end = strptime(answer.header(field).c_str(), "%a, %d %b %Y %H:%M:%S GMT", &parts);
+    return end == nullptr ? 0.0 : static_cast<double>(timegm(&parts));
+  };
+  const double until = time("retry-after");
+  return until > 0 ? until - time("date") : std::atof(answer.header("retry-after").c_str());
 }
 
 }  // namespace
@@ -54,16 +67,18 @@ void UpstreamView::came(std::string_view bytes) {
   answers_.feed(bytes);
   while (const auto answer = answers_.next()) {
     if (answer->status() < 200) continue;
+    const bool is_gzip = answer->header("content-encoding") == "gzip";
+    const std::string body = is_gzip ? inflated(answer->body) : answer->body;
     World::current().note({.kind = Kind::Replied,
                            .what = path_,
-                           .who = is_page(answer->body) ? kForeign : "",
+                           .who = is_page(body) ? kForeign : "",
                            .serial = place_,
                            .status = answer->status(),
-                           .stamp = std::atof(answer->header("retry-after").c_str()),
-                           .text = path_ == kStatus ? answer->body : "",
+                           .stamp = pause_in(*answer),
+                           .text = path_ == kStatus ? body : "",
                            .request = connection_,
-                           .says = path_ == kStatus    ? status_in(answer->body)
-                                   : path_ == kReports ? reply_in(answer->body)
+                           .says = path_ == kStatus    ? status_in(body)
+                                   : path_ == kReports ? reply_in(body)
                                                        : Says()});
   }
   if (!answers_.head() || answers_.length() <= kLongestBody) return;

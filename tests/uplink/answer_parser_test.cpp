@@ -6,6 +6,7 @@
 #include <sstream>
 #include <string>
 
+#include "codec/gzip_whole.hpp"
 #include "scarce_memory.hpp"
 
 namespace adit::uplink {
@@ -125,19 +126,61 @@ TEST_P(AnswerParserCases, AreReadTheSameInAnyPieces) {
 
 INSTANTIATE_TEST_SUITE_P(, AnswerParserCases, testing::ValuesIn(kCases));
 
-std::optional<std::chrono::seconds> retry_after(const std::string& value) {
+std::optional<std::chrono::seconds> retry_after(const std::string& value, const std::string& date = "") {
   AnswerParser parser(kLongest);
-  EXPECT_EQ(parser.feed("HTTP/1.1 429 Slow\r\nContent-Length: 0\r\nRetry-After: " + value + "\r\n\r\n"),
+  EXPECT_EQ(parser.feed("HTTP/1.1 429 Slow\r\nContent-Length: 0\r\nDate: " + date +
+                        "\r\nRetry-After: " + value + "\r\n\r\n"),
             State::Whole);
   return parser.take().retry_after;
 }
 
-TEST(AnswerParser, ReadsRetryAfterInSecondsAndIgnoresDates) {
+TEST(AnswerParser, ReadsRetryAfterInSeconds) {
+  constexpr std::chrono::seconds kDay = std::chrono::days(1);
   EXPECT_EQ(retry_after("0"), std::chrono::seconds(0));
   EXPECT_EQ(retry_after("120"), std::chrono::seconds(120));
-  for (const char* none :
-       {"", "-1", "1.5", "soon", "12 s", "99999999999999999999", "Fri, 31 Dec 1999 23:59:59 GMT"})
-    EXPECT_EQ(retry_after(none), std::nullopt) << none;
+  for (const char* long_time : {"86401", "999999999", "2147483648", "99999999999999999999"})
+    EXPECT_EQ(retry_after(long_time), kDay) << long_time;
+  for (const char* none : {"", "-1", "1.5", "soon", "12 s", "+3"}) EXPECT_EQ(retry_after(none), std::nullopt);
+}
+
+/// The Command Post's clock may be months off.
+TEST(AnswerParser, ReadsRetryAfterAsADateByTheAnswersOwnDate) {
+  const char* const now = "Fri, 31 Dec 1999 23:59:50 GMT";
+  EXPECT_EQ(retry_after("Sat, 01 Jan 2000 00:00:02 GMT", now), std::chrono::seconds(12));
+  EXPECT_EQ(retry_after(now, now), std::chrono::seconds(0));
+  EXPECT_EQ(retry_after("Fri, 31 Dec 1999 23:59:00 GMT", now), std::chrono::seconds(0)) << "over";
+  EXPECT_EQ(retry_after("Sat, 01 Jan 2050 00:00:00 GMT", now), std::chrono::seconds(std::chrono::days(1)));
+  EXPECT_EQ(retry_after("Sat, 01 Jan 2000 00:00:02 GMT"), std::nullopt) << "no Date";
+}
+
+std::string decoded(const std::string& coding, const std::string& body) {
+  AnswerParser parser(kLongest);
+  EXPECT_EQ(parser.feed("HTTP/1.1 200 OK\r\nContent-Encoding: " + coding +
+                        "\r\nContent-Length: " + std::to_string(body.size()) + "\r\n\r\n" + body),
+            State::Whole);
+  return parser.take().body;
+}
+
+std::string gzipped(const std::string& text) {
+  const auto member = codec::gzip_whole({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()},
+                                        codec::kFastestLevel, 1u << 20);
+  std::string bytes;
+  for (const auto& chunk : member->chunks()) bytes.append(chunk->begin(), chunk->end());
+  return bytes;
+}
+
+/// Adit asks for no coding, but some servers compress all answers.
+TEST(AnswerParser, DecodesABodyWithinItsLimit) {
+  const std::string longest(kLongest, 'x');
+  for (const char* name : {"gzip", "GZip", "x-gzip"})
+    EXPECT_EQ(decoded(name, gzipped("null")), "null") << name;
+  EXPECT_EQ(decoded("gzip", gzipped(longest)), longest);
+  const std::string cut = gzipped("null").substr(0, 15);
+  for (const std::string& bytes : {gzipped(longest + "x"), cut, std::string("null"), gzipped("null") + "x"})
+    EXPECT_EQ(decoded("gzip", bytes), bytes);
+  EXPECT_EQ(decoded("br", "bytes"), "bytes");
+  EXPECT_EQ(decoded("identity", "null"), "null");
+  EXPECT_EQ(decoded("gzip", ""), "");
 }
 
 TEST(AnswerParser, GivesTheContentTypeUnchanged) {

@@ -36,10 +36,10 @@ TEST_F(ConnectionRequests, AreInTheFormThatServersAccept) {
     EXPECT_EQ(got.status, 200);
     EXPECT_EQ(got.body, "null");
   }
-  EXPECT_EQ(listener.request, "POST /map/update HTTP/1.1\r\nHost: " + authority +
-                                  "\r\nAuthorization: Bearer " + kToken +
-                                  "\r\nUser-Agent: adit/0.1.0\r\nAccept: application/json\r\n"
-                                  "Content-Type: application/cbor\r\nContent-Length: 4\r\n\r\nbody");
+  EXPECT_EQ(listener.request,
+            "POST /map/update HTTP/1.1\r\nHost: " + authority + "\r\nAuthorization: Bearer " + kToken +
+                "\r\nUser-Agent: adit/0.1.0\r\nAccept: application/json\r\nAccept-Encoding: identity\r\n"
+                "Content-Type: application/cbor\r\nContent-Length: 4\r\n\r\nbody");
 }
 
 TEST_F(ConnectionRequests, HaveNoLengthWithoutABody) {

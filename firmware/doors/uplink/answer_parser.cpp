@@ -13,6 +13,7 @@
 #endif
 #include "uplink/answer_parser.hpp"
 
+#include <algorithm>
 #include <boost/beast/core/buffers_range.hpp>
 #include <boost/beast/http/error.hpp>
 #include <boost/beast/http/message.hpp>
@@ -20,6 +21,8 @@
 #include <ctime>
 #include <utility>
 
+#include "codec/content_decoder.hpp"
+#include "icd/letter_case.hpp"
 #include "icd/require.hpp"
 #include "icd/text.hpp"
 #include "loop/guard.hpp"
@@ -73,10 +76,33 @@ constexpr std::size_t kMostBytes(std::size_t longest_body) {
 }
 constexpr unsigned kFirstFinal = 200, kLast = 599, kSwitchingProtocols = 101;
 
-/// Seconds, or nullopt if the field is absent or a date (RFC 9110 10.2.3).
-std::optional<std::chrono::seconds> retry_after(std::string_view value) {
-  const auto seconds = icd::number_in<std::int32_t>(value);
-  return seconds && *seconds >= 0 ? std::optional(std::chrono::seconds(*seconds)) : std::nullopt;
+/// Seconds from now (RFC 9110 10.2.3), at most kLongestPause. A date is compared with the answer's own
+/// `date`, because the two clocks may differ. nullopt if the field is absent or neither.
+std::optional<std::chrono::seconds> retry_after(const std::string& value,
+                                                std::optional<std::chrono::sys_seconds> date) {
+  constexpr std::chrono::seconds kLongestPause = std::chrono::days(1);
+  constexpr std::size_t kFewDigits = 9;
+  const bool is_number = !value.empty() && value.find_first_not_of("0123456789") == std::string::npos;
+  if (is_number && value.size() > kFewDigits) return kLongestPause;
+  if (is_number) return std::min(kLongestPause, std::chrono::seconds(*icd::number_in<std::int32_t>(value)));
+  const auto until = http_date(value);
+  if (!until || !date) return std::nullopt;
+  return std::clamp<std::chrono::seconds>(*until - *date, {}, kLongestPause);
+}
+
+/// `body` without its Content-Encoding, though Adit asks for none. As it came if the coding is unknown, the
+/// bytes are invalid, or they would exceed `longest` bytes.
+std::string decoded(std::string body, std::string_view coding, std::size_t longest) {
+  const bool is_gzip = icd::same_but_for_case(coding, "gzip") || icd::same_but_for_case(coding, "x-gzip");
+  if (!is_gzip && !icd::same_but_for_case(coding, "deflate")) return body;
+  std::string text;
+  codec::ContentDecoder decoder(is_gzip ? codec::ContentCoding::Gzip : codec::ContentCoding::Deflate, longest,
+                                [&text](std::string_view piece) -> icd::Checked<void> {
+                                  text += piece;
+                                  return {};
+                                });
+  const bool is_valid = decoder.feed(body).has_value() && decoder.finish().has_value();
+  return is_valid ? text : body;
 }
 
 std::string to_string(boost::beast::string_view text) {
@@ -206,9 +232,10 @@ Answered AnswerParser::take() {
   Answered answered;
   answered.status = static_cast<int>(message.result_int());
   answered.content_type = to_string(message[http::field::content_type]);
-  answered.retry_after = retry_after(to_string(message[http::field::retry_after]));
   answered.date = http_date(to_string(message[http::field::date]));
-  answered.body = std::move(message.body().text);
+  answered.retry_after = retry_after(to_string(message[http::field::retry_after]), answered.date);
+  answered.body = decoded(std::move(message.body().text), to_string(message[http::field::content_encoding]),
+                          impl_->longest_body);
   return answered;
 }
 

@@ -41,7 +41,7 @@ class AnswerParser {
 
   /// For Whole, before take(): the field Location, or "".
   std::string location() const;
-  /// For Whole.
+  /// For Whole. A body with a Content-Encoding is decoded, if that takes at most `longest_body`.
   Answered take();
   /// For Whole: both sides allow reuse of the connection, and no bytes followed the answer.
   bool may_keep_alive() const;

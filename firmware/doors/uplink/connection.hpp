@@ -56,7 +56,7 @@ struct Answered {
   int status = 0;
   std::string content_type;
   std::string body;
-  std::optional<std::chrono::seconds> retry_after;
+  std::optional<std::chrono::seconds> retry_after;    // from now, also if the field is a date
   std::optional<std::chrono::sys_seconds> date = {};  // by the peer's clock
   bool wants_slash = false;                           // redirects_to_slash()
   Sent sent = {};

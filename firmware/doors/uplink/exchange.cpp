@@ -31,6 +31,7 @@ icd::ChunkedBytes head_of(const std::string& authority, const icd::BearerToken& 
   head += "Authorization: Bearer " + token.reveal() + "\r\n";
   head += "User-Agent: adit/" ADIT_VERSION "\r\n";
   head += "Accept: application/json\r\n";
+  head += "Accept-Encoding: identity\r\n";
   if (!request.content_type.empty()) head += "Content-Type: " + request.content_type + "\r\n";
   if (request.method != "GET") head += "Content-Length: " + std::to_string(request.body.size()) + "\r\n";
   head += "\r\n";

@@ -217,7 +217,7 @@ void Maps::verdict(const Place& sent, const uplink::Answered& answered) {
       counts_.not_taken(traffic, DeliveryFailure::Failed, answered.status, sentence);
       return again(sent);
     case MappingVerdict::Failing:
-      pace_.lost(now);
+      pace_.failed(answered, now);
       counts_.not_taken(traffic, DeliveryFailure::Failed, answered.status, sentence);
       return again(sent);
   }

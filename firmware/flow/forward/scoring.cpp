@@ -101,6 +101,7 @@ void Scoring::endpoint_changed(std::optional<icd::BearerToken> token) {
 
 void Scoring::endpoint_turned() {
   pace_.endpoint_turned();
+  reports_paused_until_ = status_paused_until_ = {};
   status_cache_ = {};
   ask_at_ = loop_.now();
   open_reports();
@@ -121,8 +122,8 @@ void Scoring::take(const icd::ArtifactReport& report, const intake::Sender& send
 
 void Scoring::take(const dispatch::PostedReport& posted, dispatch::ClientId client) noexcept {
   const loop::Instant now = loop_.now();
-  const bool may_send =
-      !channel_.busy() && channel_.connected() && pace_.report_ready() <= now && !is_status_first(now);
+  const bool may_send = !channel_.busy() && channel_.connected() &&
+                        std::max(pace_.report_ready(), reports_paused_until_) <= now && !is_status_first(now);
   if (reports_->take(posted, client, may_send, time())) send(*reports_->sending());
   watch_deadlines();
   counts_.changed();
@@ -153,13 +154,20 @@ void Scoring::status(std::shared_ptr<intake::Responder> responder) {
 bool Scoring::may_ask_soon(loop::Instant now) const {
   const dispatch::NextRequests requests = reports_->next_requests(time());
   return !channel_.busy() && (!requests.report || is_status_first(now)) &&
-         pace_.status_ready(requests.in_doubt) <= now + StatusClients::kWait;
+         status_ready(requests) <= now + StatusClients::kWait;
+}
+
+/// The pause that a 503 asks for delays no status that reports need.
+loop::Instant Scoring::status_ready(const dispatch::NextRequests& requests) const {
+  const loop::Instant ready = pace_.status_ready(requests.in_doubt);
+  return requests.status ? ready : std::max(ready, status_paused_until_);
 }
 
 /// A status that no report needs goes before the next report. It never delays the report by its own pace.
 bool Scoring::is_status_first(loop::Instant now) const {
   return is_status_wanted_ && reports_in_a_row_ >= kReportsInARow && !pace_.has_one_limit() &&
-         pace_.status_ready(/*decides=*/false) <= std::max(now, pace_.report_ready());
+         std::max(status_paused_until_, pace_.status_ready(/*decides=*/false)) <=
+             std::max(now, pace_.report_ready());
 }
 
 void Scoring::ask_soon() {
@@ -178,7 +186,9 @@ void Scoring::pump() noexcept {
   const dispatch::Time at = time();
   const loop::Instant now = at.now;
   reports_->paced(pace_.spacing());
-  const dispatch::NextRequests requests = reports_->next_requests(at);
+  dispatch::NextRequests requests = reports_->next_requests(at);
+  const bool is_paused = requests.report && reports_paused_until_ > now;
+  if (is_paused) requests.report = false;  // statuses go on
   if (!is_free(requests, now)) return;
   const bool is_first = is_status_first(now);
   const std::size_t report = is_first ? 1 : 0, status = is_first ? 0 : 1;
@@ -187,8 +197,9 @@ void Scoring::pump() noexcept {
   const loop::Instant status_at =
       status_clients_.empty() && !is_first ? std::min(ask_at_, requests.status.value_or(ask_at_)) : now;
   if (status_at != loop::Instant::max())
-    candidates[status] = {now, std::max(pace_.status_ready(requests.in_doubt), status_at)};
-  const dispatch::Turn turn = dispatch::in_order(candidates, now);
+    candidates[status] = {now, std::max(status_ready(requests), status_at)};
+  dispatch::Turn turn = dispatch::in_order(candidates, now);
+  if (is_paused) turn.wake = std::min(turn.wake.value_or(reports_paused_until_), reports_paused_until_);
   if (turn.wake) wake_.call_at(*turn.wake);
   if (turn.candidate == report) send_next();
   if (turn.candidate == status) ask_status(/*decides=*/requests.status.has_value());
@@ -255,6 +266,7 @@ void Scoring::classify_report(const uplink::Outcome& outcome) {
       pace_.report_barred(answered->sent, now);
     } else {
       pace_.report_taken(answered->sent, now);
+      reports_paused_until_ = now + UriPace::pause_of(outcome);
     }
   } else if (const auto* never = std::get_if<uplink::NeverSent>(&outcome)) {
     reports_->never_left(never->why, time());
@@ -269,7 +281,8 @@ void Scoring::classify_report(const uplink::Outcome& outcome) {
 /// nothing about the cached status.
 void Scoring::correct_status(const dispatch::Report& answered) {
   if (answered.state != dispatch::ReportState::Answered || answered.run != status_run_) return;
-  if (const auto reply = codec::read_report_reply(answered.answer))
+  const auto reply = codec::read_report_reply(answered.answer);
+  if (reply && !dispatch::is_about_another(*reply, answered.report))
     status_cache_.add_report(dispatch::effect_of(*reply), reply->run_clock, loop_.now());
 }
 
@@ -338,6 +351,7 @@ void Scoring::classify_status(const uplink::Outcome& outcome, loop::Instant aske
     status_clients_.answer_all(known_or(client_answer(*answered)));
   } else {
     pace_.status_taken(answered->sent, now);
+    status_paused_until_ = now + UriPace::pause_of(outcome);
     const bool refused = answered->status >= 400 && answered->status < 500 && !channel_.last().is_foreign();
     status_clients_.answer_all(refused ? client_answer(*answered) : known_or(no_status_in(*answered)));
   }

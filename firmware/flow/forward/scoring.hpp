@@ -112,6 +112,7 @@ class Scoring {
   void classify_status(const uplink::Outcome& outcome, loop::Instant asked);
   void watch_deadlines();
   void answer_clients(loop::Instant now);
+  loop::Instant status_ready(const dispatch::NextRequests& requests) const;
   bool may_ask_soon(loop::Instant now) const;
   bool is_status_first(loop::Instant now) const;
   void deadline_came();
@@ -136,6 +137,7 @@ class Scoring {
   std::optional<AskedStatus> asked_status_;
   bool is_status_wanted_ = false;  // a client has asked for a newer status than the last one
   int reports_in_a_row_ = 0;       // sent since the last request for a status
+  loop::Instant reports_paused_until_{}, status_paused_until_{};  // by 503s
   bool stopping_ = false;
 };
 

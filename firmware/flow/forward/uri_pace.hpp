@@ -18,6 +18,13 @@ namespace adit::forward {
 /// journal keeps, and its back-off.
 class UriPace {
  public:
+  /// The Retry-After of a 503, or 0. It is obeyed as long as that of a 429.
+  static pace::Duration pause_of(const uplink::Outcome& outcome) {
+    const auto* answered = std::get_if<uplink::Answered>(&outcome);
+    if (answered == nullptr || answered->status != 503 || !answered->retry_after) return {};
+    return std::min(*answered->retry_after, pace::RateLimit::kLongestPause);
+  }
+
   UriPace(icd::Uri uri, double hertz, std::mt19937_64& random, journal::Journal& journal)
       : uri_(uri),
         journal_(journal),
@@ -94,9 +101,13 @@ class UriPace {
     failed(now);
   }
   void failed(const uplink::Outcome& outcome, pace::Instant now) {
-    if (!std::holds_alternative<uplink::NeverSent>(outcome)) return lost(now);
-    rate_.not_sent();
-    failed(now);
+    if (std::holds_alternative<uplink::NeverSent>(outcome)) {
+      rate_.not_sent();
+      failed(now);
+    } else {
+      lost(now);
+      retry_at_ = std::max(retry_at_, now + pause_of(outcome));
+    }
   }
   /// The next request could not be sent.
   void failed(pace::Instant now) {

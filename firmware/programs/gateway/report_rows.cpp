@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "codec/read.hpp"
+#include "dispatch/report_verdict.hpp"
 
 namespace adit::gateway {
 
@@ -40,7 +41,10 @@ api::ReportRow row_of(const dispatch::Reports& reports, const dispatch::Report& 
                      .sends_at = reports.sends_at(report),
                      .reconciled = report.reconciled,
                      .same_as = report.same_as};
-  if (const auto& reply = answers.of(report)) {
+  const bool is_recorded = report.state == dispatch::ReportState::Answered ||
+                           (report.state == dispatch::ReportState::Settled && report.reconciled);
+  const auto& reply = answers.of(report);
+  if (is_recorded && reply && !dispatch::is_about_another(*reply, report.report)) {
     row.report_status = reply->report_status;
     row.score_change = reply->score_change;
   }

@@ -32,6 +32,8 @@ std::string answer_text(int status, std::string_view body) {
       const auto* detail = std::get_if<std::string>(&member.is);
       if (name == "detail" && detail != nullptr) return cut(*detail);
     }
+    if (status >= 400 && !object->empty())
+      return cut(answered_with(status) + ": " + codec::write_json(*value));
   }
   return answered_with(status);
 }

@@ -155,6 +155,7 @@ const Report* ReportSender::told_of_another(const icd::ReportReply& reply) const
 void ReportSender::recorded(const ReportBook::Edit& keep, const icd::ReportReply& reply, Time time) {
   changes_.meet(reply, time);  // the answer decides the run
   const Effect effect = effect_of(reply);
+  const bool is_strange = is_about_another(reply, book_.sending()->report);
   std::string note;
   if (effect.again) {
     note = "not scored (" + reply.report_status + "); post it again when the run continues";
@@ -166,6 +167,7 @@ void ReportSender::recorded(const ReportBook::Edit& keep, const icd::ReportReply
     report.run = account_.run().number;
   });
   account_.answered(reply, time);
+  if (is_strange) account_.lose();
 }
 
 }  // namespace adit::dispatch

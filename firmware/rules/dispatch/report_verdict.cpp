@@ -1,6 +1,7 @@
 #include "dispatch/report_verdict.hpp"
 
 #include "codec/read.hpp"
+#include "dispatch/same_report.hpp"
 #include "icd/success.hpp"
 
 namespace adit::dispatch {
@@ -24,6 +25,11 @@ ReportEvent event_of(int status, bool tells_of_a_report, Body body) {
       if (status < 400 || status >= 500 || body == Body::Other) return ReportEvent::Lost;
       return ReportEvent::Rejected;
   }
+}
+
+bool is_about_another(const icd::ReportReply& reply, const icd::ArtifactReport& report) {
+  constexpr double kRounded = 1;  // metres
+  return reply.report && !is_near(*reply.report, report, kRounded);
 }
 
 Effect effect_of(const icd::ReportReply& reply) {

@@ -9,6 +9,9 @@ namespace adit::dispatch {
 /// A proxy may send these after the Command Post has recorded the report.
 ReportEvent event_of(int status, bool tells_of_a_report, Body body);
 
+/// True if the answer is about a report of another type, or over a metre away. Servers may round coordinates.
+bool is_about_another(const icd::ReportReply& reply, const icd::ArtifactReport& report);
+
 /// Effect of a report on the run.
 struct Effect {
   bool scored = false;  // it used up one of the remaining reports

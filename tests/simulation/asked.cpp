@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kRequestTimeout = 408;
 constexpr double kWritesDown = 0.05;  // seconds until the ledger has recorded an answer
-constexpr std::int64_t kUnknown = 0, kElsewhere = -1, kBefore = -2;  // serials
+constexpr std::int64_t kUnknown = 0, kElsewhere = -1, kBefore = -2, kTwin = -3;  // serials
 /// Faults after which the Command Post's answer is still correct.
 const std::set<std::string> kRightAnswers = {name_of(Fault::Delay), name_of(Fault::OddAnswer),
                                              name_of(Fault::ClosesAfter)};
@@ -50,6 +50,9 @@ void OpenReports::add(const Event& event) {
   const bool is_done = event.kind == Kind::Answered && event.status / 100 == 2;
   if (is_over && is_done) open_.erase(event.serial);
   if (event.what == kCorrect && is_done) open_.erase(event.serial - kCorrections);
+  // The operator sends a report while the same report is in doubt. The answer decides one of them.
+  if (event.kind == Kind::Invoke && event.what == kSend && doubts_.contains(event.serial))
+    doubts_.insert(kTwin);
   if (event.kind == Kind::Dies) {
     for (const auto& [serial, at] : answered_) {
       if (event.at - at > kWritesDown) continue;
@@ -85,7 +88,7 @@ void OpenReports::add(const Event& event) {
   }
   if (is_answered || (event.status / 100 == 4 && event.status != kRequestTimeout))
     doubts_.erase(sent->second);
-  if (open_.empty() && !doubts_.contains(kElsewhere)) doubts_.clear();
+  if (open_.empty() && !doubts_.contains(kElsewhere) && !doubts_.contains(kTwin)) doubts_.clear();
 }
 
 }  // namespace adit::simulation

@@ -225,13 +225,16 @@ bool is_of_the_past(const Json& alarm) {
          std::ranges::any_of(kOfThePast, [&](std::string_view begins) { return id.starts_with(begins); });
 }
 
-/// False if a planned death came this late, or if one map takes longer to upload than the rest lasts.
+/// False if a process began so late that it may still ask about a doubt, or if one map takes longer to upload
+/// than the rest lasts.
 bool is_at_rest(const Evidence& evidence, const Reading& reading) {
+  constexpr double kAsks = 30;    // seconds
   constexpr double kNoticed = 2;  // seconds until an ended alarm disappears
   bool is_under_way = false;
   double answered = 0;
   for (std::size_t i = 0; i < reading.heard; ++i) {
     const Event& event = evidence.events[i];
+    if (event.kind == Kind::Begins && event.at > 0 && event.at + kAsks > reading.at) return false;
     if (event.what != kMap || event.actor != Actor::Adit) continue;
     if (event.kind == Kind::Leaves) is_under_way = true;
     if (event.kind != Kind::Replied) continue;

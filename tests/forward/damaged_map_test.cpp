@@ -57,7 +57,7 @@ TEST_F(DamagedMap, IsDroppedAfterAManualRetry) {
   keep(kOne, "first", 0);
   damage(kOne);
   auto kept = spool_.read();
-  maps_->send_again(std::move(kept[0].second), [](bool) { return true; });
+  maps_->send_again(std::move(kept[0].map), [](bool) { return true; });
   EXPECT_TRUE(loop::turn_until(loop_, [&] { return row().failed == 1; }));
   EXPECT_TRUE(row().last_sentence.starts_with("its stored copy is damaged: ")) << row().last_sentence;
   EXPECT_EQ(maps_->waiting({Kind::Grid, "first"}), 0U);

@@ -76,7 +76,7 @@ TEST_F(MapArrivalTest, HasAFileWhenItIsAccepted) {
   EXPECT_EQ(names(), std::vector<std::string>{"map-00000001.cbor"});
   const auto kept = spool_.read();
   ASSERT_EQ(kept.size(), 1u);
-  EXPECT_EQ(kept[0].second, whole);
+  EXPECT_EQ(kept[0].map, whole);
 }
 
 TEST_F(MapArrivalTest, StoresDataThatChangedAfterItsArrival) {

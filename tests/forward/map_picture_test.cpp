@@ -116,6 +116,15 @@ TEST_F(MapPictureTest, SkipsAQueuedGridThatTheNextOneCovers) {
   EXPECT_EQ(changes, 2);
 }
 
+TEST_F(MapPictureTest, DrawsWhatACreepingWindowLeavesBehind) {
+  const auto window = [](double x, std::uint8_t value) { return grid_of("r1", 4, value, x); };
+  picture.forwarded(window(0, 0));
+  picture.forwarded(window(0.12, 10));
+  picture.forwarded(window(0.24, 100));
+  ASSERT_TRUE(loop::turn_until(loop, [&] { return changes == 2; }))
+      << "one was skipped, 0.24 m are left behind";
+}
+
 TEST_F(MapPictureTest, DrawsCloudsAndUncoveredGrids) {
   picture.forwarded(grid_of("r1", 4, 0));
   picture.forwarded(grid_of("r1", 4, 0, 64));

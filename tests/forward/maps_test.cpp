@@ -97,6 +97,67 @@ TEST_F(MapsTest, AreDeletedOnceTheNewerOneIsStored) {
   EXPECT_TRUE(has_files(1));
 }
 
+/// A window that is off by `x` metres; half a cell is 0.125 m.
+icd::MapUpdate window(double x) {
+  icd::MapUpdate map = grid("r1", 20, 700);
+  std::get<icd::OccupancyGrid>(map.msg).origin.position.x = x;
+  return map;
+}
+
+TEST_F(MapsTest, KeepWhatTheyReplacedOverARestart) {
+  EXPECT_EQ(status(take(window(0))), icd::Status::Ok);
+  EXPECT_EQ(status(take(window(0.1))), icd::Status::Ok);
+  ASSERT_TRUE(has_files(1));
+  Maps next = maps_with(std::nullopt);
+  next.restore(spool::Spool(folder_.path()).read());
+  for (const auto& [x, queued] : {std::pair(0.2, 2u), std::pair(0.09, 1u)}) {
+    bool taken = false;
+    next.take(window(x), 10, nullptr, [&](const icd::Checked<void>& said) { taken = said.has_value(); });
+    ASSERT_TRUE(loop::turn_until(loop_, [&] { return taken; }));
+    EXPECT_EQ(next.waiting({Kind::Grid, "r1"}), queued) << x;
+  }
+}
+
+TEST_F(MapsTest, AreNotDeletedIfTheBoundsOfTheNewerOneCannotBeStored) {
+  EXPECT_EQ(status(take(window(0))), icd::Status::Ok);
+  const auto bounds_file = host::numbered_name("map-", MapStore::kFirstNumber + 2, ".bounds");
+  fs::create_directory(folder_ / bounds_file);
+  std::ofstream(folder_ / (bounds_file + "/in_the_way")) << "x";
+  EXPECT_EQ(status(take(window(0.1))), icd::Status::Ok);
+  EXPECT_TRUE(loop::turn_until_idle(loop_, writer_));
+  EXPECT_EQ(files(), 2u) << "a process that starts now finds both";
+  EXPECT_EQ(maps_.waiting({Kind::Grid, "r1"}), 1u);
+}
+
+TEST_F(MapsTest, KeepWhatARetriedGridReplaced) {
+  const auto bounds = [](double x) {
+    return icd::GridBounds::of(std::get<icd::OccupancyGrid>(window(x).msg));
+  };
+  bool kept = false;
+  maps_.send_again(window(0.1), [&](bool well) { return kept = well; }, icd::around(bounds(0.1), bounds(0)));
+  ASSERT_TRUE(loop::turn_until(loop_, [&] { return kept; }));
+  EXPECT_EQ(status(take(window(0.2))), icd::Status::Ok);
+  EXPECT_EQ(maps_.waiting({Kind::Grid, "r1"}), 2u);
+  const auto stored = spool::Spool(folder_.path()).read();
+  ASSERT_EQ(stored.size(), 2u);
+  EXPECT_EQ(stored.front().bounds, icd::around(bounds(0.1), bounds(0)));
+}
+
+TEST_F(MapsTest, StandForARetriedGridOverARestart) {
+  EXPECT_EQ(status(take(window(0))), icd::Status::Ok);
+  std::optional<bool> kept;
+  maps_.send_again(window(0.1), [&](bool well) {
+    kept = well;
+    return true;
+  });
+  EXPECT_EQ(kept, true) << "the newer grid contains it";
+  ASSERT_TRUE(loop::turn_until_idle(loop_, writer_));
+  const auto stored = spool::Spool(folder_.path()).read();
+  ASSERT_EQ(stored.size(), 1u);
+  ASSERT_TRUE(stored.front().bounds);
+  EXPECT_NEAR(stored.front().bounds->high.x, 5.1, 1e-9);
+}
+
 /// A process may be killed at any byte.
 TEST_F(MapsTest, AssumeSentGridsAfterAnyTruncation) {
   journal_.begin({.boot = "boot", .at = {}, .stamp = 1});

@@ -101,7 +101,7 @@ TEST_F(RejectedStoreTest, KeepsMessagesAndReasonsAcrossARestart) {
   EXPECT_EQ(rows[1].robot, "r2");
   const auto map = rejected_->to_be_sent(1);
   ASSERT_TRUE(map);
-  EXPECT_EQ(std::get<icd::MapUpdate>(*map).data.raw_size, 4);
+  EXPECT_EQ(std::get<icd::MapUpdate>(map->message).data.raw_size, 4);
 }
 
 TEST_F(RejectedStoreTest, KeepsItsAgesAtAClockStep) {
@@ -141,6 +141,28 @@ TEST_F(RejectedStoreTest, RetriesNoReplacedMessage) {
   restart();
   EXPECT_TRUE(rejected_->rows().front().replaced) << "after a restart";
   EXPECT_TRUE(rejected_->discard(1));
+}
+
+TEST_F(RejectedStoreTest, KeepsWhatAGridReplacedAcrossARestart) {
+  const auto bounds = [](double x) { return icd::GridBounds::of(std::get<icd::OccupancyGrid>(grid(x).msg)); };
+  add(grid());
+  rejected_->add(grid(0.04), 422, "no", 100, {}, icd::around(bounds(0.04), bounds(0.08)));
+  ASSERT_EQ(rejected_->rows().size(), 1u) << "replaced the first";
+  for (int i = 0; i < 2; ++i) {
+    rejected_->taken(grid(0.07));
+    rejected_->taken(grid(0.01));
+    EXPECT_FALSE(rejected_->rows().front().replaced) << "70 mm of one or the other are outside";
+    settle();
+    restart();
+  }
+  const auto item = rejected_->to_be_sent(2);
+  ASSERT_TRUE(item && item->bounds);
+  EXPECT_NEAR(item->bounds->low.x, -0.04, 1e-9);
+  EXPECT_NEAR(item->bounds->high.x, 0.24, 1e-9);
+  rejected_->taken(grid(0.04));
+  EXPECT_TRUE(rejected_->rows().empty()) << "it is being sent";
+  rejected_->sent_again(2, false);
+  EXPECT_TRUE(rejected_->rows().front().replaced);
 }
 
 TEST_F(RejectedStoreTest, ConfirmsThatAReplacementIsStored) {
@@ -278,7 +300,7 @@ TEST_F(RejectedStoreTest, StartsWithoutReadingMapData) {
   EXPECT_LT(after.in_mappings, 1'000'000U);
   const auto map = rejected_->to_be_sent(1);
   ASSERT_TRUE(map);
-  EXPECT_EQ(std::get<icd::MapUpdate>(*map), spool::cloud(1'000'000));
+  EXPECT_EQ(std::get<icd::MapUpdate>(map->message), spool::cloud(1'000'000));
 }
 
 TEST_F(RejectedStoreTest, OverwritesNoUnreadFile) {

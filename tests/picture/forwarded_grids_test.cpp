@@ -46,12 +46,20 @@ TEST_F(ForwardedGridsTest, ReplaceGridsInsideThem) {
 }
 
 TEST_F(ForwardedGridsTest, TurnedGridReplacesGridsInsideIt) {
-  take(square(0, 0, 10));
-  take(grid_of(40, 0.05, {{0.5, -0.7, 0}, turned_by(0.785398)}, Cells(1600, 0)));
+  const auto turned = [](std::uint32_t side, double x, double y, double angle) {
+    return grid_of(side, 0.05, {{x, y, 0}, turned_by(angle)}, Cells(std::size_t{side} * side, 0));
+  };
+  take(turned(10, 0, 0, 0.785398));
+  take(turned(40, 0.3, -0.7, 0.7854));
   EXPECT_EQ(kept(), 1U);
-  take(square(-0.6, 1.1, 10));
-  take(grid_of(40, 0.05, {{0.5, -0.7, 0}, turned_by(0.785398)}, Cells(1600, 1)));
-  EXPECT_EQ(kept({-1, -1, 2, 2}), 2U) << "its corner reaches out";
+  take(turned(10, 0.4, -0.9, 0.785398));
+  take(turned(40, 0.3, -0.7, 0.785398));
+  EXPECT_EQ(kept({-1, -1, 2, 2}), 2U) << "a corner reaches out";
+}
+
+TEST_F(ForwardedGridsTest, CreepingWindowLeavesNoHole) {
+  for (int i = 0; i < 50; ++i) take(square(0.01 * i, 0, 20));
+  for (double x = 0.026; x < 1; x += 0.01) EXPECT_GE(kept({x, 0, x + 0.001, 1}), 1U) << x;
 }
 
 TEST_F(ForwardedGridsTest, RepeatedGridChangesNothing) {

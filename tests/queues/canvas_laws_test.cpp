@@ -193,6 +193,7 @@ class CanvasLaws : public testing::TestWithParam<std::uint64_t> {
     for (const auto& [number, map] : kept) forget(queue_.add(number, map, at(static_cast<double>(number))));
   }
 
+  void forget(const Replaced& replaced) { forget(replaced.numbers); }
   void forget(const std::vector<std::uint64_t>& numbers) {
     for (const std::uint64_t number : numbers) kept_.erase(number);
   }

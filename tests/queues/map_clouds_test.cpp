@@ -48,7 +48,7 @@ TEST(WholeClouds, ReplaceQueuedCloudsAndKeepTheirAge) {
   queue.add(2, cloud_update("R1", {1, 2}), at(1));
   EXPECT_TRUE(queue.replaces_any(cloud_update("R1", {3})));
   EXPECT_FALSE(queue.replaces_any(cloud_update("R2", {3})));
-  EXPECT_THAT(queue.add(3, cloud_update("R1", {3}), at(2)), ElementsAre(2));
+  EXPECT_THAT(queue.add(3, cloud_update("R1", {3}), at(2)).numbers, ElementsAre(2));
   EXPECT_EQ(queue.count(), 2);
   EXPECT_THAT(queue.take()->updates, ElementsAre(1));
   const auto whole = *queue.take();
@@ -63,7 +63,7 @@ TEST(WholeClouds, FailedCloudIsReplacedByANewerOne) {
   queue.add(1, cloud_update("R1", {1}), at(1));
   auto under_way = *queue.take();
   queue.add(2, cloud_update("R1", {2}), at(2));
-  EXPECT_THAT(queue.put_back(std::move(under_way)), ElementsAre(1));
+  EXPECT_THAT(queue.put_back(std::move(under_way)).numbers, ElementsAre(1));
   EXPECT_THAT(points_of(queue.take()->map), ElementsAre(2));
   EXPECT_EQ(queue.count(), 0);
 }
@@ -71,8 +71,8 @@ TEST(WholeClouds, FailedCloudIsReplacedByANewerOne) {
 TEST(WholeClouds, LeaveGridsOfTheirRobotAlone) {
   MapQueue queue = queue_of(Clouds::Whole);
   queue.add(1, grid_update("R1", grid(0, 0, 2, 2)), at(1));
-  EXPECT_THAT(queue.add(2, cloud_update("R1", {1}), at(2)), IsEmpty());
-  EXPECT_THAT(queue.add(3, grid_update("R1", grid(5, 5, 2, 2)), at(3)), IsEmpty());
+  EXPECT_THAT(queue.add(2, cloud_update("R1", {1}), at(2)).numbers, IsEmpty());
+  EXPECT_THAT(queue.add(3, grid_update("R1", grid(5, 5, 2, 2)), at(3)).numbers, IsEmpty());
 }
 
 TEST(ComparedClouds, AreReplacedByACloudWithAllTheirPoints) {

@@ -32,7 +32,7 @@ TEST(MapQueue, CoveringGridInheritsPlaceAndAge) {
   MapQueue queue{kPlenty};
   queue.add(1, grid_update("R1", kSmall), at(1));
   queue.add(2, grid_update("R2", kSmall), at(2));
-  EXPECT_THAT(queue.add(3, grid_update("R1", kLarge), at(3)), ElementsAre(1));
+  EXPECT_THAT(queue.add(3, grid_update("R1", kLarge), at(3)).numbers, ElementsAre(1));
   EXPECT_EQ(queue.count(), 2);
   const auto first = queue.take();
   EXPECT_THAT(first->updates, ElementsAre(1, 3));
@@ -42,24 +42,24 @@ TEST(MapQueue, CoveringGridInheritsPlaceAndAge) {
 
 TEST(MapQueue, ReportsEachReplacedUpdateOnce) {
   MapQueue queue{kPlenty};
-  EXPECT_THAT(queue.add(1, grid_update("R1", kSmall), at(1)), IsEmpty());
-  EXPECT_THAT(queue.add(2, grid_update("R1", kSmall), at(2)), ElementsAre(1));
-  EXPECT_THAT(queue.add(3, grid_update("R1", kSmall), at(3)), ElementsAre(2));
+  EXPECT_THAT(queue.add(1, grid_update("R1", kSmall), at(1)).numbers, IsEmpty());
+  EXPECT_THAT(queue.add(2, grid_update("R1", kSmall), at(2)).numbers, ElementsAre(1));
+  EXPECT_THAT(queue.add(3, grid_update("R1", kSmall), at(3)).numbers, ElementsAre(2));
   EXPECT_THAT(queue.take()->updates, ElementsAre(1, 2, 3));
 }
 
 TEST(MapQueue, KeepsAGridThatIsNotCovered) {
   MapQueue queue{kPlenty};
   queue.add(1, grid_update("R1", kElsewhere), at(1));
-  EXPECT_THAT(queue.add(2, grid_update("R1", kLarge), at(2)), IsEmpty());
+  EXPECT_THAT(queue.add(2, grid_update("R1", kLarge), at(2)).numbers, IsEmpty());
   EXPECT_EQ(queue.count(), 2);
 }
 
 TEST(MapQueue, KeepsAGridOfAnotherRobot) {
   MapQueue queue{kPlenty};
   queue.add(1, grid_update("R1", kSmall), at(1));
-  EXPECT_THAT(queue.add(2, grid_update("R2", kLarge), at(2)), IsEmpty());
-  EXPECT_THAT(queue.add(3, grid_update("", kLarge), at(3)), IsEmpty());
+  EXPECT_THAT(queue.add(2, grid_update("R2", kLarge), at(2)).numbers, IsEmpty());
+  EXPECT_THAT(queue.add(3, grid_update("", kLarge), at(3)).numbers, IsEmpty());
   EXPECT_EQ(queue.count(), 3);
 }
 
@@ -67,8 +67,97 @@ TEST(MapQueue, ReplacesAllCoveredGrids) {
   MapQueue queue{kPlenty};
   queue.add(1, grid_update("R1", kSmall), at(1));
   queue.add(2, grid_update("R1", grid(1, 1, 10, 10)), at(2));
-  EXPECT_THAT(queue.add(3, grid_update("R1", kLarge), at(3)), ElementsAre(1, 2));
+  EXPECT_THAT(queue.add(3, grid_update("R1", kLarge), at(3)).numbers, ElementsAre(1, 2));
   EXPECT_THAT(queue.take()->updates, ElementsAre(1, 2, 3));
+}
+
+/// A window whose origin is off by millimetres.
+icd::MapUpdate window(double x, double y = 0, double z = 0) {
+  auto any = grid(x / 1000, y / 1000, 200, 200);
+  any.origin.position.z = z / 1000;
+  any.origin.orientation.z = x * 1e-9;
+  return grid_update("R1", any);
+}
+
+TEST(MapQueue, ReplacesGridsWhoseOriginIsCorrected) {
+  MapQueue queue{kPlenty};
+  for (int i = 0; i < 100; ++i)
+    queue.add(static_cast<std::uint64_t>(i), window(13 * (i % 2), -13 * (i / 2 % 2), i % 3), at(i));
+  EXPECT_EQ(queue.count(), 1) << "each replaced the one before";
+  EXPECT_EQ(queue.take()->updates.size(), 100);
+}
+
+TEST(MapQueue, KeepsWhatACreepingWindowLeavesBehind) {
+  MapQueue queue{kPlenty};
+  EXPECT_TRUE(queue.add(1, window(0), at(1)).numbers.empty());
+  EXPECT_THAT(queue.add(2, window(10), at(2)).numbers, ElementsAre(1));
+  EXPECT_THAT(queue.add(3, window(20), at(3)).numbers, ElementsAre(2));
+  EXPECT_THAT(queue.add(4, window(30), at(4)).numbers, IsEmpty()) << "30 mm of the first are outside";
+  EXPECT_THAT(queue.add(5, window(40), at(5)).numbers, ElementsAre(4));
+  EXPECT_FALSE(queue.replaces_any(window(40 + 20)));
+  EXPECT_THAT(queue.take()->updates, ElementsAre(1, 2, 3));
+  EXPECT_THAT(queue.take()->updates, ElementsAre(4, 5));
+}
+
+TEST(MapQueue, KeepsWhatAFailedGridReplaced) {
+  MapQueue queue{kPlenty};
+  queue.add(1, window(0), at(1));
+  queue.add(2, window(20), at(2));
+  auto failed = *queue.take();
+  queue.add(3, window(40), at(3));
+  EXPECT_FALSE(queue.absorb(failed)) << "40 mm of the first are outside";
+  EXPECT_THAT(queue.put_back(failed).numbers, IsEmpty());
+  failed = *queue.take();
+  queue.add(4, window(5), at(4));
+  EXPECT_TRUE(queue.absorb(failed));
+  const Replaced replaced = queue.put_back(failed);
+  EXPECT_THAT(replaced.numbers, ElementsAre(2));
+  ASSERT_TRUE(replaced.bounds);
+  EXPECT_EQ(replaced.bounds->first, 4);
+  EXPECT_NEAR(replaced.bounds->second.high.x, 10.015, 1e-6);
+}
+
+TEST(MapQueue, KeepsWhatThePartsOfAStitchedGridReplaced) {
+  MapQueue queue{kPlenty};
+  const auto tile = [](double x, double left) { return grid_update("R1", grid(x - left / 1000, 0, 20, 20)); };
+  queue.add(1, tile(0, 20), at(1));
+  queue.add(2, tile(0, 0), at(2));
+  queue.add(3, tile(1, 0), at(3));
+  auto failed = *queue.take();
+  ASSERT_THAT(failed.updates, ElementsAre(1, 2, 3));
+  EXPECT_EQ(queue.put_back(failed).numbers.size(), 0);
+  EXPECT_TRUE(queue.replaces_any(grid_update("R1", grid(0, 0, 40, 20))));
+  EXPECT_FALSE(queue.replaces_any(grid_update("R1", grid(0.01, 0, 40, 20))))
+      << "30 mm of the first are outside";
+  // The whole replaces a map that was sent before it. Then its parts are queued singly.
+  failed = *queue.take();
+  QueuedMap older{grid_update("R1", grid(1.02, 0, 20, 20)), at(0), {0}};
+  queue.put_back(failed);
+  const Replaced replaced = queue.put_back(older);
+  ASSERT_THAT(replaced.numbers, ElementsAre(0));
+  ASSERT_TRUE(replaced.bounds);
+  EXPECT_EQ(replaced.bounds->first, 3) << "the last part stands for it after a restart";
+  EXPECT_NEAR(replaced.bounds->second.high.x, 1.02, 1e-9) << "from the last part's own origin";
+  queue.put_back_apart(*queue.take());
+  EXPECT_EQ(queue.count(), 2);
+  EXPECT_FALSE(queue.replaces_any(grid_update("R1", grid(0.99, 0, 20, 20))))
+      << "30 mm of the older are outside";
+}
+
+TEST(MapQueue, NamesBoundsThatHaveToBeStored) {
+  MapQueue queue{kPlenty};
+  queue.add(1, grid_update("R1", kSmall), at(1));
+  EXPECT_FALSE(queue.add(2, grid_update("R1", kLarge), at(2)).bounds) << "its own bounds";
+  queue.add(3, window(0), at(3));
+  const auto bounds = queue.add(4, window(20), at(4)).bounds;
+  ASSERT_TRUE(bounds);
+  EXPECT_EQ(bounds->first, 4);
+  EXPECT_NEAR(bounds->second.low.x, -0.02, 1e-6);
+
+  MapQueue restarted{kPlenty};
+  restarted.restore(4, window(20), at(5), bounds->second);
+  EXPECT_FALSE(restarted.replaces_any(window(40)));
+  EXPECT_TRUE(restarted.replaces_any(window(20)));
 }
 
 TEST(MapQueue, NeverSendsOldCellsAfterNewerOnes) {
@@ -178,8 +267,8 @@ TEST(MapQueue, PutsAFailedMapFirstOfItsSender) {
   queue.add(2, cloud_update("R2", {1}), at(2));
   auto failed = *queue.take();
   queue.add(3, grid_update("R1", kElsewhere), at(3));
-  EXPECT_FALSE(queue.is_replaced(failed));
-  EXPECT_THAT(queue.put_back(failed), ElementsAre());
+  EXPECT_FALSE(queue.absorb(failed));
+  EXPECT_THAT(queue.put_back(failed).numbers, ElementsAre());
   EXPECT_THAT(queue.take()->updates, ElementsAre(2)) << "a failed try counts as a turn";
   EXPECT_THAT(queue.take()->updates, ElementsAre(1));
   EXPECT_THAT(queue.take()->updates, ElementsAre(3));
@@ -191,8 +280,8 @@ TEST(MapQueue, DropsAFailedGridThatANewerOneCovers) {
   auto failed = *queue.take();
   queue.add(2, cloud_update("R2", {1}), at(2));
   queue.add(3, grid_update("R1", kLarge), at(3));
-  EXPECT_TRUE(queue.is_replaced(failed));
-  EXPECT_THAT(queue.put_back(failed), ElementsAre(1)) << "the map is no longer needed";
+  EXPECT_TRUE(queue.absorb(failed));
+  EXPECT_THAT(queue.put_back(failed).numbers, ElementsAre(1)) << "the map is no longer needed";
   EXPECT_EQ(queue.count(), 2);
   EXPECT_THAT(queue.take()->updates, ElementsAre(2)) << "R2's turn";
   const auto heir = queue.take();
@@ -209,22 +298,36 @@ QueuedMap sent_again(std::uint64_t number, const icd::OccupancyGrid& grid, icd::
 
 TEST(MapQueue, RetriesByHandKeepTheirOrder) {
   MapQueue queue{kPlenty};
-  EXPECT_THAT(queue.put_back(sent_again(3, kSmall, 30)), IsEmpty());
-  EXPECT_THAT(queue.put_back(sent_again(1, kLarge, 10)), IsEmpty());
-  EXPECT_THAT(queue.put_back(sent_again(2, kLarge, 20)), IsEmpty());
+  EXPECT_THAT(queue.put_back(sent_again(3, kSmall, 30)).numbers, IsEmpty());
+  EXPECT_THAT(queue.put_back(sent_again(1, kLarge, 10)).numbers, IsEmpty());
+  EXPECT_THAT(queue.put_back(sent_again(2, kLarge, 20)).numbers, IsEmpty());
   for (const std::uint64_t number : {1, 2, 3}) EXPECT_THAT(queue.take()->updates, ElementsAre(number));
+}
+
+TEST(MapQueue, GridThatAbsorbsARetryStandsForIt) {
+  MapQueue queue{kPlenty};
+  queue.add(1, window(0), at(1));
+  QueuedMap retry{window(20), at(9), {2}};
+  retry.again = 10;
+  const auto absorbed = queue.absorb(retry);
+  ASSERT_TRUE(absorbed && absorbed->bounds);
+  EXPECT_EQ(absorbed->bounds->first, 1);
+  EXPECT_THAT(queue.take()->updates, ElementsAre(1));
+  queue.add(3, window(0), at(3));
+  queue.absorb(retry);
+  EXPECT_FALSE(queue.replaces_any(window(-10))) << "30 mm of the retry are outside";
 }
 
 // The clock was set back. Guards against a defect in which the older grid won the shared area (the
 // simulation's seed 60002763).
 TEST(MapQueue, OfEqualStampsTheLaterRetryIsNewer) {
   MapQueue queue{kPlenty};
-  EXPECT_THAT(queue.put_back(sent_again(1, kLarge, 10)), IsEmpty());
-  EXPECT_FALSE(queue.is_replaced(sent_again(2, kSmall, 10)));
-  EXPECT_THAT(queue.put_back(sent_again(2, kSmall, 10)), IsEmpty());
+  EXPECT_THAT(queue.put_back(sent_again(1, kLarge, 10)).numbers, IsEmpty());
+  EXPECT_FALSE(queue.absorb(sent_again(2, kSmall, 10)));
+  EXPECT_THAT(queue.put_back(sent_again(2, kSmall, 10)).numbers, IsEmpty());
   for (const std::uint64_t number : {1, 2}) EXPECT_THAT(queue.take()->updates, ElementsAre(number));
   queue.put_back(sent_again(2, kLarge, 10));
-  EXPECT_TRUE(queue.is_replaced(sent_again(1, kSmall, 10)));
+  EXPECT_TRUE(queue.absorb(sent_again(1, kSmall, 10)));
 }
 
 TEST(MapQueue, RetryByHandSendsACloudFirstOfItsSender) {
@@ -241,7 +344,7 @@ TEST(MapQueue, RetryByHandIsOlderThanNeverRejectedMaps) {
   queue.add(7, grid_update("R1", kSmall), at(1));
   auto failed = *queue.take();
   queue.put_back(sent_again(1, kLarge, 10));
-  EXPECT_THAT(queue.put_back(failed), IsEmpty());
+  EXPECT_THAT(queue.put_back(failed).numbers, IsEmpty());
   EXPECT_THAT(queue.take()->updates, ElementsAre(1));
   EXPECT_THAT(queue.take()->updates, ElementsAre(7));
 }

@@ -49,27 +49,27 @@ TEST(RejectedMessages, TellsIfAMessageReplacesAnother) {
   const Message small = grid_update("ugv1", grid(0, 0, 10, 10)),
                 large = grid_update("ugv1", grid(0, 0, 20, 20)),
                 others = grid_update("ugv2", grid(0, 0, 20, 20)), cloud = cloud_update("ugv1", {1});
-  EXPECT_TRUE(replaces(large, small));
-  EXPECT_TRUE(replaces(small, small));
-  EXPECT_FALSE(replaces(small, large));
-  EXPECT_FALSE(replaces(others, small));
-  EXPECT_FALSE(replaces(cloud, cloud)) << "no cloud covers another";
-  EXPECT_FALSE(replaces(cloud, small));
+  EXPECT_TRUE(replaces(large, item(small)));
+  EXPECT_TRUE(replaces(small, item(small)));
+  EXPECT_FALSE(replaces(small, item(large)));
+  EXPECT_FALSE(replaces(others, item(small)));
+  EXPECT_FALSE(replaces(cloud, item(cloud))) << "no cloud covers another";
+  EXPECT_FALSE(replaces(cloud, item(small)));
 
   const Message one = state_of({"ugv1"}), both = state_of({"ugv1", "ugv2"});
-  EXPECT_TRUE(replaces(both, one));
-  EXPECT_FALSE(replaces(one, both));
-  EXPECT_FALSE(replaces(both, small));
+  EXPECT_TRUE(replaces(both, item(one)));
+  EXPECT_FALSE(replaces(one, item(both)));
+  EXPECT_FALSE(replaces(both, item(small)));
 
   const Message a = icd::MarkersUpdate{{marker("a", 1)}},
                 ab = icd::MarkersUpdate{{marker("a", 1), marker("b", 1)}},
                 gone = icd::MarkersUpdate{{marker("a", 1, icd::MarkerAction::Delete)}},
                 all_gone = icd::MarkersUpdate{{marker("", 0, icd::MarkerAction::DeleteAll)}};
-  EXPECT_TRUE(replaces(ab, a));
-  EXPECT_FALSE(replaces(a, ab));
-  EXPECT_TRUE(replaces(gone, a));
-  EXPECT_TRUE(replaces(all_gone, ab));
-  EXPECT_FALSE(replaces(ab, all_gone));
+  EXPECT_TRUE(replaces(ab, item(a)));
+  EXPECT_FALSE(replaces(a, item(ab)));
+  EXPECT_TRUE(replaces(gone, item(a)));
+  EXPECT_TRUE(replaces(all_gone, item(ab)));
+  EXPECT_FALSE(replaces(ab, item(all_gone)));
 }
 
 TEST(RejectedMessages, MarksMapsThatANewerOneContains) {
@@ -96,6 +96,22 @@ TEST(RejectedMessages, AreNotReplacedByAnOlderRetriedGrid) {
   EXPECT_TRUE(deliver(rejected, made_at(10, 30)).empty());
   EXPECT_TRUE(rejected.add(item(made_at(10, 30))).empty()) << "also if it is rejected again";
   EXPECT_EQ(deliver(rejected, made_at(30, 30)), (std::vector<std::uint64_t>{1, 2}));
+}
+
+TEST(RejectedMessages, AreNotReplacedBitByBitByACreepingWindow) {
+  const auto window = [](double x) { return grid_update("ugv1", grid(x, 0, 100, 100)); };
+  RejectedMessages rejected;
+  rejected.add(item(window(0)));
+  EXPECT_EQ(rejected.add(item(window(0.02))), std::vector<std::uint64_t>{1});
+  EXPECT_TRUE(rejected.add(item(window(0.04))).empty()) << "40 mm of the first are outside";
+  EXPECT_EQ(rejected.replaced_by(window(0.04)), std::vector<std::uint64_t>{3});
+  EXPECT_EQ(rejected.replaced_by(window(0.02)), (std::vector<std::uint64_t>{2, 3}));
+  RejectedMessage replaced_others = item(window(1));
+  replaced_others.bounds =
+      icd::around(icd::GridBounds::of(grid(1, 0, 100, 100)), icd::GridBounds::of(grid(0.98, 0, 100, 100)));
+  rejected.add(replaced_others);
+  EXPECT_EQ(rejected.replaced_by(window(0.99)), std::vector<std::uint64_t>{4});
+  EXPECT_TRUE(rejected.replaced_by(window(1.02)).empty());
 }
 
 /// Of 30 x 10 cells; only the ten columns at each end were posted.

@@ -63,8 +63,22 @@ class StitchLaws : public testing::TestWithParam<std::uint64_t> {
     while (queue_.count() > 0) send(9);
   }
 
+  /// A grid of one of the first two lattices, half a cell apart, may replace cells of the other.
+  void forget_covered(const icd::MapUpdate& map, int which) {
+    if (which > 1) return;
+    const auto grid = *cells_in(lattice(which), std::get<icd::OccupancyGrid>(map.msg));
+    const std::string name = map.name ? map.name->text() : "";
+    std::erase_if(newest_, [&](const auto& posted) {
+      const auto& [its_name, its_lattice, x, y] = posted.first;
+      if (its_name != name || its_lattice != 1 - which) return false;
+      const std::int64_t left = 2 * x + its_lattice, from = 2 * grid.x + which;  // in half cells
+      return left >= from - 1 && left + 2 <= from + 2 * grid.width + 1 && y >= grid.y && y < grid.top();
+    });
+  }
+
   void post() {
-    auto origin = lattice(pick(8) == 0 ? pick(3) : 0);
+    const int which = pick(8) == 0 ? pick(3) : 0;
+    auto origin = lattice(which);
     origin.width = static_cast<std::uint32_t>(1 + pick(5));
     origin.height = static_cast<std::uint32_t>(1 + pick(5));
     origin.origin = *corner_at(origin, pick(12) - 6, pick(12) - 6);
@@ -73,6 +87,7 @@ class StitchLaws : public testing::TestWithParam<std::uint64_t> {
     for (auto& value : values)
       value = pick(4) == 0 ? icd::kUnknownCell : static_cast<std::uint8_t>(pick(101));
     map.data.bytes = icd::ChunkedBytes{values};
+    forget_covered(map, which);
     auto value = values.begin();
     for_each_cell(map, [&](const Place& place) {
       newest_[place] = *value;
@@ -122,7 +137,7 @@ TEST_P(StitchLaws, ServerHasTheNewestValueOfEachPostedCell) {
   run();
   EXPECT_GT(stitched_, 5);
   for (const auto& [place, value] : overwriting_.cells) {
-    EXPECT_TRUE(newest_.contains(place) || value == icd::kUnknownCell)
+    EXPECT_TRUE(posted_.contains(place) || value == icd::kUnknownCell)
         << "the server has a cell that was not posted";
   }
   for (const auto& [place, value] : newest_) {

@@ -1,5 +1,7 @@
-// GridArrived: replays the cells of all grids that the Command Post accepted.
+// GridArrived replays the cells of all grids that the Command Post accepted. Replaced judges each sent grid.
 #include <algorithm>
+#include <array>
+#include <cstdlib>
 #include <deque>
 #include <map>
 #include <set>
@@ -27,6 +29,7 @@ struct PostedGrid {
   Extent extent;
   std::size_t taken = 0;    // the last event that delivered it; 0: none
   int failures = 0;         // answers of 5xx to it
+  bool has_left = false;    // it was sent, alone or in a message with others
   bool is_taken = false;    // an answer confirmed the delivery
   bool is_refused = false;  // rejected; the operator sends it again later
 
@@ -38,25 +41,39 @@ struct PostedGrid {
   bool is_before(const PostedGrid& other) const { return asked->ended < other.asked->began; }
 };
 
-/// Whether `size` cells from `begin` lie within `outer_size` cells from `outer_begin`. Origins are in half
-/// cells.
-bool lies_within(int begin, int size, int outer_begin, int outer_size) {
-  const int halves = begin - outer_begin;
-  return halves >= 0 && halves % 2 == 0 && halves / 2 + size <= outer_size;
+/// Whether the cells of `inner` are cells of `outer`.
+bool holds(const Extent& outer, const Extent& inner) {
+  const auto lies_within = [cell = outer.cell](int begin, int size, int outer_begin, int outer_size) {
+    const int from = begin - outer_begin;
+    return from >= 0 && from % cell == 0 && from / cell + size <= outer_size;
+  };
+  return outer.cell == inner.cell && outer.z == inner.z &&
+         lies_within(inner.x, inner.width, outer.x, outer.width) &&
+         lies_within(inner.y, inner.height, outer.y, outer.height);
 }
 
-/// ICD 6.3.1: whether a newer `outer` replaces everything in `inner`.
-bool holds(const Extent& outer, const Extent& inner) {
-  return outer.centimetres == inner.centimetres && lies_within(inner.x, inner.width, outer.x, outer.width) &&
+/// ICD 6.3.1: whether a newer `outer` replaces everything in `inner`, on one lattice or on two: no part of
+/// `inner` is outside by more than half a cell.
+bool covers(const Extent& outer, const Extent& inner) {
+  const int half = outer.cell / 2;
+  const auto lies_within = [&](int begin, int size, int outer_begin, int outer_size) {
+    return begin >= outer_begin - half &&
+           begin + size * inner.cell <= outer_begin + outer_size * outer.cell + half;
+  };
+  return outer.cell == inner.cell && std::abs(outer.z - inner.z) <= half &&
+         lies_within(inner.x, inner.width, outer.x, outer.width) &&
          lies_within(inner.y, inner.height, outer.y, outer.height);
 }
 
 bool overlap(const Extent& a, const Extent& b) {
   const auto one = [&](int a_begin, int a_size, int b_begin, int b_size) {
-    return a_begin * a.centimetres < (b_begin + 2 * b_size) * b.centimetres &&
-           b_begin * b.centimetres < (a_begin + 2 * a_size) * a.centimetres;
+    return a_begin < b_begin + b_size * b.cell && b_begin < a_begin + a_size * a.cell;
   };
   return one(a.x, a.width, b.x, b.width) && one(a.y, a.height, b.y, b.height);
+}
+
+bool is_one_place(const Extent& a, const Extent& b) {
+  return a.says() == b.says();
 }
 
 /// Visits each cell of an extent, row by row, as an extent of its own.
@@ -64,7 +81,8 @@ template <class Visit>
 void for_each_cell(const Extent& extent, Visit visit) {
   for (int row = 0; row < extent.height; ++row) {
     for (int column = 0; column < extent.width; ++column)
-      visit(Extent{extent.centimetres, extent.x + 2 * column, extent.y + 2 * row, 1, 1});
+      visit(
+          Extent{extent.cell, extent.x + extent.cell * column, extent.y + extent.cell * row, 1, 1, extent.z});
   }
 }
 
@@ -91,6 +109,39 @@ class GridsOfOneName {
     return in_it;
   }
 
+  /// A grid left for the first time. `since`: the queue had no newer grid then that contains it and all that
+  /// it may have replaced, from a client that heard 200. `began`: when the process began, because none of the
+  /// grids that a process finds replaces another.
+  void left(const Event& event, double since, double began, Broken& broken) {
+    const Message message = read(event);
+    Owners its;
+    for (PostedGrid* each : message.within) {
+      const bool is_it = is_one_place(each->extent, message.extent) && !each->has_left &&
+                         std::ranges::all_of(message.cells, [&](const Owners& owners) {
+                           return std::ranges::find(owners, each) != owners.end();
+                         });
+      if (is_it) its.push_back(each);
+    }
+    for (PostedGrid* each : message.within) each->has_left = true;
+    if (its.size() != 1) return;
+    const PostedGrid& grid = *its.front();
+    const auto contains_all = [&](const PostedGrid& newer) {
+      return std::ranges::all_of(posted_, [&](const PostedGrid& older) {
+        const bool may_be_in_it =
+            older.taken == 0 && !grid.is_before(older) && overlap(older.extent, grid.extent);
+        return !may_be_in_it || covers(newer.extent, older.extent);
+      });
+    };
+    for (const PostedGrid& newer : posted_) {
+      const bool was_queued =
+          newer.asked->accepted() && newer.asked->began > began && newer.asked->ended < since;
+      if (!was_queued || !grid.is_before(newer) || !contains_all(newer)) continue;
+      broken.push_back(icd::sentence("Replaced: ", event.who, "'s ", grid.serial, " was sent at ", event.at,
+                                     ", although the newer ", newer.serial, " contains it"));
+      return;
+    }
+  }
+
   void taken(const Event& event, std::size_t place, Broken& broken) {
     const Message message = read(event);
     std::size_t i = 0;
@@ -104,9 +155,9 @@ class GridsOfOneName {
       const bool was_sent = had != has_.end();
       const bool is_earlier = was_sent && had->second.place < run_began_;
       // A grid of an earlier run may have the value of a gap by chance.
-      const bool is_of_run = std::ranges::any_of(
-          owners, [&](const PostedGrid* owner) { return owner->taken == 0 || owner->taken >= run_began_; });
-      const bool is_blank = value == kNoValue && is_earlier && !is_of_run;
+      const bool is_blank =
+          value == kNoValue && is_earlier &&
+          std::ranges::none_of(owners, [&](const PostedGrid* owner) { return may_come(*owner); });
       const std::size_t since = is_blank ? had->second.place : place;
       if (value == kNoValue && was_sent && (has_more_maps_ || is_earlier))
         owners.insert(owners.end(), had->second.owners.begin(), had->second.owners.end());
@@ -150,8 +201,8 @@ class GridsOfOneName {
     std::size_t place = 0;  // the event that delivered it
     Owners owners;
   };
-  using Key = std::tuple<int, int, int>;
-  static Key key_of(const Extent& cell) { return {cell.centimetres, cell.x, cell.y}; }
+  using Key = std::tuple<int, int, int, int>;
+  static Key key_of(const Extent& cell) { return {cell.cell, cell.x, cell.y, cell.z}; }
 
   Message read(const Event& event) {
     Message message{Extent::from(event.says), {}, {}};
@@ -164,8 +215,7 @@ class GridsOfOneName {
       const int value = event.says.at(i++);
       Owners owners;
       for (PostedGrid* each : message.within) {
-        if (holds(each->extent, cell) && value_of(each->serial, cell.x, cell.y) == value)
-          owners.push_back(each);
+        if (holds(each->extent, cell) && value_of(each->serial, cell) == value) owners.push_back(each);
       }
       message.cells.push_back(std::move(owners));
     });
@@ -197,38 +247,54 @@ class GridsOfOneName {
     std::ranges::for_each(message.cells, leave_out);
   }
 
+  /// Whether the grid was delivered in this run, or may still be.
+  bool may_come(const PostedGrid& grid) const {
+    if (grid.taken > 0) return grid.taken >= run_began_;
+    return std::ranges::none_of(posted_, [&](const PostedGrid& newer) {
+      return newer.taken > 0 && newer.taken < run_began_ && grid.is_before(newer) &&
+             covers(newer.extent, grid.extent);
+    });
+  }
+
   /// The posted grids that have that value there, even if they are larger than the message: a grid that was
   /// sent before may be sent as a part.
   Owners owners_of(const Extent& cell, int value, double at) {
     Owners owners;
     for (PostedGrid& each : posted_) {
       if (each.asked->began <= at && each.asked->may_count() && holds(each.extent, cell) &&
-          value_of(each.serial, cell.x, cell.y) == value)
+          value_of(each.serial, cell) == value)
         owners.push_back(&each);
     }
     return owners;
   }
 
   /// Each of its cells has the grid's value, or the value of a grid that is not older or that this grid let
-  /// pass.
+  /// pass, or was covered later by a grid on another lattice that is not older.
   bool is_there(const PostedGrid& grid) const {
     bool all = true;
     for_each_cell(grid.extent, [&](const Extent& cell) {
       const auto found = has_.find(key_of(cell));
-      all = all && found != has_.end() &&
-            std::ranges::any_of(found->second.owners, [&](const PostedGrid* owner) {
-              return !owner->is_before(grid) || lets_newer_pass(*owner);
-            });
+      const Has has = found == has_.end() ? Has{} : found->second;
+      const bool has_it = std::ranges::any_of(has.owners, [&](const PostedGrid* owner) {
+        return !owner->is_before(grid) || lets_newer_pass(*owner);
+      });
+      all = all && (has_it || std::ranges::any_of(posted_, [&](const PostedGrid& newer) {
+                      return newer.taken > has.place && !newer.is_before(grid) && covers(newer.extent, cell);
+                    }));
     });
     return all;
   }
 
-  /// Whether `older`, perhaps on another lattice, was accepted after a part of a grid that covers it.
+  /// Whether `older`, perhaps on another lattice, was accepted after a part of a grid that covers it. A cell
+  /// that may have the value of an older grid is no part of it.
   bool is_under(const PostedGrid& grid, const PostedGrid& older) const {
     bool any = false;
     for_each_cell(grid.extent, [&](const Extent& cell) {
       const auto found = has_.find(key_of(cell));
-      any = any || (overlap(cell, older.extent) && found != has_.end() && found->second.place < older.taken);
+      any =
+          any || (overlap(cell, older.extent) && found != has_.end() && found->second.place < older.taken &&
+                  std::ranges::none_of(
+                      found->second.owners, [&](const PostedGrid* owner) { return owner->is_before(grid); }));
     });
     return any;
   }
@@ -238,7 +304,7 @@ class GridsOfOneName {
     int failures = grid.failures;
     for (const PostedGrid& older : posted_) {
       const bool may_be_replaced = &older != &grid && !grid.is_before(older) && !older.is_taken &&
-                                   !older.is_refused && holds(grid.extent, older.extent);
+                                   !older.is_refused && covers(grid.extent, older.extent);
       if (may_be_replaced) failures += older.failures;
     }
     return grid.is_refused || failures >= kInPlace;
@@ -288,12 +354,16 @@ void grid_arrived(const Evidence& evidence, Broken& broken) {
     if (is_grid(item.says)) of(item.who).post(asked, item);
   }
   std::map<std::uint64_t, std::vector<PostedGrid*>> last_sent;  // by connection
+  double began = 0;                                             // of the process
+  std::array<double, 3> leaves{-1, -1, -1};                     // when the last maps left; the latest first
   for (std::size_t i = 0; i < evidence.events.size(); ++i) {
     const Event& event = evidence.events[i];
     if (event.kind == Kind::NewRun && event.what != kSameMap) {
       for (auto& [name, grids] : names) grids.begin_run(i);
     }
+    if (event.kind == Kind::Begins) began = event.at;
     if (event.what != kMap) continue;
+    if (event.kind == Kind::Leaves) leaves = {event.at, leaves[0], leaves[1]};
     std::vector<PostedGrid*>& sent = last_sent[event.request];
     if (event.kind == Kind::Replied) {
       for (PostedGrid* each : sent) each->answered(event);
@@ -301,6 +371,7 @@ void grid_arrived(const Evidence& evidence, Broken& broken) {
     if (event.kind != Kind::Taken && event.kind != Kind::Left) continue;
     sent.clear();
     if (!is_grid(event.says)) continue;
+    if (event.kind == Kind::Left) of(event.who).left(event, leaves[2], began, broken);
     sent = of(event.who).sent(event);
     if (event.kind == Kind::Taken) of(event.who).taken(event, i, broken);
   }

@@ -64,7 +64,8 @@ std::string cells_of(std::int64_t serial, const Extent& extent) {
   std::string cells;
   for (int row = 0; row < extent.height; ++row) {
     for (int column = 0; column < extent.width; ++column)
-      cells += static_cast<char>(value_of(serial, extent.x + 2 * column, extent.y + 2 * row));
+      cells += static_cast<char>(value_of(
+          serial, {extent.cell, extent.x + extent.cell * column, extent.y + extent.cell * row, 1, 1}));
   }
   return cells;
 }
@@ -89,13 +90,15 @@ Json grid(const Item& item, const Style& style) {
   const Extent extent = Extent::from(item.says);
   std::string cells =
       item.serial < kBadSerials ? cells_of(item.serial, extent) : bad_cells(item.serial, extent);
-  const double cell = extent.centimetres / 100.0;
+  Json origin = pose_at(extent.x / 1000.0, extent.y / 1000.0, style);
+  origin["position"]["z"] = extent.z / 1000.0;
+  if (extent.z != 0) origin["orientation"]["z"] = static_cast<double>(item.serial % 3) * 1e-9;
   Json msg = {{"header", header_of(item.stamp)},
               {"info",
-               {{"resolution", cell},
+               {{"resolution", extent.cell / 1000.0},
                 {"width", extent.width},
                 {"height", extent.height},
-                {"origin", pose_at(extent.x * cell / 2, extent.y * cell / 2, style)}}}};
+                {"origin", std::move(origin)}}}};
   put_data(msg, std::move(cells), style);
   return msg;
 }
@@ -159,11 +162,14 @@ Json cloud(const std::vector<Item>& items, const Style& style) {
 
 Item grid_item(const Json& msg) {
   const Json& info = msg.at("info");
-  const double cell = info.at("resolution");
   const Json& origin = info.at("origin").at("position");
-  const auto halves = [cell](double metres) { return static_cast<int>(std::lround(metres / cell * 2)); };
-  const Extent extent{static_cast<int>(std::lround(cell * 100)), halves(origin.at("x")),
-                      halves(origin.at("y")), info.at("width"), info.at("height")};
+  const auto millimetres = [](double metres) { return static_cast<int>(std::lround(metres * 1000)); };
+  const Extent extent{millimetres(info.at("resolution")),
+                      millimetres(origin.at("x")),
+                      millimetres(origin.at("y")),
+                      info.at("width"),
+                      info.at("height"),
+                      millimetres(origin.at("z"))};
   const std::string cells = data_in(msg);
   Says says = extent.says();
   for (const char each : cells) says.push_back(static_cast<unsigned char>(each));
@@ -225,10 +231,11 @@ std::vector<Item> cloud_items(const Json& msg) {
 
 }  // namespace
 
-int value_of(std::int64_t serial, int x, int y) {
+int value_of(std::int64_t serial, const Extent& cell) {
   constexpr std::uint64_t kOdd = 0x9E3779B97F4A7C15u;
+  const auto halves = [half = cell.cell / 2](int at) { return (at - (at < 0 ? half - 1 : 0)) / half; };
   auto mixed = static_cast<std::uint64_t>(serial) * kOdd;
-  for (const int each : {x, y})
+  for (const int each : {halves(cell.x), halves(cell.y)})
     mixed = (mixed ^ (mixed >> 29) ^ static_cast<std::uint64_t>(each + 1000)) * kOdd;
   const auto value = static_cast<int>((mixed >> 40) % 102);
   return value > 100 ? 255 : value;

@@ -23,16 +23,17 @@ struct Item {
   Says says = {};
 };
 
-/// The place of a grid.
+/// The place of a grid, in millimetres.
 struct Extent {
-  int centimetres = 50;       // size of a cell
-  int x = 0, y = 0;           // origin, in half cells
+  int cell = 500;             // size of a cell, even
+  int x = 0, y = 0;           // origin
   int width = 8, height = 8;  // cells
+  int z = 0;
 
-  static Extent from(const Says& says) { return {says[0], says[1], says[2], says[3], says[4]}; }
-  Says says() const { return {centimetres, x, y, width, height}; }
+  static Extent from(const Says& says) { return {says[0], says[1], says[2], says[3], says[4], says[5]}; }
+  Says says() const { return {cell, x, y, width, height, z}; }
 };
-inline constexpr std::size_t kExtentNumbers = 5;
+inline constexpr std::size_t kExtentNumbers = 6;
 inline bool is_grid(const Says& says) {
   return says.size() >= kExtentNumbers;
 }

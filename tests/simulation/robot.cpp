@@ -51,7 +51,10 @@ Robot::Robot(World& world, int number)
       writings_(world.random("writings of " + name_).chance(0.01) ? kWritings : 0),
       serial_(number * kSerials),
       whole_(world.random("whole clouds of " + name_).chance(0.3)),
-      rolls_(world.random("rolling grids of " + name_).chance(0.3)) {}
+      rolls_(world.random("rolling grids of " + name_).chance(0.3)),
+      drift_(world.random("drift of " + name_)),
+      jitters_(drift_.chance(0.25)),
+      creeps_(!jitters_ && drift_.chance(0.25)) {}
 
 void Robot::post_until(double end) {
   end_ = end;
@@ -98,23 +101,40 @@ Item Robot::grid() {
   if (rolls_ && random_.chance(0.9)) return window();
   if (random_.chance(0.5)) {
     if (random_.chance(0.2) && extent_.width < kLargest) ++extent_.width, ++extent_.height;
-    if (random_.chance(0.1)) extent_.x -= 2, ++extent_.width;
-    return item(name_, extent_.says());
+    if (random_.chance(0.1)) extent_.x -= extent_.cell, ++extent_.width;
+    return item(name_, moved(extent_).says());
   }
-  const Extent patch{.centimetres = random_.chance(0.8) ? 50 : 25,
-                     .x = 2 * between(random_, -8, 8) + (random_.chance(0.1) ? 1 : 0),
-                     .y = 2 * between(random_, -8, 8),
+  const int cell = random_.chance(0.8) ? 500 : 250;
+  const Extent patch{.cell = cell,
+                     .x = cell * between(random_, -8, 8) + (random_.chance(0.1) ? cell / 2 : 0),
+                     .y = cell * between(random_, -8, 8),
                      .width = between(random_, 2, 12),
                      .height = between(random_, 2, 12)};
   return item(name_, patch.says());
 }
 
+/// The extent as SLAM has corrected the frame this time. No two origins are half a cell apart.
+Extent Robot::moved(Extent extent) {
+  constexpr int kMost = 110, kStep = 90, kRise = 30, kSteps = 100;  // millimetres, of a cell of 500; steps
+  if (jitters_) {
+    extent.x += between(drift_, -kMost, kMost);
+    extent.y += between(drift_, -kMost, kMost);
+    extent.z = between(drift_, -1, 1);
+  }
+  if (creeps_) {
+    crept_ = (crept_ + 1) % kSteps;
+    extent.x += kStep * crept_;
+    extent.z = kRise * (crept_ % 10);
+  }
+  return extent;
+}
+
 Item Robot::window() {
-  constexpr int kFarthest = 60;  // half cells
-  window_.x = std::clamp(window_.x + 2 * between(random_, -1, 3), -kFarthest, kFarthest);
-  window_.y = std::clamp(window_.y + 2 * between(random_, -1, 3), -kFarthest, kFarthest);
-  if (window_.x == kFarthest || window_.y == kFarthest) window_.x = window_.y = -kFarthest;
-  return item(name_, window_.says());
+  const int farthest = 30 * window_.cell;
+  window_.x = std::clamp(window_.x + window_.cell * between(random_, -1, 3), -farthest, farthest);
+  window_.y = std::clamp(window_.y + window_.cell * between(random_, -1, 3), -farthest, farthest);
+  if (window_.x == farthest || window_.y == farthest) window_.x = window_.y = -farthest;
+  return item(name_, moved(window_).says());
 }
 
 /// Some clouds have no robot's name.

@@ -12,9 +12,9 @@ namespace adit::simulation {
 
 class World;
 
-/// A robot. It posts its pose, grids that cover earlier ones or not, clouds singly or several in a row,
-/// with new points or all points since its map began, and markers that it changes and deletes. Its serials
-/// ascend.
+/// A robot. It posts its pose, grids that cover earlier ones or not, on one lattice or on many, clouds singly
+/// or several in a row, with new points or all points since its map began, and markers that it changes and
+/// deletes. Its serials ascend.
 class Robot {
  public:
   static constexpr std::int64_t kSerials = 4096;  // serials per robot, from `number` times this
@@ -28,6 +28,7 @@ class Robot {
   Item item(std::string who, Says says = {});
   Item grid();
   Item window();
+  Extent moved(Extent extent);
   Item cloud();
   Posting clouds();
   Posting markers();
@@ -56,6 +57,10 @@ class Robot {
   const bool rolls_;                 // its grids are a window that moves with it, several in a row
   bool row_of_grids_ = false;
   Extent window_{.width = 12, .height = 12};
+  Random drift_;
+  const bool jitters_;  // each of its grids has another origin, off by less than a fourth of a cell
+  const bool creeps_;   // its grids move by less than a fourth of a cell each time
+  int crept_ = 0;       // steps
 };
 
 }  // namespace adit::simulation

@@ -49,9 +49,40 @@ TEST_F(SpoolTest, StoresMapsInOrderUntilForgotten) {
   spool.forget(11);
   const auto kept = Spool(folder_ / "waiting").read();
   ASSERT_EQ(kept.size(), 2u);
-  EXPECT_EQ(kept[0].first, 9u);
-  EXPECT_EQ(kept[0].second, grid("r1", 9));
-  EXPECT_EQ(kept[1].first, 100'000'000u);
+  EXPECT_EQ(kept[0].number, 9u);
+  EXPECT_EQ(kept[0].map, grid("r1", 9));
+  EXPECT_EQ(kept[1].number, 100'000'000u);
+}
+
+TEST_F(SpoolTest, StoresTheBoundsOfAGridUntilItIsForgotten) {
+  Spool spool(folder_);
+  const icd::MapUpdate map = grid("r1", 1);
+  const auto& own = std::get<icd::OccupancyGrid>(map.msg);
+  auto older = own;
+  older.origin.position.x += 0.03;
+  older.origin.position.z -= 0.01;
+  const auto bounds = icd::around(icd::GridBounds::of(own), icd::GridBounds::of(older));
+  for (const std::uint64_t number : {1, 2, 3, 4}) ASSERT_TRUE(spool.keep(number, map, 0));
+  for (const std::uint64_t number : {1, 2, 3}) ASSERT_TRUE(spool.keep_bounds(number, bounds));
+  auto kept = spool.read();
+  ASSERT_EQ(kept.size(), 4U);
+  EXPECT_EQ(kept[0].bounds, bounds) << "to the last bit";
+  EXPECT_FALSE(kept[3].bounds);
+
+  spool.forget(1);
+  spool.set_aside(2, "a test");
+  for (const std::uint64_t number : {1, 2}) ASSERT_TRUE(spool.keep(number, map, 0));
+  EXPECT_FALSE(spool.read()[0].bounds) << "those of an earlier map of that number";
+  EXPECT_FALSE(spool.read()[1].bounds);
+  for (const char* damaged :
+       {"", "[1,2,3,4,5,6]", "[1,2,3,4,5,6,\"\"]", "{}", "[1,2,3,4,5,6,7", "[0,0,0,0,0,0,1e999]"}) {
+    std::ofstream(folder_ / "map-00000003.bounds") << damaged;
+    kept = spool.read();
+    ASSERT_EQ(kept.size(), 4U) << damaged;
+    EXPECT_FALSE(kept[2].bounds) << damaged;
+  }
+  std::ofstream(folder_ / "map-00000003.bounds") << "[5,5,5,-5,-5,-5,-5]";
+  EXPECT_EQ(spool.read()[2].bounds, icd::GridBounds::of(own)) << "never smaller than the grid";
 }
 
 TEST_F(SpoolTest, RejectsMapsUntilItsDirectoryWasRead) {
@@ -82,9 +113,9 @@ TEST_F(SpoolTest, StartReadsNoDataOfMaps) {
   EXPECT_GT(after.in_mappings, before.in_mappings) << "its two ends";
   EXPECT_LT(after.in_mappings - before.in_mappings, 1'000'000U);
   ASSERT_EQ(kept.size(), 4U);
-  EXPECT_EQ(kept[0].second, cloud(1'000'000));
-  EXPECT_TRUE(codec::check_data(kept[0].second));
-  EXPECT_FALSE(codec::check_data(kept[3].second)) << "reading must find the damage";
+  EXPECT_EQ(kept[0].map, cloud(1'000'000));
+  EXPECT_TRUE(codec::check_data(kept[0].map));
+  EXPECT_FALSE(codec::check_data(kept[3].map)) << "reading must find the damage";
 }
 
 TEST_F(SpoolTest, RenamesAMapOfAWrongLength) {
@@ -140,7 +171,7 @@ TEST_F(SpoolTest, RenamesADamagedMapAndContinues) {
   std::ofstream(folder_ / "map-00000001.cbor") << "not a map";
   const auto kept = spool.read();
   ASSERT_EQ(kept.size(), 1u);
-  EXPECT_EQ(kept[0].second.name->text(), "r2");
+  EXPECT_EQ(kept[0].map.name->text(), "r2");
   EXPECT_TRUE(fs::exists(folder_ / "map-00000001.cbor.damaged"));
 }
 
@@ -181,8 +212,8 @@ TEST_F(SpoolTest, StoredMapUsesItsFileEvenOnceForgotten) {
   EXPECT_EQ(kept->data.bytes.chunks()[0].owner(), kept->data.bytes.chunks()[1].owner()) << "one mapping";
   const auto again = Spool(folder_).read();
   ASSERT_EQ(again.size(), 1u);
-  EXPECT_EQ(again[0].second, whole);
-  EXPECT_EQ(again[0].second.data.bytes.chunks()[0].owner(), again[0].second.data.bytes.chunks()[1].owner())
+  EXPECT_EQ(again[0].map, whole);
+  EXPECT_EQ(again[0].map.data.bytes.chunks()[0].owner(), again[0].map.data.bytes.chunks()[1].owner())
       << "in the same file, not beside it";
   spool.forget(7);
   EXPECT_TRUE(fs::is_empty(folder_));

@@ -85,4 +85,28 @@ icd::Checked<icd::MarkersUpdate> read_markers(const std::string& path) {
   return codec::read_markers_update(document, as_kept());
 }
 
+codec::Value to_json(const icd::GridBounds& bounds) {
+  codec::Value::Array numbers;
+  for (const icd::Point& corner : {bounds.low, bounds.high}) {
+    for (const double metres : {corner.x, corner.y, corner.z}) numbers.push_back({metres});
+  }
+  numbers.push_back({bounds.turned});
+  return {std::move(numbers)};
+}
+
+icd::GridBounds read_bounds(const codec::Field& field, const icd::OccupancyGrid& grid) {
+  constexpr std::size_t kNumbers = 7;
+  const auto own = icd::GridBounds::of(grid);
+  if (field.size() != kNumbers) {
+    field.refuse("expected ", kNumbers, " numbers");
+    return own;
+  }
+  const auto number = [&](std::size_t i) { return field.element(i).number(); };
+  icd::GridBounds kept = own;
+  kept.low = {number(0), number(1), number(2)};
+  kept.high = {number(3), number(4), number(5)};
+  kept.turned = number(6);
+  return icd::around(own, kept);
+}
+
 }  // namespace adit::spool

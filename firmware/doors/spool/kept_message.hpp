@@ -3,7 +3,9 @@
 #include <expected>
 #include <string>
 
+#include "codec/field.hpp"
 #include "icd/chunked_bytes.hpp"
+#include "icd/grid_bounds.hpp"
 #include "icd/map_update.hpp"
 #include "icd/markers_update.hpp"
 #include "icd/state_update.hpp"
@@ -33,5 +35,11 @@ bool can_be_read(const std::string& folder);
 icd::Checked<icd::MapUpdate> read_map(const std::string& path);
 icd::Checked<icd::StateUpdate> read_state(const std::string& path);
 icd::Checked<icd::MarkersUpdate> read_markers(const std::string& path);
+
+/// The bounds of a grid as a JSON list of numbers: left, bottom, lowest, right, top, highest, turned, along
+/// the axes of the grid.
+codec::Value to_json(const icd::GridBounds& bounds);
+/// Reads them for `grid`. Bounds that are smaller than the grid are enlarged. Refuses damaged ones.
+icd::GridBounds read_bounds(const codec::Field& field, const icd::OccupancyGrid& grid);
 
 }  // namespace adit::spool

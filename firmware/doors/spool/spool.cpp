@@ -9,11 +9,13 @@
 #include <sstream>
 #include <string_view>
 
+#include "codec/json.hpp"
 #include "host/disk.hpp"
 #include "host/log.hpp"
 #include "host/numbered_name.hpp"
 #include "host/service.hpp"
 #include "icd/sentence.hpp"
+#include "icd/try.hpp"
 #include "spool/kept_message.hpp"
 
 namespace adit::spool {
@@ -25,7 +27,7 @@ namespace fs = std::filesystem;
 constexpr std::uint64_t kBeside = 8192;
 /// Most bytes of put_aside(), beside its last map. The log names all.
 constexpr std::size_t kMostTold = 300;
-constexpr std::string_view kMap = "map-", kEnding = ".cbor";
+constexpr std::string_view kMap = "map-", kEnding = ".cbor", kBounds = ".bounds";
 
 std::unexpected<icd::Refusal> not_kept(const std::string& why) {
   return std::unexpected(icd::Refusal{icd::Status::ServiceUnavailable,
@@ -60,6 +62,10 @@ std::string Spool::file_of(std::uint64_t number) const {
   return folder_ + "/" + host::numbered_name(kMap, number, kEnding);
 }
 
+std::string Spool::bounds_file_of(std::uint64_t number) const {
+  return folder_ + "/" + host::numbered_name(kMap, number, kBounds);
+}
+
 bool Spool::has_room(std::uint64_t bytes) const {
   const auto room = room_in(folder_, left_to_others_);
   return room && *room >= bytes;
@@ -85,8 +91,21 @@ icd::Checked<icd::MapUpdate> Spool::keep(std::uint64_t number, icd::MapUpdate ma
   return map;
 }
 
+bool Spool::keep_bounds(std::uint64_t number, const icd::GridBounds& bounds) const {
+  const auto text = codec::write_json(to_json(bounds));
+  const auto written =
+      write_whole(bounds_file_of(number),
+                  icd::ChunkedBytes({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}));
+  if (!written)
+    host::log(host::Level::Warning, "cannot store what a grid replaced; the older grids stay stored",
+              {{"why", written.error()}});
+  return written.has_value();
+}
+
+/// The bounds go first, so that they never belong to a later map of that number.
 void Spool::forget(std::uint64_t number) {
   std::error_code error;
+  fs::remove(bounds_file_of(number), error);
   fs::remove(file_of(number), error);
   if (error)
     host::log(host::Level::Warning, "the file of a map that is not queued any more remains",
@@ -94,6 +113,7 @@ void Spool::forget(std::uint64_t number) {
 }
 
 void Spool::set_aside(std::uint64_t number, const std::string& why) {
+  ::unlink(bounds_file_of(number).c_str());
   host::set_damaged_aside(file_of(number), "a queued map", why);
 }
 
@@ -131,6 +151,27 @@ void Spool::count_ends() {
   work_ends();
 }
 
+/// Damaged bounds are ignored: the map is stored all the same.
+icd::Checked<Spool::KeptMap> Spool::read(std::uint64_t number) const {
+  KeptMap kept{.number = number, .map = ADIT_TRY(read_map(file_of(number)))};
+  const std::string path = bounds_file_of(number);
+  const auto* const grid = std::get_if<icd::OccupancyGrid>(&kept.map.msg);
+  if (grid == nullptr || !host::may_exist(path)) return kept;
+  const auto file = map_file(path);
+  if (!file)
+    return std::unexpected(
+        icd::Refusal{icd::Status::ServiceUnavailable, unreadable(path, file.error()).sentence});
+  const auto value = codec::parse_json(text_in(*file));
+  codec::Reading reading;
+  if (value) kept.bounds = read_bounds(codec::Field(*value, reading), *grid);
+  if (!value || reading.refused()) {
+    kept.bounds.reset();
+    host::log(host::Level::Warning, "what a queued grid replaced is unknown: its file is damaged",
+              {{"file", path}});
+  }
+  return kept;
+}
+
 Spool::Kept Spool::read() {
   remove_parts(folder_);
   count_ends();
@@ -138,9 +179,9 @@ Spool::Kept Spool::read() {
   const auto numbers = host::numbers_in(folder_, kMap, kEnding);
   unread_ = numbers ? "" : numbers.error();
   for (const std::uint64_t number : numbers.value_or(std::vector<std::uint64_t>())) {
-    auto map = read_map(file_of(number));
+    auto map = read(number);
     if (map) {
-      kept.emplace_back(number, std::move(*map));
+      kept.push_back(std::move(*map));
     } else if (map.error().status == icd::Status::ServiceUnavailable) {
       unread_ = map.error().sentence;
     } else {

@@ -3,11 +3,13 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "icd/grid_bounds.hpp"
 #include "icd/map_update.hpp"
 #include "spool/map_file.hpp"
 
@@ -17,7 +19,12 @@ namespace adit::spool {
 /// is in memory. A stored map is complete or absent.
 class Spool {
  public:
-  using Kept = std::vector<std::pair<std::uint64_t, icd::MapUpdate>>;  // by number
+  struct KeptMap {
+    std::uint64_t number = 0;
+    icd::MapUpdate map;
+    std::optional<icd::GridBounds> bounds{};  // keep_bounds()
+  };
+  using Kept = std::vector<KeptMap>;  // by number
 
   /// Creates the directory for this user alone. `left_to_others`: bytes of its file system that maps must
   /// leave free, at most a quarter of it, because other files there must not fail for want of room.
@@ -39,7 +46,10 @@ class Spool {
   /// failed read(), the number may belong to an unread map. Writer thread.
   icd::Checked<icd::MapUpdate> keep(std::uint64_t number, icd::MapUpdate map, std::uint64_t spare,
                                     std::shared_ptr<MapFile> begun = nullptr);
-  /// Removes the file. Mapped data stays valid for its owners. Writer thread.
+  /// Stores the bounds of a grid and of all that it replaced beside the map, until forget(). False: they
+  /// cannot be written. Writer thread.
+  bool keep_bounds(std::uint64_t number, const icd::GridBounds& bounds) const;
+  /// Removes the files. Mapped data stays valid for its owners. Writer thread.
   void forget(std::uint64_t number);
   /// Why maps cannot be stored, or "".
   std::string trouble() const;
@@ -62,6 +72,8 @@ class Spool {
 
  private:
   std::string file_of(std::uint64_t number) const;
+  std::string bounds_file_of(std::uint64_t number) const;
+  icd::Checked<KeptMap> read(std::uint64_t number) const;
   std::string work_file() const { return folder_ + "/at-work"; }
   void count_ends();
   void put_aside(std::uint64_t number, const std::string& why);

@@ -93,7 +93,7 @@ void AcceptedMaps::stored(MapStore::Stored& stored, std::size_t bytes_received,
   counts_.accepted(traffic, bytes_received, loop_.wall_now());
   tell_clouds(*stored.map);
   const auto replaced = queue_.add(stored.number, std::move(*stored.map), loop_.now());
-  counts_.replaced(traffic, replaced.size());
+  counts_.replaced(traffic, replaced.numbers.size());
   store_.forget(replaced);
   done({});
   compare();
@@ -102,18 +102,20 @@ void AcceptedMaps::stored(MapStore::Stored& stored, std::size_t bytes_received,
 
 void AcceptedMaps::restore(spool::Spool::Kept kept) {
   store_.read_trouble();
-  for (auto& [number, map] : kept) restore(number, std::move(map));
+  for (spool::Spool::KeptMap& each : kept) restore(std::move(each));
 }
 
-void AcceptedMaps::restore(std::uint64_t number, icd::MapUpdate update) {
+void AcceptedMaps::restore(spool::Spool::KeptMap kept) {
+  const std::uint64_t number = kept.number;
+  icd::MapUpdate update = std::move(kept.map);
   const bool again = store_.restored(number);
   const icd::Stamp stamp = update.header().stamp.value_or(loop_.stamp_now());
   counts_.accepted(traffic_of(update), update.data.bytes.size(), time_of(loop_, stamp));
   if (again) {
-    store_.forget(queue_.put_back(waiting_again(number, std::move(update), stamp)));
+    store_.forget(queue_.put_back(waiting_again(number, std::move(update), stamp, kept.bounds)));
   } else {
     tell_clouds(update);
-    queue_.restore(number, std::move(update), loop_.now());
+    queue_.restore(number, std::move(update), loop_.now(), kept.bounds);
   }
   compare();
   queued_();
@@ -125,37 +127,53 @@ void AcceptedMaps::tell_clouds(const icd::MapUpdate& update) {
 }
 
 /// It must not follow a newer map that contains it.
-void AcceptedMaps::send_again(icd::MapUpdate update, std::function<bool(bool kept)> done) {
+void AcceptedMaps::send_again(icd::MapUpdate update, std::function<bool(bool kept)> done,
+                              const std::optional<icd::GridBounds>& bounds) {
   const icd::Stamp again = stamp_of(update);
-  const queues::QueuedMap back = waiting_again(store_.next_again(), update, again);
-  if (queue_.is_replaced(back) || is_sent_(back)) {
+  const queues::QueuedMap back = waiting_again(store_.next_again(), update, again, bounds);
+  auto absorbed = queue_.absorb(back);
+  if (!absorbed) absorbed = absorb_(back);
+  if (absorbed) {
+    store_.forget(*std::move(absorbed));
     done(true);
     return;
   }
   update.header().stamp = loop_.stamp_now();
   store_.store(
       std::move(update), nullptr, 0, /*again=*/true,
-      [this, again, done = std::move(done)](MapStore::Stored& stored) { stored_again(stored, again, done); });
+      [this, again, bounds, done = std::move(done)](MapStore::Stored& stored) {
+        stored_again(stored, again, bounds, done);
+      },
+      bounds);
 }
 
 void AcceptedMaps::stored_again(MapStore::Stored& stored, icd::Stamp again,
+                                const std::optional<icd::GridBounds>& bounds,
                                 const std::function<bool(bool kept)>& done) {
   const bool is_wanted = done(stored.map.has_value());
   if (!stored.map) {
     return host::log(host::Level::Error, "cannot send a rejected map again",
                      {{"why", stored.map.error().sentence}});
   }
-  queues::QueuedMap back = waiting_again(stored.number, std::move(*stored.map), again);
-  if (!is_wanted || is_sent_(back)) return store_.forget({&stored.number, 1});
+  queues::QueuedMap back = waiting_again(stored.number, std::move(*stored.map), again, bounds);
+  if (!is_wanted) return store_.forget({&stored.number, 1});
+  if (auto absorbed = absorb_(back)) {
+    absorbed->numbers.push_back(stored.number);
+    return store_.forget(*std::move(absorbed));
+  }
   store_.must_check(stored.number);  // perhaps rejected by an earlier process
   store_.forget(queue_.put_back(std::move(back)));
   queued_();
 }
 
-queues::QueuedMap AcceptedMaps::waiting_again(std::uint64_t number, icd::MapUpdate update,
-                                              icd::Stamp again) const {
-  return {
-      .map = std::move(update), .accepted = loop_.now(), .updates = {number}, .alone = true, .again = again};
+queues::QueuedMap AcceptedMaps::waiting_again(std::uint64_t number, icd::MapUpdate update, icd::Stamp again,
+                                              const std::optional<icd::GridBounds>& bounds) const {
+  return {.map = std::move(update),
+          .accepted = loop_.now(),
+          .updates = {number},
+          .alone = true,
+          .bounds = bounds,
+          .again = again};
 }
 
 /// One pair at a time, to save memory. Both stay queued and may be sent.

@@ -16,11 +16,12 @@ class AcceptedMaps {
   /// queued ones are accepted.
   static constexpr std::size_t kMostMaps = 20'000, kMostWithJoined = 40'000;
 
-  /// `queued`: called after each change of `queue`. `is_sent`: true if a prepared map contains this one,
-  /// which the operator sends again. All outlive this.
+  /// `queued`: called after each change of `queue`. `absorb`: PreparedMaps::absorb(). All
+  /// outlive this.
   AcceptedMaps(loop::Loop& loop, loop::Workers& workers, const settings::Settings& settings,
                TrafficCounts& counts, journal::Journal& journal, queues::MapQueue& queue, MapStore& store,
-               std::function<void()> queued, std::function<bool(const queues::QueuedMap&)> is_sent)
+               std::function<void()> queued,
+               std::function<std::optional<queues::Replaced>(const queues::QueuedMap&)> absorb)
       : loop_(loop),
         workers_(workers),
         settings_(settings),
@@ -29,26 +30,29 @@ class AcceptedMaps {
         queue_(queue),
         store_(store),
         queued_(std::move(queued)),
-        is_sent_(std::move(is_sent)) {}
+        absorb_(std::move(absorb)) {}
 
   /// Maps::carry_on(), restore(), take() and send_again().
   void carry_on(const journal::Carried& carried, bool ran_before);
   void restore(spool::Spool::Kept kept);
   void take(icd::MapUpdate update, std::size_t bytes_received, std::shared_ptr<spool::MapFile> file,
             std::function<void(icd::Checked<void>)> done);
-  void send_again(icd::MapUpdate update, std::function<bool(bool kept)> done);
+  void send_again(icd::MapUpdate update, std::function<bool(bool kept)> done,
+                  const std::optional<icd::GridBounds>& bounds);
   /// Compares no more clouds.
   void stop() { stopping_ = true; }
 
  private:
-  void restore(std::uint64_t number, icd::MapUpdate update);
+  void restore(spool::Spool::KeptMap kept);
   bool has_room_for(const icd::MapUpdate& update, bool replaces) const;
   bool is_told(const icd::MapUpdate& update);
   void stored(MapStore::Stored& stored, std::size_t bytes_received,
               const std::function<void(icd::Checked<void>)>& done);
-  void stored_again(MapStore::Stored& stored, icd::Stamp again, const std::function<bool(bool kept)>& done);
+  void stored_again(MapStore::Stored& stored, icd::Stamp again, const std::optional<icd::GridBounds>& bounds,
+                    const std::function<bool(bool kept)>& done);
   void tell_clouds(const icd::MapUpdate& update);  // kind of clouds by the settings
-  queues::QueuedMap waiting_again(std::uint64_t number, icd::MapUpdate update, icd::Stamp again) const;
+  queues::QueuedMap waiting_again(std::uint64_t number, icd::MapUpdate update, icd::Stamp again,
+                                  const std::optional<icd::GridBounds>& bounds) const;
   void compare();
   void compared(const queues::Successive& two, bool has_all);
 
@@ -60,7 +64,7 @@ class AcceptedMaps {
   queues::MapQueue& queue_;
   MapStore& store_;
   std::function<void()> queued_;
-  std::function<bool(const queues::QueuedMap&)> is_sent_;
+  std::function<std::optional<queues::Replaced>(const queues::QueuedMap&)> absorb_;
   bool are_grids_told_ = true;  // the journal has the areas of grids
   bool comparing_ = false;      // a worker compares two clouds
   bool stopping_ = false;

@@ -83,12 +83,13 @@ std::expected<void, std::string> Flow::rejected(std::uint64_t number, api::Rejec
   if (is_ending()) return std::unexpected("aditd is stopping and sends no more messages");
   if (!standby_.empty()) return std::unexpected(standby_);
   if (action == api::RejectedAction::Discard) return rejected_.discard(number);
-  auto message = ADIT_TRY(rejected_.to_be_sent(number));
-  if (auto* const map = std::get_if<icd::MapUpdate>(&message)) {
-    maps_.send_again(std::move(*map),
-                     [this, number](bool kept) { return rejected_.sent_again(number, kept); });
+  auto item = ADIT_TRY(rejected_.to_be_sent(number));
+  if (auto* const map = std::get_if<icd::MapUpdate>(&item.message)) {
+    maps_.send_again(
+        std::move(*map), [this, number](bool kept) { return rejected_.sent_again(number, kept); },
+        item.bounds);
   } else {
-    rejected_.sent_again(number, telemetry_.send_again(message));
+    rejected_.sent_again(number, telemetry_.send_again(item.message));
   }
   return {};
 }

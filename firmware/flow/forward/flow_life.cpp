@@ -119,8 +119,8 @@ void Flow::restore(bool is_first) {
     maps_.hold_back();
     telemetry_.hold_back();
   }
-  for (auto& [number, map] : kept) {
-    if (is_first) map.header().stamp = loop_.stamp_now();
+  for (spool::Spool::KeptMap& each : kept) {
+    if (is_first) each.map.header().stamp = loop_.stamp_now();
   }
   maps_.restore(std::move(kept));
 }

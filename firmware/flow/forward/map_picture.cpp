@@ -5,16 +5,14 @@
 
 #include "host/log.hpp"
 #include "icd/refuse.hpp"
-#include "queues/map_queue.hpp"
 
 namespace adit::forward {
 namespace {
 
-/// False for clouds: senders post new points only.
-bool covers(const icd::MapUpdate& newer, const icd::MapUpdate& older) {
-  const auto* grid = std::get_if<icd::OccupancyGrid>(&newer.msg);
-  const auto* old = std::get_if<icd::OccupancyGrid>(&older.msg);
-  return grid != nullptr && old != nullptr && newer.name == older.name && queues::covers(*grid, *old);
+/// Nothing for clouds: none replaces another, because senders post new points only.
+std::optional<icd::GridBounds> bounds_of(const icd::MapUpdate& map) {
+  const auto* const grid = std::get_if<icd::OccupancyGrid>(&map.msg);
+  return grid == nullptr ? std::nullopt : std::optional(icd::GridBounds::of(*grid));
 }
 
 }  // namespace
@@ -77,13 +75,16 @@ MapPicture::MapPicture(loop::Loop& loop, loop::Workers& workers, std::function<v
       covered_(workers, mosaic_) {}
 
 void MapPicture::forwarded(icd::MapUpdate map) {
+  auto bounds = bounds_of(map);
   std::erase_if(waiting_, [&](const Waiting& older) {
-    const bool overtaken = covers(map, older.map);
-    if (overtaken) waiting_bytes_ -= older.map.data.bytes.size();
-    return overtaken;
+    if (!bounds || !older.bounds || map.name != older.map.name) return false;
+    if (!icd::covers(std::get<icd::OccupancyGrid>(map.msg), *older.bounds)) return false;
+    bounds = icd::around(*bounds, *older.bounds);
+    waiting_bytes_ -= older.map.data.bytes.size();
+    return true;
   });
   waiting_bytes_ += map.data.bytes.size();
-  waiting_.push_back({.map = std::move(map), .stamp = loop_.wall_now()});
+  waiting_.push_back({.map = std::move(map), .stamp = loop_.wall_now(), .bounds = bounds});
   while (waiting_bytes_ > kMostWaiting && waiting_.size() > 1) {
     mosaic_.missed(picture::layer_of(waiting_.front().map), waiting_.front().stamp);
     waiting_bytes_ -= waiting_.front().map.data.bytes.size();

@@ -9,6 +9,7 @@
 
 #include "api/covered_map.hpp"
 #include "forward/fine_tiles.hpp"
+#include "icd/grid_bounds.hpp"
 #include "icd/map_update.hpp"
 #include "loop/loop.hpp"
 #include "loop/workers.hpp"
@@ -68,6 +69,8 @@ class MapPicture {
   struct Waiting {
     icd::MapUpdate map;
     double stamp = 0;  // forwarded at this time of day
+    /// For a grid: the bounds of it and of all that it replaced here.
+    std::optional<icd::GridBounds> bounds{};
   };
   struct Job;
 

@@ -34,15 +34,17 @@ std::shared_ptr<intake::MapArrival> MapStore::arrives(std::function<std::uint64_
 }
 
 void MapStore::store(icd::MapUpdate update, std::shared_ptr<spool::MapFile> file, std::uint64_t spare,
-                     bool again, std::function<void(Stored& stored)> done) {
+                     bool again, std::function<void(Stored& stored)> done,
+                     std::optional<icd::GridBounds> bounds) {
   /// The writer's until it is stored.
   struct Job {
     icd::MapUpdate update;
     std::shared_ptr<spool::MapFile> file;
+    std::optional<icd::GridBounds> bounds;
     Stored stored;
   };
   const std::size_t size = update.data.bytes.size();
-  const auto job = std::make_shared<Job>(Job{std::move(update), std::move(file), {}});
+  const auto job = std::make_shared<Job>(Job{std::move(update), std::move(file), bounds, {}});
   // Lower numbers for older maps: later processes follow them.
   job->stored.number = again && again_numbers_ < kFirstNumber - 1 ? ++again_numbers_ : ++numbers_;
   job->stored.map = std::unexpected(not_stored());
@@ -53,6 +55,9 @@ void MapStore::store(icd::MapUpdate update, std::shared_ptr<spool::MapFile> file
         stored.map = stored.has_no_valid_point
                          ? without_data(std::move(job->update), std::move(job->file))
                          : spool.keep(stored.number, std::move(job->update), spare, std::move(job->file));
+        if (!stored.map || !job->bounds || spool.keep_bounds(stored.number, *job->bounds)) return;
+        spool.forget(stored.number);
+        stored.map = std::unexpected(not_stored());
       },
       [this, job, size, again, done = std::move(done)] {
         --count_;
@@ -78,6 +83,16 @@ void MapStore::forget(std::span<const std::uint64_t> numbers) {
   writer_.submit(
       [&spool = spool_, gone = std::vector(numbers.begin(), numbers.end())] {
         for (const std::uint64_t number : gone) spool.forget(number);
+      },
+      [] {});
+}
+
+void MapStore::forget(queues::Replaced replaced) {
+  if (!replaced.bounds) return forget(std::span<const std::uint64_t>(replaced.numbers));
+  writer_.submit(
+      [&spool = spool_, replaced = std::move(replaced)] {
+        if (!spool.keep_bounds(replaced.bounds->first, replaced.bounds->second)) return;
+        for (const std::uint64_t number : replaced.numbers) spool.forget(number);
       },
       [] {});
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
@@ -34,12 +35,15 @@ class MapStore {
   /// `spare`: bytes to leave free. The arrival may outlive this.
   std::shared_ptr<intake::MapArrival> arrives(std::function<std::uint64_t()> spare, MapArrival::Take take);
   /// Stores `update` and leaves `spare` bytes free. `file`: with its data, or null. `again`: the operator
-  /// sends it again.
+  /// sends it again, with these bounds (QueuedMap::bounds).
   void store(icd::MapUpdate update, std::shared_ptr<spool::MapFile> file, std::uint64_t spare, bool again,
-             std::function<void(Stored& stored)> done);
+             std::function<void(Stored& stored)> done, std::optional<icd::GridBounds> bounds = {});
   /// Closes the file of a map that is not accepted; null: none.
   void discard(std::shared_ptr<spool::MapFile> file);
   void forget(std::span<const std::uint64_t> numbers);
+  /// Deletes maps that a newer one replaced, once its bounds are stored. If they cannot be stored, the files
+  /// stay until the newer map is delivered.
+  void forget(queues::Replaced replaced);
   /// Renames the damaged files.
   void set_aside(std::vector<Damaged> damaged);
 

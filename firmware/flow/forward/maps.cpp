@@ -53,7 +53,7 @@ Maps::Maps(loop::Loop& loop, loop::Workers& workers, loop::Writer& writer, spool
       store_(writer, spool),
       accepted_(
           loop, workers, settings, counts, journal, queue_, store_, [this] { pump(); },
-          [this](const queues::QueuedMap& back) { return prepared_.contain(back); }),
+          [this](const queues::QueuedMap& back) { return prepared_.absorb(back); }),
       prepared_(loop, workers, settings, counts, pace_, queue_, store_,
                 [this](bool is_done) { packed(is_done); }) {
   take_settings();
@@ -236,7 +236,7 @@ void Maps::give_up(const Place& sent, int status, const std::string& sentence) {
   if (waiting.again) waiting.map.header().stamp = waiting.again;
   if (waiting.parts.empty()) {
     rejected_.add(waiting.map, status, sentence, waiting.map.data.bytes.size(),
-                  {.let_go = [this, numbers = waiting.updates] { forget(numbers); }});
+                  {.let_go = [this, numbers = waiting.updates] { forget(numbers); }}, waiting.bounds);
     return prepared_.leaves(sent);
   }
   if (sent == prepared_.first()) prepared_.put_back_following();

@@ -57,9 +57,10 @@ class Maps {
 
   /// Queues a rejected map before its sender's other maps. `done` is called with true if it is stored, or if
   /// a queued or sent map contains it. It returns false if such a map was accepted since; then it is not
-  /// sent.
-  void send_again(icd::MapUpdate update, std::function<bool(bool kept)> done) {
-    accepted_.send_again(std::move(update), std::move(done));
+  /// sent. `bounds`: of a grid that stands for others (queues::RejectedMessage).
+  void send_again(icd::MapUpdate update, std::function<bool(bool kept)> done,
+                  const std::optional<icd::GridBounds>& bounds = {}) {
+    accepted_.send_again(std::move(update), std::move(done), bounds);
   }
 
   /// Stops sending. False while an answer is awaited.

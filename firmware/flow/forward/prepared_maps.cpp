@@ -47,9 +47,13 @@ std::vector<const PreparedMap*> PreparedMaps::of(const Traffic& traffic) const {
   return all;
 }
 
-bool PreparedMaps::contain(const queues::QueuedMap& back) const {
-  return (first_ && queues::replaces(first_->waiting, back)) ||
-         (following_ && queues::replaces(following_->waiting, back));
+/// A worker that packs the map reads no bounds.
+std::optional<queues::Replaced> PreparedMaps::absorb(const queues::QueuedMap& back) {
+  for (const Place& place : {first_, following_}) {
+    if (!place) continue;
+    if (auto replaced = queues::absorb(place->waiting, back)) return replaced;
+  }
+  return {};
 }
 
 void PreparedMaps::prepare(bool follows, std::uint64_t delivers) {

@@ -36,8 +36,8 @@ class PreparedMaps {
   const Place& first() const { return first_; }
   const Place& following() const { return following_; }
   std::vector<const PreparedMap*> of(const Traffic& traffic) const;
-  /// True if one of them contains `back`, which was not delivered.
-  bool contain(const queues::QueuedMap& back) const;
+  /// If one of them contains `back`, which was not delivered, it stands for `back` from now on.
+  std::optional<queues::Replaced> absorb(const queues::QueuedMap& back);
 
   /// Takes the next map from the queue, and packs it. `delivers`: the link's bytes per second, or 0.
   void prepare(bool follows, std::uint64_t delivers);

@@ -40,12 +40,14 @@ std::expected<void, std::string> write_message(const std::string& path, const ic
 constexpr std::string_view kKinds[] = {"map", "state", "markers"};  // in the order of queues::Message
 
 std::string reason_of(const queues::RejectedMessage& item, bool replaced) {
-  return codec::write_json({Value::Object{{"kind", {std::string(kKinds[item.message.index()])}},
-                                          {"status", {std::int64_t{item.status}}},
-                                          {"why", {item.why}},
-                                          {"at", {item.at}},
-                                          {"bytes", {static_cast<std::uint64_t>(item.bytes)}},
-                                          {"replaced", {replaced}}}});
+  Value::Object members{{"kind", {std::string(kKinds[item.message.index()])}},
+                        {"status", {std::int64_t{item.status}}},
+                        {"why", {item.why}},
+                        {"at", {item.at}},
+                        {"bytes", {static_cast<std::uint64_t>(item.bytes)}},
+                        {"replaced", {replaced}}};
+  if (item.bounds) members.emplace_back("bounds", spool::to_json(*item.bounds));
+  return codec::write_json({std::move(members)});
 }
 
 icd::ChunkedBytes text_bytes(const std::string& text) {
@@ -81,8 +83,8 @@ icd::Checked<queues::Message> read_message(const std::string& path, std::string_
   return icd::unprocessable("kind: expected map, state or markers");
 }
 
-/// 503: unreadable. Otherwise: damaged.
-icd::Checked<std::pair<std::string, queues::RejectedMessage>> read_reason(const std::string& path) {
+/// Reads the reason from the file at `path`, and the message beside it. 503: unreadable. Otherwise: damaged.
+icd::Checked<queues::RejectedMessage> read_item(const std::string& path, const std::string& message) {
   const auto file = spool::map_file(path);
   if (!file) return std::unexpected(spool::unreadable(path, file.error()));
   const auto value = codec::parse_json(spool::text_in(*file));
@@ -96,7 +98,12 @@ icd::Checked<std::pair<std::string, queues::RejectedMessage>> read_reason(const 
   item.at = root.member("at").number();
   item.bytes = static_cast<std::size_t>(root.member("bytes").whole<std::int64_t>(0, std::int64_t{1} << 40));
   item.replaced = root.member("replaced").truth();
-  return reading.outcome(std::pair(kind, std::move(item)));
+  item.message = ADIT_TRY(read_message(message, kind));
+  const codec::Field bounds = root.member("bounds");
+  const auto* const map = std::get_if<icd::MapUpdate>(&item.message);
+  if (map != nullptr && map->is_grid() && !bounds.is_absent())
+    item.bounds = spool::read_bounds(bounds, std::get<icd::OccupancyGrid>(map->msg));
+  return reading.outcome(std::move(item));
 }
 
 std::string who(const queues::Message& message) {
@@ -148,19 +155,20 @@ void RejectedStore::restore() {
 }
 
 icd::Checked<void> RejectedStore::restore_one(std::uint64_t number) {
-  auto reason = ADIT_TRY(read_reason(path(number, kReason)));
-  auto message = ADIT_TRY(read_message(path(number, kMessage), reason.first));
-  queues::RejectedMessage& item = reason.second;
+  auto item = ADIT_TRY(read_item(path(number, kReason), path(number, kMessage)));
   item.number = number;
-  item.message = std::move(message);
   items_.restore(std::move(item));
   return {};
 }
 
 void RejectedStore::add(queues::Message message, int status, const std::string& why, std::size_t bytes,
-                        Origin origin) {
-  queues::RejectedMessage item{
-      .message = std::move(message), .status = status, .why = why, .at = loop_.stamp_now(), .bytes = bytes};
+                        Origin origin, const std::optional<icd::GridBounds>& bounds) {
+  queues::RejectedMessage item{.message = std::move(message),
+                               .status = status,
+                               .why = why,
+                               .at = loop_.stamp_now(),
+                               .bytes = bytes,
+                               .bounds = bounds};
   host::log(host::Level::Warning, "the Command Post rejected a message; it is kept",
             {{"kind", kind_of(item.message)},
              {"robot", who(item.message)},
@@ -168,7 +176,7 @@ void RejectedStore::add(queues::Message message, int status, const std::string& 
              {"why", why}});
   const auto said_again = [&](std::uint64_t number) {
     const queues::RejectedMessage* const older = items_.find(number);
-    return older == nullptr || older->replaced || queues::replaces(item.message, older->message);
+    return older == nullptr || older->replaced || queues::replaces(item.message, *older);
   };
   std::vector<std::uint64_t> covered;
   for (const queues::RejectedMessage& older : items_.items()) {
@@ -244,7 +252,7 @@ bool RejectedStore::taken(const queues::Message& message, std::function<void()> 
   return !all.empty();
 }
 
-std::expected<queues::Message, std::string> RejectedStore::to_be_sent(std::uint64_t number) {
+std::expected<queues::RejectedMessage, std::string> RejectedStore::to_be_sent(std::uint64_t number) {
   const queues::RejectedMessage* const item = items_.find(number);
   if (item == nullptr || leaving_.contains(number)) return std::unexpected(no_such(number));
   if (item->replaced) {
@@ -252,7 +260,7 @@ std::expected<queues::Message, std::string> RejectedStore::to_be_sent(std::uint6
         "a newer message that contains it was delivered since; sent now, it would replace the newer message");
   }
   leaving_.insert(number);
-  return item->message;
+  return *item;
 }
 
 bool RejectedStore::sent_again(std::uint64_t number, bool kept) {

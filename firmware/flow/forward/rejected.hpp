@@ -40,7 +40,9 @@ class RejectedStore {
   /// Which messages of the previous process are missing in rows(), and why; or "".
   const std::string& missing() const { return missing_; }
 
-  void add(queues::Message message, int status, const std::string& why, std::size_t bytes, Origin origin);
+  /// `bounds`: of a grid that replaced others (queues::QueuedMap).
+  void add(queues::Message message, int status, const std::string& why, std::size_t bytes, Origin origin,
+           const std::optional<icd::GridBounds>& bounds = {});
   /// The Command Post accepted `message`: marks older rejected messages that it contains, so that they are
   /// never sent. Forget `message` only after `written`, which is called on the loop. False: no mark to write,
   /// and `written` is not called.
@@ -52,7 +54,7 @@ class RejectedStore {
   bool all_kept() const { return being_written_ == 0; }
 
   /// Takes a message for sending. Call sent_again() next. An error: why it cannot be sent.
-  std::expected<queues::Message, std::string> to_be_sent(std::uint64_t number);
+  std::expected<queues::RejectedMessage, std::string> to_be_sent(std::uint64_t number);
   /// `kept`: the message is queued and stored elsewhere; otherwise it stays rejected. False: a newer message
   /// that contains it was accepted.
   bool sent_again(std::uint64_t number, bool kept);

@@ -27,22 +27,6 @@ Area area_of(const icd::OccupancyGrid& grid) {
   return {left.x, bottom.y, right.x, top.y};
 }
 
-/// True if `older` lies within `newer`, as seen from above, with a tolerance of one cell of `newer`. A
-/// robot's map may move by that much from one to the next.
-bool lies_over(const icd::OccupancyGrid& newer, const icd::OccupancyGrid& older) {
-  const icd::Placement placement{newer.origin};
-  const auto& turn = placement.turn;
-  const auto inside = [&](double metres, std::uint32_t cells) {
-    return metres >= -newer.resolution && metres <= (cells + 1.0) * newer.resolution;
-  };
-  return std::ranges::all_of(corners_of(older), [&](const icd::Point& corner) {
-    const double x = corner.x - placement.shift.x, y = corner.y - placement.shift.y,
-                 z = corner.z - placement.shift.z;
-    return inside(turn[0][0] * x + turn[1][0] * y + turn[2][0] * z, newer.width) &&
-           inside(turn[0][1] * x + turn[1][1] * y + turn[2][1] * z, newer.height);
-  });
-}
-
 bool is_same(const ForwardedGrid& a, const ForwardedGrid& b) {
   return a.grid.resolution == b.grid.resolution && a.grid.width == b.grid.width &&
          a.grid.height == b.grid.height && a.grid.origin == b.grid.origin && a.data == b.data;
@@ -100,10 +84,12 @@ bool ForwardedGrids::take(std::shared_ptr<const ForwardedGrid> grid, std::uint64
   Grids& kept = layers_[grid->layer];
   if (!kept.empty() && is_same(*kept.back().grid, *grid)) return false;
   const auto covered = std::ranges::stable_partition(
-      kept, [&](const Kept& older) { return !lies_over(grid->grid, older.grid->grid); });
+      kept, [&](const Kept& older) { return !icd::covers(grid->grid, older.bounds); });
+  auto bounds = icd::GridBounds::of(grid->grid);
+  for (const Kept& older : covered) bounds = icd::around(bounds, older.bounds);
   forget(kept, covered.begin(), covered.end());
   bytes_ += grid->cost();
-  kept.push_back({std::move(grid), number});
+  kept.push_back({std::move(grid), number, bounds});
   keep_to_budget();
   return true;
 }

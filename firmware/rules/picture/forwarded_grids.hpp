@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "icd/grid_bounds.hpp"
 #include "picture/mosaic.hpp"
 
 namespace adit::picture {
@@ -29,8 +30,8 @@ inline constexpr double kLargestFineCell = 0.5;  // metres
 inline constexpr std::size_t kLargestFineGrid = std::size_t{4} << 20;
 
 /// The last grids of each robot as they were forwarded. Finer tiles are drawn from them. A new grid replaces
-/// the grids that lie within it. A grid without data replaces all grids of its layer. So the newest forwarded
-/// grid is always shown. Keeps at most `budget` bytes and drops the oldest grids first.
+/// the grids that it covers (icd::covers()). A grid without data replaces all grids of its layer. So the
+/// newest forwarded grid is always shown. Keeps at most `budget` bytes and drops the oldest grids first.
 class ForwardedGrids {
  public:
   static constexpr std::size_t kBudget = std::size_t{16} << 20;
@@ -57,6 +58,7 @@ class ForwardedGrids {
   struct Kept {
     std::shared_ptr<const ForwardedGrid> grid;
     std::uint64_t number = 0;
+    icd::GridBounds bounds;  // of it and of all that it replaced
   };
   using Grids = std::vector<Kept>;  // oldest first; never empty
   void forget(Grids& grids, Grids::iterator first, Grids::iterator end);

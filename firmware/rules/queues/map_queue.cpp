@@ -41,14 +41,16 @@ QueuedMap MapQueue::waiting(std::uint64_t number, icd::MapUpdate map, Instant no
   return made;
 }
 
-std::vector<std::uint64_t> MapQueue::add(std::uint64_t number, icd::MapUpdate map, Instant now) {
+Replaced MapQueue::add(std::uint64_t number, icd::MapUpdate map, Instant now) {
   QueuedMap added = waiting(number, std::move(map), now);
   Waiting& its = joins(Sender::of(added.map));
   return change(its.queue, [&](SenderQueue& queue) { return queue.add(std::move(added)); });
 }
 
-void MapQueue::restore(std::uint64_t number, icd::MapUpdate map, Instant now) {
+void MapQueue::restore(std::uint64_t number, icd::MapUpdate map, Instant now,
+                       std::optional<icd::GridBounds> bounds) {
   QueuedMap restored = waiting(number, std::move(map), now);
+  restored.bounds = bounds;
   Waiting& its = joins(Sender::of(restored.map));
   change(its.queue, [&](SenderQueue& queue) {
     queue.append(std::move(restored));
@@ -108,7 +110,7 @@ void MapQueue::carried(const Sender& sender, std::size_t bytes) {
   its.turn = turns_.owes(its.turn, (bytes - 1) / slot_bytes_);
 }
 
-std::vector<std::uint64_t> MapQueue::put_back(QueuedMap map) {
+Replaced MapQueue::put_back(QueuedMap map) {
   Waiting& its = joins(Sender::of(map.map));
   return change(its.queue, [&](SenderQueue& queue) { return queue.put_back(std::move(map)); });
 }
@@ -150,9 +152,9 @@ bool MapQueue::joins(const icd::MapUpdate& map) const {
   return queue != nullptr && queue->joins(waiting(0, map, {}));
 }
 
-bool MapQueue::is_replaced(const QueuedMap& map) const {
-  const SenderQueue* queue = queue_of(Sender::of(map.map));
-  return queue != nullptr && queue->is_replaced(map);
+std::optional<Replaced> MapQueue::absorb(const QueuedMap& map) {
+  const auto found = senders_.find(Sender::of(map.map));
+  return found == senders_.end() ? std::nullopt : found->second.queue.absorb(map);
 }
 
 std::size_t MapQueue::count(const Sender& sender) const {

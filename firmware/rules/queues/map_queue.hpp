@@ -25,12 +25,11 @@ namespace adit::queues {
 ///
 /// Order and replacement within a sender:
 /// - The oldest map goes first.
-/// - A newer grid replaces an older grid that it covers, and inherits its age. Grids of that name that it
-/// does
-///   not cover go ahead of it, so that old cells are never sent after newer ones.
+/// - A newer grid replaces an older grid that it covers, with all that the older one replaced
+///   (icd::covers()), and inherits its age. Grids of that name that it does not cover go ahead of it, so that
+///   old cells are never sent after newer ones.
 /// - take() stitches grids of one lattice that fill a rectangle. It fills gaps between them with the cells
-/// that
-///   were last sent there, if these are known (stitch.hpp, canvases.hpp).
+///   that were last sent there, if these are known (stitch.hpp, canvases.hpp).
 /// - Clouds stay in order. take() merges clouds that follow each other.
 /// - A cloud replaces all earlier ones if the robot's clouds are Clouds::Whole. With Clouds::Auto it replaces
 ///   the previous one if a comparison shows that it has all its points (to_compare(), replace()).
@@ -38,7 +37,8 @@ namespace adit::queues {
 ///
 /// Result for the grids of one name and lattice: a Command Post that overwrites cells ends with the newest
 /// posted value in each cell, unknown included. A Command Post that overlays (unknown overwrites nothing)
-/// ends with the newest value wherever that value is known.
+/// ends with the newest value wherever that value is known. If lattices differ, a grid that was replaced may
+/// lack half a cell at its edge.
 ///
 /// A map on trial (Blame) lets others go first while it rests. A grid on trial holds back later grids of its
 /// name for its first kInPlace failures, including failures of grids that it replaced. After that they go
@@ -63,13 +63,13 @@ class MapQueue {
   /// chooses the finest precision at which all queued clouds of the robot fit.
   void a_message_holds(const PointsAt& points) { holds_ = points; }
 
-  /// Adds a map. Returns the numbers of the updates whose maps it replaced; the map stands for them from now
-  /// on. A number is used once.
-  std::vector<std::uint64_t> add(std::uint64_t number, icd::MapUpdate map, Instant now);
+  /// Adds a map, which stands from now on for the maps that it replaced. A number is used once.
+  Replaced add(std::uint64_t number, icd::MapUpdate map, Instant now);
 
-  /// Adds a map that was queued before a restart; call in the order of the numbers. It replaces no other map,
-  /// because comparisons would delay the start.
-  void restore(std::uint64_t number, icd::MapUpdate map, Instant now);
+  /// Adds a map that was queued before a restart, with its stored bounds; call in the order of the numbers.
+  /// It replaces no other map, because comparisons would delay the start.
+  void restore(std::uint64_t number, icd::MapUpdate map, Instant now,
+               std::optional<icd::GridBounds> bounds = {});
 
   static constexpr int kInPlace = SenderQueue::kInPlace;
 
@@ -84,8 +84,8 @@ class MapQueue {
 
   /// Queues a map again that was not delivered, or that the operator sends again: as the sender's first map,
   /// but behind older ones that are sent again. If a newer queued grid covers it, that grid inherits its
-  /// updates and age instead. Returns the numbers of updates that are no longer needed, as add() does.
-  std::vector<std::uint64_t> put_back(QueuedMap map);
+  /// updates and age instead, and the map is in the result.
+  Replaced put_back(QueuedMap map);
 
   /// Queues the parts of a merged or stitched map again, each by itself, as the sender's first maps. They are
   /// not joined again, so that only the part that the Command Post rejects fails. Requires parts.
@@ -95,7 +95,7 @@ class MapQueue {
   /// the outcome.
   std::optional<Successive> to_compare() const;
   /// The newer cloud has all points of the older one and replaces it, if both are still queued unchanged.
-  /// Returns numbers as add() does.
+  /// Returns the numbers of the updates whose maps are no longer needed.
   std::vector<std::uint64_t> replace(const Successive& two);
   /// The newer cloud lacks points of the older one, or the comparison failed.
   void keep_both(const Successive& two);
@@ -104,8 +104,9 @@ class MapQueue {
   bool replaces_any(const icd::MapUpdate& map) const;
   /// Whether take() could merge or stitch it with the last queued map of its sender.
   bool joins(const icd::MapUpdate& map) const;
-  /// Whether a newer queued grid covers it.
-  bool is_replaced(const QueuedMap& map) const;
+  /// If a newer queued grid covers `map`, which is not queued, it stands for `map` from now on. Nothing: none
+  /// does.
+  std::optional<Replaced> absorb(const QueuedMap& map);
 
   std::size_t count() const { return count_; }
   std::size_t count(const Sender& sender) const;

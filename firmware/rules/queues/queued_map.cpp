@@ -33,13 +33,17 @@ std::vector<const icd::MapUpdate*> said_by(const QueuedMap& taken) {
   return maps;
 }
 
+icd::GridBounds bounds_of(const QueuedMap& grid) {
+  return grid.bounds ? *grid.bounds : icd::GridBounds::of(std::get<icd::OccupancyGrid>(grid.map.msg));
+}
+
 bool says_all_of(const QueuedMap& newer, const QueuedMap& older) {
   if (newer.map.name != older.map.name || newer.map.is_grid() != older.map.is_grid()) return false;
   if (!newer.map.is_grid()) return newer.is_whole;
   if (newer.has_gaps) {
     return std::ranges::any_of(newer.parts, [&](const QueuedMap& part) { return says_all_of(part, older); });
   }
-  return covers(std::get<icd::OccupancyGrid>(newer.map.msg), std::get<icd::OccupancyGrid>(older.map.msg));
+  return icd::covers(std::get<icd::OccupancyGrid>(newer.map.msg), bounds_of(older));
 }
 
 bool replaces(const QueuedMap& newer, const QueuedMap& older) {
@@ -92,6 +96,28 @@ bool may_join(const QueuedMap& map) {
 void add_own_numbers(std::vector<std::uint64_t>& numbers, const QueuedMap& of) {
   if (of.parts.empty()) numbers.push_back(of.updates.back());
   for (const QueuedMap& part : of.parts) numbers.push_back(part.updates.back());
+}
+
+/// A stitched grid's parts may be queued singly later, so one of them takes the bounds, too.
+void take_bounds(QueuedMap& to, const QueuedMap& from, Replaced& replaced) {
+  if (!to.map.is_grid()) return;
+  to.bounds = icd::around(bounds_of(to), bounds_of(from));
+  QueuedMap* heir = &to;
+  if (!to.parts.empty()) {
+    const auto part =
+        std::ranges::find_if(to.parts, [&](const QueuedMap& each) { return says_all_of(each, from); });
+    heir = part == to.parts.end() ? &to.parts.back() : &*part;
+    heir->bounds = icd::around(bounds_of(*heir), bounds_of(from));
+  }
+  if (heir->bounds->is_larger_than(std::get<icd::OccupancyGrid>(heir->map.msg)))
+    replaced.bounds = {heir->updates.back(), *heir->bounds};
+}
+
+std::optional<Replaced> absorb(QueuedMap& to, const QueuedMap& from) {
+  if (!replaces(to, from)) return {};
+  Replaced replaced;
+  take_bounds(to, from, replaced);
+  return replaced;
 }
 
 void take_over(QueuedMap& to, QueuedMap from) {

@@ -4,20 +4,16 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
+#include "icd/grid_bounds.hpp"
 #include "icd/map_update.hpp"
 #include "queues/blame.hpp"
 #include "queues/ground.hpp"
 #include "queues/precision.hpp"
 
 namespace adit::queues {
-
-/// Whether `newer` contains all cells of `older`, so that `older` need not be sent (ICD 6.3.1, promise 2).
-/// They have one lattice, and older's extent is within newer's. One lattice: the same resolution, orientation
-/// and height, and origins that are a whole number of cells apart, to a thousandth of a cell. Reflexive and
-/// transitive.
-bool covers(const icd::OccupancyGrid& newer, const icd::OccupancyGrid& older);
 
 /// Whether one message can have the points of both: fields, point_step, byte order and origin are the same.
 bool mergeable(const icd::PointCloud2& a, const icd::PointCloud2& b);
@@ -47,6 +43,8 @@ struct QueuedMap {
   /// For a cloud that is being sent: how far it may be rounded; not Auto.
   Precision precision = Precision::Exact;
   Trial trial{};  // its failures at the Command Post
+  /// The bounds of a grid and of all that it replaced, along its own axes; nothing if it replaced none.
+  std::optional<icd::GridBounds> bounds{};
   /// Only for a rejected map that the operator sends again: its original stamp. It orders the map before all
   /// maps that were never rejected, and identifies it.
   std::optional<icd::Stamp> again{};
@@ -55,8 +53,10 @@ struct QueuedMap {
 /// The maps that are delivered if `taken` is accepted: the map itself, or the parts of a map with gaps,
 /// because a gap has no news.
 std::vector<const icd::MapUpdate*> said_by(const QueuedMap& taken);
-/// Whether `newer`, which was just accepted, contains all of `older`: it is a grid that covers it, has a part
-/// that covers it (if it has gaps), or is a whole cloud.
+/// The bounds of a grid and of all that it replaced.
+icd::GridBounds bounds_of(const QueuedMap& grid);
+/// Whether `newer`, which was just accepted, contains all of `older` and of what that replaced: it is a grid
+/// that covers it (icd::covers()), has a part that covers it (if it has gaps), or is a whole cloud.
 bool says_all_of(const QueuedMap& newer, const QueuedMap& older);
 /// The same for a retry: `newer` is queued or in flight, and must be newer than `older`, which was not
 /// delivered.
@@ -71,7 +71,21 @@ std::size_t bytes_held(const QueuedMap& waiting);
 /// Appends the numbers of the maps that are sent with it, without those that they replaced.
 void add_own_numbers(std::vector<std::uint64_t>& numbers, const QueuedMap& of);
 
-/// `to` replaces `from`, and takes its updates and age.
+/// Maps that are no longer needed, because a newer one stands for them.
+struct Replaced {
+  std::vector<std::uint64_t> numbers;  // of their updates
+  /// The newer map has larger bounds than its own: its number, and the bounds. Store them before the older
+  /// maps are deleted, so that a later process knows them.
+  std::optional<std::pair<std::uint64_t, icd::GridBounds>> bounds{};
+};
+
+/// `to` stands for `from`, and takes its bounds. If these have to be stored, they are in `replaced` then.
+void take_bounds(QueuedMap& to, const QueuedMap& from, Replaced& replaced);
+
+/// `to` stands for `from`, which is not queued. Nothing: `to` is older, or does not contain it.
+std::optional<Replaced> absorb(QueuedMap& to, const QueuedMap& from);
+
+/// `to` replaces `from`, and takes its updates and age. Call take_bounds() first.
 void take_over(QueuedMap& to, QueuedMap from);
 
 /// Merges `from` into `to`, which takes its updates and keeps both as parts. The parts share their bytes.

@@ -3,25 +3,29 @@
 #include <algorithm>
 #include <utility>
 
-#include "queues/map_queue.hpp"
-
 namespace adit::queues {
 namespace {
 
-bool says_all(const icd::MapUpdate& newer, const icd::MapUpdate& older) {
-  const auto* const new_grid = std::get_if<icd::OccupancyGrid>(&newer.msg);
-  const auto* const old_grid = std::get_if<icd::OccupancyGrid>(&older.msg);
-  return new_grid != nullptr && old_grid != nullptr && newer.name == older.name &&
-         covers(*new_grid, *old_grid);
+/// The bounds of a rejected grid and of all that it replaced; nothing for a cloud.
+std::optional<icd::GridBounds> bounds_in(const icd::MapUpdate& map, const RejectedMessage& item) {
+  const auto* const grid = std::get_if<icd::OccupancyGrid>(&map.msg);
+  if (grid == nullptr) return {};
+  return item.bounds ? item.bounds : icd::GridBounds::of(*grid);
 }
 
-bool says_all(const icd::StateUpdate& newer, const icd::StateUpdate& older) {
+bool says_all(const icd::MapUpdate& newer, const icd::MapUpdate& older, const RejectedMessage& item) {
+  const auto* const grid = std::get_if<icd::OccupancyGrid>(&newer.msg);
+  const auto bounds = bounds_in(older, item);
+  return grid != nullptr && bounds && newer.name == older.name && icd::covers(*grid, *bounds);
+}
+
+bool says_all(const icd::StateUpdate& newer, const icd::StateUpdate& older, const RejectedMessage&) {
   return std::ranges::all_of(older.poses, [&](const icd::NamedPose& pose) {
     return std::ranges::find(newer.poses, pose.name, &icd::NamedPose::name) != newer.poses.end();
   });
 }
 
-bool says_all(const icd::MarkersUpdate& newer, const icd::MarkersUpdate& older) {
+bool says_all(const icd::MarkersUpdate& newer, const icd::MarkersUpdate& older, const RejectedMessage&) {
   return std::ranges::all_of(older.markers, [&](const icd::Marker& change) {
     return std::ranges::any_of(newer.markers, [&](const icd::Marker& later) {
       if (later.action == icd::MarkerAction::DeleteAll) return true;
@@ -44,16 +48,27 @@ bool is_older_map(const Message& message, const Message& other) {
   return map != nullptr && other_map != nullptr && map->header().stamp < other_map->header().stamp;
 }
 
-bool says_all_of(const Message& newer, const Message& older) {
-  return newer.index() == older.index() &&
-         std::visit([&]<class Kind>(const Kind& message) { return says_all(message, std::get<Kind>(older)); },
-                    newer);
+bool says_all_of(const Message& newer, const RejectedMessage& older) {
+  return newer.index() == older.message.index() &&
+         std::visit(
+             [&]<class Kind>(const Kind& message) {
+               return says_all(message, std::get<Kind>(older.message), older);
+             },
+             newer);
+}
+
+/// `item` replaces `older`. Both are grids if one is.
+void take_over(RejectedMessage& item, const RejectedMessage& older) {
+  const auto* const map = std::get_if<icd::MapUpdate>(&item.message);
+  if (map == nullptr) return;
+  item.bounds =
+      icd::around(*bounds_in(*map, item), *bounds_in(std::get<icd::MapUpdate>(older.message), older));
 }
 
 }  // namespace
 
-bool replaces(const Message& newer, const Message& older) {
-  return says_all_of(newer, older) && !is_older_map(newer, older);
+bool replaces(const Message& newer, const RejectedMessage& older) {
+  return says_all_of(newer, older) && !is_older_map(newer, older.message);
 }
 
 std::vector<std::uint64_t> RejectedMessages::add(RejectedMessage item) {
@@ -63,9 +78,10 @@ std::vector<std::uint64_t> RejectedMessages::add(RejectedMessage item) {
     gone.push_back(each.number);
   };
   std::erase_if(items_, [&](const RejectedMessage& older) {
-    const bool said = replaces(item.message, older.message);
-    if (said) drop(older);
-    return said;
+    if (!replaces(item.message, older)) return false;
+    take_over(item, older);
+    drop(older);
+    return true;
   });
   while (!items_.empty() && (items_.size() >= kMostItems || bytes_ + item.bytes > kMostBytes)) {
     drop(items_.front());
@@ -87,7 +103,7 @@ std::vector<std::uint64_t> RejectedMessages::replaced_by(const Message& newer) c
   std::vector<std::uint64_t> replaced;
   for (const RejectedMessage& item : items_) {
     if (item.replaced) continue;
-    if (!replaces(newer, item.message) && !deletes_newer(item.message, newer)) continue;
+    if (!replaces(newer, item) && !deletes_newer(item.message, newer)) continue;
     replaced.push_back(item.number);
   }
   return replaced;

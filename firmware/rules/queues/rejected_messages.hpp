@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "icd/grid_bounds.hpp"
 #include "icd/map_update.hpp"
 #include "icd/markers_update.hpp"
 #include "icd/state_update.hpp"
@@ -15,11 +16,6 @@
 namespace adit::queues {
 
 using Message = std::variant<icd::MapUpdate, icd::StateUpdate, icd::MarkersUpdate>;
-
-/// Whether `newer` contains all of `older` (promise 2): it is a grid of the same name that covers `older`, or
-/// has poses of all its robots, or changes of all its markers. False for clouds, and if `newer` has the older
-/// stamp: a message that the operator sends again may be older than other rejected messages.
-bool replaces(const Message& newer, const Message& older);
 
 /// A message that the Command Post rejected, and why.
 struct RejectedMessage {
@@ -30,7 +26,14 @@ struct RejectedMessage {
   double at = 0;          // seconds since 1970, on the gateway's clock
   std::size_t bytes = 0;  // as it is held
   bool replaced = false;  // a newer accepted message contains it, or is one that it would delete
+  /// QueuedMap::bounds: a grid stands for those that it replaced while it was queued, or here.
+  std::optional<icd::GridBounds> bounds{};
 };
+
+/// Whether `newer` contains all of `older` (promise 2): it is a grid of the same name that covers `older`, or
+/// has poses of all its robots, or changes of all its markers. False for clouds, and if `newer` has the older
+/// stamp: a message that the operator sends again may be older than other rejected messages.
+bool replaces(const Message& newer, const RejectedMessage& older);
 
 /// The rejected messages, kept for the operator to look at and to send again. Holds the newest: at most
 /// kMostItems and kMostBytes, but always one.

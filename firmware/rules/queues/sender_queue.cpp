@@ -24,14 +24,15 @@ bool may_replace(const QueuedMap& newer) {
 
 }  // namespace
 
-std::vector<std::uint64_t> SenderQueue::add(QueuedMap added) {
+Replaced SenderQueue::add(QueuedMap added) {
   const auto stays = [&](const QueuedMap& waiting) { return !says_all_of(added, waiting); };
   const auto first = may_replace(added) ? std::ranges::find_if_not(waiting_, stays) : waiting_.end();
   const auto gone = std::stable_partition(first, waiting_.end(), stays);
-  std::vector<std::uint64_t> replaced;
+  Replaced replaced;
   for (auto it = gone; it != waiting_.end(); ++it) {
     bytes_ -= bytes_held(*it);
-    add_own_numbers(replaced, *it);
+    add_own_numbers(replaced.numbers, *it);
+    take_bounds(added, *it, replaced);
     take_over(added, std::move(*it));
   }
   waiting_.erase(gone, waiting_.end());
@@ -147,13 +148,16 @@ void SenderQueue::stitch_followers(QueuedMap& next, std::size_t place, const Can
   const auto whole = stitched(grids);
   if (!whole) return;
   if (found.has_gaps && !(Canvas::can_draw(*whole) && canvas->cells_of(*whole))) return;
+  auto bounds = icd::GridBounds::of(*whole);
   for (const std::size_t i : found.which) {
+    bounds = icd::around(bounds, bounds_of(waiting_[places[i]]));
     if (places[i] == place) continue;
     leaves[places[i]] = true;
     join(next, waiting_[places[i]]);
   }
   next.map.data = {{}, icd::Compression::None, std::size_t{whole->width} * whole->height};
   next.map.msg = *whole;
+  next.bounds = bounds;
   next.has_gaps = found.has_gaps;
 }
 
@@ -162,7 +166,7 @@ SenderQueue::Maps::const_iterator SenderQueue::before_newer(const QueuedMap& bac
   return std::ranges::find_if(waiting_, [&](const QueuedMap& waiting) { return is_newer(waiting, back); });
 }
 
-std::vector<std::uint64_t> SenderQueue::put_back(QueuedMap map) {
+Replaced SenderQueue::put_back(QueuedMap map) {
   map.ground.reset();
   if (map.has_gaps) {
     // At the next try, newer cells may have been sent between its parts.
@@ -179,9 +183,10 @@ std::vector<std::uint64_t> SenderQueue::put_back(QueuedMap map) {
     bytes_ += bytes;
     return {};
   }
-  std::vector<std::uint64_t> replaced;
-  add_own_numbers(replaced, map);
+  Replaced replaced;
+  add_own_numbers(replaced.numbers, map);
   const std::size_t before = bytes_held(*newer);
+  take_bounds(*newer, map, replaced);
   take_over(*newer, std::move(map));
   bytes_ += bytes_held(*newer) - before;
   return replaced;
@@ -243,8 +248,11 @@ bool SenderQueue::replaces_any(const QueuedMap& map) const {
          std::ranges::any_of(waiting_, [&](const QueuedMap& waiting) { return says_all_of(map, waiting); });
 }
 
-bool SenderQueue::is_replaced(const QueuedMap& map) const {
-  return std::ranges::any_of(waiting_, [&](const QueuedMap& waiting) { return replaces(waiting, map); });
+std::optional<Replaced> SenderQueue::absorb(const QueuedMap& map) {
+  for (QueuedMap& waiting : waiting_) {
+    if (auto replaced = queues::absorb(waiting, map)) return replaced;
+  }
+  return {};
 }
 
 bool SenderQueue::joins(const QueuedMap& map) const {

@@ -28,7 +28,7 @@ class SenderQueue {
   /// After so many failures of a grid, later grids of its name go ahead of it.
   static constexpr int kInPlace = 3;
 
-  std::vector<std::uint64_t> add(QueuedMap added);
+  Replaced add(QueuedMap added);
   void append(QueuedMap added);  // replaces no map
   /// Whether a map may be sent now. A map that rests may not, nor a grid behind a grid that rests.
   bool is_ready(Instant now) const;
@@ -36,7 +36,7 @@ class SenderQueue {
   std::pair<Instant, Instant> resting() const;
   /// The oldest map that may be sent. If there is none, the map that has rested longest. Requires a map.
   QueuedMap take(Instant now, std::size_t merge_bytes, Canvases& canvases);
-  std::vector<std::uint64_t> put_back(QueuedMap map);
+  Replaced put_back(QueuedMap map);
   void put_back_apart(QueuedMap map);
   void step_forward();  // clears Trial::steps_behind of all maps
 
@@ -46,7 +46,7 @@ class SenderQueue {
   void keep_both(const Successive& two);
 
   bool replaces_any(const QueuedMap& map) const;
-  bool is_replaced(const QueuedMap& map) const;
+  std::optional<Replaced> absorb(const QueuedMap& map);
   bool joins(const QueuedMap& map) const;
   /// When the oldest queued map was accepted, or nothing.
   std::optional<Instant> oldest() const;

@@ -44,6 +44,19 @@ TEST(MapMaker, DatesAGridInItsFirstCells) {
   EXPECT_EQ(date, 1'700'000'000'123u % 10'510'100'501u);
 }
 
+TEST(MapMaker, CorrectsTheFrameOfDriftingGrids) {
+  Maker team({.grids = GridForm::Drifting, .grid_bytes = 2'400'000}), still({.grid_bytes = 2'400'000});
+  const Placement at = still.grid()->origin;
+  EXPECT_EQ(team.grid()->origin, at);
+  const auto moved = team.grid();
+  EXPECT_DOUBLE_EQ(moved->resolution, 0.05);
+  EXPECT_NEAR(moved->origin.position.x - at.position.x, 0.013, 1e-9);
+  EXPECT_NEAR(moved->origin.orientation.z, 0.5e-9, 1e-15);
+  EXPECT_NEAR(team.grid()->origin.position.y - at.position.y, 0.013, 1e-9);
+  team.grid();
+  EXPECT_NEAR(team.grid()->origin.position.z - at.position.z, 0.001, 1e-9);
+}
+
 TEST(MapMaker, DatesEachPointOfACloud) {
   Maker team({});
   const auto cloud = team.cloud();

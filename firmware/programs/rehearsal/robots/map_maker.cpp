@@ -54,6 +54,16 @@ Grid MapMaker::next_tile(const RobotMap& map, double stamp) {
   return map.part(low, {low.x + side - 1, low.y + side - 1}, stamp);
 }
 
+/// Each of the next frames is another one of eight.
+void MapMaker::move_frame(Grid& grid) {
+  const int frame = frame_++;
+  const auto part = [frame](int bit) { return (frame & bit) == 0 ? 0.0 : 1.0; };
+  grid.origin.position.x += kDrift * part(1);
+  grid.origin.position.y += kDrift * part(2);
+  grid.origin.position.z += kRise * part(4);
+  grid.origin.orientation = rotation_of(kYaw * part(1));
+}
+
 std::optional<Grid> MapMaker::grid(const RobotMap& map, const Vector3& here, const MapTime& time) {
   if (offer_.grids == GridForm::None) return std::nullopt;
   Grid grid = offer_.grids == GridForm::Rolling ? window(map, here, time.stamp)
@@ -61,6 +71,7 @@ std::optional<Grid> MapMaker::grid(const RobotMap& map, const Vector3& here, con
                                                 : map.grid(time.stamp);
   if (const std::uint32_t times = finer_by(map.lattice(), offer_.grid_bytes); times > 1)
     grid = finer(grid, times);
+  if (offer_.grids == GridForm::Drifting) move_frame(grid);
   date(grid, time.posted);
   cells_.add(grid.resolution, grid.origin.position.x, grid.origin.position.y, grid.width, grid.cells);
   return grid;

@@ -26,6 +26,8 @@ class MapMaker {
 
   static constexpr double kWindow = 10;  // metres, a rolling grid's side
   static constexpr double kTile = 8;     // metres, a tile's side
+  /// Of drifting grids: metres by which an origin is off along each axis or not, metres up, radians of yaw.
+  static constexpr double kDrift = 0.013, kRise = 0.001, kYaw = 1e-9;
 
   /// `here`: where the robot is. Nothing where it posts no grids.
   std::optional<Grid> grid(const RobotMap& map, const Vector3& here, const MapTime& time);
@@ -41,12 +43,14 @@ class MapMaker {
  private:
   Grid window(const RobotMap& map, const Vector3& here, double stamp) const;
   Grid next_tile(const RobotMap& map, double stamp);
+  void move_frame(Grid& grid);
   void fill(Cloud& cloud, std::size_t bytes, const Vector3& here);
 
   MapOffer offer_;
   Random random_;
-  int tile_ = 0;  // whose turn it is
-  Cloud all_;     // of whole clouds
+  int tile_ = 0;   // whose turn it is
+  int frame_ = 0;  // frames of drifting grids so far
+  Cloud all_;      // of whole clouds
   KnownCells cells_;
   std::uint64_t points_ = 0;
   KnownPlaces places_;

@@ -12,10 +12,12 @@ using Seconds = std::chrono::duration<double>;
 constexpr double kMegabyte = 1e6;
 constexpr std::array<double, 3> kCloudEvery = {1, 0.5, 2};  // seconds, of one robot after the other
 
-constexpr std::array<std::pair<std::string_view, GridForm>, 4> kGridForms = {{{"whole", GridForm::Whole},
-                                                                              {"rolling", GridForm::Rolling},
-                                                                              {"tiles", GridForm::Tiles},
-                                                                              {"none", GridForm::None}}};
+constexpr std::array<std::pair<std::string_view, GridForm>, 5> kGridForms = {
+    {{"whole", GridForm::Whole},
+     {"drifting", GridForm::Drifting},
+     {"rolling", GridForm::Rolling},
+     {"tiles", GridForm::Tiles},
+     {"none", GridForm::None}}};
 constexpr std::array<std::pair<std::string_view, CloudForm>, 3> kCloudForms = {
     {{"differential", CloudForm::Differential}, {"whole", CloudForm::Whole}, {"none", CloudForm::None}}};
 

@@ -9,9 +9,9 @@
 
 namespace adit::robots {
 
-/// What a robot's grids show: all that it knows; the 10 m about it; or one tile of what it knows after the
-/// other.
-enum class GridForm : std::uint8_t { Whole, Rolling, Tiles, None };
+/// What a robot's grids show: all that it knows; the same in a frame that SLAM corrects each time; the 10 m
+/// about it; or one tile of what it knows after the other.
+enum class GridForm : std::uint8_t { Whole, Drifting, Rolling, Tiles, None };
 
 /// What a robot's clouds hold: the points that are new since the last one; or all of them each time.
 enum class CloudForm : std::uint8_t { Differential, Whole, None };

@@ -33,7 +33,7 @@ Wrong take_style(TeamStyle& into, const std::string& text) {
 
 Wrong take_grids(std::vector<GridForm>& into, const std::string& text) {
   auto forms = read_grid_forms(text);
-  if (!forms) return "expected whole, rolling, tiles, none, got '" + text + "'";
+  if (!forms) return "expected whole, drifting, rolling, tiles, none, got '" + text + "'";
   into = *std::move(forms);
   return std::nullopt;
 }
@@ -83,8 +83,10 @@ command_line::Program command_line_of(Options& options) {
             "messages; mixed: one format after the other, robot by robot (mixed)",
             take<take_style>(options.style)},
            {"--grids", "FORMS",
-            "whole, rolling (10 m around the robot), tiles, none: form of the grids; of several, separated "
-            "by commas, each robot takes the next (whole)",
+            "whole, drifting (whole, with an origin that is off by millimetres), rolling (10 m around the "
+            "robot), tiles, none: form of the grids; of several, separated by commas, each robot takes the "
+            "next "
+            "(whole)",
             take<take_grids>(options.offers.grids)},
            {"--grid-hz", "HZ", "grids per second from each robot (1)",
             number<0.01, kMostHz>(options.offers.grid_hz)},

@@ -1,16 +1,16 @@
+#include "queues/lattice.hpp"
+
 #include <cmath>
 #include <cstdint>
 #include <optional>
 
 #include "icd/placement.hpp"
-#include "queues/lattice.hpp"
-#include "queues/queued_map.hpp"
 
 namespace adit::queues {
 namespace {
 
 /// Origins are compared in thousandths of a cell, because a multiple of the resolution (a float32 in ROS) has
-/// rounding errors. Both are rounded to these steps; a tolerance would not keep `covers` transitive.
+/// rounding errors. Both are rounded to these steps; with a tolerance, a chain of lattices could drift.
 constexpr std::int64_t kStepsPerCell = 1000;
 /// Larger doubles cannot express thousandths.
 constexpr double kMostSteps = 9007199254740992.0;
@@ -48,15 +48,6 @@ Cells cells_at(std::int64_t x, std::int64_t y, const icd::OccupancyGrid& grid) {
   return {x, y, grid.width, grid.height};
 }
 
-/// Whether the corner of `older` is certainly outside `newer`. Much cheaper than corner_of(), because each
-/// new grid is compared with each queued grid of its name.
-bool is_far(const icd::OccupancyGrid& newer, const icd::OccupancyGrid& older) {
-  const icd::Point &a = newer.origin.position, &b = older.origin.position;
-  const double x = a.x - b.x, y = a.y - b.y, z = a.z - b.z;
-  const double most = (1.0 + newer.width + newer.height) * newer.resolution;
-  return x * x + y * y + z * z > most * most;
-}
-
 }  // namespace
 
 std::optional<Cells> cells_in(const icd::OccupancyGrid& of, const icd::OccupancyGrid& grid) {
@@ -68,12 +59,6 @@ std::optional<Cells> cells_in(const icd::OccupancyGrid& of, const icd::Occupancy
   const auto x = whole_cells(to->x - from->x), y = whole_cells(to->y - from->y);
   if (!x || !y || to->z != from->z) return {};
   return cells_at(*x, *y, grid);
-}
-
-bool covers(const icd::OccupancyGrid& newer, const icd::OccupancyGrid& older) {
-  if (is_far(newer, older)) return false;
-  const auto inner = cells_in(newer, older);
-  return inner && cells_at(0, 0, newer).holds(*inner);
 }
 
 /// In the middle of its step, so that rounding errors do not change the step.

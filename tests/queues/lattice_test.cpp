@@ -1,3 +1,5 @@
+#include "queues/lattice.hpp"
+
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -23,12 +25,6 @@ icd::OccupancyGrid shifted(icd::OccupancyGrid older, double angle, double cells_
   return older;
 }
 
-struct CoverCase {
-  const char* what;
-  icd::OccupancyGrid newer, older;
-  bool covered;
-};
-
 icd::OccupancyGrid with_z(icd::OccupancyGrid grid, double z) {
   grid.origin.position.z = z;
   return grid;
@@ -39,43 +35,51 @@ icd::OccupancyGrid turned(icd::OccupancyGrid grid, double angle) {
   return grid;
 }
 
-TEST(Covers, HasTheResultsOfTheTable) {
-  const double far = 1e300;
-  const CoverCase cases[] = {
-      {"the same extent", grid(-5, 3, 40, 30), grid(-5, 3, 40, 30), true},
-      {"grown on every side", grid(-1, -1, 80, 80), grid(0, 0, 40, 30), true},
-      {"grown to the right only", grid(0, 0, 41, 30), grid(0, 0, 40, 30), true},
-      {"one cell less to the right", grid(0, 0, 39, 30), grid(0, 0, 40, 30), false},
-      {"one cell less at the top", grid(0, 0, 40, 29), grid(0, 0, 40, 30), false},
-      {"one cell less to the left", grid(0.05, 0, 80, 80), grid(0, 0, 40, 30), false},
-      {"one cell less at the bottom", grid(0, 0.05, 80, 80), grid(0, 0, 40, 30), false},
-      {"half a cell off", grid(-1.025, -1, 80, 80), grid(0, 0, 40, 30), false},
-      {"a hundredth of a cell off", grid(-1.0005, -1, 80, 80), grid(0, 0, 40, 30), false},
-      {"a millionth of a cell off", grid(-1 - 5e-8, -1 + 5e-8, 80, 80), grid(0, 0, 40, 30), true},
-      {"finer", grid(0, 0, 400, 400, 0.025), grid(0, 0, 40, 30), false},
-      {"another height", with_z(grid(-1, -1, 80, 80), 0.5), grid(0, 0, 40, 30), false},
-      {"the same height", with_z(grid(-1, -1, 80, 80), 0.5), with_z(grid(0, 0, 40, 30), 0.5), true},
-      {"another orientation", turned(grid(-1, -1, 80, 80), 0.01), grid(0, 0, 40, 30), false},
-      {"so far out that cells cannot be told apart, alike", grid(far, 0, 80, 80), grid(far, 0, 40, 30), true},
-      {"so far out, smaller", grid(far, 0, 39, 80), grid(far, 0, 40, 30), false},
-      {"so far out, elsewhere", grid(far, 0, 80, 80), grid(far * 2, 0, 40, 30), false},
-      {"far out and near", grid(0, 0, 80, 80), grid(far, 0, 40, 30), false},
-      {"the widest there can be", grid(0, 0, 4294967295u, 4294967295u), grid(0, 0, 4294967295u, 1), true},
-      {"a resolution that overflows", grid(1, 1, 2, 2, 5e-324), grid(1, 1, 1, 1, 5e-324), true},
-  };
-  for (const auto& [what, newer, older, covered] : cases) EXPECT_EQ(covers(newer, older), covered) << what;
+/// Whether the cells of `inner` are cells of `outer`.
+bool holds(const icd::OccupancyGrid& outer, const icd::OccupancyGrid& inner) {
+  const auto cells = cells_in(outer, inner);
+  return cells && Cells{0, 0, outer.width, outer.height}.holds(*cells);
 }
 
-TEST(Covers, AcceptsAResolutionRoundedToFloat32) {
+struct LatticeCase {
+  const char* what;
+  icd::OccupancyGrid of, grid;
+  std::optional<Cells> cells;
+};
+
+TEST(Lattice, HasTheResultsOfTheTable) {
+  const double far = 1e300;
+  const Cells moved{20, 20, 40, 30};
+  const LatticeCase cases[] = {
+      {"the same", grid(-5, 3, 40, 30), grid(-5, 3, 40, 30), Cells{0, 0, 40, 30}},
+      {"a whole number of cells off", grid(-1, -1, 80, 80), grid(0, 0, 40, 30), moved},
+      {"to the other side", grid(0, 0, 80, 80), grid(-1, 0.05, 40, 30), Cells{-20, 1, 40, 30}},
+      {"half a cell off", grid(-1.025, -1, 80, 80), grid(0, 0, 40, 30), {}},
+      {"a hundredth of a cell off", grid(-1.0005, -1, 80, 80), grid(0, 0, 40, 30), {}},
+      {"a millionth of a cell off", grid(-1 - 5e-8, -1 + 5e-8, 80, 80), grid(0, 0, 40, 30), moved},
+      {"finer", grid(0, 0, 400, 400, 0.025), grid(0, 0, 40, 30), {}},
+      {"another height", with_z(grid(-1, -1, 80, 80), 0.5), grid(0, 0, 40, 30), {}},
+      {"the same height", with_z(grid(-1, -1, 80, 80), 0.5), with_z(grid(0, 0, 40, 30), 0.5), moved},
+      {"another orientation", turned(grid(-1, -1, 80, 80), 0.01), grid(0, 0, 40, 30), {}},
+      {"so far out that cells cannot be told apart, alike", grid(far, 0, 80, 80), grid(far, 0, 40, 30),
+       Cells{0, 0, 40, 30}},
+      {"so far out, elsewhere", grid(far, 0, 80, 80), grid(far * 2, 0, 40, 30), {}},
+      {"far out and near", grid(0, 0, 80, 80), grid(far, 0, 40, 30), {}},
+      {"a resolution that overflows", grid(1, 1, 2, 2, 5e-324), grid(1, 1, 1, 1, 5e-324), Cells{0, 0, 1, 1}},
+  };
+  for (const auto& [what, of, grid, cells] : cases) EXPECT_EQ(cells_in(of, grid), cells) << what;
+}
+
+TEST(Lattice, AcceptsAResolutionRoundedToFloat32) {
   const double resolution = static_cast<double>(0.05F);  // 0.05000000074505806
   for (int cells = 1; cells < 4000; cells += 7) {
     const auto older = grid(-10, -10, 100, 100, resolution);
     const auto newer = grid(-10 - cells * 0.05, -10, 8192, 100, resolution);
-    EXPECT_TRUE(covers(newer, older)) << cells << " cells apart";
+    EXPECT_TRUE(holds(newer, older)) << cells << " cells apart";
   }
 }
 
-TEST(Covers, MeasuresAlongTheAxesOfTurnedGrids) {
+TEST(Lattice, MeasuresAlongTheAxesOfTurnedGrids) {
   std::mt19937_64 random{1};
   std::uniform_real_distribution<double> angle{-std::numbers::pi, std::numbers::pi}, metres{-200, 200};
   std::uniform_int_distribution<int> cells{-50, 50};
@@ -88,8 +92,8 @@ TEST(Covers, MeasuresAlongTheAxesOfTurnedGrids) {
     older.width = 20;
     older.height = 10;
     const bool inside = x >= 0 && y >= 0 && x + 20 <= 60 && y + 10 <= 40;
-    EXPECT_EQ(covers(newer, older), inside) << x << ", " << y << " turned by " << turn;
-    EXPECT_FALSE(covers(newer, shifted(newer, turn, x + 0.5, y)));
+    EXPECT_EQ(holds(newer, older), inside) << x << ", " << y << " turned by " << turn;
+    EXPECT_FALSE(holds(newer, shifted(newer, turn, x + 0.5, y)));
   }
 }
 
@@ -106,24 +110,24 @@ icd::OccupancyGrid any_grid(std::mt19937_64& random) {
   return any;
 }
 
-TEST(Covers, IsReflexive) {
+TEST(Lattice, HoldsItsOwnCells) {
   std::mt19937_64 random{2};
   for (int i = 0; i < 1000; ++i) {
     const auto any = any_grid(random);
-    EXPECT_TRUE(covers(any, any));
+    EXPECT_TRUE(holds(any, any));
   }
 }
 
-TEST(Covers, IsTransitive) {
+TEST(Lattice, IsTransitive) {
   std::mt19937_64 random{3};
   int chains = 0;
   for (int i = 0; i < 40'000; ++i) {
     const auto a = any_grid(random), b = any_grid(random);
-    for (int left = covers(a, b) ? 50 : 0; left > 0; --left) {
+    for (int left = holds(a, b) ? 50 : 0; left > 0; --left) {
       const auto c = any_grid(random);
-      if (!covers(b, c)) continue;
+      if (!holds(b, c)) continue;
       ++chains;
-      ASSERT_TRUE(covers(a, c));
+      ASSERT_TRUE(holds(a, c));
     }
   }
   EXPECT_GT(chains, 30);
@@ -149,20 +153,20 @@ bool has_cell_at(const icd::OccupancyGrid& grid, const icd::Point& point) {
   return false;
 }
 
-TEST(Covers, IsFalseIfAnOlderCellLiesOutsideTheNewer) {
+TEST(Lattice, HoldsNoCellThatLiesOutside) {
   std::mt19937_64 random{4};
-  int covered = 0;
+  int held = 0;
   for (int i = 0; i < 100'000; ++i) {
     const auto newer = any_grid(random), older = any_grid(random);
-    if (!covers(newer, older)) continue;
-    ++covered;
+    if (!holds(newer, older)) continue;
+    ++held;
     for (const double row : {0.0, older.height - 1.0}) {
       for (const double column : {0.0, older.width - 1.0}) {
         ASSERT_TRUE(has_cell_at(newer, middle_of(older, column, row)));
       }
     }
   }
-  EXPECT_GT(covered, 100);
+  EXPECT_GT(held, 100);
 }
 
 }  // namespace

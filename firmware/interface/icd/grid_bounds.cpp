@@ -1,0 +1,130 @@
+#include "icd/grid_bounds.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "icd/placement.hpp"
+
+namespace adit::icd {
+namespace {
+
+/// Cells by which positions may differ because of rounding: a resolution is a float32 in ROS.
+constexpr double kRounding = 1e-3;
+
+/// Metres by which an older grid may reach out of a newer one.
+double slack_of(double resolution) {
+  return resolution * (0.5 + kRounding);
+}
+
+/// Bounds along other axes.
+struct Seen {
+  Point low, high;
+  double turn = 0;  // metres by which the turn moves a corner, if the middle stays
+};
+
+using Matrix = std::array<std::array<double, 3>, 3>;
+
+Point turned(const Matrix& by, const Point& p) {
+  return {by[0][0] * p.x + by[0][1] * p.y + by[0][2] * p.z, by[1][0] * p.x + by[1][1] * p.y + by[1][2] * p.z,
+          by[2][0] * p.x + by[2][1] * p.y + by[2][2] * p.z};
+}
+
+Matrix transposed(const Matrix& m) {
+  return {{{m[0][0], m[1][0], m[2][0]}, {m[0][1], m[1][1], m[2][1]}, {m[0][2], m[1][2], m[2][2]}}};
+}
+
+Matrix product(const Matrix& a, const Matrix& b) {
+  Matrix all{};
+  for (std::size_t row = 0; row < 3; ++row) {
+    for (std::size_t column = 0; column < 3; ++column) {
+      for (std::size_t i = 0; i < 3; ++i) all[row][column] += a[row][i] * b[i][column];
+    }
+  }
+  return all;
+}
+
+double length(const Point& p) {
+  return std::hypot(p.x, p.y, p.z);
+}
+
+Point shifted(const Point& p, const Point& by, double times = 1) {
+  return {p.x + times * by.x, p.y + times * by.y, p.z + times * by.z};
+}
+
+/// `box` along the axes of `axes`, from its origin.
+Seen seen_from(const Pose& axes, const GridBounds& box) {
+  const Placement there{axes};
+  const Matrix back = transposed(there.turn);
+  const Point shift = turned(back, shifted(box.origin.position, there.shift, -1));
+  if (axes.orientation == box.origin.orientation)
+    return {shifted(box.low, shift), shifted(box.high, shift), 0};
+  const Matrix turn = product(back, Placement{box.origin}.turn);
+  const Point half = {(box.high.x - box.low.x) / 2, (box.high.y - box.low.y) / 2,
+                      (box.high.z - box.low.z) / 2};
+  const Point middle = shifted(turned(turn, shifted(box.low, half)), shift);
+  Seen seen{middle, middle, 0};
+  for (const double x : {-half.x, half.x}) {
+    for (const double y : {-half.y, half.y}) {
+      for (const double z : {-half.z, half.z}) {
+        const Point before{x, y, z}, after = turned(turn, before), corner = shifted(middle, after);
+        seen.low = {std::min(seen.low.x, corner.x), std::min(seen.low.y, corner.y),
+                    std::min(seen.low.z, corner.z)};
+        seen.high = {std::max(seen.high.x, corner.x), std::max(seen.high.y, corner.y),
+                     std::max(seen.high.z, corner.z)};
+        seen.turn = std::max(seen.turn, length(shifted(after, before, -1)));
+      }
+    }
+  }
+  return seen;
+}
+
+/// Whether the origin of `older` is certainly outside `newer`. Much cheaper than seen_from(), because each
+/// new grid is compared with each queued grid of its name.
+bool is_far(const OccupancyGrid& newer, const Pose& older) {
+  const Point between = shifted(newer.origin.position, older.position, -1);
+  const double most = (1.0 + newer.width + newer.height) * newer.resolution;
+  return between.x * between.x + between.y * between.y + between.z * between.z > most * most;
+}
+
+/// False for NaN.
+bool is_within(double low, double high, double length, double slack) {
+  return low >= -slack && high <= length + slack;
+}
+
+}  // namespace
+
+GridBounds GridBounds::of(const OccupancyGrid& grid) {
+  return {.origin = grid.origin,
+          .resolution = grid.resolution,
+          .low = {},
+          .high = {grid.width * grid.resolution, grid.height * grid.resolution, 0}};
+}
+
+bool GridBounds::is_larger_than(const OccupancyGrid& grid) const {
+  const double rounding = kRounding * resolution;
+  return !is_within(low.x, high.x, grid.width * resolution, rounding) ||
+         !is_within(low.y, high.y, grid.height * resolution, rounding) ||
+         !is_within(low.z, high.z, 0, rounding) || turned > rounding;
+}
+
+bool covers(const OccupancyGrid& newer, const GridBounds& older) {
+  if (newer.resolution != older.resolution || is_far(newer, older.origin)) return false;
+  const double slack = slack_of(newer.resolution);
+  const Seen seen = seen_from(newer.origin, older);
+  return is_within(seen.low.x, seen.high.x, newer.width * newer.resolution, slack) &&
+         is_within(seen.low.y, seen.high.y, newer.height * newer.resolution, slack) &&
+         is_within(seen.low.z, seen.high.z, 0, slack) && older.turned + seen.turn <= slack;
+}
+
+GridBounds around(const GridBounds& newer, const GridBounds& older) {
+  const Seen seen = seen_from(newer.origin, older);
+  GridBounds all = newer;
+  all.low = {std::min(newer.low.x, seen.low.x), std::min(newer.low.y, seen.low.y),
+             std::min(newer.low.z, seen.low.z)};
+  all.high = {std::max(newer.high.x, seen.high.x), std::max(newer.high.y, seen.high.y),
+              std::max(newer.high.z, seen.high.z)};
+  all.turned = std::max(newer.turned, older.turned + seen.turn);
+  return all;
+}
+
+}  // namespace adit::icd

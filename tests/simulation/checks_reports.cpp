@@ -127,14 +127,19 @@ void live(const Evidence& evidence, Broken& broken) {
 /// While the status is a web page, no report is sent that the operator has not sent since. A 404 is of
 /// another form of the path.
 void addressed(const Evidence& evidence, Broken& broken) {
-  std::optional<double> page;      // since when the status is a page
+  constexpr double kLongestAnswer = 12;  // seconds that a request to the course before may take
+  std::optional<double> page;            // since when the status is a page
+  double switched = -kLongestAnswer;
   std::set<std::int64_t> ordered;  // serials
   for (const Event& event : evidence.events) {
     if (event.kind == Kind::Begins || event.what == kCourse) page.reset();
+    if (event.what == kCourse) switched = event.at;
     if (event.kind == Kind::Invoke && event.what == kSend) ordered.insert(event.serial);
     if (event.what == kStatus && event.kind == Kind::Replied && event.status != 404) {
       const bool is_page = event.who == kForeign && event.status / 100 == 2;
-      page = is_page ? std::optional(page.value_or(event.at)) : std::nullopt;
+      // The page may be the course's before, whose request was in flight.
+      const bool may_be_earlier = event.at < switched + kLongestAnswer;
+      page = is_page && !may_be_earlier ? std::optional(page.value_or(event.at)) : std::nullopt;
     }
     const bool leaves = event.what == kReports && event.kind == Kind::Left;
     if (!leaves || !page || ordered.contains(event.serial)) continue;

@@ -98,7 +98,7 @@ void add_own_numbers(std::vector<std::uint64_t>& numbers, const QueuedMap& of) {
   for (const QueuedMap& part : of.parts) numbers.push_back(part.updates.back());
 }
 
-/// A stitched grid's parts may be queued singly later, so one of them takes the bounds, too.
+/// A stitched grid's parts may be queued singly later, so one of them also takes the bounds.
 void take_bounds(QueuedMap& to, const QueuedMap& from, Replaced& replaced) {
   if (!to.map.is_grid()) return;
   to.bounds = icd::around(bounds_of(to), bounds_of(from));

@@ -174,4 +174,4 @@ class ThatWantsASlash(Tried):
         redirected = [request["uri"] for request in self.post.requests() if request["status"] in (301, 308)]
         self.assertEqual(sorted(redirected), ["/api/status", "/api/status", "/map/update", "/state/update", "/state/update"],
                          "once by the run and once by the test, and no report")
-        self.assertIn("paths end with a slash", self.box.output())
+        self.assertIn("the Command Post wants a slash at the end of paths", self.box.output())

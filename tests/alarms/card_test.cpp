@@ -57,6 +57,7 @@ void reports(std::vector<Facts>& days) {
   days.back().reports_left = 5;
   days.back().reports_elsewhere["ADDRESS"] = 2;
   days.back().run_unreliable = "somebody else reports with this token";
+  days.back().run_renamed = "run 2, was 1";
   days.back().messages_rejected = 3;
   days.push_back(named());
   days.back().reports_left = 0;
@@ -72,7 +73,7 @@ void the_box(std::vector<Facts>& days) {
   facts.disk.life = 10;
   facts.disk.wear_unknown = "life_time: Input/output error";
   facts.time_set = false;
-  facts.ntp_trouble = "the NTP server ADDRESS does not answer";
+  facts.ntp_trouble = "ADDRESS does not answer";
   facts.change_trouble = "port 8000 is in use";
   facts.settings_trouble = facts.board_trouble = "an error in it";
   facts.lights_trouble = "no such device";

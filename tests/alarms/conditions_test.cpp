@@ -101,6 +101,8 @@ const ConditionCase kConditionCases[] = {
      [](Facts& facts) { facts.reports_elsewhere["10.9.9.9:1"] = 2; }},
     {"run_unreliable", Ask, Side::CommandPost, "The count of reports is uncertain", "somebody else",
      [](Facts& facts) { facts.run_unreliable = "somebody else reports"; }},
+    {"run_renamed", Ask, Side::CommandPost, "The name of the run is uncertain", "calls it run 2",
+     [](Facts& facts) { facts.run_renamed = "the Command Post calls it run 2, it was 1"; }},
     {"messages_rejected", Ask, Side::CommandPost, "3 messages are rejected", "did not accept them",
      [](Facts& facts) { facts.messages_rejected = 3; }},
     {"standby", Bad, Side::Box, "This box is on standby", "for its spare",

@@ -109,7 +109,7 @@ std::string_view words(ReportEvent event) {
     case Event::Joined:
       return "same as an earlier one";
     case Event::Cleared:
-      return "another run";
+      return "the run is certain";
     case Event::UndoOver:
       return "its time for an undo is over";
     case Event::Restarted:

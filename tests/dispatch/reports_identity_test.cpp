@@ -178,6 +178,8 @@ TEST(OtherRunName, LeavesTheFirstRunForAReturn) {
   scene.record(1, "1");
   scene.record(2, "2");
   EXPECT_EQ(scene.reports().run().number, 2);
+  scene.wait(1);
+  scene.hear(24, 0, 3);
   scene.record(3, "1");
   EXPECT_EQ(scene.reports().run().number, 1);
   scene.post(1);

@@ -128,6 +128,27 @@ TEST_F(RunAccountTest, ForgivesADelayedCount) {
   EXPECT_THAT(account_.run().unreliable, IsEmpty());
 }
 
+TEST_F(RunAccountTest, ExpectsTheCountWithGrantedReports) {
+  hear(20, 3);
+  now_ = 110;
+  account_.grant();
+  hear(23, 3);
+  EXPECT_EQ(account_.expected(time().now), status(23, 3));
+  EXPECT_THAT(account_.run().unreliable, IsEmpty());
+}
+
+TEST_F(RunAccountTest, ExpectsNothingAfterAGrantUntilItsOwnReportsMustBeCounted) {
+  hear(20, 3);
+  answer("scored", 0);
+  now_ = 110;
+  account_.grant();
+  hear(21, 3);
+  EXPECT_EQ(account_.expected(time().now), std::nullopt) << "the report may be counted later";
+  now_ = 111;
+  hear(21, 3);
+  EXPECT_EQ(account_.expected(time().now), status(21, 3));
+}
+
 TEST_F(RunAccountTest, AllowsNewCountsBeforeTheRunStarts) {
   now_ = 0;
   hear(5, 0);
@@ -139,7 +160,7 @@ TEST_F(RunAccountTest, AllowsNewCountsBeforeTheRunStarts) {
 TEST_F(RunAccountTest, TrustsTheCountInTheNextRun) {
   hear(20, 3);
   account_.distrust("another sender", time().stamp);
-  account_.begin("the operator declared it", 0, std::nullopt, {}, time());
+  account_.begin({"the operator declared it", {}}, 0, std::nullopt, {}, time());
   EXPECT_EQ(account_.run().number, 2);
   EXPECT_EQ(account_.expected(time().now), std::nullopt);
   hear(25, 0);

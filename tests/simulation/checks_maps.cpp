@@ -92,15 +92,18 @@ bool may_be_double(const std::vector<Event>& events, std::size_t first, std::siz
 }
 
 /// A run, a setting or a course began between the two, so points that were left out of the first must be
-/// sent now. A clock that was set back looks like another run, until the answer to a report names the
-/// current run.
+/// sent now. A clock that was set back, or a granted report, may look like another run, until the answer to a
+/// report names the current run. So may a renamed run, until a status shows that it goes on.
 bool may_go_whole(const std::vector<Event>& events, std::size_t first, std::size_t second) {
-  bool is_set_back = false;
+  bool is_set_back = false, is_renamed = false;
   for (std::size_t i = 0; i < second; ++i) {
     const Event& event = events[i];
     const bool sets_back = event.kind == Kind::Fault && event.who == kSetBack;
-    is_set_back = is_set_back || sets_back;
-    const bool names = is_set_back && event.kind == Kind::Replied && event.what == kReports;
+    is_set_back = is_set_back || sets_back || (event.kind == Kind::NewRun && event.what == kSameMap);
+    is_renamed = is_renamed || (event.kind == Kind::Fault && event.who == kRenames);
+    const bool is_answer = event.kind == Kind::Replied && event.what == kReports;
+    const bool is_status = event.kind == Kind::Replied && event.what == kStatus;
+    const bool names = ((is_set_back || is_renamed) && is_answer) || (is_renamed && is_status);
     const bool begins = event.kind == Kind::NewRun || event.kind == Kind::Saved || event.what == kCourse;
     if ((begins || sets_back || names) && event.at > events[first].at - kLongestSending) return true;
   }

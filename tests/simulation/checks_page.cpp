@@ -262,7 +262,8 @@ void check_rest(const Evidence& evidence, const Reading& reading, Broken& broken
   // An alarm reports reports that Adit cannot account for.
   const bool beside = std::ranges::any_of(evidence.events, [](const Event& event) {
     const bool is_told = event.what != kSameMap && !event.who.ends_with(kNameless);
-    return event.kind == Kind::Another || (event.kind == Kind::NewRun && !is_told);
+    const bool renames = event.kind == Kind::Fault && event.who == kRenames;
+    return event.kind == Kind::Another || renames || (event.kind == Kind::NewRun && !is_told);
   });
   if (called > 0 && undecided == 0 && !beside && reading.view.at("rejected").empty())
     broken.push_back(

@@ -8,8 +8,10 @@
 
 #include "icd/sentence.hpp"
 #include "simulation/checks.hpp"
+#include "simulation/command_post.hpp"
 #include "simulation/courses.hpp"
 #include "simulation/deciding_operator.hpp"
+#include "simulation/faults.hpp"
 #include "simulation/intended_runs.hpp"
 #include "simulation/messages.hpp"
 #include "simulation/scoreboard.hpp"
@@ -53,20 +55,81 @@ std::int64_t serial_of(const dispatch::Report& report) {
   return std::llround(report.report.position.x / 100);
 }
 
+/// Records whose answers Adit has read and kept.
+class AnsweredRecords {
+ public:
+  using Record = std::pair<std::int64_t, std::string>;  // a report's serial, and its run
+
+  /// Call for each event in order.
+  void add(const Event& event) {
+    disk_.add(event);
+    if (is_report(event, Kind::Left)) in_flight_ = event.serial, is_spoiled_ = false;
+    if (is_report(event, Kind::Taken)) last_[event.serial] = event.who;
+    const bool spoils = event.who == name_of(Fault::WrongTypes) || event.who == kRepeats;
+    if (is_report(event, Kind::Fault) && spoils) is_spoiled_ = true;
+    const bool is_good = event.status / 100 == 2 && event.who.empty() && !is_spoiled_;
+    const auto record = last_.find(in_flight_);
+    if (is_report(event, Kind::Replied) && is_good && record != last_.end()) answered_[*record] = event.at;
+    if (event.kind == Kind::Dies || event.kind == Kind::Ended) forget_unwritten(event.at);
+  }
+  bool has(const Record& record) const { return answered_.contains(record); }
+
+ private:
+  /// An answer is on the disk within a second, or when the disk can be written again.
+  void forget_unwritten(double now) {
+    const double unwritten = disk_.within(kLongestDoubt, now) ? kLongestDoubt : 1;
+    std::erase_if(answered_, [&](const auto& each) { return each.second > now - unwritten; });
+  }
+
+  DiskFaultsSeen disk_;
+  std::int64_t in_flight_ = 0;
+  bool is_spoiled_ = false;                   // its answer may be about another report
+  std::map<std::int64_t, std::string> last_;  // the run of each report's last record
+  std::map<Record, double> answered_;
+};
+
+/// Statuses that Adit has heard with more reports left than in the one before: a grant that it can see.
+class RisesHeard {
+ public:
+  void add(const Event& event) {
+    if (event.kind != Kind::Replied || event.what != kStatus || event.status != 200 || event.says.empty())
+      return;
+    const int left = event.says[1];
+    const auto [before, is_first] = left_.try_emplace(event.serial, left);
+    if (!is_first && left > before->second) last_ = event.at;
+    before->second = left;
+  }
+  double last() const { return last_; }
+
+ private:
+  std::map<std::int64_t, int> left_;  // by the Command Post's index
+  double last_ = -1e9;
+};
+
 void once(const Evidence& evidence, Broken& broken) {
   std::map<std::pair<std::int64_t, std::string>, double> records;  // when each was recorded first
   IntendedRuns meant;
+  AnsweredRecords answers;
+  RisesHeard rises;
   double granted = -kLongestDoubt;
   for (const Event& event : evidence.events) {
     meant.add(event);
     if (is_grant(event)) granted = event.at;
-    if (!is_report(event, Kind::Taken)) continue;
+    if (!is_report(event, Kind::Taken)) {
+      answers.add(event);
+      rises.add(event);
+      continue;
+    }
     const bool costs = !event.who.ends_with(kInAStop);
     const auto [first, is_first] = records.try_emplace({event.serial, event.who}, event.at);
     const bool again = !is_first;
-    // A course that was switched away and back extends a doubt beyond a grant beside its first record.
+    // A grant hides the record of a report in doubt, unless a status shows the grant. A course that was
+    // switched away and back extends a doubt beyond a grant beside its first record.
+    const bool is_hidden =
+        event.at - granted <= kLongestDoubt || std::abs(first->second - granted) <= kLongestDoubt;
     const bool could_tell =
-        event.at - granted > kLongestDoubt && std::abs(first->second - granted) > kLongestDoubt;
+        !is_hidden || answers.has({event.serial, event.who}) || rises.last() > first->second;
+    answers.add(event);
     if (costs && again && could_tell && !meant.is_sent_across(event.serial)) {
       broken.push_back(icd::sentence("Once: report ", event.serial, " was recorded again in ", event.who,
                                      " at ", event.at));

@@ -14,7 +14,7 @@ namespace {
 constexpr double kLatest = 8;  // seconds after which a lost request is not recorded any more
 constexpr double kLongest = 8, kLongestOutage = 25;
 constexpr std::chrono::milliseconds kOneLimit{950};  // "approximately" one request a second
-constexpr const char *kEarly = "Early", *kRepeats = "Repeats", *kPortal = "Portal";
+constexpr const char *kEarly = "Early", *kPortal = "Portal";
 constexpr const char* kPage = "Content-Type: text/html\r\n";
 constexpr const char* kHtml = "<html><body>Please log in</body></html>";
 constexpr Fault kPeriods[] = {Fault::Storm,       Fault::PoliteStorm, Fault::Refused, Fault::Deaf,

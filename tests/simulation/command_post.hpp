@@ -17,6 +17,9 @@
 
 namespace adit::simulation {
 
+/// Event::who of a fault: an answer repeats the one before, and nothing is recorded.
+inline constexpr const char* kRepeats = "Repeats";
+
 /// Both endpoints of a Command Post that follows the ICD to the letter, with the faults of one run.
 class CommandPost final : public Host {
  public:

@@ -128,7 +128,8 @@ bool DecidingOperator::is_recorded(std::int64_t serial) const {
   const auto& events = world_.history().events();
   for (auto event = events.rbegin(); event != events.rend(); ++event) {
     const bool is_record = event->kind == Kind::Taken && event->what == kReports && event->serial == serial;
-    if ((!is_record && event->kind != Kind::NewRun) || place_of(event->who) != place_) continue;
+    const bool begins = event->kind == Kind::NewRun && event->what != kSameMap;
+    if ((!is_record && !begins) || place_of(event->who) != place_) continue;
     return is_record;
   }
   return false;

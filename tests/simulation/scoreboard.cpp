@@ -25,7 +25,10 @@ Scoreboard::Scoreboard(World& world, const Faults& faults, Random& random, int p
       faults_(faults),
       place_(place),
       numbers_runs_(random.chance(0.3)),
-      run_began_(-random.between(300, 3000)) {}
+      run_began_(-random.between(300, 3000)) {
+  const double drawn = world.random("names of runs " + std::to_string(place)).between(0, 1);
+  names_ = drawn < 0.15 ? Names::One : drawn < 0.25 ? Names::Renamed : Names::Own;
+}
 
 bool Scoreboard::may_begin_run() const {
   const auto& events = world_.history().events();
@@ -48,7 +51,6 @@ bool Scoreboard::may_begin_run() const {
 
 void Scoreboard::begin_run() {
   ++run_;
-  grants_ = 0;
   remaining_ = 25;
   score_ = 0;
   run_began_ = world_.time();
@@ -71,15 +73,18 @@ void Scoreboard::set_clock_back() {
 
 void Scoreboard::grant_report() {
   ++remaining_;
-  ++grants_;
   world_.note({.actor = Actor::Post, .kind = Kind::NewRun, .what = kSameMap, .who = name(), .serial = run_});
   run_begins_ = world_.history().events().size();
 }
 
-/// The name of the run. A report recorded again after a grant gets another name, because the evidence is
-/// ambiguous.
-std::string Scoreboard::name() const {
-  return run_name(place_, run_) + (grants_ > 0 ? ", granted " + std::to_string(grants_) : "");
+/// The name of the run in an answer.
+std::string Scoreboard::told_name() {
+  if (faults_.has(Fault::ConstantClocks) || names_ == Names::One) return "1";
+  if (names_ == Names::Own) return std::to_string(run_);
+  if (id_ > 1 && !faults_.has(Fault::NamelessRuns)) {
+    world_.note({.actor = Actor::Post, .kind = Kind::Fault, .what = kReports, .who = kRenames});
+  }
+  return std::to_string(id_);
 }
 
 std::string Scoreboard::status() {
@@ -126,16 +131,17 @@ void Scoreboard::record_another() {
 std::string Scoreboard::reply(const std::string& report, const char* state, int points) {
   const bool stands = faults_.has(Fault::ConstantClocks);
   const double clock = stands ? 3.14 : world_.time() - run_began_;
-  const std::string name = std::to_string(stands ? 1 : run_);
+  const std::int64_t id = ++id_;
+  const std::string name = told_name();
   std::string run = faults_.has(Fault::NamelessRuns) ? ""
                     : numbers_runs_                  ? "\"run\": " + name + ", "
                                                      : "\"run\": \"" + name + "\", ";
   // The report as it was sent, without its last brace.
-  return http_answer(
-      "201 Created", kJson,
-      report.substr(0, report.rfind('}')) + ", \"url\": \"\", \"id\": " + std::to_string(++id_) + ", " + run +
-          "\"team\": \"adit\", \"run_clock\": " + json_number(clock) + ", \"report_status\": \"" + state +
-          "\", \"score_change\": " + std::to_string(points) + "}");
+  return http_answer("201 Created", kJson,
+                     report.substr(0, report.rfind('}')) + ", \"url\": \"\", \"id\": " + std::to_string(id) +
+                         ", " + run + "\"team\": \"adit\", \"run_clock\": " + json_number(clock) +
+                         ", \"report_status\": \"" + state +
+                         "\", \"score_change\": " + std::to_string(points) + "}");
 }
 
 std::string run_name(int place, std::int64_t run) {

@@ -16,8 +16,10 @@ class World;
 
 inline constexpr const char *kScored = "scored", *kInAStop = " in a stop",
                             *kNameless = ", which nothing names";
-/// Event::what of NewRun: one more report was granted, so Adit takes the run for a new one; its map stays.
+/// Event::what of NewRun: one more report was granted. The run goes on, and its map stays.
 inline constexpr const char* kSameMap = "the map stays";
+/// Event::who of a fault: an answer gives the run another name than the answer before.
+inline constexpr const char* kRenames = "Renames";
 /// Event::what of a fault: the clock was set back within the run.
 inline constexpr const char* kSetBack = "clock set back";
 /// "run 3", as in the history.
@@ -43,13 +45,16 @@ class Scoreboard {
   /// Sets the clock back by a minute within the run, so that Adit may take it for another run. Requires
   /// may_begin_run().
   void set_clock_back();
-  /// Grants a report within the run, so that Adit takes it for another run. Requires may_begin_run().
+  /// Grants a report within the run. Requires may_begin_run().
   void grant_report();
   /// While stopped, recorded reports do not count.
   void stop(bool stopped) { stopped_ = stopped; }
 
  private:
-  std::string name() const;
+  /// How answers name runs. Servers exist that give all runs one name, or each answer another one.
+  enum class Names : std::uint8_t { Own, One, Renamed };
+  std::string name() const { return run_name(place_, run_); }
+  std::string told_name();
   std::string reply(const std::string& report, const char* state, int points);
   const char* score(int points);
 
@@ -57,7 +62,8 @@ class Scoreboard {
   const Faults& faults_;
   const int place_;
   const bool numbers_runs_;  // answers name runs by number, not by text
-  std::int64_t run_ = 1, grants_ = 0, remaining_ = 25, score_ = 0, id_ = 0;
+  Names names_;
+  std::int64_t run_ = 1, remaining_ = 25, score_ = 0, id_ = 0;
   double run_began_;
   std::size_t run_begins_ = 0;  // index in the history
   bool stopped_ = false;

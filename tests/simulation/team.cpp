@@ -1,5 +1,7 @@
 #include "simulation/team.hpp"
 
+#include <algorithm>
+
 #include "simulation/manners.hpp"
 #include "simulation/messages.hpp"
 #include "simulation/world.hpp"
@@ -22,7 +24,10 @@ Reporter::Reporter(World& world, int number)
       twin_(world, address(110 + number), manners(random_),
             world.random("twin of reporter " + std::to_string(number))),
       twins_(random_.chance(0.3) ? 0.5 : 0),
+      repeating_(world.random("repeats of reporter " + std::to_string(number))),
+      repeats_(repeating_.chance(0.4) ? 0.4 : 0),
       every_(random_.between(0.5, 10)),
+      first_(number * kReportsOfOne + 1),
       serial_(number * kReportsOfOne) {}
 
 void Reporter::report_until(double end) {
@@ -46,11 +51,22 @@ void Reporter::report_too() {
             {.what = kReports, .who = "", .serial = serial_}, [](int) {});
 }
 
+/// One of the last five reports that were answered.
+void Reporter::report_again() {
+  const auto back = 1 + static_cast<std::int64_t>(repeating_.below(5));
+  const std::int64_t serial = std::max(first_, serial_ - back);
+  if (world_.time() > end_ || twin_.busy() || serial == serial_) return;
+  twin_.ask(request_of({kReports, {{.who = "", .serial = serial}}}, {}),
+            {.what = kReports, .who = "", .serial = serial}, [](int) {});
+}
+
 void Reporter::answered(int status) {
   const bool again = (status == 0 || status >= 500 || status == 429) && ++tries_ < kMostPosts;
   if (again) return world_.after(seconds(random_.between(0.05, 2)), [this] { report(); });
   tries_ = 0;
   ++serial_;
+  if (repeating_.chance(repeats_))
+    world_.after(seconds(repeating_.between(0, 8)), [this] { report_again(); });
   world_.after(seconds(every_ * random_.between(0.2, 1.8)), [this] { report(); });
 }
 

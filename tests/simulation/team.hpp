@@ -18,7 +18,7 @@ namespace adit::simulation {
 class World;
 
 /// Reports artifacts. Repeats each report until the answer says that it is recorded. Some reporters press
-/// the button twice.
+/// the button twice, and some repeat earlier reports.
 class Reporter {
  public:
   Reporter(World& world, int number);
@@ -27,14 +27,18 @@ class Reporter {
  private:
   void report();
   void report_too();
+  void report_again();
   void answered(int status);
 
   World& world_;
   Random random_;
   Client client_, twin_;
   const double twins_;  // probability that a report is posted a second time before the first is answered
+  Random repeating_;
+  const double repeats_;  // probability that an earlier report is posted again after an answer
   const double every_;
   double end_ = 0;
+  const std::int64_t first_;
   std::int64_t serial_;
   int tries_ = 0;
 };

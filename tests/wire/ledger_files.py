@@ -11,8 +11,10 @@ HEADER = struct.Struct("<4sIIBBHQQQ")  # magic, CRC, length, kind, copy, zeros, 
 BEGINS, ENDS, STEPS = 0, 127, 1  # kinds
 ON_DISK, IN_SNAPSHOT = 4096, 8  # alignment
 LAYOUTS = {"report": "number:n type:t x:r y:r z:r robot:t sender:t received:r changed:r state:t note:t run:n asked:n same_as:n tries:n "
-                     "sending:n sent:r before:s status:n content_type:t answer:t reconciled:n",
-           "run": "number:n id:t began:r why:t last:s heard:r post:t unreliable:t turn:n may_be:n status_clock:c answer_clock:c"}
+                     "sending:n sent:r before:s status:n content_type:t answer:t reconciled:n "
+                     "uncertain:t",
+           "run": "number:n id:t began:r why:t last:s heard:r post:t unreliable:t turn:n may_be:n status_clock:c answer_clock:c "
+                  "signs:g name_trouble:t"}
 
 
 class Damaged(Exception):
@@ -113,6 +115,9 @@ class Values:
     def c(self):
         known, *clock = self.n(), self.r(), self.n()
         return clock if known else None
+
+    def g(self):
+        return [self.n() for _ in range(4)]
 
     def members(self, layout):
         return {name: getattr(self, kind)() for name, kind in (member.split(":") for member in LAYOUTS[layout].split())}

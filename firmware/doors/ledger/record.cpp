@@ -12,6 +12,9 @@ template <>
 inline constexpr auto store::kMembers<dispatch::Clock> =
     std::tuple(&dispatch::Clock::shows, &dispatch::Clock::runs);
 template <>
+inline constexpr auto store::kMembers<dispatch::Signs> = std::tuple(
+    &dispatch::Signs::count, &dispatch::Signs::clock, &dispatch::Signs::score, &dispatch::Signs::name);
+template <>
 inline constexpr auto store::kMembers<icd::RunStatus> =
     std::tuple(&icd::RunStatus::score, &icd::RunStatus::run_clock, &icd::RunStatus::remaining_reports,
                &icd::RunStatus::current_team);
@@ -76,6 +79,12 @@ class Show {
     if (clock) shown("shows", clock->shows), shown("runs", clock->runs);
     (*this)(name, clock ? shown.finish() : codec::Value());
   }
+  void operator()(const char* name, const dispatch::Signs& signs) {
+    Show shown;
+    shown("count", signs.count), shown("clock", signs.clock);
+    shown("score", signs.score), shown("name", signs.name);
+    (*this)(name, shown.finish());
+  }
   codec::Value finish() { return {std::move(members_)}; }
 
  private:
@@ -109,6 +118,7 @@ void members(auto& each, auto& report)
   each("content_type", report.content_type);
   each("answer", report.answer);
   each("reconciled", report.reconciled);
+  each("uncertain", report.uncertain);
 }
 
 void members(auto& each, auto& run)
@@ -126,6 +136,8 @@ void members(auto& each, auto& run)
   each("may_be", run.may_be);
   each("status_clock", run.status_clock);
   each("answer_clock", run.answer_clock);
+  each("signs", run.signs);
+  each("name_trouble", run.name_trouble);
 }
 
 template <class Of>

@@ -56,6 +56,7 @@ void Overview::add_reports(alarms::Facts& facts) const {
   if (rooms_.flow.scoring().run()) facts.reports_left = rooms_.flow.scoring().run()->remaining_reports;
   const std::string& unreliable = reports.run().unreliable;
   if (unreliable != dispatch::Run::kCountsStand) facts.run_unreliable = unreliable;
+  facts.run_renamed = reports.runs().name_trouble();
   for (const api::RejectedRow& row : rooms_.flow.rejected().rows()) {
     if (row.replaced) continue;
     ++facts.messages_rejected;

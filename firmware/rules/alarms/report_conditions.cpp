@@ -97,6 +97,13 @@ void find_report_troubles(const Facts& facts, Found& found) {
                      .headline = {"The count of reports", "uncertain"},
                      .why = facts.run_unreliable});
   }
+  if (!facts.run_renamed.empty()) {
+    found.push_back({.id = "run_renamed",
+                     .severity = Severity::Ask,
+                     .side = Side::CommandPost,
+                     .headline = {"The name of the run", "uncertain"},
+                     .why = facts.run_renamed});
+  }
   if (facts.messages_rejected > 0) {
     const bool one = facts.messages_rejected == 1;
     found.push_back(

@@ -19,7 +19,10 @@ std::string undecidable(const Report& report, const Run& run, const Run* its) {
   if (!report.before && report.sent < run.began) {
     return "a new run began just after it was sent, so that it may have been recorded in either run";
   }
-  if (!report.before) return "the Command Post's counts before it was sent are not certain";
+  if (!report.before) {
+    return report.uncertain.empty() ? "the Command Post's counts before it was sent are not certain"
+                                    : report.uncertain;
+  }
   return "";
 }
 
@@ -150,6 +153,20 @@ bool Doubts::blur(std::int64_t decided, Time time) {
   account_.lose(time.now + policy_.doubt_for);
   begin(time.now);
   return true;
+}
+
+void Doubts::leave_to_operator(const std::string& why, Time time) {
+  std::vector<Report> left;
+  for (const Report* const doubt : all()) {
+    if (!doubt->uncertain.empty()) continue;
+    Report& report = left.emplace_back(*doubt);
+    report.before.reset();
+    report.uncertain = why;
+    report.changed = time.stamp;
+  }
+  if (!left.empty()) book_.change(left, account_.run());
+  begin(time.now);
+  explain(all(), "", time);
 }
 
 void Doubts::ask_for_others(Time time) {

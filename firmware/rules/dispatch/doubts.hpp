@@ -40,6 +40,9 @@ class Doubts {
   /// After the operator's decision.
   void ask_for_others(Time time);
 
+  /// The counts no longer show what became of all(): the operator decides.
+  void leave_to_operator(const std::string& why, Time time);
+
   /// True if the report is in doubt and Adit still asks about it.
   bool is_asking(const Report& report) const;
   /// Other reports must wait.

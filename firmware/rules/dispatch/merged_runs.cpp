@@ -34,6 +34,7 @@ Run joined(Run here, const Run& there) {
   }
   if (here.id.empty()) here.id = there.id;
   if (here.unreliable.empty()) here.unreliable = there.unreliable;
+  if (here.name_trouble.empty()) here.name_trouble = there.name_trouble;
   return here;
 }
 

@@ -50,6 +50,7 @@ struct Report {
   double sent = 0;           // last sending; seconds since 1970
   /// The status expected just before it was sent. nullopt: uncertain.
   std::optional<icd::RunStatus> before = std::nullopt;
+  std::string uncertain = "";  // if in doubt: why the counts do not show what became of it; "": not known
 
   int status = 0;                 // of the answer; 0: unanswered
   std::string content_type = "";  // of the answer

@@ -55,7 +55,10 @@ const Report* ReportReview::earlier(const Report& report) const {
   for (const Report* const other : std::views::reverse(same_in_run(report.report))) {
     if (report.number != 0 && other->number >= report.number) continue;
     const Report& original = original_of(*other, book_);
-    if (original.number != report.number && stands_for_others(original)) return &original;
+    if (original.number == report.number || !stands_for_others(original)) continue;
+    // The run of a finished report may have ended unnoticed: reason_to_hold().
+    if (is_final(original.state) && !account_.runs().name_trouble().empty()) continue;
+    return &original;
   }
   return nullptr;
 }
@@ -94,16 +97,27 @@ const Report* ReportReview::sent_to_other_command_post(const Report& report) con
   return sent_elsewhere(report, [this](const Run& its) { return its.post != account_.run().post; });
 }
 
-/// Same as a report whose run the next answer decides.
+/// Same as a report that was sent in a run that may be the present one.
 Hold ReportReview::maybe_repeat(const Report& report) const {
   const Run& run = account_.run();
   const Report* const sent =
       sent_elsewhere(report, [this](const Run& its) { return account_.runs().may_be_present(its.number); });
   if (sent != nullptr) {
+    const Run& its = *account_.runs().find(sent->run);
+    const std::string names =
+        !its.id.empty() && its.id == run.id ? ", and the Command Post gives both runs the same name" : "";
     return {icd::sentence("the same as report ", sent->number,
-                          ", and its run may still go on: only the clock shows that a new run began (",
-                          run.why, ")"),
+                          ", and its run may still go on: a new run is not certain (", run.why, names, ")"),
             sent->number};
+  }
+  if (const std::string& name_trouble = account_.runs().name_trouble(); !name_trouble.empty()) {
+    for (const Report* const other : same_in_run(report.report)) {
+      if (other->number == report.number || !was_sent(*other) || effect_of(*other).again) continue;
+      return {
+          icd::sentence("the same as report ", other->number,
+                        ", and the Command Post does not show whether its run goes on (", name_trouble, ")"),
+          other->number};
+    }
   }
   for (const Report* const other : book_.same_as(report.report)) {
     if (!account_.is_unclaimed(*other) || effect_of(*other).again) continue;

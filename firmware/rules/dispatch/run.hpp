@@ -21,6 +21,23 @@ inline Clock seen_again(const std::optional<Clock>& seen, double shows) {
   return {.shows = shows, .runs = seen->runs || shows > seen->shows};
 }
 
+/// Signs that a run is another one than the run before it.
+struct Signs {
+  bool count = false;  // more reports are left
+  bool clock = false;  // the clock went back, or fell behind in a silence
+  bool score = false;  // the score fell
+  bool name = false;   // an answer gave another name
+
+  bool is_any() const { return count || clock || score || name; }
+  /// Even the same name does not contradict them, because some servers give all runs one name.
+  bool agree() const { return count + clock + score >= 2; }
+  Signs& operator|=(const Signs& more) {
+    count |= more.count, clock |= more.clock, score |= more.score, name |= more.name;
+    return *this;
+  }
+  friend bool operator==(const Signs&, const Signs&) = default;
+};
+
 /// A run of the Command Post. Its address, team and name identify it. If these are equal, a status may show a
 /// difference (run_watch.hpp).
 struct Run {
@@ -41,6 +58,8 @@ struct Run {
   std::int64_t may_be = 0;  // earlier run that it may still be, or 0
   std::optional<Clock> status_clock = std::nullopt;  // of GET /api/status
   std::optional<Clock> answer_clock = std::nullopt;  // of the answers to reports
+  Signs signs = {};                                  // that it is not the run `may_be`
+  std::string name_trouble = "";  // a sentence: another name was given to it, so that names prove nothing
 
   bool was_heard() const { return last.has_value() || !id.empty(); }
   std::int64_t place() const { return turn > number ? turn : number; }

@@ -61,6 +61,15 @@ std::optional<AnotherRun> RunAccount::another(const icd::ReportReply& reply, Tim
   return another_run(run(), reply, silence(time));
 }
 
+bool RunAccount::is_grant(const icd::RunStatus& status, Time time) const {
+  return dispatch::is_grant(run(), status, silence(time));
+}
+
+NameCheck RunAccount::check_name(const Run& before, const icd::RunStatus& status, Time time) const {
+  const double unheard = std::max(0.0, clock_step_.between(before.heard, time.stamp) - kClockAhead);
+  return dispatch::check_name(before, status, {unheard, silence(time).since_status});
+}
+
 const Run* RunAccount::of_team(const std::string& team) const {
   return runs_.latest([&](const Run& run) {
     return run.post == post_ && run.last && !team.empty() && run.last->current_team == team;
@@ -75,26 +84,44 @@ const Run* RunAccount::of_name(const std::string& id) const {
   });
 }
 
-const Run* RunAccount::named_before() const {
+const Run* RunAccount::maybe_present(const std::function<bool(const Run&)>& fits) const {
   for (const std::int64_t number : runs_.maybe_present()) {
     const Run* const each = runs_.find(number);
-    if (each != &run() && !each->id.empty()) return each;
+    if (each != &run() && fits(*each)) return each;
   }
   return nullptr;
 }
 
-/// In one process by the monotonic clock. After a restart by stamps, less the step and the possible lead
-/// after a boot.
-double RunAccount::silence(Time time) const {
-  if (clock_at_) return std::chrono::duration<double>(time.now - *clock_at_).count();
-  return std::max(0.0, clock_step_.between(run().heard, time.stamp) - kClockAhead);
+Signs RunAccount::signs_against(const Run& earlier) const {
+  Signs signs;
+  for (const std::int64_t number : runs_.maybe_present()) {
+    if (number == earlier.number) break;
+    signs |= runs_.find(number)->signs;
+  }
+  return signs;
 }
 
-void RunAccount::begin(const std::string& why, std::int64_t may_be,
+/// In one process by the monotonic clock. After a restart by stamps, less the step and the possible lead
+/// after a boot.
+Silence RunAccount::silence(Time time) const {
+  const auto since = [&time](Instant last) { return std::chrono::duration<double>(time.now - last).count(); };
+  Silence silence;
+  if (status_came_) silence.since_status = since(*status_came_);
+  silence.at_least = clock_at_ ? since(*clock_at_)
+                               : std::max(0.0, clock_step_.between(run().heard, time.stamp) - kClockAhead);
+  return silence;
+}
+
+void RunAccount::begin(const AnotherRun& another, std::int64_t may_be,
                        const std::optional<icd::RunStatus>& status, std::span<const Report> steps,
                        Time time) {
-  Run next{
-      .began = time.stamp, .why = why, .last = status, .heard = time.stamp, .post = post_, .may_be = may_be};
+  Run next{.began = time.stamp,
+           .why = another.why,
+           .last = status,
+           .heard = time.stamp,
+           .post = post_,
+           .may_be = another.signs.is_any() ? may_be : 0,
+           .signs = another.signs};
   if (status) next.status_clock = Clock{.shows = status->run_clock};
   runs_.begin(std::move(next));
   status_at_ = time.stamp;
@@ -120,6 +147,7 @@ void RunAccount::take_up(std::int64_t number, std::span<const Report> steps, Tim
   runs_.take_up(number);
   status_at_ = run().heard - kAnswerWritten;
   clock_at_.reset();
+  status_came_.reset();
   forget_counts();
   book_.change(steps, run());
   written_ = time.stamp;
@@ -136,6 +164,7 @@ void RunAccount::merge_into(std::int64_t number, std::span<const Report> steps, 
     }
     if (later.answer_clock) merged.answer_clock = later.answer_clock;
     if (merged.unreliable.empty()) merged.unreliable = later.unreliable;
+    if (merged.name_trouble.empty()) merged.name_trouble = later.name_trouble;
     merged.heard = later.heard;
   }
   runs_.take_up(number);
@@ -150,13 +179,23 @@ void RunAccount::is_not(std::int64_t number) {
   book_.write(runs_.is_not(number));
 }
 
+void RunAccount::add_signs(const Signs& signs) {
+  runs_.present().signs |= signs;
+  book_.write(run());
+}
+
+void RunAccount::distrust_names(const std::string& why) {
+  runs_.present().name_trouble = why;
+  book_.write(run());
+}
+
 void RunAccount::forget_counts() {
   known_.reset();
-  odd_ = unscored_ = has_moved_ = false;
+  odd_ = unscored_ = has_moved_ = is_granted_ = false;
 }
 
 void RunAccount::heard(const icd::RunStatus& status, Time time) {
-  heard_ = clock_at_ = time.now;
+  heard_ = clock_at_ = status_came_ = time.now;
   Run& run = runs_.present();
   // Signs of another run are written at once.
   const bool is_news = !run.last || run.last->remaining_reports != status.remaining_reports ||
@@ -200,6 +239,13 @@ void RunAccount::lose(Instant until) {
 
 void RunAccount::settle(const icd::RunStatus& status, Time time) {
   if (uncertain_until_ && time.now < *uncertain_until_) return;
+  if (std::exchange(is_granted_, false)) {
+    // Reports that were answered since the last status may be counted later: the next status decides.
+    odd_ = known_ && known_->since.scored > 0;
+    has_moved_ = true;
+    known_ = {.status = status, .heard = time.now, .since = {}};
+    return;
+  }
   // Before a run starts, the Command Post may set its counts to any value.
   if (known_ && known_->status.run_clock > 0) {
     const std::int64_t remaining = known_->status.remaining_reports - known_->since.scored;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -54,16 +55,21 @@ class RunAccount {
   /// Why this status or answer is of another run. nullopt: it may be of the present run.
   std::optional<AnotherRun> another(const icd::RunStatus& status, Time time) const;
   std::optional<AnotherRun> another(const icd::ReportReply& reply, Time time) const;
+  /// True if this status shows granted reports in the present run.
+  bool is_grant(const icd::RunStatus& status, Time time) const;
+  NameCheck check_name(const Run& before, const icd::RunStatus& status, Time time) const;
   /// Last earlier run of `team` at this Command Post, or null.
   const Run* of_team(const std::string& team) const;
   /// Last earlier run named `id` here, or null.
   const Run* of_name(const std::string& id) const;
-  /// Latest named run that the present one may still be, or null.
-  const Run* named_before() const;
+  /// Latest run that the present one may still be and that `fits`, or null.
+  const Run* maybe_present(const std::function<bool(const Run&)>& fits) const;
+  /// The signs that the present run is not `earlier`, which it may still be.
+  Signs signs_against(const Run& earlier) const;
 
   /// Begins a run at the address in the settings. Writes it with `steps`. `may_be`: the run that it may still
-  /// be, or 0.
-  void begin(const std::string& why, std::int64_t may_be, const std::optional<icd::RunStatus>& status,
+  /// be if there are signs, or 0.
+  void begin(const AnotherRun& another, std::int64_t may_be, const std::optional<icd::RunStatus>& status,
              std::span<const Report> steps, Time time);
   /// Run `number` will be the present one. 0: no change is due.
   void will_be(std::int64_t number) { runs_.will_be(number); }
@@ -75,6 +81,12 @@ class RunAccount {
   void merge_into(std::int64_t number, std::span<const Report> steps, Time time);
   /// The present run is not `number`, for certain. It may still be a run between the two.
   void is_not(std::int64_t number);
+  /// More signs that the present run is not the run that it may be.
+  void add_signs(const Signs& signs);
+  /// Names prove nothing in the present run. `why`: a sentence.
+  void distrust_names(const std::string& why);
+  /// Somebody granted reports: the next settle() takes the count.
+  void grant() { is_granted_ = true; }
 
   void heard(const icd::RunStatus& status, Time time);
   void answered(const icd::ReportReply& reply, Time time);
@@ -96,7 +108,7 @@ class RunAccount {
   };
   void forget_counts();
   void write_down(double stamp);
-  double silence(Time time) const;
+  Silence silence(Time time) const;
 
   ReportBook& book_;
   Runs runs_;
@@ -107,12 +119,14 @@ class RunAccount {
   Instant::duration fresh_ = kFresh;
   std::optional<Instant> heard_;  // the last status or answer of the run
   std::optional<Instant> dumb_at_;
-  std::optional<Instant> clock_at_;  // last clock of the run in this process
+  std::optional<Instant> clock_at_;     // last clock of the run in this process
+  std::optional<Instant> status_came_;  // last status in this process, of a run that may be the present one
   std::optional<Known> known_;
   std::optional<Instant> uncertain_until_;
-  bool odd_ = false;        // last status not as expected
-  bool has_moved_ = false;  // a count has changed
-  bool unscored_ = false;   // by the last answer, reports are not scored
+  bool odd_ = false;         // last status not as expected
+  bool has_moved_ = false;   // a count has changed
+  bool is_granted_ = false;  // reports were granted since the last settle()
+  bool unscored_ = false;    // by the last answer, reports are not scored
 };
 
 }  // namespace adit::dispatch

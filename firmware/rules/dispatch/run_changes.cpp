@@ -89,43 +89,81 @@ void RunChanges::change_post(const std::string& post, Time time) {
   if (known != nullptr) {
     account_.take_up(next, steps, time);
   } else {
-    account_.begin(why_at(post, from), 0, std::nullopt, steps, time);
+    account_.begin({why_at(post, from), {}}, 0, std::nullopt, steps, time);
   }
   doubts_.explain(doubts, "", time);
   doubts_.begin(time.now);
 }
 
 void RunChanges::meet(const icd::RunStatus& status, Time time) {
+  judge_name(status, time);
   const auto another = account_.another(status, time);
-  if (!another) return;
   const Run& run = account_.run();
+  if (!another) {
+    if (!account_.is_grant(status, time)) return;
+    // In a run that only seems to be another one, the count agrees with the sign before.
+    if (run.may_be != 0) account_.add_signs({.count = true});
+    account_.grant();
+    return doubts_.leave_to_operator(
+        icd::sentence("the reports left went up from ", run.last->remaining_reports, " to ",
+                      status.remaining_reports, " while it was in doubt"),
+        time);
+  }
   const bool other_team = run.last && are_other_teams(run.last->current_team, status.current_team);
   const Run* const known = other_team ? account_.of_team(status.current_team) : nullptr;
-  if (known != nullptr) {
-    const auto differs = another_run(*known, status, account_.between(known->heard, time.stamp));
-    if (!differs) return take_up(*known, another->why, time);
-    return begin(another->why, differs->certain ? 0 : known->number, status, time);
-  }
-  // More reports are left, so the earlier run has ended and its reports have no repeats here.
-  const bool is_untouched = std::ranges::none_of(
-      book_.all() | std::views::values,
-      [&run](const Report& report) { return report.run == run.number && report.sending != 0; });
-  if (run.may_be != 0 && another->certain && !other_team && is_untouched) clear_held(time);
-  begin(another->why, another->certain ? 0 : run.number, status, time);
+  if (known == nullptr) return begin(*another, run.number, status, time);
+  const auto differs = another_run(*known, status, {account_.between(known->heard, time.stamp)});
+  if (!differs) return take_up(*known, another->why, time);
+  begin({another->why, differs->signs}, known->number, status, time);
 }
 
-void RunChanges::meet(const icd::ReportReply& reply, Time time) {
-  if (const auto another = account_.another(reply, time)) {
-    const Run* const known = another->certain ? account_.of_name(reply.run) : nullptr;
-    if (known != nullptr) return take_up(*known, another->why, time);
-    return begin(another->why, another->certain ? 0 : account_.run().number, std::nullopt, time);
+/// The first status after an answer with another name.
+void RunChanges::judge_name(const icd::RunStatus& status, Time time) {
+  const Run& run = account_.run();
+  if (!run.signs.name || run.may_be == 0 || run.last) return;
+  const Run* const before = account_.maybe_present([](const Run& each) { return each.last.has_value(); });
+  const NameCheck check =
+      before == nullptr ? NameCheck::Confirmed : account_.check_name(*before, status, time);
+  if (check == NameCheck::Unknown) return;
+  if (check == NameCheck::Confirmed) {
+    account_.is_not(before == nullptr ? run.may_be : before->number);
+    return clear_held(time);
   }
-  if (reply.run.empty() || !account_.run().id.empty()) return;
-  const Run* const before = account_.named_before();
-  if (before == nullptr) return claim(reply.run, time);
-  if (before->id == reply.run) return return_to(*before, time);
-  account_.is_not(before->number);
-  clear_held(time);
+  const std::string why = icd::sentence(run.why, "; but its count of reports and its clock go on");
+  return_to(*before, Repeats::StayHeld, time);
+  account_.distrust_names(why);
+}
+
+/// A nameless answer has only its clock. A name outranks it, unless the Command Post renames its run.
+void RunChanges::meet(const icd::ReportReply& reply, Time time) {
+  icd::ReportReply evidence = reply;
+  if (!account_.runs().name_trouble().empty()) evidence.run.clear();
+  const std::string& name = evidence.run;
+  if (const auto another = account_.another(evidence, time)) {
+    return another->signs.name ? meet_name(name, *another, time)
+                               : begin(*another, account_.run().number, std::nullopt, time);
+  }
+  if (name.empty() || !account_.run().id.empty()) return;
+  const Run* const before = account_.maybe_present([](const Run& run) { return !run.id.empty(); });
+  if (before == nullptr) return claim(name, time);
+  if (before->id != name) {
+    account_.is_not(before->number);
+    return claim(name, time);
+  }
+  // Some servers give all runs one name.
+  account_.signs_against(*before).agree() ? give_back(*before, time)
+                                          : return_to(*before, Repeats::Join, time);
+}
+
+/// The present run has another name.
+void RunChanges::meet_name(const std::string& name, const AnotherRun& another, Time time) {
+  const Run* const maybe = account_.maybe_present([&name](const Run& run) { return run.id == name; });
+  if (maybe != nullptr && !account_.signs_against(*maybe).agree()) {
+    return return_to(*maybe, Repeats::Join, time);
+  }
+  const Run* const known = maybe == nullptr ? account_.of_name(name) : nullptr;
+  known != nullptr ? take_up(*known, another.why, time)
+                   : begin(another, account_.run().number, std::nullopt, time);
 }
 
 /// Queued reports are held, young ones go on into the new run. Either run may have recorded a doubt that was
@@ -156,6 +194,7 @@ std::vector<Report> RunChanges::steps_into(std::int64_t next, const std::string&
     if (enters) review_.compare_later(number);
   }
   for (const std::int64_t number : review_.end_undos()) step_of(book_.at(number), false);
+  keep_held(steps);
   return steps;
 }
 
@@ -183,18 +222,30 @@ void RunChanges::claim(const std::string& name, Time time) {
   clear_held(time);
 }
 
-void RunChanges::begin(const std::string& why, std::int64_t may_be,
+/// The present run seems to be `earlier`, or to have its name: reports that either of them may have recorded
+/// belong to `earlier`, so that repeats of them stay held.
+void RunChanges::give_back(const Run& earlier, Time time) {
+  std::vector<Report> steps;
+  for (const auto& [number, report] : book_.all()) {
+    if (!account_.is_unclaimed(report)) continue;
+    Report& changed = steps.emplace_back(report);
+    changed.run = earlier.number;
+    changed.changed = time.stamp;
+  }
+  if (!steps.empty()) book_.change(steps, account_.run());
+}
+
+void RunChanges::begin(const AnotherRun& another, std::int64_t may_be,
                        const std::optional<icd::RunStatus>& status, Time time) {
   const auto doubts = doubts_.all();
   const std::int64_t next = account_.runs().next_number();
-  auto steps = steps_into(next, why, time);
+  auto steps = steps_into(next, another.why, time);
   // Either run may have recorded reports that were answered since the last status.
   for (const auto& [number, report] : book_.all()) {
     const bool since = report.state == ReportState::Answered && report.changed > account_.status_at();
-    const bool is_here = report.run == account_.run().number;
-    if (status && may_be == 0 && is_here && since) steps.emplace_back(report).run = next;
+    if (status && report.run == account_.run().number && since) steps.emplace_back(report).run = next;
   }
-  account_.begin(why, may_be, status, steps, time);
+  account_.begin(another, may_be, status, steps, time);
   doubts_.begin(time.now);
   doubts_.explain(doubts, "", time);
 }
@@ -208,22 +259,32 @@ void RunChanges::take_up(const Run& known, const std::string& why, Time time) {
   doubts_.begin(time.now);
 }
 
-/// The present run is `known`, and so are the runs between them: all their reports move there. Held repeats
-/// get the originals' answers.
-void RunChanges::return_to(const Run& known, Time time) {
+/// The present run is `known`, and so are the runs between them: all their reports move there, and reports
+/// that were held for another run are queued again. Joined repeats get the originals' answers.
+void RunChanges::return_to(const Run& known, Repeats held, Time time) {
   const std::int64_t number = known.number;
   const auto maybe = account_.runs().maybe_present();
   const std::set<std::int64_t> merged(maybe.begin(), std::ranges::find(maybe, number));
+  const Signs signs = account_.signs_against(known);
+  const auto has_blurred_counts = [&](const Report& report) {
+    return report.state == ReportState::InDoubt && (report.run != number || signs.count || signs.score);
+  };
   std::vector<Report> steps;
   std::vector<std::int64_t> repeats;
   for (const auto& [each, report] : book_.all()) {
-    if (!merged.contains(report.run)) continue;
+    if (report.run != number && !merged.contains(report.run)) continue;
+    const bool is_released = is_held_for_run(report);
+    if (report.run == number && !is_released && !has_blurred_counts(report)) continue;
     Report& changed = steps.emplace_back(report);
     changed.run = number;
     changed.changed = time.stamp;
-    if (report.state == ReportState::InDoubt) changed.before.reset();
-    if (report.state == ReportState::Queued) review_.compare_later(each);
-    if (!is_held_as_repeat(report)) continue;
+    if (has_blurred_counts(report)) changed.before.reset();
+    if (is_released) {
+      changed.state = transition(report.state, ReportEvent::Cleared)->to;
+      changed.note = "the run goes on";
+    }
+    if (changed.state == ReportState::Queued) review_.compare_later(each);
+    if (held == Repeats::StayHeld || !is_held_as_repeat(report)) continue;
     const std::int64_t its_run = book_.at(report.same_as).run;
     if (its_run != number && !merged.contains(its_run)) continue;
     changed = joined_repeat(changed, time);
@@ -232,6 +293,17 @@ void RunChanges::return_to(const Run& known, Time time) {
   account_.merge_into(number, steps, time);
   hand_over(repeats);
   doubts_.begin(time.now);
+}
+
+void RunChanges::keep_held(const std::vector<Report>& steps) {
+  for (const Report& step : steps) {
+    if (step.state == ReportState::Held) held_[step.number] = step.changed;
+  }
+}
+
+bool RunChanges::is_held_for_run(const Report& report) const {
+  const auto held = held_.find(report.number);
+  return report.state == ReportState::Held && held != held_.end() && held->second == report.changed;
 }
 
 /// Gives the clients of `repeats` to the reports that these repeat.
@@ -258,7 +330,7 @@ std::int64_t RunChanges::declare(Time time) {
   if (&account_.meant_run() != &account_.run()) {
     return account_.announce(kWhy, account_.meant_run().post, time);
   }
-  begin(kWhy, 0, std::nullopt, time);
+  begin({kWhy, {}}, 0, std::nullopt, time);
   return account_.run().number;
 }
 

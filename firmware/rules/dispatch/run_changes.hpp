@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,13 +36,19 @@ class RunChanges {
 
  private:
   std::vector<Report> steps_into(std::int64_t next, const std::string& why, Time time);
+  void judge_name(const icd::RunStatus& status, Time time);
+  void meet_name(const std::string& name, const AnotherRun& another, Time time);
   void claim(const std::string& name, Time time);
-  void begin(const std::string& why, std::int64_t may_be, const std::optional<icd::RunStatus>& status,
+  void give_back(const Run& earlier, Time time);
+  void begin(const AnotherRun& another, std::int64_t may_be, const std::optional<icd::RunStatus>& status,
              Time time);
   void take_up(const Run& known, const std::string& why, Time time);
-  void return_to(const Run& known, Time time);
+  enum class Repeats : std::uint8_t { Join, StayHeld };
+  void return_to(const Run& known, Repeats repeats, Time time);
   void hand_over(const std::vector<std::int64_t>& repeats);
   void clear_held(Time time);
+  void keep_held(const std::vector<Report>& steps);
+  bool is_held_for_run(const Report& report) const;
 
   const InquiryPolicy& policy_;
   ReportBook& book_;
@@ -48,6 +56,9 @@ class RunChanges {
   ReportReview& review_;
   Doubts& doubts_;
   WaitingClients& clients_;
+  /// Reports held because another run seemed to begin, and the times of that. They are queued again if it did
+  /// not begin. In memory only: after a restart the operator decides.
+  std::map<std::int64_t, double> held_;
 };
 
 }  // namespace adit::dispatch

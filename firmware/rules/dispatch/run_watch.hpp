@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -17,18 +18,37 @@ inline constexpr double kClockAhead = 170.0;  // seconds
 
 struct AnotherRun {
   std::string why;
-  /// By its name, its team or its count of reports. False: by its clock alone, so it may still be the same
-  /// run.
-  bool certain = true;
+  Signs signs;  // none: certain, because the team is another one
 };
 
-/// Whether a status, `silence` seconds after the last one of `run`, shows another run: another team, more
-/// remaining reports, or a clock that ran and then went back or fell behind in a long silence. nullopt: it
-/// may be of `run`.
-std::optional<AnotherRun> another_run(const Run& run, const icd::RunStatus& status, double silence);
+/// Seconds without word of a run.
+struct Silence {
+  double at_least = 0;                                // since its last clock
+  std::optional<double> since_status = std::nullopt;  // since its last status; nullopt: before this process
+};
+
+/// Whether a status, after that silence, shows another run than `run`: another team, more remaining reports,
+/// a lower score, or a clock that ran and then went back or fell behind in a long silence. nullopt: it may be
+/// of `run`. More reports or a lower score alone are no sign while the clock goes on (goes_on()).
+std::optional<AnotherRun> another_run(const Run& run, const icd::RunStatus& status, const Silence& silence);
 
 /// The same by an answer's `run` (ICD 5.2), or if that is missing, by its clock.
-std::optional<AnotherRun> another_run(const Run& run, const icd::ReportReply& reply, double silence);
+std::optional<AnotherRun> another_run(const Run& run, const icd::ReportReply& reply, const Silence& silence);
+
+/// True if the clock of the statuses advanced as time passed, to a value that no run can show that began
+/// since the last status.
+bool goes_on(const Run& run, const icd::RunStatus& status, const Silence& silence);
+
+/// True if the status shows more reports left in a run that certainly goes on: somebody granted them.
+bool is_grant(const Run& run, const icd::RunStatus& status, const Silence& silence);
+
+/// What the first status after another name shows of that name.
+enum class NameCheck : std::uint8_t {
+  Confirmed,     // a sign of another run agrees, or a run that began since may show this status
+  Contradicted,  // the counts and the clock of `before` go on
+  Unknown,
+};
+NameCheck check_name(const Run& before, const icd::RunStatus& status, const Silence& silence);
 
 /// True if the clock of the statuses was seen to run, so that it would show another run.
 bool tells_of_another(const Run& run);

@@ -56,14 +56,22 @@ bool Runs::is_at(std::int64_t number, const std::string& post) const {
   return run == nullptr || run->post.empty() || run->post == post;
 }
 
-std::vector<std::int64_t> Runs::maybe_present() const {
+std::vector<std::int64_t> Runs::maybe(std::int64_t number) const {
   std::vector<std::int64_t> numbers;
   // The last condition ends a damaged chain.
-  for (const Run* run = &present(); run != nullptr;) {
+  for (const Run* run = find(number); run != nullptr;) {
     numbers.push_back(run->number);
     run = run->may_be != 0 && run->may_be < run->number ? find(run->may_be) : nullptr;
   }
   return numbers;
+}
+
+const std::string& Runs::name_trouble() const {
+  for (const std::int64_t number : maybe_present()) {
+    const Run& run = runs_.at(number);
+    if (!run.name_trouble.empty()) return run.name_trouble;
+  }
+  return present().name_trouble;
 }
 
 bool Runs::may_be_present(std::int64_t number) const {

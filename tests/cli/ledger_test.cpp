@@ -54,7 +54,7 @@ TEST_F(LedgerDump, PrintsAllMembersEvenWhileAditRuns) {
       R"("robot":"","sender":"10.0.0.5","received":10.5,"changed":11.0,"state":"sending","note":"","run":0,)"
       R"("asked":false,"same_as":0,"tries":0,"sending":0,"sent":0.0,"before":{"score":4,"run_clock":5.0,)"
       R"("remaining_reports":6,"current_team":"ours"},"status":0,"content_type":"","answer":"",)"
-      R"("reconciled":false,"uncertain":"","history":[{"at":11.0,"state":"queued","note":""},)"
+      R"("reconciled":false,"beside":0,"counted":false,"uncertain":"","history":[{"at":11.0,"state":"queued","note":""},)"
       R"({"at":11.0,"state":"sending","note":""}]}],"runs":[{"number":2,"id":"R","began":0.0,"why":"",)"
       R"("last":null,"heard":0.0,"post":"","unreliable":"","turn":0,"may_be":0,)"
       R"("status_clock":{"shows":8.0,"runs":true},"answer_clock":null,)"

@@ -108,6 +108,7 @@ struct EvidenceCase {
   const char* name;
   icd::RunStatus before;
   std::int64_t doubts;
+  std::int64_t beside;
   SentSince since;
   icd::RunStatus now;
   Finding finding;
@@ -118,37 +119,42 @@ void PrintTo(const EvidenceCase& one, std::ostream* out) {
 }
 
 const EvidenceCase kEvidenceCases[] = {
-    {"NothingChanged", status(20, 3), 1, {}, status(20, 3), Finding::NotRecorded, kUnknown},
-    {"OneUsedAndNoPoint", status(20, 3), 1, {}, status(19, 3), Finding::Recorded, 0},
-    {"OneUsedAndAPoint", status(20, 3), 1, {}, status(19, 4), Finding::Recorded, 1},
-    {"TheLastOneUsed", status(1, 3), 1, {}, status(0, 3), Finding::Recorded, 0},
-    {"TwoUsedByOne", status(20, 3), 1, {}, status(18, 3), Finding::Contradicts, kUnknown},
-    {"MoreLeftThanBefore", status(20, 3), 1, {}, status(21, 3), Finding::Contradicts, kUnknown},
-    {"APointForNothing", status(20, 3), 1, {}, status(20, 4), Finding::Contradicts, kUnknown},
-    {"TwoPointsForOne", status(20, 3), 1, {}, status(19, 5), Finding::Contradicts, kUnknown},
-    {"APointLost", status(20, 3), 1, {}, status(19, 2), Finding::Contradicts, kUnknown},
-    {"NothingLeftToUse", status(0, 3), 1, {}, status(0, 3), Finding::Silent, kUnknown},
-    {"ClockNotStarted", status(20, 0, 0), 1, {}, status(20, 0, 0), Finding::Silent, kUnknown},
-    {"StartedSince", status(20, 0, 0), 1, {}, status(20, 0, 9), Finding::NotRecorded, kUnknown},
-    {"StartedSinceWithOtherCounts", status(5, 0, 0), 1, {}, status(25, 0, 9), Finding::Silent, kUnknown},
-    {"StartedSinceWithOneLess", status(20, 0, 0), 1, {}, status(19, 0, 9), Finding::Silent, kUnknown},
-    {"TwoOfTwo", status(20, 3), 2, {}, status(18, 3), Finding::Recorded, 0},
-    {"TwoOfTwoWithBothPoints", status(20, 3), 2, {}, status(18, 5), Finding::Recorded, 1},
-    {"TwoOfTwoWithOnePoint", status(20, 3), 2, {}, status(18, 4), Finding::Recorded, kUnknown},
-    {"OneOfTwo", status(20, 3), 2, {}, status(19, 3), Finding::Silent, kUnknown},
-    {"NoneOfTwo", status(20, 3), 2, {}, status(20, 3), Finding::NotRecorded, kUnknown},
-    {"ThreeOfTwo", status(20, 3), 2, {}, status(17, 3), Finding::Contradicts, kUnknown},
-    {"OnlyWhatWasSentSince", status(20, 3), 1, {2, 1}, status(18, 4), Finding::NotRecorded, kUnknown},
-    {"OneMoreThanSentSince", status(20, 3), 1, {2, 1}, status(17, 5), Finding::Recorded, 1},
-    {"LessThanSentSince", status(20, 3), 1, {2, 0}, status(19, 3), Finding::Contradicts, kUnknown},
-    {"UsedUpBySentSince", status(2, 3), 1, {2, 0}, status(0, 3), Finding::Silent, kUnknown},
+    {"NothingChanged", status(20, 3), 1, 0, {}, status(20, 3), Finding::NotRecorded, kUnknown},
+    {"OneUsedAndNoPoint", status(20, 3), 1, 0, {}, status(19, 3), Finding::Recorded, 0},
+    {"OneUsedAndAPoint", status(20, 3), 1, 0, {}, status(19, 4), Finding::Recorded, 1},
+    {"TheLastOneUsed", status(1, 3), 1, 0, {}, status(0, 3), Finding::Recorded, 0},
+    {"TwoUsedByOne", status(20, 3), 1, 0, {}, status(18, 3), Finding::Contradicts, kUnknown},
+    {"MoreLeftThanBefore", status(20, 3), 1, 0, {}, status(21, 3), Finding::Contradicts, kUnknown},
+    {"APointForNothing", status(20, 3), 1, 0, {}, status(20, 4), Finding::Contradicts, kUnknown},
+    {"TwoPointsForOne", status(20, 3), 1, 0, {}, status(19, 5), Finding::Contradicts, kUnknown},
+    {"APointLost", status(20, 3), 1, 0, {}, status(19, 2), Finding::Contradicts, kUnknown},
+    {"NothingLeftToUse", status(0, 3), 1, 0, {}, status(0, 3), Finding::Silent, kUnknown},
+    {"ClockNotStarted", status(20, 0, 0), 1, 0, {}, status(20, 0, 0), Finding::Silent, kUnknown},
+    {"StartedSince", status(20, 0, 0), 1, 0, {}, status(20, 0, 9), Finding::NotRecorded, kUnknown},
+    {"StartedSinceWithOtherCounts", status(5, 0, 0), 1, 0, {}, status(25, 0, 9), Finding::Silent, kUnknown},
+    {"StartedSinceWithOneLess", status(20, 0, 0), 1, 0, {}, status(19, 0, 9), Finding::Silent, kUnknown},
+    {"TwoOfTwo", status(20, 3), 2, 0, {}, status(18, 3), Finding::Recorded, 0},
+    {"TwoOfTwoWithBothPoints", status(20, 3), 2, 0, {}, status(18, 5), Finding::Recorded, 1},
+    {"TwoOfTwoWithOnePoint", status(20, 3), 2, 0, {}, status(18, 4), Finding::Recorded, kUnknown},
+    {"OneOfTwo", status(20, 3), 2, 0, {}, status(19, 3), Finding::Silent, kUnknown},
+    {"NoneOfTwo", status(20, 3), 2, 0, {}, status(20, 3), Finding::NotRecorded, kUnknown},
+    {"ThreeOfTwo", status(20, 3), 2, 0, {}, status(17, 3), Finding::Contradicts, kUnknown},
+    {"NoneOfOneAndOneBeside", status(20, 3), 1, 1, {}, status(20, 3), Finding::NotRecorded, kUnknown},
+    {"OneOfOneAndOneBeside", status(20, 3), 1, 1, {}, status(19, 4), Finding::Silent, kUnknown},
+    {"TwoOfOneAndOneBeside", status(20, 3), 1, 1, {}, status(18, 3), Finding::Recorded, 0},
+    {"TwoOfOneAndOneBesideWithOnePoint", status(20, 3), 1, 1, {}, status(18, 4), Finding::Recorded, kUnknown},
+    {"ThreeOfOneAndOneBeside", status(20, 3), 1, 1, {}, status(17, 3), Finding::Contradicts, kUnknown},
+    {"OnlyWhatWasSentSince", status(20, 3), 1, 0, {2, 1}, status(18, 4), Finding::NotRecorded, kUnknown},
+    {"OneMoreThanSentSince", status(20, 3), 1, 0, {2, 1}, status(17, 5), Finding::Recorded, 1},
+    {"LessThanSentSince", status(20, 3), 1, 0, {2, 0}, status(19, 3), Finding::Contradicts, kUnknown},
+    {"UsedUpBySentSince", status(2, 3), 1, 0, {2, 0}, status(0, 3), Finding::Silent, kUnknown},
 };
 
 class EvidenceTable : public testing::TestWithParam<EvidenceCase> {};
 
 TEST_P(EvidenceTable, FollowsFromTheCounts) {
   const EvidenceCase& one = GetParam();
-  const Evidence evidence = weigh(one.before, one.doubts, one.since, one.now);
+  const Evidence evidence = weigh(one.before, one.doubts, one.beside, one.since, one.now);
   EXPECT_EQ(evidence.finding, one.finding) << evidence.why;
   EXPECT_EQ(evidence.points_each, one.points_each);
 }
@@ -157,28 +163,41 @@ INSTANTIATE_TEST_SUITE_P(Counts, EvidenceTable, testing::ValuesIn(kEvidenceCases
                          [](const auto& one) { return one.param.name; });
 
 TEST(Evidence, ExplainsItselfWithFigures) {
-  EXPECT_EQ(weigh(status(20, 3), 2, {1, 1}, status(19, 4)).why,
+  EXPECT_EQ(weigh(status(20, 3), 2, 0, {1, 1}, status(19, 4)).why,
             "remaining_reports went from 20 to 19 and the score from 3 to 4, 1 of it by reports sent since, "
             "with 2 reports in doubt");
-  EXPECT_THAT(weigh(status(20, 3), 1, {}, status(18, 3)).why,
+  EXPECT_THAT(weigh(status(20, 3), 1, 0, {}, status(18, 3)).why,
               testing::HasSubstr("does another sender report"));
 }
 
+TEST(Evidence, NamesOtherDoubtsThatMayExplainIt) {
+  EXPECT_THAT(weigh(status(20, 3), 1, 1, {}, status(19, 3)).why,
+              testing::HasSubstr("1 other report in doubt may explain it"));
+  EXPECT_THAT(weigh(status(20, 3), 1, 1, {}, status(20, 3)).why,
+              testing::Not(testing::HasSubstr("may explain")));
+}
+
 /// The law behind the table: without another sender there is no contradiction, and no finding is wrong.
+/// `done` of the doubts and `late` of those beside them were recorded.
 TEST(Evidence, IsTrueWithoutAnotherSender) {
-  for (std::int64_t left = 1; left <= 6; ++left) {
-    for (std::int64_t doubts = 1; doubts <= 3; ++doubts) {
-      for (std::int64_t done = 0; done <= doubts; ++done) {
-        for (std::int64_t points = 0; points <= done; ++points) {
-          for (std::int64_t others = 0; others + done <= left; ++others) {
-            const auto now = status(left - done - others, 3 + points);
-            const Finding finding = weigh(status(left, 3), doubts, {others, 0}, now).finding;
-            EXPECT_NE(finding, Finding::Contradicts);
-            EXPECT_TRUE(finding != Finding::Recorded || done == doubts);
-            EXPECT_TRUE(finding != Finding::NotRecorded || done == 0);
-          }
-        }
-      }
+  struct Case {
+    std::int64_t left, doubts, beside, done, late, others;
+  };
+  std::vector<Case> cases;
+  for (std::int64_t left = 1; left <= 6; ++left)
+    for (std::int64_t doubts = 1; doubts <= 3; ++doubts)
+      for (std::int64_t beside = 0; beside <= 2; ++beside)
+        for (std::int64_t done = 0; done <= doubts; ++done)
+          for (std::int64_t late = 0; late <= beside; ++late)
+            for (std::int64_t others = 0; others + done + late <= left; ++others)
+              cases.push_back({left, doubts, beside, done, late, others});
+  for (const auto& [left, doubts, beside, done, late, others] : cases) {
+    for (std::int64_t points = 0; points <= done + late; ++points) {
+      const auto now = status(left - done - late - others, 3 + points);
+      const Finding finding = weigh(status(left, 3), doubts, beside, {others, 0}, now).finding;
+      EXPECT_NE(finding, Finding::Contradicts);
+      EXPECT_TRUE(finding != Finding::Recorded || done == doubts);
+      EXPECT_TRUE(finding != Finding::NotRecorded || done == 0);
     }
   }
 }

@@ -134,7 +134,10 @@ TEST_F(OtherCommandPost, DecidesNoDoubtOfTheFirst) {
 TEST_F(OtherCommandPost, MakesOtherDoubtsUncertainAfterASettlement) {
   scene_.post(4);
   scene_.lose();
-  scene_.repeat_stop(16);
+  for (int i = 0; i < 16; ++i) {
+    scene_.wait(1);
+    scene_.hear(19, 1, 101);
+  }
   scene_.post(5);
   scene_.lose();
   move_away();

@@ -22,7 +22,7 @@ class RunAccountTest : public testing::Test {
   }
   void hear(std::int64_t remaining, std::int64_t score) {
     account_.heard(status(remaining, score), time());
-    account_.settle(status(remaining, score), time());
+    account_.settle(status(remaining, score), 0, time());
   }
   void answer(const std::string& report_status, std::int64_t points) {
     icd::ReportReply reply;

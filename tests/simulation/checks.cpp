@@ -66,6 +66,7 @@ Broken all_checks(const Evidence& evidence) {
                            clean,
                            status_true,
                            live,
+                           decided,
                            honest,
                            lights,
                            alive,

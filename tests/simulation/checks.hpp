@@ -52,6 +52,7 @@ void markers_arrived(const Evidence& evidence, Broken& broken);
 void refused(const Evidence& evidence, Broken& broken);
 void clean(const Evidence& evidence, Broken& broken);
 void status_true(const Evidence& evidence, Broken& broken);
+void decided(const Evidence& evidence, Broken& broken);
 void live(const Evidence& evidence, Broken& broken);
 void not_cut(const Evidence& evidence, Broken& broken);
 void honest(const Evidence& evidence, Broken& broken);

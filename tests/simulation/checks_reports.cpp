@@ -15,6 +15,7 @@
 #include "simulation/intended_runs.hpp"
 #include "simulation/messages.hpp"
 #include "simulation/scoreboard.hpp"
+#include "simulation/team.hpp"
 #include "simulation/upstream_view.hpp"
 #include "simulation/world.hpp"
 
@@ -176,6 +177,36 @@ void not_lost(const Evidence& evidence, Broken& broken) {
       broken.push_back(icd::sentence("NotLost: report ", serial_of(report), " is ",
                                      dispatch::name_of(report.state), ", but was not recorded"));
     }
+  }
+}
+
+/// A fault after which the counts prove no report for longer, by README.md of dispatch.
+bool ends_proof(const Event& event) {
+  const bool is_fault = event.kind == Kind::Fault;
+  return event.kind == Kind::Another || is_grant(event) ||
+         (is_fault &&
+          (event.who == name_of(Fault::AdminStop) || event.who == kSetBack || event.who == kRepeats));
+}
+
+/// Neither a run with a clock that stands, nor one without reports left.
+bool can_be_counted(const Evidence& evidence) {
+  std::set<int> clocks;
+  for (const Event& event : evidence.events) {
+    if (event.kind != Kind::Replied || event.what != kStatus || event.says.size() != 3) continue;
+    if (event.says[1] == 0) return false;
+    clocks.insert(event.says[2]);
+  }
+  return clocks.size() > 1;
+}
+
+void decided(const Evidence& evidence, Broken& broken) {
+  const bool is_lost = std::ranges::any_of(
+      evidence.events, [](const Event& event) { return event.kind == Kind::Fault && event.who == kLate; });
+  if (!is_lost || !can_be_counted(evidence) || std::ranges::any_of(evidence.events, ends_proof)) return;
+  for (const dispatch::Report& report : evidence.reports) {
+    if (serial_of(report) != LateReporter::kSerial || report.state != ReportState::InDoubt) continue;
+    broken.push_back(icd::sentence("Decided: report ", serial_of(report),
+                                   " is in doubt, although the counts show it: ", report.note));
   }
 }
 

@@ -6,6 +6,7 @@
 
 #include "simulation/messages.hpp"
 #include "simulation/odd_answers.hpp"
+#include "simulation/team.hpp"
 #include "simulation/world.hpp"
 
 namespace adit::simulation {
@@ -224,7 +225,20 @@ bool CommandPost::is_beyond_one_limit(const HttpMessage& request, const WhenLeft
   return false;
 }
 
+/// Loses the answer to the late reporter's report, which it may record. True: this is that report.
+bool CommandPost::loses_late_answer(const HttpMessage& request, Link& link) {
+  if (!calm_ || is_late_lost_ || request.path() != kReports) return false;
+  const auto items = items_of(request);
+  if (items.empty() || items.front().serial != LateReporter::kSerial) return false;
+  is_late_lost_ = true;
+  world_.note({.actor = Actor::Post, .kind = Kind::Fault, .what = kReports, .who = kLate});
+  if (world_.random("late answer").chance(0.5)) take(request);
+  link.end(Link::How::Reset);
+  return true;
+}
+
 void CommandPost::answer(const HttpMessage& request, Link& link) {
+  if (loses_late_answer(request, link)) return;
   const Fault fault = calm_ ? Fault::End : faults_.of_request();
   const bool befalls = fault == Fault::Unwanted         ? request.path() == kMap || request.path() == kState
                        : fault == Fault::TakenThrottled ? is_mapping(request)

@@ -20,6 +20,9 @@ namespace adit::simulation {
 /// Event::who of a fault: an answer repeats the one before, and nothing is recorded.
 inline constexpr const char* kRepeats = "Repeats";
 
+/// Event::who of a fault: the late reporter's answer is lost.
+inline constexpr const char* kLate = "Late";
+
 /// Both endpoints of a Command Post that follows the ICD to the letter, with the faults of one run.
 class CommandPost final : public Host {
  public:
@@ -41,6 +44,7 @@ class CommandPost final : public Host {
   bool has_page_for(const HttpMessage& request, Link& link);
   bool is_beyond_one_limit(const HttpMessage& request, const WhenLeft& left);
   void answer(const HttpMessage& request, Link& link);
+  bool loses_late_answer(const HttpMessage& request, Link& link);
   void may_answer_early(const HttpMessage& head, Link& link);
   void misbehave(Fault fault, const HttpMessage& request, Link& link);
   std::string bad_answer(Fault fault, const HttpMessage& request);
@@ -74,7 +78,8 @@ class CommandPost final : public Host {
   enum class Slash : std::uint8_t { Either, Unknown, Wanted } slash_;
   bool has_portal_ = false;  // a web server answers in place of scoring
   bool calm_ = false;
-  std::set<Fault> on_;  // faults that last for a period
+  bool is_late_lost_ = false;  // the answer to the late reporter was lost
+  std::set<Fault> on_;         // faults that last for a period
   std::vector<std::weak_ptr<Link>> links_;
 };
 

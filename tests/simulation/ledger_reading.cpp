@@ -85,6 +85,8 @@ dispatch::Report report_of(Cursor members) {
   report.content_type = members.text();
   report.answer = members.text();
   report.reconciled = members.number() == 1;
+  report.beside = members.number();
+  report.counted = members.number() == 1;
   report.uncertain = members.text();
   return report;
 }

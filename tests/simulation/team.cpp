@@ -100,7 +100,23 @@ void Burst::watch() {
                 [this](int) { world_.after(seconds(0.5), [this] { watch(); }); });
 }
 
-Team::Team(World& world, double until) {
+LateReporter::LateReporter(World& world, double trouble_for)
+    : world_(world),
+      client_(world, address(120), {.keeps_alive = false, .patience = 5},
+              world.random("client of the late reporter")) {
+  Random random = world.random("late reporter");
+  const bool reports = random.chance(1.0 / 3);
+  const double late = random.between(45, 60);
+  if (!reports || world.omits("late")) return;
+  world.after(seconds(trouble_for + late), [this] { report(); });
+}
+
+void LateReporter::report() {
+  client_.ask(request_of({kReports, {{.who = "", .serial = kSerial}}}, {}),
+              {.what = kReports, .who = "", .serial = kSerial}, [](int) {});
+}
+
+Team::Team(World& world, double until) : late_reporter_(world, until) {
   Random random = world.random("team");
   const auto robots = static_cast<int>(random.below(4)), reporters = static_cast<int>(random.below(3));
   for (int i = 1; i <= robots; ++i) robots_.push_back(std::make_unique<Robot>(world, i));

@@ -60,6 +60,20 @@ class Burst {
   double ends_ = 0;
 };
 
+/// In a third of the runs: reports once more, long after the trouble. The Command Post loses that answer.
+class LateReporter {
+ public:
+  static constexpr std::int64_t kSerial = 8500;
+
+  LateReporter(World& world, double trouble_for);
+
+ private:
+  void report();
+
+  World& world_;
+  Client client_;
+};
+
 class Team {
  public:
   Team(World& world, double until);
@@ -68,6 +82,7 @@ class Team {
   std::vector<std::unique_ptr<Robot>> robots_;
   std::unique_ptr<Station> station_;  // may be null
   std::vector<std::unique_ptr<Reporter>> reporters_;
+  LateReporter late_reporter_;
   std::vector<std::unique_ptr<Blunderer>> blunderers_;
   std::vector<std::unique_ptr<Watcher>> watchers_;
   std::vector<std::unique_ptr<Staller>> stallers_;

@@ -12,7 +12,7 @@ BEGINS, ENDS, STEPS = 0, 127, 1  # kinds
 ON_DISK, IN_SNAPSHOT = 4096, 8  # alignment
 LAYOUTS = {"report": "number:n type:t x:r y:r z:r robot:t sender:t received:r changed:r state:t note:t run:n asked:n same_as:n tries:n "
                      "sending:n sent:r before:s status:n content_type:t answer:t reconciled:n "
-                     "uncertain:t",
+                     "beside:n counted:n uncertain:t",
            "run": "number:n id:t began:r why:t last:s heard:r post:t unreliable:t turn:n may_be:n status_clock:c answer_clock:c "
                   "signs:g name_trouble:t"}
 

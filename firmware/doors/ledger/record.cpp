@@ -118,6 +118,8 @@ void members(auto& each, auto& report)
   each("content_type", report.content_type);
   each("answer", report.answer);
   each("reconciled", report.reconciled);
+  each("beside", report.beside);
+  each("counted", report.counted);
   each("uncertain", report.uncertain);
 }
 
@@ -158,6 +160,7 @@ std::optional<Of> take(std::string_view record) {
       what.note =
           "its state '" + std::string(take.unknown_state()) + "' is unknown to this version; " + what.note;
       what.before.reset();
+      what.counted = false;
     }
   }
   return what;

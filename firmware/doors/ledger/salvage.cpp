@@ -36,6 +36,7 @@ std::string Book::salvage(double now, std::int64_t expected, bool end_is_lost) {
     report.changed = now;
     report.note = kHeld;
     report.before.reset();
+    report.counted = false;
     put(report);
   }
   // Without its record, the present run is the latest report's. Any other run may be resumed.

@@ -29,8 +29,9 @@ struct Evidence {
 };
 
 /// Compares the present status with the status expected before the first of `doubts` reports was sent. A
-/// recorded report lowers remaining_reports by one (ICD 5.1) and gains 0 or 1 point (ICD 5.2).
-Evidence weigh(const icd::RunStatus& before, std::int64_t doubts, const SentSince& since,
+/// recorded report lowers remaining_reports by one (ICD 5.1) and gains 0 or 1 point (ICD 5.2). `beside`:
+/// other reports in doubt that may have changed the counts since.
+Evidence weigh(const icd::RunStatus& before, std::int64_t doubts, std::int64_t beside, const SentSince& since,
                const icd::RunStatus& now);
 
 struct InquiryPolicy {

@@ -124,6 +124,8 @@ class MergedReports {
                   icd::sentence("the same as report ", own->number, ", which this box had"));
     }
     next.before = runs_.is_present_there(there.run) ? handover_.expected : std::nullopt;
+    next.beside = 0;
+    next.counted = false;
     next.sending = ++next_sending_;
     next.sent = handover_.stamp;
     return step(next, ReportState::InDoubt, "it was queued at the first box, which may have sent it since");

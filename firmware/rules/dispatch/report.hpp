@@ -50,6 +50,10 @@ struct Report {
   double sent = 0;           // last sending; seconds since 1970
   /// The status expected just before it was sent. nullopt: uncertain.
   std::optional<icd::RunStatus> before = std::nullopt;
+  /// Earlier reports in doubt that may explain a change of the counts since `before`, one report and up to
+  /// one point each.
+  std::int64_t beside = 0;
+  bool counted = false;  // in doubt: later statuses have its effect, so that it explains no later change
   std::string uncertain = "";  // if in doubt: why the counts do not show what became of it; "": not known
 
   int status = 0;                 // of the answer; 0: unanswered

@@ -97,7 +97,10 @@ void ReportSender::prepare(Report& report, Time time) {
   report.run = account_.run().number;
   report.sending = ++last_sending_;
   report.sent = time.stamp;
-  report.before = doubts_.all().empty() ? account_.expected(time.now) : std::nullopt;
+  report.before = doubts_.has_open_group() ? std::nullopt : account_.expected(time.now);
+  report.beside = report.before ? doubts_.open_count() : 0;
+  report.counted = false;
+  report.uncertain.clear();
   report.status = 0;
   report.content_type.clear();
   report.answer.clear();

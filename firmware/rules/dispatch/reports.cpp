@@ -30,6 +30,7 @@ void Reports::open(std::vector<Report> all, std::vector<Run> runs, Time time, co
   account_.open(std::move(runs), latest_run, post);
   sender_.open(time);
   for (const std::int64_t number : book_.waiting()) review_.compare_later(number);
+  doubts_.open();
   doubts_.begin(time.now);
   if (!post.empty() && run().post != post) changes_.change_post(post, time);
 }
@@ -44,7 +45,7 @@ void Reports::follow(std::int64_t number, ReportAction action, Time time) {
       clients_.tell_all(number);
       break;
     case ReportAction::Ask:
-      doubts_.lost(time.now);
+      doubts_.lost(number, time.now);
       break;
   }
 }
@@ -139,9 +140,9 @@ void Reports::status_heard(const icd::RunStatus& status, Instant asked, Time tim
   account_.heard(status, time);
   sender_.status_heard();
   book_.move(doubts_.hear(status, asked, time), time);
-  if (!doubts_.all().empty()) return;
-  doubts_.begin(time.now);
-  account_.settle(status, time);
+  const std::int64_t open = doubts_.open_count();  // until this status
+  doubts_.count(asked, time);
+  if (!doubts_.has_open_group()) account_.settle(status, open, time);
 }
 
 void Reports::status_failed(NoStatus why, Time time) {

@@ -194,7 +194,16 @@ void RunAccount::forget_counts() {
   odd_ = unscored_ = has_moved_ = is_granted_ = false;
 }
 
+/// As in Inquiry: a running clock shows at least a quarter of the time. Before the start it stands.
+bool RunAccount::stands(const icd::RunStatus& status, Time time) const {
+  const auto& clock = run().status_clock;
+  if (status.run_clock <= 0) return true;
+  if (!clock || !clock->runs) return false;
+  return !status_came_ || status.run_clock - clock->shows < *silence(time).since_status / 4;
+}
+
 void RunAccount::heard(const icd::RunStatus& status, Time time) {
+  is_stopped_ = stands(status, time);
   heard_ = clock_at_ = status_came_ = time.now;
   Run& run = runs_.present();
   // Signs of another run are written at once.
@@ -237,7 +246,7 @@ void RunAccount::lose(Instant until) {
   uncertain_until_ = until;
 }
 
-void RunAccount::settle(const icd::RunStatus& status, Time time) {
+void RunAccount::settle(const icd::RunStatus& status, std::int64_t open, Time time) {
   if (uncertain_until_ && time.now < *uncertain_until_) return;
   if (std::exchange(is_granted_, false)) {
     // Reports that were answered since the last status may be counted later: the next status decides.
@@ -250,7 +259,8 @@ void RunAccount::settle(const icd::RunStatus& status, Time time) {
   if (known_ && known_->status.run_clock > 0) {
     const std::int64_t remaining = known_->status.remaining_reports - known_->since.scored;
     const std::int64_t score = known_->status.score + known_->since.points;
-    const bool fits = status.remaining_reports == remaining && status.score == score;
+    const std::int64_t used = remaining - status.remaining_reports, points = status.score - score;
+    const bool fits = used >= 0 && used <= open && points >= 0 && points <= used;
     if (!fits && !odd_) {  // the count may lag: wait for the next status
       odd_ = true;
       return;

@@ -95,8 +95,12 @@ class RunAccount {
   void lose() { known_.reset(); }
   /// The same until `until`, because a report that the operator decided may still be recorded.
   void lose(Instant until);
-  /// Compares a status with the expected one, and starts from it. Call it only while no report is in doubt.
-  void settle(const icd::RunStatus& status, Time time);
+  /// Compares a status with the expected one, and starts from it. Call it only while each doubt that the
+  /// counts may decide is counted. `open`: other doubts, each of which may explain a report and a point.
+  void settle(const icd::RunStatus& status, std::int64_t open, Time time);
+  /// True if the clock was seen to run and the last status does not show that it runs: perhaps a stop, in
+  /// which the counts show no report.
+  bool is_stopped() const { return is_stopped_; }
   /// The counts prove no report until the next run.
   void distrust(const std::string& why, double stamp);
 
@@ -109,6 +113,7 @@ class RunAccount {
   void forget_counts();
   void write_down(double stamp);
   Silence silence(Time time) const;
+  bool stands(const icd::RunStatus& status, Time time) const;
 
   ReportBook& book_;
   Runs runs_;
@@ -123,8 +128,9 @@ class RunAccount {
   std::optional<Instant> status_came_;  // last status in this process, of a run that may be the present one
   std::optional<Known> known_;
   std::optional<Instant> uncertain_until_;
-  bool odd_ = false;         // last status not as expected
-  bool has_moved_ = false;   // a count has changed
+  bool odd_ = false;        // last status not as expected
+  bool has_moved_ = false;  // a count has changed
+  bool is_stopped_ = true;
   bool is_granted_ = false;  // reports were granted since the last settle()
   bool unscored_ = false;    // by the last answer, reports are not scored
 };

@@ -168,6 +168,17 @@ TEST_F(CountUpAlone, LeavesHeldReportsToTheOperatorIfHeHeldThem) {
   EXPECT_EQ(scene_.state(2), Held);
 }
 
+/// A client repeats the held report, and the repeat is sent (seed 1932920237 of the simulation).
+TEST_F(CountUpAlone, QueuesNoHeldReportAgainIfItsRepeatWasSent) {
+  scene_.post_queued(2);
+  for (int i = 0; i < 12; ++i) pass(1, 19, 1);
+  pass(1, 20, 1, scene_.run_clock());
+  ASSERT_EQ(scene_.state(2), Held);
+  scene_.record(2, "1");
+  EXPECT_EQ(scene_.send_next(), 0);
+  EXPECT_EQ(scene_.state(2), Held);
+}
+
 TEST_F(CountUpAlone, LeavesAnOlderDoubtToTheOperator) {
   scene_.post(2);
   scene_.lose();

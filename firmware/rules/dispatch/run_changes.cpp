@@ -269,11 +269,19 @@ void RunChanges::return_to(const Run& known, Repeats held, Time time) {
   const auto has_blurred_counts = [&](const Report& report) {
     return report.state == ReportState::InDoubt && (report.run != number || signs.count || signs.score);
   };
+  // A repeat may have been sent in the run that seemed to begin: then the operator decides.
+  const auto has_twin = [&](const Report& report) {
+    return std::ranges::any_of(book_.same_as(report.report), [&](const Report* other) {
+      const bool stays = other->state == ReportState::Held || other->state == ReportState::Withdrawn;
+      return other->number != report.number && !stays &&
+             (other->run == number || merged.contains(other->run));
+    });
+  };
   std::vector<Report> steps;
   std::vector<std::int64_t> repeats;
   for (const auto& [each, report] : book_.all()) {
     if (report.run != number && !merged.contains(report.run)) continue;
-    const bool is_released = is_held_for_run(report);
+    const bool is_released = is_held_for_run(report) && !has_twin(report);
     if (report.run == number && !is_released && !has_blurred_counts(report)) continue;
     Report& changed = steps.emplace_back(report);
     changed.run = number;

@@ -367,6 +367,23 @@ TEST_F(AnotherNameAlone, ConfirmsNoSignInARenamedRun) {
   EXPECT_EQ(scene_.send_next(), 0);
 }
 
+/// As after a start while the status failed and the disk was full.
+TEST_F(AnotherNameAlone, HoldsARepeatIfNoEarlierStatusIsKnown) {
+  auto run = scene_.reports().run();
+  run.last.reset();
+  run.status_clock.reset();
+  scene_.output().runs[1] = run;
+  scene_.restart();
+  scene_.reports().status_failed(NoStatus::Other, scene_.time());
+  scene_.post_queued(2);
+  ASSERT_EQ(scene_.send_next(), 2);
+  scene_.answer(recorded_answer(0, "scored", "2"));
+  expect_held_repeat(3);
+  for (int i = 0; i < 30; ++i) pass(1, 18, 1);
+  EXPECT_EQ(scene_.send_next(), 0);
+  EXPECT_EQ(scene_.state(3), Held);
+}
+
 TEST_F(AnotherNameAlone, EndsWithTheFirstNameBeforeAStatus) {
   scene_.record(2, "2");
   scene_.record(3, "1");

@@ -122,6 +122,22 @@ TEST_F(Undo, LeavesTheReportHeldInANewRun) {
   EXPECT_EQ(scene_.state(1), Held);
 }
 
+TEST_F(Undo, LeavesTheReportHeldIfANewRunOnlySeemedToBegin) {
+  scene_.record(1, "1");
+  scene_.wait(1);
+  scene_.hear(19, 0);
+  scene_.compose(10);
+  const double clock = scene_.run_clock();
+  scene_.wait(1);
+  scene_.hear(20, 0, clock);  // the count rose while the clock stood
+  ASSERT_EQ(scene_.reports().run().number, 2);
+  scene_.record(30, "1");
+  ASSERT_EQ(scene_.reports().run().number, 1);
+  EXPECT_EQ(scene_.send_next(), 0);
+  scene_.repeat_status(60, 19, 0);
+  EXPECT_EQ(scene_.state(2), Held);
+}
+
 TEST_F(Undo, LeavesTheReportHeldAtAnotherCommandPost) {
   scene_.compose();
   scene_.move_to(kThere);

@@ -190,10 +190,6 @@ TEST(AnotherName, IsCheckedByTheCountIfTheClockStands) {
   EXPECT_EQ(check_name(run, {3, 26, 24, "subt"}, silent(10)), NameCheck::Confirmed);
 }
 
-TEST(AnotherName, CountsIfNoStatusWasHeard) {
-  EXPECT_EQ(check_name({}, {3, 26, 24, "subt"}, silent(10)), NameCheck::Confirmed);
-}
-
 TEST(RunChange, IsCertainOnlyByTheTeam) {
   EXPECT_FALSE(another_run(run_at(600), icd::RunStatus{3, 610, 14, "other"}, silent(10))->signs.is_any());
   EXPECT_EQ(another_run(run_at(600), reply("2", 601), silent(10))->signs, Signs{.name = true});

@@ -288,6 +288,25 @@ TEST_F(ScoringTest, AStatusOfAClientHasReportsThatWereAnswered) {
   scorer.may_answer(1000);
 }
 
+/// The count rises while the clock stands, which may be another run. The next answer names the old one.
+TEST_F(ScoringTest, AStatusOfAClientHasReportsOfARunThatSeemedToBegin) {
+  const char* kMore = R"({"score":1,"run_clock":10.0,"remaining_reports":25,"current_team":"a"})";
+  const auto ok = [](const char* status) { return uplink::answer("200 OK", status); };
+  const std::string scored = uplink::answer("201 CREATED", kScored);
+  InTurn post({ok(kStatus), scored, ok(kMore), scored, uplink::answer("503 Service Unavailable", "", kWait)});
+  const Ends ends{*this};
+  lead_to({post.script()});
+  ASSERT_TRUE(eventually([&] { return scoring_->run().has_value(); }));
+  const auto first = report(1);
+  ASSERT_TRUE(eventually([&] { return scoring_->run()->remaining_reports == 25; }));
+  const auto second = report(100);
+  ASSERT_TRUE(eventually([&] { return second->heard && post.answered() == 5; }));
+  const auto asker = std::make_shared<Asker>();
+  scoring_->status(asker);
+  ASSERT_TRUE(eventually([&] { return asker->heard.has_value(); }));
+  EXPECT_EQ(asker->heard->body, R"({"score":2,"run_clock":11.0,"remaining_reports":24,"current_team":"a"})");
+}
+
 TEST_F(ScoringTest, AStatusGoesAfterThreeReportsIfAClientAsks) {
   Scorer scorer;
   const Ends ends{*this};

@@ -47,7 +47,8 @@ Known with_reply(Known known, const Says& reply, bool is_certain) {
 
 /// A sign of another run, or another Command Post.
 bool may_be_another_run(const Event& event) {
-  return event.kind == Kind::NewRun || event.who == kSetBack || event.what == kCourse;
+  return event.kind == Kind::NewRun || event.who == kSetBack || event.who == kRenames ||
+         event.what == kCourse;
 }
 
 }  // namespace

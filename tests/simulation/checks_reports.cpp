@@ -107,14 +107,35 @@ class RisesHeard {
   double last_ = -1e9;
 };
 
+/// A run that shows what a new run would show: its clock was set back and it got another name, before Adit
+/// could see that it gets another name in each answer.
+class LooksLikeAnother {
+ public:
+  void add(const Event& event) {
+    if (event.kind == Kind::NewRun) names_ = 0, is_set_back_ = false;
+    if (event.kind != Kind::Fault) return;
+    if (event.who == kSetBack && names_ <= 1) is_set_back_ = true;
+    if (event.who == kRenames) ++names_;
+    if (is_set_back_ && names_ == 1) last_ = event.at;
+  }
+  double last() const { return last_; }
+
+ private:
+  int names_ = 0;  // given to the run after the first
+  bool is_set_back_ = false;
+  double last_ = -1e9;
+};
+
 void once(const Evidence& evidence, Broken& broken) {
   std::map<std::pair<std::int64_t, std::string>, double> records;  // when each was recorded first
   IntendedRuns meant;
   AnsweredRecords answers;
   RisesHeard rises;
+  LooksLikeAnother another;
   double granted = -kLongestDoubt;
   for (const Event& event : evidence.events) {
     meant.add(event);
+    another.add(event);
     if (is_grant(event)) granted = event.at;
     if (!is_report(event, Kind::Taken)) {
       answers.add(event);
@@ -131,7 +152,8 @@ void once(const Evidence& evidence, Broken& broken) {
     const bool could_tell =
         !is_hidden || answers.has({event.serial, event.who}) || rises.last() > first->second;
     answers.add(event);
-    if (costs && again && could_tell && !meant.is_sent_across(event.serial)) {
+    const bool is_deceived = another.last() > first->second;
+    if (costs && again && could_tell && !is_deceived && !meant.is_sent_across(event.serial)) {
       broken.push_back(icd::sentence("Once: report ", event.serial, " was recorded again in ", event.who,
                                      " at ", event.at));
     }

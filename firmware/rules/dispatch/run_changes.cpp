@@ -123,10 +123,10 @@ void RunChanges::judge_name(const icd::RunStatus& status, Time time) {
   if (!run.signs.name || run.may_be == 0 || run.last) return;
   const Run* const before = account_.maybe_present([](const Run& each) { return each.last.has_value(); });
   const NameCheck check =
-      before == nullptr ? NameCheck::Confirmed : account_.check_name(*before, status, time);
+      before == nullptr ? NameCheck::Unknown : account_.check_name(*before, status, time);
   if (check == NameCheck::Unknown) return;
   if (check == NameCheck::Confirmed) {
-    account_.is_not(before == nullptr ? run.may_be : before->number);
+    account_.is_not(before->number);
     return clear_held(time);
   }
   const std::string why = icd::sentence(run.why, "; but its count of reports and its clock go on");
@@ -193,8 +193,9 @@ std::vector<Report> RunChanges::steps_into(std::int64_t next, const std::string&
     step_of(report, enters);
     if (enters) review_.compare_later(number);
   }
-  for (const std::int64_t number : review_.end_undos()) step_of(book_.at(number), false);
   keep_held(steps);
+  // The operator decides about these, even if the run goes on.
+  for (const std::int64_t number : review_.end_undos()) step_of(book_.at(number), false);
   return steps;
 }
 

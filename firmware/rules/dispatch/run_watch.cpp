@@ -105,7 +105,7 @@ bool is_grant(const Run& run, const icd::RunStatus& status, const Silence& silen
 }
 
 NameCheck check_name(const Run& before, const icd::RunStatus& status, const Silence& silence) {
-  if (!before.last || another_run(before, status, silence)) return NameCheck::Confirmed;
+  if (another_run(before, status, silence)) return NameCheck::Confirmed;
   if (before.status_clock && before.status_clock->runs) {
     if (!can_be_young(status.run_clock, silence.since_status.value_or(silence.at_least + kClockAhead))) {
       return NameCheck::Contradicted;

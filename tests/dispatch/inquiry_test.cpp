@@ -77,12 +77,20 @@ TEST_F(InquiryTest, BelievesRecordedWhileTheRunClockStands) {
   EXPECT_EQ(hear(9, Finding::Recorded, 501), Finding::Recorded);
 }
 
-TEST_F(InquiryTest, AsksEverySecondAndLaterEveryTenSeconds) {
+TEST_F(InquiryTest, AsksEverySecond) {
   EXPECT_EQ(inquiry_.next_ask(at(0)), at(0));
   inquiry_.asked(at(2));
   EXPECT_EQ(inquiry_.next_ask(at(2)), at(3));
-  inquiry_.asked(at(15));
-  EXPECT_EQ(inquiry_.next_ask(at(15)), at(25));
+}
+
+TEST_F(InquiryTest, AsksOnceMoreWhenItsTimeIsOverSoThatTheOperatorMayDecideThen) {
+  inquiry_.asked(at(14.5));
+  inquiry_.failed(at(14.5));
+  EXPECT_EQ(inquiry_.next_ask(at(15.1)), at(15.5));
+  inquiry_.asked(at(15.5));
+  inquiry_.failed(at(15.5));
+  EXPECT_TRUE(inquiry_.is_in_vain());
+  EXPECT_EQ(inquiry_.next_ask(at(16)), at(25.5));
 }
 
 TEST_F(InquiryTest, BlocksOtherReportsWhileItIsPending) {
@@ -147,6 +155,18 @@ const EvidenceCase kEvidenceCases[] = {
     {"OnlyWhatWasSentSince", status(20, 3), 1, 0, {2, 1}, status(18, 4), Finding::NotRecorded, kUnknown},
     {"OneMoreThanSentSince", status(20, 3), 1, 0, {2, 1}, status(17, 5), Finding::Recorded, 1},
     {"LessThanSentSince", status(20, 3), 1, 0, {2, 0}, status(19, 3), Finding::Contradicts, kUnknown},
+    {"APointOfSentSince", status(20, 3), 1, 0, {2, 0, 2}, status(18, 4), Finding::NotRecorded, kUnknown},
+    {"TooManyPointsOfSentSince",
+     status(20, 3),
+     1,
+     0,
+     {2, 0, 2},
+     status(18, 6),
+     Finding::Contradicts,
+     kUnknown},
+    {"OneMoreWithAPointOfEither", status(20, 3), 1, 0, {2, 0, 2}, status(17, 4), Finding::Recorded, kUnknown},
+    {"OneMoreWithAllPoints", status(20, 3), 1, 0, {2, 0, 2}, status(17, 6), Finding::Recorded, 1},
+    {"OneMoreWithoutPoints", status(20, 3), 1, 0, {2, 0, 2}, status(17, 3), Finding::Recorded, 0},
     {"UsedUpBySentSince", status(2, 3), 1, 0, {2, 0}, status(0, 3), Finding::Silent, kUnknown},
 };
 

@@ -219,5 +219,35 @@ TEST(DoubtWithoutReportsLeft, LeavesALaterDoubtToTheCounts) {
   EXPECT_EQ(scene.state(1), InDoubt);
 }
 
+/// Reports 2 and 3 are found recorded with one point, so that it may be of either.
+TEST(DoubtBeforeTwoThatWereFound, IsNotContradictedByTheirPoint) {
+  Scene scene;
+  const auto fail = [&scene](int times) {
+    for (int i = 0; i < times; ++i) {
+      scene.wait(1);
+      scene.reports().status_failed(NoStatus::Other, scene.time());
+    }
+  };
+  scene.post(1);
+  scene.lose();
+  fail(20);
+  scene.hear(20, 0);
+  fail(6);
+  ASSERT_EQ(scene.count(), 1U);
+  scene.post_queued(2);
+  ASSERT_EQ(scene.send_next(), 2);
+  scene.lose();
+  fail(20);
+  scene.post_queued(3);
+  ASSERT_EQ(scene.send_next(), 3);
+  scene.lose();
+  scene.repeat_status(2, 18, 1);
+  ASSERT_EQ(scene.state(2), Settled);
+  ASSERT_EQ(scene.state(3), Settled);
+  scene.repeat_status(12, 18, 1);
+  EXPECT_THAT(scene.reports().run().unreliable, IsEmpty());
+  EXPECT_EQ(scene.send_next(), 1) << "not recorded";
+}
+
 }  // namespace
 }  // namespace adit::dispatch

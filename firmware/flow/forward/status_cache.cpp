@@ -39,7 +39,7 @@ void StatusCache::add_report(const dispatch::Effect& effect, double run_clock, l
   if (!corrected_) return;
   if (effect.scored) {
     corrected_->remaining_reports -= 1;
-    corrected_->score += effect.points;
+    corrected_->score += effect.points.value_or(0);
   }
   const double passed = std::chrono::duration<double>(now - *asked_).count();
   const bool may_be_its_clock = run_clock - run_->run_clock <= passed + dispatch::kClockJitter;

@@ -34,7 +34,8 @@ SentSince sent_since(const Report& doubt, const ReportBook& book) {
     if (report.run != doubt.run || report.sending <= doubt.sending) continue;
     const Effect effect = effect_of(report);
     since.scored += effect.scored ? 1 : 0;
-    since.points += effect.points;
+    since.points += effect.points.value_or(0);
+    since.unclear += effect.points ? 0 : 1;
   }
   return since;
 }

@@ -33,8 +33,12 @@ Evidence weigh(const icd::RunStatus& before, std::int64_t doubts, std::int64_t b
             seen + ": before a run starts, the Command Post may set its counts to any value",
             {}};
   }
-  if (used < 0 || used > all || points < 0 || points > used) {
-    return {Finding::Contradicts, seen + ": does another sender report with this token?", {}};
+  if (used < 0 || used > all || points < 0 || points > used + since.unclear) {
+    const bool is_corrected = used < 0 || points < 0;  // no report does that
+    return {Finding::Contradicts,
+            seen + (is_corrected ? ": were the counts corrected?"
+                                 : ": does another sender report with this token?"),
+            {}};
   }
   // Then the counts do not show a record.
   if (used == 0 && (before.remaining_reports - since.scored <= 0 || now.run_clock <= 0)) {
@@ -44,8 +48,8 @@ Evidence weigh(const icd::RunStatus& before, std::int64_t doubts, std::int64_t b
   }
   if (used == 0) return {Finding::NotRecorded, seen, {}};
   if (used < all) return {Finding::Silent, seen + ": the counts do not show which of them was recorded", {}};
-  const bool alike = points == 0 || points == all;
-  return {Finding::Recorded, seen, alike ? std::optional(points / all) : std::nullopt};
+  const bool alike = points == 0 || points == all + since.unclear;
+  return {Finding::Recorded, seen, alike ? std::optional<std::int64_t>(points > 0 ? 1 : 0) : std::nullopt};
 }
 
 Finding Inquiry::hear(const Evidence& evidence, double run_clock, Instant asked, Instant now) {
@@ -76,7 +80,7 @@ bool Inquiry::stands_still(double run_clock, Instant now) const {
 
 Instant Inquiry::next_ask(Instant now) const {
   if (!asked_) return now;
-  return *asked_ + (is_pending(now) ? policy_.doubt_for / 10 : policy_.doubt_for);
+  return *asked_ + (in_vain_ ? policy_.doubt_for : policy_.doubt_for / 10);
 }
 
 bool Inquiry::is_pending(Instant now) const {

@@ -9,8 +9,9 @@ namespace adit::dispatch {
 
 /// Effect of Adit's reports after the first one in doubt.
 struct SentSince {
-  std::int64_t scored = 0;  // remaining reports that they used up
-  std::int64_t points = 0;  // points that they gained
+  std::int64_t scored = 0;   // remaining reports that they used up
+  std::int64_t points = 0;   // points that they gained, if certain
+  std::int64_t unclear = 0;  // reports that may have gained one more
 };
 
 /// What the run's status shows about all reports in doubt.

@@ -42,7 +42,10 @@ Effect effect_of(const Report& report) {
   const bool found = report.state == ReportState::Settled && report.reconciled;
   if (report.state != ReportState::Answered && !found) return {};
   const auto reply = codec::read_report_reply(report.answer);
-  return reply ? effect_of(*reply) : Effect{.scored = found};
+  if (!reply) return {.scored = found, .points = std::nullopt};
+  Effect effect = effect_of(*reply);
+  if (is_about_another(*reply, report.report)) effect.points.reset();
+  return effect;
 }
 
 }  // namespace adit::dispatch

@@ -14,12 +14,13 @@ bool is_about_another(const icd::ReportReply& reply, const icd::ArtifactReport& 
 
 /// Effect of a report on the run.
 struct Effect {
-  bool scored = false;  // it used up one of the remaining reports
-  bool again = false;   // not scored (admin stop, run not started): worth posting again
-  std::int64_t points = 0;
+  bool scored = false;                     // it used up one of the remaining reports
+  bool again = false;                      // not scored (admin stop, run not started): worth posting again
+  std::optional<std::int64_t> points = 0;  // nullopt: uncertain
 };
 Effect effect_of(const icd::ReportReply& reply);
-/// From the report's stored answer. Effect{} if the report was not recorded.
+/// From the report's stored answer. Effect{} if the report was not recorded. The points are uncertain if it
+/// was found recorded with others, of which some scored, or if the answer is about another report.
 Effect effect_of(const Report& report);
 
 }  // namespace adit::dispatch

@@ -238,7 +238,7 @@ void RunAccount::answered(const icd::ReportReply& reply, Time time) {
   if (is_news) write_down(time.stamp);
   if (!known_ || !effect.scored) return;
   ++known_->since.scored;
-  known_->since.points += effect.points;
+  known_->since.points += reply.score_change;
 }
 
 void RunAccount::lose(Instant until) {
@@ -273,7 +273,8 @@ void RunAccount::settle(const icd::RunStatus& status, std::int64_t open, Time ti
     } else if (!fits) {
       distrust(icd::sentence("the Command Post counts ", status.remaining_reports, " reports left and score ",
                              status.score, ", Adit's own reports make it ", remaining, " and ", score,
-                             ": another sender reports with this token"),
+                             used < 0 || points < 0 ? ": were the counts corrected?"
+                                                    : ": does another sender report with this token?"),
                time.stamp);
     }
   }

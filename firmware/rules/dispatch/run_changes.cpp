@@ -122,8 +122,7 @@ void RunChanges::judge_name(const icd::RunStatus& status, Time time) {
   const Run& run = account_.run();
   if (!run.signs.name || run.may_be == 0 || run.last) return;
   const Run* const before = account_.maybe_present([](const Run& each) { return each.last.has_value(); });
-  const NameCheck check =
-      before == nullptr ? NameCheck::Unknown : account_.check_name(*before, status, time);
+  const NameCheck check = before == nullptr ? NameCheck::Unknown : account_.check_name(*before, status, time);
   if (check == NameCheck::Unknown) return;
   if (check == NameCheck::Confirmed) {
     account_.is_not(before->number);

@@ -42,7 +42,8 @@ bool goes_on(const Run& run, const icd::RunStatus& status, const Silence& silenc
 /// True if the status shows more reports left in a run that certainly goes on: somebody granted them.
 bool is_grant(const Run& run, const icd::RunStatus& status, const Silence& silence);
 
-/// What the first status after another name shows of that name. `before`: the earlier run, with a last status.
+/// What the first status after another name shows of that name. `before`: the earlier run, with a last
+/// status.
 enum class NameCheck : std::uint8_t {
   Confirmed,     // a sign of another run agrees, or a run that began since may show this status
   Contradicted,  // the counts and the clock of `before` go on

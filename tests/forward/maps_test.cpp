@@ -134,13 +134,14 @@ TEST_F(MapsTest, KeepWhatARetriedGridReplaced) {
     return icd::GridBounds::of(std::get<icd::OccupancyGrid>(window(x).msg));
   };
   bool kept = false;
-  maps_.send_again(window(0.1), [&](bool well) { return kept = well; }, icd::around(bounds(0.1), bounds(0)));
+  maps_.send_again(
+      window(0.1), [&](bool well) { return kept = well; }, icd::joint_bounds(bounds(0.1), bounds(0)));
   ASSERT_TRUE(loop::turn_until(loop_, [&] { return kept; }));
   EXPECT_EQ(status(take(window(0.2))), icd::Status::Ok);
   EXPECT_EQ(maps_.waiting({Kind::Grid, "r1"}), 2u);
   const auto stored = spool::Spool(folder_.path()).read();
   ASSERT_EQ(stored.size(), 2u);
-  EXPECT_EQ(stored.front().bounds, icd::around(bounds(0.1), bounds(0)));
+  EXPECT_EQ(stored.front().bounds, icd::joint_bounds(bounds(0.1), bounds(0)));
 }
 
 TEST_F(MapsTest, StandForARetriedGridOverARestart) {

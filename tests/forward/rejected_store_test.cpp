@@ -146,7 +146,7 @@ TEST_F(RejectedStoreTest, RetriesNoReplacedMessage) {
 TEST_F(RejectedStoreTest, KeepsWhatAGridReplacedAcrossARestart) {
   const auto bounds = [](double x) { return icd::GridBounds::of(std::get<icd::OccupancyGrid>(grid(x).msg)); };
   add(grid());
-  rejected_->add(grid(0.04), 422, "no", 100, {}, icd::around(bounds(0.04), bounds(0.08)));
+  rejected_->add(grid(0.04), 422, "no", 100, {}, icd::joint_bounds(bounds(0.04), bounds(0.08)));
   ASSERT_EQ(rejected_->rows().size(), 1u) << "replaced the first";
   for (int i = 0; i < 2; ++i) {
     rejected_->taken(grid(0.07));

@@ -105,7 +105,7 @@ int replaced_in_a_row(OccupancyGrid grid, Next next, int most = 1000) {
   for (int count = 0; count < most; ++count) {
     const OccupancyGrid newer = next(grid, count);
     if (!covers(newer, bounds)) return count;
-    bounds = around(GridBounds::of(newer), bounds);
+    bounds = joint_bounds(GridBounds::of(newer), bounds);
     grid = newer;
   }
   return most;
@@ -158,10 +158,10 @@ TEST(GridBounds, LetACorrectedGridReplaceTheOneBefore) {
 
 TEST(GridBounds, TellIfTheyAreLargerThanTheGrid) {
   const auto newer = grid(0, 0, 40, 30);
-  auto bounds = around(GridBounds::of(newer), GridBounds::of(grid(0.05, 0.1, 20, 20)));
+  auto bounds = joint_bounds(GridBounds::of(newer), GridBounds::of(grid(0.05, 0.1, 20, 20)));
   EXPECT_FALSE(bounds.is_larger_than(newer)) << "on one lattice";
   for (const auto& older : {grid(-0.01, 0, 20, 20), grid(0, 0.015, 40, 30), with_z(newer, 0.001)}) {
-    bounds = around(GridBounds::of(newer), GridBounds::of(older));
+    bounds = joint_bounds(GridBounds::of(newer), GridBounds::of(older));
     EXPECT_TRUE(bounds.is_larger_than(newer));
   }
 }
@@ -202,7 +202,7 @@ TEST(GridBounds, LieWithinTheLastGridOfEachRow) {
       next.origin.position.z += about(0.005);
       next = turned(next, angle + about(0.003));
       if (!covers(next, bounds)) break;
-      bounds = around(GridBounds::of(next), bounds);
+      bounds = joint_bounds(GridBounds::of(next), bounds);
       all.push_back(next);
       last = next;
       ++replaced;

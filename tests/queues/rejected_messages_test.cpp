@@ -107,8 +107,8 @@ TEST(RejectedMessages, AreNotReplacedBitByBitByACreepingWindow) {
   EXPECT_EQ(rejected.replaced_by(window(0.04)), std::vector<std::uint64_t>{3});
   EXPECT_EQ(rejected.replaced_by(window(0.02)), (std::vector<std::uint64_t>{2, 3}));
   RejectedMessage replaced_others = item(window(1));
-  replaced_others.bounds =
-      icd::around(icd::GridBounds::of(grid(1, 0, 100, 100)), icd::GridBounds::of(grid(0.98, 0, 100, 100)));
+  replaced_others.bounds = icd::joint_bounds(icd::GridBounds::of(grid(1, 0, 100, 100)),
+                                             icd::GridBounds::of(grid(0.98, 0, 100, 100)));
   rejected.add(replaced_others);
   EXPECT_EQ(rejected.replaced_by(window(0.99)), std::vector<std::uint64_t>{4});
   EXPECT_TRUE(rejected.replaced_by(window(1.02)).empty());

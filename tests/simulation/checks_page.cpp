@@ -173,17 +173,19 @@ class Trials {
   bool has_failed(const Event& event) {
     if (event.what != kStatus) return false;
     if (event.kind == Kind::Leaves) {
-      is_trial_ = is_page_ && event.status != form_;
-      form_ = event.status;
+      sent_ = event.status;
+      is_trial_ = is_page_ && sent_ != form_;
+      if (!is_trial_) form_ = sent_;
     }
     if (event.kind != Kind::Replied) return false;
+    if (!event.says.empty()) form_ = sent_;
     is_page_ = event.status / 100 == 2 && (event.who == kForeign || event.who == kTooLong);
     return is_trial_ && event.says.empty();
   }
 
  private:
   bool is_page_ = false, is_trial_ = false;
-  int form_ = 0;
+  int form_ = 0, sent_ = 0;  // the form in use, and that of the last request
 };
 
 /// If nothing is in flight, an endpoint's last status is that of its last answer, or `trouble` says why no

@@ -61,7 +61,7 @@ TEST_F(SpoolTest, StoresTheBoundsOfAGridUntilItIsForgotten) {
   auto older = own;
   older.origin.position.x += 0.03;
   older.origin.position.z -= 0.01;
-  const auto bounds = icd::around(icd::GridBounds::of(own), icd::GridBounds::of(older));
+  const auto bounds = icd::joint_bounds(icd::GridBounds::of(own), icd::GridBounds::of(older));
   for (const std::uint64_t number : {1, 2, 3, 4}) ASSERT_TRUE(spool.keep(number, map, 0));
   for (const std::uint64_t number : {1, 2, 3}) ASSERT_TRUE(spool.keep_bounds(number, bounds));
   auto kept = spool.read();

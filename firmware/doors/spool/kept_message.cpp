@@ -106,7 +106,7 @@ icd::GridBounds read_bounds(const codec::Field& field, const icd::OccupancyGrid&
   kept.low = {number(0), number(1), number(2)};
   kept.high = {number(3), number(4), number(5)};
   kept.turned = number(6);
-  return icd::around(own, kept);
+  return icd::joint_bounds(own, kept);
 }
 
 }  // namespace adit::spool

@@ -79,7 +79,7 @@ void MapPicture::forwarded(icd::MapUpdate map) {
   std::erase_if(waiting_, [&](const Waiting& older) {
     if (!bounds || !older.bounds || map.name != older.map.name) return false;
     if (!icd::covers(std::get<icd::OccupancyGrid>(map.msg), *older.bounds)) return false;
-    bounds = icd::around(*bounds, *older.bounds);
+    bounds = icd::joint_bounds(*bounds, *older.bounds);
     waiting_bytes_ -= older.map.data.bytes.size();
     return true;
   });

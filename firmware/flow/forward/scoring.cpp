@@ -280,10 +280,10 @@ void Scoring::classify_report(const uplink::Outcome& outcome) {
 /// So that a client whose report was scored sees that in the next status. An answer of another run says
 /// nothing about the cached status.
 void Scoring::correct_status(const dispatch::Report& answered) {
-  const auto runs =
-      reports_->runs().maybe(status_run_);  // a run that seemed to begin may have been the same one
-  const bool is_same_run = std::ranges::find(runs, answered.run) != runs.end();
-  if (answered.state != dispatch::ReportState::Answered || !is_same_run) return;
+  if (answered.state != dispatch::ReportState::Answered) return;
+  // A run that seemed to begin may have been the same one.
+  const auto runs = reports_->runs().maybe(status_run_);
+  if (std::ranges::find(runs, answered.run) == runs.end()) return;
   const auto reply = codec::read_report_reply(answered.answer);
   if (reply && !dispatch::is_about_another(*reply, answered.report))
     status_cache_.add_report(dispatch::effect_of(*reply), reply->run_clock, loop_.now());

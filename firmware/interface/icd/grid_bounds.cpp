@@ -116,7 +116,7 @@ bool covers(const OccupancyGrid& newer, const GridBounds& older) {
          is_within(seen.low.z, seen.high.z, 0, slack) && older.turned + seen.turn <= slack;
 }
 
-GridBounds around(const GridBounds& newer, const GridBounds& older) {
+GridBounds joint_bounds(const GridBounds& newer, const GridBounds& older) {
   const Seen seen = seen_from(newer.origin, older);
   GridBounds all = newer;
   all.low = {std::min(newer.low.x, seen.low.x), std::min(newer.low.y, seen.low.y),

@@ -27,6 +27,6 @@ struct GridBounds {
 bool covers(const OccupancyGrid& newer, const GridBounds& older);
 
 /// The bounds of a grid that replaces another: `newer`, enlarged so that it holds `older`.
-GridBounds around(const GridBounds& newer, const GridBounds& older);
+GridBounds joint_bounds(const GridBounds& newer, const GridBounds& older);
 
 }  // namespace adit::icd

@@ -86,7 +86,7 @@ bool ForwardedGrids::take(std::shared_ptr<const ForwardedGrid> grid, std::uint64
   const auto covered = std::ranges::stable_partition(
       kept, [&](const Kept& older) { return !icd::covers(grid->grid, older.bounds); });
   auto bounds = icd::GridBounds::of(grid->grid);
-  for (const Kept& older : covered) bounds = icd::around(bounds, older.bounds);
+  for (const Kept& older : covered) bounds = icd::joint_bounds(bounds, older.bounds);
   forget(kept, covered.begin(), covered.end());
   bytes_ += grid->cost();
   kept.push_back({std::move(grid), number, bounds});

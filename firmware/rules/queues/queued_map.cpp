@@ -101,13 +101,13 @@ void add_own_numbers(std::vector<std::uint64_t>& numbers, const QueuedMap& of) {
 /// A stitched grid's parts may be queued singly later, so one of them also takes the bounds.
 void take_bounds(QueuedMap& to, const QueuedMap& from, Replaced& replaced) {
   if (!to.map.is_grid()) return;
-  to.bounds = icd::around(bounds_of(to), bounds_of(from));
+  to.bounds = icd::joint_bounds(bounds_of(to), bounds_of(from));
   QueuedMap* heir = &to;
   if (!to.parts.empty()) {
     const auto part =
         std::ranges::find_if(to.parts, [&](const QueuedMap& each) { return says_all_of(each, from); });
     heir = part == to.parts.end() ? &to.parts.back() : &*part;
-    heir->bounds = icd::around(bounds_of(*heir), bounds_of(from));
+    heir->bounds = icd::joint_bounds(bounds_of(*heir), bounds_of(from));
   }
   if (heir->bounds->is_larger_than(std::get<icd::OccupancyGrid>(heir->map.msg)))
     replaced.bounds = {heir->updates.back(), *heir->bounds};

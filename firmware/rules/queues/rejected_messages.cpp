@@ -62,7 +62,7 @@ void take_over(RejectedMessage& item, const RejectedMessage& older) {
   const auto* const map = std::get_if<icd::MapUpdate>(&item.message);
   if (map == nullptr) return;
   item.bounds =
-      icd::around(*bounds_in(*map, item), *bounds_in(std::get<icd::MapUpdate>(older.message), older));
+      icd::joint_bounds(*bounds_in(*map, item), *bounds_in(std::get<icd::MapUpdate>(older.message), older));
 }
 
 }  // namespace

@@ -150,7 +150,7 @@ void SenderQueue::stitch_followers(QueuedMap& next, std::size_t place, const Can
   if (found.has_gaps && !(Canvas::can_draw(*whole) && canvas->cells_of(*whole))) return;
   auto bounds = icd::GridBounds::of(*whole);
   for (const std::size_t i : found.which) {
-    bounds = icd::around(bounds, bounds_of(waiting_[places[i]]));
+    bounds = icd::joint_bounds(bounds, bounds_of(waiting_[places[i]]));
     if (places[i] == place) continue;
     leaves[places[i]] = true;
     join(next, waiting_[places[i]]);

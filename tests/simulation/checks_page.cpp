@@ -195,10 +195,11 @@ void check_last_answers(const Evidence& evidence, std::size_t begun, const Readi
   std::map<std::string, const Event*> last;
   Trials trials;
   const int place = place_at(reading.view.at("endpoints").front().at("address"));
-  for (std::size_t i = begun; i < reading.heard; ++i) {
+  for (std::size_t i = 0; i < reading.heard; ++i) {
     const Event& event = evidence.events[i];
+    if (event.kind == Kind::Begins) trials = {};
     if (event.kind != Kind::Leaves && event.kind != Kind::Replied) continue;
-    if (trials.has_failed(event)) continue;
+    if (trials.has_failed(event) || i < begun) continue;
     const std::string endpoint = endpoint_of(event.what);
     if (event.kind == Kind::Leaves || (i >= reading.asked && event.kind == Kind::Replied))
       last[endpoint] = nullptr;

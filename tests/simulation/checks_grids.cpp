@@ -31,11 +31,12 @@ struct PostedGrid {
   int failures = 0;         // answers of 5xx to it
   bool has_left = false;    // it was sent, alone or in a message with others
   bool is_taken = false;    // an answer confirmed the delivery
+  double confirmed = 1e9;   // when
   bool is_refused = false;  // rejected; the operator sends it again later
 
   void answered(const Event& reply) {
     if (reply.status >= 500) ++failures;
-    is_taken = is_taken || (reply.status == 200 && reply.who.empty());
+    if (reply.status == 200 && reply.who.empty()) is_taken = true, confirmed = std::min(confirmed, reply.at);
     is_refused = is_refused || reply.status == 422;
   }
   bool is_before(const PostedGrid& other) const { return asked->ended < other.asked->began; }
@@ -127,8 +128,8 @@ class GridsOfOneName {
     const PostedGrid& grid = *its.front();
     const auto contains_all = [&](const PostedGrid& newer) {
       return std::ranges::all_of(posted_, [&](const PostedGrid& older) {
-        const bool may_be_in_it =
-            older.taken == 0 && !grid.is_before(older) && overlap(older.extent, grid.extent);
+        const bool may_be_in_it = older.confirmed > grid.asked->began && !grid.is_before(older) &&
+                                  overlap(older.extent, grid.extent);
         return !may_be_in_it || covers(newer.extent, older.extent);
       });
     };
@@ -355,7 +356,9 @@ void grid_arrived(const Evidence& evidence, Broken& broken) {
   }
   std::map<std::uint64_t, std::vector<PostedGrid*>> last_sent;  // by connection
   double began = 0;                                             // of the process
-  std::array<double, 3> leaves{-1, -1, -1};                     // when the last maps left; the latest first
+  std::map<std::uint64_t, double> left;                         // when the last map of each connection left
+  // When the last two delivered maps left, the latest first. One more map may be prepared before they arrive.
+  std::array<double, 2> delivered{-1, -1};
   for (std::size_t i = 0; i < evidence.events.size(); ++i) {
     const Event& event = evidence.events[i];
     if (event.kind == Kind::NewRun && event.what != kSameMap) {
@@ -363,7 +366,8 @@ void grid_arrived(const Evidence& evidence, Broken& broken) {
     }
     if (event.kind == Kind::Begins) began = event.at;
     if (event.what != kMap) continue;
-    if (event.kind == Kind::Leaves) leaves = {event.at, leaves[0], leaves[1]};
+    if (event.kind == Kind::Leaves) left[event.request] = event.at;
+    if (event.kind == Kind::Replied && event.status == 200) delivered = {left[event.request], delivered[0]};
     std::vector<PostedGrid*>& sent = last_sent[event.request];
     if (event.kind == Kind::Replied) {
       for (PostedGrid* each : sent) each->answered(event);
@@ -371,7 +375,7 @@ void grid_arrived(const Evidence& evidence, Broken& broken) {
     if (event.kind != Kind::Taken && event.kind != Kind::Left) continue;
     sent.clear();
     if (!is_grid(event.says)) continue;
-    if (event.kind == Kind::Left) of(event.who).left(event, leaves[2], began, broken);
+    if (event.kind == Kind::Left) of(event.who).left(event, delivered[1], began, broken);
     sent = of(event.who).sent(event);
     if (event.kind == Kind::Taken) of(event.who).taken(event, i, broken);
   }

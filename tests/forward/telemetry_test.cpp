@@ -236,6 +236,22 @@ TEST_F(TelemetryTest, ChangesQueuedMarkersInAFullQueue) {
   EXPECT_EQ(none.error().setting, "queues.marker_bytes");
 }
 
+TEST_F(TelemetryTest, CountsALifetimeOverARestart) {
+  icd::Marker lasting = marker("a", "lasting"), expired = marker("b", "expired");
+  lasting.lifetime = 100, expired.lifetime = 30;
+  ASSERT_TRUE(process_without_a_token()->take(icd::MarkersUpdate{{lasting, expired}}));
+  loop_.set_stamp(loop_.stamp_now() + 40);
+  TelemetryStub post(true);
+  const auto process = process_with(post.peer);
+  ASSERT_TRUE(eventually(*process, [&] { return process->telemetry.waiting(Kind::Markers) == 0; }));
+  const auto shown = [&] { return process->delivered.markers().changes(0).markers; };
+  ASSERT_TRUE(eventually(*process, [&] { return !shown().empty(); }));
+  ASSERT_EQ(shown().size(), 1u);
+  EXPECT_EQ(shown()[0].marker.ns, "a");
+  EXPECT_LE(shown()[0].marker.lifetime, 60);
+  EXPECT_GT(shown()[0].marker.lifetime, 30);
+}
+
 TEST_F(TelemetryTest, IsBehindUntilItIsDelivered) {
   TelemetryStub post(true);
   const auto process = process_with(post.peer);

@@ -149,6 +149,7 @@ TEST(CarriedState, KeepsEachMemberOfAMarker) {
   each.scale = {1, 2, 3};
   each.color = {0.1, 0.2, 0.3, 0.4};
   each.lifetime = 7;
+  each.expires = 1007;
   each.text = "text";
   each.frame_locked = true;
   each.points = {{1, 2, 3}, {4, 5, 6}};

@@ -13,7 +13,9 @@
 namespace adit::queues {
 namespace {
 
+using testing::AllOf;
 using testing::ElementsAre;
+using testing::Field;
 using testing::IsEmpty;
 using testing::SizeIs;
 
@@ -140,7 +142,7 @@ TEST(MarkerChanges, LateOlderChangesGiveTheSameScene) {
 TEST(MarkerQueue, GivesNothingIfEmpty) {
   MarkerQueue queue{{.per_message = 10}};
   EXPECT_TRUE(queue.empty());
-  EXPECT_FALSE(queue.take());
+  EXPECT_FALSE(queue.take(0));
   EXPECT_FALSE(queue.oldest());
 }
 
@@ -150,7 +152,7 @@ TEST(MarkerQueue, SendsTheMarkersOfManyUpdatesTogether) {
   queue.add({{add(2, "new"), add(3)}}, at(2));
   EXPECT_EQ(queue.count(), 3);
   EXPECT_EQ(queue.oldest(), at(1));
-  const auto taken = queue.take();
+  const auto taken = queue.take(0);
   EXPECT_THAT(taken->update.markers, ElementsAre(add(1), add(2, "new"), add(3)));
   EXPECT_EQ(taken->updates, 2);
   EXPECT_EQ(taken->accepted, at(1));
@@ -161,18 +163,38 @@ TEST(MarkerQueue, CountsAnUpdateWithItsLastMarker) {
   MarkerQueue queue{{.per_message = 2}};
   queue.add({{add(1), add(2), add(3)}}, at(1));
   queue.add({{add(1, "new")}}, at(2));
-  const auto first = queue.take();
+  const auto first = queue.take(0);
   EXPECT_THAT(first->update.markers, SizeIs(2));
   EXPECT_EQ(first->updates, 1) << "the second update's marker was first in the queue";
   EXPECT_EQ(queue.oldest(), at(1));
-  EXPECT_EQ(queue.take()->updates, 1);
+  EXPECT_EQ(queue.take(0)->updates, 1);
+}
+
+TEST(MarkerQueue, SendsWhatRemainsOfALifetime) {
+  MarkerQueue queue{{.per_message = 10}};
+  std::vector markers{add(1), add(2), add(3), add(4, "for ever")};
+  markers[0].lifetime = 10, markers[1].lifetime = 4.05, markers[2].lifetime = 3;
+  markers[2].points.resize(2);
+  start_lifetimes(markers, 100);
+  queue.add({markers}, at(1));
+  const auto first = *queue.take(104);
+  EXPECT_EQ(first.update.markers[0].lifetime, 6);
+  EXPECT_EQ(first.update.markers[1].lifetime, MarkerQueue::kLeastLifetime);
+  EXPECT_THAT(first.update.markers[2],
+              AllOf(Field(&icd::Marker::id, 3), Field(&icd::Marker::points, IsEmpty()),
+                    Field(&icd::Marker::action, icd::MarkerAction::Delete)));
+  EXPECT_EQ(first.update.markers[3], add(4, "for ever"));
+  queue.put_back(first);
+  const auto retry = *queue.take(106);
+  EXPECT_EQ(retry.update.markers[0].lifetime, 4);
+  EXPECT_EQ(retry.update.markers[1].action, icd::MarkerAction::Delete);
 }
 
 TEST(MarkerQueue, SendsAnUpdateWithoutMarkers) {
   MarkerQueue queue{{.per_message = 2}};
   queue.add({}, at(1));
   EXPECT_FALSE(queue.empty());
-  const auto taken = queue.take();
+  const auto taken = queue.take(0);
   EXPECT_THAT(taken->update.markers, IsEmpty());
   EXPECT_EQ(taken->updates, 1);
 }
@@ -180,11 +202,11 @@ TEST(MarkerQueue, SendsAnUpdateWithoutMarkers) {
 TEST(MarkerQueue, FailedMarkersGoBeforeLaterOnes) {
   MarkerQueue queue{{.per_message = 10}};
   queue.add({{add(1), add(2)}}, at(1));
-  auto failed = *queue.take();
+  auto failed = *queue.take(0);
   queue.add({{add(3), remove(2)}}, at(2));
   queue.put_back(failed);
   EXPECT_EQ(queue.oldest(), at(1));
-  const auto taken = queue.take();
+  const auto taken = queue.take(0);
   EXPECT_THAT(taken->update.markers, ElementsAre(add(1), remove(2), add(3)));
   EXPECT_EQ(taken->updates, 2);
 }
@@ -192,10 +214,10 @@ TEST(MarkerQueue, FailedMarkersGoBeforeLaterOnes) {
 TEST(MarkerQueue, LaterDeleteAllReplacesFailedMarkers) {
   MarkerQueue queue{{.per_message = 10}};
   queue.add({{add(1), add(2)}}, at(1));
-  auto failed = *queue.take();
+  auto failed = *queue.take(0);
   queue.add({{remove_all()}}, at(2));
   queue.put_back(failed);
-  const auto taken = queue.take();
+  const auto taken = queue.take(0);
   EXPECT_THAT(taken->update.markers, ElementsAre(remove_all()));
   EXPECT_EQ(taken->updates, 2);
 }
@@ -204,9 +226,9 @@ TEST(MarkerQueue, FrequentChangesDoNotDelayOtherMarkers) {
   MarkerQueue queue{{.per_message = 1}};
   queue.add({{add(1), add(2)}}, at(1));
   queue.add({{add(1, "again")}}, at(2));
-  queue.take();
+  queue.take(0);
   queue.add({{add(1, "and again")}}, at(3));
-  EXPECT_THAT(queue.take()->update.markers, ElementsAre(add(2)));
+  EXPECT_THAT(queue.take(0)->update.markers, ElementsAre(add(2)));
 }
 
 icd::Marker path(std::int32_t id, std::size_t points) {
@@ -218,10 +240,10 @@ icd::Marker path(std::int32_t id, std::size_t points) {
 TEST(MarkerQueue, LimitsTheBytesOfAMessage) {
   MarkerQueue queue{{.bytes_per_message = icd::bytes_of(path(1, 10)) + icd::bytes_of(path(2, 20))}};
   queue.add({{path(1, 10), path(2, 20), path(3, 1), path(4, 90), path(5, 0)}}, at(1));
-  EXPECT_THAT(queue.take()->update.markers, ElementsAre(path(1, 10), path(2, 20)));
-  EXPECT_THAT(queue.take()->update.markers, ElementsAre(path(3, 1)));
-  EXPECT_THAT(queue.take()->update.markers, ElementsAre(path(4, 90))) << "a larger marker is sent alone";
-  EXPECT_THAT(queue.take()->update.markers, ElementsAre(path(5, 0)));
+  EXPECT_THAT(queue.take(0)->update.markers, ElementsAre(path(1, 10), path(2, 20)));
+  EXPECT_THAT(queue.take(0)->update.markers, ElementsAre(path(3, 1)));
+  EXPECT_THAT(queue.take(0)->update.markers, ElementsAre(path(4, 90))) << "a larger marker is sent alone";
+  EXPECT_THAT(queue.take(0)->update.markers, ElementsAre(path(5, 0)));
 }
 
 TEST(MarkerQueue, LimitsTheNumberOfMarkers) {
@@ -234,7 +256,7 @@ TEST(MarkerQueue, LimitsTheNumberOfMarkers) {
   queue.add(many, at(1));
   EXPECT_FALSE(queue.has_room_for({{add(-1)}}));
   EXPECT_TRUE(queue.has_room_for({{add(7, "moved")}}));
-  queue.take();
+  queue.take(0);
   EXPECT_TRUE(queue.has_room_for({{add(-1)}}));
 }
 
@@ -278,7 +300,7 @@ TEST(MarkerQueue, HasRoomForAMarkerThatChangesOften) {
     ASSERT_TRUE(queue.has_room_for(update));
     queue.add(update, at(i));
   }
-  EXPECT_EQ(queue.take()->updates, kTimes);
+  EXPECT_EQ(queue.take(0)->updates, kTimes);
   EXPECT_TRUE(queue.empty());
 }
 
@@ -318,7 +340,7 @@ TEST_P(MarkerQueueLaws, FinalSceneIsRightAndEachUpdateCountsOnce) {
     ++accepted;
   };
   const auto send_one = [&](bool fails) {
-    auto taken = queue.take();
+    auto taken = queue.take(0);
     if (!taken) return;
     MarkerChanges sent;
     for (const icd::Marker& marker : taken->update.markers) sent.apply(marker);
@@ -350,18 +372,18 @@ TEST(MarkerQueue, AppliesNewLimitsFromThenOn) {
   MarkerQueue queue({.per_message = 2});
   queue.add({{add(1), add(2), add(3), add(4), add(5)}}, at(1));
   queue.keep_within({.per_message = 3});
-  EXPECT_THAT(queue.take()->update.markers, SizeIs(3));
+  EXPECT_THAT(queue.take(0)->update.markers, SizeIs(3));
   queue.keep_within({.per_message = 1, .bytes = 1});
-  EXPECT_THAT(queue.take()->update.markers, SizeIs(1));
+  EXPECT_THAT(queue.take(0)->update.markers, SizeIs(1));
   EXPECT_FALSE(queue.has_room_for({{add(6)}}));
 }
 
 TEST(MarkerQueue, KeepsItsReducedMessageSize) {
   MarkerQueue queue({.per_message = 4});
   queue.add({{add(1), add(2), add(3), add(4)}}, at(1));
-  queue.put_back_narrower(*queue.take());
+  queue.put_back_narrower(*queue.take(0));
   queue.keep_within({.per_message = 8});
-  EXPECT_THAT(queue.take()->update.markers, SizeIs(2));
+  EXPECT_THAT(queue.take(0)->update.markers, SizeIs(2));
 }
 
 }  // namespace

@@ -255,7 +255,7 @@ TEST(MarkerQueueNarrower, FindsTheFaultyMarker) {
   std::vector<std::int32_t> refused;
   std::size_t taken = 0;
   int messages = 0;
-  while (auto waiting = queue.take()) {
+  while (auto waiting = queue.take(0)) {
     ++messages;
     const auto& markers = waiting->update.markers;
     const bool bad = std::ranges::find(markers, 37, &icd::Marker::id) != markers.end();
@@ -277,10 +277,10 @@ TEST(MarkerQueueBehind, SendsOthersFirstAndLosesNothing) {
   MarkerQueue queue({.per_message = 1});
   queue.add({{marker("a", 1)}}, at(0));
   queue.add({{marker("b", 1)}}, at(0));
-  const auto first = queue.take();
+  const auto first = queue.take(0);
   queue.put_behind(*first);
-  EXPECT_EQ(queue.take()->update.markers.front().ns, "b");
-  const auto again = queue.take();
+  EXPECT_EQ(queue.take(0)->update.markers.front().ns, "b");
+  const auto again = queue.take(0);
   EXPECT_EQ(again->update.markers.front().ns, "a");
   EXPECT_EQ(again->updates, 1);
 }
@@ -288,10 +288,10 @@ TEST(MarkerQueueBehind, SendsOthersFirstAndLosesNothing) {
 TEST(MarkerQueueBehind, SendsAPostponedMarkerAfterTheOthers) {
   MarkerQueue queue({.per_message = 1});
   queue.add({{marker("a", 1), marker("b", 1)}}, at(0));
-  queue.put_behind(*queue.take());
-  EXPECT_EQ(queue.take()->updates, 0u) << "only a part of the update was sent";
+  queue.put_behind(*queue.take(0));
+  EXPECT_EQ(queue.take(0)->updates, 0u) << "only a part of the update was sent";
   ASSERT_TRUE(queue.oldest());
-  const auto again = queue.take();
+  const auto again = queue.take(0);
   EXPECT_EQ(again->update.markers.front().ns, "a");
   EXPECT_EQ(again->updates, 1u);
 }
@@ -299,13 +299,13 @@ TEST(MarkerQueueBehind, SendsAPostponedMarkerAfterTheOthers) {
 TEST(MarkerQueueBehind, KeepsANewerChangeOfThePostponedMarker) {
   MarkerQueue queue({.per_message = 1});
   queue.add({{marker("a", 1)}}, at(0));
-  const auto first = queue.take();
+  const auto first = queue.take(0);
   icd::Marker newer = marker("a", 1);
   newer.text = "newer";
   queue.add({{newer}}, at(1));
   queue.put_behind(*first);
   EXPECT_EQ(queue.count(), 1);
-  const auto taken = queue.take();
+  const auto taken = queue.take(0);
   EXPECT_EQ(taken->update.markers.front().text, "newer");
   EXPECT_EQ(taken->updates, 2);
 }
@@ -314,14 +314,14 @@ TEST(MarkerQueueBehind, DoesNotReorderADeleteAll) {
   MarkerQueue queue({.per_message = 1});
   queue.add({{marker("", 0, icd::MarkerAction::DeleteAll), marker("a", 1)}}, at(0));
   for (int round = 0; round < 3; ++round) {
-    const auto first = queue.take();
+    const auto first = queue.take(0);
     ASSERT_EQ(first->update.markers.front().action, icd::MarkerAction::DeleteAll);
     queue.put_behind(*first);
-    (void)queue.take();  // the message that is sent before it once
+    (void)queue.take(0);  // the message that is sent before it once
   }
   queue.passed();
-  EXPECT_EQ(queue.take()->update.markers.front().action, icd::MarkerAction::DeleteAll);
-  EXPECT_EQ(queue.take()->update.markers.front().ns, "a") << "also in its own turn";
+  EXPECT_EQ(queue.take(0)->update.markers.front().action, icd::MarkerAction::DeleteAll);
+  EXPECT_EQ(queue.take(0)->update.markers.front().ns, "a") << "also in its own turn";
 }
 
 TEST(MarkerQueueBehind, TriesOtherMarkersAheadOfADeleteAll) {
@@ -329,8 +329,8 @@ TEST(MarkerQueueBehind, TriesOtherMarkersAheadOfADeleteAll) {
   queue.add({{marker("", 0, icd::MarkerAction::DeleteAll), marker("a", 1), marker("b", 1)}}, at(0));
   std::vector<std::string> ahead;
   for (int round = 0; round < 3; ++round) {
-    queue.put_behind(*queue.take());
-    const auto other = queue.take();
+    queue.put_behind(*queue.take(0));
+    const auto other = queue.take(0);
     EXPECT_TRUE(other->is_ahead);
     EXPECT_EQ(other->updates, 0u) << "the update is still queued";
     ahead.push_back(other->update.markers.front().ns);
@@ -342,8 +342,8 @@ TEST(MarkerQueueBehind, TriesOtherMarkersAheadOfADeleteAll) {
 TEST(MarkerQueueBehind, SendsNothingAheadOfALoneDeleteAll) {
   MarkerQueue queue({.per_message = 1});
   queue.add({{marker("", 0, icd::MarkerAction::DeleteAll)}}, at(0));
-  queue.put_behind(*queue.take());
-  const auto again = queue.take();
+  queue.put_behind(*queue.take(0));
+  const auto again = queue.take(0);
   EXPECT_FALSE(again->is_ahead);
   EXPECT_EQ(again->updates, 1u);
 }

@@ -21,7 +21,7 @@ constexpr const char* kRight = "Bearer token-of-the-team";
 Posting good(std::string_view kind, std::int64_t serial) {
   if (kind == "report") return {kReports, {{.who = "", .serial = serial}}};
   if (kind == "pose") return {kState, {{.who = "bad", .serial = serial}}};
-  if (kind == "marker") return {kMarkers, {{.who = "bad", .serial = serial, .says = {kAdd, 1}}}};
+  if (kind == "marker") return {kMarkers, {{.who = "bad", .serial = serial, .says = {kAdd, 1, 0}}}};
   if (kind == "cloud") return {kMap, {{.who = "bad", .serial = serial, .says = {20}}}};
   return {kMap, {{.who = "bad", .serial = serial, .says = Extent{}.says()}}};
 }

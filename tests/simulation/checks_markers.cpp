@@ -21,12 +21,16 @@ constexpr double kOneClock = 1;  // seconds by which stamps of one clock may dif
 /// that is late by more than kJump always does.
 constexpr double kOutOfOrder = 1, kJump = 5;
 
+/// Seconds: until a message leaves on a new connection; the least lifetime that is sent; a rounding.
+constexpr double kConnects = 4, kLeastLifetime = 0.1, kLeastStep = 0.002;
+
 /// A request that may have set a value, and when.
 struct Change {
   double began, ended, stamp;
   bool accepted;
   std::int64_t serial;  // 0: the value was deleted
   Says sender = {};
+  bool fades = false;  // by its lifetime
 
   bool is_of_one_clock(const Change& other) const {
     return stamp != 0 && other.stamp != 0 && sender == other.sender &&
@@ -72,6 +76,7 @@ std::set<std::int64_t> last_of(const Changes& changes, const std::vector<double>
       over = over || (other.accepted && is_before(change, other, changes, forgets) &&
                       !seems_overtaken(other, change, changes));
     if (!over) last.insert(change.serial);
+    if (!over && change.fades) last.insert(0);
     any = any || change.accepted;
   }
   if (!any) last.insert(0);
@@ -108,14 +113,57 @@ void replay(Scene& scene, const Item& item) {
   }
 }
 
+/// The posting of an added marker with a lifetime, in seconds.
+struct Fading {
+  double began = 0, ended = 0, lifetime = 0;
+
+  /// What is wrong with an item of a message whose first byte left at `leaves` and its last at `left`, or "".
+  std::string check(const Item& item, double leaves, double left, bool same_process) const {
+    const double most = lifetime - (leaves - ended) + kConnects, sent = item.says[2] / 1000.0;
+    const double least = lifetime - (left - began) - kLeastStep;
+    if (item.says[0] == kDelete) return same_process && least > 0 ? "it was deleted too early" : "";
+    if (most < 0) return "it was sent after its end";
+    if (sent == 0 || sent > std::max(most, kLeastLifetime)) return "its lifetime was too long";
+    return same_process && sent < least ? "its lifetime was too short" : "";
+  }
+};
+
+/// A marker is sent with what remained of its lifetime, and deleted if nothing remained.
+void check_lifetimes(const Evidence& evidence, const std::vector<Asked>& all, Broken& broken) {
+  std::map<std::int64_t, Fading> posted;
+  for (const Asked& asked : all) {
+    if (!asked.may_count()) continue;
+    for (const Item& item : asked.items) {
+      if (item.says[2] == 0) continue;
+      posted.try_emplace(item.serial, Fading{asked.began, asked.ended, item.says[2] / 1000.0});
+    }
+  }
+  double process = 0;                      // when it began
+  std::map<std::uint64_t, double> leaves;  // by connection
+  for (const Event& event : evidence.events) {
+    if (event.kind == Kind::Begins) process = event.at;
+    if (event.what == kSendRejected) return;  // the operator's send begins the lifetime again
+    if (event.what != kMarkers) continue;
+    if (event.kind == Kind::Leaves) leaves[event.request] = event.at;
+    const auto fading = event.kind == Kind::Left ? posted.find(event.serial) : posted.end();
+    if (fading == posted.end()) continue;
+    const Item item{.who = event.who, .serial = event.serial, .says = event.says};
+    const std::string wrong =
+        fading->second.check(item, leaves[event.request], event.at, fading->second.began > process);
+    if (wrong.empty()) continue;
+    broken.push_back(
+        icd::sentence("MarkersArrived: marker ", event.serial, " left at ", event.at, ": ", wrong));
+  }
+}
+
 /// The value of each of `keys` after this request, if the request sets it.
-std::map<Key, std::int64_t> says_of(const Asked& asked, const std::set<Key>& keys) {
-  std::map<Key, std::int64_t> says;
+std::map<Key, Item> says_of(const Asked& asked, const std::set<Key>& keys) {
+  std::map<Key, Item> says;
   for (const Item& item : asked.items) {
     if (item.says[0] == kDeleteAll) {
-      for (const Key& key : keys) says[key] = 0;
+      for (const Key& key : keys) says[key] = item;
     } else {
-      says[posted_key(item)] = item.says[0] == kDelete ? 0 : item.serial;
+      says[posted_key(item)] = item;
     }
   }
   return says;
@@ -188,6 +236,7 @@ void pose_arrived(const Evidence& evidence, Broken& broken) {
 
 void markers_arrived(const Evidence& evidence, Broken& broken) {
   const auto all = asked_in(evidence.events, kMarkers);
+  check_lifetimes(evidence, all, broken);
   std::set<Key> keys;
   for (const Asked& asked : all) {
     for (const Item& item : asked.items) keys.insert(posted_key(item));
@@ -196,8 +245,10 @@ void markers_arrived(const Evidence& evidence, Broken& broken) {
   for (const Asked& asked : all) {
     if (!asked.may_count()) continue;
     // Not ordered by stamp: a marker's stamp is not its place in the scene's history.
-    for (const auto& [key, serial] : says_of(asked, keys))
-      changes[key].push_back({asked.began, asked.ended, 0, asked.accepted(), serial});
+    for (const auto& [key, item] : says_of(asked, keys)) {
+      const std::int64_t serial = item.says[0] == kAdd ? item.serial : 0;
+      changes[key].push_back({asked.began, asked.ended, 0, asked.accepted(), serial, {}, item.says[2] > 0});
+    }
   }
   Scene taken;
   for (const Event& event : evidence.events) {

@@ -67,6 +67,7 @@ Json marker_of(const Item& item, const Style& style) {
                  {"action", item.says[0]},
                  {"pose", pose_at(0, 1, style)},
                  {"scale", {{"x", static_cast<double>(item.serial)}, {"y", 1.0}, {"z", 1.0}}},
+                 {"lifetime", item.says[2] / 1000.0},
                  {"color", {{"r", 1.0}, {"g", 0.0}, {"b", 0.0}, {"a", 1.0}}}};
   if (item.who.empty() && item.serial % 2 == 0) marker.erase("ns");
   return marker;
@@ -77,7 +78,8 @@ Item marker_item(const Json& marker) {
   Item item{.who = marker.value("ns", ""),
             .serial = whole(marker.at("scale").at("x")),
             .stamp = stamp_of(marker),
-            .says = {marker.at("action"), marker.value("id", 0)}};
+            .says = {marker.at("action"), marker.value("id", 0),
+                     static_cast<int>(whole(1000 * marker.value("lifetime", 0.0)))}};
   const std::size_t points = marker.contains("points") ? marker.at("points").size() : 0;
   const bool is_whole = points == points_of(item) && marker.value("text", "").size() == letters_of(item);
   if (!is_whole) item.serial = kStrange;

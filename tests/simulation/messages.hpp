@@ -18,8 +18,8 @@ struct Item {
   std::string who;  // a map's or a pose's name, a marker's ns, "" for a report
   std::int64_t serial = 0;
   double stamp = 0;  // 0: none
-  /// A grid's Extent, and upstream its cells; a cloud's points; a marker's action and id; for a pose the
-  /// number of the client that posts it.
+  /// A grid's Extent, and upstream its cells; a cloud's points; a marker's action, id and lifetime in
+  /// milliseconds; for a pose the number of the client that posts it.
   Says says = {};
 };
 

@@ -54,7 +54,9 @@ Robot::Robot(World& world, int number)
       rolls_(world.random("rolling grids of " + name_).chance(0.3)),
       drift_(world.random("drift of " + name_)),
       jitters_(drift_.chance(0.25)),
-      creeps_(!jitters_ && drift_.chance(0.25)) {}
+      creeps_(!jitters_ && drift_.chance(0.25)),
+      fade_(world.random("lifetimes of " + name_)),
+      fades_(fade_.chance(0.3)) {}
 
 void Robot::post_until(double end) {
   end_ = end;
@@ -159,7 +161,8 @@ Posting Robot::markers() {
     const bool is_line = random_.chance(0.5), is_text = is_line && writings_ > 0;
     if (is_text) --writings_;
     const std::string ns = is_text ? name_ + kWriting : is_line ? name_ + kPath : finds_ns_;
-    posting.items.push_back(item(ns, {action, between(random_, 0, 5)}));
+    const int lifetime = fades_ && action == kAdd && fade_.chance(0.5) ? between(fade_, 100, 20'000) : 0;
+    posting.items.push_back(item(ns, {action, between(random_, 0, 5), lifetime}));
   }
   return posting;
 }

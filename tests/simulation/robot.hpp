@@ -61,6 +61,8 @@ class Robot {
   const bool jitters_;  // each of its grids has another origin, off by less than a fourth of a cell
   const bool creeps_;   // its grids move by less than a fourth of a cell each time
   int crept_ = 0;       // steps
+  Random fade_;
+  const bool fades_;  // half of its markers have a lifetime
 };
 
 }  // namespace adit::simulation

@@ -78,7 +78,7 @@ void Station::plan() {
   const double now = World::kEpoch + world_.time() + clock_;
   for (int i = 0; i < namespaces_; ++i) {
     posting.items.push_back(
-        {"plan " + std::to_string(i), ++serial_, now, {random_.chance(0.5) ? kAdd : kDelete, 0}});
+        {"plan " + std::to_string(i), ++serial_, now, {random_.chance(0.5) ? kAdd : kDelete, 0, 0}});
   }
   planner_.ask_several(request_of(posting, style_), events_of(posting), [](int) {});
 }

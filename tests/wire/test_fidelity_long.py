@@ -26,6 +26,7 @@ class LargeMarkers(Delivered):
             with self.subTest(str(style)):
                 arrived = self.deliver("/markers/update", {"markers": [marker]}, style)["markers"]
                 arrived[0]["header"] = self.without_stamp(arrived[0]["header"])
+                arrived[0] = test_fidelity.whole_lifetime(arrived[0])
                 many = {"elements": 100_000}
                 self.same(arrived, [{**marker, "points": many, "colors": many}])
 

@@ -185,11 +185,11 @@ inline constexpr auto store::kMembers<icd::Color> =
 template <>
 inline constexpr auto store::kMembers<icd::Header> = std::tuple(&icd::Header::stamp);
 template <>
-inline constexpr auto store::kMembers<icd::Marker> =
-    std::tuple(&icd::Marker::header, &icd::Marker::ns, &icd::Marker::id, &icd::Marker::type,
-               &icd::Marker::action, &icd::Marker::pose, &icd::Marker::scale, &icd::Marker::color,
-               &icd::Marker::lifetime, &icd::Marker::text, &icd::Marker::frame_locked, &icd::Marker::points,
-               &icd::Marker::colors, &icd::Marker::mesh_resource, &icd::Marker::mesh_use_embedded_materials);
+inline constexpr auto store::kMembers<icd::Marker> = std::tuple(
+    &icd::Marker::header, &icd::Marker::ns, &icd::Marker::id, &icd::Marker::type, &icd::Marker::action,
+    &icd::Marker::pose, &icd::Marker::scale, &icd::Marker::color, &icd::Marker::lifetime, &icd::Marker::text,
+    &icd::Marker::frame_locked, &icd::Marker::points, &icd::Marker::colors, &icd::Marker::mesh_resource,
+    &icd::Marker::mesh_use_embedded_materials, &icd::Marker::expires);
 /// What tells a robot's pose from others.
 template <>
 inline constexpr auto store::kMembers<icd::NamedPose> = std::tuple(&icd::NamedPose::name);

@@ -36,6 +36,7 @@ MarkerArrivals::MarkerArrivals(loop::Loop& loop, loop::Workers& workers, journal
       next_turn_(loop.timer([this] { go(next_step()); })) {}
 
 void MarkerArrivals::take(icd::MarkersUpdate update, std::size_t bytes_received, Done done) {
+  queues::start_lifetimes(update.markers, loop_.stamp_now());
   arrivals_.push_back(
       {std::make_shared<icd::MarkersUpdate>(std::move(update)), bytes_received, std::move(done)});
   if (arrivals_.size() == 1) go(&MarkerArrivals::begin);

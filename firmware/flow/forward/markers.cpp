@@ -67,6 +67,7 @@ bool Markers::send_again(icd::MarkersUpdate markers) {
     return queue_.says_more_than(marker) || under_way.says_more_than(marker);
   });
   if (markers.markers.empty()) return true;
+  queues::start_lifetimes(markers.markers, loop_.stamp_now());
   icd::MarkersUpdate in_order = markers;
   if (wipes) std::ranges::copy(queue_.pending(), std::back_inserter(in_order.markers));
   if (!journal_.accepted(in_order)) return false;
@@ -75,7 +76,7 @@ bool Markers::send_again(icd::MarkersUpdate markers) {
 }
 
 Markers::Sent Markers::take() {
-  auto waiting = queue_.take();
+  auto waiting = queue_.take(loop_.stamp_now());
   if (!waiting) return nullptr;
   for (icd::Marker& marker : waiting->update.markers) {
     marker.header.stamp = pace_.next_stamp(marker.header.stamp.value_or(loop_.stamp_now()));

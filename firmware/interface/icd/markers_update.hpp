@@ -57,6 +57,7 @@ struct Marker {
   Point scale;  // metres
   Color color;
   double lifetime = 0;  // seconds, from 0 to kLongestLifetime; 0: for ever
+  Stamp expires = 0;    // by the gateway's clock, if it was accepted with a lifetime; in no message
   std::string text;
   bool frame_locked = false;       // moves with its frame
   std::vector<Point> points = {};  // metres from `pose`; at most kMostMarkerPoints

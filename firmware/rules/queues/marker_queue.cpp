@@ -5,6 +5,28 @@
 #include <utility>
 
 namespace adit::queues {
+namespace {
+
+void age(icd::Marker& marker, icd::Stamp now) {
+  if (marker.expires == 0) return;
+  const double left = marker.expires - now;
+  if (left > 0) {
+    marker.lifetime = std::max(std::min(marker.lifetime, left), MarkerQueue::kLeastLifetime);
+    return;
+  }
+  marker.action = icd::MarkerAction::Delete;
+  marker.lifetime = marker.expires = 0;
+  marker.text = marker.mesh_resource = "", marker.points = {}, marker.colors = {};
+}
+
+}  // namespace
+
+void start_lifetimes(std::span<icd::Marker> accepted, icd::Stamp now) {
+  for (icd::Marker& marker : accepted) {
+    const bool has_one = marker.action == icd::MarkerAction::Add && marker.lifetime > 0;
+    marker.expires = has_one ? now + marker.lifetime : 0;
+  }
+}
 
 bool MarkerQueue::has_room_for(const icd::MarkersUpdate& update) const {
   if (empty()) return true;
@@ -56,17 +78,18 @@ void MarkerQueue::keep_within(MarkerBounds bounds) {
   if (!is_narrow || most_now_ > bounds.per_message) most_now_ = bounds.per_message;
 }
 
-std::optional<QueuedMarkers> MarkerQueue::take() {
+std::optional<QueuedMarkers> MarkerQueue::take(icd::Stamp now) {
   if (empty()) return {};
   QueuedMarkers taken;
   taken.accepted = *oldest();
   if (auto ahead = one_ahead()) {
     taken.update.markers.push_back(std::move(*ahead));
     taken.is_ahead = true;
-    return taken;
+  } else {
+    taken.update.markers = changes_.take({most_now_, bounds_.bytes_per_message});
+    taken.updates = updates_.take_done(changes_);
   }
-  taken.update.markers = changes_.take({most_now_, bounds_.bytes_per_message});
-  taken.updates = updates_.take_done(changes_);
+  for (icd::Marker& marker : taken.update.markers) age(marker, now);
   return taken;
 }
 

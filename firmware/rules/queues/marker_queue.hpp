@@ -21,6 +21,9 @@ struct QueuedMarkers {
   bool is_ahead = false;      // a copy of a queued change, sent ahead of the others
 };
 
+/// Lifetimes begin at `now`, when the markers are accepted.
+void start_lifetimes(std::span<icd::Marker> accepted, icd::Stamp now);
+
 /// Limits of the marker queue. Bytes are those of icd::bytes_of().
 struct MarkerBounds {
   std::size_t per_message = 2000;           // markers; at least 1
@@ -32,6 +35,7 @@ struct MarkerBounds {
 class MarkerQueue {
  public:
   static constexpr std::size_t kMostMarkers = 100'000;
+  static constexpr double kLeastLifetime = 0.1;  // seconds
 
   explicit MarkerQueue(MarkerBounds bounds) : bounds_(bounds), most_now_(bounds.per_message) {}
 
@@ -54,8 +58,10 @@ class MarkerQueue {
   /// The changes that a DeleteAll made needless since the last call. Freeing them takes long; any thread may
   /// do it.
   std::vector<MarkerChanges> needless() { return std::exchange(needless_, {}); }
-  /// Takes the oldest changes out, in order. Nothing if none is queued.
-  std::optional<QueuedMarkers> take();
+  /// Takes the oldest changes out, in order. Nothing if none is queued. A lifetime becomes what remains of it
+  /// at `now`, and at least kLeastLifetime. An expired marker becomes a Delete, because an older one of its
+  /// ns and id may be shown; after a restart Adit does not know.
+  std::optional<QueuedMarkers> take(icd::Stamp now);
   /// Queues the result of the last take() again, which was not delivered: ahead of newer changes, and merged
   /// with them. The cost grows with `markers`, not with the queue.
   void put_back(const QueuedMarkers& markers);

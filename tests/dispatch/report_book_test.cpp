@@ -65,16 +65,16 @@ void PrintTo(const OnAFullDisk& one, std::ostream* out) {
 }
 
 const OnAFullDisk kFullDisk[] = {
-    {ReportEvent::Chosen, Queued, false},      {ReportEvent::Held, Queued, false},
-    {ReportEvent::Joined, Queued, false},      {ReportEvent::Withdrawn, Queued, false},
-    {ReportEvent::Recorded, Sending, true},    {ReportEvent::Rejected, Sending, true},
-    {ReportEvent::Throttled, Sending, true},   {ReportEvent::Barred, Sending, true},
-    {ReportEvent::NeverLeft, Sending, true},   {ReportEvent::Lost, Sending, true},
-    {ReportEvent::Restarted, Sending, true},   {ReportEvent::Found, InDoubt, false},
-    {ReportEvent::Missing, InDoubt, false},    {ReportEvent::Held, InDoubt, false},
-    {ReportEvent::Settled, InDoubt, false},    {ReportEvent::Released, InDoubt, false},
-    {ReportEvent::Released, Held, false},      {ReportEvent::Released, Rejected, false},
-    {ReportEvent::Released, Withdrawn, false},
+    {ReportEvent::Chosen, Queued, false},     {ReportEvent::Held, Queued, false},
+    {ReportEvent::Joined, Queued, false},     {ReportEvent::Withdrawn, Queued, false},
+    {ReportEvent::Recorded, Sending, true},   {ReportEvent::Rejected, Sending, true},
+    {ReportEvent::Throttled, Sending, true},  {ReportEvent::Barred, Sending, true},
+    {ReportEvent::Redirected, Sending, true}, {ReportEvent::NeverLeft, Sending, true},
+    {ReportEvent::Lost, Sending, true},       {ReportEvent::Restarted, Sending, true},
+    {ReportEvent::Found, InDoubt, false},     {ReportEvent::Missing, InDoubt, false},
+    {ReportEvent::Held, InDoubt, false},      {ReportEvent::Settled, InDoubt, false},
+    {ReportEvent::Released, InDoubt, false},  {ReportEvent::Released, Held, false},
+    {ReportEvent::Released, Rejected, false}, {ReportEvent::Released, Withdrawn, false},
 };
 
 class ReportBookOnAFullDisk : public testing::TestWithParam<OnAFullDisk> {};

@@ -32,7 +32,8 @@ TEST(ReportLife, SendsOnlyQueuedReports) {
 }
 
 TEST(ReportLife, QueuesASentReportOnlyIfItIsNotRecorded) {
-  EXPECT_EQ(events_between(Sending, Queued), (std::set{Event::Throttled, Event::Barred, Event::NeverLeft}));
+  EXPECT_EQ(events_between(Sending, Queued),
+            (std::set{Event::Throttled, Event::Barred, Event::Redirected, Event::NeverLeft}));
 }
 
 TEST(ReportLife, EndsADoubtByEvidenceOrTheOperator) {
@@ -92,6 +93,8 @@ std::string_view words(ReportEvent event) {
       return "429";
     case Event::Barred:
       return "401, 403, 404, 405, 407";
+    case Event::Redirected:
+      return "307, 308 to the same path with or without a slash";
     case Event::NeverLeft:
       return "no byte left";
     case Event::Lost:

@@ -50,6 +50,11 @@ TEST_P(ReportVerdicts, FollowStatusAndBody) {
 }
 INSTANTIATE_TEST_SUITE_P(Answers, ReportVerdicts, testing::ValuesIn(kReportCases));
 
+TEST(ARedirect, LeavesNoDoubtOnlyIfTheServerDidNotProcessTheReport) {
+  for (const int status : {302, 307, 308}) EXPECT_EQ(event_of(status, false, Body::Other), ReportEvent::Lost);
+  EXPECT_EQ(event_of(308, false, Body::Other, /*is_unprocessed=*/true), ReportEvent::Redirected);
+}
+
 Report with_answer(ReportState state, const std::string& answer, bool reconciled = false) {
   Report report{.state = state, .status = 201, .answer = answer};
   report.reconciled = reconciled;

@@ -200,7 +200,7 @@ class TrailingSlash : public ChannelTest {
       loop_, "mapping", {here_.endpoint(), icd::BearerToken::parse("a-token"), std::chrono::seconds{20}}};
 };
 
-TEST_F(TrailingSlash, IsLearntFromEachRequestExceptReports) {
+TEST_F(TrailingSlash, IsLearntFromA301ToEachRequestExceptReports) {
   for (const icd::Uri uri : icd::kUris) {
     SCOPED_TRACE(icd::path_of(uri));
     lead_to(there_.endpoint(), "a-token");
@@ -208,6 +208,32 @@ TEST_F(TrailingSlash, IsLearntFromEachRequestExceptReports) {
     EXPECT_EQ(status_of(uri), 301);
     EXPECT_EQ(status_of(uri), uri == icd::Uri::ArtifactReports ? 301 : 200);
   }
+}
+
+TEST_F(TrailingSlash, IsOfReportsAloneIfAReportIsRedirected) {
+  constexpr icd::Uri kReports = icd::Uri::ArtifactReports;
+  std::string paths;  // of reports: '/' with a slash at the end, '-' without
+  // States want a slash, reports none. Both say so by 308.
+  const uplink::ListeningPeer peer([&paths](uplink::Wire& wire) {
+    for (auto request = wire.read_request(); !request.empty(); request = wire.read_request()) {
+      const bool is_report = request.starts_with("POST /api"),
+                 has_slash = uplink::without_slash(request).empty();
+      if (is_report) paths += has_slash ? '/' : '-';
+      const std::string to = is_report ? "/api/artifact_reports" : "/state/update/";
+      wire.write(has_slash != is_report
+                     ? uplink::answer("200 OK", "null")
+                     : uplink::answer("308 Permanent Redirect", "", "Location: " + to + "\r\n"));
+    }
+  });
+  lead_to(peer.endpoint(), "a-token");
+  EXPECT_EQ(status_of(kReports), 200);
+  EXPECT_EQ(status_of(icd::Uri::StateUpdate), 308);
+  EXPECT_EQ(status_of(kReports), 308);
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_EQ(status_of(icd::Uri::StateUpdate), 200);
+    EXPECT_EQ(status_of(kReports), 200);
+  }
+  EXPECT_EQ(paths, "-/--");
 }
 
 TEST_F(TrailingSlash, IsNotForeign) {

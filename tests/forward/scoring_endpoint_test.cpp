@@ -33,14 +33,16 @@ class ScoringStub {
   settings::Address address() const { return {peer_.endpoint().address, peer_.endpoint().port}; }
 
   std::atomic<int> recorded = 0, reports = 0, reports_with_slash = 0;
-  std::atomic<bool> wants_slash = false, reports_want_slash = false;
+  std::atomic<bool> wants_slash = false, reports_want_slash = false, is_unprocessed = false;
   std::counting_semaphore<> let{0};
 
  private:
   void serve(uplink::Wire& wire) {
     for (auto request = wire.read_request(); !request.empty(); request = wire.read_request()) {
       const bool is_report = request.starts_with("POST");
-      const std::string redirect = uplink::without_slash(request);
+      std::string redirect = uplink::without_slash(request);
+      if (is_unprocessed && !redirect.empty())
+        redirect.replace(redirect.find("301 Moved Permanently"), 21, "307 Temporary Redirect");
       if (is_report) ++reports;
       if (is_report && redirect.empty()) ++reports_with_slash;
       if (!redirect.empty() && (is_report ? reports_want_slash : wants_slash)) {
@@ -176,6 +178,17 @@ TEST_F(ScoringEndpoint, GetsAReportWithTheSlashOfItsStatus) {
   ASSERT_TRUE(eventually([this] { return !first_.empty(); }));
   EXPECT_THAT(first_, ElementsAre(201));
   EXPECT_EQ(there_.reports, 1);
+}
+
+TEST_F(ScoringEndpoint, SendsARedirectedReportAtTheOtherFormOfItsPath) {
+  here_.reports_want_slash = here_.is_unprocessed = true;
+  post(1, first_);
+  here_.let.release();
+  ASSERT_TRUE(eventually([this] { return !first_.empty(); }));
+  EXPECT_THAT(first_, ElementsAre(201));
+  EXPECT_EQ(here_.reports, 2);
+  EXPECT_EQ(here_.recorded, 1);
+  EXPECT_EQ(report(1).tries, 0) << "it was not in doubt";
 }
 
 TEST_F(ScoringEndpoint, SendsNoReportByARedirect) {

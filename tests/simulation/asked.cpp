@@ -7,6 +7,7 @@
 #include "simulation/deciding_operator.hpp"
 #include "simulation/faults.hpp"
 #include "simulation/messages.hpp"
+#include "simulation/upstream_view.hpp"
 
 namespace adit::simulation {
 namespace {
@@ -86,8 +87,8 @@ void OpenReports::add(const Event& event) {
     open_.erase(sent->second);
     answered_[sent->second] = event.at;
   }
-  if (is_answered || (event.status / 100 == 4 && event.status != kRequestTimeout))
-    doubts_.erase(sent->second);
+  const bool is_rejected = event.status / 100 == 4 && event.status != kRequestTimeout;
+  if (is_answered || is_rejected || event.who == kOtherForm) doubts_.erase(sent->second);
   if (open_.empty() && !doubts_.contains(kElsewhere) && !doubts_.contains(kTwin)) doubts_.clear();
 }
 

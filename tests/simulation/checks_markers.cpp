@@ -117,7 +117,7 @@ void replay(Scene& scene, const Item& item) {
 struct Fading {
   double began = 0, ended = 0, lifetime = 0;
 
-  /// What is wrong with an item of a message whose first byte left at `leaves` and its last at `left`, or "".
+  /// The fault of an item, or "". `leaves`, `left`: when the first and the last byte of its message left.
   std::string check(const Item& item, double leaves, double left, bool same_process) const {
     const double most = lifetime - (leaves - ended) + kConnects, sent = item.says[2] / 1000.0;
     const double least = lifetime - (left - began) - kLeastStep;

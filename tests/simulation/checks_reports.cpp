@@ -247,9 +247,22 @@ void addressed(const Evidence& evidence, Broken& broken) {
   std::optional<double> page;            // since when the status is a page
   double switched = -kLongestAnswer;
   std::set<std::int64_t> ordered;  // serials
+  int form = 0;                    // of the path of the last report
+  std::optional<int> redirected;   // to this form
   for (const Event& event : evidence.events) {
     if (event.kind == Kind::Begins || event.what == kCourse) page.reset();
+    if (event.kind == Kind::Begins || event.what == kCourse) redirected.reset();
     if (event.what == kCourse) switched = event.at;
+    if (event.what == kReports && event.kind == Kind::Leaves) {
+      form = event.status;
+      if (form != redirected.value_or(form))
+        broken.push_back(icd::sentence("Addressed: a report was sent at ", event.at,
+                                       " to the path that had redirected it"));
+    }
+    if (event.what == kReports && event.kind == Kind::Replied && event.at > switched + kLongestAnswer) {
+      if (event.who == kOtherForm) redirected = kWithSlash - form;
+      if (event.status == 404) redirected.reset();
+    }
     if (event.kind == Kind::Invoke && event.what == kSend) ordered.insert(event.serial);
     if (event.what == kStatus && event.kind == Kind::Replied && event.status != 404) {
       const bool is_page = event.who == kForeign && event.status / 100 == 2;

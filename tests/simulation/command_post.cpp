@@ -66,6 +66,7 @@ CommandPost::CommandPost(World& world, const Faults& faults, double trouble_for,
       counting_(world.random("counting")) {
   Random slash = world.random(numbered("slash", place));
   slash_ = slash.chance(0.15) ? Slash::Wanted : slash.chance(0.5) ? Slash::Unknown : Slash::Either;
+  if (slash_ == Slash::Either && slash.chance(0.3)) redirects_reports_ = slash.chance(0.5) ? 307 : 308;
   plan_portal(trouble_for);
   for (const Fault fault : kPeriods) {
     // Runs cannot be told apart if their clocks stand still.
@@ -172,7 +173,7 @@ void CommandPost::asked(const HttpMessage& request, const WhenLeft& left, Link& 
   connection_ = link.number();
   if (is_on(Fault::Mute) || is_on(Fault::Outage)) return;
   if (is_on(Fault::StatusDown) && request.path() == kStatus) return;
-  if (has_page_for(request, link) || refuses(request, left, link)) return;
+  if (has_page_for(request, link) || redirects(request, link) || refuses(request, left, link)) return;
   answer(request, link);
   if (!is_mapping(request) || link.is_closed()) return;
   const auto count = [this, path = request.path(), left, self = link.shared_from_this()] {
@@ -191,6 +192,16 @@ bool CommandPost::has_page_for(const HttpMessage& request, Link& link) {
     link.send(is_page ? http_answer("200 OK", kPage, kHtml)
                       : http_answer("404 Not Found", kJson, "\"no such URI\""));
   return is_page || is_unknown;
+}
+
+/// As Starlette (307) and Flask (308) do, which then have not read the report.
+bool CommandPost::redirects(const HttpMessage& request, Link& link) {
+  if (redirects_reports_ == 0 || request.path() != kReports || request.has_slash()) return false;
+  const bool is_flask = redirects_reports_ == 308;
+  link.send(http_answer(is_flask ? "308 Permanent Redirect" : "307 Temporary Redirect",
+                        std::string("Location: ") + kReports + "/\r\n" + (is_flask ? kPage : ""),
+                        is_flask ? kHtml : ""));
+  return true;
 }
 
 /// Answers 429.
@@ -334,6 +345,7 @@ std::string CommandPost::bad_answer(Fault fault, const HttpMessage& request) {
       take(request);
       return with_wrong_types(random_);
     case Fault::Redirect:
+      maybe_take();
       return redirect(random_);
     case Fault::Between:
       maybe_take();

@@ -40,6 +40,7 @@ class CommandPost final : public Host {
  private:
   class Conversation;
   void asked(const HttpMessage& request, const WhenLeft& left, Link& link);
+  bool redirects(const HttpMessage& request, Link& link);
   bool refuses(const HttpMessage& request, const WhenLeft& left, Link& link);
   bool has_page_for(const HttpMessage& request, Link& link);
   bool is_beyond_one_limit(const HttpMessage& request, const WhenLeft& left);
@@ -76,7 +77,8 @@ class CommandPost final : public Host {
   Counting counting_;
   /// The form of scoring's paths. The official server knows both.
   enum class Slash : std::uint8_t { Either, Unknown, Wanted } slash_;
-  bool has_portal_ = false;  // a web server answers in place of scoring
+  int redirects_reports_ = 0;  // to a path with a slash, by this status; 0: never
+  bool has_portal_ = false;    // a web server answers in place of scoring
   bool calm_ = false;
   bool is_late_lost_ = false;  // the answer to the late reporter was lost
   std::set<Fault> on_;         // faults that last for a period

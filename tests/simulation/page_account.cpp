@@ -100,7 +100,8 @@ void PageAccount::read_upstream(std::size_t place, const Event& event) {
   const bool allowed = event.status == 404 || event.status == 429 || event.status >= 500;
   const bool is_no_run =
       event.what == kStatus && event.status >= 200 && event.status < 300 && event.says.empty();  // ICD 5.1
-  if (never || is_no_run || (is_page && !allowed)) foreign_[endpoint].push_back(place);
+  if ((never && event.who != kOtherForm) || is_no_run || (is_page && !allowed))
+    foreign_[endpoint].push_back(place);
   if (event.status >= 300 || is_page) return;
   for (const auto& [stream, pose] : under_way_[event.request]) count_delivery(place, stream, pose);
 }

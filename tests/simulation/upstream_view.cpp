@@ -19,6 +19,11 @@ bool is_page(const std::string& body) {
   return !body.empty() && !nlohmann::json::accept(body);
 }
 
+bool is_to_other_form(const HttpMessage& answer, const std::string& path) {
+  const std::string location = answer.header("location");
+  return answer.status() / 100 == 3 && (location == path || location == path + "/");
+}
+
 /// Seconds that the answer asks for, by its Retry-After.
 double pause_in(const HttpMessage& answer) {
   const auto time = [&answer](const char* field) {
@@ -71,7 +76,9 @@ void UpstreamView::came(std::string_view bytes) {
     const std::string body = is_gzip ? inflated(answer->body) : answer->body;
     World::current().note({.kind = Kind::Replied,
                            .what = path_,
-                           .who = is_page(body) ? kForeign : "",
+                           .who = is_to_other_form(*answer, path_) ? kOtherForm
+                                  : is_page(body)                  ? kForeign
+                                                                   : "",
                            .serial = place_,
                            .status = answer->status(),
                            .stamp = pause_in(*answer),

@@ -10,6 +10,8 @@ namespace adit::simulation {
 
 /// Event::who of an answer that is an HTML page.
 inline constexpr const char* kForeign = "foreign";
+/// Event::who of a redirect to the same path with or without a slash at its end.
+inline constexpr const char* kOtherForm = "other form";
 /// Event::who of an answer longer than any Command Post's. Only its head is read.
 inline constexpr const char* kTooLong = "too long";
 

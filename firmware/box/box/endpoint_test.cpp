@@ -114,7 +114,7 @@ void EndpointTest::token_answered(const uplink::Outcome& outcome) {
   if (page_ && !is_status) return done_(steps::token(asked_, *page_, false));
   if (asked_ == steps::Asked::Scoring && answer != nullptr && is_page(*answer) && !wants_slash_)
     page_ = *answer;
-  const bool is_redirected = answer != nullptr && (answer->wants_slash || (page_ && !wants_slash_));
+  const bool is_redirected = answer != nullptr && (answer->wants_slash == true || (page_ && !wants_slash_));
   if (is_redirected) wants_slash_ = true;
   const bool is_throttled =
       answer != nullptr && answer->status == kTooMany && !std::exchange(asked_again_, true);

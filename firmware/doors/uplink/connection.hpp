@@ -58,8 +58,12 @@ struct Answered {
   std::string body;
   std::optional<std::chrono::seconds> retry_after;    // from now, also if the field is a date
   std::optional<std::chrono::sys_seconds> date = {};  // by the peer's clock
-  bool wants_slash = false;                           // redirects_to_slash()
+  std::optional<bool> wants_slash = {};               // redirects_to_slash()
   Sent sent = {};
+
+  /// The server redirects to the other form of the path and has not processed the request (RFC 9110 15.4.8,
+  /// 15.4.9).
+  bool is_unprocessed() const { return wants_slash && (status == 307 || status == 308); }
 };
 /// No byte of the request was given to the kernel. A retry is safe.
 struct NeverSent {

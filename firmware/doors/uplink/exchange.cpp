@@ -50,20 +50,25 @@ std::span<iovec> first_of(std::span<iovec> pieces, std::size_t bytes) {
 
 }  // namespace
 
-bool redirects_to_slash(int status, std::string_view location, std::string_view authority,
-                        std::string_view target) {
+std::optional<bool> redirects_to_slash(int status, std::string_view location, std::string_view authority,
+                                       std::string_view target) {
   constexpr std::string_view kScheme = "http://";
   const bool redirects = status == 301 || status == 302 || status == 307 || status == 308;
-  if (!redirects || target.ends_with('/')) return false;
+  if (!redirects) return {};
   if (same_in_any_case(location.substr(0, kScheme.size()), kScheme)) {
     location.remove_prefix(kScheme.size());
     std::string there(location.substr(0, location.find('/')));
     location.remove_prefix(there.size());
     const bool has_port = there.find(':', there.rfind(']') + 1) != std::string::npos;
     if (!has_port) there += ":80";
-    if (!same_in_any_case(there, authority)) return false;
+    if (!same_in_any_case(there, authority)) return {};
   }
-  return location.size() == target.size() + 1 && location.starts_with(target) && location.ends_with('/');
+  const bool has_slash = target.ends_with('/');
+  const std::string_view longer = has_slash ? target : location, shorter = has_slash ? location : target;
+  const bool is_other_form =
+      longer.size() == shorter.size() + 1 && longer.starts_with(shorter) && longer.ends_with('/');
+  if (!is_other_form || shorter.empty() || shorter.ends_with('/')) return {};
+  return !has_slash;
 }
 
 Exchange::Exchange(const Endpoint& endpoint, const icd::BearerToken& token, Request request)

@@ -15,9 +15,10 @@ namespace adit::uplink {
 
 /// True if an answer redirects a request to the same path with a slash at its end on the same server (RFC
 /// 9110 15.4): the target "/map/update" to the location "/map/update/" or
-/// "http://10.100.1.201:8000/map/update/". `authority`: host and port of the request.
-bool redirects_to_slash(int status, std::string_view location, std::string_view authority,
-                        std::string_view target);
+/// "http://10.100.1.201:8000/map/update/". False if it redirects "/map/update/" to "/map/update". nullopt for
+/// all other answers. `authority`: host and port of the request.
+std::optional<bool> redirects_to_slash(int status, std::string_view location, std::string_view authority,
+                                       std::string_view target);
 
 /// Sends one request, parses its answer, and measures how long the peer is silent. The caller owns the
 /// socket.

@@ -65,6 +65,7 @@ bool Channel::turns() {
   take(*std::exchange(next_, std::nullopt));
   if (!is_elsewhere) return false;
   wants_slash_ = has_page_ = is_trial_due_ = false;
+  reports_want_slash_.reset();
   last_.forget();
   return true;
 }
@@ -84,7 +85,8 @@ void Channel::send(icd::Uri uri, std::string_view content_type, icd::ChunkedByte
   icd::require(has_token() && (!busy() || can_go_ahead()));
   finished_bytes_ += connection_->sent_bytes();
   const bool is_trial = uri == icd::Uri::Status && is_trial_due_;
-  const bool has_slash = wants_slash_ != is_trial;
+  const bool is_report = uri == icd::Uri::ArtifactReports;
+  const bool has_slash = is_report ? reports_want_slash_.value_or(wants_slash_) : wants_slash_ != is_trial;
   const auto under_way = std::make_shared<UnderWay>(loop_.now(), uri, has_slash, is_trial, std::move(done));
   connection_->send({.method = std::string(icd::method_of(uri)),
                      .target = std::string(icd::path_of(uri)) + (has_slash ? "/" : ""),
@@ -128,8 +130,13 @@ void Channel::learn_path(const UnderWay& request, const uplink::Outcome& outcome
   } else {
     // The measured mapping server answers 501 to an unknown path.
     const bool is_unknown = answered->status == 404 || answered->status == 501;
+    if (request.uri == icd::Uri::ArtifactReports) {
+      if (is_unknown) reports_want_slash_.reset();
+      if (answered->is_unprocessed()) reports_want_slash_ = answered->wants_slash;
+    } else if (answered->wants_slash) {
+      wants_slash = *answered->wants_slash;
+    }
     if (request.has_slash && is_unknown) wants_slash = false;
-    if (answered->wants_slash && request.uri != icd::Uri::ArtifactReports) wants_slash = true;
   }
   if (is_status && !is_page) has_page_ = false;
   if (std::exchange(wants_slash_, wants_slash) == wants_slash) return;

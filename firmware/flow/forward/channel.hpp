@@ -24,7 +24,8 @@ struct EndpointAccess {
 /// ahead (uplink::Connections). Without a token no connection is opened.
 ///
 /// After a redirect to the same path with a slash, later paths end with a slash, until the endpoint does not
-/// know such a path. Redirects of reports do not count. If a status is a web page, the next request for it
+/// know such a path or redirects to the path without it. A redirect of a report counts for reports alone, and
+/// only a 307 or 308. If a status is a web page, the next request for it
 /// has the other form of the path, as a trial: some servers want a slash and do not redirect. The channel
 /// repeats no request.
 class Channel {
@@ -100,7 +101,8 @@ class Channel {
   std::optional<uplink::Connections> connection_;
   std::chrono::milliseconds answer_within_{};
   bool keeps_warm_ = false;
-  bool wants_slash_ = false;  // at the end of each path
+  bool wants_slash_ = false;                  // at the end of each path
+  std::optional<bool> reports_want_slash_{};  // nullopt: as wants_slash_
   bool has_page_ = false;
   bool is_trial_due_ = false;  // for the next status
   std::optional<EndpointAccess> next_;

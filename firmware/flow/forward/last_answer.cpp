@@ -80,7 +80,8 @@ std::string sentence_of(const uplink::Outcome& outcome) {
   if (const auto* doubt = std::get_if<uplink::InDoubt>(&outcome)) return doubt->why;
   const auto& answered = std::get<uplink::Answered>(outcome);
   if (answered.wants_slash)
-    return icd::sentence("the Command Post answered ", answered.status, ": the path must end with a slash");
+    return icd::sentence("the Command Post answered ", answered.status, ": the path must ",
+                         *answered.wants_slash ? "" : "not ", "end with a slash");
   if (dispatch::may_be_the_command_post(answered.status, dispatch::body_of(answered.body)))
     return dispatch::answer_text(answered.status, answered.body);
   return icd::sentence(

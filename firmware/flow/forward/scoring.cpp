@@ -257,8 +257,11 @@ void Scoring::classify_report(const uplink::Outcome& outcome) {
   const loop::Instant now = loop_.now();
   if (const auto* answered = std::get_if<uplink::Answered>(&outcome)) {
     const std::int64_t number = reports_->sending()->number;
-    const dispatch::ReportEvent event = reports_->answered(
-        {.status = answered->status, .content_type = answered->content_type, .body = answered->body}, time());
+    const dispatch::ReportEvent event = reports_->answered({.status = answered->status,
+                                                            .content_type = answered->content_type,
+                                                            .body = answered->body,
+                                                            .is_unprocessed = answered->is_unprocessed()},
+                                                           time());
     correct_status(reports_->book().at(number));
     if (event == dispatch::ReportEvent::Throttled) {
       pace_.report_throttled(answered->sent, answered->retry_after, now);
@@ -340,7 +343,7 @@ void Scoring::classify_status(const uplink::Outcome& outcome, loop::Instant aske
   const auto* answered = std::get_if<uplink::Answered>(&outcome);
   const auto run = answered != nullptr && answered->status == 200 ? codec::read_run_status(answered->body)
                                                                   : std::unexpected<std::string>("");
-  if (answered != nullptr && answered->wants_slash) {
+  if (answered != nullptr && answered->wants_slash == true) {
     pace_.status_taken(answered->sent, now);
     ask_at_ = now;  // clients keep waiting
     return;

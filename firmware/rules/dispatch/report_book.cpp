@@ -16,6 +16,7 @@ bool has_happened(ReportEvent event) {
     case ReportEvent::Rejected:
     case ReportEvent::Throttled:
     case ReportEvent::Barred:
+    case ReportEvent::Redirected:
     case ReportEvent::NeverLeft:
     case ReportEvent::Lost:
     case ReportEvent::Restarted:

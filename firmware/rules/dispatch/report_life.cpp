@@ -31,6 +31,7 @@ constexpr std::array kLife = {
 
     ReportTransition{Sending, Event::Recorded, Answered, Action::AnswerClients},
     ReportTransition{Sending, Event::Rejected, Rejected, Action::AnswerClients},
+    ReportTransition{Sending, Event::Redirected, Queued, Action::Nothing},
     ReportTransition{Sending, Event::Throttled, Queued, Action::Nothing},
     ReportTransition{Sending, Event::Barred, Queued, Action::TellClients},
     ReportTransition{Sending, Event::NeverLeft, Queued, Action::Nothing},

@@ -34,20 +34,21 @@ enum class ReportEvent : std::uint8_t {
   HeldBack,  // by the operator
   Released,  // the operator sends it
   Chosen,
-  Recorded,   // answered 2xx
-  Rejected,   // another 4xx
-  Throttled,  // 429
-  Barred,     // 401, 403, 404, 405 or 407: wrong token or address
-  NeverLeft,  // the kernel has no byte of it
-  Lost,       // bytes may have left, no usable answer
-  Found,      // recorded, by the run's status
-  Missing,    // not recorded, by the run's status
-  Settled,    // declared done by the operator
-  Withdrawn,  // by the operator
-  Corrected,  // the operator sends another report in its place
-  Joined,     // it repeats an earlier report and gets that report's answer
-  Cleared,    // held as a possible repeat, and is not one
-  UndoOver,   // the time for an undo is over
+  Recorded,    // answered 2xx
+  Rejected,    // another 4xx
+  Throttled,   // 429
+  Barred,      // 401, 403, 404, 405 or 407: wrong token or address
+  Redirected,  // 307 or 308 to the other form of the path: not processed
+  NeverLeft,   // the kernel has no byte of it
+  Lost,        // bytes may have left, no usable answer
+  Found,       // recorded, by the run's status
+  Missing,     // not recorded, by the run's status
+  Settled,     // declared done by the operator
+  Withdrawn,   // by the operator
+  Corrected,   // the operator sends another report in its place
+  Joined,      // it repeats an earlier report and gets that report's answer
+  Cleared,     // held as a possible repeat, and is not one
+  UndoOver,    // the time for an undo is over
   Restarted,
 };
 

@@ -125,8 +125,8 @@ void ReportSender::ended(ReportEvent event, const std::string& note, Time time,
 ReportEvent ReportSender::answered(const HttpAnswer& answer, Time time) {
   const auto reply = codec::read_report_reply(answer.body);
   const Report* const another = reply ? told_of_another(*reply) : nullptr;
-  const ReportEvent event =
-      event_of(answer.status, reply && another == nullptr, reply ? Body::Json : body_of(answer.body));
+  const ReportEvent event = event_of(answer.status, reply && another == nullptr,
+                                     reply ? Body::Json : body_of(answer.body), answer.is_unprocessed);
   const auto keep = [&](Report& report) {
     report.status = answer.status;
     report.content_type = answer.content_type;

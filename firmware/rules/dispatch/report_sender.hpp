@@ -13,6 +13,7 @@ struct HttpAnswer {
   int status = 0;
   std::string content_type;
   std::string body;
+  bool is_unprocessed = false;  // event_of()
 };
 
 /// Next requests to the Command Post.

@@ -6,7 +6,8 @@
 
 namespace adit::dispatch {
 
-ReportEvent event_of(int status, bool tells_of_a_report, Body body) {
+ReportEvent event_of(int status, bool tells_of_a_report, Body body, bool is_unprocessed) {
+  if (is_unprocessed) return ReportEvent::Redirected;
   if (icd::is_success(status)) {
     return tells_of_a_report ? ReportEvent::Recorded : ReportEvent::Lost;
   }

@@ -6,8 +6,9 @@
 namespace adit::dispatch {
 
 /// The event that an answer causes (table in README.md). Lost: 2xx without a report, pages, 3xx, 408 and 5xx.
-/// A proxy may send these after the Command Post has recorded the report.
-ReportEvent event_of(int status, bool tells_of_a_report, Body body);
+/// A proxy may send these after the Command Post has recorded the report. `is_unprocessed`: the server
+/// redirects to the same path with or without a slash at its end, and did not process the report.
+ReportEvent event_of(int status, bool tells_of_a_report, Body body, bool is_unprocessed = false);
 
 /// True if the answer is about a report of another type, or over a metre away. Servers may round coordinates.
 bool is_about_another(const icd::ReportReply& reply, const icd::ArtifactReport& report);

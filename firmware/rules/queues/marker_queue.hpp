@@ -58,9 +58,9 @@ class MarkerQueue {
   /// The changes that a DeleteAll made needless since the last call. Freeing them takes long; any thread may
   /// do it.
   std::vector<MarkerChanges> needless() { return std::exchange(needless_, {}); }
-  /// Takes the oldest changes out, in order. Nothing if none is queued. A lifetime becomes what remains of it
-  /// at `now`, and at least kLeastLifetime. An expired marker becomes a Delete, because an older one of its
-  /// ns and id may be shown; after a restart Adit does not know.
+  /// Takes the oldest changes out, in order; nullopt if the queue is empty. A lifetime is reduced to the rest
+  /// that remains at `now`, at least kLeastLifetime. An expired marker becomes a Delete, because an older one
+  /// of its ns and id may be shown, and Adit cannot know that after a restart.
   std::optional<QueuedMarkers> take(icd::Stamp now);
   /// Queues the result of the last take() again, which was not delivered: ahead of newer changes, and merged
   /// with them. The cost grows with `markers`, not with the queue.

@@ -79,6 +79,17 @@ TEST_F(FlowTest, KeepsQueuedMessagesAcrossARestart) {
   EXPECT_THAT(waiting(), ElementsAre(1, 1, 1));
 }
 
+TEST_F(FlowTest, GoesOnWithoutAMapThatCanNeverBeRead) {
+  ASSERT_TRUE(take_map(spool::cloud(10)));
+  const std::string file = folder_ / "waiting/map-00000001.cbor";
+  std::filesystem::create_directory(file);
+  restart();
+  EXPECT_THAT(waiting(), ElementsAre(1)) << "the other map";
+  EXPECT_EQ(flow_->put_aside(), file + ": cannot read " + file + ": is not a regular file");
+  EXPECT_TRUE(flow_->has_read_messages());
+  EXPECT_TRUE(take_map(spool::cloud(10)));
+}
+
 TEST_F(FlowTest, TellsThatRejectedMessagesCannotBeRead) {
   EXPECT_EQ(flow_->put_aside(), "");
   std::filesystem::create_directory(folder_ / "rejected/1.json");

@@ -1,8 +1,10 @@
 #include "spool/spool.hpp"
 
 #include <gmock/gmock.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/statvfs.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -175,11 +177,56 @@ TEST_F(SpoolTest, RenamesADamagedMapAndContinues) {
   EXPECT_TRUE(fs::exists(folder_ / "map-00000001.cbor.damaged"));
 }
 
-TEST_F(SpoolTest, KeepsAnUnreadableFileAndRejectsMaps) {
+TEST_F(SpoolTest, PutsAMapAsideThatCanNeverBeReadIfOthersCan) {
   Spool spool(folder_);
   ASSERT_TRUE(spool.keep(2, grid("r2", 2), 0));
-  fs::create_directory(folder_ / "map-00000001.cbor");  // open succeeds, read fails
-  EXPECT_TRUE(spool.read().empty()) << "map 2 may be newer than map 1";
+  fs::create_directory(folder_ / "map-00000001.cbor");
+  const auto kept = spool.read();
+  ASSERT_EQ(kept.size(), 1u);
+  EXPECT_EQ(kept[0].number, 2u);
+  EXPECT_EQ(spool.trouble(), "");
+  const std::string file = (folder_ / "map-00000001.cbor").string();
+  EXPECT_EQ(spool.put_aside(), file + ": cannot read " + file + ": is not a regular file");
+  EXPECT_TRUE(fs::exists(file + ".damaged"));
+  EXPECT_TRUE(spool.keep(3, grid("r1", 1), 0));
+}
+
+/// While it exists, the process can map only 4 MB more.
+class ScarceAddresses {
+ public:
+  ScarceAddresses() {
+    getrlimit(RLIMIT_AS, &before_);
+    rlim_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    const rlimit scarce{pages * static_cast<rlim_t>(::getpagesize()) + 4'000'000, before_.rlim_max};
+    setrlimit(RLIMIT_AS, &scarce);
+  }
+  ~ScarceAddresses() { setrlimit(RLIMIT_AS, &before_); }
+  ScarceAddresses(const ScarceAddresses&) = delete;
+  ScarceAddresses& operator=(const ScarceAddresses&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+TEST_F(SpoolTest, KeepsAllFilesIfOneCannotBeReadNow) {
+  ASSERT_TRUE(Spool(folder_).keep(1, cloud(1'500'000), 0));
+  ASSERT_TRUE(Spool(folder_).keep(2, grid("r2", 2), 0));
+  fs::create_directory(folder_ / "map-00000003.cbor");
+  Spool spool(folder_);
+  {
+    const ScarceAddresses scarce;
+    EXPECT_TRUE(spool.read().empty());
+  }
+  EXPECT_THAT(spool.trouble(), testing::EndsWith("map-00000001.cbor: Cannot allocate memory"));
+  EXPECT_EQ(spool.put_aside(), "");
+  EXPECT_EQ(Spool(folder_).read().size(), 2u);
+}
+
+TEST_F(SpoolTest, KeepsAnUnreadableFileAndRejectsMaps) {
+  Spool spool(folder_);
+  fs::create_directory(folder_ / "map-00000001.cbor");
+  EXPECT_TRUE(spool.read().empty());
   EXPECT_FALSE(can_be_read(folder_));
   EXPECT_TRUE(fs::exists(folder_ / "map-00000001.cbor"));
   const std::string why =
@@ -192,7 +239,7 @@ TEST_F(SpoolTest, KeepsAnUnreadableFileAndRejectsMaps) {
   fs::remove(folder_ / "map-00000001.cbor");
   EXPECT_TRUE(can_be_read(folder_));
   EXPECT_TRUE(can_be_read(folder_ / "none"));
-  EXPECT_EQ(Spool(folder_).read().size(), 1u);
+  EXPECT_EQ(Spool(folder_).trouble(), "");
 }
 
 TEST_F(SpoolTest, IgnoresPartialAndForeignFiles) {

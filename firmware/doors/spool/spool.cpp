@@ -6,6 +6,8 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <iterator>
+#include <map>
 #include <sstream>
 #include <string_view>
 
@@ -17,6 +19,7 @@
 #include "icd/sentence.hpp"
 #include "icd/try.hpp"
 #include "spool/kept_message.hpp"
+#include "spool/part_file.hpp"
 
 namespace adit::spool {
 namespace {
@@ -32,6 +35,18 @@ constexpr std::string_view kMap = "map-", kEnding = ".cbor", kBounds = ".bounds"
 std::unexpected<icd::Refusal> not_kept(const std::string& why) {
   return std::unexpected(icd::Refusal{icd::Status::ServiceUnavailable,
                                       "Adit cannot store this map: " + why + "; send it again later"});
+}
+
+/// True if each try to read the file fails with an error that does not pass. Lack of descriptors or memory
+/// and errors of the disk may pass.
+bool can_never_be_read(const std::string& path) {
+  constexpr int kTries = 3;
+  constexpr int kPassing[] = {EMFILE, ENFILE, ENOMEM, EIO, EAGAIN, EINTR};
+  for (int i = 0; i < kTries; ++i) {
+    const auto file = spool::map_file(path);
+    if (file || std::ranges::find(kPassing, file.error()) != std::end(kPassing)) return false;
+  }
+  return true;
 }
 
 /// Bytes left for maps in the file system, or errno.
@@ -176,17 +191,25 @@ Spool::Kept Spool::read() {
   remove_parts(folder_);
   count_ends();
   Kept kept;
+  std::map<std::uint64_t, std::string> unreadable;  // why
   const auto numbers = host::numbers_in(folder_, kMap, kEnding);
   unread_ = numbers ? "" : numbers.error();
   for (const std::uint64_t number : numbers.value_or(std::vector<std::uint64_t>())) {
     auto map = read(number);
     if (map) {
       kept.push_back(std::move(*map));
-    } else if (map.error().status == icd::Status::ServiceUnavailable) {
-      unread_ = map.error().sentence;
-    } else {
+    } else if (map.error().status != icd::Status::ServiceUnavailable) {
       put_aside(number, map.error().sentence);
+    } else if (can_never_be_read(file_of(number))) {
+      unreadable.emplace(number, map.error().sentence);
+    } else {
+      unread_ = map.error().sentence;
     }
+  }
+  // If no other map can be read, the cause may lie in the directory.
+  if (kept.empty() && !unreadable.empty()) unread_ = unreadable.begin()->second;
+  if (unread_.empty()) {
+    for (const auto& [number, why] : unreadable) put_aside(number, why);
   }
   if (unread_.empty()) return kept;
   host::log(host::Level::Error, "cannot read queued maps", {{"why", unread_}});

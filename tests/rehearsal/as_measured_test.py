@@ -169,11 +169,18 @@ class Mapping(unittest.TestCase):
             self.assertEqual(record["violation_count"], 2)
             self.assertIn({"uri": "/map/update", "status": 0, "count": 2}, record["requests"])
 
+    def test_goes_on_after_a_field_outside_the_point(self):
+        with CommandPost("--as-measured") as post:
+            for changes in ({"msg__fields__2__offset": 9}, {"msg__fields__0__count": 4}):
+                self.assertEqual(post.map(changed(cloud(), **changes)).status_code, 422)
+            self.assertEqual(post.map(cloud()).status_code, 200)
+            self.assertEqual([each["sentence"] for each in post.record()["violations"]],
+                             ["msg.fields[2]: ends at byte 13 of a point of 12",
+                              "msg.fields[0]: ends at byte 16 of a point of 12"])
+
     def test_fatal_message_is_named_and_ends_the_endpoint(self):
         table = [
             ("msg.point_step: expected at least 1, got 0", cloud(point_step=0)),
-            ("msg.fields[2]: ends at byte 13 of a point of 12", changed(cloud(), msg__fields__2__offset=9)),
-            ("msg.fields[0]: ends at byte 16 of a point of 12", changed(cloud(), msg__fields__0__count=4)),
         ]
         for sentence, body in table:
             with self.subTest(sentence), CommandPost("--as-measured") as post:

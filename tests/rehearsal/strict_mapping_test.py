@@ -253,6 +253,10 @@ class Refused(unittest.TestCase):
             ("markers/update", marker(color=unseen, type=8, points=[point], colors=[red]), None),
             ("markers/update", marker(color=unseen, type=10, mesh_use_embedded_materials=True), None),
             ("markers/update", marker(color=unseen, action=2), None),
+            ("markers/update", marker(type=5, points=[point]), "markers[0].points: a line list has two points for each line"),
+            ("markers/update", marker(type=5, points=[point, point]), None),
+            ("markers/update", marker(type=9, text=""), "markers[0].text: a text marker without text"),
+            ("markers/update", marker(scale={"x": 1, "y": -1, "z": 1}), "markers[0].scale: negative"),
             ("state/update", state("X1", "X2", "X1"), "poses: 'X1' is given twice"),
             ("state/update", state("X1", "X3"), "name: 'X3' is not on the roster (ICD 2)"),
             ("map/update", grid(name="X3"), "name: 'X3' is not on the roster (ICD 2)"),
@@ -269,6 +273,13 @@ class Refused(unittest.TestCase):
                             self.assertEqual(status, 200)
                         told += [sentence] if sentence else []
                         self.assertEqual([each["sentence"] for each in post.record()["violations"]], told)
+
+    def test_body_beyond_the_limit_gets_the_page_of_a_proxy(self):
+        with CommandPost("--limit-bytes", "1000") as post:
+            self.assertEqual(post.map(grid()).status_code, 200)
+            answer = post.mapping_request("POST", "/markers/update", marker(text="x" * 1000))
+            self.assertEqual((answer.status_code, answer.headers["Content-Type"]), (413, "text/html"))
+            self.assertEqual(post.record()["violation_count"], 0)
 
     def test_serious_violation_counts_after_many_harmless_ones(self):
         with CommandPost() as post:

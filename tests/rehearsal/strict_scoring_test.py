@@ -72,6 +72,41 @@ class Reports(unittest.TestCase):
             for action in ("start", "stop", "resume", "end"):
                 self.assertEqual(post.tell(action).status_code, 409)
 
+    def test_the_referee_grants_a_report_of_this_run(self):
+        with CommandPost("--reports", "1") as post:
+            self.assertEqual(post.report(REPORT).json()["report_status"], "scored")
+            self.assertEqual(post.tell("grant").json(), {"remaining_reports": 1})
+            self.assertEqual(post.report({**REPORT, "x": 9.0}).json()["report_status"], "scored")
+            self.assertEqual(post.report({**REPORT, "x": 8.0}).json()["report_status"], "report limit exceeded")
+            post.tell("new-run")
+            self.assertEqual(post.status().json()["remaining_reports"], 1)
+
+    def test_tells_the_same_report_twice_in_a_run(self):
+        with CommandPost() as post:
+            post.tell("stop")
+            post.report(REPORT)  # not scored
+            post.tell("resume")
+            post.report(REPORT)
+            post.report({**REPORT, "x": 9.0})
+            self.assertEqual(post.record()["violation_count"], 0)
+            self.assertEqual(post.report({**REPORT, "type": "BACKPACK"}).status_code, 201)
+            self.assertEqual([each["sentence"] for each in post.record()["violations"]],
+                             ["the same report as report 2 of this run"])
+            post.tell("new-run")
+            post.report(REPORT)
+            self.assertEqual(post.record()["violation_count"], 1)
+
+    def test_tells_a_status_right_behind_an_answered_report(self):
+        for faults, told in (([], 1), (["record-then-drop"], 0)):
+            with self.subTest(faults), CommandPost(rate=0.001) as post:
+                post.faults(reports=faults)
+                try:
+                    post.report(REPORT)
+                except Exception:  # pylint: disable=broad-exception-caught
+                    self.assertTrue(faults)
+                self.assertEqual(post.status().status_code, 200)
+                self.assertEqual(post.record()["violation_count"], told)
+
     def test_a_run_ends_after_its_duration(self):
         with CommandPost("--duration", "0.2") as post:
             time.sleep(0.3)

@@ -48,6 +48,15 @@ Judgement sent_on(const Request& request, std::optional<Aim> aim) {
   return judgement;
 }
 
+/// As nginx does by client_max_body_size.
+Judgement too_large(const Request& request, std::optional<Aim> aim) {
+  Judgement judgement = aim ? unjudged({}, *aim, request, Manner::Strict) : Judgement{};
+  judgement.uri = request.path;
+  judgement.outcome = page(413, "Request Entity Too Large");
+  judgement.outcome.after = After::Close;
+  return judgement;
+}
+
 /// A judge never falls, whatever it reads: memory that runs out is answered, too.
 Judgement judge_safely(Endpoint& endpoint, const Request& request) {
   try {
@@ -104,6 +113,18 @@ void CommandPost::note_names(Judgement& judgement) const {
   }
 }
 
+/// ICD 5: approximately one request a second. A status may follow at once only if the report's answer was
+/// lost.
+void CommandPost::note_order(const Request& request, const Fault& fault, Judgement& judgement) {
+  const double hz = options_.rate.value_or(options_.manner == Manner::Strict ? 1 : 0);
+  if (judgement.report) reported_.reset();
+  if (judgement.report && words_of(fault) == words_of({})) reported_ = request.at;
+  if (judgement.uri != kStatusUri || hz == 0 || !reported_) return;
+  constexpr double kTolerance = 0.95;  // as RateLimit's
+  if (request.at - *reported_ < std::chrono::duration<double>(kTolerance / hz))
+    judgement.findings.tells("a status right behind a report that was answered (ICD 5)");
+}
+
 /// Before there was one: no answer.
 Outcome CommandPost::answer_again(Aim aim) {
   const std::lock_guard lock(answers_mutex_);
@@ -124,7 +145,7 @@ void CommandPost::note_answer(Aim aim, const Outcome& outcome) {
 }
 
 Outcome CommandPost::receive(Side& side, std::optional<Aim> aim, const Request& request) {
-  if (redirects(request)) return decide(side, aim, {}, request);
+  if (redirects(request) || is_too_large(request)) return decide(side, aim, {}, request);
   const Fault fault = aim ? faults_.next(*aim, request.body, Clock::now()) : Fault{};
   if (!fault.record_after) return decide(side, aim, fault, request);
   return later(*fault.record_after, [this, &side, aim, fault, &request] {
@@ -137,6 +158,7 @@ Outcome CommandPost::receive(Side& side, std::optional<Aim> aim, const Request& 
 Judgement CommandPost::judge(Side& side, std::optional<Aim> aim, const Fault& fault, const Request& request) {
   if (request.fault) return judge_fault(*request.fault);
   if (redirects(request)) return sent_on(request, aim);
+  if (is_too_large(request)) return too_large(request, aim);
   Judgement judgement = aim && !fault.records() ? unjudged(fault, *aim, request, options_.manner)
                                                 : judge_safely(*side.endpoint, request);
   note_names(judgement);
@@ -146,6 +168,7 @@ Judgement CommandPost::judge(Side& side, std::optional<Aim> aim, const Fault& fa
   } else if (aim && fault.records()) {
     note_answer(*aim, judgement.outcome);
   }
+  note_order(request, fault, judgement);
   spoil(fault, request, judgement);
   if (const std::string words = words_of(fault); words != words_of({})) judgement.fault = words;
   return judgement;

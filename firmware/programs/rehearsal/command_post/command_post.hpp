@@ -58,6 +58,10 @@ class CommandPost {
   };
 
   bool redirects(const Request& request) const;
+  bool is_too_large(const Request& request) const {
+    return options_.limit_bytes > 0 && !request.fault && request.body.size() > options_.limit_bytes;
+  }
+  void note_order(const Request& request, const Fault& fault, Judgement& judgement);
   void note_names(Judgement& judgement) const;
   Outcome answer_again(Aim aim);
   void note_answer(Aim aim, const Outcome& outcome);
@@ -81,6 +85,7 @@ class CommandPost {
   mutable std::mutex scoring_mutex_;
   std::mutex answers_mutex_;
   std::array<std::optional<Answer>, kAims.size()> answers_;  // the last good one of each aim
+  std::optional<Clock::time_point> reported_;  // when the last report that was answered had arrived
   std::atomic<std::uint64_t> number_;
   std::atomic<int> by_others_ = 0;
 };

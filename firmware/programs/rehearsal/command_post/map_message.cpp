@@ -51,7 +51,7 @@ std::optional<CloudField> read_cloud_field(const Field& field) {
                     static_cast<std::uint32_t>(*copies)};
 }
 
-/// What kills the measured server: a field that ends past the point.
+/// A field that ends past the point kills the measured server. The rehearsal goes on.
 bool check_ends(const Cloud& cloud, const Field& fields) {
   for (std::size_t i = 0; i < cloud.fields.size(); ++i) {
     const CloudField& field = cloud.fields[i];
@@ -59,7 +59,7 @@ bool check_ends(const Cloud& cloud, const Field& fields) {
     if (end <= cloud.point_step) continue;
     fields.findings().breaks(fields.path() + "[" + std::to_string(i) + "]: ends at byte " +
                                  std::to_string(end) + " of a point of " + std::to_string(cloud.point_step),
-                             Measured::Dies);
+                             Measured::Refuses);
     return false;
   }
   return true;

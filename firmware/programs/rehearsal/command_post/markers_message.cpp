@@ -7,7 +7,8 @@ namespace adit::rehearsal {
 namespace {
 
 // Of visualization_msgs/Marker.
-constexpr std::int64_t kLineStrip = 4, kPoints = 8, kTriangleList = 11, kLastType = kTriangleList;
+constexpr std::int64_t kLineStrip = 4, kLineList = 5, kPoints = 8, kText = 9, kTriangleList = 11,
+                       kLastType = kTriangleList;
 
 bool read_color(const Field& color) {
   for (const char* const name : {"r", "g", "b", "a"}) {
@@ -104,6 +105,20 @@ void check_alpha(const Field& marker) {
   marker.findings().tells(marker.path() + ".color.a: a marker with 0 is invisible (ICD 6.6)");
 }
 
+/// A display cannot show these, or not as they were meant.
+void check_sense(const Field& marker, std::int64_t type) {
+  const Json& all = marker.value();
+  const auto told = [&](const char* sentence) { marker.findings().tells(marker.path() + sentence); };
+  if (type == kLineList && all.contains("points") && all["points"].size() % 2 != 0)
+    told(".points: a line list has two points for each line");
+  if (type == kText && (!all.contains("text") || all["text"] == ""))
+    told(".text: a text marker without text");
+  if (!all.contains("scale") || !all["scale"].is_object()) return;
+  const bool is_negative = std::ranges::any_of(
+      all["scale"], [](const Json& part) { return part.is_number() && part.get<double>() < 0; });
+  if (is_negative) told(".scale: negative");
+}
+
 bool read_marker(const Field& marker, MarkersMessage& message) {
   if (!marker.is_object()) return false;
   read_header(marker, message.stamps);
@@ -120,7 +135,10 @@ bool read_marker(const Field& marker, MarkersMessage& message) {
   if (*kind == 1) action->breaks("expected 0, 2 or 3 (ICD 6.6)", Measured::Takes);
   check_looks(marker);
   check_geometry(marker, *shape);
-  if (*kind == 0) check_alpha(marker);
+  if (*kind == 0) {
+    check_alpha(marker);
+    check_sense(marker, *shape);
+  }
   change->action = *kind;
   change->x = place->position.x;
   message.changes.push_back(*std::move(change));

@@ -100,6 +100,8 @@ command_line::Program command_line_of(Options& options) {
            {"--as-measured", "", "behave like the public test servers instead of the ICD",
             take<take_as_measured>(options)},
            {"--slash", "", "redirect a path without a trailing slash to the path with one", &options.slash},
+           {"--limit-bytes", "N", "answer a larger body with 413 and a page, as a proxy does (0: no limit)",
+            number<0UL, UINT64_MAX>(options.limit_bytes)},
            {"--team", "NAME", "name of the team", &options.run.team},
            {"--run", "ID", "name of the run", &options.run.id},
            {"--duration", "SECONDS", "length of the run (3600)", number<0.0, kMost>(options.run.length)},
@@ -127,7 +129,8 @@ command_line::Program command_line_of(Options& options) {
             &options.fault_rates},
            {"--seed", "N", "seed of the random faults (1)", number<0UL, UINT64_MAX>(options.seed)},
            {"--control", "ADDR:PORT",
-            "address of the control port: POST /start /stop /resume /end /new-run /other-sender /posted, GET "
+            "address of the control port: POST /start /stop /resume /end /new-run /grant /other-sender "
+            "/posted, GET "
             "/record /arrivals, GET, POST and DELETE /faults",
             take<take_address<std::optional<Address>>>(options.control)},
            {"--verbose", "", "print a line for each request even if stdout is not a terminal",

@@ -23,7 +23,8 @@ struct Options {
   std::string transcript;  // "": none
   std::uint64_t transcript_bytes = 2'000'000'000;
   Manner manner = Manner::Strict;
-  bool slash = false;  // each path has to end with one
+  bool slash = false;           // each path has to end with one
+  std::size_t limit_bytes = 0;  // of a body; 0: only the endpoints' own limits
   RunPlan run;
   std::optional<double> rate;            // Hz; absent: by the manner
   bool one_api_limit = false;            // over statuses and reports together

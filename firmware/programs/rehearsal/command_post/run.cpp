@@ -1,5 +1,6 @@
 #include "rehearsal/command_post/run.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace adit::rehearsal {
@@ -20,6 +21,12 @@ std::string id_after(std::string id) {
 }
 
 }  // namespace
+
+std::string lower(std::string text) {
+  std::ranges::transform(text, text.begin(),
+                         [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  return text;
+}
 
 Run::State Run::state_at(Clock::time_point now) const {
   if (ended_) return State::Ended;
@@ -71,13 +78,22 @@ void Run::begin_again(const NewRun& wanted, Clock::time_point now) {
   stopped_ = false;
   ended_ = false;
   score_ = 0;
-  used_ = 0;
+  used_ = granted_ = 0;
+  scored_.clear();
   for (Artifact& artifact : artifacts_) artifact.claimed = false;
+}
+
+std::int64_t Run::grant(Clock::time_point now) {
+  {
+    const std::lock_guard lock(mutex_);
+    ++granted_;
+  }
+  return standing(now).remaining_reports;
 }
 
 Run::Standing Run::standing(Clock::time_point now) const {
   const std::lock_guard lock(mutex_);
-  Standing standing{plan_.team, plan_.id, "running", clock_at(now), score_, plan_.reports - used_};
+  Standing standing{plan_.team, plan_.id, "running", clock_at(now), score_, plan_.reports + granted_ - used_};
   switch (state_at(now)) {
     case State::NotStarted:
       standing.state = "not started";
@@ -111,11 +127,16 @@ Run::Ruling Run::submit(const std::string& type, const std::optional<Point>& pos
     case State::Running:
       break;
   }
-  if (used_ >= plan_.reports) {
+  if (used_ >= plan_.reports + granted_) {
     ruling.status = "report limit exceeded";
     return ruling;
   }
   ++used_;
+  if (position) {
+    const auto [first, is_new] =
+        scored_.try_emplace({lower(type), position->x, position->y, position->z}, ruling.id);
+    if (!is_new) ruling.repeats = first->second;
+  }
   if (position && claim(artifacts_, type, *position)) {
     ruling.score_change = 1;
     ++score_;

@@ -2,9 +2,11 @@
 
 #include <chrono>
 #include <cstdint>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "rehearsal/command_post/artifacts.hpp"
@@ -15,6 +17,9 @@ namespace adit::rehearsal {
 /// What the public test server's clocks always show, whatever the time: /api/status and answers to reports.
 inline constexpr double kMeasuredStatusClock = 25.98;
 inline constexpr double kMeasuredReportClock = 3.14;
+
+/// ASCII in lower case.
+std::string lower(std::string text);
 
 struct RunPlan {
   std::string team = "adit";
@@ -52,6 +57,7 @@ class Run {
     double clock = 0;
     std::string status;  // report_status, one of ICD 5.2's
     std::int64_t score_change = 0;
+    std::int64_t repeats = 0;  // the id of the same report that was scored before in this run; 0: none
   };
 
   Run(RunPlan plan, std::vector<Artifact> artifacts)
@@ -65,6 +71,9 @@ class Run {
 
   /// Whatever became of the last run: the clock and the score at 0, no report used, no artifact found.
   void begin_again(const NewRun& wanted, Clock::time_point now);
+
+  /// One more report is allowed in this run. Gives remaining_reports.
+  std::int64_t grant(Clock::time_point now);
 
   Standing standing(Clock::time_point now) const;
 
@@ -85,6 +94,9 @@ class Run {
   bool ended_ = false;
   std::int64_t score_ = 0;
   std::int64_t used_ = 0;
+  std::int64_t granted_ = 0;
+  /// Ids of scored reports by type, in lower case, and place.
+  std::map<std::tuple<std::string, double, double, double>, std::int64_t> scored_;
   std::int64_t last_id_ = 0;
 };
 

@@ -25,13 +25,6 @@ std::string date_and_time() {
   return {text, date + static_cast<std::size_t>(rest)};
 }
 
-/// "current_team is a lowercase string" (ICD 5.1).
-std::string lower(std::string text) {
-  std::ranges::transform(text, text.begin(),
-                         [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  return text;
-}
-
 struct Sent {
   std::string type;
   Point position;
@@ -75,6 +68,11 @@ OrderedJson report_body(const Run::Ruling& ruling, const Json& sent, const std::
           {"run", ruling.run},
           {"report_status", ruling.status},
           {"score_change", ruling.score_change}};
+}
+
+void tell_repeat(const Run::Ruling& ruling, Findings& findings) {
+  if (ruling.repeats == 0) return;
+  findings.tells("the same report as report " + std::to_string(ruling.repeats) + " of this run");
 }
 
 StrictScoring::StrictScoring(std::string token, double hz, bool one_limit, Run& run)
@@ -121,6 +119,7 @@ void StrictScoring::classify_report(const Request& request, Judgement& judgement
     judgement.outcome = refused(*finding);
   } else if (sent) {
     const Run::Ruling ruling = run_.submit(sent->type, sent->position, Clock::now());
+    tell_repeat(ruling, findings);
     const auto& body = judgement.report.emplace(report_body(ruling, document->value, request.local_address));
     judgement.outcome = answered(201, body);
     judgement.accepted.push_back({"report", ""});

@@ -54,6 +54,9 @@ OrderedJson status_body(const Run& run, Clock::time_point now);
 /// came; `authority`: the address and port in its url.
 OrderedJson report_body(const Run::Ruling& ruling, const Json& sent, const std::string& authority);
 
+/// Writes down that the report was scored before.
+void tell_repeat(const Run::Ruling& ruling, Findings& findings);
+
 /// Where no address is known, or as the measured server has it.
 inline constexpr const char* kNoAuthority = "<ipaddress>:<port>";
 

@@ -119,6 +119,7 @@ void MeasuredScoring::classify_report(const Request& request, Judgement& judgeme
   }
   Run::Ruling ruling = run_.submit(type, position, Clock::now());
   ruling.clock = kMeasuredReportClock;
+  tell_repeat(ruling, judgement.findings);
   judgement.report = report_body(ruling, sent, kNoAuthority);
   judgement.outcome = answered(201, *judgement.report);
   judgement.accepted.push_back({"report", ""});

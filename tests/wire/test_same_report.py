@@ -3,8 +3,17 @@
 import signal
 import unittest
 
-from programs import Stage
-from reporting import QUICK, REPORT, at_once, began, sendings, submit
+from programs import Stage, wait_until
+from reporting import QUICK, REPORT, another, at_once, began, sendings, submit
+
+
+def run(stage):
+    return stage.box.ask("GET /adit/run")[1]
+
+
+def hears(stage, left):
+    """Waits for a status with so many reports left."""
+    wait_until(lambda: run(stage)["run"]["remaining_reports"] == left, f"{left} reports to be left")
 
 
 class SameReport(unittest.TestCase):
@@ -16,6 +25,31 @@ class SameReport(unittest.TestCase):
             self.assertEqual([answer.status_code for answer in answers], [201] * 6)
             self.assertEqual({answer.content for answer in answers}, {answers[0].content})
             self.assertEqual((len(stage.post.recorded()), sendings(stage)), (1, 1))
+
+    def test_it_is_the_same_after_the_referee_granted_a_report(self):
+        with Stage(**QUICK) as stage:
+            first = submit(began(stage))
+            hears(stage, 19)
+            stage.post.control("POST /grant")
+            hears(stage, 20)
+            self.assertEqual(submit(stage, another(1)).status_code, 201)
+            again = submit(stage)
+            self.assertEqual((again.status_code, again.content), (201, first.content))
+            self.assertEqual((len(stage.post.recorded()), sendings(stage)), (2, 1))
+
+    def test_it_is_held_if_the_server_renames_the_run(self):
+        with Stage(**QUICK) as stage:
+            submit(began(stage))
+            hears(stage, 19)
+            stage.post.control("POST /rename")
+            self.assertEqual(submit(stage, another(1)).status_code, 201)
+            wait_until(lambda: "run_renamed" in stage.box.alarms(), "the alarm")
+            why = next(alarm["why"] for alarm in run(stage)["alarms"] if alarm["id"] == "run_renamed")
+            self.assertIn("its count of reports and its clock go on", why)
+            again = submit(stage)
+            self.assertEqual(again.status_code, 503)
+            self.assertIn("the same as report 1", again.text)
+            self.assertEqual((len(stage.post.recorded()), sendings(stage)), (2, 1))
 
     def test_it_is_the_same_after_a_restart(self):
         with Stage(**QUICK) as stage:

@@ -119,15 +119,16 @@ Outcome control(CommandPost& post, const Request& request) {
   if (wanted == "POST /new-run") return begin_new_run(post, *body);
   if (wanted == "POST /grant")
     return answered(200, OrderedJson{{"remaining_reports", post.run().grant(Clock::now())}});
+  if (wanted == "POST /rename") return answered(200, OrderedJson{{"run", post.run().rename()}});
   if (wanted == "POST /other-sender") return submit_by_other(post, *body);
   if (wanted == "POST /start") return change_state(post, &Run::start);
   if (wanted == "POST /stop") return change_state(post, &Run::admin_stop);
   if (wanted == "POST /resume") return change_state(post, &Run::resume);
   if (wanted == "POST /end") return change_state(post, &Run::end);
-  return refused(404,
-                 "POST /start, /stop, /resume, /end, /new-run, /grant, /other-sender or /posted, GET /record "
-                 "or /arrivals, "
-                 "GET, POST or DELETE /faults");
+  return refused(
+      404,
+      "POST /start, /stop, /resume, /end, /new-run, /grant, /rename, /other-sender or /posted, GET "
+      "/record or /arrivals, GET, POST or DELETE /faults");
 }
 
 }  // namespace adit::rehearsal

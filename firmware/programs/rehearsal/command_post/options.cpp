@@ -129,9 +129,8 @@ command_line::Program command_line_of(Options& options) {
             &options.fault_rates},
            {"--seed", "N", "seed of the random faults (1)", number<0UL, UINT64_MAX>(options.seed)},
            {"--control", "ADDR:PORT",
-            "address of the control port: POST /start /stop /resume /end /new-run /grant /other-sender "
-            "/posted, GET "
-            "/record /arrivals, GET, POST and DELETE /faults",
+            "address of the control port: POST /start /stop /resume /end /new-run /grant /rename "
+            "/other-sender /posted, GET /record /arrivals, GET, POST and DELETE /faults",
             take<take_address<std::optional<Address>>>(options.control)},
            {"--verbose", "", "print a line for each request even if stdout is not a terminal",
             &options.verbose},

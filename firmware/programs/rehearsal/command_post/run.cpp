@@ -83,6 +83,11 @@ void Run::begin_again(const NewRun& wanted, Clock::time_point now) {
   for (Artifact& artifact : artifacts_) artifact.claimed = false;
 }
 
+std::string Run::rename() {
+  const std::lock_guard lock(mutex_);
+  return plan_.id = id_after(plan_.id);
+}
+
 std::int64_t Run::grant(Clock::time_point now) {
   {
     const std::lock_guard lock(mutex_);

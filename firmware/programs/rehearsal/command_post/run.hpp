@@ -72,7 +72,9 @@ class Run {
   /// Whatever became of the last run: the clock and the score at 0, no report used, no artifact found.
   void begin_again(const NewRun& wanted, Clock::time_point now);
 
-  /// One more report is allowed in this run. Gives remaining_reports.
+  /// Gives the run the next name; it goes on. Returns the name.
+  std::string rename();
+  /// One more report is allowed in this run. Returns remaining_reports.
   std::int64_t grant(Clock::time_point now);
 
   Standing standing(Clock::time_point now) const;

@@ -89,10 +89,14 @@ class AnsweredRecords {
   std::map<Record, double> answered_;
 };
 
-/// Statuses that Adit has heard with more reports left than in the one before: a grant that it can see.
+/// Statuses that Adit has heard with more reports left than in the one before: a grant that it can see, and
+/// remembers if it can write that down.
 class RisesHeard {
  public:
   void add(const Event& event) {
+    disk_.add(event);
+    const bool ends = event.kind == Kind::Dies || event.kind == Kind::Ended;
+    if (ends && disk_.within(event.at - last_, event.at)) last_ = -1e9;
     if (event.kind != Kind::Replied || event.what != kStatus || event.status != 200 || event.says.empty())
       return;
     const int left = event.says[1];
@@ -103,6 +107,7 @@ class RisesHeard {
   double last() const { return last_; }
 
  private:
+  DiskFaultsSeen disk_;
   std::map<std::int64_t, int> left_;  // by the Command Post's index
   double last_ = -1e9;
 };

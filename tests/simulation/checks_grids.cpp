@@ -133,10 +133,18 @@ class GridsOfOneName {
         return !may_be_in_it || covers(newer.extent, older.extent);
       });
     };
+    const auto was_queued = [&](const PostedGrid& newer) {
+      return newer.asked->accepted() && newer.asked->began > began && newer.asked->ended < since &&
+             grid.is_before(newer);
+    };
+    // While a grid waits for a connection it stays, and meanwhile another one may replace the newer one.
+    const auto may_have_gone = [&](const PostedGrid& newer) {
+      return std::ranges::any_of(posted_, [&](const PostedGrid& later) {
+        return newer.is_before(later) && covers(later.extent, newer.extent) && !contains_all(later);
+      });
+    };
     for (const PostedGrid& newer : posted_) {
-      const bool was_queued =
-          newer.asked->accepted() && newer.asked->began > began && newer.asked->ended < since;
-      if (!was_queued || !grid.is_before(newer) || !contains_all(newer)) continue;
+      if (!was_queued(newer) || !contains_all(newer) || may_have_gone(newer)) continue;
       broken.push_back(icd::sentence("Replaced: ", event.who, "'s ", grid.serial, " was sent at ", event.at,
                                      ", although the newer ", newer.serial, " contains it"));
       return;

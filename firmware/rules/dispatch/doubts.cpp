@@ -53,15 +53,15 @@ std::vector<Doubts::Reports> Doubts::groups() const {
   return groups;
 }
 
-const Report& Doubts::leader_of(const Report& doubt) const {
+const Report* Doubts::leader_of(const Report& doubt) const {
   for (const Reports& group : groups()) {
-    if (std::ranges::find(group, doubt.number, &Report::number) != group.end()) return *group.front();
+    if (std::ranges::find(group, doubt.number, &Report::number) != group.end()) return group.front();
   }
-  return doubt;
+  return &doubt;
 }
 
 std::string Doubts::undecidable(const Report& doubt) const {
-  const Report& first = leader_of(doubt);
+  const Report& first = *leader_of(doubt);
   return undecidable_first(first, account_.run(), account_.runs().find(first.run));
 }
 
@@ -82,7 +82,7 @@ std::int64_t Doubts::open_count() const {
 
 bool Doubts::is_asking(const Report& report) const {
   if (report.state != ReportState::InDoubt || report.run != account_.run().number) return false;
-  const auto inquiry = inquiries_.find(leader_of(report).number);
+  const auto inquiry = inquiries_.find(leader_of(report)->number);
   return inquiry != inquiries_.end() && !inquiry->second.is_in_vain();
 }
 
@@ -180,7 +180,7 @@ std::vector<ReportBook::Step> Doubts::hear(const icd::RunStatus& status, Instant
   // The others are the operator's.
   Reports others = all();
   std::erase_if(others,
-                [this](const Report* doubt) { return inquiries_.contains(leader_of(*doubt).number); });
+                [this](const Report* doubt) { return inquiries_.contains(leader_of(*doubt)->number); });
   explain(others, "", time);
   return steps;
 }

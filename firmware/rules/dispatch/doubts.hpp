@@ -69,7 +69,7 @@ class Doubts {
   /// Each begins with a doubt whose earlier counts are certain.
   std::vector<Reports> groups() const;
   /// The first doubt of its group, or the doubt itself.
-  const Report& leader_of(const Report& doubt) const;
+  const Report* leader_of(const Report& doubt) const;
   std::string undecidable(const Report& doubt) const;
   Evidence weigh_group(const Reports& group, const icd::RunStatus& status) const;
   ReportBook::Step found(const Report& doubt, const Evidence& evidence) const;

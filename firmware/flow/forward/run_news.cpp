@@ -1,6 +1,5 @@
 #include "forward/run_news.hpp"
 
-#include <algorithm>
 #include <utility>
 
 #include "forward/channel.hpp"
@@ -24,8 +23,7 @@ RunNews::Change RunNews::look(const dispatch::Reports& reports) {
 dispatch::NextMap RunNews::next_map_after(std::int64_t before, const dispatch::Reports& reports) const {
   const dispatch::Run* const known = reports.runs().find(before);
   // The run goes on although another one seemed to begin.
-  const auto maybe = reports.runs().maybe(before);
-  if (std::ranges::find(maybe, reports.run().number) != maybe.end()) return dispatch::NextMap::MayBeTheSame;
+  if (reports.runs().may_be(before, reports.run().number)) return dispatch::NextMap::MayBeTheSame;
   const bool is_here = known != nullptr && reports.runs().is_here(before) && is_by_settings(reports.run());
   return is_here ? dispatch::next_map(*known, reports.run()) : dispatch::NextMap::MayBeTheSame;
 }

@@ -285,8 +285,7 @@ void Scoring::classify_report(const uplink::Outcome& outcome) {
 void Scoring::correct_status(const dispatch::Report& answered) {
   if (answered.state != dispatch::ReportState::Answered) return;
   // A run that seemed to begin may have been the same one.
-  const auto runs = reports_->runs().maybe(status_run_);
-  if (std::ranges::find(runs, answered.run) == runs.end()) return;
+  if (!reports_->runs().may_be(status_run_, answered.run)) return;
   const auto reply = codec::read_report_reply(answered.answer);
   if (reply && !dispatch::is_about_another(*reply, answered.report))
     status_cache_.add_report(dispatch::effect_of(*reply), reply->run_clock, loop_.now());

@@ -66,8 +66,7 @@ bool RunAccount::is_grant(const icd::RunStatus& status, Time time) const {
 }
 
 NameCheck RunAccount::check_name(const Run& before, const icd::RunStatus& status, Time time) const {
-  const double unheard = std::max(0.0, clock_step_.between(before.heard, time.stamp) - kClockAhead);
-  return dispatch::check_name(before, status, {unheard, silence(time).since_status});
+  return dispatch::check_name(before, status, {unheard(before, time), silence(time).since_status});
 }
 
 const Run* RunAccount::of_team(const std::string& team) const {
@@ -101,14 +100,17 @@ Signs RunAccount::signs_against(const Run& earlier) const {
   return signs;
 }
 
-/// In one process by the monotonic clock. After a restart by stamps, less the step and the possible lead
-/// after a boot.
+/// By stamps, less the step and the possible lead after a boot.
+double RunAccount::unheard(const Run& run, Time time) const {
+  return std::max(0.0, clock_step_.between(run.heard, time.stamp) - kClockAhead);
+}
+
+/// In one process by the monotonic clock.
 Silence RunAccount::silence(Time time) const {
   const auto since = [&time](Instant last) { return std::chrono::duration<double>(time.now - last).count(); };
   Silence silence;
   if (status_came_) silence.since_status = since(*status_came_);
-  silence.at_least = clock_at_ ? since(*clock_at_)
-                               : std::max(0.0, clock_step_.between(run().heard, time.stamp) - kClockAhead);
+  silence.at_least = clock_at_ ? since(*clock_at_) : unheard(run(), time);
   return silence;
 }
 

@@ -112,6 +112,8 @@ class RunAccount {
   };
   void forget_counts();
   void write_down(double stamp);
+  /// Seconds, at least, without word of `run`.
+  double unheard(const Run& run, Time time) const;
   Silence silence(Time time) const;
   bool stands(const icd::RunStatus& status, Time time) const;
 

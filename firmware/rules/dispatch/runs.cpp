@@ -74,9 +74,9 @@ const std::string& Runs::name_trouble() const {
   return present().name_trouble;
 }
 
-bool Runs::may_be_present(std::int64_t number) const {
-  const auto numbers = maybe_present();
-  return number != present_ && std::ranges::find(numbers, number) != numbers.end();
+bool Runs::may_be(std::int64_t number, std::int64_t other) const {
+  const auto numbers = maybe(number);
+  return std::ranges::find(numbers, other) != numbers.end();
 }
 
 const Run& Runs::is_not(std::int64_t number) {

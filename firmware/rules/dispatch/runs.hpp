@@ -39,16 +39,18 @@ class Runs {
   bool is_here(std::int64_t number) const { return is_at(number, present().post); }
   /// The present run, the run that it may still be, the run that that one may be, and so on.
   std::vector<std::int64_t> maybe_present() const { return maybe(present_); }
-  /// The same for run `number`.
-  std::vector<std::int64_t> maybe(std::int64_t number) const;
+  /// True if run `number` is `other`, or may still be.
+  bool may_be(std::int64_t number, std::int64_t other) const;
   /// Run::name_trouble of the present run, or of one that it may still be. "": names count.
   const std::string& name_trouble() const;
   /// True if `number` is one of maybe_present(), but not the present run.
-  bool may_be_present(std::int64_t number) const;
+  bool may_be_present(std::int64_t number) const { return number != present_ && may_be(present_, number); }
   /// The present run is not `number`, which may_be_present(). Returns the run in which another run began.
   const Run& is_not(std::int64_t number);
 
  private:
+  /// maybe_present() for run `number`.
+  std::vector<std::int64_t> maybe(std::int64_t number) const;
   std::int64_t next_turn() const;
 
   std::map<std::int64_t, Run> runs_{{1, Run{}}};

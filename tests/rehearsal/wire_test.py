@@ -38,6 +38,16 @@ class Http(unittest.TestCase):
             self.assertEqual(received.count(b"HTTP/1.1 200 OK\r\n"), 2)
             self.assertIn(b"Connection: close", received)
 
+    def test_serial_endpoint_serves_the_next_connection_after_the_end_of_the_one_before(self):
+        with CommandPost("--serial", transcript=True) as post, connect(post.scoring) as first, connect(post.scoring) as second:
+            second.sendall(STATUS)
+            for count in range(1, 5):
+                first.sendall(STATUS)
+                self.assertEqual(read_answer(first)[0], 200)
+                self.assertEqual(len(post.lines()), count)
+            first.close()
+            self.assertEqual(read_answer(second)[0], 200)
+
     def test_each_answer_has_a_date(self):
         with CommandPost() as post:
             for request in (STATUS, STATUS.replace(b"Authorization", b"Nobody"), STATUS.replace(b"status", b"nothing")):

@@ -81,14 +81,16 @@ std::expected<Servers, std::string> listen(const Options& options, CommandPost& 
   const bool strict = options.manner == Manner::Strict;
   const auto link = options.link > 0 ? std::make_shared<Link>(options.link) : nullptr;
   Servers servers;
-  auto scoring = Server::listen(options.scoring,
-                                {.most_body = std::size_t{1} << 20, .slash = options.slash, .link = link},
-                                [&post](const Request& request) { return post.scoring(request); });
+  auto scoring = Server::listen(
+      options.scoring,
+      {.most_body = std::size_t{1} << 20, .slash = options.slash, .serial = options.serial, .link = link},
+      [&post](const Request& request) { return post.scoring(request); });
   if (!scoring) return std::unexpected("scoring: " + scoring.error());
   servers.scoring = std::move(*scoring);
-  auto mapping =
-      Server::listen(options.mapping, {.answers_expect = strict, .slash = options.slash, .link = link},
-                     [&post](const Request& request) { return post.mapping(request); });
+  auto mapping = Server::listen(
+      options.mapping,
+      {.answers_expect = strict, .slash = options.slash, .serial = options.serial, .link = link},
+      [&post](const Request& request) { return post.mapping(request); });
   if (!mapping) return std::unexpected("mapping: " + mapping.error());
   servers.mapping = std::move(*mapping);
   if (!options.control) return servers;

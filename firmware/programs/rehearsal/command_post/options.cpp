@@ -100,6 +100,8 @@ command_line::Program command_line_of(Options& options) {
            {"--as-measured", "", "behave like the public test servers instead of the ICD",
             take<take_as_measured>(options)},
            {"--slash", "", "redirect a path without a trailing slash to the path with one", &options.slash},
+           {"--serial", "", "serve one connection of each endpoint at a time, until it is closed",
+            &options.serial},
            {"--limit-bytes", "N", "answer a larger body with 413 and a page, as a proxy does (0: no limit)",
             number<0UL, UINT64_MAX>(options.limit_bytes)},
            {"--team", "NAME", "name of the team", &options.run.team},

@@ -24,6 +24,7 @@ struct Options {
   std::uint64_t transcript_bytes = 2'000'000'000;
   Manner manner = Manner::Strict;
   bool slash = false;           // each path has to end with one
+  bool serial = false;          // each endpoint serves one connection at a time
   std::size_t limit_bytes = 0;  // of a body; 0: only the endpoints' own limits
   RunPlan run;
   std::optional<double> rate;            // Hz; absent: by the manner

@@ -79,7 +79,7 @@ void Server::accept_all() {
       if (connections_ == kMostConnections) continue;  // closes it
       ++connections_;
     }
-    begin(std::move(socket));
+    manner_.serial ? serve(std::move(socket)) : begin(std::move(socket));
   }
 }
 

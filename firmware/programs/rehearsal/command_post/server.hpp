@@ -22,6 +22,7 @@ struct WireManner {
   std::chrono::seconds patience{60};  // with a connection that sends nothing
   std::size_t most_body = std::size_t{256} << 20;
   bool slash = false;                    // at the end of each path
+  bool serial = false;                   // serves one connection at a time
   std::shared_ptr<Link> link = nullptr;  // all connections share it; null: no limit
 };
 

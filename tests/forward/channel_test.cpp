@@ -23,8 +23,9 @@ class ChannelTest : public testing::Test {
   std::unique_ptr<Channel> asked(icd::Uri uri, const std::string& answer) {
     peer_.emplace([answer](uplink::Wire& wire) { wire.read_request(), wire.write(answer); });
     auto channel = std::make_unique<Channel>(
-        loop_, "mapping",
-        EndpointAccess{peer_->endpoint(), icd::BearerToken::parse("a-token"), std::chrono::seconds{20}});
+        loop_, servers_, "mapping",
+        EndpointAccess{peer_->endpoint(), icd::BearerToken::parse("a-token"), std::chrono::seconds{20}},
+        [] {});
     bool done = false;
     channel->send(uri, "", {}, [&done](const uplink::Outcome&) { done = true; });
     EXPECT_TRUE(loop::turn_until(loop_, [&] { return done; }));
@@ -32,6 +33,7 @@ class ChannelTest : public testing::Test {
   }
 
   loop::Loop loop_;
+  uplink::Servers servers_{loop_};
   std::optional<uplink::ListeningPeer> peer_;
 };
 
@@ -102,7 +104,7 @@ TEST_F(ChannelTest, ChangesEndpointAfterTheRequestInFlight) {
     wire.write(uplink::answer("429 TOO MANY REQUESTS", R"("slowly")"));
   });
   const auto token = icd::BearerToken::parse("a-token");
-  Channel channel(loop_, "mapping", {peer_->endpoint(), token, std::chrono::seconds{20}});
+  Channel channel(loop_, servers_, "mapping", {peer_->endpoint(), token, std::chrono::seconds{20}}, [] {});
   std::vector<int> answers;
   const auto ask = [&] {
     channel.send(icd::Uri::Status, "", {}, [&](const uplink::Outcome& outcome) {
@@ -127,7 +129,7 @@ TEST_F(ChannelTest, ChangesEndpointAfterTheRequestInFlight) {
 TEST_F(ChannelTest, GivesUpARequestOnlyForANewEndpoint) {
   peer_.emplace([](uplink::Wire& wire) { wire.read_request(), wire.read_request(); });  // does not answer
   const auto token = icd::BearerToken::parse("a-token"), another = icd::BearerToken::parse("another-token");
-  Channel channel(loop_, "mapping", {peer_->endpoint(), token, std::chrono::seconds{20}});
+  Channel channel(loop_, servers_, "mapping", {peer_->endpoint(), token, std::chrono::seconds{20}}, [] {});
   std::vector<uplink::Outcome> outcomes;
   channel.send(icd::Uri::Status, "", {},
                [&](const uplink::Outcome& outcome) { outcomes.push_back(outcome); });
@@ -149,7 +151,8 @@ TEST_F(ChannelTest, GivesUpARequestOnlyForANewEndpoint) {
 
 TEST_F(ChannelTest, NeedsAToken) {
   peer_.emplace([](uplink::Wire&) {});
-  Channel channel(loop_, "mapping", {peer_->endpoint(), std::nullopt, std::chrono::seconds{20}});
+  Channel channel(loop_, servers_, "mapping", {peer_->endpoint(), std::nullopt, std::chrono::seconds{20}},
+                  [] {});
   EXPECT_FALSE(channel.has_token());
   channel.lead_to({peer_->endpoint(), icd::BearerToken::parse("a-token"), std::chrono::seconds{20}});
   EXPECT_TRUE(channel.turns());
@@ -196,8 +199,11 @@ class TrailingSlash : public ChannelTest {
     }
   };
   uplink::ListeningPeer here_{script_}, there_{script_};
-  Channel channel_{
-      loop_, "mapping", {here_.endpoint(), icd::BearerToken::parse("a-token"), std::chrono::seconds{20}}};
+  Channel channel_{loop_,
+                   servers_,
+                   "mapping",
+                   {here_.endpoint(), icd::BearerToken::parse("a-token"), std::chrono::seconds{20}},
+                   [] {}};
 };
 
 TEST_F(TrailingSlash, IsLearntFromA301ToEachRequestExceptReports) {

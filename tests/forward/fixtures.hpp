@@ -20,6 +20,7 @@ namespace adit::forward {
 struct FlowParts {
   host::Folder folder_, journal_folder_;
   loop::Loop loop_;
+  uplink::Servers servers_{loop_};
   settings::Settings settings_;
   std::mt19937_64 random_{1};
   TrafficCounts counts_{[] {}};
@@ -35,17 +36,9 @@ struct MapsParts : FlowParts {
 
   /// Without a token, maps stay queued.
   Maps maps_with(std::optional<icd::BearerToken> token) {
-    return {loop_,
-            workers_,
-            writer_,
-            spool_,
-            settings_,
-            std::move(token),
-            counts_,
-            rejected_,
-            random_,
-            journal_,
-            [](const icd::MapUpdate&) {}};
+    return {loop_,     servers_,  workers_,         writer_,
+            spool_,    settings_, std::move(token), counts_,
+            rejected_, random_,   journal_,         [](const icd::MapUpdate&) {}};
   }
 };
 

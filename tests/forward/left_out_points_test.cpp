@@ -65,8 +65,8 @@ class LeftOutPoints : public testing::Test, protected MapsParts {
     settings_.command_post.rates.map_hz = 1000;
     settings_.command_post.mapping = post_.address();
     settings_.robots = {{.name = "r1", .alias = "", .voxel_metres = 0.5}};
-    maps_.emplace(loop_, workers_, writer_, spool_, settings_, token_, counts_, rejected_, random_, journal_,
-                  [this](const icd::MapUpdate& map) { taken_.push_back(xs_of(map.data)); });
+    maps_.emplace(loop_, servers_, workers_, writer_, spool_, settings_, token_, counts_, rejected_, random_,
+                  journal_, [this](const icd::MapUpdate& map) { taken_.push_back(xs_of(map.data)); });
   }
   void take(const Points& xs) {
     bool told = false;

@@ -76,8 +76,8 @@ class MapsToManualEndpoint : public testing::Test, protected MapsParts {
   MapsToManualEndpoint() {
     settings_.command_post.rates.map_hz = 1000;
     settings_.command_post.mapping = post_.address();
-    maps_.emplace(loop_, workers_, writer_, spool_, settings_, icd::BearerToken::parse("a-token"), counts_,
-                  rejected_, random_, journal_, [](const icd::MapUpdate&) {});
+    maps_.emplace(loop_, servers_, workers_, writer_, spool_, settings_, icd::BearerToken::parse("a-token"),
+                  counts_, rejected_, random_, journal_, [](const icd::MapUpdate&) {});
   }
   void take(icd::MapUpdate map) {
     bool taken = false;

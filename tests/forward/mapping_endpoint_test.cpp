@@ -58,7 +58,8 @@ TEST_F(MappingEndpoint, IsLeftAtOnceByAMap) {
 
 TEST_F(MappingEndpoint, IsLeftAtOnceByAState) {
   DeliveredScene delivered;
-  Telemetry news(loop_, workers_, settings_, token_, counts_, rejected_, random_, journal_, delivered);
+  Telemetry news(loop_, servers_, workers_, settings_, token_, counts_, rejected_, random_, journal_,
+                 delivered);
   ASSERT_TRUE(news.take({{.name = *icd::RobotName::parse("r1"), .pose = {}, .stamp = 1.0}}, 10));
   EXPECT_TRUE(is_left_at_once(news));
 }

@@ -45,8 +45,8 @@ class ScoringTest : public testing::Test, protected ScoringParts {
     settings_.command_post.rates.reports_hz = settings_.command_post.rates.status_hz = 1000;
     settings_.command_post.timeouts.scoring_answer = 10min;  // no timeout of Adit ends a wait
     journal_.begin({.boot = "b", .at = loop_.now(), .stamp = loop_.stamp_now()});
-    scoring_.emplace(loop_, ledger_, settings_, icd::BearerToken::parse("a-token"), counts_, random_,
-                     journal_, clocks_);
+    scoring_.emplace(loop_, servers_, ledger_, settings_, icd::BearerToken::parse("a-token"), counts_,
+                     random_, journal_, clocks_);
     scoring_->start();
   }
   bool eventually(const std::function<bool()>& done) {

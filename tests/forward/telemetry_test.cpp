@@ -46,11 +46,13 @@ const icd::Marker kWipe = marker("", "wipe", icd::MarkerAction::DeleteAll);
 struct Process {
   Process(loop::Loop& loop, const std::string& folder, const settings::Settings& settings,
           std::optional<icd::BearerToken> token)
-      : writer(loop),
+      : servers(loop),
+        writer(loop),
         workers(loop, 1),
         journal(loop, folder + "/journal"),
         rejected(loop, writer, folder + "/rejected"),
-        telemetry(loop, workers, settings, std::move(token), counts, rejected, random, journal, delivered) {
+        telemetry(loop, servers, workers, settings, std::move(token), counts, rejected, random, journal,
+                  delivered) {
     const journal::Carried carried = journal.read();
     journal.begin({.boot = "b", .at = loop.now(), .stamp = loop.stamp_now()});
     telemetry.carry_on(carried);
@@ -66,6 +68,7 @@ struct Process {
 
   std::mt19937_64 random{1};
   TrafficCounts counts{[] {}};
+  uplink::Servers servers;
   loop::Writer writer;
   loop::Workers workers;
   journal::Journal journal;

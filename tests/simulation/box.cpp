@@ -74,15 +74,19 @@ std::string robots(Random random) {
 }
 
 /// No client connects to the listening socket: the clients come in through the door (door.hpp).
-std::string first_settings(const std::string& queues, const std::string& robots,
-                           const std::string& interface) {
+/// `is_one_server`: both endpoints have one address and port.
+std::string first_settings(const std::string& queues, const std::string& robots, const std::string& interface,
+                           bool is_one_server) {
+  const std::string mapping =
+      std::to_string(is_one_server ? CommandPost::kScoring : CommandPost::kMapping) + R"(})";
+  const char* const host = is_one_server ? "200" : "201";
   return R"({"version": 1, "command_post": {"scoring": {"address": "10.100.1.200", "port": )" +
-         std::to_string(CommandPost::kScoring) + R"(}, "mapping": {"address": "10.100.1.201", "port": )" +
-         std::to_string(CommandPost::kMapping) + R"(}, "interface": ")" + Box::kInterface +
+         std::to_string(CommandPost::kScoring) + R"(}, "mapping": {"address": "10.100.1.)" + host +
+         R"(", "port": )" + mapping + R"(, "interface": ")" + Box::kInterface +
          R"("}, "courses": [{"name": "B", "scoring": {"address": "10.100.2.200", "port": )" +
-         std::to_string(CommandPost::kScoring) + R"(}, "mapping": {"address": "10.100.2.201", "port": )" +
-         std::to_string(CommandPost::kMapping) +
-         R"(}}], "team": {"listen": [{"address": "127.0.0.1", "port": 0}], "connections": 64, "connections_per_address": 8, "interface": ")" +
+         std::to_string(CommandPost::kScoring) + R"(}, "mapping": {"address": "10.100.2.)" + host +
+         R"(", "port": )" + mapping +
+         R"(}], "team": {"listen": [{"address": "127.0.0.1", "port": 0}], "connections": 64, "connections_per_address": 8, "interface": ")" +
          interface + R"("}, "queues": {)" + queues + "}" + robots + "}";
 }
 
@@ -134,8 +138,8 @@ Box::Box(World& world) : world_(world), random_(world.random("box")) {
   world.door().belongs_to(interface);
   const auto [queues, most_map_bytes] = simulation::queues(world.random("settings"));
   most_map_bytes_ = most_map_bytes;
-  write(folder_ / "settings.json",
-        first_settings(queues, simulation::robots(world.random("voxels")), interface));
+  write(folder_ / "settings.json", first_settings(queues, simulation::robots(world.random("voxels")),
+                                                  interface, world.random("one server").chance(0.3)));
   world_.disk().mount(folder_);
 }
 

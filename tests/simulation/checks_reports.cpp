@@ -132,7 +132,11 @@ class LooksLikeAnother {
 };
 
 void once(const Evidence& evidence, Broken& broken) {
-  std::map<std::pair<std::int64_t, std::string>, double> records;  // when each was recorded first
+  struct Record {
+    double left = 0, at = 0;
+  };
+  std::map<std::pair<std::int64_t, std::string>, Record> records;  // the first of each
+  std::map<std::uint64_t, double> left;                            // by request
   IntendedRuns meant;
   AnsweredRecords answers;
   RisesHeard rises;
@@ -142,23 +146,27 @@ void once(const Evidence& evidence, Broken& broken) {
     meant.add(event);
     another.add(event);
     if (is_grant(event)) granted = event.at;
+    if (is_report(event, Kind::Left)) left[event.request] = event.at;
     if (!is_report(event, Kind::Taken)) {
       answers.add(event);
       rises.add(event);
       continue;
     }
     const bool costs = !event.who.ends_with(kInAStop);
-    const auto [first, is_first] = records.try_emplace({event.serial, event.who}, event.at);
+    const Record record{.left = left[event.request], .at = event.at};
+    const auto [place, is_first] = records.try_emplace({event.serial, event.who}, record);
+    const Record& first = place->second;
     const bool again = !is_first;
     // A grant hides the record of a report in doubt, unless a status shows the grant. A course that was
     // switched away and back extends a doubt beyond a grant beside its first record.
     const bool is_hidden =
-        event.at - granted <= kLongestDoubt || std::abs(first->second - granted) <= kLongestDoubt;
-    const bool could_tell =
-        !is_hidden || answers.has({event.serial, event.who}) || rises.last() > first->second;
+        event.at - granted <= kLongestDoubt || std::abs(first.at - granted) <= kLongestDoubt;
+    const bool could_tell = !is_hidden || answers.has({event.serial, event.who}) || rises.last() > first.at;
     answers.add(event);
-    const bool is_deceived = another.last() > first->second;
-    if (costs && again && could_tell && !is_deceived && !meant.is_sent_across(event.serial)) {
+    const bool is_deceived = another.last() > first.at;
+    // A serial server reads a report long after Adit has given it up. The operator may send it before.
+    const bool is_late = meant.is_sent_within(event.serial, first.left, first.at);
+    if (costs && again && could_tell && !is_deceived && !is_late && !meant.is_sent_across(event.serial)) {
       broken.push_back(icd::sentence("Once: report ", event.serial, " was recorded again in ", event.who,
                                      " at ", event.at));
     }

@@ -33,22 +33,78 @@ bool is_mapping(const HttpMessage& request) {
 }  // namespace
 
 /// One connection. It answers its requests one after the other.
-class CommandPost::Conversation final : public Peer {
+class CommandPost::Conversation {
  public:
-  Conversation(CommandPost& post, Link& link) : post_(post), link_(link) {}
-  void received(std::string_view bytes, Instant left) override {
-    if (stream_.is_between()) began_ = left;
+  Conversation(CommandPost& post, Link& link) : post_(post), link_(link.shared_from_this()) {}
+  void read(std::string_view bytes, const WhenLeft& left) {
+    if (stream_.is_between()) began_ = left.first;
     stream_.feed(bytes);
-    while (const auto request = stream_.next()) post_.asked(*request, {.first = began_, .last = left}, link_);
-    if (stream_.head()) post_.may_answer_early(*stream_.head(), link_);
+    while (const auto request = stream_.next())
+      post_.asked(*request, {.first = began_, .last = left.last}, *link_);
+    if (stream_.head()) post_.may_answer_early(*stream_.head(), *link_);
+  }
+  /// Keeps the bytes in the kernel, which has acknowledged them.
+  void hold(std::string_view bytes, Instant left) {
+    if (unread_.empty()) unread_left_.first = left;
+    unread_left_.last = left;
+    unread_ += bytes;
+  }
+  void read_unread() {
+    if (!unread_.empty()) read(std::exchange(unread_, {}), unread_left_);
+  }
+  void end() { has_ended_ = true; }
+  bool has_ended() const { return has_ended_ || link_->has_vanished(); }
+
+ private:
+  CommandPost& post_;
+  const std::shared_ptr<Link> link_;
+  HttpStream stream_;
+  Instant began_{};  // time at which the first byte of the current request left
+  std::string unread_;
+  WhenLeft unread_left_{};
+  bool has_ended_ = false;
+};
+
+class CommandPost::Reader final : public Peer {
+ public:
+  Reader(CommandPost& post, Link& link) : conversation_(post, link) {}
+  void received(std::string_view bytes, Instant left) override {
+    conversation_.read(bytes, {.first = left, .last = left});
   }
   void ended() override {}
 
  private:
-  CommandPost& post_;
-  Link& link_;
-  HttpStream stream_;
-  Instant began_{};  // time at which the first byte of the current request left
+  Conversation conversation_;
+};
+
+/// A server reads the next connection when the one before has ended, as a single thread does. Bytes of a
+/// connection that has ended unread are read, too.
+class CommandPost::SerialReader final : public Peer {
+ public:
+  SerialReader(CommandPost& post, Link& link, Accepted& accepted)
+      : accepted_(accepted), conversation_(std::make_shared<Conversation>(post, link)) {
+    accepted_.push_back(conversation_);
+  }
+  void received(std::string_view bytes, Instant left) override {
+    conversation_->hold(bytes, left);
+    serve();
+  }
+  void ended() override {
+    conversation_->end();
+    serve();
+  }
+
+ private:
+  void serve() {
+    while (!accepted_.empty()) {
+      accepted_.front()->read_unread();
+      if (!accepted_.front()->has_ended()) return;
+      accepted_.pop_front();
+    }
+  }
+
+  Accepted& accepted_;
+  const std::shared_ptr<Conversation> conversation_;
 };
 
 CommandPost::CommandPost(World& world, const Faults& faults, double trouble_for, int place)
@@ -62,6 +118,7 @@ CommandPost::CommandPost(World& world, const Faults& faults, double trouble_for,
       answers_early_(early_.chance(0.125) ? early_.between(0.05, 0.3) : 0),
       repeats_(repeating_.chance(0.125) ? repeating_.between(0.1, 0.4) : 0),
       has_one_limit_(world.random(numbered("one limit", place)).chance(0.125)),
+      is_serial_(world.random(numbered("serial", place)).chance(0.2)),
       scoreboard_(world, faults_, random_, place),
       counting_(world.random("counting")) {
   Random slash = world.random(numbered("slash", place));
@@ -163,9 +220,10 @@ std::optional<int> CommandPost::connecting(const uplink::Endpoint&) {
   return is_on(Fault::Refused) || is_on(Fault::Outage) ? ECONNREFUSED : 0;
 }
 
-std::unique_ptr<Peer> CommandPost::connected(const uplink::Endpoint&, Link& link) {
+std::unique_ptr<Peer> CommandPost::connected(const uplink::Endpoint& endpoint, Link& link) {
   links_.push_back(link.weak_from_this());
-  return std::make_unique<Conversation>(*this, link);
+  if (!is_serial_) return std::make_unique<Reader>(*this, link);
+  return std::make_unique<SerialReader>(*this, link, accepted_[{endpoint.address, endpoint.port}]);
 }
 
 /// Ignores requests on a connection that Adit has closed.

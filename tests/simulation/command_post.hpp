@@ -1,10 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "simulation/counting.hpp"
@@ -39,6 +42,9 @@ class CommandPost final : public Host {
 
  private:
   class Conversation;
+  class Reader;
+  class SerialReader;
+  using Accepted = std::deque<std::shared_ptr<Conversation>>;
   void asked(const HttpMessage& request, const WhenLeft& left, Link& link);
   bool redirects(const HttpMessage& request, Link& link);
   bool refuses(const HttpMessage& request, const WhenLeft& left, Link& link);
@@ -72,6 +78,9 @@ class CommandPost final : public Host {
   double repeats_;                      // probability per report
   const bool has_one_limit_;            // one rate limit over reports and statuses
   std::optional<loop::Instant> asked_;  // when the last accepted report or status left
+  const bool is_serial_;                // each server reads one connection at a time
+  /// The connections of each serial server, the one that is read first.
+  std::map<std::pair<std::string, std::uint16_t>, Accepted> accepted_;
   Scoreboard scoreboard_;
   std::uint64_t connection_ = 0;  // of the last request
   Counting counting_;

@@ -105,4 +105,11 @@ bool IntendedRuns::is_sent_across(std::int64_t serial) const {
          });
 }
 
+bool IntendedRuns::is_sent_within(std::int64_t serial, double from, double until) const {
+  const auto found = postings_.find(serial);
+  return found != postings_.end() && std::ranges::any_of(found->second, [&](const Posting& posting) {
+           return posting.is_word && posting.at > from && posting.at < until;
+         });
+}
+
 }  // namespace adit::simulation

@@ -22,6 +22,8 @@ class IntendedRuns {
   /// Whether the operator's *send* was in flight while the course was switched. His decision was then about
   /// the course before.
   bool is_sent_across(std::int64_t serial) const;
+  /// Whether the operator's *send* was requested in that time.
+  bool is_sent_within(std::int64_t serial, double from, double until) const;
 
  private:
   struct Posting {

@@ -115,7 +115,7 @@ void Link::close() {
 }
 
 void Link::vanish() {
-  closed_ = true;
+  closed_ = vanished_ = true;
   lost_ = world_.now() < held_until_;
 }
 

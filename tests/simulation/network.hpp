@@ -64,6 +64,7 @@ class Link : public std::enable_shared_from_this<Link> {
   void close();
   /// The power of Adit's machine is cut: sent bytes arrive, and the other end sees no close.
   void vanish();
+  bool has_vanished() const { return vanished_; }
   void connect(Host& host);
 
   // The Command Post's end.
@@ -97,7 +98,7 @@ class Link : public std::enable_shared_from_this<Link> {
   const bool acknowledges_late_;  // acknowledges the last bytes late
   std::uint64_t delivered_ = 0;
   loop::Duration round_trip_{}, least_round_trip_{};
-  bool closed_ = false, lost_ = false, deaf_ = false;
+  bool closed_ = false, lost_ = false, deaf_ = false, vanished_ = false;
   loop::Instant last_there_{}, last_here_{}, last_left_{}, held_until_{}, answers_until_{};
   std::unique_ptr<Peer> peer_;
 };

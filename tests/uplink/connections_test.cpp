@@ -46,7 +46,7 @@ class TwoRequests : protected StandingTime, public Asking {
   std::atomic<int> came_ = 0;
   std::vector<std::optional<Outcome>> outcomes_;
   ListeningPeer peer_{[this](Wire& wire) { serve(wire); }};
-  Connections connections_{loop_, peer_.endpoint(), token()};
+  Connections connections_{loop_, peer_.endpoint(), token(), std::make_shared<Server>(loop_), [] {}};
 };
 
 TEST_F(TwoRequests, SecondIsServedOnceTheFirstIsAnswered) {
@@ -111,7 +111,7 @@ TEST_F(TwoRequests, TimeoutOfTheSecondStartsAfterTheFirst) {
 
 TEST_F(TwoRequests, RefusedSecondConnectionLeavesOneRequest) {
   Peer closed({[this](Wire& wire) { serve(wire); }});
-  Connections connections(loop_, closed.endpoint(), token());
+  Connections connections(loop_, closed.endpoint(), token(), std::make_shared<Server>(loop_), [] {});
   bool told = false;
   connections.send(post("first"), [&](const Outcome&) { told = true; });
   connections.get_ready();
@@ -123,7 +123,7 @@ TEST_F(TwoRequests, RefusedSecondConnectionLeavesOneRequest) {
 /// Otherwise each check would close and reopen a kept connection.
 TEST_F(TwoRequests, SecondConnectionIsTriedOncePerRequest) {
   const ListeningPeer hangs_up({[this](Wire& wire) { serve(wire); }, [](Wire&) {}});
-  Connections connections(loop_, hangs_up.endpoint(), token());
+  Connections connections(loop_, hangs_up.endpoint(), token(), std::make_shared<Server>(loop_), [] {});
   bool told = false;
   connections.send(post("first"), [&](const Outcome&) { told = true; });
   connections.get_ready();

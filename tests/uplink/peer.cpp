@@ -112,11 +112,19 @@ void Peer::serve() {
     const int fd = ::accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC);
     if (fd < 0) return;
     Wire wire{loop::FileDescriptor(fd)};
-    const auto script = std::min(static_cast<std::size_t>(begun_++), scripts_.size() - 1);
-    scripts_[script](wire);
-    wire.close();
-    ++ended_;
+    if (all_at_once_) {
+      threads_.emplace_back([this, wire = std::move(wire)]() mutable { serve(std::move(wire)); });
+    } else {
+      serve(std::move(wire));
+    }
   }
+}
+
+void Peer::serve(Wire wire) {
+  const auto script = std::min(static_cast<std::size_t>(begun_++), scripts_.size() - 1);
+  scripts_[script](wire);
+  wire.close();
+  ++ended_;
 }
 
 Endpoint Peer::endpoint() const {

@@ -53,6 +53,8 @@ class Peer {
 
   /// Of each connection from now on: bytes that nobody has read.
   void hold(int bytes);
+  /// Serves all connections at the same time. Call before listen().
+  void serve_all_at_once() { all_at_once_ = true; }
   /// Refuses connections until now.
   void listen();
 
@@ -63,11 +65,14 @@ class Peer {
 
  private:
   void serve();
+  void serve(Wire wire);
 
   std::vector<Script> scripts_;
   std::string address_;
   loop::FileDescriptor listener_;
   std::atomic<int> begun_ = 0, ended_ = 0;
+  bool all_at_once_ = false;
+  std::vector<std::jthread> threads_;
   std::thread thread_;
 };
 

@@ -95,7 +95,10 @@ void EndpointTest::send(std::function<void(uplink::Outcome)> done) {
                      .content_type = scoring ? "" : std::string(codec::kJson),
                      .body = scoring ? icd::ChunkedBytes() : empty_object(),
                      .answer_within = kAnswerWithin},
-                    std::move(done));
+                    [this, done = std::move(done)](uplink::Outcome outcome) {
+                      connection_->close();  // the server may serve one connection at a time
+                      done(std::move(outcome));
+                    });
 }
 
 void EndpointTest::check_token() {

@@ -10,13 +10,13 @@ namespace adit::uplink {
 
 void Connection::Impl::keep_warm() {
   warm_ = true;
-  if (!socket_) connect_in_time();
+  return_warm();
 }
 
 void Connection::Impl::hurry() {
   const auto alive = shared_from_this();
   attempts_.hurry();
-  if (connected() || (!socket_ && !warm_)) return;
+  if (connected() || (!socket_ && !stays_warm())) return;
   close();
   connect();
 }
@@ -39,8 +39,9 @@ void Connection::Impl::connect() {
   socket_->source = loop_.watch(socket_->fd.get(), EPOLLOUT, [this](std::uint32_t) { call(&Impl::ready); });
 }
 
-/// Connects now, or when the pause since the last attempt is over.
-void Connection::Impl::connect_in_time() {
+/// Connects an idle connection now, or when the pause since the last attempt is over.
+void Connection::Impl::return_warm() {
+  if (!stays_warm() || socket_ || exchange_) return;
   if (attempts_.next() <= loop_.now()) return connect();
   timer_.call_at(attempts_.next());
 }
@@ -60,7 +61,7 @@ void Connection::Impl::connecting_failed(const std::string& why) {
       attempts_.failed("connecting to " + authority_of(endpoint_) +
                        (endpoint_.interface.empty() ? "" : " by " + endpoint_.interface) + ": " + why);
   close();
-  if (warm_) timer_.call_at(next);
+  if (stays_warm()) timer_.call_at(next);
   if (exchange_) deliver(NeverSent{trouble()});
 }
 
@@ -74,17 +75,18 @@ void Connection::Impl::rest() {
 /// before it connects again, because some servers serve one connection at a time.
 void Connection::Impl::idle_ended() {
   close();
-  if (warm_) connect_in_time();
+  return_warm();
 }
 
 void Connection::Impl::drop() {
   close();
-  if (warm_) timer_.call_at(std::max(loop_.now(), attempts_.next()));
+  if (stays_warm()) timer_.call_at(std::max(loop_.now(), attempts_.next()));
 }
 
 void Connection::Impl::close() {
   socket_.reset();
   if (timer_) timer_.cancel();
+  server_->on_close();
 }
 
 }  // namespace adit::uplink

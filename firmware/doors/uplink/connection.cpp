@@ -1,5 +1,6 @@
 #include "uplink/connection.hpp"
 
+#include <algorithm>
 #include <cstring>
 #include <utility>
 
@@ -10,15 +11,21 @@
 namespace adit::uplink {
 
 Connection::Impl::Impl(loop::Loop& loop, Endpoint endpoint, icd::BearerToken token,
-                       std::shared_ptr<LinkPace> pace)
-    : loop_(loop), endpoint_(std::move(endpoint)), token_(std::move(token)), pace_(std::move(pace)) {
+                       std::shared_ptr<Server> server, std::shared_ptr<LinkPace> pace)
+    : loop_(loop),
+      endpoint_(std::move(endpoint)),
+      token_(std::move(token)),
+      server_(std::move(server)),
+      pace_(std::move(pace)) {
+  server_->add(*this);
+  silence_ = loop_.timer([this] { call(&Impl::check_silence); });
   timer_ = loop_.timer([this] { call(&Impl::time_came); });
   tell_ = loop_.timer([this] { call(&Impl::tell); });
   look_ = loop_.timer([this] { call(&Impl::look); });
 }
 
 std::shared_ptr<Connection::Impl> Connection::Impl::another() const {
-  return std::make_shared<Impl>(loop_, endpoint_, token_, pace_);
+  return std::make_shared<Impl>(loop_, endpoint_, token_, server_, pace_);
 }
 
 /// Calls a member function and keeps this object alive until it returns.
@@ -32,6 +39,7 @@ void Connection::Impl::send(Request request, std::function<void(Outcome)> done) 
   exchange_ = std::make_unique<Exchange>(endpoint_, token_, std::move(request));
   done_ = std::move(done);
   sent_ = 0;
+  wait_ = {.since = loop_.now()};
   within_send_ = true;
   call(&Impl::begin_sending);
   within_send_ = false;
@@ -43,6 +51,8 @@ void Connection::Impl::abandon() {
   timer_ = {};
   tell_ = {};
   look_ = {};
+  silence_ = {};
+  server_->remove(*this);
 }
 
 void Connection::Impl::give_up() {
@@ -54,6 +64,7 @@ void Connection::Impl::give_up() {
 }
 
 void Connection::Impl::begin_sending() {
+  silence_.call_at(loop_.now() + kLookForSilence);
   open();
   if (connected() && exchange_) begin();
 }
@@ -66,7 +77,7 @@ void Connection::Impl::ready() {
 }
 
 void Connection::Impl::time_came() {
-  if (!socket_) return connect();
+  if (!socket_) return return_warm();
   if (!connected()) return connecting_failed("no answer in time");
   if (!exchange_) return idle_ended();
   if (answer_came()) return;
@@ -76,6 +87,20 @@ void Connection::Impl::time_came() {
   const bool has_more = exchange_->release(loop_.now());
   listen_again();
   if (has_more) write();
+}
+
+/// An idle connection cannot block one that the server has answered before.
+void Connection::Impl::check_silence() {
+  if (!exchange_ || wait_.is_silent || (connected() && socket_->served_at)) return;
+  loop::Instant silent_at = wait_.since + Server::kSilence;
+  if (connected()) {
+    exchange_->listen(socket_->fd.get(), loop_.now());
+    silent_at = exchange_->silence_start() + Server::kSilence;
+  }
+  if (silent_at > loop_.now())
+    return silence_.call_at(std::min<loop::Instant>(silent_at, loop_.now() + kLookForSilence));
+  wait_.is_silent = true;
+  server_->on_silence();
 }
 
 /// Updates the pace while the kernel's buffer is full.
@@ -160,7 +185,7 @@ void Connection::Impl::answered() {
   answer.sent = exchange_->left(seen, loop_.now());
   reset_on_close(socket_->fd.get(), exchange_->sent() < exchange_->total());
   // The measured mapping server promises keep-alive with a 4xx and still closes.
-  const bool keep = exchange_->may_keep_alive() && answer.status < 400;
+  const bool keep = server_->on_answer(*this, exchange_->may_keep_alive() && answer.status < 400);
   if (keep) {
     socket_->is_fresh = false;
     socket_->sent_twice = seen.sent_twice;
@@ -200,9 +225,12 @@ void Connection::Impl::call_done(Outcome outcome) {
   if (const auto done = std::exchange(done_, nullptr)) done(std::move(outcome));
 }
 
-Connection::Connection(loop::Loop& loop, Endpoint endpoint, icd::BearerToken token) {
+Connection::Connection(loop::Loop& loop, Endpoint endpoint, icd::BearerToken token,
+                       std::shared_ptr<Server> server) {
+  if (!server) server = std::make_shared<Server>(loop);
   auto pace = std::make_shared<LinkPace>(endpoint.bytes_per_second);
-  impl_ = std::make_shared<Impl>(loop, std::move(endpoint), std::move(token), std::move(pace));
+  impl_ =
+      std::make_shared<Impl>(loop, std::move(endpoint), std::move(token), std::move(server), std::move(pace));
 }
 Connection::Connection(std::shared_ptr<Impl> impl) : impl_(std::move(impl)) {}
 std::unique_ptr<Connection> Connection::another() const {

@@ -77,17 +77,22 @@ struct InDoubt {
 };
 using Outcome = std::variant<Answered, NeverSent, InDoubt>;
 
+class Server;
+
 /// One HTTP/1.1 connection (RFC 9112) to the Command Post. It sends one request at a time and stays open
 /// between requests.
 ///
-/// It connects before a request needs it (keep_warm()), closes an idle connection before the Command Post
-/// does, and never sends `Expect`. It drops the connection after an answer of 400 or more, because the
-/// measured server promises keep-alive and closes; after an answer that says close; and after any fault.
+/// It connects before a request needs it (keep_warm(), not to a serial server), closes an idle connection
+/// before the Command Post does, and never sends `Expect`. It drops the connection after an answer of 400 or
+/// more, because the measured server promises keep-alive and closes; after an answer that says close; after
+/// any fault; and after each answer of a serial server.
 class Connection {
  public:
   static constexpr std::chrono::seconds kIdle{25};  // a server closes after 60
 
-  Connection(loop::Loop& loop, Endpoint endpoint, icd::BearerToken token);
+  /// `server`: at this endpoint; null: other connections to it are unknown.
+  Connection(loop::Loop& loop, Endpoint endpoint, icd::BearerToken token,
+             std::shared_ptr<Server> server = nullptr);
   /// A second connection to the same endpoint that shares the measurements of the link. Only one of them may
   /// have bytes to send at a time.
   std::unique_ptr<Connection> another() const;
@@ -126,6 +131,7 @@ class Connection {
   std::uint64_t delivers() const;
 
  private:
+  friend class Server;
   class Impl;
   explicit Connection(std::shared_ptr<Impl> impl);
   std::shared_ptr<Impl> impl_;

@@ -13,13 +13,15 @@
 #include "uplink/connection.hpp"
 #include "uplink/exchange.hpp"
 #include "uplink/link_pace.hpp"
+#include "uplink/server.hpp"
 
 namespace adit::uplink {
 
 /// The state of a Connection. A running callback keeps it alive, because `done` may destroy the Connection.
 class Connection::Impl : public std::enable_shared_from_this<Impl> {
  public:
-  Impl(loop::Loop& loop, Endpoint endpoint, icd::BearerToken token, std::shared_ptr<LinkPace> pace);
+  Impl(loop::Loop& loop, Endpoint endpoint, icd::BearerToken token, std::shared_ptr<Server> server,
+       std::shared_ptr<LinkPace> pace);
   std::shared_ptr<Impl> another() const;
 
   void keep_warm();
@@ -40,6 +42,9 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
   std::uint64_t delivers() const { return pace_->delivers(); }
 
  private:
+  friend class Server;
+
+  static constexpr std::chrono::milliseconds kLookForSilence{200};
   static constexpr std::uint32_t kComing = EPOLLIN | EPOLLRDHUP;
 
   /// A socket that is connecting or open.
@@ -47,8 +52,17 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
     loop::FileDescriptor fd;
     loop::Source source = {};  // of fd; destroyed before it
     bool is_open = false;
-    bool is_fresh = false;         // connected for the request in flight
-    std::uint64_t sent_twice = 0;  // Transmission::sent_twice while it is idle
+    bool is_fresh = false;                   // connected for the request in flight
+    std::uint64_t sent_twice = 0;            // Transmission::sent_twice while it is idle
+    std::optional<loop::Instant> served_at;  // the last answer after which it stayed open
+    bool is_passed = false;                  // the server has answered on another connection since
+  };
+
+  /// Of the request in flight.
+  struct Wait {
+    loop::Instant since{};
+    bool is_silent = false;                          // no answer for Server::kSilence on a new connection
+    std::optional<loop::Instant> unblocked_at = {};  // when idle connections were closed for it
   };
 
   void call(void (Impl::*part)());
@@ -57,16 +71,21 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
   void ready();
   void time_came();
   void look();
+  void check_silence();
 
   // Connecting and idling (connecting.cpp).
   void connect();
-  void connect_in_time();
   void connecting_ended(int error);
   void connecting_failed(const std::string& why);
   void rest();
   void idle_ended();
   void drop();
   void close();
+  bool stays_warm() const { return warm_ && server_->keeps_warm(); }
+
+  // For the server.
+  bool is_silent() const { return exchange_ && wait_.is_silent; }
+  void return_warm();
 
   // A request and its answer.
   void begin_sending();
@@ -98,6 +117,10 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
   std::optional<Outcome> outcome_;  // known within send(); delivered after it
   loop::Source tell_;
   std::size_t sent_ = 0;
+
+  const std::shared_ptr<Server> server_;
+  Wait wait_;
+  loop::Source silence_;  // while the request may become silent
 
   const std::shared_ptr<LinkPace> pace_;
   loop::Source look_;  // while bytes wait to be written

@@ -6,8 +6,13 @@
 
 namespace adit::uplink {
 
-Connections::Connections(loop::Loop& loop, Endpoint endpoint, icd::BearerToken token)
-    : first_(loop, std::move(endpoint), std::move(token)) {}
+Connections::Connections(loop::Loop& loop, Endpoint endpoint, icd::BearerToken token,
+                         std::shared_ptr<Server> server, std::function<void()> turn_came)
+    : server_(std::move(server)),
+      turn_{.came = std::move(turn_came)},
+      first_(loop, std::move(endpoint), std::move(token), server_) {
+  server_->add(turn_);
+}
 
 void Connections::hurry() {
   first_.hurry();

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "uplink/connection.hpp"
+#include "uplink/server.hpp"
 
 namespace adit::uplink {
 
@@ -18,7 +19,12 @@ namespace adit::uplink {
 /// silence counts only from then on (Request::goes_ahead).
 class Connections {
  public:
-  Connections(loop::Loop& loop, Endpoint endpoint, icd::BearerToken token);
+  /// `turn_came`: as Server::Turn::came.
+  Connections(loop::Loop& loop, Endpoint endpoint, icd::BearerToken token, std::shared_ptr<Server> server,
+              std::function<void()> turn_came);
+  ~Connections() { server_->remove(turn_); }
+  Connections(const Connections&) = delete;
+  Connections& operator=(const Connections&) = delete;
 
   void keep_warm() { first_.keep_warm(); }
   void hurry();
@@ -39,7 +45,16 @@ class Connections {
   /// When the only request in flight left; nullopt until all of it has arrived.
   std::optional<Sent> has_arrived() const;
 
-  bool connected() const { return first_.connected() || (second_ && second_->connected()); }
+  /// The server gets one connection at a time, and no request ahead.
+  bool is_serial() const { return server_->is_serial(); }
+  /// Server::is_free()
+  bool is_free() const { return server_->is_free(); }
+  /// Server::claim(). Call before each send().
+  bool claim_turn(bool goes_first) { return server_->claim(turn_, goes_first); }
+  /// True also between two requests to a serial server.
+  bool connected() const {
+    return first_.connected() || (second_ && second_->connected()) || (is_serial() && trouble().empty());
+  }
   /// As in Connection, for the connection of the last request.
   const std::string& trouble() const { return latest_->trouble(); }
   std::size_t sent_bytes() const { return latest_->sent_bytes(); }
@@ -51,6 +66,8 @@ class Connections {
   Connection& one_for_the_next();
   void ended(Connection& one);
 
+  const std::shared_ptr<Server> server_;
+  Server::Turn turn_;
   Connection first_;
   std::unique_ptr<Connection> second_;  // null until it is needed
   Connection* latest_ = &first_;        // the connection of the last request

@@ -61,6 +61,8 @@ class Exchange {
   /// count, because a peer that sends an endless answer slowly would hold the connection for ever. So the
   /// whole answer must arrive within answer_within of the last acknowledgement.
   void listen(int fd, loop::Instant now);
+  /// By listen().
+  loop::Instant silence_start() const { return heard_; }
   bool is_silent_at(loop::Instant now) const { return now >= silent_at(); }
   /// The earlier request has ended (Request::goes_ahead).
   void is_next(loop::Instant now) {

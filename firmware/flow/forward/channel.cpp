@@ -34,8 +34,9 @@ bool knows_path(const uplink::Outcome& outcome) {
 
 }  // namespace
 
-Channel::Channel(loop::Loop& loop, const char* name, EndpointAccess way)
-    : loop_(loop), name_(name), last_(loop) {
+Channel::Channel(loop::Loop& loop, uplink::Servers& servers, const char* name, EndpointAccess way,
+                 std::function<void()> turn_came)
+    : loop_(loop), servers_(servers), name_(name), turn_came_(std::move(turn_came)), last_(loop) {
   take(std::move(way));
 }
 
@@ -64,19 +65,20 @@ bool Channel::turns() {
   const bool is_elsewhere = leads_elsewhere(*next_);
   take(*std::exchange(next_, std::nullopt));
   if (!is_elsewhere) return false;
-  wants_slash_ = has_page_ = is_trial_due_ = false;
+  wants_slash_ = has_page_ = is_trial_due_ = was_serial_ = false;
   reports_want_slash_.reset();
   last_.forget();
   return true;
 }
 
 void Channel::take(EndpointAccess way) {
+  auto server = servers_.at(way.endpoint);  // first: another token does not change the server
   connection_.reset();
   address_ = address_text({way.endpoint.address, way.endpoint.port});
   token_ = way.token;
   answer_within_ = way.answer_within;
   if (!way.token) return;
-  connection_.emplace(loop_, std::move(way.endpoint), std::move(*way.token));
+  connection_.emplace(loop_, std::move(way.endpoint), std::move(*way.token), std::move(server), turn_came_);
   if (keeps_warm_) connection_->keep_warm();
 }
 
@@ -111,6 +113,10 @@ void Channel::ended(const std::shared_ptr<UnderWay>& request, uplink::Outcome ou
   const bool is_vain = request->is_trial && !knows_path(outcome);
   last_.note({.uri = request->uri, .sent_at = request->sent_at, .is_vain = is_vain}, outcome);
   learn_path(*request, outcome);
+  if (is_serial() && !std::exchange(was_serial_, true))
+    host::log(host::Level::Notice,
+              "the Command Post serves one connection at a time; requests to it go one after the other",
+              {{"endpoint", name_}, {"address", address_}});
   std::erase(under_way_, request);
   const auto done = std::move(request->done);
   done(std::move(outcome));

@@ -30,8 +30,9 @@ struct EndpointAccess {
 /// repeats no request.
 class Channel {
  public:
-  /// `name`: "scoring" or "mapping".
-  Channel(loop::Loop& loop, const char* name, EndpointAccess way);
+  /// `name`: "scoring" or "mapping". `turn_came`: call claim_turn() again.
+  Channel(loop::Loop& loop, uplink::Servers& servers, const char* name, EndpointAccess way,
+          std::function<void()> turn_came);
 
   /// Changes the way by a new connection, after the requests in flight.
   void lead_to(EndpointAccess way) { next_ = std::move(way); }
@@ -53,6 +54,12 @@ class Channel {
   void give_way();
   /// Prepares for a request ahead of the answer to the first.
   void get_ready();
+  /// uplink::Connections::is_serial()
+  bool is_serial() const { return connection_ && connection_->is_serial(); }
+  /// False: the Command Post serves one connection at a time, and serves one.
+  bool is_free() const { return !connection_ || connection_->is_free(); }
+  /// Requires has_token(). Call before each send(). False: `turn_came` will be called.
+  bool claim_turn(bool goes_first = false) { return connection_->claim_turn(goes_first); }
   /// True if a second request can go ahead. False before a change of the way.
   bool can_go_ahead() const { return !next_ && connection_ && connection_->is_ready(); }
   /// uplink::Connections::has_arrived()
@@ -95,12 +102,15 @@ class Channel {
   void learn_path(const UnderWay& request, const uplink::Outcome& outcome);
 
   loop::Loop& loop_;
+  uplink::Servers& servers_;
   const char* name_;
+  std::function<void()> turn_came_;
   std::string address_;
   std::optional<icd::BearerToken> token_;
   std::optional<uplink::Connections> connection_;
   std::chrono::milliseconds answer_within_{};
   bool keeps_warm_ = false;
+  bool was_serial_ = false;
   bool wants_slash_ = false;                  // at the end of each path
   std::optional<bool> reports_want_slash_{};  // nullopt: as wants_slash_
   bool has_page_ = false;

@@ -184,6 +184,7 @@ class Flow final : public intake::Desk, public api::Operator {
   std::map<std::string, journal::Heard> heard_before_;
   RejectedStore rejected_;
   TrafficCounts counts_;
+  uplink::Servers servers_;
   Scoring scoring_;
   RunNews run_news_;
   MapPicture picture_;

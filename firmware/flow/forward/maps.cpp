@@ -35,18 +35,19 @@ std::string whose(const icd::MapUpdate& map) {
 
 }  // namespace
 
-Maps::Maps(loop::Loop& loop, loop::Workers& workers, loop::Writer& writer, spool::Spool& spool,
-           const settings::Settings& settings, std::optional<icd::BearerToken> token, TrafficCounts& counts,
-           RejectedStore& rejected, std::mt19937_64& random, journal::Journal& journal,
+Maps::Maps(loop::Loop& loop, uplink::Servers& servers, loop::Workers& workers, loop::Writer& writer,
+           spool::Spool& spool, const settings::Settings& settings, std::optional<icd::BearerToken> token,
+           TrafficCounts& counts, RejectedStore& rejected, std::mt19937_64& random, journal::Journal& journal,
            std::function<void(icd::MapUpdate)> taken)
     : loop_(loop),
       settings_(settings),
       counts_(counts),
       rejected_(rejected),
       taken_(std::move(taken)),
-      channel_(loop, "mapping",
+      channel_(loop, servers, "mapping",
                access_to_mapping(settings.command_post, std::move(token),
-                                 pace::map_bytes_per_second(settings.command_post.budget_mbit))),
+                                 pace::map_bytes_per_second(settings.command_post.budget_mbit)),
+               [this] { pump(); }),
       pace_(icd::Uri::MapUpdate, settings.command_post.rates.map_hz, random, journal),
       wake_(loop.timer([this] { pump(); })),
       queue_(settings.queues.merge_bytes),
@@ -107,8 +108,8 @@ void Maps::go_on() {
   if (next && !prepared_.is_packed(*next)) return prepared_.pack(next);
   if (next && follows) return go_ahead(now);
   if (next) {
-    if (now >= starts()) return send(next);
-    wake_.call_at(starts());
+    if (now < starts()) return wake_.call_at(starts());
+    if (channel_.claim_turn()) send(next);
     return;
   }
   if (queue_.count() == 0) return;
@@ -123,10 +124,11 @@ void Maps::packed(bool is_done) {
   wake_.call_at(pace_.ready());
 }
 
-/// Of the next map, whose last byte is held back.
+/// Of the next map, whose last byte is held back, except to a serial server.
 loop::Instant Maps::starts() const {
   const pace::Span earliest = pace_.earliest();
-  return std::max(earliest.first, earliest.last - kLongestHeldBack);
+  return std::max(earliest.first,
+                  earliest.last - (channel_.is_serial() ? std::chrono::seconds{} : kLongestHeldBack));
 }
 
 /// Late, so that newer data replaces queued maps, but in time for its start or the end of the map in flight.

@@ -25,9 +25,9 @@ namespace adit::forward {
 class Maps {
  public:
   /// `taken` gets delivered maps. `spool` outlives the writer.
-  Maps(loop::Loop& loop, loop::Workers& workers, loop::Writer& writer, spool::Spool& spool,
-       const settings::Settings& settings, std::optional<icd::BearerToken> token, TrafficCounts& counts,
-       RejectedStore& rejected, std::mt19937_64& random, journal::Journal& journal,
+  Maps(loop::Loop& loop, uplink::Servers& servers, loop::Workers& workers, loop::Writer& writer,
+       spool::Spool& spool, const settings::Settings& settings, std::optional<icd::BearerToken> token,
+       TrafficCounts& counts, RejectedStore& rejected, std::mt19937_64& random, journal::Journal& journal,
        std::function<void(icd::MapUpdate)> taken);
 
   /// `ran_before`: this box may have sent maps before.

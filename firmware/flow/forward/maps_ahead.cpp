@@ -48,7 +48,7 @@ bool Maps::may_go_ahead(loop::Instant now) const {
   const PreparedMap& first = *prepared_.first();
   const queues::Pipelining::Before before{
       .map = first.waiting, .arrived = first.arrived.value_or(now), .went_ahead = first.went_ahead};
-  return first.is_under_way && pace_.may_go_ahead(now) &&
+  return first.is_under_way && !channel_.is_serial() && pace_.may_go_ahead(now) &&
          ahead_.may_go(prepared_.following()->waiting, before, now);
 }
 

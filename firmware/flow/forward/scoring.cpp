@@ -57,9 +57,9 @@ intake::Answer no_status_in(const uplink::Answered& answered) {
 
 }  // namespace
 
-Scoring::Scoring(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& settings,
-                 std::optional<icd::BearerToken> token, TrafficCounts& counts, std::mt19937_64& random,
-                 journal::Journal& journal, Clocks& clocks)
+Scoring::Scoring(loop::Loop& loop, uplink::Servers& servers, ledger::Ledger& ledger,
+                 const settings::Settings& settings, std::optional<icd::BearerToken> token,
+                 TrafficCounts& counts, std::mt19937_64& random, journal::Journal& journal, Clocks& clocks)
     : loop_(loop),
       ledger_(ledger),
       settings_(settings),
@@ -67,7 +67,8 @@ Scoring::Scoring(loop::Loop& loop, ledger::Ledger& ledger, const settings::Setti
       output_(loop, ledger),
       clocks_(clocks),
       reports_(std::make_unique<dispatch::Reports>(rules_of(settings.reports), output_)),
-      channel_(loop, "scoring", access_to_scoring(settings.command_post, std::move(token))),
+      channel_(loop, servers, "scoring", access_to_scoring(settings.command_post, std::move(token)),
+               [this] { pump(); }),
       pace_(settings.command_post.rates, random, journal),
       wake_(loop.timer([this] { pump(); })),
       deadline_(loop.timer([this] { deadline_came(); })) {}
@@ -123,7 +124,8 @@ void Scoring::take(const icd::ArtifactReport& report, const intake::Sender& send
 void Scoring::take(const dispatch::PostedReport& posted, dispatch::ClientId client) noexcept {
   const loop::Instant now = loop_.now();
   const bool may_send = !channel_.busy() && channel_.connected() &&
-                        std::max(pace_.report_ready(), reports_paused_until_) <= now && !is_status_first(now);
+                        std::max(pace_.report_ready(), reports_paused_until_) <= now &&
+                        !is_status_first(now) && channel_.claim_turn(/*goes_first=*/true);
   if (reports_->take(posted, client, may_send, time())) send(*reports_->sending());
   watch_deadlines();
   counts_.changed();
@@ -153,7 +155,7 @@ void Scoring::status(std::shared_ptr<intake::Responder> responder) {
 /// No report goes first, and the pace allows it in time.
 bool Scoring::may_ask_soon(loop::Instant now) const {
   const dispatch::NextRequests requests = reports_->next_requests(time());
-  return !channel_.busy() && (!requests.report || is_status_first(now)) &&
+  return !channel_.busy() && channel_.is_free() && (!requests.report || is_status_first(now)) &&
          status_ready(requests) <= now + StatusClients::kWait;
 }
 
@@ -177,6 +179,8 @@ void Scoring::ask_soon() {
 
 std::string Scoring::why_no_status() const {
   if (!channel_.trouble().empty()) return channel_.trouble();
+  if (!channel_.is_free())
+    return "the Command Post serves one connection at a time, and another message is in flight";
   return asked_status_ ? "the Command Post has not answered yet" : "reports go first";
 }
 
@@ -201,6 +205,7 @@ void Scoring::pump() noexcept {
   dispatch::Turn turn = dispatch::in_order(candidates, now);
   if (is_paused) turn.wake = std::min(turn.wake.value_or(reports_paused_until_), reports_paused_until_);
   if (turn.wake) wake_.call_at(*turn.wake);
+  if (!turn.candidate || !channel_.claim_turn(/*goes_first=*/turn.candidate == report)) return;
   if (turn.candidate == report) send_next();
   if (turn.candidate == status) ask_status(/*decides=*/requests.status.has_value());
 }

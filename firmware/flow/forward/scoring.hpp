@@ -39,9 +39,9 @@ class Scoring {
   static constexpr int kReportsInARow = 3;
 
   /// `clocks`: has the step of the stamp clock since the ledger was written. All outlive this.
-  Scoring(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& settings,
-          std::optional<icd::BearerToken> token, TrafficCounts& counts, std::mt19937_64& random,
-          journal::Journal& journal, Clocks& clocks);
+  Scoring(loop::Loop& loop, uplink::Servers& servers, ledger::Ledger& ledger,
+          const settings::Settings& settings, std::optional<icd::BearerToken> token, TrafficCounts& counts,
+          std::mt19937_64& random, journal::Journal& journal, Clocks& clocks);
 
   void carry_on(const journal::Carried& carried) { pace_.carry_on(carried, loop_.now()); }
   /// As if a request had just been sent.

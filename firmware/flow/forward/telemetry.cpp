@@ -20,14 +20,16 @@ DeliveryFailure why_not(MappingVerdict verdict) {
 
 }  // namespace
 
-Telemetry::Telemetry(loop::Loop& loop, loop::Workers& workers, const settings::Settings& settings,
-                     std::optional<icd::BearerToken> token, TrafficCounts& counts, RejectedStore& rejected,
-                     std::mt19937_64& random, journal::Journal& journal, DeliveredScene& delivered)
+Telemetry::Telemetry(loop::Loop& loop, uplink::Servers& servers, loop::Workers& workers,
+                     const settings::Settings& settings, std::optional<icd::BearerToken> token,
+                     TrafficCounts& counts, RejectedStore& rejected, std::mt19937_64& random,
+                     journal::Journal& journal, DeliveredScene& delivered)
     : loop_(loop),
       settings_(settings),
       counts_(counts),
       rejected_(rejected),
-      channel_(loop, "mapping", access_to_mapping(settings.command_post, std::move(token))),
+      channel_(loop, servers, "mapping", access_to_mapping(settings.command_post, std::move(token)),
+               [this] { pump(); }),
       wake_(loop.timer([this] { pump(); })),
       states_(loop, settings, counts, random, journal, delivered),
       markers_(loop, workers, settings, counts, random, journal, delivered, [this] { pump(); }) {}
@@ -67,11 +69,15 @@ void Telemetry::pump() noexcept {
 }
 
 void Telemetry::send_next() {
-  if (markers_.under_way()) return send(markers_, markers_.under_way());
+  if (markers_.under_way()) {
+    if (channel_.claim_turn()) send(markers_, markers_.under_way());
+    return;
+  }
   const std::array candidates = {dispatch::Candidate{states_.oldest(), states_.pace().ready()},
                                  dispatch::Candidate{markers_.oldest_to_send(), markers_.pace().ready()}};
   const dispatch::Turn turn = dispatch::oldest_first(candidates, loop_.now());
   if (turn.wake) wake_.call_at(*turn.wake);
+  if (!turn.candidate || !channel_.claim_turn()) return;
   if (turn.candidate == 0) send_state();
   if (turn.candidate == 1) send_markers();
 }

@@ -16,9 +16,10 @@ namespace adit::forward {
 class Telemetry {
  public:
   /// `delivered` gets delivered messages. Until then the journal has them.
-  Telemetry(loop::Loop& loop, loop::Workers& workers, const settings::Settings& settings,
-            std::optional<icd::BearerToken> token, TrafficCounts& counts, RejectedStore& rejected,
-            std::mt19937_64& random, journal::Journal& journal, DeliveredScene& delivered);
+  Telemetry(loop::Loop& loop, uplink::Servers& servers, loop::Workers& workers,
+            const settings::Settings& settings, std::optional<icd::BearerToken> token, TrafficCounts& counts,
+            RejectedStore& rejected, std::mt19937_64& random, journal::Journal& journal,
+            DeliveredScene& delivered);
 
   /// Restores the messages of earlier processes.
   void carry_on(const journal::Carried& carried);

@@ -113,6 +113,23 @@ void replay(Scene& scene, const Item& item) {
   }
 }
 
+/// Messages that a serial server read after Adit had been led to another course.
+class LateReads {
+ public:
+  void add(const Event& event) {
+    if (event.kind == Kind::Leaves) left_[event.request] = event.at;
+    if (event.kind == Kind::Saved && event.what == kCourse) switched_ = event.at;
+  }
+  bool is_late(const Event& taken) {
+    return left_[taken.request] < switched_ && taken.at > switched_ + kSwitching;
+  }
+
+ private:
+  static constexpr double kSwitching = 0.1;  // seconds; an answer may come until then
+  std::map<std::uint64_t, double> left_;     // by connection
+  double switched_ = -1;
+};
+
 /// The posting of an added marker with a lifetime, in seconds.
 struct Fading {
   double began = 0, ended = 0, lifetime = 0;
@@ -221,10 +238,13 @@ void pose_arrived(const Evidence& evidence, Broken& broken) {
   std::map<std::string, std::int64_t> taken;
   // Another process or another course knows no accepted poses.
   std::vector<double> forgets;
+  LateReads reads;
   for (const Event& event : evidence.events) {
+    reads.add(event);
     const bool begins = event.kind == Kind::Begins || event.kind == Kind::Serves || event.what == kCourse;
     if (begins) forgets.push_back(event.at);
-    if (event.kind == Kind::Taken && event.what == kState) taken[event.who] = event.serial;
+    if (event.kind == Kind::Taken && event.what == kState && !reads.is_late(event))
+      taken[event.who] = event.serial;
   }
   for (const auto& [who, of_it] : changes) {
     const auto last = last_of(of_it, forgets);
@@ -251,8 +271,10 @@ void markers_arrived(const Evidence& evidence, Broken& broken) {
     }
   }
   Scene taken;
+  LateReads reads;
   for (const Event& event : evidence.events) {
-    if (event.kind == Kind::Taken && event.what == kMarkers)
+    reads.add(event);
+    if (event.kind == Kind::Taken && event.what == kMarkers && !reads.is_late(event))
       replay(taken, {.who = event.who, .serial = event.serial, .says = event.says});
   }
   for (const Key& key : keys) {

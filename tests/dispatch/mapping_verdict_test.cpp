@@ -50,6 +50,8 @@ const MappingCase kMappingCases[] = {
     {500, kPage, Verdict::Suspect, true},
     {500, "", Verdict::Suspect, true},
     {500, kSentence, Verdict::Suspect, true},
+    {409, kSentence, Verdict::Suspect, true},
+    {415, "", Verdict::Suspect, true},
     {401, kSentence, Verdict::Failing, true},
     {401, kPage, Verdict::Failing, false},
     {404, kPage, Verdict::Failing, true},

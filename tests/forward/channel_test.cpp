@@ -20,14 +20,14 @@ constexpr const char* kRun =
 class ChannelTest : public testing::Test {
  protected:
   /// A channel after one request with this answer.
-  std::unique_ptr<Channel> asked(icd::Uri uri, const std::string& answer) {
+  std::unique_ptr<Channel> asked(icd::Uri uri, const std::string& answer, bool is_on_trial = false) {
     peer_.emplace([answer](uplink::Wire& wire) { wire.read_request(), wire.write(answer); });
     auto channel = std::make_unique<Channel>(
         loop_, servers_, "mapping",
         EndpointAccess{peer_->endpoint(), icd::BearerToken::parse("a-token"), std::chrono::seconds{20}},
         [] {});
     bool done = false;
-    channel->send(uri, "", {}, [&done](const uplink::Outcome&) { done = true; });
+    channel->send(uri, "", {}, [&done](const uplink::Outcome&) { done = true; }, {}, is_on_trial);
     EXPECT_TRUE(loop::turn_until(loop_, [&] { return done; }));
     return channel;
   }
@@ -61,6 +61,16 @@ TEST_F(ChannelTest, TakesAServerWithoutARunStatusForForeign) {
     EXPECT_FALSE(asked(icd::Uri::MapUpdate, uplink::answer("200 OK", body))->last().is_foreign()) << body;
   }
   EXPECT_FALSE(asked(icd::Uri::Status, uplink::answer("200 OK", kRun))->last().is_foreign());
+}
+
+TEST_F(ChannelTest, IsNoWorseForARejectedMessageOnTrial) {
+  const std::string rejection = uplink::answer("403 Forbidden", "\"unknown robot\"");
+  EXPECT_EQ(asked(icd::Uri::StateUpdate, rejection)->last().status(), 403);
+  const auto channel = asked(icd::Uri::StateUpdate, rejection, true);
+  EXPECT_EQ(channel->last().status(), 0);
+  EXPECT_EQ(channel->last().ended(), 0u);
+  EXPECT_EQ(channel->last().trouble(), "");
+  EXPECT_EQ(asked(icd::Uri::StateUpdate, uplink::answer("200 OK", "null"), true)->last().status(), 200);
 }
 
 TEST_F(ChannelTest, AcceptsErrorPagesOfTheCommandPost) {

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <atomic>
 #include <future>
 #include <memory>
@@ -269,6 +270,75 @@ TEST_F(TelemetryTest, IsBehindUntilItIsDelivered) {
     return !process->telemetry.waits_since(robot) && !process->telemetry.waits_since(markers);
   }));
   EXPECT_EQ(process->counts.rows().at(robot).forwarded, 1u);
+}
+
+/// Rejects each state with one of these robots.
+struct RejectingStub {
+  RejectingStub(std::string with, std::vector<std::string> names)
+      : status(std::move(with)), robots(std::move(names)), peer([this](uplink::Wire& wire) {
+          for (auto request = wire.read_request(); !request.empty(); request = wire.read_request()) {
+            const bool accepts = std::ranges::none_of(
+                robots, [&](const std::string& robot) { return rejects && request.contains(robot); });
+            ++(accepts ? accepted : rejected);
+            if (!wire.write(uplink::answer(accepts ? "200 OK" : status, "null"))) return;
+          }
+        }) {}
+  const std::string status;
+  const std::vector<std::string> robots;
+  std::atomic<bool> rejects = true;
+  std::atomic<int> accepted = 0, rejected = 0;
+  uplink::ListeningPeer peer;
+};
+
+class OneRejectedRobot : public TelemetryTest, public testing::WithParamInterface<const char*> {};
+
+TEST_P(OneRejectedRobot, FailsAlone) {
+  RejectingStub post(GetParam(), {"r5"});
+  const auto process = process_with(post.peer);
+  const auto row = [&](const char* robot) { return process->counts.rows().at({Kind::State, robot}); };
+  double stamp = 1;
+  ASSERT_TRUE(process->telemetry.take(pose("r5", stamp), 10));
+  ASSERT_TRUE(eventually(*process, [&] {
+    EXPECT_TRUE(process->telemetry.take(pose("r1", ++stamp), 10));
+    return row("r5").last_sentence.contains("Adit tries this one again within 60 s");
+  }));
+  EXPECT_THAT(row("r5").last_sentence, testing::StartsWith("the Command Post answered"));
+  EXPECT_GE(row("r1").forwarded, 1u);
+  EXPECT_THAT(process->rejected.rows(), IsEmpty());
+  EXPECT_TRUE(process->telemetry.waits_since({Kind::State, "r5"}));
+
+  post.rejects = false;
+  process->telemetry.endpoint_changed(icd::BearerToken::parse("another-token"));
+  EXPECT_TRUE(eventually(*process, [&] { return row("r5").forwarded == 1; })) << "it rests no longer";
+}
+INSTANTIATE_TEST_SUITE_P(, OneRejectedRobot,
+                         testing::Values("401 Unauthorized", "403 Forbidden", "404 Not Found", "409 Conflict",
+                                         "415 Unsupported Media Type", "500 Oops", "501 Not Implemented",
+                                         "503 Service Unavailable"),
+                         [](const auto& test) { return std::string(test.param).substr(0, 3); });
+
+TEST_F(TelemetryTest, DeliversMarkersBesideARejectedOne) {
+  RejectingStub post("403 Forbidden", {"bad"});
+  const auto process = process_with(post.peer);
+  ASSERT_TRUE(process->take(icd::MarkersUpdate{{marker("a", "1"), marker("b", "bad"), marker("c", "2")}}));
+  const auto shown = [&] { return process->delivered.markers().changes(0).markers.size(); };
+  ASSERT_TRUE(
+      eventually(*process, [&] { return shown() == 2 && process->telemetry.waiting(Kind::Markers) == 1; }));
+  EXPECT_THAT(process->rejected.rows(), IsEmpty());
+  post.rejects = false;
+  EXPECT_TRUE(eventually(*process, [&] { return shown() == 3; }));
+}
+
+/// A wrong token, or a server that is down.
+TEST_F(TelemetryTest, SendsAllRobotsTogetherAfterAllWereRejected) {
+  RejectingStub post("401 Unauthorized", {"r1", "r2", "r3"});
+  const auto process = process_with(post.peer);
+  for (const char* robot : {"r1", "r2", "r3"}) ASSERT_TRUE(process->telemetry.take(pose(robot, 1), 10));
+  ASSERT_TRUE(eventually(*process, [&] { return post.rejected >= 12; }));
+  EXPECT_NE(process->telemetry.channel().trouble(), "");
+  post.rejects = false;
+  ASSERT_TRUE(eventually(*process, [&] { return process->delivered.robots().size() == 3; }));
+  EXPECT_EQ(post.accepted, 2) << "one robot, then all others";
 }
 
 /// Counts, age and track follow the robot's own posts.

@@ -104,6 +104,23 @@ TEST(Blame, SpacesTheTries) {
   EXPECT_EQ(rests, (std::vector<double>{0, 2, 4}));
 }
 
+/// Such as 403: the sender, the token or the server may be the reason.
+TEST(Blame, RestsUpToAMinuteIfTheAnswerMayNotReject) {
+  Blame blame;
+  Trial trial;
+  std::vector<double> rests;
+  double now = 0;
+  for (int i = 0; i < 9; ++i) {
+    ASSERT_EQ(blame.failed("ugv1", trial, at(now), false), Blame::Next::Again) << i;
+    blame.passed("ugv2", at(now + 0.5));
+    rests.push_back(std::chrono::duration<double>(trial.rests_until - at(now)).count());
+    now += std::max(rests.back(), 1.0);
+  }
+  EXPECT_EQ(rests, (std::vector<double>{0, 2, 4, 8, 16, 32, 60, 60, 60}));
+  EXPECT_EQ(blame.failed("ugv1", trial, at(now)), Blame::Next::Again)
+      << "its first answer that may reject it";
+}
+
 TEST(Blame, CountsNoStrikeBeforeAnotherMapPassed) {
   Blame blame;
   Trial trial;

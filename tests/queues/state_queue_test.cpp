@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <random>
 #include <string>
@@ -129,7 +130,7 @@ TEST(StateQueue, FailedPosesAreNewsAndReplaceNoNewerOnes) {
   const auto failed = *queue.take();
   post(queue, state(11, {pose("R1", 2)}), at(2));
   queue.put_back(failed);
-  EXPECT_EQ(queue.oldest(), at(1));
+  EXPECT_EQ(queue.next(at(2))->accepted, at(1));
   const auto taken = queue.take();
   EXPECT_THAT(taken->update.poses, ElementsAre(pose("R1", 2), pose("R2", 1)));
   EXPECT_EQ(taken->accepted, at(1));
@@ -182,6 +183,90 @@ TEST(StateQueue, SendsTheNewestPosesUntilDelivered) {
     if (pick(3) == 0) add();
     is_taken ? queue.passed(*taken) : queue.put_back(*taken);
   }
+}
+
+/// Plays a Command Post that answers one state each second, while all robots post each second. Each robot
+/// goes apart as in forward::States.
+class OneRejectedRobot : public testing::Test {
+ protected:
+  void play(double until, const std::function<bool(const std::string&)>& rejects) {
+    for (; now_ < until; now_ += 1) {
+      for (const char* name : {"R1", "R2", "R3"}) post(queue_, state(now_, {pose(name, now_)}), at(now_));
+      const auto sent = queue_.take(at(now_));
+      if (!sent) continue;
+      const auto& poses = sent->update.poses;
+      if (std::ranges::none_of(poses, [&](const auto& each) { return rejects(each.name.text()); })) {
+        queue_.passed(*sent);
+        for (const auto& each : poses) {
+          blame_.passed(each.name.text(), at(now_));
+          arrived_[each.name.text()] = each.pose.position.x;
+        }
+      } else if (Trial* const trial = queue_.trial_of(*sent)) {
+        tries_.push_back(now_);
+        blame_.failed(poses.front().name.text(), *trial, at(now_), false);
+        queue_.put_back(*sent);
+      } else {
+        queue_.put_back_apart(*sent);
+      }
+      for (const auto& [name, x] : arrived_) {
+        if (!rejects(name)) oldest_ = std::max(oldest_, now_ - x);
+      }
+    }
+  }
+
+  StateQueue queue_;
+  Blame blame_;
+  double now_ = 0;
+  std::map<std::string, double> arrived_;
+  std::vector<double> tries_;  // of a robot alone that failed
+  double oldest_ = 0;          // age of a pose of the others
+};
+
+TEST_F(OneRejectedRobot, RestsAndDelaysNoOther) {
+  play(300, [](const std::string& name) { return name == "R2"; });
+  EXPECT_LE(oldest_, 4);
+  EXPECT_LE(tries_.size(), 12u) << "it rests up to a minute";
+  oldest_ = 0;
+  play(420, [](const std::string&) { return false; });
+  EXPECT_EQ(arrived_["R2"], 419) << "it goes with the others after a pass";
+}
+
+TEST_F(OneRejectedRobot, GoesAtOnceToAnotherEndpoint) {
+  play(300, [](const std::string& name) { return name == "R2"; });
+  queue_.join_all();
+  play(301, [](const std::string&) { return false; });
+  EXPECT_EQ(arrived_["R2"], 300);
+}
+
+/// A wrong token, or a server that is down.
+TEST_F(OneRejectedRobot, NoneRestsAfterAllWereRejected) {
+  play(10, [](const std::string&) { return false; });
+  play(200, [](const std::string&) { return true; });
+  play(202, [](const std::string&) { return false; });
+  for (const auto& [name, x] : arrived_) EXPECT_GE(x, 200) << name;
+}
+
+TEST_F(OneRejectedRobot, IsLateAlone) {
+  play(300, [](const std::string& name) { return name == "R2"; });
+  EXPECT_LE(*queue_.accepted_at(*robot("R2")), at(10));
+  post(queue_, state(300, {pose("R1", 300)}), at(300));
+  EXPECT_GE(*queue_.accepted_at(*robot("R1")), at(298));
+}
+
+/// The robot with the unregistered name may be silent, and the others may be.
+TEST(StateQueue, TriesSilentRobotsAlone) {
+  StateQueue queue;
+  post(queue, state(1, {pose("R1", 1), pose("R2", 1)}), at(1));
+  queue.passed(*queue.take(at(1)));
+  post(queue, state(2, {pose("R2", 2)}), at(2));
+  queue.put_back_apart(*queue.take(at(2)));
+  const auto first = *queue.take(at(3));
+  EXPECT_THAT(first.update.poses, ElementsAre(pose("R2", 2)));
+  Blame().failed("R2", *queue.trial_of(first), at(3), false);
+  queue.put_back(first);
+  const auto second = *queue.take(at(4));
+  EXPECT_THAT(second.update.poses, ElementsAre(pose("R1", 1)));
+  EXPECT_THAT(second.news, IsEmpty());
 }
 
 TEST(StateQueue, ForgetsDeliveredRobots) {

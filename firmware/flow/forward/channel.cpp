@@ -26,6 +26,11 @@ bool is_success_page(const uplink::Outcome& outcome) {
          dispatch::body_of(answered->body) == dispatch::Body::Other;
 }
 
+bool may_concern_the_message(const uplink::Outcome& outcome) {
+  const auto* answered = std::get_if<uplink::Answered>(&outcome);
+  return answered != nullptr && dispatch::may_concern_a_part(answered->status);
+}
+
 /// The server has a status at this path, or rejects the token there.
 bool knows_path(const uplink::Outcome& outcome) {
   const auto* answered = std::get_if<uplink::Answered>(&outcome);
@@ -83,13 +88,15 @@ void Channel::take(EndpointAccess way) {
 }
 
 void Channel::send(icd::Uri uri, std::string_view content_type, icd::ChunkedBytes body,
-                   std::function<void(uplink::Outcome)> done, loop::Instant last_byte_not_before) {
+                   std::function<void(uplink::Outcome)> done, loop::Instant last_byte_not_before,
+                   bool is_on_trial) {
   icd::require(has_token() && (!busy() || can_go_ahead()));
   finished_bytes_ += connection_->sent_bytes();
   const bool is_trial = uri == icd::Uri::Status && is_trial_due_;
   const bool is_report = uri == icd::Uri::ArtifactReports;
   const bool has_slash = is_report ? reports_want_slash_.value_or(wants_slash_) : wants_slash_ != is_trial;
-  const auto under_way = std::make_shared<UnderWay>(loop_.now(), uri, has_slash, is_trial, std::move(done));
+  const auto under_way =
+      std::make_shared<UnderWay>(loop_.now(), uri, has_slash, is_trial, is_on_trial, std::move(done));
   connection_->send({.method = std::string(icd::method_of(uri)),
                      .target = std::string(icd::path_of(uri)) + (has_slash ? "/" : ""),
                      .content_type = std::string(content_type),
@@ -110,7 +117,8 @@ std::optional<uplink::Sent> Channel::has_arrived() const {
 }
 
 void Channel::ended(const std::shared_ptr<UnderWay>& request, uplink::Outcome outcome) {
-  const bool is_vain = request->is_trial && !knows_path(outcome);
+  const bool is_vain = (request->is_trial && !knows_path(outcome)) ||
+                       (request->is_on_trial && may_concern_the_message(outcome));
   last_.note({.uri = request->uri, .sent_at = request->sent_at, .is_vain = is_vain}, outcome);
   learn_path(*request, outcome);
   if (is_serial() && !std::exchange(was_serial_, true))

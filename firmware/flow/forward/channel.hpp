@@ -47,8 +47,11 @@ class Channel {
   /// "10.100.1.200:8000"
   const std::string& address() const { return address_; }
   /// Requires has_token(), and !busy() or can_go_ahead(). `content_type` is empty without a body.
+  /// `is_on_trial`: this message failed alone before, so an answer that rejects it says nothing about the
+  /// endpoint.
   void send(icd::Uri uri, std::string_view content_type, icd::ChunkedBytes body,
-            std::function<void(uplink::Outcome)> done, loop::Instant last_byte_not_before = {});
+            std::function<void(uplink::Outcome)> done, loop::Instant last_byte_not_before = {},
+            bool is_on_trial = false);
   bool busy() const { return !under_way_.empty(); }
   /// Resets the only request in flight. Its `done` is not called.
   void give_way();
@@ -94,6 +97,7 @@ class Channel {
     icd::Uri uri;
     bool has_slash;
     bool is_trial;  // of the other form of the path
+    bool is_on_trial;
     std::function<void(uplink::Outcome)> done;
   };
   void take(EndpointAccess way);

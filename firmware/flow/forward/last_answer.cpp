@@ -37,7 +37,6 @@ bool comes_from_another(const uplink::Outcome& outcome, dispatch::Body body) {
 
 void LastAnswer::note(const Request& request, const uplink::Outcome& outcome) {
   heard_ = loop_.now();
-  ++ended_;
   const dispatch::Body body = body_of(outcome);
   const bool no_status = lacks_status(request.uri, outcome);
   const bool is_foreign = no_status || comes_from_another(outcome, body);
@@ -45,6 +44,7 @@ void LastAnswer::note(const Request& request, const uplink::Outcome& outcome) {
   const auto* answered = std::get_if<uplink::Answered>(&outcome);
   if (answered != nullptr && answered->status == 429) ++throttled_;
   if (request.is_vain) return;
+  ++ended_;
   is_foreign_ = is_foreign;
   status_ = 0;
   if (answered != nullptr) {

@@ -16,7 +16,8 @@ class LastAnswer {
   struct Request {
     icd::Uri uri;
     loop::Instant sent_at;
-    bool is_vain = false;  // a trial of another path that failed: only counted
+    /// Only counted: a trial of another path, or of a message that failed alone before, has failed again.
+    bool is_vain = false;
   };
 
   explicit LastAnswer(loop::Loop& loop) : loop_(loop) {}
@@ -34,7 +35,7 @@ class LastAnswer {
   /// True if it came from another machine than a Command Post. foreign() counts such answers.
   bool is_foreign() const { return is_foreign_; }
   std::uint64_t foreign() const { return foreign_; }
-  std::uint64_t ended() const { return ended_; }          // requests
+  std::uint64_t ended() const { return ended_; }          // requests, without vain ones
   std::uint64_t throttled() const { return throttled_; }  // answers 429
   loop::Instant heard() const { return heard_; }
   /// The Command Post's time of day now, in seconds since 1970, by the last Date that is certainly its own.

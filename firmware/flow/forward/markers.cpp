@@ -94,6 +94,7 @@ icd::ChunkedBytes Markers::body_of(const queues::QueuedMarkers& markers) {
 }
 
 void Markers::passed(const queues::QueuedMarkers& markers) {
+  failed_ = 0;
   blame_.passed("", loop_.now());
   if (markers.is_ahead) return;
   queue_.passed();
@@ -122,17 +123,26 @@ void Markers::put_back(const queues::QueuedMarkers& markers) {
   queue_.put_back(markers);
 }
 
-bool Markers::is_to_blame(const queues::QueuedMarkers& markers) {
+bool Markers::is_on_trial(const queues::QueuedMarkers& markers) const {
+  if (markers.update.markers.size() != 1) return false;
+  const icd::Marker& marker = markers.update.markers.front();
+  const auto trial = trials_.find({marker.ns, marker.id});
+  return trial != trials_.end() && trial->second.strikes > 0;
+}
+
+bool Markers::is_to_blame(const queues::QueuedMarkers& markers, bool may_reject) {
   if (markers.is_ahead) return false;
   if (markers.update.markers.size() != 1) {
-    const bool narrow = failed_ >= States::kTriesTogether;
+    // A marker that failed alone is still queued: it is at fault again.
+    const bool narrow = ++failed_ >= States::kTriesTogether || !trials_.empty();
+    if (narrow) pace_.forget_failures();
     if (!narrow) put_back(markers);
     return narrow;
   }
   const icd::Marker& marker = markers.update.markers.front();
   if (trials_.size() >= kMostTrials) trials_.clear();
-  const bool to_blame =
-      blame_.failed("", trials_[{marker.ns, marker.id}], loop_.now()) == queues::Blame::Next::Reject;
+  const bool to_blame = blame_.failed("", trials_[{marker.ns, marker.id}], loop_.now(), may_reject) ==
+                        queues::Blame::Next::Reject;
   if (!to_blame) {
     journal_.markers_answered(false);
     queue_.put_behind(markers);

@@ -21,6 +21,7 @@ class Markers {
   /// A message in flight, which is not copied.
   using Sent = std::shared_ptr<const queues::QueuedMarkers>;
   static constexpr icd::Uri kUri = icd::Uri::MarkersUpdate;
+  static constexpr const char* kMessages = "markers";
   static constexpr std::size_t kAtOnce = 500;  // markers to write or to show in one turn
 
   /// `came` is called after each arrival. All outlive this.
@@ -50,7 +51,6 @@ class Markers {
   static std::vector<Traffic> traffic_of(const queues::QueuedMarkers&) { return {{Kind::Markers, ""}}; }
 
   void answered() { under_way_.reset(); }
-  void count_failure(bool is_suspect) { failed_ = is_suspect ? failed_ + 1 : 0; }
   void passed(const queues::QueuedMarkers& markers);
   /// The markers are shown by show_some(), some in each turn.
   void show(const Sent& markers);
@@ -62,7 +62,8 @@ class Markers {
     if (!markers.is_ahead) journal_.markers_answered(is_done);
   }
   void put_back(const queues::QueuedMarkers& markers);
-  bool is_to_blame(const queues::QueuedMarkers& markers);
+  bool is_on_trial(const queues::QueuedMarkers& markers) const;
+  bool is_to_blame(const queues::QueuedMarkers& markers, bool may_reject);
   /// True: the marker is to be rejected. False: several are queued again, fewer to a message.
   bool give_up(const queues::QueuedMarkers& markers);
 
@@ -79,7 +80,7 @@ class Markers {
   std::size_t shown_ = 0;  // of to_show_
   queues::Blame blame_;
   std::map<std::pair<std::string, std::int32_t>, queues::Trial> trials_;  // by ns and id
-  int failed_ = 0;                                                        // successive handler failures
+  int failed_ = 0;                                                        // as States
 };
 
 }  // namespace adit::forward

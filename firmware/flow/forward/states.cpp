@@ -28,6 +28,7 @@ void States::carry_on(const journal::Carried& carried) {
 void States::endpoint_turned() {
   pace_.link_is_back();
   queue_.forget_what_was_taken();
+  queue_.join_all();
   failed_ = 0;
   blame_ = {};
 }
@@ -55,9 +56,9 @@ bool States::send_again(const icd::StateUpdate& state) {
   return journal_.accepted(queue_.unsent()).has_value();
 }
 
-bool States::wait_for(const std::string& robot) const {
+std::optional<loop::Instant> States::accepted_at(const std::string& robot) const {
   const auto name = icd::RobotName::parse(robot);
-  return name && queue_.waits(*name);
+  return name ? queue_.accepted_at(*name) : std::nullopt;
 }
 
 States::Sent States::take() {
@@ -81,11 +82,8 @@ std::vector<Traffic> States::traffic_of(const queues::QueuedState& state) {
   return all;
 }
 
-void States::count_failure(bool is_suspect) {
-  failed_ = is_suspect ? failed_ + 1 : 0;
-}
-
 void States::passed(const queues::QueuedState& state) {
+  failed_ = 0;
   queue_.passed(state);
   for (const icd::NamedPose& pose : state.update.poses) blame_.passed(pose.name.text(), loop_.now());
 }
@@ -99,24 +97,31 @@ void States::put_back(const queues::QueuedState& state) {
   queue_.put_back(state);
 }
 
-bool States::is_to_blame(const queues::QueuedState& state) {
-  bool to_blame = failed_ >= kTriesTogether;
-  if (state.update.poses.size() == 1) {
-    const icd::RobotName& name = state.update.poses.front().name;
-    to_blame = blame_.failed(name.text(), queue_.trial_of(name), loop_.now()) == queues::Blame::Next::Reject;
+bool States::is_on_trial(const queues::QueuedState& state) {
+  const queues::Trial* const trial = queue_.trial_of(state);
+  return trial != nullptr && trial->strikes > 0;
+}
+
+bool States::is_to_blame(const queues::QueuedState& state, bool may_reject) {
+  bool to_blame = false;
+  if (state.update.poses.size() > 1) {
+    to_blame = ++failed_ >= kTriesTogether;
+    if (to_blame) pace_.forget_failures();
+  } else if (queues::Trial* const trial = queue_.trial_of(state)) {
+    to_blame = blame_.failed(state.update.poses.front().name.text(), *trial, loop_.now(), may_reject) ==
+               queues::Blame::Next::Reject;
   }
   if (!to_blame) put_back(state);
   return to_blame;
 }
 
 bool States::give_up(const queues::QueuedState& state) {
-  if (state.update.poses.size() > 1) {
-    finish(state, false);
-    queue_.put_back_apart(state);
-    return false;
-  }
-  for (const icd::NamedPose& pose : state.update.poses) queue_.give_up(pose.name, loop_.now());
-  return true;
+  const bool are_several = state.update.poses.size() > 1;
+  if (!are_several) queue_.give_up(state.update.poses.front().name, loop_.now());
+  if (!are_several && !state.news.empty()) return true;
+  finish(state, false);
+  if (are_several) queue_.put_back_apart(state);
+  return false;
 }
 
 }  // namespace adit::forward

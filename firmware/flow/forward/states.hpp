@@ -21,7 +21,8 @@ class States {
   /// A message in flight, which is not copied.
   using Sent = std::shared_ptr<const queues::QueuedState>;
   static constexpr icd::Uri kUri = icd::Uri::StateUpdate;
-  /// Joint failures before the search for the one at fault, also among markers.
+  static constexpr const char* kMessages = "robots' states";
+  /// Joint failures before each robot's state is sent alone, or fewer markers in a message.
   static constexpr int kTriesTogether = 3;
 
   /// `delivered` gets delivered states. Until then the journal has them. All outlive this.
@@ -39,26 +40,29 @@ class States {
 
   UriPace& pace() { return pace_; }
   bool empty() const { return queue_.empty(); }
-  std::optional<loop::Instant> oldest() const { return queue_.oldest(); }
-  /// True if the robot has queued news.
-  bool wait_for(const std::string& robot) const;
+  /// StateQueue::next()
+  std::optional<queues::StateQueue::Next> next() const { return queue_.next(loop_.now()); }
+  /// When the robot's pose was accepted that is queued or in flight.
+  std::optional<loop::Instant> accepted_at(const std::string& robot) const;
   /// The next message, stamped and journaled as sent. Null: none.
   Sent take();
   static icd::ChunkedBytes body_of(const queues::QueuedState& state);
   /// Robots with news. Repeated poses do not count.
   static std::vector<Traffic> traffic_of(const queues::QueuedState& state);
 
-  /// Counts an answer. `is_suspect`: the handler failed.
-  void count_failure(bool is_suspect);
   void passed(const queues::QueuedState& state);
   /// Passes an accepted message to delivered.
   void show(const Sent& state);
   /// Journals the answer. `is_done`: the message is not sent again.
   void finish(const queues::QueuedState&, bool is_done) { journal_.state_answered(is_done); }
   void put_back(const queues::QueuedState& state);
-  /// True: the message is at fault. False: it is queued again.
-  bool is_to_blame(const queues::QueuedState& state);
-  /// True: the message is to be rejected. False: several poses are queued again, each alone.
+  /// Whether a state of this robot failed alone before while others passed.
+  bool is_on_trial(const queues::QueuedState& state);
+  /// After an answer that may concern a part of the message. True: the message is at fault. False: it is
+  /// queued again. `may_reject`: as Blame::failed().
+  bool is_to_blame(const queues::QueuedState& state, bool may_reject);
+  /// True: the message is to be rejected. False: several poses are queued again, each alone, or the pose was
+  /// delivered before.
   bool give_up(const queues::QueuedState& state);
 
  private:
@@ -69,7 +73,7 @@ class States {
   UriPace pace_;
   queues::StateQueue queue_;
   queues::Blame blame_;
-  int failed_ = 0;  // successive handler failures
+  int failed_ = 0;  // answers that may concern a part of a message, since a message passed
 };
 
 }  // namespace adit::forward

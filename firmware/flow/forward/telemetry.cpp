@@ -6,6 +6,7 @@
 #include "codec/write.hpp"
 #include "dispatch/mapping_verdict.hpp"
 #include "dispatch/turn.hpp"
+#include "icd/sentence.hpp"
 
 namespace adit::forward {
 namespace {
@@ -73,8 +74,11 @@ void Telemetry::send_next() {
     if (channel_.claim_turn()) send(markers_, markers_.under_way());
     return;
   }
-  const std::array candidates = {dispatch::Candidate{states_.oldest(), states_.pace().ready()},
-                                 dispatch::Candidate{markers_.oldest_to_send(), markers_.pace().ready()}};
+  const auto state = states_.next();
+  const std::array candidates = {
+      state ? dispatch::Candidate{state->accepted, std::max(state->ready, states_.pace().ready())}
+            : dispatch::Candidate{},
+      dispatch::Candidate{markers_.oldest_to_send(), markers_.pace().ready()}};
   const dispatch::Turn turn = dispatch::oldest_first(candidates, loop_.now());
   if (turn.wake) wake_.call_at(*turn.wake);
   if (!turn.candidate || !channel_.claim_turn()) return;
@@ -85,7 +89,6 @@ void Telemetry::send_next() {
 void Telemetry::send_state() {
   const States::Sent next = states_.take();
   if (!next) return;
-  under_way_ = {Kind::State, next->accepted};
   send(states_, next);
 }
 
@@ -93,7 +96,6 @@ void Telemetry::send_state() {
 void Telemetry::send_markers() {
   const Markers::Sent next = markers_.take();
   if (!next) return;
-  under_way_ = {Kind::Markers, next->accepted};
   if (next->update.markers.size() > Markers::kAtOnce) return wake_.call_at(loop_.now());
   send(markers_, next);
 }
@@ -102,17 +104,18 @@ template <class Of>
 void Telemetry::send(Of& of, const typename Of::Sent& sent) {
   const icd::ChunkedBytes body = Of::body_of(*sent);
   of.pace().sent(loop_.now());
-  channel_.send(Of::kUri, codec::kCbor, body,
-                [this, &of, sent, bytes = body.size()](const uplink::Outcome& outcome) {
-                  answered(of, sent, bytes, outcome);
-                });
+  channel_.send(
+      Of::kUri, codec::kCbor, body,
+      [this, &of, sent, bytes = body.size()](const uplink::Outcome& outcome) {
+        answered(of, sent, bytes, outcome);
+      },
+      {}, of.is_on_trial(*sent));
 }
 
 template <class Of>
 void Telemetry::answered(Of& of, const typename Of::Sent& sent, std::size_t bytes,
                          const uplink::Outcome& outcome) {
   markers_.answered();
-  under_way_.reset();
   classify(of, sent, bytes, outcome);
   pump();
 }
@@ -125,7 +128,12 @@ void Telemetry::classify(Of& of, const typename Of::Sent& sent, std::size_t byte
   const int status = answer != nullptr ? answer->status : 0;
   const auto verdict = answer != nullptr ? dispatch::mapping_verdict(status, dispatch::body_of(answer->body))
                                          : MappingVerdict::Failing;
-  const std::string sentence = verdict == MappingVerdict::Taken ? "" : sentence_of(outcome);
+  const bool concerns_a_part = dispatch::may_concern_a_part(status) && verdict != MappingVerdict::Refused;
+  const bool is_to_blame = concerns_a_part && of.is_to_blame(*sent, verdict == MappingVerdict::Suspect);
+  std::string sentence = verdict == MappingVerdict::Taken ? "" : sentence_of(outcome);
+  if (concerns_a_part && !is_to_blame && of.is_on_trial(*sent))
+    sentence += icd::sentence("; other ", Of::kMessages, " are accepted; Adit tries this one again within ",
+                              queues::Blame::kLongestRest.count(), " s");
   for (const Traffic& traffic : Of::traffic_of(*sent)) {
     if (verdict == MappingVerdict::Taken) {
       counts_.forwarded(traffic, 1, bytes, status, loop_.wall_now());
@@ -133,7 +141,6 @@ void Telemetry::classify(Of& of, const typename Of::Sent& sent, std::size_t byte
       counts_.not_taken(traffic, why_not(verdict), status, sentence);
     }
   }
-  of.count_failure(verdict == MappingVerdict::Suspect);
   switch (verdict) {
     case MappingVerdict::Taken:
       of.pace().taken(answer->sent, now);
@@ -145,17 +152,15 @@ void Telemetry::classify(Of& of, const typename Of::Sent& sent, std::size_t byte
       of.pace().taken(answer->sent, now);
       give_up(of, sent, status, sentence, bytes);
       break;
-    case MappingVerdict::Suspect:
-      of.pace().lost(now);
-      if (of.is_to_blame(*sent)) give_up(of, sent, status, sentence, bytes);
-      break;
     case MappingVerdict::Throttled:
       of.pace().throttled(now, answer->retry_after);
       of.put_back(*sent);
       break;
+    case MappingVerdict::Suspect:
     case MappingVerdict::Failing:
       of.pace().failed(outcome, now);
-      of.put_back(*sent);
+      if (is_to_blame) give_up(of, sent, status, sentence, bytes);
+      if (!concerns_a_part) of.put_back(*sent);
       break;
   }
 }
@@ -210,12 +215,10 @@ std::size_t Telemetry::waiting(Kind kind) const {
 }
 
 std::optional<loop::Instant> Telemetry::waits_since(const Traffic& traffic) const {
-  const bool state = traffic.kind == Kind::State;
-  if (state && !states_.wait_for(traffic.robot)) return std::nullopt;
-  auto oldest = state ? states_.oldest() : markers_.oldest();
-  if (under_way_ && under_way_->first == traffic.kind)
-    oldest = std::min(oldest.value_or(under_way_->second), under_way_->second);
-  return oldest;
+  if (traffic.kind == Kind::State) return states_.accepted_at(traffic.robot);
+  const auto oldest = markers_.oldest();
+  if (!markers_.under_way()) return oldest;
+  return std::min(oldest.value_or(markers_.under_way()->accepted), markers_.under_way()->accepted);
 }
 
 }  // namespace adit::forward

@@ -62,8 +62,7 @@ class Telemetry {
   void link_is_back();
   const Channel& channel() const { return channel_; }
   std::size_t waiting(Kind kind) const;
-  /// When the oldest news, queued or in flight, was accepted. Robots go together, so one robot's state may be
-  /// newer.
+  /// When the robot's pose, or the oldest change of a marker, was accepted that is queued or in flight.
   std::optional<loop::Instant> waits_since(const Traffic& traffic) const;
 
  private:
@@ -95,7 +94,6 @@ class Telemetry {
   loop::Source wake_;
   States states_;
   Markers markers_;
-  std::optional<std::pair<Kind, loop::Instant>> under_way_;  // and when its oldest news was accepted
   bool rejected_writes_ = false;  // do not send: the journal has one answer at a time
   bool stopping_ = false;
 };

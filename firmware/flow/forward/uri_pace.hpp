@@ -114,6 +114,9 @@ class UriPace {
     retry_at_ = now + backoff_.failed(std::uniform_real_distribution<double>(0, 1)(random_));
   }
 
+  /// The next failure counts as the first one, because its message differs from the failed ones.
+  void forget_failures() { backoff_.succeeded(); }
+
   /// The cable is in again: no wait.
   void link_is_back() {
     backoff_.succeeded();

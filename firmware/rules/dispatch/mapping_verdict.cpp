@@ -8,6 +8,7 @@
 namespace adit::dispatch {
 namespace {
 
+constexpr int kThrottled = 429;
 /// A handler of the Command Post failed at a message. Proxies send other 5xx.
 constexpr int kHandlerFailed = 500;
 
@@ -30,12 +31,16 @@ bool is_the_command_post(int status, Body body) {
 
 MappingVerdict mapping_verdict(int status, Body body) {
   if (icd::is_success(status)) return body == Body::Other ? MappingVerdict::Failing : MappingVerdict::Taken;
-  if (status == 429) return MappingVerdict::Throttled;
-  if (status == kHandlerFailed) return MappingVerdict::Suspect;
+  if (status == kThrottled) return MappingVerdict::Throttled;
+  if (status == 409 || status == 415 || status == kHandlerFailed) return MappingVerdict::Suspect;
   if (status == 400 || status == 413 || status == 422) {
     return body == Body::Other ? MappingVerdict::Suspect : MappingVerdict::Refused;
   }
   return MappingVerdict::Failing;
+}
+
+bool may_concern_a_part(int status) {
+  return status >= 300 && status != kThrottled;
 }
 
 }  // namespace adit::dispatch

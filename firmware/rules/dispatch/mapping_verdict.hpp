@@ -19,9 +19,11 @@ enum class MappingVerdict : std::uint8_t {
   Taken,      // 2xx with JSON or an empty body
   Throttled,  // 429: retry more slowly
   Refused,    // 400, 413, 422 with JSON or an empty body: do not retry
-  Suspect,    // 500, or 400, 413, 422 with a page: the message is at fault if others pass (queues::Blame)
+  Suspect,    // 409, 415, 500, or 400, 413, 422 with a page: at fault if others pass (queues::Blame)
   Failing,    // all others: retry
 };
 MappingVerdict mapping_verdict(int status, Body body);
+/// Whether only a part of the message may have failed, such as one robot's pose: any answer but 2xx and 429.
+bool may_concern_a_part(int status);
 
 }  // namespace adit::dispatch

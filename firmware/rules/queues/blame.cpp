@@ -14,7 +14,7 @@ void Blame::passed(const std::string& whose, Instant now) {
   last_passed_ = now;
 }
 
-Blame::Next Blame::failed(const std::string& whose, Trial& trial, Instant now) {
+Blame::Next Blame::failed(const std::string& whose, Trial& trial, Instant now, bool may_reject) {
   Sender& its = sender(whose);
   if (its.passes && trial.failures == 0) its.wavered = now;
   its.passes = false;
@@ -22,10 +22,13 @@ Blame::Next Blame::failed(const std::string& whose, Trial& trial, Instant now) {
                      !somebody_wavered(whose, *trial.failed);
   ++trial.failures;
   if (alone) ++trial.strikes;
+  if (alone && may_reject) ++trial.proofs;
   trial.failed = now;
   trial.steps_behind = true;
-  trial.rests_until = trial.strikes == 0 ? now : now + kFirstRest * (1 << std::min(trial.strikes - 1, 8));
-  return trial.strikes >= kMostStrikes ? Next::Reject : Next::Again;
+  trial.rests_until = trial.strikes == 0
+                          ? now
+                          : now + std::min(kFirstRest * (1 << std::min(trial.strikes - 1, 8)), kLongestRest);
+  return trial.proofs >= kMostStrikes ? Next::Reject : Next::Again;
 }
 
 bool Blame::somebody_wavered(const std::string& but, Instant since) const {

@@ -1,6 +1,7 @@
 #include "queues/state_queue.hpp"
 
 #include <algorithm>
+#include <tuple>
 #include <utility>
 
 namespace adit::queues {
@@ -30,12 +31,13 @@ void StateQueue::add(std::span<const PostedPose> news, Instant now) {
   if (news.empty()) return;
   if (robots_.size() + unknown_in(news) > kMostRobots) forget_what_was_taken();
   for (const PostedPose& newer : news) {
-    Held& held = robots_.try_emplace(newer.name, Held{newer}).first->second;
+    const auto [robot, is_new] = robots_.try_emplace(newer.name, Held{newer});
+    Held& held = robot->second;
     held.posted = newer;
+    if (is_new || !held.is_news) held.accepted = now;
     held.is_news = held.is_of_run = true;
     held.is_given_up = false;
   }
-  oldest_ = std::min(oldest_.value_or(now), now);
 }
 
 void StateQueue::forget_what_was_taken() {
@@ -51,41 +53,58 @@ void StateQueue::add_unless_known(const icd::StateUpdate& update, Instant now) {
     const auto [robot, is_new] = robots_.try_emplace(named.name, Held{{named.name, named.pose}});
     Held& held = robot->second;
     if (!is_new && !std::exchange(held.is_given_up, false)) continue;
+    if (is_new || !held.is_news) held.accepted = now;
     held.is_news = true;
     held.trial = {};
-    oldest_ = std::min(oldest_.value_or(now), now);
   }
 }
 
-/// The robot that goes apart, has news, and failed longest ago. Robots that do not rest come first.
+std::optional<StateQueue::Next> StateQueue::next(Instant now) const {
+  std::optional<Next> next;
+  const auto rank = [now](const Next& one) { return std::pair(std::max(one.ready, now), one.accepted); };
+  for (const auto& [name, held] : robots_) {
+    if (!held.is_news) continue;
+    const Next its{held.ready(), held.accepted};
+    if (!next || rank(its) < rank(*next)) next = its;
+  }
+  return next;
+}
+
+/// The robot that goes apart, does not rest, and failed longest ago. Robots with news come first, then robots
+/// that repeat their pose, and last the robot that failed just now.
 StateQueue::Robots::iterator StateQueue::next_apart(Instant now) {
   auto chosen = robots_.end();
   const auto rank = [&](const Held& held) {
-    return std::pair(held.trial.rests(now), held.trial.failed.value_or(Instant{}));
+    return std::tuple(held.trial.steps_behind, !held.is_news, held.trial.failed.value_or(Instant{}));
   };
   for (auto each = robots_.begin(); each != robots_.end(); ++each) {
-    if (!each->second.apart || !each->second.is_news) continue;
+    if (!each->second.apart || !each->second.goes() || each->second.ready() > now) continue;
     if (chosen == robots_.end() || rank(each->second) < rank(chosen->second)) chosen = each;
   }
   return chosen;
 }
 
 void StateQueue::include(QueuedState& taken, Robots::value_type& robot) {
-  const PostedPose& posted = robot.second.posted;
-  robot.second.is_under_way = std::exchange(robot.second.is_news, false);
+  Held& held = robot.second;
+  const PostedPose& posted = held.posted;
+  held.in_flight = held.is_news ? std::optional(held.accepted) : std::nullopt;
+  if (held.is_news) taken.news.push_back(posted.named());
+  held.is_news = false;
   taken.update.poses.push_back(posted.named());
-  if (robot.second.is_under_way) taken.news.push_back(posted.named());
   taken.update.header.stamp = std::max(taken.update.header.stamp, posted.stamp);
 }
 
 std::optional<QueuedState> StateQueue::take(Instant now) {
-  if (!oldest_) return {};
-  QueuedState taken{.update = {}, .news = {}, .accepted = *oldest_};
+  const auto first = next(now);
+  if (!first || first->ready > now) return {};
+  QueuedState taken{.update = {}, .news = {}, .accepted = first->accepted};
   const auto together = [](const auto& robot) { return !robot.second.apart; };
   const bool others_have_news = std::ranges::any_of(
       robots_, [&](const auto& robot) { return together(robot) && robot.second.is_news; });
+  const bool has_failed = std::ranges::any_of(
+      robots_, [&](const auto& robot) { return !together(robot) && robot.second.trial.steps_behind; });
   const auto apart = next_apart(now);
-  if (apart != robots_.end() && (!others_have_news || !apart->second.trial.rests(now))) {
+  if (apart != robots_.end() && !(has_failed && others_have_news)) {
     include(taken, *apart);
   } else {
     for (auto& robot : robots_) {
@@ -93,7 +112,6 @@ std::optional<QueuedState> StateQueue::take(Instant now) {
     }
   }
   for (auto& [name, held] : robots_) held.trial.steps_behind = false;
-  if (std::ranges::none_of(robots_, [](const auto& robot) { return robot.second.is_news; })) oldest_.reset();
   return taken;
 }
 
@@ -101,9 +119,10 @@ void StateQueue::put_back(const QueuedState& state) {
   // All poses that were news are still held.
   for (const icd::NamedPose& pose : state.update.poses) {
     const auto held = robots_.find(pose.name);
-    if (held != robots_.end() && std::exchange(held->second.is_under_way, false)) held->second.is_news = true;
+    if (held == robots_.end() || !held->second.in_flight) continue;
+    held->second.accepted = *std::exchange(held->second.in_flight, std::nullopt);
+    held->second.is_news = true;
   }
-  oldest_ = std::min(oldest_.value_or(state.accepted), state.accepted);
 }
 
 void StateQueue::put_back_apart(const QueuedState& state) {
@@ -114,20 +133,46 @@ void StateQueue::put_back_apart(const QueuedState& state) {
 }
 
 void StateQueue::passed(const QueuedState& state) {
+  bool was_outage = false;
   for (const icd::NamedPose& pose : state.update.poses) {
     const auto held = robots_.find(pose.name);
     if (held == robots_.end()) continue;
-    held->second.apart = held->second.is_given_up = held->second.is_under_way = false;
-    held->second.trial = {};
+    Held& its = held->second;
+    was_outage = was_outage || (its.trial.failures > 0 && its.trial.strikes == 0);
+    its.is_given_up = false;
+    its.in_flight.reset();
+    its.join();
+  }
+  if (!was_outage) return;
+  for (auto& [name, held] : robots_) {
+    if (held.trial.strikes == 0) held.join();
   }
 }
 
+void StateQueue::join_all() {
+  for (auto& [name, held] : robots_) held.join();
+}
+
 void StateQueue::give_up(const icd::RobotName& name, Instant now) {
-  Held& held = robots_.at(name);
+  const auto robot = robots_.find(name);
+  if (robot == robots_.end()) return;
+  Held& held = robot->second;
   held.apart = held.is_given_up = true;
-  held.is_under_way = false;
+  held.in_flight.reset();
   held.trial = {};
   held.trial.rests_until = now + kRest;
+}
+
+Trial* StateQueue::trial_of(const QueuedState& state) {
+  if (state.update.poses.size() != 1) return nullptr;
+  const auto robot = robots_.find(state.update.poses.front().name);
+  return robot == robots_.end() ? nullptr : &robot->second.trial;
+}
+
+std::optional<Instant> StateQueue::accepted_at(const icd::RobotName& name) const {
+  const auto robot = robots_.find(name);
+  if (robot == robots_.end() || !robot->second.waits()) return std::nullopt;
+  return robot->second.in_flight.value_or(robot->second.accepted);
 }
 
 std::vector<PostedPose> StateQueue::unsent() const {

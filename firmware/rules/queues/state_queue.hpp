@@ -16,14 +16,15 @@ namespace adit::queues {
 struct QueuedState {
   icd::StateUpdate update;           // each robot of the run, by name; header.stamp: the newest stamp
   std::vector<icd::NamedPose> news;  // the poses that were not sent before
-  Instant accepted;                  // when the oldest of `news` was accepted
+  Instant accepted;                  // when the oldest news was accepted
 };
 
 /// The robots' newest poses (ICD 6.5). Each robot may post alone. A sent state has the poses of all robots of
 /// the run, also of those without news.
 ///
 /// If the Command Post does not accept a state of several robots, each robot goes apart, in a message of its
-/// own, until its pose is accepted once. So only the robot at fault fails.
+/// own, until its pose is accepted once. So only the robot at fault fails. It rests between its tries
+/// (queues::Blame), and after each of them the others go first.
 class StateQueue {
  public:
   /// How long a robot rests after its own state was given up.
@@ -42,8 +43,15 @@ class StateQueue {
   /// that is queued, in flight or accepted is not changed.
   void add_unless_known(const icd::StateUpdate& update, Instant now);
 
+  /// News, and when they may go.
+  struct Next {
+    Instant ready{};   // of a robot that does not rest: long ago
+    Instant accepted;  // when the pose was accepted
+  };
+  /// Of the robot whose turn comes first: the oldest news, but robots that rest come last.
+  std::optional<Next> next(Instant now) const;
   /// The newest poses of all robots that go together, or of one robot that goes apart. Nothing if there is no
-  /// news. Without `now`, robots that rest are included.
+  /// news, or only of robots that rest. Without `now`, no robot rests.
   std::optional<QueuedState> take(Instant now = Instant::max());
   /// Drops robots without news, because another Command Post knows no robot. Call while no state is in
   /// flight.
@@ -55,33 +63,35 @@ class StateQueue {
   void put_back(const QueuedState& state);
   /// The same, and each of its robots goes apart from now on.
   void put_back_apart(const QueuedState& state);
-  /// The state was accepted: its robots go together again.
+  /// The state was accepted: its robots go together again. If a robot of it had failed alone, and all others
+  /// too, there was an outage, and all robots that are not at fault go together again.
   void passed(const QueuedState& state);
+  /// All robots go together, and none rests.
+  void join_all();
   /// Drops a robot's own state. Its next state rests for kRest.
   void give_up(const icd::RobotName& name, Instant now);
-  /// `name`: of a state that take() gave.
-  Trial& trial_of(const icd::RobotName& name) { return robots_.at(name).trial; }
+  /// Of a state of one robot that take() gave. Null: of several, or the robot was dropped to make room.
+  Trial* trial_of(const QueuedState& state);
 
   /// The newest pose of each robot that has news.
   std::vector<PostedPose> unsent() const;
 
-  /// Whether the robot's pose is queued or in flight.
-  bool waits(const icd::RobotName& name) const {
-    const auto robot = robots_.find(name);
-    return robot != robots_.end() && robot->second.waits();
-  }
-  std::optional<Instant> oldest() const { return oldest_; }
-  bool empty() const { return !oldest_; }  // no news
+  /// When the robot's pose was accepted that is queued or in flight; nullopt: there is none.
+  std::optional<Instant> accepted_at(const icd::RobotName& name) const;
+  bool empty() const { return !next({}); }  // no news
 
  private:
   struct Held {
-    bool waits() const { return is_news || is_under_way; }
+    bool waits() const { return is_news || in_flight; }
     bool goes() const { return is_news || is_of_run; }
+    Instant ready() const { return apart ? trial.rests_until : Instant{}; }
+    void join() { apart = false, trial = {}; }
 
     PostedPose posted;
+    Instant accepted{};  // of news
     bool is_news = true;
     bool is_of_run = true;
-    bool is_under_way = false;  // it is in flight, and was news before
+    std::optional<Instant> in_flight{};  // when the pose in flight, which was news before, was accepted
     bool apart = false;
     bool is_given_up = false;
     Trial trial{};
@@ -91,7 +101,6 @@ class StateQueue {
   Robots::iterator next_apart(Instant now);
   void include(QueuedState& taken, Robots::value_type& robot);
   Robots robots_;
-  std::optional<Instant> oldest_;
 };
 
 }  // namespace adit::queues

@@ -52,6 +52,11 @@ const ConditionCase kConditionCases[] = {
      both_down<EndpointTrouble::Refusing>},
     {"command_post_refusing", Bad, Side::CommandPost, "The scoring token is rejected", "is the course right?",
      [](Facts& facts) { down(facts, EndpointTrouble::Refusing, 0); }},
+    {"command_post_refusing", Bad, Side::CommandPost, "The mapping token is rejected", "know uav1?",
+     [](Facts& facts) {
+       down(facts, EndpointTrouble::Refusing, 1);
+       std::erase_if(facts.streams, [](const Stream& stream) { return stream.robot != "uav1"; });
+     }},
     {"command_post_foreign", Bad, Side::CommandPost, "The server is not a Command Post", "(mapping)",
      [](Facts& facts) { down(facts, EndpointTrouble::Foreign, 1); }},
     {"command_post_failing", Bad, Side::CommandPost, "Mapping is failing", "every request",

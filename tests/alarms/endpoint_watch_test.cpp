@@ -168,6 +168,20 @@ TEST_F(EndpointWatchTest, ForgetsTheFormerEndpoint) {
   EXPECT_EQ(trouble(), None);
 }
 
+TEST_F(EndpointWatchTest, OneRejectedRobotIsNoTroubleOfTheToken) {
+  watch_ = EndpointWatch(true);
+  lasts(1);
+  answers(403, 1);
+  EXPECT_EQ(trouble(), Refusing) << "no message was accepted yet";
+  for (int i = 0; i < 10; ++i) {
+    answers(200, 1);
+    answers(403, 4);
+    EXPECT_EQ(trouble(), None) << "others are accepted";
+  }
+  answers(401, 2);
+  EXPECT_EQ(trouble(), Refusing) << "no message is accepted any more";
+}
+
 class TwoConnections : public EndpointWatchTest {
  protected:
   TwoConnections() : EndpointWatchTest(2) {}

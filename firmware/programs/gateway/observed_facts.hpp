@@ -29,7 +29,7 @@ class ObservedFacts {
   bool queue_grows(double now) const { return growth_.grows(now); }
 
  private:
-  alarms::EndpointWatch scoring_, mapping_;
+  alarms::EndpointWatch scoring_, mapping_{true};
   alarms::Habits habits_;
   alarms::Growth growth_;
   std::map<std::string, std::uint64_t> told_;  // accepted and forwarded messages at the last save

@@ -78,7 +78,9 @@ Endpoint EndpointWatch::trouble_of(const ConnectionState& way, double now) const
   };
   if (lasts(way.without, kUnreachableAfter))
     return {.trouble = EndpointTrouble::Unreachable, .since = *way.without, .said = seen.said};
-  if (lasts(way.barred, 0)) {
+  const bool was_well = std::ranges::any_of(ways_, [](const auto& each) { return each.well.has_value(); });
+  const bool may_be_a_robot = has_robots_ && was_well && !seen.foreign;
+  if (lasts(way.barred, may_be_a_robot ? kFailingAfter : 0)) {
     return {.trouble = seen.foreign ? EndpointTrouble::Foreign : EndpointTrouble::Refusing,
             .since = *way.barred,
             .said = seen.said};

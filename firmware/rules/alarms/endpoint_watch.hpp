@@ -34,6 +34,10 @@ class EndpointWatch {
   static constexpr double kThrottledWithin = 30;
   static constexpr std::size_t kThrottled = 3;  // answers of 429 within kThrottledWithin
 
+  /// `has_robots`: a 401 or 403 may concern one robot, so if messages were accepted before, it
+  /// counts as trouble after kFailingAfter.
+  explicit EndpointWatch(bool has_robots = false) : has_robots_(has_robots) {}
+
   /// Call each second with the same connections in the same order. `now`: monotonic seconds.
   void look(const std::vector<ConnectionSample>& seen, double now);
   /// Call if the endpoint's address or token has changed.
@@ -55,6 +59,7 @@ class EndpointWatch {
   Endpoint trouble_of(const ConnectionState& way, double now) const;
   Endpoint throttling(double now) const;
 
+  bool has_robots_;
   std::vector<ConnectionState> ways_;
   bool is_stopped_ = false;           // at the last look
   std::optional<double> well_since_;  // end of the last stop

@@ -1,5 +1,8 @@
 // Conditions of the Command Post and its two endpoints.
 #include <algorithm>
+#include <set>
+#include <string>
+#include <vector>
 
 #include "alarms/alarm.hpp"
 #include "alarms/found.hpp"
@@ -18,6 +21,7 @@ struct Trouble {
   EndpointTrouble is = EndpointTrouble::None;
   double since = 0;
   std::vector<const Endpoint*> endpoints = {};
+  std::set<std::string> robots = {};  // that have sent data
 
   bool both() const { return endpoints.size() > 1; }
   const Endpoint& first() const { return *endpoints.front(); }
@@ -69,6 +73,9 @@ void say_refusing(const Trouble& trouble, Condition& condition) {
   condition.headline = trouble.both() ? Headline{"Both tokens", "rejected", true}
                                       : Headline{"The " + trouble.first().name + " token", "rejected"};
   condition.why = "the Command Post answers 401 or 403; is the course right?";
+  if (!trouble.both() && trouble.first().name == "mapping" && trouble.robots.size() == 1)
+    condition.why = sentence("the Command Post answers 401 or 403; is the course right, and does it know ",
+                             *trouble.robots.begin(), "?");
   condition.action = kSetUp;
 }
 
@@ -105,8 +112,12 @@ constexpr struct {
 
 void find_post_troubles(const Facts& facts, Found& found) {
   find_missing_tokens(facts, found);
+  std::set<std::string> robots;
+  for (const Stream& stream : facts.streams) {
+    if (!stream.robot.empty()) robots.insert(stream.robot);
+  }
   for (const auto& row : kTroubles) {
-    Trouble trouble{.is = row.is};
+    Trouble trouble{.is = row.is, .robots = robots};
     for (const Endpoint& endpoint : facts.endpoints) {
       if (endpoint.trouble != row.is) continue;
       trouble.since = trouble.endpoints.empty() ? endpoint.since : std::min(trouble.since, endpoint.since);

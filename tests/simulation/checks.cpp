@@ -58,6 +58,7 @@ Broken all_checks(const Evidence& evidence) {
                            status_keeps_away,
                            status_has_its_turn,
                            learned,
+                           others_go_on,
                            stamps,
                            kept,
                            answered,

@@ -42,6 +42,7 @@ void reports_go_first(const Evidence& evidence, Broken& broken);
 void status_keeps_away(const Evidence& evidence, Broken& broken);
 void status_has_its_turn(const Evidence& evidence, Broken& broken);
 void learned(const Evidence& evidence, Broken& broken);
+void others_go_on(const Evidence& evidence, Broken& broken);
 void stamps(const Evidence& evidence, Broken& broken);
 void kept(const Evidence& evidence, Broken& broken);
 void answered(const Evidence& evidence, Broken& broken);

@@ -1,4 +1,4 @@
-// Paced, Learned and Stamps, about requests to the Command Post.
+// Paced, Learned, OthersGoOn and Stamps, about requests to the Command Post.
 #include <algorithm>
 #include <map>
 #include <optional>
@@ -8,6 +8,7 @@
 #include "icd/sentence.hpp"
 #include "simulation/asked.hpp"
 #include "simulation/checks.hpp"
+#include "simulation/command_post.hpp"
 #include "simulation/counting.hpp"
 #include "simulation/courses.hpp"
 #include "simulation/deciding_operator.hpp"
@@ -301,6 +302,44 @@ void learned(const Evidence& evidence, Broken& broken) {
                         event.at));
     }
     said[event.what] = event.at;
+  }
+}
+
+/// While one robot's states are rejected, those of the others arrive: after three states with several robots
+/// and one with the rejected robot alone, the next one has another robot with news.
+void others_go_on(const Evidence& evidence, Broken& broken) {
+  constexpr int kInARow = 4;
+  std::map<std::uint64_t, std::vector<std::pair<std::string, std::int64_t>>>
+      posted;                                           // by the client's request
+  std::map<std::string, std::int64_t> accepted, taken;  // the last serial of each robot; serials rise
+  std::set<std::string> news;                           // robots with news when the first state was rejected
+  int in_a_row = 0;                                     // rejected states
+  bool is_rejected = false, is_read = false;            // the last state, and Adit has read the answer
+  for (const Event& event : evidence.events) {
+    if (event.kind == Kind::PowerCut) accepted.clear();
+    if (event.kind == Kind::Begins || event.what == kCourse) in_a_row = 0, is_rejected = is_read = false;
+    if (event.what != kState) continue;
+    if (event.kind == Kind::Invoke) posted[event.request].emplace_back(event.who, event.serial);
+    if (event.kind == Kind::Answered && event.status == 200) {
+      for (const auto& [who, serial] : posted[event.request]) accepted[who] = std::max(accepted[who], serial);
+    }
+    if (event.kind == Kind::Taken) taken[event.who] = std::max(taken[event.who], event.serial);
+    if (event.kind == Kind::Leaves) {
+      if (!is_rejected || !is_read) in_a_row = 0;
+      is_rejected = is_read = false;
+    }
+    if (event.kind == Kind::Replied) is_read = true;
+    if (event.kind != Kind::Fault || event.who != kUnregistered) continue;
+    is_rejected = true;
+    if (++in_a_row == 1) {
+      news.clear();
+      for (const auto& [who, serial] : accepted) {
+        if (who != event.text && serial > taken[who]) news.insert(who);
+      }
+    }
+    if (in_a_row == kInARow + 1 && !news.empty())
+      broken.push_back(icd::sentence("OthersGoOn: ", in_a_row, " states in a row were rejected because of ",
+                                     event.text, ", although ", *news.begin(), " has news, at ", event.at));
   }
 }
 

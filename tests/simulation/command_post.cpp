@@ -1,5 +1,6 @@
 #include "simulation/command_post.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <utility>
@@ -125,6 +126,7 @@ CommandPost::CommandPost(World& world, const Faults& faults, double trouble_for,
   slash_ = slash.chance(0.15) ? Slash::Wanted : slash.chance(0.5) ? Slash::Unknown : Slash::Either;
   if (slash_ == Slash::Either && slash.chance(0.3)) redirects_reports_ = slash.chance(0.5) ? 307 : 308;
   plan_portal(trouble_for);
+  plan_registry(trouble_for);
   for (const Fault fault : kPeriods) {
     // Runs cannot be told apart if their clocks stand still.
     const bool untold = fault == Fault::NewRun && faults_.has(Fault::ConstantClocks);
@@ -159,6 +161,29 @@ void CommandPost::plan_portal(double trouble_for) {
       world_.after(seconds(takes), [this] { has_portal_ = false; });
     });
   }
+}
+
+/// In one of five runs, for a time.
+void CommandPost::plan_registry(double trouble_for) {
+  constexpr const char* kLines[] = {"401 Unauthorized",
+                                    "403 Forbidden",
+                                    "404 Not Found",
+                                    "409 Conflict",
+                                    "415 Unsupported Media Type",
+                                    "500 Internal Server Error",
+                                    "501 Not Implemented",
+                                    "503 Service Unavailable"};
+  Random random = world_.random(numbered("registry", scoreboard_.place()));
+  if (!random.chance(0.2)) return;
+  const std::string robot = "R" + std::to_string(1 + random.below(3));
+  const char* const line = kLines[random.below(std::size(kLines))];
+  const double begins = random.chance(0.5) ? 0 : random.between(0, trouble_for);
+  const double takes = random.between(5, trouble_for);
+  if (world_.omits(kUnregistered)) return;
+  rejection_ =
+      random.chance(0.8) ? http_answer(line, kJson, "\"unknown robot\"") : http_answer(line, kPage, kHtml);
+  world_.after(seconds(begins), [this, robot] { unregistered_ = calm_ ? "" : robot; });
+  world_.after(seconds(begins + takes), [this] { unregistered_.clear(); });
 }
 
 void CommandPost::let_clerk(bool grants) {
@@ -211,6 +236,7 @@ void CommandPost::calm() {
   calm_ = true;
   on_.clear();
   has_portal_ = false;
+  unregistered_.clear();
   scoreboard_.stop(false);
   world_.note({.actor = Actor::Post, .kind = Kind::Calm, .what = "", .who = ""});
 }
@@ -232,7 +258,7 @@ void CommandPost::asked(const HttpMessage& request, const WhenLeft& left, Link& 
   if (is_on(Fault::Mute) || is_on(Fault::Outage)) return;
   if (is_on(Fault::StatusDown) && request.path() == kStatus) return;
   if (has_page_for(request, link) || redirects(request, link) || refuses(request, left, link)) return;
-  answer(request, link);
+  if (!rejects_robot(request, link)) answer(request, link);
   if (!is_mapping(request) || link.is_closed()) return;
   const auto count = [this, path = request.path(), left, self = link.shared_from_this()] {
     if (!self->is_closed()) counting_.count(path, left, world_.now());
@@ -284,6 +310,21 @@ bool CommandPost::refuses(const HttpMessage& request, const WhenLeft& left, Link
                .serial = static_cast<std::int64_t>(counting_.what()),
                .stamp = world_.time() - std::chrono::duration<double>(world_.now() - left.first).count()});
   link.send(http_answer("429 Too Many Requests", kJson, "\"too soon\""));
+  return true;
+}
+
+/// Rejects states with the pose of an unregistered robot, and markers of its namespaces.
+bool CommandPost::rejects_robot(const HttpMessage& request, Link& link) {
+  const std::string path = request.path();
+  if (unregistered_.empty() || (path != kState && path != kMarkers)) return false;
+  const auto items = items_of(request);
+  const bool has_it = std::ranges::any_of(items, [this](const Item& item) {
+    return item.who == unregistered_ || item.who.starts_with(unregistered_ + " ");
+  });
+  if (!has_it) return false;
+  world_.note(
+      {.actor = Actor::Post, .kind = Kind::Fault, .what = path, .who = kUnregistered, .text = unregistered_});
+  link.send(rejection_);
   return true;
 }
 

@@ -26,6 +26,10 @@ inline constexpr const char* kRepeats = "Repeats";
 /// Event::who of a fault: the late reporter's answer is lost.
 inline constexpr const char* kLate = "Late";
 
+/// Event::who of a fault: a message of a robot that the Command Post does not know is rejected. Event::text
+/// is the robot.
+inline constexpr const char* kUnregistered = "Unregistered";
+
 /// Both endpoints of a Command Post that follows the ICD to the letter, with the faults of one run.
 class CommandPost final : public Host {
  public:
@@ -49,6 +53,7 @@ class CommandPost final : public Host {
   bool redirects(const HttpMessage& request, Link& link);
   bool refuses(const HttpMessage& request, const WhenLeft& left, Link& link);
   bool has_page_for(const HttpMessage& request, Link& link);
+  bool rejects_robot(const HttpMessage& request, Link& link);
   bool is_beyond_one_limit(const HttpMessage& request, const WhenLeft& left);
   void answer(const HttpMessage& request, Link& link);
   bool loses_late_answer(const HttpMessage& request, Link& link);
@@ -64,6 +69,7 @@ class CommandPost final : public Host {
   void begin(Fault period, double takes);
   void plan_clerk(double trouble_for);
   void plan_portal(double trouble_for);
+  void plan_registry(double trouble_for);
   void let_clerk(bool grants);
   void begin_run();
   void cut_all();
@@ -88,6 +94,8 @@ class CommandPost final : public Host {
   enum class Slash : std::uint8_t { Either, Unknown, Wanted } slash_;
   int redirects_reports_ = 0;  // to a path with a slash, by this status; 0: never
   bool has_portal_ = false;    // a web server answers in place of scoring
+  std::string unregistered_;   // its states and markers are rejected; "": all robots are known
+  std::string rejection_;      // the answer to them
   bool calm_ = false;
   bool is_late_lost_ = false;  // the answer to the late reporter was lost
   std::set<Fault> on_;         // faults that last for a period

@@ -59,6 +59,7 @@ void reports(std::vector<Facts>& days) {
   days.back().run_unreliable = "somebody else reports with this token";
   days.back().run_renamed = "run 2, was 1";
   days.back().messages_rejected = 3;
+  days.back().newest_rejected_why = "NAME's cloud: too large";
   days.push_back(named());
   days.back().reports_left = 0;
 }

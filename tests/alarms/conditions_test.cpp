@@ -108,8 +108,12 @@ const ConditionCase kConditionCases[] = {
      [](Facts& facts) { facts.run_unreliable = "somebody else reports"; }},
     {"run_renamed", Ask, Side::CommandPost, "The name of the run is uncertain", "calls it run 2",
      [](Facts& facts) { facts.run_renamed = "the Command Post calls it run 2, it was 1"; }},
-    {"messages_rejected", Ask, Side::CommandPost, "3 messages are rejected", "did not accept them",
-     [](Facts& facts) { facts.messages_rejected = 3; }},
+    {"messages_rejected", Ask, Side::CommandPost, "3 messages are rejected",
+     "did not accept them; the newest: ugv1's cloud: too large (3021 kB)",
+     [](Facts& facts) {
+       facts.messages_rejected = 3;
+       facts.newest_rejected_why = "ugv1's cloud: too large (3021 kB)";
+     }},
     {"standby", Bad, Side::Box, "This box is on standby", "for its spare",
      [](Facts& facts) { facts.standby = "put on standby for its spare to take over"; }},
     {"ledger_unwritable", Bad, Side::Box, "Reports are not accepted", "cannot write the ledger: no space",

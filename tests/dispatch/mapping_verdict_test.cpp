@@ -39,7 +39,9 @@ const MappingCase kMappingCases[] = {
     {301, "", Verdict::Failing, false},
     // Rejected only by the Command Post itself.
     {400, kSentence, Verdict::Refused, true},
-    {413, "", Verdict::Refused, true},
+    {413, "", Verdict::TooLarge, true},
+    {413, kSentence, Verdict::TooLarge, true},
+    {413, kPage, Verdict::TooLarge, false},
     {422, kSentence, Verdict::Refused, true},
     {400, kPage, Verdict::Suspect, false},
     {422, kPage, Verdict::Suspect, false},

@@ -132,5 +132,23 @@ TEST(Slot, ForgetsAStallOfTheWorker) {
   EXPECT_NEAR(slowness(), 1, 0.01);
 }
 
+TEST(Slot, HoldsNoMoreThanTheEndpointAccepts) {
+  Slot slot(10 * kMegabyte);
+  slot.passed(kMegabyte / 2);
+  EXPECT_EQ(exact_in(slot, 1), 10 * kMegabyte);
+  slot.too_large(4 * kMegabyte);
+  EXPECT_EQ(slot.limit(), 2 * kMegabyte);
+  EXPECT_EQ(exact_in(slot, 1), 1'800'000) << "clouds do not all pack alike";
+  slot.too_large(3 * kMegabyte / 2);
+  slot.too_large(kMegabyte * 3 / 4);
+  EXPECT_EQ(slot.limit(), kMegabyte / 2) << "such a message has passed";
+  slot.passed(kMegabyte);
+  EXPECT_EQ(slot.limit(), kMegabyte) << "a larger one has passed";
+  slot.too_large(kMegabyte);
+  EXPECT_EQ(slot.limit(), kMegabyte) << "others may send as much";
+  slot.forget_sizes();
+  EXPECT_EQ(exact_in(slot, 1), 10 * kMegabyte);
+}
+
 }  // namespace
 }  // namespace adit::forward

@@ -1,9 +1,10 @@
 // Which message causes a 500: Blame and the queues with several kinds of servers, in simulated time.
 #include "queues/blame.hpp"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <functional>
+#include <iterator>
 #include <map>
 #include <random>
 #include <string>
@@ -198,6 +199,55 @@ TEST(MapQueueOnTrial, DoesNotMergeAFailedMap) {
   queue.add(3, cloud_update("ugv1", {3}), at(2));
   EXPECT_EQ(points_of(queue.take(at(3))->map), (std::vector<std::uint8_t>{2, 3}));
   EXPECT_EQ(points_of(queue.take(at(4))->map), (std::vector<std::uint8_t>{1}));
+}
+
+/// One robot posts maps that are too large each three seconds, another one good maps each second. One map is
+/// sent each second.
+TEST(MapQueueOnTrial, TriesALaterMapTwiceAfterOneThatWasTooLarge) {
+  MapQueue queue(0);
+  Blame blame;
+  std::map<std::uint64_t, int> tries;  // by the number of the map
+  int delivered = 0;
+  for (std::uint64_t now = 0; now < 60; ++now) {
+    if (now % 3 == 0) queue.add(1000 + now, cloud_update("large", {1}), at(static_cast<double>(now)));
+    queue.add(now, cloud_update("good", {2}), at(static_cast<double>(now)));
+    const Instant instant = at(static_cast<double>(now));
+    auto map = *queue.take(instant);
+    const std::string name = map.map.name->text();
+    if (name == "good") {
+      blame.passed(name, instant);
+      queue.passed(Sender::of(map.map));
+      ++delivered;
+      continue;
+    }
+    ++tries[map.updates.back()];
+    const auto next = blame.failed(name, map.trial, instant);
+    queue.too_large(Sender::of(map.map), map.trial);
+    if (next == Blame::Next::Again) queue.put_back(std::move(map));
+  }
+  ASSERT_GE(tries.size(), 4);
+  EXPECT_EQ(tries.begin()->second, 4);
+  for (auto each = std::next(tries.begin()); each != std::prev(tries.end()); ++each)
+    EXPECT_EQ(each->second, 2) << each->first;
+  EXPECT_GE(delivered, 47) << "large maps that rest cost nobody a turn";
+}
+
+TEST(MapQueueOnTrial, ForgetsStrikesOnceAMapOfThatRobotPassed) {
+  MapQueue queue(0);
+  Blame blame;
+  queue.add(1, cloud_update("ugv1", {1}), at(0));
+  auto first = *queue.take(at(0));
+  for (int i = 0; blame.failed("ugv1", first.trial, at(i)) == Blame::Next::Again; ++i)
+    blame.passed("ugv2", at(i + 0.5));
+  queue.too_large(Sender::of(first.map), first.trial);
+  queue.add(2, cloud_update("ugv1", {2}), at(3));
+  queue.passed(Sender::of(first.map));
+  queue.add(3, cloud_update("ugv1", {3}), at(3));
+  for (const std::uint64_t number : {2u, 3u}) {
+    const auto later = queue.take(at(3));
+    EXPECT_THAT(later->updates, testing::ElementsAre(number));
+    EXPECT_EQ(later->trial.strikes, 0);
+  }
 }
 
 TEST(MapQueueOnTrial, GivesItsPlaceToANewerCoveringGrid) {

@@ -206,6 +206,31 @@ TEST(MapQueue, SplitsFailedMergedCloudsAndSendsEachAlone) {
   EXPECT_EQ(queue.bytes(), 0);
 }
 
+TEST(MapQueue, HalvesMergedCloudsThatAreTooLarge) {
+  MapQueue queue{kPlenty};
+  for (std::uint8_t i = 1; i <= 5; ++i) queue.add(i, cloud_update("R1", {i}), at(i));
+  queue.put_back_halves(*queue.take());
+  queue.add(6, cloud_update("R1", {6}), at(6));
+  queue.put_back_halves(*queue.take());
+  EXPECT_THAT(points_of(queue.take()->map), ElementsAre(1, 2));
+  EXPECT_THAT(queue.take()->updates, ElementsAre(3));
+  const auto second = queue.take();
+  EXPECT_THAT(second->updates, ElementsAre(4, 5));
+  EXPECT_THAT(points_of(second->map), ElementsAre(4, 5));
+  EXPECT_EQ(second->map.data.raw_size, 24);
+  EXPECT_THAT(queue.take()->updates, ElementsAre(6)) << "not joined with a half";
+  EXPECT_EQ(queue.bytes(), 0);
+}
+
+TEST(MapQueue, SendsGridsAloneWhoseWholeIsTooLarge) {
+  MapQueue queue{kPlenty};
+  queue.add(1, grid_update("R1", grid(0, 0, 20, 20)), at(1));
+  queue.add(2, grid_update("R1", grid(1, 0, 20, 20)), at(2));
+  queue.put_back_halves(*queue.take());
+  EXPECT_THAT(queue.take()->updates, ElementsAre(1));
+  EXPECT_THAT(queue.take()->updates, ElementsAre(2));
+}
+
 TEST(MapQueue, MergedCloudsHaveTheNewersHeader) {
   auto older = cloud_update("R1", {1}), newer = cloud_update("R1", {2});
   older.header().stamp = 10;

@@ -28,16 +28,16 @@ struct PostedGrid {
   std::int64_t serial;
   Extent extent;
   std::size_t taken = 0;    // the last event that delivered it; 0: none
-  int failures = 0;         // answers of 5xx to it
+  int failures = 0;         // answers of 5xx or 413 to it
   bool has_left = false;    // it was sent, alone or in a message with others
   bool is_taken = false;    // an answer confirmed the delivery
   double confirmed = 1e9;   // when
   bool is_refused = false;  // rejected; the operator sends it again later
 
   void answered(const Event& reply) {
-    if (reply.status >= 500) ++failures;
+    if (reply.status >= 500 || reply.status == 413) ++failures;
     if (reply.status == 200 && reply.who.empty()) is_taken = true, confirmed = std::min(confirmed, reply.at);
-    is_refused = is_refused || reply.status == 422;
+    is_refused = is_refused || reply.status == 422 || reply.status == 413;
   }
   bool is_before(const PostedGrid& other) const { return asked->ended < other.asked->began; }
 };

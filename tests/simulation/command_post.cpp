@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
+#include <span>
 #include <utility>
 
 #include "simulation/messages.hpp"
@@ -125,6 +126,10 @@ CommandPost::CommandPost(World& world, const Faults& faults, double trouble_for,
   Random slash = world.random(numbered("slash", place));
   slash_ = slash.chance(0.15) ? Slash::Wanted : slash.chance(0.5) ? Slash::Unknown : Slash::Either;
   if (slash_ == Slash::Either && slash.chance(0.3)) redirects_reports_ = slash.chance(0.5) ? 307 : 308;
+  Random proxy = world.random("proxy");
+  if (proxy.chance(0.25)) largest_ = 400 + proxy.below(2000);
+  is_below_single_ = proxy.chance(0.3);
+  resets_large_ = proxy.chance(0.2);
   plan_portal(trouble_for);
   plan_registry(trouble_for);
   for (const Fault fault : kPeriods) {
@@ -257,7 +262,9 @@ void CommandPost::asked(const HttpMessage& request, const WhenLeft& left, Link& 
   connection_ = link.number();
   if (is_on(Fault::Mute) || is_on(Fault::Outage)) return;
   if (is_on(Fault::StatusDown) && request.path() == kStatus) return;
-  if (has_page_for(request, link) || redirects(request, link) || refuses(request, left, link)) return;
+  if (is_too_large(request, link) || has_page_for(request, link) || redirects(request, link) ||
+      refuses(request, left, link))
+    return;
   if (!rejects_robot(request, link)) answer(request, link);
   if (!is_mapping(request) || link.is_closed()) return;
   const auto count = [this, path = request.path(), left, self = link.shared_from_this()] {
@@ -265,6 +272,35 @@ void CommandPost::asked(const HttpMessage& request, const WhenLeft& left, Link& 
   };
   count();
   if (link.answers_until() > world_.now()) world_.at(link.answers_until(), count);
+}
+
+/// Whether a client posted all of it in one message.
+bool CommandPost::is_single(const std::vector<Item>& sent) const {
+  const auto is_in = [&](const std::vector<Item>& posted) {
+    return std::ranges::all_of(sent, [&](const Item& item) {
+      return std::ranges::any_of(posted, [&](const Item& each) {
+        if (!is_grid(item.says)) return each.serial == item.serial;
+        return is_grid(each.says) &&
+               std::ranges::equal(std::span(item.says).first(kExtentNumbers), each.says);
+      });
+    });
+  };
+  return std::ranges::any_of(world_.posted_maps, is_in);
+}
+
+/// As nginx with client_max_body_size. Its limit is above each posted map, or becomes so with calm().
+bool CommandPost::is_too_large(const HttpMessage& request, Link& link) {
+  if (request.path() != kMap || request.body.size() <= largest_) return false;
+  if ((calm_ || !is_below_single_) && is_single(items_of(request))) return false;
+  world_.note({.actor = Actor::Post, .kind = Kind::Fault, .what = kMap, .who = kTooLarge});
+  if (resets_large_ && !calm_) {
+    link.end(Link::How::Reset);
+  } else {
+    link.send(
+        http_answer("413 Request Entity Too Large", std::string(kPage) + "Connection: close\r\n", kHtml));
+    link.end(Link::How::End);
+  }
+  return true;
 }
 
 /// Answers with a web page, or 404 to a path that scoring does not know.

@@ -29,6 +29,8 @@ inline constexpr const char* kLate = "Late";
 /// Event::who of a fault: a message of a robot that the Command Post does not know is rejected. Event::text
 /// is the robot.
 inline constexpr const char* kUnregistered = "Unregistered";
+/// Event::who of a fault: a proxy did not let a map through.
+inline constexpr const char* kTooLarge = "TooLarge";
 
 /// Both endpoints of a Command Post that follows the ICD to the letter, with the faults of one run.
 class CommandPost final : public Host {
@@ -50,6 +52,8 @@ class CommandPost final : public Host {
   class SerialReader;
   using Accepted = std::deque<std::shared_ptr<Conversation>>;
   void asked(const HttpMessage& request, const WhenLeft& left, Link& link);
+  bool is_single(const std::vector<Item>& sent) const;
+  bool is_too_large(const HttpMessage& request, Link& link);
   bool redirects(const HttpMessage& request, Link& link);
   bool refuses(const HttpMessage& request, const WhenLeft& left, Link& link);
   bool has_page_for(const HttpMessage& request, Link& link);
@@ -82,6 +86,9 @@ class CommandPost final : public Host {
   const bool gzips_;                    // its answers, though Adit asks for none
   double answers_early_;                // probability per piece of a request
   double repeats_;                      // probability per report
+  std::size_t largest_ = SIZE_MAX;      // bytes of a map that a proxy before it lets through
+  bool is_below_single_ = false;        // also if one posted map alone is larger, until calm()
+  bool resets_large_ = false;           // in place of an answer, until calm()
   const bool has_one_limit_;            // one rate limit over reports and statuses
   std::optional<loop::Instant> asked_;  // when the last accepted report or status left
   const bool is_serial_;                // each server reads one connection at a time

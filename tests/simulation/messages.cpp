@@ -5,6 +5,7 @@
 #include "simulation/bytes.hpp"
 #include "simulation/map_messages.hpp"
 #include "simulation/scoreboard.hpp"
+#include "simulation/world.hpp"
 
 namespace adit::simulation {
 namespace {
@@ -161,6 +162,7 @@ Says reply_in(const std::string& body) {
 std::string request_of(const Posting& posting, const Style& style) {
   Style used = style;
   used.cbor = style.cbor && posting.path != kReports;
+  if (posting.path == kMap) World::current().posted_maps.push_back(posting.items);
   const Json message = message_of(posting, used);
   std::string body;
   if (used.cbor) {

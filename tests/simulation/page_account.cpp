@@ -97,7 +97,8 @@ void PageAccount::read_upstream(std::size_t place, const Event& event) {
   const std::string endpoint = endpoint_of(event.what);
   if (event.status == 429) throttled_[endpoint].push_back(place);
   const bool never = event.status >= 300 && event.status < 400;
-  const bool allowed = event.status == 404 || event.status == 429 || event.status >= 500;
+  const bool is_size = event.status == 413 && event.what != kReports && event.what != kStatus;
+  const bool allowed = event.status == 404 || event.status == 429 || event.status >= 500 || is_size;
   const bool is_no_run =
       event.what == kStatus && event.status >= 200 && event.status < 300 && event.says.empty();  // ICD 5.1
   if ((never && event.who != kOtherForm) || is_no_run || (is_page && !allowed))

@@ -15,6 +15,7 @@
 #include "simulation/disk.hpp"
 #include "simulation/door.hpp"
 #include "simulation/history.hpp"
+#include "simulation/messages.hpp"
 #include "simulation/network.hpp"
 #include "simulation/omissions.hpp"
 #include "simulation/random.hpp"
@@ -105,6 +106,7 @@ class World {
 
   std::function<void()> on_sigterm;
   std::vector<host::Inherited> inherited;  // descriptors for a process that starts again
+  std::vector<std::vector<Item>> posted_maps;
 
  private:
   struct Planned {

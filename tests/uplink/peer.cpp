@@ -51,6 +51,10 @@ std::string Wire::read_head() {
 
 std::string Wire::read_request() {
   const std::string head = read_head();
+  return read_rest(head);
+}
+
+std::string Wire::read_rest(const std::string& head) {
   const std::size_t length = length_in(head);
   while (unread_.size() < length)
     if (read_some(1 << 20) == 0) return "";

@@ -21,6 +21,8 @@ class Wire {
   std::string read_head();
   /// The complete next request: head, and body by Content-Length.
   std::string read_request();
+  /// The complete request that begins with this head; "" if the other side has closed.
+  std::string read_rest(const std::string& head);
   /// At most `most` bytes; 0 if the other side has closed.
   std::size_t read_some(std::size_t most);
   /// False where the other side is gone.

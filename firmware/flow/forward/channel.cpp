@@ -95,8 +95,8 @@ void Channel::send(icd::Uri uri, std::string_view content_type, icd::ChunkedByte
   const bool is_trial = uri == icd::Uri::Status && is_trial_due_;
   const bool is_report = uri == icd::Uri::ArtifactReports;
   const bool has_slash = is_report ? reports_want_slash_.value_or(wants_slash_) : wants_slash_ != is_trial;
-  const auto under_way =
-      std::make_shared<UnderWay>(loop_.now(), uri, has_slash, is_trial, is_on_trial, std::move(done));
+  const auto under_way = std::make_shared<UnderWay>(loop_.now(), uri, body.size(), has_slash, is_trial,
+                                                    is_on_trial, std::move(done));
   connection_->send({.method = std::string(icd::method_of(uri)),
                      .target = std::string(icd::path_of(uri)) + (has_slash ? "/" : ""),
                      .content_type = std::string(content_type),
@@ -119,7 +119,8 @@ std::optional<uplink::Sent> Channel::has_arrived() const {
 void Channel::ended(const std::shared_ptr<UnderWay>& request, uplink::Outcome outcome) {
   const bool is_vain = (request->is_trial && !knows_path(outcome)) ||
                        (request->is_on_trial && may_concern_the_message(outcome));
-  last_.note({.uri = request->uri, .sent_at = request->sent_at, .is_vain = is_vain}, outcome);
+  last_.note({.uri = request->uri, .sent_at = request->sent_at, .bytes = request->bytes, .is_vain = is_vain},
+             outcome);
   learn_path(*request, outcome);
   if (is_serial() && !std::exchange(was_serial_, true))
     host::log(host::Level::Notice,

@@ -95,6 +95,7 @@ class Channel {
   struct UnderWay {
     loop::Instant sent_at;
     icd::Uri uri;
+    std::size_t bytes;  // of its body
     bool has_slash;
     bool is_trial;  // of the other form of the path
     bool is_on_trial;

@@ -25,6 +25,13 @@ bool lacks_status(icd::Uri uri, const uplink::Outcome& outcome) {
          !codec::read_run_status(answered->body);
 }
 
+/// A proxy before the mapping endpoint may answer it with a page. A report's answer must be JSON.
+bool is_too_large(icd::Uri uri, const uplink::Outcome& outcome) {
+  const auto* answered = std::get_if<uplink::Answered>(&outcome);
+  return uri != icd::Uri::Status && uri != icd::Uri::ArtifactReports && answered != nullptr &&
+         answered->status == dispatch::kTooLarge;
+}
+
 bool comes_from_another(const uplink::Outcome& outcome, dispatch::Body body) {
   if (const auto* answered = std::get_if<uplink::Answered>(&outcome))
     return !answered->wants_slash && !dispatch::may_be_the_command_post(answered->status, body);
@@ -39,7 +46,8 @@ void LastAnswer::note(const Request& request, const uplink::Outcome& outcome) {
   heard_ = loop_.now();
   const dispatch::Body body = body_of(outcome);
   const bool no_status = lacks_status(request.uri, outcome);
-  const bool is_foreign = no_status || comes_from_another(outcome, body);
+  const bool too_large = is_too_large(request.uri, outcome);
+  const bool is_foreign = no_status || (!too_large && comes_from_another(outcome, body));
   if (is_foreign) ++foreign_;
   const auto* answered = std::get_if<uplink::Answered>(&outcome);
   if (answered != nullptr && answered->status == 429) ++throttled_;
@@ -60,6 +68,7 @@ void LastAnswer::note(const Request& request, const uplink::Outcome& outcome) {
   const bool is_well = answered != nullptr && !answered->wants_slash && !is_foreign_ && status_ < 400;
   trouble_ = is_well     ? ""
              : no_status ? "the server that answered without the status of a run is not the Command Post"
+             : too_large ? sentence_of(outcome, request.bytes)
                          : sentence_of(outcome);
 }
 
@@ -73,6 +82,13 @@ void LastAnswer::forget() {
 std::optional<double> LastAnswer::time_there() const {
   if (!date_) return std::nullopt;
   return *date_ + std::chrono::duration<double>(loop_.now() - dated_).count();
+}
+
+std::string sentence_of(const uplink::Outcome& outcome, std::size_t bytes) {
+  const auto* answered = std::get_if<uplink::Answered>(&outcome);
+  if (answered != nullptr && answered->status == dispatch::kTooLarge)
+    return dispatch::too_large(bytes, answered->body);
+  return sentence_of(outcome);
 }
 
 std::string sentence_of(const uplink::Outcome& outcome) {

@@ -16,6 +16,7 @@ class LastAnswer {
   struct Request {
     icd::Uri uri;
     loop::Instant sent_at;
+    std::size_t bytes = 0;  // of its body
     /// Only counted: a trial of another path, or of a message that failed alone before, has failed again.
     bool is_vain = false;
   };
@@ -55,5 +56,7 @@ class LastAnswer {
 
 /// Why a request has no answer, or the text of its answer.
 std::string sentence_of(const uplink::Outcome& outcome);
+/// The same for a map, a state or markers with a body of `bytes`, which a proxy may have answered with 413.
+std::string sentence_of(const uplink::Outcome& outcome, std::size_t bytes);
 
 }  // namespace adit::forward

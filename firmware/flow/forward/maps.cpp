@@ -94,6 +94,7 @@ void Maps::pump() noexcept {
     pace_.link_is_back();
     blame_ = {};
     ahead_ = {};
+    prepared_.slot().forget_sizes();
     leads_elsewhere();
   }
   if (stopping_ || prepared_.is_packing() || !channel_.has_token()) return;
@@ -106,6 +107,10 @@ void Maps::go_on() {
   const Place& next = follows ? prepared_.following() : prepared_.first();
   if (next && next->is_under_way) return;
   if (next && !prepared_.is_packed(*next)) return prepared_.pack(next);
+  if (next && must_split(*next)) {
+    split(next);
+    return go_on();
+  }
   if (next && follows) return go_ahead(now);
   if (next) {
     if (now < starts()) return wake_.call_at(starts());
@@ -174,6 +179,7 @@ void Maps::classify(const Place& sent, const uplink::Outcome& outcome) {
 void Maps::taken(const Place& sent, const uplink::Answered& answered) {
   pace_.taken(answered.sent, loop_.now());
   prepared_.slot().left(sent->packed.body.size(), answered.sent, sent->last_byte_not_before);
+  prepared_.slot().passed(sent->packed.body.size());
   if (!prepared_.points().hold(sent->packed.left_out)) return goes_whole(sent, answered.status);
   ahead_.taken(sent->went_ahead);
   prepared_.leaves(sent);
@@ -184,6 +190,7 @@ void Maps::taken(const Place& sent, const uplink::Answered& answered) {
   for (const icd::MapUpdate* const said : queues::said_by(sent->waiting)) rejected_.taken(*said);
   forget(sent->waiting.updates);
   blame_.passed(whose(map), loop_.now());
+  queue_.passed(queues::Sender::of(map));
   queue_.carried(queues::Sender::of(map), sent->packed.body.size());
   counts_.forwarded(traffic_of(map), updates, sent->packed.body.size(), answered.status, loop_.wall_now());
   if (!map.is_grid()) counts_.rounded_to(traffic_of(map), sent->packed.precision);
@@ -200,7 +207,7 @@ void Maps::goes_whole(const Place& sent, int status) {
 void Maps::verdict(const Place& sent, const uplink::Answered& answered) {
   const loop::Instant now = loop_.now();
   const Traffic traffic = traffic_of(sent->waiting.map);
-  const std::string sentence = sentence_of(answered);
+  const std::string sentence = sentence_of(answered, sent->packed.body.size());
   switch (dispatch::mapping_verdict(answered.status, dispatch::body_of(answered.body))) {
     case MappingVerdict::Taken:
       return taken(sent, answered);
@@ -211,6 +218,9 @@ void Maps::verdict(const Place& sent, const uplink::Answered& answered) {
     case MappingVerdict::Refused:
       pace_.taken(answered.sent, now);
       return give_up(sent, answered.status, sentence);
+    case MappingVerdict::TooLarge:
+      pace_.taken(answered.sent, now);
+      return too_large(sent, answered);
     case MappingVerdict::Suspect:
       pace_.lost(now);
       if (blame_.failed(whose(sent->waiting.map), sent->waiting.trial, now) == queues::Blame::Next::Reject)
@@ -223,6 +233,40 @@ void Maps::verdict(const Place& sent, const uplink::Answered& answered) {
       counts_.not_taken(traffic, DeliveryFailure::Failed, answered.status, sentence);
       return again(sent);
   }
+}
+
+/// Its sender pays for the upload. If a proxy may have answered, it must fail as often as a map that fails
+/// alone.
+void Maps::too_large(const Place& sent, const uplink::Answered& answered) {
+  queues::QueuedMap& waiting = sent->waiting;
+  const queues::Sender sender = queues::Sender::of(waiting.map);
+  const std::string sentence = sentence_of(answered, sent->packed.body.size());
+  queue_.carried(sender, sent->packed.body.size());
+  prepared_.slot().too_large(sent->packed.body.size());
+  if (!waiting.parts.empty()) {
+    counts_.not_taken(traffic_of(waiting.map), DeliveryFailure::Failed, answered.status,
+                      sentence + "; it is sent in smaller messages");
+    ahead_.failed(false);
+    return split(sent);
+  }
+  const bool is_page = dispatch::body_of(answered.body) == dispatch::Body::Other;
+  if (!is_page) return give_up(sent, answered.status, sentence);
+  const auto next = blame_.failed(whose(waiting.map), waiting.trial, loop_.now());
+  queue_.too_large(sender, waiting.trial);
+  if (next == queues::Blame::Next::Reject) return give_up(sent, answered.status, sentence);
+  counts_.not_taken(traffic_of(waiting.map), DeliveryFailure::Failed, answered.status, sentence);
+  again(sent);
+}
+
+/// A joined map that the endpoint would not accept. A single map is always tried.
+bool Maps::must_split(const PreparedMap& prepared) const {
+  return !prepared.waiting.parts.empty() && prepared.packed.body.size() > prepared_.slot().limit();
+}
+
+void Maps::split(const Place& place) {
+  if (place == prepared_.first()) prepared_.put_back_following();
+  queue_.put_back_halves(place->waiting);
+  prepared_.leaves(place);
 }
 
 void Maps::again(const Place& sent) {

@@ -103,6 +103,9 @@ class Maps {
   void classify(const Place& sent, const uplink::Outcome& outcome);
   void verdict(const Place& sent, const uplink::Answered& answered);
   void taken(const Place& sent, const uplink::Answered& answered);
+  void too_large(const Place& sent, const uplink::Answered& answered);
+  bool must_split(const PreparedMap& prepared) const;
+  void split(const Place& place);
   void again(const Place& sent);
   void give_up(const Place& sent, int status, const std::string& sentence);
 

@@ -16,6 +16,8 @@ constexpr double kLeast = 4.0 * kTelling;
 constexpr std::array<double, 3> kOfExact{1, 0.65, 0.5};
 constexpr double kSmallest = 0.01;  // that packing is expected to make of a byte
 constexpr std::chrono::milliseconds kHeldBack{20};
+/// Of the limit, because clouds do not all pack alike.
+constexpr double kOfLimit = 0.9;
 
 }  // namespace
 
@@ -66,12 +68,23 @@ void Slot::link_delivers(std::uint64_t bytes_per_second) {
   bytes_per_second_ = std::min(bytes_per_second_, static_cast<double>(bytes_per_second));
 }
 
+void Slot::passed(std::size_t bytes) {
+  largest_ = std::max(largest_, bytes);
+  limit_ = std::max(limit_, bytes);
+}
+
+/// If a larger message has passed, this one's sender alone has a limit.
+void Slot::too_large(std::size_t bytes) {
+  if (bytes > largest_) limit_ = std::min(limit_, std::max(largest_, bytes / 2));
+}
+
 loop::Duration Slot::transfer(std::size_t bytes) const {
   return std::chrono::duration_cast<loop::Duration>(Seconds(static_cast<double>(bytes) / bytes_per_second_));
 }
 
 queues::PointsAt Slot::points_within(loop::Duration spacing) const {
-  const double bytes = std::max(bytes_per_second_ * Seconds(spacing).count(), kLeast);
+  const double leave = std::max(bytes_per_second_ * Seconds(spacing).count(), kLeast);
+  const double bytes = std::min(leave, kOfLimit * static_cast<double>(limit_));
   constexpr double kMost = 1e15;
   queues::PointsAt points{};
   std::ranges::transform(kOfExact, points.begin(), [&](double of_exact) {

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include "loop/loop.hpp"
 #include "pack/effort.hpp"
@@ -33,6 +34,14 @@ class Slot {
   /// The link takes no more than so many bytes a second now; 0: not known.
   void link_delivers(std::uint64_t bytes_per_second);
 
+  /// The endpoint accepted a message of so many bytes, or answered that it is too large.
+  void passed(std::size_t bytes);
+  void too_large(std::size_t bytes);
+  /// Another endpoint may accept other sizes.
+  void forget_sizes() { largest_ = 0, limit_ = kNoLimit; }
+  /// The bytes of a message that the endpoint accepts, as far as its answers show.
+  std::size_t limit() const { return limit_; }
+
   /// How long before its time the next map is to be packed: as the longest of the last few took, for where
   /// one comes too late, the link is idle; at most kLongestLead, for until then newer data takes its place.
   loop::Duration lead() const;
@@ -41,8 +50,8 @@ class Slot {
   /// The conditions that decide the effort for a map, if maps are `spacing` apart. Until a map has shown how
   /// fast the link is, it is as fast as allow() says.
   pack::Hurry hurry(loop::Duration spacing) const;
-  /// How many bytes of points, not packed, leave within `spacing`, at each precision: by the last cloud, and
-  /// by what rounding makes of clouds.
+  /// How many bytes of points, not packed, leave within `spacing` and within limit(), at each precision: by
+  /// the last cloud, and by what rounding makes of clouds.
   queues::PointsAt points_within(loop::Duration spacing) const;
 
  private:
@@ -50,6 +59,9 @@ class Slot {
   double most_ = 1, bytes_per_second_ = 1;
   double packed_to_ = 1;  // of a byte of a cloud that is exact
   double slowness_ = 1;   // pack::Hurry's
+  static constexpr std::size_t kNoLimit = std::numeric_limits<std::size_t>::max();
+  std::size_t largest_ = 0;  // that the endpoint accepted
+  std::size_t limit_ = kNoLimit;
 };
 
 }  // namespace adit::forward

@@ -129,8 +129,9 @@ void Telemetry::classify(Of& of, const typename Of::Sent& sent, std::size_t byte
   const auto verdict = answer != nullptr ? dispatch::mapping_verdict(status, dispatch::body_of(answer->body))
                                          : MappingVerdict::Failing;
   const bool concerns_a_part = dispatch::may_concern_a_part(status) && verdict != MappingVerdict::Refused;
-  const bool is_to_blame = concerns_a_part && of.is_to_blame(*sent, verdict == MappingVerdict::Suspect);
-  std::string sentence = verdict == MappingVerdict::Taken ? "" : sentence_of(outcome);
+  const bool is_to_blame = concerns_a_part && of.is_to_blame(*sent, verdict == MappingVerdict::Suspect ||
+                                                                        verdict == MappingVerdict::TooLarge);
+  std::string sentence = verdict == MappingVerdict::Taken ? "" : sentence_of(outcome, bytes);
   if (concerns_a_part && !is_to_blame && of.is_on_trial(*sent))
     sentence += icd::sentence("; other ", Of::kMessages, " are accepted; Adit tries this one again within ",
                               queues::Blame::kLongestRest.count(), " s");
@@ -156,6 +157,7 @@ void Telemetry::classify(Of& of, const typename Of::Sent& sent, std::size_t byte
       of.pace().throttled(now, answer->retry_after);
       of.put_back(*sent);
       break;
+    case MappingVerdict::TooLarge:
     case MappingVerdict::Suspect:
     case MappingVerdict::Failing:
       of.pace().failed(outcome, now);

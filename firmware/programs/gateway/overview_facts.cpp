@@ -60,7 +60,9 @@ void Overview::add_reports(alarms::Facts& facts) const {
   for (const api::RejectedRow& row : rooms_.flow.rejected().rows()) {
     if (row.replaced) continue;
     ++facts.messages_rejected;
-    facts.newest_rejected = std::max(facts.newest_rejected, row.number);
+    if (row.number < facts.newest_rejected) continue;
+    facts.newest_rejected = row.number;
+    facts.newest_rejected_why = (row.robot.empty() ? "" : row.robot + "'s ") + row.kind + ": " + row.why;
   }
 }
 

@@ -118,10 +118,11 @@ struct Facts {
   std::vector<ReportFact> reports = {};
   std::map<std::string, std::size_t> reports_elsewhere = {};  // by the Command Post they are queued for
   std::optional<std::int64_t> reports_left = {};
-  std::string run_unreliable = {};    // why the run's count of reports proves nothing, or ""
-  std::string run_renamed = {};       // why the names in answers do not show the run, or ""
-  std::size_t messages_rejected = 0;  // stored and not replaced
-  std::uint64_t newest_rejected = 0;  // number of the newest; numbers rise
+  std::string run_unreliable = {};       // why the run's count of reports proves nothing, or ""
+  std::string run_renamed = {};          // why the names in answers do not show the run, or ""
+  std::size_t messages_rejected = 0;     // stored and not replaced
+  std::uint64_t newest_rejected = 0;     // number of the newest; numbers rise
+  std::string newest_rejected_why = {};  // "ugv1's cloud: ..."
 
   std::string ledger_refusal = {}, ledger_damage = {};
   std::string put_aside = {};     // which queued messages are set aside, and why; or ""

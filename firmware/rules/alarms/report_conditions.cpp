@@ -111,7 +111,8 @@ void find_report_troubles(const Facts& facts, Found& found) {
          .severity = Severity::Ask,
          .side = Side::CommandPost,
          .headline = {sentence(facts.messages_rejected, one ? " message" : " messages"), "rejected", !one},
-         .why = sentence("the Command Post did not accept ", one ? "it" : "them"),
+         .why = sentence("the Command Post did not accept ",
+                         one ? "it: " : "them; the newest: ", facts.newest_rejected_why),
          .action = {"Show", "/#rejected"},
          .degree = facts.newest_rejected});  // rises even if an older message made room
   }

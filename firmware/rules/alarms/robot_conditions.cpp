@@ -14,8 +14,9 @@ namespace {
 using icd::sentence;
 
 constexpr std::size_t kMegabyte = 1'000'000;
-constexpr double kNoRoomRecent = 60;    // seconds that a rejection for want of room is reported
-constexpr std::size_t kNamed = 3;       // robots named in a sentence
+constexpr double kNoRoomRecent = 60;  // seconds that a rejection for want of room is reported
+constexpr std::size_t kNamed = 3;     // robots named in a sentence
+constexpr int kTooLarge = 413;
 constexpr std::size_t kManyBehind = 4;  // robots that share one condition
 
 Action show(const std::string& robot) {
@@ -84,7 +85,8 @@ void find_behind(const Facts& facts, Found& found) {
                      .subject = name,
                      .since = facts.now - *longest->behind,
                      .headline = {name.empty() ? "The merged map" : name + "'s map", "behind"},
-                     .why = sentence("its newest ", longest->kind, " has not reached the Command Post"),
+                     .why = sentence("its newest ", longest->kind, " has not reached the Command Post",
+                                     longest->last_status == kTooLarge ? ", because it is too large" : ""),
                      .action = name.empty() ? Action{} : show(name)});
   }
   if (count < kManyBehind) return;

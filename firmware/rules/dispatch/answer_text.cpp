@@ -1,6 +1,7 @@
 #include "dispatch/answer_text.hpp"
 
 #include "codec/json.hpp"
+#include "dispatch/mapping_verdict.hpp"
 #include "icd/sentence.hpp"
 
 namespace adit::dispatch {
@@ -21,6 +22,12 @@ std::string cut(std::string text) {
 
 std::string answered_with(int status) {
   return icd::sentence("the Command Post answered ", status);
+}
+
+std::string too_large(std::size_t bytes, std::string_view body) {
+  constexpr std::size_t kKilobyte = 1000;
+  return icd::sentence("too large (", (bytes + kKilobyte - 1) / kKilobyte,
+                       " kB): ", answer_text(kTooLarge, body));
 }
 
 std::string answer_text(int status, std::string_view body) {

@@ -32,8 +32,9 @@ bool is_the_command_post(int status, Body body) {
 MappingVerdict mapping_verdict(int status, Body body) {
   if (icd::is_success(status)) return body == Body::Other ? MappingVerdict::Failing : MappingVerdict::Taken;
   if (status == kThrottled) return MappingVerdict::Throttled;
+  if (status == kTooLarge) return MappingVerdict::TooLarge;
   if (status == 409 || status == 415 || status == kHandlerFailed) return MappingVerdict::Suspect;
-  if (status == 400 || status == 413 || status == 422) {
+  if (status == 400 || status == 422) {
     return body == Body::Other ? MappingVerdict::Suspect : MappingVerdict::Refused;
   }
   return MappingVerdict::Failing;

@@ -15,11 +15,15 @@ bool may_be_the_command_post(int status, Body body);
 /// 2xx with JSON. An error does not identify the Command Post, because proxies send JSON errors.
 bool is_the_command_post(int status, Body body);
 
+/// 413 to a map, a state or markers.
+inline constexpr int kTooLarge = 413;
+
 enum class MappingVerdict : std::uint8_t {
   Taken,      // 2xx with JSON or an empty body
   Throttled,  // 429: retry more slowly
-  Refused,    // 400, 413, 422 with JSON or an empty body: do not retry
-  Suspect,    // 409, 415, 500, or 400, 413, 422 with a page: at fault if others pass (queues::Blame)
+  Refused,    // 400, 422 with JSON or an empty body: do not retry
+  TooLarge,   // 413 with any body: send less; the Command Post or a proxy before it has a limit
+  Suspect,    // 409, 415, 500, or 400, 422 with a page: at fault if others pass (queues::Blame)
   Failing,    // all others: retry
 };
 MappingVerdict mapping_verdict(int status, Body body);

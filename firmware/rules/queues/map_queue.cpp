@@ -44,6 +44,7 @@ QueuedMap MapQueue::waiting(std::uint64_t number, icd::MapUpdate map, Instant no
 Replaced MapQueue::add(std::uint64_t number, icd::MapUpdate map, Instant now) {
   QueuedMap added = waiting(number, std::move(map), now);
   Waiting& its = joins(Sender::of(added.map));
+  inherit(added.trial, its.trial);
   return change(its.queue, [&](SenderQueue& queue) { return queue.add(std::move(added)); });
 }
 
@@ -98,8 +99,24 @@ std::optional<QueuedMap> MapQueue::take(Instant now) {
 
 void MapQueue::forget_those_that_are_gone() {
   std::erase_if(senders_, [&](const auto& each) {
-    return each.second.queue.count() == 0 && !turns_.has_to_pay(each.second.turn);
+    return each.second.queue.count() == 0 && !turns_.has_to_pay(each.second.turn) &&
+           !each.second.trial.failed;
   });
+}
+
+void MapQueue::too_large(const Sender& sender, const Trial& trial) {
+  Waiting& its = senders_[sender];
+  its.trial = trial;
+  its.trial.failures = 0;
+  its.trial.steps_behind = false;
+  its.queue.inherit(its.trial);
+}
+
+void MapQueue::passed(const Sender& sender) {
+  const auto found = senders_.find(sender);
+  if (found == senders_.end() || !found->second.trial.failed) return;
+  found->second.trial = {};
+  found->second.queue.inherit({});
 }
 
 void MapQueue::carried(const Sender& sender, std::size_t bytes) {
@@ -119,6 +136,14 @@ void MapQueue::put_back_apart(QueuedMap map) {
   Waiting& its = joins(Sender::of(map.map));
   change(its.queue, [&](SenderQueue& queue) {
     queue.put_back_apart(std::move(map));
+    return true;
+  });
+}
+
+void MapQueue::put_back_halves(QueuedMap map) {
+  Waiting& its = joins(Sender::of(map.map));
+  change(its.queue, [&](SenderQueue& queue) {
+    queue.put_back_halves(std::move(map));
     return true;
   });
 }

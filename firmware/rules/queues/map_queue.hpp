@@ -79,6 +79,11 @@ class MapQueue {
   /// The sent cells of each robot's grids. The caller reports there how a grid was drawn.
   Canvases& canvases() { return canvases_; }
 
+  /// A map of `sender` was too large and has failed as `trial` says. Until one of its maps is accepted
+  /// (passed()), its queued maps and later ones rest as long and begin with its strikes (inherit()).
+  void too_large(const Sender& sender, const Trial& trial);
+  void passed(const Sender& sender);
+
   /// A message of `sender` used `bytes` of the link. The sender pays for the part beyond one slot with turns.
   void carried(const Sender& sender, std::size_t bytes);
 
@@ -90,6 +95,8 @@ class MapQueue {
   /// Queues the parts of a merged or stitched map again, each by itself, as the sender's first maps. They are
   /// not joined again, so that only the part that the Command Post rejects fails. Requires parts.
   void put_back_apart(QueuedMap map);
+  /// The same for a map that was too large: the halves of merged clouds, or the parts of a stitched grid.
+  void put_back_halves(QueuedMap map);
 
   /// Two successive clouds that have not been compared yet, or nothing. Call replace() or keep_both() with
   /// the outcome.
@@ -122,6 +129,7 @@ class MapQueue {
   struct Waiting {
     SenderQueue queue;
     Turn turn;
+    Trial trial{};  // of its last map, if that was too large
   };
   using Senders = std::map<Sender, Waiting>;
 

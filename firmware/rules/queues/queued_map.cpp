@@ -89,6 +89,23 @@ std::vector<QueuedMap> parts_of(QueuedMap map, bool may_join_again) {
   return std::move(map.parts);
 }
 
+std::vector<QueuedMap> halves_of(QueuedMap map) {
+  const bool is_grid = map.map.is_grid();
+  std::vector<QueuedMap> parts = parts_of(std::move(map), /*may_join_again=*/false);
+  if (is_grid) return parts;
+  const std::size_t middle = (parts.size() + 1) / 2;
+  std::vector<QueuedMap> halves;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (i == 0 || i == middle) {
+      halves.push_back(std::move(parts[i]));
+      continue;
+    }
+    join(halves.back(), parts[i]);
+    halves.back().map = merge(std::move(halves.back().map), parts[i].map);
+  }
+  return halves;
+}
+
 bool may_join(const QueuedMap& map) {
   return !map.alone && map.trial.failures == 0 && !map.again;
 }
@@ -126,11 +143,13 @@ void take_over(QueuedMap& to, QueuedMap from) {
   to.updates = std::move(from.updates);
   std::inplace_merge(to.updates.begin(), to.updates.begin() + middle, to.updates.end());
   to.accepted = std::min(to.accepted, from.accepted);
-  // It also inherits the place, the rest and the strikes, but never the last two: it must fail itself to be
-  // rejected.
-  if (to.trial.failures > 0) return;
-  to.trial = from.trial;
-  to.trial.strikes = std::min(to.trial.strikes, Blame::kMostStrikes - 2);
+  inherit(to.trial, from.trial);  // with its place
+}
+
+void inherit(Trial& to, const Trial& from) {
+  if (to.failures > 0) return;
+  to = from;
+  to.strikes = std::min(to.strikes, Blame::kMostStrikes - 2);
 }
 
 bool mergeable(const icd::PointCloud2& a, const icd::PointCloud2& b) {

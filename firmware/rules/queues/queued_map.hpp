@@ -88,11 +88,18 @@ std::optional<Replaced> absorb(QueuedMap& to, const QueuedMap& from);
 /// `to` replaces `from`, and takes its updates and age. Call take_bounds() first.
 void take_over(QueuedMap& to, QueuedMap from);
 
+/// Unless `to` has failed itself, it takes the strikes and the rest of `from`, but never the last two
+/// strikes: it must fail itself to be rejected.
+void inherit(Trial& to, const Trial& from);
+
 /// Merges `from` into `to`, which takes its updates and keeps both as parts. The parts share their bytes.
 void join(QueuedMap& to, const QueuedMap& from);
 
 /// The parts of `map`, each with its updates. `may_join_again`: they may be merged again. Requires parts.
 std::vector<QueuedMap> parts_of(QueuedMap map, bool may_join_again);
+
+/// Merged clouds as two maps that are not merged again, or the parts of a stitched grid. Requires parts.
+std::vector<QueuedMap> halves_of(QueuedMap map);
 
 /// Whether it may be merged or stitched with others.
 bool may_join(const QueuedMap& map);

@@ -197,11 +197,20 @@ void SenderQueue::put_back_apart(QueuedMap map) {
   insert(place, parts_of(std::move(map), /*may_join_again=*/false));
 }
 
+void SenderQueue::put_back_halves(QueuedMap map) {
+  const auto place = before_newer(map);
+  insert(place, halves_of(std::move(map)));
+}
+
 void SenderQueue::insert(Maps::const_iterator place, std::vector<QueuedMap> parts) {
   std::size_t bytes = 0;
   for (const QueuedMap& part : parts) bytes += bytes_held(part);
   waiting_.insert(place, std::move_iterator(parts.begin()), std::move_iterator(parts.end()));
   bytes_ += bytes;
+}
+
+void SenderQueue::inherit(const Trial& trial) {
+  for (QueuedMap& each : waiting_) queues::inherit(each.trial, trial);
 }
 
 void SenderQueue::step_forward() {

@@ -38,7 +38,9 @@ class SenderQueue {
   QueuedMap take(Instant now, std::size_t merge_bytes, Canvases& canvases);
   Replaced put_back(QueuedMap map);
   void put_back_apart(QueuedMap map);
-  void step_forward();  // clears Trial::steps_behind of all maps
+  void put_back_halves(QueuedMap map);
+  void inherit(const Trial& trial);  // by the maps that have not failed themselves
+  void step_forward();               // clears Trial::steps_behind of all maps
 
   std::vector<std::uint64_t> replace(const Successive& two);
   /// The last two clouds, if they have not been compared yet.

@@ -1,0 +1,140 @@
+// A proxy before the mapping endpoint answers 413 with a web page to a body above its limit.
+#include <gmock/gmock.h>
+
+#include <atomic>
+#include <filesystem>
+#include <random>
+
+#include "../uplink/peer.hpp"
+#include "forward/fixtures.hpp"
+#include "forward/sample_maps.hpp"
+#include "loop/turn_until.hpp"
+
+namespace adit::forward {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr std::size_t kLimit = 300'000;
+constexpr int kPoints = 8000, kClouds = 10;  // a cloud has about 80 kB
+
+class ProxyStub {
+ public:
+  /// `body`: of the answer 413; null: a reset once kLimit bytes have arrived.
+  explicit ProxyStub(const char* body) : body_(body) {}
+  settings::Address address() const { return {peer_.endpoint().address, peer_.endpoint().port}; }
+  std::atomic<int> too_large = 0;
+
+ private:
+  /// One request of each connection.
+  void serve(uplink::Wire& wire) {
+    const std::string head = wire.read_head();
+    if (head.empty()) return;
+    const bool fits = std::stoul(head.substr(head.find(kLength) + kLength.size())) <= kLimit;
+    if (!fits) ++too_large;
+    if (!fits && body_ == nullptr) {
+      for (std::size_t came = 0, some = 1; came < kLimit && some > 0; came += some)
+        some = wire.read_some(kLimit - came);
+      return wire.reset();
+    }
+    if (wire.read_rest(head).empty()) return;
+    wire.write(fits ? uplink::answer("200 OK", "null", kClose)
+                    : uplink::answer("413 Request Entity Too Large", body_, kClose));
+  }
+  static constexpr const char* kClose = "Connection: close\r\n";
+  static constexpr std::string_view kLength = "Content-Length: ";
+  const char* body_;
+  uplink::ListeningPeer peer_{[this](uplink::Wire& wire) { serve(wire); }};
+};
+
+class TooLargeMap : public testing::Test, protected MapsParts {
+ protected:
+  TooLargeMap() { settings_.command_post.rates.map_hz = 100; }
+
+  /// The maps are queued before the first one is sent.
+  void send(const std::vector<icd::MapUpdate>& updates, const ProxyStub& proxy) {
+    settings_.command_post.mapping = proxy.address();
+    std::size_t taken = 0;
+    for (const icd::MapUpdate& each : updates)
+      maps_.take(each, 10, nullptr, [&](const icd::Checked<void>& said) { taken += said ? 1 : 0; });
+    ASSERT_TRUE(loop::turn_until(loop_, [&] { return taken == updates.size(); }));
+    maps_.endpoint_changed(icd::BearerToken::parse("a-token"));
+  }
+  icd::MapUpdate cloud_of(int points) {
+    std::uniform_real_distribution<float> place(-100, 100);
+    std::vector<float> xs;
+    for (int i = 0; i < 3 * points; ++i) xs.push_back(place(random_));
+    icd::MapUpdate map = cloud_along_x("r1", std::vector<float>(static_cast<std::size_t>(points)));
+    std::vector<std::uint8_t> bytes(xs.size() * sizeof(float));
+    std::memcpy(bytes.data(), xs.data(), bytes.size());
+    map.data.bytes = icd::ChunkedBytes(bytes);
+    return map;
+  }
+  std::vector<icd::MapUpdate> clouds(int count) {
+    std::vector<icd::MapUpdate> all;
+    for (int i = 0; i < count; ++i) all.push_back(cloud_of(kPoints));
+    return all;
+  }
+  const api::ActivityRow& row() const { return counts_.rows().at({Kind::Cloud, "r1"}); }
+  bool becomes(std::size_t waiting) {
+    return loop::turn_until(loop_, [&] { return maps_.waiting({Kind::Cloud, "r1"}) == waiting; });
+  }
+
+  std::size_t delivered_ = 0;  // bytes of points
+  Maps maps_{loop_,
+             workers_,
+             writer_,
+             spool_,
+             settings_,
+             std::nullopt,
+             counts_,
+             rejected_,
+             random_,
+             journal_,
+             [this](const icd::MapUpdate& map) { delivered_ += map.data.raw_size; }};
+};
+
+TEST_F(TooLargeMap, IsSentInSmallerMessagesIfItWasJoined) {
+  ProxyStub proxy("<html>too large</html>");
+  send(clouds(kClouds), proxy);
+  ASSERT_TRUE(becomes(0));
+  EXPECT_EQ(delivered_, std::size_t{12} * kPoints * kClouds) << "each point once";
+  EXPECT_GE(proxy.too_large, 1);
+  EXPECT_LE(proxy.too_large, 2) << "its halves are no larger than what has passed";
+  EXPECT_THAT(rejected_.rows(), IsEmpty());
+  EXPECT_EQ(maps_.channel().last().foreign(), 0);
+  ASSERT_TRUE(loop::turn_until_idle(loop_, writer_));
+  EXPECT_TRUE(std::filesystem::is_empty(folder_.path())) << "the stored maps are deleted";
+}
+
+TEST_F(TooLargeMap, IsStoredUntilItsLastPartIsDelivered) {
+  ProxyStub proxy("<html>too large</html>");
+  send(clouds(kClouds), proxy);
+  ASSERT_TRUE(loop::turn_until(loop_, [&] { return delivered_ > 0; }));
+  ASSERT_TRUE(loop::turn_until_idle(loop_, writer_));
+  EXPECT_GE(spool::Spool(folder_.path()).read().size() * 12 * kPoints + delivered_,
+            std::size_t{12} * kPoints * kClouds);
+}
+
+TEST_F(TooLargeMap, IsNotTheFaultOfTheAddress) {
+  ProxyStub proxy("<html>too large</html>");
+  send({cloud_of(5 * kPoints)}, proxy);
+  ASSERT_TRUE(loop::turn_until(loop_, [&] { return maps_.channel().last().status() == 413; }));
+  EXPECT_FALSE(maps_.channel().last().is_foreign());
+  EXPECT_THAT(maps_.channel().trouble(), HasSubstr("too large ("));
+  EXPECT_THAT(row().last_sentence, HasSubstr(" kB): the Command Post answered 413"));
+  EXPECT_EQ(maps_.waiting({Kind::Cloud, "r1"}), 1) << "nobody else's map has passed";
+}
+
+TEST_F(TooLargeMap, IsRejectedWithItsSizeByTheCommandPostItself) {
+  ProxyStub proxy("\"no room\"");
+  send({cloud_of(5 * kPoints)}, proxy);
+  ASSERT_TRUE(becomes(0));
+  ASSERT_EQ(rejected_.rows().size(), 1u);
+  EXPECT_THAT(rejected_.rows().front().why, HasSubstr("too large ("));
+  EXPECT_THAT(rejected_.rows().front().why, HasSubstr("no room"));
+}
+
+}  // namespace
+}  // namespace adit::forward

@@ -117,6 +117,19 @@ TEST_F(TooLargeMap, IsStoredUntilItsLastPartIsDelivered) {
             std::size_t{12} * kPoints * kClouds);
 }
 
+TEST_F(TooLargeMap, IsSentInSmallerMessagesAfterThreeResetsWhileOthersAreDelivered) {
+  ProxyStub proxy(nullptr);
+  send(clouds(kClouds), proxy);
+  ASSERT_TRUE(loop::turn_until(loop_, [&] { return row().failed >= 2; }));
+  EXPECT_EQ(delivered_, 0u);
+  ASSERT_TRUE(loop::turn_until(loop_, [&] {
+    counts_.forwarded({Kind::State, "r2"}, 1, 100, 200, 0);
+    return maps_.waiting({Kind::Cloud, "r1"}) == 0;
+  }));
+  EXPECT_EQ(delivered_, std::size_t{12} * kPoints * kClouds);
+  EXPECT_LE(proxy.too_large, 5);
+}
+
 TEST_F(TooLargeMap, IsNotTheFaultOfTheAddress) {
   ProxyStub proxy("<html>too large</html>");
   send({cloud_of(5 * kPoints)}, proxy);

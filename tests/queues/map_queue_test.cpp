@@ -222,6 +222,17 @@ TEST(MapQueue, HalvesMergedCloudsThatAreTooLarge) {
   EXPECT_EQ(queue.bytes(), 0);
 }
 
+TEST(Cuts, ShowASizeAfterThreeAtAboutTheSameByteWhileOthersAreDelivered) {
+  Cuts cuts;
+  EXPECT_FALSE(cuts.happened(1'000'000, 10));
+  EXPECT_FALSE(cuts.happened(1'000'000, 10)) << "nothing was delivered meanwhile";
+  EXPECT_FALSE(cuts.happened(1'100'000, 11));
+  EXPECT_TRUE(cuts.happened(950'000, 12));
+  Cuts elsewhere;
+  for (const std::size_t at : {1'000'000, 500'000, 1'000'000, 700'000})
+    EXPECT_FALSE(elsewhere.happened(at, at)) << "a link that fails";
+}
+
 TEST(MapQueue, SendsGridsAloneWhoseWholeIsTooLarge) {
   MapQueue queue{kPlenty};
   queue.add(1, grid_update("R1", grid(0, 0, 20, 20)), at(1));

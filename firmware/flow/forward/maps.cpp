@@ -173,7 +173,10 @@ void Maps::classify(const Place& sent, const uplink::Outcome& outcome) {
   if (const auto* answer = std::get_if<uplink::Answered>(&outcome)) return verdict(sent, *answer);
   pace_.failed(outcome, loop_.now());
   counts_.not_taken(traffic_of(sent->waiting.map), DeliveryFailure::Failed, 0, sentence_of(outcome));
-  again(sent);
+  if (!std::holds_alternative<uplink::InDoubt>(outcome) || !is_cut_by_size(*sent)) return again(sent);
+  prepared_.slot().too_large(std::min(sent->waiting.cuts.at, sent->packed.body.size()));
+  ahead_.failed(sent->went_ahead);
+  split(sent);
 }
 
 void Maps::taken(const Place& sent, const uplink::Answered& answered) {
@@ -261,6 +264,14 @@ void Maps::too_large(const Place& sent, const uplink::Answered& answered) {
 /// A joined map that the endpoint would not accept. A single map is always tried.
 bool Maps::must_split(const PreparedMap& prepared) const {
   return !prepared.waiting.parts.empty() && prepared.packed.body.size() > prepared_.slot().limit();
+}
+
+/// Of two maps in flight the bytes that had left are not known. A single map is retried, because a fault of
+/// the link is never a reason to reject it.
+bool Maps::is_cut_by_size(PreparedMap& sent) {
+  if (sent.waiting.parts.empty() || sent.packed.body.size() < queues::Cuts::kLeastBody) return false;
+  if (sent.went_ahead || channel_.busy()) return false;
+  return sent.waiting.cuts.happened(channel_.sent_of_it(), counts_.delivered());
 }
 
 void Maps::split(const Place& place) {

@@ -105,6 +105,7 @@ class Maps {
   void taken(const Place& sent, const uplink::Answered& answered);
   void too_large(const Place& sent, const uplink::Answered& answered);
   bool must_split(const PreparedMap& prepared) const;
+  bool is_cut_by_size(PreparedMap& sent);
   void split(const Place& place);
   void again(const Place& sent);
   void give_up(const Place& sent, int status, const std::string& sentence);

@@ -83,6 +83,7 @@ void TrafficCounts::forwarded(const Traffic& traffic, std::size_t updates, std::
                               api::Time now) {
   api::ActivityRow& activity = row(traffic);
   ++activity.forwarded;
+  ++delivered_;
   if (traffic.kind == Kind::Cloud && updates > 1) activity.merged += updates - 1;
   activity.last_forwarded = now;
   activity.bytes_sent = bytes;

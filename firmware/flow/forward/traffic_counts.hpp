@@ -82,6 +82,9 @@ class TrafficCounts {
   /// The time of day was set ahead.
   void move(double seconds);
 
+  /// The number of delivered messages of all kinds since the start.
+  std::uint64_t delivered() const { return delivered_; }
+
   /// Rows without `queued` and `behind_since`, which the queues have.
   const std::map<Traffic, api::ActivityRow>& rows() const { return rows_; }
   /// Counts of rejected messages by URI and status.
@@ -94,6 +97,7 @@ class TrafficCounts {
   api::ActivityRow& row(const Traffic& traffic);
 
   std::function<void()> changed_;
+  std::uint64_t delivered_ = 0;
   std::map<Traffic, api::ActivityRow> rows_;
   std::deque<api::RefusalRow> refusals_;
   std::map<std::pair<icd::Uri, icd::Status>, api::RefusedCount> refused_;  // counts only

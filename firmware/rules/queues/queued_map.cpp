@@ -14,6 +14,18 @@ const icd::PointCloud2* loose_cloud_in(const icd::MapUpdate& map) {
   return std::get_if<icd::PointCloud2>(&map.msg);
 }
 
+bool Cuts::happened(std::size_t now_at, std::uint64_t now_delivered) {
+  const std::size_t apart = std::max(at, now_at) - std::min(at, now_at);
+  if (times == 0 || apart > std::max(at, now_at) / 4) {
+    times = 1;
+  } else if (now_delivered > delivered) {
+    ++times;
+  }
+  at = now_at;
+  delivered = now_delivered;
+  return times >= kMost;
+}
+
 std::size_t bytes_held(const QueuedMap& waiting) {
   constexpr std::size_t kFrame = 1024;
   std::size_t bytes = kFrame + waiting.map.data.bytes.size() + waiting.updates.size() * sizeof(std::uint64_t);

@@ -22,6 +22,20 @@ bool mergeable(const icd::PointCloud2& a, const icd::PointCloud2& b);
 /// clouds of one name with uncompressed data.
 icd::MapUpdate merge(icd::MapUpdate older, const icd::MapUpdate& newer);
 
+/// A large message got no answer, so often in a row. `at`: the bytes of it that had left the last time.
+/// `delivered`: the messages that had been delivered then.
+struct Cuts {
+  static constexpr std::size_t kLeastBody = 256'000;  // smaller messages are never too large without a 413
+  static constexpr int kMost = 3;
+  int times = 0;
+  std::size_t at = 0;
+  std::uint64_t delivered = 0;
+
+  /// True if its size seems to be the reason: it happened kMost times at about the same byte, and other
+  /// messages were delivered each time since the last one.
+  bool happened(std::size_t now_at, std::uint64_t now_delivered);
+};
+
 /// A queued map and the accepted updates that it stands for: its own, those it replaced, those merged into
 /// it.
 struct QueuedMap {
@@ -43,6 +57,7 @@ struct QueuedMap {
   /// For a cloud that is being sent: how far it may be rounded; not Auto.
   Precision precision = Precision::Exact;
   Trial trial{};  // its failures at the Command Post
+  Cuts cuts{};
   /// The bounds of a grid and of all that it replaced, along its own axes; nothing if it replaced none.
   std::optional<icd::GridBounds> bounds{};
   /// Only for a rejected map that the operator sends again: its original stamp. It orders the map before all

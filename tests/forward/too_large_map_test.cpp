@@ -82,17 +82,10 @@ class TooLargeMap : public testing::Test, protected MapsParts {
   }
 
   std::size_t delivered_ = 0;  // bytes of points
-  Maps maps_{loop_,
-             workers_,
-             writer_,
-             spool_,
-             settings_,
-             std::nullopt,
-             counts_,
-             rejected_,
-             random_,
-             journal_,
-             [this](const icd::MapUpdate& map) { delivered_ += map.data.raw_size; }};
+  Maps maps_{loop_,        servers_, workers_,
+             writer_,      spool_,   settings_,
+             std::nullopt, counts_,  rejected_,
+             random_,      journal_, [this](const icd::MapUpdate& map) { delivered_ += map.data.raw_size; }};
 };
 
 TEST_F(TooLargeMap, IsSentInSmallerMessagesIfItWasJoined) {

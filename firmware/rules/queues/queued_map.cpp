@@ -162,6 +162,7 @@ void inherit(Trial& to, const Trial& from) {
   if (to.failures > 0) return;
   to = from;
   to.strikes = std::min(to.strikes, Blame::kMostStrikes - 2);
+  to.proofs = std::min(to.proofs, Blame::kMostStrikes - 2);
 }
 
 bool mergeable(const icd::PointCloud2& a, const icd::PointCloud2& b) {

@@ -134,18 +134,22 @@ TEST(Slot, ForgetsAStallOfTheWorker) {
 
 TEST(Slot, HoldsNoMoreThanTheEndpointAccepts) {
   Slot slot(10 * kMegabyte);
-  slot.passed(kMegabyte / 2);
+  slot.on_passed(kMegabyte / 2);
   EXPECT_EQ(exact_in(slot, 1), 10 * kMegabyte);
-  slot.too_large(4 * kMegabyte);
+  slot.on_too_large(4 * kMegabyte);
   EXPECT_EQ(slot.limit(), 2 * kMegabyte);
   EXPECT_EQ(exact_in(slot, 1), 1'800'000) << "clouds do not all pack alike";
-  slot.too_large(3 * kMegabyte / 2);
-  slot.too_large(kMegabyte * 3 / 4);
+  slot.on_too_large(3 * kMegabyte / 2);
+  slot.on_too_large(kMegabyte * 3 / 4);
   EXPECT_EQ(slot.limit(), kMegabyte / 2) << "such a message has passed";
-  slot.passed(kMegabyte);
+  slot.on_passed(kMegabyte);
   EXPECT_EQ(slot.limit(), kMegabyte) << "a larger one has passed";
-  slot.too_large(kMegabyte);
+  slot.on_too_large(kMegabyte);
   EXPECT_EQ(slot.limit(), kMegabyte) << "others may send as much";
+  for (int i = 0; i < Slot::kTryLarger; ++i) slot.on_passed(1);
+  EXPECT_EQ(exact_in(slot, 1), 10 * kMegabyte) << "the limit may be gone";
+  slot.on_too_large(4 * kMegabyte);
+  EXPECT_EQ(slot.limit(), kMegabyte) << "it was not";
   slot.forget_sizes();
   EXPECT_EQ(exact_in(slot, 1), 10 * kMegabyte);
 }

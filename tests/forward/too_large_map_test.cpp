@@ -3,9 +3,15 @@
 
 #include <atomic>
 #include <filesystem>
+#include <mutex>
 #include <random>
+#include <set>
+#include <thread>
 
 #include "../uplink/peer.hpp"
+#include "codec/body_decoder.hpp"
+#include "codec/gzip.hpp"
+#include "codec/read.hpp"
 #include "forward/fixtures.hpp"
 #include "forward/sample_maps.hpp"
 #include "loop/turn_until.hpp"
@@ -24,28 +30,49 @@ class ProxyStub {
   /// `body`: of the answer 413; null: a reset once kLimit bytes have arrived.
   explicit ProxyStub(const char* body) : body_(body) {}
   settings::Address address() const { return {peer_.endpoint().address, peer_.endpoint().port}; }
+  /// The x of each accepted point.
+  std::multiset<float> points() {
+    const std::lock_guard lock(mutex_);
+    return points_;
+  }
   std::atomic<int> too_large = 0;
 
  private:
-  /// One request of each connection.
   void serve(uplink::Wire& wire) {
-    const std::string head = wire.read_head();
-    if (head.empty()) return;
-    const bool fits = std::stoul(head.substr(head.find(kLength) + kLength.size())) <= kLimit;
-    if (!fits) ++too_large;
-    if (!fits && body_ == nullptr) {
-      for (std::size_t came = 0, some = 1; came < kLimit && some > 0; came += some)
-        some = wire.read_some(kLimit - came);
-      return wire.reset();
+    for (std::string head = wire.read_head(); !head.empty(); head = wire.read_head()) {
+      const bool fits = std::stoul(head.substr(head.find(kLength) + kLength.size())) <= kLimit;
+      if (!fits) ++too_large;
+      if (!fits && body_ == nullptr) {
+        for (std::size_t came = 0, some = 1; came < kLimit && some > 0; came += some)
+          some = wire.read_some(kLimit - came);
+        return wire.reset();
+      }
+      const std::string request = wire.read_rest(head);
+      if (request.empty()) return;
+      if (fits) note(request.substr(head.size()));
+      if (!wire.write(fits ? uplink::answer("200 OK", "null")
+                           : uplink::answer("413 Request Entity Too Large", body_)))
+        return;
     }
-    if (wire.read_rest(head).empty()) return;
-    wire.write(fits ? uplink::answer("200 OK", "null", kClose)
-                    : uplink::answer("413 Request Entity Too Large", body_, kClose));
   }
-  static constexpr const char* kClose = "Connection: close\r\n";
+  void note(const std::string& body) {
+    auto document = codec::decode({codec::Format::Cbor, {}}, codec::Split::MapData, body);
+    ASSERT_TRUE(document);
+    const auto map = codec::read_map_update(*std::move(document), {});
+    ASSERT_TRUE(map);
+    if (map->is_grid()) return;
+    const auto xs = xs_of(map->data);
+    const std::lock_guard lock(mutex_);
+    points_.insert(xs.begin(), xs.end());
+  }
+  std::mutex mutex_;
+  std::multiset<float> points_;
   static constexpr std::string_view kLength = "Content-Length: ";
   const char* body_;
-  uplink::ListeningPeer peer_{[this](uplink::Wire& wire) { serve(wire); }};
+  std::vector<std::jthread> connections_;
+  uplink::ListeningPeer peer_{std::vector<uplink::Peer::Script>{[this](uplink::Wire& wire) {
+    connections_.emplace_back([this, its = std::move(wire)]() mutable { serve(its); });
+  }}};
 };
 
 class TooLargeMap : public testing::Test, protected MapsParts {
@@ -53,8 +80,9 @@ class TooLargeMap : public testing::Test, protected MapsParts {
   TooLargeMap() { settings_.command_post.rates.map_hz = 100; }
 
   /// The maps are queued before the first one is sent.
-  void send(const std::vector<icd::MapUpdate>& updates, const ProxyStub& proxy) {
-    settings_.command_post.mapping = proxy.address();
+  void send(const std::vector<icd::MapUpdate>& updates, const char* body = "<html>too large</html>") {
+    proxy_.emplace(body);
+    settings_.command_post.mapping = proxy_->address();
     std::size_t taken = 0;
     for (const icd::MapUpdate& each : updates)
       maps_.take(each, 10, nullptr, [&](const icd::Checked<void>& said) { taken += said ? 1 : 0; });
@@ -71,6 +99,15 @@ class TooLargeMap : public testing::Test, protected MapsParts {
     map.data.bytes = icd::ChunkedBytes(bytes);
     return map;
   }
+  /// A grid that does not compress below the limit.
+  icd::MapUpdate noise() {
+    constexpr std::uint32_t kSide = 800;
+    std::vector<std::uint8_t> cells(kSide * kSide);
+    for (std::uint8_t& each : cells) each = static_cast<std::uint8_t>(random_() % 101);
+    icd::MapUpdate map = grid_of("r1", kSide);
+    map.data.bytes = icd::ChunkedBytes(cells);
+    return map;
+  }
   std::vector<icd::MapUpdate> clouds(int count) {
     std::vector<icd::MapUpdate> all;
     for (int i = 0; i < count; ++i) all.push_back(cloud_of(kPoints));
@@ -81,7 +118,8 @@ class TooLargeMap : public testing::Test, protected MapsParts {
     return loop::turn_until(loop_, [&] { return maps_.waiting({Kind::Cloud, "r1"}) == waiting; });
   }
 
-  std::size_t delivered_ = 0;  // bytes of points
+  std::optional<ProxyStub> proxy_;  // outlives the connections to it
+  std::size_t delivered_ = 0;       // bytes of points
   Maps maps_{loop_,        servers_, workers_,
              writer_,      spool_,   settings_,
              std::nullopt, counts_,  rejected_,
@@ -89,12 +127,11 @@ class TooLargeMap : public testing::Test, protected MapsParts {
 };
 
 TEST_F(TooLargeMap, IsSentInSmallerMessagesIfItWasJoined) {
-  ProxyStub proxy("<html>too large</html>");
-  send(clouds(kClouds), proxy);
+  send(clouds(kClouds));
   ASSERT_TRUE(becomes(0));
   EXPECT_EQ(delivered_, std::size_t{12} * kPoints * kClouds) << "each point once";
-  EXPECT_GE(proxy.too_large, 1);
-  EXPECT_LE(proxy.too_large, 2) << "its halves are no larger than what has passed";
+  EXPECT_GE(proxy_->too_large, 1);
+  EXPECT_LE(proxy_->too_large, 2) << "its halves are no larger than what has passed";
   EXPECT_THAT(rejected_.rows(), IsEmpty());
   EXPECT_EQ(maps_.channel().last().foreign(), 0);
   ASSERT_TRUE(loop::turn_until_idle(loop_, writer_));
@@ -102,8 +139,7 @@ TEST_F(TooLargeMap, IsSentInSmallerMessagesIfItWasJoined) {
 }
 
 TEST_F(TooLargeMap, IsStoredUntilItsLastPartIsDelivered) {
-  ProxyStub proxy("<html>too large</html>");
-  send(clouds(kClouds), proxy);
+  send(clouds(kClouds));
   ASSERT_TRUE(loop::turn_until(loop_, [&] { return delivered_ > 0; }));
   ASSERT_TRUE(loop::turn_until_idle(loop_, writer_));
   EXPECT_GE(spool::Spool(folder_.path()).read().size() * 12 * kPoints + delivered_,
@@ -111,32 +147,57 @@ TEST_F(TooLargeMap, IsStoredUntilItsLastPartIsDelivered) {
 }
 
 TEST_F(TooLargeMap, IsSentInSmallerMessagesAfterThreeResetsWhileOthersAreDelivered) {
-  ProxyStub proxy(nullptr);
-  send(clouds(kClouds), proxy);
+  send(clouds(kClouds), nullptr);
   ASSERT_TRUE(loop::turn_until(loop_, [&] { return row().failed >= 2; }));
   EXPECT_EQ(delivered_, 0u);
   ASSERT_TRUE(loop::turn_until(loop_, [&] {
     counts_.forwarded({Kind::State, "r2"}, 1, 100, 200, 0);
+    maps_.link_is_back();  // no back-off
     return maps_.waiting({Kind::Cloud, "r1"}) == 0;
   }));
   EXPECT_EQ(delivered_, std::size_t{12} * kPoints * kClouds);
-  EXPECT_LE(proxy.too_large, 5);
+  EXPECT_LE(proxy_->too_large, 5);
+}
+
+TEST_F(TooLargeMap, IsSentInPiecesIfItIsASingleCloud) {
+  std::vector<icd::MapUpdate> single{cloud_of(10 * kPoints), cloud_of(10 * kPoints)};
+  single.back().data.bytes = codec::gzip(single.back().data.bytes, codec::GzipStrategy::Default);
+  single.back().data.compression = icd::Compression::Gzip;
+  std::multiset<float> xs;
+  for (const icd::MapUpdate& each : single) {
+    const auto some = xs_of(each.data);
+    xs.insert(some.begin(), some.end());
+  }
+  send(single);
+  ASSERT_TRUE(becomes(0));
+  EXPECT_EQ(proxy_->points(), xs) << "each point once";
+  EXPECT_LE(proxy_->too_large, 3) << "the second cloud is sent within the limit at once";
+  EXPECT_THAT(rejected_.rows(), IsEmpty());
+  ASSERT_TRUE(loop::turn_until_idle(loop_, writer_));
+  EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));
+}
+
+TEST_F(TooLargeMap, IsStoredUntilItsLastPieceIsDelivered) {
+  send({cloud_of(10 * kPoints)});
+  ASSERT_TRUE(loop::turn_until(loop_, [&] { return row().forwarded == 2; }));
+  ASSERT_TRUE(loop::turn_until_idle(loop_, writer_));
+  ASSERT_EQ(spool::Spool(folder_.path()).read().size(), 1u);
+  ASSERT_TRUE(becomes(0));
 }
 
 TEST_F(TooLargeMap, IsNotTheFaultOfTheAddress) {
-  ProxyStub proxy("<html>too large</html>");
-  send({cloud_of(5 * kPoints)}, proxy);
+  send({noise()});
   ASSERT_TRUE(loop::turn_until(loop_, [&] { return maps_.channel().last().status() == 413; }));
   EXPECT_FALSE(maps_.channel().last().is_foreign());
   EXPECT_THAT(maps_.channel().trouble(), HasSubstr("too large ("));
-  EXPECT_THAT(row().last_sentence, HasSubstr(" kB): the Command Post answered 413"));
-  EXPECT_EQ(maps_.waiting({Kind::Cloud, "r1"}), 1) << "nobody else's map has passed";
+  EXPECT_THAT(counts_.rows().at({Kind::Grid, "r1"}).last_sentence,
+              HasSubstr(" kB): the Command Post answered 413"));
+  EXPECT_EQ(maps_.waiting({Kind::Grid, "r1"}), 1) << "nobody else's map has passed";
 }
 
 TEST_F(TooLargeMap, IsRejectedWithItsSizeByTheCommandPostItself) {
-  ProxyStub proxy("\"no room\"");
-  send({cloud_of(5 * kPoints)}, proxy);
-  ASSERT_TRUE(becomes(0));
+  send({noise()}, "\"no room\"");
+  ASSERT_TRUE(loop::turn_until(loop_, [&] { return !rejected_.rows().empty(); }));
   ASSERT_EQ(rejected_.rows().size(), 1u);
   EXPECT_THAT(rejected_.rows().front().why, HasSubstr("too large ("));
   EXPECT_THAT(rejected_.rows().front().why, HasSubstr("no room"));

@@ -216,13 +216,13 @@ TEST(MapQueueOnTrial, TriesALaterMapTwiceAfterOneThatWasTooLarge) {
     const std::string name = map.map.name->text();
     if (name == "good") {
       blame.passed(name, instant);
-      queue.passed(Sender::of(map.map));
+      queue.on_passed(Sender::of(map.map));
       ++delivered;
       continue;
     }
     ++tries[map.updates.back()];
     const auto next = blame.failed(name, map.trial, instant);
-    queue.too_large(Sender::of(map.map), map.trial);
+    queue.on_too_large(Sender::of(map.map), map.trial);
     if (next == Blame::Next::Again) queue.put_back(std::move(map));
   }
   ASSERT_GE(tries.size(), 4);
@@ -239,9 +239,9 @@ TEST(MapQueueOnTrial, ForgetsStrikesOnceAMapOfThatRobotPassed) {
   auto first = *queue.take(at(0));
   for (int i = 0; blame.failed("ugv1", first.trial, at(i)) == Blame::Next::Again; ++i)
     blame.passed("ugv2", at(i + 0.5));
-  queue.too_large(Sender::of(first.map), first.trial);
+  queue.on_too_large(Sender::of(first.map), first.trial);
   queue.add(2, cloud_update("ugv1", {2}), at(3));
-  queue.passed(Sender::of(first.map));
+  queue.on_passed(Sender::of(first.map));
   queue.add(3, cloud_update("ugv1", {3}), at(3));
   for (const std::uint64_t number : {2u, 3u}) {
     const auto later = queue.take(at(3));

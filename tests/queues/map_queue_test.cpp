@@ -224,13 +224,14 @@ TEST(MapQueue, HalvesMergedCloudsThatAreTooLarge) {
 
 TEST(Cuts, ShowASizeAfterThreeAtAboutTheSameByteWhileOthersAreDelivered) {
   Cuts cuts;
-  EXPECT_FALSE(cuts.happened(1'000'000, 10));
-  EXPECT_FALSE(cuts.happened(1'000'000, 10)) << "nothing was delivered meanwhile";
-  EXPECT_FALSE(cuts.happened(1'100'000, 11));
-  EXPECT_TRUE(cuts.happened(950'000, 12));
+  EXPECT_FALSE(cuts.check(1'000'000, 10));
+  EXPECT_FALSE(cuts.check(1'000'000, 10)) << "nothing was delivered meanwhile";
+  EXPECT_FALSE(cuts.check(1'100'000, 11));
+  EXPECT_TRUE(cuts.check(950'000, 12));
   Cuts elsewhere;
+  std::uint64_t delivered = 0;
   for (const std::size_t at : {1'000'000, 500'000, 1'000'000, 700'000})
-    EXPECT_FALSE(elsewhere.happened(at, at)) << "a link that fails";
+    EXPECT_FALSE(elsewhere.check(at, ++delivered)) << "a link that fails";
 }
 
 TEST(MapQueue, SendsGridsAloneWhoseWholeIsTooLarge) {

@@ -87,7 +87,7 @@ std::optional<double> LastAnswer::time_there() const {
 std::string sentence_of(const uplink::Outcome& outcome, std::size_t bytes) {
   const auto* answered = std::get_if<uplink::Answered>(&outcome);
   if (answered != nullptr && answered->status == dispatch::kTooLarge)
-    return dispatch::too_large(bytes, answered->body);
+    return dispatch::oversize_text(bytes, answered->body);
   return sentence_of(outcome);
 }
 

@@ -174,7 +174,7 @@ void Maps::classify(const Place& sent, const uplink::Outcome& outcome) {
   pace_.failed(outcome, loop_.now());
   counts_.not_taken(traffic_of(sent->waiting.map), DeliveryFailure::Failed, 0, sentence_of(outcome));
   if (!std::holds_alternative<uplink::InDoubt>(outcome) || !is_cut_by_size(*sent)) return again(sent);
-  prepared_.slot().too_large(std::min(sent->waiting.cuts.at, sent->packed.body.size()));
+  prepared_.slot().on_too_large(std::min(sent->waiting.cuts.at, sent->packed.body.size()));
   ahead_.failed(sent->went_ahead);
   split(sent);
 }
@@ -182,19 +182,24 @@ void Maps::classify(const Place& sent, const uplink::Outcome& outcome) {
 void Maps::taken(const Place& sent, const uplink::Answered& answered) {
   pace_.taken(answered.sent, loop_.now());
   prepared_.slot().left(sent->packed.body.size(), answered.sent, sent->last_byte_not_before);
-  prepared_.slot().passed(sent->packed.body.size());
+  prepared_.slot().on_passed(sent->packed.body.size());
   if (!prepared_.points().hold(sent->packed.left_out)) return goes_whole(sent, answered.status);
   ahead_.taken(sent->went_ahead);
-  prepared_.leaves(sent);
   icd::MapUpdate& map = sent->waiting.map;
+  blame_.passed(whose(map), loop_.now());
+  queue_.on_passed(queues::Sender::of(map));
+  queue_.carried(queues::Sender::of(map), sent->packed.body.size());
+  if (queues::next_piece(sent->waiting)) {
+    counts_.forwarded(traffic_of(map), 0, sent->packed.body.size(), answered.status, loop_.wall_now());
+    prepared_.points_taken(*sent);
+    return prepared_.again(sent);
+  }
+  prepared_.leaves(sent);
   const std::size_t updates = sent->waiting.updates.size();
   if (sent->waiting.again) map.header().stamp = sent->waiting.again;
   // First: the writer works in order.
   for (const icd::MapUpdate* const said : queues::said_by(sent->waiting)) rejected_.taken(*said);
   forget(sent->waiting.updates);
-  blame_.passed(whose(map), loop_.now());
-  queue_.passed(queues::Sender::of(map));
-  queue_.carried(queues::Sender::of(map), sent->packed.body.size());
   counts_.forwarded(traffic_of(map), updates, sent->packed.body.size(), answered.status, loop_.wall_now());
   if (!map.is_grid()) counts_.rounded_to(traffic_of(map), sent->packed.precision);
   prepared_.points_taken(*sent);
@@ -223,7 +228,7 @@ void Maps::verdict(const Place& sent, const uplink::Answered& answered) {
       return give_up(sent, answered.status, sentence);
     case MappingVerdict::TooLarge:
       pace_.taken(answered.sent, now);
-      return too_large(sent, answered);
+      return on_too_large(sent, answered);
     case MappingVerdict::Suspect:
       pace_.lost(now);
       if (blame_.failed(whose(sent->waiting.map), sent->waiting.trial, now) == queues::Blame::Next::Reject)
@@ -240,13 +245,13 @@ void Maps::verdict(const Place& sent, const uplink::Answered& answered) {
 
 /// Its sender pays for the upload. If a proxy may have answered, it must fail as often as a map that fails
 /// alone.
-void Maps::too_large(const Place& sent, const uplink::Answered& answered) {
+void Maps::on_too_large(const Place& sent, const uplink::Answered& answered) {
   queues::QueuedMap& waiting = sent->waiting;
   const queues::Sender sender = queues::Sender::of(waiting.map);
   const std::string sentence = sentence_of(answered, sent->packed.body.size());
   queue_.carried(sender, sent->packed.body.size());
-  prepared_.slot().too_large(sent->packed.body.size());
-  if (!waiting.parts.empty()) {
+  prepared_.slot().on_too_large(sent->packed.body.size());
+  if (queues::can_split(waiting, sent->packed.body.size())) {
     counts_.not_taken(traffic_of(waiting.map), DeliveryFailure::Failed, answered.status,
                       sentence + "; it is sent in smaller messages");
     ahead_.failed(false);
@@ -255,28 +260,40 @@ void Maps::too_large(const Place& sent, const uplink::Answered& answered) {
   const bool is_page = dispatch::body_of(answered.body) == dispatch::Body::Other;
   if (!is_page) return give_up(sent, answered.status, sentence);
   const auto next = blame_.failed(whose(waiting.map), waiting.trial, loop_.now());
-  queue_.too_large(sender, waiting.trial);
+  queue_.on_too_large(sender, waiting.trial);
   if (next == queues::Blame::Next::Reject) return give_up(sent, answered.status, sentence);
   counts_.not_taken(traffic_of(waiting.map), DeliveryFailure::Failed, answered.status, sentence);
   again(sent);
 }
 
-/// A joined map that the endpoint would not accept. A single map is always tried.
+/// The endpoint would not accept it. A single grid is always tried.
 bool Maps::must_split(const PreparedMap& prepared) const {
-  return !prepared.waiting.parts.empty() && prepared.packed.body.size() > prepared_.slot().limit();
+  const std::size_t size = prepared.packed.body.size();
+  return !prepared_.slot().fits(size) && queues::can_split(prepared.waiting, size);
 }
 
-/// Of two maps in flight the bytes that had left are not known. A single map is retried, because a fault of
+/// Of two maps in flight the bytes that had left are not known. A single grid is retried, because a fault of
 /// the link is never a reason to reject it.
 bool Maps::is_cut_by_size(PreparedMap& sent) {
-  if (sent.waiting.parts.empty() || sent.packed.body.size() < queues::Cuts::kLeastBody) return false;
+  const std::size_t size = sent.packed.body.size();
+  if (size < queues::Cuts::kLeastBody || !queues::can_split(sent.waiting, size)) return false;
   if (sent.went_ahead || channel_.busy()) return false;
-  return sent.waiting.cuts.happened(channel_.sent_of_it(), counts_.delivered());
+  return sent.waiting.cuts.check(channel_.sent_of_it(), counts_.delivered_count());
 }
 
+/// A single cloud goes on in pieces within the limit.
 void Maps::split(const Place& place) {
+  queues::QueuedMap& waiting = place->waiting;
   if (place == prepared_.first()) prepared_.put_back_following();
-  queue_.put_back_halves(place->waiting);
+  if (!waiting.parts.empty()) {
+    queue_.put_back_halves(waiting);
+  } else {
+    const std::size_t size = place->packed.body.size();
+    std::size_t pieces = 2;
+    while (!prepared_.slot().fits(size / pieces)) ++pieces;
+    queues::shrink(waiting, pieces);
+    store_.forget(queue_.put_back(waiting));
+  }
   prepared_.leaves(place);
 }
 

@@ -160,6 +160,7 @@ void PreparedMaps::is_there(Place& place) {
   const auto there = std::exchange(place, nullptr);
   const Traffic traffic = traffic_of(there->waiting.map);
   counts_.left_out(traffic, there->packed.left_out.points);
+  if (queues::next_piece(there->waiting)) return store_.forget(queue_.put_back(std::move(there->waiting)));
   counts_.replaced(traffic, there->waiting.updates.size());
   store_.forget(there->waiting.updates);
 }
@@ -204,7 +205,7 @@ void PreparedMaps::points_taken(PreparedMap& sent) {
   icd::MapUpdate& map = sent.waiting.map;
   LeftOut& left_out = sent.packed.left_out;
   counts_.left_out(traffic_of(map), left_out.points);
-  if (left_out.sent) {
+  if (left_out.sent && sent.waiting.piece.size == 0) {
     left_out.sent->header() = map.header();
     map = *std::exchange(left_out.sent, std::nullopt);
   }

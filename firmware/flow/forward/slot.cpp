@@ -68,13 +68,15 @@ void Slot::link_delivers(std::uint64_t bytes_per_second) {
   bytes_per_second_ = std::min(bytes_per_second_, static_cast<double>(bytes_per_second));
 }
 
-void Slot::passed(std::size_t bytes) {
+void Slot::on_passed(std::size_t bytes) {
   largest_ = std::max(largest_, bytes);
   limit_ = std::max(limit_, bytes);
+  ++smaller_;
 }
 
 /// If a larger message has passed, this one's sender alone has a limit.
-void Slot::too_large(std::size_t bytes) {
+void Slot::on_too_large(std::size_t bytes) {
+  smaller_ = 0;
   if (bytes > largest_) limit_ = std::min(limit_, std::max(largest_, bytes / 2));
 }
 
@@ -84,7 +86,7 @@ loop::Duration Slot::transfer(std::size_t bytes) const {
 
 queues::PointsAt Slot::points_within(loop::Duration spacing) const {
   const double leave = std::max(bytes_per_second_ * Seconds(spacing).count(), kLeast);
-  const double bytes = std::min(leave, kOfLimit * static_cast<double>(limit_));
+  const double bytes = std::min(leave, kOfLimit * static_cast<double>(limit()));
   constexpr double kMost = 1e15;
   queues::PointsAt points{};
   std::ranges::transform(kOfExact, points.begin(), [&](double of_exact) {

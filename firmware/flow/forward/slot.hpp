@@ -35,12 +35,17 @@ class Slot {
   void link_delivers(std::uint64_t bytes_per_second);
 
   /// The endpoint accepted a message of so many bytes, or answered that it is too large.
-  void passed(std::size_t bytes);
-  void too_large(std::size_t bytes);
+  void on_passed(std::size_t bytes);
+  void on_too_large(std::size_t bytes);
   /// Another endpoint may accept other sizes.
   void forget_sizes() { largest_ = 0, limit_ = kNoLimit; }
-  /// The bytes of a message that the endpoint accepts, as far as its answers show.
-  std::size_t limit() const { return limit_; }
+  /// After so many accepted messages within the limit, a larger one is tried.
+  static constexpr int kTryLarger = 60;
+  /// The bytes of a message that the endpoint accepts, as far as its answers show. A part may have a little
+  /// more than its share (fits()).
+  std::size_t limit() const { return smaller_ < kTryLarger ? limit_ : kNoLimit; }
+
+  bool fits(std::size_t bytes) const { return bytes - bytes / 32 <= limit(); }
 
   /// How long before its time the next map is to be packed: as the longest of the last few took, for where
   /// one comes too late, the link is idle; at most kLongestLead, for until then newer data takes its place.
@@ -62,6 +67,7 @@ class Slot {
   static constexpr std::size_t kNoLimit = std::numeric_limits<std::size_t>::max();
   std::size_t largest_ = 0;  // that the endpoint accepted
   std::size_t limit_ = kNoLimit;
+  int smaller_ = 0;  // messages accepted since the last one that was too large
 };
 
 }  // namespace adit::forward

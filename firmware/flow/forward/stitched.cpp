@@ -1,5 +1,6 @@
 #include "forward/stitched.hpp"
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -33,6 +34,22 @@ std::optional<queues::Ground> drawn_over(const queues::Ground& under, const icd:
         return {};
       });
   return read && left == 0 ? std::optional(drawing.finish()) : std::nullopt;
+}
+
+/// The points of a cloud that are sent next.
+icd::Checked<icd::MapData> piece_of(const queues::QueuedMap& waiting) {
+  std::size_t skip = waiting.piece.at, left = queues::next_size(waiting);
+  icd::MapData piece{{}, icd::Compression::None, left};
+  ADIT_TRY(
+      codec::for_each_piece(waiting.map.data, [&](std::span<const std::uint8_t> bytes) -> icd::Checked<void> {
+        const std::size_t skipped = std::min(skip, bytes.size());
+        bytes = bytes.subspan(skipped, std::min(left, bytes.size() - skipped));
+        piece.bytes.append(bytes);
+        skip -= skipped;
+        left -= bytes.size();
+        return {};
+      }));
+  return piece;
 }
 
 double unit_of(queues::Precision precision) {
@@ -86,6 +103,7 @@ Packed packed(const queues::QueuedMap& waiting, LeavingOut leaving_out, const Pa
 
 icd::Checked<icd::MapUpdate> whole_of(const queues::QueuedMap& waiting) {
   icd::MapUpdate whole = waiting.map;
+  if (waiting.piece.size > 0) whole.data = ADIT_TRY(piece_of(waiting));
   if (!is_to_be_stitched(waiting)) return whole;
   const auto& grid = std::get<icd::OccupancyGrid>(whole.msg);
   std::vector<pack::Tile> tiles;

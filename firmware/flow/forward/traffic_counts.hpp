@@ -83,7 +83,7 @@ class TrafficCounts {
   void move(double seconds);
 
   /// The number of delivered messages of all kinds since the start.
-  std::uint64_t delivered() const { return delivered_; }
+  std::uint64_t delivered_count() const { return delivered_; }
 
   /// Rows without `queued` and `behind_since`, which the queues have.
   const std::map<Traffic, api::ActivityRow>& rows() const { return rows_; }

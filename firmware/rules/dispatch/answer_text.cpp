@@ -24,7 +24,7 @@ std::string answered_with(int status) {
   return icd::sentence("the Command Post answered ", status);
 }
 
-std::string too_large(std::size_t bytes, std::string_view body) {
+std::string oversize_text(std::size_t bytes, std::string_view body) {
   constexpr std::size_t kKilobyte = 1000;
   return icd::sentence("too large (", (bytes + kKilobyte - 1) / kKilobyte,
                        " kB): ", answer_text(kTooLarge, body));

@@ -10,7 +10,7 @@ namespace adit::dispatch {
 std::string answer_text(int status, std::string_view body);
 
 /// "too large (1440 kB): the Command Post answered 413"
-std::string too_large(std::size_t bytes, std::string_view body);
+std::string oversize_text(std::size_t bytes, std::string_view body);
 
 /// "the Command Post answered 404"
 std::string answered_with(int status);

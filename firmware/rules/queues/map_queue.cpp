@@ -104,7 +104,7 @@ void MapQueue::forget_those_that_are_gone() {
   });
 }
 
-void MapQueue::too_large(const Sender& sender, const Trial& trial) {
+void MapQueue::on_too_large(const Sender& sender, const Trial& trial) {
   Waiting& its = senders_[sender];
   its.trial = trial;
   its.trial.failures = 0;
@@ -112,7 +112,7 @@ void MapQueue::too_large(const Sender& sender, const Trial& trial) {
   its.queue.inherit(its.trial);
 }
 
-void MapQueue::passed(const Sender& sender) {
+void MapQueue::on_passed(const Sender& sender) {
   const auto found = senders_.find(sender);
   if (found == senders_.end() || !found->second.trial.failed) return;
   found->second.trial = {};

@@ -80,9 +80,9 @@ class MapQueue {
   Canvases& canvases() { return canvases_; }
 
   /// A map of `sender` was too large and has failed as `trial` says. Until one of its maps is accepted
-  /// (passed()), its queued maps and later ones rest as long and begin with its strikes (inherit()).
-  void too_large(const Sender& sender, const Trial& trial);
-  void passed(const Sender& sender);
+  /// (on_passed()), its queued maps and later ones rest as long and begin with its strikes (inherit()).
+  void on_too_large(const Sender& sender, const Trial& trial);
+  void on_passed(const Sender& sender);
 
   /// A message of `sender` used `bytes` of the link. The sender pays for the part beyond one slot with turns.
   void carried(const Sender& sender, std::size_t bytes);

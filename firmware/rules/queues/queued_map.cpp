@@ -14,7 +14,7 @@ const icd::PointCloud2* loose_cloud_in(const icd::MapUpdate& map) {
   return std::get_if<icd::PointCloud2>(&map.msg);
 }
 
-bool Cuts::happened(std::size_t now_at, std::uint64_t now_delivered) {
+bool Cuts::check(std::size_t now_at, std::uint64_t now_delivered) {
   const std::size_t apart = std::max(at, now_at) - std::min(at, now_at);
   if (times == 0 || apart > std::max(at, now_at) / 4) {
     times = 1;
@@ -102,6 +102,7 @@ std::vector<QueuedMap> parts_of(QueuedMap map, bool may_join_again) {
 }
 
 std::vector<QueuedMap> halves_of(QueuedMap map) {
+  icd::require(!map.parts.empty());
   const bool is_grid = map.map.is_grid();
   std::vector<QueuedMap> parts = parts_of(std::move(map), /*may_join_again=*/false);
   if (is_grid) return parts;
@@ -116,6 +117,32 @@ std::vector<QueuedMap> halves_of(QueuedMap map) {
     halves.back().map = merge(std::move(halves.back().map), parts[i].map);
   }
   return halves;
+}
+
+std::size_t next_size(const QueuedMap& map) {
+  const std::size_t left = map.map.data.raw_size - map.piece.at;
+  return map.piece.size == 0 ? left : std::min(map.piece.size, left);
+}
+
+bool can_split(const QueuedMap& map, std::size_t body) {
+  constexpr std::size_t kLeastBody = 64'000;
+  if (!map.parts.empty()) return true;
+  const auto* cloud = std::get_if<icd::PointCloud2>(&map.map.msg);
+  return cloud != nullptr && body >= kLeastBody && next_size(map) / cloud->point_step > 1;
+}
+
+void shrink(QueuedMap& cloud, std::size_t pieces) {
+  const std::size_t step = std::get<icd::PointCloud2>(cloud.map.msg).point_step;
+  const std::size_t points = next_size(cloud) / step;
+  cloud.piece.size = (points + pieces - 1) / pieces * step;
+  cloud.alone = true;
+}
+
+bool next_piece(QueuedMap& map) {
+  map.piece.at += next_size(map);
+  map.trial = {};
+  map.cuts = {};
+  return map.piece.at < map.map.data.raw_size;
 }
 
 bool may_join(const QueuedMap& map) {

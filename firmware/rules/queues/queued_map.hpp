@@ -33,7 +33,13 @@ struct Cuts {
 
   /// True if its size seems to be the reason: it happened kMost times at about the same byte, and other
   /// messages were delivered each time since the last one.
-  bool happened(std::size_t now_at, std::uint64_t now_delivered);
+  bool check(std::size_t now_at, std::uint64_t now_delivered);
+};
+
+/// The points of a cloud that are sent next, if it is too large for one message, in bytes of its data. The
+/// points before `at` were delivered. Size 0: all points.
+struct Piece {
+  std::size_t at = 0, size = 0;
 };
 
 /// A queued map and the accepted updates that it stands for: its own, those it replaced, those merged into
@@ -58,6 +64,7 @@ struct QueuedMap {
   Precision precision = Precision::Exact;
   Trial trial{};  // its failures at the Command Post
   Cuts cuts{};
+  Piece piece{};
   /// The bounds of a grid and of all that it replaced, along its own axes; nothing if it replaced none.
   std::optional<icd::GridBounds> bounds{};
   /// Only for a rejected map that the operator sends again: its original stamp. It orders the map before all
@@ -115,6 +122,15 @@ std::vector<QueuedMap> parts_of(QueuedMap map, bool may_join_again);
 
 /// Merged clouds as two maps that are not merged again, or the parts of a stitched grid. Requires parts.
 std::vector<QueuedMap> halves_of(QueuedMap map);
+
+/// The bytes of data that it sends next.
+std::size_t next_size(const QueuedMap& map);
+/// Whether halves_of() or shrink() can make smaller messages of it, if its message has so many bytes.
+bool can_split(const QueuedMap& map, std::size_t body);
+/// The next pieces of the cloud have an equal share of its next points each.
+void shrink(QueuedMap& cloud, std::size_t pieces);
+/// The next piece was delivered. Returns whether there is another one.
+bool next_piece(QueuedMap& map);
 
 /// Whether it may be merged or stitched with others.
 bool may_join(const QueuedMap& map);

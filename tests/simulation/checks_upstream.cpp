@@ -219,20 +219,19 @@ void status_keeps_away(const Evidence& evidence, Broken& broken) {
 void status_has_its_turn(const Evidence& evidence, Broken& broken) {
   constexpr int kInARow = 3;
   struct Process {
-    double status = 0, report = 0;  // when the last ones left
-    int in_a_row = 0;               // reports since the last status
-    bool is_well = false;           // the last status was answered with a status
-    bool is_slowed = false;
+    double status = 0, report = 0;          // when the last ones left
+    int in_a_row = 0;                       // reports since the last status
+    bool is_well = false;                   // the last status was answered with a status
     std::optional<double> wanted;           // since when a client has an older status
     std::map<std::uint64_t, double> asked;  // clients' requests for the status
     std::set<std::uint64_t> mapping;        // connections
   };
   Process process;
+  bool is_slowed = false;  // by a 429; Adit keeps what it has learned over a restart and for another course
   for (const Event& event : evidence.events) {
     if (event.kind == Kind::Begins || event.what == kCourse) process = {};
     const bool is_report = event.what == kReports, is_status = event.what == kStatus;
-    if (event.kind == Kind::Replied && event.status == 429 && (is_report || is_status))
-      process.is_slowed = true;
+    if (event.kind == Kind::Replied && event.status == 429 && (is_report || is_status)) is_slowed = true;
     if (is_status && event.kind == Kind::Leaves)
       process.status = event.at, process.in_a_row = 0, process.is_well = false, process.wanted.reset();
     if (is_status && event.kind == Kind::Replied)
@@ -245,8 +244,7 @@ void status_has_its_turn(const Evidence& evidence, Broken& broken) {
     if (is_old && process.asked[event.request] > process.status)
       process.wanted = process.wanted.value_or(event.at);
     if (!is_report || event.kind != Kind::Leaves) continue;
-    const bool is_due =
-        process.is_well && !process.is_slowed && process.wanted.value_or(1e9) < process.report;
+    const bool is_due = process.is_well && !is_slowed && process.wanted.value_or(1e9) < process.report;
     if (is_due && process.in_a_row >= kInARow)
       broken.push_back(
           icd::sentence("Paced: ", process.in_a_row + 1,

@@ -38,7 +38,7 @@ class ServerTest : protected StandingTime, public Asking {
         received_ += request[request.find('/') + 1];
       }
       if (holds) let_.acquire();
-      if (!wire.write(answer("200 OK", "null"))) return;
+      if (!wire.write(answer("200 OK", "null")) || closes_) return;
     }
   }
   std::string received() {
@@ -86,7 +86,7 @@ class ServerTest : protected StandingTime, public Asking {
 
   std::mutex mutex_;
   std::string received_;
-  std::atomic<bool> holds_ = false;
+  std::atomic<bool> holds_ = false, closes_ = false;
   std::counting_semaphore<> let_{0};
   std::optional<Peer> peer_;
   Servers servers_{loop_};
@@ -295,6 +295,38 @@ TEST_F(ServerTest, AnAnswerThatPassesAnOpenConnectionShowsThatItBlocksNone) {
     ask_slowly(0);
     EXPECT_EQ(server().is_serial(), !passes);
   }
+}
+
+/// As Python's http.server does with HTTP/1.0: the connection that Adit opens for the next request blocks
+/// all.
+TEST_F(ServerTest, ServerThatClosesAfterEachAnswerIsSerial) {
+  closes_ = true;
+  listen();
+  connections_[0]->keep_warm();
+  for (int i = 1; i <= 2; ++i) {
+    ASSERT_TRUE(loop::turn_until(loop_, [&] { return connections_[0]->connected(); }));
+    EXPECT_FALSE(server().is_serial());
+    time.pass(milliseconds(1));
+    send(1, get("/a"));
+    ASSERT_TRUE(is_answered(1, true));
+    time.pass(Server::kSilence);
+  }
+  EXPECT_TRUE(server().is_serial());
+  send(1, get("/b"));
+  EXPECT_TRUE(is_answered(1));
+}
+
+TEST_F(ServerTest, SlowServerBesideAWarmConnectionIsNotSerial) {
+  closes_ = true;
+  listen(true);
+  connections_[0]->keep_warm();
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_TRUE(loop::turn_until(loop_, [&] { return connections_[0]->connected(); }));
+    time.pass(milliseconds(1));
+    ask_slowly(1);
+    time.pass(Server::kSilence);
+  }
+  EXPECT_FALSE(server().is_serial());
 }
 
 TEST_F(ServerTest, IsTheSameForOneAddressAndPort) {

@@ -49,6 +49,7 @@ void Connection::Impl::return_warm() {
 void Connection::Impl::connecting_ended(int error) {
   if (error != 0) return connecting_failed(std::strerror(error));
   socket_->is_open = true;
+  socket_->idle_since = loop_.now();
   socket_->is_fresh = exchange_ != nullptr;
   socket_->sent_twice = transmission(socket_->fd.get()).sent_twice;
   attempts_.succeeded();

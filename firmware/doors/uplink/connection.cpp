@@ -91,7 +91,7 @@ void Connection::Impl::time_came() {
 
 /// An idle connection cannot block one that the server has answered before.
 void Connection::Impl::check_silence() {
-  if (!exchange_ || wait_.is_silent || (connected() && socket_->served_at)) return;
+  if (!exchange_ || wait_.is_silent || (connected() && socket_->is_served)) return;
   loop::Instant silent_at = wait_.since + Server::kSilence;
   if (connected()) {
     exchange_->listen(socket_->fd.get(), loop_.now());

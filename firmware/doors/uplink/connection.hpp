@@ -60,6 +60,7 @@ struct Answered {
   std::optional<std::chrono::sys_seconds> date = {};  // by the peer's clock
   std::optional<bool> wants_slash = {};               // redirects_to_slash()
   Sent sent = {};
+  loop::Instant began = {};  // when the first byte was given to the kernel
 
   /// The server redirects to the other form of the path and has not processed the request (RFC 9110 15.4.8,
   /// 15.4.9).

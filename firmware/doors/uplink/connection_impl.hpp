@@ -52,17 +52,18 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
     loop::FileDescriptor fd;
     loop::Source source = {};  // of fd; destroyed before it
     bool is_open = false;
-    bool is_fresh = false;                   // connected for the request in flight
-    std::uint64_t sent_twice = 0;            // Transmission::sent_twice while it is idle
-    std::optional<loop::Instant> served_at;  // the last answer after which it stayed open
-    bool is_passed = false;                  // the server has answered on another connection since
+    bool is_fresh = false;         // connected for the request in flight
+    std::uint64_t sent_twice = 0;  // Transmission::sent_twice while it is idle
+    loop::Instant idle_since{};    // when it opened, or the last answer after which it stayed open
+    bool is_served = false;        // it stayed open after an answer
+    bool is_passed = false;        // the server has answered on another connection since
   };
 
   /// Of the request in flight.
   struct Wait {
     loop::Instant since{};
-    bool is_silent = false;                          // no answer for Server::kSilence on a new connection
-    std::optional<loop::Instant> unblocked_at = {};  // when idle connections were closed for it
+    bool is_silent = false;                       // no answer for Server::kSilence on a new connection
+    std::optional<loop::Instant> answer_by = {};  // an answer until then shows that it was blocked
   };
 
   void call(void (Impl::*part)());

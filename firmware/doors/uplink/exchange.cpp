@@ -158,6 +158,7 @@ Exchange::Answer Exchange::read(int fd) {
 Answered Exchange::take_answer() {
   const std::string location = parser_.location();
   Answered answered = parser_.take();
+  answered.began = first_left_;
   answered.wants_slash = redirects_to_slash(answered.status, location, authority_, request_.target);
   return answered;
 }

@@ -63,9 +63,10 @@ void Server::close_idle() {
 
 /// The connection ends without a request. It may have blocked the silent ones.
 void Server::suspect(const Member& closed) {
-  if (!closed.socket_->served_at || closed.socket_->is_passed) return;
+  if (!closed.connected() || closed.socket_->is_passed) return;
+  const loop::Instant answer_by = loop_.now() + (closed.socket_->is_served ? kSilence : kAtOnce);
   for (Member* const each : connections_) {
-    if (each->is_silent() && !each->wait_.unblocked_at) each->wait_.unblocked_at = loop_.now();
+    if (each->is_silent() && !each->wait_.answer_by) each->wait_.answer_by = answer_by;
   }
 }
 
@@ -73,18 +74,18 @@ bool Server::on_answer(Member& one, bool can_stay) {
   const loop::Instant now = loop_.now();
   for (Member* const each : connections_) {
     if (each == &one || !each->connected() || !is_quiet(each->socket_->fd.get())) continue;
-    if (!each->socket_->served_at || *each->socket_->served_at >= one.wait_.since) continue;
+    if (each->socket_->idle_since >= one.wait_.since) continue;
     each->socket_->is_passed = true;
     helped_ = 0;
   }
   const Member::Wait wait = std::exchange(one.wait_, {});
-  if (!can_stay) return false;
-  one.socket_->served_at = now;
-  const bool is_helped =
-      wait.unblocked_at && now - *wait.unblocked_at <= kSilence && wait.since >= helped_at_;
+  const bool is_helped = wait.answer_by && now <= *wait.answer_by && wait.since >= helped_at_;
   if (is_helped) helped_at_ = now;
   if (is_helped && ++helped_ == 2) begin_serial();
-  if (is_serial_) return false;
+  if (!can_stay || is_serial_) return false;
+  one.socket_->idle_since = now;
+  one.socket_->is_served = true;
+  one.socket_->is_passed = false;
   if (std::ranges::none_of(connections_, [](const Member* each) { return each->is_silent(); })) return true;
   suspect(one);
   return false;

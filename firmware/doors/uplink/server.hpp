@@ -18,9 +18,10 @@ namespace adit::uplink {
 /// time: until that one is closed, it reads no other, although the kernel accepts them.
 ///
 /// If a request on a new connection gets no answer for kSilence, the idle connections are closed. If it is
-/// answered within kSilence after that, an idle connection may have blocked it. The second such answer in a
-/// row shows a serial server. A server that answers one connection while another one that it has answered
-/// stays open is not serial, so the count begins again.
+/// answered within kSilence after that, an idle connection may have blocked it; within kAtOnce if that
+/// connection never had an answer, because a server that closes each connection is read only once. The second
+/// such answer in a row shows a serial server. A server that answers one connection while an older one stays
+/// open is not serial, so the count begins again.
 ///
 /// A serial server gets one connection at a time, for one request. A sender composes its request when its
 /// turn comes: a report first, otherwise the sender that was served longest ago. A slow server may look like
@@ -28,6 +29,7 @@ namespace adit::uplink {
 class Server : public std::enable_shared_from_this<Server> {
  public:
   static constexpr std::chrono::seconds kSilence{1};
+  static constexpr std::chrono::milliseconds kAtOnce{200};
   static constexpr std::chrono::minutes kTryAgain{5};
 
   /// Of a sender.

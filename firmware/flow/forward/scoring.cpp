@@ -345,6 +345,7 @@ void Scoring::classify_status(const uplink::Outcome& outcome, loop::Instant aske
   hear_time();
   const loop::Instant now = loop_.now();
   const auto* answered = std::get_if<uplink::Answered>(&outcome);
+  if (answered != nullptr) asked = answered->began;  // it may have waited for a connection
   const auto run = answered != nullptr && answered->status == 200 ? codec::read_run_status(answered->body)
                                                                   : std::unexpected<std::string>("");
   if (answered != nullptr && answered->wants_slash == true) {

@@ -269,6 +269,26 @@ TEST(StateQueue, TriesSilentRobotsAlone) {
   EXPECT_THAT(second.news, IsEmpty());
 }
 
+TEST(StateQueue, RepeatsNoPoseThatWasGivenUp) {
+  StateQueue queue;
+  post(queue, state(1, {pose("R1", 1), pose("R2", 1)}), at(1));
+  queue.put_back_apart(*queue.take(at(1)));
+  for (int i = 0; i < 2; ++i) {
+    const auto alone = *queue.take(at(2));
+    if (alone.update.poses.front() == pose("R1", 1)) {
+      queue.give_up(alone.update.poses.front().name, at(2));
+    } else {
+      queue.passed(alone);
+    }
+  }
+  for (const double later : {20.0, 21.0, 22.0}) {
+    post(queue, state(later, {pose("R2", later)}), at(later));
+    const auto next = *queue.take(at(later));
+    EXPECT_THAT(next.update.poses, ElementsAre(pose("R2", later)));
+    queue.passed(next);
+  }
+}
+
 TEST(StateQueue, ForgetsDeliveredRobots) {
   StateQueue queue;
   post(queue, state(10, {pose("R1", 1), pose("R2", 2)}), at(1));

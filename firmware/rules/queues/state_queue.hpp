@@ -83,7 +83,7 @@ class StateQueue {
  private:
   struct Held {
     bool waits() const { return is_news || in_flight; }
-    bool goes() const { return is_news || is_of_run; }
+    bool goes() const { return is_news || (is_of_run && !is_given_up); }
     Instant ready() const { return apart ? trial.rests_until : Instant{}; }
     void join() { apart = false, trial = {}; }
 

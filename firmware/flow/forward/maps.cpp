@@ -228,7 +228,7 @@ void Maps::verdict(const Place& sent, const uplink::Answered& answered) {
       return give_up(sent, answered.status, sentence);
     case MappingVerdict::TooLarge:
       pace_.taken(answered.sent, now);
-      return on_too_large(sent, answered);
+      return on_too_large(sent, answered, sentence);
     case MappingVerdict::Suspect:
       pace_.lost(now);
       if (blame_.failed(whose(sent->waiting.map), sent->waiting.trial, now) == queues::Blame::Next::Reject)
@@ -245,10 +245,9 @@ void Maps::verdict(const Place& sent, const uplink::Answered& answered) {
 
 /// Its sender pays for the upload. If a proxy may have answered, it must fail as often as a map that fails
 /// alone.
-void Maps::on_too_large(const Place& sent, const uplink::Answered& answered) {
+void Maps::on_too_large(const Place& sent, const uplink::Answered& answered, const std::string& sentence) {
   queues::QueuedMap& waiting = sent->waiting;
   const queues::Sender sender = queues::Sender::of(waiting.map);
-  const std::string sentence = sentence_of(answered, sent->packed.body.size());
   queue_.carried(sender, sent->packed.body.size());
   prepared_.slot().on_too_large(sent->packed.body.size());
   if (queues::can_split(waiting, sent->packed.body.size())) {

@@ -103,7 +103,7 @@ class Maps {
   void classify(const Place& sent, const uplink::Outcome& outcome);
   void verdict(const Place& sent, const uplink::Answered& answered);
   void taken(const Place& sent, const uplink::Answered& answered);
-  void on_too_large(const Place& sent, const uplink::Answered& answered);
+  void on_too_large(const Place& sent, const uplink::Answered& answered, const std::string& sentence);
   bool must_split(const PreparedMap& prepared) const;
   bool is_cut_by_size(PreparedMap& sent);
   void split(const Place& place);

@@ -1,6 +1,5 @@
 // Conditions of the Command Post and its two endpoints.
 #include <algorithm>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -21,7 +20,7 @@ struct Trouble {
   EndpointTrouble is = EndpointTrouble::None;
   double since = 0;
   std::vector<const Endpoint*> endpoints = {};
-  std::set<std::string> robots = {};  // that have sent data
+  std::string only_robot = {};  // only_robot_in()
 
   bool both() const { return endpoints.size() > 1; }
   const Endpoint& first() const { return *endpoints.front(); }
@@ -73,9 +72,9 @@ void say_refusing(const Trouble& trouble, Condition& condition) {
   condition.headline = trouble.both() ? Headline{"Both tokens", "rejected", true}
                                       : Headline{"The " + trouble.first().name + " token", "rejected"};
   condition.why = "the Command Post answers 401 or 403; is the course right?";
-  if (!trouble.both() && trouble.first().name == "mapping" && trouble.robots.size() == 1)
+  if (!trouble.both() && trouble.first().name == "mapping" && !trouble.only_robot.empty())
     condition.why = sentence("the Command Post answers 401 or 403; is the course right, and does it know ",
-                             *trouble.robots.begin(), "?");
+                             trouble.only_robot, "?");
   condition.action = kSetUp;
 }
 
@@ -108,16 +107,24 @@ constexpr struct {
     {EndpointTrouble::Throttling, "command_post_throttling", say_throttling},
 };
 
+/// "": none or several have sent data.
+std::string only_robot_in(const Facts& facts) {
+  std::string only;
+  for (const Stream& stream : facts.streams) {
+    if (stream.robot.empty() || stream.robot == only) continue;
+    if (!only.empty()) return "";
+    only = stream.robot;
+  }
+  return only;
+}
+
 }  // namespace
 
 void find_post_troubles(const Facts& facts, Found& found) {
   find_missing_tokens(facts, found);
-  std::set<std::string> robots;
-  for (const Stream& stream : facts.streams) {
-    if (!stream.robot.empty()) robots.insert(stream.robot);
-  }
+  const std::string only_robot = only_robot_in(facts);
   for (const auto& row : kTroubles) {
-    Trouble trouble{.is = row.is, .robots = robots};
+    Trouble trouble{.is = row.is, .only_robot = only_robot};
     for (const Endpoint& endpoint : facts.endpoints) {
       if (endpoint.trouble != row.is) continue;
       trouble.since = trouble.endpoints.empty() ? endpoint.since : std::min(trouble.since, endpoint.since);

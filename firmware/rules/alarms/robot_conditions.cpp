@@ -6,6 +6,7 @@
 #include "alarms/found.hpp"
 #include "alarms/verdict.hpp"
 #include "icd/sentence.hpp"
+#include "icd/status.hpp"
 #include "icd/text.hpp"
 
 namespace adit::alarms {
@@ -14,9 +15,8 @@ namespace {
 using icd::sentence;
 
 constexpr std::size_t kMegabyte = 1'000'000;
-constexpr double kNoRoomRecent = 60;  // seconds that a rejection for want of room is reported
-constexpr std::size_t kNamed = 3;     // robots named in a sentence
-constexpr int kTooLarge = 413;
+constexpr double kNoRoomRecent = 60;    // seconds that a rejection for want of room is reported
+constexpr std::size_t kNamed = 3;       // robots named in a sentence
 constexpr std::size_t kManyBehind = 4;  // robots that share one condition
 
 Action show(const std::string& robot) {
@@ -86,7 +86,9 @@ void find_behind(const Facts& facts, Found& found) {
                      .since = facts.now - *longest->behind,
                      .headline = {name.empty() ? "The merged map" : name + "'s map", "behind"},
                      .why = sentence("its newest ", longest->kind, " has not reached the Command Post",
-                                     longest->last_status == kTooLarge ? ", because it is too large" : ""),
+                                     longest->last_status == static_cast<int>(icd::Status::ContentTooLarge)
+                                         ? ", because it is too large"
+                                         : ""),
                      .action = name.empty() ? Action{} : show(name)});
   }
   if (count < kManyBehind) return;

@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <string_view>
 
+#include "icd/status.hpp"
+
 namespace adit::dispatch {
 
 /// The kind of a body by its bytes. Content-Type is ignored.
@@ -16,7 +18,7 @@ bool may_be_the_command_post(int status, Body body);
 bool is_the_command_post(int status, Body body);
 
 /// 413 to a map, a state or markers.
-inline constexpr int kTooLarge = 413;
+inline constexpr int kTooLarge = static_cast<int>(icd::Status::ContentTooLarge);
 
 enum class MappingVerdict : std::uint8_t {
   Taken,      // 2xx with JSON or an empty body

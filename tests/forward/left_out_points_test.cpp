@@ -70,7 +70,7 @@ class LeftOutPoints : public testing::Test, protected MapsParts {
   }
   void take(const Points& xs) {
     bool told = false;
-    maps_->take(cloud_along_x("r1", xs), 10, nullptr, [&](const icd::Checked<void>& said) {
+    maps_->take(cloud_along_x("r1", xs), {.bytes = 10}, nullptr, [&](const icd::Checked<void>& said) {
       EXPECT_TRUE(said);
       told = true;
     });

@@ -81,7 +81,7 @@ class MapsToManualEndpoint : public testing::Test, protected MapsParts {
   }
   void take(icd::MapUpdate map) {
     bool taken = false;
-    maps_->take(std::move(map), 10, nullptr,
+    maps_->take(std::move(map), {.bytes = 10}, nullptr,
                 [&](const icd::Checked<void>& said) { taken = said.has_value(); });
     ASSERT_TRUE(loop::turn_until(loop_, [&] { return taken; }));
   }

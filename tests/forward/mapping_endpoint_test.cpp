@@ -52,7 +52,7 @@ class MappingEndpoint : public testing::Test, protected MapsParts {
 
 TEST_F(MappingEndpoint, IsLeftAtOnceByAMap) {
   Maps maps = maps_with(token_);
-  maps.take(spool::cloud(3), 10, nullptr, [](const icd::Checked<void>&) {});
+  maps.take(spool::cloud(3), {.bytes = 10}, nullptr, [](const icd::Checked<void>&) {});
   EXPECT_TRUE(is_left_at_once(maps));
 }
 

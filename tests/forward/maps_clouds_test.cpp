@@ -14,7 +14,7 @@ class QueuedClouds : public testing::Test, protected MapsParts {
  protected:
   void take(const std::vector<float>& xs) {
     bool told = false;
-    maps_.take(cloud_along_x("r1", xs), 10, nullptr, [&](const icd::Checked<void>& taken) {
+    maps_.take(cloud_along_x("r1", xs), {.bytes = 10}, nullptr, [&](const icd::Checked<void>& taken) {
       EXPECT_TRUE(taken);
       told = true;
     });

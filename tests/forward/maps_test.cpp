@@ -7,6 +7,8 @@
 #include <limits>
 #include <vector>
 
+#include "codec/gzip.hpp"
+#include "codec/map_pieces.hpp"
 #include "forward/fixtures.hpp"
 #include "forward/sample_maps.hpp"
 #include "host/folder.hpp"
@@ -38,9 +40,11 @@ class MapsTest : public testing::Test, protected MapsParts {
   MapsTest() { settings_.queues.map_bytes = 100'000; }
 
   /// Returns the answer. `files_`: stored maps at that time. `behind`: a job of the writer after the map's.
-  icd::Checked<void> take(icd::MapUpdate update, std::function<void()> behind = [] {}) {
+  icd::Checked<void> take(
+      icd::MapUpdate update, std::function<void()> behind = [] {},
+      const queues::Upload& upload = {.bytes = 10}) {
     std::optional<icd::Checked<void>> said;
-    maps_.take(std::move(update), 10, nullptr, [&](icd::Checked<void> taken) {
+    maps_.take(std::move(update), upload, nullptr, [&](icd::Checked<void> taken) {
       files_ = files();
       said = std::move(taken);
     });
@@ -76,7 +80,7 @@ TEST_F(MapsTest, AreNotAnsweredWhileTheWriterIsBusy) {
   std::promise<void> let_go;
   writer_.submit([until = let_go.get_future().share()] { until.wait(); }, [] {});
   bool said = false;
-  maps_.take(grid("r1", 10, 500), 10, nullptr,
+  maps_.take(grid("r1", 10, 500), {.bytes = 10}, nullptr,
              [&](const icd::Checked<void>& taken) { said = taken.has_value(); });
   for (int i = 0; i < 10; ++i) loop_.turn(std::chrono::milliseconds{5});
   EXPECT_FALSE(said);
@@ -112,10 +116,93 @@ TEST_F(MapsTest, KeepWhatTheyReplacedOverARestart) {
   next.restore(spool::Spool(folder_.path()).read());
   for (const auto& [x, queued] : {std::pair(0.2, 2u), std::pair(0.09, 1u)}) {
     bool taken = false;
-    next.take(window(x), 10, nullptr, [&](const icd::Checked<void>& said) { taken = said.has_value(); });
+    next.take(window(x), {.bytes = 10}, nullptr,
+              [&](const icd::Checked<void>& said) { taken = said.has_value(); });
     ASSERT_TRUE(loop::turn_until(loop_, [&] { return taken; }));
     EXPECT_EQ(next.waiting({Kind::Grid, "r1"}), queued) << x;
   }
+}
+
+/// 20 x 20 cells of 0.25 m at `x` metres, each with the number of its column.
+icd::MapUpdate columns(double x, double stamp) {
+  icd::MapUpdate map = window(x);
+  map.header().stamp = stamp;
+  std::vector<std::uint8_t> cells;
+  for (std::uint8_t i = 0; i < 200; ++i)
+    cells.insert(cells.end(),
+                 {static_cast<std::uint8_t>(2 * i % 20), static_cast<std::uint8_t>((2 * i + 1) % 20)});
+  map.data = {codec::gzip(icd::ChunkedBytes{cells}, codec::GzipStrategy::Runs), icd::Compression::Gzip,
+              cells.size()};
+  return map;
+}
+
+std::vector<std::uint8_t> unzipped(const icd::MapData& data) {
+  std::vector<std::uint8_t> bytes;
+  EXPECT_TRUE(codec::for_each_piece(data, [&](std::span<const std::uint8_t> piece) -> icd::Checked<void> {
+    bytes.insert(bytes.end(), piece.begin(), piece.end());
+    return {};
+  }));
+  return bytes;
+}
+
+class OvertakenGrid : public MapsTest {
+ protected:
+  /// The upload of the older one begins first and ends last.
+  icd::Status take_newer(icd::MapUpdate map) {
+    return status(take(std::move(map), [] {}, {.bytes = 10, .began = 2, .ended = 3, .overlaps = 1}));
+  }
+  icd::Status take_older(icd::MapUpdate map) {
+    return status(take(std::move(map), [] {}, {.bytes = 10, .began = 1, .ended = 4}));
+  }
+  spool::Spool::Kept stored() {
+    EXPECT_TRUE(loop::turn_until_idle(loop_, writer_));
+    return spool::Spool(folder_.path()).read();
+  }
+  const api::ActivityRow& row() const { return counts_.rows().at({Kind::Grid, "r1"}); }
+};
+
+TEST_F(OvertakenGrid, IsQueuedOutsideOfTheNewerOne) {
+  EXPECT_EQ(take_newer(columns(0, 10)), icd::Status::Ok);
+  EXPECT_EQ(take_older(columns(-1, 9)), icd::Status::Ok);
+  const auto kept = stored();
+  ASSERT_EQ(kept.size(), 2u);
+  const icd::MapUpdate& strip = kept[1].map;
+  const auto& grid = std::get<icd::OccupancyGrid>(strip.msg);
+  EXPECT_NEAR(grid.origin.position.x, -1, 0.001);
+  EXPECT_EQ(grid.width, 4u);
+  EXPECT_EQ(grid.height, 20u);
+  const auto cells = unzipped(strip.data);
+  ASSERT_EQ(cells.size(), 80u);
+  for (std::size_t i = 0; i < cells.size(); ++i) EXPECT_EQ(cells[i], i % 4);
+  EXPECT_EQ(row().accepted, 2u);
+}
+
+TEST_F(OvertakenGrid, IsNotQueuedIfTheNewerOneCoversIt) {
+  EXPECT_EQ(take_newer(columns(0, 10)), icd::Status::Ok);
+  EXPECT_EQ(take_older(columns(0.1, 9)), icd::Status::Ok);
+  const auto kept = stored();
+  ASSERT_EQ(kept.size(), 1u);
+  EXPECT_EQ(kept[0].map.header().stamp, 10);
+  EXPECT_EQ(row().accepted, 2u);
+  EXPECT_EQ(row().replaced, 1u);
+}
+
+TEST_F(OvertakenGrid, IsTheNewestIfItHasTheNewerStamp) {
+  EXPECT_EQ(take_newer(columns(0, 9)), icd::Status::Ok);
+  EXPECT_EQ(take_older(columns(0.1, 10)), icd::Status::Ok);
+  const auto kept = stored();
+  ASSERT_EQ(kept.size(), 1u) << "it replaced the other one";
+  EXPECT_EQ(kept[0].map.header().stamp, 10);
+}
+
+TEST_F(OvertakenGrid, IsRejectedIfItsDataIsDamaged) {
+  EXPECT_EQ(take_newer(columns(0, 10)), icd::Status::Ok);
+  icd::MapUpdate damaged = columns(-1, 9);
+  auto bytes = damaged.data.bytes.to_vector();
+  bytes[bytes.size() / 2] ^= 0x55;
+  damaged.data.bytes = icd::ChunkedBytes{bytes};
+  EXPECT_NE(take_older(damaged), icd::Status::Ok);
+  EXPECT_EQ(stored().size(), 1u);
 }
 
 TEST_F(MapsTest, AreNotDeletedIfTheBoundsOfTheNewerOneCannotBeStored) {
@@ -207,7 +294,7 @@ TEST_F(MapsTest, ReplaceARetriedGridByOneInPacking) {
   std::promise<void> let_go;
   workers_.submit(loop::Urgency::OnTheWay, [until = let_go.get_future().share()] { until.wait(); }, [] {});
   bool taken = false;
-  maps.take(grid("r1", 20, 700), 10, nullptr,
+  maps.take(grid("r1", 20, 700), {.bytes = 10}, nullptr,
             [&](const icd::Checked<void>& said) { taken = said.has_value(); });
   ASSERT_TRUE(loop::turn_until(loop_, [&] { return taken && maps.packing(); }));
   std::optional<bool> kept;
@@ -281,7 +368,7 @@ TEST_F(MapsTest, AreLimitedInNumberUnlessTheyMerge) {
   };
   std::size_t taken = 0;
   for (std::size_t i = 0; i < AcceptedMaps::kMostMaps; ++i) {
-    maps_.take(cloud_of(i % 2 == 0), 10, nullptr, [&](const icd::Checked<void>& said) {
+    maps_.take(cloud_of(i % 2 == 0), {.bytes = 10}, nullptr, [&](const icd::Checked<void>& said) {
       if (said) ++taken;
     });
     loop_.turn(std::chrono::milliseconds{0});

@@ -37,7 +37,7 @@ class MarkerArrivalsTest : public testing::Test {
   MarkerArrivalsTest() { journal_.begin({.boot = "b", .at = loop_.now(), .stamp = loop_.stamp_now()}); }
 
   void take(icd::MarkersUpdate update) {
-    arrivals_.take(std::move(update), 10, [this](const icd::Checked<void>& taken) {
+    arrivals_.take(std::move(update), {.bytes = 10}, [this](const icd::Checked<void>& taken) {
       said_.push_back(taken ? icd::Status::Ok : taken.error().status);
     });
   }
@@ -63,6 +63,21 @@ TEST_F(MarkerArrivalsTest, AreQueuedAtOnceIfTheyAreFew) {
   EXPECT_EQ(came_, 1);
   EXPECT_TRUE(arrivals_.empty());
   EXPECT_EQ(queue_.pending(), left());
+}
+
+TEST_F(MarkerArrivalsTest, AreLeftOutIfNewerOnesOvertookThem) {
+  const auto take_as = [&](icd::Marker marker, double stamp, queues::Upload upload) {
+    marker.header.stamp = stamp;
+    icd::MarkersUpdate update{.markers = {std::move(marker)}};
+    arrivals_.take(std::move(update), std::move(upload),
+                   [](const icd::Checked<void>& taken) { EXPECT_TRUE(taken); });
+  };
+  take_as(change(1, "", icd::MarkerAction::Delete), 10, {.bytes = 10, .began = 2, .ended = 3, .overlaps = 1});
+  take_as(change(1, "a"), 9, {.bytes = 10, .began = 1, .ended = 4});
+  ASSERT_EQ(queue_.pending().size(), 1u);
+  EXPECT_EQ(queue_.pending()[0].action, icd::MarkerAction::Delete);
+  EXPECT_EQ(queue_.pending(), left());
+  EXPECT_EQ(counts_.rows().at({Kind::Markers, ""}).accepted, 2u);
 }
 
 TEST_F(MarkerArrivalsTest, AreCountedIfTheyAreInvisible) {  // ICD 6.6

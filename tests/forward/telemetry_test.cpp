@@ -63,7 +63,8 @@ struct Process {
   /// Few markers are answered at once.
   icd::Checked<void> take(icd::MarkersUpdate update) {
     std::optional<icd::Checked<void>> said;
-    telemetry.take(std::move(update), 10, [&](icd::Checked<void> taken) { said = std::move(taken); });
+    telemetry.take(std::move(update), {.bytes = 10},
+                   [&](icd::Checked<void> taken) { said = std::move(taken); });
     return said.value();
   }
 

@@ -85,7 +85,8 @@ class TooLargeMap : public testing::Test, protected MapsParts {
     settings_.command_post.mapping = proxy_->address();
     std::size_t taken = 0;
     for (const icd::MapUpdate& each : updates)
-      maps_.take(each, 10, nullptr, [&](const icd::Checked<void>& said) { taken += said ? 1 : 0; });
+      maps_.take(each, {.bytes = 10}, nullptr,
+                 [&](const icd::Checked<void>& said) { taken += said ? 1 : 0; });
     ASSERT_TRUE(loop::turn_until(loop_, [&] { return taken == updates.size(); }));
     maps_.endpoint_changed(icd::BearerToken::parse("a-token"));
   }

@@ -39,6 +39,22 @@ OccupancyGrid tilted(OccupancyGrid grid, double angle) {
   return grid;
 }
 
+TEST(CoveredPart, IsWhatANewerGridCovers) {
+  const OccupancyGrid older = grid(0, 0, 100, 100);
+  const auto part = [&](const OccupancyGrid& newer) { return covered_part(GridBounds::of(newer), older); };
+  const auto shifted = part(grid(1, -1, 60, 40));
+  ASSERT_TRUE(shifted);
+  EXPECT_NEAR(shifted->low.x, 1, 1e-9);
+  EXPECT_NEAR(shifted->high.x, 4, 1e-9);
+  EXPECT_NEAR(shifted->low.y, -1, 1e-9);
+  EXPECT_NEAR(shifted->high.y, 1, 1e-9);
+  EXPECT_TRUE(part(with_z(grid(0, 0, 10, 10), 0.4 * kCell)));
+  EXPECT_FALSE(part(with_z(grid(0, 0, 10, 10), 0.6 * kCell)));
+  EXPECT_TRUE(part(turned(grid(0, 0, 10, 10), 1e-3)));
+  EXPECT_FALSE(part(turned(grid(0, 0, 100, 100), 0.1)));
+  EXPECT_FALSE(part(grid(0, 0, 10, 10, 2 * kCell)));
+}
+
 struct CoverCase {
   const char* what;
   OccupancyGrid newer, older;

@@ -49,6 +49,24 @@ TEST(IcdRoutes, CheckTheTokenFirst) {
             std::size(wrong) * std::size(icd::kUris) * 3);
 }
 
+TEST(IcdRoutes, TellInWhichOrderUploadsBeganAndEnded) {
+  Team team;
+  const std::string markers = authorized("POST", "/markers/update", kJsonType, kMarkersBody);
+  RawClient slow(team.served.port());
+  slow.send(markers.substr(0, markers.size() - 1));
+  ASSERT_TRUE(team.ask(authorized("POST", "/state/update", kJsonType, kStateBody)));
+  ASSERT_TRUE(team.ask(markers));
+  slow.send(markers.substr(markers.size() - 1));
+  ASSERT_TRUE(slow.reply());
+  const auto senders = team.served.on_loop([&] { return team.desk.senders; });
+  ASSERT_EQ(senders.size(), 3u);
+  EXPECT_EQ(senders[0].overlaps, 0u) << "the other upload is to another URI";
+  EXPECT_EQ(senders[1].overlaps, senders[2].began);
+  EXPECT_LT(senders[2].began, senders[1].began);
+  EXPECT_LT(senders[1].ended, senders[2].ended);
+  EXPECT_EQ(senders[2].overlaps, 0u) << "the other upload is over";
+}
+
 TEST(IcdRoutes, AcceptEachTokenWithBearerInAnyLetterCase) {
   Team team;
   for (const std::string_view scheme : {"Bearer", "bearer", "BEARER", "bEaReR"}) {

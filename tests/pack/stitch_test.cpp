@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "codec/gzip.hpp"
+#include "codec/map_pieces.hpp"
 
 namespace adit::pack {
 namespace {
@@ -54,6 +55,36 @@ TEST(StitchedCells, AreRejectedIfATileIsDamaged) {
   bytes[bytes.size() / 2] ^= 0x55;
   damaged.bytes = icd::ChunkedBytes{bytes};
   EXPECT_FALSE(stitch(2, 2, std::vector<Tile>{{damaged, 0, 0, 2, 2}}));
+}
+
+std::vector<std::uint8_t> unzipped(const icd::MapData& data) {
+  std::vector<std::uint8_t> bytes;
+  EXPECT_TRUE(codec::for_each_piece(data, [&](std::span<const std::uint8_t> piece) -> icd::Checked<void> {
+    bytes.insert(bytes.end(), piece.begin(), piece.end());
+    return {};
+  }));
+  return bytes;
+}
+
+TEST(CutCells, AreThoseOfTheirTiles) {
+  std::vector<Tile> tiles = {{{}, 1, 0, 2, 1}, {{}, 0, 1, 1, 2}, {{}, 2, 2, 1, 1}};
+  for (const icd::MapData& from : {cells({1, 2, 3, 4, 5, 6, 7, 8, 9}), zipped({1, 2, 3, 4, 5, 6, 7, 8, 9})}) {
+    ASSERT_TRUE(cut(from, 3, tiles));
+    EXPECT_THAT(unzipped(tiles[0].data), ElementsAre(2, 3));
+    EXPECT_THAT(unzipped(tiles[1].data), ElementsAre(4, 7));
+    EXPECT_THAT(unzipped(tiles[2].data), ElementsAre(9));
+    EXPECT_EQ(tiles[0].data.raw_size, 2);
+  }
+}
+
+TEST(CutCells, AreTheSameInAnyPieces) {
+  icd::MapData pieces{{}, icd::Compression::None, 6};
+  const auto whole = std::make_shared<std::vector<std::uint8_t>>(std::vector<std::uint8_t>{1, 2, 3, 4, 5, 6});
+  for (const auto& [from, size] : {std::pair(0, 1), {1, 4}, {5, 1}})
+    pieces.bytes.append(whole, std::span(*whole).subspan(from, size));
+  std::vector<Tile> tiles = {{{}, 1, 0, 2, 2}};
+  ASSERT_TRUE(cut(pieces, 3, tiles));
+  EXPECT_THAT(unzipped(tiles[0].data), ElementsAre(2, 3, 5, 6));
 }
 
 }  // namespace

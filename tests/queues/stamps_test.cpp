@@ -67,15 +67,35 @@ TEST(StampShift, RestartsAfterAClockStepAhead) {
   EXPECT_EQ(shift.shift(of("R1"), 9000.0, kNow + 60), kNow + 60);
 }
 
+TEST(StampShift, IsNotSetBackByAMessageThatWasOvertaken) {
+  StampShift shift;
+  const Upload slow{.began = 1, .ended = 4}, quick{.began = 2, .ended = 3}, later{.began = 5, .ended = 6};
+  shift.shift(of("R1"), 100.0, kNow, quick);
+  EXPECT_THAT(shift.shift(of("R1"), 90.0, kNow + 1, slow), DoubleNear(kNow - 10, 1e-6));
+  EXPECT_THAT(shift.shift(of("R1"), 101.5, kNow + 2, later), DoubleNear(kNow + 1.5, 1e-6)) << "no step";
+  EXPECT_THAT(shift.shift(of("R1"), 90.0, kNow + 2, later), DoubleNear(kNow + 2, 1e-6)) << "a step";
+}
+
+TEST(StampShift, ConvertsAMessageFromBeforeAStepAsBefore) {
+  StampShift shift;
+  const Upload slow{.began = 1, .ended = 6}, quick{.began = 2, .ended = 3}, stepped{.began = 4, .ended = 5};
+  shift.shift(of("R1"), 1000.0, kNow, quick);
+  EXPECT_THAT(shift.shift(of("R1"), 500.0, kNow + 2, stepped), DoubleNear(kNow + 2, 1e-6)) << "a step";
+  EXPECT_THAT(shift.shift(of("R1"), 999.5, kNow + 3, slow), DoubleNear(kNow - 0.5, 1e-6));
+  EXPECT_THAT(shift.shift(of("R1"), 501.5, kNow + 4, {.began = 7, .ended = 8}), DoubleNear(kNow + 3.5, 1e-6))
+      << "the step stands";
+}
+
 TEST(StampShift, StampsNeverGoBackAfterAClockStepBack) {
   for (const double back : {2.0, 3.5, 4.9, 5.1, 3600.0}) {
     SCOPED_TRACE(back);
     StampShift shift;
-    shift.shift(of("R1"), 10'000.0, kNow, 1);
-    const icd::Stamp ahead = shift.shift(of("R1"), 10'004.0, kNow + 0.1, 1);
-    const icd::Stamp first = shift.shift(of("R1"), 10'004.1 - back, kNow + 0.2, 1);
+    shift.shift(of("R1"), 10'000.0, kNow, {.connection = 1});
+    const icd::Stamp ahead = shift.shift(of("R1"), 10'004.0, kNow + 0.1, {.connection = 1});
+    const icd::Stamp first = shift.shift(of("R1"), 10'004.1 - back, kNow + 0.2, {.connection = 1});
     EXPECT_GE(first, ahead) << "the pose counts at once";
-    EXPECT_THAT(shift.shift(of("R1"), 10'004.4 - back, kNow + 0.3, 1), DoubleNear(first + 0.3, 1e-6));
+    EXPECT_THAT(shift.shift(of("R1"), 10'004.4 - back, kNow + 0.3, {.connection = 1}),
+                DoubleNear(first + 0.3, 1e-6));
   }
 }
 

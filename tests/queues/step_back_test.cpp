@@ -94,7 +94,8 @@ TEST(StepBack, IsDetectedWithinOneMessage) {
       const double now = 1'650'000'000 + number * 0.1;
       if (number % 100 == 99) offset -= by(random), clock_was_set = number;
       const Connection on = connections == 0 ? number + 1 : number % connections + 1;
-      const auto stamp = shift.shift({.address = "10.0.0.5", .robot = "R1"}, now - 1e9 + offset, now, on);
+      const auto stamp =
+          shift.shift({.address = "10.0.0.5", .robot = "R1"}, now - 1e9 + offset, now, {.connection = on});
       const icd::Pose pose{{static_cast<double>(number), 0, 0}, {}};
       queue.add(queue.news_in(posted({{stamp}, {{*robot("R1"), pose}}})), at(number));
       if (const auto taken = queue.take()) sent = taken->update.poses.front().pose.position.x;

@@ -1,5 +1,6 @@
 #include "simulation/asked.hpp"
 
+#include <cmath>
 #include <map>
 
 #include "simulation/bad_messages.hpp"
@@ -7,13 +8,15 @@
 #include "simulation/deciding_operator.hpp"
 #include "simulation/faults.hpp"
 #include "simulation/messages.hpp"
+#include "simulation/robot.hpp"
 #include "simulation/upstream_view.hpp"
 
 namespace adit::simulation {
 namespace {
 
 constexpr int kRequestTimeout = 408;
-constexpr double kWritesDown = 0.05;  // seconds until the ledger has recorded an answer
+constexpr double kSameClock = 0.001, kHeadRead = 0.5;  // seconds
+constexpr double kWritesDown = 0.05;                   // seconds until the ledger has recorded an answer
 constexpr std::int64_t kUnknown = 0, kElsewhere = -1, kBefore = -2, kTwin = -3;  // serials
 /// Faults after which the Command Post's answer is still correct.
 const std::set<std::string> kRightAnswers = {name_of(Fault::Delay), name_of(Fault::OddAnswer),
@@ -31,11 +34,22 @@ std::vector<Asked> asked_in(const std::vector<Event>& events, const std::string&
     if (is_new) all.push_back({.path = path, .items = {}, .began = event.at, .ended = event.at});
     Asked& asked = all[found->second];
     if (event.kind == Kind::Invoke) asked.items.push_back({event.who, event.serial, event.stamp, event.says});
-    if (event.kind == Kind::Whole) asked.whole = true;
+    if (event.kind == Kind::Whole) {
+      asked.whole = true;
+      asked.whole_at = event.at;
+    }
     if (event.kind == Kind::Answered) asked.status = event.status;
     asked.ended = event.kind == Kind::Answered ? event.at : event.at + kForgotten;
   }
   return all;
+}
+
+bool is_overtaken(const Asked& first, const Item& older, const Asked& second, const Item& newer) {
+  const auto robot = [](const Item& item) { return item.serial / Robot::kSerials; };
+  const double runs_on = (newer.stamp - second.began) - (older.stamp - first.began);
+  return older.stamp != 0 && newer.stamp != 0 && robot(older) == robot(newer) &&
+         std::abs(runs_on) < kSameClock && older.stamp < newer.stamp && second.whole &&
+         first.began + kHeadRead < second.whole_at && second.whole_at < first.ended;
 }
 
 void OpenReports::add(const Event& event) {

@@ -21,13 +21,18 @@ struct Asked {
   std::string path;
   std::vector<Item> items;
   double began = 0;
-  double ended = 0;  // the request is not accepted after this time
+  double ended = 0;     // the request is not accepted after this time
+  double whole_at = 0;  // when its last byte was sent
   bool whole = false;
   int status = 0;  // 0: the client heard no answer
 
   bool accepted() const { return status == 200; }
   bool may_count() const { return accepted() || (status == 0 && whole); }
 };
+
+/// Whether a newer message of one client certainly overtook an older one: its clock ran on between them, and
+/// the upload of the older one began before the newer one was whole. `older`, `newer`: their items.
+bool is_overtaken(const Asked& first, const Item& older, const Asked& second, const Item& newer);
 
 /// Reports that a client or the operator posted, until the Command Post has answered them with 2xx or the
 /// operator has settled or withdrawn them.

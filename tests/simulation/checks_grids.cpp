@@ -39,7 +39,13 @@ struct PostedGrid {
     if (reply.status == 200 && reply.who.empty()) is_taken = true, confirmed = std::min(confirmed, reply.at);
     is_refused = is_refused || reply.status == 422 || reply.status == 413;
   }
-  bool is_before(const PostedGrid& other) const { return asked->ended < other.asked->began; }
+  bool is_overtaken_by(const PostedGrid& other) const {
+    return extent.cell == other.extent.cell && 2 * std::abs(extent.z - other.extent.z) < extent.cell &&
+           is_overtaken(*asked, asked->items.front(), *other.asked, other.asked->items.front());
+  }
+  bool is_before(const PostedGrid& other) const {
+    return asked->ended < other.asked->began || is_overtaken_by(other);
+  }
 };
 
 /// Whether the cells of `inner` are cells of `outer`.
@@ -278,7 +284,8 @@ class GridsOfOneName {
   }
 
   /// Each of its cells has the grid's value, or the value of a grid that is not older or that this grid let
-  /// pass, or was covered later by a grid on another lattice that is not older.
+  /// pass, or was covered later by a grid on another lattice that is not older. Or an accepted grid that
+  /// overtook this one covers it, whose own cells count then.
   bool is_there(const PostedGrid& grid) const {
     bool all = true;
     for_each_cell(grid.extent, [&](const Extent& cell) {
@@ -288,7 +295,9 @@ class GridsOfOneName {
         return !owner->is_before(grid) || lets_newer_pass(*owner);
       });
       all = all && (has_it || std::ranges::any_of(posted_, [&](const PostedGrid& newer) {
-                      return newer.taken > has.place && !newer.is_before(grid) && covers(newer.extent, cell);
+                      const bool came_later = newer.taken > has.place && !newer.is_before(grid);
+                      const bool overtook = newer.asked->accepted() && grid.is_overtaken_by(newer);
+                      return (came_later || overtook) && covers(newer.extent, cell);
                     }));
     });
     return all;

@@ -30,7 +30,9 @@ struct Change {
   bool accepted;
   std::int64_t serial;  // 0: the value was deleted
   Says sender = {};
-  bool fades = false;  // by its lifetime
+  bool fades = false;            // by its lifetime
+  const Asked* asked = nullptr;  // of a marker
+  Item item = {};
 
   bool is_of_one_clock(const Change& other) const {
     return stamp != 0 && other.stamp != 0 && sender == other.sender &&
@@ -44,7 +46,10 @@ using Changes = std::vector<Change>;
 /// first. Otherwise the times of the posts decide.
 bool is_before(const Change& change, const Change& other, const Changes& all,
                const std::vector<double>& forgets) {
-  const bool by_stamps = change.stamp < other.stamp, by_arrival = change.ended < other.began;
+  const bool by_stamps = change.stamp < other.stamp;
+  const bool by_arrival =
+      change.ended < other.began || (change.asked != nullptr && other.asked != nullptr &&
+                                     is_overtaken(*change.asked, change.item, *other.asked, other.item));
   if (!change.is_of_one_clock(other) || by_stamps == by_arrival) return by_arrival;
   const double from = std::min(change.began, other.began), to = std::max(change.ended, other.ended);
   const bool is_apart = std::ranges::any_of(forgets, [&](double at) { return at > from && at < to; }) ||
@@ -267,7 +272,8 @@ void markers_arrived(const Evidence& evidence, Broken& broken) {
     // Not ordered by stamp: a marker's stamp is not its place in the scene's history.
     for (const auto& [key, item] : says_of(asked, keys)) {
       const std::int64_t serial = item.says[0] == kAdd ? item.serial : 0;
-      changes[key].push_back({asked.began, asked.ended, 0, asked.accepted(), serial, {}, item.says[2] > 0});
+      changes[key].push_back(
+          {asked.began, asked.ended, 0, asked.accepted(), serial, {}, item.says[2] > 0, &asked, item});
     }
   }
   Scene taken;

@@ -46,6 +46,11 @@ void Client::ask_several(std::string request, std::vector<Event> about, std::fun
   hang_up_at_ = random_.chance(manners_.hangs_up) ? 1 + random_.below(request_.size()) : 0;
   half_close_ = random_.chance(manners_.half_closes);
   stalls_at_ = random_.chance(manners_.stalls) ? 1 + random_.below(request_.size() - 1) : 0;
+  pauses_at_ = 0;
+  if (manners_.pauses > 0 && random_.chance(manners_.pauses)) {
+    const std::size_t head = request_.find("\r\n\r\n") + 4;
+    pauses_at_ = head + random_.below(request_.size() - head);
+  }
   const std::uint64_t number = ++number_;
   if (fd_ < 0) connect();
   for (Event& event : about) {
@@ -68,8 +73,11 @@ void Client::go_on() {
   const bool dribbles = random_.chance(manners_.dribbles);
   write(dribbles ? 1 + random_.below(left) : left);
   if (!done_ || written_ == request_.size()) return;
+  const bool pauses = pauses_at_ != 0 && written_ == pauses_at_;
+  if (pauses) pauses_at_ = 0;
+  const double delay = pauses ? random_.between(1, 8) : random_.between(0.0005, dribbles ? 0.5 : 0.01);
   const std::uint64_t number = number_;
-  world_.after(seconds(random_.between(0.0005, dribbles ? 0.5 : 0.01)), [this, number] {
+  world_.after(seconds(delay), [this, number] {
     if (number == number_) go_on();
   });
 }
@@ -83,6 +91,7 @@ void Client::stall() {
 
 void Client::write(std::size_t most) {
   if (stalls_at_ != 0) most = std::min(most, stalls_at_ - written_);
+  if (pauses_at_ != 0) most = std::min(most, pauses_at_ - written_);
   if (hang_up_at_ != 0) most = std::min(most, hang_up_at_ - written_);
   const ssize_t taken = ::send(fd_, request_.data() + written_, most, MSG_NOSIGNAL | MSG_DONTWAIT);
   if (taken < 0 && errno == EAGAIN) return;

@@ -22,6 +22,7 @@ struct Manners {
   double dribbles = 0.1;   // probability of a request in pieces
   double half_closes = 0;  // probability of ending its direction after the request
   double stalls = 0;       // probability of stopping within a request and holding the connection
+  double pauses = 0;       // probability of waiting for 1 to 8 s within the body, after the whole head
 };
 
 /// An HTTP client of the team: one request at a time.
@@ -69,6 +70,7 @@ class Client {
   std::size_t written_ = 0;
   std::size_t hang_up_at_ = 0;  // bytes; 0: never
   std::size_t stalls_at_ = 0;   // bytes; 0: never
+  std::size_t pauses_at_ = 0;   // bytes; 0: never
   bool half_close_ = false;
   Event about_;  // the first item of the request
   std::function<void(int)> done_;

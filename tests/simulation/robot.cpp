@@ -41,6 +41,10 @@ Robot::Robot(World& world, int number)
       name_(std::string("R").append(std::to_string(number))),
       finds_ns_(world.random("finds of " + name_).chance(0.3) ? "" : name_ + " finds"),
       client_(world, address(number), manners(random_), world.random("client " + name_)),
+      slowly_(world.random("slow posts of " + name_)),
+      overtakes_(slowly_.chance(0.25)),
+      slow_client_(world, address(number), {.patience = 30, .pauses = 1},
+                   world.random("slow client " + name_)),
       style_(style(world, name_)),
       clock_(random_.between(-1000, 1000)),
       jump_(random_.chance(0.3) ? (random_.chance(0.5) ? 1 : -1) * random_.between(kJump, 2000) : 0),
@@ -66,10 +70,16 @@ void Robot::post_until(double end) {
 void Robot::post() {
   if (world_.time() > end_) return;
   const Posting posting = next();
-  client_.ask_several(request_of(posting, style_), events_of(posting), [this](int) {
-    const double pause = row_ > 0 ? 0.01 : every_ * random_.between(0.2, 1.8);
-    world_.after(seconds(pause), [this] { post(); });
-  });
+  if (overtakes_ && slowly_.chance(0.25) && !slow_client_.busy()) {
+    slow_client_.ask_several(request_of(posting, style_), events_of(posting), [](int) {});
+    return post_later();
+  }
+  client_.ask_several(request_of(posting, style_), events_of(posting), [this](int) { post_later(); });
+}
+
+void Robot::post_later() {
+  const double pause = row_ > 0 ? 0.01 : every_ * random_.between(0.2, 1.8);
+  world_.after(seconds(pause), [this] { post(); });
 }
 
 Posting Robot::next() {

@@ -14,7 +14,8 @@ class World;
 
 /// A robot. It posts its pose, grids that cover earlier ones or not, on one lattice or on many, clouds singly
 /// or several in a row, with new points or all points since its map began, and markers that it changes and
-/// deletes. Its serials ascend.
+/// deletes. Its serials ascend. Some robots post a fourth of their messages on a slow connection, and go on
+/// with the others meanwhile.
 class Robot {
  public:
   static constexpr std::int64_t kSerials = 4096;  // serials per robot, from `number` times this
@@ -25,6 +26,7 @@ class Robot {
 
  private:
   void post();
+  void post_later();
   Item item(std::string who, Says says = {});
   Item grid();
   Item window();
@@ -40,6 +42,9 @@ class Robot {
   const std::string name_;
   const std::string finds_ns_;  // "": its markers have no namespace, which several robots may share
   Client client_;
+  Random slowly_;
+  const bool overtakes_;  // itself, on the other connection
+  Client slow_client_;
   const Style style_;
   const double clock_;  // seconds by which its clock is off
   const double jump_;   // seconds by which its clock is set, once

@@ -20,7 +20,11 @@ struct Sender {
   std::string address;
   std::size_t bytes = 0;         // of the body as received
   std::uint64_t connection = 0;  // RequestHead::connection()
-  bool resubmits = false;        // a report to send as a new one, even if it equals an earlier one
+  /// When the upload began and when it was whole, as places in the order of all beginnings and ends; from 1.
+  std::uint64_t began = 0, ended = 0;
+  /// The first beginning among this address's other uploads to the URI that are not over; 0: there are none.
+  std::uint64_t overlaps = 0;
+  bool resubmits = false;  // a report to send as a new one, even if it equals an earlier one
 };
 
 /// A map that is arriving. The destructor discards it unless take() was called.

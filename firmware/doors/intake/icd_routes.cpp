@@ -139,9 +139,13 @@ std::unique_ptr<BodySink> IcdRoutes::open(const RequestHead& head, std::shared_p
   Sender sender;
   sender.address = head.peer();
   sender.connection = head.connection();
+  sender.began = ++uploads_->last;
   sender.bytes = static_cast<std::size_t>(length.value_or(0));
-  Visit visit{
-      .desk = desk_, .uri = *uri, .sender = std::move(sender), .responder = with_cors(std::move(responder))};
+  Visit visit{.desk = desk_,
+              .uri = *uri,
+              .sender = std::move(sender),
+              .responder = with_cors(std::move(responder)),
+              .uploads = uploads_};
   if (head.method() == "OPTIONS") {
     visit.responder->answer(preflight_answer(*uri, head.header("Access-Control-Request-Headers")));
     return nullptr;
@@ -193,16 +197,16 @@ std::unique_ptr<BodySink> IcdRoutes::take_in(Visit visit, const RequestHead& hea
   switch (visit.uri) {
     case icd::Uri::MapUpdate:
       return std::make_unique<MapUpload>(
-          std::move(visit),
+          visit,
           MapUploadOptions{
               .kind = *kind, .rules = options_.rules, .most_bytes = most, .without_room = without_room_},
-          std::move(flow), workers_, maps_, under_way_);
+          std::move(flow), workers_, maps_);
     case icd::Uri::MarkersUpdate:
-      return std::make_unique<MarkersUpload>(std::move(visit), *kind, options_.rules, workers_, markers_,
-                                             large_markers_, under_way_);
+      return std::make_unique<MarkersUpload>(visit, *kind, options_.rules, workers_, markers_,
+                                             large_markers_);
     case icd::Uri::ArtifactReports:
     case icd::Uri::StateUpdate:
-      return std::make_unique<SmallUpload>(std::move(visit), *kind, options_.rules, small_, under_way_);
+      return std::make_unique<SmallUpload>(std::move(visit), *kind, options_.rules, small_);
     case icd::Uri::Status:
       break;  // has no body
   }
@@ -211,7 +215,7 @@ std::unique_ptr<BodySink> IcdRoutes::take_in(Visit visit, const RequestHead& hea
 
 void IcdRoutes::stop() {
   stopping_ = true;
-  const Upload::UnderWay all = *under_way_;
+  const std::set<Upload*> all = uploads_->under_way;
   for (Upload* upload : all) upload->turn_away(stops());
 }
 

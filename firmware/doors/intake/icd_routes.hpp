@@ -78,7 +78,7 @@ class IcdRoutes final : public Handler {
   std::shared_ptr<UploadBudget> small_;         // for states and reports
   std::shared_ptr<UploadBudget> without_room_;  // for maps that cannot be stored
   std::shared_ptr<TurnQueue> large_markers_ = std::make_shared<TurnQueue>();
-  std::shared_ptr<Upload::UnderWay> under_way_ = std::make_shared<Upload::UnderWay>();
+  std::shared_ptr<Uploads> uploads_ = std::make_shared<Uploads>();
   bool stopping_ = false;
 };
 

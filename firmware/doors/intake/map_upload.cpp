@@ -229,7 +229,7 @@ void MapUpload::State::take_result(icd::Checked<icd::MapUpdate> result) {
   const auto arrival = arrival_;
   abandon();
   if (!result) return visit_.answer(std::unexpected(std::move(result.error())));
-  arrival->take(std::move(*result), visit_.sender,
+  arrival->take(std::move(*result), visit_.sender_at_end(),
                 [self = shared_from_this()](const icd::Checked<void>& taken) { self->visit_.answer(taken); });
 }
 
@@ -259,11 +259,9 @@ void MapUpload::State::stored(icd::ChunkedBytes left) {
   if (!loop::guarded("storing a map", [this] { go_on(); })) failed();
 }
 
-MapUpload::MapUpload(Visit visit, MapUploadOptions options, std::shared_ptr<Flow> flow,
-                     loop::Workers& workers, std::shared_ptr<UploadBudget> budget,
-                     std::shared_ptr<UnderWay> under_way)
-    : WorkerUpload(
-          std::make_shared<State>(std::move(visit), options, std::move(flow), workers, std::move(budget)),
-          std::move(under_way)) {}
+MapUpload::MapUpload(const Visit& visit, MapUploadOptions options, std::shared_ptr<Flow> flow,
+                     loop::Workers& workers, std::shared_ptr<UploadBudget> budget)
+    : WorkerUpload(visit,
+                   std::make_shared<State>(visit, options, std::move(flow), workers, std::move(budget))) {}
 
 }  // namespace adit::intake

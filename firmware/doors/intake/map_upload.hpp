@@ -36,8 +36,8 @@ class MapUpload final : public WorkerUpload {
       64 * 1024;  // the least bytes of a job, except at the beginning and the end
   static constexpr std::size_t kWithoutRoom = 24u << 20;
 
-  MapUpload(Visit visit, MapUploadOptions options, std::shared_ptr<Flow> flow, loop::Workers& workers,
-            std::shared_ptr<UploadBudget> budget, std::shared_ptr<UnderWay> under_way);
+  MapUpload(const Visit& visit, MapUploadOptions options, std::shared_ptr<Flow> flow, loop::Workers& workers,
+            std::shared_ptr<UploadBudget> budget);
 
  private:
   class State;

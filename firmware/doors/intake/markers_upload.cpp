@@ -85,7 +85,7 @@ class MarkersUpload::State final : public Taking, public std::enable_shared_from
     abandon();
     if (!parts) return visit_.refuse(parts.error());
     visit_.desk.take(
-        std::move(parts->message), visit_.sender,
+        std::move(parts->message), visit_.sender_at_end(),
         [self = shared_from_this(), refused = std::move(parts->refused)](icd::Checked<void> taken) {
           if (taken && refused.count > 0) taken = std::unexpected(refused.refusal());
           self->visit_.answer(taken);
@@ -178,10 +178,9 @@ void MarkersUpload::State::read_large_one() {
       });
 }
 
-MarkersUpload::MarkersUpload(Visit visit, codec::BodyKind kind, const icd::Rules& rules,
+MarkersUpload::MarkersUpload(const Visit& visit, codec::BodyKind kind, const icd::Rules& rules,
                              loop::Workers& workers, std::shared_ptr<UploadBudget> budget,
-                             const std::shared_ptr<TurnQueue>& turns, std::shared_ptr<UnderWay> under_way)
-    : WorkerUpload(std::make_shared<State>(std::move(visit), kind, rules, workers, std::move(budget), turns),
-                   std::move(under_way)) {}
+                             const std::shared_ptr<TurnQueue>& turns)
+    : WorkerUpload(visit, std::make_shared<State>(visit, kind, rules, workers, std::move(budget), turns)) {}
 
 }  // namespace adit::intake

@@ -27,9 +27,8 @@ class MarkersUpload final : public WorkerUpload {
   /// Such a marker has 900,000 values without their names.
   static constexpr std::size_t kMostValues = 1'000'000;
 
-  MarkersUpload(Visit visit, codec::BodyKind kind, const icd::Rules& rules, loop::Workers& workers,
-                std::shared_ptr<UploadBudget> budget, const std::shared_ptr<TurnQueue>& turns,
-                std::shared_ptr<UnderWay> under_way);
+  MarkersUpload(const Visit& visit, codec::BodyKind kind, const icd::Rules& rules, loop::Workers& workers,
+                std::shared_ptr<UploadBudget> budget, const std::shared_ptr<TurnQueue>& turns);
 
  private:
   class State;

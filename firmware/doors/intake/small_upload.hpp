@@ -12,8 +12,8 @@ namespace adit::intake {
 class SmallUpload final : public Upload {
  public:
   SmallUpload(Visit visit, codec::BodyKind kind, const icd::Rules& rules,
-              std::shared_ptr<UploadBudget> budget, std::shared_ptr<UnderWay> under_way)
-      : Upload(std::move(under_way)),
+              std::shared_ptr<UploadBudget> budget)
+      : Upload(visit),
         visit_(std::move(visit)),
         share_(std::move(budget), visit_.sender.address),
         rules_(rules),

@@ -12,7 +12,7 @@ namespace adit::intake {
 template <class Message>
 void take_parts(const Visit& visit, icd::Checked<codec::CheckedParts<Message>> read) {
   if (!read) return visit.refuse(read.error());
-  auto taken = visit.desk.take(std::move(read->message), visit.sender);
+  auto taken = visit.desk.take(std::move(read->message), visit.sender_at_end());
   if (taken && read->refused.count > 0) taken = std::unexpected(read->refused.refusal());
   visit.answer(taken);
 }

@@ -4,6 +4,7 @@
 
 #include "icd/sentence.hpp"
 #include "intake/icd_routes.hpp"
+#include "intake/upload.hpp"
 
 namespace adit::intake {
 namespace {
@@ -37,6 +38,16 @@ bool is_token_list(std::string_view text) {
 }
 
 }  // namespace
+
+Sender Visit::sender_at_end() const {
+  Sender whole = sender;
+  whole.ended = ++uploads->last;
+  for (const Upload* other : uploads->under_way) {
+    const bool is_other = other->is_like(*this) && other->began() != sender.began;
+    if (is_other && (whole.overlaps == 0 || other->began() < whole.overlaps)) whole.overlaps = other->began();
+  }
+  return whole;
+}
 
 void Visit::refuse(const icd::Refusal& refusal, std::vector<Header> headers) const {
   Answer answer = error_answer(refusal.status, refusal.sentence);

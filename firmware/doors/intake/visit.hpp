@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <set>
 #include <utility>
 
 #include "intake/desk.hpp"
@@ -8,12 +10,24 @@
 
 namespace adit::intake {
 
+class Upload;
+
+/// All uploads that are not over. For the loop only.
+struct Uploads {
+  std::set<Upload*> under_way;
+  std::uint64_t last = 0;  // place of the last beginning or end (Sender::began)
+};
+
 /// One request to one of the ICD's URIs: its sender, and the responder for the answer.
 struct Visit {
   Desk& desk;
   icd::Uri uri;
   Sender sender;
   std::shared_ptr<Responder> responder;
+  std::shared_ptr<Uploads> uploads;
+
+  /// The sender of an upload that is whole now.
+  Sender sender_at_end() const;
 
   void refuse(const icd::Refusal& refusal, std::vector<Header> headers = {}) const;
   /// 200 `null`, or the refusal.

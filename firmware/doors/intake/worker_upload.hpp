@@ -52,8 +52,8 @@ class WorkerUpload : public Upload {
     virtual void let_go() = 0;
   };
 
-  WorkerUpload(std::shared_ptr<Taking> taking, std::shared_ptr<UnderWay> under_way)
-      : Upload(std::move(under_way)), taking_(std::move(taking)) {}
+  WorkerUpload(const Visit& visit, std::shared_ptr<Taking> taking)
+      : Upload(visit), taking_(std::move(taking)) {}
   ~WorkerUpload() override { taking_->abandon(); }
   WorkerUpload(const WorkerUpload&) = delete;
   WorkerUpload& operator=(const WorkerUpload&) = delete;

@@ -14,6 +14,27 @@ icd::Stamp stamp_of(const icd::MapUpdate& map) {
   return map.header().stamp.value_or(0);
 }
 
+std::vector<pack::Tile> tiles_outside(const icd::OccupancyGrid& grid,
+                                      std::span<const icd::GridBounds> newer) {
+  std::vector<pack::Tile> tiles;
+  for (const queues::Cells& cells : queues::cells_outside(grid, newer)) {
+    tiles.push_back({.data = {},
+                     .column = static_cast<std::size_t>(cells.x),
+                     .row = static_cast<std::size_t>(cells.y),
+                     .width = static_cast<std::size_t>(cells.width),
+                     .height = static_cast<std::size_t>(cells.height)});
+  }
+  return tiles;
+}
+
+/// Makes the part of `grid` out of it that `tile` is.
+void place(icd::OccupancyGrid& grid, const pack::Tile& tile) {
+  const auto column = static_cast<std::int64_t>(tile.column), row = static_cast<std::int64_t>(tile.row);
+  if (column > 0 || row > 0) grid.origin = queues::corner_at(grid, column, row).value_or(grid.origin);
+  grid.width = static_cast<std::uint32_t>(tile.width);
+  grid.height = static_cast<std::uint32_t>(tile.height);
+}
+
 }  // namespace
 
 /// After a power cut the areas of earlier grids are unknown. The record that begins grids shows it.
@@ -53,51 +74,101 @@ bool AcceptedMaps::has_room_for(const icd::MapUpdate& update, bool replaces) con
   return replaces || waiting == 0 || waiting + update.data.bytes.size() <= settings_.queues.map_bytes;
 }
 
-void AcceptedMaps::take(icd::MapUpdate update, std::size_t bytes_received,
-                        std::shared_ptr<spool::MapFile> file, std::function<void(icd::Checked<void>)> done) {
-  const bool replaces = queue_.replaces_any(update);
-  const auto refuse = [&](icd::Refusal why) {
-    store_.discard(std::move(file));
-    done(std::unexpected(std::move(why)));
-  };
+void AcceptedMaps::take(const std::shared_ptr<Arrived>& map) {
+  if (overtaken_.must_wait(map->upload)) return waiting_.push_back(map);
+  icd::MapUpdate& update = map->update;
+  const bool is_whole = queue_.clouds_of(queues::Sender::of(update)) == queues::Clouds::Whole;
+  const auto newer = update.is_grid() || is_whole ? overtaken_.find_newer(update, map->upload)
+                                                  : std::vector<icd::GridBounds>();
+  const bool replaces = newer.empty() && queue_.replaces_any(update);
   if (!has_room_for(update, replaces)) {
     counts_.no_room(traffic_of(update), loop_.wall_now());
-    return refuse(
-        {icd::Status::TooManyRequests, icd::sentence("the queue is full: ", queue_.count() + store_.count(),
-                                                     " maps, ", (queue_.bytes() + store_.bytes()) / 1000000,
-                                                     " MB; this map was not accepted, send it again later")});
+    return refuse(*map, {icd::Status::TooManyRequests,
+                         icd::sentence("the queue is full: ", queue_.count() + store_.count(), " maps, ",
+                                       (queue_.bytes() + store_.bytes()) / 1000000,
+                                       " MB; this map was not accepted, send it again later")});
   }
-  if (!is_told(update)) return refuse(not_stored());
+  if (!is_told(update)) return refuse(*map, not_stored());
+  overtaken_.begin(map->upload, !newer.empty());
+  if (!newer.empty()) return leave_out(map, newer);
   // Newer grids and whole clouds need room beside the old one.
-  const bool is_whole =
-      update.is_grid() || queue_.clouds_of(queues::Sender::of(update)) == queues::Clouds::Whole;
-  const std::uint64_t of_its_own = is_whole ? update.data.bytes.size() : 0;
+  const std::uint64_t of_its_own = update.is_grid() || is_whole ? update.data.bytes.size() : 0;
   const std::uint64_t spare =
       replaces ? 0 : std::max<std::uint64_t>(queue_.largest_replaceable(), of_its_own);
-  store_.store(std::move(update), std::move(file), spare, /*again=*/false,
-               [this, bytes_received, done = std::move(done)](MapStore::Stored& stored) {
-                 this->stored(stored, bytes_received, done);
-               });
+  store_.store(std::move(update), std::move(map->file), spare, /*again=*/false,
+               [this, map](MapStore::Stored& stored) { this->stored(stored, *map); });
 }
 
 /// Queued now; the sender may know.
-void AcceptedMaps::stored(MapStore::Stored& stored, std::size_t bytes_received,
-                          const std::function<void(icd::Checked<void>)>& done) {
+void AcceptedMaps::stored(MapStore::Stored& stored, Arrived& map) {
   if (stored.has_no_valid_point) {
-    counts_.no_valid_point(traffic_of(*stored.map), bytes_received, loop_.wall_now());
+    counts_.no_valid_point(traffic_of(*stored.map), map.upload.bytes, loop_.wall_now());
     store_.forget({&stored.number, 1});
-    return done({});
+    return end(map, {});
   }
-  if (!stored.map) return done(std::unexpected(std::move(stored.map.error())));
+  if (!stored.map) return refuse(map, std::move(stored.map.error()));
+  map.update.name = stored.map->name;
+  map.update.msg = stored.map->msg;
+  queue(stored);
+  accept(map);
+}
+
+void AcceptedMaps::queue(MapStore::Stored& stored) {
   const Traffic traffic = traffic_of(*stored.map);
-  counts_.accepted(traffic, bytes_received, loop_.wall_now());
   tell_clouds(*stored.map);
   const auto replaced = queue_.add(stored.number, std::move(*stored.map), loop_.now());
   counts_.replaced(traffic, replaced.numbers.size());
   store_.forget(replaced);
-  done({});
+}
+
+void AcceptedMaps::leave_out(const std::shared_ptr<Arrived>& map, std::span<const icd::GridBounds> newer) {
+  const auto* const grid = std::get_if<icd::OccupancyGrid>(&map->update.msg);
+  if (grid != nullptr) map->tiles = tiles_outside(*grid, newer);
+  if (map->tiles.empty()) {  // the Command Post has newer data, or will have it
+    counts_.replaced(traffic_of(map->update), 1);
+    return accept(*map);
+  }
+  map->cut = std::unexpected(not_stored());
+  workers_.submit(
+      loop::Urgency::OnTheWay,
+      [map, width = grid->width] { map->cut = pack::cut(map->update.data, width, map->tiles); },
+      [this, map] {
+        if (!map->cut) return refuse(*map, std::move(map->cut.error()));
+        map->update.data = {};
+        store_next_tile(map);
+      });
+}
+
+void AcceptedMaps::store_next_tile(const std::shared_ptr<Arrived>& map) {
+  icd::MapUpdate part = map->update;
+  place(std::get<icd::OccupancyGrid>(part.msg), map->tiles.back());
+  part.data = std::move(map->tiles.back().data);
+  map->tiles.pop_back();
+  store_.store(std::move(part), nullptr, /*spare=*/0, /*again=*/false, [this, map](MapStore::Stored& stored) {
+    if (!stored.map) return refuse(*map, std::move(stored.map.error()));
+    queue(stored);
+    if (map->tiles.empty()) return accept(*map);
+    store_next_tile(map);
+  });
+}
+
+void AcceptedMaps::accept(Arrived& map) {
+  counts_.accepted(traffic_of(map.update), map.upload.bytes, loop_.wall_now());
+  overtaken_.record(map.update, map.upload);
+  end(map, {});
   compare();
   queued_();
+}
+
+void AcceptedMaps::refuse(Arrived& map, icd::Refusal why) {
+  end(map, std::unexpected(std::move(why)));
+}
+
+void AcceptedMaps::end(Arrived& map, const icd::Checked<void>& outcome) {
+  store_.discard(std::exchange(map.file, nullptr));
+  overtaken_.end(map.upload);
+  map.done(outcome);
+  for (const auto& each : std::exchange(waiting_, {})) take(each);
 }
 
 void AcceptedMaps::restore(spool::Spool::Kept kept) {

@@ -3,7 +3,9 @@
 #include "forward/map_store.hpp"
 #include "forward/traffic_counts.hpp"
 #include "journal/journal.hpp"
+#include "pack/stitch.hpp"
 #include "queues/map_queue.hpp"
+#include "queues/overtaken.hpp"
 #include "settings/settings.hpp"
 
 namespace adit::forward {
@@ -35,19 +37,39 @@ class AcceptedMaps {
   /// Maps::carry_on(), restore(), take() and send_again().
   void carry_on(const journal::Carried& carried, bool ran_before);
   void restore(spool::Spool::Kept kept);
-  void take(icd::MapUpdate update, std::size_t bytes_received, std::shared_ptr<spool::MapFile> file,
-            std::function<void(icd::Checked<void>)> done);
+  void take(icd::MapUpdate update, const queues::Upload& upload, std::shared_ptr<spool::MapFile> file,
+            std::function<void(icd::Checked<void>)> done) {
+    take(std::make_shared<Arrived>(Arrived{std::move(update), upload, std::move(file), std::move(done)}));
+  }
   void send_again(icd::MapUpdate update, std::function<bool(bool kept)> done,
                   const std::optional<icd::GridBounds>& bounds);
   /// Compares no more clouds.
   void stop() { stopping_ = true; }
+  /// True if no map is being stored.
+  bool all_kept() const { return overtaken_.empty() && store_.count() == 0; }
 
  private:
   void restore(spool::Spool::KeptMap kept);
   bool has_room_for(const icd::MapUpdate& update, bool replaces) const;
   bool is_told(const icd::MapUpdate& update);
-  void stored(MapStore::Stored& stored, std::size_t bytes_received,
-              const std::function<void(icd::Checked<void>)>& done);
+  /// A whole map that is not queued yet.
+  struct Arrived {
+    icd::MapUpdate update;
+    queues::Upload upload;
+    std::shared_ptr<spool::MapFile> file;
+    std::function<void(icd::Checked<void>)> done;
+    /// If newer grids overtook it: its cells outside of them, which are queued as grids of their own.
+    std::vector<pack::Tile> tiles = {};
+    icd::Checked<void> cut = {};
+  };
+  void take(const std::shared_ptr<Arrived>& map);
+  void stored(MapStore::Stored& stored, Arrived& map);
+  void queue(MapStore::Stored& stored);
+  void leave_out(const std::shared_ptr<Arrived>& map, std::span<const icd::GridBounds> newer);
+  void store_next_tile(const std::shared_ptr<Arrived>& map);
+  void accept(Arrived& map);
+  void refuse(Arrived& map, icd::Refusal why);
+  void end(Arrived& map, const icd::Checked<void>& outcome);
   void stored_again(MapStore::Stored& stored, icd::Stamp again, const std::optional<icd::GridBounds>& bounds,
                     const std::function<bool(bool kept)>& done);
   void tell_clouds(const icd::MapUpdate& update);  // kind of clouds by the settings
@@ -62,6 +84,8 @@ class AcceptedMaps {
   TrafficCounts& counts_;
   journal::Journal& journal_;
   queues::MapQueue& queue_;
+  queues::OvertakenMaps overtaken_;
+  std::vector<std::shared_ptr<Arrived>> waiting_;  // for others that are being stored
   MapStore& store_;
   std::function<void()> queued_;
   std::function<std::optional<queues::Replaced>(const queues::QueuedMap&)> absorb_;

@@ -10,6 +10,15 @@ namespace adit::forward {
 // Dispatch subtracts the step of a boot from a silence.
 static_assert(StampFloor::kAhead <= dispatch::kClockAhead);
 
+queues::Upload upload_of(const intake::Sender& sender) {
+  return {.address = sender.address,
+          .bytes = sender.bytes,
+          .connection = sender.connection,
+          .began = sender.began,
+          .ended = sender.ended,
+          .overlaps = sender.overlaps};
+}
+
 void Clocks::carry_on(journal::Carried& carried, const std::string& boot) {
   const StampFloor::Kept kept = kept_.value_or(StampFloor::Kept());
   carried.machine_is(boot);
@@ -65,7 +74,7 @@ bool Clocks::hear(double there) {
 void Clocks::stamp(icd::MapUpdate& update, const intake::Sender& sender) {
   const queues::Stamper stamper{sender.address, icd::Uri::MapUpdate, update.name ? update.name->text() : ""};
   std::optional<icd::Stamp>& stamp = update.header().stamp;
-  stamp = senders_.shift(stamper, stamp, loop_.stamp_now(), sender.connection);
+  stamp = senders_.shift(stamper, stamp, loop_.stamp_now(), upload_of(sender));
   keep();
 }
 
@@ -79,7 +88,7 @@ std::vector<queues::PostedPose> Clocks::stamped(const icd::StateUpdate& update,
     const queues::Stamper stamper{sender.address, icd::Uri::StateUpdate, named.name.text()};
     poses.push_back({.name = named.name,
                      .pose = named.pose,
-                     .stamp = senders_.shift(stamper, stamp, now, sender.connection),
+                     .stamp = senders_.shift(stamper, stamp, now, upload_of(sender)),
                      .address = queues::is_set(stamp) ? sender.address : ""});
   }
   keep();
@@ -87,7 +96,8 @@ std::vector<queues::PostedPose> Clocks::stamped(const icd::StateUpdate& update,
 }
 
 void Clocks::stamp(icd::MarkersUpdate& update, const intake::Sender& sender) {
-  senders_.shift_each({sender.address, icd::Uri::MarkersUpdate, ""}, update.markers, loop_.stamp_now());
+  senders_.shift_each({sender.address, icd::Uri::MarkersUpdate, ""}, update.markers, loop_.stamp_now(),
+                      upload_of(sender));
   keep();
 }
 

@@ -18,6 +18,8 @@
 
 namespace adit::forward {
 
+queues::Upload upload_of(const intake::Sender& sender);
+
 /// The stamp clock, and senders' offsets to it. They survive restarts; the stamp clock survives boots
 /// (promise 5), whatever the time of day does.
 class Clocks {

@@ -24,7 +24,7 @@ void Flow::take(icd::MapUpdate update, const intake::Sender& sender, std::shared
                 std::function<void(icd::Checked<void>)> done) {
   if (update.name) told_.posted(update.name->text());
   clocks_.stamp(update, sender);
-  maps_.take(std::move(update), sender.bytes, std::move(file), std::move(done));
+  maps_.take(std::move(update), upload_of(sender), std::move(file), std::move(done));
 }
 
 icd::Checked<void> Flow::take(icd::StateUpdate update, const intake::Sender& sender) {
@@ -37,7 +37,7 @@ icd::Checked<void> Flow::take(icd::StateUpdate update, const intake::Sender& sen
 void Flow::take(icd::MarkersUpdate update, const intake::Sender& sender, MarkerArrivals::Done done) {
   if (!standby_.empty()) return done(icd::refuse(icd::Status::ServiceUnavailable, standby_));
   clocks_.stamp(update, sender);
-  telemetry_.take(std::move(update), sender.bytes, std::move(done));
+  telemetry_.take(std::move(update), upload_of(sender), std::move(done));
 }
 
 void Flow::take(const icd::ArtifactReport& report, const intake::Sender& sender,

@@ -49,10 +49,11 @@ class Maps {
     return store_.arrives([this] { return queue_.largest_replaceable(); }, std::move(take));
   }
   /// Stamps are on the stamp clock. `file`: of its data, or null. `done`: stored and queued, 429 for a full
-  /// queue, 503 if it cannot be stored.
-  void take(icd::MapUpdate update, std::size_t bytes_received, std::shared_ptr<spool::MapFile> file,
+  /// queue, 503 if it cannot be stored. Of a grid that newer ones overtook, only the cells outside of them
+  /// are queued; a whole cloud that was overtaken is not.
+  void take(icd::MapUpdate update, const queues::Upload& upload, std::shared_ptr<spool::MapFile> file,
             std::function<void(icd::Checked<void>)> done) {
-    accepted_.take(std::move(update), bytes_received, std::move(file), std::move(done));
+    accepted_.take(std::move(update), upload, std::move(file), std::move(done));
   }
 
   /// Queues a rejected map before its sender's other maps. `done` is called with true if it is stored, or if
@@ -70,7 +71,7 @@ class Maps {
     accepted_.stop();
   }
   /// True if no map is being stored.
-  bool all_kept() const { return store_.count() == 0; }
+  bool all_kept() const { return accepted_.all_kept(); }
   /// Why the last map could not be stored, or "".
   const std::string& trouble() const { return store_.trouble(); }
   /// The cable is in again: retries at once.

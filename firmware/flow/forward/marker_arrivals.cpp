@@ -35,10 +35,10 @@ MarkerArrivals::MarkerArrivals(loop::Loop& loop, loop::Workers& workers, journal
       came_(std::move(came)),
       next_turn_(loop.timer([this] { go(next_step()); })) {}
 
-void MarkerArrivals::take(icd::MarkersUpdate update, std::size_t bytes_received, Done done) {
+void MarkerArrivals::take(icd::MarkersUpdate update, queues::Upload upload, Done done) {
   queues::start_lifetimes(update.markers, loop_.stamp_now());
   arrivals_.push_back(
-      {std::make_shared<icd::MarkersUpdate>(std::move(update)), bytes_received, std::move(done)});
+      {std::make_shared<icd::MarkersUpdate>(std::move(update)), std::move(upload), std::move(done)});
   if (arrivals_.size() == 1) go(&MarkerArrivals::begin);
 }
 
@@ -65,6 +65,11 @@ void MarkerArrivals::end() {
 }
 
 bool MarkerArrivals::begin(Arrival& arrival) {
+  if (overtaken_.remove_from(*arrival.update, arrival.upload) > 0 && arrival.update->markers.empty()) {
+    counts_.accepted({Kind::Markers, ""}, arrival.upload.bytes, loop_.wall_now());
+    counts_.replaced({Kind::Markers, ""}, 1);
+    return true;
+  }
   if (!queue_.has_room_for(*arrival.update) && !takes_some(arrival)) {
     return fail(
         arrival,
@@ -118,7 +123,8 @@ bool MarkerArrivals::keep(Arrival& arrival) {
     return false;
   }
   arrival.records = {};
-  counts_.accepted({Kind::Markers, ""}, arrival.bytes_received, loop_.wall_now());
+  counts_.accepted({Kind::Markers, ""}, arrival.upload.bytes, loop_.wall_now());
+  overtaken_.record(*arrival.update, arrival.upload);
   if (arrival.update->markers.size() <= kPart) return add_part(arrival);
   next_turn_.call_at(loop_.now());
   return false;

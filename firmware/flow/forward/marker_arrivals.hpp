@@ -14,11 +14,13 @@
 #include "loop/loop.hpp"
 #include "loop/workers.hpp"
 #include "queues/marker_queue.hpp"
+#include "queues/overtaken.hpp"
 
 namespace adit::forward {
 
 /// Markers updates on their way into the queue, one at a time and whole: first the journal, then the queue.
-/// For large updates a worker makes the records, and both take several turns of the loop.
+/// For large updates a worker makes the records, and both take several turns of the loop. Changes that newer
+/// ones overtook are left out first (queues::Upload).
 class MarkerArrivals {
  public:
   /// 429: the queue is full; 503: it cannot be stored. A full queue still accepts changes of queued markers.
@@ -32,7 +34,7 @@ class MarkerArrivals {
   MarkerArrivals(loop::Loop& loop, loop::Workers& workers, journal::Journal& journal,
                  queues::MarkerQueue& queue, TrafficCounts& counts, std::function<void()> came);
 
-  void take(icd::MarkersUpdate update, std::size_t bytes_received, Done done);
+  void take(icd::MarkersUpdate update, queues::Upload upload, Done done);
 
   /// True while an update is in the journal, perhaps not yet whole, and not yet whole in the queue. Do not
   /// send then.
@@ -42,7 +44,7 @@ class MarkerArrivals {
  private:
   struct Arrival {
     std::shared_ptr<icd::MarkersUpdate> update;
-    std::size_t bytes_received = 0;
+    queues::Upload upload;
     Done done;
     icd::Checked<void> outcome = {};
     std::vector<std::string> records = {};                                // of the journal
@@ -72,6 +74,7 @@ class MarkerArrivals {
   queues::MarkerQueue& queue_;
   TrafficCounts& counts_;
   std::function<void()> came_;
+  queues::OvertakenMarkers overtaken_;
   std::deque<Arrival> arrivals_;  // the first is in progress
   loop::Source next_turn_;
 };

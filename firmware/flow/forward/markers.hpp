@@ -32,8 +32,8 @@ class Markers {
   void carry_on(const journal::Carried& carried);
   void settings_changed(const settings::Settings& settings);
   void endpoint_turned();
-  void take(icd::MarkersUpdate update, std::size_t bytes_received, MarkerArrivals::Done done) {
-    arrivals_.take(std::move(update), bytes_received, std::move(done));
+  void take(icd::MarkersUpdate update, queues::Upload upload, MarkerArrivals::Done done) {
+    arrivals_.take(std::move(update), std::move(upload), std::move(done));
   }
   bool send_again(icd::MarkersUpdate markers);
 

@@ -45,8 +45,8 @@ class Telemetry {
   /// A state for which there is room. 503: it cannot be stored.
   icd::Checked<void> take(const std::vector<queues::PostedPose>& poses, std::size_t bytes_received) noexcept;
   /// Stamps are on the stamp clock. 429: the queue is full; 503: it cannot be stored.
-  void take(icd::MarkersUpdate update, std::size_t bytes_received, MarkerArrivals::Done done) {
-    markers_.take(std::move(update), bytes_received, std::move(done));
+  void take(icd::MarkersUpdate update, queues::Upload upload, MarkerArrivals::Done done) {
+    markers_.take(std::move(update), std::move(upload), std::move(done));
   }
 
   /// Another run is on. It gets robots that post in it, and queued news.

@@ -116,6 +116,14 @@ bool covers(const OccupancyGrid& newer, const GridBounds& older) {
          is_within(seen.low.z, seen.high.z, 0, slack) && older.turned + seen.turn <= slack;
 }
 
+std::optional<PartOfGrid> covered_part(const GridBounds& newer, const OccupancyGrid& older) {
+  if (newer.resolution != older.resolution) return {};
+  const double slack = slack_of(older.resolution);
+  const Seen seen = seen_from(older.origin, newer);
+  if (!is_within(seen.low.z, seen.high.z, 0, slack) || !(seen.turn <= slack)) return {};
+  return PartOfGrid{seen.low, seen.high};
+}
+
 GridBounds joint_bounds(const GridBounds& newer, const GridBounds& older) {
   const Seen seen = seen_from(newer.origin, older);
   GridBounds all = newer;

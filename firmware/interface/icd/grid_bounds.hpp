@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "icd/geometry.hpp"
 #include "icd/map_update.hpp"
 
@@ -25,6 +27,14 @@ struct GridBounds {
 /// newer grid, to half a cell on each side and in height. The turns between the grids move no corner by more
 /// than half a cell. The two may have different lattices, because SLAM corrects the map's frame.
 bool covers(const OccupancyGrid& newer, const GridBounds& older);
+
+/// Two corners of a box, in metres along the axes of a grid.
+struct PartOfGrid {
+  Point low, high;
+};
+/// The part of `older` that `newer` covers, the bounds of one newer grid, as covers() would say it of a grid
+/// of that part. It may reach beyond `older`. Nothing: their resolution, height or direction differs.
+std::optional<PartOfGrid> covered_part(const GridBounds& newer, const OccupancyGrid& older);
 
 /// The bounds of a grid that replaces another: `newer`, enlarged so that it holds `older`.
 GridBounds joint_bounds(const GridBounds& newer, const GridBounds& older);

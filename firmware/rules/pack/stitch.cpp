@@ -6,8 +6,10 @@
 #include <utility>
 #include <vector>
 
+#include "codec/gzip.hpp"
 #include "codec/map_pieces.hpp"
 #include "icd/require.hpp"
+#include "icd/try.hpp"
 
 namespace adit::pack {
 namespace {
@@ -57,6 +59,34 @@ icd::Checked<icd::MapData> stitch(std::size_t width, std::size_t height, std::sp
   icd::MapData data{{}, icd::Compression::None, cells->size()};
   data.bytes.append(cells, *cells);
   return data;
+}
+
+icd::Checked<void> cut(const icd::MapData& cells, std::size_t width, std::span<Tile> tiles) {
+  for (Tile& tile : tiles) tile.data = {{}, icd::Compression::None, tile.width * tile.height};
+  std::size_t at = 0;
+  const auto put_row = [&](std::size_t row, std::size_t column, std::span<const std::uint8_t> run) {
+    for (Tile& tile : tiles) {
+      if (row < tile.row || row >= tile.row + tile.height) continue;
+      const std::size_t from = std::max(column, tile.column);
+      const std::size_t to = std::min(column + run.size(), tile.column + tile.width);
+      if (from < to) tile.data.bytes.append(run.subspan(from - column, to - from));
+    }
+  };
+  ADIT_TRY(codec::for_each_piece(cells, [&](std::span<const std::uint8_t> piece) -> icd::Checked<void> {
+    while (!piece.empty()) {
+      const std::size_t row = at / width, column = at % width;
+      const auto run = piece.first(std::min(piece.size(), width - column));
+      put_row(row, column, run);
+      at += run.size();
+      piece = piece.subspan(run.size());
+    }
+    return {};
+  }));
+  for (Tile& tile : tiles) {
+    tile.data.bytes = codec::gzip(std::move(tile.data.bytes), codec::GzipStrategy::Runs);
+    tile.data.compression = icd::Compression::Gzip;
+  }
+  return {};
 }
 
 }  // namespace adit::pack

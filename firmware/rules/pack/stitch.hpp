@@ -24,4 +24,8 @@ struct Tile {
 icd::Checked<icd::MapData> stitch(std::size_t width, std::size_t height, std::span<const Tile> tiles,
                                   std::vector<std::uint8_t> under = {});
 
+/// Sets the data of `tiles`, which lie within a grid of `width` cells with these `cells`, and gzips it. An
+/// error names the fault of the cells. For a worker, too.
+icd::Checked<void> cut(const icd::MapData& cells, std::size_t width, std::span<Tile> tiles);
+
 }  // namespace adit::pack

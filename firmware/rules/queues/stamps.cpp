@@ -32,7 +32,7 @@ StampShift::Clock* StampShift::find(const Stamper& stamper) {
 }
 
 icd::Stamp StampShift::shift(Clock*& clock, const Stamper& stamper, std::optional<icd::Stamp> stamp,
-                             double now, Connection connection) {
+                             double now, const Upload& upload, Connection connection) {
   if (!is_set(stamp)) return clock == nullptr ? now : std::max(now, clock->latest_given());
   const bool is_new = clock == nullptr;
   if (is_new) {
@@ -43,28 +43,41 @@ icd::Stamp StampShift::shift(Clock*& clock, const Stamper& stamper, std::optiona
   }
   // The difference comes first, because the sum with a distant stamp would lose fractions of a second.
   icd::Stamp shifted = clock->ours + (*stamp - clock->theirs);
+  const icd::Stamp before = clock->before.ours + (*stamp - clock->before.theirs);
+  const bool is_of_before = upload.began < clock->stepped && std::abs(shifted - now) > kJump &&
+                            before <= clock->before.latest_given() + kJump;
+  if (is_of_before) return std::max(before, 0.0);
+  const bool is_overtaken =
+      *stamp < clock->latest && upload.began < clock->ended && upload.ended != clock->ended;
+  if (is_overtaken) return std::max(shifted, 0.0);
   const bool set_back = clock->step_back.shown_by(*stamp, connection);
   const bool steps = set_back || *stamp < clock->latest - kJump || shifted > now + kJump;
   if (steps) {
+    clock->before = *clock;
+    clock->stepped = upload.ended;
     shifted = clock->ours = std::max(now, clock->latest_given());
     clock->theirs = clock->latest = *stamp;
   }
-  clock->latest = std::max(clock->latest, *stamp);
+  if (*stamp >= clock->latest) {
+    clock->latest = *stamp;
+    clock->ended = upload.ended;
+  }
   const bool to_record = is_new || steps || stamper.uri != icd::Uri::StateUpdate;
   if (to_record && !std::exchange(clock->has_changed, true)) changed_.push_back(stamper);
   return std::max(shifted, 0.0);  // ICD 6.2: a stamp is never negative
 }
 
 icd::Stamp StampShift::shift(const Stamper& stamper, std::optional<icd::Stamp> stamp, double now,
-                             Connection connection) {
+                             const Upload& upload) {
   Clock* clock = find(stamper);
-  return shift(clock, stamper, stamp, now, connection);
+  return shift(clock, stamper, stamp, now, upload, upload.connection);
 }
 
-void StampShift::shift_each(const Stamper& stamper, std::span<icd::Marker> markers, double now) {
+void StampShift::shift_each(const Stamper& stamper, std::span<icd::Marker> markers, double now,
+                            const Upload& upload) {
   Clock* clock = find(stamper);
   for (icd::Marker& marker : markers)
-    marker.header.stamp = shift(clock, stamper, marker.header.stamp, now, 0);
+    marker.header.stamp = shift(clock, stamper, marker.header.stamp, now, upload, 0);
 }
 
 StampShift::Clocks StampShift::changed() {

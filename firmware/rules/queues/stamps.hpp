@@ -15,6 +15,7 @@
 #include "icd/header.hpp"
 #include "icd/markers_update.hpp"
 #include "icd/uri.hpp"
+#include "queues/overtaken.hpp"
 #include "queues/step_back.hpp"
 
 namespace adit::queues {
@@ -49,7 +50,9 @@ struct SenderClock {
 /// - If a sender's clock steps, its offset is set again: the stamp becomes now, or the sender's latest
 /// converted
 ///   stamp if that is later. So no stamp goes back. A step is a jump back by more than kJump, a smaller one
-///   that StepBack detects, or a stamp more than kJump after now.
+///   that StepBack detects, or a stamp more than kJump after now. A message that was overtaken (Upload) shows
+///   no step. A message whose upload began before a step is converted as before it, if its stamp fits only
+///   so.
 /// - A message without a stamp gets its stamp in the same way.
 /// - An address has at most kMostOfAddress clocks; further robots share one clock for each URI. Beyond
 ///   kMostAddresses, the address that was silent longest is dropped.
@@ -60,12 +63,12 @@ class StampShift {
   static constexpr double kJump = 5.0;  // seconds
   static constexpr std::size_t kMostOfAddress = 64, kMostAddresses = 64;
 
-  /// The converted stamp. `now`: the gateway's clock, seconds since 1970. `connection`: the message's
-  /// connection.
+  /// The converted stamp. `now`: the gateway's clock, seconds since 1970.
   icd::Stamp shift(const Stamper& stamper, std::optional<icd::Stamp> stamp, double now,
-                   Connection connection = 0);
+                   const Upload& upload = {});
   /// Converts the stamps of the markers of one message, which may be in any order.
-  void shift_each(const Stamper& stamper, std::span<icd::Marker> markers, double now);
+  void shift_each(const Stamper& stamper, std::span<icd::Marker> markers, double now,
+                  const Upload& upload = {});
 
   using Clocks = std::vector<std::pair<Stamper, SenderClock>>;
   /// The clocks to record since the last call, with their present values: those whose offset was set, and
@@ -86,6 +89,9 @@ class StampShift {
  private:
   struct Clock : SenderClock {
     StepBack step_back = {};
+    std::uint64_t ended = 0;    // Upload::ended of the message with the latest stamp
+    SenderClock before = {};    // the last step; for uploads that had begun
+    std::uint64_t stepped = 0;  // Upload::ended of the message that showed it
     bool has_changed = false;
   };
   using Named = std::pair<icd::Uri, std::string>;
@@ -101,7 +107,7 @@ class StampShift {
   Clock* find(const Stamper& stamper);
   /// `clock`: the stamper's, or null. Sets it if the first stamp creates the clock.
   icd::Stamp shift(Clock*& clock, const Stamper& stamper, std::optional<icd::Stamp> stamp, double now,
-                   Connection connection);
+                   const Upload& upload, Connection connection);
 
   std::map<std::string, Address> addresses_;
   std::vector<Stamper> changed_;

@@ -35,6 +35,11 @@ class ProxyStub {
     const std::lock_guard lock(mutex_);
     return points_;
   }
+  /// Another run begins.
+  void forget() {
+    const std::lock_guard lock(mutex_);
+    points_.clear();
+  }
   std::atomic<int> too_large = 0;
 
  private:
@@ -184,6 +189,32 @@ TEST_F(TooLargeMap, IsStoredUntilItsLastPieceIsDelivered) {
   ASSERT_TRUE(loop::turn_until_idle(loop_, writer_));
   ASSERT_EQ(spool::Spool(folder_.path()).read().size(), 1u);
   ASSERT_TRUE(becomes(0));
+}
+
+TEST_F(TooLargeMap, BeginsAgainIfAnotherRunBeginsBetweenItsPieces) {
+  const icd::MapUpdate cloud = cloud_of(10 * kPoints);
+  send({cloud});
+  ASSERT_TRUE(loop::turn_until(loop_, [&] { return row().forwarded == 3; }));
+  proxy_->forget();
+  maps_.change_run(dispatch::NextMap::Empty);
+  ASSERT_TRUE(becomes(0));
+  const auto points = proxy_->points();
+  for (const float x : xs_of(cloud.data)) ASSERT_TRUE(points.contains(x));
+  EXPECT_THAT(rejected_.rows(), IsEmpty());
+}
+
+TEST_F(TooLargeMap, BeginsAgainAtAnotherAddress) {
+  const icd::MapUpdate cloud = cloud_of(10 * kPoints);
+  send({cloud});
+  ASSERT_TRUE(loop::turn_until(loop_, [&] { return row().forwarded == 3; }));
+  ProxyStub other("<html>too large</html>");
+  settings_.command_post.mapping = other.address();
+  maps_.endpoint_changed(icd::BearerToken::parse("a-token"));
+  ASSERT_TRUE(becomes(0));
+  const auto points = other.points();
+  for (const float x : xs_of(cloud.data)) ASSERT_TRUE(points.contains(x));
+  settings_.command_post.mapping = proxy_->address();  // outlives the connections to it
+  maps_.endpoint_changed(icd::BearerToken::parse("a-token"));
 }
 
 TEST_F(TooLargeMap, IsNotTheFaultOfTheAddress) {

@@ -183,7 +183,8 @@ void Maps::taken(const Place& sent, const uplink::Answered& answered) {
   pace_.taken(answered.sent, loop_.now());
   prepared_.slot().left(sent->packed.body.size(), answered.sent, sent->last_byte_not_before);
   prepared_.slot().on_passed(sent->packed.body.size());
-  if (!prepared_.points().hold(sent->packed.left_out)) return goes_whole(sent, answered.status);
+  if (sent->begins_again || !prepared_.points().hold(sent->packed.left_out))
+    return goes_whole(sent, answered.status);
   ahead_.taken(sent->went_ahead);
   icd::MapUpdate& map = sent->waiting.map;
   blame_.passed(whose(map), loop_.now());
@@ -206,7 +207,7 @@ void Maps::taken(const Place& sent, const uplink::Answered& answered) {
   taken_(std::move(map));
 }
 
-/// Delivered, but the points left out were forgotten since.
+/// Delivered, but points that were left out, or sent before, were forgotten since.
 void Maps::goes_whole(const Place& sent, int status) {
   counts_.forwarded(traffic_of(sent->waiting.map), 0, sent->packed.body.size(), status, loop_.wall_now());
   again(sent);

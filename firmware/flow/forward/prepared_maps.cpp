@@ -199,6 +199,10 @@ void PreparedMaps::put_back(Place& prepared) {
 void PreparedMaps::pack_again() {
   put_back(following_);
   put_back(first_);
+  queue_.restart_pieces();
+  for (const Place& place : {first_, following_}) {
+    if (place && std::exchange(place->waiting.piece, {}).size > 0) place->begins_again = true;
+  }
 }
 
 void PreparedMaps::points_taken(PreparedMap& sent) {

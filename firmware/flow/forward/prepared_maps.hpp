@@ -19,6 +19,7 @@ struct PreparedMap {
   std::vector<MapStore::Damaged> damaged{};  // cannot be sent
   loop::Duration packing_took{0};            // by the worker
   bool is_under_way = false, went_ahead = false;
+  bool begins_again = false;  // a piece, in flight when the Command Post may have lost those before it
   loop::Instant last_byte_not_before{};
   std::optional<loop::Instant> arrived{};  // estimate
 };
@@ -52,7 +53,8 @@ class PreparedMaps {
   void again(const Place& sent);
   /// Returns the following map to the queue, except one in flight.
   void put_back_following() { put_back(following_); }
-  /// Returns both, because they may cover old cells.
+  /// The Command Post may have another map. Returns both, because they may cover old cells, and clouds in
+  /// pieces begin again, also one in flight.
   void pack_again();
   /// Keeps only the points of a delivered cloud that were sent.
   void points_taken(PreparedMap& sent);

@@ -148,6 +148,10 @@ void MapQueue::put_back_halves(QueuedMap map) {
   });
 }
 
+void MapQueue::restart_pieces() {
+  for (auto& [sender, waiting] : senders_) waiting.queue.restart_pieces();
+}
+
 std::optional<Successive> MapQueue::to_compare() const {
   for (const auto& [sender, waiting] : senders_) {
     if (sender.is_grid || clouds_of(sender) != Clouds::Auto) continue;

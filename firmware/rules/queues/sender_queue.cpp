@@ -209,6 +209,10 @@ void SenderQueue::insert(Maps::const_iterator place, std::vector<QueuedMap> part
   bytes_ += bytes;
 }
 
+void SenderQueue::restart_pieces() {
+  for (QueuedMap& each : waiting_) each.piece = {};
+}
+
 void SenderQueue::inherit(const Trial& trial) {
   for (QueuedMap& each : waiting_) queues::inherit(each.trial, trial);
 }

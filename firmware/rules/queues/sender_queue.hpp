@@ -39,6 +39,7 @@ class SenderQueue {
   Replaced put_back(QueuedMap map);
   void put_back_apart(QueuedMap map);
   void put_back_halves(QueuedMap map);
+  void restart_pieces();
   void inherit(const Trial& trial);  // by the maps that have not failed themselves
   void step_forward();               // clears Trial::steps_behind of all maps
 

@@ -21,14 +21,17 @@ namespace {
 
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 constexpr std::size_t kLimit = 300'000;
+constexpr const char* kPage = "<html>too large</html>";
 constexpr int kPoints = 8000, kClouds = 10;  // a cloud has about 80 kB
 
 class ProxyStub {
  public:
-  /// `body`: of the answer 413; null: a reset once kLimit bytes have arrived.
-  explicit ProxyStub(const char* body) : body_(body) {}
+  /// `body`: of the answer; null: a reset once kLimit bytes have arrived.
+  explicit ProxyStub(const char* body, const char* status = "413 Request Entity Too Large")
+      : body_(body), status_(status) {}
   settings::Address address() const { return {peer_.endpoint().address, peer_.endpoint().port}; }
   /// The x of each accepted point.
   std::multiset<float> points() {
@@ -55,9 +58,7 @@ class ProxyStub {
       const std::string request = wire.read_rest(head);
       if (request.empty()) return;
       if (fits) note(request.substr(head.size()));
-      if (!wire.write(fits ? uplink::answer("200 OK", "null")
-                           : uplink::answer("413 Request Entity Too Large", body_)))
-        return;
+      if (!wire.write(fits ? uplink::answer("200 OK", "null") : uplink::answer(status_, body_))) return;
     }
   }
   void note(const std::string& body) {
@@ -73,7 +74,7 @@ class ProxyStub {
   std::mutex mutex_;
   std::multiset<float> points_;
   static constexpr std::string_view kLength = "Content-Length: ";
-  const char* body_;
+  const char *body_, *status_;
   std::vector<std::jthread> connections_;
   uplink::ListeningPeer peer_{std::vector<uplink::Peer::Script>{[this](uplink::Wire& wire) {
     connections_.emplace_back([this, its = std::move(wire)]() mutable { serve(its); });
@@ -85,8 +86,9 @@ class TooLargeMap : public testing::Test, protected MapsParts {
   TooLargeMap() { settings_.command_post.rates.map_hz = 100; }
 
   /// The maps are queued before the first one is sent.
-  void send(const std::vector<icd::MapUpdate>& updates, const char* body = "<html>too large</html>") {
-    proxy_.emplace(body);
+  void send(const std::vector<icd::MapUpdate>& updates, const char* body = kPage,
+            const char* status = "413 Request Entity Too Large") {
+    proxy_.emplace(body, status);
     settings_.command_post.mapping = proxy_->address();
     std::size_t taken = 0;
     for (const icd::MapUpdate& each : updates)
@@ -165,6 +167,31 @@ TEST_F(TooLargeMap, IsSentInSmallerMessagesAfterThreeResetsWhileOthersAreDeliver
   EXPECT_LE(proxy_->too_large, 5);
 }
 
+TEST_F(TooLargeMap, IsSentInSmallerMessagesAfterThreePagesWith400WhileOthersAreDelivered) {
+  send({cloud_of(10 * kPoints)}, kPage, "400 Bad Request");
+  ASSERT_TRUE(loop::turn_until(loop_, [&] { return row().failed >= 2; }));
+  EXPECT_THAT(row().last_sentence, Not(HasSubstr("smaller messages")));
+  const auto others_pass_until = [&](const std::function<bool()>& is_done) {
+    return loop::turn_until(loop_, [&] {
+      counts_.forwarded({Kind::State, "r2"}, 1, 100, 200, 0);
+      maps_.link_is_back();  // no back-off
+      return is_done();
+    });
+  };
+  ASSERT_TRUE(
+      others_pass_until([&] { return row().last_sentence.contains("it is sent in smaller messages"); }));
+  EXPECT_EQ(row().failed, 4u) << "nothing else was delivered between the first two";
+  ASSERT_TRUE(others_pass_until([&] { return maps_.waiting({Kind::Cloud, "r1"}) == 0; }));
+  EXPECT_EQ(proxy_->points().size(), std::size_t{10} * kPoints);
+  EXPECT_THAT(rejected_.rows(), IsEmpty());
+}
+
+TEST_F(TooLargeMap, IsRejectedAfterA400WithJson) {
+  send({cloud_of(10 * kPoints)}, "\"no\"", "400 Bad Request");
+  ASSERT_TRUE(loop::turn_until(loop_, [&] { return !rejected_.rows().empty(); }));
+  EXPECT_EQ(proxy_->too_large, 1);
+}
+
 TEST_F(TooLargeMap, IsSentInPiecesIfItIsASingleCloud) {
   std::vector<icd::MapUpdate> single{cloud_of(10 * kPoints), cloud_of(10 * kPoints)};
   single.back().data.bytes = codec::gzip(single.back().data.bytes, codec::GzipStrategy::Default);
@@ -207,7 +234,7 @@ TEST_F(TooLargeMap, BeginsAgainAtAnotherAddress) {
   const icd::MapUpdate cloud = cloud_of(10 * kPoints);
   send({cloud});
   ASSERT_TRUE(loop::turn_until(loop_, [&] { return row().forwarded == 3; }));
-  ProxyStub other("<html>too large</html>");
+  ProxyStub other(kPage);
   settings_.command_post.mapping = other.address();
   maps_.endpoint_changed(icd::BearerToken::parse("a-token"));
   ASSERT_TRUE(becomes(0));

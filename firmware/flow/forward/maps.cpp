@@ -17,6 +17,8 @@ using dispatch::MappingVerdict;
 constexpr std::chrono::milliseconds kLookAtSending{10}, kLookAtConnecting{100};
 /// Servers may close an idle request.
 constexpr std::chrono::seconds kLongestHeldBack{2};
+/// Some servers answer this with a page to a body above their limit.
+constexpr int kBadRequest = static_cast<int>(icd::Status::BadRequest);
 
 /// Bytes between two maps.
 std::size_t slot_of(const settings::CommandPost& post) {
@@ -172,11 +174,11 @@ void Maps::answered(const Place& sent, const uplink::Outcome& outcome) {
 void Maps::classify(const Place& sent, const uplink::Outcome& outcome) {
   if (const auto* answer = std::get_if<uplink::Answered>(&outcome)) return verdict(sent, *answer);
   pace_.failed(outcome, loop_.now());
-  counts_.not_taken(traffic_of(sent->waiting.map), DeliveryFailure::Failed, 0, sentence_of(outcome));
-  if (!std::holds_alternative<uplink::InDoubt>(outcome) || !is_cut_by_size(*sent)) return again(sent);
-  prepared_.slot().on_too_large(std::min(sent->waiting.cuts.at, sent->packed.body.size()));
-  ahead_.failed(sent->went_ahead);
-  split(sent);
+  const std::string sentence = sentence_of(outcome);
+  if (std::holds_alternative<uplink::InDoubt>(outcome) && is_cut_by_size(*sent))
+    return send_smaller(sent, sent->waiting.cuts.at, 0, sentence);
+  counts_.not_taken(traffic_of(sent->waiting.map), DeliveryFailure::Failed, 0, sentence);
+  again(sent);
 }
 
 void Maps::taken(const Place& sent, const uplink::Answered& answered) {
@@ -232,6 +234,8 @@ void Maps::verdict(const Place& sent, const uplink::Answered& answered) {
       return on_too_large(sent, answered, sentence);
     case MappingVerdict::Suspect:
       pace_.lost(now);
+      if (answered.status == kBadRequest && is_cut_by_size(*sent))
+        return send_smaller(sent, sent->waiting.cuts.at, answered.status, sentence);
       if (blame_.failed(whose(sent->waiting.map), sent->waiting.trial, now) == queues::Blame::Next::Reject)
         return give_up(sent, answered.status,
                        sentence + " (other maps were delivered, this map failed repeatedly)");
@@ -250,13 +254,9 @@ void Maps::on_too_large(const Place& sent, const uplink::Answered& answered, con
   queues::QueuedMap& waiting = sent->waiting;
   const queues::Sender sender = queues::Sender::of(waiting.map);
   queue_.carried(sender, sent->packed.body.size());
-  prepared_.slot().on_too_large(sent->packed.body.size());
-  if (queues::can_split(waiting, sent->packed.body.size())) {
-    counts_.not_taken(traffic_of(waiting.map), DeliveryFailure::Failed, answered.status,
-                      sentence + "; it is sent in smaller messages");
-    ahead_.failed(false);
-    return split(sent);
-  }
+  const std::size_t size = sent->packed.body.size();
+  if (queues::can_split(waiting, size)) return send_smaller(sent, size, answered.status, sentence);
+  prepared_.slot().on_too_large(size);
   const bool is_page = dispatch::body_of(answered.body) == dispatch::Body::Other;
   if (!is_page) return give_up(sent, answered.status, sentence);
   const auto next = blame_.failed(whose(waiting.map), waiting.trial, loop_.now());
@@ -279,6 +279,15 @@ bool Maps::is_cut_by_size(PreparedMap& sent) {
   if (size < queues::Cuts::kLeastBody || !queues::can_split(sent.waiting, size)) return false;
   if (sent.went_ahead || channel_.busy()) return false;
   return sent.waiting.cuts.check(channel_.sent_of_it(), counts_.delivered_count());
+}
+
+/// A message that ended after so many bytes was too large.
+void Maps::send_smaller(const Place& sent, std::size_t bytes, int status, const std::string& sentence) {
+  counts_.not_taken(traffic_of(sent->waiting.map), DeliveryFailure::Failed, status,
+                    sentence + "; it is sent in smaller messages");
+  prepared_.slot().on_too_large(std::min(bytes, sent->packed.body.size()));
+  ahead_.failed(false);
+  split(sent);
 }
 
 /// A single cloud goes on in pieces within the limit.

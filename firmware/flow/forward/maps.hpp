@@ -107,6 +107,7 @@ class Maps {
   void on_too_large(const Place& sent, const uplink::Answered& answered, const std::string& sentence);
   bool must_split(const PreparedMap& prepared) const;
   bool is_cut_by_size(PreparedMap& sent);
+  void send_smaller(const Place& sent, std::size_t bytes, int status, const std::string& sentence);
   void split(const Place& place);
   void again(const Place& sent);
   void give_up(const Place& sent, int status, const std::string& sentence);

@@ -136,6 +136,8 @@ void shrink(QueuedMap& cloud, std::size_t pieces) {
   const std::size_t points = next_size(cloud) / step;
   cloud.piece.size = (points + pieces - 1) / pieces * step;
   cloud.alone = true;
+  cloud.trial = {};
+  cloud.cuts = {};
 }
 
 bool next_piece(QueuedMap& map) {

@@ -22,8 +22,8 @@ bool mergeable(const icd::PointCloud2& a, const icd::PointCloud2& b);
 /// clouds of one name with uncompressed data.
 icd::MapUpdate merge(icd::MapUpdate older, const icd::MapUpdate& newer);
 
-/// A large message got no answer, so often in a row. `at`: the bytes of it that had left the last time.
-/// `delivered`: the messages that had been delivered then.
+/// A large message got no answer, or 400 with a page, so often in a row. `at`: the bytes of it that had left
+/// the last time. `delivered`: the messages that had been delivered then.
 struct Cuts {
   static constexpr std::size_t kLeastBody = 256'000;  // smaller messages are never too large without a 413
   static constexpr int kMost = 3;
@@ -127,7 +127,7 @@ std::vector<QueuedMap> halves_of(QueuedMap map);
 std::size_t next_size(const QueuedMap& map);
 /// Whether halves_of() or shrink() can make smaller messages of it, if its message has so many bytes.
 bool can_split(const QueuedMap& map, std::size_t body);
-/// The next pieces of the cloud have an equal share of its next points each.
+/// The next pieces of the cloud have an equal share of its next points each, and have not failed yet.
 void shrink(QueuedMap& cloud, std::size_t pieces);
 /// The next piece was delivered. Returns whether there is another one.
 bool next_piece(QueuedMap& map);

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include <atomic>
+#include <cmath>
 #include <filesystem>
 #include <mutex>
 #include <random>
@@ -23,6 +24,15 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
+std::vector<std::uint8_t> bytes_of(const icd::MapData& data) {
+  std::vector<std::uint8_t> bytes;
+  EXPECT_TRUE(codec::for_each_piece(data, [&](std::span<const std::uint8_t> piece) -> icd::Checked<void> {
+    bytes.insert(bytes.end(), piece.begin(), piece.end());
+    return {};
+  }));
+  return bytes;
+}
+
 constexpr std::size_t kLimit = 300'000;
 constexpr const char* kPage = "<html>too large</html>";
 constexpr int kPoints = 8000, kClouds = 10;  // a cloud has about 80 kB
@@ -37,6 +47,15 @@ class ProxyStub {
   std::multiset<float> points() {
     const std::lock_guard lock(mutex_);
     return points_;
+  }
+  struct Rows {
+    icd::OccupancyGrid grid;
+    std::vector<std::uint8_t> cells;
+  };
+  /// The accepted grids, in the order in which they arrived.
+  std::vector<Rows> grids() {
+    const std::lock_guard lock(mutex_);
+    return grids_;
   }
   /// Another run begins.
   void forget() {
@@ -66,13 +85,18 @@ class ProxyStub {
     ASSERT_TRUE(document);
     const auto map = codec::read_map_update(*std::move(document), {});
     ASSERT_TRUE(map);
-    if (map->is_grid()) return;
+    if (map->is_grid()) {
+      const std::lock_guard lock(mutex_);
+      grids_.push_back({std::get<icd::OccupancyGrid>(map->msg), bytes_of(map->data)});
+      return;
+    }
     const auto xs = xs_of(map->data);
     const std::lock_guard lock(mutex_);
     points_.insert(xs.begin(), xs.end());
   }
   std::mutex mutex_;
   std::multiset<float> points_;
+  std::vector<Rows> grids_;
   static constexpr std::string_view kLength = "Content-Length: ";
   const char *body_, *status_;
   std::vector<std::jthread> connections_;
@@ -108,14 +132,18 @@ class TooLargeMap : public testing::Test, protected MapsParts {
     return map;
   }
   /// A grid that does not compress below the limit.
-  icd::MapUpdate noise() {
-    constexpr std::uint32_t kSide = 800;
-    std::vector<std::uint8_t> cells(kSide * kSide);
+  icd::MapUpdate noise(std::uint32_t width, std::uint32_t height) {
+    std::vector<std::uint8_t> cells(std::size_t{width} * height);
     for (std::uint8_t& each : cells) each = static_cast<std::uint8_t>(random_() % 101);
-    icd::MapUpdate map = grid_of("r1", kSide);
-    map.data.bytes = icd::ChunkedBytes(cells);
+    icd::MapUpdate map = grid_of("r1", 1);
+    auto& grid = std::get<icd::OccupancyGrid>(map.msg);
+    grid.width = width;
+    grid.height = height;
+    map.data = {icd::ChunkedBytes(cells), icd::Compression::None, cells.size()};
     return map;
   }
+  /// It cannot be split.
+  icd::MapUpdate one_row_of_noise() { return noise(640'000, 1); }
   std::vector<icd::MapUpdate> clouds(int count) {
     std::vector<icd::MapUpdate> all;
     for (int i = 0; i < count; ++i) all.push_back(cloud_of(kPoints));
@@ -244,8 +272,64 @@ TEST_F(TooLargeMap, BeginsAgainAtAnotherAddress) {
   maps_.endpoint_changed(icd::BearerToken::parse("a-token"));
 }
 
+TEST_F(TooLargeMap, IsSentInRowsIfItIsASingleGrid) {
+  icd::MapUpdate map = noise(800, 800);
+  auto& grid = std::get<icd::OccupancyGrid>(map.msg);
+  grid.origin = {.position = {10, -3, 1}, .orientation = {0, 0, std::sqrt(0.5), std::sqrt(0.5)}};
+  send({map});
+  ASSERT_TRUE(loop::turn_until(loop_, [&] { return maps_.waiting({Kind::Grid, "r1"}) == 0; }));
+  std::vector<std::uint8_t> cells;
+  for (const ProxyStub::Rows& rows : proxy_->grids()) {
+    EXPECT_EQ(rows.grid.width, grid.width);
+    EXPECT_EQ(rows.grid.resolution, grid.resolution);
+    EXPECT_EQ(rows.grid.origin.orientation, grid.origin.orientation);
+    const double along_y = static_cast<double>(cells.size() / grid.width) * grid.resolution;
+    EXPECT_NEAR(rows.grid.origin.position.x, 10 - along_y, 1e-9);
+    EXPECT_NEAR(rows.grid.origin.position.y, -3, 1e-9);
+    EXPECT_NEAR(rows.grid.origin.position.z, 1, 1e-9);
+    cells.insert(cells.end(), rows.cells.begin(), rows.cells.end());
+  }
+  EXPECT_EQ(cells, bytes_of(map.data)) << "each row once";
+  EXPECT_LE(proxy_->too_large, 1);
+  EXPECT_EQ(delivered_, map.data.raw_size);
+  EXPECT_THAT(rejected_.rows(), IsEmpty());
+  ASSERT_TRUE(loop::turn_until_idle(loop_, writer_));
+  EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));
+}
+
+TEST_F(TooLargeMap, LosesNoRowsIfGridsAreReplacedFasterThanTheirRowsAreSent) {
+  constexpr std::uint32_t kSide = 1000;
+  send({noise(kSide, kSide)});
+  std::vector<std::uint8_t> newest;
+  for (std::size_t i = 1; i <= 8; ++i) {
+    ASSERT_TRUE(loop::turn_until(loop_, [&] { return proxy_->grids().size() >= i; }));
+    icd::MapUpdate newer = noise(kSide, kSide);
+    newest = bytes_of(newer.data);
+    bool is_queued = false;
+    maps_.take(std::move(newer), {.bytes = 10}, nullptr,
+               [&](const icd::Checked<void>& said) { is_queued = said.has_value(); });
+    ASSERT_TRUE(loop::turn_until(loop_, [&] { return is_queued; }));
+  }
+  const auto row_of = [](const ProxyStub::Rows& rows) {
+    return static_cast<std::size_t>(std::lround(rows.grid.origin.position.y / rows.grid.resolution));
+  };
+  const std::size_t when_replaced = proxy_->grids().size();
+  ASSERT_TRUE(loop::turn_until(loop_, [&] { return maps_.waiting({Kind::Grid, "r1"}) == 0; }));
+  std::set<std::size_t> sent;
+  std::vector<std::uint8_t> there(newest.size());
+  const auto grids = proxy_->grids();
+  for (std::size_t i = 0; i < grids.size(); ++i) {
+    const std::size_t first = row_of(grids[i]);
+    std::ranges::copy(grids[i].cells, there.begin() + static_cast<std::ptrdiff_t>(first * kSide));
+    for (std::size_t row = first; i < when_replaced && row < first + grids[i].grid.height; ++row)
+      sent.insert(row);
+  }
+  EXPECT_EQ(sent.size(), kSide) << "while no grid was sent as a whole";
+  EXPECT_TRUE(there == newest);
+}
+
 TEST_F(TooLargeMap, IsNotTheFaultOfTheAddress) {
-  send({noise()});
+  send({one_row_of_noise()});
   ASSERT_TRUE(loop::turn_until(loop_, [&] { return maps_.channel().last().status() == 413; }));
   EXPECT_FALSE(maps_.channel().last().is_foreign());
   EXPECT_THAT(maps_.channel().trouble(), HasSubstr("too large ("));
@@ -255,7 +339,7 @@ TEST_F(TooLargeMap, IsNotTheFaultOfTheAddress) {
 }
 
 TEST_F(TooLargeMap, IsRejectedWithItsSizeByTheCommandPostItself) {
-  send({noise()}, "\"no room\"");
+  send({one_row_of_noise()}, "\"no room\"");
   ASSERT_TRUE(loop::turn_until(loop_, [&] { return !rejected_.rows().empty(); }));
   ASSERT_EQ(rejected_.rows().size(), 1u);
   EXPECT_THAT(rejected_.rows().front().why, HasSubstr("too large ("));

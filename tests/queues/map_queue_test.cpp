@@ -2,6 +2,9 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
+#include <set>
+
 #include "queues/maps.hpp"
 
 namespace adit::queues {
@@ -220,6 +223,34 @@ TEST(MapQueue, HalvesMergedCloudsThatAreTooLarge) {
   EXPECT_EQ(second->map.data.raw_size, 24);
   EXPECT_THAT(queue.take()->updates, ElementsAre(6)) << "not joined with a half";
   EXPECT_EQ(queue.bytes(), 0);
+}
+
+TEST(MapQueue, GoesOnWithTheRowsThatAnOlderGridWouldHaveSentNext) {
+  constexpr int kRows = 40;
+  MapQueue queue{kPlenty};
+  std::set<long> sent;  // rows, by their place
+  double y = 0;
+  for (int i = 1; i <= 7; ++i) {
+    // It grows at its lower side, and SLAM corrects its origin.
+    y -= 0.05;
+    auto newer = grid(0.01 * (i % 2), y, 8, static_cast<std::uint32_t>(kRows + i));
+    const double turn = 0.0001 * i;
+    newer.origin.orientation = {0, 0, std::sin(turn), std::cos(turn)};
+    queue.add(static_cast<std::uint64_t>(i), grid_update("R1", newer), at(i));
+    auto next = *queue.take();
+    shrink(next, 5);
+    const auto rows = rows_of(next);
+    const long first = std::lround(rows.origin.position.y / 0.05);
+    for (long row = first; row < first + rows.height; ++row) sent.insert(row);
+    ASSERT_TRUE(next_piece(next));
+    queue.put_back(std::move(next));
+  }
+  for (long row = 0; row < kRows; ++row) EXPECT_TRUE(sent.contains(row)) << row;
+  auto last = *queue.take();
+  std::size_t cells = last.piece.delivered;
+  do cells += std::size_t{rows_of(last).height} * 8;
+  while (next_piece(last));
+  EXPECT_EQ(cells, last.map.data.raw_size) << "the newest grid is sent as a whole";
 }
 
 TEST(Cuts, ShowASizeAfterThreeAtAboutTheSameByteWhileOthersAreDelivered) {

@@ -266,14 +266,14 @@ void Maps::on_too_large(const Place& sent, const uplink::Answered& answered, con
   again(sent);
 }
 
-/// The endpoint would not accept it. A single grid is always tried.
+/// The endpoint would not accept it.
 bool Maps::must_split(const PreparedMap& prepared) const {
   const std::size_t size = prepared.packed.body.size();
   return !prepared_.slot().fits(size) && queues::can_split(prepared.waiting, size);
 }
 
-/// Of two maps in flight the bytes that had left are not known. A single grid is retried, because a fault of
-/// the link is never a reason to reject it.
+/// Of two maps in flight the bytes that had left are not known. A map that cannot be split is retried,
+/// because a fault of the link is never a reason to reject it.
 bool Maps::is_cut_by_size(PreparedMap& sent) {
   const std::size_t size = sent.packed.body.size();
   if (size < queues::Cuts::kLeastBody || !queues::can_split(sent.waiting, size)) return false;
@@ -290,7 +290,7 @@ void Maps::send_smaller(const Place& sent, std::size_t bytes, int status, const 
   split(sent);
 }
 
-/// A single cloud goes on in pieces within the limit.
+/// A single cloud or grid goes on in pieces within the limit.
 void Maps::split(const Place& place) {
   queues::QueuedMap& waiting = place->waiting;
   if (place == prepared_.first()) prepared_.put_back_following();

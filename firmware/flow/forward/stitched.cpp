@@ -36,7 +36,7 @@ std::optional<queues::Ground> drawn_over(const queues::Ground& under, const icd:
   return read && left == 0 ? std::optional(drawing.finish()) : std::nullopt;
 }
 
-/// The points of a cloud that are sent next.
+/// The points of a cloud, or the rows of a grid, that are sent next.
 icd::Checked<icd::MapData> piece_of(const queues::QueuedMap& waiting) {
   std::size_t skip = waiting.piece.at, left = queues::next_size(waiting);
   icd::MapData piece{{}, icd::Compression::None, left};
@@ -104,6 +104,7 @@ Packed packed(const queues::QueuedMap& waiting, LeavingOut leaving_out, const Pa
 icd::Checked<icd::MapUpdate> whole_of(const queues::QueuedMap& waiting) {
   icd::MapUpdate whole = waiting.map;
   if (waiting.piece.size > 0) whole.data = ADIT_TRY(piece_of(waiting));
+  if (whole.is_grid()) whole.msg = queues::rows_of(waiting);
   if (!is_to_be_stitched(waiting)) return whole;
   const auto& grid = std::get<icd::OccupancyGrid>(whole.msg);
   std::vector<pack::Tile> tiles;

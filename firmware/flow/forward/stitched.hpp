@@ -36,8 +36,8 @@ struct Packing {
 /// Rounds a cloud to waiting.precision, or keeps it exact if that is impossible. CPU-bound: call on a worker.
 Packed packed(const queues::QueuedMap& waiting, LeavingOut leaving_out = {}, const Packing& packing = {});
 
-/// The map with its cells, stitched from its parts over the ground if necessary, or with the points of a
-/// cloud that are sent next. An error describes the fault in the data.
+/// The map with its cells, stitched from its parts over the ground if necessary, or with the points or
+/// rows that are sent next. An error describes the fault in the data.
 icd::Checked<icd::MapUpdate> whole_of(const queues::QueuedMap& waiting);
 
 }  // namespace adit::forward

@@ -1,13 +1,38 @@
 #include "queues/queued_map.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <utility>
 #include <variant>
 
+#include "icd/placement.hpp"
 #include "icd/require.hpp"
 
 namespace adit::queues {
+namespace {
+
+/// The bytes of a point, or of a row of cells.
+std::size_t step_of(const QueuedMap& map) {
+  if (const auto* cloud = std::get_if<icd::PointCloud2>(&map.map.msg)) return cloud->point_step;
+  return std::get<icd::OccupancyGrid>(map.map.msg).width;
+}
+
+/// The lower left corner of a row.
+icd::Point corner_of_row(const icd::OccupancyGrid& grid, std::size_t row) {
+  return icd::Placement{grid.origin}({0, static_cast<double>(row) * grid.resolution, 0});
+}
+
+/// The row of `grid` at that point, or its first one.
+std::size_t row_at(const icd::OccupancyGrid& grid, const icd::Point& point) {
+  const auto& [turn, origin] = icd::Placement{grid.origin};
+  const double along_y = turn[0][1] * (point.x - origin.x) + turn[1][1] * (point.y - origin.y) +
+                         turn[2][1] * (point.z - origin.z);
+  const double row = std::round(along_y / grid.resolution);
+  return row >= 0 && row < grid.height ? static_cast<std::size_t>(row) : 0;
+}
+
+}  // namespace
 
 const icd::PointCloud2* loose_cloud_in(const icd::MapUpdate& map) {
   if (map.data.compression != icd::Compression::None) return nullptr;
@@ -120,31 +145,41 @@ std::vector<QueuedMap> halves_of(QueuedMap map) {
 }
 
 std::size_t next_size(const QueuedMap& map) {
-  const std::size_t left = map.map.data.raw_size - map.piece.at;
-  return map.piece.size == 0 ? left : std::min(map.piece.size, left);
+  const std::size_t all = map.map.data.raw_size;
+  if (map.piece.size == 0) return all;
+  return std::min({map.piece.size, all - map.piece.at, all - map.piece.delivered});
 }
 
 bool can_split(const QueuedMap& map, std::size_t body) {
   constexpr std::size_t kLeastBody = 64'000;
   if (!map.parts.empty()) return true;
-  const auto* cloud = std::get_if<icd::PointCloud2>(&map.map.msg);
-  return cloud != nullptr && body >= kLeastBody && next_size(map) / cloud->point_step > 1;
+  return body >= kLeastBody && next_size(map) > step_of(map);
 }
 
-void shrink(QueuedMap& cloud, std::size_t pieces) {
-  const std::size_t step = std::get<icd::PointCloud2>(cloud.map.msg).point_step;
-  const std::size_t points = next_size(cloud) / step;
-  cloud.piece.size = (points + pieces - 1) / pieces * step;
-  cloud.alone = true;
-  cloud.trial = {};
-  cloud.cuts = {};
+void shrink(QueuedMap& map, std::size_t pieces) {
+  const std::size_t step = step_of(map), steps = next_size(map) / step;
+  map.piece.size = (steps + pieces - 1) / pieces * step;
+  map.alone = true;
+  map.trial = {};
+  map.cuts = {};
 }
 
 bool next_piece(QueuedMap& map) {
-  map.piece.at += next_size(map);
+  if (map.piece.size == 0) return false;
+  const std::size_t sent = next_size(map), all = map.map.data.raw_size;
+  map.piece.at = (map.piece.at + sent) % all;
+  map.piece.delivered += sent;
   map.trial = {};
   map.cuts = {};
-  return map.piece.at < map.map.data.raw_size;
+  return map.piece.delivered < all;
+}
+
+icd::OccupancyGrid rows_of(const QueuedMap& grid) {
+  auto rows = std::get<icd::OccupancyGrid>(grid.map.msg);
+  if (grid.piece.size == 0) return rows;
+  rows.height = static_cast<std::uint32_t>(next_size(grid) / rows.width);
+  rows.origin.position = corner_of_row(rows, grid.piece.at / rows.width);
+  return rows;
 }
 
 bool may_join(const QueuedMap& map) {
@@ -179,6 +214,11 @@ std::optional<Replaced> absorb(QueuedMap& to, const QueuedMap& from) {
 }
 
 void take_over(QueuedMap& to, QueuedMap from) {
+  if (to.map.is_grid() && to.piece.size == 0 && from.piece.at > 0) {
+    const auto& grid = std::get<icd::OccupancyGrid>(to.map.msg);
+    const auto& older = std::get<icd::OccupancyGrid>(from.map.msg);
+    to.piece.at = grid.width * row_at(grid, corner_of_row(older, from.piece.at / older.width));
+  }
   const auto middle = static_cast<std::ptrdiff_t>(from.updates.size());
   from.updates.insert(from.updates.end(), to.updates.begin(), to.updates.end());
   to.updates = std::move(from.updates);

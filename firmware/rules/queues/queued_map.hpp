@@ -36,10 +36,11 @@ struct Cuts {
   bool check(std::size_t now_at, std::uint64_t now_delivered);
 };
 
-/// The points of a cloud that are sent next, if it is too large for one message, in bytes of its data. The
-/// points before `at` were delivered. Size 0: all points.
+/// The points of a cloud or the rows of a grid that are sent next, if the map is too large for one message,
+/// in bytes of its uncompressed data. Size 0: the whole map.
 struct Piece {
   std::size_t at = 0, size = 0;
+  std::size_t delivered = 0;  // by earlier pieces. After the last row of a grid follows its first one
 };
 
 /// A queued map and the accepted updates that it stands for: its own, those it replaced, those merged into
@@ -107,7 +108,9 @@ void take_bounds(QueuedMap& to, const QueuedMap& from, Replaced& replaced);
 /// `to` stands for `from`, which is not queued. Nothing: `to` is older, or does not contain it.
 std::optional<Replaced> absorb(QueuedMap& to, const QueuedMap& from);
 
-/// `to` replaces `from`, and takes its updates and age. Call take_bounds() first.
+/// `to` replaces `from`, and takes its updates and age. If `from` is a grid in pieces, `to` begins with the
+/// rows that `from` would have sent next, so that each row is sent even if grids are replaced faster than
+/// their pieces are sent. Call take_bounds() first.
 void take_over(QueuedMap& to, QueuedMap from);
 
 /// Unless `to` has failed itself, it takes the strikes and the rest of `from`, but never the last two
@@ -123,12 +126,14 @@ std::vector<QueuedMap> parts_of(QueuedMap map, bool may_join_again);
 /// Merged clouds as two maps that are not merged again, or the parts of a stitched grid. Requires parts.
 std::vector<QueuedMap> halves_of(QueuedMap map);
 
+/// The rows of a grid that are sent next, as a grid of their own.
+icd::OccupancyGrid rows_of(const QueuedMap& grid);
 /// The bytes of data that it sends next.
 std::size_t next_size(const QueuedMap& map);
 /// Whether halves_of() or shrink() can make smaller messages of it, if its message has so many bytes.
 bool can_split(const QueuedMap& map, std::size_t body);
-/// The next pieces of the cloud have an equal share of its next points each, and have not failed yet.
-void shrink(QueuedMap& cloud, std::size_t pieces);
+/// The next pieces of the map have an equal share of its next points or rows each, and have not failed yet.
+void shrink(QueuedMap& map, std::size_t pieces);
 /// The next piece was delivered. Returns whether there is another one.
 bool next_piece(QueuedMap& map);
 

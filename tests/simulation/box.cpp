@@ -24,6 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kLargestMap = 64u << 10;  // of a robot or a flood
+constexpr std::size_t kLargeMap = 4u << 20;     // in a world of large maps
 constexpr std::uint64_t kRightThen = 4, kSoon = 40, kMostCrossings = 400;
 constexpr double kDiesInExec = 0.3;
 /// Seconds until a killed process is restarted, and until a machine without power is booted.
@@ -40,7 +41,7 @@ struct Queues {
   std::size_t most_map_bytes;  // queued; plus two maps that are queued again
 };
 
-Queues queues(Random random) {
+Queues queues(Random random, std::size_t largest_map) {
   Queues queues;
   const settings::Settings usual;
   std::size_t map_bytes = usual.queues.map_bytes, merge_bytes = usual.queues.merge_bytes;
@@ -51,7 +52,7 @@ Queues queues(Random random) {
   queues.settings += R"(, "map_bytes": )" + std::to_string(map_bytes);
   queues.settings += R"(, "merge_bytes": )" + std::to_string(merge_bytes);
   if (random.chance(0.2)) queues.settings += R"(, "marker_bytes_per_message": 1024)";
-  queues.most_map_bytes = map_bytes + 2 * (merge_bytes + kLargestMap);
+  queues.most_map_bytes = map_bytes + 2 * (merge_bytes + largest_map);
   return queues;
 }
 
@@ -136,7 +137,8 @@ Box::Box(World& world) : world_(world), random_(world.random("box")) {
   write(folder_ / "secrets" / "team.token", "token-of-the-team\n");
   const std::string interface = world.random("the team's interface").chance(0.5) ? kInterface : "";
   world.door().belongs_to(interface);
-  const auto [queues, most_map_bytes] = simulation::queues(world.random("settings"));
+  const auto [queues, most_map_bytes] =
+      simulation::queues(world.random("settings"), world.has_large_maps() ? kLargeMap : kLargestMap);
   most_map_bytes_ = most_map_bytes;
   write(folder_ / "settings.json", first_settings(queues, simulation::robots(world.random("voxels")),
                                                   interface, world.random("one server").chance(0.3)));

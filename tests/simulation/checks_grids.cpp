@@ -33,10 +33,14 @@ struct PostedGrid {
   bool is_taken = false;    // an answer confirmed the delivery
   double confirmed = 1e9;   // when
   bool is_refused = false;  // rejected; the operator sends it again later
+  std::set<int> rows = {};  // delivered, if it was sent in pieces
+
+  bool has_all_rows() const { return std::cmp_equal(rows.size(), extent.height); }
 
   void answered(const Event& reply) {
     if (reply.status >= 500 || reply.status == 413) ++failures;
-    if (reply.status == 200 && reply.who.empty()) is_taken = true, confirmed = std::min(confirmed, reply.at);
+    if (reply.status == 200 && reply.who.empty() && (rows.empty() || has_all_rows()))
+      is_taken = true, confirmed = std::min(confirmed, reply.at);
     is_refused = is_refused || reply.status == 422 || reply.status == 413;
   }
   bool is_overtaken_by(const PostedGrid& other) const {
@@ -79,6 +83,11 @@ bool overlap(const Extent& a, const Extent& b) {
   return one(a.x, a.width, b.x, b.width) && one(a.y, a.height, b.y, b.height);
 }
 
+/// Whether `rows` are some of the rows of `all`.
+bool are_rows_of(const Extent& all, const Extent& rows) {
+  return holds(all, rows) && rows.width == all.width && rows.height < all.height;
+}
+
 bool is_one_place(const Extent& a, const Extent& b) {
   return a.says() == b.says();
 }
@@ -105,7 +114,7 @@ class GridsOfOneName {
     posted_.push_back({&asked, item.serial, Extent::from(item.says)});
   }
 
-  /// A grid left, or was accepted. Returns the posted grids that the message contains.
+  /// A grid left, or was accepted. Returns the posted grids that the message contains, or is a part of.
   std::vector<PostedGrid*> sent(const Event& event) {
     std::vector<PostedGrid*> in_it;
     const Message message = read(event);
@@ -113,6 +122,8 @@ class GridsOfOneName {
       const auto is_its = [&](const Owners& owners) { return owners.size() == 1 && owners.front() == each; };
       if (!each->is_taken || std::ranges::any_of(message.cells, is_its)) in_it.push_back(each);
     }
+    const Owners wholes = wholes_of(event);
+    in_it.insert(in_it.end(), wholes.begin(), wholes.end());
     return in_it;
   }
 
@@ -159,6 +170,11 @@ class GridsOfOneName {
 
   void taken(const Event& event, std::size_t place, Broken& broken) {
     const Message message = read(event);
+    for (PostedGrid* each : wholes_of(event)) {
+      const int first = (message.extent.y - each->extent.y) / message.extent.cell;
+      for (int row = 0; row < message.extent.height; ++row) each->rows.insert(first + row);
+      if (each->has_all_rows()) each->taken = place;
+    }
     std::size_t i = 0;
     bool is_strange = false;
     for_each_cell(message.extent, [&](const Extent& cell) {
@@ -238,6 +254,23 @@ class GridsOfOneName {
     return message;
   }
 
+  /// The posted grids of which the message has some rows.
+  Owners wholes_of(const Event& event) {
+    Owners wholes;
+    const Extent extent = Extent::from(event.says);
+    for (PostedGrid& each : posted_) {
+      const bool may_be = each.asked->began <= event.at && each.asked->may_count();
+      if (!may_be || !are_rows_of(each.extent, extent)) continue;
+      std::size_t i = kExtentNumbers;
+      bool is_it = true;
+      for_each_cell(extent, [&](const Extent& cell) {
+        is_it = is_it && value_of(each.serial, cell) == event.says.at(i++);
+      });
+      if (is_it) wholes.push_back(&each);
+    }
+    return wholes;
+  }
+
   /// A message with gaps does not contain every grid that lies within it, and a gap may have a grid's value
   /// by chance. A contained grid has at each cell its own value or the value of a grid that is not older,
   /// even if that grid has replaced it.
@@ -304,15 +337,15 @@ class GridsOfOneName {
   }
 
   /// Whether `older`, perhaps on another lattice, was accepted after a part of a grid that covers it. A cell
-  /// that may have the value of an older grid is no part of it.
+  /// that may have the value of another grid is no part of it, unless that grid is newer.
   bool is_under(const PostedGrid& grid, const PostedGrid& older) const {
     bool any = false;
     for_each_cell(grid.extent, [&](const Extent& cell) {
       const auto found = has_.find(key_of(cell));
-      any =
-          any || (overlap(cell, older.extent) && found != has_.end() && found->second.place < older.taken &&
-                  std::ranges::none_of(
-                      found->second.owners, [&](const PostedGrid* owner) { return owner->is_before(grid); }));
+      any = any || (overlap(cell, older.extent) && found != has_.end() && found->second.place < older.taken &&
+                    std::ranges::all_of(
+                        found->second.owners,
+                        [&](const PostedGrid* owner) { return owner == &grid || grid.is_before(*owner); }));
     });
     return any;
   }

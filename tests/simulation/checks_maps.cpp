@@ -24,9 +24,22 @@ struct Posted {
   const Asked* asked;
   const Item* item;
   std::vector<std::size_t> taken = {};
+  std::set<int> points = {};  // that arrived in pieces since
+  bool has_pieces = false;
   bool again = false;  // later clouds contained its points too
 };
 using Name = std::string;
+
+/// The event delivered all points of the cloud, or the last ones of them.
+void note_delivery(Posted& cloud, const Says& says, std::size_t event) {
+  const int all = cloud.item->says.front();
+  if (says[2] - says[1] + 1 != says[0]) return;  // points between them are missing
+  cloud.has_pieces = cloud.has_pieces || says[0] < all;
+  for (int index = says[1]; index <= says[2]; ++index) cloud.points.insert(index);
+  if (std::cmp_less(cloud.points.size(), all)) return;
+  cloud.points.clear();
+  cloud.taken.push_back(event);
+}
 
 /// By name, the clouds that may have been accepted.
 std::map<Name, std::vector<Posted>> posted_in(const Evidence& evidence, const std::vector<Asked>& all) {
@@ -50,8 +63,7 @@ std::map<Name, std::vector<Posted>> posted_in(const Evidence& evidence, const st
     if (event.what != kMap || event.kind != Kind::Taken || is_grid(event.says)) continue;
     const auto found = by_serial.find(event.serial);
     if (found == by_serial.end() || found->second.first != event.who) continue;
-    Posted& each = posted[event.who][found->second.second];
-    if (each.item->says == event.says) each.taken.push_back(i);
+    note_delivery(posted[event.who][found->second.second], event.says, i);
   }
   return posted;
 }
@@ -91,9 +103,10 @@ bool may_be_double(const std::vector<Event>& events, std::size_t first, std::siz
   return status != 200;
 }
 
-/// A run, a setting or a course began between the two, so points that were left out of the first must be
-/// sent now. A clock that was set back, or a granted report, may look like another run, until the answer to a
-/// report names the current run. So may a renamed run, until a status shows that it goes on.
+/// A run, a setting or a course began between the two, so points that were left out of the first, or sent in
+/// pieces before its last one, must be sent now. A clock that was set back, or a granted report, may look
+/// like another run, until the answer to a report names the current run. So may a renamed run, until a status
+/// shows that it goes on.
 bool may_go_whole(const std::vector<Event>& events, std::size_t first, std::size_t second) {
   bool is_set_back = false, is_renamed = false;
   for (std::size_t i = 0; i < second; ++i) {
@@ -128,7 +141,7 @@ void check_clouds(const Evidence& evidence, const Name& name, const std::vector<
     }
     for (std::size_t i = 1; i < cloud.taken.size() && !cloud.again; ++i) {
       if (may_be_double(evidence.events, cloud.taken[i - 1], cloud.taken[i])) continue;
-      if (had_more.contains(message_of(cloud.taken[i - 1])) &&
+      if ((cloud.has_pieces || had_more.contains(message_of(cloud.taken[i - 1]))) &&
           may_go_whole(evidence.events, cloud.taken[i - 1], cloud.taken[i]))
         continue;
       broken.push_back(icd::sentence("CloudArrived: ", cloud.item->serial, " of '", name,
@@ -141,7 +154,7 @@ void check_clouds(const Evidence& evidence, const Name& name, const std::vector<
 
 void cloud_arrived(const Evidence& evidence, Broken& broken) {
   for (const Event& event : evidence.events) {
-    const bool taken = event.kind == Kind::Taken && event.what == kMap && is_cloud(event.says);
+    const bool taken = event.kind == Kind::Taken && event.what == kMap && !is_grid(event.says);
     if (taken && event.says.front() == kStrange)
       broken.push_back(icd::sentence(
           "CloudArrived: the Command Post accepted points that no client posted, of '", event.who, "'"));

@@ -43,7 +43,8 @@ class CommandPost::Conversation {
     stream_.feed(bytes);
     while (const auto request = stream_.next())
       post_.asked(*request, {.first = began_, .last = left.last}, *link_);
-    if (stream_.head()) post_.may_answer_early(*stream_.head(), *link_);
+    if (!stream_.head() || post_.cuts_large(stream_, *link_)) return;
+    post_.may_answer_early(*stream_.head(), *link_);
   }
   /// Keeps the bytes in the kernel, which has acknowledged them.
   void hold(std::string_view bytes, Instant left) {
@@ -130,6 +131,12 @@ CommandPost::CommandPost(World& world, const Faults& faults, double trouble_for,
   if (proxy.chance(0.25)) largest_ = 400 + proxy.below(2000);
   is_below_single_ = proxy.chance(0.3);
   resets_large_ = proxy.chance(0.2);
+  if (world.has_large_maps()) {
+    resets_large_ = !world.has_large_grids() && proxy.chance(0.5);
+    largest_ = resets_large_             ? 256'000 + proxy.below(100'000)
+               : world.has_large_grids() ? 66'000 + proxy.below(24'000)
+                                         : 70'000 + proxy.below(200'000);
+  }
   plan_portal(trouble_for);
   plan_registry(trouble_for);
   for (const Fault fault : kPeriods) {
@@ -288,10 +295,22 @@ bool CommandPost::is_single(const std::vector<Item>& sent) const {
   return std::ranges::any_of(world_.posted_maps, is_in);
 }
 
-/// As nginx with client_max_body_size. Its limit is above each posted map, or becomes so with calm().
+/// Resets the connection as soon as the bytes within the limit have arrived, as some servers do.
+bool CommandPost::cuts_large(const HttpStream& stream, Link& link) {
+  const bool is_large = stream.head()->path() == kMap && stream.length() > largest_;
+  if (!world_.has_large_maps() || !resets_large_ || calm_ || !is_large || stream.read() < largest_)
+    return false;
+  world_.note({.actor = Actor::Post, .kind = Kind::Fault, .what = kMap, .who = kTooLarge});
+  link.go_deaf();
+  link.end(Link::How::Reset);
+  return true;
+}
+
+/// As nginx with client_max_body_size. Its limit is above each posted map, or becomes so with calm(). Large
+/// maps can be split, so then it stays as it is.
 bool CommandPost::is_too_large(const HttpMessage& request, Link& link) {
   if (request.path() != kMap || request.body.size() <= largest_) return false;
-  if ((calm_ || !is_below_single_) && is_single(items_of(request))) return false;
+  if (!world_.has_large_maps() && (calm_ || !is_below_single_) && is_single(items_of(request))) return false;
   world_.note({.actor = Actor::Post, .kind = Kind::Fault, .what = kMap, .who = kTooLarge});
   if (resets_large_ && !calm_) {
     link.end(Link::How::Reset);

@@ -53,6 +53,7 @@ class CommandPost final : public Host {
   using Accepted = std::deque<std::shared_ptr<Conversation>>;
   void asked(const HttpMessage& request, const WhenLeft& left, Link& link);
   bool is_single(const std::vector<Item>& sent) const;
+  bool cuts_large(const HttpStream& stream, Link& link);
   bool is_too_large(const HttpMessage& request, Link& link);
   bool redirects(const HttpMessage& request, Link& link);
   bool refuses(const HttpMessage& request, const WhenLeft& left, Link& link);

@@ -31,7 +31,8 @@ class HttpStream {
   bool is_between() const { return bytes_.empty() && !head_; }
   /// The head of the incomplete message, once complete.
   const std::optional<HttpMessage>& head() const { return head_; }
-  std::size_t length() const { return length_; }  // of its body, or of its next chunk
+  std::size_t length() const { return length_; }      // of its body, or of its next chunk
+  std::size_t read() const { return bytes_.size(); }  // of its body, if the head gives its length
   /// The part of the incomplete message's first line that has arrived.
   std::string_view begun() const { return bytes_; }
 

@@ -9,10 +9,10 @@
 #include <limits>
 #include <map>
 #include <ranges>
-#include <stdexcept>
 
 #include "simulation/bad_messages.hpp"
 #include "simulation/bytes.hpp"
+#include "simulation/random.hpp"
 
 namespace adit::simulation {
 namespace {
@@ -40,6 +40,17 @@ float get(const std::string& bytes, std::size_t at, bool big_endian) {
   std::memcpy(raw.data(), bytes.data() + at, raw.size());
   if (big_endian) std::ranges::reverse(raw);
   return std::bit_cast<float>(raw);
+}
+
+/// Noise of that point, which does not compress.
+std::string noise_of(std::int64_t serial, std::int64_t index, std::size_t size) {
+  Random random(static_cast<std::uint64_t>(serial * kPointsApart + index), "noise");
+  std::string noise(size, '\0');
+  for (std::size_t at = 0; at < size; at += sizeof(std::uint64_t)) {
+    const std::uint64_t next = random.next();
+    std::memcpy(noise.data() + at, &next, std::min(sizeof next, size - at));
+  }
+  return noise;
 }
 
 void put_data(Json& msg, std::string data, const Style& style) {
@@ -103,14 +114,18 @@ Json grid(const Item& item, const Style& style) {
   return msg;
 }
 
-Json field(const char* name, std::size_t offset) {
-  return {{"name", name}, {"offset", offset}, {"datatype", 7}, {"count", 1}};
+Json field(const char* name, std::size_t offset, int datatype = 7, std::size_t count = 1) {
+  return {{"name", name}, {"offset", offset}, {"datatype", datatype}, {"count", count}};
+}
+
+std::size_t step_of(const Style& style) {
+  return static_cast<std::size_t>(style.point_step) + style.noise;
 }
 
 /// Organises the points in rows of kRowWidth. The last points may be invalid, and padding looks like one
 /// more point.
 void organise(Json& msg, std::string& points, const Style& style) {
-  const auto step = static_cast<std::size_t>(style.point_step), row = kRowWidth * step;
+  const std::size_t step = step_of(style), row = kRowWidth * step;
   const auto add = [&](std::string& bytes, float x) {
     const std::size_t at = bytes.size();
     bytes.resize(at + step);
@@ -130,13 +145,14 @@ void organise(Json& msg, std::string& points, const Style& style) {
 
 /// In a third of the clouds an invalid point comes before each kInvalidEvery valid ones.
 Json cloud(const std::vector<Item>& items, const Style& style) {
-  const auto step = static_cast<std::size_t>(style.point_step);
+  const std::size_t step = step_of(style);
   std::string points;
   const auto add = [&](std::int64_t serial, std::array<float, 3> place, std::int64_t index) {
     const std::size_t at = points.size();
     points.resize(at + step);
     for (std::size_t i = 0; i < 3; ++i) put(points, at + 4 * i, place[i], style.big_endian);
     put(points, at + 12, static_cast<float>(serial * kPointsApart + index), style.big_endian);
+    points.replace(points.size() - style.noise, style.noise, noise_of(serial, index, style.noise));
   };
   const auto add_all = [&](const Item& item) {
     for (std::int64_t index = 0; index < item.says.front(); ++index) {
@@ -154,6 +170,8 @@ Json cloud(const std::vector<Item>& items, const Style& style) {
   Json msg = {{"header", header_of(items.front().stamp)},
               {"fields", {field("x", 0), field("y", 4), field("z", 8), field("intensity", 12)}},
               {"point_step", step}};
+  if (style.noise > 0)
+    msg["fields"].push_back(field("noise", step - style.noise, /*datatype=*/2, style.noise));
   if (style.big_endian) msg["is_bigendian"] = true;
   if (style.in_rows) organise(msg, points, style);
   put_data(msg, std::move(points), style);
@@ -179,13 +197,17 @@ Item grid_item(const Json& msg) {
 /// The number of copies of each of a cloud's points in a message.
 using Copies = std::map<std::int64_t, int>;
 
-/// Adds the clouds of that serial, as often as all of their points occur, in any order of points.
+/// Adds the clouds of that serial, as often as their points occur, in any order of points.
 void add_copies(std::int64_t serial, const Copies& copies, std::vector<Item>& items) {
-  const auto is_in = [&](int copy) {
-    return std::ranges::count_if(copies, [copy](const auto& point) { return point.second >= copy; });
-  };
-  for (int copy = 1; is_in(copy) > 0; ++copy) {
-    items.push_back({.who = "", .serial = serial, .says = {static_cast<int>(is_in(copy))}});
+  for (int copy = 1;; ++copy) {
+    Says says{0, 0, 0};
+    for (const auto& [index, times] : copies) {
+      if (times < copy) continue;
+      if (++says[0] == 1) says[1] = static_cast<int>(index);
+      says[2] = static_cast<int>(index);
+    }
+    if (says[0] == 0) return;
+    items.push_back({.who = "", .serial = serial, .says = std::move(says)});
   }
 }
 
@@ -201,14 +223,14 @@ std::vector<Item> cloud_items(const Json& msg) {
   const std::string data = data_in(msg);
   const auto step = msg.at("point_step").get<std::size_t>();
   const bool big_endian = msg.value("is_bigendian", false);
-  const auto offset_of = [&](const char* name) {
-    for (const Json& each : msg.at("fields")) {
-      if (each.at("name") == name) return each.at("offset").get<std::size_t>();
-    }
-    throw std::out_of_range(name);
+  const auto find = [&](const char* name) {
+    return std::ranges::find_if(msg.at("fields"), [&](const Json& each) { return each.at("name") == name; });
   };
+  const auto offset_of = [&](const char* name) { return find(name)->at("offset").get<std::size_t>(); };
   const std::size_t x = offset_of("x"), y = offset_of("y"), z = offset_of("z");
   const std::size_t intensity = offset_of("intensity");
+  const auto noise = find("noise");
+  const bool is_noisy = noise != msg.at("fields").end();
   const auto origin = origin_of(msg);
   std::map<std::int64_t, Copies> clouds;
   bool strange = data.size() % step != 0;
@@ -221,6 +243,11 @@ std::vector<Item> cloud_items(const Json& msg) {
     };
     strange = strange || !is_at(x, origin[0], place[0]) || !is_at(y, origin[1], place[1]) ||
               !is_at(z, origin[2], place[2]);
+    if (is_noisy) {
+      const std::string there = noise_of(serial, index, noise->at("count").get<std::size_t>());
+      strange =
+          strange || data.compare(at + noise->at("offset").get<std::size_t>(), there.size(), there) != 0;
+    }
     ++clouds[serial][index];
   }
   std::vector<Item> items;

@@ -18,8 +18,9 @@ struct Item {
   std::string who;  // a map's or a pose's name, a marker's ns, "" for a report
   std::int64_t serial = 0;
   double stamp = 0;  // 0: none
-  /// A grid's Extent, and upstream its cells; a cloud's points; a marker's action, id and lifetime in
-  /// milliseconds; for a pose the number of the client that posts it.
+  /// A grid's Extent, and upstream its cells; the number of a cloud's points, and upstream the index of the
+  /// first one and of the last one; a marker's action, id and lifetime in milliseconds; for a pose the number
+  /// of the client that posts it.
   Says says = {};
 };
 
@@ -36,9 +37,6 @@ struct Extent {
 inline constexpr std::size_t kExtentNumbers = 6;
 inline bool is_grid(const Says& says) {
   return says.size() >= kExtentNumbers;
-}
-inline bool is_cloud(const Says& says) {
-  return says.size() == 1;
 }
 inline constexpr int kStrange = -1;                // points, a marker or a report that no client posted
 inline constexpr std::int64_t kOwnReports = 9000;  // first serial of the operator's reports
@@ -68,6 +66,7 @@ struct Style {
   bool cbor = false, gzip = false, gzip_data = false;
   bool big_endian = false;  // clouds
   int point_step = 16;      // of clouds, in bytes
+  std::size_t noise = 0;    // bytes of noise in each point of a cloud, beyond point_step
   bool news_first = false;  // in clouds with points of earlier ones, the new points come first
   bool rounds = false;      // a report's coordinates are rounded to float32
   bool in_rows = false;     // clouds are organised, with padded rows

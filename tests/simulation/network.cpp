@@ -13,6 +13,7 @@ namespace {
 
 /// Bytes of a segment on Ethernet. A thin line delivers segments one after the other and acknowledges each.
 constexpr std::size_t kSegment = 1448;
+constexpr std::size_t kWindow = 65536;
 /// The longest time for which Linux delays the acknowledgement of a last segment (RFC 1122 4.2.3.2).
 constexpr std::chrono::milliseconds kLateAck{40};
 
@@ -25,8 +26,10 @@ Link::Link(World& world, std::uint64_t number, uplink::Endpoint endpoint, Random
       endpoint_(std::move(endpoint)),
       random_(random),
       typical_(random_.chance(0.8) ? random_.between(0.0001, 0.002) : random_.between(0.002, 0.15)),
-      window_(static_cast<std::size_t>(random_.chance(0.7) ? 65536 : random_.between(1000, 8000))),
-      acknowledges_late_(world.random("acknowledgements " + std::to_string(number)).chance(0.5)) {}
+      window_(random_.chance(0.7) ? kWindow : static_cast<std::size_t>(random_.between(1000, 8000))),
+      acknowledges_late_(world.random("acknowledgements " + std::to_string(number)).chance(0.5)) {
+  if (world.has_large_maps()) window_ = std::max(window_, kWindow);
+}
 
 loop::Duration Link::latency() {
   return seconds(typical_ * random_.between(0.8, 1.5));
@@ -139,7 +142,7 @@ void Link::end(How how, loop::Duration delay) {
 
 Network::Network(World& world) : world_(world), stalls_(world) {
   Random random = world.random("rate of maps");
-  map_rate_ = random.chance(0.25) ? random.between(300, 1500) : 0;
+  map_rate_ = random.chance(0.25) && !world.has_large_maps() ? random.between(300, 1500) : 0;
 }
 
 int Network::connect(const uplink::Endpoint& endpoint) {

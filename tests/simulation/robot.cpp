@@ -13,6 +13,9 @@ namespace {
 constexpr int kWritings = 80;
 constexpr int kLargest = 64;            // cells per side
 constexpr std::size_t kLongestMap = 8;  // clouds until its map begins again
+constexpr int kLargeGrids = 3;          // in some worlds of large maps
+constexpr int kOfLargeCloud = 60;       // points, at least
+constexpr int kLargeClouds = 6;         // in a world of large maps
 constexpr double kJump = 6;             // seconds; a smaller jump may be messages that overtook each other
 
 Style style(const World& world, const std::string& name) {
@@ -60,7 +63,10 @@ Robot::Robot(World& world, int number)
       jitters_(drift_.chance(0.25)),
       creeps_(!jitters_ && drift_.chance(0.25)),
       fade_(world.random("lifetimes of " + name_)),
-      fades_(fade_.chance(0.3)) {}
+      fades_(fade_.chance(0.3)),
+      large_(number == 1 && world.has_large_maps() ? kLargeClouds : 0),
+      large_grids_(number == 1 && world.has_large_grids() ? kLargeGrids : 0),
+      noise_(1000 + world.random("noise of " + name_).below(3000)) {}
 
 void Robot::post_until(double end) {
   end_ = end;
@@ -70,11 +76,14 @@ void Robot::post_until(double end) {
 void Robot::post() {
   if (world_.time() > end_) return;
   const Posting posting = next();
+  Style style = style_;
+  const bool is_cloud = posting.path == kMap && !is_grid(posting.items.front().says);
+  if (is_cloud && large_-- > 0) style.noise = noise_;
   if (overtakes_ && slowly_.chance(0.25) && !slow_client_.busy()) {
-    slow_client_.ask_several(request_of(posting, style_), events_of(posting), [](int) {});
+    slow_client_.ask_several(request_of(posting, style), events_of(posting), [](int) {});
     return post_later();
   }
-  client_.ask_several(request_of(posting, style_), events_of(posting), [this](int) { post_later(); });
+  client_.ask_several(request_of(posting, style), events_of(posting), [this](int) { post_later(); });
 }
 
 void Robot::post_later() {
@@ -107,9 +116,13 @@ Item Robot::item(std::string who, Says says) {
           .says = std::move(says)};
 }
 
-/// Half of the grids are its whole map, which grows. The others are patches at any place, some on another
-/// lattice.
+/// The first ones may be large. Half of the next ones are its whole map, which grows. The others are patches
+/// at any place, some on another lattice.
 Item Robot::grid() {
+  if (large_grids_ > 0) {
+    --large_grids_;
+    return item(name_, large_grid_.says());
+  }
   if (rolls_ && random_.chance(0.9)) return window();
   if (random_.chance(0.5)) {
     if (random_.chance(0.2) && extent_.width < kLargest) ++extent_.width, ++extent_.height;
@@ -151,7 +164,9 @@ Item Robot::window() {
 
 /// Some clouds have no robot's name.
 Item Robot::cloud() {
-  return item(random_.chance(0.8) ? name_ : "", {between(random_, 5, random_.chance(0.1) ? 300 : 60)});
+  const int points = between(random_, 5, random_.chance(0.1) ? 300 : 60);
+  return item(random_.chance(0.8) ? name_ : "",
+              {large_ > 0 ? kOfLargeCloud + points % kOfLargeCloud : points});
 }
 
 Posting Robot::clouds() {

@@ -68,6 +68,10 @@ class Robot {
   int crept_ = 0;       // steps
   Random fade_;
   const bool fades_;  // half of its markers have a lifetime
+  int large_;         // remaining clouds with noise
+  int large_grids_;   // remaining
+  const Extent large_grid_{.x = -40'000, .y = -40'000, .width = 340, .height = 340};
+  const std::size_t noise_;
 };
 
 }  // namespace adit::simulation

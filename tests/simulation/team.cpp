@@ -118,7 +118,8 @@ void LateReporter::report() {
 
 Team::Team(World& world, double until) : late_reporter_(world, until) {
   Random random = world.random("team");
-  const auto robots = static_cast<int>(random.below(4)), reporters = static_cast<int>(random.below(3));
+  const auto drawn = static_cast<int>(random.below(4)), reporters = static_cast<int>(random.below(3));
+  const int robots = world.has_large_maps() ? std::max(drawn, 1) : drawn;
   for (int i = 1; i <= robots; ++i) robots_.push_back(std::make_unique<Robot>(world, i));
   for (int i = 1; i <= reporters; ++i) reporters_.push_back(std::make_unique<Reporter>(world, i));
   if (random.chance(0.4)) blunderers_.push_back(std::make_unique<Blunderer>(world, 1));

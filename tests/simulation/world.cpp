@@ -20,6 +20,8 @@ World* the_world = nullptr;
 World::World(std::uint64_t seed, Omissions without)
     : seed_(seed),
       without_(std::move(without)),
+      has_large_maps_(random("large maps").chance(0.05)),
+      has_large_grids_(has_large_maps_ && random("large grids").chance(0.3)),
       now_(kBeginning),
       network_(*this),
       door_(*this),

@@ -47,6 +47,9 @@ class World {
   static World& current();
 
   Random random(std::string_view name) const { return {seed_, name}; }
+  /// The first robot posts maps of up to some hundred kB, and a proxy has a limit for all maps.
+  bool has_large_maps() const { return has_large_maps_; }
+  bool has_large_grids() const { return has_large_grids_; }
   Instant now() const { return now_; }
   double time() const;  // seconds since the run began
   double stamp() const { return kEpoch + time() + clock_ahead_; }
@@ -121,6 +124,7 @@ class World {
 
   const std::uint64_t seed_;
   const Omissions without_;
+  const bool has_large_maps_, has_large_grids_;
   Actions actions_;
   Instant now_;
   std::uint64_t order_ = 0, steps_ = 0, entropy_ = 0, jobs_ended_ = 0;

@@ -53,7 +53,7 @@ class PreparedMaps {
   void again(const Place& sent);
   /// Returns the following map to the queue, except one in flight.
   void put_back_following() { put_back(following_); }
-  /// The Command Post may have another map. Returns both, because they may cover old cells, and clouds in
+  /// The Command Post may have another map. Returns both, because they may cover old cells, and maps in
   /// pieces begin again, also one in flight.
   void pack_again();
   /// Keeps only the points of a delivered cloud that were sent.

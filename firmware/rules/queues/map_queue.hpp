@@ -98,7 +98,7 @@ class MapQueue {
   /// The same for a map that was too large: the halves of merged clouds, or the parts of a stitched grid.
   void put_back_halves(QueuedMap map);
 
-  /// The Command Post may lack the points that were delivered: clouds in pieces begin with their first point.
+  /// The Command Post may lack the pieces that were delivered: maps in pieces begin with their first one.
   void restart_pieces();
 
   /// Two successive clouds that have not been compared yet, or nothing. Call replace() or keep_both() with

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <mutex>
 #include <random>
 #include <set>
@@ -63,6 +64,7 @@ class ProxyStub {
     points_.clear();
   }
   std::atomic<int> too_large = 0;
+  std::atomic<bool> has_empty_cloud = false;
 
  private:
   void serve(uplink::Wire& wire) {
@@ -91,6 +93,7 @@ class ProxyStub {
       return;
     }
     const auto xs = xs_of(map->data);
+    if (xs.empty()) has_empty_cloud = true;
     const std::lock_guard lock(mutex_);
     points_.insert(xs.begin(), xs.end());
   }
@@ -236,6 +239,20 @@ TEST_F(TooLargeMap, IsSentInPiecesIfItIsASingleCloud) {
   EXPECT_THAT(rejected_.rows(), IsEmpty());
   ASSERT_TRUE(loop::turn_until_idle(loop_, writer_));
   EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));
+}
+
+TEST_F(TooLargeMap, LeavesOutPiecesWithoutAValidPoint) {
+  icd::MapUpdate cloud = cloud_of(20 * kPoints);
+  auto bytes = bytes_of(cloud.data);
+  const float invalid = std::numeric_limits<float>::quiet_NaN();
+  for (std::size_t at = bytes.size() / 2; at < bytes.size(); at += 12)
+    std::memcpy(bytes.data() + at, &invalid, sizeof invalid);
+  cloud.data.bytes = icd::ChunkedBytes(bytes);
+  send({cloud});
+  ASSERT_TRUE(becomes(0));
+  EXPECT_EQ(proxy_->points().size(), std::size_t{10} * kPoints);
+  EXPECT_FALSE(proxy_->has_empty_cloud);
+  EXPECT_THAT(rejected_.rows(), IsEmpty());
 }
 
 TEST_F(TooLargeMap, IsStoredUntilItsLastPieceIsDelivered) {

@@ -57,6 +57,12 @@ double unit_of(queues::Precision precision) {
   return precision == queues::Precision::EightMillimetres ? pack::kEightMillimetres : 0;
 }
 
+/// A cloud without one is not accepted, but a piece of a cloud may have none.
+bool has_no_valid_point(const icd::MapUpdate& piece) {
+  const auto* const cloud = std::get_if<icd::PointCloud2>(&piece.msg);
+  return cloud != nullptr && pack::without_invalid_points(*cloud, piece.data).raw_size == 0;
+}
+
 /// The origin shows it.
 bool was_rounded(const icd::MapUpdate& before, const icd::MapUpdate& after) {
   const auto* const cloud = std::get_if<icd::PointCloud2>(&after.msg);
@@ -69,6 +75,10 @@ Packed packed(const queues::QueuedMap& waiting, LeavingOut leaving_out, const Pa
   auto whole = whole_of(waiting);
   if (!whole) return {};
   Packed packed;
+  if (waiting.piece.size > 0 && has_no_valid_point(*whole)) {
+    packed.left_out.is_all = true;
+    return packed;
+  }
   packed.left_out = leaving_out(*whole);
   if (packed.left_out.is_all) return packed;
   if (waiting.ground) packed.drawn = drawn_over(*waiting.ground, whole->data);

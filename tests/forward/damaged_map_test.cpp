@@ -5,6 +5,9 @@
 #include "codec/gzip.hpp"
 #include "forward/manual_endpoint.hpp"
 #include "host/numbered_name.hpp"
+#include "host/service.hpp"
+#include "loop/simulated_time.hpp"
+#include "loop/watchdog.hpp"
 
 namespace adit::forward {
 namespace {
@@ -13,14 +16,18 @@ namespace fs = std::filesystem;
 
 class DamagedMap : public MapsToManualEndpoint {
  protected:
-  /// Stores a square grid in this column, as an earlier process did.
-  void keep(std::uint64_t number, const char* robot, int column) {
+  /// A square grid in this column.
+  static icd::MapUpdate grid_in(const char* robot, int column) {
     icd::MapUpdate map = grid_of(robot, 64);
     auto& grid = std::get<icd::OccupancyGrid>(map.msg);
     grid.origin.position.x = column * grid.width * grid.resolution;
     map.data.bytes = codec::gzip(map.data.bytes, codec::GzipStrategy::Runs);
     map.data.compression = icd::Compression::Gzip;
-    ASSERT_TRUE(spool_.keep(number, std::move(map), 0));
+    return map;
+  }
+  /// Stores it, as an earlier process did.
+  void keep(std::uint64_t number, const char* robot, int column) {
+    ASSERT_TRUE(spool_.keep(number, grid_in(robot, column), 0));
   }
   std::string file(std::uint64_t number) const {
     return folder_ / host::numbered_name("map-", number, ".cbor");
@@ -85,6 +92,79 @@ TEST_F(DamagedMap, LeavesItsStitchedNeighbour) {
   EXPECT_TRUE(loop::turn_until(loop_, [&] { return fs::exists(file(kOne) + ".damaged"); }));
   EXPECT_EQ(row().failed, 1U);
   EXPECT_EQ(maps_->waiting({Kind::Grid, "first"}), 0U);
+}
+
+/// A process packed map kOne at its end, `times` times.
+class FaultyMap : public DamagedMap {
+ protected:
+  void end_by_faults(int times) {
+    for (int i = 0; i < times; ++i) {
+      const fs::path folder = folder_.path(), killed = folder.string() + ".killed";
+      {
+        spool::Spool before(folder);
+        (void)before.read();
+        before.work_begins({kOne});
+        before.work_overruns();
+        fs::copy_file(folder / "at-work", killed);
+      }
+      fs::rename(killed, folder / "at-work");
+    }
+  }
+};
+
+TEST_F(FaultyMap, IsPutAsideWithItsSenderAndReasonUntilTheOperatorDecides) {
+  keep(kOne, "first", 0);
+  keep(kOther, "second", 0);
+  end_by_faults(3);
+  restore();
+  post_.answer("200 OK");
+  EXPECT_TRUE(receives({"second"}));
+  ASSERT_EQ(rejected_.rows().size(), 1u);
+  EXPECT_EQ(rejected_.rows()[0].status, 0);
+  EXPECT_EQ(rejected_.put_aside(),
+            "message 1, first's grid: aditd ended 3 times by a fault while it packed this map");
+  EXPECT_TRUE(loop::turn_until(loop_, [&] { return !fs::exists(file(kOne)); }));
+  EXPECT_EQ(row().failed, 1U);
+  RejectedStore next(loop_, writer_, rejected_folder_.path());
+  next.restore();
+  EXPECT_EQ(next.put_aside(), rejected_.put_aside()) << "in a later process";
+  EXPECT_EQ(next.to_be_sent(1)->faults, 3);
+}
+
+TEST_F(FaultyMap, IsPutAsideAtItsNextFaultIfTheOperatorSendsItAgain) {
+  maps_->endpoint_changed(std::nullopt);  // without a token, maps stay queued
+  maps_->send_again(grid_in("first", 0), [](bool) { return true; }, {}, /*faults=*/3);
+  EXPECT_TRUE(loop::turn_until(loop_, [&] { return maps_->waiting({Kind::Grid, "first"}) == 1; }));
+  const auto kept = spool::Spool(folder_.path()).read();
+  ASSERT_EQ(kept.size(), 1u);
+  EXPECT_EQ(kept[0].ends.faults, 3);
+}
+
+TEST_F(FaultyMap, IsNoMapWhosePackingWasKilled) {
+  keep(kOne, "first", 0);
+  end_by_faults(2);
+  restore();
+  post_.answer("200 OK");
+  EXPECT_TRUE(receives({"first"}));
+  EXPECT_TRUE(rejected_.rows().empty());
+}
+
+struct WithTime {
+  loop::SimulatedTime time_;
+};
+class SlowMap : WithTime, public MapsToManualEndpoint {
+ protected:
+  std::string work() const { return host::read_file(spool_.work_file()).value_or(""); }
+  using WithTime::time_;
+};
+
+TEST_F(SlowMap, IsAtFaultIfItTakesLongerThanTheWatchdogAllows) {
+  take(cloud_along_x("first", std::vector<float>(3'000'000, 1)));
+  EXPECT_TRUE(loop::turn_until(loop_, [&] {
+    time_.pass(loop::Watchdog::kLongestJob);
+    return work() == "1048577 0 0 1\nx";
+  }));
+  EXPECT_TRUE(loop::turn_until(loop_, [&] { return work().empty(); })) << "it was only slow";
 }
 
 }  // namespace

@@ -1,7 +1,10 @@
 #include <gmock/gmock.h>
 
+#include <cmath>
+
 #include "codec/gzip.hpp"
 #include "codec/map_pieces.hpp"
+#include "codec/write.hpp"
 #include "forward/sample_maps.hpp"
 #include "forward/stitched.hpp"
 
@@ -113,6 +116,19 @@ TEST(PackedCloud, IsExactIfItCannotBeRounded) {
   EXPECT_EQ(precision_of(cloud_at(9000, 2000, Precision::Millimetre), /*arranges=*/true), Precision::Exact);
   EXPECT_EQ(precision_of(cloud_at(5, 2, Precision::Millimetre), /*arranges=*/true), Precision::Exact)
       << "gzip does not make it smaller";
+}
+
+TEST(PackedMap, GoesAsItIsAfterTheSameChecks) {
+  auto cloud = cloud_at(5, 2000, queues::Precision::Millimetre);
+  cloud.packing = queues::PackingRule::LastAsItIs;
+  EXPECT_EQ(packed(cloud).body, codec::write_map_update(cloud.map));
+  cloud.map = cloud_along_x("r1", {1, NAN, 3});
+  EXPECT_EQ(packed(cloud).body, codec::write_map_update(cloud_along_x("r1", {1, 3})));
+  for (const icd::MapUpdate& map : {grid_of("r1", 50), row_at(0, {1, 2, 3})}) {
+    queues::QueuedMap grid{
+        .map = map, .accepted = {}, .updates = {1}, .packing = queues::PackingRule::LastAsItIs};
+    EXPECT_EQ(packed(grid).body, codec::write_map_update(map));
+  }
 }
 
 TEST(PackedCloud, IsUnchangedIfPackingNeedsTooMuchMemory) {

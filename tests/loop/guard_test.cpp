@@ -4,7 +4,9 @@
 
 #include <csignal>
 #include <filesystem>
+#include <fstream>
 #include <new>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <variant>
@@ -81,6 +83,38 @@ TEST(FaultsDeathTest, CountExceptionsAndOwnSignals) {
       << "a signal from outside";
   EXPECT_EQ(std::filesystem::file_size(file), 3u);
   std::filesystem::remove(file);
+}
+
+TEST(FaultsDeathTest, CountsAFaultOfAWorkerInTheFileOfItsCounter) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  const std::string file = testing::TempDir() + "adit-faults", of_work = file + "-of-work";
+  const auto end = [&](bool has_counter) {
+    count_faults(file.c_str());
+    Loop loop;
+    Workers workers(loop, 1);
+    workers.submit(
+        Urgency::OnTheWay,
+        [&] {
+          {
+            const FaultCounter over(of_work.c_str());
+          }
+          std::optional<FaultCounter> counter;
+          if (has_counter) counter.emplace(of_work.c_str());
+          __builtin_trap();
+        },
+        [] {});
+    loop.run();
+  };
+  EXPECT_EXIT(end(/*has_counter=*/true), testing::KilledBySignal(SIGILL), "");
+  EXPECT_EQ(std::filesystem::file_size(file), 1u) << "there is no other file";
+  if (!std::filesystem::exists(of_work)) std::ofstream(of_work) << "work\n";  // not in the tested process
+  EXPECT_EXIT(end(/*has_counter=*/true), testing::KilledBySignal(SIGILL), "");
+  EXPECT_EQ(std::filesystem::file_size(file), 1u);
+  EXPECT_EQ(std::filesystem::file_size(of_work), 6u);
+  EXPECT_EXIT(end(/*has_counter=*/false), testing::KilledBySignal(SIGILL), "");
+  EXPECT_EQ(std::filesystem::file_size(file), 2u);
+  EXPECT_EQ(std::filesystem::file_size(of_work), 6u);
+  for (const std::string& each : {file, of_work}) std::filesystem::remove(each);
 }
 
 TEST(Faults, AreNotCountedIfTheFileCannotBeOpened) {

@@ -122,6 +122,24 @@ TEST_F(WatchdogTest, AsksReplacedWorkers) {
   watchdog.ask_also({});
 }
 
+TEST_F(WatchdogTest, TellsOfAJobThatTakesTooLong) {
+  Workers workers(loop, 1);
+  int overran = 0;
+  JobWatch watch(loop, [&overran] { ++overran; });
+  const auto starts = watch.begin();
+  fed_in(kLongestJob * 3);
+  EXPECT_EQ(overran, 0) << "it has not started";
+  starts();
+  fed_in(kLongestJob - 1);
+  EXPECT_EQ(overran, 0);
+  fed_in(kLongestJob * 2);
+  EXPECT_EQ(overran, 1);
+  watch.begin()();
+  watch.end();
+  fed_in(kLongestJob * 2);
+  EXPECT_EQ(overran, 1) << "the second one ended";
+}
+
 TEST(Watchdog, IsFedInRealTime) {
   Loop loop;
   int fed = 0;

@@ -57,6 +57,14 @@ test("names each button by its row, and counts messages that no newer one replac
   await axeFindsNothing(page, "what is rejected");
 });
 
+test("shows no status of a map that was put aside", async (t) => {
+  const why = "aditd ended 3 times by a fault while it packed this map";
+  const page = await withRows(t);
+  await become(page, [{ ...ROWS[0], status: 0, why }]);
+  await page.locator("#rejected .why").filter({ hasText: why }).waitFor();
+  assert.equal(await text(page, "#rejected .why"), why);
+});
+
 test("hides its title with the last row, and the result after a time to read it", async (t) => {
   const page = await withRows(t);
   await page.route("**/adit/rejected/*/discard", async (route) => {

@@ -31,6 +31,25 @@ TEST(MapQueue, SendsInOrderOfArrival) {
   EXPECT_FALSE(queue.take());
 }
 
+TEST(MapQueue, SendsAMapThatGoesLastAfterAllOthers) {
+  MapQueue queue{kPlenty};
+  queue.restore(1, cloud_update("R1", {1}), at(1), {}, PackingRule::Last);
+  queue.restore(2, cloud_update("R1", {2}), at(1));
+  queue.restore(3, grid_update("R2", kSmall), at(1), {}, PackingRule::LastAsItIs);
+  queue.restore(4, grid_update("R2", kElsewhere), at(1));
+  auto resting = *queue.take(at(2));
+  EXPECT_THAT(resting.updates, ElementsAre(2));
+  resting.trial.rests_until = at(100);
+  resting.trial.failed = at(2);
+  queue.put_back(resting);
+  EXPECT_THAT(queue.take(at(3))->updates, ElementsAre(4));
+  EXPECT_THAT(queue.take(at(3))->updates, ElementsAre(2)) << "it rests, but it is not the last";
+  queue.add(5, cloud_update("R1", {3}), at(4));
+  EXPECT_THAT(queue.take(at(5))->updates, ElementsAre(5)) << "not merged with the one that goes alone";
+  EXPECT_THAT(queue.take(at(5))->updates, ElementsAre(1));
+  EXPECT_THAT(queue.take(at(5))->updates, ElementsAre(3));
+}
+
 TEST(MapQueue, CoveringGridInheritsPlaceAndAge) {
   MapQueue queue{kPlenty};
   queue.add(1, grid_update("R1", kSmall), at(1));
@@ -401,7 +420,7 @@ TEST(MapQueue, OfEqualStampsTheLaterRetryIsNewer) {
 TEST(MapQueue, RetryByHandSendsACloudFirstOfItsSender) {
   MapQueue queue{0};
   queue.add(7, cloud_update("R1", {1}), at(1));
-  QueuedMap map{cloud_update("R1", {2}), at(9), {1}, {}, true};
+  QueuedMap map{cloud_update("R1", {2}), at(9), {1}, {}, PackingRule::Alone};
   map.again = 10;
   queue.put_back(map);
   for (const std::uint64_t number : {1, 7}) EXPECT_THAT(queue.take()->updates, ElementsAre(number));

@@ -131,32 +131,94 @@ TEST_F(SpoolTest, RenamesAMapOfAWrongLength) {
   EXPECT_TRUE(fs::exists(folder_ / "map-00000002.cbor.damaged"));
 }
 
-TEST_F(SpoolTest, RenamesAMapThatCrashedTwoProcesses) {
-  const fs::path folder = folder_ / "waiting";
-  const auto kill_in_work_on = [&folder](const std::vector<std::uint64_t>& numbers) {
-    Spool spool(folder);
-    const auto kept = spool.read();
-    spool.work_begins(numbers);
-    fs::copy(folder, folder.string() + ".killed");
-    return std::pair(kept.size(), spool.put_aside());
-  };
-  const auto again = [&folder] {
-    fs::remove_all(folder);
-    fs::rename(folder.string() + ".killed", folder);
-  };
-  {
-    Spool spool(folder);
-    for (const std::uint64_t number : {1, 2, 3}) ASSERT_TRUE(spool.keep(number, grid("r1", 1), 0));
-    spool.work_begins({1, 2, 3});  // an orderly end
+/// Processes that end while they pack maps, each in the directory that the one before has left.
+class EndedSpool : public SpoolTest {
+ protected:
+  EndedSpool() {
+    Spool spool(folder());
+    for (const std::uint64_t number : {1, 2, 3}) EXPECT_TRUE(spool.keep(number, grid("r1", 1), 0));
   }
-  EXPECT_EQ(kill_in_work_on({1, 2}), std::pair(std::size_t{3}, std::string()));
-  again();
-  EXPECT_EQ(kill_in_work_on({2}), std::pair(std::size_t{3}, std::string()));
-  again();
-  const auto [left, sentence] = kill_in_work_on({1});
-  EXPECT_EQ(left, 2u) << "the second map is put aside, and the first one is tried again";
-  EXPECT_EQ(sentence, (folder / "map-00000002.cbor").string() + ": two processes ended while they packed it");
-  EXPECT_TRUE(fs::exists(folder / "map-00000002.cbor.damaged"));
+  std::string folder() const { return folder_ / "waiting"; }
+  /// A process that does `work` and is killed. Returns the ends that it has read, by the map's place.
+  template <class Work>
+  std::vector<Spool::Ends> kill_after(Work work) {
+    std::vector<Spool::Ends> ends;
+    {
+      Spool spool(folder());
+      for (const auto& kept : spool.read()) ends.push_back(kept.ends);
+      EXPECT_EQ(spool.put_aside(), "");
+      work(spool);
+      fs::copy(folder(), folder() + ".killed");
+    }
+    fs::remove_all(folder());
+    fs::rename(folder() + ".killed", folder());
+    return ends;
+  }
+  std::vector<Spool::Ends> kill_in(const std::vector<std::uint64_t>& numbers, bool by_fault = false) {
+    return kill_after([&](Spool& spool) {
+      spool.work_begins(numbers);
+      if (by_fault) spool.work_overruns();
+    });
+  }
+};
+
+TEST_F(EndedSpool, NeverLosesAMapByKills) {
+  for (int i = 0; i < 10; ++i) EXPECT_EQ(kill_in({1, 2}).size(), 3u) << i;
+  const auto ends = kill_in({});
+  EXPECT_EQ(ends[0], (Spool::Ends{.faults = 0, .others = 10}));
+  EXPECT_EQ(ends[2], Spool::Ends());
+}
+
+TEST_F(EndedSpool, CountsFaultsApart) {
+  kill_in({1, 2});
+  kill_in({1}, /*by_fault=*/true);
+  kill_in({3});
+  kill_in({1}, /*by_fault=*/true);
+  const auto ends = kill_in({});
+  EXPECT_EQ(ends[0], (Spool::Ends{.faults = 2, .others = 1}));
+  EXPECT_EQ(ends[1], (Spool::Ends{.faults = 0, .others = 1}));
+  EXPECT_EQ(ends[2], (Spool::Ends{.faults = 0, .others = 1}));
+}
+
+TEST_F(EndedSpool, CountsNoEndAfterTheWork) {
+  kill_in({1, 2}, /*by_fault=*/true);
+  kill_after([](Spool& spool) {
+    spool.work_begins({1});
+    spool.work_overruns();
+    spool.work_ends(/*are_packed=*/true);
+    spool.work_begins({2});
+    spool.work_ends(/*are_packed=*/false);
+  });
+  {
+    Spool orderly(folder());
+    (void)orderly.read();
+    orderly.work_begins({3});
+  }
+  const auto ends = kill_in({});
+  EXPECT_EQ(ends[0], Spool::Ends()) << "it was packed since";
+  EXPECT_EQ(ends[1], (Spool::Ends{.faults = 1, .others = 0}));
+  EXPECT_EQ(ends[2], Spool::Ends());
+}
+
+TEST_F(EndedSpool, ForgetsTheEndsOfAMapThatIsGone) {
+  kill_in({1, 2});
+  kill_after([&](Spool& spool) {
+    spool.forget_ends(std::vector<std::uint64_t>{1});
+    EXPECT_TRUE(fs::exists(spool.work_file()));
+    spool.forget_ends(std::vector<std::uint64_t>{2});
+    EXPECT_FALSE(fs::exists(spool.work_file()));
+  });
+}
+
+TEST_F(EndedSpool, RemembersTheEndsOfAMapUnderAnotherNumber) {
+  kill_after([](Spool& spool) { spool.remember(2, {.faults = 3, .others = 0}); });
+  const auto ends = kill_after([](Spool& spool) {
+    spool.forget(2);
+    ASSERT_TRUE(spool.keep(4, grid("r1", 1), 0));
+  });
+  EXPECT_EQ(ends[1], (Spool::Ends{.faults = 3, .others = 0}));
+  kill_after([](Spool& spool) { ASSERT_TRUE(spool.keep(2, grid("r1", 1), 0)); });
+  EXPECT_EQ(kill_in({})[1], Spool::Ends()) << "another map, of a later process";
 }
 
 TEST_F(SpoolTest, IsPrivate) {

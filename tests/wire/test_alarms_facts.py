@@ -135,6 +135,32 @@ class Facts(WithAlarms):
         stage.restart_box()
         self.assertIsNone(self.alarm(stage, "queue_put_aside"))
 
+    def test_a_map_that_ended_aditd_three_times_is_put_aside(self):
+        """As if two faults had been counted, and a third one ended the process. The alarm stays until the operator decides."""
+        runtime = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory(prefix="adit-runtime-")))
+        self.enterContext(mock.patch.dict(os.environ, RUNTIME_DIRECTORY=str(runtime)))
+        stage = self.stage()
+        stage.post.will(mapping=["500,for=600"])
+        for name in ("r1", "r2"):
+            self.assertEqual(self.send_map(stage, name).status_code, 200)
+        self.assertEqual(stage.box.stop(signal.SIGKILL), -signal.SIGKILL)
+        number = int(min((runtime / "waiting").glob("map-*.cbor")).stem.removeprefix("map-"))
+        (runtime / "waiting" / "at-work").write_text(f"{number} 2 0 1\nx")
+        stage.restart_box()
+        self.sees(stage, "queue_put_aside", "ask", "box", "message 1, r1's cloud: aditd ended 3 times by a fault", panel=False)
+        self.assertIsNone(self.alarm(stage, "messages_rejected"))
+        stage.post.control("DELETE /faults")
+        wait_until(lambda: [request["message"]["name"] for request in stage.post.requests("/map/update")
+                            if request["status"] == 200] == ["r2"], "the other map")
+        self.assertEqual(stage.box.stop(), 0)
+        stage.restart_box()
+        self.sees(stage, "queue_put_aside", "ask", "box", "r1's cloud", panel=False)
+        self.assertEqual([(row["robot"], row["status"]) for row in self.view(stage)["rejected"]], [("r1", 0)])
+        self.assertEqual(stage.box.ask("POST /adit/rejected/1/send", body={})[0], 200)
+        wait_until(lambda: [request["message"]["name"] for request in stage.post.requests("/map/update")
+                            if request["status"] == 200] == ["r2", "r1"], "the map")
+        self.goes(stage, "queue_put_aside")
+
     def test_maps_and_states_cannot_be_kept(self):
         """The runtime directory is a separate file system, as with systemd."""
         runtime = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory(prefix="adit-runtime-")))

@@ -150,7 +150,9 @@ constexpr Member kRejected[] = {
     member<&RejectedRow::robot>("robot",
                                 "the robot; empty if the message is of several robots or has no robot"),
     member<&RejectedRow::at>("at", "when the message was rejected"),
-    member<&RejectedRow::status>("status", "status of the Command Post's answer"),
+    member<&RejectedRow::status>("status",
+                                 "status of the Command Post's answer; 0: aditd put the map aside, because "
+                                 "faults ended it while it packed the map"),
     member<&RejectedRow::why>("why"),
     member<&RejectedRow::bytes>("bytes"),
     member<&RejectedRow::replaced>(

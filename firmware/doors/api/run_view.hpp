@@ -122,7 +122,8 @@ struct EndpointRow {
   static const codec::Row kRow;
 };
 
-/// A map, state or markers that the Command Post rejected, stored until it is sent again or discarded.
+/// A map, state or markers that the Command Post rejected, or a map that was put aside (status 0), stored
+/// until it is sent again or discarded.
 struct RejectedRow {
   std::uint64_t number = 0;
   std::string kind, robot;

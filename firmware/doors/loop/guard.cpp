@@ -16,9 +16,11 @@ std::atomic<std::uint64_t> so_far{0};
 std::atomic<void (*)(const char*, const char*)> tell{nullptr};
 
 std::atomic<int> faults_file{-1};
+thread_local int file_of_this_thread = -1;
 
 void count_fault() noexcept {
-  [[maybe_unused]] const auto written = ::write(faults_file.load(), "x", 1);
+  const int file = file_of_this_thread < 0 ? faults_file.load() : file_of_this_thread;
+  [[maybe_unused]] const auto written = ::write(file, "x", 1);
 }
 
 }  // namespace
@@ -62,6 +64,15 @@ int count_faults(const char* file) noexcept {
   for (const int signal : {SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT})
     (void)::sigaction(signal, &action, nullptr);
   return 0;
+}
+
+FaultCounter::FaultCounter(const char* file) noexcept
+    : file_(::open(file, O_WRONLY | O_APPEND | O_NOFOLLOW | O_CLOEXEC)) {
+  file_of_this_thread = file_.get();
+}
+
+FaultCounter::~FaultCounter() {
+  file_of_this_thread = -1;
 }
 
 }  // namespace adit::loop

@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <exception>
 
+#include "loop/file_descriptor.hpp"
+
 namespace adit::loop {
 
 /// Counts an exception that no code of the program handled, and reports it to the function of
@@ -22,8 +24,23 @@ void tell_of_caught(void (*told)(const char* where, const char* what)) noexcept;
 void end_by_uncaught() noexcept;
 
 /// From now on each such end, and each end by SIGSEGV, SIGBUS, SIGILL, SIGFPE or SIGABRT, appends a byte to
-/// `file`. Errno: `file` cannot be opened, and ends are not counted. 0: they are.
+/// `file`, or to the file of the thread's FaultCounter. Errno: `file` cannot be opened, and ends are not
+/// counted. 0: they are.
 int count_faults(const char* file) noexcept;
+
+/// While it exists, a fault of the thread that made it is counted in another file (count_faults()). One at a
+/// time for a thread.
+class FaultCounter {
+ public:
+  /// If `file` does not exist, faults of this thread are counted as before.
+  explicit FaultCounter(const char* file) noexcept;
+  ~FaultCounter();
+  FaultCounter(const FaultCounter&) = delete;
+  FaultCounter& operator=(const FaultCounter&) = delete;
+
+ private:
+  FileDescriptor file_;
+};
 
 /// Calls `work`. If `work` throws, reports that by caught() and returns false. Requests and jobs of workers
 /// are called by guarded(), so that each fails alone.

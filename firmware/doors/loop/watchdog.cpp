@@ -27,4 +27,21 @@ void Watchdog::look() {
   ask();
 }
 
+JobWatch::JobWatch(Loop& loop, std::function<void()> overruns)
+    : loop_(loop), overruns_(std::move(overruns)), due_(loop.timer([this] { look(); })) {}
+
+std::function<void()> JobWatch::begin() {
+  started_ = std::make_shared<std::atomic<Instant>>();
+  due_.call_at(loop_.now() + Watchdog::kLongestJob);
+  return [&loop = loop_, started = started_] { *started = loop.now(); };
+}
+
+/// Other jobs may have run before it.
+void JobWatch::look() {
+  const Instant started = *started_, now = loop_.now();
+  const Instant latest = (started == Instant() ? now : started) + Watchdog::kLongestJob;
+  if (now < latest) return due_.call_at(latest);
+  overruns_();
+}
+
 }  // namespace adit::loop

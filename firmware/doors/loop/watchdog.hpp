@@ -1,7 +1,9 @@
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <functional>
+#include <memory>
 #include <vector>
 
 #include "loop/loop.hpp"
@@ -35,6 +37,25 @@ class Watchdog {
   const Duration every_;
   const std::function<void()> feed_;
   std::vector<Workers*> workers_;
+  Source due_;
+};
+
+/// Finds out that a job of a worker takes longer than Watchdog::kLongestJob. For one job at a time.
+class JobWatch {
+ public:
+  /// `overruns`: called once for such a job, before the watchdog starves.
+  JobWatch(Loop& loop, std::function<void()> overruns);
+
+  /// The job is submitted: it calls the result when it starts. The job may outlive this object.
+  std::function<void()> begin();
+  void end() { due_.cancel(); }
+
+ private:
+  void look();
+
+  Loop& loop_;
+  const std::function<void()> overruns_;
+  std::shared_ptr<std::atomic<Instant>> started_;  // zero: not yet
   Source due_;
 };
 

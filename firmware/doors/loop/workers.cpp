@@ -31,12 +31,14 @@ void lower_priority() {
   if (getpriority(PRIO_PROCESS, thread) < kNice) (void)setpriority(PRIO_PROCESS, thread, kNice);
 }
 
-/// While this object lives, new threads block all signals, because signals belong to the loop.
+/// While this object lives, new threads block all signals, because signals belong to the loop. Except a
+/// fault's: it would end the process without its handler (guard.hpp).
 class SignalsBlocked {
  public:
   SignalsBlocked() {
     sigset_t all;
     sigfillset(&all);
+    for (const int fault : {SIGSEGV, SIGBUS, SIGILL, SIGFPE}) sigdelset(&all, fault);
     pthread_sigmask(SIG_SETMASK, &all, &before_);
   }
   ~SignalsBlocked() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }

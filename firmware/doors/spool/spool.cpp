@@ -6,8 +6,8 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <iterator>
-#include <map>
 #include <sstream>
 #include <string_view>
 
@@ -31,6 +31,7 @@ constexpr std::uint64_t kBeside = 8192;
 /// Most bytes of put_aside(), beside its last map. The log names all.
 constexpr std::size_t kMostTold = 300;
 constexpr std::string_view kMap = "map-", kEnding = ".cbor", kBounds = ".bounds";
+constexpr char kFault = 'x';  // of loop::FaultCounter
 
 std::unexpected<icd::Refusal> not_kept(const std::string& why) {
   return std::unexpected(icd::Refusal{icd::Status::ServiceUnavailable,
@@ -64,7 +65,8 @@ Spool::Spool(std::string folder, std::uint64_t left_to_others)
 }
 
 Spool::~Spool() {
-  work_ends();
+  at_work_.clear();
+  write_work();
 }
 
 std::string Spool::trouble() const {
@@ -138,37 +140,72 @@ void Spool::put_aside(std::uint64_t number, const std::string& why) {
     put_aside_ += icd::sentence(put_aside_.empty() ? "" : "; ", file_of(number), ": ", why);
 }
 
-void Spool::work_begins(const std::vector<std::uint64_t>& numbers) {
+void Spool::work_begins(std::vector<std::uint64_t> numbers) {
+  at_work_ = std::move(numbers);
+  write_work();
+}
+
+void Spool::work_ends(bool are_packed) {
+  if (are_packed) {
+    for (const std::uint64_t number : at_work_) ends_.erase(number);
+  }
+  at_work_.clear();
+  write_work();
+}
+
+void Spool::work_overruns() const {
+  std::ofstream(work_file(), std::ios::app) << kFault;
+}
+
+void Spool::remember(std::uint64_t number, const Ends& ends) {
+  ends_[number] = ends;
+  if (at_work_.empty()) write_work();  // else its fault counter has the file open
+}
+
+void Spool::forget_ends(std::span<const std::uint64_t> numbers) {
+  std::size_t forgotten = 0;
+  for (const std::uint64_t number : numbers) forgotten += ends_.erase(number);
+  if (forgotten > 0 && at_work_.empty()) write_work();
+}
+
+/// A line for each map: number, faults, other ends, and 1 if it is being packed. A fault appends kFault.
+/// Without the file, the end of this process is not counted.
+void Spool::write_work() {
   std::string text;
-  for (const std::uint64_t number : numbers)
-    text += icd::sentence(number, " ", ended_once_.contains(number) ? 1 : 0, "\n");
-  (void)host::write_file(work_file(), text, host::kOursAlone);  // without the file, a crash is not counted
+  const auto add = [&](std::uint64_t number, const Ends& ends, bool is_at_work) {
+    text += icd::sentence(number, " ", ends.faults, " ", ends.others, " ", is_at_work ? 1 : 0, "\n");
+  };
+  for (const std::uint64_t number : at_work_) {
+    const auto found = ends_.find(number);
+    add(number, found == ends_.end() ? Ends() : found->second, true);
+  }
+  for (const auto& [number, ends] : ends_) {
+    if (std::ranges::find(at_work_, number) == at_work_.end()) add(number, ends, false);
+  }
+  if (text.empty() || !host::write_file(work_file(), text, host::kOursAlone)) ::unlink(work_file().c_str());
 }
 
-void Spool::work_ends() const {
-  ::unlink(work_file().c_str());
-}
-
-/// Reads the maps that the last process was working on when it ended, and sets repeated ones aside.
+/// Reads how often processes ended while they packed each map, and counts the end of the last one.
 void Spool::count_ends() {
   if (!host::may_exist(work_file())) return;
   const auto text = host::read_file(work_file());
   if (!text)
     return host::log(host::Level::Warning, "cannot read which map was packed", {{"why", text.error()}});
+  const bool was_fault = text->ends_with(kFault);
   std::istringstream lines(*text);
-  for (std::uint64_t number = 0, ends = 0; lines >> number >> ends;) {
-    if (ends == 0) {
-      ended_once_.insert(number);
-      continue;
-    }
-    put_aside(number, "two processes ended while they packed it");
+  std::uint64_t number = 0;
+  Ends ends;
+  for (int was_at_work = 0; lines >> number >> ends.faults >> ends.others >> was_at_work;) {
+    if (was_at_work != 0) ++(was_fault ? ends.faults : ends.others);
+    if (host::may_exist(file_of(number))) ends_[number] = ends;
   }
-  work_ends();
+  write_work();
 }
 
 /// Damaged bounds are ignored: the map is stored all the same.
 icd::Checked<Spool::KeptMap> Spool::read(std::uint64_t number) const {
   KeptMap kept{.number = number, .map = ADIT_TRY(read_map(file_of(number)))};
+  if (const auto ends = ends_.find(number); ends != ends_.end()) kept.ends = ends->second;
   const std::string path = bounds_file_of(number);
   const auto* const grid = std::get_if<icd::OccupancyGrid>(&kept.map.msg);
   if (grid == nullptr || !host::may_exist(path)) return kept;

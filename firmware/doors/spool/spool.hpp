@@ -2,9 +2,10 @@
 
 #include <atomic>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
-#include <set>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,10 +20,19 @@ namespace adit::spool {
 /// is in memory. A stored map is complete or absent.
 class Spool {
  public:
+  /// How processes ended while they packed a map, since it was last packed.
+  struct Ends {
+    /// So many faults are the map's own, and so many other ends may be.
+    static constexpr int kMost = 3;
+    int faults = 0;  // in the thread that packed it, or that took longer than the watchdog allows
+    int others = 0;  // SIGKILL, for example
+    friend bool operator==(const Ends&, const Ends&) = default;
+  };
   struct KeptMap {
     std::uint64_t number = 0;
     icd::MapUpdate map;
     std::optional<icd::GridBounds> bounds{};  // keep_bounds()
+    Ends ends{};
   };
   using Kept = std::vector<KeptMap>;  // by number
 
@@ -54,10 +64,18 @@ class Spool {
   /// Why maps cannot be stored, or "".
   std::string trouble() const;
 
-  /// Record which maps are being worked on. If two processes in a row end during work on a map, the next
-  /// read() sets the map aside.
-  void work_begins(const std::vector<std::uint64_t>& numbers);
-  void work_ends() const;
+  /// Record which maps are being packed, so that the next read() counts it if the process ends meanwhile.
+  /// `are_packed`: forgets their earlier ends. On the loop, as read().
+  void work_begins(std::vector<std::uint64_t> numbers);
+  void work_ends(bool are_packed);
+  /// The work takes longer than the watchdog allows: if the process ends now, it is a fault.
+  void work_overruns() const;
+  /// A file for loop::FaultCounter, during the work.
+  std::string work_file() const { return folder_ + "/at-work"; }
+  /// Begins with earlier ends of a map that keep() has stored under another number.
+  void remember(std::uint64_t number, const Ends& ends);
+  /// The maps are not queued any more.
+  void forget_ends(std::span<const std::uint64_t> numbers);
   /// A sentence that names maps that read() set aside, and why; or "".
   const std::string& put_aside() const { return put_aside_; }
 
@@ -75,12 +93,13 @@ class Spool {
   std::string file_of(std::uint64_t number) const;
   std::string bounds_file_of(std::uint64_t number) const;
   icd::Checked<KeptMap> read(std::uint64_t number) const;
-  std::string work_file() const { return folder_ + "/at-work"; }
   void count_ends();
+  void write_work();
   void put_aside(std::uint64_t number, const std::string& why);
 
-  std::string folder_, unread_;         // unread_: why read() failed
-  std::set<std::uint64_t> ended_once_;  // maps that the previous process was working on when it ended
+  std::string folder_, unread_;  // unread_: why read() failed
+  std::map<std::uint64_t, Ends> ends_;
+  std::vector<std::uint64_t> at_work_;
   std::string put_aside_;
   std::atomic<std::uint64_t> left_to_others_;  // also read by the writer thread
 };

@@ -10,8 +10,13 @@
 namespace adit::forward {
 namespace {
 
-icd::Stamp stamp_of(const icd::MapUpdate& map) {
-  return map.header().stamp.value_or(0);
+/// A map after whose packing processes ended. Alone, because a fault counts against all maps in one message.
+queues::PackingRule rule_after(const spool::Spool::Ends& ends) {
+  using enum queues::PackingRule;
+  constexpr int kMost = spool::Spool::Ends::kMost;
+  if (ends.others > kMost) return LastAsItIs;
+  if (ends.others == kMost || ends.faults >= kMost) return Last;
+  return ends.faults > 0 ? Alone : Any;
 }
 
 std::vector<pack::Tile> tiles_outside(const icd::OccupancyGrid& grid,
@@ -183,10 +188,10 @@ void AcceptedMaps::restore(spool::Spool::KeptMap kept) {
   const icd::Stamp stamp = update.header().stamp.value_or(loop_.stamp_now());
   counts_.accepted(traffic_of(update), update.data.bytes.size(), time_of(loop_, stamp));
   if (again) {
-    store_.forget(queue_.put_back(waiting_again(number, std::move(update), stamp, kept.bounds)));
+    store_.forget(queue_.put_back(waiting_again(number, std::move(update), kept.bounds, kept.ends)));
   } else {
     tell_clouds(update);
-    queue_.restore(number, std::move(update), loop_.now(), kept.bounds);
+    queue_.restore(number, std::move(update), loop_.now(), kept.bounds, rule_after(kept.ends));
   }
   compare();
   queued_();
@@ -199,9 +204,8 @@ void AcceptedMaps::tell_clouds(const icd::MapUpdate& update) {
 
 /// It must not follow a newer map that contains it.
 void AcceptedMaps::send_again(icd::MapUpdate update, std::function<bool(bool kept)> done,
-                              const std::optional<icd::GridBounds>& bounds) {
-  const icd::Stamp again = stamp_of(update);
-  const queues::QueuedMap back = waiting_again(store_.next_again(), update, again, bounds);
+                              const std::optional<icd::GridBounds>& bounds, int faults) {
+  queues::QueuedMap back = waiting_again(store_.next_again(), update, bounds, {.faults = faults});
   auto absorbed = queue_.absorb(back);
   if (!absorbed) absorbed = absorb_(back);
   if (absorbed) {
@@ -210,23 +214,26 @@ void AcceptedMaps::send_again(icd::MapUpdate update, std::function<bool(bool kep
     return;
   }
   update.header().stamp = loop_.stamp_now();
+  back.map.data = {};  // so that the writer frees it chunk by chunk
   store_.store(
       std::move(update), nullptr, 0, /*again=*/true,
-      [this, again, bounds, done = std::move(done)](MapStore::Stored& stored) {
-        stored_again(stored, again, bounds, done);
+      [this, back = std::move(back), faults, done = std::move(done)](MapStore::Stored& stored) {
+        if (stored.map && faults > 0) store_.remember(stored.number, {.faults = faults});
+        stored_again(stored, back, done);
       },
       bounds);
 }
 
-void AcceptedMaps::stored_again(MapStore::Stored& stored, icd::Stamp again,
-                                const std::optional<icd::GridBounds>& bounds,
+void AcceptedMaps::stored_again(MapStore::Stored& stored, queues::QueuedMap back,
                                 const std::function<bool(bool kept)>& done) {
   const bool is_wanted = done(stored.map.has_value());
   if (!stored.map) {
     return host::log(host::Level::Error, "cannot send a rejected map again",
                      {{"why", stored.map.error().sentence}});
   }
-  queues::QueuedMap back = waiting_again(stored.number, std::move(*stored.map), again, bounds);
+  back.map = std::move(*stored.map);
+  back.updates = {stored.number};
+  back.accepted = loop_.now();
   if (!is_wanted) return store_.forget({&stored.number, 1});
   if (auto absorbed = absorb_(back)) {
     absorbed->numbers.push_back(stored.number);
@@ -237,14 +244,16 @@ void AcceptedMaps::stored_again(MapStore::Stored& stored, icd::Stamp again,
   queued_();
 }
 
-queues::QueuedMap AcceptedMaps::waiting_again(std::uint64_t number, icd::MapUpdate update, icd::Stamp again,
-                                              const std::optional<icd::GridBounds>& bounds) const {
+queues::QueuedMap AcceptedMaps::waiting_again(std::uint64_t number, icd::MapUpdate update,
+                                              const std::optional<icd::GridBounds>& bounds,
+                                              const Ends& ends) const {
+  const icd::Stamp stamp = update.header().stamp.value_or(0);
   return {.map = std::move(update),
           .accepted = loop_.now(),
           .updates = {number},
-          .alone = true,
+          .packing = std::max(queues::PackingRule::Alone, rule_after(ends)),
           .bounds = bounds,
-          .again = again};
+          .again = stamp};
 }
 
 /// One pair at a time, to save memory. Both stay queued and may be sent.

@@ -42,13 +42,15 @@ class AcceptedMaps {
     take(std::make_shared<Arrived>(Arrived{std::move(update), upload, std::move(file), std::move(done)}));
   }
   void send_again(icd::MapUpdate update, std::function<bool(bool kept)> done,
-                  const std::optional<icd::GridBounds>& bounds);
+                  const std::optional<icd::GridBounds>& bounds, int faults);
   /// Compares no more clouds.
   void stop() { stopping_ = true; }
   /// True if no map is being stored.
   bool all_kept() const { return overtaken_.empty() && store_.count() == 0; }
 
  private:
+  using Ends = spool::Spool::Ends;
+
   void restore(spool::Spool::KeptMap kept);
   bool has_room_for(const icd::MapUpdate& update, bool replaces) const;
   bool is_told(const icd::MapUpdate& update);
@@ -70,11 +72,11 @@ class AcceptedMaps {
   void accept(Arrived& map);
   void refuse(Arrived& map, icd::Refusal why);
   void end(Arrived& map, const icd::Checked<void>& outcome);
-  void stored_again(MapStore::Stored& stored, icd::Stamp again, const std::optional<icd::GridBounds>& bounds,
+  void stored_again(MapStore::Stored& stored, queues::QueuedMap back,
                     const std::function<bool(bool kept)>& done);
   void tell_clouds(const icd::MapUpdate& update);  // kind of clouds by the settings
-  queues::QueuedMap waiting_again(std::uint64_t number, icd::MapUpdate update, icd::Stamp again,
-                                  const std::optional<icd::GridBounds>& bounds) const;
+  queues::QueuedMap waiting_again(std::uint64_t number, icd::MapUpdate update,
+                                  const std::optional<icd::GridBounds>& bounds, const Ends& ends) const;
   void compare();
   void compared(const queues::Successive& two, bool has_all);
 

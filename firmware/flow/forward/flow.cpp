@@ -87,7 +87,7 @@ std::expected<void, std::string> Flow::rejected(std::uint64_t number, api::Rejec
   if (auto* const map = std::get_if<icd::MapUpdate>(&item.message)) {
     maps_.send_again(
         std::move(*map), [this, number](bool kept) { return rejected_.sent_again(number, kept); },
-        item.bounds);
+        item.bounds, item.faults);
   } else {
     rejected_.sent_again(number, telemetry_.send_again(item.message));
   }

@@ -77,7 +77,8 @@ bool Flow::can_be_read(const std::string& runtime_folder) {
 
 std::string Flow::put_aside() const {
   std::string all;
-  for (const std::string& each : {spool_.put_aside(), journal_.damage(), rejected_.missing()}) {
+  for (const std::string& each :
+       {spool_.put_aside(), rejected_.put_aside(), journal_.damage(), rejected_.missing()}) {
     if (!each.empty()) all += (all.empty() ? "" : "; ") + each;
   }
   return all;

@@ -80,6 +80,7 @@ void MapStore::discard(std::shared_ptr<spool::MapFile> file) {
 
 void MapStore::forget(std::span<const std::uint64_t> numbers) {
   if (numbers.empty()) return;
+  spool_.forget_ends(numbers);
   writer_.submit(
       [&spool = spool_, gone = std::vector(numbers.begin(), numbers.end())] {
         for (const std::uint64_t number : gone) spool.forget(number);
@@ -89,6 +90,7 @@ void MapStore::forget(std::span<const std::uint64_t> numbers) {
 
 void MapStore::forget(queues::Replaced replaced) {
   if (!replaced.bounds) return forget(std::span<const std::uint64_t>(replaced.numbers));
+  spool_.forget_ends(replaced.numbers);
   writer_.submit(
       [&spool = spool_, replaced = std::move(replaced)] {
         if (!spool.keep_bounds(replaced.bounds->first, replaced.bounds->second)) return;
@@ -122,8 +124,9 @@ std::vector<std::uint64_t> MapStore::work_begins(const queues::QueuedMap& waitin
   return numbers;
 }
 
-void MapStore::work_ends(std::span<const std::uint64_t> checked) {
-  spool_.work_ends();
+void MapStore::work_ends(bool are_packed, std::span<const std::uint64_t> checked) {
+  spool_.work_ends(are_packed);
+  if (!are_packed) return;
   for (const std::uint64_t number : checked) unchecked_.erase(number);
 }
 

@@ -55,8 +55,12 @@ class MapStore {
   std::uint64_t next_again() const { return again_numbers_ + 1; }
   /// A worker begins to pack `waiting`. Returns its unchecked maps.
   std::vector<std::uint64_t> work_begins(const queues::QueuedMap& waiting);
-  /// The data of `checked` is good.
-  void work_ends(std::span<const std::uint64_t> checked);
+  /// `are_packed`: the maps are packed, and the data of `checked` is good.
+  void work_ends(bool are_packed, std::span<const std::uint64_t> checked);
+  void work_overruns() { spool_.work_overruns(); }
+  std::string work_file() const { return spool_.work_file(); }
+  /// Faults ended aditd while it packed this map under another number.
+  void remember(std::uint64_t number, const spool::Spool::Ends& ends) { spool_.remember(number, ends); }
 
   /// Maps that are being stored, and their bytes.
   std::size_t count() const { return count_; }

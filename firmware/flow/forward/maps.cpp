@@ -6,6 +6,7 @@
 #include "dispatch/mapping_verdict.hpp"
 #include "forward/upstream_answer.hpp"
 #include "host/log.hpp"
+#include "icd/sentence.hpp"
 #include "pace/budget.hpp"
 
 namespace adit::forward {
@@ -66,6 +67,28 @@ Maps::Maps(loop::Loop& loop, uplink::Servers& servers, loop::Workers& workers, l
 void Maps::carry_on(const journal::Carried& carried, bool ran_before) {
   accepted_.carry_on(carried, ran_before);
   pace_.carry_on(carried, loop_.now());
+}
+
+void Maps::restore(spool::Spool::Kept kept) {
+  const auto at_fault = std::ranges::stable_partition(
+      kept, [](const spool::Spool::KeptMap& each) { return each.ends.faults < spool::Spool::Ends::kMost; });
+  for (spool::Spool::KeptMap& each : at_fault) put_aside(std::move(each));
+  kept.erase(at_fault.begin(), at_fault.end());
+  accepted_.restore(std::move(kept));
+}
+
+/// Its file stays until the rejected messages have one.
+void Maps::put_aside(spool::Spool::KeptMap kept) {
+  store_.restored(kept.number);
+  const Traffic traffic = traffic_of(kept.map);
+  const std::size_t bytes = kept.map.data.bytes.size();
+  const std::string why =
+      icd::sentence("aditd ended ", kept.ends.faults, " times by a fault while it packed this map");
+  counts_.accepted(traffic, bytes, time_of(loop_, kept.map.header().stamp.value_or(loop_.stamp_now())));
+  counts_.not_taken(traffic, DeliveryFailure::Failed, 0, why);
+  rejected_.add(std::move(kept.map), 0, why, bytes,
+                {.let_go = [this, number = kept.number] { forget({&number, 1}); }}, kept.bounds,
+                kept.ends.faults);
 }
 
 void Maps::take_settings() {

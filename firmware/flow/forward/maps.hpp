@@ -41,8 +41,9 @@ class Maps {
   void heard();
   /// Another run is on, so the Command Post may have another map.
   void change_run(dispatch::NextMap next);
-  /// Queues the stored maps. Their data is checked when they are packed.
-  void restore(spool::Spool::Kept kept) { accepted_.restore(std::move(kept)); }
+  /// Queues the stored maps. Their data is checked when they are packed. A map whose packing ended
+  /// Spool::Ends::kMost processes by a fault is put aside, with the rejected messages.
+  void restore(spool::Spool::Kept kept);
 
   /// With room for a grid that replaces one.
   std::shared_ptr<intake::MapArrival> arrives(MapArrival::Take take) {
@@ -58,10 +59,10 @@ class Maps {
 
   /// Queues a rejected map before its sender's other maps. `done` is called with true if it is stored, or if
   /// a queued or sent map contains it. It returns false if such a map was accepted since; then it is not
-  /// sent. `bounds`: of a grid that stands for others (queues::RejectedMessage).
+  /// sent. `bounds`, `faults`: queues::RejectedMessage.
   void send_again(icd::MapUpdate update, std::function<bool(bool kept)> done,
-                  const std::optional<icd::GridBounds>& bounds = {}) {
-    accepted_.send_again(std::move(update), std::move(done), bounds);
+                  const std::optional<icd::GridBounds>& bounds = {}, int faults = 0) {
+    accepted_.send_again(std::move(update), std::move(done), bounds, faults);
   }
 
   /// Stops sending. False while an answer is awaited.
@@ -111,6 +112,7 @@ class Maps {
   void split(const Place& place);
   void again(const Place& sent);
   void give_up(const Place& sent, int status, const std::string& sentence);
+  void put_aside(spool::Spool::KeptMap kept);
 
   loop::Loop& loop_;
   const settings::Settings& settings_;

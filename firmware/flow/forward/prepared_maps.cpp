@@ -5,6 +5,7 @@
 
 #include "codec/read.hpp"
 #include "host/log.hpp"
+#include "loop/guard.hpp"
 #include "pace/budget.hpp"
 
 namespace adit::forward {
@@ -37,7 +38,8 @@ PreparedMaps::PreparedMaps(loop::Loop& loop, loop::Workers& workers, const setti
       queue_(queue),
       store_(store),
       packed_(std::move(packed)),
-      slot_(pace::map_bytes_per_second(settings.command_post.budget_mbit)) {}
+      slot_(pace::map_bytes_per_second(settings.command_post.budget_mbit)),
+      packing_(loop, [this] { store_.work_overruns(); }) {}
 
 std::vector<const PreparedMap*> PreparedMaps::of(const Traffic& traffic) const {
   std::vector<const PreparedMap*> all;
@@ -71,13 +73,18 @@ void PreparedMaps::pack(const Place& prepared) {
   header.stamp = pace_.next_stamp(header.stamp.value_or(loop_.stamp_now()));
   pace_.keep_stamp(*header.stamp);
   const loop::Instant began = loop_.now();
-  const auto leaving_out = std::make_shared<LeavingOut>(points_.leaving_out(prepared->waiting.map));
+  const bool is_as_it_is = prepared->waiting.packing == queues::PackingRule::LastAsItIs;
+  const auto leaving_out =
+      std::make_shared<LeavingOut>(is_as_it_is ? LeavingOut() : points_.leaving_out(prepared->waiting.map));
   const Packing packing{settings_.command_post.arrange_clouds, slot_.hurry(pace_.spacing())};
   const auto unread = store_.work_begins(prepared->waiting);
   workers_.submit(
       loop::Urgency::OnTheWay,
-      [prepared, leaving_out, packing, unread, &loop = loop_] {
+      [prepared, leaving_out, packing, unread, &loop = loop_, starts = packing_.begin(),
+       file = store_.work_file()] {
+        const loop::FaultCounter faults(file.c_str());
         const loop::Instant begins = loop.now();
+        starts();
         prepared->damaged = damaged_in(prepared->waiting, unread);
         if (!prepared->damaged.empty()) return;
         prepared->packed = packed(prepared->waiting, std::move(*leaving_out), packing);
@@ -89,8 +96,9 @@ void PreparedMaps::pack(const Place& prepared) {
       },
       [this, began, prepared, unread] {
         is_packing_ = false;
+        packing_.end();
         const bool is_good = prepared->damaged.empty();
-        store_.work_ends(is_good ? unread : std::vector<std::uint64_t>());
+        store_.work_ends(is_good, unread);
         if (is_good) slot_.packing_took(loop_.now() - began);
         work_done(prepared);
         packed_(true);
@@ -167,7 +175,8 @@ void PreparedMaps::is_there(Place& place) {
 
 void PreparedMaps::work_failed(const Place& prepared) {
   is_packing_ = false;
-  store_.work_ends({});
+  packing_.end();
+  store_.work_ends(false, {});
   prepared->packed = {};
   if (Place* const place = place_of(prepared)) {
     counts_.not_taken(traffic_of(prepared->waiting.map), DeliveryFailure::Failed, 0,

@@ -7,6 +7,7 @@
 #include "forward/stitched.hpp"
 #include "forward/traffic_counts.hpp"
 #include "forward/uri_pace.hpp"
+#include "loop/watchdog.hpp"
 #include "queues/map_queue.hpp"
 #include "settings/settings.hpp"
 
@@ -83,6 +84,7 @@ class PreparedMaps {
   DeliveredPoints points_;
   Place first_, following_;
   bool is_packing_ = false;
+  loop::JobWatch packing_;
 };
 
 }  // namespace adit::forward

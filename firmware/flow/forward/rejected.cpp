@@ -47,6 +47,7 @@ std::string reason_of(const queues::RejectedMessage& item, bool replaced) {
                         {"bytes", {static_cast<std::uint64_t>(item.bytes)}},
                         {"replaced", {replaced}}};
   if (item.bounds) members.emplace_back("bounds", spool::to_json(*item.bounds));
+  if (item.faults > 0) members.push_back({"faults", {std::int64_t{item.faults}}});
   return codec::write_json({std::move(members)});
 }
 
@@ -99,7 +100,8 @@ icd::Checked<queues::RejectedMessage> read_item(const std::string& path, const s
   item.bytes = static_cast<std::size_t>(root.member("bytes").whole<std::int64_t>(0, std::int64_t{1} << 40));
   item.replaced = root.member("replaced").truth();
   item.message = ADIT_TRY(read_message(message, kind));
-  const codec::Field bounds = root.member("bounds");
+  const codec::Field bounds = root.member("bounds"), faults = root.member("faults");
+  if (!faults.is_absent()) item.faults = static_cast<int>(faults.whole(1, 1 << 30));
   const auto* const map = std::get_if<icd::MapUpdate>(&item.message);
   if (map != nullptr && map->is_grid() && !bounds.is_absent())
     item.bounds = spool::read_bounds(bounds, std::get<icd::OccupancyGrid>(map->msg));
@@ -162,14 +164,16 @@ icd::Checked<void> RejectedStore::restore_one(std::uint64_t number) {
 }
 
 void RejectedStore::add(queues::Message message, int status, const std::string& why, std::size_t bytes,
-                        Origin origin, const std::optional<icd::GridBounds>& bounds) {
+                        Origin origin, const std::optional<icd::GridBounds>& bounds, int faults) {
   queues::RejectedMessage item{.message = std::move(message),
                                .status = status,
                                .why = why,
                                .at = loop_.stamp_now(),
                                .bytes = bytes,
-                               .bounds = bounds};
-  host::log(host::Level::Warning, "the Command Post rejected a message; it is kept",
+                               .bounds = bounds,
+                               .faults = faults};
+  host::log(faults > 0 ? host::Level::Error : host::Level::Warning,
+            faults > 0 ? "a map is put aside; it is kept" : "the Command Post rejected a message; it is kept",
             {{"kind", kind_of(item.message)},
              {"robot", who(item.message)},
              {"status", std::to_string(status)},
@@ -278,6 +282,17 @@ std::expected<void, std::string> RejectedStore::discard(std::uint64_t number) {
   if (leaving_.contains(number) || !items_.take(number)) return std::unexpected(no_such(number));
   forget(number);
   return {};
+}
+
+std::string RejectedStore::put_aside() const {
+  std::string all;
+  for (const queues::RejectedMessage& item : items_.items()) {
+    if (item.faults == 0 || item.replaced || leaving_.contains(item.number)) continue;
+    const std::string robot = who(item.message);
+    all += icd::sentence(all.empty() ? "" : "; ", "message ", item.number, ", ",
+                         robot.empty() ? "" : robot + "'s ", kind_of(item.message), ": ", item.why);
+  }
+  return all;
 }
 
 std::vector<api::RejectedRow> RejectedStore::rows() const {

@@ -15,8 +15,8 @@
 
 namespace adit::forward {
 
-/// Rejected maps, states and markers (queues::RejectedMessages), in a directory that survives the process:
-/// `N.cbor`, the message, and `N.json`, the reason. The writer writes in order.
+/// Rejected maps, states and markers, and maps that were put aside (queues::RejectedMessages), in a directory
+/// that survives the process: `N.cbor`, the message, and `N.json`, the reason. The writer writes in order.
 ///
 /// A message always has a file: its origin keeps the old file until told(), and this store keeps the new one
 /// until the message is queued again.
@@ -39,10 +39,12 @@ class RejectedStore {
   const std::string& unread() const { return unread_; }
   /// Which messages of the previous process are missing in rows(), and why; or "".
   const std::string& missing() const { return missing_; }
+  /// A sentence for each map that was put aside, or "".
+  std::string put_aside() const;
 
-  /// `bounds`: of a grid that replaced others (queues::QueuedMap).
+  /// `bounds`: of a grid that replaced others (queues::QueuedMap). `faults`: of a map that is put aside.
   void add(queues::Message message, int status, const std::string& why, std::size_t bytes, Origin origin,
-           const std::optional<icd::GridBounds>& bounds = {});
+           const std::optional<icd::GridBounds>& bounds = {}, int faults = 0);
   /// The Command Post accepted `message`: marks older rejected messages that it contains, so that they are
   /// never sent. Forget `message` only after `written`, which is called on the loop. False: no mark to write,
   /// and `written` is not called.

@@ -83,13 +83,16 @@ Packed packed(const queues::QueuedMap& waiting, LeavingOut leaving_out, const Pa
   if (packed.left_out.is_all) return packed;
   if (waiting.ground) packed.drawn = drawn_over(*waiting.ground, whole->data);
   if (!whole->is_grid()) packed.points_size = whole->data.raw_size;
-  if (whole->is_grid() && whole->data.compression == icd::Compression::None) {
+  const bool is_as_it_is = waiting.packing == queues::PackingRule::LastAsItIs;
+  if (!is_as_it_is && whole->is_grid() && whole->data.compression == icd::Compression::None) {
     whole->data.bytes = codec::gzip(std::move(whole->data.bytes), codec::GzipStrategy::Runs);
     whole->data.compression = icd::Compression::Gzip;
   }
   const double unit = unit_of(waiting.precision);
   const bool is_rounded = unit > 0 && whole->data.raw_size <= pack::kMostPacked;  // by Full alone
-  const pack::Choice choice = is_rounded ? pack::Choice{} : pack::effort_for(*whole, packing.hurry);
+  const pack::Choice choice = is_as_it_is  ? pack::Choice{.effort = pack::Effort::None}
+                              : is_rounded ? pack::Choice{}
+                                           : pack::effort_for(*whole, packing.hurry);
   packed.effort = choice.effort;
   packed.expected = pack::seconds_for(packed.effort, *whole);
   icd::MapUpdate map = *std::move(whole);

@@ -33,7 +33,8 @@ struct Packing {
   pack::Hurry hurry{};
 };
 
-/// Rounds a cloud to waiting.precision, or keeps it exact if that is impossible. CPU-bound: call on a worker.
+/// Rounds a cloud to waiting.precision, or keeps it exact if that is impossible. A map that goes as it is
+/// (queues::PackingRule) only loses invalid points. CPU-bound: call on a worker.
 Packed packed(const queues::QueuedMap& waiting, LeavingOut leaving_out = {}, const Packing& packing = {});
 
 /// The map with its cells, stitched from its parts over the ground if necessary, or with the points or

@@ -166,7 +166,9 @@ constexpr CommandRow kCommands[] = {
      "  sudo adit reports --run all --json | jq -r '.[] | [.number, .type, .state] | @tsv'"},
     {"rejected", "list maps, states and markers that the Command Post rejected", kRejectedForms,
      "A message is listed if the Command Post rejected it (400, 413, 422), or failed at it repeatedly (500) "
-     "while others were delivered. Adit keeps the newest 100.",
+     "while others were delivered. Adit also lists maps that it put aside, because three faults ended it "
+     "while "
+     "it packed them. Adit keeps the newest 100.",
      "no message needs a decision, or the action succeeded",
      "a message is listed that no newer one has replaced, or the action was rejected", ""},
     {"run", "show the present run, or begin a new one", kRunForms,

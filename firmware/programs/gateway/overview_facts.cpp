@@ -58,7 +58,7 @@ void Overview::add_reports(alarms::Facts& facts) const {
   if (unreliable != dispatch::Run::kCountsStand) facts.run_unreliable = unreliable;
   facts.run_renamed = reports.runs().name_trouble();
   for (const api::RejectedRow& row : rooms_.flow.rejected().rows()) {
-    if (row.replaced) continue;
+    if (row.replaced || row.status == 0) continue;
     ++facts.messages_rejected;
     if (row.number < facts.newest_rejected) continue;
     facts.newest_rejected = row.number;

@@ -49,9 +49,10 @@ Replaced MapQueue::add(std::uint64_t number, icd::MapUpdate map, Instant now) {
 }
 
 void MapQueue::restore(std::uint64_t number, icd::MapUpdate map, Instant now,
-                       std::optional<icd::GridBounds> bounds) {
+                       std::optional<icd::GridBounds> bounds, PackingRule packing) {
   QueuedMap restored = waiting(number, std::move(map), now);
   restored.bounds = bounds;
+  restored.packing = packing;
   Waiting& its = joins(Sender::of(restored.map));
   change(its.queue, [&](SenderQueue& queue) {
     queue.append(std::move(restored));

@@ -34,6 +34,7 @@ namespace adit::queues {
 /// - A cloud replaces all earlier ones if the robot's clouds are Clouds::Whole. With Clouds::Auto it replaces
 ///   the previous one if a comparison shows that it has all its points (to_compare(), replace()).
 /// - No other map is dropped.
+/// - A map with PackingRule::Last is taken only if all others rest or are gone.
 ///
 /// Result for the grids of one name and lattice: a Command Post that overwrites cells ends with the newest
 /// posted value in each cell, unknown included. A Command Post that overlays (unknown overwrites nothing)
@@ -69,7 +70,7 @@ class MapQueue {
   /// Adds a map that was queued before a restart, with its stored bounds; call in the order of the numbers.
   /// It replaces no other map, because comparisons would delay the start.
   void restore(std::uint64_t number, icd::MapUpdate map, Instant now,
-               std::optional<icd::GridBounds> bounds = {});
+               std::optional<icd::GridBounds> bounds = {}, PackingRule packing = PackingRule::Any);
 
   static constexpr int kInPlace = SenderQueue::kInPlace;
 

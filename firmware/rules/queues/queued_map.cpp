@@ -115,7 +115,7 @@ std::vector<QueuedMap> parts_of(QueuedMap map, bool may_join_again) {
   icd::require(!map.parts.empty());
   std::vector<std::uint64_t> of_parts, others;
   for (QueuedMap& part : map.parts) {
-    part.alone = !may_join_again;
+    part.packing = may_join_again ? PackingRule::Any : PackingRule::Alone;
     of_parts.insert(of_parts.end(), part.updates.begin(), part.updates.end());
   }
   std::ranges::sort(of_parts);
@@ -159,7 +159,7 @@ bool can_split(const QueuedMap& map, std::size_t body) {
 void shrink(QueuedMap& map, std::size_t pieces) {
   const std::size_t step = step_of(map), steps = next_size(map) / step;
   map.piece.size = (steps + pieces - 1) / pieces * step;
-  map.alone = true;
+  map.packing = std::max(map.packing, PackingRule::Alone);
   map.trial = {};
   map.cuts = {};
 }
@@ -183,7 +183,7 @@ icd::OccupancyGrid rows_of(const QueuedMap& grid) {
 }
 
 bool may_join(const QueuedMap& map) {
-  return !map.alone && map.trial.failures == 0 && !map.again;
+  return map.packing == PackingRule::Any && map.trial.failures == 0 && !map.again;
 }
 
 void add_own_numbers(std::vector<std::uint64_t>& numbers, const QueuedMap& of) {

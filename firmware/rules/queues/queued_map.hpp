@@ -43,6 +43,14 @@ struct Piece {
   std::size_t delivered = 0;  // by earlier pieces. After the last row of a grid follows its first one
 };
 
+/// How a map may be packed.
+enum class PackingRule : std::uint8_t {
+  Any,         // it may be merged or stitched
+  Alone,       // not merged or stitched
+  Last,        // alone, after all other maps
+  LastAsItIs,  // the same, and sent as it arrived
+};
+
 /// A queued map and the accepted updates that it stands for: its own, those it replaced, those merged into
 /// it.
 struct QueuedMap {
@@ -52,7 +60,7 @@ struct QueuedMap {
   /// The maps that were merged or stitched into it, in the order in which they were made; else empty. Until a
   /// stitched grid is packed, only its parts have its cells.
   std::vector<QueuedMap> parts{};
-  bool alone = false;  // not to be merged or stitched
+  PackingRule packing = PackingRule::Any;
   /// A stitched grid whose parts do not fill it. The cells between them are those of `ground`.
   bool has_gaps = false;
   /// For a grid that is being sent: the cells sent before. Null: it is not drawn (Canvases).

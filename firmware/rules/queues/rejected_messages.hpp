@@ -17,17 +17,19 @@ namespace adit::queues {
 
 using Message = std::variant<icd::MapUpdate, icd::StateUpdate, icd::MarkersUpdate>;
 
-/// A message that the Command Post rejected, and why.
+/// A message that the Command Post rejected, or a map that aditd put aside, and why.
 struct RejectedMessage {
   std::uint64_t number = 0;
   Message message;
-  int status = 0;         // the Command Post's
+  int status = 0;         // the Command Post's; 0: put aside
   std::string why;        // its sentence
   double at = 0;          // seconds since 1970, on the gateway's clock
   std::size_t bytes = 0;  // as it is held
   bool replaced = false;  // a newer accepted message contains it, or is one that it would delete
   /// QueuedMap::bounds: a grid stands for those that it replaced while it was queued, or here.
   std::optional<icd::GridBounds> bounds{};
+  /// Of a map that was put aside: the faults that ended aditd while it packed the map.
+  int faults = 0;
 };
 
 /// Whether `newer` contains all of `older` (promise 2): it is a grid of the same name that covers `older`, or

@@ -9,9 +9,12 @@
 namespace adit::queues {
 namespace {
 
-/// When it failed, and when it was accepted.
-std::pair<Instant, Instant> rest_of(const QueuedMap& waiting) {
-  return {waiting.trial.failed.value_or(Instant{}), waiting.accepted};
+bool goes_last(const QueuedMap& waiting) {
+  return waiting.packing >= PackingRule::Last;
+}
+
+SenderQueue::Rest rest_of(const QueuedMap& waiting) {
+  return {goes_last(waiting), waiting.trial.failed.value_or(Instant{}), waiting.accepted};
 }
 
 /// The most looks at a canvas for one message: bounds the work.
@@ -45,12 +48,13 @@ void SenderQueue::append(QueuedMap added) {
   waiting_.push_back(std::move(added));
 }
 
-/// An older grid goes first, because its cells must not overwrite newer ones. Clouds go in the order of their
-/// age.
+/// An older grid goes first, because its cells must not overwrite newer ones, unless it goes last of all
+/// maps. Clouds go in the order of their age.
 SenderQueue::Maps::const_iterator SenderQueue::ready(Instant now) const {
   const auto rests = [now](const QueuedMap& waiting) { return waiting.trial.rests(now); };
   const auto lets_others_pass = [&](const QueuedMap& waiting) {
-    return rests(waiting) && (!waiting.map.is_grid() || waiting.trial.failures >= kInPlace);
+    return goes_last(waiting) ||
+           (rests(waiting) && (!waiting.map.is_grid() || waiting.trial.failures >= kInPlace));
   };
   const auto first = std::ranges::find_if_not(waiting_, lets_others_pass);
   return first == waiting_.end() || rests(*first) ? waiting_.end() : first;
@@ -62,11 +66,12 @@ bool SenderQueue::is_ready(Instant now) const {
 
 SenderQueue::Maps::const_iterator SenderQueue::rested_longest() const {
   icd::require(!waiting_.empty());
-  if (waiting_.front().map.is_grid()) return waiting_.begin();
-  return std::ranges::min_element(waiting_, {}, rest_of);
+  if (!waiting_.front().map.is_grid()) return std::ranges::min_element(waiting_, {}, rest_of);
+  const auto first = std::ranges::find_if_not(waiting_, goes_last);
+  return first == waiting_.end() ? waiting_.begin() : first;
 }
 
-std::pair<Instant, Instant> SenderQueue::resting() const {
+SenderQueue::Rest SenderQueue::resting() const {
   return rest_of(*rested_longest());
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <deque>
 #include <optional>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -32,8 +33,10 @@ class SenderQueue {
   void append(QueuedMap added);  // replaces no map
   /// Whether a map may be sent now. A map that rests may not, nor a grid behind a grid that rests.
   bool is_ready(Instant now) const;
-  /// Of the map that has rested longest: when it failed, and when it was accepted. Requires a map.
-  std::pair<Instant, Instant> resting() const;
+  /// Orders resting maps: whether it goes last, when it failed, and when it was accepted.
+  using Rest = std::tuple<bool, Instant, Instant>;
+  /// Of the map that has rested longest. Requires a map.
+  Rest resting() const;
   /// The oldest map that may be sent. If there is none, the map that has rested longest. Requires a map.
   QueuedMap take(Instant now, std::size_t merge_bytes, Canvases& canvases);
   Replaced put_back(QueuedMap map);

@@ -42,7 +42,7 @@ function update(node, row, now) {
   const kilobytes = Math.max(1, Math.round(row.bytes / 1000));
   say(what, `${row.number}: ${row.kind} of ${row.robot ? clip(row.robot, 40) : "all"}, ${kilobytes} kB`);
   say(since, ago(now - row.at));
-  say(why, row.replaced ? "A newer message that contains it was sent." : `${row.status}: ${clip(row.why)}`);
+  say(why, row.replaced ? "A newer message that contains it was sent." : `${row.status ? `${row.status}: ` : ""}${clip(row.why)}`);
   if (row.replaced && send === document.activeElement) giveFocus(discard);
   // Not while it is under way: what is disabled loses the focus.
   discard.disabled = Boolean(barred());

@@ -34,6 +34,8 @@ class Disk {
   void cut_power();
   /// Flips one bit of the non-zero bytes on the disk.
   void flip_bit();
+  /// Makes a file 1 TB long. The disk can lose no more power then.
+  void lengthen();
   std::map<std::string, std::string> files() const;
 
   // Probabilities per call.

@@ -113,6 +113,48 @@ TEST_F(LogTest, TruncatedFileIsReportedAtEachStart) {
   }
 }
 
+TEST_F(LogTest, ReadsAFileOfAnAbsurdSizeUpToItsEnd) {
+  for (const Keeping& keeping :
+       {Keeping{{512, 2}, 8192, true, 1u << 20}, Keeping{kInMemory, 0, false, 1u << 20}}) {
+    const SmallLog made(keeping);
+    made.fill({"a", "b"}, Durability::Now);
+    made.snapshot({"ab"});
+    made.fill({"c"}, Durability::Now);
+    const std::size_t count = made.files().size();
+    for (const auto& [name, bytes] : made.files())
+      fs::resize_file(made.path() + '/' + name, std::uintmax_t{1} << 40);
+    const auto read = made.read().value();
+    EXPECT_EQ(bodies(read), (std::vector<std::string>{"ab", "c"}));
+    EXPECT_FALSE(has_gap(read));
+    ASSERT_FALSE(read.notes.empty());
+    EXPECT_LE(read.notes.size(), count);
+    EXPECT_THAT(read.notes.back(), testing::HasSubstr(": it has 1099511627776 bytes, expected at most "));
+    auto next = made.open();
+    ASSERT_TRUE(next.log.append(1, "d", Durability::Now));
+    EXPECT_EQ(bodies(made.read().value()), (std::vector<std::string>{"ab", "c", "d"}));
+  }
+}
+
+TEST_F(LogTest, TurnsAFileThatGrowsBeforeItIsTooLongToBeRead) {
+  const SmallLog made(Keeping{kInMemory, 0, false, 4096});
+  const std::vector<std::string> all(10, std::string(1000, 'x'));
+  made.fill(all, Durability::Now);
+  EXPECT_EQ(bodies(made.read().value()), all);
+  EXPECT_GT(made.files().size(), 2u);
+}
+
+TEST_F(LogTest, NamesNoSnapshotThatIsTooLongToBeRead) {
+  const SmallLog made(Keeping{{512, 2}, 8192, true, 8192});
+  made.fill({"a"}, Durability::Now);
+  auto opened = made.open();
+  ASSERT_TRUE(opened.log.turn());
+  auto snapshot = Snapshot::begin(opened.directory, made.keeping, opened.log).value();
+  const auto added = snapshot.add(1, std::string(5000, 'x'));
+  ASSERT_FALSE(added);
+  EXPECT_EQ(added.error().what, "a snapshot of more than 8192 bytes");
+  EXPECT_EQ(bodies(made.read().value()), std::vector<std::string>{"a"});
+}
+
 TEST_F(LogTest, ReadsAllLogsIfTheFirstSnapshotIsDamaged) {
   small_.fill({"a"}, Durability::Now);
   small_.snapshot({"A"});

@@ -57,8 +57,8 @@ class Play {
  public:
   Play(std::uint64_t seed, bool on_disk)
       : random_(seed, "play"), disk_(Random(seed, "disk")), on_disk_(on_disk) {
-    if (on_disk) keeping_ = {{512, 2}, 24 * 1024, true};
-    if (!on_disk) keeping_ = {kInMemory, 0, false};
+    if (on_disk) keeping_ = {{512, 2}, 24 * 1024, true, 1u << 20};
+    if (!on_disk) keeping_ = {kInMemory, 0, false, 1u << 20};
   }
 
   /// Runs a process. Returns a sentence about a violation, or "".
@@ -73,6 +73,15 @@ class Play {
       quiet();
       if (on_disk_ && random_.chance(0.6)) disk_.cut_power();
       if (on_disk_ && random_.chance(0.2)) disk_.flip_bit();
+    }
+    for (int i = 0; i < 2 && trouble_.empty(); ++i) {
+      disk_.lengthen();
+      disk_.start();
+      try {
+        live();
+      } catch (const Disk::Killed&) {
+      }
+      quiet();
     }
     return trouble_;
   }

@@ -1,5 +1,6 @@
 """A full disk, and a missing or unreadable ledger: no unwritten report is accepted, and the client gets the reason."""
 
+import os
 import shutil
 import signal
 import time
@@ -89,6 +90,19 @@ class Disk(unittest.TestCase):
             self.assertEqual(submit(stage).content, first.content)
             self.assertEqual(stage.box.alarms(), set())
             self.assertEqual((stage.box.on_disk(), len(stage.post.recorded())), (["answered", "answered"], 2))
+
+    def test_a_log_of_an_absurd_size(self):
+        with Stage(**QUICK) as stage:
+            first = submit(began(stage))
+            stage.box.stop(signal.SIGKILL)
+            for log in (stage.box.state / "ledger").iterdir():
+                os.truncate(log, 1 << 40)
+            stage.restart_box()
+            self.assertEqual(submit(began(stage)).content, first.content)
+            self.assertIn("it has 1099511627776 bytes", stage.box.output())
+            self.assertEqual(submit(stage, another(1)).status_code, 201)
+            self.assertEqual([each["state"] for each in stage.box.reports()], ["answered", "answered"])
+            self.assertEqual(len(stage.post.recorded()), 2)
 
     def test_a_damaged_ledger_on_a_full_disk(self):
         with Stage(**FULL) as stage:

@@ -23,24 +23,31 @@ FileDescriptor open_regular(const std::string& path, int flags, int folder) {
   return {};
 }
 
-std::expected<std::string, int> read_all(const FileDescriptor& file, std::size_t most) {
+std::expected<std::string, int> read_first(const FileDescriptor& file, std::size_t most) {
   struct stat found{};
   if (::fstat(file.get(), &found) != 0) return std::unexpected(errno);
   // In one piece, so that a large file is copied once. Files of /proc have no size.
-  const std::size_t whole = std::min<std::size_t>(std::max<off_t>(found.st_size, 255), most) + 1;
+  const std::size_t whole = std::min<std::size_t>(std::max<off_t>(found.st_size, 255) + 1, most);
   std::string bytes;
-  while (true) {
+  while (bytes.size() < most) {
     const std::size_t had = bytes.size();
     ssize_t count = 0;
-    bytes.resize_and_overwrite(had < whole ? whole : 2 * had, [&](char* data, std::size_t size) {
-      count = ::read(file.get(), data + had, size - had);
-      return had + static_cast<std::size_t>(std::max<ssize_t>(count, 0));
-    });
+    bytes.resize_and_overwrite(had < whole ? whole : std::min(2 * had, most),
+                               [&](char* data, std::size_t size) {
+                                 count = ::read(file.get(), data + had, size - had);
+                                 return had + static_cast<std::size_t>(std::max<ssize_t>(count, 0));
+                               });
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) return std::unexpected(errno);
-    if (count == 0) return bytes;
-    if (bytes.size() > most) return std::unexpected(EFBIG);
+    if (count == 0) break;
   }
+  return bytes;
+}
+
+std::expected<std::string, int> read_all(const FileDescriptor& file, std::size_t most) {
+  auto bytes = read_first(file, most + 1);
+  if (bytes && bytes->size() > most) return std::unexpected(EFBIG);
+  return bytes;
 }
 
 int write_all(int file, std::string_view bytes, std::size_t offset) {

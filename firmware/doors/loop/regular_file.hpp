@@ -21,6 +21,8 @@ std::string text_of(int error);
 /// file, the result is empty and errno is set. `folder`: a directory's descriptor, as in openat(2).
 FileDescriptor open_regular(const std::string& path, int flags, int folder = AT_FDCWD);
 
+/// Reads from the file's position to its end, at most `most` bytes. Returns the bytes or an errno.
+std::expected<std::string, int> read_first(const FileDescriptor& file, std::size_t most);
 /// Reads from the file's position to its end. Returns the bytes or an errno: EFBIG above `most` bytes.
 std::expected<std::string, int> read_all(const FileDescriptor& file, std::size_t most);
 

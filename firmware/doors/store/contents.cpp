@@ -33,12 +33,25 @@ class Assembly {
 
  private:
   Result<Scan> scan_file(const FileName& name, const Layout& layout) {
-    auto bytes = ADIT_TRY(directory_.read(name.text()));
+    const auto most = ADIT_TRY(most_bytes(name, layout));
+    auto bytes = ADIT_TRY(directory_.read(name.text(), most));
+    if (const auto size = directory_.size(name.text()); size && *size > most)
+      contents_.notes.push_back(name.text() + ": it has " + std::to_string(*size) +
+                                " bytes, expected at most " + std::to_string(most) +
+                                "; the rest was not read");
     Scan found = scan(name, contents_.bytes_.emplace_back(std::move(bytes)), layout);
     if (found.header && found.header->version > FileHeader::kVersion)
       return std::unexpected(Error{Error::Cause::Newer, name.text() + ": a later version wrote it"});
     contents_.process = std::max(contents_.process, found.process);
     return found;
+  }
+
+  Result<std::uint64_t> most_bytes(const FileName& name, const Layout& layout) const {
+    if (!keeping_.syncs || name.kind != FileName::Kind::Log) return keeping_.most_bytes;
+    const std::size_t room = layout.copies * room_of(FileHeader().written().size(), layout);
+    const auto begin = ADIT_TRY(directory_.read(name.text(), room));
+    const auto header = scan(name, begin, layout).header;
+    return header && header->size > 0 ? header->size : keeping_.most_bytes;
   }
 
   Result<void> scan_all() {
@@ -142,11 +155,11 @@ class Assembly {
     contents_.log = log.name;
     contents_.size = log.size;
     const std::uint64_t base = first_here_ == 0 ? contents_.last : first_here_ - 1;
-    const std::string& body = contents_.bytes_.emplace_back(
+    const std::string& body = contents_.bytes_.emplace_back(  // its size keeps a cut visible
         FileHeader{.number = log.name.number,
                    .salt = log.name.salt,
                    .base = base,
-                   .size = std::max<std::uint64_t>(log.size, least_size(log))}  // keeps a cut visible
+                   .size = keeping_.syncs ? std::max<std::uint64_t>(log.size, least_size(log)) : 0}
             .written());
     const Frame header =
         log.begin ? log.begin->frame : Frame{.kind = kFileBegins, .durable = base, .body = body};

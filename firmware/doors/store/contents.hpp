@@ -20,6 +20,8 @@ struct Keeping {
   Layout layout = kOnDisk;
   std::size_t file_bytes = 8u << 20;  // of one file; a longer record gets a longer file
   bool syncs = true;  // false: the log is in memory, its files grow, and every append is durable
+  /// Of a file whose header names no size: one that grows, or a snapshot. A longer one is read up to here.
+  std::size_t most_bytes = 128u << 20;
 };
 
 struct Record {

@@ -12,7 +12,6 @@
 #include <cerrno>
 #include <cinttypes>
 #include <cstdio>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <tuple>
@@ -94,10 +93,10 @@ Result<std::vector<FileName>> Directory::files() const {
   return files;
 }
 
-Result<std::string> Directory::read(const std::string& name) const {
+Result<std::string> Directory::read(const std::string& name, std::size_t most) const {
   const auto file = loop::open_regular(name, O_RDONLY | O_NOFOLLOW, fd_.get());
   if (!file) return trouble(name, errno);
-  auto bytes = loop::read_all(file, std::numeric_limits<std::size_t>::max());
+  auto bytes = loop::read_first(file, most);
   if (!bytes) return trouble(name, bytes.error());
   return std::move(*bytes);
 }

@@ -36,8 +36,8 @@ class Directory {
 
   /// The log's files by kind and number. Error if the directory cannot be read, never an empty list.
   Result<std::vector<FileName>> files() const;
-  /// The content of a regular file.
-  Result<std::string> read(const std::string& name) const;
+  /// The first `most` bytes of a regular file.
+  Result<std::string> read(const std::string& name, std::size_t most) const;
   /// Creates a file for writing. Error if the name exists.
   Result<loop::FileDescriptor> make(const std::string& name) const;
   Result<loop::FileDescriptor> open_to_write(const std::string& name) const;

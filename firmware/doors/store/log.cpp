@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <limits>
 #include <map>
 #include <utility>
 
@@ -59,7 +58,7 @@ Result<void> Log::start(const Contents& contents) {
   }
   if (!contents.log) return {};
   auto fd = ADIT_TRY(directory_.open_to_write(contents.log->text()));
-  const std::size_t size = keeping_.syncs ? contents.size : std::numeric_limits<std::size_t>::max();
+  const std::size_t size = keeping_.syncs ? contents.size : keeping_.most_bytes;
   file_ = {*contents.log, std::move(fd), contents.end, std::max(size, contents.end)};
   if (auto rewritten = rewrite(contents); !rewritten) return rewritten;
   is_dead_ = false;
@@ -154,7 +153,7 @@ Result<Log::File> Log::make_file(std::size_t size) const {
   if (!keeping_.syncs) {
     auto made = ADIT_TRY(directory_.make(file.name.text()));
     file.fd = std::move(made);
-    file.size = std::numeric_limits<std::size_t>::max();
+    file.size = keeping_.most_bytes;
     return file;
   }
   const auto files = ADIT_TRY(directory_.files());

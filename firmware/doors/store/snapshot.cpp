@@ -40,6 +40,9 @@ Result<void> Snapshot::add(std::uint8_t kind, std::string_view body) {
 Result<void> Snapshot::write(std::uint8_t kind, std::uint64_t sequence, std::string_view body) {
   const std::string bytes =
       written({kind, sequence, process_, base_, body}, snapshot_layout(keeping_.layout), name_.salt, at_);
+  if (at_ + bytes.size() > keeping_.most_bytes)
+    return std::unexpected(Error{
+        Error::Cause::TooLong, "a snapshot of more than " + std::to_string(keeping_.most_bytes) + " bytes"});
   if (const int error = write_all(file_.get(), bytes, at_); error != 0)
     return directory_->trouble(part_, error);
   at_ += (bytes.size() + 7) / 8 * 8;
@@ -49,7 +52,7 @@ Result<void> Snapshot::write(std::uint8_t kind, std::uint64_t sequence, std::str
 Result<void> Snapshot::finish() {
   if (auto wrote = write(kSnapshotEnds, ++count_, {}); !wrote) return wrote;
   if (keeping_.syncs && ::fsync(file_.get()) != 0) return directory_->trouble(part_, errno);
-  const auto bytes = ADIT_TRY(directory_->read(part_));
+  const auto bytes = ADIT_TRY(directory_->read(part_, keeping_.most_bytes));
   const Scan read = scan(name_, bytes, snapshot_layout(keeping_.layout));
   if (!is_whole_snapshot(read) || read.frames.size() != count_) return directory_->trouble(part_, EIO);
   if (auto named = directory_->rename(part_, name_.text()); !named) return named;

@@ -180,6 +180,19 @@ TEST(Ledger, OpensOnceAtATime) {
   EXPECT_EQ(Ledger::open(state.path() + "/absent").error().cause, Error::Cause::Other);
 }
 
+TEST(OpenLedger, NamesALedgerOfAnotherFormat) {
+  const State state;
+  std::ofstream(state.path() + "/ledger.sqlite") << "SQLite format 3";
+  for (const char* const which : {"a new ledger", "the next start"}) {
+    auto ledger = open_or_fail(state.path());
+    EXPECT_THAT(ledger.damage(), HasSubstr(state.path() + "/ledger.sqlite is a ledger of another format"))
+        << which;
+    EXPECT_TRUE(write(ledger, backpack(1)));
+  }
+  std::filesystem::remove(state.path() + "/ledger.sqlite");
+  EXPECT_EQ(open_or_fail(state.path()).damage(), "");
+}
+
 /// The stamp floor is written from it, so it must not forget the unreadable ledger.
 TEST(ClosedLedger, RejectsReportsAndForgetsNothing) {
   auto ledger = Ledger::closed("x: Input/output error", {.reports = 20, .log = 3});

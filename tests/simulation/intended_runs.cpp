@@ -17,7 +17,7 @@ constexpr double kShortly = 25;
 constexpr double kSwitching = 0.01;
 /// Seconds in which a request may still count after its client heard no answer.
 constexpr double kUnknown = 12;
-constexpr const char* kUnwritten = "rejecting reports: the ledger cannot be written";
+constexpr const char* kUnwritten = "rejecting reports: the ledger cannot be ";
 
 }  // namespace
 

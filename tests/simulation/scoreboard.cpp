@@ -10,7 +10,7 @@ namespace {
 constexpr int kSeenToRun = 4;       // statuses that Adit read
 constexpr double kSeenToBeOn = 30;  // seconds until a new run may be noticed
 /// Runs that Adit notices meanwhile are forgotten.
-constexpr const char* kLedgerIsGone = "rejecting reports: the ledger cannot be written";
+constexpr const char* kLedgerIsGone = "rejecting reports: the ledger cannot be ";
 
 std::string json_number(double value) {
   char text[32];

@@ -80,6 +80,7 @@ class Disk(unittest.TestCase):
             self.assertEqual(refused.status_code, 503)
             self.assertIn("could not be stored and was not accepted", refused.json())
             self.assertIn("ledger_unwritable", stage.box.alarms())
+            self.assertIn("rejecting reports: the ledger cannot be read", stage.box.output())
             grid = messages.map_update(maps.made_grid(20, 20), "r1", time.time(), style)
             messages.post(requests, stage.box.url, "/map/update", grid, style)
             wait_until(lambda: stage.post.requests("/map/update"), "the map to arrive")

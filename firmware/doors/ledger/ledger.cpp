@@ -21,6 +21,16 @@ double now() {
   return std::chrono::duration<double>(system_clock::now().time_since_epoch()).count();
 }
 
+/// A sentence if a ledger of another format is there, or "".
+std::string other_format_in(const std::string& state) {
+  constexpr const char* kName = "ledger.sqlite";
+  const auto folder = store::Directory::look(state);
+  if (!folder || !folder->size(kName)) return "";
+  return icd::sentence(
+      state, "/", kName,
+      " is a ledger of another format. Its reports are not read. Move the file away to end this message.");
+}
+
 Result<void> write(store::Snapshot& snapshot, const Book& book, const std::atomic<bool>& enough) {
   for (const auto& [kind, body] : book.records()) {
     if (enough) return std::unexpected(Error{.what = "aditd is stopping"});
@@ -183,6 +193,7 @@ Result<Ledger> Ledger::open(const std::string& state, const Known& known) {
       damage += (note == contents.notes.front() ? "" : "; ") + note;
     damage += ". No report is missing.";
   }
+  if (damage.empty()) damage = other_format_in(state);
   auto impl = std::make_unique<Impl>(std::move(directory), std::move(contents), std::move(book),
                                      std::move(damage), is_damaged, known);
   (void)impl->make_ready();  // refusal() has the reason

@@ -32,7 +32,10 @@ ReportOutput::ReportOutput(loop::Loop& loop, ledger::Ledger& ledger)
       try_again_(loop.timer([this] { tried(ledger_.make_ready()); })),
       trouble_(ledger.refusal()) {
   if (trouble_.empty()) return;
-  host::log(host::Level::Error, "rejecting reports: the ledger cannot be written", {{"why", trouble_}});
+  host::log(
+      host::Level::Error,
+      std::string("rejecting reports: the ledger cannot be ") + (ledger.is_closed() ? "read" : "written"),
+      {{"why", trouble_}});
   try_again_.call_at(loop.now() + kTryEvery);
 }
 

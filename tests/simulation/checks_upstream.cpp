@@ -304,7 +304,8 @@ void learned(const Evidence& evidence, Broken& broken) {
 }
 
 /// While one robot's states are rejected, those of the others arrive: after three states with several robots
-/// and one with the rejected robot alone, the next one has another robot with news.
+/// and one with the rejected robot alone, the next one has another robot with news. A flood's poses do not
+/// count, because it posts them at once, so that the last one need not have the highest serial.
 void others_go_on(const Evidence& evidence, Broken& broken) {
   constexpr int kInARow = 4;
   std::map<std::uint64_t, std::vector<std::pair<std::string, std::int64_t>>>
@@ -332,7 +333,7 @@ void others_go_on(const Evidence& evidence, Broken& broken) {
     if (++in_a_row == 1) {
       news.clear();
       for (const auto& [who, serial] : accepted) {
-        if (who != event.text && serial > taken[who]) news.insert(who);
+        if (who != event.text && who != "flood" && serial > taken[who]) news.insert(who);
       }
     }
     if (in_a_row == kInARow + 1 && !news.empty())

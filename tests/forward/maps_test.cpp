@@ -195,6 +195,18 @@ TEST_F(OvertakenGrid, IsTheNewestIfItHasTheNewerStamp) {
   EXPECT_EQ(kept[0].map.header().stamp, 10);
 }
 
+TEST_F(OvertakenGrid, IsQueuedAsAWholeOrNotAtAll) {
+  EXPECT_EQ(take_newer(columns(0, 10)), icd::Status::Ok);
+  icd::MapUpdate older = columns(-1, 9);
+  std::get<icd::OccupancyGrid>(older.msg).origin.position.y = -1;  // two parts are left
+  fs::create_directory(folder_ / host::numbered_name("map-", MapStore::kFirstNumber + 3, ".cbor"));
+  EXPECT_EQ(take_older(older), icd::Status::ServiceUnavailable);
+  EXPECT_EQ(maps_.waiting({Kind::Grid, "r1"}), 1u);
+  EXPECT_TRUE(loop::turn_until_idle(loop_, writer_));
+  EXPECT_FALSE(fs::exists(folder_ / host::numbered_name("map-", MapStore::kFirstNumber + 2, ".cbor")));
+  EXPECT_EQ(take_older(columns(-1, 9)), icd::Status::Ok) << "it is tried again";
+}
+
 TEST_F(OvertakenGrid, IsRejectedIfItsDataIsDamaged) {
   EXPECT_EQ(take_newer(columns(0, 10)), icd::Status::Ok);
   icd::MapUpdate damaged = columns(-1, 9);

@@ -150,9 +150,14 @@ class GridsOfOneName {
         return !may_be_in_it || covers(newer.extent, older.extent);
       });
     };
+    const auto was_cut = [&](const PostedGrid& newer) {
+      return std::ranges::any_of(posted_, [&](const PostedGrid& other) {
+        return other.asked->may_count() && newer.is_overtaken_by(other);
+      });
+    };
     const auto was_queued = [&](const PostedGrid& newer) {
-      return newer.asked->accepted() && newer.asked->began > began && newer.asked->ended < since &&
-             grid.is_before(newer);
+      return !was_cut(newer) && newer.asked->accepted() && newer.asked->began > began &&
+             newer.asked->ended < since && grid.is_before(newer);
     };
     // While a grid waits for a connection it stays, and meanwhile another one may replace the newer one.
     const auto may_have_gone = [&](const PostedGrid& newer) {
@@ -337,12 +342,17 @@ class GridsOfOneName {
   }
 
   /// Whether `older`, perhaps on another lattice, was accepted after a part of a grid that covers it. A cell
-  /// that may have the value of another grid is no part of it, unless that grid is newer.
+  /// that may have the value of another grid is no part of it, unless that grid is newer. A grid that was
+  /// overtaken may reach half a cell into the newer one.
   bool is_under(const PostedGrid& grid, const PostedGrid& older) const {
     bool any = false;
+    Extent reach = older.extent;
+    if (older.is_overtaken_by(grid))
+      reach = {reach.cell,      reach.x + reach.cell / 2, reach.y + reach.cell / 2,
+               reach.width - 1, reach.height - 1,         reach.z};
     for_each_cell(grid.extent, [&](const Extent& cell) {
       const auto found = has_.find(key_of(cell));
-      any = any || (overlap(cell, older.extent) && found != has_.end() && found->second.place < older.taken &&
+      any = any || (overlap(cell, reach) && found != has_.end() && found->second.place < older.taken &&
                     std::ranges::all_of(
                         found->second.owners,
                         [&](const PostedGrid* owner) { return owner == &grid || grid.is_before(*owner); }));

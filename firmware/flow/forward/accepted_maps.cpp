@@ -150,10 +150,14 @@ void AcceptedMaps::store_next_tile(const std::shared_ptr<Arrived>& map) {
   part.data = std::move(map->tiles.back().data);
   map->tiles.pop_back();
   store_.store(std::move(part), nullptr, /*spare=*/0, /*again=*/false, [this, map](MapStore::Stored& stored) {
-    if (!stored.map) return refuse(*map, std::move(stored.map.error()));
-    queue(stored);
-    if (map->tiles.empty()) return accept(*map);
-    store_next_tile(map);
+    if (!stored.map) {
+      for (const MapStore::Stored& part : map->parts) store_.forget({&part.number, 1});
+      return refuse(*map, std::move(stored.map.error()));
+    }
+    map->parts.push_back(std::move(stored));
+    if (!map->tiles.empty()) return store_next_tile(map);
+    for (MapStore::Stored& part : map->parts) queue(part);
+    accept(*map);
   });
 }
 

@@ -63,6 +63,7 @@ class AcceptedMaps {
     /// If newer grids overtook it: its cells outside of them, which are queued as grids of their own.
     std::vector<pack::Tile> tiles = {};
     icd::Checked<void> cut = {};
+    std::vector<MapStore::Stored> parts = {};  // stored tiles
   };
   void take(const std::shared_ptr<Arrived>& map);
   void stored(MapStore::Stored& stored, Arrived& map);

@@ -53,7 +53,7 @@ icd::Stamp StampShift::shift(Clock*& clock, const Stamper& stamper, std::optiona
   const bool set_back = clock->step_back.shown_by(*stamp, connection);
   const bool steps = set_back || *stamp < clock->latest - kJump || shifted > now + kJump;
   if (steps) {
-    clock->before = *clock;
+    clock->before = static_cast<const SenderClock&>(*clock);
     clock->stepped = upload.ended;
     shifted = clock->ours = std::max(now, clock->latest_given());
     clock->theirs = clock->latest = *stamp;

@@ -7,8 +7,8 @@
 #include <limits>
 #include <vector>
 
+#include "codec/bytes_of.hpp"
 #include "codec/gzip.hpp"
-#include "codec/map_pieces.hpp"
 #include "forward/fixtures.hpp"
 #include "forward/sample_maps.hpp"
 #include "host/folder.hpp"
@@ -136,15 +136,6 @@ icd::MapUpdate columns(double x, double stamp) {
   return map;
 }
 
-std::vector<std::uint8_t> unzipped(const icd::MapData& data) {
-  std::vector<std::uint8_t> bytes;
-  EXPECT_TRUE(codec::for_each_piece(data, [&](std::span<const std::uint8_t> piece) -> icd::Checked<void> {
-    bytes.insert(bytes.end(), piece.begin(), piece.end());
-    return {};
-  }));
-  return bytes;
-}
-
 class OvertakenGrid : public MapsTest {
  protected:
   /// The upload of the older one begins first and ends last.
@@ -171,7 +162,7 @@ TEST_F(OvertakenGrid, IsQueuedOutsideOfTheNewerOne) {
   EXPECT_NEAR(grid.origin.position.x, -1, 0.001);
   EXPECT_EQ(grid.width, 4u);
   EXPECT_EQ(grid.height, 20u);
-  const auto cells = unzipped(strip.data);
+  const auto cells = codec::bytes_of(strip.data);
   ASSERT_EQ(cells.size(), 80u);
   for (std::size_t i = 0; i < cells.size(); ++i) EXPECT_EQ(cells[i], i % 4);
   EXPECT_EQ(row().accepted, 2u);

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
+#include "codec/bytes_of.hpp"
 #include "codec/gzip.hpp"
-#include "codec/map_pieces.hpp"
 #include "codec/write.hpp"
 #include "forward/sample_maps.hpp"
 #include "forward/stitched.hpp"
@@ -33,23 +33,12 @@ queues::QueuedMap taken_of(const std::vector<icd::MapUpdate>& maps) {
   return *queue.take();
 }
 
-std::vector<std::uint8_t> cells_of(const icd::MapData& data) {
-  std::vector<std::uint8_t> cells;
-  const auto read =
-      codec::for_each_piece(data, [&](std::span<const std::uint8_t> piece) -> icd::Checked<void> {
-        cells.insert(cells.end(), piece.begin(), piece.end());
-        return {};
-      });
-  EXPECT_TRUE(read);
-  return cells;
-}
-
 TEST(StitchedMap, HasTheCellsOfItsParts) {
   const auto waiting = taken_of({row_at(0, {1, 2, 3}), row_at(3, {4}), row_at(2, {5, 6, 7})});
   ASSERT_EQ(waiting.updates.size(), 3);
   const Packed map = packed(waiting);
   EXPECT_FALSE(map.body.empty());
-  EXPECT_THAT(cells_of(map.stitched), ElementsAre(1, 2, 5, 6, 7));
+  EXPECT_THAT(codec::bytes_of(map.stitched), ElementsAre(1, 2, 5, 6, 7));
 }
 
 TEST(StitchedMap, IsStitchedOnce) {
@@ -84,9 +73,9 @@ TEST(StitchedMap, FillsItsGapsWithSentCells) {
     return map;
   };
   take({row_at(0, {1, 2, 3, 4})});
-  EXPECT_THAT(cells_of(take({row_at(-1, {7, 8}), row_at(3, {9, 9})}).stitched),
+  EXPECT_THAT(codec::bytes_of(take({row_at(-1, {7, 8}), row_at(3, {9, 9})}).stitched),
               ElementsAre(7, 8, 2, 3, 9, 9));
-  EXPECT_THAT(cells_of(take({row_at(4, {5}), row_at(7, {6})}).stitched),
+  EXPECT_THAT(codec::bytes_of(take({row_at(4, {5}), row_at(7, {6})}).stitched),
               ElementsAre(5, icd::kUnknownCell, icd::kUnknownCell, 6))
       << "never sent";
 }

@@ -12,6 +12,7 @@
 
 #include "../uplink/peer.hpp"
 #include "codec/body_decoder.hpp"
+#include "codec/bytes_of.hpp"
 #include "codec/gzip.hpp"
 #include "codec/read.hpp"
 #include "forward/fixtures.hpp"
@@ -24,15 +25,6 @@ namespace {
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
-
-std::vector<std::uint8_t> bytes_of(const icd::MapData& data) {
-  std::vector<std::uint8_t> bytes;
-  EXPECT_TRUE(codec::for_each_piece(data, [&](std::span<const std::uint8_t> piece) -> icd::Checked<void> {
-    bytes.insert(bytes.end(), piece.begin(), piece.end());
-    return {};
-  }));
-  return bytes;
-}
 
 constexpr std::size_t kLimit = 300'000;
 constexpr const char* kPage = "<html>too large</html>";
@@ -89,7 +81,7 @@ class ProxyStub {
     ASSERT_TRUE(map);
     if (map->is_grid()) {
       const std::lock_guard lock(mutex_);
-      grids_.push_back({std::get<icd::OccupancyGrid>(map->msg), bytes_of(map->data)});
+      grids_.push_back({std::get<icd::OccupancyGrid>(map->msg), codec::bytes_of(map->data)});
       return;
     }
     const auto xs = xs_of(map->data);
@@ -243,7 +235,7 @@ TEST_F(TooLargeMap, IsSentInPiecesIfItIsASingleCloud) {
 
 TEST_F(TooLargeMap, LeavesOutPiecesWithoutAValidPoint) {
   icd::MapUpdate cloud = cloud_of(20 * kPoints);
-  auto bytes = bytes_of(cloud.data);
+  auto bytes = codec::bytes_of(cloud.data);
   const float invalid = std::numeric_limits<float>::quiet_NaN();
   for (std::size_t at = bytes.size() / 2; at < bytes.size(); at += 12)
     std::memcpy(bytes.data() + at, &invalid, sizeof invalid);
@@ -306,7 +298,7 @@ TEST_F(TooLargeMap, IsSentInRowsIfItIsASingleGrid) {
     EXPECT_NEAR(rows.grid.origin.position.z, 1, 1e-9);
     cells.insert(cells.end(), rows.cells.begin(), rows.cells.end());
   }
-  EXPECT_EQ(cells, bytes_of(map.data)) << "each row once";
+  EXPECT_EQ(cells, codec::bytes_of(map.data)) << "each row once";
   EXPECT_LE(proxy_->too_large, 1);
   EXPECT_EQ(delivered_, map.data.raw_size);
   EXPECT_THAT(rejected_.rows(), IsEmpty());
@@ -321,7 +313,7 @@ TEST_F(TooLargeMap, LosesNoRowsIfGridsAreReplacedFasterThanTheirRowsAreSent) {
   for (std::size_t i = 1; i <= 8; ++i) {
     ASSERT_TRUE(loop::turn_until(loop_, [&] { return proxy_->grids().size() >= i; }));
     icd::MapUpdate newer = noise(kSide, kSide);
-    newest = bytes_of(newer.data);
+    newest = codec::bytes_of(newer.data);
     bool is_queued = false;
     maps_.take(std::move(newer), {.bytes = 10}, nullptr,
                [&](const icd::Checked<void>& said) { is_queued = said.has_value(); });

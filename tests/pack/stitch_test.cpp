@@ -4,8 +4,8 @@
 
 #include <string_view>
 
+#include "codec/bytes_of.hpp"
 #include "codec/gzip.hpp"
-#include "codec/map_pieces.hpp"
 
 namespace adit::pack {
 namespace {
@@ -57,22 +57,13 @@ TEST(StitchedCells, AreRejectedIfATileIsDamaged) {
   EXPECT_FALSE(stitch(2, 2, std::vector<Tile>{{damaged, 0, 0, 2, 2}}));
 }
 
-std::vector<std::uint8_t> unzipped(const icd::MapData& data) {
-  std::vector<std::uint8_t> bytes;
-  EXPECT_TRUE(codec::for_each_piece(data, [&](std::span<const std::uint8_t> piece) -> icd::Checked<void> {
-    bytes.insert(bytes.end(), piece.begin(), piece.end());
-    return {};
-  }));
-  return bytes;
-}
-
 TEST(CutCells, AreThoseOfTheirTiles) {
   std::vector<Tile> tiles = {{{}, 1, 0, 2, 1}, {{}, 0, 1, 1, 2}, {{}, 2, 2, 1, 1}};
   for (const icd::MapData& from : {cells({1, 2, 3, 4, 5, 6, 7, 8, 9}), zipped({1, 2, 3, 4, 5, 6, 7, 8, 9})}) {
     ASSERT_TRUE(cut(from, 3, tiles));
-    EXPECT_THAT(unzipped(tiles[0].data), ElementsAre(2, 3));
-    EXPECT_THAT(unzipped(tiles[1].data), ElementsAre(4, 7));
-    EXPECT_THAT(unzipped(tiles[2].data), ElementsAre(9));
+    EXPECT_THAT(codec::bytes_of(tiles[0].data), ElementsAre(2, 3));
+    EXPECT_THAT(codec::bytes_of(tiles[1].data), ElementsAre(4, 7));
+    EXPECT_THAT(codec::bytes_of(tiles[2].data), ElementsAre(9));
     EXPECT_EQ(tiles[0].data.raw_size, 2);
   }
 }
@@ -84,7 +75,7 @@ TEST(CutCells, AreTheSameInAnyPieces) {
     pieces.bytes.append(whole, std::span(*whole).subspan(from, size));
   std::vector<Tile> tiles = {{{}, 1, 0, 2, 2}};
   ASSERT_TRUE(cut(pieces, 3, tiles));
-  EXPECT_THAT(unzipped(tiles[0].data), ElementsAre(2, 3, 5, 6));
+  EXPECT_THAT(codec::bytes_of(tiles[0].data), ElementsAre(2, 3, 5, 6));
 }
 
 }  // namespace

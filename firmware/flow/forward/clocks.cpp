@@ -10,15 +10,6 @@ namespace adit::forward {
 // Dispatch subtracts the step of a boot from a silence.
 static_assert(StampFloor::kAhead <= dispatch::kClockAhead);
 
-queues::Upload upload_of(const intake::Sender& sender) {
-  return {.address = sender.address,
-          .bytes = sender.bytes,
-          .connection = sender.connection,
-          .began = sender.began,
-          .ended = sender.ended,
-          .overlaps = sender.overlaps};
-}
-
 void Clocks::carry_on(journal::Carried& carried, const std::string& boot) {
   const StampFloor::Kept kept = kept_.value_or(StampFloor::Kept());
   carried.machine_is(boot);
@@ -71,33 +62,33 @@ bool Clocks::hear(double there) {
   return true;
 }
 
-void Clocks::stamp(icd::MapUpdate& update, const intake::Sender& sender) {
-  const queues::Stamper stamper{sender.address, icd::Uri::MapUpdate, update.name ? update.name->text() : ""};
+void Clocks::stamp(icd::MapUpdate& update, const queues::Upload& upload) {
+  const queues::Stamper stamper{upload.address, icd::Uri::MapUpdate, update.name ? update.name->text() : ""};
   std::optional<icd::Stamp>& stamp = update.header().stamp;
-  stamp = senders_.shift(stamper, stamp, loop_.stamp_now(), upload_of(sender));
+  stamp = senders_.shift(stamper, stamp, loop_.stamp_now(), upload);
   keep();
 }
 
 std::vector<queues::PostedPose> Clocks::stamped(const icd::StateUpdate& update,
-                                                const intake::Sender& sender) {
+                                                const queues::Upload& upload) {
   const std::optional<icd::Stamp> stamp = update.header.stamp;
   const double now = loop_.stamp_now();
   std::vector<queues::PostedPose> poses;
   poses.reserve(update.poses.size());
   for (const icd::NamedPose& named : update.poses) {
-    const queues::Stamper stamper{sender.address, icd::Uri::StateUpdate, named.name.text()};
+    const queues::Stamper stamper{upload.address, icd::Uri::StateUpdate, named.name.text()};
     poses.push_back({.name = named.name,
                      .pose = named.pose,
-                     .stamp = senders_.shift(stamper, stamp, now, upload_of(sender)),
-                     .address = queues::is_set(stamp) ? sender.address : ""});
+                     .stamp = senders_.shift(stamper, stamp, now, upload),
+                     .address = queues::is_set(stamp) ? upload.address : ""});
   }
   keep();
   return poses;
 }
 
-void Clocks::stamp(icd::MarkersUpdate& update, const intake::Sender& sender) {
-  senders_.shift_each({sender.address, icd::Uri::MarkersUpdate, ""}, update.markers, loop_.stamp_now(),
-                      upload_of(sender));
+void Clocks::stamp(icd::MarkersUpdate& update, const queues::Upload& upload) {
+  senders_.shift_each({upload.address, icd::Uri::MarkersUpdate, ""}, update.markers, loop_.stamp_now(),
+                      upload);
   keep();
 }
 

@@ -9,16 +9,14 @@
 #include "forward/stamp_floor.hpp"
 #include "icd/markers_update.hpp"
 #include "icd/state_update.hpp"
-#include "intake/desk.hpp"
 #include "journal/journal.hpp"
 #include "loop/loop.hpp"
 #include "loop/workers.hpp"
+#include "queues/overtaken.hpp"
 #include "queues/posted_pose.hpp"
 #include "queues/stamps.hpp"
 
 namespace adit::forward {
-
-queues::Upload upload_of(const intake::Sender& sender);
 
 /// The stamp clock, and senders' offsets to it. They survive restarts; the stamp clock survives boots
 /// (promise 5), whatever the time of day does.
@@ -43,9 +41,9 @@ class Clocks {
   bool ran_before() const { return ran_before_; }
 
   /// Convert stamps to the stamp clock, and journal the sender's offsets.
-  void stamp(icd::MapUpdate& update, const intake::Sender& sender);
-  std::vector<queues::PostedPose> stamped(const icd::StateUpdate& update, const intake::Sender& sender);
-  void stamp(icd::MarkersUpdate& update, const intake::Sender& sender);
+  void stamp(icd::MapUpdate& update, const queues::Upload& upload);
+  std::vector<queues::PostedPose> stamped(const icd::StateUpdate& update, const queues::Upload& upload);
+  void stamp(icd::MarkersUpdate& update, const queues::Upload& upload);
 
   /// Writes the bound of the stamps if it is due. Call now and then. The writer's thread waits for the disk.
   void keep(loop::Writer& writer, const ledger::Known& ledger);

@@ -10,6 +10,18 @@
 #include "intake/icd_routes.hpp"
 
 namespace adit::forward {
+namespace {
+
+queues::Upload upload_of(const intake::Sender& sender) {
+  return {.address = sender.address,
+          .bytes = sender.bytes,
+          .connection = sender.connection,
+          .began = sender.began,
+          .ended = sender.ended,
+          .overlaps = sender.overlaps};
+}
+
+}  // namespace
 
 std::shared_ptr<intake::MapArrival> Flow::map_arrives() {
   return maps_.arrives([this](icd::MapUpdate update, const intake::Sender& sender,
@@ -23,21 +35,23 @@ std::shared_ptr<intake::MapArrival> Flow::map_arrives() {
 void Flow::take(icd::MapUpdate update, const intake::Sender& sender, std::shared_ptr<spool::MapFile> file,
                 std::function<void(icd::Checked<void>)> done) {
   if (update.name) told_.posted(update.name->text());
-  clocks_.stamp(update, sender);
-  maps_.take(std::move(update), upload_of(sender), std::move(file), std::move(done));
+  const queues::Upload upload = upload_of(sender);
+  clocks_.stamp(update, upload);
+  maps_.take(std::move(update), upload, std::move(file), std::move(done));
 }
 
 icd::Checked<void> Flow::take(icd::StateUpdate update, const intake::Sender& sender) {
   if (!standby_.empty()) return icd::refuse(icd::Status::ServiceUnavailable, standby_);
   for (const icd::NamedPose& pose : update.poses) told_.posted(pose.name.text());
   ADIT_TRY(telemetry_.has_room_for(update));
-  return telemetry_.take(clocks_.stamped(update, sender), sender.bytes);
+  return telemetry_.take(clocks_.stamped(update, upload_of(sender)), sender.bytes);
 }
 
 void Flow::take(icd::MarkersUpdate update, const intake::Sender& sender, MarkerArrivals::Done done) {
   if (!standby_.empty()) return done(icd::refuse(icd::Status::ServiceUnavailable, standby_));
-  clocks_.stamp(update, sender);
-  telemetry_.take(std::move(update), upload_of(sender), std::move(done));
+  queues::Upload upload = upload_of(sender);
+  clocks_.stamp(update, upload);
+  telemetry_.take(std::move(update), std::move(upload), std::move(done));
 }
 
 void Flow::take(const icd::ArtifactReport& report, const intake::Sender& sender,

@@ -130,7 +130,6 @@ class FakeHead final : public intake::RequestHead {
   std::optional<std::uint64_t> content_length() const override { return length_; }
   const std::string& peer() const override { return peer_; }
   const std::string& local() const override { return local_; }
-  std::uint64_t connection() const override { return 1; }
   FakeHead& from_to(std::string peer, std::string local) {
     peer_ = std::move(peer);
     local_ = std::move(local);

@@ -27,9 +27,9 @@ class ClocksTest : public testing::Test {
   }
   double now() const { return loop_.stamp_now(); }
   /// Stamp of a robot's pose.
-  icd::Stamp stamped(double stamp, std::uint64_t connection) {
+  icd::Stamp stamped(double stamp) {
     const icd::StateUpdate update{.header = {stamp}, .poses = {{*icd::RobotName::parse("r1"), {}}}};
-    return *clocks_->stamped(update, {.address = "10.0.0.5", .connection = connection}).at(0).stamp;
+    return *clocks_->stamped(update, {.address = "10.0.0.5"}).at(0).stamp;
   }
   void keep() {
     clocks_->keep(disk_, {});
@@ -46,10 +46,10 @@ class ClocksTest : public testing::Test {
 
 TEST_F(ClocksTest, KeepTheOffsetOfASenderAcrossARestart) {
   restart();
-  const icd::Stamp first = stamped(50, 1);
+  const icd::Stamp first = stamped(50);
   EXPECT_NEAR(first, now(), 0.1);
   restart();
-  EXPECT_NEAR(stamped(50.3, 2), first + 0.3, 1e-6);
+  EXPECT_NEAR(stamped(50.3), first + 0.3, 1e-6);
 }
 
 TEST_F(ClocksTest, KeepAnUnreadableStampFloor) {
@@ -73,10 +73,10 @@ TEST_F(ClocksTest, KeepAnUnreadableStampFloor) {
 TEST_F(ClocksTest, KeepStampsAtAnyTimeOfDayAfterARestart) {
   for (const double set : {-kFar, kFar}) {
     restart();
-    const icd::Stamp first = stamped(50, 1);
+    const icd::Stamp first = stamped(50);
     loop_.set_stamp(now() + set);  // time of day changed during the stop
     restart();
-    EXPECT_NEAR(stamped(50.3, 2), first + 0.3, 1e-6) << set;
+    EXPECT_NEAR(stamped(50.3), first + 0.3, 1e-6) << set;
     EXPECT_NEAR(now(), first, 1) << set;
   }
 }
@@ -96,11 +96,11 @@ TEST_F(ClocksTest, ContinueFromTheFloorWithoutAHardwareClock) {
 
 TEST_F(ClocksTest, ContinueAfterTheStampsOfTheFirstBox) {
   restart();
-  stamped(50, 1);
+  stamped(50);
   const double least = now() + kFar;
   StampFloor(folder_.path()).write({.floor = least, .wall = 0, .least = least});
   restart();
-  EXPECT_GE(stamped(50.3, 2), least) << "of a known sender";
+  EXPECT_GE(stamped(50.3), least) << "of a known sender";
   restart();
   EXPECT_GE(now(), least);
 }
@@ -167,9 +167,9 @@ TEST_F(ClocksTest, HaveOneOffsetPerRobotAndAddress) {
   restart();
   const icd::StateUpdate both{
       .header = {50}, .poses = {{*icd::RobotName::parse("r1"), {}}, {*icd::RobotName::parse("r2"), {}}}};
-  const icd::Stamp first = *clocks_->stamped(both, {.address = "10.0.0.5", .connection = 1}).at(0).stamp;
+  const icd::Stamp first = *clocks_->stamped(both, {.address = "10.0.0.5"}).at(0).stamp;
   loop_.set_stamp(now() + 2);
-  EXPECT_NEAR(stamped(50.5, 1), first + 0.5, 1e-6);
+  EXPECT_NEAR(stamped(50.5), first + 0.5, 1e-6);
 }
 
 TEST_F(ClocksTest, HaveOneOffsetPerMessageOfMarkers) {

@@ -61,7 +61,7 @@ class FlowTest : public testing::Test {
     return waiting;
   }
 
-  const intake::Sender sender_{.address = "10.0.0.5", .bytes = 10, .connection = 1};
+  const intake::Sender sender_{.address = "10.0.0.5", .bytes = 10};
   host::Folder folder_;
   loop::Loop loop_;
   settings::Settings settings_;
@@ -138,7 +138,7 @@ TEST_F(FlowTest, KeepsThePoseWithTheLatestStampOfAStation) {
 }
 
 TEST_F(FlowTest, KeepsTheLastPoseOfTwoAddresses) {
-  const intake::Sender other{.address = "10.0.0.6", .bytes = 10, .connection = 2};
+  const intake::Sender other{.address = "10.0.0.6", .bytes = 10};
   ASSERT_TRUE(take_poses({at("a", 0)}, 100));
   ASSERT_TRUE(take_poses({at("a", 1)}, 103)) << "its clock is ahead";
   ASSERT_TRUE(flow_->take({.header = {50}, .poses = {at("a", 5)}}, other));

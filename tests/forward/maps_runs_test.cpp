@@ -190,7 +190,7 @@ class MapsAtARunChange : public testing::Test {
     return area;
   }
 
-  const intake::Sender sender_{.address = "10.0.0.5", .bytes = 10, .connection = 1};
+  const intake::Sender sender_{.address = "10.0.0.5", .bytes = 10};
   CommandPostStub post_;
   host::Folder folder_;
   loop::Loop loop_;

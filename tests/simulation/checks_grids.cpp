@@ -76,6 +76,12 @@ bool covers(const Extent& outer, const Extent& inner) {
          lies_within(inner.y, inner.height, outer.y, outer.height);
 }
 
+/// With half a cell more on each side.
+Extent widened(const Extent& extent) {
+  const int half = extent.cell / 2;
+  return {extent.cell, extent.x - half, extent.y - half, extent.width + 1, extent.height + 1, extent.z};
+}
+
 bool overlap(const Extent& a, const Extent& b) {
   const auto one = [&](int a_begin, int a_size, int b_begin, int b_size) {
     return a_begin < b_begin + b_size * b.cell && b_begin < a_begin + a_size * a.cell;
@@ -323,7 +329,8 @@ class GridsOfOneName {
 
   /// Each of its cells has the grid's value, or the value of a grid that is not older or that this grid let
   /// pass, or was covered later by a grid on another lattice that is not older. Or an accepted grid that
-  /// overtook this one covers it, whose own cells count then.
+  /// overtook this one covers it, whose own cells count then. To a whole cell, because it may have replaced
+  /// another one that overtook this one.
   bool is_there(const PostedGrid& grid) const {
     bool all = true;
     for_each_cell(grid.extent, [&](const Extent& cell) {
@@ -335,7 +342,8 @@ class GridsOfOneName {
       all = all && (has_it || std::ranges::any_of(posted_, [&](const PostedGrid& newer) {
                       const bool came_later = newer.taken > has.place && !newer.is_before(grid);
                       const bool overtook = newer.asked->accepted() && grid.is_overtaken_by(newer);
-                      return (came_later || overtook) && covers(newer.extent, cell);
+                      return (came_later && covers(newer.extent, cell)) ||
+                             (overtook && covers(widened(newer.extent), cell));
                     }));
     });
     return all;

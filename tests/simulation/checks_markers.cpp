@@ -17,9 +17,9 @@ namespace adit::simulation {
 namespace {
 
 constexpr double kOneClock = 1;  // seconds by which stamps of one clock may differ
-/// Seconds. A message that is late by less than kOutOfOrder never shows that its clock was set back; one
-/// that is late by more than kJump always does.
-constexpr double kOutOfOrder = 1, kJump = 5;
+/// Seconds. A clock was certainly set back if it has run on for kSteady, with no message more than kJitter
+/// late.
+constexpr double kSteady = 5, kJitter = 0.9;
 
 /// Seconds: until a message leaves on a new connection; the least lifetime that is sent; a rounding.
 constexpr double kConnects = 4, kLeastLifetime = 0.1, kLeastStep = 0.002;
@@ -33,10 +33,11 @@ struct Change {
   bool fades = false;            // by its lifetime
   const Asked* asked = nullptr;  // of a marker
   Item item = {};
+  double late = 0;  // seconds from its stamp to its post, of a backlog
 
   bool is_of_one_clock(const Change& other) const {
     return stamp != 0 && other.stamp != 0 && sender == other.sender &&
-           std::abs((stamp - began) - (other.stamp - other.began)) < kOneClock;
+           std::abs((stamp + late - began) - (other.stamp + other.late - other.began)) < kOneClock;
   }
 };
 using Changes = std::vector<Change>;
@@ -59,14 +60,22 @@ bool is_before(const Change& change, const Change& other, const Changes& all,
   return is_apart ? by_arrival : by_stamps;
 }
 
-/// Whether `early` may have replaced `late`, which was posted after it, because of its stamp. That is
-/// allowed for the first late message of a clock that was set back (`queues/step_back.hpp`).
-bool seems_overtaken(const Change& late, const Change& early, const Changes& all) {
-  if (late.stamp == 0 || late.stamp >= early.stamp || late.stamp < early.stamp - kJump) return false;
-  if (late.stamp >= early.stamp - kOutOfOrder) return true;
+/// Whether `early` may have replaced `late`, which was posted after it, because its stamp is later. That is
+/// allowed until the client's clock has certainly run on since it was set back (`queues/stamps.hpp`).
+bool seems_overtaken(const Change& late, const Change& early, const Changes& all,
+                     const std::vector<double>& forgets) {
+  if (late.stamp == 0 || late.stamp >= early.stamp) return false;
+  const auto keeps_time = [&](const Change& first, const Change& each) {
+    const bool is_between = each.ended >= first.began && each.began <= late.ended;
+    if (!is_between || each.sender != first.sender) return true;
+    return each.accepted && each.stamp != 0 && each.late == 0 && each.stamp < early.stamp &&
+           std::abs((each.ended - each.stamp) - (first.began - first.stamp)) < kJitter;
+  };
   return std::ranges::none_of(all, [&](const Change& first) {
-    return first.accepted && early.ended < first.began && first.ended < late.began &&
-           first.stamp < early.stamp - kOutOfOrder && first.stamp <= late.stamp;
+    return early.ended < first.began && first.stamp < early.stamp && late.stamp - first.stamp >= kSteady &&
+           std::ranges::none_of(
+               forgets, [&](double at) { return at > first.began && at < late.ended; }) &&
+           std::ranges::all_of(all, [&](const Change& each) { return keeps_time(first, each); });
   });
 }
 
@@ -79,7 +88,7 @@ std::set<std::int64_t> last_of(const Changes& changes, const std::vector<double>
     bool over = false;
     for (const Change& other : changes)
       over = over || (other.accepted && is_before(change, other, changes, forgets) &&
-                      !seems_overtaken(other, change, changes));
+                      !seems_overtaken(other, change, changes, forgets));
     if (!over) last.insert(change.serial);
     if (!over && change.fades) last.insert(0);
     any = any || change.accepted;
@@ -236,9 +245,14 @@ void pose_arrived(const Evidence& evidence, Broken& broken) {
   check_runs(evidence, states, broken);
   for (const Asked& asked : states) {
     if (!asked.may_count()) continue;
-    for (const Item& item : asked.items)
-      changes[item.who].push_back(
-          {asked.began, asked.ended, item.stamp, asked.accepted(), item.serial, item.says});
+    for (const Item& item : asked.items) {
+      Change change{asked.began, asked.ended, item.stamp, asked.accepted(), item.serial, item.says};
+      if (item.says.size() > 1) {
+        change.late = item.says[1] / 1000.0;
+        change.sender.pop_back();
+      }
+      changes[item.who].push_back(std::move(change));
+    }
   }
   std::map<std::string, std::int64_t> taken;
   // Another process or another course knows no accepted poses.

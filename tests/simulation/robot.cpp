@@ -16,7 +16,8 @@ constexpr std::size_t kLongestMap = 8;  // clouds until its map begins again
 constexpr int kLargeGrids = 3;          // in some worlds of large maps
 constexpr int kOfLargeCloud = 60;       // points, at least
 constexpr int kLargeClouds = 6;         // in a world of large maps
-constexpr double kJump = 6;             // seconds; a smaller jump may be messages that overtook each other
+constexpr double kJump = 6;  // seconds; a clock that was set back by less is soon past its latest stamp
+constexpr double kLongestBacklog = 40;  // seconds
 
 Style style(const World& world, const std::string& name) {
   Random random = world.random("style " + name), ros = world.random("ros style of " + name);
@@ -53,6 +54,9 @@ Robot::Robot(World& world, int number)
       jump_(random_.chance(0.3) ? (random_.chance(0.5) ? 1 : -1) * random_.between(kJump, 2000) : 0),
       jumps_at_(random_.between(1, 60)),
       stamps_(random_.chance(0.7)),
+      logs_(world.random("log of " + name_)),
+      has_backlog_(stamps_ && jump_ == 0 && logs_.chance(0.3)),
+      log_client_(world, address(number), {.patience = 30}, world.random("log client " + name_)),
       every_(random_.between(0.1, 2)),
       wipes_(random_.chance(0.5) ? 0.1 : 0),
       writings_(world.random("writings of " + name_).chance(0.01) ? kWritings : 0),
@@ -70,6 +74,7 @@ Robot::Robot(World& world, int number)
 
 void Robot::post_until(double end) {
   end_ = end;
+  if (has_backlog_) world_.after(seconds(logs_.between(0, end)), [this] { fill_backlog(); });
   world_.after(seconds(random_.between(0, every_)), [this] { post(); });
 }
 
@@ -89,6 +94,27 @@ void Robot::post() {
 void Robot::post_later() {
   const double pause = row_ > 0 ? 0.01 : every_ * random_.between(0.2, 1.8);
   world_.after(seconds(pause), [this] { post(); });
+}
+
+void Robot::fill_backlog() {
+  const double now = world_.time(), span = std::min(now, logs_.between(2, kLongestBacklog));
+  const std::uint64_t poses = 5 + logs_.below(60);
+  for (std::uint64_t i = 1; i <= poses; ++i)
+    backlog_.push_back(now - span * static_cast<double>(i) / static_cast<double>(poses));
+  if (logs_.chance(0.7)) std::ranges::reverse(backlog_);  // the newest comes last
+  std::ranges::reverse(backlog_);
+  post_backlog();
+}
+
+void Robot::post_backlog() {
+  if (backlog_.empty() || world_.time() > end_) return;
+  const double late = world_.time() - backlog_.back();
+  backlog_.pop_back();
+  Posting posting{kState, {item(name_, {number_, static_cast<int>(late * 1000)})}};
+  posting.items.front().stamp -= late;
+  log_client_.ask_several(request_of(posting, style_), events_of(posting), [this](int) {
+    world_.after(seconds(logs_.between(0.005, 0.2)), [this] { post_backlog(); });
+  });
 }
 
 Posting Robot::next() {

@@ -15,7 +15,8 @@ class World;
 /// A robot. It posts its pose, grids that cover earlier ones or not, on one lattice or on many, clouds singly
 /// or several in a row, with new points or all points since its map began, and markers that it changes and
 /// deletes. Its serials ascend. Some robots post a fourth of their messages on a slow connection, and go on
-/// with the others meanwhile.
+/// with the others meanwhile. Some post a backlog of old poses beside their new ones, faster than time or
+/// not.
 class Robot {
  public:
   static constexpr std::int64_t kSerials = 4096;  // serials per robot, from `number` times this
@@ -27,6 +28,8 @@ class Robot {
  private:
   void post();
   void post_later();
+  void fill_backlog();
+  void post_backlog();
   Item item(std::string who, Says says = {});
   Item grid();
   Item window();
@@ -50,9 +53,13 @@ class Robot {
   const double jump_;   // seconds by which its clock is set, once
   const double jumps_at_;
   const bool stamps_;
-  const double every_;  // approximate seconds between two messages
-  const double wipes_;  // probability that a change of markers deletes all
-  int writings_;        // remaining markers with texts so long that they fill the journal
+  Random logs_;
+  const bool has_backlog_;
+  Client log_client_;
+  std::vector<double> backlog_ = {};  // times of poses, the next one last
+  const double every_;                // approximate seconds between two messages
+  const double wipes_;                // probability that a change of markers deletes all
+  int writings_;                      // remaining markers with texts so long that they fill the journal
   double end_ = 0;
   std::int64_t serial_;
   Extent extent_;                    // of its growing map

@@ -38,7 +38,7 @@ class Client {
   Client& operator=(const Client&) = delete;
 
   MHD_Connection* connection() const { return connection_; }
-  std::uint64_t number() const { return number_; }  // RequestHead::connection()
+  std::uint64_t number() const { return number_; }  // from 1, unique in the process
   const std::string& peer() const { return addresses_.peer; }
   const std::string& local() const { return addresses_.local; }
   Engine& engine() const { return engine_; }

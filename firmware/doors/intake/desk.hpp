@@ -18,8 +18,7 @@ namespace adit::intake {
 /// The sender of a message, and the message's size.
 struct Sender {
   std::string address;
-  std::size_t bytes = 0;         // of the body as received
-  std::uint64_t connection = 0;  // RequestHead::connection()
+  std::size_t bytes = 0;  // of the body as received
   /// When the upload began and when it was whole, as places in the order of all beginnings and ends; from 1.
   std::uint64_t began = 0, ended = 0;
   /// The first beginning among this address's other uploads to the URI that are not over; 0: there are none.

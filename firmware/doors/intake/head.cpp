@@ -17,13 +17,8 @@ HeadParts parts_of(std::string_view head) {
 }
 
 Head::Head(std::string text, Target target, const std::string& peer, const std::string& local,
-           std::uint64_t number, std::optional<std::uint64_t> length)
-    : text_(std::move(text)),
-      target_(std::move(target)),
-      peer_(peer),
-      local_(local),
-      number_(number),
-      length_(length) {
+           std::optional<std::uint64_t> length)
+    : text_(std::move(text)), target_(std::move(target)), peer_(peer), local_(local), length_(length) {
   const HeadParts parts = parts_of(text_);
   method_ = parts.method;
   fields_.reserve(16);

@@ -22,7 +22,7 @@ class Head final : public RequestHead {
  public:
   /// `text`: a head that HeadChecker has found whole. `target`: its target.
   Head(std::string text, Target target, const std::string& peer, const std::string& local,
-       std::uint64_t number, std::optional<std::uint64_t> length);
+       std::optional<std::uint64_t> length);
   Head(const Head&) = delete;
   Head& operator=(const Head&) = delete;
 
@@ -33,7 +33,6 @@ class Head final : public RequestHead {
   std::optional<std::uint64_t> content_length() const override { return length_; }
   const std::string& peer() const override { return peer_; }
   const std::string& local() const override { return local_; }
-  std::uint64_t connection() const override { return number_; }
 
  private:
   std::string text_;
@@ -42,7 +41,6 @@ class Head final : public RequestHead {
   Target target_;
   const std::string& peer_;
   const std::string& local_;
-  std::uint64_t number_;
   std::optional<std::uint64_t> length_;
 };
 

@@ -138,7 +138,6 @@ std::unique_ptr<BodySink> IcdRoutes::open(const RequestHead& head, std::shared_p
   const auto length = head.content_length();
   Sender sender;
   sender.address = head.peer();
-  sender.connection = head.connection();
   sender.began = ++uploads_->last;
   sender.bytes = static_cast<std::size_t>(length.value_or(0));
   Visit visit{.desk = desk_,

@@ -54,7 +54,6 @@ class RequestHead {
   virtual std::optional<std::uint64_t> content_length() const = 0;   // absent if chunked
   virtual const std::string& peer() const = 0;                       // "10.0.0.5"
   virtual const std::string& local() const = 0;  // the box's address that the client used: "10.0.0.1"
-  virtual std::uint64_t connection() const = 0;  // from 1, unique in the process
 };
 
 struct Header {

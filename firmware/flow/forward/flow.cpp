@@ -15,7 +15,6 @@ namespace {
 queues::Upload upload_of(const intake::Sender& sender) {
   return {.address = sender.address,
           .bytes = sender.bytes,
-          .connection = sender.connection,
           .began = sender.began,
           .ended = sender.ended,
           .overlaps = sender.overlaps};

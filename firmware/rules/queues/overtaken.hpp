@@ -21,8 +21,7 @@ namespace adit::queues {
 /// message whose upload began later is the newer one, whatever its stamp.
 struct Upload {
   std::string address = {};
-  std::size_t bytes = 0;         // of the body as received
-  std::uint64_t connection = 0;  // within this process; 0: unknown
+  std::size_t bytes = 0;  // of the body as received
   /// Places in the order in which uploads began and ended, from 1; 0: unknown.
   std::uint64_t began = 0, ended = 0;
   /// The first beginning of the client's other uploads that are not over; 0: there are none.

@@ -31,8 +31,17 @@ StampShift::Clock* StampShift::find(const Stamper& stamper) {
   return clock == its.clocks.end() ? nullptr : &clock->second;
 }
 
+bool StampShift::is_set_back(Clock& clock, icd::Stamp stamp, double now) {
+  if (stamp >= clock.latest) clock.older.reset();
+  if (stamp >= clock.latest || stamp < clock.latest - kOldest) return stamp < clock.latest;
+  const auto& older = clock.older;
+  if (!older || stamp < older->stamp || stamp - older->stamp > now - older->at + kJitter)
+    clock.older = Older{stamp, now};
+  return stamp - clock.older->stamp >= kSteady;
+}
+
 icd::Stamp StampShift::shift(Clock*& clock, const Stamper& stamper, std::optional<icd::Stamp> stamp,
-                             double now, const Upload& upload, Connection connection) {
+                             double now, const Upload& upload) {
   if (!is_set(stamp)) return clock == nullptr ? now : std::max(now, clock->latest_given());
   const bool is_new = clock == nullptr;
   if (is_new) {
@@ -47,21 +56,15 @@ icd::Stamp StampShift::shift(Clock*& clock, const Stamper& stamper, std::optiona
   const bool is_of_before = upload.began < clock->stepped && std::abs(shifted - now) > kJump &&
                             before <= clock->before.latest_given() + kJump;
   if (is_of_before) return std::max(before, 0.0);
-  const bool is_overtaken =
-      *stamp < clock->latest && upload.began < clock->ended && upload.ended != clock->ended;
-  if (is_overtaken) return std::max(shifted, 0.0);
-  const bool set_back = clock->step_back.shown_by(*stamp, connection);
-  const bool steps = set_back || *stamp < clock->latest - kJump || shifted > now + kJump;
+  const bool steps = is_set_back(*clock, *stamp, now) || shifted > now + kJump;
   if (steps) {
+    clock->older.reset();
     clock->before = static_cast<const SenderClock&>(*clock);
     clock->stepped = upload.ended;
     shifted = clock->ours = std::max(now, clock->latest_given());
     clock->theirs = clock->latest = *stamp;
   }
-  if (*stamp >= clock->latest) {
-    clock->latest = *stamp;
-    clock->ended = upload.ended;
-  }
+  clock->latest = std::max(clock->latest, *stamp);
   const bool to_record = is_new || steps || stamper.uri != icd::Uri::StateUpdate;
   if (to_record && !std::exchange(clock->has_changed, true)) changed_.push_back(stamper);
   return std::max(shifted, 0.0);  // ICD 6.2: a stamp is never negative
@@ -70,14 +73,14 @@ icd::Stamp StampShift::shift(Clock*& clock, const Stamper& stamper, std::optiona
 icd::Stamp StampShift::shift(const Stamper& stamper, std::optional<icd::Stamp> stamp, double now,
                              const Upload& upload) {
   Clock* clock = find(stamper);
-  return shift(clock, stamper, stamp, now, upload, upload.connection);
+  return shift(clock, stamper, stamp, now, upload);
 }
 
 void StampShift::shift_each(const Stamper& stamper, std::span<icd::Marker> markers, double now,
                             const Upload& upload) {
   Clock* clock = find(stamper);
   for (icd::Marker& marker : markers)
-    marker.header.stamp = shift(clock, stamper, marker.header.stamp, now, upload, 0);
+    marker.header.stamp = shift(clock, stamper, marker.header.stamp, now, upload);
 }
 
 StampShift::Clocks StampShift::changed() {

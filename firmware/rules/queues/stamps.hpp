@@ -16,7 +16,6 @@
 #include "icd/markers_update.hpp"
 #include "icd/uri.hpp"
 #include "queues/overtaken.hpp"
-#include "queues/step_back.hpp"
 
 namespace adit::queues {
 
@@ -45,14 +44,14 @@ struct SenderClock {
 /// Converts each sender's time stamps to the gateway's clock and keeps their spacing (ICD 6.2, promise 5).
 ///
 /// - A sender's first stamp becomes now. Its offset is kept from then on: two messages that it stamped 0.3 s
-/// apart
-///   stay 0.3 s apart, however late they arrive.
+///   apart stay 0.3 s apart, however late they arrive.
 /// - If a sender's clock steps, its offset is set again: the stamp becomes now, or the sender's latest
-/// converted
-///   stamp if that is later. So no stamp goes back. A step is a jump back by more than kJump, a smaller one
-///   that StepBack detects, or a stamp more than kJump after now. A message that was overtaken (Upload) shows
-///   no step. A message whose upload began before a step is converted as before it, if its stamp fits only
-///   so.
+///   converted stamp if that is later. So no stamp goes back. A step is a stamp more than kJump after now, or
+///   more than kOldest before the latest one.
+/// - Stamps that are less old may be a backlog, posted after newer messages: their stamps jump, or advance
+///   faster than time. The clock was set back only if they advance by kSteady as time does, and none of the
+///   sender's is as late as its latest one meanwhile. Before that they are converted as before the step.
+/// - A message whose upload began before a step is converted as before it, if its stamp fits only so.
 /// - A message without a stamp gets its stamp in the same way.
 /// - An address has at most kMostOfAddress clocks; further robots share one clock for each URI. Beyond
 ///   kMostAddresses, the address that was silent longest is dropped.
@@ -60,7 +59,8 @@ struct SenderClock {
 /// The cost of a stamp does not depend on the number of clocks.
 class StampShift {
  public:
-  static constexpr double kJump = 5.0;  // seconds
+  static constexpr double kJump = 5.0, kSteady = 5.0, kOldest = 3600.0;  // seconds
+  static constexpr double kJitter = 1.0;  // seconds by which a message may arrive later than the one before
   static constexpr std::size_t kMostOfAddress = 64, kMostAddresses = 64;
 
   /// The converted stamp. `now`: the gateway's clock, seconds since 1970.
@@ -87,11 +87,15 @@ class StampShift {
   void given(const Stamper& stamper, icd::Stamp stamp);
 
  private:
+  /// An older stamp, and when it arrived.
+  struct Older {
+    icd::Stamp stamp = 0;
+    double at = 0;
+  };
   struct Clock : SenderClock {
-    StepBack step_back = {};
-    std::uint64_t ended = 0;    // Upload::ended of the message with the latest stamp
-    SenderClock before = {};    // the last step; for uploads that had begun
-    std::uint64_t stepped = 0;  // Upload::ended of the message that showed it
+    std::optional<Older> older = {};  // since then, no stamp was the latest, and none went faster than time
+    SenderClock before = {};          // the last step; for uploads that had begun
+    std::uint64_t stepped = 0;        // Upload::ended of the message that showed it
     bool has_changed = false;
   };
   using Named = std::pair<icd::Uri, std::string>;
@@ -107,7 +111,9 @@ class StampShift {
   Clock* find(const Stamper& stamper);
   /// `clock`: the stamper's, or null. Sets it if the first stamp creates the clock.
   icd::Stamp shift(Clock*& clock, const Stamper& stamper, std::optional<icd::Stamp> stamp, double now,
-                   const Upload& upload, Connection connection);
+                   const Upload& upload);
+  /// Whether the stamp shows that the clock was set back.
+  static bool is_set_back(Clock& clock, icd::Stamp stamp, double now);
 
   std::map<std::string, Address> addresses_;
   std::vector<Stamper> changed_;

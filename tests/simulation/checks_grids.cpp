@@ -329,9 +329,13 @@ class GridsOfOneName {
 
   /// Each of its cells has the grid's value, or the value of a grid that is not older or that this grid let
   /// pass, or was covered later by a grid on another lattice that is not older. Or an accepted grid that
-  /// overtook this one covers it, whose own cells count then. To a whole cell, because it may have replaced
-  /// another one that overtook this one.
+  /// overtook this one covers it, whose own cells count then. If this grid was overtaken, another one may
+  /// have replaced the one that overtook it, so both cover to a whole cell.
   bool is_there(const PostedGrid& grid) const {
+    const bool may_be_overtaken = std::ranges::any_of(posted_, [&](const PostedGrid& newer) {
+      return newer.asked->may_count() && newer.asked->began > grid.asked->began &&
+             newer.asked->whole_at < grid.asked->ended;
+    });
     bool all = true;
     for_each_cell(grid.extent, [&](const Extent& cell) {
       const auto found = has_.find(key_of(cell));
@@ -342,8 +346,8 @@ class GridsOfOneName {
       all = all && (has_it || std::ranges::any_of(posted_, [&](const PostedGrid& newer) {
                       const bool came_later = newer.taken > has.place && !newer.is_before(grid);
                       const bool overtook = newer.asked->accepted() && grid.is_overtaken_by(newer);
-                      return (came_later && covers(newer.extent, cell)) ||
-                             (overtook && covers(widened(newer.extent), cell));
+                      return (came_later || overtook) &&
+                             covers(may_be_overtaken ? widened(newer.extent) : newer.extent, cell);
                     }));
     });
     return all;

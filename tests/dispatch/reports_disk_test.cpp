@@ -53,6 +53,25 @@ TEST_F(FullDisk, PassesOnAnAnswerAndWritesItLater) {
   EXPECT_EQ(scene_.output().ledger.at(1).answer, recorded_answer(1).body);
 }
 
+TEST_F(FullDisk, KeepsAnAnswerAndANewRunOverAChangeOfTheCommandPost) {
+  scene_.repeat_status(10, 20, 3);
+  scene_.post();
+  fill();
+  scene_.answer(recorded_answer(1));
+  scene_.wait(1);
+  scene_.hear(25, 0, 0.5);  // another run
+  const std::int64_t run = scene_.reports().run().number;
+  scene_.move_to("10.100.2.200:8000");
+  EXPECT_EQ(scene_.state(1), Answered);
+  scene_.move_to("10.100.1.200:8000");
+  EXPECT_EQ(scene_.reports().run().number, run);
+  make_room();
+  scene_.wait(1);
+  EXPECT_EQ(on_disk(1), Answered);
+  scene_.restart();
+  EXPECT_EQ(scene_.reports().run().number, run);
+}
+
 TEST_F(FullDisk, ResendsNoReportThatIsNotStoredAsQueued) {
   scene_.post();
   scene_.lose();

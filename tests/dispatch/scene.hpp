@@ -107,7 +107,7 @@ class Scene {
   /// The settings name another Command Post; the process goes on.
   void move_to(const std::string& post) {
     auto next = std::make_unique<Reports>(rules_, output_);
-    next->open(all_reports(), all_runs(), time(), post, reports_.get());
+    next->carry_on(*reports_, time(), post);
     reports_ = std::move(next);
   }
 

@@ -96,7 +96,8 @@ void OpenReports::add(const Event& event) {
   }
   const auto sent = sent_.find(event.request);
   if (event.kind != Kind::Replied || sent == sent_.end()) return;
-  const bool is_answered = event.status / 100 == 2 && !is_odd_ && recorded_.contains(sent->second);
+  const bool is_answered =
+      event.status / 100 == 2 && event.who.empty() && !is_odd_ && recorded_.contains(sent->second);
   if (is_answered) {
     open_.erase(sent->second);
     answered_[sent->second] = event.at;

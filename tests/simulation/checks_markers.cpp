@@ -22,7 +22,7 @@ constexpr double kOneClock = 1;  // seconds by which stamps of one clock may dif
 constexpr double kSteady = 5, kJitter = 0.9;
 
 /// Seconds: until a message leaves on a new connection; the least lifetime that is sent; a rounding.
-constexpr double kConnects = 4, kLeastLifetime = 0.1, kLeastStep = 0.002;
+constexpr double kConnects = 4, kLeastLifetime = 0.1, kLeastStep = 0.002, kSoonAfter = 0.1;
 
 /// A request that may have set a value, and when.
 struct Change {
@@ -149,8 +149,9 @@ struct Fading {
   double began = 0, ended = 0, lifetime = 0;
 
   /// The fault of an item, or "". `leaves`, `left`: when the first and the last byte of its message left.
-  std::string check(const Item& item, double leaves, double left, bool same_process) const {
-    const double most = lifetime - (leaves - ended) + kConnects, sent = item.says[2] / 1000.0;
+  /// `stood`: seconds for which the process stood still right before that.
+  std::string check(const Item& item, double leaves, double left, double stood, bool same_process) const {
+    const double most = lifetime - (leaves - ended) + kConnects + stood, sent = item.says[2] / 1000.0;
     const double least = lifetime - (left - began) - kLeastStep;
     if (item.says[0] == kDelete) return same_process && least > 0 ? "it was deleted too early" : "";
     if (most < 0) return "it was sent after its end";
@@ -170,17 +171,20 @@ void check_lifetimes(const Evidence& evidence, const std::vector<Asked>& all, Br
     }
   }
   double process = 0;                      // when it began
+  double stood = 0, stood_until = 0;       // the last time that it stood still
   std::map<std::uint64_t, double> leaves;  // by connection
   for (const Event& event : evidence.events) {
     if (event.kind == Kind::Begins) process = event.at;
+    if (event.kind == Kind::Slow) stood = event.stamp, stood_until = event.at + event.stamp;
     if (event.what == kSendRejected) return;  // the operator's send begins the lifetime again
     if (event.what != kMarkers) continue;
     if (event.kind == Kind::Leaves) leaves[event.request] = event.at;
     const auto fading = event.kind == Kind::Left ? posted.find(event.serial) : posted.end();
     if (fading == posted.end()) continue;
     const Item item{.who = event.who, .serial = event.serial, .says = event.says};
-    const std::string wrong =
-        fading->second.check(item, leaves[event.request], event.at, fading->second.began > process);
+    const std::string wrong = fading->second.check(
+        item, leaves[event.request], event.at, stood_until > leaves[event.request] - kSoonAfter ? stood : 0,
+        fading->second.began > process);
     if (wrong.empty()) continue;
     broken.push_back(
         icd::sentence("MarkersArrived: marker ", event.serial, " left at ", event.at, ": ", wrong));

@@ -81,6 +81,7 @@ void paced(const Evidence& evidence, Broken& broken) {
   std::map<std::string, Asked> asked;
   DiskFaultsSeen disk;
   double forgotten_until = 0;
+  std::set<std::uint64_t> under_way;  // connections of requests to this course
   for (const Event& event : evidence.events) {
     if (event.kind == Kind::Given && event.stamp == 0 && event.serial < kLeastGiven) {
       broken.push_back(icd::sentence("Paced: a line without a limit was given ", event.serial,
@@ -92,13 +93,17 @@ void paced(const Evidence& evidence, Broken& broken) {
       asked.clear();
     }
     disk.add(event);
-    if (event.kind == Kind::Begins || event.what == kCourse)
+    if (event.kind == Kind::Begins || event.what == kCourse) {
       std::erase_if(asked, [](const auto& each) { return each.second.is_busy; });
+      under_way.clear();
+    }
+    if (event.kind == Kind::Leaves) under_way.insert(event.request);
     if (event.kind == Kind::Dies) asked.clear();  // the answer may have been read and not yet processed
     reports.add(event);
     // A status may be needed by a report.
     const bool is_busy = event.status == 503 && event.stamp > 0 && event.what != kReports;
-    if (event.kind == Kind::Replied && (event.status == 429 || is_busy))
+    const bool is_of_course = event.kind == Kind::Replied && under_way.erase(event.request) > 0;
+    if (event.kind == Kind::Replied && (event.status == 429 || (is_busy && is_of_course)))
       asked[event.what] = {event.at, std::min(event.stamp, kLongestPause), event.process, is_busy};
     if (event.kind != Kind::Leaves && event.kind != Kind::Complete) continue;
     const auto before = last[event.kind].find(event.what);

@@ -74,18 +74,12 @@ Scoring::Scoring(loop::Loop& loop, uplink::Servers& servers, ledger::Ledger& led
       deadline_(loop.timer([this] { deadline_came(); })) {}
 
 void Scoring::start() {
-  open_reports();
+  reports_->clock_stepped(clocks_.clock_step());
+  // On standby without the address, so that no run begins.
+  reports_->open(ledger_.reports(), ledger_.runs(), time(), stopping_ ? "" : channel_.address());
   if (stopping_) return;
   channel_.keep_warm();
   ask_soon();
-}
-
-/// On standby without the address, so that no run begins.
-void Scoring::open_reports() {
-  auto next = std::make_unique<dispatch::Reports>(rules_of(settings_.reports), output_);
-  next->clock_stepped(clocks_.clock_step());
-  next->open(ledger_.reports(), ledger_.runs(), time(), stopping_ ? "" : channel_.address(), reports_.get());
-  reports_ = std::move(next);
 }
 
 void Scoring::settings_changed() {
@@ -105,7 +99,10 @@ void Scoring::endpoint_turned() {
   reports_paused_until_ = status_paused_until_ = {};
   status_cache_ = {};
   ask_at_ = loop_.now();
-  open_reports();
+  auto next = std::make_unique<dispatch::Reports>(rules_of(settings_.reports), output_);
+  next->clock_stepped(clocks_.clock_step());
+  next->carry_on(*reports_, time(), channel_.address());
+  reports_ = std::move(next);
   watch_deadlines();
   counts_.changed();
 }
@@ -181,7 +178,10 @@ std::string Scoring::why_no_status() const {
   if (!channel_.trouble().empty()) return channel_.trouble();
   if (!channel_.is_free())
     return "the Command Post serves one connection at a time, and another message is in flight";
-  return asked_status_ ? "the Command Post has not answered yet" : "reports go first";
+  if (asked_status_) return "the Command Post has not answered yet";
+  if (reports_->next_requests(time()).report) return "reports go first";
+  return status_paused_until_ > loop_.now() ? "the Command Post asked for a pause"
+                                            : "the Command Post is asked within a second";
 }
 
 void Scoring::pump() noexcept {

@@ -96,7 +96,6 @@ class Scoring {
   void hear_time();
   /// Reports get stamps, because the stamp clock is never set and rules compare the times.
   dispatch::Time time() const { return {loop_.now(), loop_.stamp_now()}; }
-  void open_reports();
   void endpoint_turned();
   void take(const dispatch::PostedReport& posted, dispatch::ClientId client) noexcept;
   void ask_soon();

@@ -38,6 +38,12 @@ void ReportBook::open(std::vector<Report> all) {
   for (Report& report : all) put(std::move(report));
 }
 
+void ReportBook::carry_on(const ReportBook& before) {
+  for (const auto& [number, report] : before.reports_) put(report);
+  unwritten_ = before.unwritten_;
+  unwritten_runs_ = before.unwritten_runs_;
+}
+
 std::int64_t ReportBook::add(Report report, std::span<const ReportEvent> events, const std::string& note,
                              const Edit& edit, std::span<const Report> before) {
   report.number = next_number();

@@ -37,6 +37,8 @@ class ReportBook {
       : output_(output), follow_(std::move(follow)) {}
 
   void open(std::vector<Report> all);
+  /// Takes all reports, and what is not on disk yet.
+  void carry_on(const ReportBook& before);
 
   /// Of the next report.
   std::int64_t next_number() const { return reports_.empty() ? 1 : reports_.rbegin()->first + 1; }

@@ -1,6 +1,7 @@
 #include "dispatch/reports.hpp"
 
 #include <algorithm>
+#include <ranges>
 #include <utility>
 
 #include "icd/require.hpp"
@@ -20,11 +21,20 @@ Reports::Reports(const ReportRules& rules, Output& output)
       changes_(rules_.policy, book_, account_, review_, doubts_, clients_),
       sender_(book_, account_, review_, doubts_, clients_, changes_) {}
 
-void Reports::open(std::vector<Report> all, std::vector<Run> runs, Time time, const std::string& post,
-                   Reports* before) {
-  icd::require(before == nullptr || before->sending() == nullptr);
-  if (before != nullptr) clients_.carry_on(before->clients_);  // first, so that open() can answer them
+void Reports::open(std::vector<Report> all, std::vector<Run> runs, Time time, const std::string& post) {
   book_.open(std::move(all));
+  begin(std::move(runs), time, post);
+}
+
+void Reports::carry_on(Reports& before, Time time, const std::string& post) {
+  icd::require(before.sending() == nullptr);
+  clients_.carry_on(before.clients_);  // first, so that begin() can answer them
+  book_.carry_on(before.book_);
+  const auto runs = before.runs().all() | std::views::values;
+  begin({runs.begin(), runs.end()}, time, post);
+}
+
+void Reports::begin(std::vector<Run> runs, Time time, const std::string& post) {
   std::int64_t latest_run = 1;
   for (const auto& [number, report] : book_.all()) latest_run = std::max(latest_run, report.run);
   account_.open(std::move(runs), latest_run, post);

@@ -33,10 +33,11 @@ class Reports {
   Reports(const ReportRules& rules, Output& output);
 
   /// Starts from the ledger. If `post` is another Command Post than before, its last run or a new one becomes
-  /// the present run. Takes over the clients of `before` with their deadlines. Requires that `before` is null
-  /// or has no report in flight.
-  void open(std::vector<Report> all, std::vector<Run> runs, Time time, const std::string& post = "",
-            Reports* before = nullptr);
+  /// the present run.
+  void open(std::vector<Report> all, std::vector<Run> runs, Time time, const std::string& post = "");
+  /// Starts from `before`, which has no report in flight: with its steps that the ledger lacks, because the
+  /// disk failed, and with its clients and their deadlines.
+  void carry_on(Reports& before, Time time, const std::string& post);
   /// The settings name `post`. Call open() after the request in flight. Reports that arrive before that
   /// belong to the run at `post`, also after a restart.
   void will_move(const std::string& post, Time time) { changes_.will_move(post, time); }
@@ -102,6 +103,7 @@ class Reports {
   bool is_asking(const Report& report) const { return doubts_.is_asking(report); }
 
  private:
+  void begin(std::vector<Run> runs, Time time, const std::string& post);
   void follow(std::int64_t number, ReportAction action, Time time);
   bool is_fresh(Instant now) const { return &meant_run() == &run() && account_.is_fresh(now); }
   bool take_new(Report report, const Hold& hold, ClientId client, bool may_send, Time time);

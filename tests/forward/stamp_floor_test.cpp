@@ -7,6 +7,7 @@
 
 #include "host/folder.hpp"
 #include "host/log.hpp"
+#include "host/service.hpp"
 
 namespace adit::forward {
 namespace {
@@ -15,6 +16,16 @@ namespace fs = std::filesystem;
 
 class StampFloorTest : public testing::Test {
  protected:
+  static constexpr StampFloor::Kept kWritten{
+      .floor = 1.7e9, .wall = 1.6e9, .least = 1.5e9, .ledger = {.reports = 7, .log = 3}};
+  static constexpr std::size_t kCopy = 80;  // bytes of a copy
+
+  StampFloor::Kept read() const { return StampFloor(folder_.string()).read().value(); }
+  std::string bytes() const { return host::read_file(folder_ / StampFloor::kFile).value(); }
+  void put(std::string_view file) const {
+    std::ofstream(folder_ / StampFloor::kFile, std::ios::binary) << file;
+  }
+
   const host::Folder its_folder_;
   const fs::path folder_ = its_folder_.path();
 };
@@ -53,13 +64,6 @@ TEST_F(StampFloorTest, KeepsTheSizeOfTheLedger) {
   living.write(*living.due(1.7e9, 1.6e9, {.reports = 5000000000, .log = 12}));
   EXPECT_EQ(StampFloor(folder_.string()).read()->ledger.reports, 5000000000);
   EXPECT_EQ(StampFloor(folder_.string()).read()->ledger.log, 12U);
-  for (const char* text : {"1.7e9\n1.6e9\n", "1.7e9\n1.6e9\n0\nmany\n-1\n"}) {
-    std::ofstream(folder_ / StampFloor::kFile) << text;
-    const StampFloor::Kept kept = StampFloor(folder_.string()).read().value();
-    EXPECT_EQ(kept.floor, 1.7e9) << text;
-    EXPECT_EQ(kept.ledger.reports, 0) << text;
-    EXPECT_EQ(kept.ledger.log, 0U) << text;
-  }
 }
 
 TEST_F(StampFloorTest, IsWrittenSeldom) {
@@ -116,12 +120,47 @@ TEST_F(StampFloorTest, IsWrittenInPlaceOnAFullDisk) {
 }
 
 TEST_F(StampFloorTest, IsZeroIfItsFileIsInvalid) {
-  EXPECT_EQ(StampFloor(folder_.string()).read()->floor, 0);
-  for (const char* text : {"", "soon", "-5", "nan", "inf", "1e300"}) {
-    std::ofstream(folder_ / StampFloor::kFile) << text;
-    const StampFloor::Kept kept = StampFloor(folder_.string()).read().value();
-    EXPECT_EQ(kept.floor, 0) << text;
-    EXPECT_EQ(kept.wall, 0) << text;
+  EXPECT_EQ(read().floor, 0);
+  for (const char* text : {"", "soon", "1700000000.0\n1600000000.0\n0.0\n7\n3\n"}) {
+    const std::uint64_t before = host::logged();
+    put(text);
+    EXPECT_EQ(read(), StampFloor::Kept()) << text;
+    EXPECT_EQ(host::logged(), before + 1) << text;
+  }
+}
+
+TEST_F(StampFloorTest, SurvivesAnyWrongByte) {
+  StampFloor(folder_.string()).write(kWritten);
+  const std::string whole = bytes();
+  for (std::size_t at = 0; at < whole.size(); ++at) {
+    if (whole[at] == 0 && at % 4096 >= kCopy) continue;  // between the copies
+    std::string wrong = whole;
+    wrong[at] = static_cast<char>(wrong[at] ^ 1);
+    put(wrong);
+    ASSERT_EQ(read(), kWritten) << at;
+  }
+}
+
+TEST_F(StampFloorTest, NeverUsesAPartOfACopy) {
+  StampFloor(folder_.string()).write(kWritten);
+  const std::string whole = bytes();
+  for (std::size_t size = 0; size <= whole.size(); ++size) {
+    if (size > kCopy && size < whole.size() - kCopy) continue;  // between the copies
+    put(whole.substr(0, size));
+    ASSERT_EQ(read(), size < kCopy ? StampFloor::Kept() : kWritten) << size;
+  }
+}
+
+/// A file is written over, and the power fails: each sector is the old or the new one.
+TEST_F(StampFloorTest, UsesTheHigherOfTwoCopies) {
+  const StampFloor::Kept later{.floor = 1.9e9, .wall = 1.8e9, .ledger = {.reports = 8, .log = 4}};
+  StampFloor(folder_.string()).write(kWritten);
+  const std::string before = bytes();
+  StampFloor(folder_.string()).write(later);
+  const std::string after = bytes();
+  for (const auto& [first, second] : {std::pair(before, after), std::pair(after, before)}) {
+    put(first.substr(0, 512) + second.substr(512));
+    EXPECT_EQ(read(), later);
   }
 }
 

@@ -45,6 +45,16 @@ def frames(file, align):
     return list(found.values())
 
 
+def write_stamps(file, floor, wall):
+    """Writes `stamps` of the state directory: one frame in two copies, with salt 0."""
+    body, data = struct.pack("<3d2Q", floor, wall, 0, 0, 0), b""
+    for copy in (0, 1):
+        data = data.ljust(copy * ON_DISK, b"\0")
+        frame = HEADER.pack(b"ADTL", 0, len(body), 1, copy, 0, 0, 0, 0) + body
+        data += frame[:4] + struct.pack("<I", zlib.crc32(struct.pack("<QQ", 0, copy * ON_DISK) + frame[8:])) + frame[8:]
+    file.write_bytes(data)
+
+
 def base(file_frames):
     """The base in the file's header; None if the file is empty."""
     if file_frames and file_frames[0].kind != BEGINS:

@@ -14,6 +14,7 @@ from unittest import mock
 
 import requests
 
+import ledger_files
 import maps
 import messages
 from programs import BIN, Stage, log_in, wait_until
@@ -63,7 +64,7 @@ class Clock(unittest.TestCase):
         """Boots the machine: memory is lost, and the last known time is changed."""
         self.assertEqual(self.stage.box.stop(), 0)
         shutil.rmtree(self.stage.box.state / "journal")
-        (self.stage.box.state / "stamps").write_text(f"{known + 30:.6f}\n{known:.6f}\n")
+        ledger_files.write_stamps(self.stage.box.state / "stamps", known + 30, known)
         self.stage.restart_box()
 
     def post_state(self):

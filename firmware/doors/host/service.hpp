@@ -48,8 +48,8 @@ inline constexpr int kForAll = 0644, kOursAlone = 0600;
 std::expected<void, std::string> write_file(const std::string& path, const std::string& text, int mode);
 /// The same for this user alone, with a checksum in the last line ("crc32 1a2b3c4d").
 std::expected<void, std::string> write_kept(const std::string& path, const std::string& text);
-/// Overwrites an existing file, which needs no space on a full disk. At most 512 bytes, which a disk writes
-/// completely or not at all.
+/// Overwrites an existing file, which needs no space on a full disk. After a crash, each sector of 512 bytes
+/// is the old or the new one.
 std::expected<void, std::string> write_over(const std::string& path, const std::string& text);
 /// Removes temporary files that a crash during write_file() left. Call before the first write there.
 void remove_unwritten(const std::string& folder);

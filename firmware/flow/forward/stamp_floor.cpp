@@ -1,33 +1,26 @@
 #include "forward/stamp_floor.hpp"
 
-#include <algorithm>
-#include <charconv>
 #include <string_view>
 #include <utility>
 
 #include "host/log.hpp"
 #include "host/service.hpp"
-#include "icd/text.hpp"
 #include "icd/try.hpp"
+#include "store/frame.hpp"
 
 namespace adit::forward {
 namespace {
 
-/// Year 2200: later values are no stamps.
-constexpr double kLatest = 7.26e9;
+constexpr std::uint8_t kKind = 1;
+constexpr std::uint64_t kSalt = 0;  // no part of the file comes from a peer
 
-/// Of the first line, which is removed; -1: no number.
-template <class Number>
-Number take(std::string_view& rest) {
-  Number number = -1;
-  const std::string_view line = icd::cut(rest, '\n');
-  std::from_chars(line.data(), line.data() + line.size(), number);
-  return number;
-}
-
-double take_time(std::string_view& rest) {
-  const auto time = take<double>(rest);
-  return time >= 0 && time < kLatest ? time : -1;
+/// The content of the copy at `offset`, or std::nullopt if the copy is damaged.
+std::optional<StampFloor::Kept> copy_at(std::string_view file, std::size_t offset) {
+  const auto parsed = store::parse(file, offset, kSalt);
+  if (!parsed || parsed->frame.kind != kKind) return std::nullopt;
+  store::Reader take(parsed->frame.body);  // a later version may add members
+  const auto kept = take.read<StampFloor::Kept>();
+  return take.ok() ? std::optional(kept) : std::nullopt;
 }
 
 }  // namespace
@@ -35,19 +28,12 @@ double take_time(std::string_view& rest) {
 std::expected<StampFloor::Kept, std::string> StampFloor::read() const {
   if (!host::may_exist(file_)) return Kept{};
   const auto text = ADIT_TRY(host::read_file(file_));
-  std::string_view rest = text;
-  const double floor = take_time(rest);
-  if (floor >= 0) {
-    Kept kept{.floor = floor};
-    kept.wall = std::max(0.0, take_time(rest));
-    kept.least = std::max(0.0, take_time(rest));
-    kept.ledger.reports = std::max(std::int64_t{0}, take<std::int64_t>(rest));
-    kept.ledger.log = static_cast<std::uint64_t>(std::max(std::int64_t{0}, take<std::int64_t>(rest)));
-    return kept;
-  }
-  host::log(host::Level::Warning, "cannot read the last time stamps used",
-            {{"why", file_ + ": expected seconds since 1970"}});
-  return Kept{};
+  const auto one = copy_at(text, 0), other = copy_at(text, store::kOnDisk.align);
+  if (!one || !other)
+    host::log(host::Level::Warning, "a copy of the last time stamps is damaged",
+              {{"file", file_}, {"now", one || other ? "the other copy is used" : "stamps may go back"}});
+  const Kept none, &first = one ? *one : none, &second = other ? *other : none;
+  return first.floor < second.floor ? second : first;  // a power cut may have left an older copy
 }
 
 std::optional<StampFloor::Kept> StampFloor::due(double now, double wall, const ledger::Known& ledger) {
@@ -59,11 +45,10 @@ std::optional<StampFloor::Kept> StampFloor::due(double now, double wall, const l
 }
 
 void StampFloor::write(const Kept& kept) {
-  std::string text;
-  for (const double time : {kept.floor, kept.wall, kept.least}) text += std::to_string(time) + '\n';
-  text += std::to_string(kept.ledger.reports) + '\n' + std::to_string(kept.ledger.log) + '\n';
-  auto written = host::write_file(file_, text, host::kOursAlone);
-  if (!written && host::write_over(file_, text)) written = {};  // for a full disk
+  const std::string body = store::bytes_of(kept);
+  const std::string file = store::written({.kind = kKind, .body = body}, store::kOnDisk, kSalt, 0);
+  auto written = host::write_file(file_, file, host::kOursAlone);
+  if (!written && host::write_over(file_, file)) written = {};  // for a full disk
   const std::string why = written ? "" : written.error();
   outcome_->has_failed = !written;
   if (std::exchange(outcome_->trouble, why) == why || written) return;

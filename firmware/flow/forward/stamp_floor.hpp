@@ -5,21 +5,26 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <tuple>
 
 #include "ledger/ledger.hpp"
 #include "queues/stamps.hpp"
+#include "store/values.hpp"
 
 namespace adit::forward {
 
 /// Prevents stamps from running back after a boot (promise 5). A box without a battery-backed clock has about
 /// the same time at each boot. A file in the state directory holds a bound above all stamps, ahead of them,
-/// so that it is written seldom and without a wait. The file also has the time of day.
+/// so that it is written seldom and without a wait. The file also has the time of day. It is one frame of a
+/// log (store/README.md) in two copies, with salt 0.
 class StampFloor {
  public:
   struct Kept {
     double floor = 0, wall = 0;  // seconds since 1970; 0: unknown
     double least = 0;            // lowest allowed stamp, for stamps of another box
     ledger::Known ledger = {};   // a ledger with less is damaged
+
+    friend bool operator==(const Kept&, const Kept&) = default;
   };
   static constexpr const char* kFile = "stamps";
   static constexpr double kEvery = 150;  // seconds
@@ -29,8 +34,8 @@ class StampFloor {
 
   explicit StampFloor(const std::string& state_folder) : file_(state_folder + '/' + kFile) {}
 
-  /// A file with a damaged bound is logged and ignored. An error: the file is unreadable, and must not be
-  /// written.
+  /// Logs a damaged copy and uses the other one. All values are 0 without a good copy. An error: the
+  /// file is unreadable, and must not be written.
   std::expected<Kept, std::string> read() const;
 
   /// The values to write now, if due. `now`: stamp clock; `wall`: time of day.
@@ -52,3 +57,15 @@ class StampFloor {
 };
 
 }  // namespace adit::forward
+
+namespace adit {
+
+template <>
+inline constexpr auto store::kMembers<ledger::Known> =
+    std::tuple(&ledger::Known::reports, &ledger::Known::log);
+template <>
+inline constexpr auto store::kMembers<forward::StampFloor::Kept> =
+    std::tuple(&forward::StampFloor::Kept::floor, &forward::StampFloor::Kept::wall,
+               &forward::StampFloor::Kept::least, &forward::StampFloor::Kept::ledger);
+
+}  // namespace adit

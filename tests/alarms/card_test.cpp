@@ -74,12 +74,15 @@ void the_box(std::vector<Facts>& days) {
   facts.disk.life = 10;
   facts.disk.wear_unknown = "life_time: Input/output error";
   facts.time_set = false;
+  facts.stamps_ahead = 3 * 86400;
   facts.ntp_trouble = "ADDRESS does not answer";
   facts.change_trouble = "port 8000 is in use";
   facts.settings_trouble = facts.board_trouble = "an error in it";
   facts.lights_trouble = "no such device";
   facts.notices = {{"card", "what happened"}};
   facts.update = {.on_trial = true, .version = "1.2.0", .stray = "the last one did not come up"};
+  days.push_back(named());
+  days.back().stamps_damage = "their file is damaged or missing";
   days.push_back(named());
   days.back().standby = "its spare takes over";
 }

@@ -22,7 +22,7 @@ class ClocksTest : public testing::Test {
     journal_.reset();
     journal_.emplace(loop_, folder_.path() + "/journal");
     journal::Carried carried = journal_->read();
-    clocks_.emplace(loop_, *journal_, folder_.path());
+    clocks_.emplace(loop_, *journal_, folder_.path(), newest_);
     clocks_->carry_on(carried, boot);
   }
   double now() const { return loop_.stamp_now(); }
@@ -33,10 +33,12 @@ class ClocksTest : public testing::Test {
   }
   void keep() {
     clocks_->keep(disk_, {});
-    ASSERT_TRUE(loop::turn_until(
-        loop_, [&] { return std::filesystem::exists(folder_.path() + '/' + StampFloor::kFile); }));
+    bool is_written = false;
+    disk_.submit([] {}, [&] { is_written = true; });
+    ASSERT_TRUE(loop::turn_until(loop_, [&] { return is_written; }));
   }
 
+  double newest_ = 0;  // in the ledger
   host::Folder folder_;
   loop::Loop loop_;
   loop::Writer disk_{loop_};
@@ -60,10 +62,7 @@ TEST_F(ClocksTest, KeepAnUnreadableStampFloor) {
   ASSERT_EQ(mkfifo(file.c_str(), 0600), 0);
   restart();
   EXPECT_EQ(clocks_->unread(), "the last time stamps cannot be read: " + file + ": is not a regular file");
-  clocks_->keep(disk_, {});
-  bool is_written = false;
-  disk_.submit([] {}, [&] { is_written = true; });
-  ASSERT_TRUE(loop::turn_until(loop_, [&] { return is_written; }));
+  keep();
   ASSERT_TRUE(std::filesystem::is_fifo(file));
   std::filesystem::rename(elsewhere, file);
   restart();
@@ -92,6 +91,53 @@ TEST_F(ClocksTest, ContinueFromTheFloorWithoutAHardwareClock) {
   EXPECT_NEAR(clocks_->clock_step().between(before, now()), 0, 1) << "the time off is unknown";
   EXPECT_NEAR(loop_.wall_now(), before, 1) << "the last known time";
   EXPECT_NEAR(loop_.wall_ahead(), 0, 1) << "not ahead of the system's clock";
+}
+
+TEST_F(ClocksTest, ContinueFromTheLedgerIfTheFloorIsLost) {
+  const std::string file = folder_ / StampFloor::kFile;
+  restart();
+  EXPECT_EQ(clocks_->damage(), "") << "the first start";
+  newest_ = now() + kFar;
+  restart("without a file");
+  EXPECT_GE(now(), newest_);
+  EXPECT_EQ(clocks_->damage(), "their file is missing or damaged");
+  StampFloor(folder_.path()).write({.floor = newest_});
+  newest_ += kFar;
+  restart("an older file");
+  EXPECT_GE(now(), newest_);
+  EXPECT_EQ(clocks_->damage(), "their file is older than the ledger");
+  folder_.put(StampFloor::kFile, "half");
+  restart("half a file");
+  EXPECT_EQ(clocks_->damage(), "their file is damaged");
+  StampFloor(folder_.path()).write({.floor = newest_});
+  restart("a file");
+  EXPECT_EQ(clocks_->damage(), "");
+}
+
+/// The floor is used, and stamps step back if the operator resets the box.
+TEST_F(ClocksTest, StepBackFromAFloorFarAheadAfterAReset) {
+  const double before = now(), days = 10 * 86400;
+  StampFloor(folder_.path()).write({.floor = before + days, .wall = before});
+  restart();
+  EXPECT_GE(now(), before + days) << "its checksum is good";
+  EXPECT_EQ(clocks_->lead(), 0) << "no known time";
+  clocks_->set_known_time(before + days - StampFloor::kMostAhead + 10);
+  EXPECT_EQ(clocks_->lead(), 0);
+  clocks_->set_known_time(before);
+  EXPECT_NEAR(clocks_->lead(), days, 1);
+  keep();
+  newest_ = now();  // a report
+  loop_.set_stamp(before);
+  restart("another start");
+  EXPECT_GE(now(), newest_);
+  StampFloor(folder_.path()).forget();
+  for (const char* const boot : {"after the reset", "another one"}) {
+    loop_.set_stamp(before);
+    restart(boot);
+    EXPECT_NEAR(now(), before, 2 * StampFloor::kAhead);
+    EXPECT_EQ(clocks_->damage(), "");
+    keep();
+  }
 }
 
 TEST_F(ClocksTest, ContinueAfterTheStampsOfTheFirstBox) {

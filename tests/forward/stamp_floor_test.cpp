@@ -16,9 +16,13 @@ namespace fs = std::filesystem;
 
 class StampFloorTest : public testing::Test {
  protected:
-  static constexpr StampFloor::Kept kWritten{
-      .floor = 1.7e9, .wall = 1.6e9, .least = 1.5e9, .ledger = {.reports = 7, .log = 3}};
-  static constexpr std::size_t kCopy = 80;  // bytes of a copy
+  static constexpr StampFloor::Kept kWritten{.floor = 1.7e9,
+                                             .wall = 1.6e9,
+                                             .least = 1.5e9,
+                                             .ledger = {.reports = 7, .log = 3},
+                                             .lead = 5,
+                                             .overruled = 1.4e9};
+  static constexpr std::size_t kCopy = 104;  // bytes of a copy
 
   StampFloor::Kept read() const { return StampFloor(folder_.string()).read().value(); }
   std::string bytes() const { return host::read_file(folder_ / StampFloor::kFile).value(); }
@@ -124,7 +128,7 @@ TEST_F(StampFloorTest, IsZeroIfItsFileIsInvalid) {
   for (const char* text : {"", "soon", "1700000000.0\n1600000000.0\n0.0\n7\n3\n"}) {
     const std::uint64_t before = host::logged();
     put(text);
-    EXPECT_EQ(read(), StampFloor::Kept()) << text;
+    EXPECT_EQ(read(), StampFloor::Kept{.is_damaged = true}) << text;
     EXPECT_EQ(host::logged(), before + 1) << text;
   }
 }
@@ -147,7 +151,7 @@ TEST_F(StampFloorTest, NeverUsesAPartOfACopy) {
   for (std::size_t size = 0; size <= whole.size(); ++size) {
     if (size > kCopy && size < whole.size() - kCopy) continue;  // between the copies
     put(whole.substr(0, size));
-    ASSERT_EQ(read(), size < kCopy ? StampFloor::Kept() : kWritten) << size;
+    ASSERT_EQ(read(), size < kCopy ? StampFloor::Kept{.is_damaged = true} : kWritten) << size;
   }
 }
 
@@ -162,6 +166,18 @@ TEST_F(StampFloorTest, UsesTheHigherOfTwoCopies) {
     put(first.substr(0, 512) + second.substr(512));
     EXPECT_EQ(read(), later);
   }
+}
+
+TEST_F(StampFloorTest, ForgetsABoundThatIsFarAhead) {
+  StampFloor floor(folder_.string());
+  for (const double ahead : {-1.0, StampFloor::kMostAhead}) {
+    floor.write({.floor = 1.7e9, .lead = ahead});
+    floor.forget();
+    EXPECT_EQ(read().floor, 1.7e9) << ahead;
+  }
+  floor.write({.floor = 1.7e9, .wall = 1.6e9, .ledger = {.reports = 7, .log = 3}, .lead = 1e8});
+  floor.forget();
+  EXPECT_EQ(read(), (StampFloor::Kept{.ledger = {.reports = 7, .log = 3}, .overruled = 1.7e9}));
 }
 
 }  // namespace

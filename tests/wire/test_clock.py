@@ -83,6 +83,9 @@ class Clock(unittest.TestCase):
         self.assertGreaterEqual(self.stage.box.ask("GET /adit/run")[1]["now"], first + DAYS)
         second = self.post_state()
         self.assertGreaterEqual(second, first + DAYS + 30, "the highest stamp that may have been given out")
+        alarms = wait_until(lambda: [each["why"] for each in self.stage.box.ask("GET /adit/run")[1]["alarms"] if each["id"] == "stamps"],
+                            "the alarm, by the Command Post's time")
+        self.assertIn("days ahead of the time of day", alarms[0])
         self.lose_power(first - DAYS)
         now = self.stage.box.ask("GET /adit/run")[1]["now"]
         self.assertAlmostEqual(now, time.time(), delta=60, msg="the machine's clock went on")

@@ -96,6 +96,11 @@ std::optional<bool> ClockSetting::is_set() const {
   return loop_.wall_now() < clock::kEarliest ? std::optional(false) : std::nullopt;
 }
 
+bool ClockSetting::is_told() const {
+  const auto status = adit_clock_.status();
+  return status && clock::is_set(status->source) && status->source != clock::Source::Chip;
+}
+
 icd::Checked<void> ClockSetting::set_clock(double time) {
   const auto status = adit_clock_.status();
   if (!status) return conflict(adit_clock_.why());

@@ -72,6 +72,8 @@ class ClockSetting final : public api::Clock {
   void offered(const clock::Offer& offer);
   /// std::nullopt: adit-clock is starting or does not run here, and the time may be right.
   std::optional<bool> is_set() const;
+  /// Whether another source than the box's own clock has set the time of day.
+  bool is_told() const;
   /// Why NTP does not follow the settings, as a sentence; or "".
   std::string ntp_trouble() const;
 

@@ -6,6 +6,7 @@
 #include "admin/accounts.hpp"
 #include "admin/acknowledged_file.hpp"
 #include "admin/takeover.hpp"
+#include "forward/stamp_floor.hpp"
 #include "host/log.hpp"
 #include "host/root_program.hpp"
 #include "host/service.hpp"
@@ -34,6 +35,7 @@ std::expected<bool, std::string> FactoryReset::finish() {
     std::filesystem::remove_all(runtime_ + '/' + kept, error);
     if (error) return std::unexpected("cannot remove " + runtime_ + '/' + kept + ": " + error.message());
   }
+  forward::StampFloor(state_).forget();
   std::error_code error;
   std::filesystem::remove_all(state_ + "/runs", error);
   if (error) return std::unexpected("cannot remove " + state_ + "/runs: " + error.message());

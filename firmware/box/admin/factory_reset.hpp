@@ -20,7 +20,8 @@ class FactoryReset {
   /// Error: the reset has not begun.
   std::expected<void, std::string> begin();
   /// If begun, deletes settings, tokens, passwords, the code, sessions, stored runs, and queued and rejected
-  /// messages, and requests factory addresses from adit-network. Then returns true. Call before other objects
+  /// messages, lets stamps step back that are far ahead (forward::StampFloor::forget()), and requests factory
+  /// addresses from adit-network. Then returns true. Call before other objects
   /// use these. Error: the reset is incomplete, or it is unknown whether it has begun; in the second case all
   /// stays.
   std::expected<bool, std::string> finish();

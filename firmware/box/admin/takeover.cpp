@@ -80,8 +80,10 @@ std::expected<void, std::string> Takeover::take(const spare::Content& content, c
       .stamp = std::max(loop.stamp_now(), least),
       .ahead = ahead(content.about, std::max(loop.stamp_now(), least), loop.wall_now())};
   if (auto taken = take_ledger(content, handover, kept.ledger); !taken) return taken;
-  stamps.write(
-      {.floor = std::max(kept.floor, least), .wall = kept.wall, .least = least, .ledger = kept.ledger});
+  forward::StampFloor::Kept next = kept;
+  next.floor = std::max(kept.floor, least);
+  next.least = least;
+  stamps.write(next);
   const auto written = stamps.read();
   if (!written || written->least < least) return std::unexpected("cannot store the first box's time stamps");
   if (auto taken = take_settings(content); !taken) return taken;

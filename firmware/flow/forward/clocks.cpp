@@ -15,7 +15,8 @@ void Clocks::carry_on(journal::Carried& carried, const std::string& boot) {
   carried.machine_is(boot);
   const auto& clock = carried.clock();
   boot_ = clock || kept_ ? boot : "unknown";  // without the bound the clock is not carried on
-  ran_before_ = clock || !kept_ || kept.floor > 0;
+  ran_before_ = clock || !kept_ || kept.floor > 0 || newest_ > 0;
+  lead_ = kept.lead;
   if (clock) {
     senders_ = carried.senders();
     loop_.set_stamp(clock->stamp + std::chrono::duration<double>(loop_.now() - clock->at).count());
@@ -41,10 +42,14 @@ journal::Clock Clocks::now() const {
           .off_since = off_.since};
 }
 
-/// A boot may set both clocks back. The file corrects them. Time off comes from the time of day, which may
-/// have been set long after the stamps began.
+/// A boot may set both clocks back. The file corrects them, or else the ledger. Time off comes from the time
+/// of day, which may have been set long after the stamps began.
 void Clocks::begin_start(const StampFloor::Kept& kept) {
-  if (kept.floor > loop_.stamp_now()) loop_.set_stamp(kept.floor);
+  const double proven = newest_ > kept.overruled ? newest_ : 0, floor = std::max(kept.floor, proven);
+  if (kept_ && floor > kept.floor)
+    damage_ = kept.floor > 0 ? "their file is older than the ledger" : "their file is missing or damaged";
+  if (kept.is_damaged) damage_ = "their file is damaged";
+  if (floor > loop_.stamp_now()) loop_.set_stamp(floor);
   if (kept.wall > loop_.wall_now()) loop_.set_wall(kept.wall);
   if (kept.floor <= 0 || kept.wall <= 0) return;
   const double went_on = loop_.stamp_now() - (kept.floor - StampFloor::kAhead);
@@ -94,8 +99,11 @@ void Clocks::stamp(icd::MarkersUpdate& update, const queues::Upload& upload) {
 
 void Clocks::keep(loop::Writer& writer, const ledger::Known& ledger) {
   if (!kept_) return;
-  const auto due = floor_.due(loop_.stamp_now(), loop_.wall_now(), ledger);
-  if (due) writer.submit([floor = floor_, due = *due]() mutable { floor.write(due); }, [] {});
+  auto due = floor_.due(loop_.stamp_now(), loop_.wall_now(), ledger);
+  if (!due) return;
+  due->lead = lead_;
+  due->overruled = kept_->overruled;
+  writer.submit([floor = floor_, due = *due]() mutable { floor.write(due); }, [] {});
 }
 
 }  // namespace adit::forward

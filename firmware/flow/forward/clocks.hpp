@@ -22,13 +22,19 @@ namespace adit::forward {
 /// (promise 5), whatever the time of day does.
 class Clocks {
  public:
-  /// `loop` and `journal` outlive this.
-  Clocks(loop::Loop& loop, journal::Journal& journal, const std::string& state_folder)
-      : loop_(loop), journal_(journal), floor_(state_folder), kept_(floor_.read()) {}
+  /// `loop` and `journal` outlive this. `newest`: the newest stamp in the ledger; 0: none.
+  Clocks(loop::Loop& loop, journal::Journal& journal, const std::string& state_folder, double newest)
+      : loop_(loop), journal_(journal), floor_(state_folder), kept_(floor_.read()), newest_(newest) {}
 
   /// Why the bound of stamps is unreadable, or "". Then send no stamps. The file is left for the next
   /// process.
   std::string unread() const { return kept_ ? "" : "the last time stamps cannot be read: " + kept_.error(); }
+  /// Why stamps may have gone back at this start, or "".
+  const std::string& damage() const { return damage_; }
+  /// Call now and then. `time`: the time of day, if another source than the box's own clock told it.
+  void set_known_time(double time) { lead_ = loop_.stamp_now() - time, is_told_ = true; }
+  /// Seconds by which stamps are ahead of that time; 0: not more than StampFloor::kMostAhead, or not told.
+  double lead() const { return is_told_ && *lead_ > StampFloor::kMostAhead ? *lead_ : 0; }
   /// Continues the clocks of the previous process and begins the journal. `boot`: the boot id.
   void carry_on(journal::Carried& carried, const std::string& boot);
 
@@ -67,6 +73,10 @@ class Clocks {
   journal::Journal& journal_;
   StampFloor floor_;
   const std::expected<StampFloor::Kept, std::string> kept_;  // from the previous process
+  const double newest_;
+  std::optional<double> lead_;  // StampFloor::Kept::lead
+  bool is_told_ = false;        // in this process
+  std::string damage_;
   queues::StampShift senders_;
   dispatch::ClockStep clock_step_;
   Off off_;

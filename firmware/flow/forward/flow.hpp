@@ -87,6 +87,9 @@ class Flow final : public intake::Desk, public api::Operator {
   /// Once a second. `disk`: for small files of the state directory.
   void tick(loop::Writer& disk);
   KnownTimes known_times() const;
+  const Clocks& clocks() const { return clocks_; }
+  /// Clocks::set_known_time().
+  void set_known_time(double time) { clocks_.set_known_time(time); }
   /// The time of day was set ahead by `seconds`.
   void wall_was_set(double seconds);
   /// The cable is in again: retries at once.

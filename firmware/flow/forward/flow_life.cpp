@@ -1,4 +1,5 @@
 // Start, life and end of the flow.
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -25,6 +26,13 @@ std::uint64_t seed() {
   std::uint64_t seed = 0;
   host::fill_random({reinterpret_cast<std::uint8_t*>(&seed), sizeof seed});
   return seed;
+}
+
+/// The newest time in the runs, by the stamp clock; 0: no run.
+double newest_in(const ledger::Ledger& ledger) {
+  double newest = 0;
+  for (const dispatch::Run& run : ledger.runs()) newest = std::max({newest, run.began, run.heard});
+  return newest;
 }
 
 /// Call after queued messages are restored, which the record counts.
@@ -54,7 +62,7 @@ Flow::Flow(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& s
       writer_(loop),
       workers_(loop, 0),
       journal_(loop, folders.runtime + kJournal),
-      clocks_(loop, journal_, folders.state),
+      clocks_(loop, journal_, folders.state, newest_in(ledger)),
       rejected_(loop, writer_, folders.runtime + kRejected),
       counts_([this] { changed(); }),
       servers_(loop),

@@ -32,7 +32,7 @@ std::expected<StampFloor::Kept, std::string> StampFloor::read() const {
   if (!one || !other)
     host::log(host::Level::Warning, "a copy of the last time stamps is damaged",
               {{"file", file_}, {"now", one || other ? "the other copy is used" : "stamps may go back"}});
-  const Kept none, &first = one ? *one : none, &second = other ? *other : none;
+  const Kept none{.is_damaged = true}, &first = one ? *one : none, &second = other ? *other : none;
   return first.floor < second.floor ? second : first;  // a power cut may have left an older copy
 }
 
@@ -55,6 +55,13 @@ void StampFloor::write(const Kept& kept) {
   host::log(host::Level::Warning,
             "cannot store the last time stamps; after a power cut, time stamps may run backward",
             {{"why", written.error()}});
+}
+
+void StampFloor::forget() {
+  const auto kept = read();
+  if (!kept || kept->lead.value_or(0) <= kMostAhead) return;
+  host::log(host::Level::Notice, "the bound of time stamps is forgotten; time stamps step back once");
+  write({.ledger = kept->ledger, .overruled = kept->floor});
 }
 
 }  // namespace adit::forward

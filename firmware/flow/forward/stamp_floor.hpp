@@ -23,6 +23,10 @@ class StampFloor {
     double floor = 0, wall = 0;  // seconds since 1970; 0: unknown
     double least = 0;            // lowest allowed stamp, for stamps of another box
     ledger::Known ledger = {};   // a ledger with less is damaged
+    /// Seconds by which stamps were ahead of the time of day, by the last source that told it.
+    std::optional<double> lead = {};
+    double overruled = 0;     // times in the ledger up to it are no stamps, after forget()
+    bool is_damaged = false;  // no copy is good; not in the file
 
     friend bool operator==(const Kept&, const Kept&) = default;
   };
@@ -31,6 +35,7 @@ class StampFloor {
   static constexpr double kSoon = 10;    // seconds, if the ledger has grown or the last write failed
   /// Stamps may be kJump ahead of now, and a disk may be slow.
   static constexpr double kAhead = queues::StampShift::kJump + kEvery + 15;
+  static constexpr double kMostAhead = 86400;  // seconds beyond the time of day; more needs an operator
 
   explicit StampFloor(const std::string& state_folder) : file_(state_folder + '/' + kFile) {}
 
@@ -44,6 +49,9 @@ class StampFloor {
   void is_due() { last_ = 0; }
   /// May run on a worker, one call at a time, on copies. Logs a failure when its text changes.
   void write(const Kept& kept);
+  /// Removes a bound that is more than kMostAhead beyond the time of day, for the operator: stamps step back
+  /// once. Call before Clocks. Logs a failure.
+  void forget();
 
  private:
   std::string file_;
@@ -66,6 +74,7 @@ inline constexpr auto store::kMembers<ledger::Known> =
 template <>
 inline constexpr auto store::kMembers<forward::StampFloor::Kept> =
     std::tuple(&forward::StampFloor::Kept::floor, &forward::StampFloor::Kept::wall,
-               &forward::StampFloor::Kept::least, &forward::StampFloor::Kept::ledger);
+               &forward::StampFloor::Kept::least, &forward::StampFloor::Kept::ledger,
+               &forward::StampFloor::Kept::lead, &forward::StampFloor::Kept::overruled);
 
 }  // namespace adit

@@ -1,5 +1,6 @@
 #include "gateway/gateway.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <utility>
 
@@ -268,6 +269,9 @@ void Gateway::look_at_clock() {
   clock_.offered({clock::Source::LastKnown, loop_.wall_now()});
   clock_.offered({clock::Source::CommandPost, known.command_post.value_or(0)});
   clock_.offered({clock::Source::Robots, known.robots.value_or(0)});
+  const double told = clock_.is_told() ? loop_.wall_now() : 0;
+  if (const double time = std::max(told, known.command_post.value_or(0)); time > 0)
+    flow_.set_known_time(time);
   const double step = loop_.look_at_wall(clock_.is_set().value_or(false));
   if (step == 0) return;
   host::log(host::Level::Notice, "the clock was set", {{"ahead_by_s", icd::sentence(step)}});

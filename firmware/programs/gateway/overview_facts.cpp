@@ -83,6 +83,8 @@ void Overview::add_box(alarms::Facts& facts) const {
     facts.disk.wear_unknown = rooms_.parts.wear.error();
   }
   facts.time_set = rooms_.clock.is_set();
+  facts.stamps_ahead = rooms_.flow.clocks().lead();
+  facts.stamps_damage = rooms_.flow.clocks().damage();
   facts.ntp_trouble = rooms_.clock.ntp_trouble();
   facts.put_aside = rooms_.parts.put_aside.empty() ? rooms_.flow.put_aside() : rooms_.parts.put_aside;
   facts.change_trouble = rooms_.parts.trouble;

@@ -141,6 +141,25 @@ void find_disk_troubles(const Facts& facts, Found& found) {
   find_wear(facts.disk, found);
 }
 
+void find_stamp_troubles(const Facts& facts, Found& found) {
+  constexpr double kDay = 86400;
+  if (facts.stamps_ahead > 0) {
+    found.push_back({.id = "stamps",
+                     .severity = Severity::Ask,
+                     .side = Side::Box,
+                     .headline = {"Time stamps", "ahead", true},
+                     .why = sentence(std::floor(facts.stamps_ahead / kDay),
+                                     " days ahead of the time of day; a factory reset lets them step back"),
+                     .action = kOpenSystem});
+  } else {
+    add(found, facts.stamps_damage,
+        {.id = "stamps",
+         .severity = Severity::Ask,
+         .headline = {"The last time stamps", "lost", true},
+         .why = "stamps may have gone back: "});
+  }
+}
+
 void find_update_troubles(const UpdateFact& update, Found& found) {
   if (update.on_trial) {
     found.push_back({.id = "update_on_trial",
@@ -182,6 +201,7 @@ void find_box_troubles(const Facts& facts, Found& found) {
                      .why = "log in to the page, or run adit clock set",
                      .action = kOpenSystem});
   }
+  find_stamp_troubles(facts, found);
   add(found, facts.ntp_trouble,
       {.id = "ntp", .severity = Severity::Wait, .headline = {"NTP", "not working"}, .action = kOpenSetUp});
   add(found, facts.change_trouble,

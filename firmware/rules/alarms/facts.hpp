@@ -129,6 +129,8 @@ struct Facts {
   bool ledger_is_closed = false;  // the ledger cannot be read
   Disk disk = {};
   std::optional<bool> time_set = {};                // nullopt: unknown
+  double stamps_ahead = 0;                          // seconds beyond a known time of day; 0: less than a day
+  std::string stamps_damage = {};                   // why stamps may have gone back, or ""
   std::string ntp_trouble = {};                     // why NTP does not follow the settings, or ""
   std::string change_trouble = {};                  // of the last change of the settings
   std::string settings_trouble = {};                // why the stored settings are not used

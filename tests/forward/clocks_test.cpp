@@ -140,6 +140,42 @@ TEST_F(ClocksTest, StepBackFromAFloorFarAheadAfterAReset) {
   }
 }
 
+/// The box's clock is ten years ahead at a start. It may be wrong, or the box was stored.
+TEST_F(ClocksTest, FollowAClockFarAheadOnceAnotherSourceAgrees) {
+  constexpr double kYears = 10 * 365 * 86400.0;
+  const double before = now();
+  for (const bool agrees : {false, true}) {
+    std::filesystem::remove(folder_.path() + '/' + StampFloor::kFile);
+    loop_.set_stamp(before);
+    loop_.set_wall(before);
+    restart("first");
+    keep();
+    const auto boot = [&](const char* name) {
+      loop_.set_stamp(before + kYears);
+      loop_.set_wall(before + kYears);
+      restart(name);
+    };
+    boot("second");
+    EXPECT_NEAR(now(), before, 2 * StampFloor::kAhead);
+    EXPECT_TRUE(clocks_->hear(before + kYears));
+    EXPECT_NEAR(clocks_->clock_step().between(before, now()), kYears, 1) << "the box was off";
+    clocks_->set_known_time(agrees ? before + kYears : before);
+    keep();
+    boot("third");
+    EXPECT_NEAR(now(), before + (agrees ? kYears : 0), 3 * StampFloor::kAhead) << agrees;
+  }
+}
+
+/// A season in a store.
+TEST_F(ClocksTest, FollowAClockThatIsAheadByLessThanASeason) {
+  restart();
+  keep();
+  const double later = now() + 199 * 86400;
+  loop_.set_stamp(later);
+  restart("another start");
+  EXPECT_NEAR(now(), later, 1);
+}
+
 TEST_F(ClocksTest, ContinueAfterTheStampsOfTheFirstBox) {
   restart();
   stamped(50);

@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "dispatch/run_watch.hpp"
+#include "host/log.hpp"
 
 namespace adit::forward {
 
@@ -42,6 +43,15 @@ journal::Clock Clocks::now() const {
           .off_since = off_.since};
 }
 
+/// Whether stamps must not follow the box's clock: it is ahead by more than a season, and no other source has
+/// told a time near it. If one tells it during this boot, the next boot follows the clock.
+bool Clocks::is_far_beyond(double floor, const StampFloor::Kept& kept) const {
+  const double known = std::max(floor, kept.floor - kept.lead.value_or(0));
+  if (floor <= 0 || loop_.stamp_now() <= known + kSeason) return false;
+  host::log(host::Level::Warning, "the clock is far ahead of the last time stamps; they go on from these");
+  return true;
+}
+
 /// A boot may set both clocks back. The file corrects them, or else the ledger. Time off comes from the time
 /// of day, which may have been set long after the stamps began.
 void Clocks::begin_start(const StampFloor::Kept& kept) {
@@ -49,13 +59,15 @@ void Clocks::begin_start(const StampFloor::Kept& kept) {
   if (kept_ && floor > kept.floor)
     damage_ = kept.floor > 0 ? "their file is older than the ledger" : "their file is missing or damaged";
   if (kept.is_damaged) damage_ = "their file is damaged";
-  if (floor > loop_.stamp_now()) loop_.set_stamp(floor);
+  const bool is_far = is_far_beyond(floor, kept);
+  if (floor > loop_.stamp_now() || is_far) loop_.set_stamp(floor);
   if (kept.wall > loop_.wall_now()) loop_.set_wall(kept.wall);
   if (kept.floor <= 0 || kept.wall <= 0) return;
   const double went_on = loop_.stamp_now() - (kept.floor - StampFloor::kAhead);
   const double went_by = loop_.wall_now() - kept.wall;
   clock_step_ = {.to = loop_.stamp_now(), .by = std::max(0.0, went_on)};
-  off_ = {.seconds = std::clamp(went_by, 0.0, clock_step_.by), .since = kept.wall};
+  off_ = {.seconds = std::clamp(went_by, 0.0, is_far ? std::max(0.0, went_by) : clock_step_.by),
+          .since = kept.wall};
 }
 
 bool Clocks::hear(double there) {

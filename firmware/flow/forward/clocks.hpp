@@ -65,7 +65,9 @@ class Clocks {
   struct Off {
     double seconds = 0, since = 0;
   };
+  static constexpr double kSeason = clock::kRobotsMost;  // seconds that a box may be stored
   void begin_start(const StampFloor::Kept& kept);
+  bool is_far_beyond(double floor, const StampFloor::Kept& kept) const;
   journal::Clock now() const;
   void keep() { journal_.senders(senders_.changed()); }
 

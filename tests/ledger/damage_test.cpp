@@ -168,6 +168,40 @@ TEST_F(DamagedLedger, ReportsAnOldCopyInItsPlace) {
   EXPECT_THAT(files_in(state_.ledger() + "/damaged-1"), testing::Contains(testing::Key(file_)));
 }
 
+/// Of the same files, before the last steps of known reports.
+TEST_F(DamagedLedger, ReportsAnOlderCopyWithoutItsLastSteps) {
+  for (const std::size_t record : {4, 7, 8}) {
+    SCOPED_TRACE(record);
+    const std::string memory = state_.path() + "/memory-" + std::to_string(record);
+    restore();
+    ASSERT_EQ(open_or_fail(state_.path(), known_, memory).damage(), "");
+    std::string older = log();
+    std::fill(older.begin() + static_cast<std::ptrdiff_t>(record * kRecord), older.end(), '\0');
+    put(older);
+    expect_said({.last = record}, "may be lost");
+    put(older);
+    const auto ledger = open_or_fail(state_.path(), {}, memory);
+    EXPECT_THAT(ledger.damage(),
+                AllOf(HasSubstr("its last records are not there"), Not(HasSubstr("may be"))));
+    expect_safe(ledger.reports());
+  }
+}
+
+/// A record that was accepted but not synced may be lost in a power cut.
+TEST_F(DamagedLedger, IsNoLedgerThatLacksAnUnsyncedRecord) {
+  std::string older = log();
+  {
+    auto ledger = open_or_fail(state_.path(), known_);
+    const Known before = ledger.known();
+    const Report settled = in_state(backpack(3), ReportState::Queued);
+    ASSERT_TRUE(ledger.write({&settled, 1}, nullptr, dispatch::Flush::Soon));
+    EXPECT_EQ(ledger.known(), before);
+    known_ = ledger.known();
+  }
+  put(older);
+  EXPECT_EQ(open_or_fail(state_.path(), known_).damage(), "");
+}
+
 TEST_F(DamagedLedger, ReportsAMissingLastFile) {
   expect_said({.reports = known_.reports, .log = 2}, "reports from 5 on may be lost from the ledger");
 }

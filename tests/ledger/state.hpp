@@ -56,8 +56,9 @@ class State {
   std::string path_;
 };
 
-inline Ledger open_or_fail(const std::string& state, const Known& known = {}) {
-  auto ledger = Ledger::open(state, known);
+inline Ledger open_or_fail(const std::string& state, const Known& known = {},
+                           const std::string& memory = "") {
+  auto ledger = Ledger::open(state, known, memory);
   if (!ledger) throw std::runtime_error(ledger.error().what);
   return std::move(*ledger);
 }

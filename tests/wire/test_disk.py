@@ -60,12 +60,32 @@ class Disk(unittest.TestCase):
             self.assertEqual(submit(began(stage)).headers["Adit-Report"], "1")
             self.assertEqual(stage.box.stop(), 0)
             shutil.rmtree(stage.box.state / "ledger")
+            os.remove(stage.box.state / "ledger-on-disk")  # in memory, so it ends with a boot
             stage.restart_box()
             self.assertIn("may be lost from the ledger", began(stage).box.output())
             self.assertIn("ledger_damaged", stage.box.alarms())
             self.assertEqual(submit(stage).status_code, 503, "it may be the same as a report that is lost")
             self.assertEqual([(each["number"], each["state"]) for each in stage.box.reports()], [(1000, "in_doubt"), (1001, "held")])
             self.assertEqual(len(stage.post.recorded()), 1)
+
+    def test_a_ledger_that_was_put_back_to_an_older_copy(self):
+        """In the copy the report is queued. It has been sent since, and is not sent again."""
+        with Stage(**BRIEF, command_post__rates__reports_hz=0.2) as stage:
+            self.assertEqual(submit(began(stage)).status_code, 201)
+            self.assertEqual(submit(stage, another(1)).status_code, 503)
+            self.assertEqual([each["state"] for each in stage.box.reports()], ["answered", "queued"])
+            ledger, copy = stage.box.state / "ledger", stage.folder / "copy"
+            shutil.copytree(ledger, copy)
+            wait_until(lambda: stage.box.on_disk() == ["answered", "answered"], "the report to be sent")
+            stage.box.stop(signal.SIGKILL)
+            shutil.rmtree(ledger)
+            copy.rename(ledger)
+            stage.restart_box()
+            self.assertIn("its last records are not there", began(stage).box.output())
+            self.assertIn("ledger_damaged", stage.box.alarms())
+            self.assertEqual(submit(stage, another(1)).status_code, 504)
+            self.assertEqual([each["state"] for each in stage.box.reports()], ["answered", "in_doubt"])
+            self.assertEqual(len(stage.post.recorded(another(1))), 1)
 
     def test_a_ledger_that_cannot_be_read(self):
         with Stage(**QUICK) as stage:

@@ -1,5 +1,8 @@
 #include "ledger/ledger.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -9,7 +12,9 @@
 #include "icd/sentence.hpp"
 #include "icd/try.hpp"
 #include "ledger/book.hpp"
+#include "loop/file_descriptor.hpp"
 #include "store/directory.hpp"
+#include "store/frame.hpp"
 #include "store/log.hpp"
 #include "store/snapshot.hpp"
 
@@ -41,16 +46,55 @@ Result<void> write(store::Snapshot& snapshot, const Book& book, const std::atomi
 
 }  // namespace
 
+/// What a process of this boot knew last, in a file in memory: one frame with salt 0.
+class Memory {
+ public:
+  explicit Memory(const std::string& path) {
+    if (path.empty()) return;
+    file_ = loop::FileDescriptor(::open(path.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0600));
+    std::string bytes(kMost, '\0');
+    const auto size = file_ ? ::pread(file_.get(), bytes.data(), bytes.size(), 0) : -1;
+    bytes.resize(static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
+    const auto parsed = store::parse(bytes, 0, kSalt);
+    if (!parsed || parsed->frame.kind != kKind) return;
+    store::Reader take(parsed->frame.body);  // a later version may add members
+    if (const auto known = take.read<Known>(); take.ok()) known_ = known;
+  }
+  const Known& known() const { return known_; }
+  /// A failed write leaves the last one or none.
+  void write(const Known& known) {
+    if (!file_ || known == known_) return;
+    known_ = known;
+    const std::string body = store::bytes_of(known);
+    (void)store::write_all(file_.get(),
+                           store::written({.kind = kKind, .body = body}, store::kInMemory, kSalt, 0), 0);
+  }
+
+ private:
+  static constexpr std::size_t kMost = 4096;
+  static constexpr std::uint8_t kKind = 1;
+  static constexpr std::uint64_t kSalt = 0;
+  loop::FileDescriptor file_;
+  Known known_;
+};
+
+Known latest_of(const Known& one, const Known& other) {
+  return {.reports = std::max(one.reports, other.reports),
+          .log = std::max(one.log, other.log),
+          .last = std::max(one.last, other.last)};
+}
+
 class Ledger::Impl {
  public:
   Impl(std::string refusal, const Known& known) : refusal_(std::move(refusal)), known_(known) {}
   Impl(store::Directory directory, store::Contents contents, Book book, std::string damage, bool is_damaged,
-       const Known& known)
+       const Known& known, Memory memory)
       : directory_(std::make_shared<store::Directory>(std::move(directory))),
         contents_(std::move(contents)),
         book_(std::move(book)),
         damage_(std::move(damage)),
         known_(known),
+        memory_(std::move(memory)),
         is_damaged_(is_damaged) {}
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
@@ -71,7 +115,20 @@ class Ledger::Impl {
     constexpr auto kKind = static_cast<std::uint8_t>(Kind::Steps);
     if (auto appended = log_->append(kKind, record, durability); !appended) return appended;
     (void)book_.apply(kKind, record);
+    memory_.write(known());
     return {};
+  }
+
+  Result<void> flush() {
+    auto flushed = log_ ? log_->flush() : Result<void>();
+    memory_.write(known());
+    return flushed;
+  }
+
+  Known known() const {
+    return {.reports = std::max(known_.reports, book_.highest()),
+            .log = has_begun_ ? log_->number() : known_.log,
+            .last = has_begun_ ? log_->durable() : known_.last};
   }
 
   Result<void> make_ready(std::size_t record = 0) {
@@ -88,6 +145,7 @@ class Ledger::Impl {
     auto begun = begin_log();
     refusal_ = begun ? "" : begun.error().what;
     has_begun_ = begun.has_value();
+    memory_.write(known());
     return begun;
   }
 
@@ -124,6 +182,7 @@ class Ledger::Impl {
   Book book_;
   std::string damage_, refusal_;
   Known known_;  // from open()
+  Memory memory_{""};
   bool is_damaged_ = false, is_aside_ = false, has_turned_ = false, has_begun_ = false;
   bool is_under_way_ = false;                       // upkeep is running
   std::uint64_t snapshot_ = 0, next_snapshot_ = 0;  // first log after the last snapshot
@@ -170,17 +229,23 @@ Ledger::Ledger(Ledger&&) noexcept = default;
 Ledger& Ledger::operator=(Ledger&&) noexcept = default;
 Ledger::~Ledger() = default;
 
-Result<Ledger> Ledger::open(const std::string& state, const Known& known) {
+Result<Ledger> Ledger::open(const std::string& state, const Known& stored, const std::string& memory) {
   auto directory = ADIT_TRY(store::Directory::lock(state + '/' + kDirectory));
   auto contents = ADIT_TRY(store::Contents::read(directory, kKeeping));
   auto reading = ADIT_TRY(read(contents));
   Book& book = reading.book;
-  if ((known.log != 0 && !contents.has(known.log)) || book.highest() < known.reports) {
+  Memory in_memory(memory);
+  const Known known = latest_of(stored, in_memory.known());
+  if ((known.log != 0 && !contents.has(known.log)) || book.highest() < known.reports ||
+      contents.last < known.last) {
     reading.gap += icd::sentence(reading.gap.empty() ? "" : ", ", "its last records are not there");
-    reading.end_is_lost = true;
+    // The file in memory has known all reports.
+    reading.end_is_lost =
+        reading.end_is_lost || in_memory.known().last < std::max(known.last, std::uint64_t{1});
   }
   // File names are never reused, even of removed logs.
   contents.number = std::max(contents.number, known.log);
+  contents.last = std::max(contents.last, known.last);  // nor are sequence numbers
   std::string damage;
   const bool is_damaged = !reading.gap.empty();
   if (is_damaged) {
@@ -195,7 +260,7 @@ Result<Ledger> Ledger::open(const std::string& state, const Known& known) {
   }
   if (damage.empty()) damage = other_format_in(state);
   auto impl = std::make_unique<Impl>(std::move(directory), std::move(contents), std::move(book),
-                                     std::move(damage), is_damaged, known);
+                                     std::move(damage), is_damaged, known, std::move(in_memory));
   (void)impl->make_ready();  // refusal() has the reason
   return Ledger(std::move(impl));
 }
@@ -220,7 +285,7 @@ Result<void> Ledger::write(std::span<const dispatch::Report> steps, const dispat
 }
 
 Result<void> Ledger::flush() {
-  return impl_->log_ ? impl_->log_->flush() : Result<void>();
+  return impl_->flush();
 }
 
 Result<void> Ledger::make_ready() {
@@ -268,9 +333,7 @@ bool Ledger::is_closed() const {
 }
 
 Known Ledger::known() const {
-  const Known& known = impl_->known_;
-  return {std::max(known.reports, impl_->book_.highest()),
-          impl_->has_begun_ ? impl_->log_->number() : known.log};
+  return impl_->known();
 }
 
 std::function<Result<void>()> Ledger::upkeep() {

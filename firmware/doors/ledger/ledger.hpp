@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "dispatch/merged_reports.hpp"
@@ -14,6 +15,7 @@
 #include "ledger/record.hpp"
 #include "store/contents.hpp"
 #include "store/error.hpp"
+#include "store/values.hpp"
 
 namespace adit::ledger {
 
@@ -24,6 +26,7 @@ using store::Result;
 struct Known {
   std::int64_t reports = 0;  // count of numbers given out
   std::uint64_t log = 0;     // number of its last log; 0: unknown
+  std::uint64_t last = 0;    // sequence number of its last record on the disk; 0: unknown
 
   friend bool operator==(const Known&, const Known&) = default;
 };
@@ -33,7 +36,8 @@ struct Known {
 class Ledger {
  public:
   static constexpr store::Keeping kKeeping{store::kOnDisk, 4u << 20, true};
-  static constexpr const char* kDirectory = "ledger";  // below the state directory
+  static constexpr const char* kDirectory = "ledger";       // below the state directory
+  static constexpr const char* kMemory = "ledger-on-disk";  // below the runtime directory
   /// Bytes that a new report must leave in the file for steps of the known reports.
   static constexpr std::size_t kForKnown = 64u << 10;  // bytes
 
@@ -41,7 +45,10 @@ class Ledger {
   /// `known` is gone, each report that may have been sent becomes in doubt, and damage() says so. If the
   /// directory cannot be written, reports can be read, refusal() has the reason, and a later write may
   /// succeed. Error: unreadable, locked by another process, or from a later version; no file is changed.
-  static Result<Ledger> open(const std::string& state, const Known& known = {});
+  /// `memory`: a file in memory that always has known(), so that an older copy of the ledger is damage, too;
+  /// "": none.
+  static Result<Ledger> open(const std::string& state, const Known& known = {},
+                             const std::string& memory = "");
   /// A ledger that cannot be read, for `why`. It has no reports and rejects new ones.
   static Ledger closed(std::string why, const Known& known);
   /// Whether open() would succeed. Blocks on the disk; any thread.
@@ -99,3 +106,7 @@ class Ledger {
 };
 
 }  // namespace adit::ledger
+
+template <>
+inline constexpr auto adit::store::kMembers<adit::ledger::Known> =
+    std::tuple(&adit::ledger::Known::reports, &adit::ledger::Known::log, &adit::ledger::Known::last);

@@ -40,6 +40,7 @@ class Log {
 
   std::uint64_t number() const { return file_.name.number; }  // of the present file
   std::uint64_t last() const { return last_; }                // last sequence number
+  std::uint64_t durable() const { return durable_; }          // of the last record that is synced
   std::uint64_t process() const { return process_; }
   /// Bytes left in the file.
   std::size_t room() const { return is_dead_ ? 0 : file_.size - file_.at; }

@@ -69,9 +69,6 @@ class StampFloor {
 namespace adit {
 
 template <>
-inline constexpr auto store::kMembers<ledger::Known> =
-    std::tuple(&ledger::Known::reports, &ledger::Known::log);
-template <>
 inline constexpr auto store::kMembers<forward::StampFloor::Kept> =
     std::tuple(&forward::StampFloor::Kept::floor, &forward::StampFloor::Kept::wall,
                &forward::StampFloor::Kept::least, &forward::StampFloor::Kept::ledger,

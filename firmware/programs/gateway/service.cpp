@@ -64,7 +64,8 @@ ledger::Result<ledger::Ledger> open_ledger(const Options& options) {
   using enum ledger::Error::Cause;
   const auto kept = forward::StampFloor(options.state).read();  // an error puts the box on standby
   const ledger::Known known = kept ? kept->ledger : ledger::Known();
-  auto opened = ledger::Ledger::open(options.state, known);
+  auto opened =
+      ledger::Ledger::open(options.state, known, runtime_folder(options) + '/' + ledger::Ledger::kMemory);
   if (!opened && opened.error().cause != InUse && opened.error().cause != Newer)
     return ledger::Ledger::closed(opened.error().what, known);
   if (opened && !opened->damage().empty()) host::log(host::Level::Error, opened->damage());

@@ -13,6 +13,7 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 
 constexpr const char* kCourse =
     R"(, "courses": [{"name": "A", "scoring": {"address": "10.100.2.200", "port": 8000},)"
@@ -177,6 +178,63 @@ TEST_F(StoreTest, NamesDamagedTokensAndKeepsTheirFiles) {
   EXPECT_TRUE(kept("secrets/scoring.token"));
 }
 
+TEST_F(StoreTest, UsesNoGivenTokenInsteadOfALostOne) {
+  (void)store_.save_token("scoring", icd::BearerToken::parse("saved-1"));
+  std::filesystem::remove(state_ / "secrets/scoring.token");
+  for (int start = 0; start < 2; ++start) {
+    const auto loaded = store_.load().value();
+    EXPECT_FALSE(loaded.secrets.token("scoring"));
+    EXPECT_THAT(loaded.trouble, HasSubstr("the saved token scoring is lost"));
+    store_.settle(loaded.settings);
+  }
+  ASSERT_TRUE(store_.forget().has_value());
+  EXPECT_EQ(store_.load()->secrets.token("scoring")->reveal(), "given-1");
+  EXPECT_EQ(store_.load()->trouble, "");
+}
+
+TEST_F(StoreTest, StrikesReplacedTokensUntilAReset) {
+  const auto struck = [this](std::string text) {
+    store_.load()->secrets.redaction().strike_from(text);
+    return text;
+  };
+  const auto save = [this](const char* token) {
+    return store_.save_token("team", icd::BearerToken::parse(token)).has_value();
+  };
+  given_.put("team.token", "given-team-token");
+  ASSERT_TRUE(save("saved-team-token") && save("saved-team-token") && save("third-team-token"));
+  for (const char* const token : {"given-team-token", "saved-team-token", "third-team-token"})
+    EXPECT_THAT(struck(token), Not(HasSubstr(token)));
+  EXPECT_EQ(store_.load()->secrets.tokens.size(), 2u) << "scoring and team";
+  ASSERT_TRUE(store_.save_token("team", std::nullopt).has_value());
+  EXPECT_THAT(struck("third-team-token"), Not(HasSubstr("third")));
+  struct stat status{};
+  ASSERT_EQ(stat((state_ / "secrets/replaced").c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 07777, 0600u);
+  for (int i = 0; i < 100; ++i) ASSERT_TRUE(save(("team-token-" + std::to_string(i)).c_str()));
+  EXPECT_EQ(store_.load()->secrets.replaced.size(), 64u);
+  ASSERT_TRUE(store_.forget().has_value());
+  EXPECT_EQ(struck("third-team-token"), "third-team-token");
+}
+
+TEST_F(StoreTest, NamesLostSettings) {
+  (void)store_.save(with_connections(30));
+  store_.settle(with_connections(30));
+  std::filesystem::remove(state_ / "settings.json");
+  EXPECT_THAT(store_.load()->trouble, HasSubstr("the saved settings are lost"));
+  EXPECT_EQ(connections(), 20u);
+  (void)store_.save(with_connections(30));
+  EXPECT_EQ(store_.load()->trouble, "");
+}
+
+/// As adit-import does from a card.
+TEST_F(StoreTest, NoticesTheLossOfFilesThatAnotherProgramSaved) {
+  std::filesystem::create_directory(state_ / "secrets");
+  state_.put("secrets/scoring.token", "saved-1");
+  store_.settle(with_connections(30));
+  std::filesystem::remove(state_ / "secrets/scoring.token");
+  EXPECT_FALSE(store_.load()->secrets.token("scoring"));
+}
+
 TEST_F(StoreTest, ReportsAWriteError) {
   Store nowhere(given_ / "settings.json", given_.path(), state_ / "none");
   EXPECT_THAT(nowhere.save(with_connections(30)).error(), HasSubstr("No such file or directory"));
@@ -188,7 +246,8 @@ TEST_F(StoreTest, ForgetDeletesOnlySavedFiles) {
   (void)store_.save_token("scoring", icd::BearerToken::parse("saved-1"));
   state_.put("settings.json.damaged", "what nobody could read");
   ASSERT_TRUE(store_.forget().has_value());
-  for (const char* gone : {"settings.json", "settings.json.before", "settings.json.damaged", "secrets"})
+  for (const char* gone :
+       {"settings.json", "settings.json.before", "settings.json.damaged", "settings.json.saved", "secrets"})
     EXPECT_FALSE(kept(gone)) << gone;
   EXPECT_TRUE(kept("ledger"));
   EXPECT_EQ(connections(), 20u);

@@ -95,8 +95,18 @@ TEST_F(ReadSecrets, ReplacesNoDamagedSavedToken) {
   }
 }
 
+TEST_F(ReadSecrets, ReplacesNoLostSavedToken) {
+  saved_.put(std::string("scoring.token") + kSavedMark, "");
+  const auto secrets = read(folder_.path());
+  ASSERT_TRUE(secrets.has_value()) << secrets.error();
+  EXPECT_FALSE(secrets->token("scoring")) << "the given one is valid again";
+  EXPECT_EQ(secrets->odd_tokens()["scoring"],
+            "the saved token scoring is lost; set it again: " + (saved_ / "scoring.token") + " is gone");
+}
+
 TEST_F(ReadSecrets, ReportsAnUnreadableFileAndReadsTheOthers) {
-  for (const std::string& path : {saved_ / "team.token", folder_ / "label.code"}) {
+  for (const std::string& path :
+       {saved_ / "team.token", saved_ / "team.token.saved", folder_ / "label.code"}) {
     std::filesystem::create_directory(path);
     const auto secrets = read(folder_.path());
     ASSERT_TRUE(secrets.has_value()) << secrets.error();

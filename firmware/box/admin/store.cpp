@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <ranges>
 #include <utility>
 
 #include "host/log.hpp"
@@ -22,6 +23,26 @@ auto read_settings(const std::string& file, Parse parse, std::string& unread)
   auto settings = parse(*text);
   if (settings) return std::move(*settings);
   return std::unexpected(file + ": " + settings::sentence_of(settings.error()));
+}
+
+/// False if it is unknown.
+bool is_there(const std::string& file) {
+  std::error_code unknown;
+  return fs::exists(file, unknown);
+}
+
+/// A failure is logged.
+void mark_saved(const std::string& file) {
+  const std::string mark = file + host::kSavedMark;
+  if (!is_there(file) || host::may_exist(mark)) return;
+  host::log_failure(host::Level::Warning, "the loss of a saved file may not be noticed",
+                    host::write_file(mark, "", host::kOursAlone));
+}
+
+/// On purpose, so it is no loss.
+std::expected<void, std::string> remove_saved(const std::string& file) {
+  ADIT_TRY(host::remove_file(file + host::kSavedMark));
+  return host::remove_file(file);
 }
 
 }  // namespace
@@ -71,6 +92,8 @@ std::expected<Store::Loaded, std::string> Store::read(std::string& unread) const
     }
     if (saved) loaded.settings = std::move(saved->settings);
   }
+  if (!host::may_exist(file()) && is_there(file() + host::kSavedMark))
+    loaded.trouble = "the saved settings are lost; the initial settings are in use: " + file() + " is gone";
   if (!loaded.saved) {
     const auto parse = [](std::string_view json) { return settings::parse(json); };
     auto given = ADIT_TRY(read_settings(given_settings_, parse, unread));
@@ -92,7 +115,9 @@ std::expected<void, std::string> Store::save(const settings::Settings& settings)
     if (!before) return std::unexpected(before.error());
     if (const auto kept = host::write_kept(file_before(), *before); !kept) return kept;
   }
-  return host::write_kept(file(), settings::file_of(settings));
+  ADIT_TRY(host::write_kept(file(), settings::file_of(settings)));
+  mark_saved(file());
+  return {};
 }
 
 std::expected<void, std::string> Store::make_secrets_folder() {
@@ -105,9 +130,26 @@ std::expected<void, std::string> Store::make_secrets_folder() {
 
 std::expected<void, std::string> Store::save_token(const std::string& name,
                                                    const std::optional<icd::BearerToken>& token) {
-  if (!token) return host::remove_file(token_file(name));
+  ADIT_TRY(keep_replaced(name, token));
+  if (!token) return remove_saved(token_file(name));
   if (auto made = make_secrets_folder(); !made) return made;
-  return host::write_kept(token_file(name), token->reveal() + "\n");
+  ADIT_TRY(host::write_kept(token_file(name), token->reveal() + "\n"));
+  mark_saved(token_file(name));
+  return {};
+}
+
+std::expected<void, std::string> Store::keep_replaced(const std::string& name,
+                                                      const std::optional<icd::BearerToken>& next) {
+  constexpr std::size_t kMost = 64;
+  const auto secrets = ADIT_TRY(host::read_secrets(given_secrets_, secrets_folder(), {{name}}));
+  const auto present = secrets.token(name);
+  if (!present || (next && next->reveal() == present->reveal())) return {};
+  std::string lines = present->reveal() + "\n";
+  for (const icd::BearerToken& each : secrets.replaced | std::views::take(kMost - 1)) {
+    if (each.reveal() != present->reveal()) lines += each.reveal() + "\n";
+  }
+  ADIT_TRY(make_secrets_folder());
+  return host::write_kept(secrets_folder() + '/' + host::kReplacedFile, lines);
 }
 
 void Store::settle(const settings::Settings& settings) {
@@ -118,9 +160,13 @@ void Store::settle(const settings::Settings& settings) {
   for (const fs::path file : files.value_or(std::vector<std::string>())) {
     const bool known = std::ranges::find(names, file.stem().string()) != names.end();
     if (known || file.extension() != ".token") continue;
+    host::log_failure(host::Level::Warning, "logs may show an unused token",
+                      keep_replaced(file.stem(), std::nullopt));
     host::log_failure(host::Level::Warning, "unused tokens may remain",
-                      host::remove_file(secrets_folder() / file));
+                      remove_saved(secrets_folder() / file));
   }
+  mark_saved(file());
+  for (const std::string& name : names) mark_saved(token_file(name));
   if (!host::remove_file(file_before())) {
     host::log(host::Level::Warning, "cannot remove a file", {{"file", file_before()}});
   }
@@ -128,7 +174,7 @@ void Store::settle(const settings::Settings& settings) {
 
 std::expected<void, std::string> Store::put_back() {
   const auto before = ADIT_TRY(host::read_file(file_before()));
-  return before == settings::kNoneBefore ? host::remove_file(file()) : host::write_kept(file(), before);
+  return before == settings::kNoneBefore ? remove_saved(file()) : host::write_kept(file(), before);
 }
 
 bool Store::revert() {
@@ -141,7 +187,8 @@ std::expected<void, std::string> Store::forget() {
   std::error_code error;
   fs::remove_all(secrets_folder(), error);
   if (error) return std::unexpected(secrets_folder() + ": " + error.message());
-  for (const std::string& each : {file_before(), file(), file() + host::kDamaged}) {
+  for (const std::string& each :
+       {file() + host::kSavedMark, file_before(), file(), file() + host::kDamaged}) {
     if (auto removed = host::remove_file(each); !removed) return removed;
   }
   return {};

@@ -43,7 +43,8 @@ class Store {
   std::expected<void, std::string> save(const settings::Settings& settings);
   std::expected<void, std::string> save_token(const std::string& name,
                                               const std::optional<icd::BearerToken>& token);
-  /// Ends the trial with success. Removes tokens of deleted courses, because no page shows them.
+  /// Ends the trial with success. Removes tokens of deleted courses, because no page shows them, and marks
+  /// the saved files (host::kSavedMark).
   void settle(const settings::Settings& settings);
   /// False: there is no trial, or the revert failed.
   bool revert();
@@ -58,6 +59,9 @@ class Store {
     return secrets_folder() + "/" + name + settings::kTokenEnding;
   }
   std::expected<void, std::string> make_secrets_folder();
+  /// Keeps the present token of this name out of logs and exports, if it is another one than `next`.
+  std::expected<void, std::string> keep_replaced(const std::string& name,
+                                                 const std::optional<icd::BearerToken>& next);
   std::expected<void, std::string> put_back();
   /// As load(), without changes on disk.
   std::expected<Loaded, std::string> read(std::string& unread) const;

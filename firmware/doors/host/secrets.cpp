@@ -50,9 +50,10 @@ std::expected<Token, Fault> read_token(const std::string& path, Place place) {
 
 icd::Redaction Secrets::redaction() const {
   std::vector<icd::BearerToken> all;
-  all.reserve(tokens.size() + 1);
+  all.reserve(tokens.size() + replaced.size() + 1);
   for (const auto& [name, token] : tokens) all.push_back(token);
   if (label_code) all.push_back(*label_code);
+  all.insert(all.end(), replaced.begin(), replaced.end());
   return icd::Redaction(std::move(all));
 }
 
@@ -74,9 +75,19 @@ std::expected<Secrets, std::string> read_secrets(const std::string& given, const
   const Place place = holds_credentials(given) ? Place::Credentials : Place::Given;
   Secrets secrets;
   for (const std::string& name : names) {
-    auto token = read_token(saved + "/" + name + ".token", Place::Saved);
+    const std::string file = saved + "/" + name + ".token";
+    auto token = read_token(file, Place::Saved);
     const bool is_saved = !token || *token;
-    if (!is_saved) token = read_token(given + "/" + name + ".token", place);
+    if (!is_saved) {
+      const auto mark = slurp(file + kSavedMark);
+      if (mark)
+        secrets.damaged[name] =
+            icd::sentence("the saved token ", name, " is lost; set it again: ", file, " is gone");
+      else if (mark.error() != ENOENT)
+        secrets.unread = trouble(file + kSavedMark, mark.error());
+      if (mark || mark.error() != ENOENT) continue;
+      token = read_token(given + "/" + name + ".token", place);
+    }
     if (token && *token) secrets.tokens.emplace(name, std::move(**token));
     if (token) continue;
     if (token.error().is_unread) {
@@ -87,6 +98,13 @@ std::expected<Secrets, std::string> read_secrets(const std::string& given, const
     } else {
       return std::unexpected(std::move(token.error().why));
     }
+  }
+  const auto replaced = slurp(saved + '/' + kReplacedFile);
+  if (!replaced && replaced.error() != ENOENT)
+    secrets.unread = trouble(saved + '/' + kReplacedFile, replaced.error());
+  const std::string lines = replaced ? without_checksum(replaced->text) : "";
+  for (std::string_view rest = lines; !rest.empty();) {
+    if (auto token = icd::BearerToken::parse(icd::cut(rest, '\n'))) secrets.replaced.push_back(*token);
   }
   auto label = read_token(given + "/label.code", place);
   if (!label && !label.error().is_unread) return std::unexpected(std::move(label.error().why));

@@ -74,6 +74,7 @@ struct Secrets {
       std::nullopt;                                 // code for the first password; absent: one is drawn
   std::map<std::string, std::string> damaged = {};  // by name: why a saved token is invalid; the given one is
                                                     // then not used
+  std::vector<icd::BearerToken> replaced = {};      // earlier tokens, which logs and exports may still quote
   std::string unread = "";  // why a file cannot be read, so that a token is missing; or ""
 
   icd::Redaction redaction() const;
@@ -86,10 +87,18 @@ struct Secrets {
   }
 };
 
+/// Below the saved tokens: earlier tokens, each in a line.
+inline constexpr const char* kReplacedFile = "replaced";
+
+/// Ending of an empty file beside a saved file. While it is there, a saved file that is gone is lost, and no
+/// given one takes its place.
+inline constexpr const char* kSavedMark = ".saved";
+
 /// Reads the tokens of these names, each from NAME.token in `saved` or else in `given`, and `label.code` in
-/// `given`. `given` holds systemd credentials, or has mode 0700 and files of mode 0600. White space around a
-/// token is removed. A missing file, or an empty one in `given`, is no token. An error names the file in
-/// `given`, never its content: other users may read it, or it holds no token.
+/// `given`. A lost token (kSavedMark) is damaged. `given` holds systemd credentials, or has mode 0700 and
+/// files of mode 0600. White space around a token is removed. A missing file, or an empty one in `given`, is
+/// no token. An error names the file in `given`, never its content: other users may read it, or it holds no
+/// token.
 std::expected<Secrets, std::string> read_secrets(const std::string& given, const std::string& saved,
                                                  std::span<const std::string> names);
 

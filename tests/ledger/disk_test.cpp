@@ -53,6 +53,23 @@ TEST_F(LedgerOnDisk, FullDiskHasRoomForStepsOfKnownReports) {
   expect_all(ledger);
 }
 
+TEST_F(LedgerOnDisk, NearlyFullDiskGetsSmallerFiles) {
+  auto ledger = open();
+  disk_.room = 1'700'000;
+  std::int64_t last = 0;
+  while (write(ledger, backpack(last + 1))) ++last;
+  EXPECT_GT(last, 490 + 100);
+  EXPECT_THAT(ledger.refusal(), HasSubstr("No space left on device"));
+  EXPECT_GE(*disk_.room, 256u << 10) << "for other files";
+  int steps = 0;
+  while (write(ledger, in_state(backpack(1 + steps % last), ReportState::Sending))) ++steps;
+  EXPECT_EQ(steps, static_cast<int>(Ledger::kForKnown / 8192));
+  expect_all(ledger);
+  disk_.room.reset();
+  EXPECT_TRUE(write(ledger, backpack(last + 1)));
+  expect_all(ledger);
+}
+
 /// A report of any length leaves that room.
 TEST_F(LedgerOnDisk, FullDiskHasRoomAfterALongReport) {
   auto ledger = open();

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <sys/statvfs.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -149,6 +150,12 @@ ssize_t Disk::write(int fd, const char* bytes, std::size_t size, off_t at) {
     struct stat status{};
     ::fstat(fd, &status);
     const auto end = static_cast<std::size_t>(status.st_size), place = static_cast<std::size_t>(at);
+    const std::size_t growth = std::max(end, place + count) - end;
+    if (room && growth > *room) {
+      errno = ENOSPC;
+      return -1;
+    }
+    if (room) *room -= growth;
     std::string before(std::min(count, end - std::min(end, place)), '\0');
     if (::pread(fd, before.data(), before.size(), at) < 0) std::abort();
     unsynced_->file(name_of(fd))->wrote(place, std::string(bytes, count), std::move(before), end);
@@ -187,6 +194,7 @@ int Disk::remove(const char* name) {
   if (is_dead_ || fails(failing_writes, EIO)) return -1;
   auto removed = content(directory_ + '/' + name);
   const int result = real::unlink(AT_FDCWD, (log() + '/' + name).c_str(), 0);
+  if (result == 0 && room && removed) *room += removed->size;
   if (result == 0) unsynced_->removed(directory_ + '/' + name, std::move(removed));
   return result;
 }
@@ -206,6 +214,7 @@ int adit_openat(int folder, const char* name, int flags, ...) ADIT_STANDS_FOR("o
 ssize_t adit_pwrite(int fd, const void* bytes, std::size_t size, off_t at) ADIT_STANDS_FOR("pwrite");
 int adit_fsync(int fd) ADIT_STANDS_FOR("fsync");
 int adit_fdatasync(int fd) ADIT_STANDS_FOR("fdatasync");
+int adit_fstatvfs(int fd, struct statvfs* disk) ADIT_STANDS_FOR("fstatvfs");
 int adit_renameat(int from_folder, const char* from, int to_folder, const char* to)
     ADIT_STANDS_FOR("renameat");
 int adit_unlinkat(int folder, const char* name, int flags) ADIT_STANDS_FOR("unlinkat");
@@ -229,6 +238,16 @@ int adit_fsync(int fd) {
 }
 int adit_fdatasync(int fd) {
   return adit_fsync(fd);
+}
+/// Without `room` the disk is as large as the real one.
+int adit_fstatvfs(int fd, struct statvfs* disk) {
+  const Disk* const simulated = Disk::of(fd, nullptr);
+  if (simulated == nullptr || !simulated->room)
+    return ::statvfs(("/proc/self/fd/" + std::to_string(fd)).c_str(), disk);
+  *disk = {};
+  disk->f_frsize = 1;
+  disk->f_bavail = *simulated->room;
+  return 0;
 }
 int adit_renameat(int from_folder, const char* from, int to_folder, const char* to) {
   Disk* const disk = Disk::of(from_folder, from);

@@ -41,8 +41,9 @@ class Disk {
   // Probabilities per call.
   double kills = 0, failing_syncs = 0, failing_writes = 0, full = 0, failing_opens = 0;
   bool is_read_only = false;
-  std::string failing_file = "";  // files with this prefix cannot be opened
-  std::size_t kill_at = 0;        // calls until the kill; 0: never
+  std::optional<std::size_t> room;  // bytes that files may grow by
+  std::string failing_file = "";    // files with this prefix cannot be opened
+  std::size_t kill_at = 0;          // calls until the kill; 0: never
 
   // For disk.cpp only.
   static Disk* of(int fd, const char* name);

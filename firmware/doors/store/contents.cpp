@@ -117,7 +117,8 @@ class Assembly {
 
   /// A log on disk gets its name after its zeros are synced.
   std::uint64_t least_size(const Scan& log) const {
-    return log.header ? log.header->size : keeping_.syncs ? keeping_.file_bytes : 0;
+    if (log.header) return log.header->size;
+    return keeping_.syncs ? std::min(keeping_.least_bytes, keeping_.file_bytes) : 0;
   }
 
   /// False: a frame is missing, and the rest was never synced.

@@ -22,6 +22,8 @@ struct Keeping {
   bool syncs = true;  // false: the log is in memory, its files grow, and every append is durable
   /// Of a file whose header names no size: one that grows, or a snapshot. A longer one is read up to here.
   std::size_t most_bytes = 128u << 20;
+  /// Of a file on a disk that has no room for `file_bytes`, besides its first records.
+  std::size_t least_bytes = 512u << 10;
 };
 
 struct Record {

@@ -13,13 +13,15 @@
 namespace adit::store {
 namespace {
 
-constexpr std::size_t kPiece = 256u << 10;  // bytes of zeros for one sync, so that others wait briefly
+constexpr std::size_t kLeftFree = 256u << 10;  // bytes of the disk, for small files such as settings
+constexpr std::size_t kPiece = 256u << 10;     // bytes of zeros for one sync, so that others wait briefly
 
 /// Writes `size` zeros to a new file and syncs them. Returns 0 or errno. Checks the free space first, so that
-/// it does not fill the disk.
+/// it leaves kLeftFree.
 int write_zeros(int fd, std::size_t size, const std::atomic<bool>& enough) {
   struct statvfs disk{};
-  if (::fstatvfs(fd, &disk) == 0 && std::uint64_t{disk.f_bavail} * disk.f_frsize < size) return ENOSPC;
+  if (::fstatvfs(fd, &disk) == 0 && std::uint64_t{disk.f_bavail} * disk.f_frsize < size + kLeftFree)
+    return ENOSPC;
   const std::string zeros(std::min(size, kPiece), '\0');
   for (std::size_t at = 0; at < size; at += zeros.size()) {
     if (enough) return ECANCELED;
@@ -134,7 +136,11 @@ Result<void> Log::turn_for(std::size_t body) {
   std::size_t size = bytes_of(FileHeader().written().size()) + bytes_of(body);
   for (const Unsynced& each : unsynced_) size += bytes_of(each.body.size());
   ++highest_;
-  auto next = ADIT_TRY(make_file(keeping_.syncs ? std::max(size, keeping_.file_bytes) : 0));
+  auto made = make_file(keeping_.syncs ? std::max(size, keeping_.file_bytes) : 0);
+  const std::size_t small = size + keeping_.least_bytes;
+  if (!made && made.error().cause == Error::Cause::Full && small < keeping_.file_bytes)
+    made = make_file(small);
+  auto next = ADIT_TRY(std::move(made));
   if (auto filled = fill(next); !filled) {
     (void)directory_.remove(next.name.text());  // if that fails, a later file's header says the same
     return filled;

@@ -82,7 +82,7 @@ void the_box(std::vector<Facts>& days) {
   facts.notices = {{"card", "what happened"}};
   facts.update = {.on_trial = true, .version = "1.2.0", .stray = "the last one did not come up"};
   days.push_back(named());
-  days.back().stamps_damage = "their file is damaged or missing";
+  days.back().stamps_damage = "their file is damaged";
   days.push_back(named());
   days.back().standby = "its spare takes over";
 }

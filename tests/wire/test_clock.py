@@ -85,7 +85,7 @@ class Clock(unittest.TestCase):
         self.assertGreaterEqual(second, first + DAYS + 30, "the highest stamp that may have been given out")
         alarms = wait_until(lambda: [each["why"] for each in self.stage.box.ask("GET /adit/run")[1]["alarms"] if each["id"] == "stamps"],
                             "the alarm, by the Command Post's time")
-        self.assertIn("days ahead of the time of day", alarms[0])
+        self.assertIn("days; a factory reset", alarms[0])
         self.lose_power(first - DAYS)
         now = self.stage.box.ask("GET /adit/run")[1]["now"]
         self.assertAlmostEqual(now, time.time(), delta=60, msg="the machine's clock went on")

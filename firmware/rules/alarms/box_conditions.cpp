@@ -148,15 +148,11 @@ void find_stamp_troubles(const Facts& facts, Found& found) {
                      .severity = Severity::Ask,
                      .side = Side::Box,
                      .headline = {"Time stamps", "ahead", true},
-                     .why = sentence(std::floor(facts.stamps_ahead / kDay),
-                                     " days ahead of the time of day; a factory reset lets them step back"),
-                     .action = kOpenSystem});
+                     .why = sentence("by ", std::floor(facts.stamps_ahead / kDay),
+                                     " days; a factory reset sets them back")});
   } else {
     add(found, facts.stamps_damage,
-        {.id = "stamps",
-         .severity = Severity::Ask,
-         .headline = {"The last time stamps", "lost", true},
-         .why = "stamps may have gone back: "});
+        {.id = "stamps", .severity = Severity::Ask, .headline = {"The last time stamps", "lost", true}});
   }
 }
 

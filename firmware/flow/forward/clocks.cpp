@@ -56,7 +56,8 @@ bool Clocks::is_far_beyond(double floor, const StampFloor::Kept& kept) const {
 /// of day, which may have been set long after the stamps began.
 void Clocks::begin_start(const StampFloor::Kept& kept) {
   const double proven = newest_ > kept.overruled ? newest_ : 0, floor = std::max(kept.floor, proven);
-  if (kept_ && floor > kept.floor)
+  // A start uses stamps from the bound on before it stores the next one.
+  if (kept_ && floor > kept.floor + (kept.floor > 0 ? StampFloor::kAhead : 0))
     damage_ = kept.floor > 0 ? "their file is older than the ledger" : "their file is missing or damaged";
   if (kept.is_damaged) damage_ = "their file is damaged";
   const bool is_far = is_far_beyond(floor, kept);

@@ -54,19 +54,19 @@ class ServerTest : protected StandingTime, public Asking {
                               [this, place](Outcome outcome) { outcomes_[place] = std::move(outcome); });
   }
   int status_of(std::size_t place) { return outcomes_[place] ? answered(*outcomes_[place]).status : -1; }
-  /// Lets time pass only if `is_slow`.
-  bool is_answered(std::size_t place, bool is_slow = false) {
-    const auto is_told = [&] { return outcomes_[place].has_value(); };
-    const bool is_over = is_slow ? time.pass_until(loop_, is_told, std::chrono::seconds(15))
-                                 : loop::turn_until(loop_, is_told);
-    return is_over && status_of(place) == 200;
+  bool is_answered(std::size_t place) {
+    return loop::turn_until(loop_, [&] { return outcomes_[place].has_value(); }) && status_of(place) == 200;
+  }
+  /// Lets time pass until the idle connection is closed, and none while the peer's thread answers.
+  bool is_answered_after_closing(std::size_t idle, std::size_t place) {
+    return time.pass_until(loop_, [&] { return !connections_[idle]->connected(); }) && is_answered(place);
   }
   void learn() {
     send(0, get("/a"));
     ASSERT_TRUE(is_answered(0));
     for (const std::size_t place : {1u, 0u}) {
       send(place, get("/a"));
-      ASSERT_TRUE(is_answered(place, true));
+      ASSERT_TRUE(is_answered_after_closing(1 - place, place));
     }
     ASSERT_TRUE(server().is_serial());
     const std::lock_guard lock(mutex_);
@@ -100,7 +100,7 @@ TEST_F(ServerTest, IdleConnectionIsClosedAfterASecondWithoutAnAnswer) {
   ASSERT_TRUE(is_answered(0));
   send(1, post(megabytes(2)));  // more than an unread connection holds
   const loop::Instant sent = loop_.now();
-  EXPECT_TRUE(is_answered(1, true));
+  EXPECT_TRUE(is_answered_after_closing(0, 1));
   EXPECT_GE(loop_.now() - sent, Server::kSilence);
   EXPECT_FALSE(connections_[0]->connected());
 }
@@ -110,7 +110,7 @@ TEST_F(ServerTest, WarmConnectionIsClosed) {
   connections_[0]->keep_warm();
   ASSERT_TRUE(loop::turn_until(loop_, [&] { return peer_->begun() == 1; }));
   send(1, get());
-  EXPECT_TRUE(is_answered(1, true));
+  EXPECT_TRUE(is_answered_after_closing(0, 1));
 }
 
 TEST_F(ServerTest, SerialServerGetsOneConnectionAtATime) {
@@ -308,7 +308,7 @@ TEST_F(ServerTest, ServerThatClosesAfterEachAnswerIsSerial) {
     EXPECT_FALSE(server().is_serial());
     time.pass(milliseconds(1));
     send(1, get("/a"));
-    ASSERT_TRUE(is_answered(1, true));
+    ASSERT_TRUE(is_answered_after_closing(0, 1));
     time.pass(Server::kSilence);
   }
   EXPECT_TRUE(server().is_serial());

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <random>
+#include <thread>
 #include <type_traits>
 
 namespace adit::icd {
@@ -82,6 +83,19 @@ TEST(ChunkedBytes, GrowTheirLastChunkOnceUnshared) {
   bytes.append(piece);
   EXPECT_EQ(bytes.chunks().size(), 2U);
   EXPECT_EQ(bytes.size(), 30U);
+}
+
+/// Growing frees the bytes that the other thread has read. The thread sanitizer looks at the order.
+TEST(ChunkedBytes, GrowTheirLastChunkOnceAnotherThreadHasReadIt) {
+  const Bytes piece = counted(1000);
+  ChunkedBytes bytes(piece);
+  const std::jthread reader([&piece, copy = bytes]() mutable {
+    EXPECT_EQ(copy.to_vector(), piece);
+    copy = ChunkedBytes();
+  });
+  while (bytes.chunks()[0].owner().use_count() > 2) std::this_thread::yield();
+  for (int i = 0; i < 10; ++i) bytes.append(piece);
+  EXPECT_EQ(bytes.chunks().size(), 1U);
 }
 
 TEST(ChunkedBytes, AppendAChunkWithoutACopy) {

@@ -37,7 +37,7 @@ class ReportBook {
       : output_(output), follow_(std::move(follow)) {}
 
   void open(std::vector<Report> all);
-  /// Takes all reports, and what is not on disk yet.
+  /// Takes all reports and the unwritten steps.
   void carry_on(const ReportBook& before);
 
   /// Of the next report.

@@ -18,8 +18,8 @@ constexpr std::uint64_t kStateFolder = 26 * kMiB;
 constexpr std::uint64_t kDamaged = 5 * kMiB;
 /// The journal in use, and the compacted one that is written beside it.
 constexpr std::uint64_t kJournal = 5 * kMiB / 2;
-/// The sessions and the rejected messages of a run.
-constexpr std::uint64_t kBeside = kMiB;
+/// The sessions and the rejected messages of a run, of which up to nine are large.
+constexpr std::uint64_t kBeside = 16 * kMiB;
 
 struct Most {
   const char* list;

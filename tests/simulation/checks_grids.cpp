@@ -156,13 +156,8 @@ class GridsOfOneName {
         return !may_be_in_it || covers(newer.extent, older.extent);
       });
     };
-    const auto was_cut = [&](const PostedGrid& newer) {
-      return std::ranges::any_of(posted_, [&](const PostedGrid& other) {
-        return other.asked->may_count() && newer.is_overtaken_by(other);
-      });
-    };
     const auto was_queued = [&](const PostedGrid& newer) {
-      return !was_cut(newer) && newer.asked->accepted() && newer.asked->began > began &&
+      return !may_be_overtaken(newer) && newer.asked->accepted() && newer.asked->began > began &&
              newer.asked->ended < since && grid.is_before(newer);
     };
     // While a grid waits for a connection it stays, and meanwhile another one may replace the newer one.
@@ -327,15 +322,21 @@ class GridsOfOneName {
     return owners;
   }
 
+  /// Whether a newer one may have been accepted after its upload had begun, so that only its other cells were
+  /// queued.
+  bool may_be_overtaken(const PostedGrid& grid) const {
+    return std::ranges::any_of(posted_, [&](const PostedGrid& newer) {
+      return newer.asked->may_count() && newer.asked->began > grid.asked->began &&
+             newer.asked->whole_at < grid.asked->ended;
+    });
+  }
+
   /// Each of its cells has the grid's value, or the value of a grid that is not older or that this grid let
   /// pass, or was covered later by a grid on another lattice that is not older. Or an accepted grid that
   /// overtook this one covers it, whose own cells count then. If this grid was overtaken, another one may
   /// have replaced the one that overtook it, so both cover to a whole cell.
   bool is_there(const PostedGrid& grid) const {
-    const bool may_be_overtaken = std::ranges::any_of(posted_, [&](const PostedGrid& newer) {
-      return newer.asked->may_count() && newer.asked->began > grid.asked->began &&
-             newer.asked->whole_at < grid.asked->ended;
-    });
+    const bool is_widened = may_be_overtaken(grid);
     bool all = true;
     for_each_cell(grid.extent, [&](const Extent& cell) {
       const auto found = has_.find(key_of(cell));
@@ -347,7 +348,7 @@ class GridsOfOneName {
                       const bool came_later = newer.taken > has.place && !newer.is_before(grid);
                       const bool overtook = newer.asked->accepted() && grid.is_overtaken_by(newer);
                       return (came_later || overtook) &&
-                             covers(may_be_overtaken ? widened(newer.extent) : newer.extent, cell);
+                             covers(is_widened ? widened(newer.extent) : newer.extent, cell);
                     }));
     });
     return all;
@@ -427,7 +428,7 @@ void grid_arrived(const Evidence& evidence, Broken& broken) {
     if (is_grid(item.says)) of(item.who).post(asked, item);
   }
   std::map<std::uint64_t, std::vector<PostedGrid*>> last_sent;  // by connection
-  double began = 0;                                             // of the process
+  double began = 0, switched = 0;                               // the process, the course
   std::map<std::uint64_t, double> left;                         // when the last map of each connection left
   // When the last two delivered maps left, the latest first. One more map may be prepared before they arrive.
   std::array<double, 2> delivered{-1, -1};
@@ -437,13 +438,16 @@ void grid_arrived(const Evidence& evidence, Broken& broken) {
       for (auto& [name, grids] : names) grids.begin_run(i);
     }
     if (event.kind == Kind::Begins) began = event.at;
+    if (event.kind == Kind::Saved && event.what == kCourse) switched = event.at;
     if (event.what != kMap) continue;
     if (event.kind == Kind::Leaves) left[event.request] = event.at;
     if (event.kind == Kind::Replied && event.status == 200) delivered = {left[event.request], delivered[0]};
-    // A serial server reads requests of a process that has ended long after the next one has begun.
+    // A serial server reads requests of a process that has ended long after the next one has begun, and a
+    // Command Post that stood still those from before a switch.
     constexpr double kReadLate = 5;
     const double since = left[event.request];
-    if (event.kind == Kind::Taken && since < began && event.at - since > kReadLate) continue;
+    if (event.kind == Kind::Taken && since < std::max(began, switched) && event.at - since > kReadLate)
+      continue;
     std::vector<PostedGrid*>& sent = last_sent[event.request];
     if (event.kind == Kind::Replied) {
       for (PostedGrid* each : sent) each->answered(event);

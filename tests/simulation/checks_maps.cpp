@@ -145,10 +145,14 @@ void check_clouds(const Evidence& evidence, const Name& name, const std::vector<
       if ((cloud.has_pieces || had_more.contains(message_of(cloud.taken[i - 1]))) &&
           may_go_whole(evidence.events, cloud.taken[i - 1], cloud.taken[i]))
         continue;
-      // A process does not know which pieces the one before has sent.
+      // A process does not know which pieces the one before has sent. Nor does a message that the operator
+      // sends again, because one of its pieces was rejected.
+      const auto begins_again = [](const Event& event) {
+        return event.kind == Kind::Begins || event.what == kSendRejected;
+      };
       const auto between =
           std::span(evidence.events).subspan(cloud.taken[i - 1], cloud.taken[i] - cloud.taken[i - 1]);
-      if (cloud.has_pieces && std::ranges::count(between, Kind::Begins, &Event::kind) > 0) continue;
+      if (cloud.has_pieces && std::ranges::any_of(between, begins_again)) continue;
       broken.push_back(icd::sentence("CloudArrived: ", cloud.item->serial, " of '", name,
                                      "' was delivered twice, at ", evidence.events[cloud.taken[i]].at));
     }

@@ -68,7 +68,7 @@ void check_review(const Evidence& evidence, Broken& broken) {
 void check_undo(const Evidence& evidence, Broken& broken) {
   struct Wait {
     double until;
-    bool is_restarted = false;
+    bool is_answered = false, is_restarted = false;
   };
   std::map<std::int64_t, Wait> waits;
   double since = -1, undo = 0;
@@ -79,12 +79,18 @@ void check_undo(const Evidence& evidence, Broken& broken) {
       undo = static_cast<double>(event.serial);
     }
     if (event.kind == Kind::Begins) {
-      for (auto& [serial, wait] : waits) wait.is_restarted = wait.is_restarted || event.at < wait.until;
+      // The next process may read a request that was not answered.
+      for (auto& [serial, wait] : waits)
+        wait.is_restarted = wait.is_restarted || (wait.is_answered && event.at < wait.until);
     }
     const bool is_told = event.kind == Kind::Invoke;
     if (is_told && (is_word(event, kCompose) || is_word(event, kCorrect)) && since >= 0 && event.at > since)
       waits.emplace(event.serial, Wait{.until = event.at + undo});
     if (is_told && is_word(event, kSend)) waits.erase(event.serial);
+    const auto asked = waits.find(event.serial);
+    if (event.kind == Kind::Answered && (event.what == kCompose || event.what == kCorrect) &&
+        asked != waits.end())
+      asked->second.is_answered = true;
     const auto wait = waits.find(event.serial);
     if (event.kind != Kind::Left || event.what != kReports || wait == waits.end()) continue;
     if (event.at >= wait->second.until && !wait->second.is_restarted) continue;

@@ -47,7 +47,7 @@ def frames(file, align):
 
 def write_stamps(file, floor, wall):
     """Writes `stamps` of the state directory: one frame in two copies, with salt 0."""
-    body, data = struct.pack("<3d3Q2d", floor, wall, 0, 0, 0, 0, 0, 0), b""
+    body, data = struct.pack("<3d4Q2d", floor, wall, 0, 0, 0, 0, 0, 0, 0), b""
     for copy in (0, 1):
         data = data.ljust(copy * ON_DISK, b"\0")
         frame = HEADER.pack(b"ADTL", 0, len(body), 1, copy, 0, 0, 0, 0) + body

@@ -79,15 +79,26 @@ bool seems_overtaken(const Change& late, const Change& early, const Changes& all
   });
 }
 
+/// Whether a backlog ran as a clock does for so long that Adit may take it for the client's clock.
+bool may_set_clock(const Change& change, const Changes& all) {
+  constexpr double kFasterBy = 1.5;  // seconds in kSteady, at most
+  return change.late > 0 && std::ranges::any_of(all, [&](const Change& first) {
+           return first.late > 0 && first.sender == change.sender && first.began < change.began &&
+                  change.stamp - first.stamp >= kSteady - kJitter && change.late > first.late - kFasterBy;
+         });
+}
+
 /// The values that may remain at the end: those of changes that no accepted change followed. `forgets`:
 /// times at which the gateway may have lost its values.
 std::set<std::int64_t> last_of(const Changes& changes, const std::vector<double>& forgets = {}) {
   std::set<std::int64_t> last;
   bool any = false;
   for (const Change& change : changes) {
+    const bool may_stay = may_set_clock(change, changes);
     bool over = false;
     for (const Change& other : changes)
-      over = over || (other.accepted && is_before(change, other, changes, forgets) &&
+      over = over || (other.accepted && !(may_stay && other.began < change.began) &&
+                      is_before(change, other, changes, forgets) &&
                       !seems_overtaken(other, change, changes, forgets));
     if (!over) last.insert(change.serial);
     if (!over && change.fades) last.insert(0);

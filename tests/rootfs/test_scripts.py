@@ -1,6 +1,7 @@
 """Scripts of the recipe and of the box, called with test files and directories: GRUB's environment, two disks, toolchain/image's
 options."""
 import os
+import re
 import shutil
 import subprocess
 import tempfile
@@ -212,7 +213,7 @@ class SetUp(Scripts):
 
     def set_up(self, *says):
         (self.folder / "says").write_text("".join(line + "\n" for line in says))
-        done = self.call(self.folder / "setup", "lint", PATH=f"{self.folder}/bin:/usr/sbin:/usr/bin:/sbin:/bin")
+        done = self.call(self.folder / "setup", "sanitizers", PATH=f"{self.folder}/bin:/usr/sbin:/usr/bin:/sbin:/bin")
         return done, [line.split()[0] for line in (self.folder / "calls").read_text().splitlines()]
 
     def test_it_waits_for_another_apt_and_reports_it_once(self):
@@ -224,6 +225,12 @@ class SetUp(Scripts):
         done, calls = self.set_up("E: Could not resolve the mirror")
         self.assertEqual((done.returncode, calls), (1, ["update"]))
         self.assertIn("Could not resolve", done.stderr)
+
+    def test_sanitizers_are_those_of_the_compiler_in_use(self):
+        compiler = re.search(r"CXX_COMPILER clang\+\+-(\d+)", (TOP / "toolchain/cmake/ships.cmake").read_text())
+        done, _ = self.set_up()
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn(f"libclang-rt-{compiler[1]}-dev", (self.folder / "calls").read_text().split())
 
 
 class Options(Scripts):

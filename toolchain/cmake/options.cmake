@@ -25,6 +25,15 @@ endif()
 
 set(ADIT_SANITIZE "" CACHE STRING "Sanitizers to build with, as -fsanitize takes them (address,undefined or thread)")
 if(ADIT_SANITIZE)
+  # The compiler's package has no runtime of its sanitizers, and a program without one fails to link after minutes.
+  include(CheckCXXSourceCompiles)
+  unset(ADIT_HAS_SANITIZER CACHE)
+  set(CMAKE_REQUIRED_FLAGS -fsanitize=${ADIT_SANITIZE})
+  check_cxx_source_compiles("int main() {}" ADIT_HAS_SANITIZER)
+  unset(CMAKE_REQUIRED_FLAGS)
+  if(NOT ADIT_HAS_SANITIZER)
+    message(FATAL_ERROR "${CMAKE_CXX_COMPILER} cannot link with -fsanitize=${ADIT_SANITIZE}: run toolchain/setup run test sanitizers")
+  endif()
   target_compile_options(adit_options INTERFACE -fsanitize=${ADIT_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer
     # GCC's own manual: what follows a value's way through the code gives false alarms beside -fsanitize. The preset gcc looks.
     $<$<CXX_COMPILER_ID:GNU>:-Wno-error> $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)

@@ -69,6 +69,7 @@ void the_box(std::vector<Facts>& days) {
   Facts& facts = days.back();
   facts.ledger_refusal = facts.disk.map = facts.disk.state = facts.disk.run = "no space";
   facts.ledger_damage = "its reports were recovered";
+  facts.other_ledger = "ledger.sqlite";
   facts.put_aside = "aditd ended 3 times";
   facts.disk.free = 500u << 10;
   facts.disk.life = 10;

@@ -180,17 +180,15 @@ TEST(Ledger, OpensOnceAtATime) {
   EXPECT_EQ(Ledger::open(state.path() + "/absent").error().cause, Error::Cause::Other);
 }
 
-TEST(OpenLedger, NamesALedgerOfAnotherFormat) {
+/// Its values only make damage of an older copy.
+TEST(OpenLedger, GoesOnWithoutTheFileInMemory) {
   const State state;
-  std::ofstream(state.path() + "/ledger.sqlite") << "SQLite format 3";
-  for (const char* const which : {"a new ledger", "the next start"}) {
-    auto ledger = open_or_fail(state.path());
-    EXPECT_THAT(ledger.damage(), HasSubstr(state.path() + "/ledger.sqlite is a ledger of another format"))
-        << which;
-    EXPECT_TRUE(write(ledger, backpack(1)));
-  }
-  std::filesystem::remove(state.path() + "/ledger.sqlite");
-  EXPECT_EQ(open_or_fail(state.path()).damage(), "");
+  const std::string memory = state.path() + "/known";
+  std::filesystem::create_directory(memory);
+  auto ledger = Ledger::open(state.path(), {}, memory);
+  ASSERT_TRUE(ledger) << ledger.error().what;
+  EXPECT_EQ(ledger->warning(), memory + ": Is a directory");
+  EXPECT_TRUE(write(*ledger, backpack(1)));
 }
 
 /// The stamp floor is written from it, so it must not forget the unreadable ledger.

@@ -87,6 +87,15 @@ class Disk(unittest.TestCase):
             self.assertEqual([each["state"] for each in stage.box.reports()], ["answered", "in_doubt"])
             self.assertEqual(len(stage.post.recorded(another(1))), 1)
 
+    def test_an_earlier_ledger(self):
+        with Stage(**BRIEF) as stage:
+            earlier = began(stage).box.state / "ledger.sqlite"
+            earlier.write_bytes(b"SQLite format 3")
+            wait_until(lambda: stage.box.alarms() == {"other_ledger"}, "the file to be named")
+            self.assertEqual(submit(stage).status_code, 201)
+            earlier.unlink()
+            wait_until(lambda: not stage.box.alarms(), "the alarm to end")
+
     def test_a_ledger_that_cannot_be_read(self):
         with Stage(**QUICK) as stage:
             first = submit(began(stage))

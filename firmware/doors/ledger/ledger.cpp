@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cerrno>
 #include <chrono>
 #include <optional>
+#include <system_error>
 #include <utility>
 
 #include "icd/sentence.hpp"
@@ -26,16 +28,6 @@ double now() {
   return std::chrono::duration<double>(system_clock::now().time_since_epoch()).count();
 }
 
-/// A sentence if a ledger of another format is there, or "".
-std::string other_format_in(const std::string& state) {
-  constexpr const char* kName = "ledger.sqlite";
-  const auto folder = store::Directory::look(state);
-  if (!folder || !folder->size(kName)) return "";
-  return icd::sentence(
-      state, "/", kName,
-      " is a ledger of another format. Its reports are not read. Move the file away to end this message.");
-}
-
 Result<void> write(store::Snapshot& snapshot, const Book& book, const std::atomic<bool>& enough) {
   for (const auto& [kind, body] : book.records()) {
     if (enough) return std::unexpected(Error{.what = "aditd is stopping"});
@@ -44,38 +36,37 @@ Result<void> write(store::Snapshot& snapshot, const Book& book, const std::atomi
   return snapshot.finish();
 }
 
-}  // namespace
-
-/// What a process of this boot knew last, in a file in memory: one frame with salt 0.
-class Memory {
+/// What a process of this boot knew last, as the only value of a file in memory.
+class KnownFile {
  public:
-  explicit Memory(const std::string& path) {
+  KnownFile() = default;
+  /// `path` "": no file.
+  explicit KnownFile(const std::string& path) {
     if (path.empty()) return;
     file_ = loop::FileDescriptor(::open(path.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0600));
     std::string bytes(kMost, '\0');
     const auto size = file_ ? ::pread(file_.get(), bytes.data(), bytes.size(), 0) : -1;
+    if (size < 0) trouble_ = icd::sentence(path, ": ", std::generic_category().message(errno));
     bytes.resize(static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
-    const auto parsed = store::parse(bytes, 0, kSalt);
-    if (!parsed || parsed->frame.kind != kKind) return;
-    store::Reader take(parsed->frame.body);  // a later version may add members
-    if (const auto known = take.read<Known>(); take.ok()) known_ = known;
+    known_ = store::value_in<Known>(bytes).value_or(Known());
   }
-  const Known& known() const { return known_; }
-  /// A failed write leaves the last one or none.
+  /// The last values in the file; 0: unknown.
+  const Known& content() const { return known_; }
+  /// Why the file could not be opened or read, or "".
+  const std::string& trouble() const { return trouble_; }
+  /// After a failed write the file is empty, so that no older values are believed.
   void write(const Known& known) {
     if (!file_ || known == known_) return;
     known_ = known;
-    const std::string body = store::bytes_of(known);
-    (void)store::write_all(file_.get(),
-                           store::written({.kind = kKind, .body = body}, store::kInMemory, kSalt, 0), 0);
+    if (store::write_all(file_.get(), store::file_of(known, store::kInMemory), 0) != 0)
+      (void)::ftruncate(file_.get(), 0);
   }
 
  private:
   static constexpr std::size_t kMost = 4096;
-  static constexpr std::uint8_t kKind = 1;
-  static constexpr std::uint64_t kSalt = 0;
   loop::FileDescriptor file_;
   Known known_;
+  std::string trouble_;
 };
 
 Known latest_of(const Known& one, const Known& other) {
@@ -84,17 +75,19 @@ Known latest_of(const Known& one, const Known& other) {
           .last = std::max(one.last, other.last)};
 }
 
+}  // namespace
+
 class Ledger::Impl {
  public:
   Impl(std::string refusal, const Known& known) : refusal_(std::move(refusal)), known_(known) {}
   Impl(store::Directory directory, store::Contents contents, Book book, std::string damage, bool is_damaged,
-       const Known& known, Memory memory)
+       const Known& known, KnownFile file)
       : directory_(std::make_shared<store::Directory>(std::move(directory))),
         contents_(std::move(contents)),
         book_(std::move(book)),
         damage_(std::move(damage)),
         known_(known),
-        memory_(std::move(memory)),
+        file_(std::move(file)),
         is_damaged_(is_damaged) {}
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
@@ -115,13 +108,13 @@ class Ledger::Impl {
     constexpr auto kKind = static_cast<std::uint8_t>(Kind::Steps);
     if (auto appended = log_->append(kKind, record, durability); !appended) return appended;
     (void)book_.apply(kKind, record);
-    memory_.write(known());
+    file_.write(known());
     return {};
   }
 
   Result<void> flush() {
     auto flushed = log_ ? log_->flush() : Result<void>();
-    memory_.write(known());
+    file_.write(known());
     return flushed;
   }
 
@@ -145,7 +138,7 @@ class Ledger::Impl {
     auto begun = begin_log();
     refusal_ = begun ? "" : begun.error().what;
     has_begun_ = begun.has_value();
-    memory_.write(known());
+    file_.write(known());
     return begun;
   }
 
@@ -182,7 +175,7 @@ class Ledger::Impl {
   Book book_;
   std::string damage_, refusal_;
   Known known_;  // from open()
-  Memory memory_{""};
+  KnownFile file_;
   bool is_damaged_ = false, is_aside_ = false, has_turned_ = false, has_begun_ = false;
   bool is_under_way_ = false;                       // upkeep is running
   std::uint64_t snapshot_ = 0, next_snapshot_ = 0;  // first log after the last snapshot
@@ -234,14 +227,13 @@ Result<Ledger> Ledger::open(const std::string& state, const Known& stored, const
   auto contents = ADIT_TRY(store::Contents::read(directory, kKeeping));
   auto reading = ADIT_TRY(read(contents));
   Book& book = reading.book;
-  Memory in_memory(memory);
-  const Known known = latest_of(stored, in_memory.known());
+  KnownFile file(memory);
+  const Known known = latest_of(stored, file.content());
   if ((known.log != 0 && !contents.has(known.log)) || book.highest() < known.reports ||
       contents.last < known.last) {
     reading.gap += icd::sentence(reading.gap.empty() ? "" : ", ", "its last records are not there");
-    // The file in memory has known all reports.
-    reading.end_is_lost =
-        reading.end_is_lost || in_memory.known().last < std::max(known.last, std::uint64_t{1});
+    const bool has_all_reports = file.content().last > 0 && file.content().last == known.last;
+    reading.end_is_lost = reading.end_is_lost || !has_all_reports;
   }
   // File names are never reused, even of removed logs.
   contents.number = std::max(contents.number, known.log);
@@ -258,9 +250,8 @@ Result<Ledger> Ledger::open(const std::string& state, const Known& stored, const
       damage += (note == contents.notes.front() ? "" : "; ") + note;
     damage += ". No report is missing.";
   }
-  if (damage.empty()) damage = other_format_in(state);
   auto impl = std::make_unique<Impl>(std::move(directory), std::move(contents), std::move(book),
-                                     std::move(damage), is_damaged, known, std::move(in_memory));
+                                     std::move(damage), is_damaged, known, std::move(file));
   (void)impl->make_ready();  // refusal() has the reason
   return Ledger(std::move(impl));
 }
@@ -324,6 +315,9 @@ Result<void> Ledger::take_over(const std::string& copy, const dispatch::Handover
 
 const std::string& Ledger::damage() const {
   return impl_->damage_;
+}
+const std::string& Ledger::warning() const {
+  return impl_->file_.trouble();
 }
 const std::string& Ledger::refusal() const {
   return impl_->refusal_;

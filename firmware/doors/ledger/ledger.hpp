@@ -86,6 +86,8 @@ class Ledger {
 
   /// A sentence about damage found by open(), or "".
   const std::string& damage() const;
+  /// Why open() could not read the file in memory, so that an older copy may be believed; or "".
+  const std::string& warning() const;
   /// Why the last try to accept a new report failed, or "".
   const std::string& refusal() const;
   bool is_closed() const;

@@ -6,6 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include "store/values.hpp"
+
 namespace adit::store {
 
 /// Largest body of a record, in bytes.
@@ -50,6 +52,23 @@ std::optional<Parsed> parse(std::string_view file, std::size_t offset, std::uint
 /// The first place for a frame from `offset` on, a multiple of layout.align; the file's size if there is
 /// none.
 std::size_t next_candidate(std::string_view file, std::size_t offset, const Layout& layout);
+
+/// A file with one value, its kMembers in a frame with salt 0: no part of it comes from a peer.
+template <class Of>
+std::string file_of(const Of& value, const Layout& layout) {
+  const std::string body = bytes_of(value);
+  return written({.kind = 1, .body = body}, layout, 0, 0);
+}
+/// The value of file_of() from the copy at `offset`, or std::nullopt if the copy is absent or damaged. A
+/// later version may have added members.
+template <class Of>
+std::optional<Of> value_in(std::string_view file, std::size_t offset = 0) {
+  const auto parsed = parse(file, offset, 0);
+  if (!parsed || parsed->frame.kind != 1) return std::nullopt;
+  Reader take(parsed->frame.body);
+  const Of value = take.read<Of>();
+  return take.ok() ? std::optional(value) : std::nullopt;
+}
 
 /// Appends `number` in `bytes` bytes, little-endian.
 void put_number(std::string& out, std::uint64_t number, std::size_t bytes);

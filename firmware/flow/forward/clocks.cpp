@@ -67,8 +67,8 @@ void Clocks::begin_start(const StampFloor::Kept& kept) {
   const double went_on = loop_.stamp_now() - (kept.floor - StampFloor::kAhead);
   const double went_by = loop_.wall_now() - kept.wall;
   clock_step_ = {.to = loop_.stamp_now(), .by = std::max(0.0, went_on)};
-  off_ = {.seconds = std::clamp(went_by, 0.0, is_far ? std::max(0.0, went_by) : clock_step_.by),
-          .since = kept.wall};
+  const double most = is_far ? went_by : clock_step_.by;
+  off_ = {.seconds = std::max(0.0, std::min(went_by, most)), .since = kept.wall};
 }
 
 bool Clocks::hear(double there) {

@@ -1,6 +1,5 @@
 #include "forward/stamp_floor.hpp"
 
-#include <string_view>
 #include <utility>
 
 #include "host/log.hpp"
@@ -9,26 +8,11 @@
 #include "store/frame.hpp"
 
 namespace adit::forward {
-namespace {
-
-constexpr std::uint8_t kKind = 1;
-constexpr std::uint64_t kSalt = 0;  // no part of the file comes from a peer
-
-/// The content of the copy at `offset`, or std::nullopt if the copy is damaged.
-std::optional<StampFloor::Kept> copy_at(std::string_view file, std::size_t offset) {
-  const auto parsed = store::parse(file, offset, kSalt);
-  if (!parsed || parsed->frame.kind != kKind) return std::nullopt;
-  store::Reader take(parsed->frame.body);  // a later version may add members
-  const auto kept = take.read<StampFloor::Kept>();
-  return take.ok() ? std::optional(kept) : std::nullopt;
-}
-
-}  // namespace
 
 std::expected<StampFloor::Kept, std::string> StampFloor::read() const {
   if (!host::may_exist(file_)) return Kept{};
   const auto text = ADIT_TRY(host::read_file(file_));
-  const auto one = copy_at(text, 0), other = copy_at(text, store::kOnDisk.align);
+  const auto one = store::value_in<Kept>(text), other = store::value_in<Kept>(text, store::kOnDisk.align);
   if (!one || !other)
     host::log(host::Level::Warning, "a copy of the last time stamps is damaged",
               {{"file", file_}, {"now", one || other ? "the other copy is used" : "stamps may go back"}});
@@ -45,8 +29,7 @@ std::optional<StampFloor::Kept> StampFloor::due(double now, double wall, const l
 }
 
 void StampFloor::write(const Kept& kept) {
-  const std::string body = store::bytes_of(kept);
-  const std::string file = store::written({.kind = kKind, .body = body}, store::kOnDisk, kSalt, 0);
+  const std::string file = store::file_of(kept, store::kOnDisk);
   auto written = host::write_file(file_, file, host::kOursAlone);
   if (!written && host::write_over(file_, file)) written = {};  // for a full disk
   const std::string why = written ? "" : written.error();

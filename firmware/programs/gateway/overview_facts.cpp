@@ -1,5 +1,7 @@
 // Facts for the rules of alarms.
 #include <algorithm>
+#include <filesystem>
+#include <system_error>
 
 #include "api/verdicts.hpp"
 #include "gateway/overview.hpp"
@@ -72,6 +74,9 @@ void Overview::add_box(alarms::Facts& facts) const {
   facts.network = rooms_.network.fact();
   facts.ledger_refusal = rooms_.flow.scoring().trouble();
   facts.ledger_damage = rooms_.parts.ledger.damage();
+  const std::string other = rooms_.parts.options.state + "/ledger.sqlite";  // of an earlier version
+  std::error_code ignored;
+  if (std::filesystem::exists(other, ignored)) facts.other_ledger = other;
   facts.ledger_is_closed = rooms_.parts.ledger.is_closed();
   const auto disk = host::disk_of(rooms_.parts.options.state);
   facts.disk = {rooms_.flow.archive().trouble(), rooms_.flow.maps().trouble(), rooms_.flow.journal_trouble(),

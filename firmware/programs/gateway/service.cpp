@@ -69,6 +69,9 @@ ledger::Result<ledger::Ledger> open_ledger(const Options& options) {
   if (!opened && opened.error().cause != InUse && opened.error().cause != Newer)
     return ledger::Ledger::closed(opened.error().what, known);
   if (opened && !opened->damage().empty()) host::log(host::Level::Error, opened->damage());
+  if (opened && !opened->warning().empty())
+    host::log(host::Level::Warning, "an older copy of the ledger would not be found",
+              {{"why", opened->warning()}});
   return opened;
 }
 

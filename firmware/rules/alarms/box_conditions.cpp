@@ -118,6 +118,8 @@ void find_disk_troubles(const Facts& facts, Found& found) {
        .action = kOpenSystem});
   add(found, facts.ledger_damage,
       {.id = "ledger_damaged", .severity = Severity::Ask, .headline = {"The ledger", "damaged"}});
+  add(found, facts.other_ledger,
+      {.id = "other_ledger", .severity = Severity::Ask, .headline = {"An earlier ledger", "not read"}});
   add(found, facts.put_aside,
       {.id = "queue_put_aside",
        .severity = Severity::Ask,
@@ -130,7 +132,7 @@ void find_disk_troubles(const Facts& facts, Found& found) {
   add(found, facts.disk.run,
       {.id = "run_not_kept",
        .headline = {"The run's map", "not stored"},
-       .why = "a restart would lose the map and the tracks: "});
+       .why = "a restart would lose it: "});
   if (facts.disk.free && *facts.disk.free < kLeastFree) {
     found.push_back({.id = "disk_full",
                      .side = Side::Box,

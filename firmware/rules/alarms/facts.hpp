@@ -125,6 +125,7 @@ struct Facts {
   std::string newest_rejected_why = {};  // "ugv1's cloud: ..."
 
   std::string ledger_refusal = {}, ledger_damage = {};
+  std::string other_ledger = {};  // file of a ledger of another format, or ""
   std::string put_aside = {};     // which queued messages are set aside, and why; or ""
   bool ledger_is_closed = false;  // the ledger cannot be read
   Disk disk = {};

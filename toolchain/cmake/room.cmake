@@ -42,19 +42,31 @@ endfunction()
 
 # The tests of a room: tests/<name>/*.cpp become the one program adit_<name>_test.
 #   adit_room_test(codec SOURCES json_test.cpp LIBRARIES nlohmann_json::nlohmann_json)
+# WAITS: how many seconds the program waits more than it computes, mostly for deadlines and the disk. Then it begins early, in shares of
+# about 30 s that run at once.
 function(adit_room_test name)
-  cmake_parse_arguments(TEST "" "" "SOURCES;ROOMS;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(TEST "" "WAITS" "SOURCES;ROOMS;LIBRARIES" ${ARGN})
   list(TRANSFORM TEST_ROOMS PREPEND adit_)
   add_executable(adit_${name}_test ${TEST_SOURCES})
   target_include_directories(adit_${name}_test PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_link_libraries(adit_${name}_test PRIVATE
     adit_options adit_project_files adit_${name} ${TEST_ROOMS} ${TEST_LIBRARIES} GTest::gmock GTest::gtest_main)
   adit_compiled(adit_${name}_test test)
-  adit_google_test(${name} adit_${name}_test)
+  adit_google_test(${name} adit_${name}_test ${TEST_WAITS})
 endfunction()
 
 # A program of GoogleTest's as one test: a process for each of its tests would take twice as long in all.
-function(adit_google_test room program)
-  add_test(NAME "${room}: ${program}" COMMAND ${program} --gtest_brief=1)
-  set_tests_properties("${room}: ${program}" PROPERTIES COST 300 PROCESSORS 6 LABELS "${room};rooms")
+function(adit_google_test room program)  # ARGN: WAITS
+  if(NOT ARGN)
+    add_test(NAME "${room}: ${program}" COMMAND ${program} --gtest_brief=1)
+    set_tests_properties("${room}: ${program}" PROPERTIES COST 300 PROCESSORS 6 LABELS "${room};rooms")
+    return()
+  endif()
+  math(EXPR shares "(${ARGN} + 29) / 30")
+  foreach(share RANGE 1 ${shares})
+    math(EXPR index "${share} - 1")
+    add_test(NAME "${room}: ${program} ${share} of ${shares}" COMMAND ${program} --gtest_brief=1)
+    set_tests_properties("${room}: ${program} ${share} of ${shares}" PROPERTIES COST 972 PROCESSORS 2 LABELS "${room};rooms"
+      ENVIRONMENT "GTEST_TOTAL_SHARDS=${shares};GTEST_SHARD_INDEX=${index}")
+  endforeach()
 endfunction()

@@ -1,6 +1,6 @@
-#include "access/devices.hpp"
-
 #include <gmock/gmock.h>
+
+#include "access/accounts.hpp"
 
 namespace adit::access {
 namespace {

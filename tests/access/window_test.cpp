@@ -1,6 +1,6 @@
-#include "access/window.hpp"
-
 #include <gtest/gtest.h>
+
+#include "access/accounts.hpp"
 
 namespace adit::access {
 namespace {

@@ -1,11 +1,10 @@
-#include "admin/acknowledged_file.hpp"
-
 #include <gtest/gtest.h>
 
 #include <atomic>
 #include <filesystem>
 #include <thread>
 
+#include "admin/kept_file.hpp"
 #include "host/folder.hpp"
 #include "host/log.hpp"
 #include "host/service.hpp"

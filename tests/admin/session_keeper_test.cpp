@@ -1,9 +1,8 @@
-#include "admin/session_keeper.hpp"
-
 #include <gtest/gtest.h>
 
 #include <filesystem>
 
+#include "admin/kept_file.hpp"
 #include "host/folder.hpp"
 #include "host/service.hpp"
 

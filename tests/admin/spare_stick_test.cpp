@@ -1,7 +1,6 @@
-#include "admin/spare_stick.hpp"
-
 #include <gmock/gmock.h>
 
+#include "admin/spare.hpp"
 #include "host/folder.hpp"
 #include "host/service.hpp"
 #include "loop/simulated_time.hpp"

@@ -5,7 +5,6 @@
 #include <filesystem>
 
 #include "admin/settings_of_a_box.hpp"
-#include "admin/spare_file.hpp"
 #include "forward/stamp_floor.hpp"
 #include "host/folder.hpp"
 #include "ledger/ledger.hpp"

@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "alarms/acknowledged.hpp"
 #include "alarms/alarm.hpp"
 #include "alarms/alike.hpp"
 

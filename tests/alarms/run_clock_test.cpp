@@ -1,6 +1,6 @@
-#include "alarms/run_clock.hpp"
-
 #include <gtest/gtest.h>
+
+#include "alarms/arrival.hpp"
 
 namespace adit::alarms {
 namespace {

@@ -7,11 +7,11 @@
 #include <regex>
 #include <span>
 
+#include "api/answers.hpp"
 #include "api/on_page.hpp"
-#include "api/packed.hpp"
 #include "api/scenes.hpp"
 #include "codec/gzip.hpp"
-#include "icd/artifact_report.hpp"
+#include "icd/scoring.hpp"
 #include "intake/raw_client.hpp"
 #include "intake/served.hpp"
 #include "site/site.hpp"

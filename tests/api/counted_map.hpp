@@ -1,6 +1,6 @@
 #pragma once
 
-#include "api/covered_map.hpp"
+#include "api/finer_map.hpp"
 #include "api/source.hpp"
 
 namespace adit::api {

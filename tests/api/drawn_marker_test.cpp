@@ -1,9 +1,9 @@
-#include "api/drawn_marker.hpp"
-
 #include <gmock/gmock.h>
 
 #include <cmath>
 #include <numbers>
+
+#include "api/scene.hpp"
 
 namespace adit::api {
 namespace {

@@ -1,9 +1,8 @@
-#include "api/update_routes.hpp"
-
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
 
+#include "api/box_routes.hpp"
 #include "api/on_page.hpp"
 
 namespace adit::api {

@@ -7,7 +7,7 @@
 #include <array>
 #include <numeric>
 
-#include "applier/arp_socket.hpp"
+#include "applier/arp.hpp"
 #include "loop/file_descriptor.hpp"
 #include "network/messages.hpp"
 

@@ -1,7 +1,6 @@
-#include "applier/swapped_cables.hpp"
-
 #include <gmock/gmock.h>
 
+#include "applier/conflict_detector.hpp"
 #include "host/folder.hpp"
 #include "host/root_program.hpp"
 #include "loop/simulated_time.hpp"

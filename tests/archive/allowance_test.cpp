@@ -1,9 +1,9 @@
-#include "archive/allowance.hpp"
-
 #include <gtest/gtest.h>
 
 #include <deque>
 #include <random>
+
+#include "archive/write_queue.hpp"
 
 namespace adit::archive {
 namespace {

@@ -1,8 +1,7 @@
-#include "archive/due_tiles.hpp"
-
 #include <gmock/gmock.h>
 
 #include "archive/a_run.hpp"
+#include "archive/run_records.hpp"
 
 namespace adit::archive {
 namespace {

@@ -1,9 +1,9 @@
-#include "archive/framed_records.hpp"
-
 #include <gmock/gmock.h>
 
 #include <string>
 #include <vector>
+
+#include "archive/record_kinds.hpp"
 
 namespace adit::archive {
 namespace {

@@ -1,5 +1,3 @@
-#include "archive/labels.hpp"
-
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -7,6 +5,8 @@
 #include <random>
 #include <utility>
 #include <vector>
+
+#include "archive/plot.hpp"
 
 namespace adit::archive {
 namespace {

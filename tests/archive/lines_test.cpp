@@ -1,6 +1,6 @@
-#include "archive/lines.hpp"
-
 #include <gtest/gtest.h>
+
+#include "archive/record_kinds.hpp"
 
 namespace adit::archive {
 namespace {

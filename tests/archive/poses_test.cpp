@@ -1,6 +1,6 @@
-#include "archive/poses.hpp"
-
 #include <gtest/gtest.h>
+
+#include "archive/write_queue.hpp"
 
 namespace adit::archive {
 namespace {

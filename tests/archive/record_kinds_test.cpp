@@ -5,8 +5,6 @@
 #include <limits>
 #include <memory>
 
-#include "archive/framed_records.hpp"
-
 namespace adit::archive {
 namespace {
 

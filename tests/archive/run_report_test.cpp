@@ -6,7 +6,7 @@
 #include <set>
 
 #include "archive/a_run.hpp"
-#include "archive/html.hpp"
+#include "archive/plot.hpp"
 
 namespace adit::archive {
 namespace {

@@ -1,11 +1,10 @@
-#include "archive/runs_folder.hpp"
-
 #include <gmock/gmock.h>
 #include <sys/fsuid.h>
 
 #include <filesystem>
 
 #include "archive/a_run.hpp"
+#include "archive/run_folder.hpp"
 #include "host/folder.hpp"
 #include "host/service.hpp"
 

@@ -1,8 +1,8 @@
-#include "archive/samples.hpp"
-
 #include <gmock/gmock.h>
 
 #include <numeric>
+
+#include "archive/run_records.hpp"
 
 namespace adit::archive {
 namespace {

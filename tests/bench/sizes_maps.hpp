@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "icd/map_update.hpp"
+#include "icd/mapping.hpp"
 
 namespace adit::bench {
 

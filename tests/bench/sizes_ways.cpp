@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "codec/gzip.hpp"
-#include "codec/gzip_whole.hpp"
 #include "pack/pack.hpp"
 
 namespace adit::bench {

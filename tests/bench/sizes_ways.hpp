@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "icd/map_update.hpp"
+#include "icd/mapping.hpp"
 
 namespace adit::bench {
 

@@ -14,7 +14,7 @@ from dials import Dials
 from stage import Stage, Story, load_tests, note  # unittest looks for them here
 
 DAYS = 400 * 86400.0
-EARLIEST = 1767225600  # firmware/rules/clock/source.hpp
+EARLIEST = 1767225600  # firmware/rules/clock/messages.hpp
 
 
 def setUpModule():

@@ -1,9 +1,8 @@
-#include "box/button_watch.hpp"
-
 #include <gtest/gtest.h>
 
 #include <optional>
 
+#include "box/lights.hpp"
 #include "loop/simulated_time.hpp"
 #include "panel/watched_lines.hpp"
 #include "panel/wire.hpp"

@@ -1,10 +1,9 @@
-#include "box/endpoint_test.hpp"
-
 #include <gtest/gtest.h>
 
 #include <ctime>
 
 #include "../uplink/peer.hpp"
+#include "box/self_test.hpp"
 #include "loop/simulated_time.hpp"
 
 namespace adit::box {

@@ -1,10 +1,10 @@
-#include "box/links.hpp"
-
 #include <gmock/gmock.h>
 #include <sys/socket.h>
 
 #include <array>
 #include <map>
+
+#include "box/this_box.hpp"
 
 namespace adit::box {
 namespace {

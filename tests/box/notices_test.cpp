@@ -1,5 +1,3 @@
-#include "box/notices.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -7,6 +5,8 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+
+#include "box/this_box.hpp"
 
 namespace adit::box {
 namespace {

@@ -1,8 +1,8 @@
-#include "box/test_steps.hpp"
-
 #include <gmock/gmock.h>
 
 #include <cerrno>
+
+#include "box/self_test.hpp"
 
 namespace adit::box::steps {
 namespace {

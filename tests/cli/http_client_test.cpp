@@ -1,8 +1,7 @@
-#include "cli/http_client.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "cli/ask.hpp"
 #include "cli/server.hpp"
 
 namespace adit::cli {

@@ -5,7 +5,7 @@
 
 #include "cli/reports_text.hpp"
 #include "cli/view.hpp"
-#include "dispatch/report_life.hpp"
+#include "dispatch/report.hpp"
 
 namespace adit::cli {
 namespace {

@@ -1,7 +1,6 @@
-#include "cli/settings_key.hpp"
-
 #include <gmock/gmock.h>
 
+#include "cli/settings.hpp"
 #include "codec/json.hpp"
 
 namespace adit::cli {

@@ -1,11 +1,11 @@
-#include "cli/token.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+
+#include "cli/options.hpp"
 
 namespace adit::cli {
 namespace {

@@ -1,5 +1,3 @@
-#include "cli/watch_text.hpp"
-
 #include <gmock/gmock.h>
 
 #include "cli/status_text.hpp"

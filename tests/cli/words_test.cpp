@@ -1,8 +1,8 @@
-#include "cli/words.hpp"
-
 #include <gtest/gtest.h>
 
 #include <limits>
+
+#include "cli/table.hpp"
 
 namespace adit::cli {
 namespace {

@@ -1,8 +1,8 @@
-#include "clock/source.hpp"
-
 #include <gtest/gtest.h>
 
 #include <limits>
+
+#include "clock/messages.hpp"
 
 namespace adit::clock {
 namespace {

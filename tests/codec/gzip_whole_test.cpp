@@ -1,7 +1,6 @@
-#include "codec/gzip_whole.hpp"
-
 #include <gtest/gtest.h>
 
+#include "codec/gzip.hpp"
 #include "codec/messages.hpp"
 
 namespace adit::codec {

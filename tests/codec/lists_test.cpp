@@ -4,9 +4,9 @@
 #include "codec/documents.hpp"
 #include "codec/field.hpp"
 #include "codec/json.hpp"
-#include "codec/list.hpp"
 #include "codec/messages.hpp"
 #include "codec/read.hpp"
+#include "codec/value.hpp"
 
 namespace adit::codec::test {
 namespace {

@@ -8,9 +8,7 @@
 #include <vector>
 
 #include "codec/body_decoder.hpp"
-#include "icd/map_update.hpp"
-#include "icd/markers_update.hpp"
-#include "icd/state_update.hpp"
+#include "icd/mapping.hpp"
 #include "icd/status.hpp"
 
 /// Request bodies and messages for tests of the message level. They are made only with nlohmann-json and

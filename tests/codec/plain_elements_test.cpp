@@ -1,8 +1,7 @@
-#include "codec/plain_elements.hpp"
-
 #include <gtest/gtest.h>
 
 #include "codec/documents.hpp"
+#include "codec/splitter.hpp"
 
 namespace adit::codec::test {
 namespace {

@@ -1,7 +1,7 @@
 // The canonical form of the mapping messages, parsed by another CBOR library.
 #include <gtest/gtest.h>
 
-#include "codec/cbor_writer.hpp"
+#include "codec/cbor.hpp"
 #include "codec/messages.hpp"
 #include "codec/read.hpp"
 #include "codec/write.hpp"

@@ -2,8 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "command_line/answer.hpp"
-#include "command_line/number.hpp"
+#include "command_line/read.hpp"
 
 namespace adit::command_line {
 namespace {

@@ -1,6 +1,6 @@
-#include "dispatch/answer_text.hpp"
-
 #include <gtest/gtest.h>
+
+#include "dispatch/verdicts.hpp"
 
 namespace adit::dispatch {
 namespace {

@@ -1,7 +1,7 @@
-#include "dispatch/inquiry.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "dispatch/run_account.hpp"
 
 namespace adit::dispatch {
 namespace {

@@ -1,9 +1,9 @@
-#include "dispatch/mapping_verdict.hpp"
-
 #include <gtest/gtest.h>
 
 #include <ostream>
 #include <string>
+
+#include "dispatch/verdicts.hpp"
 
 namespace adit::dispatch {
 namespace {

@@ -1,7 +1,6 @@
-#include "dispatch/other_command_post.hpp"
-
 #include <gmock/gmock.h>
 
+#include "dispatch/reports.hpp"
 #include "dispatch/scene.hpp"
 
 namespace adit::dispatch {

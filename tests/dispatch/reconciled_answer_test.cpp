@@ -1,8 +1,7 @@
-#include "dispatch/reconciled_answer.hpp"
-
 #include <gmock/gmock.h>
 
 #include "codec/read.hpp"
+#include "dispatch/doubts.hpp"
 
 namespace adit::dispatch {
 namespace {

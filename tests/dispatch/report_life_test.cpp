@@ -1,5 +1,3 @@
-#include "dispatch/report_life.hpp"
-
 #include <gmock/gmock.h>
 
 #include <array>
@@ -7,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "dispatch/report.hpp"
 #include "project_files.hpp"
 
 namespace adit::dispatch {

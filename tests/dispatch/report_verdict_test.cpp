@@ -1,8 +1,7 @@
-#include "dispatch/report_verdict.hpp"
-
 #include <gtest/gtest.h>
 
 #include "codec/read.hpp"
+#include "dispatch/verdicts.hpp"
 
 namespace adit::dispatch {
 namespace {

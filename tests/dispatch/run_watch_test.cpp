@@ -1,6 +1,6 @@
-#include "dispatch/run_watch.hpp"
-
 #include <gmock/gmock.h>
+
+#include "dispatch/runs.hpp"
 
 namespace adit::dispatch {
 namespace {

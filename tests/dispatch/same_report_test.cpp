@@ -1,8 +1,8 @@
-#include "dispatch/same_report.hpp"
-
 #include <gtest/gtest.h>
 
 #include <array>
+
+#include "dispatch/report.hpp"
 
 namespace adit::dispatch {
 namespace {

@@ -1,7 +1,6 @@
-#include "dispatch/waiting_clients.hpp"
-
 #include <gmock/gmock.h>
 
+#include "dispatch/run_changes.hpp"
 #include "dispatch/scene.hpp"
 
 namespace adit::dispatch {

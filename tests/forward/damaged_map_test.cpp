@@ -4,7 +4,7 @@
 
 #include "codec/gzip.hpp"
 #include "forward/manual_endpoint.hpp"
-#include "host/numbered_name.hpp"
+#include "host/files.hpp"
 #include "host/service.hpp"
 #include "loop/simulated_time.hpp"
 #include "loop/watchdog.hpp"

@@ -1,6 +1,4 @@
 // Points in voxels that the Command Post has are left out of later clouds.
-#include "forward/delivered_points.hpp"
-
 #include <gmock/gmock.h>
 
 #include <limits>

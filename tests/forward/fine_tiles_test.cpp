@@ -1,5 +1,3 @@
-#include "forward/fine_tiles.hpp"
-
 #include <gtest/gtest.h>
 
 #include <memory>

@@ -1,10 +1,9 @@
-#include "forward/map_arrival.hpp"
-
 #include <gtest/gtest.h>
 
 #include <future>
 #include <optional>
 
+#include "forward/map_store.hpp"
 #include "host/folder.hpp"
 #include "host/service.hpp"
 #include "loop/turn_until.hpp"

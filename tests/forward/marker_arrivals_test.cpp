@@ -1,11 +1,10 @@
-#include "forward/marker_arrivals.hpp"
-
 #include <gmock/gmock.h>
 
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "forward/markers.hpp"
 #include "host/folder.hpp"
 #include "journal/left_in.hpp"
 #include "loop/turn_until.hpp"

@@ -1,9 +1,9 @@
-#include "forward/marker_scene.hpp"
-
 #include <gmock/gmock.h>
 
 #include <random>
 #include <vector>
+
+#include "forward/delivered_scene.hpp"
 
 namespace adit::forward {
 namespace {

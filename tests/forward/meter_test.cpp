@@ -1,6 +1,6 @@
-#include "forward/meter.hpp"
-
 #include <gtest/gtest.h>
+
+#include "forward/flow.hpp"
 
 namespace adit::forward {
 namespace {

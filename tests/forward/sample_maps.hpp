@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "codec/map_pieces.hpp"
-#include "icd/map_update.hpp"
+#include "icd/mapping.hpp"
 #include "icd/xyz.hpp"
 
 namespace adit::forward {

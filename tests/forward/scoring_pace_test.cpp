@@ -1,8 +1,7 @@
-#include "forward/scoring_pace.hpp"
-
 #include <gtest/gtest.h>
 
 #include "forward/fixtures.hpp"
+#include "forward/uri_pace.hpp"
 
 namespace adit::forward {
 namespace {

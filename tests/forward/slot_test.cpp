@@ -1,6 +1,6 @@
-#include "forward/slot.hpp"
-
 #include <gtest/gtest.h>
+
+#include "forward/prepared_maps.hpp"
 
 namespace adit::forward {
 namespace {

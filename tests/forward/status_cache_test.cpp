@@ -1,6 +1,6 @@
-#include "forward/status_cache.hpp"
-
 #include <gtest/gtest.h>
+
+#include "forward/scoring.hpp"
 
 namespace adit::forward {
 namespace {

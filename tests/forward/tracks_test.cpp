@@ -1,6 +1,6 @@
-#include "forward/tracks.hpp"
-
 #include <gmock/gmock.h>
+
+#include "forward/delivered_scene.hpp"
 
 namespace adit::forward {
 namespace {

@@ -1,9 +1,8 @@
 // access.json, sessions.json and devices.json: what lets people in; and acknowledged.json.
 #include "access/accounts.hpp"
 
-#include "access/devices.hpp"
 #include "access/sessions.hpp"
-#include "alarms/acknowledged.hpp"
+#include "alarms/board.hpp"
 #include "target.hpp"
 
 namespace adit::fuzz {

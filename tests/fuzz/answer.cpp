@@ -1,11 +1,9 @@
 // An answer of the Command Post, or of whoever answers in its place.
 #include "codec/read.hpp"
 #include "codec/row.hpp"
-#include "dispatch/answer_text.hpp"
-#include "dispatch/mapping_verdict.hpp"
-#include "dispatch/report_verdict.hpp"
+#include "dispatch/verdicts.hpp"
 #include "target.hpp"
-#include "uplink/answer_parser.hpp"
+#include "uplink/exchange.hpp"
 
 namespace adit::fuzz {
 namespace {

@@ -1,9 +1,8 @@
 // What somebody put on the boot partition: settings, addresses and a token, one behind the other with a line
 // of "--" between.
-#include "applier/card.hpp"
-
 #include <algorithm>
 
+#include "applier/import.hpp"
 #include "folder.hpp"
 #include "settings/written.hpp"
 

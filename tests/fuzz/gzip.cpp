@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "codec/gzip_whole.hpp"
 #include "target.hpp"
 
 namespace adit::fuzz {

@@ -5,9 +5,9 @@
 #include "access/whence.hpp"
 #include "codec/body_decoder.hpp"
 #include "icd/bearer_token.hpp"
-#include "intake/target.hpp"
+#include "intake/head.hpp"
 #include "target.hpp"
-#include "uplink/answer_parser.hpp"
+#include "uplink/exchange.hpp"
 
 namespace adit::fuzz {
 namespace {

@@ -1,7 +1,6 @@
 // What RAUC prints of a bundle's manifest and of the slots, and what files on a stick are called.
 #include "target.hpp"
 #include "update/bundle.hpp"
-#include "update/version.hpp"
 
 namespace adit::fuzz {
 

@@ -11,7 +11,7 @@
 #include <string>
 #include <string_view>
 
-#include "codec/row_file.hpp"
+#include "codec/row.hpp"
 
 namespace adit::fuzz {
 
@@ -56,7 +56,7 @@ void settles(Input text, Read read, Write write) {
   require(again.has_value() && write(*again) == written);
 }
 
-/// The same of a row file (codec/row_file.hpp).
+/// The same of a row file (codec/row.hpp).
 template <class Message>
 void settles(Input text, std::expected<Message, std::string> (*read)(std::string_view)) {
   settles(text, read, [](const Message& message) { return codec::write_file(message); });

@@ -1,7 +1,7 @@
-#include "gateway/crowding.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "gateway/observed_facts.hpp"
 
 namespace adit::gateway {
 namespace {

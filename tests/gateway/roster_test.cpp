@@ -1,8 +1,7 @@
-#include "gateway/roster.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "gateway/overview.hpp"
 #include "icd/sentence.hpp"
 
 namespace adit::gateway {

@@ -1,8 +1,7 @@
-#include "host/carrier.hpp"
-
 #include <gtest/gtest.h>
 
 #include "host/folder.hpp"
+#include "host/link_changes.hpp"
 #include "host/service.hpp"
 
 namespace adit::host {

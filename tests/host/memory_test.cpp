@@ -1,8 +1,8 @@
-#include "host/memory.hpp"
-
 #include <gmock/gmock.h>
 
 #include <thread>
+
+#include "host/log_line.hpp"
 
 namespace adit::host {
 namespace {

@@ -1,9 +1,8 @@
-#include "host/numbered_name.hpp"
-
 #include <gtest/gtest.h>
 
 #include <limits>
 
+#include "host/files.hpp"
 #include "host/folder.hpp"
 
 namespace adit::host {

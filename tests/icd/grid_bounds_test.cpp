@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "icd/placement.hpp"
+#include "icd/geometry.hpp"
 
 namespace adit::icd {
 namespace {

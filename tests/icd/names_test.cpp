@@ -4,12 +4,11 @@
 #include <ostream>
 #include <string>
 
-#include "icd/artifact_report.hpp"
 #include "icd/bearer_token.hpp"
 #include "icd/in_html.hpp"
-#include "icd/map_update.hpp"
-#include "icd/redaction.hpp"
+#include "icd/mapping.hpp"
 #include "icd/robot_name.hpp"
+#include "icd/scoring.hpp"
 #include "icd/sentence.hpp"
 #include "icd/uri.hpp"
 

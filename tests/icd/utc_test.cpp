@@ -1,8 +1,8 @@
-#include "icd/utc.hpp"
-
 #include <gtest/gtest.h>
 
 #include <limits>
+
+#include "icd/sentence.hpp"
 
 namespace adit::icd {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "icd/map_update.hpp"
+#include "icd/mapping.hpp"
 
 namespace adit::icd {
 

@@ -1,6 +1,6 @@
-#include "intake/least_rate.hpp"
-
 #include <gtest/gtest.h>
+
+#include "intake/client.hpp"
 
 namespace adit::intake {
 namespace {

@@ -4,8 +4,8 @@
 #include "codec/body_decoder.hpp"
 #include "codec/deflated.hpp"
 #include "codec/read.hpp"
-#include "intake/map_upload.hpp"
 #include "intake/team.hpp"
+#include "intake/uploads.hpp"
 
 namespace adit::intake {
 namespace {

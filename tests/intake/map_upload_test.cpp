@@ -1,9 +1,8 @@
-#include "intake/map_upload.hpp"
-
 #include <gtest/gtest.h>
 
 #include "codec/deflated.hpp"
 #include "intake/team.hpp"
+#include "intake/uploads.hpp"
 
 namespace adit::intake {
 namespace {

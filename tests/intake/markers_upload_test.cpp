@@ -1,12 +1,11 @@
-#include "intake/markers_upload.hpp"
-
 #include <gtest/gtest.h>
 
 #include <chrono>
 
 #include "codec/deflated.hpp"
-#include "icd/markers_update.hpp"
+#include "icd/mapping.hpp"
 #include "intake/team.hpp"
+#include "intake/uploads.hpp"
 
 namespace adit::intake {
 namespace {

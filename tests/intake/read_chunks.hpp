@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "intake/chunk_reader.hpp"
+#include "intake/request.hpp"
 
 namespace adit::intake {
 

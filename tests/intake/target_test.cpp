@@ -1,6 +1,6 @@
-#include "intake/target.hpp"
-
 #include <gtest/gtest.h>
+
+#include "intake/head.hpp"
 
 namespace adit::intake {
 namespace {

@@ -1,6 +1,6 @@
-#include "intake/token_guesses.hpp"
-
 #include <gtest/gtest.h>
+
+#include "intake/turnstile.hpp"
 
 namespace adit::intake {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "icd/artifact_report.hpp"
+#include "icd/scoring.hpp"
 
 namespace adit::intake {
 namespace {

@@ -1,8 +1,8 @@
-#include "intake/upload_budget.hpp"
-
 #include <gtest/gtest.h>
 
 #include <optional>
+
+#include "intake/upload.hpp"
 
 namespace adit::intake {
 namespace {

@@ -9,7 +9,6 @@
 #include "ledger/book.hpp"
 #include "ledger/state.hpp"
 #include "store/frame.hpp"
-#include "store/values.hpp"
 
 namespace adit::ledger {
 namespace {

@@ -1,9 +1,9 @@
 // The order of jobs, in simulated time.
-#include "loop/job_queue.hpp"
-
 #include <gtest/gtest.h>
 
 #include <string>
+
+#include "loop/workers.hpp"
 
 namespace adit::loop {
 namespace {

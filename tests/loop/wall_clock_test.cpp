@@ -1,6 +1,6 @@
-#include "loop/wall_clock.hpp"
-
 #include <gtest/gtest.h>
+
+#include "loop/loop.hpp"
 
 namespace adit::loop {
 namespace {

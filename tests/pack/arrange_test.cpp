@@ -10,11 +10,10 @@
 #include <tuple>
 
 #include "codec/map_pieces.hpp"
-#include "pack/coordinates.hpp"
 #include "pack/generated.hpp"
 #include "pack/layouts.hpp"
 #include "pack/pack.hpp"
-#include "pack/point_order.hpp"
+#include "pack/points.hpp"
 
 namespace adit::pack {
 namespace {

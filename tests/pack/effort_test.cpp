@@ -1,10 +1,9 @@
 // The effort to pack a map, by the rate of its link and the speed of the box.
-#include "pack/effort.hpp"
-
 #include <gtest/gtest.h>
 
 #include "icd/xyz.hpp"
 #include "pack/generated.hpp"
+#include "pack/pack.hpp"
 
 namespace adit::pack {
 namespace {

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "icd/map_update.hpp"
+#include "icd/mapping.hpp"
 #include "pack/layouts.hpp"
 
 namespace adit::pack {

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "icd/map_update.hpp"
+#include "icd/mapping.hpp"
 
 namespace adit::pack {
 

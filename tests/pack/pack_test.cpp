@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "codec/gzip.hpp"
-#include "codec/gzip_whole.hpp"
 #include "icd/chunked_bytes.hpp"
 #include "pack/grids.hpp"
 #include "pack/layouts.hpp"

@@ -1,11 +1,10 @@
-#include "pack/point_layout.hpp"
-
 #include <gmock/gmock.h>
 
 #include <numeric>
 #include <span>
 
 #include "pack/layouts.hpp"
+#include "pack/points.hpp"
 
 namespace adit::pack {
 namespace {

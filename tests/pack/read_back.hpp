@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "codec/write.hpp"
-#include "icd/map_update.hpp"
+#include "icd/mapping.hpp"
 #include "rehearsal/command_post/messages.hpp"
 
 namespace adit::pack {

@@ -1,13 +1,12 @@
 // A receiver's view of a cloud with rounded coordinates, decoded by the rehearsal's Command Post.
-#include "pack/rounding.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <map>
 #include <optional>
 
-#include "icd/placement.hpp"
+#include "icd/geometry.hpp"
+#include "pack/arrange.hpp"
 #include "pack/generated.hpp"
 #include "pack/pack.hpp"
 #include "pack/read_back.hpp"

@@ -71,7 +71,7 @@ test("no robot has the hue of an alarm level", () => {
 });
 
 test("the run's report has the colours of the light page", () => {
-  const source = `${readFileSync(new URL("../../firmware/doors/archive/run_report_drawn.cpp", import.meta.url))}`;
+  const source = `${readFileSync(new URL("../../firmware/doors/archive/run_report.cpp", import.meta.url))}`;
   const hex = (place) => `#${robotRgb(place, "light").map((part) => part.toString(16).padStart(2, "0")).join("")}`;
   assert.deepEqual(source.match(/#[0-9a-f]{6}/g), [...Array(40).keys()].map(hex));
 });

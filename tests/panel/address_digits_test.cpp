@@ -1,8 +1,8 @@
-#include "panel/address_digits.hpp"
-
 #include <gtest/gtest.h>
 
 #include <string>
+
+#include "panel/states.hpp"
 
 namespace adit::panel {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "panel/address_digits.hpp"
 #include "panel/panel.hpp"
+#include "panel/states.hpp"
 
 namespace adit::panel {
 

@@ -1,6 +1,4 @@
 // Lost lines and chips are opened again, with the test's own libgpiod.
-#include "panel/reopened.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <poll.h>

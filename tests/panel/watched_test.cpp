@@ -1,6 +1,6 @@
-#include "panel/watched.hpp"
-
 #include <gtest/gtest.h>
+
+#include "panel/keeper.hpp"
 
 namespace adit::panel {
 namespace {

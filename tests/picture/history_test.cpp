@@ -1,6 +1,6 @@
-#include "picture/history.hpp"
-
 #include <gmock/gmock.h>
+
+#include "picture/mosaic.hpp"
 
 namespace adit::picture {
 namespace {

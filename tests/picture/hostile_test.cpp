@@ -3,8 +3,8 @@
 #include <limits>
 #include <random>
 
+#include "picture/draw.hpp"
 #include "picture/maps.hpp"
-#include "picture/sheet.hpp"
 
 namespace adit::picture {
 namespace {

@@ -1,5 +1,3 @@
-#include "picture/png.hpp"
-
 #include <gmock/gmock.h>
 #include <zlib.h>
 
@@ -12,6 +10,7 @@
 #include <vector>
 
 #include "picture/maps.hpp"
+#include "picture/palette.hpp"
 
 namespace adit::picture {
 namespace {

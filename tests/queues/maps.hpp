@@ -6,10 +6,10 @@
 #include <string_view>
 #include <vector>
 
-#include "icd/map_update.hpp"
+#include "icd/mapping.hpp"
 #include "icd/xyz.hpp"
 #include "queues/map_queue.hpp"
-#include "queues/posted_pose.hpp"
+#include "queues/state_queue.hpp"
 
 namespace adit::queues {
 

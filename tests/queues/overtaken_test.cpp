@@ -1,10 +1,9 @@
-#include "queues/overtaken.hpp"
-
 #include <gmock/gmock.h>
 
 #include <random>
 
 #include "queues/maps.hpp"
+#include "queues/stamps.hpp"
 
 namespace adit::queues {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "queues/ground.hpp"
+#include "queues/lattice.hpp"
 #include "queues/map_queue.hpp"
 
 namespace adit::queues {

@@ -1,8 +1,7 @@
 // The precision of a robot's clouds: by its setting, or by the queued bytes.
-#include "queues/precision.hpp"
-
 #include <gtest/gtest.h>
 
+#include "queues/clouds.hpp"
 #include "queues/map_queue.hpp"
 #include "queues/maps.hpp"
 

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "codec/body_decoder.hpp"
-#include "codec/parts.hpp"
+#include "codec/members.hpp"
 #include "codec/read.hpp"
 #include "icd/rules.hpp"
 #include "settings/keys.hpp"

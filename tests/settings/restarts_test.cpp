@@ -1,6 +1,4 @@
 // The parts of a running gateway that each setting restarts.
-#include "settings/restarts.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 #include <string>
 
 #include "settings/keys.hpp"
+#include "settings/settings.hpp"
 
 namespace adit::settings {
 namespace {

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "admin/session_keeper.hpp"
+#include "admin/kept_file.hpp"
 #include "gateway/options.hpp"
 #include "gateway/service.hpp"
 #include "loop/file_descriptor.hpp"

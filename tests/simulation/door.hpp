@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "intake/accept.hpp"
+#include "intake/listen_socket.hpp"
 
 namespace adit::simulation {
 

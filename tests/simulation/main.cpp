@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "command_line/answer.hpp"
+#include "command_line/read.hpp"
 #include "simulation/omissions.hpp"
 #include "simulation/options.hpp"
 #include "simulation/run.hpp"

@@ -6,7 +6,7 @@
 
 #include "access/admission.hpp"
 #include "access/sessions.hpp"
-#include "admin/session_keeper.hpp"
+#include "admin/kept_file.hpp"
 #include "admin/store.hpp"
 #include "codec/json.hpp"
 #include "host/service.hpp"

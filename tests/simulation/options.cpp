@@ -2,7 +2,7 @@
 
 #include <random>
 
-#include "command_line/number.hpp"
+#include "command_line/program.hpp"
 
 namespace adit::simulation {
 namespace {

@@ -3,7 +3,6 @@
 #include "host/link_changes.hpp"
 #include "host/log.hpp"
 #include "host/log_line.hpp"
-#include "host/memory.hpp"
 #include "host/process.hpp"
 #include "host/random.hpp"
 #include "host/service.hpp"

@@ -9,7 +9,6 @@
 
 #include "loop/file_descriptor.hpp"
 #include "loop/loop.hpp"
-#include "loop/wall_clock.hpp"
 #include "simulation/world.hpp"
 
 namespace adit::loop {

@@ -1,6 +1,6 @@
-#include "spare/file_name.hpp"
-
 #include <gtest/gtest.h>
+
+#include "spare/stick.hpp"
 
 namespace adit::spare {
 namespace {

@@ -1,8 +1,6 @@
 #pragma once
 
-#include "icd/map_update.hpp"
-#include "icd/markers_update.hpp"
-#include "icd/state_update.hpp"
+#include "icd/mapping.hpp"
 #include "icd/xyz.hpp"
 
 namespace adit::spool {

@@ -1,9 +1,8 @@
-#include "spool/part_file.hpp"
-
 #include <gtest/gtest.h>
 
 #include "host/folder.hpp"
 #include "host/service.hpp"
+#include "spool/map_file.hpp"
 #include "spool/no_file_above.hpp"
 
 namespace adit::spool {

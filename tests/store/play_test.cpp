@@ -7,7 +7,6 @@
 #include "store/disk.hpp"
 #include "store/log.hpp"
 #include "store/second_reader.hpp"
-#include "store/snapshot.hpp"
 
 namespace adit::store {
 namespace {

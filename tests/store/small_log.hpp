@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "store/log.hpp"
-#include "store/snapshot.hpp"
 
 namespace adit::store {
 

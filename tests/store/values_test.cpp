@@ -1,11 +1,11 @@
-#include "store/values.hpp"
-
 #include <gmock/gmock.h>
 
 #include <array>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "store/frame.hpp"
 
 namespace adit::store {
 namespace {

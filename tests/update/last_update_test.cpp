@@ -1,6 +1,6 @@
-#include "update/last_update.hpp"
-
 #include <gtest/gtest.h>
+
+#include "update/messages.hpp"
 
 namespace adit::update {
 namespace {

@@ -1,6 +1,6 @@
-#include "update/version.hpp"
-
 #include <gtest/gtest.h>
+
+#include "update/bundle.hpp"
 
 namespace adit::update {
 namespace {

@@ -1,13 +1,12 @@
-#include "uplink/answer_parser.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <sstream>
 #include <string>
 
-#include "codec/gzip_whole.hpp"
+#include "codec/gzip.hpp"
 #include "scarce_memory.hpp"
+#include "uplink/exchange.hpp"
 
 namespace adit::uplink {
 namespace {

@@ -1,6 +1,6 @@
-#include "uplink/connect_attempts.hpp"
-
 #include <gtest/gtest.h>
+
+#include "uplink/connection_impl.hpp"
 
 namespace adit::uplink {
 namespace {

@@ -4,10 +4,8 @@
 #include <string>
 
 #include "access/accounts.hpp"
-#include "access/devices.hpp"
 #include "access/password.hpp"
-#include "access/window.hpp"
-#include "admin/session_keeper.hpp"
+#include "admin/kept_file.hpp"
 #include "api/keys.hpp"
 #include "icd/bearer_token.hpp"
 #include "loop/loop.hpp"

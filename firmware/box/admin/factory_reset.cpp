@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "admin/accounts.hpp"
-#include "admin/acknowledged_file.hpp"
+#include "admin/kept_file.hpp"
 #include "admin/takeover.hpp"
 #include "forward/stamp_floor.hpp"
 #include "host/log.hpp"

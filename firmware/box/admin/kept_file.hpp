@@ -1,10 +1,15 @@
 #pragma once
 
 #include <expected>
+#include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "access/sessions.hpp"
+#include "alarms/board.hpp"
 #include "host/service.hpp"
+#include "loop/workers.hpp"
 
 namespace adit::admin {
 
@@ -20,5 +25,46 @@ auto read_kept_file(const std::string& file, Read read, std::string& unread)
   if (!kept) return std::unexpected(file + ": " + kept.error());
   return kept;
 }
+
+/// Stores the acknowledged alarms in a file that only aditd can read, across restarts. If the file is damaged
+/// or unreadable, logs it and acknowledges no alarm, so the light blinks. An unreadable file stays unchanged
+/// until the next start.
+class AcknowledgedFile {
+ public:
+  static constexpr const char* kFile = "acknowledged.json";  // in the state directory
+
+  /// `writer` must outlive this object.
+  AcknowledgedFile(const std::string& state_folder, loop::Writer& writer);
+
+  std::vector<alarms::Acknowledged> read();
+  /// Stores a changed list in the writer thread, without waiting.
+  void keep(std::vector<alarms::Acknowledged> all);
+
+ private:
+  std::string file_, unread_;
+  loop::Writer& writer_;
+  std::vector<alarms::Acknowledged> kept_;
+  std::shared_ptr<bool> failed_ = std::make_shared<bool>(false);  // used by the writer thread
+};
+
+/// Stores the sessions in a file that only aditd can read, across restarts and crashes. A boot ends all
+/// sessions. A faulty file is logged, and users log in again. An unreadable file stays unchanged until the
+/// next start.
+class SessionKeeper {
+ public:
+  static constexpr const char* kFile = "sessions.json";  // in the runtime directory
+
+  /// `now`: monotonic time.
+  SessionKeeper(std::string file, access::Instant now);
+
+  access::Sessions& sessions() { return sessions_; }
+  /// Stores the last use of each session. Logins and logouts are stored at once.
+  void keep();
+
+ private:
+  std::string file_, boot_, unread_;
+  access::Sessions sessions_;
+  bool failed_ = false;
+};
 
 }  // namespace adit::admin

@@ -6,9 +6,8 @@
 
 #include "host/service.hpp"
 #include "icd/bearer_token.hpp"
-#include "icd/redaction.hpp"
-#include "settings/saved.hpp"
 #include "settings/settings.hpp"
+#include "settings/written.hpp"
 
 namespace adit::admin {
 

@@ -5,7 +5,6 @@
 #include "api/self_test.hpp"
 #include "host/service.hpp"
 #include "icd/bearer_token.hpp"
-#include "icd/redaction.hpp"
 #include "settings/settings.hpp"
 
 namespace adit::box {

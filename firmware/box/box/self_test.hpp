@@ -1,7 +1,9 @@
 #pragma once
 
 #include <chrono>
+#include <expected>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,12 +11,122 @@
 #include "admin/network_change.hpp"
 #include "api/self_test.hpp"
 #include "box/candidate.hpp"
-#include "box/endpoint_test.hpp"
-#include "box/test_steps.hpp"
+#include "dispatch/verdicts.hpp"
+#include "icd/uri.hpp"
+#include "loop/file_descriptor.hpp"
 #include "loop/loop.hpp"
+#include "network/messages.hpp"
 #include "settings/settings.hpp"
+#include "uplink/connection.hpp"
+
+/// Results of the Test's steps: a state, the finding in words, and advice.
+namespace adit::box::steps {
+
+using api::TestStep;
+
+enum class Asked : std::uint8_t { Scoring, Mapping };
+const char* name_of(Asked asked);
+const settings::Address& address_in(const settings::CommandPost& post, Asked asked);
+
+/// `carrier`: host::carrier(). `interface` "": not set.
+TestStep link(const std::string& interface, std::optional<bool> carrier);
+
+/// `own`: host::own_address(); `probed`: adit-network's finding; `not_asked`: why it has none.
+TestStep address(const std::string& interface,
+                 const std::expected<std::optional<settings::Subnet>, std::string>& own,
+                 const std::optional<network::Probed>& probed, const std::string& not_asked);
+
+/// Whether the Command Post is at its own port or at the team's, by the port that finds `sought`, its
+/// endpoint or gateway.
+TestStep cables(const std::string& interface, const std::string& team, const std::string& sought,
+                const std::optional<network::Probed>& probed);
+
+/// `error`: 0 or an errno; `why`: in words.
+TestStep reach(const std::string& at, int error, const std::string& why);
+
+/// `slash`: the endpoint redirected to a slash at the end of the path.
+TestStep token(Asked asked, const uplink::Outcome& outcome, bool slash = false);
+TestStep no_token(Asked asked);
+/// The run uses all requests that the endpoint allows.
+TestStep no_turn(const std::string& name);
+
+/// By an answer's Date; `now`: the box's time of day.
+TestStep clock(std::optional<std::chrono::sys_seconds> date, double now);
+/// Without Date: by two readings of the run clock, in seconds.
+TestStep run_clock(std::optional<double> first, std::optional<double> second);
+
+TestStep skipped(const std::string& name, const std::string& why);
+
+/// Largest difference that passes.
+inline constexpr std::chrono::seconds kOff{2};
+
+}  // namespace adit::box::steps
 
 namespace adit::box {
+
+/// The Test's steps at one endpoint, on its own connections. It requests the run's status, and posts `{}` as
+/// a state, which the mapping endpoint rejects (ICD 5.2) after it has checked the token.
+class EndpointTest {
+ public:
+  static constexpr std::chrono::milliseconds kReachWithin{3000}, kAnswerWithin{5000};
+  /// Between requests to an endpoint, to avoid 429.
+  static constexpr std::chrono::milliseconds kAskAgain{1500};
+  /// Longest wait for one of the run's turns. After that the step is skipped.
+  static constexpr std::chrono::seconds kLongestTurn{40};
+
+  /// Turns at the run's endpoints: forward::Flow.
+  struct Turns {
+    std::function<std::optional<loop::Instant>(icd::Uri uri, loop::Instant latest)> claim;
+    std::function<void(icd::Uri uri)> claimed;  // at the request, and at its end
+  };
+
+  /// `in_use`: the Command Post of the settings in use. `done` gets the result of each step, within its call
+  /// or later, and must not destroy this object. The references must outlive this object.
+  EndpointTest(loop::Loop& loop, const Turns& turns, const settings::CommandPost& in_use,
+               const TestTarget& tried, steps::Asked asked, std::function<void(api::TestStep)> done);
+
+  // The steps. Each begins after the result of the one before.
+  void reach();
+  void check_token();
+  void check_clock();
+
+ private:
+  /// The clocks of the endpoint by its last answer.
+  struct Clocks {
+    std::optional<std::chrono::sys_seconds> date;
+    std::optional<double> run_clock;
+    double answered_at = 0;  // by the box's time of day
+  };
+
+  void connected(int error, const std::string& why);
+  void token_answered(const uplink::Outcome& outcome);
+  void ask(const char* step, std::function<void(uplink::Outcome)> done);
+  void send(std::function<void(uplink::Outcome)> done);
+
+  icd::Uri uri() const { return asked_ == steps::Asked::Scoring ? icd::Uri::Status : icd::Uri::StateUpdate; }
+  const std::optional<icd::BearerToken>& token() const {
+    return asked_ == steps::Asked::Scoring ? tried_.scoring : tried_.mapping;
+  }
+  const settings::Address& address() const { return steps::address_in(tried_.post, asked_); }
+  bool is_of_the_run() const { return address() == steps::address_in(in_use_, asked_); }
+  uplink::Endpoint there() const;
+
+  loop::Loop& loop_;
+  const Turns& turns_;
+  const settings::CommandPost& in_use_;
+  const TestTarget& tried_;
+  const steps::Asked asked_;
+  const std::function<void(api::TestStep)> done_;
+  loop::Source timer_;
+  std::function<void()> when_due_;
+  loop::FileDescriptor socket_;
+  loop::Source connecting_;
+  std::unique_ptr<uplink::Connection> connection_;
+  Clocks clocks_;
+  bool asked_again_ = false;
+  bool wants_slash_ = false;                  // at the end of each path
+  std::optional<uplink::Outcome> page_ = {};  // the answer without a slash, if that was a web page
+};
 
 /// The Test, step by step on the loop, on its own connections: of the settings in use, or of a candidate,
 /// whose tokens it forgets at the end. It changes no data at the Command Post.

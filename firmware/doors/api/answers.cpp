@@ -1,12 +1,73 @@
 #include "api/answers.hpp"
 
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <string>
 #include <utility>
 
+#include "codec/gzip.hpp"
 #include "codec/json.hpp"
 #include "icd/sentence.hpp"
+#include "icd/text.hpp"
 #include "intake/icd_routes.hpp"
 
 namespace adit::api {
+namespace {
+
+constexpr std::size_t kFewestPacked = 1400;  // a smaller body fits one packet anyway
+constexpr std::size_t kMostPacked = 1u << 20;
+
+/// Removes and returns the trimmed text before the next `mark`; `text` becomes the rest.
+std::string_view take(std::string_view& text, char mark) {
+  return icd::trimmed(icd::cut(text, mark), " \t");
+}
+
+/// "q=0", "q=0.0": not acceptable.
+bool is_forbidden(std::string_view weight) {
+  if (!weight.starts_with("q=") && !weight.starts_with("Q=")) return false;
+  return weight.substr(2).find_first_not_of("0.") == std::string_view::npos;
+}
+
+bool has_header(const intake::Answer& answer, std::string_view name) {
+  return std::ranges::find(answer.headers, name, &intake::Header::name) != answer.headers.end();
+}
+
+bool pays(const intake::Answer& answer) {
+  const std::string_view type = answer.content_type;
+  const bool is_text = type.starts_with("text/") || type.starts_with("application/json");
+  return is_text && answer.body.size() >= kFewestPacked && answer.body.size() <= kMostPacked &&
+         !is_packed(answer) && !has_header(answer, "ETag");
+}
+
+}  // namespace
+
+bool takes_gzip(std::string_view accept_encoding) {
+  bool any = false;
+  while (!accept_encoding.empty()) {
+    auto coding = take(accept_encoding, ',');
+    const auto name = take(coding, ';');
+    const bool taken = !is_forbidden(icd::trimmed(coding, " \t"));
+    if (icd::same_but_for_case(name, "gzip") || icd::same_but_for_case(name, "x-gzip")) return taken;
+    if (name == "*") any = taken;
+  }
+  return any;
+}
+
+bool is_packed(const intake::Answer& answer) {
+  return has_header(answer, "Content-Encoding");
+}
+
+void pack_if_it_pays(intake::Answer& answer) {
+  if (!pays(answer)) return;
+  answer.headers.push_back({"Vary", "Accept-Encoding"});
+  const std::span bytes(reinterpret_cast<const std::uint8_t*>(answer.body.data()), answer.body.size());
+  const auto member = codec::gzip_whole(bytes, codec::kFastestLevel, bytes.size());
+  if (!member) return;  // it would be longer
+  answer.body = member->to_string();
+  answer.headers.push_back({"Content-Encoding", "gzip"});
+}
+
 namespace {
 
 /// The page may load and call only its own files, and no page may frame it.
@@ -56,6 +117,70 @@ intake::Answer wrong_method(std::string_view allowed) {
   auto answer = refusal(icd::Status::MethodNotAllowed, icd::sentence("expected ", first));
   answer.headers.push_back({"Allow", std::string(allowed)});
   return answer;
+}
+
+namespace {
+
+constexpr std::string_view kEvents = "text/event-stream";
+
+class RedactedStream final : public intake::Stream {
+ public:
+  RedactedStream(std::shared_ptr<intake::Stream> stream, PresentRedaction redaction)
+      : stream_(std::move(stream)), redaction_(std::move(redaction)) {}
+  bool send(std::string_view bytes) override { return stream_->send(struck(bytes)); }
+  bool send_instead(std::string_view bytes) override { return stream_->send_instead(struck(bytes)); }
+  std::size_t waiting() const override { return stream_->waiting(); }
+
+ private:
+  std::string struck(std::string_view bytes) const {
+    std::string text(bytes);
+    redact(**redaction_, kEvents, text);
+    return text;
+  }
+
+  const std::shared_ptr<intake::Stream> stream_;
+  const PresentRedaction redaction_;
+};
+
+class RedactedResponder final : public intake::Responder {
+ public:
+  RedactedResponder(std::shared_ptr<intake::Responder> responder, PresentRedaction redaction, bool takes_gzip)
+      : responder_(std::move(responder)), redaction_(std::move(redaction)), takes_gzip_(takes_gzip) {}
+  void answer(intake::Answer answer) override {
+    if (!is_packed(answer)) redact(**redaction_, answer.content_type, answer.body);
+    if (takes_gzip_) pack_if_it_pays(answer);
+    responder_->answer(std::move(answer));
+  }
+  std::shared_ptr<intake::Stream> stream(std::string_view content_type) override {
+    auto stream = responder_->stream(content_type);
+    if (!stream || content_type != kEvents) return stream;
+    return std::make_shared<RedactedStream>(std::move(stream), redaction_);
+  }
+  bool client_gone() const override { return responder_->client_gone(); }
+
+ private:
+  const std::shared_ptr<intake::Responder> responder_;
+  const PresentRedaction redaction_;
+  const bool takes_gzip_;
+};
+
+}  // namespace
+
+void redact(const icd::Redaction& redaction, std::string_view content_type, std::string& body) {
+  const bool is_metrics = content_type.starts_with("text/plain; version=");
+  if (content_type == "application/json" || content_type == kEvents || is_metrics) {
+    redaction.strike_from_strings(body);
+  } else if (content_type.starts_with("text/csv") || content_type.starts_with("text/plain")) {
+    redaction.strike_from(body);
+  } else if (content_type.starts_with("text/html")) {
+    redaction.strike_from_html(body);
+  }
+}
+
+std::shared_ptr<intake::Responder> redacted(std::shared_ptr<intake::Responder> responder,
+                                            PresentRedaction redaction, const intake::RequestHead& head) {
+  return std::make_shared<RedactedResponder>(std::move(responder), std::move(redaction),
+                                             takes_gzip(head.header("Accept-Encoding")));
 }
 
 }  // namespace adit::api

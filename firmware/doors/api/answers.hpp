@@ -1,13 +1,27 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <string_view>
 
 #include "codec/row.hpp"
 #include "codec/value.hpp"
+#include "icd/bearer_token.hpp"
 #include "intake/server.hpp"
 
 namespace adit::api {
+
+/// Whether a client with this Accept-Encoding accepts gzip (RFC 9110 12.5.3). Without the header it does not,
+/// because scripts expect plain text.
+bool takes_gzip(std::string_view accept_encoding);
+
+/// Whether an answer's body is compressed by gzip.
+bool is_packed(const intake::Answer& answer);
+
+/// Compresses an answer's body with gzip if that pays: text and JSON of some kB up to 1 MiB. The limit exists
+/// because the loop does it (2 ms for each 256 KiB on a desk machine). A body with an ETag stays unchanged,
+/// because the ETag names its bytes.
+void pack_if_it_pays(intake::Answer& answer);
 
 /// Adds headers against loading, framing and content sniffing.
 intake::Answer guarded(intake::Answer answer);
@@ -39,5 +53,16 @@ inline constexpr std::string_view kReading = "GET, HEAD";
 inline bool only_reads(const intake::RequestHead& head) {
   return head.method() == "GET" || head.method() == "HEAD";
 }
+
+using SharedRedaction = std::shared_ptr<const icd::Redaction>;
+/// The present redaction, for use on the loop alone, because tokens change while a page is open.
+using PresentRedaction = std::shared_ptr<const SharedRedaction>;
+
+/// Redacts a body of this Content-Type. Images, archives and the page's files stay unchanged.
+void redact(const icd::Redaction& redaction, std::string_view content_type, std::string& body);
+
+/// Forwards answers and streams after redaction. Compresses answers if `head` accepts gzip and it pays.
+std::shared_ptr<intake::Responder> redacted(std::shared_ptr<intake::Responder> responder,
+                                            PresentRedaction redaction, const intake::RequestHead& head);
 
 }  // namespace adit::api

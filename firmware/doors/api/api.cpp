@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "api/answers.hpp"
+#include "api/read_body.hpp"
 #include "api/routes.hpp"
-#include "api/small_body.hpp"
 #include "codec/body_decoder.hpp"
 #include "icd/sentence.hpp"
 

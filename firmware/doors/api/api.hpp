@@ -4,20 +4,18 @@
 #include <optional>
 #include <vector>
 
+#include "api/answers.hpp"
 #include "api/box_routes.hpp"
 #include "api/entrance.hpp"
 #include "api/kept_runs_routes.hpp"
 #include "api/live.hpp"
 #include "api/map_routes.hpp"
 #include "api/page_routes.hpp"
-#include "api/redacted.hpp"
-#include "api/report_list.hpp"
 #include "api/report_routes.hpp"
 #include "api/route.hpp"
 #include "api/run_routes.hpp"
 #include "api/session_routes.hpp"
 #include "icd/bearer_token.hpp"
-#include "icd/redaction.hpp"
 #include "intake/server.hpp"
 #include "loop/loop.hpp"
 

@@ -4,13 +4,19 @@
 #include <array>
 #include <ctime>
 #include <utility>
+#include <vector>
 
+#include "api/after.hpp"
 #include "api/answers.hpp"
 #include "api/bundle.hpp"
 #include "api/metrics.hpp"
-#include "api/number_in.hpp"
-#include "icd/letter_case.hpp"
-#include "icd/refuse.hpp"
+#include "api/read_body.hpp"
+#include "api/settings_rows.hpp"
+#include "codec/json.hpp"
+#include "codec/row.hpp"
+#include "icd/sentence.hpp"
+#include "icd/text.hpp"
+#include "spare/sealed.hpp"
 
 namespace adit::api {
 namespace {
@@ -131,4 +137,190 @@ void BoxRoutes::pack(const std::shared_ptr<intake::Responder>& responder, std::s
   });
 }
 
+namespace {
+
+/// The numbers, or all errors of the body.
+std::expected<network::Numbers, std::vector<settings::Error>> numbers_in(const std::string& body) {
+  const auto value = codec::parse_json(body);
+  if (value) return network::read_numbers(*value);
+  return std::unexpected(std::vector<settings::Error>{{"", "expected JSON: " + value.error()}});
+}
+
+intake::Answer unfit(const std::vector<settings::Error>& errors) {
+  std::string sentences;
+  for (const settings::Error& error : errors) sentences += (sentences.empty() ? "" : "; ") + error.sentence();
+  return refusal(icd::Status::UnprocessableEntity, sentences);
+}
+
+}  // namespace
+
+namespace network_routes {
+
+intake::Answer check(Network& network, const Call& call) {
+  const auto wanted = numbers_in(call.body);
+  const auto findings =
+      wanted ? network.check(*wanted, call.head.peer()) : network::Findings{wanted.error(), {}, {}};
+  CheckView checked{.errors = findings.errors, .changes = {.changes = {}, .warnings = findings.warnings}};
+  for (const network::Difference& each : findings.changes)
+    checked.changes.changes.push_back({each.path, {each.from}, {each.to}});
+  return fresh(checked);
+}
+
+intake::Answer change(Network& network, const Call& call) {
+  const auto wanted = numbers_in(call.body);
+  if (!wanted) return unfit(wanted.error());
+  const auto findings = network.check(*wanted, call.head.peer());
+  if (!findings.errors.empty()) return unfit(findings.errors);
+  return after(network, network.change(*wanted));
+}
+
+intake::Answer confirm(Network& network, const Call& call) {
+  return after(network, network.confirm(call.head.local()));
+}
+
+}  // namespace network_routes
+
+namespace {
+
+/// Streams a body to an Upload.
+class Receiving final : public intake::BodySink {
+ public:
+  Receiving(std::unique_ptr<Upload> upload, std::uint64_t size, std::function<void(icd::Checked<void>)> done)
+      : upload_(std::move(upload)), size_(size), done_(std::move(done)) {}
+  bool on_body(std::span<const std::uint8_t> piece) override {
+    if (!upload_) return true;
+    const bool known = head_.size() >= update::kBundleHead;
+    if (!known) {
+      const std::size_t more = std::min(piece.size(), update::kBundleHead - head_.size());
+      head_.insert(head_.end(), piece.begin(), piece.begin() + static_cast<std::ptrdiff_t>(more));
+      if (head_.size() >= update::kBundleHead && !may_be_a_bundle()) return true;
+    }
+    return upload_->write(piece);
+  }
+  void on_end() override {
+    const bool known = head_.size() >= update::kBundleHead;
+    if (upload_ && (known || may_be_a_bundle())) upload_->finish(std::move(done_));
+  }
+  void on_gone() override { upload_.reset(); }
+
+ private:
+  /// False: rejected, and the rest is discarded.
+  bool may_be_a_bundle() {
+    const std::string why = update::not_a_bundle(head_, size_);
+    if (why.empty()) return true;
+    upload_.reset();
+    done_(icd::unprocessable(why));
+    return false;
+  }
+
+  std::unique_ptr<Upload> upload_;  // null: rejected
+  std::uint64_t size_;
+  std::vector<std::uint8_t> head_;
+  std::function<void(icd::Checked<void>)> done_;
+};
+
+}  // namespace
+
+std::unique_ptr<intake::BodySink> update_routes::receive(Updates& updates, const Call& call) {
+  const auto refuse = [&call](intake::Answer answer) {
+    call.responder->answer(std::move(answer));
+    return nullptr;
+  };
+  const auto unprocessable = [](std::string_view why) {
+    return refusal(icd::Status::UnprocessableEntity, why);
+  };
+  const auto size = call.head.content_length();
+  if (!size || *size == 0) return refuse(unprocessable("Content-Length: expected the bundle's size"));
+  const std::string_view again = call.head.query("again");
+  if (!again.empty() && again != "0" && again != "1") return refuse(unprocessable("again: expected 0 or 1"));
+  auto upload = updates.receive(*size, again == "1", [flow = call.flow] { flow->resume(); });
+  if (!upload) return refuse(refused(upload.error()));
+  return std::make_unique<Receiving>(std::move(*upload), *size,
+                                     [&updates, responder = call.responder](const icd::Checked<void>& done) {
+                                       responder->answer(after(updates, done));
+                                     });
+}
+
+namespace {
+
+constexpr const char* kFileName = "export.adit-spare";
+
+/// Receives an export. Rejects other data by its first bytes and discards the rest.
+class ReceivingExport final : public intake::BodySink {
+ public:
+  explicit ReceivingExport(std::function<void(icd::Checked<std::string>)> done) : done_(std::move(done)) {}
+
+  bool on_body(std::span<const std::uint8_t> piece) override {
+    if (!done_) return true;
+    file_.append(reinterpret_cast<const char*>(piece.data()), piece.size());
+    if (file_.size() >= spare::kExportHead) refuse_what_is_none();
+    return true;
+  }
+  void on_end() override {
+    if (done_) refuse_what_is_none();
+    if (done_) std::exchange(done_, nullptr)(std::move(file_));
+  }
+
+ private:
+  void refuse_what_is_none() {
+    const std::string why = spare::not_an_export(std::string_view(file_).substr(0, spare::kExportHead));
+    if (why.empty()) return;
+    file_.clear();
+    std::exchange(done_, nullptr)(icd::unprocessable(why));
+  }
+
+  std::function<void(icd::Checked<std::string>)> done_;
+  std::string file_;
+};
+
+}  // namespace
+
+namespace spare_routes {
+
+void exported(Spare& spare, const Call& call) {
+  spare.export_to([responder = call.responder](icd::Checked<std::string> file) {
+    if (!file) return responder->answer(refused(file.error()));
+    auto answer = fresh("application/octet-stream", *std::move(file));
+    answer.headers.push_back(
+        {"Content-Disposition", std::string("attachment; filename=\"") + kFileName + "\""});
+    responder->answer(std::move(answer));
+  });
+}
+
+void to_stick(Spare& spare, const Call& call) {
+  spare.export_to_stick([&spare, responder = call.responder](const icd::Checked<void>& done) {
+    responder->answer(after(spare, done));
+  });
+}
+
+std::unique_ptr<intake::BodySink> take_in(Spare& spare, const Call& call) {
+  if (call.head.content_length().value_or(spare::kLargestExport + 1) > spare::kLargestExport) {
+    call.responder->answer(SmallBody::too_long(spare::kLargestExport, "export"));
+    return nullptr;
+  }
+  return std::make_unique<ReceivingExport>(
+      [&spare, responder = call.responder](icd::Checked<std::string> file) {
+        responder->answer(file ? after(spare, spare.take_in(*std::move(file))) : refused(file.error()));
+      });
+}
+
+void open(Spare& spare, const Call& call) {
+  const auto code = read_text(call.body, "code");
+  if (!code) return call.responder->answer(refused(code.error()));
+  spare.open(*code, [&spare, responder = call.responder](const icd::Checked<void>& done) {
+    responder->answer(after(spare, done));
+  });
+}
+
+intake::Answer take_over(Spare& spare, const std::string& body) {
+  const auto unplugged =
+      read_body<bool>(body, [](const codec::Field& root) { return root.member("unplugged").truth(); });
+  if (!unplugged) return refused(unplugged.error());
+  if (!*unplugged)
+    return refusal(icd::Status::UnprocessableEntity,
+                   "unplugged: expected true, because the box that made the export must be off");
+  return after(spare, spare.take_over());
+}
+
+}  // namespace spare_routes
 }  // namespace adit::api

@@ -5,11 +5,15 @@
 #include <string>
 #include <vector>
 
+#include "api/answers.hpp"
 #include "api/box.hpp"
 #include "api/entrance.hpp"
-#include "api/redacted.hpp"
-#include "api/report_list.hpp"
+#include "api/network.hpp"
+#include "api/report_routes.hpp"
+#include "api/route.hpp"
 #include "api/source.hpp"
+#include "api/spare.hpp"
+#include "api/updates.hpp"
 #include "intake/server.hpp"
 
 namespace adit::api {
@@ -54,4 +58,32 @@ class BoxRoutes {
   loop::Loop& loop_;
 };
 
+/// The box's addresses: README.md.
+namespace network_routes {
+
+intake::Answer check(Network& network, const Call& call);
+intake::Answer change(Network& network, const Call& call);
+/// Uses the address of the request's connection.
+intake::Answer confirm(Network& network, const Call& call);
+
+}  // namespace network_routes
+
+/// Updates of the box: README.md.
+namespace update_routes {
+
+/// Receives a bundle as a stream. `updates` must outlive the result.
+std::unique_ptr<intake::BodySink> receive(Updates& updates, const Call& call);
+
+}  // namespace update_routes
+
+/// Spare and standby. Routes: README.md. `spare` must outlive the answers.
+namespace spare_routes {
+
+void exported(Spare& spare, const Call& call);
+void to_stick(Spare& spare, const Call& call);
+std::unique_ptr<intake::BodySink> take_in(Spare& spare, const Call& call);
+void open(Spare& spare, const Call& call);
+intake::Answer take_over(Spare& spare, const std::string& body);
+
+}  // namespace spare_routes
 }  // namespace adit::api

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "clock/source.hpp"
+#include "clock/messages.hpp"
 #include "codec/row.hpp"
 #include "icd/status.hpp"
 

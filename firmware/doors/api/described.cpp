@@ -5,7 +5,7 @@
 
 // NOLINTBEGIN(bugprone-suspicious-include): the sources hold the descriptions.
 #include "alarms/alarm.cpp"
-#include "alarms/run_clock.cpp"
+#include "alarms/arrival.cpp"
 #include "alarms/verdict.cpp"
 #include "api/box.cpp"
 #include "api/clock_rows.cpp"

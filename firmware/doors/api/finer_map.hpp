@@ -5,9 +5,21 @@
 #include <optional>
 
 #include "icd/status.hpp"
+#include "picture/covered.hpp"
 #include "picture/mosaic.hpp"
 
 namespace adit::api {
+
+/// The covered area of the present map, counted on request.
+class CoveredMap {
+ public:
+  using Done = std::function<void(icd::Checked<picture::Covered>)>;
+
+  virtual ~CoveredMap() = default;
+  /// Counts the area if the map has changed, then calls `done`, perhaps at once. Error: too many requests are
+  /// queued.
+  virtual void covered(Done done) = 0;
+};
 
 /// Map levels finer than the mosaic's, for the present alone.
 class FinerMap {

@@ -6,9 +6,8 @@
 
 #include "api/answers.hpp"
 #include "api/map_json.hpp"
-#include "api/map_tile.hpp"
-#include "api/number_in.hpp"
-#include "api/thinned.hpp"
+#include "api/map_routes.hpp"
+#include "api/read_body.hpp"
 
 namespace adit::api {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "access/devices.hpp"
+#include "access/accounts.hpp"
 #include "access/role.hpp"
 #include "access/sessions.hpp"
 #include "icd/status.hpp"

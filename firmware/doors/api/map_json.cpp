@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "icd/hex.hpp"
+#include "icd/text.hpp"
 
 namespace adit::api {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "api/verdicts.hpp"
-#include "dispatch/report_life.hpp"
+#include "dispatch/report.hpp"
 
 namespace adit::api {
 namespace {

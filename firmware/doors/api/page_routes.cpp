@@ -5,8 +5,6 @@
 #include <utility>
 
 #include "api/answers.hpp"
-#include "api/description.hpp"
-#include "api/packed.hpp"
 #include "codec/gzip.hpp"
 #include "site/site.hpp"
 

@@ -1,6 +1,6 @@
 #include "api/run_view.hpp"
 
-#include "dispatch/report_life.hpp"
+#include "dispatch/report.hpp"
 
 namespace adit::api {
 namespace {

@@ -9,13 +9,12 @@
 
 #include "alarms/alarm.hpp"
 #include "alarms/arrival.hpp"
-#include "alarms/run_clock.hpp"
 #include "alarms/verdict.hpp"
 #include "api/scene.hpp"
 #include "codec/row.hpp"
-#include "dispatch/report_life.hpp"
+#include "dispatch/report.hpp"
 #include "icd/geometry.hpp"
-#include "icd/run_status.hpp"
+#include "icd/scoring.hpp"
 
 namespace adit::api {
 

@@ -2,10 +2,168 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
-#include "icd/hex.hpp"
+#include "icd/geometry.hpp"
+#include "icd/text.hpp"
 
 namespace adit::api {
+namespace {
+
+using icd::Marker;
+using icd::MarkerType;
+using icd::Point;
+
+/// The first bytes of a text, without half a character at the end.
+std::string beginning(std::string text) {
+  if (text.size() <= DrawnMarker::kLongestText) return text;
+  std::size_t end = DrawnMarker::kLongestText;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
+  text.resize(end);
+  return text;
+}
+
+/// "drill" of "package://artifacts/meshes/drill.dae".
+std::string file_name(const std::string& url) {
+  std::string name = url.substr(url.rfind('/') + 1);
+  if (const auto dot = name.rfind('.'); dot != std::string::npos && dot > 0) name.resize(dot);
+  return beginning(std::move(name));
+}
+
+/// Points of one part; 0: the marker has no points.
+std::size_t corners_of(const Marker& marker) {
+  switch (static_cast<MarkerType>(marker.type)) {
+    case MarkerType::LineStrip:
+    case MarkerType::CubeList:
+    case MarkerType::SphereList:
+    case MarkerType::Points:
+      return 1;
+    case MarkerType::LineList:
+      return 2;
+    case MarkerType::TriangleList:
+      return 3;
+    case MarkerType::Arrow:
+      return marker.points.size() >= 2 ? 2 : 0;
+    default:
+      return 0;
+  }
+}
+
+double apart(const Point& a, const Point& b) {
+  return std::hypot(a.x - b.x, a.y - b.y, a.z - b.z);
+}
+
+double length_of(const std::vector<Point>& points) {
+  double length = 0;
+  for (std::size_t i = 1; i < points.size(); ++i) length += apart(points[i - 1], points[i]);
+  return length;
+}
+
+/// Points of a strip at even distances along it, with both ends. So the time that a robot stood still has no
+/// weight.
+std::vector<std::size_t> along(const std::vector<Point>& points, double length) {
+  const double step = length / static_cast<double>(DrawnMarker::kMostPoints - 2);
+  std::vector<std::size_t> kept = {0};
+  double gone = 0;
+  for (std::size_t i = 1; i + 1 < points.size(); ++i) {
+    gone += apart(points[i - 1], points[i]);
+    if (gone < step || gone == 0) continue;
+    kept.push_back(i);
+    gone = 0;
+  }
+  kept.push_back(points.size() - 1);
+  return kept;
+}
+
+std::vector<std::size_t> kept_parts(const Marker& marker, std::size_t parts, std::size_t corners) {
+  const std::size_t most = DrawnMarker::kMostPoints / corners;
+  if (parts > most && marker.is(MarkerType::LineStrip)) {
+    // A strip of infinite length has no even distances and is thinned like a list.
+    if (const double length = length_of(marker.points); std::isfinite(length))
+      return along(marker.points, length);
+  }
+  const std::size_t each = std::max<std::size_t>(1, (parts + most - 1) / most);
+  std::vector<std::size_t> kept;
+  for (std::size_t part = 0; part < parts; part += each) kept.push_back(part);
+  return kept;
+}
+
+/// Undefined values (a sum of opposite infinities) become 0. Values outside the range of float become its
+/// largest.
+float as_float(double value) {
+  constexpr double kMost = std::numeric_limits<float>::max();
+  return std::isnan(value) ? 0 : static_cast<float>(std::clamp(value, -kMost, kMost));
+}
+
+/// The pose's rotation and shift, seen from above.
+class Placing {
+ public:
+  explicit Placing(const Marker& marker) : placement_(marker.pose) {
+    // Scale applies to the corners of a TriangleList, and to the symbols at the points of other markers.
+    const auto scale = [&](double along) {
+      return marker.is(MarkerType::TriangleList) && along != 0 ? along : 1;
+    };
+    scale_ = {scale(marker.scale.x), scale(marker.scale.y), scale(marker.scale.z)};
+  }
+
+  FlatPoint operator()(const Point& point) const {
+    const Point placed = placement_({point.x * scale_.x, point.y * scale_.y, point.z * scale_.z});
+    return {as_float(placed.x), as_float(placed.y)};
+  }
+
+ private:
+  icd::Placement placement_;
+  Point scale_;
+};
+
+/// The colour of a part: of its first point, or of a triangle. Null if the number of colours fits neither.
+const icd::Color* color_of(const Marker& marker, std::size_t part, std::size_t corners) {
+  const std::size_t colors = marker.colors.size(), points = marker.points.size();
+  if (colors == points) return &marker.colors[part * corners];
+  return corners == 3 && colors == points / 3 ? &marker.colors[part] : nullptr;
+}
+
+void draw_points(const Marker& marker, DrawnMarker& shown) {
+  const std::size_t corners = corners_of(marker);
+  if (corners == 0) return;
+  const std::size_t parts = marker.is(MarkerType::Arrow) ? 1 : marker.points.size() / corners;
+  shown.point_count = parts * corners;
+  if (parts == 0) return;
+  const Placing place(marker);
+  for (const std::size_t part : kept_parts(marker, parts, corners)) {
+    for (std::size_t corner = 0; corner < corners; ++corner) {
+      shown.points.push_back(place(marker.points[part * corners + corner]));
+    }
+    if (const icd::Color* color = color_of(marker, part, corners)) shown.colors.push_back(*color);
+  }
+}
+
+}  // namespace
+
+double heading_of(const icd::Quaternion& q) {
+  return std::atan2(2 * (q.w * q.z + q.x * q.y), q.w * q.w + q.x * q.x - q.y * q.y - q.z * q.z);
+}
+
+std::size_t DrawnMarker::size() const {
+  constexpr std::size_t kFixed = 320, kPoint = 16, kColor = 12;
+  return kFixed + ns.size() + text.size() + mesh.size() + kPoint * points.size() + kColor * colors.size();
+}
+
+DrawnMarker drawn(const icd::Marker& marker) {
+  DrawnMarker shown{.ns = marker.ns,
+                    .id = marker.id,
+                    .type = marker.type,
+                    .position = marker.pose.position,
+                    .heading = heading_of(marker.pose.orientation),
+                    .scale = marker.scale,
+                    .color = marker.color,
+                    .lifetime = marker.lifetime,
+                    .text = beginning(marker.text),
+                    .mesh = file_name(marker.mesh_resource)};
+  draw_points(marker, shown);
+  return shown;
+}
+
 namespace {
 
 using codec::Field;
@@ -16,12 +174,12 @@ using codec::Row;
 using codec::Value;
 
 /// Rounds to a hundredth, finer than any screen.
-Value rounded(double value) {
+Value rounded_value(double value) {
   return {std::round(value * 100) / 100};
 }
 
 constexpr Kind kRounded = {
-    .write = [](const void* value) { return rounded(*static_cast<const double*>(value)); },
+    .write = [](const void* value) { return rounded_value(*static_cast<const double*>(value)); },
     .read = codec::kind_of<double>.read,
     .schema = codec::kind_of<double>.schema};
 
@@ -72,8 +230,8 @@ struct KindOf<std::vector<api::FlatPoint>> : WriteOnly {
     Value::Array array;
     array.reserve(2 * points.size());
     for (const auto& [x, y] : points) {
-      array.push_back(api::rounded(x));
-      array.push_back(api::rounded(y));
+      array.push_back(api::rounded_value(x));
+      array.push_back(api::rounded_value(y));
     }
     return {std::move(array)};
   }
@@ -85,8 +243,9 @@ struct KindOf<std::vector<api::FlatPoint>> : WriteOnly {
 template <>
 struct KindOf<api::TrackPose> : WriteOnly {
   static Value write(const api::TrackPose& pose) {
-    return {Value::Array{api::rounded(pose.at), api::rounded(pose.position.x), api::rounded(pose.position.y),
-                         api::rounded(pose.position.z), api::rounded(pose.heading)}};
+    return {Value::Array{api::rounded_value(pose.at), api::rounded_value(pose.position.x),
+                         api::rounded_value(pose.position.y), api::rounded_value(pose.position.z),
+                         api::rounded_value(pose.heading)}};
   }
   static constexpr Schema schema = {
       .type = "array", .items = &KindOf<double>::schema, .fewest = 5, .most = 5};

@@ -9,7 +9,6 @@
 #include "api/settings_rows.hpp"
 #include "codec/field.hpp"
 #include "codec/json.hpp"
-#include "icd/refuse.hpp"
 #include "icd/sentence.hpp"
 #include "icd/text.hpp"
 

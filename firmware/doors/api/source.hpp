@@ -8,7 +8,7 @@
 
 #include "api/run_view.hpp"
 #include "api/scene.hpp"
-#include "icd/artifact_report.hpp"
+#include "icd/scoring.hpp"
 #include "icd/status.hpp"
 
 namespace adit::picture {

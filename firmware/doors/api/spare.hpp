@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "codec/row.hpp"
-#include "icd/run_status.hpp"
+#include "icd/scoring.hpp"
 #include "icd/status.hpp"
 
 namespace adit::api {

@@ -1,6 +1,10 @@
 #pragma once
 
+#include <chrono>
+#include <cstddef>
 #include <cstdint>
+#include <deque>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -10,7 +14,50 @@
 
 #include "api/kept_runs.hpp"
 #include "api/scene.hpp"
+#include "loop/loop.hpp"
 #include "picture/mosaic.hpp"
+
+namespace adit::archive {
+
+/// Largest record: a tile that cannot be compressed.
+inline constexpr std::size_t kLargestRecord = std::size_t{72} << 10;
+
+/// A record in a file: a frame of store/, with a body (record_kinds.hpp) that must not be empty. It is valid
+/// at any place of any file.
+std::string framed(std::string_view body);
+
+/// Calls `told` with the body of each complete record in `bytes`, in order. Skips damaged bytes up to the
+/// next complete record or the end. Returns the number of damaged records, without a torn last one, which a
+/// killed process leaves.
+std::size_t for_each_record(std::string_view bytes, const std::function<void(std::string_view)>& told);
+
+/// Queued records of tracks, plots and events. Each write costs a flush of the disk, so records without news
+/// go with the next write, or after kRest.
+class Lines {
+ public:
+  static constexpr std::chrono::seconds kRest{150};
+  /// Most bytes of queued records, because a disk may be slow. Beyond that the oldest are dropped.
+  static constexpr std::size_t kMost = std::size_t{256} << 10;
+
+  /// News: a robot moved, or an alarm began or ended. Others show only that time passed.
+  void add(std::string record, bool is_news);
+  /// The oldest records, for one write.
+  std::string take(loop::Instant now);
+  /// After a failed write of take(): they are due at once.
+  void give_back(std::string records);
+  void be_due() { is_due_ = true; }
+  bool is_due(loop::Instant now) const { return bytes_ > 0 && (is_due_ || now >= rests_until_); }
+  void keep_below(std::size_t most);
+  std::size_t bytes() const { return bytes_; }
+
+ private:
+  std::deque<std::string> records_;  // oldest first
+  std::size_t bytes_ = 0;
+  bool is_due_ = false;
+  loop::Instant rests_until_{};
+};
+
+}  // namespace adit::archive
 
 /// Bodies of records. A body that cannot be read gives std::nullopt.
 namespace adit::archive {

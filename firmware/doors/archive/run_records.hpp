@@ -3,20 +3,101 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include "api/kept_runs.hpp"
 #include "api/scene.hpp"
-#include "archive/due_tiles.hpp"
-#include "archive/framed_records.hpp"
 #include "archive/record_kinds.hpp"
-#include "archive/samples.hpp"
 #include "picture/mosaic.hpp"
 
 namespace adit::archive {
+
+/// Identifies a tile of the map.
+using TileKey = std::pair<picture::Layer, picture::TileIndex>;
+
+/// Decides which tiles to write next: changed ones, each at most once per interval_of() its level. The
+/// interval keeps coarse tiles, which change with every fine one below, from displacing fine ones. Order:
+/// never written, then the oldest write first.
+///
+/// Also tracks the file of each tile's newest state, because a file without newest states may be removed.
+class DueTiles {
+ public:
+  /// Seconds between two writes of a tile: 4 for the finest level, 4 times as many for each coarser one.
+  static double interval_of(int level);
+
+  /// Marks tiles that changed since the last look.
+  void look(const picture::Mosaic& picture);
+  /// Tiles to write at `now` (seconds that never step), in order.
+  std::vector<TileKey> at(double now) const;
+  /// Records that write number `write` takes the tile's state at `now`.
+  void being_written(const TileKey& tile, std::uint64_t write, double now);
+  /// Records the write's file. std::nullopt: the write failed, and its tiles are due again.
+  void done(std::uint64_t write, std::optional<std::uint64_t> file);
+  /// Makes the tiles of that file due, so that the file can be removed. True: it has no newest states.
+  bool leave(std::uint64_t file);
+  /// Starts with the tiles of `picture` that are stored in `files`.
+  void begin(const picture::Mosaic& picture, const std::map<TileKey, std::uint64_t>& files);
+
+ private:
+  struct Tile {
+    double written = 0;       // 0: never
+    std::uint64_t file = 0;   // 0: none
+    std::uint64_t write = 0;  // in flight; 0: none
+    bool due = false;
+  };
+  std::map<TileKey, Tile> tiles_;
+  std::uint64_t seen_ = 0;  // Mosaic::version()
+};
+
+/// The plots of a run, with a sample every kSpacing seconds. At kMost samples every second one is dropped,
+/// and the spacing doubles. The event count of a dropped sample is added to the next one.
+class Samples {
+ public:
+  static constexpr double kSpacing = 2;       // seconds
+  static constexpr std::size_t kMost = 3600;  // two hours at first
+  static constexpr double kEarly = 0.5;       // seconds of tolerance, because ticks jitter
+  static constexpr std::size_t kMostSteps = 2000;
+
+  /// Whether a sample is due at that time.
+  bool wants(api::Time at) const { return samples_.empty() || at >= samples_.back().at + spacing_ - kEarly; }
+  /// Ignores a sample that is not later than the last one.
+  void add(Sample sample);
+  /// Beyond kMostSteps the oldest is dropped.
+  void add(api::AttentionStep step);
+  void clear() { *this = Samples(); }
+  /// Call if the time of day was advanced by `seconds`.
+  void move(double seconds);
+
+  api::History since(api::Time since) const;
+
+ private:
+  void thin();
+
+  double spacing_ = kSpacing;
+  std::deque<Sample> samples_;  // oldest first
+  std::deque<api::AttentionStep> steps_;
+};
+
+/// The present needs for attention.
+class Attention {
+ public:
+  static constexpr std::size_t kMost = 100;  // at the same time
+
+  /// Returns the changes since the last look.
+  std::vector<api::AttentionStep> look(const std::vector<std::string>& sentences, api::Time now);
+  /// `steps`: from before a restart. Needs that had not ended continue.
+  void go_on(const std::vector<api::AttentionStep>& steps);
+  void clear() { *this = Attention(); }
+
+ private:
+  std::vector<std::string> shown_;
+};
 
 /// The sum of a run's records. Accepts any bytes and skips data that is not a record of this run.
 class RunRecords {

@@ -8,12 +8,12 @@
 #include <string_view>
 #include <utility>
 
-#include "archive/html.hpp"
 #include "archive/plot.hpp"
+#include "codec/base64.hpp"
 #include "icd/in_html.hpp"
 #include "icd/sentence.hpp"
-#include "icd/utc.hpp"
 #include "picture/covered.hpp"
+#include "picture/palette.hpp"
 
 namespace adit::archive {
 namespace {
@@ -236,6 +236,358 @@ std::string run_report(const api::KeptRun& run, const std::vector<api::ReportDet
                        "<h2>Plots</h2>\n", plots(run, curve, began),
                        "<h2>Alarms that needed the operator</h2>\n", attention_table(run),
                        "<h2>Reports</h2>\n", reports_table(reports, began), "</main></body></html>\n");
+}
+
+namespace {
+
+using picture::kSide;
+
+/// Most bytes of images in a report. Further tiles are left out, and the report says so.
+constexpr std::size_t kMostBytes = std::size_t{4} << 20;
+constexpr std::size_t kMostTiles = 120;
+/// The page's in its light theme (site/files/robot_colour.js).
+constexpr const char* kColours[] = {
+    "#9e4930", "#025447", "#6b56a3", "#733200", "#007672", "#593279", "#7e620d", "#005259",
+    "#844d90", "#524801", "#0d7287", "#6c2962", "#666c05", "#054f69", "#954674", "#395105",
+    "#0d6ca5", "#782445", "#3c7630", "#144687", "#9d4b26", "#06534c", "#7254a0", "#6c3805",
+    "#117476", "#5e3074", "#79640e", "#01515c", "#894b8a", "#4d4a05", "#07718d", "#6f285c",
+    "#5d6f04", "#004e71", "#99456c", "#2d5402", "#2569a8", "#79243d", "#02785e", "#244387"};
+/// Lengths of lines and gaps in millimetres, as patterns of these colours.
+constexpr const char* kDashes[] = {"1 0", "2.4 1.2", "0.7 0.9", "2.7 0.9 0.7 0.9"};
+/// In millimetres: of the map's frame and around it, of text, and of signs.
+constexpr double kWidth = 180, kLeft = 12, kTop = 2, kRight = 3, kBottom = 10;
+constexpr double kLeastHeight = 50, kMostHeight = 150, kFont = 2.8, kRobot = 1.3, kReport = 1.2, kGroup = 2.4;
+constexpr std::size_t kMostCharacters = 24;  // of a label
+
+/// The finest level without too many tiles.
+int level_of(const std::vector<picture::LayerView>& layers) {
+  for (int level = 0; level + 1 < picture::kLevels; ++level) {
+    std::size_t tiles = 0;
+    for (const picture::LayerView& layer : layers)
+      tiles += static_cast<std::size_t>(std::ranges::count(
+          layer.tiles, level, [](const picture::TileView& tile) { return tile.at.level; }));
+    if (tiles <= kMostTiles) return level;
+  }
+  return picture::kLevels - 1;
+}
+
+/// The drawn part of the frame "darpa", and its place on paper.
+struct Sheet {
+  picture::Area area;
+  Box frame;
+  double scale = 1;  // millimetres for a metre
+
+  double x(double metres) const { return frame.left + (metres - area.left) * scale; }
+  double y(double metres) const { return frame.bottom - (metres - area.bottom) * scale; }
+};
+
+/// `shown` with a margin, extended to fill the width of the paper and the least height.
+Sheet sheet_of(const picture::Area& shown) {
+  constexpr double kAcross = kWidth - kLeft - kRight, kMargin = 1.08, kLeast = 4;
+  const double width = std::max((shown.right - shown.left) * kMargin, kLeast),
+               height = std::max((shown.top - shown.bottom) * kMargin, kLeast);
+  Sheet sheet{.area = {}, .frame = {}, .scale = std::min(kAcross / width, kMostHeight / height)};
+  const double tall = std::max(height * sheet.scale, kLeastHeight);
+  sheet.frame = {kLeft, kTop, kLeft + kAcross, kTop + tall};
+  const double x = (shown.left + shown.right) / 2, y = (shown.bottom + shown.top) / 2;
+  const double across = kAcross / sheet.scale / 2, up = tall / sheet.scale / 2;
+  sheet.area = {x - across, y - up, x + across, y + up};
+  return sheet;
+}
+
+std::string image(const picture::Packed& tile, picture::Kind kind, const picture::TileIndex& at,
+                  const Sheet& sheet) {
+  const picture::Area area = picture::area_of(at);
+  const std::string png = kind == picture::Kind::Grid ? picture::write_png(tile, picture::grid_palette())
+                                                      : picture::write_png(tile, picture::cloud_palette());
+  const auto* bytes = reinterpret_cast<const std::uint8_t*>(png.data());
+  const std::string side = fixed((area.right - area.left) * sheet.scale, 3);
+  return icd::sentence("<image x=\"", fixed(sheet.x(area.left), 3), "\" y=\"", fixed(sheet.y(area.top), 3),
+                       "\" width=\"", side, "\" height=\"", side,
+                       "\" image-rendering=\"pixelated\" href=\"data:image/png;base64,",
+                       codec::base64_of({bytes, png.size()}), "\"/>\n");
+}
+
+/// All layers' tiles of one level, clouds below grids.
+std::string tiles_of(const picture::Mosaic& picture, const std::vector<picture::LayerView>& layers,
+                     const Sheet& sheet, std::size_t& left_out) {
+  const int level = level_of(layers);
+  std::string all;
+  for (const picture::Kind kind : {picture::Kind::Cloud, picture::Kind::Grid}) {
+    for (const picture::LayerView& layer : layers) {
+      if (layer.layer.kind != kind) continue;
+      for (const picture::TileView& tile : layer.tiles) {
+        const auto shown = picture.tile(layer.layer, tile.at, {}).tile;
+        if (tile.at.level != level || !shown) continue;
+        std::string drawn = image(*shown, kind, tile.at, sheet);
+        if (all.size() + drawn.size() > kMostBytes) {
+          ++left_out;
+          continue;
+        }
+        all += drawn;
+      }
+    }
+  }
+  return all;
+}
+
+void extend(std::optional<picture::Area>& area, double x, double y) {
+  constexpr double kMost = picture::kWorldMetres;
+  if (std::abs(x) < kMost && std::abs(y) < kMost) picture::extend(area, {x, y, x, y});
+}
+
+std::optional<picture::Area> area_of(const api::KeptRun& run, const std::vector<picture::LayerView>& layers,
+                                     const std::vector<api::ReportDetail>& reports) {
+  std::optional<picture::Area> area;
+  for (const picture::LayerView& layer : layers) {
+    if (layer.bounds) picture::extend(area, *layer.bounds);
+  }
+  for (const api::Track& track : run.tracks) {
+    for (const api::TrackPose& pose : track.poses) extend(area, pose.position.x, pose.position.y);
+  }
+  for (const api::ReportDetail& report : reports) {
+    if (report.row.position) extend(area, report.row.position->x, report.row.position->y);
+  }
+  return area;
+}
+
+/// Figures and lines in metres at the frame's lower and left edge.
+std::string axes(const Sheet& sheet) {
+  constexpr double kBetween = 18;  // about, in millimetres
+  const auto& [left, top, right, bottom] = sheet.frame;
+  std::string lines, figures;
+  const auto columns = ticks(sheet.area.left, sheet.area.right, static_cast<int>((right - left) / kBetween));
+  const auto rows = ticks(sheet.area.bottom, sheet.area.top, static_cast<int>((bottom - top) / kBetween));
+  for (const double x : columns) {
+    const std::string at = fixed(sheet.x(x), 2);
+    lines += icd::sentence("M", at, " ", fixed(top, 2), "V", fixed(bottom, 2));
+    figures += icd::sentence("<text x=\"", at, "\" y=\"", fixed(bottom + 4, 2), "\" text-anchor=\"middle\">",
+                             fixed(x, decimals_of(columns)), "</text>");
+  }
+  for (const double y : rows) {
+    lines += icd::sentence("M", fixed(left, 2), " ", fixed(sheet.y(y), 2), "H", fixed(right, 2));
+    figures += icd::sentence("<text x=\"", fixed(left - 1, 2), "\" y=\"", fixed(sheet.y(y) + 1, 2),
+                             "\" text-anchor=\"end\">", fixed(y, decimals_of(rows)), "</text>");
+  }
+  return icd::sentence("<path class=\"grid\" d=\"", lines, "\"/>", figures, "<text x=\"", fixed(right, 2),
+                       "\" y=\"", fixed(bottom + 8, 2),
+                       "\" text-anchor=\"end\">x and y in metres, frame darpa</text>\n");
+}
+
+/// Indices of kColours and kDashes.
+struct Look {
+  std::size_t colour = 0, dashes = 0;
+};
+
+const char* colour_of(const Look& look) {
+  return kColours[look.colour % std::size(kColours)];
+}
+
+/// A robot's line: along a track, and in the legend.
+std::string stroke_of(const Look& look) {
+  return icd::sentence("class=\"track\" stroke=\"", colour_of(look), "\" stroke-dasharray=\"",
+                       kDashes[look.dashes % std::size(kDashes)], "\"");
+}
+
+std::string polyline(const api::Track& track, const Look& look, const Sheet& sheet) {
+  std::string points;
+  for (const api::TrackPose& pose : track.poses)
+    points += fixed(sheet.x(pose.position.x), 2) + ',' + fixed(sheet.y(pose.position.y), 2) + ' ';
+  return icd::sentence("<polyline ", stroke_of(look), " points=\"", points, "\"><title>",
+                       icd::in_html(track.robot), "</title></polyline>\n");
+}
+
+/// Without tracks that have no pose.
+std::vector<api::Track> by_first_pose(std::vector<api::Track> tracks) {
+  std::erase_if(tracks, [](const api::Track& track) { return track.poses.empty(); });
+  std::ranges::stable_sort(tracks, {}, [](const api::Track& track) { return track.poses.front().at; });
+  return tracks;
+}
+
+/// As the page's robotLooks(): robots of one chosen colour have different dashes. Other robots have the
+/// colours that no robot chose, in the order of `tracks`.
+std::vector<Look> looks_of(const std::vector<api::Track>& tracks, const std::vector<api::ColourRow>& chosen) {
+  std::vector<Look> looks;
+  std::map<std::size_t, std::size_t> robots;  // by chosen colour
+  std::size_t next = 0;
+  for (const api::Track& track : tracks) {
+    const auto own = std::ranges::find(chosen, track.robot, &api::ColourRow::name);
+    if (own != chosen.end()) {
+      const auto colour = static_cast<std::size_t>(own->colour - 1);
+      looks.push_back({colour, colour + robots[colour]++});
+    } else {
+      while (std::ranges::count(chosen, static_cast<int>(next + 1), &api::ColourRow::colour) > 0) ++next;
+      looks.push_back({next, next});
+      ++next;
+    }
+  }
+  return looks;
+}
+
+/// Reports that would cover each other, as one sign at the first one's place.
+struct Sign {
+  double x = 0, y = 0;
+  std::vector<const api::ReportDetail*> reports;
+
+  bool has_scored() const {
+    return std::ranges::any_of(reports,
+                               [](const auto* each) { return each->row.score_change.value_or(0) > 0; });
+  }
+  double radius() const { return reports.size() > 1 ? kGroup : kReport; }
+  Box box() const { return {x - radius(), y - radius(), x + radius(), y + radius()}; }
+};
+
+std::vector<Sign> signs_of(const std::vector<api::ReportDetail>& reports, const Sheet& sheet) {
+  std::vector<Sign> signs;
+  for (const api::ReportDetail& report : reports) {
+    if (!report.row.position) continue;
+    const double x = sheet.x(report.row.position->x), y = sheet.y(report.row.position->y);
+    if (!sheet.frame.contains({x, y, x, y})) continue;  // outside the world
+    const auto near = std::ranges::find_if(signs, [&](const Sign& sign) {
+      return std::max(std::abs(sign.x - x), std::abs(sign.y - y)) < 2 * kGroup;
+    });
+    (near == signs.end() ? signs.emplace_back(x, y) : *near).reports.push_back(&report);
+  }
+  return signs;
+}
+
+/// A disk for a group with its number, a square for one report: filled if one of them scored.
+std::string drawn(const Sign& sign) {
+  std::string title, shape;
+  for (const api::ReportDetail* each : sign.reports)
+    title += icd::sentence(title.empty() ? "" : ", ", each->row.number, " ", each->row.type);
+  const char* kind = sign.has_scored() ? "scored" : "report";
+  if (sign.reports.size() == 1) {
+    shape = icd::sentence("<rect class=\"", kind, "\" x=\"", fixed(sign.x - kReport, 2), "\" y=\"",
+                          fixed(sign.y - kReport, 2), "\" width=\"", fixed(2 * kReport, 1), "\" height=\"",
+                          fixed(2 * kReport, 1), "\"/>");
+  } else {
+    shape =
+        icd::sentence("<circle class=\"", kind, "\" cx=\"", fixed(sign.x, 2), "\" cy=\"", fixed(sign.y, 2),
+                      "\" r=\"", fixed(kGroup, 1), "\"/><text class=\"", kind, "\" x=\"", fixed(sign.x, 2),
+                      "\" y=\"", fixed(sign.y + 0.8, 2), "\">", sign.reports.size(), "</text>");
+  }
+  return icd::sentence("<g><title>", icd::in_html(title), "</title>", shape, "</g>\n");
+}
+
+/// The first of `texts` that has room beside the sign; "" if none has. A line leads to a label farther away.
+std::string label(Labels& labels, double x, double y, double radius, const std::vector<std::string>& texts) {
+  for (const std::string& each : texts) {
+    const std::string text = shortened(each, kMostCharacters);
+    const auto box = labels.place(x, y, radius, width_of(text, kFont), kFont * 1.2);
+    if (!box) continue;
+    const double to_x = std::clamp(x, box->left, box->right), to_y = std::clamp(y, box->top, box->bottom);
+    const bool is_far = std::hypot(to_x - x, to_y - y) > radius + 1.5;
+    const bool is_right = box->left > x, is_left = box->right < x;
+    return icd::sentence(is_far ? icd::sentence("<path class=\"leader\" d=\"M", fixed(x, 2), " ", fixed(y, 2),
+                                                "L", fixed(to_x, 2), " ", fixed(to_y, 2), "\"/>")
+                                : "",
+                         "<text class=\"label\" text-anchor=\"",
+                         is_right  ? "start"
+                         : is_left ? "end"
+                                   : "middle",
+                         "\" x=\"",
+                         fixed(is_right  ? box->left
+                               : is_left ? box->right
+                                         : (box->left + box->right) / 2,
+                               2),
+                         "\" y=\"", fixed(box->bottom - kFont * 0.32, 2), "\">", icd::in_html(text),
+                         "</text>\n");
+  }
+  return "";
+}
+
+std::string swatch(const std::string& drawn, const std::string& meaning) {
+  return icd::sentence("<li><svg viewBox=\"0 0 8 4\" aria-hidden=\"true\">", drawn, "</svg> ",
+                       icd::in_html(meaning), "</li>");
+}
+
+std::string colour_swatch(const picture::Colour& colour, const std::string& meaning) {
+  return swatch(icd::sentence("<rect width=\"8\" height=\"4\" fill=\"rgb(", colour.red, " ", colour.green,
+                              " ", colour.blue, ")\"/>"),
+                meaning);
+}
+
+std::string legend(const std::vector<api::Track>& tracks, const std::vector<Look>& looks,
+                   const std::vector<picture::LayerView>& layers, const std::vector<Sign>& signs) {
+  std::string all;
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    all += swatch(icd::sentence("<path ", stroke_of(looks[i]),
+                                " d=\"M0 2H8\"/><circle class=\"robot\" cx=\"6\" cy=\"2\" r=\"",
+                                fixed(kRobot, 1), "\" fill=\"", colour_of(looks[i]), "\"/>"),
+                  shortened(tracks[i].robot, kMostCharacters));
+  }
+  const auto has = [&](picture::Kind kind) {
+    return std::ranges::any_of(layers,
+                               [&](const auto& each) { return each.layer.kind == kind && each.bounds; });
+  };
+  if (has(picture::Kind::Grid)) {
+    all += colour_swatch(picture::grid_palette()[1], "grid: free");
+    all += colour_swatch(picture::grid_palette()[picture::kMostOccupiedIndex], "grid: occupied");
+  }
+  if (has(picture::Kind::Cloud)) {
+    all += colour_swatch(picture::height_ramp().front(),
+                         icd::sentence("cloud: at or below ", picture::kLowest, " m"));
+    all += colour_swatch(picture::height_ramp().back(),
+                         icd::sentence("cloud: at or above ", picture::kHighest, " m"));
+  }
+  if (!signs.empty()) {
+    all += swatch("<rect class=\"scored\" x=\"2.8\" y=\"0.8\" width=\"2.4\" height=\"2.4\"/>",
+                  "report that scored");
+    all +=
+        swatch("<rect class=\"report\" x=\"2.8\" y=\"0.8\" width=\"2.4\" height=\"2.4\"/>", "another report");
+    all += swatch(
+        "<circle class=\"report\" cx=\"4\" cy=\"2\" r=\"1.8\"/><text class=\"report\" x=\"4\" "
+        "y=\"2.8\">9</text>",
+        "reports at one place; filled: one of them scored");
+  }
+  return all.empty() ? "" : "<ul class=\"legend\">" + all + "</ul>\n";
+}
+
+}  // namespace
+
+std::string drawn_map(const api::KeptRun& run, const std::vector<api::ReportDetail>& reports) {
+  const auto layers = run.picture.layers();
+  const auto area = area_of(run, layers, reports);
+  if (!area) return "<p>No map, track or place of a report is stored.</p>\n";
+  const Sheet sheet = sheet_of(*area);
+  const auto tracks = by_first_pose(run.tracks);
+  const auto looks = looks_of(tracks, run.colours);
+  const auto signs = signs_of(reports, sheet);
+  std::size_t left_out = 0;
+  std::string drawn_there = tiles_of(run.picture, layers, sheet, left_out), lines, robots, names, marks;
+  Labels labels{sheet.frame};
+  for (const Sign& sign : signs) labels.keep_free(sign.box());
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    const icd::Point& last = tracks[i].poses.back().position;
+    const double x = sheet.x(last.x), y = sheet.y(last.y);
+    labels.keep_free({x - kRobot, y - kRobot, x + kRobot, y + kRobot});
+    lines += polyline(tracks[i], looks[i], sheet);
+    robots += icd::sentence("<circle class=\"robot\" cx=\"", fixed(x, 2), "\" cy=\"", fixed(y, 2), "\" r=\"",
+                            fixed(kRobot, 1), "\" fill=\"", colour_of(looks[i]), "\"/>\n");
+  }
+  for (const api::Track& track : tracks) {
+    const icd::Point& last = track.poses.back().position;
+    names += label(labels, sheet.x(last.x), sheet.y(last.y), kRobot, {track.robot});
+  }
+  for (const Sign& sign : signs) {
+    marks += drawn(sign);
+    const api::ReportRow& row = sign.reports.front()->row;
+    const std::string number = std::to_string(row.number);
+    if (sign.reports.size() == 1)
+      names += label(labels, sign.x, sign.y, kReport, {number + " " + row.type, number});
+  }
+  const std::string inside = icd::sentence("x=\"", fixed(kLeft, 1), "\" y=\"", fixed(kTop, 1), "\" width=\"",
+                                           fixed(sheet.frame.right - kLeft, 2), "\" height=\"",
+                                           fixed(sheet.frame.bottom - kTop, 2), "\"");
+  return icd::sentence(
+      "<figure><svg role=\"img\" aria-label=\"The map\" viewBox=\"0 0 ", fixed(kWidth, 0), " ",
+      fixed(sheet.frame.bottom + kBottom, 2), "\"><clipPath id=\"frame\"><rect ", inside,
+      "/></clipPath>\n<g clip-path=\"url(#frame)\">", drawn_there, "</g>\n", axes(sheet),
+      "<g clip-path=\"url(#frame)\">", lines, "</g>\n", names, robots, marks, "<rect class=\"frame\" ",
+      inside, "/></svg>\n", legend(tracks, looks, layers, signs),
+      left_out == 0 ? "" : "<p>The map lacks parts that exceed the size of this report.</p>\n",
+      "</figure>\n");
 }
 
 }  // namespace adit::archive

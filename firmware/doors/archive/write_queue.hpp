@@ -1,24 +1,70 @@
 #pragma once
 
+#include <algorithm>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <expected>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "api/kept_runs.hpp"
-#include "archive/allowance.hpp"
-#include "archive/due_tiles.hpp"
-#include "archive/lines.hpp"
-#include "archive/poses.hpp"
+#include "archive/record_kinds.hpp"
 #include "archive/run_folder.hpp"
+#include "archive/run_records.hpp"
 #include "loop/loop.hpp"
 #include "picture/mosaic.hpp"
 
 namespace adit::archive {
+
+/// Limits writes to less than 1 MB in any minute, over all files. The unused part may grow to one record, so
+/// that every record can be written, and no write is larger.
+class Allowance {
+ public:
+  static constexpr double kASecond = 14000;  // bytes per second
+  static constexpr double kMost = kLargestRecord + 1024;
+
+  /// Bytes that may be written at `now`, which must not run back.
+  std::size_t at(loop::Instant now) {
+    if (last_ == loop::Instant{}) last_ = now;
+    const double passed = std::chrono::duration<double>(now - last_).count();
+    left_ = std::min(kMost, left_ + passed * kASecond);
+    last_ = now;
+    return static_cast<std::size_t>(std::max(left_, 0.0));
+  }
+  /// Records a write, done or planned.
+  void spend(std::size_t bytes) { left_ -= static_cast<double>(bytes); }
+
+ private:
+  double left_ = kMost;
+  loop::Instant last_{};
+};
+
+/// Which poses of the robots are stored or queued.
+class Poses {
+ public:
+  Poses() = default;
+  /// `stored`: from before a restart.
+  explicit Poses(const std::vector<api::Track>& stored);
+
+  /// Time of the newest stored or queued pose.
+  api::Time last() const { return last_; }
+  /// Queues poses since last(). Call once for each `now`: if the time of day was set back, a second call
+  /// would store the same poses again.
+  void add_to(Lines& lines, const std::vector<api::Track>& tracks, api::Time now);
+  /// Call if the time of day was advanced by `seconds`.
+  void move(double seconds) { last_ += seconds; }
+
+ private:
+  bool has_moved(const api::Track& track);
+
+  api::Time last_ = 0;
+  std::map<std::string, api::TrackPose> by_robot_;  // last added
+};
 
 /// State of the present run.
 struct Seen {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdio>
 #include <expected>
 #include <span>
 #include <string>
@@ -19,6 +20,33 @@ std::expected<Options, std::string> read(Program (*program_of)(Options&),
   Options options;
   if (auto wrong = read(program_of(options), arguments)) return std::unexpected(*std::move(wrong));
   return options;
+}
+
+/// The exit code if main() must return at once: 2 after an error and the help for a wrong command line, 0
+/// after the help or the version (1 if it cannot be printed). nullopt: the program continues.
+template <class Options>
+std::optional<int> answer(Program (*program_of)(Options&), const char* version,
+                          const std::expected<Options, std::string>& options) {
+  Options usual;
+  const Program program = program_of(usual);
+  if (!options) {
+    std::fprintf(stderr, "%s: %s\n%s", program.name.c_str(), options.error().c_str(), help(program).c_str());
+    return 2;
+  }
+  if (options->help) return std::fputs(help(program).c_str(), stdout) < 0 ? 1 : 0;
+  if constexpr (requires { options->version; }) {
+    if (options->version) return std::printf("%s %s\n", program.name.c_str(), version) < 0 ? 1 : 0;
+  }
+  return std::nullopt;
+}
+
+/// main() of a program. `work` returns the exit code.
+template <class Options>
+int run(Program (*program_of)(Options&), const char* version, int argc, char** argv,
+        int (*work)(const Options&)) {
+  const auto options = read(program_of, {argv + 1, argv + argc});
+  const auto exit = answer(program_of, version, options);
+  return exit ? *exit : work(*options);
 }
 
 }  // namespace adit::command_line

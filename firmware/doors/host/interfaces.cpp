@@ -16,7 +16,6 @@
 #include <system_error>
 
 #include "host/files.hpp"
-#include "host/interface_name.hpp"
 #include "host/root_program.hpp"
 #include "host/service.hpp"
 #include "icd/text.hpp"

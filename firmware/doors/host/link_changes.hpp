@@ -1,8 +1,14 @@
 #pragma once
 
+#include <optional>
+#include <string>
+
 #include "loop/file_descriptor.hpp"
 
 namespace adit::host {
+
+/// As carrier(). `sys_class_net`: the kernel's list of interfaces.
+std::optional<bool> carrier_in(const std::string& sys_class_net, const std::string& interface);
 
 /// A socket that becomes readable when an interface comes, goes or changes, or its cable does (rtnetlink(7),
 /// RTMGRP_LINK). Reports a plugged cable at once, a pulled one within a second. Empty if the kernel gives no

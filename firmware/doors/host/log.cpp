@@ -13,7 +13,6 @@
 #include <utility>
 
 #include "host/log_line.hpp"
-#include "host/memory.hpp"
 
 namespace adit::host {
 namespace {

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "icd/redaction.hpp"
+#include "icd/bearer_token.hpp"
 
 namespace adit::host {
 

@@ -2,9 +2,125 @@
 
 #include <sys/stat.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <ctime>
 
+#include "codec/utf8.hpp"
+#include "host/log.hpp"
+#include "icd/text.hpp"
+
 namespace adit::host {
+namespace {
+
+std::string clipped(std::string_view text) {
+  return std::string(text.substr(0, Memory::kLongest));
+}
+
+std::size_t bytes_of(const Record& record) {
+  std::size_t bytes = sizeof record + record.message.size();
+  for (const auto& [name, value] : record.fields) bytes += 2 * sizeof name + name.size() + value.size();
+  return bytes;
+}
+
+}  // namespace
+
+void Memory::keep(double at, Level level, std::string_view message, std::span<const Field> fields) {
+  Record record{.seq = 0, .at = at, .level = level, .message = clipped(message), .fields = {}};
+  record.fields.reserve(fields.size());
+  for (const auto& [name, value] : fields) {
+    if (!value.empty()) record.fields.emplace_back(name, clipped(value));
+  }
+  const std::scoped_lock lock(mutex_);
+  record.seq = ++last_;
+  bytes_ += bytes_of(record);
+  records_.push_back(std::move(record));
+  while (records_.size() > kMost || bytes_ > kMostBytes) drop_the_oldest();
+}
+
+void Memory::drop_the_oldest() {
+  bytes_ -= bytes_of(records_.front());
+  records_.pop_front();
+}
+
+std::uint64_t Memory::last() const {
+  const std::scoped_lock lock(mutex_);
+  return last_;
+}
+
+std::vector<Record> Memory::after(std::uint64_t seq) const {
+  const std::scoped_lock lock(mutex_);
+  const auto first = std::ranges::upper_bound(records_, seq, {}, &Record::seq);
+  return {first, records_.end()};
+}
+
+namespace {
+
+/// Characters that control or deceive a terminal: C1 controls, characters without width or that change the
+/// writing direction, Unicode's line ends, tags (Unicode 15, 23.2 to 23.9).
+struct Span {
+  char32_t first, last;
+};
+constexpr Span kUnseen[] = {{0x80, 0x9f},     {0xad, 0xad},      {0x61c, 0x61c},   {0x180e, 0x180e},
+                            {0x200b, 0x200f}, {0x2028, 0x202e},  {0x2060, 0x206f}, {0xfeff, 0xfeff},
+                            {0xfff9, 0xffff}, {0xe0000, 0xeffff}};
+
+std::size_t length_by(std::uint8_t first) {
+  return first < 0x80 ? 1 : first < 0xe0 ? 2 : first < 0xf0 ? 3 : 4;
+}
+
+/// The code of a UTF-8 character of several bytes.
+char32_t decoded(std::string_view character) {
+  const auto first = static_cast<std::uint8_t>(character[0]);
+  char32_t code = first & (0xffu >> (character.size() + 1));
+  for (const char c : character.substr(1)) code = code << 6 | (static_cast<std::uint8_t>(c) & 0x3fu);
+  return code;
+}
+
+/// Length of the first character in bytes. 0: invisible, or not UTF-8.
+std::size_t visible(std::string_view text) {
+  const auto first = static_cast<std::uint8_t>(text[0]);
+  const std::string_view character = text.substr(0, length_by(first));
+  if (first < 0x80) return first >= 0x20 && first != 0x7f ? 1 : 0;
+  if (character.size() < length_by(first) || !codec::is_utf8(character)) return 0;
+  const bool unseen = std::ranges::any_of(kUnseen, [code = decoded(character)](const Span& span) {
+    return code >= span.first && code <= span.last;
+  });
+  return unseen ? 0 : character.size();
+}
+
+}  // namespace
+
+std::string escaped(std::string_view text) {
+  std::string safe;
+  safe.reserve(text.size());
+  while (!text.empty()) {
+    const std::size_t length = visible(text);
+    if (text[0] == '\\') {
+      safe += "\\\\";
+    } else if (length > 0) {
+      safe += text.substr(0, length);
+    } else {
+      safe += "\\x" + icd::hex(static_cast<std::uint8_t>(text[0]));
+    }
+    text.remove_prefix(std::max<std::size_t>(length, 1));
+  }
+  return safe;
+}
+
+std::string in_ascii(std::string_view text) {
+  std::string safe;
+  safe.reserve(text.size());
+  for (const char c : text) {
+    if (static_cast<std::uint8_t>(c) < 0x80) {
+      safe += c;
+    } else {
+      safe += "\\x" + icd::hex(static_cast<std::uint8_t>(c));
+    }
+  }
+  return safe;
+}
+
 namespace {
 
 std::string quoted_where_needed(std::string_view value) {

@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-#include "icd/hex.hpp"
+#include "icd/text.hpp"
 
 namespace adit::host {
 

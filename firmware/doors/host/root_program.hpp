@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "codec/row_file.hpp"
+#include "codec/row.hpp"
 #include "host/service.hpp"
 #include "host/untrusted_folder.hpp"
 #include "icd/try.hpp"
@@ -17,7 +17,7 @@
 /// Requests of aditd, which has no privileges, to a program that runs as root, and its answers. A request is
 /// a file in aditd's state directory, which the program removes. The answer is the program's status, a file
 /// in its runtime directory that every user can read. The status names the last request by its nonce. Each
-/// file is a row (codec/row_file.hpp).
+/// file is a row (codec/row.hpp).
 namespace adit::host {
 
 inline constexpr const char* kStatusFile = "status.json";

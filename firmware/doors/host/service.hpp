@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "icd/bearer_token.hpp"
-#include "icd/redaction.hpp"
 
 namespace adit::host {
 

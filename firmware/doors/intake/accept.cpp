@@ -1,4 +1,4 @@
-#include "intake/accept.hpp"
+#include "intake/listen_socket.hpp"
 
 namespace adit::intake {
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "codec/write.hpp"
-#include "intake/field_text.hpp"
+#include "intake/head.hpp"
 #include "intake/icd_routes.hpp"
 
 namespace adit::intake {

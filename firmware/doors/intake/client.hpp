@@ -1,17 +1,114 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
-#include "intake/deadline.hpp"
-#include "intake/engine.hpp"
 #include "intake/gate.hpp"
+#include "intake/server.hpp"
 #include "intake/shares.hpp"
 #include "loop/guard.hpp"
 #include "loop/loop.hpp"
+
+namespace adit::intake {
+
+class Client;
+
+/// The server as a Client sees it.
+class Engine {
+ public:
+  virtual ~Engine() = default;
+  virtual loop::Instant now() const = 0;
+  virtual const Listen& listen() const = 0;
+  /// Runs libmicrohttpd soon, from the loop. Call this after each change that libmicrohttpd cannot see.
+  virtual void run_soon() = 0;
+  /// Makes the server check its clients' deadlines at `when` or earlier.
+  virtual void look_at(loop::Instant when) = 0;
+  virtual void tell(Ended why, const std::string& address) = 0;
+  /// Calls hold_back() of the client `number` after libmicrohttpd has run.
+  virtual void hold_back_soon(std::uint64_t number) = 0;
+  /// The gate has let in a request.
+  virtual void begin_request(Client& client) = 0;
+};
+
+/// Checks that bytes move at least as fast as on a slow radio: kLeast over each `window`, checked twice per
+/// window. A client that stops is found within one and a half windows.
+class LeastRate {
+ public:
+  static constexpr std::uint64_t kLeast = 1000;  // bytes a second
+
+  LeastRate(loop::Duration window, loop::Instant now) : half_(window / 2), look_at_(now + half_) {}
+
+  void moved(std::uint64_t bytes) { in_this_half_ += bytes; }
+  loop::Instant look_at() const { return look_at_; }
+  /// Call this once for each look_at(), at that time or later.
+  bool is_too_slow(loop::Instant now) {
+    const bool is_full = std::exchange(has_half_, true);
+    const std::uint64_t moved = in_last_half_ + in_this_half_;
+    in_last_half_ = std::exchange(in_this_half_, 0);
+    look_at_ = now + half_;
+    const std::chrono::duration<double> both = 2 * half_;
+    return is_full && static_cast<double>(moved) < kLeast * both.count();
+  }
+
+ private:
+  loop::Duration half_;
+  loop::Instant look_at_;
+  std::uint64_t in_last_half_ = 0, in_this_half_ = 0;
+  bool has_half_ = false;  // in_last_half_ is set
+};
+
+class Engine;
+
+/// The time at which a client is late: it must send or read bytes within a time, or at the least rate.
+class Deadline {
+ public:
+  Deadline(Engine& engine, const Gate& gate) : engine_(engine), gate_(gate) {}
+
+  loop::Instant at() const { return at_; }
+  /// The client has shown a token.
+  bool is_authenticated() const { return authenticated_; }
+  void set_authenticated(bool authenticated) { authenticated_ = authenticated; }
+  /// The client must send bytes within that time.
+  void expect_bytes(std::chrono::milliseconds within);
+  /// The client must read the last answer of its connection within 2 s.
+  void expect_last_reading();
+  /// The client must send a head, or the rest of the body: an unauthenticated client within
+  /// Listen::unauthenticated_within, an authenticated one within Listen::rate_over, or at the least rate.
+  void expect_head();
+  void expect_body();
+  void body_came(std::size_t bytes);
+  /// The client must read its answer at the least rate. `taken`: of Gate::traffic() before the answer.
+  void expect_steady_reading(std::uint64_t taken);
+  void expect_nothing();
+
+  /// The client has closed its direction: libmicrohttpd has little time to read the last bytes.
+  void client_ended();
+  bool has_client_ended() const { return ended_; }
+  /// Call this after at(). False: the client has more time, until the new at(). True: it is late, and has no
+  /// deadline any more.
+  bool is_late();
+
+ private:
+  bool keeps_up();
+  void set(loop::Instant when);
+  void expect_rate();
+
+  Engine& engine_;
+  const Gate& gate_;
+  loop::Instant at_ = loop::Instant::max();
+  bool authenticated_ = false;
+  bool bytes_expected_ = false;  // false: the client must read
+  bool ended_ = false;           // the client has closed its direction
+  std::optional<LeastRate> rate_;
+  std::uint64_t taken_before_ = 0;  // the last value of Gate::Traffic::taken
+};
+
+}  // namespace adit::intake
 
 struct MHD_Connection;
 

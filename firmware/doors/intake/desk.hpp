@@ -4,11 +4,8 @@
 #include <memory>
 #include <string>
 
-#include "icd/artifact_report.hpp"
-#include "icd/map_update.hpp"
-#include "icd/markers_update.hpp"
-#include "icd/run_status.hpp"
-#include "icd/state_update.hpp"
+#include "icd/mapping.hpp"
+#include "icd/scoring.hpp"
 #include "icd/status.hpp"
 #include "icd/uri.hpp"
 #include "intake/server.hpp"

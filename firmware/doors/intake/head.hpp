@@ -1,14 +1,43 @@
 #pragma once
 
+#include <expected>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
-#include "intake/field_text.hpp"
 #include "intake/server.hpp"
-#include "intake/target.hpp"
 
 namespace adit::intake {
+
+/// True for a token: the name of a method or of a field, not empty (RFC 9110 5.6.2).
+bool is_token(std::string_view text);
+
+/// True if the only control character is the tab. Bytes above 0x7f are allowed (RFC 9110 5.5).
+bool has_no_controls(std::string_view text);
+
+inline constexpr std::string_view kBlanks = " \t";  // RFC 9110 5.6.3
+
+/// A field of a head.
+struct FieldLine {
+  std::string_view name, value;
+};
+
+/// Parses a field's line without its CRLF (RFC 9112 5). The error is a sentence.
+std::expected<FieldLine, std::string_view> parse_field_line(std::string_view line);
+
+/// True for `host [":" port]` without user information (RFC 9110 7.2, RFC 3986 3.2.2); may be empty.
+bool is_authority(std::string_view text);
+
+/// A request's target (RFC 9112 3.2), percent-decoded once.
+struct Target {
+  std::string path;
+  std::vector<std::pair<std::string, std::string>> query;  // in the order given
+};
+
+/// Parses the origin form, the absolute form and `*`. nullopt for another form, a NUL or invalid UTF-8.
+std::optional<Target> parse_target(std::string_view raw);
 
 /// The parts of a head that HeadChecker has found whole.
 struct HeadParts {

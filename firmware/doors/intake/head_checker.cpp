@@ -4,10 +4,9 @@
 #include <string>
 #include <utility>
 
-#include "icd/letter_case.hpp"
 #include "icd/sentence.hpp"
 #include "icd/text.hpp"
-#include "intake/field_text.hpp"
+#include "intake/head.hpp"
 
 namespace adit::intake {
 namespace {

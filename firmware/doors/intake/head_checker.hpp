@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "icd/status.hpp"
-#include "intake/field_text.hpp"
+#include "intake/head.hpp"
 
 namespace adit::intake {
 

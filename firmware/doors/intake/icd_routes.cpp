@@ -6,11 +6,9 @@
 
 #include "access/whence.hpp"
 #include "codec/body_decoder.hpp"
-#include "icd/letter_case.hpp"
 #include "icd/sentence.hpp"
-#include "intake/map_upload.hpp"
-#include "intake/markers_upload.hpp"
-#include "intake/small_upload.hpp"
+#include "icd/text.hpp"
+#include "intake/uploads.hpp"
 #include "intake/visit.hpp"
 
 namespace adit::intake {

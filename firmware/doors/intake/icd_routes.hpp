@@ -12,7 +12,6 @@
 #include "icd/rules.hpp"
 #include "intake/desk.hpp"
 #include "intake/server.hpp"
-#include "intake/turn_queue.hpp"
 #include "intake/upload.hpp"
 #include "loop/workers.hpp"
 

@@ -1,16 +1,105 @@
 #pragma once
 
+#include <sys/types.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
+#include <string_view>
 
-#include "intake/chunk_reader.hpp"
 #include "intake/head.hpp"
 #include "intake/head_checker.hpp"
-#include "intake/reply_stream.hpp"
 #include "intake/server.hpp"
 
 namespace adit::intake {
+
+/// Parses a chunked body (RFC 9112 7.1) as it arrives. Skips extensions and trailers. Refuses each deviation
+/// from the grammar, such as a bare LF or extra blanks.
+class ChunkReader {
+ public:
+  enum class State : std::uint8_t { More, Whole, Refused };
+  static constexpr std::size_t kMostLine = 4096;           // bytes of a size line with its extensions
+  static constexpr std::size_t kMostTrailers = 16 * 1024;  // bytes
+
+  /// Parses `bytes` and appends the bytes of the body to `data`. Ignores bytes after the end of the body.
+  State feed(std::string_view bytes, std::string& data);
+  State state() const { return state_; }
+  /// For Refused: a sentence.
+  std::string_view trouble() const { return trouble_; }
+
+ private:
+  enum class In : std::uint8_t { Size, Data, AfterData, Trailers };
+
+  std::size_t take_data(std::string_view bytes, std::string& data);
+  std::size_t take_line(std::string_view bytes);
+  void whole_line();
+  void size_line();
+  void trailer_line();
+  void refuse(std::string_view trouble);
+
+  State state_ = State::More;
+  In in_ = In::Size;
+  std::uint64_t left_ = 0;  // bytes of the chunk that have not arrived
+  std::string line_;        // the part of the line that has arrived
+  std::size_t trailers_ = 0;
+  std::string_view trouble_;
+};
+
+}  // namespace adit::intake
+
+struct MHD_Response;
+
+namespace adit::intake {
+
+class Client;
+
+/// The bytes of a Stream that the client has not been sent.
+class ReplyStream {
+ public:
+  void attach(Client& client, std::string_view content_type) {
+    client_ = &client;
+    content_type_ = content_type;
+  }
+  bool append(std::string_view bytes);
+  bool replace(std::string_view bytes);
+  std::size_t waiting() const { return waiting_ - read_; }
+  /// Ends the answer after the queued bytes.
+  void end();
+  /// The client is gone.
+  void detach() { client_ = nullptr; }
+
+  /// The response for libmicrohttpd. Its connection is suspended while no bytes are queued.
+  static MHD_Response* make_response(const std::shared_ptr<ReplyStream>& stream);
+
+ private:
+  ssize_t read(char* into, std::size_t most);
+
+  Client* client_ = nullptr;  // null if the client is gone
+  std::string content_type_;
+  std::deque<std::string> pieces_;  // as they were given
+  std::size_t waiting_ = 0;         // bytes of pieces_, with those of the first that were read
+  std::size_t read_ = 0;            // bytes of the first piece
+  bool ended_ = false;
+};
+
+/// The handler's end of a stream. Its destructor ends the answer.
+class ReplyStreamEnd final : public Stream {
+ public:
+  explicit ReplyStreamEnd(std::shared_ptr<ReplyStream> stream) : stream_(std::move(stream)) {}
+  ReplyStreamEnd(const ReplyStreamEnd&) = delete;
+  ReplyStreamEnd& operator=(const ReplyStreamEnd&) = delete;
+  ~ReplyStreamEnd() override { stream_->end(); }
+  bool send(std::string_view bytes) override { return stream_->append(bytes); }
+  bool send_instead(std::string_view bytes) override { return stream_->replace(bytes); }
+  std::size_t waiting() const override { return stream_->waiting(); }
+
+ private:
+  std::shared_ptr<ReplyStream> stream_;
+};
 
 class Client;
 

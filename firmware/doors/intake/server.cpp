@@ -9,13 +9,11 @@
 #include <vector>
 
 #include "icd/try.hpp"
-#include "intake/accept.hpp"
 #include "intake/client.hpp"
 #include "intake/head.hpp"
 #include "intake/listen_socket.hpp"
 #include "intake/request.hpp"
 #include "intake/shares.hpp"
-#include "intake/target.hpp"
 #include "intake/turnstile.hpp"
 #include "loop/guard.hpp"
 

@@ -134,7 +134,7 @@ class Handler {
 
 /// An HTTP/1.1 server by libmicrohttpd on the loop, for one address.
 ///
-/// shares.hpp decides which connections have room, and least_rate.hpp which are too slow. A request without
+/// shares.hpp decides which connections have room, and client.hpp which are too slow. A request without
 /// room gets 503. The server buffers no body: a slow receiver causes back-pressure.
 class Server {
  public:

@@ -1,14 +1,70 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "intake/server.hpp"
-#include "intake/token_guesses.hpp"
 #include "loop/loop.hpp"
 
 namespace adit::intake {
+
+/// Slows down clients that guess bearer tokens.
+///
+/// Each address may try kFree wrong tokens at once, then one each kEach. The same wrong token again is no
+/// guess, because it gives its sender no information, but its answer may be late. So a robot with an old
+/// token does not use up the guesses of others behind the same router. A right token is always accepted, with
+/// one exception: an address that has guessed too often and has never shown a right token. Then no token is
+/// checked, because each answer would show whether a guess was right.
+class TokenGuesses {
+ public:
+  static constexpr int kFree = 10;
+  static constexpr std::chrono::seconds kEach{1};
+  static constexpr std::size_t kMostAddresses =
+      256;  // above it, an address is removed, if possible one without a right token
+
+  enum class Looked : std::uint8_t { Right, Wrong, NotLookedAt };
+  struct Verdict {
+    Looked looked = Looked::Right;
+    bool late = false;  // delay its answer
+
+    friend bool operator==(const Verdict&, const Verdict&) = default;
+  };
+
+  /// For a request from `address` with a right token.
+  Verdict right(const std::string& address, loop::Instant now);
+  /// For a request from `address` with the wrong `token`; "": without the required token.
+  Verdict wrong(const std::string& address, std::string_view token, loop::Instant now);
+  /// Call this when the tokens have changed.
+  void forget() { counts_.clear(); }
+
+ private:
+  /// kFree at once, then one each kEach.
+  class Allowance {
+   public:
+    bool has_one(loop::Instant now) const { return used_up_to_ - now <= kEach * (kFree - 1); }
+    void use(loop::Instant now) { used_up_to_ = std::max(used_up_to_, now) + kEach; }
+
+   private:
+    loop::Instant used_up_to_{};
+  };
+  struct Count {
+    bool has_been_right = false;
+    loop::Instant last{};
+    Allowance guesses, answers;
+    std::array<std::string, 8> wrong;  // the last ones, cut to a token's length
+    std::size_t next = 0;              // the next one to replace
+  };
+  Count& count_of(const std::string& address, loop::Instant now);
+
+  std::map<std::string, Count, std::less<>> counts_;
+};
 
 /// Wraps a server's handler: answers a request with a wrong token late, or does not check its token, as
 /// TokenGuesses decides. A late answer holds its connection, which counts as unauthenticated. So the share of

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <optional>
 
-#include "icd/artifact_report.hpp"
-#include "icd/letter_case.hpp"
+#include "icd/scoring.hpp"
 #include "icd/sentence.hpp"
 #include "icd/suggestion.hpp"
+#include "icd/text.hpp"
 
 namespace adit::intake {
 namespace {

@@ -13,16 +13,16 @@
 #include <utility>
 #include <vector>
 
-#include "icd/markers_update.hpp"
+#include "icd/mapping.hpp"
 #include "icd/robot_name.hpp"
 #include "icd/uri.hpp"
 #include "pace/rate_limit.hpp"
-#include "queues/extent.hpp"
+#include "queues/lattice.hpp"
 #include "queues/marker_changes.hpp"
-#include "queues/posted_pose.hpp"
 #include "queues/stamps.hpp"
+#include "queues/state_queue.hpp"
 #include "store/contents.hpp"
-#include "store/values.hpp"
+#include "store/frame.hpp"
 
 namespace adit::journal {
 

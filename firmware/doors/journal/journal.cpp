@@ -8,7 +8,7 @@
 #include "host/log.hpp"
 #include "host/service.hpp"
 #include "icd/try.hpp"
-#include "store/snapshot.hpp"
+#include "store/log.hpp"
 
 namespace adit::journal {
 namespace {

@@ -9,8 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "icd/markers_update.hpp"
-#include "icd/state_update.hpp"
+#include "icd/mapping.hpp"
 #include "icd/uri.hpp"
 #include "journal/carried.hpp"
 #include "loop/loop.hpp"

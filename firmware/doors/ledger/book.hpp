@@ -12,7 +12,7 @@
 #include "dispatch/merged_reports.hpp"
 #include "ledger/record.hpp"
 #include "store/contents.hpp"
-#include "store/error.hpp"
+#include "store/directory.hpp"
 
 namespace adit::ledger {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "store/error.hpp"
+#include "store/directory.hpp"
 
 namespace adit::ledger {
 

@@ -18,7 +18,6 @@
 #include "store/directory.hpp"
 #include "store/frame.hpp"
 #include "store/log.hpp"
-#include "store/snapshot.hpp"
 
 namespace adit::ledger {
 namespace {

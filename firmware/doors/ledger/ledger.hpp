@@ -11,11 +11,11 @@
 #include "dispatch/merged_reports.hpp"
 #include "dispatch/output.hpp"
 #include "dispatch/report.hpp"
-#include "dispatch/run.hpp"
+#include "dispatch/runs.hpp"
 #include "ledger/record.hpp"
 #include "store/contents.hpp"
-#include "store/error.hpp"
-#include "store/values.hpp"
+#include "store/directory.hpp"
+#include "store/frame.hpp"
 
 namespace adit::ledger {
 

@@ -4,7 +4,7 @@
 #include <concepts>
 
 #include "codec/row.hpp"
-#include "store/values.hpp"
+#include "store/frame.hpp"
 
 namespace adit {
 

@@ -10,7 +10,7 @@
 
 #include "codec/value.hpp"
 #include "dispatch/report.hpp"
-#include "dispatch/run.hpp"
+#include "dispatch/runs.hpp"
 
 namespace adit::ledger {
 

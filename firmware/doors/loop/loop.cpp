@@ -16,7 +16,6 @@
 #include <vector>
 
 #include "loop/file_descriptor.hpp"
-#include "loop/wall_clock.hpp"
 
 namespace adit::loop {
 namespace {

@@ -1,14 +1,113 @@
 #pragma once
 
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <utility>
 
-#include "loop/job_queue.hpp"
 #include "loop/loop.hpp"
 
 namespace adit::loop {
+
+/// The priority of a job.
+enum class Urgency : std::uint8_t {
+  OnTheWay,  // a message or its answer is delayed until the job is done
+  CanWait,   // the result is only shown, or memory is freed
+};
+
+/// Queues jobs for a few workers and decides which job is next. Reads no clock and does not lock.
+///
+/// Jobs of one urgency start in order of arrival. OnTheWay jobs go first. A CanWait job goes first if it is
+/// at the front, and kPatience has passed since its arrival and since the end of the last CanWait job. So the
+/// n-th queued CanWait job waits at most n times kPatience plus the time that other jobs run. With several
+/// workers, one always stays free of CanWait jobs.
+template <class Job>
+class JobQueue {
+ public:
+  static constexpr std::chrono::milliseconds kPatience{100};
+  /// A CanWait job runs for this long before it gives way to OnTheWay jobs.
+  static constexpr std::chrono::milliseconds kTurn{10};
+
+  struct Next {
+    Job job;
+    Urgency urgency = Urgency::OnTheWay;
+  };
+
+  explicit JobQueue(std::size_t workers) : most_that_can_wait_(std::max<std::size_t>(workers, 2) - 1) {}
+
+  void add(Job job, Urgency urgency, Instant now) {
+    if (urgency == Urgency::OnTheWay) {
+      on_the_way_.push_back(std::move(job));
+    } else {
+      can_wait_.push_back({std::move(job), now});
+    }
+  }
+
+  /// The next job for an idle worker. nullopt if no job is queued, or if only CanWait jobs are queued and
+  /// enough workers run such jobs.
+  std::optional<Next> take(Instant now) {
+    const bool may_wait = !can_wait_.empty() && at_work_ < most_that_can_wait_;
+    if (may_wait && (on_the_way_.empty() || has_waited_long(now))) {
+      Next next{std::move(can_wait_.front().job), Urgency::CanWait};
+      can_wait_.pop_front();
+      ++at_work_;
+      return next;
+    }
+    auto job = take_on_the_way();
+    if (!job) return std::nullopt;
+    return Next{std::move(*job), Urgency::OnTheWay};
+  }
+
+  /// The OnTheWay job to run within a CanWait job that has run since `began` and has given way since `since`.
+  /// nullopt: the CanWait job goes on.
+  std::optional<Job> take_amid(Instant began, Instant since, Instant now) {
+    if (since - began < kTurn || now - since >= kPatience) return std::nullopt;
+    return take_on_the_way();
+  }
+
+  /// Call this when a job from take() has ended.
+  void ended(Urgency urgency, Instant now) {
+    if (urgency == Urgency::OnTheWay) return;
+    --at_work_;
+    last_ended_ = now;
+  }
+
+  /// Moves all queued jobs to `other`, which must be empty, so that the caller can free them outside its
+  /// lock.
+  void hand_over_to(JobQueue& other) {
+    std::swap(other.on_the_way_, on_the_way_);
+    std::swap(other.can_wait_, can_wait_);
+  }
+
+  std::size_t size() const { return on_the_way_.size() + can_wait_.size(); }
+
+ private:
+  struct Patient {
+    Job job;
+    Instant came{};
+  };
+
+  std::optional<Job> take_on_the_way() {
+    if (on_the_way_.empty()) return std::nullopt;
+    std::optional<Job> job{std::move(on_the_way_.front())};
+    on_the_way_.pop_front();
+    return job;
+  }
+  bool has_waited_long(Instant now) const {
+    return now - std::max(can_wait_.front().came, last_ended_) >= kPatience;
+  }
+
+  const std::size_t most_that_can_wait_;
+  std::size_t at_work_ = 0;  // running CanWait jobs
+  std::deque<Job> on_the_way_;
+  std::deque<Patient> can_wait_;
+  Instant last_ended_{};  // of a CanWait job
+};
 
 /// Threads that compute on data given to them and return the result to the loop. JobQueue decides which job
 /// is next. The threads run at nice 10 (setpriority(2)), so that a report does not compete with them. Jobs

@@ -34,7 +34,7 @@ class ButtonLine {
 /// Opens the lines named in `settings` with libgpiod, for `consumer` (shown by gpioinfo(1) as their user).
 /// The chip is found by name, label or path; if no chip is named, the line's name is looked up on all chips.
 /// Unnamed lines are skipped. All lights are dark at first and when closed. Lines stay lost after their chip
-/// vanishes: reopened.hpp.
+/// vanishes: held.hpp.
 std::expected<std::unique_ptr<Lines>, std::string> open_gpio(const settings::Panel& settings,
                                                              const std::string& consumer);
 /// Opens the line of the button, which must be named. If the chip supports it, the line is pulled to "not

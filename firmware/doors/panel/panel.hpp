@@ -33,7 +33,7 @@ struct Step {
 };
 
 /// The steps that a pattern repeats. One step: steady. Empty for Digits, which are made from an address and
-/// played once (address_digits.hpp).
+/// played once (states.hpp).
 std::span<const Step> steps_of(Pattern pattern);
 
 /// The state of a sequence of steps at one time.

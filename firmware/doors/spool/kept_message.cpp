@@ -14,7 +14,6 @@
 #include "host/service.hpp"
 #include "icd/try.hpp"
 #include "spool/map_file.hpp"
-#include "spool/part_file.hpp"
 
 namespace adit::spool {
 namespace {

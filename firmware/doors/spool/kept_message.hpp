@@ -6,9 +6,7 @@
 #include "codec/field.hpp"
 #include "icd/chunked_bytes.hpp"
 #include "icd/grid_bounds.hpp"
-#include "icd/map_update.hpp"
-#include "icd/markers_update.hpp"
-#include "icd/state_update.hpp"
+#include "icd/mapping.hpp"
 #include "icd/status.hpp"
 
 namespace adit::spool {

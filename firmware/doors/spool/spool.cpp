@@ -13,13 +13,13 @@
 
 #include "codec/json.hpp"
 #include "host/disk.hpp"
+#include "host/files.hpp"
 #include "host/log.hpp"
-#include "host/numbered_name.hpp"
 #include "host/service.hpp"
 #include "icd/sentence.hpp"
 #include "icd/try.hpp"
 #include "spool/kept_message.hpp"
-#include "spool/part_file.hpp"
+#include "spool/map_file.hpp"
 
 namespace adit::spool {
 namespace {

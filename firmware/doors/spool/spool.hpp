@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "icd/grid_bounds.hpp"
-#include "icd/map_update.hpp"
+#include "icd/mapping.hpp"
 #include "spool/map_file.hpp"
 
 namespace adit::spool {

@@ -23,6 +23,31 @@
 namespace adit::store {
 namespace {
 
+Error::Cause cause_of(int number) {
+  switch (number) {
+    case ENOSPC:
+    case EDQUOT:
+    case EFBIG:
+      return Error::Cause::Full;
+    case EROFS:
+    case EACCES:
+    case EPERM:
+      return Error::Cause::NoWrite;
+    case EIO:
+      return Error::Cause::Failing;
+    default:
+      return Error::Cause::Other;
+  }
+}
+
+}  // namespace
+
+std::unexpected<Error> failed(const std::string& path, int number) {
+  return std::unexpected(Error{cause_of(number), path + ": " + loop::text_of(number)});
+}
+
+namespace {
+
 constexpr std::array<std::string_view, 3> kBeginnings{"log-", "snapshot-", "spare-"};  // by FileName::Kind
 constexpr std::size_t kSaltDigits = 16;
 

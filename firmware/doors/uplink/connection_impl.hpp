@@ -2,20 +2,74 @@
 
 #include <sys/epoll.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "loop/file_descriptor.hpp"
-#include "uplink/connect_attempts.hpp"
+#include "loop/loop.hpp"
+#include "pace/delivery.hpp"
 #include "uplink/connection.hpp"
 #include "uplink/exchange.hpp"
-#include "uplink/link_pace.hpp"
 #include "uplink/server.hpp"
 
 namespace adit::uplink {
+
+/// When to connect next. The pause between two attempts doubles while they fail.
+class ConnectAttempts {
+ public:
+  void begins(loop::Instant now) { began_ = now; }
+  void succeeded() {
+    trouble_.clear();
+    hurry();
+  }
+  /// Returns the time of the next attempt.
+  loop::Instant failed(std::string why) {
+    trouble_ = std::move(why);
+    return began_ + std::exchange(pause_, std::min(pause_ * 2, kLongestPause));
+  }
+  /// The link may be back: the next pause is short.
+  void hurry() { pause_ = kFirstPause; }
+  loop::Instant next() const { return began_ + pause_; }
+  /// Why the last attempt failed, or "".
+  const std::string& trouble() const { return trouble_; }
+
+ private:
+  static constexpr std::chrono::seconds kFirstPause{1}, kLongestPause{5};
+
+  loop::Instant began_;  // the last attempt
+  std::chrono::seconds pause_ = kFirstPause;
+  std::string trouble_;
+};
+
+/// Keeps the pace of a connection's socket at the rate that the link delivers.
+class LinkPace {
+ public:
+  /// `most`: bytes per second; 0: not paced.
+  explicit LinkPace(std::uint64_t most) {
+    if (most > 0) delivery_.emplace(static_cast<double>(most));
+  }
+
+  /// Call this when the first bytes of a request have just been written to `fd`.
+  void begins(int fd, loop::Instant now);
+  /// Call this before more bytes are written, and every kLook.
+  void goes_on(int fd, loop::Instant now);
+  static constexpr loop::Duration kLook = pace::Delivery::kInterval / 2;
+
+  /// Bytes per second that the link delivers, as measured; 0: not paced.
+  std::uint64_t delivers() const;
+
+ private:
+  void tell(int fd);
+
+  std::optional<pace::Delivery> delivery_;
+  std::uint64_t told_ = 0;  // the pace that the socket has
+};
 
 /// The state of a Connection. A running callback keeps it alive, because `done` may destroy the Connection.
 class Connection::Impl : public std::enable_shared_from_this<Impl> {
@@ -74,7 +128,7 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
   void look();
   void check_silence();
 
-  // Connecting and idling (connecting.cpp).
+  // Connecting and idling.
   void connect();
   void connecting_ended(int error);
   void connecting_failed(const std::string& why);

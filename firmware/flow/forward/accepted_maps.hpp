@@ -5,7 +5,7 @@
 #include "journal/journal.hpp"
 #include "pack/stitch.hpp"
 #include "queues/map_queue.hpp"
-#include "queues/overtaken.hpp"
+#include "queues/stamps.hpp"
 #include "settings/settings.hpp"
 
 namespace adit::forward {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include "dispatch/run_watch.hpp"
+#include "dispatch/runs.hpp"
 #include "host/log.hpp"
 
 namespace adit::forward {

@@ -4,17 +4,15 @@
 #include <string>
 #include <vector>
 
-#include "clock/source.hpp"
+#include "clock/messages.hpp"
 #include "dispatch/report.hpp"
 #include "forward/stamp_floor.hpp"
-#include "icd/markers_update.hpp"
-#include "icd/state_update.hpp"
+#include "icd/mapping.hpp"
 #include "journal/journal.hpp"
 #include "loop/loop.hpp"
 #include "loop/workers.hpp"
-#include "queues/overtaken.hpp"
-#include "queues/posted_pose.hpp"
 #include "queues/stamps.hpp"
+#include "queues/state_queue.hpp"
 
 namespace adit::forward {
 

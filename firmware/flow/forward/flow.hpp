@@ -1,6 +1,9 @@
 #pragma once
 
+#include <chrono>
+#include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <expected>
 #include <functional>
 #include <memory>
@@ -11,15 +14,12 @@
 
 #include "api/source.hpp"
 #include "archive/archive.hpp"
+#include "dispatch/reports.hpp"
 #include "forward/clocks.hpp"
 #include "forward/delivered_scene.hpp"
-#include "forward/ending.hpp"
-#include "forward/ledger_upkeep.hpp"
 #include "forward/map_picture.hpp"
 #include "forward/maps.hpp"
-#include "forward/meter.hpp"
 #include "forward/rejected.hpp"
-#include "forward/run_news.hpp"
 #include "forward/scoring.hpp"
 #include "forward/telemetry.hpp"
 #include "forward/traffic_counts.hpp"
@@ -29,11 +29,101 @@
 #include "ledger/ledger.hpp"
 #include "loop/loop.hpp"
 #include "loop/workers.hpp"
-#include "settings/restarts.hpp"
 #include "settings/settings.hpp"
 #include "spool/spool.hpp"
 
 namespace adit::forward {
+
+/// Sending rate of the last seconds.
+class Meter {
+ public:
+  static constexpr std::size_t kSeconds = 5;
+
+  /// Call once a second with the total of sent bytes.
+  void second(std::uint64_t bytes) {
+    bytes_.push_back(bytes);
+    if (bytes_.size() > kSeconds + 1) bytes_.pop_front();
+  }
+  double mbit() const {
+    if (bytes_.size() < 2) return 0;
+    const auto bytes = static_cast<double>(bytes_.back() - bytes_.front());
+    return bytes * 8 / 1e6 / static_cast<double>(bytes_.size() - 1);
+  }
+
+ private:
+  std::deque<std::uint64_t> bytes_;  // totals of the last seconds
+};
+
+/// A flow's end: waits for requests in flight and for storing, each for a limited time, then dismisses
+/// clients and lets their answers leave.
+class Ending {
+ public:
+  static constexpr std::chrono::milliseconds kAnswers{800};      // for requests in flight
+  static constexpr std::chrono::milliseconds kKeepWithin{3000};  // for messages that are being stored
+  static constexpr std::chrono::milliseconds kStep{10};
+  static constexpr std::chrono::milliseconds kFlush{50};  // for the last answers
+
+  void begin(loop::Instant now) { began_ = now; }
+  bool has_begun() const { return began_.has_value(); }
+  /// True if clients are to be dismissed now. `quiet`: no request in flight; `kept`: all is stored. Requires
+  /// has_begun().
+  bool dismisses(loop::Instant now, bool quiet, bool kept);
+  /// True after the dismissal, or if storing fails for too long. Requires has_begun().
+  bool is_over(loop::Instant now) const;
+
+ private:
+  std::optional<loop::Instant> began_;
+  bool dismissed_ = false;  // only answers are still to leave
+};
+
+/// Lets the ledger prepare room in the background.
+class LedgerUpkeep {
+ public:
+  /// Delay after a start or a failure. The first messages have priority.
+  static constexpr std::chrono::seconds kEvery{60};
+
+  /// Both outlive this.
+  LedgerUpkeep(loop::Loop& loop, ledger::Ledger& ledger) : loop_(loop), ledger_(ledger) {}
+
+  /// Call once a second. `disk` does the work. A failure is logged once.
+  void tick(loop::Writer& disk);
+
+ private:
+  void done(const ledger::Result<void>& result);
+
+  loop::Loop& loop_;
+  ledger::Ledger& ledger_;
+  loop::Instant at_ = loop_.now() + kEvery;
+  std::string trouble_;  // why it failed, or ""
+};
+
+/// Notices that the present run is another one, or that the Command Post may have another map.
+class RunNews {
+ public:
+  enum class Change : std::uint8_t {
+    None,
+    FirstLook,
+    LikelyAnother,  // the last status tells of another run, which is not yet certain
+    Another,        // next_map() says what the Command Post has of the map
+  };
+
+  /// `settings` outlives this.
+  explicit RunNews(const settings::Settings& settings) : settings_(settings) {}
+
+  /// The change since the last look.
+  Change look(const dispatch::Reports& reports);
+  dispatch::NextMap next_map() const { return next_map_; }
+
+ private:
+  dispatch::NextMap next_map_after(std::int64_t before, const dispatch::Reports& reports) const;
+  bool is_by_settings(const dispatch::Run& run) const;
+  bool status_came(const dispatch::Run& run);
+
+  const settings::Settings& settings_;
+  std::int64_t run_ = 0;    // at the last look; 0: none yet
+  double clock_shown_ = 0;  // clock of the last status at the last look
+  dispatch::NextMap next_map_ = dispatch::NextMap::MayBeTheSame;
+};
 
 /// The present time of day by other clocks, in seconds since 1970.
 struct KnownTimes {

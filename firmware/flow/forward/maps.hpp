@@ -4,7 +4,7 @@
 #include <random>
 #include <string>
 
-#include "dispatch/run_watch.hpp"
+#include "dispatch/runs.hpp"
 #include "forward/accepted_maps.hpp"
 #include "forward/channel.hpp"
 #include "forward/prepared_maps.hpp"

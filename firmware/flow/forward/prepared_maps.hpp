@@ -1,17 +1,82 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <optional>
 
 #include "forward/map_store.hpp"
-#include "forward/slot.hpp"
 #include "forward/stitched.hpp"
 #include "forward/traffic_counts.hpp"
 #include "forward/uri_pace.hpp"
+#include "loop/loop.hpp"
 #include "loop/watchdog.hpp"
+#include "pack/pack.hpp"
+#include "queues/clouds.hpp"
 #include "queues/map_queue.hpp"
 #include "settings/settings.hpp"
+#include "uplink/connection.hpp"
 
 namespace adit::forward {
+
+/// What one map after the other may hold, by what the last ones showed: how fast the link takes bytes, and
+/// how small packing makes clouds.
+class Slot {
+ public:
+  static constexpr std::chrono::milliseconds kLongestLead{1500};
+
+  /// `most`: bytes a second that maps may use of the link.
+  explicit Slot(std::uint64_t most) { allow(most); }
+  void allow(std::uint64_t most);
+
+  /// A map was packed, which took so long.
+  void packing_took(loop::Duration took);
+  /// Effort::Full packs so many bytes of a cloud's points to so many, at that precision.
+  void packed(std::size_t points, std::size_t bytes, queues::Precision precision);
+  /// A worker took so long to pack a map for which pack::seconds_for() expects so many seconds; 0: the map
+  /// was not compressed.
+  void worker_took(loop::Duration took, double expected);
+  /// So many bytes left, of which the last were held back until then.
+  void left(std::size_t bytes, const uplink::Sent& sent, loop::Instant last_byte_not_before);
+
+  /// The link takes no more than so many bytes a second now; 0: not known.
+  void link_delivers(std::uint64_t bytes_per_second);
+
+  /// The endpoint accepted a message of so many bytes, or answered that it is too large.
+  void on_passed(std::size_t bytes);
+  void on_too_large(std::size_t bytes);
+  /// Another endpoint may accept other sizes.
+  void forget_sizes() { largest_ = 0, limit_ = kNoLimit; }
+  /// After so many accepted messages within the limit, a larger one is tried.
+  static constexpr int kTryLarger = 60;
+  /// The bytes of a message that the endpoint accepts, as far as its answers show. A part may have a little
+  /// more than its share (fits()).
+  std::size_t limit() const { return smaller_ < kTryLarger ? limit_ : kNoLimit; }
+
+  bool fits(std::size_t bytes) const { return bytes - bytes / 32 <= limit(); }
+
+  /// How long before its time the next map is to be packed: as the longest of the last few took, for where
+  /// one comes too late, the link is idle; at most kLongestLead, for until then newer data takes its place.
+  loop::Duration lead() const;
+  /// How long so many bytes take to leave.
+  loop::Duration transfer(std::size_t bytes) const;
+  /// The conditions that decide the effort for a map, if maps are `spacing` apart. Until a map has shown how
+  /// fast the link is, it is as fast as allow() says.
+  pack::Hurry hurry(loop::Duration spacing) const;
+  /// How many bytes of points, not packed, leave within `spacing` and within limit(), at each precision: by
+  /// the last cloud, and by what rounding makes of clouds.
+  queues::PointsAt points_within(loop::Duration spacing) const;
+
+ private:
+  loop::Duration packing_takes_{0};
+  double most_ = 1, bytes_per_second_ = 1;
+  double packed_to_ = 1;  // of a byte of a cloud that is exact
+  double slowness_ = 1;   // pack::Hurry's
+  static constexpr std::size_t kNoLimit = std::numeric_limits<std::size_t>::max();
+  std::size_t largest_ = 0;  // that the endpoint accepted
+  std::size_t limit_ = kNoLimit;
+  int smaller_ = 0;  // messages accepted since the last one that was too large
+};
 
 /// A map that was taken from the queue.
 struct PreparedMap {

@@ -10,7 +10,6 @@
 #include "forward/traffic_counts.hpp"
 #include "host/files.hpp"
 #include "host/log.hpp"
-#include "host/numbered_name.hpp"
 #include "host/service.hpp"
 #include "icd/sentence.hpp"
 #include "icd/try.hpp"

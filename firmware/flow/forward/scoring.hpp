@@ -1,26 +1,102 @@
 #pragma once
 
+#include <algorithm>
+#include <chrono>
+#include <deque>
 #include <memory>
 #include <optional>
 #include <random>
 #include <string>
+#include <utility>
 
+#include "alarms/arrival.hpp"
 #include "api/source.hpp"
 #include "dispatch/reports.hpp"
+#include "dispatch/verdicts.hpp"
 #include "forward/channel.hpp"
 #include "forward/clocks.hpp"
 #include "forward/report_output.hpp"
-#include "forward/scoring_pace.hpp"
-#include "forward/status_cache.hpp"
-#include "forward/status_clients.hpp"
 #include "forward/traffic_counts.hpp"
-#include "icd/artifact_report.hpp"
+#include "forward/uri_pace.hpp"
+#include "icd/mapping.hpp"
+#include "icd/scoring.hpp"
 #include "intake/desk.hpp"
+#include "intake/server.hpp"
 #include "ledger/ledger.hpp"
 #include "loop/loop.hpp"
 #include "settings/settings.hpp"
 
 namespace adit::forward {
+
+/// The clients that wait for the status of the run.
+class StatusClients {
+ public:
+  /// A client waits so long for a new status. Then it gets the last known one.
+  static constexpr std::chrono::milliseconds kWait{100};
+
+  void add(std::shared_ptr<intake::Responder> responder, loop::Instant now) {
+    waiting_.push_back({std::move(responder), now + kWait});
+  }
+  bool empty() const { return waiting_.empty(); }
+  /// The first end of a wait.
+  std::optional<loop::Instant> first_end() const {
+    if (empty()) return std::nullopt;
+    return std::ranges::min_element(waiting_, {}, &Client::until)->until;
+  }
+  /// Answers the clients whose wait ends at `now` or earlier. Instead they wait until `longest` if it is
+  /// later.
+  void answer_due(loop::Instant now, loop::Instant longest, const intake::Answer& answer) {
+    std::erase_if(waiting_, [&](Client& client) {
+      if (client.until > now) return false;
+      if (longest > now) {
+        client.until = longest;
+        return false;
+      }
+      client.responder->answer(answer);
+      return true;
+    });
+  }
+  void answer_all(const intake::Answer& answer) {
+    for (const Client& client : std::exchange(waiting_, {})) client.responder->answer(answer);
+  }
+
+ private:
+  struct Client {
+    std::shared_ptr<intake::Responder> responder;
+    loop::Instant until;  // end of the wait
+  };
+  std::deque<Client> waiting_;
+};
+
+/// The last known status of the run: for the page as it came, and for clients while Adit cannot ask, with
+/// the effect of the reports that were answered since, and with its age (RFC 9111 5.1).
+class StatusCache {
+ public:
+  static constexpr std::chrono::seconds kFresh{1};    // no request needed
+  static constexpr std::chrono::seconds kOldest{60};  // better than no answer
+
+  /// `body`: `run` as JSON. `now`: stamp clock.
+  void heard(std::string body, const icd::RunStatus& run, loop::Instant asked, icd::Stamp now);
+  /// A report of the same run was answered: corrects the counts, and the clock if the two URIs may have the
+  /// same one. `run_clock`: of the answer; 0: none.
+  void add_report(const dispatch::Effect& effect, double run_clock, loop::Instant now);
+  /// The status may have changed: still an answer, but not a fresh one.
+  void no_longer_fresh() { fresh_ = false; }
+
+  const std::optional<icd::RunStatus>& run() const { return run_; }
+  std::optional<alarms::ShownClock> run_clock(icd::Stamp now) const { return run_clock_.at(now); }
+  bool is_fresh(loop::Instant now) const;
+  /// nullopt if older than kOldest.
+  std::optional<intake::Answer> answer(loop::Instant now) const;
+
+ private:
+  std::optional<icd::RunStatus> run_;
+  alarms::RunClock run_clock_;
+  std::optional<loop::Instant> asked_;
+  bool fresh_ = false;
+  std::optional<icd::RunStatus> corrected_;
+  std::string body_;  // `corrected_` in the Command Post's form
+};
 
 /// The scoring endpoint. Sends reports one at a time by dispatch::Reports (promise 1), and requests the
 /// status behind them. A status that no report needs gives way after a while.

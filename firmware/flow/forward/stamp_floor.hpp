@@ -9,7 +9,7 @@
 
 #include "ledger/ledger.hpp"
 #include "queues/stamps.hpp"
-#include "store/values.hpp"
+#include "store/frame.hpp"
 
 namespace adit::forward {
 

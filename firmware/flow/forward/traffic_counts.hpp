@@ -12,13 +12,12 @@
 
 #include "api/box.hpp"
 #include "api/run_view.hpp"
-#include "icd/header.hpp"
+#include "icd/mapping.hpp"
 #include "icd/status.hpp"
 #include "icd/uri.hpp"
 #include "intake/desk.hpp"
 #include "loop/loop.hpp"
 #include "queues/clouds.hpp"
-#include "queues/precision.hpp"
 
 namespace adit::forward {
 

@@ -2,7 +2,7 @@
 
 #include "codec/json.hpp"
 #include "codec/write.hpp"
-#include "dispatch/answer_text.hpp"
+#include "dispatch/verdicts.hpp"
 #include "intake/icd_routes.hpp"
 
 namespace adit::forward {

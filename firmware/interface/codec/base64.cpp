@@ -4,7 +4,7 @@
 #include <bit>
 #include <cstring>
 
-#include "codec/byte_name.hpp"
+#include "codec/utf8.hpp"
 #include "icd/try.hpp"
 
 namespace adit::codec {

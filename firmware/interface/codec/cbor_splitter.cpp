@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "codec/cbor_head.hpp"
+#include "codec/cbor.hpp"
 #include "codec/cbor_value.hpp"
 #include "icd/sentence.hpp"
 #include "icd/try.hpp"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "codec/bulk_data.hpp"
-#include "codec/cbor_head.hpp"
+#include "codec/cbor.hpp"
 #include "codec/data_path.hpp"
 #include "codec/splitter.hpp"
 #include "codec/utf8.hpp"

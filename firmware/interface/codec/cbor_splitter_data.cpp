@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <limits>
 
-#include "codec/cbor_head.hpp"
+#include "codec/cbor.hpp"
 #include "codec/cbor_splitter.hpp"
-#include "codec/plain_elements.hpp"
+#include "codec/splitter.hpp"
 #include "icd/sentence.hpp"
 #include "icd/try.hpp"
 

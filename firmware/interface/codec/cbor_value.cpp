@@ -5,7 +5,7 @@
 #include <memory>
 #include <optional>
 
-#include "codec/cbor_head.hpp"
+#include "codec/cbor.hpp"
 #include "codec/splitter.hpp"
 #include "codec/utf8.hpp"
 

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "codec/list.hpp"
+#include "codec/value.hpp"
 
 /// Well-formed documents whose arrays stay text, so that a large message is never a tree in memory.
 namespace adit::codec {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "codec/list.hpp"
 #include "codec/utf8.hpp"
+#include "codec/value.hpp"
 #include "icd/require.hpp"
 
 namespace adit::codec {

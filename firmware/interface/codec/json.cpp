@@ -10,7 +10,7 @@
 #include "codec/json_number.hpp"
 #include "codec/json_splitter.hpp"
 #include "codec/json_value.hpp"
-#include "codec/list.hpp"
+#include "codec/value.hpp"
 #include "codec/write.hpp"
 #include "icd/sentence.hpp"
 

@@ -7,8 +7,6 @@
 #include <string>
 #include <system_error>
 
-#include "codec/json_characters.hpp"
-
 namespace adit::codec {
 
 std::size_t JsonNumber::next(std::string_view in) {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "codec/json_splitter.hpp"
-#include "codec/plain_elements.hpp"
+#include "codec/splitter.hpp"
 #include "icd/try.hpp"
 
 namespace adit::codec {

@@ -7,9 +7,8 @@
 #include <vector>
 
 #include "codec/body_decoder.hpp"
-#include "codec/json_characters.hpp"
 #include "codec/json_number.hpp"
-#include "codec/json_string.hpp"
+#include "codec/json_splitter.hpp"
 #include "codec/splitter.hpp"
 #include "icd/require.hpp"
 

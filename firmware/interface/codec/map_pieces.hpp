@@ -1,7 +1,7 @@
 #pragma once
 
 #include "codec/gzip.hpp"
-#include "icd/map_update.hpp"
+#include "icd/mapping.hpp"
 
 namespace adit::codec {
 

@@ -8,12 +8,9 @@
 #include <vector>
 
 #include "codec/body_decoder.hpp"
-#include "icd/artifact_report.hpp"
-#include "icd/map_update.hpp"
-#include "icd/markers_update.hpp"
+#include "icd/mapping.hpp"
 #include "icd/rules.hpp"
-#include "icd/run_status.hpp"
-#include "icd/state_update.hpp"
+#include "icd/scoring.hpp"
 #include "icd/status.hpp"
 
 namespace adit::codec {

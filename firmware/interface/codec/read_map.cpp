@@ -1,16 +1,14 @@
 // POST /map/update (ICD 6.3, 6.4).
 #include <algorithm>
 
-#include "codec/byte_order.hpp"
 #include "codec/cbor_value.hpp"
-#include "codec/icd_members.hpp"
-#include "codec/parts.hpp"
+#include "codec/members.hpp"
 #include "codec/read.hpp"
 #include "codec/read_map_data.hpp"
 #include "codec/splitter.hpp"
 #include "codec/write.hpp"
-#include "icd/letter_case.hpp"
 #include "icd/require.hpp"
+#include "icd/text.hpp"
 #include "icd/try.hpp"
 
 namespace adit::codec {

@@ -1,12 +1,25 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
+#include <vector>
+
 #include "codec/body_decoder.hpp"
 #include "icd/chunked_bytes.hpp"
-#include "icd/map_update.hpp"
+#include "icd/mapping.hpp"
 #include "icd/rules.hpp"
 #include "icd/status.hpp"
 
 namespace adit::codec {
+
+/// For each byte of a little-endian point, the index of the big-endian byte. Swaps every value and leaves
+/// padding. std::nullopt if two values overlap, because no swapped point preserves both. Requires
+/// check(cloud).
+std::optional<std::vector<std::uint32_t>> little_endian_order(const icd::PointCloud2& cloud);
+
+/// Reorders the bytes of points; consumes `points` chunk by chunk. Bytes after the last whole point stay.
+/// Requires an order that is not empty.
+icd::ChunkedBytes in_order(icd::ChunkedBytes points, const std::vector<std::uint32_t>& order);
 
 /// Read a map's data in the message's `compression`, after the other fields were checked. Consume it chunk by
 /// chunk.

@@ -2,8 +2,8 @@
 #include <algorithm>
 
 #include "codec/field.hpp"
-#include "codec/icd_members.hpp"
 #include "codec/json.hpp"
+#include "codec/members.hpp"
 #include "codec/read.hpp"
 #include "icd/try.hpp"
 

@@ -3,8 +3,7 @@
 #include <utility>
 #include <vector>
 
-#include "codec/icd_members.hpp"
-#include "codec/parts.hpp"
+#include "codec/members.hpp"
 #include "codec/read.hpp"
 #include "icd/require.hpp"
 

@@ -2,6 +2,11 @@
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
+
+#include "codec/json.hpp"
+#include "icd/require.hpp"
+#include "icd/sentence.hpp"
 
 namespace adit::codec {
 namespace {
@@ -70,6 +75,69 @@ void change_numbers(const Row& row, void* in, double (*changed)(double)) {
       change_numbers(*row_of(*member.kind->schema), rows.at(i), changed);
     }
   }
+}
+
+namespace {
+
+using Whole = std::numeric_limits<std::int64_t>;
+
+constexpr std::string_view kFormatMember = "format";
+constexpr std::int64_t kFormat = 1;
+
+void check_row(const Row& row, const Field& field, std::string_view besides);
+
+void check_value(const Schema& schema, const Field& field) {
+  if (schema.has_reader) return;
+  if (schema.row != nullptr) return check_row(*schema.row, field, "");
+  if (schema.items == nullptr) return;
+  for (std::size_t i = 0; i < field.size() && !field.reading().refused(); ++i) {
+    const Field element = field.element(i);
+    check_value(*schema.items, element);
+  }
+}
+
+void check_member(const Member& member, const Field& field) {
+  if (field.is_absent()) return;  // its kind decides whether it may be absent
+  if (!member.words.empty() && std::ranges::find(member.words, field.text()) == member.words.end())
+    return field.refuse("expected ", in_turn(member.words));
+  if (member.least || member.most)
+    field.whole(member.least.value_or(Whole::min()), member.most.value_or(Whole::max()));
+  check_value(*member.kind->schema, field);
+}
+
+/// Checks names, words and bounds, which the members' kinds do not. `besides`: an additional member.
+void check_row(const Row& row, const Field& field, std::string_view besides) {
+  if (!field.is<Value::Object>()) return field.refuse_kind("an object");
+  for (const auto& [name, value] : std::get<Value::Object>(field.value()->is)) {
+    if (name != besides && std::ranges::find(row.members, name, &Member::name) == row.members.end())
+      field.refuse("no such member: ", icd::in_quotes(name));
+  }
+  for (const Member& member : row.members) {
+    icd::require(!member.name.empty());  // files do not use rows with members of other rows
+    const Field inner = field.member(member.name);
+    check_member(member, inner);
+  }
+}
+
+}  // namespace
+
+std::string write_row_file(const Row& row, const void* from) {
+  Value value = write_row(row, from);
+  auto& members = std::get<Value::Object>(value.is);
+  members.insert(members.begin(), {std::string(kFormatMember), {kFormat}});
+  return write_json(value) + '\n';
+}
+
+std::string read_row_file(const Row& row, void* into, std::string_view json) {
+  const auto root = parse_json(json);
+  if (!root) return "not JSON: " + root.error();
+  Reading reading;
+  const Field field(*root, reading);
+  field.member(kFormatMember).whole<std::int64_t>(kFormat, kFormat);
+  check_row(row, field, kFormatMember);
+  read_row(row, field, into);
+  const auto outcome = reading.outcome(true);
+  return outcome ? "" : outcome.error().sentence;
 }
 
 }  // namespace adit::codec

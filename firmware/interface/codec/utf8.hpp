@@ -6,7 +6,16 @@
 #include <string>
 #include <string_view>
 
+#include "icd/text.hpp"
+
 namespace adit::codec {
+
+/// A byte for a sentence: 'x', or byte 0x1f if it is not printable.
+inline std::string byte_name(char byte) {
+  if (byte > 0x20 && byte < 0x7F) return {'\'', byte, '\''};
+  if (byte == ' ') return "a space";
+  return "byte 0x" + icd::hex(static_cast<std::uint8_t>(byte));
+}
 
 /// Checks UTF-8 byte by byte (Unicode 15, table 3-7: no overlong forms, no surrogates, at most U+10FFFF).
 class Utf8Checker {

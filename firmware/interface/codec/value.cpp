@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "codec/cbor_head.hpp"
+#include "codec/cbor.hpp"
 
 namespace adit::codec {
 

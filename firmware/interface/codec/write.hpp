@@ -3,11 +3,9 @@
 #include <string>
 #include <string_view>
 
-#include "icd/artifact_report.hpp"
 #include "icd/chunked_bytes.hpp"
-#include "icd/map_update.hpp"
-#include "icd/markers_update.hpp"
-#include "icd/state_update.hpp"
+#include "icd/mapping.hpp"
+#include "icd/scoring.hpp"
 
 namespace adit::codec {
 

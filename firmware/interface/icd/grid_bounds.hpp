@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "icd/geometry.hpp"
-#include "icd/map_update.hpp"
+#include "icd/mapping.hpp"
 
 namespace adit::icd {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "icd/map_update.hpp"
+#include "icd/mapping.hpp"
 #include "icd/robot_name.hpp"
 #include "icd/status.hpp"
 

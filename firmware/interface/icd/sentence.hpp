@@ -48,4 +48,14 @@ std::unexpected<Refusal> unprocessable_by_setting(std::string_view key, const Pa
       Refusal{.status = Status::UnprocessableEntity, .sentence = sentence(parts...), .setting = key});
 }
 
+/// A refusal with that status and sentence.
+template <class... Parts>
+std::unexpected<Refusal> refuse(Status status, const Parts&... parts) {
+  return std::unexpected(Refusal{status, sentence(parts...)});
+}
+
+/// Seconds since 1970 as "2026-11-23 04:05:06" in UTC, without fractions. "" for 0, negative values, values
+/// above 1e11 (the year 5138) and NaN.
+std::string utc(double seconds);
+
 }  // namespace adit::icd

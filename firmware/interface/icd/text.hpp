@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -43,6 +45,39 @@ std::optional<Number> number_in(std::string_view text, Base... base) {
   Number number{};
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number, base...);
   return error == std::errc() && end == text.data() + text.size() ? std::optional(number) : std::nullopt;
+}
+
+/// In lower case, if it is an ASCII letter.
+constexpr char lower(char letter) {
+  return letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter - 'A' + 'a') : letter;
+}
+
+constexpr bool is_digit(char letter) {
+  return letter >= '0' && letter <= '9';
+}
+
+/// Of ASCII.
+constexpr bool is_letter_or_digit(char letter) {
+  return is_digit(letter) || (lower(letter) >= 'a' && lower(letter) <= 'z');
+}
+
+/// True if both are equal except for the case of ASCII letters.
+constexpr bool same_but_for_case(std::string_view one, std::string_view other) {
+  return std::ranges::equal(one, other, {}, lower, lower);
+}
+
+/// Two hexadecimal digits for each byte: "0aff".
+inline std::string hex(std::span<const std::uint8_t> bytes) {
+  constexpr const char* kDigits = "0123456789abcdef";
+  std::string text;
+  for (const std::uint8_t byte : bytes) {
+    text += kDigits[byte >> 4];
+    text += kDigits[byte & 15];
+  }
+  return text;
+}
+inline std::string hex(std::uint8_t byte) {
+  return hex({&byte, 1});
 }
 
 }  // namespace adit::icd

@@ -6,10 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "applier/arp_socket.hpp"
+#include "applier/arp.hpp"
 #include "applier/conflict_detector.hpp"
 #include "applier/options.hpp"
-#include "applier/swapped_cables.hpp"
 #include "host/root_program.hpp"
 #include "loop/file_descriptor.hpp"
 #include "loop/loop.hpp"

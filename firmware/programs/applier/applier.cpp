@@ -8,7 +8,7 @@
 #include <cstring>
 #include <utility>
 
-#include "applier/arp_probe.hpp"
+#include "applier/arp.hpp"
 #include "host/interfaces.hpp"
 #include "host/log.hpp"
 #include "host/service.hpp"

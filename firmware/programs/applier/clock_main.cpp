@@ -2,7 +2,7 @@
 
 #include "applier/clock_setter.hpp"
 #include "applier/options.hpp"
-#include "command_line/answer.hpp"
+#include "command_line/read.hpp"
 #include "host/log.hpp"
 
 int main(int argc, char** argv) {

@@ -1,8 +1,14 @@
 #include "applier/conflict_detector.hpp"
 
+#include <sys/epoll.h>
+#include <sys/inotify.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <utility>
 
+#include "host/log.hpp"
+#include "host/root_program.hpp"
 #include "network/messages.hpp"
 
 namespace adit::applier {
@@ -89,6 +95,95 @@ std::vector<ConflictDetector::Conflict> ConflictDetector::taken() const {
     if (own.taken) all.push_back(*own.taken);
   }
   return all;
+}
+
+std::vector<std::uint32_t> sought_in(const network::Status& status, const std::vector<settings::Subnet>& own,
+                                     const std::vector<settings::Subnet>& team) {
+  const network::Numbers numbers = status.kept.value_or(network::Numbers{.command_post = own});
+  std::vector<std::uint32_t> all;
+  for (const std::uint32_t endpoint : status.endpoints.addresses) {
+    const auto hop = network::next_hop(numbers, endpoint);
+    const auto has = [hop](const settings::Subnet& each) { return each.contains(*hop); };
+    if (hop && std::ranges::none_of(team, has)) all.push_back(*hop);
+  }
+  std::ranges::sort(all);
+  const auto twice = std::ranges::unique(all);
+  all.erase(twice.begin(), twice.end());
+  all.resize(std::min(all.size(), ConflictDetector::kMost));
+  return all;
+}
+
+ToldStatus::ToldStatus(loop::Loop& loop, std::string folder, std::function<void()> changed)
+    : loop_(loop), folder_(std::move(folder)), changed_(std::move(changed)), due_(loop.timer([this] {
+        watch_folder();
+        changed_();
+      })) {
+  watch_folder();
+}
+
+void ToldStatus::watch_folder() {
+  noticed_ = {};  // before its descriptor is closed
+  notices_ = loop::FileDescriptor(inotify_init1(IN_NONBLOCK | IN_CLOEXEC));
+  if (!notices_ || inotify_add_watch(notices_.get(), folder_.c_str(), IN_MOVED_TO) < 0)
+    return due_.call_at(loop_.now() + kLookAgain);
+  noticed_ = loop_.watch(notices_.get(), EPOLLIN, [this](std::uint32_t) {
+    char events[4096];
+    while (::read(notices_.get(), events, sizeof events) > 0) {
+    }
+    changed_();
+  });
+}
+
+const network::Status& ToldStatus::read() {
+  auto read = host::read_row<network::Status>(folder_ + '/' + host::kStatusFile);
+  const std::string trouble = read ? "" : read.error();
+  if (std::exchange(trouble_, trouble) != trouble && !trouble.empty())
+    host::log(host::Level::Error, "cannot read the Command Post's endpoints: using the last ones",
+              {{"why", trouble}});
+  if (read) {
+    status_ = (*std::move(read)).value_or(network::Status{});
+  } else {
+    due_.call_at(loop_.now() + kLookAgain);
+  }
+  return status_;
+}
+
+void SwappedCables::set_sought(const std::vector<std::uint32_t>& addresses, const std::vector<Mac>& macs,
+                               Instant now) {
+  at_team_.set_own(addresses, macs, now);
+  macs_ = macs;
+  std::vector<AtPost> next;
+  for (const std::uint32_t address : addresses) {
+    const auto known = std::ranges::find(at_post_, address, &AtPost::address);
+    next.push_back(known != at_post_.end() ? *known : AtPost{.address = address});
+  }
+  at_post_ = std::move(next);
+}
+
+void SwappedCables::hear_at_post(const ArpPacket& packet, Instant now) {
+  if (std::ranges::find(macs_, packet.sender) != macs_.end()) return;
+  const auto heard = std::ranges::find(at_post_, packet.from, &AtPost::address);
+  if (heard != at_post_.end()) heard->seen = now;
+}
+
+SwappedCables::Due SwappedCables::take_due(Instant now) {
+  Due due{.at_team = at_team_.take_due(now), .at_post = {}};
+  const auto taken = at_team_.taken();
+  std::ranges::copy_if(due.at_team, std::back_inserter(due.at_post), [&taken](std::uint32_t address) {
+    return std::ranges::find(taken, address, &ConflictDetector::Conflict::address) != taken.end();
+  });
+  return due;
+}
+
+std::vector<ConflictDetector::Conflict> SwappedCables::found(Instant now) const {
+  auto found = at_team_.taken();
+  std::erase_if(found, [&](const ConflictDetector::Conflict& each) {
+    const auto at_post = std::ranges::find(at_post_, each.address, &AtPost::address);
+    const bool is_there =
+        at_post != at_post_.end() && at_post->seen && now < *at_post->seen + network::kTakenFor;
+    return is_there || each.seen < each.since + kSure;
+  });
+  return found;
 }
 
 }  // namespace adit::applier

@@ -3,10 +3,15 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "applier/arp.hpp"
+#include "loop/file_descriptor.hpp"
+#include "loop/loop.hpp"
+#include "network/messages.hpp"
 
 namespace adit::applier {
 
@@ -57,6 +62,75 @@ class ConflictDetector {
   static void ask_soon(Own& own, Instant now);
 
   std::vector<Own> own_;
+  std::vector<Mac> macs_;
+};
+
+/// Addresses that answer on the link for the Command Post's endpoints: the endpoints or their gateway.
+/// Sorted, without duplicates, at most ConflictDetector::kMost. `own`: the box's addresses on that side, used
+/// if adit-network has none. Addresses in a subnet of `team` are left out, because a robot may have them.
+std::vector<std::uint32_t> sought_in(const network::Status& status, const std::vector<settings::Subnet>& own,
+                                     const std::vector<settings::Subnet>& team);
+
+/// adit-network's status, read by another program, with notices of changes.
+class ToldStatus {
+ public:
+  /// `folder`: of adit-network; may appear later. `changed` is called after each possible change. `loop` must
+  /// outlive this object.
+  ToldStatus(loop::Loop& loop, std::string folder, std::function<void()> changed);
+
+  /// Without a status: no endpoints. If the status cannot be read: logs that once, returns the last one, and
+  /// calls `changed` later.
+  const network::Status& read();
+
+ private:
+  /// Interval of looks for a missing directory or a readable status.
+  static constexpr std::chrono::seconds kLookAgain{10};
+  void watch_folder();
+
+  loop::Loop& loop_;
+  const std::string folder_;
+  const std::function<void()> changed_;
+  loop::FileDescriptor notices_;
+  loop::Source noticed_, due_;
+  network::Status status_;
+  std::string trouble_;  // why the last read failed, or ""
+};
+
+/// Detects exchanged cables by ARP: addresses of the Command Post answer at the team's port and not at their
+/// own. Requests at the Command Post's own port are sent only after an answer at the team's port.
+class SwappedCables {
+ public:
+  using Instant = ConflictDetector::Instant;
+
+  /// Least time between the first and the last sighting, so that one forged packet proves nothing.
+  static constexpr std::chrono::seconds kSure{4};
+
+  /// `addresses`: the Command Post's, outside the team's subnet. `macs`: of this machine.
+  void set_sought(const std::vector<std::uint32_t>& addresses, const std::vector<Mac>& macs, Instant now);
+  /// Call when the team's cable is plugged in, which may be the wrong one.
+  void ask_again(Instant now) { at_team_.ask_again(now); }
+  void hear_at_team(const ArpPacket& packet, Instant now) { at_team_.hear(packet, now); }
+  void hear_at_post(const ArpPacket& packet, Instant now);
+
+  /// Addresses to ask for now.
+  struct Due {
+    std::vector<std::uint32_t> at_team, at_post;
+  };
+  Due take_due(Instant now);
+  std::optional<Instant> wake() const { return at_team_.wake(); }
+
+  /// The Command Post's addresses seen at the team's port alone.
+  std::vector<ConflictDetector::Conflict> found(Instant now) const;
+
+ private:
+  /// An address and its last sighting at its own port.
+  struct AtPost {
+    std::uint32_t address = 0;
+    std::optional<Instant> seen = {};
+  };
+
+  ConflictDetector at_team_;
+  std::vector<AtPost> at_post_;
   std::vector<Mac> macs_;
 };
 

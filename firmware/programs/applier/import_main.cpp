@@ -1,7 +1,7 @@
 /// adit-import: imports a user's files from the boot partition, as root, before aditd starts.
 
 #include "applier/import.hpp"
-#include "command_line/answer.hpp"
+#include "command_line/read.hpp"
 #include "host/log.hpp"
 
 int main(int argc, char** argv) {

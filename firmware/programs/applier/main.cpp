@@ -6,7 +6,7 @@
 #include "applier/address_watch.hpp"
 #include "applier/applier.hpp"
 #include "applier/options.hpp"
-#include "command_line/answer.hpp"
+#include "command_line/read.hpp"
 #include "host/log.hpp"
 #include "host/service.hpp"
 #include "loop/loop.hpp"

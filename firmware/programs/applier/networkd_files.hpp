@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "applier/arp_probe.hpp"
+#include "applier/arp.hpp"
 #include "applier/options.hpp"
 #include "network/change.hpp"
 

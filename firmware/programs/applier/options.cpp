@@ -3,7 +3,7 @@
 #include <string_view>
 #include <utility>
 
-#include "command_line/number.hpp"
+#include "command_line/program.hpp"
 
 namespace adit::applier {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "applier/options.hpp"
 #include "applier/sticks.hpp"
-#include "command_line/answer.hpp"
+#include "command_line/read.hpp"
 #include "host/log.hpp"
 #include "host/root_program.hpp"
 #include "host/service.hpp"

@@ -18,8 +18,8 @@
 #include "host/service.hpp"
 #include "icd/try.hpp"
 #include "loop/regular_file.hpp"
-#include "spare/file_name.hpp"
 #include "spare/sealed.hpp"
+#include "spare/stick.hpp"
 
 namespace adit::applier {
 namespace {

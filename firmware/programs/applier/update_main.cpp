@@ -5,11 +5,9 @@
 #include <string>
 #include <thread>
 
-#include "applier/kept.hpp"
 #include "applier/options.hpp"
-#include "applier/rauc.hpp"
 #include "applier/updater.hpp"
-#include "command_line/answer.hpp"
+#include "command_line/read.hpp"
 #include "host/log.hpp"
 #include "host/output.hpp"
 #include "host/service.hpp"

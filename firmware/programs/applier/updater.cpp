@@ -1,21 +1,206 @@
 #include "applier/updater.hpp"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
+#include <chrono>
 #include <optional>
+#include <string_view>
+#include <thread>
 #include <utility>
 #include <vector>
 
-#include "applier/kept.hpp"
-#include "applier/rauc.hpp"
 #include "applier/sticks.hpp"
+#include "host/files.hpp"
 #include "host/log.hpp"
 #include "host/output.hpp"
+#include "host/root_program.hpp"
 #include "host/service.hpp"
+#include "icd/sentence.hpp"
 #include "icd/try.hpp"
+#include "loop/regular_file.hpp"
 #include "update/bundle.hpp"
 #include "update/health.hpp"
+#include "update/messages.hpp"
 
 namespace adit::applier {
+namespace {
+
+/// `what`: for the error, as in "cannot read ...".
+template <class Message>
+std::expected<Message, std::string> load(const std::string& path, std::string_view what) {
+  auto kept = host::read_row<Message>(path);
+  if (kept) return (*std::move(kept)).value_or(Message{});
+  return std::unexpected(icd::sentence("cannot read ", what, ": ", kept.error()));
+}
+
+bool save(const std::string& path, const std::string& text, std::string_view what) {
+  return host::log_failure(host::Level::Error, "cannot store " + std::string(what),
+                           host::write_file(path, text, host::kForAll));
+}
+
+constexpr std::string_view kLast = "the outcome of the last update", kGood = "the slot that was good last";
+
+}  // namespace
+
+std::expected<update::LastUpdate, std::string> load_last_update(const std::string& folder) {
+  return load<update::LastUpdate>(folder + '/' + update::kLastUpdateFile, kLast);
+}
+
+bool save(const std::string& folder, const update::LastUpdate& last_update) {
+  return save(folder + '/' + update::kLastUpdateFile, codec::write_file(last_update), kLast);
+}
+
+std::expected<update::Proven, std::string> load_proven(const std::string& folder) {
+  return load<update::Proven>(folder + '/' + update::kProvenFile, kGood);
+}
+
+bool save(const std::string& folder, const update::Proven& proven) {
+  return save(folder + '/' + update::kProvenFile, codec::write_file(proven), kGood);
+}
+
+namespace {
+
+std::expected<loop::FileDescriptor, std::string> open_plain(const std::string& path,
+                                                            const std::string& name) {
+  loop::FileDescriptor file = loop::open_regular(path, O_RDONLY | O_NOFOLLOW);
+  struct stat status{};
+  if (!file || fstat(file.get(), &status) != 0) return std::unexpected(host::trouble(name, errno));
+  if (status.st_size == 0) return std::unexpected(name + ": expected a bundle, got an empty file");
+  if (std::cmp_greater(status.st_size, update::kLargestBundle)) {
+    return std::unexpected(
+        icd::sentence(name, ": expected at most ", update::kLargestBundle, " bytes, got ", status.st_size));
+  }
+  return file;
+}
+
+/// Gives the file to this user, so that no other user can open it. The kernel grants the lease only if no
+/// process has the file open for writing (fcntl(2)).
+std::expected<void, std::string> make_ours(const loop::FileDescriptor& file, const std::string& name) {
+  if (fchown(file.get(), geteuid(), getegid()) != 0 || fchmod(file.get(), S_IRUSR) != 0)
+    return std::unexpected(host::trouble(name, errno));
+  if (fcntl(file.get(), F_SETLEASE, F_RDLCK) != 0) {
+    return std::unexpected(errno == EAGAIN ? name + ": another program is writing to it"
+                                           : host::trouble(name, errno));
+  }
+  fcntl(file.get(), F_SETLEASE, F_UNLCK);
+  return {};
+}
+
+}  // namespace
+
+std::expected<BundleFile, std::string> BundleFile::take(host::UntrustedFolder& folder,
+                                                        const std::string& name) {
+  const std::string path = folder.path_by_descriptor() + '/' + name;
+  auto file = open_plain(path, name);
+  const auto gone = folder.remove(name);
+  if (!file) return std::unexpected(file.error());
+  if (!gone) return std::unexpected(gone.error());
+  ADIT_TRY(make_ours(*file, name));
+  return BundleFile(std::move(*file));
+}
+
+std::expected<BundleFile, std::string> BundleFile::open(const std::string& path) {
+  auto file = ADIT_TRY(open_plain(path, path.substr(path.rfind('/') + 1)));
+  return BundleFile(std::move(file));
+}
+
+std::string BundleFile::path() const {
+  return icd::sentence("/proc/", getpid(), "/fd/", file_.get());
+}
+
+namespace {
+
+/// Longest wait for the client of an installation. A slow card takes some minutes. If the client dies or
+/// takes longer, status() waits for RAUC itself.
+constexpr std::chrono::minutes kInstall{20};
+constexpr std::chrono::seconds kRaucAnswer{60};
+/// Interval of questions while RAUC is busy.
+constexpr std::chrono::seconds kAgain{1};
+
+using update::Fault;
+
+Fault fault_of(const host::Output& said) {
+  Fault fault = update::fault_in(said.out, said.err);
+  if (fault.sentence.empty()) fault.sentence = "rauc: " + said.trouble;
+  return fault;
+}
+
+std::expected<std::string, Fault> ask(const std::vector<std::string>& words) {
+  host::Output said = host::output_of(words, kRaucAnswer);
+  Fault fault = fault_of(said);
+  // A success with a "busy" warning lacks the next slot.
+  if (!said.trouble.empty() || fault.kind == Fault::Kind::Busy) return std::unexpected(std::move(fault));
+  return std::move(said.out);
+}
+
+std::expected<void, std::string> mark(const std::string& command, const char* how, const char* slot) {
+  if (const auto said = ask({command, "status", how, slot}); !said)
+    return std::unexpected(said.error().sentence);
+  return {};
+}
+
+}  // namespace
+
+std::string version_in(const std::string& path) {
+  const auto text = host::read_file(path);
+  std::string value(text ? update::value_of("VERSION_ID", *text) : "");
+  std::erase(value, '"');
+  return value;
+}
+
+std::expected<update::Running, std::string> Rauc::status() const {
+  const auto until = std::chrono::steady_clock::now() + kInstall;
+  const std::vector<std::string> words = {command_, "status", "--output-format=json"};
+  auto said = ask(words);
+  while (!said && said.error().kind == Fault::Kind::Busy && std::chrono::steady_clock::now() < until) {
+    std::this_thread::sleep_for(kAgain);
+    said = ask(words);
+  }
+  if (!said) return std::unexpected(said.error().sentence);
+  return update::read_status(*said);
+}
+
+std::expected<update::Bundle, std::string> Rauc::info(const std::string& bundle) const {
+  const auto said = ask({command_, "info", "--output-format=json", bundle});
+  if (!said) return std::unexpected(said.error().sentence);
+  return update::read_info(*said);
+}
+
+std::expected<void, std::string> Rauc::install(const std::string& bundle,
+                                               const std::function<void(int)>& progress) const {
+  const host::Output said = host::output_of({command_, "install", "--progress", bundle}, kInstall,
+                                            [&progress](std::string_view line) {
+                                              if (const auto percent = update::percent_in(line))
+                                                progress(*percent);
+                                            });
+  if (said.trouble.empty()) return {};
+  return std::unexpected(fault_of(said).sentence);
+}
+
+std::expected<void, std::string> Rauc::mark_good() const {
+  return mark(command_, "mark-good", "booted");
+}
+
+std::expected<void, std::string> Rauc::start_other_next() const {
+  if (auto first = mark(command_, "mark-active", "other"); !first) return first;
+  return mark(command_, "mark-good", "other");
+}
+
+std::expected<void, std::string> Rauc::start_booted_next() const {
+  return mark(command_, "mark-active", "booted");
+}
+
+/// A slot marked bad leaves the boot loader's order. Otherwise the boot loader would try it three more times
+/// once no slot has tries left.
+std::expected<void, std::string> Rauc::leave_other() const {
+  if (auto first = start_booted_next(); !first) return first;
+  return mark(command_, "mark-bad", "other");
+}
+
 namespace {
 
 /// The best update on the mounted USB sticks.

@@ -3,17 +3,89 @@
 #include <chrono>
 #include <expected>
 #include <functional>
+#include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 
-#include "cli/console.hpp"
-#include "cli/http_client.hpp"
 #include "cli/options.hpp"
 #include "codec/row.hpp"
+#include "icd/bearer_token.hpp"
 #include "icd/try.hpp"
+#include "loop/file_descriptor.hpp"
 #include "settings/settings.hpp"
+#include "uplink/exchange.hpp"
 
 namespace adit::cli {
+
+enum class Exit : int { Fine = 0, Attention = 1, Unable = 2 };
+
+/// A command's output and exit status.
+struct Outcome {
+  Exit exit = Exit::Fine;
+  std::string out, err;
+};
+
+/// The terminal or other receiver of the output.
+struct Console {
+  bool colour = false;
+  bool screen = false;  // standard output is a terminal
+  /// Prints lines of a long command at once; the rest goes into the Outcome.
+  std::function<void(const std::string&)> print = [](const std::string&) {};
+  /// Whether the user answers yes; std::nullopt: no user.
+  std::function<std::optional<bool>(const std::string&)> ask = [](const std::string&) {
+    return std::nullopt;
+  };
+};
+
+inline constexpr std::size_t kLargestBody = 8u << 20;
+
+struct HttpRequest {
+  enum class Method : std::uint8_t { Get, Post } method = Method::Get;
+  std::string target;  // "/adit/run"
+  icd::BearerToken token;
+  std::string body = "";  // of a POST: JSON or ""
+  std::string content_type = "application/json";
+};
+
+using HttpReply = uplink::Answered;
+
+struct NoReply {
+  std::string sentence;  // with the address
+  bool sent = false;     // the request may have arrived
+};
+
+/// One blocking request (RFC 9112) on its own connection, with its whole reply, within `within`.
+std::expected<HttpReply, NoReply> http_ask(const settings::Address& address, HttpRequest request,
+                                           std::chrono::milliseconds within);
+
+/// A request with an endless answer.
+class HttpStream {
+ public:
+  /// Sends the request within `within`. An error names the address.
+  static std::expected<std::unique_ptr<HttpStream>, std::string> ask(const settings::Address& address,
+                                                                     HttpRequest request,
+                                                                     std::chrono::milliseconds within);
+  HttpStream(loop::FileDescriptor fd, const uplink::Endpoint& endpoint, const icd::BearerToken& token,
+             uplink::Request request);
+
+  /// Readable if there is data or the end.
+  int fd() const { return fd_.get(); }
+
+  struct Ended {
+    int status = 0;  // of an answer other than 200; 0: the answer was 200, or absent
+    std::string why;
+  };
+  /// The new data of a 200's body. Does not block.
+  std::expected<std::string, Ended> read();
+
+ private:
+  void look();
+
+  loop::FileDescriptor fd_;
+  uplink::Exchange exchange_;
+  std::optional<Ended> ended_;
+};
 
 inline constexpr std::chrono::milliseconds kReadPatience{3000};
 /// Longer, because an action is on disk before its answer.

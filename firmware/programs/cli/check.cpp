@@ -6,16 +6,15 @@
 #include "cli/handlers.hpp"
 #include "cli/table.hpp"
 #include "cli/where.hpp"
-#include "cli/words.hpp"
 #include "codec/json.hpp"
 #include "host/interfaces.hpp"
 #include "host/log.hpp"
 #include "host/service.hpp"
 #include "icd/sentence.hpp"
 #include "icd/text.hpp"
-#include "settings/saved.hpp"
 #include "settings/settings.hpp"
 #include "settings/subnet.hpp"
+#include "settings/written.hpp"
 
 namespace adit::cli {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "cli/console.hpp"
+#include "cli/ask.hpp"
 #include "cli/options.hpp"
 
 namespace adit::cli {

@@ -6,7 +6,7 @@
 #include "api/settings_rows.hpp"
 #include "cli/handlers.hpp"
 #include "cli/reports_text.hpp"
-#include "cli/settings_key.hpp"
+#include "cli/settings.hpp"
 #include "codec/json.hpp"
 #include "host/log.hpp"
 #include "icd/try.hpp"

@@ -9,7 +9,6 @@
 
 #include "api/run_view.hpp"
 #include "cli/ask.hpp"
-#include "cli/http_client.hpp"
 #include "codec/value.hpp"
 
 namespace adit::cli {

@@ -1,7 +1,7 @@
 #include "cli/reports_text.hpp"
 
 #include "cli/table.hpp"
-#include "dispatch/report_life.hpp"
+#include "dispatch/report.hpp"
 #include "icd/text.hpp"
 
 namespace adit::cli {

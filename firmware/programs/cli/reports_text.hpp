@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "api/run_view.hpp"
-#include "cli/words.hpp"
+#include "cli/table.hpp"
 
 namespace adit::cli {
 

@@ -5,7 +5,6 @@
 #include "api/run_view.hpp"
 #include "cli/handlers.hpp"
 #include "cli/table.hpp"
-#include "cli/words.hpp"
 #include "host/log.hpp"
 #include "icd/sentence.hpp"
 #include "icd/text.hpp"

@@ -5,7 +5,7 @@
 
 #include "api/reports_csv.hpp"
 #include "cli/handlers.hpp"
-#include "cli/words.hpp"
+#include "cli/table.hpp"
 #include "codec/json.hpp"
 #include "host/service.hpp"
 #include "icd/try.hpp"
@@ -18,7 +18,7 @@ using api::SpareView;
 
 constexpr const char* kSpare = "/adit/spare";
 constexpr const char* kSeeSpare = "adit spare";
-constexpr std::chrono::seconds kFile{60};
+constexpr std::chrono::seconds kFileWithin{60};
 
 /// Waits for a busy or restarting box. The stick may be slow, and another request may come first.
 Waiting for_box(std::chrono::seconds within) {
@@ -152,7 +152,7 @@ Result<void> take_from_file(const Call& call) {
   ADIT_TRY(post(call.adit, {.target = "/adit/spare/take",
                             .check = kSeeSpare,
                             .body = std::move(file),
-                            .within = kFile,
+                            .within = kFileWithin,
                             .content_type = "application/octet-stream"}));
   return {};
 }
@@ -168,7 +168,7 @@ Result<Outcome> show_spare(const Call& call) {
 Result<Outcome> export_spare(const Call& call) {
   if (call.options.stick) return write_to_stick(call);
   const auto view = ADIT_TRY(put_on_standby(call));
-  const auto file = ADIT_TRY(get(call.adit, "/adit/spare/export", kFile));
+  const auto file = ADIT_TRY(get(call.adit, "/adit/spare/export", kFileWithin));
   if (const auto kept = host::write_file(call.options.argument(), file, host::kOursAlone); !kept)
     return failed("the box is on standby, but its export could not be written: " + kept.error());
   return on_standby(call, view, "in " + call.options.argument());

@@ -1,11 +1,40 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "cli/words.hpp"
+#include "host/log.hpp"
+#include "icd/sentence.hpp"
 
 namespace adit::cli {
+
+/// Emphasis of a text, never the only carrier of its meaning.
+enum class Tone : std::uint8_t { Plain, Faint, Strong, Good, Warning, Bad };
+
+/// Applies the tone's colour if `colour`.
+std::string painted(const std::string& text, Tone tone, bool colour);
+
+/// Number of UTF-8 characters.
+std::size_t width_of(std::string_view text);
+
+/// A line of strings and numbers, escaped.
+template <class... Parts>
+std::string line(const Parts&... parts) {
+  return host::escaped(icd::sentence(parts...)) + '\n';
+}
+
+/// "0.4 s", "12 s", "3 min", "2 h"
+std::string duration(double seconds);
+/// Run time: "1:02:03", "12:34"
+std::string clock(double seconds);
+/// "812 B", "64 kB", "3.4 MB"
+std::string size(std::uint64_t bytes);
+/// A Command Post's answer: "accepted", "error 422: its sentence"; "" without an answer.
+std::string answer_of(int status, const std::string& sentence);
+/// At most `digits` decimals, without trailing zeros.
+std::string decimal(double number, int digits);
 
 struct Cell {
   std::string text;

@@ -2,7 +2,7 @@
 
 #include "api/self_test.hpp"
 #include "cli/handlers.hpp"
-#include "cli/words.hpp"
+#include "cli/table.hpp"
 #include "codec/json.hpp"
 #include "host/log.hpp"
 #include "icd/try.hpp"

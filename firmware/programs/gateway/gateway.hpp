@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "admin/session_keeper.hpp"
+#include "admin/kept_file.hpp"
 #include "admin/setup.hpp"
 #include "api/api.hpp"
-#include "box/button_watch.hpp"
+#include "box/lights.hpp"
 #include "box/self_test.hpp"
 #include "box/this_box.hpp"
 #include "gateway/file_return.hpp"
@@ -15,8 +15,12 @@
 #include "host/service.hpp"
 #include "intake/icd_routes.hpp"
 #include "loop/workers.hpp"
+#include "settings/settings.hpp"
 
 namespace adit::gateway {
+
+/// The box's IPv4 address for the team. "": it has none, or it cannot be read, which is logged.
+std::string team_address(const settings::Team& team);
 
 /// Adit at work: the flow, the listeners, the page and the box.
 class Gateway final : public api::Caretaker {

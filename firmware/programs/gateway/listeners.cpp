@@ -1,12 +1,152 @@
 #include "gateway/listeners.hpp"
 
+#include <fcntl.h>
+#include <net/if.h>
+#include <sys/socket.h>
+
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <utility>
 
 #include "host/log.hpp"
+#include "icd/sentence.hpp"
 #include "icd/try.hpp"
 
 namespace adit::gateway {
+namespace {
+
+constexpr std::string_view kStored = "listen-";  // no socket unit of Adit has this name
+
+/// The name in systemd's store: "listen-team0-10.0.0.1-8000". The port is the one in the settings, and may be
+/// 0.
+std::string name_of(const intake::Listen& listen) {
+  std::string address = listen.address;
+  std::ranges::replace(address, ':', '_');
+  return icd::sentence(kStored, listen.interface, "-", address, "-", listen.port);
+}
+
+}  // namespace
+
+std::expected<ListenSockets, std::string> ListenSockets::take_over(std::vector<host::Inherited> given) {
+  ListenSockets sockets;
+  for (host::Inherited& each : given) {
+    Held held{.number = ++sockets.last_,
+              .name = std::move(each.name),
+              .socket = std::move(each.descriptor),
+              .at = {}};
+    held.stored = held.name.starts_with(kStored);
+    held.door = !held.stored;
+    if (intake::is_deaf(held.socket.get())) {
+      host::log(host::Level::Warning, "unusable socket from systemd: its interface is gone",
+                {{"name", held.name}});
+      end(held);
+      continue;
+    }
+    auto bound = intake::bound_at(held.socket.get());
+    if (bound) {
+      held.at = std::move(*bound);
+      sockets.held_.push_back(std::move(held));
+    } else if (held.door) {
+      return std::unexpected(
+          icd::sentence("the socket ", icd::in_quotes(held.name), " from systemd: ", bound.error()));
+    } else {
+      host::log(host::Level::Warning, "unusable socket from systemd",
+                {{"name", held.name}, {"why", bound.error()}});
+      end(held);
+    }
+  }
+  return sockets;
+}
+
+std::expected<std::vector<ListenSockets::Open>, std::string> ListenSockets::open(const settings::Team& team) {
+  for (Held& held : held_) held.wanted = held.door;
+  const bool has_door = std::ranges::any_of(held_, &Held::door);
+  std::vector<intake::Listen> missing;
+  for (const settings::Address& address : team.listen) {
+    intake::Listen listen{
+        .address = address.address, .port = address.port, .interface = team.interface, .free_bind = has_door};
+    if (!is_held(listen)) missing.push_back(std::move(listen));
+  }
+  for (const intake::Listen& listen : missing) make_way(listen.port);
+  for (const intake::Listen& listen : missing) {
+    auto socket = ADIT_TRY(intake::open_listen_socket(listen));
+    auto at = ADIT_TRY(intake::bound_at(socket.get()));
+    held_.push_back({.number = ++last_,
+                     .name = name_of(listen),
+                     .socket = std::move(socket),
+                     .at = std::move(at),
+                     .wanted = true});
+  }
+  std::vector<Open> open;
+  for (const Held& held : held_) {
+    if (!held.wanted || intake::is_deaf(held.socket.get())) continue;
+    loop::FileDescriptor copy(fcntl(held.socket.get(), F_DUPFD_CLOEXEC, 0));
+    if (!copy) return std::unexpected(icd::sentence("copying a socket: ", std::strerror(errno)));
+    ADIT_TRY(intake::adopt_listen_socket(copy.get(), {}));
+    open.push_back({held.number, std::move(copy), held.at});
+  }
+  return open;
+}
+
+ListenSockets::Reach ListenSockets::reach() const {
+  Reach reach = Reach::Well;
+  for (const Held& held : held_) {
+    if (held.at.interface.empty() || !intake::is_deaf(held.socket.get())) continue;
+    if (if_nametoindex(held.at.interface.c_str()) == 0) continue;
+    if (held.door) return Reach::BySystemd;
+    reach = Reach::Reopen;
+  }
+  return reach;
+}
+
+void ListenSockets::settle() {
+  for (const Held& held : held_) {
+    if (!held.wanted) end(held);
+  }
+  std::erase_if(held_, [](const Held& held) { return !held.wanted; });
+  for (Held& held : held_) {
+    if (held.door || std::exchange(held.stored, true)) continue;
+    host::store_descriptor(held.name, held.socket.get());
+  }
+}
+
+/// systemd has copies of these. The next start opens the others.
+std::vector<host::Inherited> ListenSockets::hand_over() {
+  std::vector<host::Inherited> given;
+  for (Held& held : held_) {
+    if (held.door || held.stored) given.push_back({std::move(held.name), std::move(held.socket)});
+  }
+  held_.clear();
+  return given;
+}
+
+/// Entries with port 0 at one address get different sockets.
+bool ListenSockets::is_held(const intake::Listen& listen) {
+  const std::string name = name_of(listen);
+  for (Held& held : held_) {
+    if (held.door ? !intake::covers(held.at, listen) : held.wanted || held.name != name) continue;
+    if (intake::is_deaf(held.socket.get())) continue;
+    held.wanted = true;
+    return true;
+  }
+  return false;
+}
+
+/// "0.0.0.0" cannot be bound beside 10.0.0.1 at the same port.
+void ListenSockets::make_way(std::uint16_t port) {
+  std::erase_if(held_, [port](const Held& held) {
+    const bool goes = !held.wanted && held.at.port == port;
+    if (goes) end(held);
+    return goes;
+  });
+}
+
+/// Shuts down all copies at once, because systemd closes its own later.
+void ListenSockets::end(const Held& held) {
+  shutdown(held.socket.get(), SHUT_RDWR);
+  if (!held.door) host::forget_descriptor(held.name);
+}
 
 std::expected<void, std::string> Listeners::serve(const settings::Team& team) {
   const Bounds bounds{team.connections, team.connections_per_address};

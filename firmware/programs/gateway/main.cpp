@@ -3,7 +3,7 @@
 #include <sys/prctl.h>
 
 #include "box/version.hpp"
-#include "command_line/answer.hpp"
+#include "command_line/read.hpp"
 #include "gateway/options.hpp"
 #include "gateway/service.hpp"
 #include "host/log.hpp"

@@ -1,32 +1,85 @@
 #pragma once
 
+#include <chrono>
+#include <expected>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "admin/accounts.hpp"
-#include "admin/acknowledged_file.hpp"
 #include "admin/clock_setting.hpp"
+#include "admin/factory_reset.hpp"
+#include "admin/kept_file.hpp"
 #include "admin/network_change.hpp"
 #include "admin/spare.hpp"
+#include "admin/store.hpp"
+#include "admin/takeover.hpp"
 #include "admin/updates.hpp"
 #include "alarms/board.hpp"
 #include "alarms/facts.hpp"
 #include "api/box.hpp"
 #include "api/source.hpp"
 #include "box/lights.hpp"
-#include "box/links.hpp"
+#include "box/this_box.hpp"
 #include "forward/flow.hpp"
-#include "gateway/crowding.hpp"
 #include "gateway/listeners.hpp"
 #include "gateway/observed_facts.hpp"
-#include "gateway/parts.hpp"
+#include "gateway/options.hpp"
 #include "gateway/report_rows.hpp"
-#include "gateway/roster.hpp"
+#include "host/disk.hpp"
+#include "ledger/ledger.hpp"
 #include "loop/loop.hpp"
+#include "panel/lines.hpp"
+#include "settings/board.hpp"
 #include "settings/settings.hpp"
 
 namespace adit::gateway {
+
+/// Checked parts of a gateway.
+struct Parts {
+  const Options& options;      // outlives the gateway
+  admin::Store& store;         // outlives the gateway
+  admin::FactoryReset& reset;  // outlives the gateway
+  admin::Takeover& takeover;   // outlives the gateway
+  ListenSockets& sockets;      // outlives the gateway
+  admin::Store::Loaded loaded;
+  std::string trouble;    // why other settings are in use than wanted, or ""
+  std::string put_aside;  // queued messages put aside, and why; or ""
+  std::string stuck;      // why a take-over is unfinished and the box stands by, or ""
+  ledger::Ledger ledger;
+  std::expected<host::Wear, std::string> wear;  // of the state directory's disk
+  std::chrono::seconds file_rest;               // until unreadable files are tried again
+  settings::Board board;
+  std::string board_trouble;  // why the board's file is ignored, or ""
+  std::unique_ptr<panel::Lines> lines;
+  std::unique_ptr<panel::ButtonLine> button;  // null: no button
+  std::string runtime_folder;
+};
+
+/// Robots that are not in the settings. Their messages are accepted, because the ICD forbids no name, but
+/// shown, because the name may be misspelt.
+class Roster {
+ public:
+  static constexpr std::chrono::minutes kRecent{2};  // since the last message
+  static constexpr std::size_t kMostUnknown = 8;
+
+  explicit Roster(const std::vector<settings::Robot>& robots);
+
+  /// Replaces the list.
+  void set_up(const std::vector<settings::Robot>& robots);
+  /// Call for each accepted message. True: the first of an unknown robot.
+  bool posted(const std::string& name, loop::Instant now);
+  /// Within kRecent.
+  std::vector<std::string> unknown(loop::Instant now) const;
+  /// "unknown robot 'x' sends messages; the settings list ugv1, ugv2"
+  std::string sentence(const std::string& name) const;
+  const std::vector<std::string>& names() const { return names_; }
+
+ private:
+  std::vector<std::string> names_;                // empty: all names pass
+  std::map<std::string, loop::Instant> unknown_;  // last messages
+};
 
 /// The state of the whole box: the view for pages, and the alarms with the facts behind them.
 class Overview final : public api::Source {
@@ -103,7 +156,7 @@ class Overview final : public api::Source {
   double looked_at_ = 0;                       // alarms::Facts::now
   admin::AcknowledgedFile acknowledged_;
   mutable ReadAnswers answers_;                 // of the view's reports
-  std::map<std::string, std::string> notices_;  // box/notices.hpp
+  std::map<std::string, std::string> notices_;  // box/this_box.hpp
 };
 
 }  // namespace adit::gateway

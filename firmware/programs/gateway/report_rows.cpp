@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "codec/read.hpp"
-#include "dispatch/report_verdict.hpp"
+#include "dispatch/verdicts.hpp"
 
 namespace adit::gateway {
 

@@ -9,7 +9,7 @@
 
 #include "api/run_view.hpp"
 #include "dispatch/reports.hpp"
-#include "icd/run_status.hpp"
+#include "icd/scoring.hpp"
 #include "ledger/ledger.hpp"
 #include "loop/loop.hpp"
 

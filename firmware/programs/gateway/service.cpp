@@ -17,7 +17,7 @@
 #include "icd/try.hpp"
 #include "loop/watchdog.hpp"
 #include "panel/remote.hpp"
-#include "settings/saved.hpp"
+#include "settings/written.hpp"
 
 namespace adit::gateway {
 namespace {

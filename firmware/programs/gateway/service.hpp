@@ -9,7 +9,7 @@
 #include "admin/takeover.hpp"
 #include "gateway/file_return.hpp"
 #include "gateway/gateway.hpp"
-#include "gateway/listen_sockets.hpp"
+#include "gateway/listeners.hpp"
 #include "gateway/options.hpp"
 #include "loop/file_descriptor.hpp"
 #include "loop/loop.hpp"

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "access/whence.hpp"
-#include "icd/refuse.hpp"
+#include "icd/sentence.hpp"
 #include "icd/try.hpp"
 
 namespace adit::access {

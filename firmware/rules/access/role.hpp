@@ -2,8 +2,16 @@
 
 #include <chrono>
 #include <cstdint>
+#include <expected>
 #include <optional>
+#include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
+
+#include "codec/field.hpp"
+#include "codec/json.hpp"
+#include "icd/bearer_token.hpp"
 
 namespace adit::access {
 
@@ -16,5 +24,48 @@ enum class Role : std::uint8_t { Viewer, Operator };
 /// "viewer", "operator"
 std::string_view name_of(Role role);
 std::optional<Role> role_named(std::string_view name);
+
+/// Parses a JSON object with this "version" and returns the result of `read`. An error says what is wrong and
+/// contains no secret.
+template <class Kept, class Read>
+std::expected<Kept, std::string> read_kept(std::string_view json, std::int64_t version, Read read) {
+  const auto root = codec::parse_json(json);
+  if (!root) return std::unexpected("the text is not JSON: " + root.error());
+  codec::Reading reading;
+  const codec::Field object(*root, reading);
+  const codec::Field said = object.member("version");
+  if (said.whole<std::int64_t>() != version) said.refuse("expected ", version);
+  auto outcome = reading.outcome<Kept>(read(object));
+  if (!outcome) return std::unexpected(outcome.error().sentence);
+  return std::move(*outcome);
+}
+
+/// The results of `read_element` for the elements of an array. Stops at the first refused element and skips
+/// those without a result.
+template <class Element, class Read>
+std::vector<Element> elements_of(const codec::Field& array, Read read_element) {
+  std::vector<Element> all;
+  const std::size_t count = array.size();
+  for (std::size_t i = 0; i < count && !array.reading().refused(); ++i) {
+    if (std::optional<Element> each = read_element(array.element(i))) all.push_back(std::move(*each));
+  }
+  return all;
+}
+
+/// The token in member `name`. Refuses and returns nullopt if it cannot be a token.
+inline std::optional<icd::BearerToken> token_in(const codec::Field& object, std::string_view name) {
+  const codec::Field field = object.member(name);
+  auto token = icd::BearerToken::parse(field.text());
+  if (!token) field.refuse("expected a token");
+  return token;
+}
+
+/// The role in member `role`. Refuses and returns nullopt if it is no role.
+inline std::optional<Role> role_in(const codec::Field& object) {
+  const codec::Field field = object.member("role");
+  auto role = role_named(field.text());
+  if (!role) field.refuse("expected operator or viewer");
+  return role;
+}
 
 }  // namespace adit::access

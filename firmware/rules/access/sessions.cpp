@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "access/fields.hpp"
+#include "access/role.hpp"
 #include "codec/json.hpp"
-#include "icd/hex.hpp"
+#include "icd/text.hpp"
 
 namespace adit::access {
 namespace {

@@ -63,4 +63,32 @@ struct Stream {
 Arrival arrival_of(const Stream& stream, double turn, bool silent);
 Level level_of(Arrival arrival);
 
+/// The run's clock as all faces show it.
+struct ShownClock {
+  double seconds = 0;  // run time now
+  double age = 0;      // seconds since the status was received
+  bool runs = false;   // `seconds` advances
+  bool old = false;    // the status is old; if `runs`, `seconds` is an estimate
+
+  static const codec::Row kRow;
+  friend bool operator==(const ShownClock&, const ShownClock&) = default;
+};
+
+/// The run's clock between two statuses. All times are monotonic seconds.
+class RunClock {
+ public:
+  /// Call for each status. `shows`: its clock.
+  void heard(double shows, double now);
+  /// The clock at `now`, or std::nullopt before the first status. A clock advances unless it is at 0 s, or
+  /// two statuses more than 1.5 s apart show the same time.
+  std::optional<ShownClock> at(double now) const;
+
+ private:
+  struct Heard {
+    double shows = 0, at = 0;
+    bool runs = false;
+  };
+  std::optional<Heard> heard_;
+};
+
 }  // namespace adit::alarms

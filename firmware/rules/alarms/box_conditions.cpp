@@ -4,7 +4,6 @@
 
 #include "alarms/alarm.hpp"
 #include "alarms/conditions.hpp"
-#include "alarms/found.hpp"
 #include "icd/sentence.hpp"
 
 namespace adit::alarms {

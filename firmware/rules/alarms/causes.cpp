@@ -2,7 +2,6 @@
 #include <string_view>
 
 #include "alarms/conditions.hpp"
-#include "alarms/found.hpp"
 
 namespace adit::alarms {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "alarms/alarm.hpp"
-#include "alarms/found.hpp"
+#include "alarms/conditions.hpp"
 #include "icd/sentence.hpp"
 
 namespace adit::alarms {

@@ -2,7 +2,6 @@
 #include <array>
 
 #include "alarms/conditions.hpp"
-#include "alarms/found.hpp"
 #include "icd/sentence.hpp"
 
 namespace adit::alarms {

@@ -3,7 +3,6 @@
 
 #include "alarms/alarm.hpp"
 #include "alarms/conditions.hpp"
-#include "alarms/found.hpp"
 #include "alarms/verdict.hpp"
 #include "icd/sentence.hpp"
 #include "icd/status.hpp"

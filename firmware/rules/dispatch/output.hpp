@@ -5,7 +5,7 @@
 #include <string>
 
 #include "dispatch/report.hpp"
-#include "dispatch/run.hpp"
+#include "dispatch/runs.hpp"
 #include "icd/status.hpp"
 
 namespace adit::dispatch {

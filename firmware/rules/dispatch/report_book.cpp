@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "dispatch/same_report.hpp"
+#include "dispatch/report.hpp"
 
 namespace adit::dispatch {
 namespace {

@@ -64,7 +64,7 @@ class ReportBook {
   const Report& at(std::int64_t number) const { return reports_.at(number); }
   const Report* find(std::int64_t number) const;
   const std::map<std::int64_t, Report>& all() const { return reports_; }
-  /// Same reports (same_report.hpp) in all runs, oldest first.
+  /// Same reports (report.hpp) in all runs, oldest first.
   std::vector<const Report*> same_as(const icd::ArtifactReport& report) const;
   /// The report in flight, or null.
   const Report* sending() const { return sending_.empty() ? nullptr : &at(*sending_.begin()); }

@@ -3,9 +3,8 @@
 #include <algorithm>
 
 #include "codec/read.hpp"
-#include "dispatch/answer_text.hpp"
-#include "dispatch/report_verdict.hpp"
-#include "dispatch/same_report.hpp"
+#include "dispatch/report.hpp"
+#include "dispatch/verdicts.hpp"
 #include "icd/sentence.hpp"
 
 namespace adit::dispatch {

@@ -1,6 +1,5 @@
 #include "network/messages.hpp"
 
-#include "codec/checked_text.hpp"
 #include "codec/nonce.hpp"
 #include "icd/try.hpp"
 

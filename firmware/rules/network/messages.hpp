@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "codec/row_file.hpp"
+#include "codec/row.hpp"
 #include "network/numbers.hpp"
 
 /// Messages, as files, between aditd, which has no privileges, and adit-network, which has them:

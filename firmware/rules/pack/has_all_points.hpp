@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "icd/map_update.hpp"
+#include "icd/mapping.hpp"
 
 namespace adit::pack {
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "icd/map_update.hpp"
+#include "icd/mapping.hpp"
 #include "icd/status.hpp"
 
 namespace adit::pack {

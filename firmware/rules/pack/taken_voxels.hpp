@@ -7,10 +7,10 @@
 #include <span>
 #include <vector>
 
-#include "icd/map_update.hpp"
-#include "icd/placement.hpp"
+#include "icd/geometry.hpp"
+#include "icd/mapping.hpp"
 #include "icd/robot_name.hpp"
-#include "pack/coordinates.hpp"
+#include "pack/points.hpp"
 
 namespace adit::pack {
 

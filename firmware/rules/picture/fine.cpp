@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "picture/draw.hpp"
-#include "picture/sheet.hpp"
 
 namespace adit::picture {
 namespace {

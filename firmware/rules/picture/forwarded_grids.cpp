@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "codec/gzip.hpp"
-#include "icd/placement.hpp"
+#include "icd/geometry.hpp"
 
 namespace adit::picture {
 namespace {

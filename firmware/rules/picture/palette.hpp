@@ -3,6 +3,9 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <string>
+
+#include "picture/tile.hpp"
 
 namespace adit::picture {
 
@@ -36,5 +39,9 @@ std::span<const Colour> height_ramp();  // evenly spaced, lowest first; colours 
 std::array<Colour, 256> cloud_palette(double low = kLowest, double high = kHighest);
 /// The same from one colour to another, for example of a robot or a theme.
 std::array<Colour, 256> cloud_palette(double low, double high, const Colour& lowest, const Colour& highest);
+
+/// A tile as an indexed PNG (ISO/IEC 15948) in which index 0 is transparent. The tile is deflated already, so
+/// this takes some microseconds. `palette`: at least as many colours as the tile has indices, at most 256.
+std::string write_png(const Packed& tile, std::span<const Colour> palette);
 
 }  // namespace adit::picture

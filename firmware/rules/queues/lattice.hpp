@@ -1,12 +1,41 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
+#include <limits>
+#include <memory>
 #include <optional>
+#include <span>
+#include <vector>
 
-#include "icd/map_update.hpp"
+#include "icd/mapping.hpp"
 
 namespace adit::queues {
+
+/// A rectangle along the axes of the frame that grids are posted in ("darpa"), in metres.
+struct Extent {
+  double left = 0, bottom = 0, right = 0, top = 0;
+
+  static constexpr Extent everywhere() {
+    constexpr double kFar = std::numeric_limits<double>::infinity();
+    return {-kFar, -kFar, kFar, kFar};
+  }
+  bool holds(const Extent& other) const {
+    return left <= other.left && bottom <= other.bottom && other.right <= right && other.top <= top;
+  }
+  friend bool operator==(const Extent&, const Extent&) = default;
+};
+
+/// The smallest rectangle that holds both.
+inline Extent around(const Extent& a, const Extent& b) {
+  return {std::min(a.left, b.left), std::min(a.bottom, b.bottom), std::max(a.right, b.right),
+          std::max(a.top, b.top)};
+}
+
+/// A rectangle that holds all cells of `grid` and at least one more cell on each side. It is larger if the
+/// grid is rotated, and everywhere() if it has no finite bounds.
+Extent extent_of(const icd::OccupancyGrid& grid);
 
 /// A rectangle of cells of one lattice.
 struct Cells {
@@ -44,5 +73,51 @@ std::optional<Cells> cells_in(const icd::OccupancyGrid& of, const icd::Occupancy
 /// The pose of the lower left corner of the cell (x, y), counted from the lower left cell of `of`. Nothing if
 /// it is too far for cells_in() to count.
 std::optional<icd::Pose> corner_at(const icd::OccupancyGrid& of, std::int64_t x, std::int64_t y);
+
+/// A square of a canvas with the values that were last packed for it.
+struct CanvasTile {
+  static constexpr std::int64_t kSide = 64;         // cells
+  static constexpr std::uint8_t kNotKnown = 254;    // the last sent value is unknown; no cell has this value
+  std::array<std::uint8_t, kSide * kSide> cells{};  // row by row from the lower left cell
+  bool is_known = false;                            // all cells are known
+};
+
+/// The cells of a canvas in a rectangle. Shares the tiles, which are immutable, so that a worker can read
+/// them.
+struct Ground {
+  std::uint64_t canvas = 0;     // number of the canvas
+  Cells cells;                  // the rectangle, on the canvas's lattice
+  std::optional<Cells> before;  // a cell without a tile is unknown within it, and was never sent outside
+  std::vector<std::shared_ptr<const CanvasTile>> tiles;  // the touched tiles, row by row; null: no tile
+};
+
+/// The tiles that `cells` touches, in units of tiles.
+Cells tiles_of(const Cells& cells);
+/// The cells of the tile (x, y).
+inline Cells cells_of_tile(std::int64_t x, std::int64_t y) {
+  return {x * CanvasTile::kSide, y * CanvasTile::kSide, CanvasTile::kSide, CanvasTile::kSide};
+}
+
+/// The cells of `ground`, row by row. Cells that were never sent, or whose sent value is unknown, are ROS's
+/// unknown.
+std::vector<std::uint8_t> cells_under(const Ground& ground);
+
+/// Draws a map's cells over a Ground.
+class Drawing {
+ public:
+  explicit Drawing(Ground under);
+  /// Draws the next cells of the map, row by row. Requires that they fit into the rectangle.
+  void feed(std::span<const std::uint8_t> cells);
+  /// The ground with new tiles. Requires that all cells of the map were fed.
+  Ground finish();
+
+ private:
+  void feed_row(std::span<const std::uint8_t> cells);
+
+  Ground ground_;
+  Cells tiles_;
+  std::vector<std::shared_ptr<CanvasTile>> drawn_;
+  std::int64_t fed_ = 0;
+};
 
 }  // namespace adit::queues

@@ -1,11 +1,302 @@
 #include "queues/map_queue.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "icd/require.hpp"
+#include "queues/stitch.hpp"
 
 namespace adit::queues {
+namespace {
+
+bool goes_last(const QueuedMap& waiting) {
+  return waiting.packing >= PackingRule::Last;
+}
+
+SenderQueue::Rest rest_of(const QueuedMap& waiting) {
+  return {goes_last(waiting), waiting.trial.failed.value_or(Instant{}), waiting.accepted};
+}
+
+/// The most looks at a canvas for one message: bounds the work.
+constexpr std::size_t kMostLooks = 4096;
+
+/// Whether it can replace queued maps at all.
+bool may_replace(const QueuedMap& newer) {
+  return newer.map.is_grid() || newer.is_whole;
+}
+
+}  // namespace
+
+Replaced SenderQueue::add(QueuedMap added) {
+  const auto stays = [&](const QueuedMap& waiting) { return !says_all_of(added, waiting); };
+  const auto first = may_replace(added) ? std::ranges::find_if_not(waiting_, stays) : waiting_.end();
+  const auto gone = std::stable_partition(first, waiting_.end(), stays);
+  Replaced replaced;
+  for (auto it = gone; it != waiting_.end(); ++it) {
+    bytes_ -= bytes_held(*it);
+    add_own_numbers(replaced.numbers, *it);
+    take_bounds(added, *it, replaced);
+    take_over(added, std::move(*it));
+  }
+  waiting_.erase(gone, waiting_.end());
+  append(std::move(added));
+  return replaced;
+}
+
+void SenderQueue::append(QueuedMap added) {
+  bytes_ += bytes_held(added);
+  waiting_.push_back(std::move(added));
+}
+
+/// An older grid goes first, because its cells must not overwrite newer ones, unless it goes last of all
+/// maps. Clouds go in the order of their age.
+SenderQueue::Maps::const_iterator SenderQueue::ready(Instant now) const {
+  const auto rests = [now](const QueuedMap& waiting) { return waiting.trial.rests(now); };
+  const auto lets_others_pass = [&](const QueuedMap& waiting) {
+    return goes_last(waiting) ||
+           (rests(waiting) && (!waiting.map.is_grid() || waiting.trial.failures >= kInPlace));
+  };
+  const auto first = std::ranges::find_if_not(waiting_, lets_others_pass);
+  return first == waiting_.end() || rests(*first) ? waiting_.end() : first;
+}
+
+bool SenderQueue::is_ready(Instant now) const {
+  return ready(now) != waiting_.end();
+}
+
+SenderQueue::Maps::const_iterator SenderQueue::rested_longest() const {
+  icd::require(!waiting_.empty());
+  if (!waiting_.front().map.is_grid()) return std::ranges::min_element(waiting_, {}, rest_of);
+  const auto first = std::ranges::find_if_not(waiting_, goes_last);
+  return first == waiting_.end() ? waiting_.begin() : first;
+}
+
+SenderQueue::Rest SenderQueue::resting() const {
+  return rest_of(*rested_longest());
+}
+
+QueuedMap SenderQueue::take(Instant now, std::size_t merge_bytes, Canvases& canvases) {
+  icd::require(!waiting_.empty());
+  const auto may_go = ready(now);
+  const auto chosen = may_go == waiting_.end() ? rested_longest() : may_go;
+  const auto place = static_cast<std::size_t>(chosen - waiting_.begin());
+  // The chosen map and those that go with it. They are removed at the end, when nothing can fail any more.
+  std::vector<bool> leaves(waiting_.size());
+  leaves[place] = true;
+  QueuedMap next = *chosen;
+  if (next.map.is_grid()) {
+    if (may_join(next)) stitch_followers(next, place, canvases.find(next.map.name), leaves);
+    canvases.sends(next);
+  } else if (may_join(next)) {
+    merge_followers(next, merge_bytes, leaves);
+  }
+  auto leaving = leaves.begin();
+  std::erase_if(waiting_, [&](const QueuedMap& waiting) {
+    if (!*leaving++) return false;
+    bytes_ -= bytes_held(waiting);
+    return true;
+  });
+  return next;
+}
+
+void SenderQueue::merge_followers(QueuedMap& next, std::size_t merge_bytes, std::vector<bool>& leaves) const {
+  const icd::PointCloud2* first = loose_cloud_in(next.map);
+  for (std::size_t i = 0; i < waiting_.size() && first != nullptr; ++i) {
+    const QueuedMap& other = waiting_[i];
+    if (leaves[i]) continue;
+    if (other.trial.failures > 0) continue;  // a map on trial goes alone
+    const icd::PointCloud2* cloud = loose_cloud_in(other.map);
+    const bool fits = cloud != nullptr && may_join(other) && mergeable(*first, *cloud) &&
+                      next.map.data.raw_size + other.map.data.raw_size <= merge_bytes;
+    if (!fits) return;
+    leaves[i] = true;
+    join(next, other);
+    next.map = merge(std::move(next.map), other.map);
+    first = loose_cloud_in(next.map);
+  }
+}
+
+/// The indices of the grid at `place` and of those behind it that may be stitched to it. Ends at the first
+/// grid that may not, because a grid that goes ahead of it could overlap it.
+std::vector<std::size_t> SenderQueue::that_follow(std::size_t place) const {
+  const auto& first = std::get<icd::OccupancyGrid>(waiting_[place].map.msg);
+  std::vector<std::size_t> places;
+  for (std::size_t i = place; i < waiting_.size() && places.size() < kMostStitched; ++i) {
+    if (!may_join(waiting_[i])) break;
+    if (!cells_in(first, std::get<icd::OccupancyGrid>(waiting_[i].map.msg))) break;
+    places.push_back(i);
+  }
+  return places;
+}
+
+/// A map that failed, or that goes alone, may be sent after newer ones. While one is queued, the canvas is
+/// not used for the others.
+void SenderQueue::stitch_followers(QueuedMap& next, std::size_t place, const Canvas* canvas,
+                                   std::vector<bool>& leaves) const {
+  const auto grid_at = [this](std::size_t i) { return &std::get<icd::OccupancyGrid>(waiting_[i].map.msg); };
+  const auto places = that_follow(place);
+  std::vector<Cells> cells;
+  cells.reserve(places.size());
+  for (const std::size_t i : places) cells.push_back(*cells_in(*grid_at(place), *grid_at(i)));
+  const auto first = canvas == nullptr ? std::nullopt : canvas->cells_of(*grid_at(place));
+  std::size_t looks = kMostLooks;
+  const Stitch found = first && std::ranges::all_of(waiting_, may_join)
+                           ? stitch(cells,
+                                    [&](const Cells& all, std::span<const Cells> those) {
+                                      return canvas->knows(*first, all, those, looks);
+                                    })
+                           : stitch(cells);
+  if (found.which.size() < 2) return;
+  std::vector<const icd::OccupancyGrid*> grids;
+  grids.reserve(found.which.size());
+  for (const std::size_t i : found.which) grids.push_back(grid_at(places[i]));
+  const auto whole = stitched(grids);
+  if (!whole) return;
+  if (found.has_gaps && !(Canvas::can_draw(*whole) && canvas->cells_of(*whole))) return;
+  auto bounds = icd::GridBounds::of(*whole);
+  for (const std::size_t i : found.which) {
+    bounds = icd::joint_bounds(bounds, bounds_of(waiting_[places[i]]));
+    if (places[i] == place) continue;
+    leaves[places[i]] = true;
+    join(next, waiting_[places[i]]);
+  }
+  next.map.data = {{}, icd::Compression::None, std::size_t{whole->width} * whole->height};
+  next.map.msg = *whole;
+  next.bounds = bounds;
+  next.has_gaps = found.has_gaps;
+}
+
+/// The place of a map that was not delivered.
+SenderQueue::Maps::const_iterator SenderQueue::before_newer(const QueuedMap& back) const {
+  return std::ranges::find_if(waiting_, [&](const QueuedMap& waiting) { return is_newer(waiting, back); });
+}
+
+Replaced SenderQueue::put_back(QueuedMap map) {
+  map.ground.reset();
+  if (map.has_gaps) {
+    // At the next try, newer cells may have been sent between its parts.
+    const bool may_join_again = may_join(map);
+    const auto place = before_newer(map);
+    insert(place, parts_of(std::move(map), may_join_again));
+    return {};
+  }
+  const auto newer =
+      std::ranges::find_if(waiting_, [&](const QueuedMap& waiting) { return replaces(waiting, map); });
+  if (newer == waiting_.end()) {
+    const std::size_t bytes = bytes_held(map);
+    waiting_.insert(before_newer(map), std::move(map));
+    bytes_ += bytes;
+    return {};
+  }
+  Replaced replaced;
+  add_own_numbers(replaced.numbers, map);
+  const std::size_t before = bytes_held(*newer);
+  take_bounds(*newer, map, replaced);
+  take_over(*newer, std::move(map));
+  bytes_ += bytes_held(*newer) - before;
+  return replaced;
+}
+
+void SenderQueue::put_back_apart(QueuedMap map) {
+  const auto place = before_newer(map);
+  insert(place, parts_of(std::move(map), /*may_join_again=*/false));
+}
+
+void SenderQueue::put_back_halves(QueuedMap map) {
+  const auto place = before_newer(map);
+  insert(place, halves_of(std::move(map)));
+}
+
+void SenderQueue::insert(Maps::const_iterator place, std::vector<QueuedMap> parts) {
+  std::size_t bytes = 0;
+  for (const QueuedMap& part : parts) bytes += bytes_held(part);
+  waiting_.insert(place, std::move_iterator(parts.begin()), std::move_iterator(parts.end()));
+  bytes_ += bytes;
+}
+
+void SenderQueue::restart_pieces() {
+  for (QueuedMap& each : waiting_) each.piece = {};
+}
+
+void SenderQueue::inherit(const Trial& trial) {
+  for (QueuedMap& each : waiting_) queues::inherit(each.trial, trial);
+}
+
+void SenderQueue::step_forward() {
+  for (QueuedMap& each : waiting_) each.trial.steps_behind = false;
+}
+
+std::optional<Successive> SenderQueue::to_compare() const {
+  if (waiting_.size() < 2 || waiting_.back().is_compared) return {};
+  const QueuedMap &older = waiting_[waiting_.size() - 2], &newer = waiting_.back();
+  const auto *const before = loose_cloud_in(older.map), *const cloud = loose_cloud_in(newer.map);
+  if (before == nullptr || cloud == nullptr || !mergeable(*before, *cloud)) return {};
+  return Successive{.sender = Sender::of(newer.map),
+                    .older_updates = older.updates,
+                    .newer_updates = newer.updates,
+                    .older = older.map.data,
+                    .newer = newer.map.data,
+                    .point_step = cloud->point_step};
+}
+
+void SenderQueue::keep_both(const Successive& two) {
+  for (QueuedMap& waiting : waiting_) {
+    if (waiting.updates == two.newer_updates) waiting.is_compared = true;
+  }
+}
+
+std::vector<std::uint64_t> SenderQueue::replace(const Successive& two) {
+  if (waiting_.size() < 2) return {};
+  const auto older = waiting_.end() - 2, newer = waiting_.end() - 1;
+  const bool are_those =
+      older->updates == two.older_updates && older->map.data.raw_size == two.older.raw_size &&
+      newer->updates == two.newer_updates && newer->map.data.raw_size == two.newer.raw_size;
+  if (!are_those) return {};
+  std::vector<std::uint64_t> replaced;
+  add_own_numbers(replaced, *older);
+  bytes_ -= bytes_held(*older) + bytes_held(*newer);
+  take_over(*newer, std::move(*older));
+  bytes_ += bytes_held(*newer);
+  waiting_.erase(older);
+  return replaced;
+}
+
+bool SenderQueue::replaces_any(const QueuedMap& map) const {
+  return may_replace(map) &&
+         std::ranges::any_of(waiting_, [&](const QueuedMap& waiting) { return says_all_of(map, waiting); });
+}
+
+std::optional<Replaced> SenderQueue::absorb(const QueuedMap& map) {
+  for (QueuedMap& waiting : waiting_) {
+    if (auto replaced = queues::absorb(waiting, map)) return replaced;
+  }
+  return {};
+}
+
+bool SenderQueue::joins(const QueuedMap& map) const {
+  if (waiting_.empty() || !may_join(waiting_.back())) return false;
+  const icd::MapUpdate& last = waiting_.back().map;
+  if (map.map.is_grid())
+    return cells_in(std::get<icd::OccupancyGrid>(last.msg), std::get<icd::OccupancyGrid>(map.map.msg))
+        .has_value();
+  const auto *const before = loose_cloud_in(last), *const cloud = loose_cloud_in(map.map);
+  return before != nullptr && cloud != nullptr && mergeable(*before, *cloud);
+}
+
+std::optional<Instant> SenderQueue::oldest() const {
+  const auto oldest = std::ranges::min_element(waiting_, {}, &QueuedMap::accepted);
+  return oldest == waiting_.end() ? std::nullopt : std::optional(oldest->accepted);
+}
+
+std::size_t SenderQueue::largest_replaceable() const {
+  std::size_t most = 0;
+  for (const QueuedMap& waiting : waiting_) {
+    if (!waiting.map.is_grid() && !waiting.is_whole) continue;
+    most = std::max(most, waiting.parts.empty() ? waiting.map.data.bytes.size() : bytes_held(waiting));
+  }
+  return most;
+}
 
 /// Updates the sums over all queues. If `change` throws, it must have changed nothing.
 template <class Change>

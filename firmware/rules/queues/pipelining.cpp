@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "queues/sender.hpp"
+#include "queues/queued_map.hpp"
 
 namespace adit::queues {
 

@@ -6,7 +6,7 @@
 #include <utility>
 #include <variant>
 
-#include "icd/placement.hpp"
+#include "icd/geometry.hpp"
 #include "icd/require.hpp"
 
 namespace adit::queues {

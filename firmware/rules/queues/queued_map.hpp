@@ -1,5 +1,6 @@
 #pragma once
 
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -8,12 +9,20 @@
 #include <vector>
 
 #include "icd/grid_bounds.hpp"
-#include "icd/map_update.hpp"
+#include "icd/mapping.hpp"
 #include "queues/blame.hpp"
-#include "queues/ground.hpp"
-#include "queues/precision.hpp"
+#include "queues/clouds.hpp"
+#include "queues/lattice.hpp"
 
 namespace adit::queues {
+
+/// A sender in Turns: the maps of one robot and one kind.
+struct Sender {
+  std::optional<icd::RobotName> name;  // absent: merged maps of all robots
+  bool is_grid = false;
+  static Sender of(const icd::MapUpdate& map) { return {map.name, map.is_grid()}; }
+  friend auto operator<=>(const Sender&, const Sender&) = default;
+};
 
 /// Whether one message can have the points of both: fields, point_step, byte order and origin are the same.
 bool mergeable(const icd::PointCloud2& a, const icd::PointCloud2& b);

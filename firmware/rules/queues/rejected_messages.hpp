@@ -9,9 +9,7 @@
 #include <vector>
 
 #include "icd/grid_bounds.hpp"
-#include "icd/map_update.hpp"
-#include "icd/markers_update.hpp"
-#include "icd/state_update.hpp"
+#include "icd/mapping.hpp"
 
 namespace adit::queues {
 

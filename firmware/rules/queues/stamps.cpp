@@ -2,8 +2,158 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <variant>
 
 namespace adit::queues {
+namespace {
+
+icd::Stamp stamp_of(const icd::Header& header) {
+  return header.stamp.value_or(0);
+}
+
+/// The first of `size` cells along an axis whose middle is not before `place`, in metres; or `size`.
+std::int64_t first_from(double place, double resolution, std::uint32_t size) {
+  return static_cast<std::int64_t>(
+      std::clamp(std::ceil(place / resolution - 0.5), 0.0, static_cast<double>(size)));
+}
+
+/// The parts of `area` outside of `hole`, which overlaps it.
+void add_around(std::vector<Cells>& parts, const Cells& area, const Cells& hole) {
+  const Cells inner = common(area, hole);
+  const Cells around[] = {{area.x, area.y, area.width, inner.y - area.y},
+                          {area.x, inner.top(), area.width, area.top() - inner.top()},
+                          {area.x, inner.y, inner.x - area.x, inner.height},
+                          {inner.right(), inner.y, area.right() - inner.right(), inner.height}};
+  for (const Cells& part : around) {
+    if (part.width > 0 && part.height > 0) parts.push_back(part);
+  }
+}
+
+}  // namespace
+
+std::vector<icd::GridBounds> OvertakenMaps::find_newer(const icd::MapUpdate& map,
+                                                       const Upload& upload) const {
+  std::vector<icd::GridBounds> newer;
+  const auto client = clients_.find(upload.address);
+  if (client == clients_.end()) return newer;
+  const Sender sender = Sender::of(map);
+  for (const Accepted& each : client->second) {
+    if (each.sender == sender && each.stamp > stamp_of(map.header()) && each.ended > upload.began)
+      newer.push_back(each.bounds);
+  }
+  return newer;
+}
+
+bool OvertakenMaps::must_wait(const Upload& upload) const {
+  return std::ranges::any_of(stored_, [&](const Stored& each) {
+    return each.upload.address == upload.address && (each.is_overtaken || each.upload.ended > upload.began);
+  });
+}
+
+void OvertakenMaps::end(const Upload& upload) {
+  std::erase_if(stored_, [&](const Stored& each) { return each.upload.ended == upload.ended; });
+}
+
+void OvertakenMaps::record(const icd::MapUpdate& map, const Upload& upload) {
+  if (const auto client = clients_.find(upload.address); client != clients_.end()) {
+    std::erase_if(client->second,
+                  [&](const Accepted& each) { return upload.overlaps == 0 || each.ended < upload.overlaps; });
+    if (client->second.empty()) clients_.erase(client);
+  }
+  if (upload.overlaps == 0) return;
+  if (clients_.size() == kMostClients && !clients_.contains(upload.address)) return;
+  std::vector<Accepted>& its = clients_[upload.address];
+  if (its.size() == kMostOfClient) its.erase(its.begin());
+  Accepted added{.sender = Sender::of(map), .stamp = stamp_of(map.header()), .ended = upload.ended};
+  if (const auto* grid = std::get_if<icd::OccupancyGrid>(&map.msg)) added.bounds = icd::GridBounds::of(*grid);
+  its.push_back(std::move(added));
+}
+
+std::vector<Cells> cells_outside(const icd::OccupancyGrid& older, std::span<const icd::GridBounds> newer) {
+  std::vector<Cells> outside{{0, 0, older.width, older.height}};
+  if (!corner_at(older, 0, 0)) return outside;
+  for (const icd::GridBounds& each : newer) {
+    const auto part = icd::covered_part(each, older);
+    if (!part) continue;
+    const auto left = first_from(part->low.x, each.resolution, older.width);
+    const auto bottom = first_from(part->low.y, each.resolution, older.height);
+    const Cells covered{left, bottom, first_from(part->high.x, each.resolution, older.width) - left,
+                        first_from(part->high.y, each.resolution, older.height) - bottom};
+    std::vector<Cells> rest;
+    for (const Cells& area : outside) {
+      if (covered.width > 0 && covered.height > 0 && area.overlaps(covered)) {
+        add_around(rest, area, covered);
+      } else {
+        rest.push_back(area);
+      }
+    }
+    outside = std::move(rest);
+  }
+  return outside;
+}
+
+std::size_t OvertakenMarkers::remove_from(icd::MarkersUpdate& update, const Upload& upload) const {
+  const auto client = clients_.find(upload.address);
+  if (client == clients_.end()) return 0;
+  const auto overtakes = [&](const Change& newer, const icd::Marker& older) {
+    return newer.ended > upload.began && stamp_of(newer.marker.header) > stamp_of(older.header);
+  };
+  const auto& [changes, delete_all] = client->second;
+  std::vector<icd::Marker> again;
+  const std::size_t removed = std::erase_if(update.markers, [&](const icd::Marker& older) {
+    if (overtakes(delete_all, older)) return true;
+    if (older.action != icd::MarkerAction::DeleteAll) {
+      const auto newer = changes.find({older.ns, older.id});
+      return newer != changes.end() && overtakes(newer->second, older);
+    }
+    again.clear();
+    for (const auto& [key, newer] : changes) {
+      if (newer.stands && overtakes(newer, older)) again.push_back(newer.marker);
+    }
+    return false;
+  });
+  std::ranges::move(again, std::back_inserter(update.markers));
+  return removed;
+}
+
+void OvertakenMarkers::record(const icd::MarkersUpdate& update, const Upload& upload) {
+  if (upload.overlaps == 0) forget(upload.address);
+  if (upload.overlaps == 0 && clients_.empty()) return;
+  for (const icd::Marker& marker : update.markers) {
+    replace_others(marker, upload.address);
+    if (upload.overlaps == 0) continue;
+    if (marker.action == icd::MarkerAction::DeleteAll) {
+      forget(upload.address);
+      clients_[upload.address].delete_all = {marker, upload.ended};
+    } else {
+      Change& change = clients_[upload.address].changes[{marker.ns, marker.id}];
+      bytes_ += icd::bytes_of(marker) - (change.ended == 0 ? 0 : icd::bytes_of(change.marker));
+      change = {marker, upload.ended};
+    }
+  }
+  if (bytes_ <= kMostBytes) return;
+  clients_.clear();
+  bytes_ = 0;
+}
+
+void OvertakenMarkers::replace_others(const icd::Marker& newer, const std::string& address) {
+  for (auto& [other, client] : clients_) {
+    if (other == address) continue;
+    if (newer.action == icd::MarkerAction::DeleteAll) {
+      for (auto& [key, change] : client.changes) change.stands = false;
+    } else if (const auto same = client.changes.find({newer.ns, newer.id}); same != client.changes.end()) {
+      same->second.stands = false;
+    }
+  }
+}
+
+void OvertakenMarkers::forget(const std::string& address) {
+  const auto client = clients_.find(address);
+  if (client == clients_.end()) return;
+  for (const auto& [key, change] : client->second.changes) bytes_ -= icd::bytes_of(change.marker);
+  clients_.erase(client);
+}
 
 StampShift::Address& StampShift::address_of(const std::string& address) {
   if (addresses_.size() >= kMostAddresses && !addresses_.contains(address)) {

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "icd/map_update.hpp"
+#include "icd/mapping.hpp"
 #include "queues/lattice.hpp"
 
 namespace adit::queues {

@@ -4,7 +4,6 @@
 
 #include "icd/sentence.hpp"
 #include "icd/try.hpp"
-#include "settings/consistency.hpp"
 #include "settings/reader.hpp"
 
 namespace adit::settings {

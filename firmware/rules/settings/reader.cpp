@@ -1,12 +1,17 @@
 #include "settings/reader.hpp"
 
+#include <arpa/inet.h>
+
 #include <algorithm>
+#include <array>
+#include <utility>
 #include <vector>
 
 #include "codec/json.hpp"
 #include "icd/sentence.hpp"
 #include "icd/suggestion.hpp"
 #include "icd/text.hpp"
+#include "settings/subnet.hpp"
 
 namespace adit::settings {
 namespace {
@@ -108,6 +113,178 @@ void Reader::tell_missing(const Child& child, const std::string& pattern, const 
   } else if (child.key->required) {
     errors.push_back({path, "missing; expected " + range_of(child.key->kind)});
   }
+}
+
+namespace {
+
+std::string item(std::size_t index) {
+  return "team.listen[" + std::to_string(index) + "]";
+}
+
+/// Properties of an IPv4 or IPv6 address.
+struct Host {
+  bool any = false, loopback = false;
+  bool several = false;  // multicast or broadcast
+  bool mapped = false;   // IPv4 within IPv6
+};
+
+Host host_of(const std::string& text) {
+  if (const auto ipv4 = ipv4_of(text)) {
+    return {.any = *ipv4 == 0, .loopback = *ipv4 >> 24 == 127, .several = *ipv4 >> 28 >= 14};
+  }
+  in6_addr ipv6{};
+  if (inet_pton(AF_INET6, text.c_str(), &ipv6) != 1) return {};
+  return {.any = IN6_IS_ADDR_UNSPECIFIED(&ipv6) != 0,
+          .loopback = IN6_IS_ADDR_LOOPBACK(&ipv6) != 0,
+          .several = IN6_IS_ADDR_MULTICAST(&ipv6) != 0,
+          .mapped = IN6_IS_ADDR_V4MAPPED(&ipv6) != 0};
+}
+
+/// Whether `listen` receives traffic to `endpoint`, as far as the addresses show.
+bool comes_in_at(const Address& listen, const Address& endpoint) {
+  if (listen == endpoint) return true;
+  return listen.port == endpoint.port && host_of(listen.address).any && host_of(endpoint.address).loopback;
+}
+
+bool is_endpoint(const Address& listen, const Settings& settings) {
+  const auto has = [&](const auto& post) {
+    return comes_in_at(listen, post.scoring) || comes_in_at(listen, post.mapping);
+  };
+  return has(settings.command_post) || std::ranges::any_of(settings.courses, has);
+}
+
+void check_endpoint(const std::string& path, const Address& address, std::vector<Error>& errors) {
+  const Host host = host_of(address.address);
+  if (host.any || host.several) {
+    errors.push_back({path, icd::sentence(address.address, " is no address of one machine")});
+  } else if (host.mapped) {
+    errors.push_back(
+        {path, icd::sentence(address.address, " is an IPv4 address: write it in the form 10.0.0.1")});
+  }
+}
+
+void check_ntp_server(const std::string& address, std::vector<Error>& errors) {
+  const Host host = host_of(address);
+  if (!address.empty() && (host.any || host.several || host.loopback))
+    errors.push_back({"clock.ntp_server", icd::sentence(address, " is no address of another machine")});
+}
+
+void check_endpoints(const Settings& settings, std::vector<Error>& errors) {
+  const auto is_own = [&settings](const Address& endpoint) {  // check_listen() reports these
+    return std::ranges::find(settings.team.listen, endpoint) != settings.team.listen.end();
+  };
+  const auto check = [&](const std::string& of, const auto& post) {
+    if (!is_own(post.scoring)) check_endpoint(of + ".scoring.address", post.scoring, errors);
+    if (!is_own(post.mapping)) check_endpoint(of + ".mapping.address", post.mapping, errors);
+  };
+  check("command_post", settings.command_post);
+  for (std::size_t i = 0; i < settings.courses.size(); ++i) {
+    check(icd::sentence("courses[", i, "]"), settings.courses[i]);
+  }
+}
+
+void check_listen(const Settings& settings, std::vector<Error>& errors) {
+  const auto& listen = settings.team.listen;
+  for (std::size_t i = 0; i < listen.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (listen[i].port != 0 && listen[i] == listen[j])
+        errors.push_back({item(i), "the same as " + item(j)});
+    }
+    if (is_endpoint(listen[i], settings)) {
+      errors.push_back(
+          {item(i), "the same as an endpoint of the Command Post, so that Adit would post to itself"});
+    }
+  }
+}
+
+/// Names are unique. An alias is neither another robot's alias nor a robot's name, so that a sender is
+/// unambiguous.
+void check_robots(const std::vector<Robot>& robots, std::vector<Error>& errors) {
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    const std::string name = icd::sentence("robots[", i, "].name"),
+                      alias = icd::sentence("robots[", i, "].alias");
+    for (std::size_t j = 0; j < robots.size(); ++j) {
+      if (j < i && robots[i].name == robots[j].name) {
+        errors.push_back({name, icd::sentence("the same as robots[", j, "].name")});
+      }
+      if (robots[i].alias.empty()) continue;
+      if (j < i && robots[i].alias == robots[j].alias) {
+        errors.push_back({alias, icd::sentence("the same as robots[", j, "].alias")});
+      }
+      if (robots[i].alias == robots[j].name) {
+        errors.push_back(
+            {alias, icd::sentence("the same as robots[", j, "].name; an alias is another name")});
+      }
+    }
+  }
+}
+
+/// A whole cloud replaces earlier ones, so points left out of it would be lost.
+void check_voxels(const std::vector<Robot>& robots, std::vector<Error>& errors) {
+  constexpr double kSmallest = 0.01;
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    const std::string path = icd::sentence("robots[", i, "].voxel_metres");
+    const double edge = robots[i].voxel_metres;
+    if (edge > 0 && edge < kSmallest) {
+      errors.push_back({path, icd::sentence("expected 0, or 0.01 to 10, got ", edge)});
+    } else if (edge > 0 && robots[i].clouds == queues::Clouds::Whole) {
+      errors.push_back({path, icd::sentence("robots[", i,
+                                            "].clouds is \"whole\": points can be left out only of clouds "
+                                            "that the Command Post adds to the earlier clouds")});
+    }
+  }
+}
+
+void check_courses(const Settings& settings, std::vector<Error>& errors) {
+  const std::vector<Course>& courses = settings.courses;
+  for (std::size_t i = 0; i < courses.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (courses[i].name == courses[j].name) {
+        errors.push_back(
+            {icd::sentence("courses[", i, "].name"), icd::sentence("the same as courses[", j, "].name")});
+      }
+    }
+  }
+  const std::string& course = settings.command_post.course;
+  if (course.empty() || std::ranges::find(courses, course, &Course::name) != courses.end()) return;
+  const std::string known = icd::listed(courses, &Course::name);
+  errors.push_back({"command_post.course",
+                    icd::sentence("no course is called ", course,
+                                  known.empty() ? "; no courses are set up" : "; the courses are ", known)});
+}
+
+}  // namespace
+
+void check_panel(const Panel& panel, std::vector<Error>& errors) {
+  const std::array<std::pair<const char*, const std::string&>, 5> lines = {
+      {{"panel.health", panel.health},
+       {"panel.scoring", panel.scoring},
+       {"panel.mapping", panel.mapping},
+       {"panel.attention", panel.attention},
+       {"panel.button", panel.button}}};
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const auto& [path, line] = lines[i];
+    for (std::size_t j = 0; j < i; ++j) {
+      if (!line.empty() && line == lines[j].second) {
+        errors.push_back({path, std::string("the same line as ") + lines[j].first});
+      }
+    }
+  }
+  if (!panel.chip.empty() && panel.is_simulated()) {
+    errors.push_back({"panel.chip", "names a chip, but neither a light nor the button has a line"});
+  }
+}
+
+std::vector<Error> contradictions(const Settings& settings) {
+  std::vector<Error> errors;
+  check_endpoints(settings, errors);
+  check_ntp_server(settings.clock.ntp_server, errors);
+  check_listen(settings, errors);
+  check_panel(settings.panel, errors);
+  check_robots(settings.robots, errors);
+  check_voxels(settings.robots, errors);
+  check_courses(settings, errors);
+  return errors;
 }
 
 }  // namespace adit::settings

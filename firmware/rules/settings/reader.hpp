@@ -38,4 +38,10 @@ std::expected<codec::Value, std::vector<Error>> read_json(std::string_view json)
 /// "team.listen"
 std::string joined(const std::string& path, std::string_view name);
 
+/// Contradictions between settings that are valid on their own.
+std::vector<Error> contradictions(const Settings& settings);
+
+/// The same for the panel alone.
+void check_panel(const Panel& panel, std::vector<Error>& errors);
+
 }  // namespace adit::settings

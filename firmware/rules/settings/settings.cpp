@@ -1,12 +1,12 @@
 #include "settings/settings.hpp"
 
 #include <algorithm>
+#include <string_view>
 
 #include "icd/require.hpp"
 #include "icd/try.hpp"
-#include "settings/consistency.hpp"
 #include "settings/reader.hpp"
-#include "settings/saved.hpp"
+#include "settings/written.hpp"
 
 namespace adit::settings {
 namespace {
@@ -92,6 +92,43 @@ std::vector<std::string> token_names(const Settings& settings) {
     names.push_back("course." + course.name + ".mapping");
   }
   return names;
+}
+
+namespace {
+
+struct Row {
+  std::string_view begins;  // beginning of a setting's path
+  Restarts restarts;
+};
+
+constexpr Row kRows[] = {
+    {"team.listen", {.listeners = true}},
+    {"team.interface", {.listeners = true}},
+    {"team.connections", {.listeners = true}},  // and team.connections_per_address
+    {"command_post.scoring.", {.scoring = true}},
+    {"command_post.mapping.", {.mapping = true}},
+    {"command_post.interface", {.scoring = true, .mapping = true}},
+    {"command_post.budget_mbit", {.mapping = true}},
+    {"command_post.timeouts.connect_ms", {.scoring = true, .mapping = true}},
+    {"command_post.timeouts.scoring_answer_ms", {.scoring = true}},
+    {"command_post.timeouts.mapping_answer_ms", {.mapping = true}},
+    {"panel.", {.panel = true}},
+};
+
+}  // namespace
+
+Restarts restarts_by(const Settings& running, const Settings& next) {
+  Restarts all;
+  for (const Change& change : changes(running, next)) {
+    for (const auto& [begins, restarts] : kRows) {
+      if (!change.path.starts_with(begins)) continue;
+      all.listeners = all.listeners || restarts.listeners;
+      all.scoring = all.scoring || restarts.scoring;
+      all.mapping = all.mapping || restarts.mapping;
+      all.panel = all.panel || restarts.panel;
+    }
+  }
+  return all;
 }
 
 }  // namespace adit::settings

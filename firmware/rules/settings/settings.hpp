@@ -14,7 +14,6 @@
 #include "icd/robot_name.hpp"
 #include "icd/rules.hpp"
 #include "queues/clouds.hpp"
-#include "queues/precision.hpp"
 
 namespace adit::settings {
 
@@ -187,5 +186,17 @@ std::map<icd::RobotName, Setting> by_robot(const std::vector<Robot>& robots, Set
 
 /// "a: what; b: what"
 std::string sentence_of(const std::vector<Error>& errors);
+
+/// The parts of a running gateway that restart for new settings. All others continue with the new values.
+struct Restarts {
+  bool listeners = false;  // the team's sockets
+  bool scoring = false;    // the scoring connection, and the known state of the run
+  bool mapping = false;    // the mapping connections
+  bool panel = false;      // the lines of lights and button
+  friend bool operator==(const Restarts&, const Restarts&) = default;
+};
+
+/// `running`, `next`: from in_use().
+Restarts restarts_by(const Settings& running, const Settings& next);
 
 }  // namespace adit::settings

@@ -4,8 +4,8 @@
 #include <cstdint>
 
 #include "codec/json.hpp"
-#include "icd/hex.hpp"
 #include "icd/sentence.hpp"
+#include "icd/text.hpp"
 #include "settings/keys.hpp"
 
 namespace adit::settings {

@@ -1,6 +1,6 @@
 #include "spare/content.hpp"
 
-#include "codec/row_file.hpp"
+#include "codec/row.hpp"
 #include "icd/sentence.hpp"
 #include "icd/text.hpp"
 

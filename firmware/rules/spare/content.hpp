@@ -9,7 +9,7 @@
 
 #include "codec/row.hpp"
 #include "icd/bearer_token.hpp"
-#include "icd/run_status.hpp"
+#include "icd/scoring.hpp"
 
 namespace adit::spare {
 

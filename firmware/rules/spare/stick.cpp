@@ -1,12 +1,70 @@
 #include "spare/stick.hpp"
 
 #include <algorithm>
+#include <array>
+#include <ctime>
 
 #include "codec/nonce.hpp"
 #include "icd/sentence.hpp"
-#include "spare/file_name.hpp"
 
 namespace adit::spare {
+namespace {
+
+constexpr std::string_view kBegin = "adit-", kEnd = ".adit-spare";
+constexpr std::size_t kLongest = 96, kLongestBox = 48;
+constexpr const char* kTime = "%Y%m%dT%H%M%SZ";
+constexpr std::size_t kTimeLetters = 16;
+
+bool is_plain(char each) {
+  return (each >= '0' && each <= '9') || (each >= 'a' && each <= 'z') || (each >= 'A' && each <= 'Z') ||
+         each == '.';
+}
+
+std::string written(double at) {
+  const auto seconds = static_cast<std::time_t>(at);
+  std::tm parts{};
+  std::array<char, kTimeLetters + 1> text{};
+  if (at < 0 || at >= 253402300800 || gmtime_r(&seconds, &parts) == nullptr) return "";
+  return {text.data(), std::strftime(text.data(), text.size(), kTime, &parts)};
+}
+
+std::optional<double> time_in(std::string_view text) {
+  std::tm parts{};
+  const std::string whole(text);
+  const char* const end = strptime(whole.c_str(), kTime, &parts);
+  if (whole.size() != kTimeLetters || end == nullptr || *end != '\0') return std::nullopt;
+  const auto at = static_cast<double>(timegm(&parts));
+  return written(at) == whole ? std::optional(at) : std::nullopt;
+}
+
+}  // namespace
+
+std::string file_name(std::string_view box, double at) {
+  std::string name(kBegin);
+  for (const char each : box.substr(0, kLongestBox)) name += is_plain(each) ? each : '-';
+  return name.append("-").append(written(at)).append(kEnd);
+}
+
+bool is_file_name(std::string_view name) {
+  return name.size() > kEnd.size() && name.size() <= kLongest && name.ends_with(kEnd) &&
+         !name.starts_with('.') &&
+         std::ranges::all_of(name, [](char each) { return each >= ' ' && each <= '~' && each != '/'; });
+}
+
+NamedFor named_for(std::string_view name) {
+  if (!is_file_name(name) || !name.starts_with(kBegin)) return {};
+  name.remove_prefix(kBegin.size());
+  name.remove_suffix(std::min(kEnd.size(), name.size()));
+  const std::size_t hyphen = name.rfind('-');
+  if (hyphen == std::string_view::npos || hyphen == 0) return {};
+  const auto at = time_in(name.substr(hyphen + 1));
+  return at ? NamedFor{.box = std::string(name.substr(0, hyphen)), .at = at} : NamedFor{};
+}
+
+bool is_before(std::string_view left, std::string_view right) {
+  const auto one = named_for(left).at, other = named_for(right).at;
+  return one == other ? left < right : one > other;
+}
 
 std::expected<Medium, std::string> medium_for(std::span<const Medium> media, std::uint64_t size) {
   if (media.empty()) return std::unexpected("there is no stick in the box");

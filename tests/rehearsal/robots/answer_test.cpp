@@ -1,8 +1,7 @@
-#include "rehearsal/robots/answer.hpp"
-
 #include <gtest/gtest.h>
 
-#include "rehearsal/robots/tally.hpp"
+#include "rehearsal/robots/client.hpp"
+#include "rehearsal/robots/http.hpp"
 
 namespace adit::robots {
 namespace {

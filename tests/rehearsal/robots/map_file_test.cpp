@@ -9,11 +9,6 @@
 #include <fstream>
 #include <random>
 
-#include "rehearsal/robots/maps/map_yaml.hpp"
-#include "rehearsal/robots/maps/pcd.hpp"
-#include "rehearsal/robots/maps/pgm.hpp"
-#include "rehearsal/robots/maps/ply.hpp"
-
 namespace adit::robots {
 namespace {
 

@@ -1,4 +1,4 @@
-// Which reports may be of one artifact, and which are the same: dispatch/same_report.hpp has the rules.
+// Which reports may be of one artifact, and which are the same: dispatch/report.hpp has the rules.
 
 import { grouped } from "./grouped.js";
 

@@ -1,5 +1,5 @@
 // A colour and a pattern for each robot: those that the settings choose, else by the order of first poses. Every page and the run's report
-// thus show the same (archive/run_report_drawn.cpp). Robots of neighbouring hues differ in lightness and pattern. At night there is one hue.
+// thus show the same (archive/run_report.cpp). Robots of neighbouring hues differ in lightness and pattern. At night there is one hue.
 import { themeNow, whenThemeChanges } from "./theme_now.js";
 
 const HUES = [[37, 63], [87, 146], [170, 265], [289, 373]]; // degrees of OKLCH, away from those of the levels

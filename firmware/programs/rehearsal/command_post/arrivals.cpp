@@ -4,13 +4,186 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
+#include <functional>
 #include <numeric>
+#include <set>
 #include <span>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "rehearsal/command_post/fields.hpp"
 #include "rehearsal/command_post/pictures.hpp"
 
 namespace adit::rehearsal {
+namespace {
+
+using Milliseconds = std::chrono::milliseconds;
+
+constexpr std::string_view kDateFollows = "\x0d\x57\x2a\x3d\x63";  // cells of 13, 87, 42, 61, 99
+constexpr std::size_t kDigits = 5;
+constexpr std::int64_t kBase = 101, kModulus = kBase * kBase * kBase * kBase * kBase;
+constexpr std::uint32_t kUint32 = 6;  // ICD 6.3.2
+
+/// The moment nearest to `now` whose milliseconds since 1970 are `value` modulo `modulus`.
+Moment nearest(std::int64_t value, std::int64_t modulus, Moment now) {
+  std::int64_t before = (now.time_since_epoch().count() - value) % modulus;
+  if (before > modulus / 2) before -= modulus;
+  if (before < -modulus / 2) before += modulus;
+  return now - Milliseconds(before);
+}
+
+std::optional<Dates> dates_of_grid(std::string_view cells, Moment now) {
+  std::optional<Dates> dates;
+  for (std::size_t at = cells.find(kDateFollows); at != std::string_view::npos;
+       at = cells.find(kDateFollows, at + 1)) {
+    const std::string_view digits = cells.substr(at + kDateFollows.size(), kDigits);
+    if (digits.size() < kDigits) break;
+    std::int64_t value = 0;
+    for (const char digit : digits) value = value * kBase + static_cast<unsigned char>(digit);
+    const Moment posted = nearest(value, kModulus, now);
+    if (!dates || posted > dates->newest) dates = {.newest = posted, .points = {}};
+  }
+  return dates;
+}
+
+/// Each point once, in whatever order they are: its date, which stands at `offset`, and a hash of all of it.
+std::vector<std::pair<std::uint32_t, std::size_t>> different_points(const Cloud& cloud, std::string_view data,
+                                                                    std::size_t offset) {
+  std::vector<std::pair<std::uint32_t, std::size_t>> points;
+  points.reserve(data.size() / cloud.point_step);
+  for (; data.size() >= cloud.point_step; data.remove_prefix(cloud.point_step)) {
+    const std::string_view point = data.substr(0, cloud.point_step);
+    std::uint32_t posted = 0;
+    std::memcpy(&posted, point.data() + offset, sizeof posted);
+    points.emplace_back(posted, std::hash<std::string_view>{}(point));
+  }
+  std::ranges::sort(points);
+  const auto repeated = std::ranges::unique(points);
+  points.erase(repeated.begin(), repeated.end());
+  return points;
+}
+
+std::optional<Dates> dates_of_cloud(const Cloud& cloud, std::string_view data, Moment now) {
+  const auto field = std::ranges::find(cloud.fields, "posted_ms", &CloudField::name);
+  if (field == cloud.fields.end() || field->datatype != kUint32 || cloud.is_bigendian) return std::nullopt;
+  const auto points = different_points(cloud, data, field->offset);
+  if (points.empty()) return std::nullopt;
+  std::map<std::uint32_t, std::uint64_t> counts;
+  for (const auto& [posted, point] : points) ++counts[posted];
+  Dates dates;
+  for (const auto& [posted, count] : counts) {
+    dates.points[nearest(posted, std::int64_t{1} << 32, now)] += count;
+  }
+  dates.newest = dates.points.rbegin()->first;
+  return dates;
+}
+
+}  // namespace
+
+std::optional<Dates> dates_of(const MapMessage& map, Moment now) {
+  const auto* const cloud = std::get_if<Cloud>(&map.msg);
+  return cloud != nullptr ? dates_of_cloud(*cloud, map.data, now) : dates_of_grid(map.data, now);
+}
+
+namespace {
+
+constexpr int kDelete = 2, kDeleteAll = 3;
+constexpr std::size_t kMostMarkers = 100'000, kMostRobots = 1000, kMostDifferences = 20;
+constexpr double kSamePlace = 1e-3;  // metres: some robots post float32
+
+}  // namespace
+
+void MarkerDisplay::show(const std::vector<MarkerChange>& changes, Findings& findings) {
+  if (changes.empty()) return;
+  const std::lock_guard lock(mutex_);
+  for (const MarkerChange& change : changes) {
+    const Key key{change.ns, change.id};
+    if (change.action == kDeleteAll) standing_.clear();
+    if (change.action == kDelete) standing_.erase(key);
+    if (change.action == 0 && (standing_.size() < kMostMarkers || standing_.contains(key)))
+      standing_[key] = change.x;
+  }
+  for (std::size_t id = changes.size(); id < before_; ++id) {
+    if (standing_.erase({"", static_cast<std::int64_t>(id)}) == 0) continue;
+    findings.tells("markers: the organiser's display deletes id " + std::to_string(id) +
+                   " of an empty ns because this message has fewer markers than the previous one");
+  }
+  before_ = changes.size();
+}
+
+std::expected<void, std::string> MarkerDisplay::told(const Json& posted) {
+  Findings findings;
+  const auto all = Field(posted, "", findings).elements();
+  const std::lock_guard lock(mutex_);
+  for (const Field& one : all.value_or(std::vector<Field>{})) {
+    const auto standing = one.optional_member("standing");
+    if (!standing) continue;
+    const auto robot = one.member("robot");
+    const auto name = robot ? robot->text() : std::nullopt;
+    const auto markers = standing->elements();
+    if (!name || !markers || (posted_.size() >= kMostRobots && !posted_.contains(*name))) break;
+    Places places;
+    for (const Field& marker : *markers) {
+      const auto ns = marker.member("ns"), id = marker.member("id"), x = marker.member("x");
+      const auto text = ns ? ns->text() : std::nullopt;
+      const auto number = id ? id->integer(INT32_MIN, INT32_MAX) : std::nullopt;
+      const auto at = x ? x->number() : std::nullopt;
+      if (text && number && at && places.size() < kMostMarkers) places[{*text, *number}] = *at;
+    }
+    posted_[*name] = std::move(places);
+  }
+  if (findings.all().empty()) return {};
+  return std::unexpected(findings.all().front().sentence);
+}
+
+/// Between what stands and what should.
+std::vector<std::string> MarkerDisplay::differences() const {
+  std::vector<std::string> all;
+  std::set<std::string> told;  // namespaces of which some robot has told
+  Places should;
+  for (const auto& [robot, places] : posted_) {
+    for (const auto& [key, x] : places) told.insert(key.first);
+    should.insert(places.begin(), places.end());
+  }
+  const auto text = [](const Key& key) {
+    return "marker " + std::to_string(key.second) + " of " + key.first;
+  };
+  for (const auto& [key, x] : should) {
+    const auto found = standing_.find(key);
+    if (found == standing_.end()) {
+      all.push_back(text(key) + " is missing");
+    } else if (std::abs(found->second - x) > kSamePlace) {
+      all.push_back(text(key) + " is at x " + std::to_string(found->second) + ", not " + std::to_string(x));
+    }
+  }
+  for (const auto& [key, x] : standing_) {
+    if (told.contains(key.first) && !should.contains(key)) all.push_back(text(key) + " was deleted");
+  }
+  return all;
+}
+
+OrderedJson MarkerDisplay::json() const {
+  const std::lock_guard lock(mutex_);
+  std::size_t should = 0;
+  for (const auto& [robot, places] : posted_) should += places.size();
+  std::vector<std::string> first = differences();
+  const std::size_t count = first.size();
+  first.resize(std::min(count, kMostDifferences));
+  return {
+      {"here", standing_.size()}, {"posted", should}, {"difference_count", count}, {"differences", first}};
+}
+
+std::string MarkerDisplay::text() const {
+  const OrderedJson all = json();
+  if (all["posted"] == 0) return "";
+  std::string lines = "markers: " + all["here"].dump() + " displayed, the robots have " +
+                      all["posted"].dump() + "; " + all["difference_count"].dump() + " differ\n";
+  for (const OrderedJson& sentence : all["differences"]) lines += "  " + sentence.dump() + "\n";
+  return lines;
+}
+
 namespace {
 
 using Milliseconds = std::chrono::milliseconds;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <expected>
 #include <map>
@@ -7,13 +9,58 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
-#include "rehearsal/command_post/dates.hpp"
+#include "rehearsal/command_post/fields.hpp"
 #include "rehearsal/command_post/json.hpp"
-#include "rehearsal/known_cells.hpp"
-#include "rehearsal/known_places.hpp"
+#include "rehearsal/command_post/messages.hpp"
+#include "rehearsal/known_ground.hpp"
 
 namespace adit::rehearsal {
+
+/// By the machine's clock.
+using Moment = std::chrono::sys_time<std::chrono::milliseconds>;
+
+/// When a map's data was posted, as adit-robots writes it into its maps (README.md, 'How old').
+struct Dates {
+  Moment newest;
+  // Of a cloud: how many different points were posted then. A cloud that was joined of several has some of
+  // them twice.
+  std::map<Moment, std::uint64_t> points;
+};
+
+/// Nothing of a map that tells no date. A date is read as the one nearest to `now`.
+std::optional<Dates> dates_of(const MapMessage& map, Moment now);
+
+/// The organiser's display of markers, as measured: after a message with fewer markers than the one before,
+/// its server deletes the markers with an empty `ns` whose ids are the numbers that are missing. What stands
+/// is compared with what the robots posted. Bounded. Safe for use by several threads.
+class MarkerDisplay {
+ public:
+  /// Of a message that was taken. Writes down each marker that the server deletes by itself and that stands.
+  void show(const std::vector<MarkerChange>& changes, Findings& findings);
+
+  /// What adit-robots says that should stand, of each robot:
+  /// [{"robot": "r1", "kind": "markers", "standing": [{"ns": "r1/path", "id": 3, "x": METRES}]}]. Rows of
+  /// other kinds are skipped. The error is a sentence that names the field.
+  std::expected<void, std::string> told(const Json& posted);
+
+  /// How many stand, how many should, and sentences about the first that differ.
+  OrderedJson json() const;
+  /// The same as lines; "" if no robot told anything.
+  std::string text() const;
+
+ private:
+  using Key = std::pair<std::string, std::int64_t>;  // ns, id
+  using Places = std::map<Key, double>;              // x of each, metres
+
+  std::vector<std::string> differences() const;
+
+  mutable std::mutex mutex_;  // guards all below
+  Places standing_;
+  std::size_t before_ = 0;                // markers of the message before
+  std::map<std::string, Places> posted_;  // by robot
+};
 
 /// How old the maps were when they came, and how much of what was posted is here: of each robot and kind.
 /// Bounded. Safe for use by several threads.

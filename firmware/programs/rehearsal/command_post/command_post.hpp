@@ -10,14 +10,12 @@
 #include <vector>
 
 #include "rehearsal/command_post/arrivals.hpp"
-#include "rehearsal/command_post/faults.hpp"
+#include "rehearsal/command_post/fault.hpp"
 #include "rehearsal/command_post/judgement.hpp"
-#include "rehearsal/command_post/marker_display.hpp"
 #include "rehearsal/command_post/options.hpp"
 #include "rehearsal/command_post/record.hpp"
 #include "rehearsal/command_post/run.hpp"
 #include "rehearsal/command_post/secrets.hpp"
-#include "rehearsal/command_post/transcript.hpp"
 
 namespace adit::rehearsal {
 

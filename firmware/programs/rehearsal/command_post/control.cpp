@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "rehearsal/command_post/document.hpp"
 #include "rehearsal/command_post/gate.hpp"
+#include "rehearsal/command_post/json.hpp"
 
 namespace adit::rehearsal {
 namespace {

@@ -2,11 +2,20 @@
 
 #include <array>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <expected>
+#include <mutex>
 #include <optional>
+#include <random>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
+
+#include "rehearsal/command_post/http.hpp"
+#include "rehearsal/command_post/json.hpp"
 
 namespace adit::rehearsal {
 
@@ -61,5 +70,73 @@ std::expected<Fault, std::string> read_fault(std::string_view words);
 
 /// The words again, in one order; "ok" where there is nothing wrong.
 std::string words_of(const Fault& fault);
+
+/// The requests that faults can be aimed at.
+enum class Aim : std::uint8_t {
+  Reports,  // POST /api/artifact_reports
+  Status,   // GET /api/status
+  Mapping,  // POST /map/update, /state/update, /markers/update
+};
+inline constexpr std::array<std::string_view, 3> kAims = {"reports", "status", "mapping"};
+
+/// The faults that wait for their requests: a queue for each aim, and what happens at random where a queue is
+/// empty; and whether the run's clocks stand, which is told like a fault, but of no one request. An error is
+/// a sentence that names what was not understood. Safe for use by several threads.
+class Faults {
+ public:
+  static constexpr std::size_t kMost = 10'000;
+
+  explicit Faults(std::uint64_t seed) : chance_(seed) {}
+
+  using Told = std::expected<void, std::string>;
+
+  /// "reports:record-then-drop": appended to that queue. "clock:constant", "clock:running": from now on.
+  Told tell(std::string_view aim_and_fault);
+  /// "reports:record-then-drop=0.1": to one request of ten, on average. "reports:429=3=0.1" begins at one of
+  /// ten that find no fault waiting, "mapping:500,robot=ugv1=0.1" happens to one of ten of that robot's.
+  Told tell_rate(std::string_view aim_fault_and_rate);
+  /// {"reports": ["record-then-drop", "ok"], "status": ["500"]}: appended, all of it or nothing.
+  Told tell_all(const Json& told);
+
+  /// From now on every request is answered as it should be.
+  void clear();
+
+  /// The fault for a request that has come; where there is none it behaves. Once a fault has said how wrong
+  /// remaining_reports is to be, every later one for Status says so too; while the clocks stand, every one
+  /// for Status and Reports does.
+  /// `body`: of the request; one that does not name the robot of the fault whose turn it is takes none.
+  Fault next(Aim aim, std::string_view body, Clock::time_point now);
+
+  /// What waits, what happens at random, how wrong remaining_reports is, and whether the clocks run.
+  OrderedJson left() const;
+
+ private:
+  struct Rate {
+    Aim aim;
+    Fault fault;
+    double rate;
+  };
+  using Aimed = std::pair<Aim, Fault>;
+  /// What was told at once: faults that wait, and whether the clocks stand from now on.
+  struct Orders {
+    std::vector<Aimed> aimed;
+    std::optional<bool> clocks_stand;
+  };
+
+  static std::expected<Aimed, std::string> read_aimed(std::string_view text);
+  static Told read_list(const std::string& name, const Json& list, Orders& orders);
+  Told obey(const Orders& orders);
+  std::optional<Fault> from_queue(Aim aim, std::string_view body, Clock::time_point now);
+  Fault at_random(Aim aim, std::string_view body, Clock::time_point now);
+  std::deque<Fault>& queue(Aim aim) { return queues_[static_cast<std::size_t>(aim)]; }
+
+  mutable std::mutex mutex_;
+  std::array<std::deque<Fault>, kAims.size()> queues_;
+  std::array<std::optional<Clock::time_point>, kAims.size()> until_;  // of the first in each queue
+  std::vector<Rate> rates_;
+  std::int64_t remaining_offset_ = 0;
+  bool clocks_stand_ = false;
+  std::mt19937_64 chance_;
+};
 
 }  // namespace adit::rehearsal

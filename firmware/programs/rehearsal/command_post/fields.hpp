@@ -1,15 +1,84 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "rehearsal/command_post/findings.hpp"
 #include "rehearsal/command_post/json.hpp"
 
 namespace adit::rehearsal {
+
+/// Which Command Post is played: the ICD's, to the letter, or the measured test servers.
+enum class Manner { Strict, AsMeasured };
+
+/// What the measured mapping server does about something that a strict one refuses.
+enum class Measured { Takes, Refuses, Dies, Hangs };
+
+/// One thing found in a message: a row of the table 'what the ICD says, what the server does'.
+struct Finding {
+  std::string sentence;    // names the field by its path
+  int status = 422;        // of the refusal, in either manner
+  bool breaks_icd = true;  // else only the measured server minds
+  Measured measured = Measured::Refuses;
+  bool strict_refuses = true;  // if it breaks the ICD
+};
+
+/// Whether a Command Post of that manner refuses a message for it.
+inline bool decides(const Finding& finding, Manner manner) {
+  return manner == Manner::Strict ? finding.breaks_icd && finding.strict_refuses
+                                  : finding.measured != Measured::Takes;
+}
+
+/// What was found in one message, in the order of reading. Only the first kMost are kept.
+class Findings {
+ public:
+  static constexpr std::size_t kMost = 20;
+  static constexpr std::size_t kLongest = 400;
+
+  /// The ICD forbids it.
+  void breaks(std::string sentence, Measured measured = Measured::Refuses, int status = 422) {
+    add({std::move(sentence), status, true, measured});
+  }
+  /// The ICD forbids it, and either manner takes the message all the same.
+  void tells(std::string sentence) { add({std::move(sentence), 422, true, Measured::Takes, false}); }
+  /// The ICD allows it, the measured server does not.
+  void displeases(std::string sentence) { add({std::move(sentence), 422, false, Measured::Refuses}); }
+
+  const std::vector<Finding>& all() const { return all_; }
+
+  /// The first that a Command Post of that manner does not take; null: it takes the message.
+  const Finding* decisive(Manner manner) const {
+    for (const Finding& finding : all_) {
+      if (decides(finding, manner)) return &finding;
+    }
+    return nullptr;
+  }
+
+  /// The sentences of those that break the ICD.
+  std::vector<std::string> violations() const {
+    std::vector<std::string> sentences;
+    for (const Finding& finding : all_) {
+      if (finding.breaks_icd) sentences.push_back(finding.sentence);
+    }
+    return sentences;
+  }
+
+ private:
+  void add(Finding finding) {
+    if (finding.sentence.size() > kLongest) finding.sentence.resize(kLongest);  // it may quote the sender
+    const auto is_first = [&](Manner manner) {
+      return decides(finding, manner) && decisive(manner) == nullptr;
+    };
+    // A finding that decides must not be lost behind many that do not.
+    if (all_.size() < kMost || is_first(Manner::Strict) || is_first(Manner::AsMeasured)) {
+      all_.push_back(std::move(finding));
+    }
+  }
+  std::vector<Finding> all_;
+};
 
 /// A value somewhere in a document: it knows its path ("msg.info.width") and writes down what is wrong with
 /// it. Whatever gives nothing has written down why. Valid as long as the document and the findings are.

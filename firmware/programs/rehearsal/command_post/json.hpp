@@ -1,7 +1,11 @@
 #pragma once
 
+#include <cstdint>
+#include <expected>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
+#include <string_view>
 
 namespace adit::rehearsal {
 
@@ -16,5 +20,17 @@ template <class AnyJson>
 std::string line_of(const AnyJson& value) {
   return value.dump(-1, ' ', false, AnyJson::error_handler_t::replace);
 }
+
+/// A body that was read, and what is wrong with it although it is well-formed.
+struct Document {
+  Json value;
+  std::optional<std::string> repeated;  // a member that some object holds twice
+};
+
+enum class Format : std::uint8_t { JsonText, CborBytes };
+
+/// Reads a whole body: JSON (RFC 8259, without a byte order mark) or CBOR (RFC 8949, text in UTF-8, no tags),
+/// nothing after it, nested no deeper than 64, at most 4 million values. An error says why it is none.
+std::expected<Document, std::string> read_document(std::string_view body, Format format);
 
 }  // namespace adit::rehearsal

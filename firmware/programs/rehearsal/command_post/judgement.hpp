@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "rehearsal/command_post/findings.hpp"
+#include "rehearsal/command_post/fields.hpp"
 #include "rehearsal/command_post/http.hpp"
 #include "rehearsal/command_post/json.hpp"
 #include "rehearsal/command_post/messages.hpp"

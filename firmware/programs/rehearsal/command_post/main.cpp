@@ -12,7 +12,7 @@
 #include <memory>
 #include <string_view>
 
-#include "command_line/answer.hpp"
+#include "command_line/read.hpp"
 #include "rehearsal/command_post/command_post.hpp"
 #include "rehearsal/command_post/control.hpp"
 #include "rehearsal/command_post/options.hpp"

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "rehearsal/command_post/base64.hpp"
-#include "rehearsal/command_post/inflate.hpp"
 #include "rehearsal/command_post/messages.hpp"
 #include "rehearsal/row_padding.hpp"
 

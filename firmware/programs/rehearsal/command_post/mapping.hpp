@@ -3,12 +3,27 @@
 #include <map>
 #include <mutex>
 #include <string>
+#include <vector>
 
+#include "rehearsal/command_post/fields.hpp"
+#include "rehearsal/command_post/gate.hpp"
+#include "rehearsal/command_post/geometry.hpp"
 #include "rehearsal/command_post/judgement.hpp"
-#include "rehearsal/command_post/rate_limit.hpp"
-#include "rehearsal/command_post/stamp_order.hpp"
 
 namespace adit::rehearsal {
+
+/// ICD 6.2: the stamps of a URI never run backward, within a message and from one to the next; equal ones are
+/// fine. Safe for use by several threads.
+class StampOrder {
+ public:
+  /// Writes down the first stamp that is before one that came earlier. A message that passes, or that is
+  /// taken all the same (`taken_anyhow`), counts from then on.
+  void check(const std::string& uri, const std::vector<Stamp>& stamps, bool taken_anyhow, Findings& findings);
+
+ private:
+  std::mutex mutex_;
+  std::map<std::string, double> latest_;
+};
 
 /// The mapping endpoint of the ICD's section 6, to the letter. At most `hz` requests a second for each URI.
 class StrictMapping : public Endpoint {

@@ -6,8 +6,8 @@
 #include <variant>
 #include <vector>
 
-#include "rehearsal/command_post/document.hpp"
 #include "rehearsal/command_post/geometry.hpp"
+#include "rehearsal/command_post/json.hpp"
 
 namespace adit::rehearsal {
 

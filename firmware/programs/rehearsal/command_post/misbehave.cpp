@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "rehearsal/command_post/document.hpp"
 #include "rehearsal/command_post/gate.hpp"
+#include "rehearsal/command_post/json.hpp"
 #include "rehearsal/command_post/run.hpp"
 
 namespace adit::rehearsal {

@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "rehearsal/command_post/fault.hpp"
-#include "rehearsal/command_post/faults.hpp"
 #include "rehearsal/command_post/judgement.hpp"
 
 namespace adit::rehearsal {

@@ -2,7 +2,7 @@
 
 #include <sstream>
 
-#include "command_line/number.hpp"
+#include "command_line/program.hpp"
 #include "rehearsal/command_post/fields.hpp"
 
 namespace adit::rehearsal {

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "command_line/program.hpp"
-#include "rehearsal/command_post/address.hpp"
-#include "rehearsal/command_post/findings.hpp"
-#include "rehearsal/command_post/rate_limit.hpp"
+#include "rehearsal/command_post/fields.hpp"
+#include "rehearsal/command_post/gate.hpp"
 #include "rehearsal/command_post/run.hpp"
+#include "rehearsal/command_post/server.hpp"
 
 namespace adit::rehearsal {
 

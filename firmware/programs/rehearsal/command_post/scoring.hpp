@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
+#include "rehearsal/command_post/gate.hpp"
 #include "rehearsal/command_post/judgement.hpp"
-#include "rehearsal/command_post/rate_limit.hpp"
 #include "rehearsal/command_post/run.hpp"
 
 namespace adit::rehearsal {

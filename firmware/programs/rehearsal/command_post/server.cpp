@@ -10,7 +10,6 @@
 #include <exception>
 
 #include "rehearsal/command_post/connection.hpp"
-#include "rehearsal/command_post/sockets.hpp"
 
 namespace adit::rehearsal {
 namespace {

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <condition_variable>
+#include <cstddef>
+#include <cstdint>
 #include <expected>
 #include <functional>
 #include <memory>
@@ -10,11 +13,43 @@
 #include <thread>
 
 #include "loop/file_descriptor.hpp"
-#include "rehearsal/command_post/address.hpp"
 #include "rehearsal/command_post/http.hpp"
-#include "rehearsal/command_post/link.hpp"
 
 namespace adit::rehearsal {
+
+/// A numeric IPv4 or IPv6 address and a TCP port; port 0: any that is free.
+struct Address {
+  std::string host;
+  std::uint16_t port = 0;
+
+  /// "127.0.0.1:8000", "[::1]:8000".
+  std::string text() const {
+    const bool v6 = host.find(':') != std::string::npos;
+    return (v6 ? "[" + host + "]" : host) + ":" + std::to_string(port);
+  }
+};
+
+/// The link to the Command Post. All connections share its rate in megabits a second: the pieces that they
+/// receive arrive one after the other. Safe for use by several threads.
+class Link {
+ public:
+  explicit Link(double megabits) : bits_per_second_(megabits * 1e6) {}
+
+  /// The time from now until `bytes` more have arrived.
+  std::chrono::milliseconds pass(std::size_t bytes) {
+    constexpr double bits_of_a_byte = 8;
+    const std::lock_guard lock(mutex_);
+    const auto now = Clock::now();
+    free_ = std::max(free_, now) + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(
+                                       static_cast<double>(bytes) * bits_of_a_byte / bits_per_second_));
+    return std::chrono::floor<std::chrono::milliseconds>(free_ - now);
+  }
+
+ private:
+  std::mutex mutex_;
+  const double bits_per_second_;
+  Clock::time_point free_;  // when the last received piece has arrived
+};
 
 /// How an endpoint behaves below its messages.
 struct WireManner {

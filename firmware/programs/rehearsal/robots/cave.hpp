@@ -1,14 +1,103 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
+#include <random>
 #include <string>
 #include <vector>
 
 #include "rehearsal/robots/messages.hpp"
-#include "rehearsal/robots/random.hpp"
-#include "rehearsal/robots/raster.hpp"
 
 namespace adit::robots {
+
+/// Draws that are the same on every machine for the same seed, which the distributions of <random> do not
+/// promise.
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : engine_(seed) {}
+
+  /// From `low` to below `high`.
+  double between(double low, double high) {
+    constexpr double kStep = 1.0 / static_cast<double>(1ull << 53);
+    return low + (high - low) * static_cast<double>(engine_() >> 11) * kStep;
+  }
+
+  bool chance(double probability) { return between(0, 1) < probability; }
+
+  /// From 0 to below `count`, which is above 0.
+  std::size_t below(std::size_t count) { return static_cast<std::size_t>(engine_() % count); }
+
+  /// Bell-shaped about 0 (Irwin-Hall of four), standard deviation `sigma`.
+  double noise(double sigma) {
+    constexpr double kUnitSigma = 0.57735026918962576;  // of the sum of four draws from -0.5 to 0.5
+    return sigma / kUnitSigma *
+           (between(-0.5, 0.5) + between(-0.5, 0.5) + between(-0.5, 0.5) + between(-0.5, 0.5));
+  }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+struct Cell {
+  int x = 0, y = 0;
+  friend bool operator==(const Cell&, const Cell&) = default;
+};
+
+/// The square lattice that the cave, every robot's knowledge of it and every grid lie on: row by row from
+/// the lower left.
+struct Lattice {
+  double resolution = 1;  // metres
+  double left = 0;        // metres, of cell (0, 0)'s lower left corner
+  double bottom = 0;
+  int width = 0, height = 0;
+
+  bool contains(Cell cell) const { return cell.x >= 0 && cell.y >= 0 && cell.x < width && cell.y < height; }
+  std::size_t size() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
+  std::size_t index(Cell cell) const {
+    return static_cast<std::size_t>(cell.y) * static_cast<std::size_t>(width) +
+           static_cast<std::size_t>(cell.x);
+  }
+  Cell cell_at(std::size_t index) const {
+    return {static_cast<int>(index % static_cast<std::size_t>(width)),
+            static_cast<int>(index / static_cast<std::size_t>(width))};
+  }
+  Cell cell_at(double x, double y) const {
+    return {static_cast<int>(std::floor((x - left) / resolution)),
+            static_cast<int>(std::floor((y - bottom) / resolution))};
+  }
+  double centre_x(Cell cell) const { return left + (cell.x + 0.5) * resolution; }
+  double centre_y(Cell cell) const { return bottom + (cell.y + 0.5) * resolution; }
+};
+
+/// A value for each cell of a lattice.
+template <class T>
+class Raster {
+ public:
+  Raster(const Lattice& lattice, T value) : lattice_(lattice), values_(lattice.size(), value) {}
+
+  const Lattice& lattice() const { return lattice_; }
+  T& operator[](Cell cell) { return values_[lattice_.index(cell)]; }
+  const T& operator[](Cell cell) const { return values_[lattice_.index(cell)]; }
+  const std::vector<T>& values() const { return values_; }
+
+ private:
+  Lattice lattice_;
+  std::vector<T> values_;
+};
+
+struct Chamber {
+  double x = 0, y = 0, floor = 0, radius = 0;  // metres
+};
+
+/// 1 where the mountain is hollow. The first chamber is the entrance.
+using Hollow = Raster<std::uint8_t>;
+
+/// The entrance at (0, 0) and chambers spread over the lattice.
+std::vector<Chamber> spread_chambers(const Lattice& lattice, Random& random);
+
+/// Carves the chambers and the tunnels that join them all, roughens the walls, and fills whatever cannot be
+/// reached from the entrance.
+Hollow carve(const Lattice& lattice, const std::vector<Chamber>& chambers, Random& random);
 
 /// What lies in the cave: one of the ICD's types (5.2), and where.
 using Artifact = Report;

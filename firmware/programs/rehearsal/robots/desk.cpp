@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <utility>
 
-#include "rehearsal/robots/answer.hpp"
+#include "rehearsal/robots/http.hpp"
 
 namespace adit::robots {
 namespace {

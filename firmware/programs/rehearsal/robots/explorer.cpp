@@ -5,8 +5,6 @@
 #include <numbers>
 #include <utility>
 
-#include "rehearsal/robots/pause.hpp"
-
 namespace adit::robots {
 namespace {
 

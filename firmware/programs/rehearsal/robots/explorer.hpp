@@ -1,7 +1,9 @@
 #pragma once
 
 #include <chrono>
+#include <condition_variable>
 #include <cstdint>
+#include <mutex>
 #include <stop_token>
 #include <string>
 
@@ -13,6 +15,14 @@
 #include "rehearsal/robots/scene.hpp"
 
 namespace adit::robots {
+
+/// Sleeps until `time`, or less where `stop` is requested.
+inline void pause_until(std::chrono::steady_clock::time_point time, const std::stop_token& stop) {
+  std::mutex mutex;
+  std::condition_variable_any never;
+  std::unique_lock lock(mutex);
+  (void)never.wait_until(lock, stop, time, [] { return false; });
+}
 
 /// A robot and the software on it: walks, and posts what it knows at the rates of the field. Poses 5 or 10
 /// times a second, markers every 2 s, and the maps of its offer.

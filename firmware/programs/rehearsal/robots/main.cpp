@@ -6,12 +6,11 @@
 #include <fstream>
 #include <vector>
 
-#include "command_line/answer.hpp"
+#include "command_line/read.hpp"
 #include "rehearsal/robots/cave.hpp"
-#include "rehearsal/robots/console.hpp"
+#include "rehearsal/robots/client.hpp"
 #include "rehearsal/robots/maps/map_file.hpp"
 #include "rehearsal/robots/options.hpp"
-#include "rehearsal/robots/tally.hpp"
 #include "rehearsal/robots/team.hpp"
 
 namespace adit::robots {

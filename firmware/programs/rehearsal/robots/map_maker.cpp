@@ -2,12 +2,105 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <numbers>
 #include <utility>
 
 namespace adit::robots {
+namespace {
+
+constexpr std::array<std::uint8_t, 5> kDateFollows = {13, 87, 42, 61, 99};  // no value of the cave's cells
+constexpr std::size_t kDigits = 5;
+constexpr std::uint64_t kBase = 101;
+constexpr int kUint32 = 6;  // ICD 6.3.2
+static_assert(std::endian::native == std::endian::little, "clouds are sent little endian");
+
+std::uint64_t milliseconds_of(Moment moment) {
+  return static_cast<std::uint64_t>(moment.time_since_epoch().count());
+}
+
+}  // namespace
+
+void date(Grid& grid, Moment posted) {
+  if (grid.width < kDateFollows.size() + kDigits) return;
+  auto cell = std::ranges::copy(kDateFollows, grid.cells.begin()).out + kDigits;
+  std::uint64_t rest = milliseconds_of(posted);
+  for (std::size_t i = 0; i < kDigits; ++i, rest /= kBase) *--cell = static_cast<std::uint8_t>(rest % kBase);
+}
+
+void date(Cloud& cloud, Moment posted) {
+  const std::uint32_t before = cloud.point_step;
+  const auto date = static_cast<std::uint32_t>(milliseconds_of(posted));
+  cloud.fields.push_back({"posted_ms", before, kUint32, 1});
+  cloud.point_step += sizeof date;
+  std::vector<std::uint8_t> dated(cloud.data.size() / before * cloud.point_step);
+  for (std::size_t from = 0, to = 0; to < dated.size(); from += before, to += cloud.point_step) {
+    std::memcpy(&dated[to], &cloud.data[from], before);
+    std::memcpy(&dated[to + before], &date, sizeof date);
+  }
+  cloud.data = std::move(dated);
+}
+
+namespace {
+
+using Seconds = std::chrono::duration<double>;
+
+constexpr double kMegabyte = 1e6;
+constexpr std::array<double, 3> kCloudEvery = {1, 0.5, 2};  // seconds, of one robot after the other
+
+constexpr std::array<std::pair<std::string_view, GridForm>, 5> kGridForms = {
+    {{"whole", GridForm::Whole},
+     {"drifting", GridForm::Drifting},
+     {"rolling", GridForm::Rolling},
+     {"tiles", GridForm::Tiles},
+     {"none", GridForm::None}}};
+constexpr std::array<std::pair<std::string_view, CloudForm>, 3> kCloudForms = {
+    {{"differential", CloudForm::Differential}, {"whole", CloudForm::Whole}, {"none", CloudForm::None}}};
+
+template <class Form, std::size_t N>
+std::optional<std::vector<Form>> read_forms(std::string_view text,
+                                            const std::array<std::pair<std::string_view, Form>, N>& names) {
+  std::vector<Form> forms;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t end = std::min(text.find(',', at), text.size());
+    const auto* const known =
+        std::ranges::find(names, text.substr(at, end - at), &std::pair<std::string_view, Form>::first);
+    if (known == names.end()) return std::nullopt;
+    forms.push_back(known->second);
+    at = end + 1;
+  }
+  return forms;
+}
+
+}  // namespace
+
+MapOffer MapOffers::of(std::size_t robot) const {
+  return {.grids = grids[robot % grids.size()],
+          .clouds = clouds[robot % clouds.size()],
+          .grid_every = Seconds(1 / grid_hz.value_or(1)),
+          .cloud_every = Seconds(cloud_hz ? 1 / *cloud_hz : kCloudEvery[robot % kCloudEvery.size()]),
+          .grid_bytes = static_cast<std::size_t>(grid_mb * kMegabyte),
+          .cloud_bytes = static_cast<std::size_t>(cloud_mb * kMegabyte)};
+}
+
+bool MapOffers::has_grids() const {
+  return std::ranges::any_of(grids, [](GridForm form) { return form != GridForm::None; });
+}
+
+bool MapOffers::has_clouds() const {
+  return std::ranges::any_of(clouds, [](CloudForm form) { return form != CloudForm::None; });
+}
+
+std::optional<std::vector<GridForm>> read_grid_forms(std::string_view text) {
+  return read_forms(text, kGridForms);
+}
+
+std::optional<std::vector<CloudForm>> read_cloud_forms(std::string_view text) {
+  return read_forms(text, kCloudForms);
+}
+
 namespace {
 
 constexpr std::size_t kNewPoints = 50;  // at least, in each whole cloud: so that each is news

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "command_line/number.hpp"
-#include "rehearsal/robots/maps/bytes.hpp"
+#include "command_line/program.hpp"
+#include "rehearsal/robots/maps/map_file.hpp"
 
 namespace adit::robots {
 

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "rehearsal/robots/dated.hpp"
 #include "rehearsal/robots/http.hpp"
+#include "rehearsal/robots/map_maker.hpp"
 #include "rehearsal/robots/messages.hpp"
 
 namespace adit::robots {

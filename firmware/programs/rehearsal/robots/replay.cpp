@@ -3,8 +3,8 @@
 #include <chrono>
 #include <utility>
 
+#include "rehearsal/robots/explorer.hpp"
 #include "rehearsal/robots/maps/map_file.hpp"
-#include "rehearsal/robots/pause.hpp"
 
 namespace adit::robots {
 

@@ -3,18 +3,40 @@
 #include <atomic>
 #include <cstdint>
 #include <filesystem>
+#include <mutex>
 #include <stop_token>
+#include <string>
 #include <thread>
 #include <vector>
 
 #include "rehearsal/robots/cave.hpp"
 #include "rehearsal/robots/client.hpp"
-#include "rehearsal/robots/console.hpp"
 #include "rehearsal/robots/desk.hpp"
-#include "rehearsal/robots/map_offer.hpp"
+#include "rehearsal/robots/map_maker.hpp"
 #include "rehearsal/robots/posted.hpp"
 
 namespace adit::robots {
+
+/// Standard output, shared by the team's threads: lines that stay, and on a terminal one live line below
+/// them.
+class Console {
+ public:
+  explicit Console(bool quiet);
+
+  bool is_terminal() const { return terminal_; }
+  /// A line that stays.
+  void say(const std::string& line);
+  /// The live line on a terminal, else a line that stays.
+  void live(const std::string& line);
+  /// Also where quiet.
+  void finish(const std::string& text);
+
+ private:
+  const bool quiet_;
+  const bool terminal_;
+  std::mutex mutex_;  // guards all below, and stdout
+  std::string live_;
+};
 
 struct TeamPlan {
   Post post;

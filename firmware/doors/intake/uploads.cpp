@@ -1,0 +1,486 @@
+#include "intake/uploads.hpp"
+
+#include <algorithm>
+#include <deque>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "codec/read.hpp"
+#include "icd/mapping.hpp"
+#include "icd/require.hpp"
+#include "icd/sentence.hpp"
+#include "icd/try.hpp"
+#include "intake/type_hint.hpp"
+#include "loop/guard.hpp"
+
+namespace adit::intake {
+
+bool SmallUpload::on_body(std::span<const std::uint8_t> piece) {
+  visit_.sender.bytes += piece.size();
+  const auto fed = decoder_.feed(piece);
+  if (!fed) {
+    visit_.refuse(fed.error());
+  } else if (!share_.grow_to(std::max(visit_.sender.bytes, decoder_.size()))) {
+    visit_.refuse({icd::Status::ServiceUnavailable,
+                   "too many bytes at once, from this address or in total; send this message again later"},
+                  {{"Retry-After", "1"}});
+  }
+  return true;
+}
+
+void SmallUpload::on_end() {
+  whole_ = true;
+  const auto document = decoder_.finish();
+  if (!document) {
+    visit_.refuse(document.error());
+  } else {
+    give_to_desk(*document);
+  }
+}
+
+void SmallUpload::give_to_desk(const codec::Document& document) {
+  switch (visit_.uri) {
+    case icd::Uri::StateUpdate:
+      return take_parts(visit_, codec::read_state_parts(document, rules_));
+    case icd::Uri::ArtifactReports:
+      return take_report(document);
+    case icd::Uri::Status:
+    case icd::Uri::MapUpdate:
+    case icd::Uri::MarkersUpdate:
+      icd::require(false);
+  }
+}
+
+void SmallUpload::take_report(const codec::Document& document) {
+  const auto read = codec::read_artifact_report(document, rules_, type_hint);
+  if (!read) return visit_.refuse(read.error());
+  if (!read->left_out.empty()) visit_.desk.left_out(visit_.uri, visit_.sender, read->left_out);
+  visit_.desk.take(read->report, visit_.sender, visit_.responder);
+}
+
+namespace {
+
+using Pieces = std::deque<std::vector<std::uint8_t>>;
+
+/// The worker's part. During a job only the worker uses it.
+class Decoding {
+ public:
+  Decoding(codec::BodyKind kind, const icd::Rules& rules)
+      : rules_(rules),
+        most_at_once_(kind.coding == codec::ContentCoding::Identity ? std::numeric_limits<std::size_t>::max()
+                                                                    : MapUpload::kStored / kGrowth),
+        decoder_(kind, codec::Split::MapData, {.values = kSmallValues, .data_bytes = rules.map_bytes}) {}
+
+  /// The data that was removed before the end.
+  struct Before {
+    std::shared_ptr<MapArrival> stored;  // null: no data was stored
+    icd::ChunkedBytes left;              // data after the stored data
+  };
+
+  /// Decodes about kStored bytes of data. has_more(): received bytes are left. `before`: set if the body is
+  /// whole.
+  void work(Pieces& pieces, std::optional<Before> before) {
+    for (auto& piece : pieces) pieces_.push_back(std::move(piece));
+    pieces.clear();
+    const std::size_t enough = decoder_.data_held() + MapUpload::kStored;
+    const std::size_t long_enough = decoder_.size() + kMostOfBody;
+    while (has_more() && decoder_.data_held() < enough && decoder_.size() < long_enough) {
+      if (auto fed = feed_some(); !fed) {
+        result_ = std::unexpected(std::move(fed.error()));
+        return;
+      }
+    }
+    if (before && !has_more()) result_ = finish(std::move(*before));
+  }
+
+  bool has_more() const { return !pieces_.empty(); }
+  std::size_t data_held() const { return decoder_.data_held(); }
+  icd::ChunkedBytes take_data() { return decoder_.take_data(); }
+
+  /// nullopt while more of the body is to come.
+  std::optional<icd::Checked<icd::MapUpdate>>& result() { return result_; }
+
+ private:
+  icd::Checked<icd::MapUpdate> finish(Before before) {
+    auto document = ADIT_TRY(decoder_.finish());
+    if (before.stored) {
+      auto data = ADIT_TRY(before.stored->stored());
+      data.append(before.left);
+      data.append(document.data);
+      document.data = std::move(data);
+    }
+    return codec::read_map_update(std::move(document), rules_);
+  }
+
+  icd::Checked<void> feed_some() {
+    const auto left = std::span(pieces_.front()).subspan(fed_);
+    const auto some = left.first(std::min(left.size(), most_at_once_));
+    auto fed = decoder_.feed(some);
+    fed_ += some.size();
+    if (some.size() == left.size()) {
+      pieces_.pop_front();
+      fed_ = 0;
+    }
+    return fed;
+  }
+
+  static constexpr std::size_t kGrowth =
+      1032;  // the most bytes that deflate makes of one byte (RFC 1951 3.2.5: 258 by 2 bits)
+
+  /// The most inflated bytes of a body in one job, because gzipped cells may never reach kStored.
+  static constexpr std::size_t kMostOfBody = 8 * MapUpload::kStored;
+
+  icd::Rules rules_;
+  std::size_t most_at_once_;
+  codec::BodyDecoder decoder_;
+  Pieces pieces_;        // of the body, in order
+  std::size_t fed_ = 0;  // bytes of the first piece
+  std::optional<icd::Checked<icd::MapUpdate>> result_;
+};
+
+}  // namespace
+
+class MapUpload::State final : public Taking, public std::enable_shared_from_this<State> {
+ public:
+  State(Visit visit, MapUploadOptions options, std::shared_ptr<Flow> flow, loop::Workers& workers,
+        std::shared_ptr<UploadBudget> budget)
+      : Taking(std::move(visit), std::move(budget)),
+        options_(std::move(options)),
+        without_room_(options_.without_room, visit_.sender.address),
+        flow_(std::move(flow)),
+        workers_(workers),
+        arrival_(visit_.desk.map_arrives()),
+        decoding_(std::make_shared<Decoding>(options_.kind, options_.rules)) {}
+
+  bool take(std::span<const std::uint8_t> piece) override;
+  void whole() override {
+    whole_ = true;
+    give_to_worker();
+  }
+
+ private:
+  void let_go() override {
+    pending_.clear();
+    left_ = {};
+    decoding_.reset();
+    arrival_.reset();
+  }
+  bool charge();
+  bool is_held();
+  bool is_worth_it() const;
+  void give_to_worker();
+  void worked();
+  void take_result(icd::Checked<icd::MapUpdate> result);
+  void store_what_came();
+  void stored(icd::ChunkedBytes left);
+  void go_on();
+  static icd::Refusal not_held() {
+    return {icd::Status::ServiceUnavailable, "Adit has no memory for this map; send it again later"};
+  }
+  void failed() {
+    at_work_ = false;
+    turn_away(not_held());
+  }
+
+  MapUploadOptions options_;
+  UploadShare without_room_;
+  std::shared_ptr<Flow> flow_;
+  loop::Workers& workers_;
+  std::shared_ptr<MapArrival> arrival_;  // null if over; so is the next
+  std::shared_ptr<Decoding> decoding_;
+  Pieces pending_;
+  std::size_t pending_bytes_ = 0;
+  std::size_t data_ = 0;  // decoded bytes of the map's data, and the part taken from decoding_
+  std::size_t taken_ = 0;
+  bool at_work_ = false;  // a worker runs, and only it uses decoding_
+  bool storing_ = false;
+  bool has_stored_ = false;
+  icd::ChunkedBytes left_;  // there was no room to store it
+  bool held_back_ = false;
+  bool whole_ = false;
+};
+
+bool MapUpload::State::take(std::span<const std::uint8_t> piece) {
+  if (over_) return true;
+  visit_.sender.bytes += piece.size();
+  if (visit_.sender.bytes > options_.most_bytes) {
+    turn_away({icd::Status::ContentTooLarge,
+               icd::sentence("body: expected at most ", options_.most_bytes, " bytes")});
+    return true;
+  }
+  if (!charge()) return true;
+  pending_.emplace_back(piece.begin(), piece.end());
+  pending_bytes_ += piece.size();
+  give_to_worker();
+  held_back_ = pending_bytes_ > kPending;
+  return !held_back_;
+}
+
+/// Charges the budget for the body, or for its decoded data if that is larger. False: the map is rejected.
+bool MapUpload::State::charge() {
+  if (share_.grow_to(std::max(visit_.sender.bytes, data_))) return true;
+  turn_away({icd::Status::TooManyRequests, "too many maps at once; send this map again later"});
+  return false;
+}
+
+/// Charges the budget for data that cannot be stored. Not while the worker runs. False: the map is rejected.
+bool MapUpload::State::is_held() {
+  const std::size_t holds = left_.empty() ? 0 : left_.size() + decoding_->data_held();
+  if (without_room_.grow_to(holds)) return true;
+  turn_away({icd::Status::ServiceUnavailable, "the queue of maps is full; send this map again later"});
+  return false;
+}
+
+/// Not while the worker runs. The beginning is decoded at once, because it may be rejected. After that the
+/// worker does not start for a few bytes.
+bool MapUpload::State::is_worth_it() const {
+  if (whole_ || decoding_->has_more()) return true;
+  const bool is_first = pending_bytes_ == visit_.sender.bytes;
+  return !pending_.empty() && (is_first || pending_bytes_ >= kTogether);
+}
+
+void MapUpload::State::give_to_worker() {
+  if (at_work_ || over_ || !is_worth_it()) return;
+  if (storing_ && (whole_ || decoding_->data_held() >= kStored)) return;  // stored() continues
+  at_work_ = true;
+  auto pieces = std::make_shared<Pieces>();
+  if (!decoding_->has_more()) {
+    pieces->swap(pending_);
+    pending_bytes_ = 0;
+  }
+  std::optional<Decoding::Before> before;
+  if (whole_ && pending_.empty()) before.emplace(has_stored_ ? arrival_ : nullptr, left_);
+  // `done` also holds the arrival, so that the loop is the last to release it.
+  workers_.submit(
+      loop::Urgency::OnTheWay,
+      [decoding = decoding_, pieces, before = std::move(before)] { decoding->work(*pieces, before); },
+      [self = shared_from_this(), arrival = arrival_] { self->worked(); },
+      [self = shared_from_this()] { self->failed(); });
+}
+
+void MapUpload::State::worked() {
+  at_work_ = false;
+  if (over_) return;
+  const bool well = loop::guarded("receiving a map", [this] {
+    if (auto& result = decoding_->result()) return take_result(std::move(*result));
+    go_on();
+  });
+  if (!well) fail(not_held());
+}
+
+void MapUpload::State::take_result(icd::Checked<icd::MapUpdate> result) {
+  const auto arrival = arrival_;
+  abandon();
+  if (!result) return visit_.answer(std::unexpected(std::move(result.error())));
+  arrival->take(std::move(*result), visit_.sender_at_end(),
+                [self = shared_from_this()](const icd::Checked<void>& taken) { self->visit_.answer(taken); });
+}
+
+/// Not while the worker runs.
+void MapUpload::State::go_on() {
+  data_ = taken_ + decoding_->data_held();
+  if (!charge() || !is_held()) return;
+  store_what_came();
+  give_to_worker();
+  if (pending_bytes_ <= kPending && std::exchange(held_back_, false)) flow_->resume();
+}
+
+/// If there was no room once, the rest is held in memory until the end, when the map is checked.
+void MapUpload::State::store_what_came() {
+  if (storing_ || !left_.empty() || decoding_->data_held() < kStored) return;
+  has_stored_ = storing_ = true;
+  taken_ += decoding_->data_held();
+  arrival_->store(decoding_->take_data(),
+                  [self = shared_from_this()](icd::ChunkedBytes left) { self->stored(std::move(left)); });
+}
+
+void MapUpload::State::stored(icd::ChunkedBytes left) {
+  storing_ = false;
+  if (over_) return;
+  left_ = std::move(left);
+  if (at_work_) return;
+  if (!loop::guarded("storing a map", [this] { go_on(); })) failed();
+}
+
+MapUpload::MapUpload(const Visit& visit, MapUploadOptions options, std::shared_ptr<Flow> flow,
+                     loop::Workers& workers, std::shared_ptr<UploadBudget> budget)
+    : WorkerUpload(visit,
+                   std::make_shared<State>(visit, options, std::move(flow), workers, std::move(budget))) {}
+
+namespace {
+
+using Body = std::vector<std::uint8_t>;
+using Parts = icd::Checked<codec::CheckedParts<icd::MarkersUpdate>>;
+
+/// The loop decodes updates up to kAtOnce itself, in less than a millisecond.
+constexpr codec::Limits kAtOnce = {.text_bytes = 32u << 10, .values = kSmallValues},
+                        kSmall = {.values = kSmallValues},
+                        kLarge = {.text_bytes = MarkersUpload::kMost, .values = MarkersUpload::kMostValues};
+
+Parts read_parts(codec::BodyDecoder& decoder, const icd::Rules& rules) {
+  const auto document = ADIT_TRY(decoder.finish());
+  return codec::read_markers_parts(document, rules);
+}
+
+bool is_too_large(const icd::Refusal& refusal) {
+  return refusal.status == icd::Status::ContentTooLarge;
+}
+
+/// The worker's part. read_large() frees the body after it was decoded.
+Parts read_small(codec::BodyKind kind, const icd::Rules& rules, const Body& body) {
+  codec::BodyDecoder decoder(kind, codec::Split::Lists, kSmall);
+  ADIT_TRY(decoder.feed(body));
+  return read_parts(decoder, rules);
+}
+
+Parts read_large(codec::BodyKind kind, const icd::Rules& rules, Body& body) {
+  codec::BodyDecoder decoder(kind, codec::Split::Lists, kLarge);
+  ADIT_TRY(decoder.feed(body));
+  Body().swap(body);
+  return read_parts(decoder, rules);
+}
+
+}  // namespace
+
+class MarkersUpload::State final : public Taking, public std::enable_shared_from_this<State> {
+ public:
+  State(Visit visit, codec::BodyKind kind, const icd::Rules& rules, loop::Workers& workers,
+        std::shared_ptr<UploadBudget> budget, const std::shared_ptr<TurnQueue>& turns)
+      : Taking(std::move(visit), std::move(budget)),
+        kind_(kind),
+        rules_(rules),
+        workers_(workers),
+        turns_(turns),
+        at_once_(std::in_place, kind, codec::Split::Lists, kAtOnce) {}
+
+  bool take(std::span<const std::uint8_t> piece) override {
+    if (!over_) keep(piece);
+    return true;
+  }
+  void whole() override;
+
+ private:
+  void let_go() override { body_.clear(); }
+  void keep(std::span<const std::uint8_t> piece);
+  void feed(std::span<const std::uint8_t> piece);
+  /// Charges the budget for the held bytes.
+  void charge();
+  void give_to_worker();
+  void small_was_read(std::shared_ptr<Body> body, Parts parts);
+  void wait_for_turn();
+  void read_large_one();
+  void was_read(Parts parts) {
+    if (over_) return;
+    if (!loop::guarded("receiving markers", [&] { decoded(std::move(parts)); })) fail(not_held());
+  }
+  void end_turn() {
+    if (const auto turns = turns_.lock()) turns->end();
+  }
+  /// Gives the accepted markers to the desk. If the desk accepts them, the answer is about the rejected ones.
+  void decoded(Parts parts) {
+    abandon();
+    if (!parts) return visit_.refuse(parts.error());
+    visit_.desk.take(
+        std::move(parts->message), visit_.sender_at_end(),
+        [self = shared_from_this(), refused = std::move(parts->refused)](icd::Checked<void> taken) {
+          if (taken && refused.count > 0) taken = std::unexpected(refused.refusal());
+          self->visit_.answer(taken);
+        });
+  }
+  static icd::Refusal not_held() {
+    return {icd::Status::ServiceUnavailable, "Adit has no memory for these markers; send them again later"};
+  }
+  void failed() { turn_away(not_held()); }
+
+  codec::BodyKind kind_;
+  icd::Rules rules_;
+  loop::Workers& workers_;
+  std::weak_ptr<TurnQueue> turns_;             // its turns hold this object
+  Body body_;                                  // as received
+  std::optional<codec::BodyDecoder> at_once_;  // nullopt: a worker decodes the update
+};
+
+void MarkersUpload::State::charge() {
+  if (share_.grow_to(visit_.sender.bytes + (at_once_ ? at_once_->size() : 0))) return;
+  turn_away({icd::Status::TooManyRequests, "too many markers at once; send these markers again later"});
+}
+
+void MarkersUpload::State::keep(std::span<const std::uint8_t> piece) {
+  visit_.sender.bytes += piece.size();
+  if (visit_.sender.bytes > kMost) {
+    return turn_away(
+        {icd::Status::ContentTooLarge, icd::sentence("body: expected at most ", kMost, " bytes")});
+  }
+  body_.insert(body_.end(), piece.begin(), piece.end());
+  if (at_once_) feed(piece);
+  if (!over_) charge();
+}
+
+void MarkersUpload::State::feed(std::span<const std::uint8_t> piece) {
+  const auto fed = at_once_->feed(piece);
+  if (fed) return;
+  if (!is_too_large(fed.error())) return turn_away(fed.error());
+  at_once_.reset();
+}
+
+void MarkersUpload::State::whole() {
+  if (over_) return;
+  if (body_.size() > kSmall.text_bytes) return wait_for_turn();
+  if (!at_once_) return give_to_worker();
+  decoded(read_parts(*at_once_, rules_));
+}
+
+void MarkersUpload::State::give_to_worker() {
+  auto body = std::make_shared<Body>(std::exchange(body_, {}));
+  auto parts = std::make_shared<Parts>();
+  workers_.submit(
+      loop::Urgency::OnTheWay,
+      [kind = kind_, rules = rules_, body, parts] { *parts = read_small(kind, rules, *body); },
+      [self = shared_from_this(), body, parts] { self->small_was_read(body, std::move(*parts)); },
+      [self = shared_from_this()] { self->failed(); });
+}
+
+void MarkersUpload::State::small_was_read(std::shared_ptr<Body> body, Parts parts) {
+  if (over_) return;
+  if (parts || !is_too_large(parts.error())) return was_read(std::move(parts));
+  body_ = std::move(*body);
+  if (!loop::guarded("reading markers", [this] { wait_for_turn(); })) failed();
+}
+
+void MarkersUpload::State::wait_for_turn() {
+  const auto turns = turns_.lock();
+  if (!turns) return;
+  turns->wait(visit_.sender.address, [self = shared_from_this()] {
+    if (self->over_) return self->end_turn();
+    if (loop::guarded("reading markers", [&] { self->read_large_one(); })) return;
+    self->end_turn();
+    self->failed();
+  });
+}
+
+void MarkersUpload::State::read_large_one() {
+  auto body = std::make_shared<Body>(std::exchange(body_, {}));
+  auto parts = std::make_shared<Parts>();
+  workers_.submit(
+      loop::Urgency::OnTheWay,
+      [kind = kind_, rules = rules_, body, parts] { *parts = read_large(kind, rules, *body); },
+      [self = shared_from_this(), parts] {
+        self->end_turn();
+        self->was_read(std::move(*parts));
+      },
+      [self = shared_from_this()] {
+        self->end_turn();
+        self->failed();
+      });
+}
+
+MarkersUpload::MarkersUpload(const Visit& visit, codec::BodyKind kind, const icd::Rules& rules,
+                             loop::Workers& workers, std::shared_ptr<UploadBudget> budget,
+                             const std::shared_ptr<TurnQueue>& turns)
+    : WorkerUpload(visit, std::make_shared<State>(visit, kind, rules, workers, std::move(budget), turns)) {}
+
+}  // namespace adit::intake

@@ -1,0 +1,109 @@
+#include "forward/uri_pace.hpp"
+
+#include <algorithm>
+
+namespace adit::forward {
+
+ScoringPace::ScoringPace(const settings::Rates& rates, std::mt19937_64& random, journal::Journal& journal)
+    : reports_(icd::Uri::ArtifactReports, rates.reports_hz, random, journal),
+      statuses_(icd::Uri::Status, rates.status_hz, random, journal) {}
+
+void ScoringPace::carry_on(const journal::Carried& carried, pace::Instant now) {
+  reports_.carry_on(carried, now);
+  statuses_.carry_on(carried, now);
+}
+
+void ScoringPace::allow(const settings::Rates& rates, pace::Instant now) {
+  reports_.allow(rates.reports_hz, now);
+  statuses_.allow(rates.status_hz, now);
+}
+
+void ScoringPace::link_is_back() {
+  reports_.link_is_back();
+  statuses_.link_is_back();
+}
+
+void ScoringPace::hold_back(pace::Instant now) {
+  reports_.sent(now);
+  statuses_.sent(now);
+}
+
+void ScoringPace::endpoint_turned() {
+  link_is_back();
+  has_one_limit_ = false;
+}
+
+pace::Instant ScoringPace::status_ready(bool decides) const {
+  if (has_one_limit_) return std::max(statuses_.ready(), reports_.ready());
+  if (decides) return statuses_.ready();
+  return std::max(statuses_.ready(), last_report_.left + reports_.spacing());
+}
+
+void ScoringPace::report_sent(pace::Instant now) {
+  last_report_ = {.left = now};
+  reports_.sent(now);
+}
+
+void ScoringPace::report_taken(const uplink::Sent& sent, pace::Instant now) {
+  last_report_ = {.left = sent.first};
+  reports_.taken(sent, now);
+}
+
+void ScoringPace::report_throttled(const uplink::Sent& sent, std::optional<std::chrono::seconds> retry_after,
+                                   pace::Instant now) {
+  last_report_ = {.left = sent.first, .is_throttled = true};
+  throttled(reports_, sent.first, last_status_, retry_after, now);
+}
+
+void ScoringPace::report_barred(const uplink::Sent& sent, pace::Instant now) {
+  last_report_ = {.left = sent.first};
+  reports_.lost(now);
+}
+
+void ScoringPace::report_lost(pace::Instant now) {
+  last_report_ = {.left = now};
+  reports_.taken({.first = now, .last = now}, now);
+}
+
+void ScoringPace::status_sent(pace::Instant now) {
+  last_status_ = {.left = now};
+  statuses_.sent(now);
+  if (has_one_limit_) reports_.sent(now);
+}
+
+void ScoringPace::status_taken(const uplink::Sent& sent, pace::Instant now) {
+  last_status_ = {.left = sent.first};
+  statuses_.taken(sent, now);
+  if (has_one_limit_) reports_.taken(sent, now);
+}
+
+void ScoringPace::status_throttled(const uplink::Sent& sent, std::optional<std::chrono::seconds> retry_after,
+                                   pace::Instant now) {
+  last_status_ = {.left = sent.first, .is_throttled = true};
+  if (has_one_limit_) reports_.throttled(now, retry_after);
+  throttled(statuses_, sent.first, last_report_, retry_after, now);
+}
+
+void ScoringPace::status_failed(const uplink::Outcome& outcome, pace::Instant now) {
+  statuses_.failed(outcome, now);
+  if (has_one_limit_) reports_.failed(outcome, now);
+}
+
+void ScoringPace::status_lost(pace::Instant now) {
+  statuses_.lost(now);
+  if (has_one_limit_) reports_.lost(now);
+}
+
+void ScoringPace::throttled(UriPace& its, pace::Instant left, const Last& other,
+                            std::optional<std::chrono::seconds> retry_after, pace::Instant now) {
+  const bool is_found_out = !has_one_limit_ && !other.is_throttled && left < other.left + reports_.spacing();
+  has_one_limit_ = has_one_limit_ || is_found_out;
+  if (!is_found_out || retry_after) {
+    its.throttled(now, retry_after);
+  } else {
+    its.count_from(now);
+  }
+  if (is_found_out) reports_.wait_for(statuses_);
+}
+
+}  // namespace adit::forward

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "icd/chunked_bytes.hpp"
+
+namespace adit::codec {
+
+/// Whether a registered tag only annotates its content, so that a text, number, byte string, array or map
+/// keeps its meaning.
+bool is_remark(std::uint64_t tag);
+
+/// Describes another tag for a sentence.
+std::string tag_that_changes(std::uint64_t tag);
+
+/// Major types (RFC 8949 3.1).
+enum class Major : std::uint8_t { Unsigned, Negative, Bytes, Text, Array, Map, Tag, Simple };
+
+/// The head of a CBOR item (RFC 8949 section 3), its first byte and argument, read in pieces of any size.
+class CborHead {
+ public:
+  /// Reads `in` and returns the number of bytes that belong to the head. Requires !complete().
+  std::size_t next(std::string_view in);
+
+  bool empty() const { return size_ == 0; }
+  bool complete() const { return size_ > 0 && size_ == length(); }
+  /// Prepares for the next head.
+  void clear() { size_ = 0; }
+
+  // For a complete head:
+  Major major() const { return static_cast<Major>(bytes_[0] >> 5); }
+  std::uint8_t info() const { return bytes_[0] & 0x1F; }
+  bool indefinite() const { return info() == 31; }
+  bool is_break() const { return bytes_[0] == 0xFF; }
+  /// Additional information that RFC 8949 reserves.
+  bool reserved() const { return info() >= 28 && info() <= 30; }
+  std::uint64_t argument() const;
+  /// The value of a floating-point item (major type 7, info 25 to 27).
+  double number() const;
+  std::string_view raw() const { return {reinterpret_cast<const char*>(bytes_.data()), size_}; }
+
+ private:
+  std::size_t length() const {
+    return info() >= 24 && info() <= 27 ? 1 + (std::size_t{1} << (info() - 24)) : 1;
+  }
+
+  std::array<std::uint8_t, 9> bytes_{};
+  std::size_t size_ = 0;
+};
+
+/// Writes CBOR items (RFC 8949) with the shortest definite lengths (4.1). The caller must write as many items
+/// as announced.
+class CborWriter {
+ public:
+  void map(std::size_t members);
+  void array(std::size_t elements);
+  void text(std::string_view utf8);
+  void whole(std::int64_t number);
+  /// Always a 64-bit float, so that the reader gets a float.
+  void real(double number);
+  void truth(bool yes);
+  /// A byte string that shares the chunks of `bytes`.
+  void byte_string(const icd::ChunkedBytes& bytes);
+
+  icd::ChunkedBytes finish();
+
+ private:
+  void head(Major major, std::uint8_t info, std::uint64_t number, std::size_t size);
+  void head(Major major, std::uint64_t argument);
+  void flush();
+
+  icd::ChunkedBytes out_;
+  std::array<std::uint8_t, 4096> latest_;  // buffer, because items are small
+  std::size_t used_ = 0;
+};
+
+}  // namespace adit::codec

@@ -1,0 +1,46 @@
+#include "icd/mapping.hpp"
+
+namespace adit::icd {
+
+std::size_t size_of(Datatype datatype) {
+  switch (datatype) {
+    case Datatype::Int8:
+    case Datatype::Uint8:
+      return 1;
+    case Datatype::Int16:
+    case Datatype::Uint16:
+      return 2;
+    case Datatype::Int32:
+    case Datatype::Uint32:
+    case Datatype::Float32:
+      return 4;
+    case Datatype::Float64:
+      return 8;
+  }
+  return 0;
+}
+
+const Header& MapUpdate::header() const {
+  if (const auto* grid = std::get_if<OccupancyGrid>(&msg)) return grid->header;
+  return std::get<PointCloud2>(msg).header;
+}
+
+Header& MapUpdate::header() {
+  if (auto* grid = std::get_if<OccupancyGrid>(&msg)) return grid->header;
+  return std::get<PointCloud2>(msg).header;
+}
+
+bool is_invisible(const Marker& marker) {
+  const bool has_own_colors = !marker.colors.empty() || marker.mesh_use_embedded_materials;
+  return marker.action == MarkerAction::Add && marker.color.a == 0 && !has_own_colors;
+}
+
+std::size_t bytes_of(const Marker& marker) {
+  constexpr std::size_t kFixed = 640;  // members of fixed size, with the overhead of maps and allocators
+  constexpr std::size_t kPoint = 34;   // three named 64-bit numbers of CBOR; in memory 24
+  constexpr std::size_t kColor = 45;   // four of them; in memory 32
+  return kFixed + 2 * marker.ns.size() + marker.text.size() + marker.mesh_resource.size() +
+         kPoint * marker.points.size() + kColor * marker.colors.size();
+}
+
+}  // namespace adit::icd

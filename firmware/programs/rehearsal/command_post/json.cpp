@@ -1,0 +1,122 @@
+#include "rehearsal/command_post/json.hpp"
+
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace adit::rehearsal {
+namespace {
+
+constexpr std::size_t kDeepest = 64;
+constexpr std::size_t kMostValues = 4'000'000;
+constexpr std::size_t kLongestReason = 300;
+
+/// Builds the document from nlohmann's events. Returning false stops the reader, which recurses for CBOR: the
+/// limit on depth keeps a hostile body from the end of the stack.
+class Builder : public nlohmann::json_sax<Json> {
+ public:
+  explicit Builder(bool check_utf8) : check_utf8_(check_utf8) {}
+
+  bool null() override { return put(nullptr) != nullptr; }
+  bool boolean(bool value) override { return put(value) != nullptr; }
+  bool number_integer(number_integer_t value) override { return put(value) != nullptr; }
+  bool number_unsigned(number_unsigned_t value) override { return put(value) != nullptr; }
+  bool number_float(number_float_t value, const string_t& /*text*/) override { return put(value) != nullptr; }
+  bool string(string_t& value) override { return utf8(value) && put(std::move(value)) != nullptr; }
+  bool binary(binary_t& value) override { return put(Json::binary(std::move(value))) != nullptr; }
+  bool start_object(std::size_t /*size*/) override { return open(Json::object()); }
+  bool start_array(std::size_t /*size*/) override { return open(Json::array()); }
+  bool end_object() override { return close(); }
+  bool end_array() override { return close(); }
+
+  bool key(string_t& name) override {
+    if (!utf8(name)) return false;
+    if (!document.repeated && open_.back()->contains(name)) document.repeated = name;
+    key_ = std::move(name);
+    return true;
+  }
+
+  bool parse_error(std::size_t /*position*/, const std::string& /*token*/,
+                   const nlohmann::detail::exception& error) override {
+    // "[json.exception.parse_error.101] parse error at line 1, column 2: ..."
+    const std::string_view what = error.what();
+    const auto end_of_id = what.find("] ");
+    return fail(std::string(what.substr(end_of_id == std::string_view::npos ? 0 : end_of_id + 2)));
+  }
+
+  Document document;
+  std::string reason;
+
+ private:
+  bool fail(const std::string& why) {
+    if (reason.empty()) reason = why.substr(0, kLongestReason);
+    return false;
+  }
+
+  /// nlohmann checks the UTF-8 of JSON while it reads, that of CBOR only when it writes.
+  bool utf8(const std::string& text) {
+    if (!check_utf8_) return true;
+    try {
+      static_cast<void>(Json(text).dump());
+      return true;
+    } catch (const Json::type_error&) {
+      return fail("a text string that is not UTF-8");
+    }
+  }
+
+  Json* put(Json value) {
+    if (++values_ > kMostValues) {
+      fail("more than 4000000 values");
+      return nullptr;
+    }
+    if (open_.empty()) {
+      document.value = std::move(value);
+      return &document.value;
+    }
+    Json& parent = *open_.back();
+    if (parent.is_array()) {
+      parent.push_back(std::move(value));
+      return &parent.back();
+    }
+    Json& member = parent[key_];
+    member = std::move(value);
+    return &member;
+  }
+
+  bool open(Json container) {
+    if (open_.size() == kDeepest) return fail("nested deeper than 64");
+    Json* const place = put(std::move(container));
+    if (place != nullptr) open_.push_back(place);  // stays put: its parent does not grow while it is open
+    return place != nullptr;
+  }
+
+  bool close() {
+    open_.pop_back();
+    return true;
+  }
+
+  bool check_utf8_;
+  std::vector<Json*> open_;
+  std::string key_;
+  std::size_t values_ = 0;
+};
+
+}  // namespace
+
+std::expected<Document, std::string> read_document(std::string_view body, Format format) {
+  if (format == Format::JsonText && body.starts_with("\xef\xbb\xbf")) {
+    return std::unexpected("a byte order mark before the document (RFC 8259 8.1)");
+  }
+  // To nlohmann's reader a NUL is the end of the document; to RFC 8259 it stands nowhere in one.
+  if (format == Format::JsonText && body.find('\0') != std::string_view::npos) {
+    return std::unexpected("a NUL byte");
+  }
+  Builder builder(format == Format::CborBytes);
+  const auto input = format == Format::CborBytes ? Json::input_format_t::cbor : Json::input_format_t::json;
+  if (!Json::sax_parse(body.begin(), body.end(), &builder, input, true)) {
+    return std::unexpected(builder.reason.empty() ? "not well-formed" : builder.reason);
+  }
+  return std::move(builder.document);
+}
+
+}  // namespace adit::rehearsal

@@ -1,0 +1,118 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bitset>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <map>
+#include <span>
+#include <string_view>
+#include <tuple>
+#include <unordered_map>
+
+namespace adit {
+
+/// The cells of grids that are known, each counted once however often it came: of what a robot posted, and of
+/// what the Command Post has. Cells of another size are others. Both programs of this folder measure by it.
+class KnownCells {
+ public:
+  static constexpr std::uint8_t kUnknown = 255;  // ICD 6.3.1
+
+  /// A grid's cells, row by row from the lower left at (`left`, `bottom`), in metres as `resolution`; `width`
+  /// is at least 1.
+  void add(double resolution, double left, double bottom, std::size_t width,
+           std::span<const std::uint8_t> cells) {
+    const std::int64_t size = std::llround(resolution * 1e6);
+    const std::int64_t first = std::llround(left / resolution);
+    std::int64_t row = std::llround(bottom / resolution);
+    for (; !cells.empty(); ++row) {
+      const auto columns = cells.first(std::min(width, cells.size()));
+      for (std::size_t x = 0; x < columns.size(); ++x) {
+        if (columns[x] != kUnknown) include(size, first + static_cast<std::int64_t>(x), row);
+      }
+      cells = cells.subspan(columns.size());
+    }
+  }
+
+  std::size_t count() const { return count_; }
+
+ private:
+  static constexpr std::int64_t kSide = 64;
+  using Place = std::tuple<std::int64_t, std::int64_t, std::int64_t>;  // of a tile: cell size, column, row
+  using Tile = std::bitset<kSide * kSide>;
+
+  void include(std::int64_t size, std::int64_t column, std::int64_t row) {
+    const Place place{size, column >> 6, row >> 6};
+    if (last_ == nullptr || place != last_place_) {
+      last_ = &tiles_[place];
+      last_place_ = place;
+    }
+    auto cell = (*last_)[static_cast<std::size_t>((row & (kSide - 1)) * kSide + (column & (kSide - 1)))];
+    count_ += cell ? 0 : 1;
+    cell = true;
+  }
+
+  std::map<Place, Tile> tiles_;
+  Place last_place_;
+  Tile* last_ = nullptr;  // that of the cell before
+  std::size_t count_ = 0;
+};
+
+/// The places that clouds have points in, cubes of kEdge, each counted once however many points it has: of
+/// what a robot posted, and of what the Command Post has. Both programs of this folder measure by it.
+class KnownPlaces {
+ public:
+  static constexpr double kEdge = 0.1;  // metres
+  static constexpr std::size_t kMostBlocks = 1u << 20;
+
+  /// Points of `step` bytes, little-endian, which are away from `origin`; `fields` tell where x, y and z are.
+  /// How a cloud is turned is not looked at, for adit-robots turns none. Others than float32
+  /// (ICD 6.3.2) are passed over, and so is what is further away than 50 km or comes after kMostBlocks
+  /// blocks.
+  template <class Fields>
+  void add(const Fields& fields, std::size_t step, std::span<const std::uint8_t> points,
+           const std::array<double, 3>& origin = {}) {
+    std::array<std::size_t, 3> offsets{};
+    std::size_t axis = 0;
+    for (const std::string_view name : {"x", "y", "z"}) {
+      const auto field = std::ranges::find_if(fields, [&](const auto& each) { return each.name == name; });
+      if (field == fields.end() || field->datatype != kFloat32) return;
+      offsets[axis++] = field->offset;
+    }
+    for (; points.size() >= step; points = points.subspan(step)) include(points, offsets, origin);
+  }
+
+  std::size_t count() const { return count_; }
+
+ private:
+  static constexpr int kFloat32 = 7;
+  static constexpr double kMost = 500'000;  // places to either side
+  static constexpr unsigned kBits = 18;     // of the number of a block of 4 x 4 x 4 places, on one axis
+
+  void include(std::span<const std::uint8_t> point, const std::array<std::size_t, 3>& offsets,
+               const std::array<double, 3>& origin) {
+    std::uint64_t block = 0, within = 0;
+    for (std::size_t axis = 0; axis < offsets.size(); ++axis) {
+      float metres = 0;
+      std::memcpy(&metres, point.data() + offsets[axis], sizeof metres);
+      const double at = std::floor((origin[axis] + static_cast<double>(metres)) / kEdge);
+      if (!(std::abs(at) < kMost)) return;  // nor what is not a number
+      const auto place = static_cast<std::uint64_t>(std::llround(at + kMost));
+      block = block << kBits | place >> 2;
+      within = within << 2 | (place & 3);
+    }
+    if (blocks_.size() >= kMostBlocks && !blocks_.contains(block)) return;
+    std::uint64_t& places = blocks_[block];
+    const std::uint64_t bit = std::uint64_t{1} << within;
+    count_ += (places & bit) == 0 ? 1 : 0;
+    places |= bit;
+  }
+
+  std::unordered_map<std::uint64_t, std::uint64_t> blocks_;
+  std::size_t count_ = 0;
+};
+
+}  // namespace adit

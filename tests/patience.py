@@ -26,8 +26,8 @@ def patient(time_out):
 
 def wait_until(condition, what, within=60.0, tolerates=(), every=0.01):
     """The first true value of `condition()`. Polls each `every` seconds at first, later less often, up to ten times that interval,
-    because polling uses the same processors. After `within` seconds times ADIT_PATIENCE: an AssertionError with `what` and the last value, or the
-    last exception of the types in `tolerates`."""
+    because polling uses the same processors. After `within` seconds times ADIT_PATIENCE: an AssertionError with `what`, a text or a function
+    that returns one then, and the last value, or the last exception of the types in `tolerates`."""
     began = time.monotonic()
     while True:
         try:
@@ -37,5 +37,6 @@ def wait_until(condition, what, within=60.0, tolerates=(), every=0.01):
             seen = error
         waited = time.monotonic() - began
         if waited >= patient(within):
+            what = what() if callable(what) else what
             raise AssertionError(f"waited {patient(within):g} s in vain for {what}; seen last: {seen!r:.1000}")
         time.sleep(min(max(every, waited / 10), 10 * every))

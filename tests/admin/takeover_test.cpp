@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "admin/settings_of_a_box.hpp"
-#include "forward/stamp_floor.hpp"
+#include "forward/clocks.hpp"
 #include "host/folder.hpp"
 #include "ledger/ledger.hpp"
 

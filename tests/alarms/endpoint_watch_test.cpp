@@ -1,6 +1,6 @@
-#include "alarms/endpoint_watch.hpp"
-
 #include <gtest/gtest.h>
+
+#include "alarms/habits.hpp"
 
 namespace adit::alarms {
 namespace {

@@ -1,7 +1,6 @@
-#include "api/kept_runs_routes.hpp"
-
 #include <gmock/gmock.h>
 
+#include "api/map_routes.hpp"
 #include "api/on_page.hpp"
 
 namespace adit::api {

@@ -1,11 +1,10 @@
-#include "api/live.hpp"
-
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
 #include <random>
 
 #include "api/doubles.hpp"
+#include "api/run_routes.hpp"
 #include "api/scenes.hpp"
 #include "codec/patched.hpp"
 #include "loop/simulated_time.hpp"

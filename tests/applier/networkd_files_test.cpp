@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "host/folder.hpp"
+#include "network/change.hpp"
 #include "network/doubles.hpp"
-#include "network/networkd.hpp"
 
 namespace adit::applier {
 namespace {

@@ -1,7 +1,6 @@
-#include "box/candidate.hpp"
-
 #include <gmock/gmock.h>
 
+#include "box/self_test.hpp"
 #include "settings/sample.hpp"
 
 namespace adit::box {

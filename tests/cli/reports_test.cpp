@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "api/reports_csv.hpp"
-#include "cli/reports_text.hpp"
 #include "cli/run_adit.hpp"
+#include "cli/status_text.hpp"
 #include "cli/view.hpp"
 
 namespace adit::cli {

@@ -1,9 +1,7 @@
-#include "cli/reports_text.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "cli/reports_text.hpp"
+#include "cli/status_text.hpp"
 #include "cli/view.hpp"
 #include "dispatch/report.hpp"
 

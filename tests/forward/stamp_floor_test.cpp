@@ -1,10 +1,9 @@
-#include "forward/stamp_floor.hpp"
-
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <fstream>
 
+#include "forward/clocks.hpp"
 #include "host/folder.hpp"
 #include "host/log.hpp"
 #include "host/service.hpp"

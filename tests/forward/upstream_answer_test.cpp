@@ -1,6 +1,6 @@
-#include "forward/upstream_answer.hpp"
-
 #include <gtest/gtest.h>
+
+#include "forward/channel.hpp"
 
 namespace adit::forward {
 namespace {

@@ -1,5 +1,6 @@
 // What the records of a journal say, whatever that is.
-#include "journal/carried.hpp"
+#include "journal/journal.hpp"
+
 #include "target.hpp"
 
 namespace adit::fuzz {

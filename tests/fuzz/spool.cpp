@@ -3,7 +3,6 @@
 #include "codec/write.hpp"
 #include "folder.hpp"
 #include "spool/kept_message.hpp"
-#include "spool/map_file.hpp"
 
 namespace adit::fuzz {
 namespace {

@@ -1,5 +1,3 @@
-#include "journal/carried.hpp"
-
 #include <gmock/gmock.h>
 
 #include <chrono>
@@ -10,6 +8,7 @@
 #include <tuple>
 #include <vector>
 
+#include "journal/journal.hpp"
 #include "queues/merged.hpp"
 
 namespace adit::journal {

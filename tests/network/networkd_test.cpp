@@ -1,7 +1,6 @@
-#include "network/networkd.hpp"
-
 #include <gmock/gmock.h>
 
+#include "network/change.hpp"
 #include "network/doubles.hpp"
 
 namespace adit::network {

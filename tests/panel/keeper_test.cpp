@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "loop/simulated_time.hpp"
+#include "panel/messages.hpp"
 #include "panel/remote.hpp"
-#include "panel/unix_socket.hpp"
 #include "panel/watched_lines.hpp"
 #include "panel/wire.hpp"
 

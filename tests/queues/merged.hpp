@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "queues/marker_changes.hpp"
+#include "queues/marker_queue.hpp"
 
 namespace adit::queues {
 

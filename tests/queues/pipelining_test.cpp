@@ -1,7 +1,6 @@
-#include "queues/pipelining.hpp"
-
 #include <gtest/gtest.h>
 
+#include "queues/map_queue.hpp"
 #include "queues/maps.hpp"
 
 namespace adit::queues {

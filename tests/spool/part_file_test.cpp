@@ -2,7 +2,7 @@
 
 #include "host/folder.hpp"
 #include "host/service.hpp"
-#include "spool/map_file.hpp"
+#include "spool/kept_message.hpp"
 #include "spool/no_file_above.hpp"
 
 namespace adit::spool {

@@ -6,7 +6,7 @@
 #include "admin/accounts.hpp"
 #include "admin/kept_file.hpp"
 #include "admin/takeover.hpp"
-#include "forward/stamp_floor.hpp"
+#include "forward/clocks.hpp"
 #include "host/log.hpp"
 #include "host/root_program.hpp"
 #include "host/service.hpp"

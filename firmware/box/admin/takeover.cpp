@@ -8,7 +8,7 @@
 
 #include "admin/kept_file.hpp"
 #include "codec/row.hpp"
-#include "forward/stamp_floor.hpp"
+#include "forward/clocks.hpp"
 #include "host/files.hpp"
 #include "host/log.hpp"
 #include "icd/sentence.hpp"

@@ -10,14 +10,31 @@
 
 #include "admin/network_change.hpp"
 #include "api/self_test.hpp"
-#include "box/candidate.hpp"
 #include "dispatch/verdicts.hpp"
+#include "host/service.hpp"
+#include "icd/bearer_token.hpp"
 #include "icd/uri.hpp"
 #include "loop/file_descriptor.hpp"
 #include "loop/loop.hpp"
 #include "network/messages.hpp"
 #include "settings/settings.hpp"
 #include "uplink/connection.hpp"
+
+namespace adit::box {
+
+/// Endpoints and tokens of a Test.
+struct TestTarget {
+  settings::CommandPost post;  // addresses to test, and their course
+  std::optional<icd::BearerToken> scoring, mapping;
+  icd::Redaction typed = icd::Redaction();  // tokens that are not stored
+};
+
+/// The written settings with the candidate, checked as if it were saved. Refused with 422 by the candidate's
+/// members: "scoring.address: ...".
+icd::Checked<TestTarget> tried_of(const api::Candidate& candidate, const settings::Settings& written,
+                                  const host::Secrets& secrets);
+
+}  // namespace adit::box
 
 /// Results of the Test's steps: a state, the finding in words, and advice.
 namespace adit::box::steps {

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "api/answers.hpp"
-#include "api/read_body.hpp"
+#include "api/route.hpp"
 #include "api/routes.hpp"
 #include "codec/body_decoder.hpp"
 #include "icd/sentence.hpp"

@@ -7,8 +7,6 @@
 #include "api/answers.hpp"
 #include "api/box_routes.hpp"
 #include "api/entrance.hpp"
-#include "api/kept_runs_routes.hpp"
-#include "api/live.hpp"
 #include "api/map_routes.hpp"
 #include "api/page_routes.hpp"
 #include "api/report_routes.hpp"

@@ -10,7 +10,7 @@
 #include "api/answers.hpp"
 #include "api/bundle.hpp"
 #include "api/metrics.hpp"
-#include "api/read_body.hpp"
+#include "api/route.hpp"
 #include "api/settings_rows.hpp"
 #include "codec/json.hpp"
 #include "codec/row.hpp"

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "api/answers.hpp"
-#include "api/read_body.hpp"
 #include "api/reports_csv.hpp"
+#include "api/route.hpp"
 #include "codec/body_decoder.hpp"
 #include "codec/field.hpp"
 #include "codec/read.hpp"

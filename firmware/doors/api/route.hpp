@@ -1,13 +1,22 @@
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <tuple>
+#include <utility>
 #include <vector>
 
+#include "api/answers.hpp"
+#include "codec/field.hpp"
+#include "codec/json.hpp"
+#include "icd/sentence.hpp"
+#include "icd/text.hpp"
 #include "intake/server.hpp"
 
 namespace adit::api {
@@ -78,6 +87,69 @@ struct Route {
   RouteAccess who = RouteAccess::Operator;
   Body body;
   Handle handle;
+};
+
+/// A number in the query. `wrong`: present but not a finite number.
+struct AskedNumber {
+  std::optional<double> number;
+  bool wrong = false;
+};
+
+inline AskedNumber asked_number(const intake::RequestHead& head, std::string_view name) {
+  const std::string_view text = head.query(name);
+  if (text.empty()) return {};
+  const auto number = icd::number_in<double>(text);
+  if (!number || !std::isfinite(*number)) return {.number = {}, .wrong = true};
+  return {.number = number};
+}
+
+/// Applies `read` to a body, which must be one JSON object.
+template <class Message, class Read>
+icd::Checked<Message> read_body(const std::string& body, Read read) {
+  const auto root = codec::parse_json(body);
+  if (!root) return icd::refuse(icd::Status::BadRequest, "expected JSON: ", root.error());
+  codec::Reading reading;
+  return reading.outcome<Message>(read(codec::Field(*root, reading)));
+}
+
+/// The text of the member `name` of a body.
+inline icd::Checked<std::string> read_text(const std::string& body, std::string_view name) {
+  return read_body<std::string>(
+      body, [name](const codec::Field& root) { return std::string(root.member(name).text()); });
+}
+
+/// Collects a body of at most `most` bytes and passes it to `done` when complete.
+class SmallBody final : public intake::BodySink {
+ public:
+  SmallBody(std::shared_ptr<intake::Responder> responder, std::size_t most,
+            std::function<void(std::string body)> done)
+      : responder_(std::move(responder)), most_(most), done_(std::move(done)) {}
+
+  static intake::Answer too_long(std::size_t most, std::string_view what = "body") {
+    return refusal(icd::Status::ContentTooLarge,
+                   icd::sentence("expected a ", what, " of at most ", most, " bytes"));
+  }
+
+  bool on_body(std::span<const std::uint8_t> piece) override {
+    if (refused_) return true;
+    if (body_.size() + piece.size() > most_) {
+      refused_ = true;
+      responder_->answer(too_long(most_));
+    } else {
+      body_.append(reinterpret_cast<const char*>(piece.data()), piece.size());
+    }
+    return true;
+  }
+  void on_end() override {
+    if (!refused_) done_(std::move(body_));
+  }
+
+ private:
+  std::shared_ptr<intake::Responder> responder_;
+  std::size_t most_;
+  std::function<void(std::string)> done_;
+  std::string body_;
+  bool refused_ = false;
 };
 
 }  // namespace adit::api

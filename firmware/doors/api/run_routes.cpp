@@ -1,9 +1,122 @@
 #include "api/run_routes.hpp"
 
-#include "api/read_body.hpp"
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "api/route.hpp"
+#include "codec/patch.hpp"
 #include "codec/row.hpp"
+#include "intake/icd_routes.hpp"
 
 namespace adit::api {
+namespace {
+
+constexpr auto kSpacing = std::chrono::milliseconds{1000 / Live::kEventsPerSecond};
+constexpr std::chrono::seconds kCalm{1};
+
+/// Rounds to milliseconds, millimetres or microseconds, which is finer than the page shows and halves the
+/// text.
+double rounded(double number) {
+  constexpr double kSteps = 1000;
+  return std::round(number * kSteps) / kSteps + 0.0;  // avoids -0
+}
+
+/// How long after the last event a patch may be sent. Clocks change all the time and are not news. An
+/// operator acts on reports and alarms.
+std::chrono::milliseconds spacing_of(const std::optional<codec::Value>& patch) {
+  std::chrono::milliseconds spacing = Live::kHeartbeat;
+  if (!patch) return spacing;
+  for (const auto& [name, value] : std::get<codec::Value::Object>(patch->is)) {
+    if (name == "reports" || name == "alarms") return kSpacing;
+    if (name != "now" && name != "run_clock") spacing = kCalm;
+  }
+  return spacing;
+}
+
+}  // namespace
+
+Live::Live(loop::Loop& loop, const Source& source)
+    : loop_(loop), source_(source), timer_(loop.timer([this] { send_to_all(false); })) {}
+
+RunView Live::look() const {
+  RunView view = source_.view();
+  codec::change_numbers(RunView::kRow, &view, rounded);
+  // Ages change all the time. Whole seconds keep events small.
+  const auto whole_seconds = [](std::optional<double>& age) {
+    if (age) *age = std::floor(*age);
+  };
+  for (ActivityRow& row : view.activities) whole_seconds(row.behind), whole_seconds(row.age);
+  for (RobotRow& robot : view.robots) whole_seconds(robot.age);
+  for (StandingRow& robot : view.standings) whole_seconds(robot.age);
+  return view;
+}
+
+const std::string& Live::whole() {
+  if (whole_.empty()) whole_ = "data: " + codec::to_json(told_) + "\n\n";
+  whole_size_ = whole_.size();
+  return whole_;
+}
+
+void Live::open(intake::Responder& responder, std::function<bool()> may_stay) {
+  if (pages_.size() >= kMostPages) drop_the_gone(":\n\n");
+  if (pages_.size() >= kMostPages) {
+    return responder.answer(intake::error_answer(
+        icd::Status::ServiceUnavailable,
+        "too many pages are open: the box serves at most " + std::to_string(kMostPages) + " at once"));
+  }
+  if (pages_.empty()) {
+    begin();
+  } else if (loop_.now() >= looked_ + kSpacing) {
+    send_to_all(true);  // so that the whole view is no older than kSpacing
+  }
+  auto stream = responder.stream("text/event-stream");
+  if (!stream || !stream->send("retry: 1000\n" + whole())) return;
+  pages_.push_back({std::move(stream), std::move(may_stay)});
+}
+
+void Live::begin() {
+  told_ = look();
+  whole_.clear();
+  looked_ = sent_ = loop_.now();
+  dirty_ = false;
+  timer_.call_at(sent_ + kHeartbeat);
+}
+
+void Live::changed() {
+  if (pages_.empty() || std::exchange(dirty_, true)) return;
+  timer_.call_at(std::max(loop_.now(), looked_ + kSpacing));
+}
+
+void Live::send_to_all(bool in_any_case) {
+  dirty_ = false;
+  looked_ = loop_.now();
+  RunView now = look();
+  const codec::Value nothing{codec::Value::Object()};
+  const auto patch = codec::patch(told_, now);
+  const auto spacing = spacing_of(patch);
+  if (in_any_case || looked_ >= sent_ + spacing) {
+    told_ = std::move(now);
+    whole_.clear();
+    sent_ = looked_;
+    drop_the_gone("event: patch\ndata: " + codec::write_json(patch.value_or(nothing)) + "\n\n");
+    if (!pages_.empty()) timer_.call_at(sent_ + kHeartbeat);
+  } else {
+    timer_.call_at(sent_ + spacing);
+  }
+}
+
+bool Live::tell(const OpenPage& page, std::string_view event) {
+  if (!page.may_stay()) return false;
+  const bool is_slow = page.stream->waiting() + event.size() > 2 * whole_size_ + kMostPatches;
+  return is_slow ? page.stream->send_instead(whole()) : page.stream->send(event);
+}
+
+void Live::drop_the_gone(std::string_view event) {
+  std::erase_if(pages_, [&](const OpenPage& page) { return !tell(page, event); });
+}
+
 using codec::json;
 
 intake::Answer RunRoutes::run() const {

@@ -1,14 +1,66 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "api/answers.hpp"
 #include "api/entrance.hpp"
-#include "api/live.hpp"
 #include "api/source.hpp"
+#include "intake/server.hpp"
+#include "loop/loop.hpp"
 
 namespace adit::api {
+
+/// The open pages, fed by server-sent events (HTML Living Standard 9.2). A page gets the whole view of the
+/// run, then its changes (codec/patch.hpp), the same for all pages, and heartbeats. Changes come once a
+/// second, changes of reports or alarms at most kEventsPerSecond times. A slow page with too many queued
+/// bytes gets the whole view again.
+class Live {
+ public:
+  static constexpr int kEventsPerSecond = 4;
+
+  static constexpr std::chrono::milliseconds kHeartbeat{2000};  // a page assumes a lost connection after 4.5
+                                                                // s
+  /// Most open pages, so that forgotten pages leave connections for robots.
+  static constexpr std::size_t kMostPages = 24;
+  /// Most queued bytes for a page, beside two whole views: one in transfer and the next.
+  static constexpr std::size_t kMostPatches = 64 * 1024;
+
+  Live(loop::Loop& loop, const Source& source);
+
+  /// Answers with a stream of events, or 503 beyond kMostPages. The stream ends once `may_stay` returns
+  /// false.
+  void open(intake::Responder& responder, std::function<bool()> may_stay);
+  void changed();
+
+ private:
+  struct OpenPage {
+    std::shared_ptr<intake::Stream> stream;
+    std::function<bool()> may_stay;
+  };
+
+  RunView look() const;
+  void begin();
+  void send_to_all(bool in_any_case);
+  /// The state of the pages as an event.
+  const std::string& whole();
+  bool tell(const OpenPage& page, std::string_view event);
+  void drop_the_gone(std::string_view event);
+
+  loop::Loop& loop_;
+  const Source& source_;
+  std::vector<OpenPage> pages_;
+  RunView told_;                // the pages' state
+  std::string whole_;           // that state as text; "": not computed
+  std::size_t whole_size_ = 0;  // its last size
+  loop::Source timer_;
+  loop::Instant looked_, sent_;
+  bool dirty_ = false;
+};
 
 /// The state of the run, and the operator's actions except those on reports.
 class RunRoutes {

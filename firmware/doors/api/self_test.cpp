@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "api/read_body.hpp"
+#include "api/route.hpp"
 #include "api/run_view.hpp"
 
 namespace adit::api {

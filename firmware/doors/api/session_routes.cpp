@@ -6,7 +6,7 @@
 
 #include "access/password.hpp"
 #include "api/answers.hpp"
-#include "api/read_body.hpp"
+#include "api/route.hpp"
 #include "api/session_rows.hpp"
 #include "codec/field.hpp"
 #include "codec/json.hpp"

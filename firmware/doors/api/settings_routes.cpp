@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "api/answers.hpp"
-#include "api/read_body.hpp"
+#include "api/route.hpp"
 #include "api/settings_rows.hpp"
 #include "codec/field.hpp"
 #include "codec/json.hpp"

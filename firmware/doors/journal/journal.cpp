@@ -13,6 +13,263 @@
 namespace adit::journal {
 namespace {
 
+constexpr std::size_t kRecordBytes =
+    1u << 20;  // of markers, as in icd::bytes_of; store::kMostBody holds any marker
+
+bool is_known(icd::Uri uri) {
+  return std::ranges::find(icd::kUris, uri) != std::end(icd::kUris);
+}
+bool is_known(const std::string& /*name*/) {
+  return true;
+}
+
+/// Stores a record's key and value.
+template <class Key, class Value>
+bool read_into(std::map<Key, Value>& all, std::string_view said) {
+  Key key{};
+  Value value{};
+  if (!store::read(said, key, value) || !is_known(key)) return false;
+  all[key] = value;
+  return true;
+}
+
+}  // namespace
+
+bool Carried::apply(Kind kind, std::string_view said) {
+  switch (kind) {
+    case Kind::Clock:
+      return read_clock(said);
+    case Kind::LifeBegins:
+      state_comes_back(), markers_come_back();
+      return true;
+    case Kind::Senders:
+      return read_senders(said);
+    case Kind::StateSent:
+      return read_state_sent(said);
+    case Kind::StateDone:
+      state_is_done();
+      return true;
+    case Kind::StateBack:
+      state_comes_back();
+      return true;
+    case Kind::Markers:
+      return read_markers(said);
+    case Kind::MarkersSent:
+      return read_sent(said);
+    case Kind::MarkersDone:
+      markers_under_way_.clear();
+      return true;
+    case Kind::MarkersBack:
+      markers_come_back();
+      return true;
+    case Kind::Pace:
+      return read_into(paces_, said);
+    case Kind::Stamp:
+      return read_into(stamps_, said);
+    case Kind::Grids:
+      if (!grids_) grids_.emplace();
+      return said.empty() || read_into(*grids_, said);  // an empty one begins them
+    case Kind::Poses:
+      return read_poses(said);
+    case Kind::Heard:
+      return read_heard(said);
+  }
+  return false;
+}
+
+bool Carried::read_clock(std::string_view said) {
+  Clock clock;
+  if (!store::read(said, clock)) return false;
+  machine_is(clock.boot);
+  clock_ = std::move(clock);
+  return true;
+}
+
+void Carried::machine_is(const std::string& boot) {
+  if (!clock_ || clock_->boot == boot) return;
+  clock_.reset();
+  paces_.clear();
+  senders_ = {};
+  heard_.clear();
+}
+
+bool Carried::read_senders(std::string_view said) {
+  queues::StampShift::Clocks clocks;
+  if (!store::read(said, clocks)) return false;
+  for (const auto& [stamper, clock] : clocks) {
+    if (!is_known(stamper.uri)) return false;
+    senders_.carry_on(stamper, clock);
+  }
+  return true;
+}
+
+/// queues::StateQueue::news_in() has kept only the newest poses.
+bool Carried::read_poses(std::string_view said) {
+  std::vector<std::tuple<std::string, std::string, std::optional<icd::Stamp>, icd::Pose>> read;
+  if (!store::read(said, read)) return false;
+  std::vector<queues::PostedPose> poses;
+  poses.reserve(read.size());
+  for (auto& [text, address, stamp, pose] : read) {
+    auto name = icd::RobotName::parse(text);
+    if (!name) return false;
+    poses.push_back({*std::move(name), pose, stamp, std::move(address)});
+  }
+  for (queues::PostedPose& posted : poses) {
+    if (posted.stamp && !posted.address.empty())
+      senders_.given({posted.address, icd::Uri::StateUpdate, posted.name.text()}, *posted.stamp);
+    const auto known = robots_.find(posted.name);
+    if (known == robots_.end()) {
+      robots_.emplace(posted.name, Robot{posted});
+    } else {
+      known->second.posted = std::move(posted);
+      known->second.news = true;
+    }
+  }
+  return true;
+}
+
+/// One state is in flight at a time, so an earlier one without an answer was not delivered.
+bool Carried::read_state_sent(std::string_view said) {
+  std::vector<std::string> robots;
+  if (!store::read(said, robots)) return false;
+  state_comes_back();
+  for (const std::string& robot : robots) {
+    const auto name = icd::RobotName::parse(robot);
+    const auto held = name ? robots_.find(*name) : robots_.end();
+    if (held != robots_.end()) held->second.under_way = std::exchange(held->second.news, false);
+  }
+  return true;
+}
+
+bool Carried::read_markers(std::string_view said) {
+  std::vector<icd::Marker> markers;
+  if (!store::read(said, markers)) return false;
+  for (icd::Marker& marker : markers) markers_.apply(std::move(marker));
+  return true;
+}
+
+/// The sent markers are among the queued ones; newer changes come in later records. Earlier markers without
+/// an answer are queued again.
+bool Carried::read_sent(std::string_view said) {
+  std::vector<std::tuple<std::string, std::int32_t, icd::MarkerAction>> sent;
+  if (!store::read(said, sent)) return false;
+  markers_come_back();
+  markers_under_way_.clear();
+  icd::Marker like;
+  for (auto& [ns, id, action] : sent) {
+    like.ns = std::move(ns), like.id = id, like.action = action;
+    if (auto marker = markers_.remove(like)) markers_under_way_.push_back(std::move(*marker));
+  }
+  return true;
+}
+
+bool Carried::read_heard(std::string_view said) {
+  Heard heard;
+  if (!store::read(said, heard)) return false;
+  heard_[heard.robot] = heard;
+  return true;
+}
+
+void Carried::state_is_done() {
+  for (auto& [name, robot] : robots_) robot.under_way = false;
+  std::erase_if(robots_, [](const auto& robot) { return !robot.second.news; });
+}
+
+void Carried::state_comes_back() {
+  for (auto& [name, robot] : robots_) robot.news = std::exchange(robot.under_way, false) || robot.news;
+}
+
+/// As queues::MarkerQueue::put_back().
+void Carried::markers_come_back() {
+  queues::MarkerChanges older;
+  for (icd::Marker& marker : std::exchange(markers_under_way_, {})) older.apply(std::move(marker));
+  markers_.apply_before(std::move(older));
+}
+
+icd::MarkersUpdate Carried::markers() const {
+  Carried ended = *this;
+  ended.markers_come_back();
+  icd::MarkersUpdate update;
+  update.markers.reserve(ended.markers_.size().count);
+  for (const auto& [place, marker] : ended.markers_.in_order()) update.markers.push_back(marker);
+  return update;
+}
+
+void Carried::write(const std::function<void(Kind, std::string_view)>& to) const {
+  if (clock_) to(Kind::Clock, store::bytes_of(*clock_));
+  to(Kind::Senders, store::bytes_of(senders_.clocks()));
+  for (const auto& [uri, learned] : paces_) to(Kind::Pace, store::bytes_of(uri, learned));
+  for (const auto& [uri, stamp] : stamps_) to(Kind::Stamp, store::bytes_of(uri, stamp));
+  if (grids_) {
+    to(Kind::Grids, {});
+    for (const auto& [key, extent] : *grids_) to(Kind::Grids, store::bytes_of(key, extent));
+  }
+  for (const auto& [robot, heard] : heard_) to(Kind::Heard, store::bytes_of(heard));
+  const auto write_robots = [&](bool Robot::* these) {
+    std::vector<icd::RobotName> names;
+    for (const auto& [name, robot] : robots_) {
+      if (!(robot.*these)) continue;
+      to(Kind::Poses, store::bytes_of(std::span(&robot.posted, 1)));
+      names.push_back(name);
+    }
+    return names;
+  };
+  to(Kind::StateSent, store::bytes_of(write_robots(&Robot::under_way)));
+  write_robots(&Robot::news);
+  const auto write_markers = [&to](std::span<const icd::Marker> markers) {
+    for (const std::string& record : records_of(markers)) to(Kind::Markers, record);
+  };
+  write_markers(markers_under_way_);
+  to(Kind::MarkersSent, names_of(markers_under_way_));
+  std::vector<icd::Marker> waiting;
+  for (const auto& [place, marker] : markers_.in_order()) waiting.push_back(marker);
+  write_markers(waiting);
+}
+
+std::pair<Carried, std::string> read_records(const store::Contents& contents) {
+  Carried carried;
+  std::string damage;
+  std::size_t unknown = 0;
+  for (const store::Item& item : contents.items) {
+    if (const auto* const gap = std::get_if<store::Gap>(&item)) {
+      damage = "records of the journal are missing: " + gap->file;
+      continue;
+    }
+    const auto& record = std::get<store::Record>(item);
+    Kind kind{record.kind};
+    if (!damage.empty() && kind == Kind::StateDone) kind = Kind::StateBack;
+    if (!damage.empty() && kind == Kind::MarkersDone) kind = Kind::MarkersBack;
+    if (!carried.apply(kind, record.body)) ++unknown;
+  }
+  if (unknown > 0) {
+    host::log(host::Level::Error, "unknown journal records skipped", {{"records", std::to_string(unknown)}});
+  }
+  return {std::move(carried), std::move(damage)};
+}
+
+std::vector<std::string> records_of(std::span<const icd::Marker> markers) {
+  std::vector<std::string> records;
+  do {
+    std::size_t count = 0, bytes = 0;
+    while (count < markers.size() && bytes < kRecordBytes) bytes += icd::bytes_of(markers[count++]);
+    records.push_back(store::bytes_of(markers.first(count)));
+    markers = markers.subspan(count);
+  } while (!markers.empty());
+  return records;
+}
+
+std::string names_of(std::span<const icd::Marker> markers) {
+  store::Writer put;
+  put(markers.size());
+  for (const icd::Marker& marker : markers) {
+    const auto name = std::tie(marker.ns, marker.id, marker.action);
+    store::walk(put, name);
+  }
+  return put.finish();
+}
+
+namespace {
+
 /// Writes a snapshot of all records before log `before`. Returns its size in bytes.
 store::Result<std::size_t> write_snapshot(const store::Directory& directory, store::Snapshot& snapshot,
                                           std::uint64_t before, const std::atomic<bool>& enough) {

@@ -1,22 +1,207 @@
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <expected>
+#include <functional>
+#include <limits>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "icd/mapping.hpp"
+#include "icd/robot_name.hpp"
 #include "icd/uri.hpp"
-#include "journal/carried.hpp"
 #include "loop/loop.hpp"
 #include "loop/workers.hpp"
+#include "pace/rate_limit.hpp"
+#include "queues/lattice.hpp"
+#include "queues/marker_queue.hpp"
+#include "queues/stamps.hpp"
+#include "queues/state_queue.hpp"
 #include "store/contents.hpp"
 #include "store/directory.hpp"
+#include "store/frame.hpp"
 #include "store/log.hpp"
+
+namespace adit::journal {
+
+/// Kinds of records. The numbers are in files and must not change.
+enum class Kind : std::uint8_t {
+  Clock = 1,         // a boot, a monotonic time and its stamp
+  LifeBegins = 2,    // a process started; its predecessor's messages in flight count as not delivered
+  Senders = 18,      // senders' clocks
+  StateSent = 5,     // poses by robot
+  StateDone = 6,     // delivered or rejected
+  StateBack = 7,     // queued again
+  MarkersSent = 10,  // markers by ns, id and action
+  MarkersDone = 11,
+  MarkersBack = 12,
+  Pace = 13,     // the next request of a URI, and its learned spacing
+  Stamp = 14,    // the last stamp of a URI
+  Grids = 16,    // the extent of the posted grids of a name
+  Poses = 19,    // an accepted /state/update
+  Heard = 20,    // when a robot posted, and how often it posts
+  Markers = 21,  // an accepted /markers/update
+};
+
+/// The gateway's stamp clock at one time of a boot.
+struct Clock {
+  std::string boot;  // host::boot()
+  pace::Instant at{};
+  double stamp = 0;
+  double step_to = 0, step_by = 0;  // dispatch::ClockStep at the start of this boot
+  double off = 0, off_since = 0;    // forward::Clocks::Off
+};
+
+/// When a robot was last heard, by the stamp clock, and how often it sends.
+struct Heard {
+  /// For one kind of data; NaN: never.
+  struct Times {
+    double accepted = std::numeric_limits<double>::quiet_NaN(),
+           forwarded = std::numeric_limits<double>::quiet_NaN();
+  };
+  std::string robot;             // "": merged maps
+  std::uint64_t messages = 0;    // alarms::Habit
+  double gap = 0, last = 0;      // as `messages`
+  std::array<Times, 3> kinds{};  // grid, cloud, state
+};
+
+/// State that a process hands to the next: the sum of a journal's records.
+class Carried {
+ public:
+  /// A pose that is queued (`news`), or in flight without an answer.
+  struct Robot {
+    queues::PostedPose posted;
+    bool news = true, under_way = false;
+  };
+
+  /// False: the record is unknown and had no effect.
+  bool apply(Kind kind, std::string_view said);
+
+  /// Writes the same state as few records.
+  void write(const std::function<void(Kind, std::string_view)>& to) const;
+
+  /// Sets the present boot. Drops monotonic times of another boot, and stamps derived from them.
+  void machine_is(const std::string& boot);
+
+  /// std::nullopt: the first process of this boot.
+  const std::optional<Clock>& clock() const { return clock_; }
+  const queues::StampShift& senders() const { return senders_; }
+  const std::map<icd::Uri, pace::Learned>& paces() const { return paces_; }
+  const std::map<icd::Uri, icd::Stamp>& stamps() const { return stamps_; }
+  /// queues::Canvases::Posted. std::nullopt: not recorded.
+  const std::optional<std::map<std::string, queues::Extent>>& grids() const { return grids_; }
+  /// Robots whose present pose is not delivered. Delivered poses are dropped, because the next process may
+  /// serve another Command Post.
+  const std::map<icd::RobotName, Robot>& robots() const { return robots_; }
+  /// By robot. Empty after a boot.
+  const std::map<std::string, Heard>& heard() const { return heard_; }
+  /// Markers that are not delivered, in order.
+  icd::MarkersUpdate markers() const;
+
+ private:
+  bool read_clock(std::string_view said);
+  bool read_senders(std::string_view said);
+  bool read_poses(std::string_view said);
+  bool read_state_sent(std::string_view said);
+  bool read_markers(std::string_view said);
+  bool read_sent(std::string_view said);
+  bool read_heard(std::string_view said);
+  void state_is_done();
+  void state_comes_back();
+  void markers_come_back();
+
+  std::optional<Clock> clock_;
+  queues::StampShift senders_;
+  std::map<icd::Uri, pace::Learned> paces_;
+  std::map<icd::Uri, icd::Stamp> stamps_;
+  std::optional<std::map<std::string, queues::Extent>> grids_;
+  std::map<icd::RobotName, Robot> robots_;
+  std::map<std::string, Heard> heard_;
+  queues::MarkerChanges markers_;
+  std::vector<icd::Marker> markers_under_way_;
+};
+
+/// The sum of the records, and a sentence about damage, or "". After a gap no message counts as delivered,
+/// because the message that was delivered may be in the gap. Unknown records are logged.
+std::pair<Carried, std::string> read_records(const store::Contents& contents);
+
+/// What the records of Kind::Markers say for an accepted message: at least one record, each of about a
+/// megabyte at most or of one marker. Any thread may make them.
+std::vector<std::string> records_of(std::span<const icd::Marker> markers);
+
+/// What a record of Kind::MarkersSent says: ns, id and action of each marker.
+std::string names_of(std::span<const icd::Marker> markers);
+
+}  // namespace adit::journal
+
+// The structs in records. All other records are store::bytes_of() what Carried reads them as.
+namespace adit {
+
+template <>
+inline constexpr auto store::kMembers<journal::Clock> =
+    std::tuple(&journal::Clock::boot, &journal::Clock::at, &journal::Clock::stamp, &journal::Clock::step_to,
+               &journal::Clock::step_by, &journal::Clock::off, &journal::Clock::off_since);
+template <>
+inline constexpr auto store::kMembers<journal::Heard> =
+    std::tuple(&journal::Heard::robot, &journal::Heard::messages, &journal::Heard::gap, &journal::Heard::last,
+               &journal::Heard::kinds);
+template <>
+inline constexpr auto store::kMembers<journal::Heard::Times> =
+    std::tuple(&journal::Heard::Times::accepted, &journal::Heard::Times::forwarded);
+template <>
+inline constexpr auto store::kMembers<queues::Stamper> =
+    std::tuple(&queues::Stamper::address, &queues::Stamper::uri, &queues::Stamper::robot);
+template <>
+inline constexpr auto store::kMembers<queues::SenderClock> =
+    std::tuple(&queues::SenderClock::theirs, &queues::SenderClock::ours, &queues::SenderClock::latest);
+template <>
+inline constexpr auto store::kMembers<queues::Extent> =
+    std::tuple(&queues::Extent::left, &queues::Extent::bottom, &queues::Extent::right, &queues::Extent::top);
+template <>
+inline constexpr auto store::kMembers<pace::Learned> =
+    std::tuple(&pace::Learned::earliest, &pace::Learned::spacing, &pace::Learned::under_way,
+               &pace::Learned::from_answers, &pace::Learned::single);
+template <>
+inline constexpr auto store::kMembers<pace::Span> = std::tuple(&pace::Span::first, &pace::Span::last);
+template <>
+inline constexpr auto store::kMembers<icd::RobotName> = std::tuple(&icd::RobotName::text);
+template <>
+inline constexpr auto store::kMembers<queues::PostedPose> =
+    std::tuple(&queues::PostedPose::name, &queues::PostedPose::address, &queues::PostedPose::stamp,
+               &queues::PostedPose::pose);
+template <>
+inline constexpr auto store::kMembers<icd::Pose> = std::tuple(&icd::Pose::position, &icd::Pose::orientation);
+template <>
+inline constexpr auto store::kMembers<icd::Point> =
+    std::tuple(&icd::Point::x, &icd::Point::y, &icd::Point::z);
+template <>
+inline constexpr auto store::kMembers<icd::Quaternion> =
+    std::tuple(&icd::Quaternion::x, &icd::Quaternion::y, &icd::Quaternion::z, &icd::Quaternion::w);
+template <>
+inline constexpr auto store::kMembers<icd::Color> =
+    std::tuple(&icd::Color::r, &icd::Color::g, &icd::Color::b, &icd::Color::a);
+template <>
+inline constexpr auto store::kMembers<icd::Header> = std::tuple(&icd::Header::stamp);
+template <>
+inline constexpr auto store::kMembers<icd::Marker> = std::tuple(
+    &icd::Marker::header, &icd::Marker::ns, &icd::Marker::id, &icd::Marker::type, &icd::Marker::action,
+    &icd::Marker::pose, &icd::Marker::scale, &icd::Marker::color, &icd::Marker::lifetime, &icd::Marker::text,
+    &icd::Marker::frame_locked, &icd::Marker::points, &icd::Marker::colors, &icd::Marker::mesh_resource,
+    &icd::Marker::mesh_use_embedded_materials, &icd::Marker::expires);
+/// What tells a robot's pose from others.
+template <>
+inline constexpr auto store::kMembers<icd::NamedPose> = std::tuple(&icd::NamedPose::name);
+
+}  // namespace adit
 
 namespace adit::journal {
 

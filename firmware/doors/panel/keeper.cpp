@@ -8,8 +8,8 @@
 #include <cerrno>
 #include <utility>
 
+#include "panel/messages.hpp"
 #include "panel/states.hpp"
-#include "panel/unix_socket.hpp"
 
 namespace adit::panel {
 namespace {

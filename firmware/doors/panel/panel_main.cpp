@@ -9,7 +9,7 @@
 #include "loop/regular_file.hpp"
 #include "loop/watchdog.hpp"
 #include "panel/keeper.hpp"
-#include "panel/unix_socket.hpp"
+#include "panel/messages.hpp"
 #include "settings/board.hpp"
 
 namespace adit::panel {

@@ -12,7 +12,6 @@
 
 #include "loop/file_descriptor.hpp"
 #include "panel/messages.hpp"
-#include "panel/unix_socket.hpp"
 
 namespace adit::panel {
 namespace {

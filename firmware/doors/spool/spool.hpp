@@ -12,7 +12,7 @@
 
 #include "icd/grid_bounds.hpp"
 #include "icd/mapping.hpp"
-#include "spool/map_file.hpp"
+#include "spool/kept_message.hpp"
 
 namespace adit::spool {
 

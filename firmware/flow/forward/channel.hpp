@@ -8,12 +8,18 @@
 #include <vector>
 
 #include "icd/uri.hpp"
+#include "intake/server.hpp"
 #include "loop/loop.hpp"
 #include "settings/settings.hpp"
 #include "uplink/connection.hpp"
 #include "uplink/connections.hpp"
 
 namespace adit::forward {
+
+/// The client's answer, with the same status. JSON of a 2xx and JSON strings are copied. An object becomes
+/// the string of its `detail` (ICD 4.1), other bytes a sentence (404 and 500 may be HTML, 501 is empty). A
+/// 2xx without JSON becomes 502.
+intake::Answer client_answer(const uplink::Answered& answered);
 
 /// The last outcome of the requests to an endpoint, and counts of all.
 class LastAnswer {

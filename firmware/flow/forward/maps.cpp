@@ -4,7 +4,7 @@
 
 #include "codec/write.hpp"
 #include "dispatch/verdicts.hpp"
-#include "forward/upstream_answer.hpp"
+#include "forward/channel.hpp"
 #include "host/log.hpp"
 #include "icd/sentence.hpp"
 #include "pace/budget.hpp"

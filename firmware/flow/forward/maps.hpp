@@ -10,7 +10,7 @@
 #include "forward/prepared_maps.hpp"
 #include "forward/rejected.hpp"
 #include "forward/uri_pace.hpp"
-#include "queues/pipelining.hpp"
+#include "queues/map_queue.hpp"
 
 namespace adit::forward {
 

@@ -14,7 +14,6 @@
 #include "icd/sentence.hpp"
 #include "icd/try.hpp"
 #include "spool/kept_message.hpp"
-#include "spool/map_file.hpp"
 
 namespace adit::forward {
 namespace {

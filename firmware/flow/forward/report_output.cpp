@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "forward/upstream_answer.hpp"
+#include "forward/channel.hpp"
 #include "host/log.hpp"
 #include "intake/icd_routes.hpp"
 

@@ -10,7 +10,7 @@
 #include "dispatch/runs.hpp"
 #include "dispatch/turn.hpp"
 #include "dispatch/verdicts.hpp"
-#include "forward/upstream_answer.hpp"
+#include "forward/channel.hpp"
 #include "host/log.hpp"
 #include "intake/icd_routes.hpp"
 

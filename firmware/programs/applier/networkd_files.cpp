@@ -12,7 +12,7 @@
 #include "host/service.hpp"
 #include "icd/sentence.hpp"
 #include "icd/try.hpp"
-#include "network/networkd.hpp"
+#include "network/change.hpp"
 
 namespace adit::applier {
 namespace {

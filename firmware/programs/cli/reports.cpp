@@ -6,7 +6,7 @@
 #include "api/run_view.hpp"
 #include "cli/ask.hpp"
 #include "cli/handlers.hpp"
-#include "cli/reports_text.hpp"
+#include "cli/status_text.hpp"
 #include "cli/table.hpp"
 #include "codec/json.hpp"
 #include "command_line/program.hpp"

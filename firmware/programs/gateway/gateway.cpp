@@ -4,11 +4,11 @@
 #include <cerrno>
 #include <utility>
 
-#include "box/candidate.hpp"
 #include "box/open_panel.hpp"
+#include "box/self_test.hpp"
 #include "box/version.hpp"
 #include "dispatch/reports.hpp"
-#include "forward/stamp_floor.hpp"
+#include "forward/clocks.hpp"
 #include "host/files.hpp"
 #include "host/interfaces.hpp"
 #include "host/link_changes.hpp"

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "alarms/endpoint_watch.hpp"
 #include "alarms/facts.hpp"
 #include "alarms/habits.hpp"
 #include "forward/flow.hpp"

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "box/open_panel.hpp"
-#include "forward/stamp_floor.hpp"
+#include "forward/clocks.hpp"
 #include "host/disk.hpp"
 #include "host/files.hpp"
 #include "host/inherited.hpp"

@@ -85,4 +85,106 @@ std::map<std::string, Robot> Habits::robots(const Rules& rules, double now) cons
   return robots;
 }
 
+namespace {
+
+bool is_barred(const ConnectionSample& seen) {
+  return seen.foreign || seen.status == 401 || seen.status == 403;
+}
+
+/// Whether the status concerns the endpoint rather than one message.
+bool is_error(int status) {
+  return status >= 500 || status == 404 || status == 405 || status == 407;
+}
+
+void begin(std::optional<double>& since, bool so, double now) {
+  if (!so) since.reset();
+  if (so && !since) since = now;
+}
+
+}  // namespace
+
+void EndpointWatch::look(ConnectionState& way, const ConnectionSample& seen, double now) {
+  const bool ended = seen.ended != way.seen.ended;
+  const bool answered = ended && seen.status != 0;
+  const bool moved = seen.sent != way.seen.sent;
+  if (answered && !is_barred(seen) && !is_error(seen.status) && seen.status != 429) {
+    way.well = now;
+    way.failing.reset();
+  }
+  if (answered) begin(way.barred, is_barred(seen), now);
+  if (answered && is_error(seen.status) && !seen.foreign && !way.failing) way.failing = now;
+  const bool came_to_nothing = seen.status == 0 && !seen.said.empty();
+  const bool unanswered = seen.busy || came_to_nothing;
+  // After a failed request, bytes of the next one are no sign of life.
+  if (answered || (moved && !came_to_nothing)) way.waits.reset();
+  begin(way.waits, unanswered, now);
+  begin(way.without, !seen.connected && seen.status == 0 && !seen.said.empty(), now);
+  for (std::uint64_t i = way.seen.throttled; i < seen.throttled && i < way.seen.throttled + kThrottled; ++i)
+    throttled_.push_back(now);
+  while (throttled_.size() > kThrottled) throttled_.pop_front();
+  way.seen = seen;
+}
+
+void EndpointWatch::look(const std::vector<ConnectionSample>& seen, double now) {
+  if (ways_.size() != seen.size()) {
+    ways_.assign(seen.size(), {});
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+      ways_[i].seen.ended = seen[i].ended;
+      ways_[i].seen.throttled = seen[i].throttled;
+    }
+  }
+  for (std::size_t i = 0; i < seen.size(); ++i) look(ways_[i], seen[i], now);
+  const bool was_stopped = std::exchange(is_stopped_, endpoint(now).trouble < EndpointTrouble::Throttling);
+  if (was_stopped && !is_stopped_) well_since_ = now;
+}
+
+void EndpointWatch::forget() {
+  ways_.clear();
+  throttled_.clear();
+  is_stopped_ = true;  // so that messages queued for the old address count as late, not as failed
+}
+
+/// Whether another connection had a good answer within kStillWell, and not before `since` less a second.
+bool EndpointWatch::is_well_elsewhere(const ConnectionState& way, double since, double now) const {
+  return std::ranges::any_of(ways_, [&](const ConnectionState& other) {
+    return &other != &way && other.well && *other.well > std::min(since, now) - 1 &&
+           now - *other.well < kStillWell;
+  });
+}
+
+Endpoint EndpointWatch::trouble_of(const ConnectionState& way, double now) const {
+  const ConnectionSample& seen = way.seen;
+  const auto lasts = [&](const std::optional<double>& since, double seconds) {
+    return since && now - *since >= seconds && !is_well_elsewhere(way, *since, now);
+  };
+  if (lasts(way.without, kUnreachableAfter))
+    return {.trouble = EndpointTrouble::Unreachable, .since = *way.without, .said = seen.said};
+  const bool was_well = std::ranges::any_of(ways_, [](const auto& each) { return each.well.has_value(); });
+  const bool may_be_a_robot = has_robots_ && was_well && !seen.foreign;
+  if (lasts(way.barred, may_be_a_robot ? kFailingAfter : 0)) {
+    return {.trouble = seen.foreign ? EndpointTrouble::Foreign : EndpointTrouble::Refusing,
+            .since = *way.barred,
+            .said = seen.said};
+  }
+  if (lasts(way.waits, kSilentAfter)) return {.trouble = EndpointTrouble::Silent, .since = *way.waits};
+  if (lasts(way.failing, kFailingAfter))
+    return {.trouble = EndpointTrouble::Failing, .since = *way.failing, .said = seen.said};
+  return {};
+}
+
+Endpoint EndpointWatch::throttling(double now) const {
+  if (throttled_.size() < kThrottled || now - throttled_.front() > kThrottledWithin) return {};
+  return {.trouble = EndpointTrouble::Throttling, .since = throttled_.front()};
+}
+
+Endpoint EndpointWatch::endpoint(double now) const {
+  Endpoint worst = throttling(now);
+  for (const ConnectionState& way : ways_) {
+    const Endpoint trouble = trouble_of(way, now);
+    if (trouble.trouble < worst.trouble) worst = trouble;
+  }
+  if (well_since_ && worst.trouble >= EndpointTrouble::Throttling) worst.well_for = now - *well_since_;
+  return worst;
+}
+
 }  // namespace adit::alarms

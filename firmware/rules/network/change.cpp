@@ -1,5 +1,6 @@
 #include "network/change.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "icd/sentence.hpp"
@@ -91,6 +92,113 @@ void Change::end(Ended how, std::string why) {
   status_.ended = how;
   status_.why = std::move(why);
   try_at_.reset();
+}
+
+namespace {
+
+using settings::Subnet;
+
+/// The address stays without a carrier (ConfigureWithoutCarrier), so a pulled cable costs only its own time.
+/// Other addresses of the interface are removed (KeepConfiguration=no), or a replaced address would stay
+/// beside the new one.
+constexpr const char* kHead =
+    "# Written by adit-network: to change it, use Adit's page.\n"
+    "[Match]\n"
+    "Name=";
+constexpr const char* kBoth =
+    "IPv6AcceptRA=no\n"
+    "LLMNR=no\n"
+    "LLDP=no\n"
+    "EmitLLDP=no\n"
+    "KeepConfiguration=no\n"
+    "ConfigureWithoutCarrier=yes\n";
+
+/// adit-network looks for address conflicts (RFC 5227) before it writes this file. The check by networkd
+/// would leave the interface without an address for seconds. If the address changes during the check, version
+/// 252 sets both.
+std::string address(const Subnet& host, bool with_route) {
+  return icd::sentence("\n[Address]\nAddress=", host_text(host), with_route ? "" : "\nAddPrefixRoute=no",
+                       "\nDuplicateAddressDetection=none\n");
+}
+
+std::string in_table() {
+  return icd::sentence("Table=", kRouteTable, "\n");
+}
+
+/// A route to the subnet of an address. If two addresses share a subnet, the route uses the first.
+std::string link_route(const Subnet& host) {
+  return icd::sentence("\n[Route]\nDestination=", written(host),
+                       "\nScope=link\nPreferredSource=", settings::ipv4_text(host.address), "\n") +
+         in_table();
+}
+
+std::string endpoint_route(std::uint32_t endpoint, std::uint32_t gateway, const Subnet& own) {
+  return icd::sentence("\n[Route]\nDestination=", settings::ipv4_text(endpoint),
+                       "/32\nGateway=", settings::ipv4_text(gateway),
+                       "\nPreferredSource=", settings::ipv4_text(own.address), "\n") +
+         in_table();
+}
+
+/// Sends sockets bound to the interface, and packets from its addresses, to the table. The second rule also
+/// gives the kernel the way back for received packets (rp_filter).
+std::string rules(const std::string& interface, const Numbers& numbers) {
+  std::string text = icd::sentence("\n[RoutingPolicyRule]\nOutgoingInterface=", interface,
+                                   "\nFamily=ipv4\nPriority=", kRouteTable, "\n") +
+                     in_table();
+  for (const Subnet& each : numbers.command_post) {
+    text += icd::sentence("\n[RoutingPolicyRule]\nFrom=", settings::ipv4_text(each.address),
+                          "/32\nPriority=", kRouteTable, "\n") +
+            in_table();
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string team_file(const std::string& interface, const Numbers& numbers) {
+  const bool asks = numbers.mode == Mode::Dhcp;
+  std::string text = kHead + interface +
+                     "\n\n[Link]\nRequiredForOnline=no\n\n[Network]\n"
+                     "LinkLocalAddressing=yes\n"
+                     "MulticastDNS=yes\n" +
+                     kBoth;
+  text += asks ? "DHCP=ipv4\n" : "DHCP=no\n";
+  // Addresses from the DHCP server of another network are useless here. A cable that moved within one network
+  // keeps its lease.
+  text += asks ? "IgnoreCarrierLoss=5s\n" : "IgnoreCarrierLoss=yes\n";
+  if (numbers.mode == Mode::Static) text += address(numbers.team, true);
+  if (asks) {
+    text +=
+        "\n[DHCPv4]\nUseDNS=no\nUseNTP=no\nUseSIP=no\nUseHostname=no\nUseDomains=no\nUseTimezone=no\n"
+        "UseGateway=no\nUseRoutes=no\nUseMTU=no\n";
+  }
+  return text;
+}
+
+std::string command_post_file(const std::string& interface, const Numbers& numbers,
+                              const std::vector<std::uint32_t>& endpoints) {
+  std::string text = kHead + interface +
+                     "\n\n[Link]\nRequiredForOnline=no\nMulticast=no\n\n[Network]\n"
+                     "DHCP=no\n"
+                     "LinkLocalAddressing=no\n"
+                     "MulticastDNS=no\n" +
+                     kBoth + "IgnoreCarrierLoss=yes\n";
+  if (numbers.command_post.empty()) return text;
+  std::vector<Subnet> linked;
+  for (const Subnet& each : numbers.command_post) {
+    text += address(each, false);
+    const Subnet subnet{each.first(), each.prefix};
+    if (std::ranges::find(linked, subnet) == linked.end()) {
+      linked.push_back(subnet);
+      text += link_route(each);
+    }
+  }
+  for (const std::uint32_t endpoint : endpoints) {
+    if (numbers.gateway && on_link(numbers, endpoint) == nullptr) {
+      text += endpoint_route(endpoint, *numbers.gateway, *on_link(numbers, *numbers.gateway));
+    }
+  }
+  return text + rules(interface, numbers);
 }
 
 }  // namespace adit::network

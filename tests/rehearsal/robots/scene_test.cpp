@@ -1,6 +1,6 @@
-#include "rehearsal/robots/scene.hpp"
-
 #include <gtest/gtest.h>
+
+#include "rehearsal/robots/explorer.hpp"
 
 namespace adit::robots {
 namespace {

@@ -14,7 +14,6 @@
 
 #include "command_line/read.hpp"
 #include "rehearsal/command_post/command_post.hpp"
-#include "rehearsal/command_post/control.hpp"
 #include "rehearsal/command_post/options.hpp"
 #include "rehearsal/command_post/server.hpp"
 

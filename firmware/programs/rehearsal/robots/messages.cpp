@@ -1,7 +1,15 @@
 #include "rehearsal/robots/messages.hpp"
 
+#include <zlib.h>
+
 #include <array>
 #include <cmath>
+#include <iterator>
+#include <new>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "rehearsal/row_padding.hpp"
 
 namespace adit::robots {
 
@@ -26,6 +34,292 @@ std::string_view name_of(Kind kind) {
   constexpr std::array<std::string_view, kKinds> kNames = {"grid",   "cloud",  "state",    "markers",
                                                            "report", "status", "preflight"};
   return kNames[static_cast<std::size_t>(kind)];
+}
+
+std::optional<TeamStyle> TeamStyle::parse(std::string_view name) {
+  if (name == "mixed") return TeamStyle();
+  for (std::size_t i = 0; i < kStyles.size(); ++i) {
+    if (kStyles[i].name == name) return TeamStyle(i);
+  }
+  return std::nullopt;
+}
+
+std::vector<std::uint8_t> gzip(std::span<const std::uint8_t> bytes) {
+  constexpr int kGzipFraming = 16;
+  z_stream stream{};
+  if (deflateInit2(&stream, Z_DEFAULT_COMPRESSION, Z_DEFLATED, MAX_WBITS + kGzipFraming, 8,
+                   Z_DEFAULT_STRATEGY) != Z_OK) {
+    throw std::bad_alloc();  // the one way in which these arguments can fail
+  }
+  std::vector<std::uint8_t> packed(deflateBound(&stream, bytes.size()));
+  // zlib's input is not const, but only read; it must not be null even where there is none.
+  static std::uint8_t nothing = 0;
+  stream.next_in = bytes.empty() ? &nothing : const_cast<std::uint8_t*>(bytes.data());
+  stream.avail_in = static_cast<uInt>(bytes.size());
+  stream.next_out = packed.data();
+  stream.avail_out = static_cast<uInt>(packed.size());
+  (void)deflate(&stream, Z_FINISH);  // ends in one call: the output has room for the bound
+  packed.resize(stream.total_out);
+  (void)deflateEnd(&stream);
+  return packed;
+}
+
+std::string base64(std::span<const std::uint8_t> bytes) {
+  constexpr std::string_view kAlphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::size_t left = bytes.size() - i;
+    const unsigned group = static_cast<unsigned>(bytes[i]) << 16 |
+                           (left > 1 ? static_cast<unsigned>(bytes[i + 1]) << 8 : 0u) |
+                           (left > 2 ? static_cast<unsigned>(bytes[i + 2]) : 0u);
+    text += kAlphabet[group >> 18 & 63];
+    text += kAlphabet[group >> 12 & 63];
+    text += left > 1 ? kAlphabet[group >> 6 & 63] : '=';
+    text += left > 2 ? kAlphabet[group & 63] : '=';
+  }
+  return text;
+}
+
+namespace {
+
+using Json = nlohmann::json;
+
+std::string text_of(const std::vector<std::uint8_t>& bytes) {
+  return {bytes.begin(), bytes.end()};
+}
+
+/// The members of one message, in one style.
+class Body {
+ public:
+  Body(const std::string& robot, const Style& style, std::uint32_t seq)
+      : robot_(robot), style_(style), seq_(seq) {}
+
+  Json operator()(const Grid& grid) const {
+    Json info = {{"resolution", number(grid.resolution)},
+                 {"width", grid.width},
+                 {"height", grid.height},
+                 {"origin", placement(grid.origin)}};
+    if (style_.ros) info["map_load_time"] = {{"secs", 0}, {"nsecs", 0}};
+    Json msg = {{"header", header(grid.stamp)}, {"info", std::move(info)}};
+    if (style_.data == DataForm::Integers) {
+      Json::array_t cells;
+      cells.reserve(grid.cells.size());
+      for (const std::uint8_t cell : grid.cells) cells.emplace_back(cell == kUnknown ? -1 : int{cell});
+      msg["data"] = std::move(cells);
+    } else {
+      put_data(msg, grid.cells);
+    }
+    return map("OccupancyGrid", std::move(msg));
+  }
+
+  Json operator()(const Cloud& cloud) const {
+    Json fields = Json::array();
+    for (const CloudField& field : cloud.fields) {
+      fields.push_back({{"name", field.name},
+                        {"offset", field.offset},
+                        {"datatype", field.datatype},
+                        {"count", field.count}});
+    }
+    Json msg = {{"header", header(cloud.stamp)},
+                {"fields", std::move(fields)},
+                {"point_step", cloud.point_step},
+                {"is_bigendian", false}};
+    if (cloud.origin) msg["origin"] = placement(*cloud.origin);
+    if (style_.ros) {
+      put_rows(msg, cloud);
+    } else {
+      put_data(msg, cloud.data);
+    }
+    return map("PointCloud2", std::move(msg));
+  }
+
+  Json operator()(const State& state) const {
+    Json pose = placement(state.pose);
+    pose["name"] = state.robot;
+    // A lazy client of the field: it fills in the position and leaves the orientation as ROS made it.
+    if (style_.ros) pose["orientation"] = {{"x", 0}, {"y", 0}, {"z", 0}, {"w", 0}};
+    return {{"header", header(state.stamp)}, {"poses", Json::array({std::move(pose)})}};
+  }
+
+  Json operator()(const Markers& update) const {
+    Json markers = Json::array();
+    for (const Marker& marker : update.markers) markers.push_back(one(marker, update.stamp));
+    return {{"markers", std::move(markers)}};
+  }
+
+  Json operator()(const Report& report) const {
+    Json body = vector(report.position);
+    body["type"] = report.type;
+    if (style_.ros || style_.browser) body["name"] = robot_;  // as in the ICD's own example (5.2)
+    return body;
+  }
+
+  Json operator()(const StatusQuery&) const { return nullptr; }
+
+ private:
+  Json number(double value) const {
+    if (style_.ros && value == std::trunc(value)) return static_cast<std::int64_t>(value);
+    return value;
+  }
+
+  Json vector(const Vector3& v) const { return {{"x", number(v.x)}, {"y", number(v.y)}, {"z", number(v.z)}}; }
+
+  Json vectors(const std::vector<Vector3>& all) const {
+    Json array = Json::array();
+    for (const Vector3& one : all) array.push_back(vector(one));
+    return array;
+  }
+
+  Json placement(const Placement& placement) const {
+    Rotation q = placement.orientation;
+    if (style_.ros) q = {2 * q.x, 2 * q.y, 2 * q.z, 2 * q.w};  // as of a client that does not normalise
+    return {
+        {"position", vector(placement.position)},
+        {"orientation", {{"x", number(q.x)}, {"y", number(q.y)}, {"z", number(q.z)}, {"w", number(q.w)}}}};
+  }
+
+  /// Message by message as ROS 1, ROS 2 and some C++ code write it.
+  Json ros_time(double seconds) const {
+    constexpr const char* kNames[][2] = {{"secs", "nsecs"}, {"sec", "nanosec"}, {"sec", "nsec"}};
+    const auto& [secs, nsecs] = kNames[seq_ % std::size(kNames)];
+    const double whole = std::floor(seconds);
+    return {{secs, static_cast<std::int64_t>(whole)},
+            {nsecs, static_cast<std::int64_t>((seconds - whole) * 1e9)}};
+  }
+
+  Json header(double stamp) const {
+    if (!style_.ros) return {{"stamp", stamp}, {"frame_id", "darpa"}};
+    return {{"seq", seq_}, {"stamp", ros_time(stamp)}, {"frame_id", "darpa"}};
+  }
+
+  void put_data(Json& msg, const std::vector<std::uint8_t>& bytes) const {
+    const std::vector<std::uint8_t>& packed = style_.gzip_data ? gzip(bytes) : bytes;
+    if (style_.data == DataForm::Bytes) {
+      msg["data"] = Json::binary(packed);
+    } else {
+      msg["data"] = base64(packed);
+    }
+    if (style_.gzip_data) msg["compression"] = "gzip";
+  }
+
+  /// Two, each with the padding of one point, if they are of one length; else one, as of a cloud that is not
+  /// organised.
+  void put_rows(Json& msg, const Cloud& cloud) const {
+    const std::size_t points = cloud.data.size() / cloud.point_step;
+    const std::size_t rows = points > 0 && points % 2 == 0 ? 2 : 1, row = cloud.data.size() / rows;
+    std::vector<std::uint8_t> data;
+    for (std::size_t at = 0; at < cloud.data.size(); at += row) {
+      data.insert(data.end(), &cloud.data[at], &cloud.data[at] + row);
+      for (std::size_t i = 0; rows > 1 && i < cloud.point_step; ++i)
+        data.push_back(static_cast<std::uint8_t>(kRowPadding[i % kRowPadding.size()]));
+    }
+    msg["height"] = rows;
+    msg["width"] = points / rows;
+    msg["row_step"] = data.size() / rows;
+    msg["is_dense"] = true;
+    put_data(msg, data);
+  }
+
+  Json map(const char* type, Json msg) const {
+    Json body = {{"type", type}, {"msg", std::move(msg)}};
+    if (!style_.ros) body["name"] = robot_;
+    return body;
+  }
+
+  Json one(const Marker& marker, double stamp) const {
+    Json json = {{"header", header(stamp)},
+                 {"ns", marker.ns},
+                 {"id", marker.id},
+                 {"type", static_cast<int>(marker.type)},
+                 {"action", static_cast<int>(marker.action)},
+                 {"pose", placement({.position = marker.position, .orientation = {}})},
+                 {"scale", vector({marker.size, marker.size, marker.size})},
+                 {"color",
+                  {{"r", number(marker.color.r)},
+                   {"g", number(marker.color.g)},
+                   {"b", number(marker.color.b)},
+                   {"a", number(marker.color.a)}}},
+                 {"lifetime", marker.lifetime},
+                 {"text", marker.text}};
+    if (!marker.points.empty()) json["points"] = vectors(marker.points);
+    if (!marker.mesh_resource.empty()) {
+      json["mesh_resource"] = marker.mesh_resource;
+      json["mesh_use_embedded_materials"] = true;
+    }
+    if (style_.ros) {
+      json["lifetime"] = ros_time(marker.lifetime);
+      json["frame_locked"] = false;
+      json["points"] = vectors(marker.points);
+      json["colors"] = Json::array();
+      json["mesh_resource"] = marker.mesh_resource;
+      json["mesh_use_embedded_materials"] = !marker.mesh_resource.empty();
+    }
+    return json;
+  }
+
+  const std::string& robot_;
+  const Style& style_;
+  std::uint32_t seq_;
+};
+
+const char* target_of(Kind kind) {
+  switch (kind) {
+    case Kind::Grid:
+    case Kind::Cloud:
+      return "/map/update";
+    case Kind::State:
+      return "/state/update";
+    case Kind::Markers:
+      return "/markers/update";
+    case Kind::Report:
+      return "/api/artifact_reports";
+    case Kind::Status:
+    case Kind::Preflight:
+      break;
+  }
+  return "/api/status";
+}
+
+}  // namespace
+
+Encoder::Encoder(std::string robot, const Style& style, std::string token)
+    : robot_(std::move(robot)), style_(style), token_(std::move(token)) {}
+
+HttpRequest Encoder::encode(const Message& message) {
+  const Kind kind = kind_of(message);
+  HttpRequest request{.method = "POST", .target = target_of(kind), .fields = {}, .body = {}};
+  if (style_.browser) {
+    request.target += '/';
+    request.fields.emplace_back("Origin", kOrigin);
+  }
+  request.fields.emplace_back("Authorization", (style_.browser ? "bearer " : "Bearer ") + token_);
+  if (kind == Kind::Status) {
+    request.method = "GET";
+    return request;
+  }
+  const Json body = std::visit(Body(robot_, style_, seq_++), message);
+  const bool cbor = style_.cbor && kind != Kind::Report;  // ICD 4: scoring takes JSON alone
+  request.body = cbor ? text_of(Json::to_cbor(body)) : body.dump();
+  std::string type = cbor ? "application/cbor" : "application/json";
+  if (style_.browser) type += "; charset=utf-8";
+  request.fields.emplace_back("Content-Type", std::move(type));
+  if (style_.gzip_body && kind != Kind::Report) {
+    request.body =
+        text_of(gzip({reinterpret_cast<const std::uint8_t*>(request.body.data()), request.body.size()}));
+    request.fields.emplace_back("Content-Encoding", "gzip");
+  }
+  return request;
+}
+
+HttpRequest Encoder::preflight(const HttpRequest& request) {
+  return {.method = "OPTIONS",
+          .target = request.target,
+          .fields = {{"Origin", kOrigin},
+                     {"Access-Control-Request-Method", request.method},
+                     {"Access-Control-Request-Headers",
+                      request.method == "GET" ? "authorization" : "authorization,content-type"}},
+          .body = {}};
 }
 
 }  // namespace adit::robots

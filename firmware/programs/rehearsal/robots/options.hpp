@@ -8,9 +8,9 @@
 #include <string>
 
 #include "command_line/read.hpp"
-#include "rehearsal/robots/encode.hpp"
 #include "rehearsal/robots/http.hpp"
 #include "rehearsal/robots/map_maker.hpp"
+#include "rehearsal/robots/messages.hpp"
 
 namespace adit::robots {
 

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <expected>
 #include <filesystem>
 #include <mutex>
 #include <stop_token>
@@ -11,11 +12,15 @@
 
 #include "rehearsal/robots/cave.hpp"
 #include "rehearsal/robots/client.hpp"
-#include "rehearsal/robots/desk.hpp"
 #include "rehearsal/robots/map_maker.hpp"
 #include "rehearsal/robots/posted.hpp"
 
 namespace adit::robots {
+
+/// Posts one map file, again after a 429 or where no answer came, and then waits as long as a client that
+/// keeps to one map a second. A sentence of what was posted; or why the file cannot be.
+std::expected<std::string, std::string> replay_file(const std::filesystem::path& file, Client& client,
+                                                    const std::stop_token& finish);
 
 /// Standard output, shared by the team's threads: lines that stay, and on a terminal one live line below
 /// them.

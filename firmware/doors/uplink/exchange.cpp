@@ -1,40 +1,26 @@
 // Only this file includes Boost.Beast, because its headers take seconds to compile. Disables its assertions,
 // which a release does not have. One of them is wrong: for "0\r\n", the last chunk of an empty body, and one
 // more byte, it fails although the bytes were parsed correctly (basic_parser.ipp, parse_chunk_header()).
+#define BOOST_DISABLE_ASSERTS
+
 #include "uplink/exchange.hpp"
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
-#include <cstring>
-#include <utility>
-
-#include "icd/status.hpp"
-
-#define BOOST_DISABLE_ASSERTS
-
-// GCC 12 warns of an uninitialised boost::optional if the sanitizers prevent inlining.
-#if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
-#endif
-#if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC diagnostic pop
-#endif
-#include <algorithm>
 #include <boost/beast/core/buffers_range.hpp>
 #include <boost/beast/http/error.hpp>
 #include <boost/beast/http/message.hpp>
 #include <boost/beast/http/parser.hpp>
+#include <cerrno>
+#include <cstring>
 #include <ctime>
 #include <utility>
 
 #include "codec/content_decoder.hpp"
-#include "icd/text.hpp"
 #include "icd/require.hpp"
+#include "icd/status.hpp"
 #include "icd/text.hpp"
 #include "loop/guard.hpp"
-#include "uplink/exchange.hpp"
 
 namespace adit::uplink {
 namespace {
@@ -264,11 +250,6 @@ bool AnswerParser::has_begun() const {
 
 namespace {
 
-bool same_in_any_case(std::string_view one, std::string_view other) {
-  const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; };
-  return std::ranges::equal(one, other, {}, lower, lower);
-}
-
 /// Chunks written at once: about a megabyte, so that the loop stays quick.
 constexpr std::size_t kChunksAtOnce = 17;
 /// Calls of listen() within answer_within.
@@ -308,13 +289,13 @@ std::optional<bool> redirects_to_slash(int status, std::string_view location, st
   constexpr std::string_view kScheme = "http://";
   const bool redirects = status == 301 || status == 302 || status == 307 || status == 308;
   if (!redirects) return {};
-  if (same_in_any_case(location.substr(0, kScheme.size()), kScheme)) {
+  if (icd::same_but_for_case(location.substr(0, kScheme.size()), kScheme)) {
     location.remove_prefix(kScheme.size());
     std::string there(location.substr(0, location.find('/')));
     location.remove_prefix(there.size());
     const bool has_port = there.find(':', there.rfind(']') + 1) != std::string::npos;
     if (!has_port) there += ":80";
-    if (!same_in_any_case(there, authority)) return {};
+    if (!icd::same_but_for_case(there, authority)) return {};
   }
   const bool has_slash = target.ends_with('/');
   const std::string_view longer = has_slash ? target : location, shorter = has_slash ? location : target;

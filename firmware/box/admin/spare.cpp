@@ -124,8 +124,6 @@ void SpareStick::finish(const spare::StickStatus& status) {
   taken_(*std::move(file));
 }
 
-using icd::Status;
-
 Spare::Spare(loop::Loop& loop, loop::Workers& workers, Takeover& takeover, std::string state_folder,
              const std::string& status_folder, const std::string& stuck, Asked asked)
     : loop_(loop),

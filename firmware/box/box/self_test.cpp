@@ -68,9 +68,7 @@ icd::Checked<TestTarget> tried_of(const api::Candidate& candidate, const setting
   return tried;
 }
 
-}  // namespace adit::box
-
-namespace adit::box::steps {
+namespace steps {
 namespace {
 
 TestStep good(std::string name, std::string said) {
@@ -269,9 +267,8 @@ TestStep run_clock(std::optional<double> first, std::optional<double> second) {
                                         " s: the run has not started, or has ended"));
 }
 
-}  // namespace adit::box::steps
+}  // namespace steps
 
-namespace adit::box {
 namespace {
 
 constexpr int kTooMany = 429;

@@ -34,10 +34,8 @@ struct TestTarget {
 icd::Checked<TestTarget> tried_of(const api::Candidate& candidate, const settings::Settings& written,
                                   const host::Secrets& secrets);
 
-}  // namespace adit::box
-
 /// Results of the Test's steps: a state, the finding in words, and advice.
-namespace adit::box::steps {
+namespace steps {
 
 using api::TestStep;
 
@@ -77,9 +75,7 @@ TestStep skipped(const std::string& name, const std::string& why);
 /// Largest difference that passes.
 inline constexpr std::chrono::seconds kOff{2};
 
-}  // namespace adit::box::steps
-
-namespace adit::box {
+}  // namespace steps
 
 /// The Test's steps at one endpoint, on its own connections. It requests the run's status, and posts `{}` as
 /// a state, which the mapping endpoint rejects (ICD 5.2) after it has checked the token.

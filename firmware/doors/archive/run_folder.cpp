@@ -165,8 +165,6 @@ std::expected<bool, std::string> is_blank(const std::string& folder) {
 
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr std::string_view kGone = "gone-";
 
 /// Total size of the files, or why one of them or the directory cannot be read.

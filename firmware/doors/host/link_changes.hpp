@@ -7,7 +7,7 @@
 
 namespace adit::host {
 
-/// As carrier(). `sys_class_net`: the kernel's list of interfaces.
+/// As carrier() of service.hpp. `sys_class_net`: the kernel's list of interfaces.
 std::optional<bool> carrier_in(const std::string& sys_class_net, const std::string& interface);
 
 /// A socket that becomes readable when an interface comes, goes or changes, or its cable does (rtnetlink(7),

@@ -14,9 +14,13 @@
 #include "loop/guard.hpp"
 #include "loop/loop.hpp"
 
+struct MHD_Connection;
+
 namespace adit::intake {
 
 class Client;
+class Request;
+enum class Next : std::uint8_t;
 
 /// The server as a Client sees it.
 class Engine {
@@ -62,8 +66,6 @@ class LeastRate {
   bool has_half_ = false;  // in_last_half_ is set
 };
 
-class Engine;
-
 /// The time at which a client is late: it must send or read bytes within a time, or at the least rate.
 class Deadline {
  public:
@@ -107,15 +109,6 @@ class Deadline {
   std::optional<LeastRate> rate_;
   std::uint64_t taken_before_ = 0;  // the last value of Gate::Traffic::taken
 };
-
-}  // namespace adit::intake
-
-struct MHD_Connection;
-
-namespace adit::intake {
-
-class Request;
-enum class Next : std::uint8_t;
 
 /// One client's connection, from accept to close. Lives as long as libmicrohttpd's connection.
 class Client {

@@ -20,12 +20,6 @@ using Admit = std::function<void(int fd, const sockaddr* peer, unsigned size)>;
 /// each connection to `admit` while it lives. Null: libmicrohttpd accepts them itself.
 std::shared_ptr<void> accept_instead(int listening, Admit admit);
 
-}  // namespace adit::intake
-
-struct sockaddr;
-
-namespace adit::intake {
-
 /// Opens a non-blocking socket that listens as `listen` asks. The error is a sentence. The kernel closes an
 /// accepted connection if its peer does not answer for `listen.idle`, because a pulled cable sends no FIN.
 std::expected<loop::FileDescriptor, std::string> open_listen_socket(const Listen& listen);

@@ -15,7 +15,11 @@
 #include "intake/head_checker.hpp"
 #include "intake/server.hpp"
 
+struct MHD_Response;
+
 namespace adit::intake {
+
+class Client;
 
 /// Parses a chunked body (RFC 9112 7.1) as it arrives. Skips extensions and trailers. Refuses each deviation
 /// from the grammar, such as a bare LF or extra blanks.
@@ -48,14 +52,6 @@ class ChunkReader {
   std::size_t trailers_ = 0;
   std::string_view trouble_;
 };
-
-}  // namespace adit::intake
-
-struct MHD_Response;
-
-namespace adit::intake {
-
-class Client;
 
 /// The bytes of a Stream that the client has not been sent.
 class ReplyStream {
@@ -100,8 +96,6 @@ class ReplyStreamEnd final : public Stream {
  private:
   std::shared_ptr<ReplyStream> stream_;
 };
-
-class Client;
 
 /// What happens to the connection after a step of the request.
 enum class Next : std::uint8_t { GoOn, Close };

@@ -170,15 +170,10 @@ store::Result<Reading> read(const store::Contents& contents) {
   return reading;
 }
 
-}  // namespace adit::ledger
-
-/// The rules for missing records (README.md, "Damage").
-namespace adit::ledger {
+// The rules for missing records (README.md, "Damage").
 namespace {
 
-using dispatch::Report;
 using dispatch::ReportState;
-using dispatch::Run;
 
 constexpr std::int64_t kNumbersKeptFree = 1000;  // at least the most that can have been queued
 constexpr const char* kDamaged = "the ledger was damaged: the Command Post's earlier counts are not certain";

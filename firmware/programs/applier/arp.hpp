@@ -13,6 +13,8 @@
 
 #include "loop/file_descriptor.hpp"
 
+struct sock_filter;
+
 namespace adit::applier {
 
 using Mac = std::array<std::uint8_t, 6>;
@@ -40,12 +42,6 @@ std::optional<ArpPacket> read_arp(std::span<const std::uint8_t> packet);
 /// the same time. std::nullopt: the packet is our own, about another address, or not ARP for IPv4 on
 /// Ethernet.
 std::optional<Mac> claimant(std::span<const std::uint8_t> packet, std::uint32_t address, const Mac& own);
-
-}  // namespace adit::applier
-
-struct sock_filter;
-
-namespace adit::applier {
 
 /// The MAC address of an interface. Error: the interface is absent or not Ethernet.
 std::expected<Mac, std::string> mac_of(const std::string& interface);

@@ -23,6 +23,8 @@
 namespace adit::applier {
 namespace {
 
+using host::Level;
+
 constexpr const char* kUnit = "adit-ntp.service";
 constexpr std::chrono::seconds kUnitAnswer{20};
 
@@ -31,8 +33,6 @@ std::array<std::pair<const char*, const std::string*>, 3> files_of(const clock::
            {clock::kFirewallFile, &chrony.firewall},
            {clock::kConfigurationFile, &chrony.configuration}}};  // last: marks the others complete
 }
-
-using host::Level;
 
 constexpr double kAgrees = 5;  // seconds
 
@@ -64,7 +64,7 @@ std::string Chronyd::start(const clock::Chrony& chrony) const {
   }
   const auto started = host::run_command({systemctl_, "restart", kUnit}, kUnitAnswer);
   if (started) {
-    host::log(host::Level::Notice, "NTP is on in the team's network");
+    host::log(Level::Notice, "NTP is on in the team's network");
     return "";
   }
   (void)host::remove_file(path(clock::kConfigurationFile));
@@ -75,7 +75,7 @@ std::string Chronyd::stop() const {
   if (!host::may_exist(path(clock::kConfigurationFile))) return "";
   const auto stopped = host::run_command({systemctl_, "stop", kUnit}, kUnitAnswer);
   if (!stopped) return "cannot stop chronyd: " + stopped.error();
-  host::log(host::Level::Notice, "NTP is off");
+  host::log(Level::Notice, "NTP is off");
   const auto removed = host::remove_file(path(clock::kConfigurationFile));
   return removed ? "" : removed.error();
 }
@@ -148,7 +148,7 @@ void set_chip(const std::string& device, std::time_t now) {
                       .tm_yday = 0,
                       .tm_isdst = 0};
   if (ioctl(chip.get(), RTC_SET_TIME, &time) != 0)
-    host::log(host::Level::Warning, "cannot set the battery-backed clock", {{"why", std::strerror(errno)}});
+    host::log(Level::Warning, "cannot set the battery-backed clock", {{"why", std::strerror(errno)}});
 }
 
 }  // namespace

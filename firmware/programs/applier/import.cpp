@@ -174,7 +174,6 @@ Found read_card(const UntrustedFolder& card, const Settings& now) {
 namespace {
 
 using host::Level;
-using host::UntrustedFolder;
 using Done = std::expected<void, std::string>;
 
 constexpr mode_t kFolderOfOurs = 0700;

@@ -130,8 +130,6 @@ Value json_of(const std::vector<ShownKey>& keys) {
 
 namespace {
 
-using codec::Value;
-
 constexpr const char* kSettings = "/adit/settings";
 constexpr const char* kSee = "adit settings";
 constexpr Waiting kApplied{

@@ -144,7 +144,6 @@ std::string reports_text(const std::vector<api::ReportRow>& reports, const Omitt
 namespace {
 
 using api::RunView;
-using Align = Table::Align;
 
 /// A shape and a word in addition to the colour.
 Cell severity_cell(const alarms::Alarm& alarm) {

@@ -186,8 +186,6 @@ std::string MarkerDisplay::text() const {
 
 namespace {
 
-using Milliseconds = std::chrono::milliseconds;
-
 constexpr std::size_t kMostSources = 200;
 constexpr std::size_t kMostDates = 100'000;  // of one robot's points
 constexpr Milliseconds kTick{10};            // by which ages are told apart

@@ -189,6 +189,13 @@ TEST(OpenLedger, GoesOnWithoutTheFileInMemory) {
   ASSERT_TRUE(ledger) << ledger.error().what;
   EXPECT_EQ(ledger->warning(), memory + ": Is a directory");
   EXPECT_TRUE(write(*ledger, backpack(1)));
+  std::filesystem::remove(memory);
+  std::ofstream(memory) << "ADTL";
+  ledger = Ledger::closed("", {});  // and gives up its lock
+  ledger = Ledger::open(state.path(), {}, memory);
+  ASSERT_TRUE(ledger) << ledger.error().what;
+  EXPECT_EQ(ledger->warning(), memory + " is damaged");
+  EXPECT_TRUE(write(*ledger, backpack(2)));
 }
 
 /// The stamp floor is written from it, so it must not forget the unreadable ledger.

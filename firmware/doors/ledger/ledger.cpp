@@ -47,7 +47,9 @@ class KnownFile {
     const auto size = file_ ? ::pread(file_.get(), bytes.data(), bytes.size(), 0) : -1;
     if (size < 0) trouble_ = icd::sentence(path, ": ", std::generic_category().message(errno));
     bytes.resize(static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
-    known_ = store::value_in<Known>(bytes).value_or(Known());
+    const auto known = store::value_in<Known>(bytes);
+    if (!known && size > 0) trouble_ = path + " is damaged";
+    known_ = known.value_or(Known());
   }
   /// The last values in the file; 0: unknown.
   const Known& content() const { return known_; }

@@ -57,16 +57,20 @@ endfunction()
 
 # A program of GoogleTest's as one test: a process for each of its tests would take twice as long in all.
 function(adit_google_test room program)  # ARGN: WAITS
-  if(NOT ARGN)
-    add_test(NAME "${room}: ${program}" COMMAND ${program} --gtest_brief=1)
-    set_tests_properties("${room}: ${program}" PROPERTIES COST 300 PROCESSORS 6 LABELS "${room};rooms")
-    return()
+  set(shares 1)
+  set(when COST 300 PROCESSORS 6)
+  if(ARGN)
+    math(EXPR shares "(${ARGN} + 29) / 30")
+    set(when COST 972 PROCESSORS 2)
   endif()
-  math(EXPR shares "(${ARGN} + 29) / 30")
   foreach(share RANGE 1 ${shares})
+    set(name "${room}: ${program}")
+    if(shares GREATER 1)
+      string(APPEND name " ${share} of ${shares}")
+    endif()
     math(EXPR index "${share} - 1")
-    add_test(NAME "${room}: ${program} ${share} of ${shares}" COMMAND ${program} --gtest_brief=1)
-    set_tests_properties("${room}: ${program} ${share} of ${shares}" PROPERTIES COST 972 PROCESSORS 2 LABELS "${room};rooms"
+    add_test(NAME "${name}" COMMAND ${program} --gtest_brief=1)
+    set_tests_properties("${name}" PROPERTIES ${when} LABELS "${room};rooms"
       ENVIRONMENT "GTEST_TOTAL_SHARDS=${shares};GTEST_SHARD_INDEX=${index}")
   endforeach()
 endfunction()

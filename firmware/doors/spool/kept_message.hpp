@@ -94,8 +94,8 @@ class MapFile {
   MappedFile shown_;  // from stored()
 };
 
-/// Messages in files of their own, in the form of codec/write.hpp. The files survive a crash of the process,
-/// not of the machine, because they are not flushed.
+// Messages in files of their own, in the form of codec/write.hpp. The files survive a crash of the process,
+// not of the machine, because they are not flushed.
 
 /// Creates the directory, readable by this user alone. Errors show when a file is written into it.
 void make_folder_of_ours(const std::string& folder);

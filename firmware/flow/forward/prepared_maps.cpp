@@ -31,7 +31,7 @@ void Slot::allow(std::uint64_t most) {
   most_ = bytes_per_second_ = static_cast<double>(most);
 }
 
-/// After eight shorter ones, a third of what is above them is left.
+/// A longer time counts at once. Of its excess over shorter ones, a third is left after eight of them.
 void Slot::packing_took(loop::Duration took) {
   packing_takes_ = std::max(took, packing_takes_ - (packing_takes_ - took) / 8);
 }
@@ -46,7 +46,7 @@ void Slot::packed(std::size_t points, std::size_t bytes, queues::Precision preci
   packed_to_ = std::clamp(packed_to / kOfExact.at(static_cast<std::size_t>(precision)), kSmallest, 1.0);
 }
 
-/// What was held back says only that the link is at least so fast.
+/// Bytes that were held back give only a lower limit of the speed.
 void Slot::left(std::size_t bytes, const uplink::Sent& sent, loop::Instant last_byte_not_before) {
   if (bytes < kTelling) return;
   const double took = std::max(Seconds(sent.last - sent.first).count(), 1e-6);

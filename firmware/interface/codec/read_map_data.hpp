@@ -21,8 +21,8 @@ std::optional<std::vector<std::uint32_t>> little_endian_order(const icd::PointCl
 /// Requires an order that is not empty.
 icd::ChunkedBytes in_order(icd::ChunkedBytes points, const std::vector<std::uint32_t>& order);
 
-/// Read a map's data in the message's `compression`, after the other fields were checked. Consume it chunk by
-/// chunk.
+// These read a map's data in the message's `compression`, after the other fields were checked, and consume it
+// chunk by chunk.
 
 /// ICD 6.3.1: width * height cells, each 0 to 100 or 255, left as one gzip member.
 icd::Checked<icd::MapData> read_cells(const icd::OccupancyGrid& grid, icd::ChunkedBytes data,

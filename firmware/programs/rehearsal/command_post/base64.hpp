@@ -13,7 +13,7 @@ std::optional<std::string> base64_decoded(std::string_view text);
 
 enum class InflateFault {
   Broken,    // no such stream, cut short, or a wrong checksum
-  TooLarge,  // grows over what was allowed
+  TooLarge,  // grows over the limit
   Followed,  // one whole stream, and bytes after it (a second member, or anything else)
 };
 

@@ -244,7 +244,7 @@ void CommandPost::show(std::uint64_t number, const Request& request, const Judge
 
 namespace {
 
-/// What a body says; nothing where it is empty.
+/// The JSON of a body; std::nullopt if it is empty.
 std::expected<std::optional<Json>, std::string> body_of(const Request& request) {
   if (request.body.empty()) return std::nullopt;
   auto document = read_document(request.body, Format::JsonText);

@@ -79,9 +79,9 @@ enum class Aim : std::uint8_t {
 };
 inline constexpr std::array<std::string_view, 3> kAims = {"reports", "status", "mapping"};
 
-/// The faults that wait for their requests: a queue for each aim, and what happens at random where a queue is
-/// empty; and whether the run's clocks stand, which is told like a fault, but of no one request. An error is
-/// a sentence that names what was not understood. Safe for use by several threads.
+/// The faults that wait for their requests: a queue for each aim, and random faults if a queue is empty. Also
+/// whether the run's clocks stand, which is given like a fault and applies to all requests. An error is a
+/// sentence that names the unknown word. Safe for use by several threads.
 class Faults {
  public:
   static constexpr std::size_t kMost = 10'000;
@@ -95,19 +95,19 @@ class Faults {
   /// "reports:record-then-drop=0.1": to one request of ten, on average. "reports:429=3=0.1" begins at one of
   /// ten that find no fault waiting, "mapping:500,robot=ugv1=0.1" happens to one of ten of that robot's.
   Told tell_rate(std::string_view aim_fault_and_rate);
-  /// {"reports": ["record-then-drop", "ok"], "status": ["500"]}: appended, all of it or nothing.
+  /// {"reports": ["record-then-drop", "ok"], "status": ["500"]}: appended, all or not at all.
   Told tell_all(const Json& told);
 
   /// From now on every request is answered as it should be.
   void clear();
 
-  /// The fault for a request that has come; where there is none it behaves. Once a fault has said how wrong
-  /// remaining_reports is to be, every later one for Status says so too; while the clocks stand, every one
-  /// for Status and Reports does.
-  /// `body`: of the request; one that does not name the robot of the fault whose turn it is takes none.
+  /// The fault for a request; one that behaves if no fault waits. After a fault with a wrong
+  /// remaining_reports, each later one for Status has it, too; while the clocks stand, so has each one for
+  /// Status and Reports. `body`: of the request. If it does not name the robot of the next fault, it gets no
+  /// fault.
   Fault next(Aim aim, std::string_view body, Clock::time_point now);
 
-  /// What waits, what happens at random, how wrong remaining_reports is, and whether the clocks run.
+  /// The waiting faults, the random ones, the error of remaining_reports, and whether the clocks run.
   OrderedJson left() const;
 
  private:
@@ -117,7 +117,7 @@ class Faults {
     double rate;
   };
   using Aimed = std::pair<Aim, Fault>;
-  /// What was told at once: faults that wait, and whether the clocks stand from now on.
+  /// The orders of one request: faults that wait, and whether the clocks stand from now on.
   struct Orders {
     std::vector<Aimed> aimed;
     std::optional<bool> clocks_stand;

@@ -32,7 +32,7 @@ inline bool decides(const Finding& finding, Manner manner) {
                                   : finding.measured != Measured::Takes;
 }
 
-/// What was found in one message, in the order of reading. Only the first kMost are kept.
+/// The findings in one message, in the order of reading. Only the first kMost are kept.
 class Findings {
  public:
   static constexpr std::size_t kMost = 20;

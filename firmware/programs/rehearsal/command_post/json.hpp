@@ -21,7 +21,7 @@ std::string line_of(const AnyJson& value) {
   return value.dump(-1, ' ', false, AnyJson::error_handler_t::replace);
 }
 
-/// A body that was read, and what is wrong with it although it is well-formed.
+/// A well-formed body, and its faults.
 struct Document {
   Json value;
   std::optional<std::string> repeated;  // a member that some object holds twice

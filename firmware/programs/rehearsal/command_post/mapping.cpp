@@ -162,7 +162,7 @@ void MeasuredMapping::judge_body(const Request& request, Judgement& judgement) {
   }
   stamps_.check(judgement.uri, message->stamps, true, findings);
   judgement.outcome = answered(200, Json(nullptr));
-  // Too many clouds are told off and taken all the same.
+  // Too many clouds are answered with 429, and accepted.
   if (message->map && std::holds_alternative<Cloud>(message->map->msg) && cloud_too_soon(request)) {
     judgement.outcome = closing(refused(429, kTooManyClouds));
   }

@@ -20,7 +20,7 @@
 
 namespace adit::robots {
 
-/// What was posted and what came of it. Any thread may write to it.
+/// The posted messages and their outcomes. Any thread may write to it.
 class Tally {
  public:
   void posted(Kind kind);

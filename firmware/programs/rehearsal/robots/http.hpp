@@ -54,7 +54,7 @@ class Connection {
 };
 
 /// What a client shows its operator of a refusal: the JSON string or {"detail": ...} that the server sent,
-/// else the first line of whatever came ("not JSON: ...").
+/// else the first line of the body ("not JSON: ...").
 std::string sentence_of(std::string_view body);
 
 /// What clients read of the answer to a report (ICD 5.2), and insist on.
@@ -69,7 +69,7 @@ struct ReportAnswer {
 /// Or which member is not there as it should be.
 std::expected<ReportAnswer, std::string> parse_report_answer(std::string_view body);
 
-/// "score 3, 22 reports left, run clock 41 s"; or what is wrong with the answer to GET /api/status.
+/// "score 3, 22 reports left, run clock 41 s"; or the fault of the answer to GET /api/status.
 std::expected<std::string, std::string> parse_status_answer(std::string_view body);
 
 }  // namespace adit::robots

@@ -14,9 +14,9 @@
 
 namespace adit::robots {
 
-/// Maps that tell when they were posted, by the machine's clock, so that a rehearsal Command Post can measure
-/// how old they are when they arrive, whatever was merged or stitched on their way (rehearsal/README.md,
-/// 'How old'). The two programs share no code: it reads the same by rules of its own.
+// Maps hold the time of their posting by the machine's clock, so that a rehearsal Command Post can measure
+// their age at arrival, even if they were merged or stitched on their way (rehearsal/README.md, 'How old').
+// The two programs share no code: the Command Post reads it by rules of its own.
 
 using Moment = std::chrono::sys_time<std::chrono::milliseconds>;
 

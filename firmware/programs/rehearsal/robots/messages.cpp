@@ -52,7 +52,7 @@ std::vector<std::uint8_t> gzip(std::span<const std::uint8_t> bytes) {
     throw std::bad_alloc();  // the one way in which these arguments can fail
   }
   std::vector<std::uint8_t> packed(deflateBound(&stream, bytes.size()));
-  // zlib's input is not const, but only read; it must not be null even where there is none.
+  // zlib only reads its input, which is not const, and must not be null even if it is empty.
   static std::uint8_t nothing = 0;
   stream.next_in = bytes.empty() ? &nothing : const_cast<std::uint8_t*>(bytes.data());
   stream.avail_in = static_cast<uInt>(bytes.size());

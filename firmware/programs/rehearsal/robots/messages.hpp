@@ -13,8 +13,8 @@
 
 namespace adit::robots {
 
-/// What a robot has to say, before a client style gives it bytes. Deliberately not Adit's own icd room: the
-/// simulated team must not share a mistake with the gateway that it rehearses against.
+// The messages of a robot, before a client style gives them bytes. They are not those of the icd room, so
+// that the simulated team cannot share a mistake with the gateway.
 
 /// Metres, in the "darpa" frame.
 struct Vector3 {
@@ -156,7 +156,7 @@ class TeamStyle {
   /// Mixed.
   TeamStyle() = default;
 
-  /// Nothing where no style has that name.
+  /// std::nullopt for an unknown name.
   static std::optional<TeamStyle> parse(std::string_view name);
 
   const Style& of(std::size_t robot) const { return kStyles[one_.value_or(robot % kStyles.size())]; }

@@ -144,7 +144,7 @@ Reach reach_from(const RobotMap& map, Cell start) {
   reach.steps[start] = 0;
   for (std::size_t next = 0; next < reach.cells.size(); ++next) {
     const Cell cell = reach.cells[next];
-    // Rock seen since may have closed in on the robot; it squeezes out over whatever is free.
+    // Rock that was seen later may surround the robot; then it leaves over any free cell.
     const bool squeezed = !is_walkable(map, cell);
     for (std::size_t step = 0; step < kSteps.size(); ++step) {
       const Cell beside{cell.x + kSteps[step].x, cell.y + kSteps[step].y};

@@ -26,9 +26,9 @@ class RobotMap {
   /// before it. Requires a sweep.
   Grid grid(double stamp) const;
 
-  /// What is known of the cells from `low` to `high`, both included, which may lie outside of the cave.
+  /// The known state of the cells from `low` to `high`, both included, which may lie outside of the cave.
   Grid part(Cell low, Cell high, double stamp) const;
-  /// The corners of all that is known, both included; there are none before the first sweep.
+  /// The corners of the known cells, both included. Before the first sweep, low() is above high().
   Cell low() const { return low_; }
   Cell high() const { return high_; }
 
@@ -53,8 +53,8 @@ bool is_walkable(const RobotMap& map, Cell cell);
 bool is_frontier(const RobotMap& map, Cell cell);
 
 /// The way from `start`, over walkable cells wherever it can, to the best frontier: near, and in the
-/// direction `heading` (radians) that this robot prefers, so that a team spreads out. Where nothing is left
-/// to explore, the way to some place that `random` chooses. Empty where there is no way anywhere.
+/// direction `heading` (radians) that this robot prefers, so that a team spreads out. If all is
+/// explored, the way to some place that `random` chooses. Empty if there is no way.
 std::vector<Cell> way_to_explore(const RobotMap& map, Cell start, double heading, Random& random);
 
 /// One robot in the cave: it walks to what it does not know yet, sees with its lidar, and notices artifacts

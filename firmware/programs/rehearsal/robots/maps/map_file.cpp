@@ -55,7 +55,7 @@ bool is_coordinate(const CloudField& field) {
   return field.name == "x" || field.name == "y" || field.name == "z";
 }
 
-/// Writes the value that `word` holds, as little endian. False where it holds none of that type.
+/// Writes the value of `word` as little endian. False if it is no value of that type.
 template <class Value>
 bool put(std::string_view word, std::uint8_t* at) {
   if (word.starts_with('+')) word.remove_prefix(1);

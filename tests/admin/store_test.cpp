@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "host/folder.hpp"
+#include "host/log.hpp"
 #include "settings/sample.hpp"
 
 namespace adit::admin {
@@ -100,6 +101,27 @@ TEST_F(StoreTest, IgnoresUnknownSettingsOfALaterAdit) {
   EXPECT_EQ(loaded.settings.team.connections, 30u);
   EXPECT_EQ(loaded.trouble, "a later Adit saved the settings; these settings are ignored: beacons team.mesh");
   EXPECT_EQ(host::read_file(state_ / "settings.json"), text) << "a later version's file must not change";
+}
+
+TEST_F(StoreTest, LogsAnEarlierVersionsSettingWithoutEffectUntilTheNextSave) {
+  const std::string old = settings::sample("", "", R"(, "robots": [{"name": "ugv1", "voxel_metres": 0.1}])");
+  given_.put("settings.json", old);
+  for (int saved = 0; saved < 2; ++saved) {
+    const std::uint64_t before = host::logged();
+    const auto loaded = store_.load().value();
+    EXPECT_EQ(loaded.trouble, "");
+    ASSERT_EQ(loaded.settings.robots.size(), 1u);
+    const auto records = host::remembered(before);
+    ASSERT_EQ(records.size(), 1u);
+    EXPECT_EQ(records[0].level, host::Level::Notice);
+    EXPECT_EQ(records[0].message, "the setting has no effect any more");
+    EXPECT_THAT(records[0].fields, ElementsAre(testing::Pair("setting", "robots[0].voxel_metres")));
+    state_.put("settings.json", old);
+  }
+  ASSERT_TRUE(store_.save(store_.load()->settings).has_value());
+  const std::uint64_t before = host::logged();
+  EXPECT_EQ(store_.load()->settings.robots.size(), 1u);
+  EXPECT_EQ(host::logged(), before);
 }
 
 TEST_F(StoreTest, TellsWhyNoSettingsCanBeUsed) {

@@ -182,7 +182,7 @@ test("exports all settings as a file, and imports a file after a check and a pre
   assert.match(JSON.stringify(await review(page)), /Robot ugv1/);
   await page.getByRole("button", { name: "Apply", exact: true }).click();
   await page.locator("#step-file").getByText(/Applied\./).waitFor();
-  assert.deepEqual((await ask("/adit/settings")).said.settings.robots, [{ name: "ugv1", alias: "", clouds: "auto", precision: "exact", voxel_metres: 0, colour: "auto" }]);
+  assert.deepEqual((await ask("/adit/settings")).said.settings.robots, [{ name: "ugv1", alias: "", clouds: "auto", precision: "exact", colour: "auto" }]);
   await step(page, "Robots").getByText("1 named").waitFor();
 });
 

@@ -44,7 +44,7 @@ test("checks robot names while they are typed, and shows errors after the field 
   await review(page);
   await page.getByRole("button", { name: "Apply", exact: true }).click();
   await hears(page, /Applied\./);
-  assert.deepEqual((await ask("/adit/settings")).said.settings.robots, [{ name: "ugv1", alias: "", clouds: "auto", precision: "exact", voxel_metres: 0, colour: "auto" }, { name: "uav1", alias: "drone-1", clouds: "auto", precision: "exact", voxel_metres: 0, colour: "auto" }]);
+  assert.deepEqual((await ask("/adit/settings")).said.settings.robots, [{ name: "ugv1", alias: "", clouds: "auto", precision: "exact", colour: "auto" }, { name: "uav1", alias: "drone-1", clouds: "auto", precision: "exact", colour: "auto" }]);
   await step(page, "Robots").getByText("2 named").waitFor();
   assert.deepEqual(complaints(page), []);
 });
@@ -56,11 +56,11 @@ test("keeps every added row, named or not, if another operator saved meanwhile",
 });
 
 test("shows an added or removed list item in one row, with its non-default values", () => {
-  const usual = (path) => ({ alias: "", voxel_metres: 0 })[path.split(".").at(-1)];
-  const robot = (name, from, to) => [[`robots[${name}].name`, from && name, to && name], [`robots[${name}].alias`, from, to], [`robots[${name}].voxel_metres`, from && 0, to && 0.1]];
+  const usual = (path) => ({ alias: "", precision: "exact" })[path.split(".").at(-1)];
+  const robot = (name, from, to) => [[`robots[${name}].name`, from && name, to && name], [`robots[${name}].alias`, from, to], [`robots[${name}].precision`, from && "exact", to && "1mm"]];
   assert.deepEqual(inShort([["runs.length_seconds", 60, 90], ...robot("uav1", null, "x"), ["robots[ugv1].alias", "", "y"], ...robot("ugv2", "z", null)], usual), [
     ["runs.length_seconds", 60, 90],
-    ["robots[uav1]", null, "in the list, alias x, voxel (m) 0.1"],
+    ["robots[uav1]", null, "in the list, alias x, precision 1mm"],
     ["robots[ugv1].alias", "", "y"],
     ["robots[ugv2]", "in the list, alias z", null],
   ]);

@@ -127,12 +127,6 @@ const Case kNames[] = {
      "robots[0].alias: the same as robots[1].name; an alias is another name"},
     {sample("", "", R"(, "robots": [{"name": "ugv1", "alias": "ugv1"}])"),
      "robots[0].alias: the same as robots[0].name; an alias is another name"},
-    {sample("", "", R"(, "robots": [{"name": "ugv1", "voxel_metres": 0.005}])"),
-     "robots[0].voxel_metres: expected 0, or 0.01 to 10, got 0.005"},
-    {sample("", "",
-            R"(, "robots": [{"name": "ugv1"}, {"name": "uav1", "clouds": "whole", "voxel_metres": 0.1}])"),
-     "robots[1].voxel_metres: robots[1].clouds is \"whole\": points can be left out only of clouds that the "
-     "Command Post adds to the earlier clouds"},
     {sample(R"(, "course": "A")"), "command_post.course: no course is called A; no courses are set up"},
     {sample(R"(, "course": "B")", "", std::string(R"(, "courses": [)") + kCourse + "]"),
      "command_post.course: no course is called B; the courses are A"},

@@ -59,7 +59,6 @@ const RestartsCase kRestartsCases[] = {
     {"robots[].clouds", [](Settings& s) { s.robots.front().clouds = queues::Clouds::Whole; }, kNothing},
     {"robots[].precision", [](Settings& s) { s.robots.front().precision = queues::Precision::Auto; },
      kNothing},
-    {"robots[].voxel_metres", [](Settings& s) { s.robots.front().voxel_metres = 0.1; }, kNothing},
     {"robots[].colour", [](Settings& s) { s.robots.front().colour = 2; }, kNothing},
     {"network.confirm_within_ms", [](Settings& s) { s.network.confirm_within = 9s; }, kNothing},
     {"network.allow_overlap", [](Settings& s) { s.network.allow_overlap = true; }, kNothing},

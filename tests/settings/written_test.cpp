@@ -62,12 +62,22 @@ TEST(WrittenSettings, HaveEachKeyInTheOrderOfTheTable) {
   EXPECT_EQ(written, known);
 }
 
+TEST(WrittenSettings, LackAnEarlierVersionsKeyWithoutEffect) {
+  const Settings settings = settings_of(sample(
+      "", "",
+      R"(, "robots": [{"name": "ugv1", "voxel_metres": 0.0},)"
+      R"( {"name": "uav1", "clouds": "whole", "voxel_metres": 0.1}, {"name": "uav2", "voxel_metres": 10}])"));
+  EXPECT_THAT(settings.without_effect, ElementsAre("robots[1].voxel_metres", "robots[2].voxel_metres"))
+      << "0 was the default and had no effect";
+  EXPECT_EQ(file_of(settings).find("voxel"), std::string::npos);
+}
+
 TEST(WrittenSettings, AreOnReadableLines) {
   const std::string file = file_of(settings_of(sample("", "", kTeamOfTwo)));
   EXPECT_THAT(file, HasSubstr("{\n  \"version\": 1,\n  \"command_post\": {\n    \"scoring\": "
                               "{\"address\":\"10.100.1.200\",\"port\":8000},\n"));
   EXPECT_THAT(file, HasSubstr("\n    {\n      \"name\": \"ugv2\",\n      \"alias\": \"husky-2\",\n"));
-  EXPECT_THAT(file, HasSubstr("\n      \"voxel_metres\": 0.0,\n      \"colour\": \"auto\"\n    }\n  ],\n"));
+  EXPECT_THAT(file, HasSubstr("\n      \"colour\": \"auto\"\n    }\n  ],\n"));
   EXPECT_TRUE(file.ends_with("\n}\n"));
 }
 
@@ -100,10 +110,9 @@ TEST(SettingsChanges, IdentifyItemsByNameNotByPlace) {
       sentences(changes(before, after)),
       ElementsAre(R"(robots[ugv1].name: "ugv1" -> null)", R"(robots[ugv1].alias: "" -> null)",
                   R"(robots[ugv1].clouds: "auto" -> null)", R"(robots[ugv1].precision: "exact" -> null)",
-                  "robots[ugv1].voxel_metres: 0.0 -> null", R"(robots[ugv1].colour: "auto" -> null)",
-                  R"(robots[ugv2].alias: "husky-2" -> "")", R"(robots[uav1].name: null -> "uav1")",
-                  R"(robots[uav1].alias: null -> "")", R"(robots[uav1].clouds: null -> "whole")",
-                  R"(robots[uav1].precision: null -> "exact")", "robots[uav1].voxel_metres: null -> 0.0",
+                  R"(robots[ugv1].colour: "auto" -> null)", R"(robots[ugv2].alias: "husky-2" -> "")",
+                  R"(robots[uav1].name: null -> "uav1")", R"(robots[uav1].alias: null -> "")",
+                  R"(robots[uav1].clouds: null -> "whole")", R"(robots[uav1].precision: null -> "exact")",
                   R"(robots[uav1].colour: null -> "auto")"));
 }
 

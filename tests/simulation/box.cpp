@@ -56,20 +56,14 @@ Queues queues(Random random, std::size_t largest_map) {
   return queues;
 }
 
-/// In some worlds Adit leaves out points of the first robots' clouds that share a voxel. Voxels are so
-/// small that points of different serials never share one. In other worlds Adit rounds the first robots'
-/// clouds.
+/// In some worlds Adit rounds the first robots' clouds.
 std::string robots(Random random) {
   constexpr int kNamed = 4;
-  const bool leaves_out = random.chance(0.3), rounds = random.chance(0.3);
-  if (!leaves_out && !rounds) return "";
+  if (!random.chance(0.3)) return "";
   std::string list;
   for (int i = 1; i <= kNamed; ++i) {
     if (!list.empty()) list += ", ";
-    list += R"({"name": "R)" + std::to_string(i) + '"';
-    if (leaves_out) list += R"(, "voxel_metres": 0.01)";
-    if (rounds) list += R"(, "precision": "1mm")";
-    list += '}';
+    list += R"({"name": "R)" + std::to_string(i) + R"(", "precision": "1mm"})";
   }
   return R"(, "robots": [)" + list + "]";
 }
@@ -140,7 +134,7 @@ Box::Box(World& world) : world_(world), random_(world.random("box")) {
   const auto [queues, most_map_bytes] =
       simulation::queues(world.random("settings"), world.has_large_maps() ? kLargeMap : kLargestMap);
   most_map_bytes_ = most_map_bytes;
-  write(folder_ / "settings.json", first_settings(queues, simulation::robots(world.random("voxels")),
+  write(folder_ / "settings.json", first_settings(queues, simulation::robots(world.random("precision")),
                                                   interface, world.random("one server").chance(0.3)));
   world_.disk().mount(folder_);
 }

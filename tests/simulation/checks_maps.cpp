@@ -104,10 +104,9 @@ bool may_be_double(const std::vector<Event>& events, std::size_t first, std::siz
   return status != 200;
 }
 
-/// A run, a setting or a course began between the two, so points that were left out of the first, or sent in
-/// pieces before its last one, must be sent now. A clock that was set back, or a granted report, may look
-/// like another run, until the answer to a report names the current run. So may a renamed run, until a status
-/// shows that it goes on.
+/// A run, a setting or a course began between the two, so the pieces before the last one must be sent now. A
+/// clock that was set back, or a granted report, may look like another run, until the answer to a report
+/// names the current run. So may a renamed run, until a status shows that it goes on.
 bool may_go_whole(const std::vector<Event>& events, std::size_t first, std::size_t second) {
   bool is_set_back = false, is_renamed = false;
   for (std::size_t i = 0; i < second; ++i) {
@@ -126,15 +125,6 @@ bool may_go_whole(const std::vector<Event>& events, std::size_t first, std::size
 
 void check_clouds(const Evidence& evidence, const Name& name, const std::vector<Posted>& all,
                   Broken& broken) {
-  // A merged cloud is sent again as a whole, with parts that were delivered before.
-  const auto message_of = [&](std::size_t taken) {
-    return std::pair(evidence.events[taken].request, evidence.events[taken].at);
-  };
-  std::set<std::pair<std::uint64_t, double>> had_more;
-  for (const Posted& cloud : all) {
-    if (cloud.asked->items.size() < 2) continue;
-    for (const std::size_t at : cloud.taken) had_more.insert(message_of(at));
-  }
   for (const Posted& cloud : all) {
     if (cloud.asked->accepted() && cloud.taken.empty()) {
       broken.push_back(icd::sentence("CloudArrived: ", cloud.item->serial, " of '", name,
@@ -142,9 +132,7 @@ void check_clouds(const Evidence& evidence, const Name& name, const std::vector<
     }
     for (std::size_t i = 1; i < cloud.taken.size() && !cloud.again; ++i) {
       if (may_be_double(evidence.events, cloud.taken[i - 1], cloud.taken[i])) continue;
-      if ((cloud.has_pieces || had_more.contains(message_of(cloud.taken[i - 1]))) &&
-          may_go_whole(evidence.events, cloud.taken[i - 1], cloud.taken[i]))
-        continue;
+      if (cloud.has_pieces && may_go_whole(evidence.events, cloud.taken[i - 1], cloud.taken[i])) continue;
       // A process does not know which pieces the one before has sent. Nor does a message that the operator
       // sends again, because one of its pieces was rejected.
       const auto begins_again = [](const Event& event) {

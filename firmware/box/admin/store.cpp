@@ -61,6 +61,8 @@ std::expected<Store::Loaded, std::string> Store::load() {
   unread_.clear();
   auto loaded = read(unread_);
   if (!loaded) return loaded;
+  for (const std::string& path : loaded->settings.without_effect)
+    host::log(host::Level::Notice, "the setting has no effect any more", {{"setting", path}});
   // A box with damaged settings must still serve the page that corrects them.
   if (loaded->is_damaged) {
     host::set_damaged_aside(file(), "the saved set-up", loaded->trouble);

@@ -96,7 +96,6 @@ void Maps::take_settings() {
   queue_.merge_at_most(settings_.queues.merge_bytes);
   queue_.clouds_are(settings::by_robot(settings_.robots, &settings::Robot::clouds));
   queue_.precisions_are(settings::by_robot(settings_.robots, &settings::Robot::precision));
-  prepared_.points().edges_are(settings::by_robot(settings_.robots, &settings::Robot::voxel_metres));
 }
 
 void Maps::settings_changed() {

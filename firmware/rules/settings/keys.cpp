@@ -289,10 +289,6 @@ constexpr Key kKeys[] = {
      "How far Adit may round coordinates of this robot's clouds. exact: not at all. 1mm, 8mm: to such steps. "
      "auto: as far as the queued clouds require. Needs command_post.arrange_clouds.",
      choice<MEMBER(robots.back().precision)>(queues::kPrecisionWords)},
-    {"robots[].voxel_metres",
-     "The edge of a voxel in metres (at least 0.01); 0: every point is sent. Adit sends one point of each "
-     "voxel. Only for a Command Post that adds each cloud to the earlier ones, and not for whole clouds.",
-     real<MEMBER(robots.back().voxel_metres)>(0, 10)},
     {"robots[].colour",
      "The robot's colour on the pages and in the run's report. auto: by the order of the first poses. Robots "
      "of one colour have different lines.",

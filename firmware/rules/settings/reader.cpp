@@ -51,7 +51,9 @@ void Reader::read_object(const Value& value, const std::string& pattern, const s
   std::vector<std::string_view> seen;
   for (const auto& [name, member] : *members) {
     const auto child = std::ranges::find(children, name, &Child::name);
-    if (child == children.end()) {
+    if (pattern == "robots[]" && name == "voxel_metres") {  // of earlier versions; 0 was the default
+      if (shown(member) != "0") settings.without_effect.push_back(joined(path, name));
+    } else if (child == children.end()) {
       tell_unknown(name, children, path);
     } else if (std::ranges::find(seen, child->name) != seen.end()) {
       errors.push_back({joined(path, name), "given twice"});
@@ -219,22 +221,6 @@ void check_robots(const std::vector<Robot>& robots, std::vector<Error>& errors) 
   }
 }
 
-/// A whole cloud replaces earlier ones, so points left out of it would be lost.
-void check_voxels(const std::vector<Robot>& robots, std::vector<Error>& errors) {
-  constexpr double kSmallest = 0.01;
-  for (std::size_t i = 0; i < robots.size(); ++i) {
-    const std::string path = icd::sentence("robots[", i, "].voxel_metres");
-    const double edge = robots[i].voxel_metres;
-    if (edge > 0 && edge < kSmallest) {
-      errors.push_back({path, icd::sentence("expected 0, or 0.01 to 10, got ", edge)});
-    } else if (edge > 0 && robots[i].clouds == queues::Clouds::Whole) {
-      errors.push_back({path, icd::sentence("robots[", i,
-                                            "].clouds is \"whole\": points can be left out only of clouds "
-                                            "that the Command Post adds to the earlier clouds")});
-    }
-  }
-}
-
 void check_courses(const Settings& settings, std::vector<Error>& errors) {
   const std::vector<Course>& courses = settings.courses;
   for (std::size_t i = 0; i < courses.size(); ++i) {
@@ -282,7 +268,6 @@ std::vector<Error> contradictions(const Settings& settings) {
   check_listen(settings, errors);
   check_panel(settings.panel, errors);
   check_robots(settings.robots, errors);
-  check_voxels(settings.robots, errors);
   check_courses(settings, errors);
   return errors;
 }

@@ -112,7 +112,6 @@ struct Robot {
   std::string alias;  // the name in its messages, replaced by `name`; "": unset
   queues::Clouds clouds = queues::Clouds::Auto;
   queues::Precision precision = queues::Precision::Exact;  // for its clouds
-  double voxel_metres = 0;  // edge of a voxel, of which one point is sent; 0: all points are sent
   std::uint8_t colour = 0;  // index of kColourWords; 0: by the order of the first poses
 };
 
@@ -148,6 +147,7 @@ struct Settings {
   Alarms alarms;
   icd::Rules rules;
   Panel panel;
+  std::vector<std::string> without_effect;  // paths of an earlier version's keys; never written
 };
 
 struct Error {

@@ -37,14 +37,14 @@ constexpr pack::Hurry kFast{.bytes_per_second = 1e10, .slowness = 1, .longest = 
 
 TEST(CloudEffort, IsNoneOnAFastLink) {
   const icd::MapUpdate cloud = large_cloud("r1");
-  const Packed hurried = packed(waiting(cloud), {}, {.hurry = kFast});
+  const Packed hurried = packed(waiting(cloud), {.hurry = kFast});
   EXPECT_EQ(hurried.effort, pack::Effort::None);
   EXPECT_GE(hurried.body.size(), cloud.data.bytes.size());
 }
 
 TEST(CloudEffort, EstimatesThePackedSize) {
   const icd::MapUpdate cloud = large_cloud("r1");
-  const Packed full = packed(waiting(cloud)), hurried = packed(waiting(cloud), {}, {.hurry = kMedium});
+  const Packed full = packed(waiting(cloud)), hurried = packed(waiting(cloud), {.hurry = kMedium});
   ASSERT_EQ(hurried.effort, pack::Effort::None);
   EXPECT_EQ(full.full_size, full.body.size());
   EXPECT_NEAR(static_cast<double>(hurried.full_size), static_cast<double>(full.full_size),
@@ -53,7 +53,7 @@ TEST(CloudEffort, EstimatesThePackedSize) {
 
 TEST(CloudEffort, IsFullOnASlowLink) {
   const icd::MapUpdate cloud = large_cloud("r1");
-  const Packed hurried = packed(waiting(cloud), {}, {.hurry = kSlow});
+  const Packed hurried = packed(waiting(cloud), {.hurry = kSlow});
   EXPECT_EQ(hurried.effort, pack::Effort::Full);
   EXPECT_EQ(hurried.body, packed(waiting(cloud)).body);
 }
@@ -61,7 +61,7 @@ TEST(CloudEffort, IsFullOnASlowLink) {
 TEST(CloudEffort, RoundsAsRequested) {
   const icd::MapUpdate cloud = large_cloud("r1");
   for (const auto precision : {queues::Precision::Millimetre, queues::Precision::EightMillimetres}) {
-    const Packed hurried = packed(waiting(cloud, precision), {}, {.hurry = kFast});
+    const Packed hurried = packed(waiting(cloud, precision), {.hurry = kFast});
     EXPECT_EQ(hurried.body, packed(waiting(cloud, precision)).body);
     EXPECT_EQ(hurried.precision, precision);
   }

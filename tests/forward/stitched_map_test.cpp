@@ -58,7 +58,7 @@ TEST(StitchedMap, HasNoBodyIfAPartIsDamaged) {
   EXPECT_TRUE(packed(taken_of({row_at(0, {1, 2, 3}), damaged})).body.empty());
   const auto alone = taken_of({damaged});
   EXPECT_TRUE(packed(alone).body.empty()) << "detected by packing";
-  EXPECT_TRUE(packed(alone, {}, {.hurry = {.longest = 0}}).body.empty()) << "detected by drawing";
+  EXPECT_TRUE(packed(alone, {.hurry = {.longest = 0}}).body.empty()) << "detected by drawing";
 }
 
 TEST(StitchedMap, FillsItsGapsWithSentCells) {
@@ -98,7 +98,7 @@ TEST(PackedCloud, HasItsPrecision) {
 
 TEST(PackedCloud, IsExactIfItCannotBeRounded) {
   const auto precision_of = [](const queues::QueuedMap& waiting, bool arranges) {
-    return packed(waiting, {}, {.arranges_clouds = arranges}).precision;
+    return packed(waiting, {.arranges_clouds = arranges}).precision;
   };
   using queues::Precision;
   EXPECT_EQ(precision_of(cloud_at(5, 2000, Precision::Millimetre), /*arranges=*/false), Precision::Exact);

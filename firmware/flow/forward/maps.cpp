@@ -108,7 +108,6 @@ void Maps::settings_changed() {
 void Maps::endpoint_changed(std::optional<icd::BearerToken> token) {
   const settings::CommandPost& post = settings_.command_post;
   channel_.lead_to(access_to_mapping(post, std::move(token), pace::map_bytes_per_second(post.budget_mbit)));
-  prepared_.points().forget();
   channel_.give_up();
   pump();
 }
@@ -130,7 +129,7 @@ void Maps::go_on() {
   const bool follows = channel_.busy();
   const Place& next = follows ? prepared_.following() : prepared_.first();
   if (next && next->is_under_way) return;
-  if (next && !prepared_.is_packed(*next)) return prepared_.pack(next);
+  if (next && next->packed.body.empty()) return prepared_.pack(next);
   if (next && must_split(*next)) {
     split(next);
     return go_on();
@@ -207,16 +206,17 @@ void Maps::taken(const Place& sent, const uplink::Answered& answered) {
   pace_.taken(answered.sent, loop_.now());
   prepared_.slot().left(sent->packed.body.size(), answered.sent, sent->last_byte_not_before);
   prepared_.slot().on_passed(sent->packed.body.size());
-  if (sent->begins_again || !prepared_.points().hold(sent->packed.left_out))
-    return goes_whole(sent, answered.status);
-  ahead_.taken(sent->went_ahead);
   icd::MapUpdate& map = sent->waiting.map;
+  if (sent->begins_again) {
+    counts_.forwarded(traffic_of(map), 0, sent->packed.body.size(), answered.status, loop_.wall_now());
+    return again(sent);
+  }
+  ahead_.taken(sent->went_ahead);
   blame_.passed(whose(map), loop_.now());
   queue_.on_passed(queues::Sender::of(map));
   queue_.carried(queues::Sender::of(map), sent->packed.body.size());
   if (queues::next_piece(sent->waiting)) {
     counts_.forwarded(traffic_of(map), 0, sent->packed.body.size(), answered.status, loop_.wall_now());
-    prepared_.points_taken(*sent);
     return prepared_.again(sent);
   }
   prepared_.leaves(sent);
@@ -227,14 +227,7 @@ void Maps::taken(const Place& sent, const uplink::Answered& answered) {
   forget(sent->waiting.updates);
   counts_.forwarded(traffic_of(map), updates, sent->packed.body.size(), answered.status, loop_.wall_now());
   if (!map.is_grid()) counts_.rounded_to(traffic_of(map), sent->packed.precision);
-  prepared_.points_taken(*sent);
   taken_(std::move(map));
-}
-
-/// Delivered, but points that were left out, or sent before, were forgotten since.
-void Maps::goes_whole(const Place& sent, int status) {
-  counts_.forwarded(traffic_of(sent->waiting.map), 0, sent->packed.body.size(), status, loop_.wall_now());
-  again(sent);
 }
 
 void Maps::verdict(const Place& sent, const uplink::Answered& answered) {
@@ -364,7 +357,6 @@ void Maps::heard() {
 }
 
 void Maps::change_run(dispatch::NextMap next) {
-  prepared_.points().forget();
   prepared_.pack_again();
   queues::Canvases& canvases = queue_.canvases();
   if (next == dispatch::NextMap::Empty && is_heard_from()) return canvases.begin_run();

@@ -97,7 +97,6 @@ class Maps {
   void packed(bool is_done);
   loop::Instant starts() const;
   loop::Instant begins_to_pack(loop::Instant now) const;
-  void goes_whole(const Place& sent, int status);
   void send(const Place& prepared);
   void go_ahead(loop::Instant now);
   bool may_go_ahead(loop::Instant now) const;

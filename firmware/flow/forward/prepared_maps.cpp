@@ -165,23 +165,19 @@ void PreparedMaps::pack(const Place& prepared) {
   header.stamp = pace_.next_stamp(header.stamp.value_or(loop_.stamp_now()));
   pace_.keep_stamp(*header.stamp);
   const loop::Instant began = loop_.now();
-  const bool is_as_it_is = prepared->waiting.packing == queues::PackingRule::LastAsItIs;
-  const auto leaving_out =
-      std::make_shared<LeavingOut>(is_as_it_is ? LeavingOut() : points_.leaving_out(prepared->waiting.map));
   const Packing packing{settings_.command_post.arrange_clouds, slot_.hurry(pace_.spacing())};
   const auto unread = store_.work_begins(prepared->waiting);
   workers_.submit(
       loop::Urgency::OnTheWay,
-      [prepared, leaving_out, packing, unread, &loop = loop_, starts = packing_.begin(),
-       file = store_.work_file()] {
+      [prepared, packing, unread, &loop = loop_, starts = packing_.begin(), file = store_.work_file()] {
         const loop::FaultCounter faults(file.c_str());
         const loop::Instant begins = loop.now();
         starts();
         prepared->damaged = damaged_in(prepared->waiting, unread);
         if (!prepared->damaged.empty()) return;
-        prepared->packed = packed(prepared->waiting, std::move(*leaving_out), packing);
+        prepared->packed = packed(prepared->waiting, packing);
         prepared->packing_took = loop.now() - begins;
-        if (!prepared->packed.body.empty() || prepared->packed.left_out.is_all) return;
+        if (!prepared->packed.body.empty() || prepared->packed.has_no_valid_point) return;
         std::vector<std::uint64_t> numbers;
         queues::add_own_numbers(numbers, prepared->waiting);
         prepared->damaged = damaged_in(prepared->waiting, numbers);
@@ -197,11 +193,6 @@ void PreparedMaps::pack(const Place& prepared) {
       },
       [this, prepared] { work_failed(prepared); });
   is_packing_ = true;
-}
-
-bool PreparedMaps::is_packed(PreparedMap& prepared) const {
-  if (!points_.hold(prepared.packed.left_out)) prepared.packed = {};
-  return !prepared.packed.body.empty();
 }
 
 /// Null if it returned to the queue meanwhile.
@@ -231,7 +222,6 @@ void PreparedMaps::is_damaged(Place& place) {
 
 /// Parts that cannot be stitched return to the queue, each alone.
 void PreparedMaps::work_done(const Place& prepared) {
-  const LeftOut& left_out = prepared->packed.left_out;
   if (prepared->damaged.empty()) {
     const Packed& packed = prepared->packed;
     slot_.worker_took(prepared->packing_took, packed.expected);
@@ -240,7 +230,7 @@ void PreparedMaps::work_done(const Place& prepared) {
   Place* const place = place_of(prepared);
   if (place == nullptr) return;
   if (!prepared->damaged.empty()) return is_damaged(*place);
-  if (left_out.is_all) return is_there(*place);
+  if (prepared->packed.has_no_valid_point) return skip_piece(*place);
   if (prepared->packed.drawn) queue_.canvases().lay(prepared->waiting.map.name, *prepared->packed.drawn);
   prepared->packed.drawn.reset();
   if (!prepared->packed.body.empty()) {
@@ -253,16 +243,12 @@ void PreparedMaps::work_done(const Place& prepared) {
   place->reset();
 }
 
-/// All points were accepted before. If that was forgotten, the cloud is packed again.
-void PreparedMaps::is_there(Place& place) {
-  const LeftOut& left_out = place->packed.left_out;
-  if (!points_.hold(left_out)) return;
-  const auto there = std::exchange(place, nullptr);
-  const Traffic traffic = traffic_of(there->waiting.map);
-  counts_.left_out(traffic, there->packed.left_out.points);
-  if (queues::next_piece(there->waiting)) return store_.forget(queue_.put_back(std::move(there->waiting)));
-  counts_.replaced(traffic, there->waiting.updates.size());
-  store_.forget(there->waiting.updates);
+/// It has no valid point.
+void PreparedMaps::skip_piece(Place& place) {
+  const auto piece = std::exchange(place, nullptr);
+  if (queues::next_piece(piece->waiting)) return store_.forget(queue_.put_back(std::move(piece->waiting)));
+  counts_.replaced(traffic_of(piece->waiting.map), piece->waiting.updates.size());
+  store_.forget(piece->waiting.updates);
 }
 
 void PreparedMaps::work_failed(const Place& prepared) {
@@ -304,17 +290,6 @@ void PreparedMaps::pack_again() {
   for (const Place& place : {first_, following_}) {
     if (place && std::exchange(place->waiting.piece, {}).size > 0) place->begins_again = true;
   }
-}
-
-void PreparedMaps::points_taken(PreparedMap& sent) {
-  icd::MapUpdate& map = sent.waiting.map;
-  LeftOut& left_out = sent.packed.left_out;
-  counts_.left_out(traffic_of(map), left_out.points);
-  if (left_out.sent && sent.waiting.piece.size == 0) {
-    left_out.sent->header() = map.header();
-    map = *std::exchange(left_out.sent, std::nullopt);
-  }
-  points_.taken(map, std::move(left_out));
 }
 
 }  // namespace adit::forward

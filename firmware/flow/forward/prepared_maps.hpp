@@ -110,8 +110,6 @@ class PreparedMaps {
   void prepare(bool follows, std::uint64_t delivers);
   void pack(const Place& prepared);
   bool is_packing() const { return is_packing_; }
-  /// False: pack the map, because it is not packed, or points that it leaves out were forgotten.
-  bool is_packed(PreparedMap& prepared) const;
 
   /// Removes a map that is not retried. The following one may be in flight already.
   void leaves(const Place& sent);
@@ -122,10 +120,7 @@ class PreparedMaps {
   /// The Command Post may have another map. Returns both, because they may cover old cells, and maps in
   /// pieces begin again, also one in flight.
   void pack_again();
-  /// Keeps only the points of a delivered cloud that were sent.
-  void points_taken(PreparedMap& sent);
 
-  DeliveredPoints& points() { return points_; }
   Slot& slot() { return slot_; }
   const Slot& slot() const { return slot_; }
 
@@ -135,7 +130,7 @@ class PreparedMaps {
   void work_done(const Place& prepared);
   void work_failed(const Place& prepared);
   void is_damaged(Place& place);
-  void is_there(Place& place);
+  void skip_piece(Place& place);
 
   loop::Loop& loop_;
   loop::Workers& workers_;
@@ -146,7 +141,6 @@ class PreparedMaps {
   MapStore& store_;
   std::function<void(bool is_done)> packed_;
   Slot slot_;
-  DeliveredPoints points_;
   Place first_, following_;
   bool is_packing_ = false;
   loop::JobWatch packing_;

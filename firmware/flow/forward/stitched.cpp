@@ -16,51 +16,6 @@
 #include "queues/lattice.hpp"
 
 namespace adit::forward {
-
-/// Points that are not finite go first: no others may remain.
-LeftOut LeavingOut::operator()(icd::MapUpdate& map) {
-  if (!known_) return {};
-  if (known_->epoch != epoch_) known_->voxels.forget();
-  known_->epoch = epoch_;
-  for (const Taken& each : std::exchange(taken_, {})) known_->voxels.add(each.robot, each.edge, each.voxels);
-  const auto* const cloud = std::get_if<icd::PointCloud2>(&map.msg);
-  if (edge_ == 0 || cloud == nullptr || map.data.compression != icd::Compression::None) return {};
-  map.data = pack::without_invalid_points(*cloud, std::move(map.data));
-  auto rest = known_->voxels.leave_out(*map.name, *cloud, map.data, edge_);
-  map.data = std::move(rest.data);
-  const bool is_all = rest.left_out > 0 && map.data.raw_size == 0;
-  return {.points = rest.left_out,
-          .is_all = is_all,
-          .epoch = epoch_,
-          .edge = edge_,
-          .voxels = std::move(rest.voxels),
-          .sent = {}};
-}
-
-void DeliveredPoints::edges_are(std::map<icd::RobotName, double> edges) {
-  if (edges == edges_) return;
-  edges_ = std::move(edges);
-  forget();
-}
-
-void DeliveredPoints::forget() {
-  ++epoch_;
-  taken_.clear();
-}
-
-/// Without edges the worker clears its voxels.
-LeavingOut DeliveredPoints::leaving_out(const icd::MapUpdate& map) {
-  if (edges_.empty()) return {std::exchange(known_, nullptr), epoch_, 0, {}};
-  if (!known_) known_ = std::make_shared<LeavingOut::Known>();
-  const auto edge = map.name && !map.is_grid() ? edges_.find(*map.name) : edges_.end();
-  return {known_, epoch_, edge == edges_.end() ? 0 : edge->second, std::exchange(taken_, {})};
-}
-
-void DeliveredPoints::taken(const icd::MapUpdate& map, LeftOut left_out) {
-  if (left_out.edge == 0 || left_out.epoch != epoch_ || left_out.voxels.empty()) return;
-  taken_.push_back({*map.name, left_out.edge, std::move(left_out.voxels)});
-}
-
 namespace {
 
 /// Its cells are only in parts.
@@ -117,16 +72,14 @@ bool was_rounded(const icd::MapUpdate& before, const icd::MapUpdate& after) {
 
 }  // namespace
 
-Packed packed(const queues::QueuedMap& waiting, LeavingOut leaving_out, const Packing& packing) {
+Packed packed(const queues::QueuedMap& waiting, const Packing& packing) {
   auto whole = whole_of(waiting);
   if (!whole) return {};
   Packed packed;
   if (waiting.piece.size > 0 && has_no_valid_point(*whole)) {
-    packed.left_out.is_all = true;
+    packed.has_no_valid_point = true;
     return packed;
   }
-  packed.left_out = leaving_out(*whole);
-  if (packed.left_out.is_all) return packed;
   if (waiting.ground) packed.drawn = drawn_over(*waiting.ground, whole->data);
   if (!whole->is_grid()) packed.points_size = whole->data.raw_size;
   const bool is_as_it_is = waiting.packing == queues::PackingRule::LastAsItIs;
@@ -156,7 +109,6 @@ Packed packed(const queues::QueuedMap& waiting, LeavingOut leaving_out, const Pa
                          ? packed.body.size()
                          : static_cast<std::size_t>(choice.full_to * static_cast<double>(packed.points_size));
   if (is_to_be_stitched(waiting)) packed.stitched = std::move(map.data);
-  if (packed.left_out.points > 0) packed.left_out.sent = std::move(map);
   return packed;
 }
 

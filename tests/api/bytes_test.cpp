@@ -63,7 +63,7 @@ RunView view() {
   activity.behind = 17, activity.age = 18;
   activity.last_accepted = 9, activity.bytes_received = 10, activity.bytes_sent = 11;
   activity.last_status = 12, activity.last_sentence = "said", activity.clouds = "parts",
-  activity.precision = "1mm", activity.points_left_out = 16, activity.no_valid_point = 20;
+  activity.precision = "1mm", activity.no_valid_point = 20;
   activity.invisible = 21;
   activity.arrival = alarms::Arrival::Late, activity.level = alarms::Level::Wait;
   activity.word = "17 s behind";
@@ -127,7 +127,7 @@ TEST(Bytes, OfARun) {
       R"("activities":[{"kind":"grid","robot":"r","accepted":1,"forwarded":2,"replaced":3,)"
       R"("merged":4,"throttled":5,"failed":6,"refused_upstream":7,"no_room":13,"queued":8,)"
       R"("behind_since":14.0,"behind":17.0,"last_accepted":9.0,"last_forwarded":null,"age":18.0,"last_no_room":15.0,"bytes_received":10,"bytes_sent":11,"last_status":12,)"
-      R"("last_sentence":"said","clouds":"parts","precision":"1mm","points_left_out":16,"no_valid_point":20,)"
+      R"("last_sentence":"said","clouds":"parts","precision":"1mm","no_valid_point":20,)"
       R"("invisible":21,)"
       R"("arrival":"late","level":"wait","word":"17 s behind"}],"standings":[{"name":"r","level":"wait",)"
       R"("word":"w","silent":false,"has_map":true,"age":22.0}],"colours":[{"name":"r","colour":2}],"refusals":[{"at":1.0,"uri":"/u","sender":"s","status":422,)"

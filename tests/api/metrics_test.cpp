@@ -50,7 +50,6 @@ TEST(Metrics, ShowTheValuesOfTheView) {
   clouds.no_room = 1110;
   clouds.clouds = "whole";
   clouds.precision = "8mm";
-  clouds.points_left_out = 7000;
   clouds.no_valid_point = 3;
   all.view.activities = {clouds};
   all.view.sent_mbit = 8;
@@ -79,7 +78,6 @@ TEST(Metrics, ShowTheValuesOfTheView) {
                              R"(adit_updates_no_room_total{kind="cloud",robot="ugv1"} 1110)",
                              R"(adit_clouds_whole{robot="ugv1"} 1)",
                              R"(adit_clouds_rounded_metres{robot="ugv1"} 0.008)",
-                             R"(adit_points_left_out_total{robot="ugv1"} 7000)",
                              R"(adit_clouds_no_valid_point_total{robot="ugv1"} 3)",
                              "adit_link_rate_bytes_per_second 1e+06",
                              "adit_link_budget_bytes_per_second 2500000",

@@ -122,10 +122,11 @@ TEST(StatusText, ShowsTheTreatmentOfARobotsClouds) {
   api::ActivityRow& row = view.activities[0];
   row.kind = "cloud", row.clouds = "parts", row.precision = "exact";
   EXPECT_THAT(status_text(view, false), HasSubstr("  r1     cloud, parts  "));
-  row.precision = "8mm", row.points_left_out = 16;
-  EXPECT_THAT(status_text(view, false), HasSubstr("  r1     cloud, parts, to 8mm, 16 points left out  "));
+  row.precision = "8mm";
+  EXPECT_THAT(status_text(view, false), HasSubstr("  r1     cloud, parts, to 8mm  "));
   row.no_valid_point = 2;
-  EXPECT_THAT(status_text(view, false), HasSubstr("16 points left out, 2 without a valid point  "));
+  EXPECT_THAT(status_text(view, false),
+              HasSubstr("  r1     cloud, parts, to 8mm, 2 without a valid point  "));
   row = {};
   row.kind = "markers", row.invisible = 3;
   EXPECT_THAT(status_text(view, false), HasSubstr("  (all)  markers, 3 invisible  "));

@@ -204,11 +204,6 @@ void write_updates(Exposition& out, const RunView& view) {
     if (row.precision.empty()) continue;
     out.sample({{"robot", row.robot}}, row.precision == "1mm" ? 0.001 : row.precision == "8mm" ? 0.008 : 0);
   }
-  out.counter("adit_points_left_out_total",
-              "Points not sent because another point of their voxel was sent or delivered.");
-  for (const ActivityRow& row : view.activities) {
-    if (row.kind == "cloud") out.sample({{"robot", row.robot}}, number(row.points_left_out));
-  }
   out.counter("adit_clouds_no_valid_point_total",
               "Clouds accepted but not sent because all of their points are NaN or infinite.");
   for (const ActivityRow& row : view.activities) {

@@ -92,9 +92,6 @@ constexpr Member kActivity[] = {
     member<&ActivityRow::precision>(
         "precision", "rounding of the last delivered cloud (robots[].precision); empty if there is none")
         .one_of(kPrecisions),
-    member<&ActivityRow::points_left_out>(
-        "points_left_out",
-        "points not sent because another point of their voxel was sent or delivered (robots[].voxel_metres)"),
     member<&ActivityRow::no_valid_point>(
         "no_valid_point", "clouds accepted but not sent because all of their points are NaN or infinite"),
     member<&ActivityRow::invisible>("invisible",

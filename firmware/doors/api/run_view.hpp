@@ -77,7 +77,7 @@ struct ActivityRow {
   int last_status = 0;
   std::string last_sentence;
   std::string clouds, precision;
-  std::uint64_t points_left_out = 0, no_valid_point = 0, invisible = 0;
+  std::uint64_t no_valid_point = 0, invisible = 0;
   alarms::Arrival arrival = alarms::Arrival::NotYet;
   alarms::Level level = alarms::Level::Quiet;
   std::string word = {};  // from add_verdicts()

@@ -53,12 +53,6 @@ void TrafficCounts::replaced(const Traffic& traffic, std::size_t updates) {
   row(traffic).replaced += updates;
 }
 
-void TrafficCounts::left_out(const Traffic& traffic, std::size_t points) {
-  if (points == 0) return;
-  row(traffic).points_left_out += points;
-  changed_();
-}
-
 void TrafficCounts::no_valid_point(const Traffic& traffic, std::size_t bytes, api::Time now) {
   ++row(traffic).no_valid_point;
   accepted(traffic, bytes, now);

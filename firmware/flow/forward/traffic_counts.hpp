@@ -62,8 +62,6 @@ class TrafficCounts {
   /// A message was rejected because the queue is full.
   void no_room(const Traffic& traffic, api::Time now);
   void replaced(const Traffic& traffic, std::size_t updates);
-  /// Points were left out because the Command Post has others of their voxels.
-  void left_out(const Traffic& traffic, std::size_t points);
   /// A cloud without a valid point was accepted. It is not sent.
   void no_valid_point(const Traffic& traffic, std::size_t bytes, api::Time now);
   void invisible(std::size_t markers);

@@ -257,12 +257,11 @@ std::string sent_size(const api::ActivityRow& row) {
   return row.age ? size(row.bytes_sent) : "";
 }
 
-/// With the mode of clouds, and the points that were not sent.
+/// With the mode of clouds, and what was not sent or is not seen.
 std::string kind_of(const api::ActivityRow& row) {
   std::string kind = row.kind;
   if (!row.clouds.empty()) kind += ", " + row.clouds;
   if (!row.precision.empty() && row.precision != "exact") kind += ", to " + row.precision;
-  if (row.points_left_out > 0) kind += ", " + std::to_string(row.points_left_out) + " points left out";
   if (row.no_valid_point > 0) kind += ", " + std::to_string(row.no_valid_point) + " without a valid point";
   if (row.invisible > 0) kind += ", " + std::to_string(row.invisible) + " invisible";
   return kind;

@@ -12,7 +12,6 @@ function counts(row) {
   for (const what of ["replaced", "merged", "throttled", "failed"]) if (row[what]) parts.push(`${row[what]} ${what}`);
   if (row.clouds) parts.push(`treated as ${row.clouds}`);
   if (row.precision && row.precision !== "exact") parts.push(`rounded to ${row.precision}`);
-  if (row.points_left_out) parts.push(`${row.points_left_out} points left out`);
   if (row.no_valid_point) parts.push(`${row.no_valid_point} without a valid point`);
   if (row.invisible) parts.push(`${row.invisible} invisible (alpha 0)`);
   if (row.no_room) parts.push(`${row.no_room} rejected: queue full`);

@@ -15,6 +15,7 @@
 #include "icd/sentence.hpp"
 #include "icd/try.hpp"
 #include "loop/file_descriptor.hpp"
+#include "loop/regular_file.hpp"
 #include "update/health.hpp"
 
 namespace adit::admin {
@@ -74,14 +75,10 @@ class UpdateUpload::Writing : public std::enable_shared_from_this<Writing> {
   }
 
   void write_now(std::span<const std::uint8_t> bytes) {
-    while (!bytes.empty() && error_ == 0) {
-      const ssize_t count = ::write(file_.get(), bytes.data(), bytes.size());
-      if (count >= 0) {
-        bytes = bytes.subspan(static_cast<std::size_t>(count));
-      } else if (errno != EINTR) {
-        error_ = errno;
-      }
-    }
+    if (error_ == 0)
+      error_ =
+          loop::write_all(file_.get(), {reinterpret_cast<const char*>(bytes.data()), bytes.size()}, written_);
+    written_ += bytes.size();
     // Spreads the flushes, so that the last one is short.
     if (error_ == 0 && fdatasync(file_.get()) != 0) error_ = errno;
     // Frees the space at once, because the ledger may need it while the rest arrives.
@@ -123,7 +120,8 @@ class UpdateUpload::Writing : public std::enable_shared_from_this<Writing> {
   loop::FileDescriptor file_;
   std::vector<std::uint8_t> waiting_;
   std::uint64_t received_ = 0;
-  int error_ = 0;         // set in the writer thread, read while it is idle
+  std::size_t written_ = 0;  // this and error_: set in the writer thread, read while it is idle
+  int error_ = 0;
   bool busy_ = false;     // the writer thread is writing
   bool held_ = false;     // the sender is paused
   bool dropped_ = false;  // finished or abandoned

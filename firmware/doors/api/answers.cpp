@@ -94,8 +94,17 @@ intake::Answer object(codec::Value::Object members) {
   return fresh("application/json", codec::write_json({std::move(members)}));
 }
 
+intake::Answer download(intake::Answer answer, const std::string& name) {
+  answer.headers.push_back({"Content-Disposition", "attachment; filename=\"" + name + "\""});
+  return answer;
+}
+
 intake::Answer refused(const icd::Refusal& why) {
   return refusal(why.status, why.sentence);
+}
+
+intake::Answer refused(const std::vector<settings::Error>& errors) {
+  return refusal(icd::Status::UnprocessableEntity, settings::sentence_of(errors));
 }
 
 intake::Answer refused_change(const icd::Refusal& why) {

@@ -3,11 +3,13 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "codec/row.hpp"
 #include "codec/value.hpp"
 #include "icd/bearer_token.hpp"
 #include "intake/server.hpp"
+#include "settings/settings.hpp"
 
 namespace adit::api {
 
@@ -38,8 +40,13 @@ intake::Answer fresh(const Rows& rows) {
 /// The same for a JSON object.
 intake::Answer object(codec::Value::Object members);
 
+/// The answer as a file that a browser saves under this name.
+intake::Answer download(intake::Answer answer, const std::string& name);
+
 intake::Answer refusal(icd::Status status, std::string_view sentence);
 intake::Answer refused(const icd::Refusal& why);
+/// 422 for numbers or settings that have these errors.
+intake::Answer refused(const std::vector<settings::Error>& errors);
 /// Refusal of a change of the settings. 409 while another change is being applied (api::Setup) has
 /// Retry-After, because that takes a second.
 intake::Answer refused_change(const icd::Refusal& why);

@@ -33,11 +33,6 @@ std::string bundle_name(Time now) {
   return {text, std::strftime(text, sizeof text, "adit-support-%Y%m%dT%H%M%SZ", &parts)};
 }
 
-intake::Answer download(intake::Answer answer, const std::string& name) {
-  answer.headers.push_back({"Content-Disposition", "attachment; filename=\"" + name + "\""});
-  return answer;
-}
-
 }  // namespace
 
 bool LogFilter::lets(const LogRecord& record) const {
@@ -146,12 +141,6 @@ std::expected<network::Numbers, std::vector<settings::Error>> numbers_in(const s
   return std::unexpected(std::vector<settings::Error>{{"", "expected JSON: " + value.error()}});
 }
 
-intake::Answer unfit(const std::vector<settings::Error>& errors) {
-  std::string sentences;
-  for (const settings::Error& error : errors) sentences += (sentences.empty() ? "" : "; ") + error.sentence();
-  return refusal(icd::Status::UnprocessableEntity, sentences);
-}
-
 }  // namespace
 
 namespace network_routes {
@@ -168,9 +157,9 @@ intake::Answer check(Network& network, const Call& call) {
 
 intake::Answer change(Network& network, const Call& call) {
   const auto wanted = numbers_in(call.body);
-  if (!wanted) return unfit(wanted.error());
+  if (!wanted) return refused(wanted.error());
   const auto findings = network.check(*wanted, call.head.peer());
-  if (!findings.errors.empty()) return unfit(findings.errors);
+  if (!findings.errors.empty()) return refused(findings.errors);
   return after(network, network.change(*wanted));
 }
 
@@ -243,8 +232,6 @@ std::unique_ptr<intake::BodySink> update_routes::receive(Updates& updates, const
 
 namespace {
 
-constexpr const char* kFileName = "export.adit-spare";
-
 /// Receives an export. Rejects other data by its first bytes and discards the rest.
 class ReceivingExport final : public intake::BodySink {
  public:
@@ -280,10 +267,7 @@ namespace spare_routes {
 void exported(Spare& spare, const Call& call) {
   spare.export_to([responder = call.responder](icd::Checked<std::string> file) {
     if (!file) return responder->answer(refused(file.error()));
-    auto answer = fresh("application/octet-stream", *std::move(file));
-    answer.headers.push_back(
-        {"Content-Disposition", std::string("attachment; filename=\"") + kFileName + "\""});
-    responder->answer(std::move(answer));
+    responder->answer(download(fresh("application/octet-stream", *std::move(file)), "export.adit-spare"));
   });
 }
 

@@ -108,9 +108,8 @@ void ReportRoutes::list(const Call& call) const {
 }
 
 void ReportRoutes::csv(const Call& call) const {
-  auto begun = fresh("text/csv; charset=utf-8; header=present", "");
-  begun.headers.push_back({"Content-Disposition", "attachment; filename=\"adit-reports.csv\""});
-  listed(call, {.begin = csv_header(), .row = csv_line, .between = "", .end = ""}, std::move(begun));
+  listed(call, {.begin = csv_header(), .row = csv_line, .between = "", .end = ""},
+         download(fresh("text/csv; charset=utf-8; header=present", ""), "adit-reports.csv"));
 }
 
 intake::Answer ReportRoutes::one(std::int64_t number) const {

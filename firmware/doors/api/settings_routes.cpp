@@ -8,7 +8,6 @@
 #include "api/route.hpp"
 #include "api/settings_rows.hpp"
 #include "codec/field.hpp"
-#include "codec/json.hpp"
 #include "icd/sentence.hpp"
 #include "icd/text.hpp"
 
@@ -27,19 +26,14 @@ struct Posted {
 };
 
 icd::Checked<Posted> read_posted(const std::string& body, bool with_base) {
-  auto root = codec::parse_json(body);
-  if (!root) return icd::refuse(icd::Status::BadRequest, "expected JSON: ", root.error());
-  codec::Reading reading;
-  Posted posted;
-  const Field object(*root, reading);
-  const Field settings = object.member("settings");
-  if (!settings.is<Value::Object>()) settings.refuse_kind("an object");
-  if (with_base) posted.base = object.member("base").text();
-  if (auto* const members = std::get_if<Value::Object>(&root->is)) {
-    const auto found = std::ranges::find(*members, "settings", &Value::Member::first);
-    if (found != members->end()) posted.settings = found->second;
-  }
-  return reading.outcome(std::move(posted));
+  return read_body<Posted>(body, [with_base](const Field& root) {
+    Posted posted;
+    const Field settings = root.member("settings");
+    if (!settings.is<Value::Object>()) settings.refuse_kind("an object");
+    if (with_base) posted.base = root.member("base").text();
+    if (settings.value() != nullptr) posted.settings = *settings.value();
+    return posted;
+  });
 }
 
 /// Errors that a file may have, but a saved form may not: port 0, which changes with each start.
@@ -92,9 +86,7 @@ intake::Answer shown(const Setup& setup) {
 }
 
 intake::Answer exported(const Setup& setup) {
-  auto answer = fresh("application/json", settings::file_of(setup.settings()));
-  answer.headers.push_back({"Content-Disposition", "attachment; filename=\"adit-settings.json\""});
-  return answer;
+  return download(fresh("application/json", settings::file_of(setup.settings())), "adit-settings.json");
 }
 
 intake::Answer check(const Setup& setup, const std::string& body) {
@@ -115,9 +107,9 @@ intake::Answer save(Setup& setup, const std::string& body) {
     return refusal(icd::Status::Conflict, "another user has changed the settings meanwhile: reload them");
   }
   const auto next = settings::parse(posted->settings);
-  if (!next) return refusal(icd::Status::UnprocessableEntity, settings::sentence_of(next.error()));
+  if (!next) return refused(next.error());
   const auto unfit = unfit_to_save(setup.settings(), *next);
-  if (!unfit.empty()) return refusal(icd::Status::UnprocessableEntity, settings::sentence_of(unfit));
+  if (!unfit.empty()) return refused(unfit);
   return apply(setup, *next);
 }
 
@@ -125,7 +117,7 @@ intake::Answer switch_course(Setup& setup, const std::string& name) {
   settings::Settings next = setup.settings();
   next.command_post.course = name;
   const auto checked = settings::parse(settings::value_of(next));
-  if (!checked) return refusal(icd::Status::UnprocessableEntity, settings::sentence_of(checked.error()));
+  if (!checked) return refused(checked.error());
   return apply(setup, *checked);
 }
 

@@ -7,6 +7,8 @@
 #include <fstream>
 #include <optional>
 
+#include "rehearsal/command_post/fields.hpp"
+
 namespace adit::rehearsal {
 namespace {
 
@@ -17,15 +19,7 @@ constexpr auto kTypes = std::to_array<std::string_view>({
 constexpr double kScoringDistance = 5.0;  // metres, by the competition's rules
 
 bool same_letters(std::string_view a, std::string_view b) {
-  const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; };
-  return std::ranges::equal(a, b, {}, lower, lower);
-}
-
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view space = " \t\r";
-  const auto first = text.find_first_not_of(space);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(space) - first + 1);
+  return lower(std::string(a)) == lower(std::string(b));
 }
 
 std::optional<double> number_of(std::string_view text) {

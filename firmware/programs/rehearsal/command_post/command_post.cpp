@@ -32,6 +32,12 @@ std::unique_ptr<Endpoint> mapping_of(const Options& options, const Secrets& secr
   return std::make_unique<MeasuredMapping>(secrets.mapping, hz, options.counted.value_or(Counted::Decoded));
 }
 
+/// After it the connection ends.
+Outcome last_answer(Outcome outcome) {
+  outcome.after = After::Close;
+  return outcome;
+}
+
 /// What is no HTTP request is refused alike by all. One that its sender broke off, or that came too slowly,
 /// is written down, but breaks no rule of the ICD.
 Judgement judge_fault(const HttpFault& fault) {
@@ -40,24 +46,15 @@ Judgement judge_fault(const HttpFault& fault) {
   if (fault.status != 0 && fault.status != timeout) {
     judgement.findings.breaks(fault.sentence, Measured::Refuses, fault.status);
   }
-  judgement.outcome = refused(fault.status, fault.sentence);
-  judgement.outcome.after = After::Close;
+  judgement.outcome = last_answer(refused(fault.status, fault.sentence));
   return judgement;
 }
 
-Judgement sent_on(const Request& request, std::optional<Aim> aim) {
+/// Of a request that is answered before anything of it is judged.
+Judgement turned_away(const Request& request, std::optional<Aim> aim, Outcome outcome) {
   Judgement judgement = aim ? unjudged({}, *aim, request, Manner::Strict) : Judgement{};
   judgement.uri = request.path;
-  judgement.outcome = redirected(request);
-  return judgement;
-}
-
-/// As nginx does by client_max_body_size.
-Judgement too_large(const Request& request, std::optional<Aim> aim) {
-  Judgement judgement = aim ? unjudged({}, *aim, request, Manner::Strict) : Judgement{};
-  judgement.uri = request.path;
-  judgement.outcome = page(413, "Request Entity Too Large");
-  judgement.outcome.after = After::Close;
+  judgement.outcome = std::move(outcome);
   return judgement;
 }
 
@@ -68,8 +65,7 @@ Judgement judge_safely(Endpoint& endpoint, const Request& request) {
   } catch (const std::exception& error) {
     std::fprintf(stderr, "adit-rehearsal: error while handling a request: %s\n", error.what());
     Judgement judgement;
-    judgement.outcome = refused(500, "The request could not be handled");
-    judgement.outcome.after = After::Close;
+    judgement.outcome = last_answer(refused(500, "The request could not be handled"));
     return judgement;
   }
 }
@@ -161,8 +157,9 @@ Outcome CommandPost::receive(Side& side, std::optional<Aim> aim, const Request& 
 
 Judgement CommandPost::judge(Side& side, std::optional<Aim> aim, const Fault& fault, const Request& request) {
   if (request.fault) return judge_fault(*request.fault);
-  if (redirects(request)) return sent_on(request, aim);
-  if (is_too_large(request)) return too_large(request, aim);
+  if (redirects(request)) return turned_away(request, aim, redirected(request));
+  if (is_too_large(request))  // as nginx does by client_max_body_size
+    return turned_away(request, aim, last_answer(page(413, "Request Entity Too Large")));
   Judgement judgement = aim && !fault.records() ? unjudged(fault, *aim, request, options_.manner)
                                                 : judge_safely(*side.endpoint, request);
   note_names(judgement);
@@ -336,11 +333,7 @@ Outcome clear_faults(CommandPost& post) {
 }  // namespace
 
 Outcome control(CommandPost& post, const Request& request) {
-  if (request.fault) {
-    Outcome outcome = refused(request.fault->status, request.fault->sentence);
-    outcome.after = After::Close;
-    return outcome;
-  }
+  if (request.fault) return last_answer(refused(request.fault->status, request.fault->sentence));
   const std::string wanted = request.method + " " + std::string(path_of(request.target));
   const auto body = body_of(request);
   if (!body) return refused(400, body.error());

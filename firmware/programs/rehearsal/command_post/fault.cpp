@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 
 namespace adit::rehearsal {
 namespace {
@@ -149,12 +148,6 @@ Taken take(const Word& word, Fault& fault) {
                          ", answer-after, record-after, remaining, other-sender, retry-after, for, robot");
 }
 
-std::string text_of(double number) {
-  std::array<char, 32> digits;
-  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr;
-  return {digits.data(), end};
-}
-
 }  // namespace
 
 bool Fault::records() const {
@@ -220,10 +213,7 @@ std::optional<Aim> aim_named(std::string_view name) {
 }
 
 std::string no_such_aim(std::string_view name) {
-  constexpr std::size_t longest = 80;
-  return std::string("no such aim: '")
-      .append(name.substr(0, longest))
-      .append("'; there are reports, status, mapping, clock");
+  return "no such aim: " + quoted(name) + "; there are reports, status, mapping, clock";
 }
 
 /// Whether the fault may happen to the request of that body: one of its robot, or of any.
@@ -235,9 +225,7 @@ bool is_of(const Fault& fault, std::string_view body) {
 std::expected<bool, std::string> clocks_stand_by(std::string_view word) {
   if (word == kConstant) return true;
   if (word == kRunning) return false;
-  constexpr std::size_t longest = 80;
-  return std::unexpected(
-      std::string("expected constant or running, got '").append(word.substr(0, longest)).append("'"));
+  return std::unexpected("expected constant or running, got " + quoted(word));
 }
 
 }  // namespace
@@ -279,9 +267,8 @@ Faults::Told Faults::tell(std::string_view aim_and_fault) {
 Faults::Told Faults::tell_rate(std::string_view aim_fault_and_rate) {
   const auto equals = aim_fault_and_rate.rfind('=');
   const std::string_view text = equals == std::string_view::npos ? "" : aim_fault_and_rate.substr(equals + 1);
-  double rate = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), rate);
-  if (error != std::errc() || end != text.data() + text.size() || !(rate >= 0 && rate <= 1)) {
+  const auto rate = number_of<double>(text, 0, 1);
+  if (!rate) {
     return std::unexpected(
         "expected a rate from 0 to 1 at the end, as in reports:record-then-drop=0.1, got '" +
         std::string(aim_fault_and_rate) + "'");
@@ -289,13 +276,13 @@ Faults::Told Faults::tell_rate(std::string_view aim_fault_and_rate) {
   const auto aimed = read_aimed(aim_fault_and_rate.substr(0, equals));
   if (!aimed) return std::unexpected(aimed.error());
   const std::lock_guard lock(mutex_);
-  double sum = rate;
+  double sum = *rate;
   for (const Rate& other : rates_) sum += other.aim == aimed->first ? other.rate : 0;
   if (sum > 1) {
     return std::unexpected(std::string(kAims[static_cast<std::size_t>(aimed->first)]) +
                            ": the rates come to more than 1");
   }
-  rates_.push_back({aimed->first, aimed->second, rate});
+  rates_.push_back({aimed->first, aimed->second, *rate});
   return {};
 }
 

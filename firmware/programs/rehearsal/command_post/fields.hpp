@@ -116,6 +116,12 @@ class Field {
   Findings* findings_;
 };
 
+/// ASCII in lower case.
+std::string lower(std::string text);
+
+/// Without the blanks, tabs and ends of lines around it.
+std::string_view trimmed(std::string_view text);
+
 /// A letter, a digit or an underscore, of ASCII.
 bool is_word_character(char c);
 

@@ -22,14 +22,16 @@ void RateLimit::count(const Request& request, Clock::time_point now) {
   last_ = last_ ? std::max(*last_, counts) : counts;
 }
 
+bool names_one_of(const Request& request, std::span<const Function> functions) {
+  return std::ranges::any_of(functions, [&](const Function& function) {
+    return function.method == request.method && function.uri == request.path;
+  });
+}
+
 void check_entry(const Request& request, std::span<const Function> functions, const std::string& token,
                  Findings& findings) {
-  const std::string_view path = request.path;
-  const bool known = std::ranges::any_of(functions, [&](const Function& function) {
-    return function.method == request.method && function.uri == path;
-  });
-  if (!known) {
-    findings.breaks("URI is not recognized: " + request.method + " " + std::string(path.substr(0, 200)),
+  if (!names_one_of(request, functions)) {
+    findings.breaks("URI is not recognized: " + request.method + " " + request.path.substr(0, 200),
                     Measured::Refuses, 404);
   } else if (!request.authorization) {
     findings.breaks("No authentication token was provided", Measured::Refuses, 401);

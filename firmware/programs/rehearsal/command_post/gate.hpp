@@ -52,6 +52,9 @@ inline constexpr Function kScoringFunctions[] = {{"GET", kStatusUri}, {"POST", k
 inline constexpr Function kMappingFunctions[] = {
     {"POST", kMapUri}, {"POST", kStateUri}, {"POST", kMarkersUri}};
 
+/// Whether a request has the method and the path of one of the functions.
+bool names_one_of(const Request& request, std::span<const Function> functions);
+
 /// What a strict Command Post checks before it reads a body: that the URI is known (404), that the token is
 /// right (401), that no field is missing or given twice (400). The findings hold at most one, which decides.
 void check_entry(const Request& request, std::span<const Function> functions, const std::string& token,

@@ -1,5 +1,7 @@
 #include "rehearsal/command_post/json.hpp"
 
+#include <array>
+#include <charconv>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -102,6 +104,12 @@ class Builder : public nlohmann::json_sax<Json> {
 };
 
 }  // namespace
+
+std::string text_of(double number) {
+  std::array<char, 32> digits;
+  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr;
+  return {digits.data(), end};
+}
 
 std::expected<Document, std::string> read_document(std::string_view body, Format format) {
   if (format == Format::JsonText && body.starts_with("\xef\xbb\xbf")) {

@@ -21,6 +21,9 @@ std::string line_of(const AnyJson& value) {
   return value.dump(-1, ' ', false, AnyJson::error_handler_t::replace);
 }
 
+/// The fewest digits that give the same double back.
+std::string text_of(double number);
+
 /// A well-formed body, and its faults.
 struct Document {
   Json value;

@@ -1,7 +1,5 @@
 #include "rehearsal/command_post/misbehave.hpp"
 
-#include <algorithm>
-
 #include "rehearsal/command_post/gate.hpp"
 #include "rehearsal/command_post/json.hpp"
 #include "rehearsal/command_post/run.hpp"
@@ -117,19 +115,12 @@ Outcome spoiled(Action action, const Request& request, Outcome decided) {
   return decided;
 }
 
-void misstate_remaining(std::int64_t offset, Answer& answer) {
+/// Calls `change` with that member of the answer's body, if there is one.
+void misstate(Answer& answer, const char* member, const std::function<void(OrderedJson&)>& change) {
   OrderedJson body = OrderedJson::parse(answer.body, nullptr, false);
-  const auto remaining = body.is_object() ? body.find("remaining_reports") : body.end();
-  if (remaining == body.end()) return;
-  *remaining = remaining->get<std::int64_t>() + offset;
-  answer.body = line_of(body);
-}
-
-void stop_clock(double clock, Answer& answer) {
-  OrderedJson body = OrderedJson::parse(answer.body, nullptr, false);
-  const auto shown = body.is_object() ? body.find("run_clock") : body.end();
+  const auto shown = body.is_object() ? body.find(member) : body.end();
   if (shown == body.end()) return;
-  *shown = clock;
+  change(*shown);
   answer.body = line_of(body);
 }
 
@@ -145,11 +136,7 @@ std::optional<Aim> scoring_aim(const Request& request, Manner manner) {
 }
 
 std::optional<Aim> mapping_aim(const Request& request) {
-  const std::string_view path = request.path;
-  const bool known = std::ranges::any_of(kMappingFunctions, [&](const Function& function) {
-    return function.method == request.method && function.uri == path;
-  });
-  if (request.fault || !known) return std::nullopt;
+  if (request.fault || !names_one_of(request, kMappingFunctions)) return std::nullopt;
   return Aim::Mapping;
 }
 
@@ -172,9 +159,14 @@ Judgement unjudged(const Fault& fault, Aim aim, const Request& request, Manner m
 void spoil(const Fault& fault, const Request& request, Judgement& judgement) {
   Outcome& outcome = judgement.outcome;
   if (outcome.kind != Outcome::Kind::Answered || outcome.answer.status == 0) return;
-  if (fault.remaining && judgement.uri == kStatusUri) misstate_remaining(*fault.remaining, outcome.answer);
+  const bool is_status = judgement.uri == kStatusUri;
+  if (fault.remaining && is_status) {
+    misstate(outcome.answer, "remaining_reports",
+             [&](OrderedJson& shown) { shown = shown.get<std::int64_t>() + *fault.remaining; });
+  }
   if (fault.clock_stands) {
-    stop_clock(judgement.uri == kStatusUri ? kMeasuredStatusClock : kMeasuredReportClock, outcome.answer);
+    misstate(outcome.answer, "run_clock",
+             [&](OrderedJson& shown) { shown = is_status ? kMeasuredStatusClock : kMeasuredReportClock; });
   }
   outcome = spoiled(fault.action, request, std::move(outcome));
   if (fault.retry_after) {

@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <bit>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <functional>
-#include <iterator>
 
 namespace adit::rehearsal {
 namespace {
@@ -102,13 +100,6 @@ char grey_of(char cell) {
   return static_cast<char>(254 - (254 * value + 50) / 100);
 }
 
-/// The fewest digits that give the same double back.
-std::string digits(double number) {
-  char text[64];
-  const auto [end, error] = std::to_chars(std::begin(text), std::end(text), number);
-  return std::string(std::begin(text), end);
-}
-
 double yaw_of(const Quaternion& q) {
   return std::atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z));
 }
@@ -133,9 +124,9 @@ bool write_grid_picture(const Grid& grid, const std::string& cells, const std::s
   std::ofstream file(stem + ".yaml");
   const Point& at = grid.origin.position;
   file << "image: " << stem.substr(stem.rfind('/') + 1) << ".pgm\n"
-       << "resolution: " << digits(grid.resolution) << "\n"
-       << "origin: [" << digits(at.x) << ", " << digits(at.y) << ", "
-       << digits(yaw_of(grid.origin.orientation)) << "]\n"
+       << "resolution: " << text_of(grid.resolution) << "\n"
+       << "origin: [" << text_of(at.x) << ", " << text_of(at.y) << ", "
+       << text_of(yaw_of(grid.origin.orientation)) << "]\n"
        << "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
   file.close();
   return !file.fail();

@@ -1,7 +1,8 @@
 #include "rehearsal/command_post/run.hpp"
 
-#include <algorithm>
 #include <cmath>
+
+#include "rehearsal/command_post/fields.hpp"
 
 namespace adit::rehearsal {
 namespace {
@@ -21,12 +22,6 @@ std::string id_after(std::string id) {
 }
 
 }  // namespace
-
-std::string lower(std::string text) {
-  std::ranges::transform(text, text.begin(),
-                         [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  return text;
-}
 
 Run::State Run::state_at(Clock::time_point now) const {
   if (ended_) return State::Ended;

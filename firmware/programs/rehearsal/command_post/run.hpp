@@ -18,9 +18,6 @@ namespace adit::rehearsal {
 inline constexpr double kMeasuredStatusClock = 25.98;
 inline constexpr double kMeasuredReportClock = 3.14;
 
-/// ASCII in lower case.
-std::string lower(std::string text);
-
 struct RunPlan {
   std::string team = "adit";
   std::string id = "1";

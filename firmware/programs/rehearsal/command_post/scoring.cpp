@@ -1,6 +1,5 @@
 #include "rehearsal/command_post/scoring.hpp"
 
-#include <algorithm>
 #include <cstdio>
 #include <ctime>
 
@@ -144,10 +143,7 @@ Outcome preflight() {
 bool shows(const std::optional<std::string>& authorization, const std::string& token) {
   constexpr std::string_view scheme = "bearer ";
   if (!authorization || authorization->size() != scheme.size() + token.size()) return false;
-  const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; };
-  return std::equal(scheme.begin(), scheme.end(), authorization->begin(),
-                    [&](char a, char b) { return a == lower(b); }) &&
-         authorization->ends_with(token);
+  return lower(authorization->substr(0, scheme.size())) == scheme && authorization->ends_with(token);
 }
 
 bool is_json(const std::optional<std::string>& content_type) {

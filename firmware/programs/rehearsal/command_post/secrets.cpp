@@ -4,6 +4,8 @@
 #include <fstream>
 #include <iterator>
 
+#include "rehearsal/command_post/fields.hpp"
+
 namespace adit::rehearsal {
 namespace {
 
@@ -11,10 +13,7 @@ std::expected<std::string, std::string> read_token(const std::string& path) {
   std::ifstream file(path);
   if (!file) return std::unexpected(path + ": cannot be read");
   const std::string text{std::istreambuf_iterator<char>(file), {}};
-  constexpr const char* space = " \t\r\n";
-  const auto first = text.find_first_not_of(space);
-  const auto last = text.find_last_not_of(space);
-  std::string token = first == std::string::npos ? "" : text.substr(first, last - first + 1);
+  std::string token(trimmed(text));
   const bool visible = std::ranges::all_of(token, [](char c) { return c > 0x20 && c < 0x7f; });
   if (token.empty() || !visible)
     return std::unexpected(path + ": expected one token of visible ASCII characters");

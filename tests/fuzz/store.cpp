@@ -78,7 +78,7 @@ void try_store(Input input) {
     require(log.append(1, "one more", Durability::Now).has_value());
   }
   bodies.emplace_back("one more");
-  const auto again = Contents::read(*Directory::look(folder.path()), kKeeping);
+  const auto again = Contents::read(*Directory::open(folder.path()), kKeeping);
   require(again.has_value() && bodies_of(*again) == bodies);
 }
 

@@ -10,7 +10,7 @@ namespace adit::journal {
 /// be read.
 inline Carried left_in(const std::string& path) {
   while (true) {
-    const auto directory = store::Directory::look(path);
+    const auto directory = store::Directory::open(path);
     if (!directory) continue;
     if (const auto contents = store::Contents::read(*directory, Journal::kKeeping))
       return read_records(*contents).first;

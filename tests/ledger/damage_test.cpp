@@ -126,7 +126,7 @@ TEST_F(DamagedLedger, NamesLostReportsIfBothCopiesAreDamaged) {
 
 /// One flipped bit in any byte loses no record.
 TEST_F(DamagedLedger, HasAllIfAnyByteIsDamaged) {
-  const auto directory = store::Directory::look(state_.ledger()).value();
+  const auto directory = store::Directory::open(state_.ledger()).value();
   const std::string path = state_.ledger() + '/' + file_;
   std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
   const auto put_byte = [&](std::size_t at, char byte) {

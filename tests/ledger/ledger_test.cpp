@@ -138,7 +138,7 @@ TEST(Ledger, KeepsKindsOfALaterVersionInSnapshots) {
     (void)fill_file(ledger, 1);
     ASSERT_TRUE(keep_up(ledger));
   }
-  const auto directory = store::Directory::look(state.ledger()).value();
+  const auto directory = store::Directory::open(state.ledger()).value();
   const auto contents = store::Contents::read(directory, Ledger::kKeeping).value();
   const auto& record = std::get<store::Record>(contents.items.front());
   EXPECT_EQ(record.sequence, 0u) << "the record is from a snapshot";

@@ -207,7 +207,7 @@ TEST_F(LogTest, UnreadableFileIsAnErrorAndIsKept) {
   std::filesystem::create_symlink("elsewhere", path);
   EXPECT_FALSE(small_.read());
   std::filesystem::remove_all(small_.path());
-  EXPECT_THAT(Directory::look(small_.path()).error().what, HasSubstr("No such file"));
+  EXPECT_THAT(Directory::open(small_.path()).error().what, HasSubstr("No such file"));
 }
 
 TEST_F(LogTest, FileOfALaterVersionIsKept) {
@@ -228,7 +228,7 @@ TEST_F(LogTest, FileOfALaterVersionIsKept) {
 TEST_F(LogTest, IsWrittenByOneProcessAtATime) {
   const auto opened = small_.open();
   EXPECT_EQ(Directory::lock(small_.path()).error().cause, Error::Cause::InUse);
-  EXPECT_TRUE(Directory::look(small_.path()));
+  EXPECT_TRUE(Directory::open(small_.path()));
 }
 
 /// A peer that knows the format cannot insert a record into the log with its message.

@@ -44,7 +44,7 @@ class SmallLog {
   };
   /// Opens the log as a process does.
   Opened open() const { return {path_, keeping}; }
-  Result<Contents> read() const { return Contents::read(Directory::look(path_).value(), keeping); }
+  Result<Contents> read() const { return Contents::read(Directory::open(path_).value(), keeping); }
 
   /// Appends the records in one process.
   void fill(const std::vector<std::string>& bodies, Durability durability) const {

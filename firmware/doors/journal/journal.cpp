@@ -306,7 +306,7 @@ Journal::Kept Journal::open() {
 
 bool Journal::can_be_read(const std::string& folder) {
   if (!host::may_exist(folder)) return true;
-  const auto directory = store::Directory::look(folder);
+  const auto directory = store::Directory::open(folder);
   return directory && store::Contents::read(*directory, kKeeping);
 }
 

@@ -69,7 +69,7 @@ Value::Object dumped(const store::Record& record, std::vector<std::string>& dama
 
 store::Result<std::vector<std::string>> dump(const std::string& directory,
                                              const std::function<void(const std::string&)>& print) {
-  const auto there = ADIT_TRY(store::Directory::look(directory));
+  const auto there = ADIT_TRY(store::Directory::open(directory));
   auto contents = ADIT_TRY(store::Contents::read(there, Ledger::kKeeping));
   if (contents.is_new) return std::unexpected(store::Error{.what = directory + ": there is no ledger"});
   std::vector<std::string> damage = std::move(contents.notes);

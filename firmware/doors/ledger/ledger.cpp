@@ -267,7 +267,7 @@ bool Ledger::can_be_read(const std::string& state) {
 }
 
 Result<std::string> Ledger::set_aside(const std::string& state) {
-  const auto folder = ADIT_TRY(store::Directory::look(state));
+  const auto folder = ADIT_TRY(store::Directory::open(state));
   return folder.rename_aside(kDirectory);
 }
 

@@ -88,10 +88,6 @@ Result<Directory> Directory::lock(const std::string& path) {
   return std::unexpected(Error{Error::Cause::InUse, path + ": another process has it open"});
 }
 
-Result<Directory> Directory::look(const std::string& path) {
-  return open(path);
-}
-
 Result<std::vector<std::string>> Directory::names() const {
   const int again = ::openat(fd_.get(), ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);  // closedir() closes it
   const std::unique_ptr<DIR, int (*)(DIR*)> all(again < 0 ? nullptr : ::fdopendir(again), ::closedir);

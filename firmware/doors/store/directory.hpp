@@ -53,7 +53,7 @@ class Directory {
   /// may write a log.
   static Result<Directory> lock(const std::string& path);
   /// For reading, even while another process has the lock.
-  static Result<Directory> look(const std::string& path);
+  static Result<Directory> open(const std::string& path);
 
   /// The log's files by kind and number. Error if the directory cannot be read, never an empty list.
   Result<std::vector<FileName>> files() const;
@@ -83,7 +83,6 @@ class Directory {
   std::unexpected<Error> trouble(int number) const { return failed(path_, number); }
 
  private:
-  static Result<Directory> open(const std::string& path);
   Result<std::vector<std::string>> names() const;
   /// The first free name of `beginning`1, 2 ...
   Result<std::string> first_free(const std::string& beginning) const;

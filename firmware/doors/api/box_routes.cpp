@@ -250,7 +250,7 @@ class ReceivingExport final : public intake::BodySink {
 
  private:
   void refuse_what_is_none() {
-    const std::string why = spare::not_an_export(std::string_view(file_).substr(0, spare::kExportHead));
+    const std::string why = spare::not_an_export(file_);
     if (why.empty()) return;
     file_.clear();
     std::exchange(done_, nullptr)(icd::unprocessable(why));

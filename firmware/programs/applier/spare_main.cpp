@@ -56,9 +56,7 @@ std::expected<std::string, std::string> take_export(host::UntrustedFolder& folde
   auto bytes = read_export(folder.path_by_descriptor() + "/.", spare::kForStickFile);
   ADIT_TRY(folder.remove(spare::kForStickFile));
   if (!bytes) return bytes;
-  if (std::string why = spare::not_an_export(std::string_view(*bytes).substr(0, spare::kExportHead));
-      !why.empty())
-    return std::unexpected(std::move(why));
+  if (std::string why = spare::not_an_export(*bytes); !why.empty()) return std::unexpected(std::move(why));
   return bytes;
 }
 
@@ -135,9 +133,7 @@ std::string SpareKeeper::take(const std::string& name) {
   if (!folder) return folder.error();
   const auto bytes = read_export(*folder, name);
   if (!bytes) return bytes.error();
-  if (std::string why = spare::not_an_export(std::string_view(*bytes).substr(0, spare::kExportHead));
-      !why.empty())
-    return why;
+  if (std::string why = spare::not_an_export(*bytes); !why.empty()) return why;
   const auto kept = host::write_file(options_.status + '/' + spare::kFromStickFile, *bytes, host::kForAll);
   return kept ? "" : kept.error();
 }

@@ -122,9 +122,7 @@ Result<std::string> read_export(const std::string& path) {
   if (!file.is_open() || file.bad()) return failed(path + ": cannot be read");
   bytes.resize(static_cast<std::size_t>(file.gcount()));
   if (bytes.size() > spare::kLargestExport) return failed(path + ": too large for an export");
-  if (std::string why = spare::not_an_export(std::string_view(bytes).substr(0, spare::kExportHead));
-      !why.empty())
-    return failed(path + ": " + why);
+  if (const std::string why = spare::not_an_export(bytes); !why.empty()) return failed(path + ": " + why);
   return bytes;
 }
 

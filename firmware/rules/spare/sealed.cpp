@@ -91,19 +91,18 @@ std::expected<std::string, std::string> seal(std::string_view content, std::stri
   return file;
 }
 
-std::string not_an_export(std::string_view head) {
-  if (head.size() < kExportHead || !head.starts_with(kMagic)) return "the file is not an export from Adit";
-  const auto version = static_cast<std::uint8_t>(head[kMagic.size()]);
+std::string not_an_export(std::string_view file) {
+  if (file.size() < kExportHead || !file.starts_with(kMagic)) return "the file is not an export from Adit";
+  const auto version = static_cast<std::uint8_t>(file[kMagic.size()]);
   if (version > kVersion)
     return icd::sentence("a later Adit made this export (version ", int{version}, ", this box reads ",
                          int{kVersion}, "): update this box first");
-  if (version < 1 || head[kMagic.size() + 1] != '\0') return "the file is not an export from Adit";
+  if (version < 1 || file[kMagic.size() + 1] != '\0') return "the file is not an export from Adit";
   return "";
 }
 
 std::expected<std::string, std::string> unseal(std::string_view file, std::string_view code) {
-  if (std::string why = not_an_export(file.substr(0, kExportHead)); !why.empty())
-    return std::unexpected(std::move(why));
+  if (std::string why = not_an_export(file); !why.empty()) return std::unexpected(std::move(why));
   if (file.size() > kLargestExport) return std::unexpected("the file is larger than an export may be");
   if (file.size() < kBefore + kTag) return std::unexpected("the export is incomplete");
   const auto* const data = bytes(file);

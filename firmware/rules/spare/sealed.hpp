@@ -46,8 +46,8 @@ std::expected<std::string, std::string> seal(std::string_view content, std::stri
 /// truncated, changed, or the wrong code.
 std::expected<std::string, std::string> unseal(std::string_view file, std::string_view code);
 
-/// Why a file with this beginning is not a readable export, or "". `head`: at least kExportHead bytes, or the
-/// whole of a shorter file.
-std::string not_an_export(std::string_view head);
+/// Why a file is not a readable export, or "". `file`: at least its first kExportHead bytes, or the whole of
+/// a shorter file.
+std::string not_an_export(std::string_view file);
 
 }  // namespace adit::spare

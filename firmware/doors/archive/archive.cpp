@@ -12,24 +12,6 @@
 
 namespace adit::archive {
 
-void read_all(const RunsFolder& runs, const std::string& key, RunRecords& told,
-              const std::function<bool()>& enough) {
-  const auto all_read = read_run(runs.folder_of(key), told, enough);
-  if (all_read && told.damaged() == 0) return;
-  const std::string why = all_read ? icd::sentence("damaged records: ", told.damaged()) : all_read.error();
-  host::log(host::Level::Error, "a part of a stored run is lost; the rest is used",
-            {{"run", key}, {"why", why}});
-  told.samples().add(api::AttentionStep{told.last(), true,
-                                        "a part of the run's stored map, tracks and plots is lost: " + why});
-}
-
-api::RunRow with_times(const api::RunRow& row, const api::RunRow& present) {
-  api::RunRow told = row.key == present.key ? present : row;
-  told.bytes = row.bytes;
-  if (told.began > 0 && told.stamp) told.began += told.last - *told.stamp;
-  return told;
-}
-
 StoredRuns::StoredRuns(loop::Writer& writer, RunsFolder folder)
     : writer_(writer), folder_(std::move(folder)) {
   look();
@@ -67,6 +49,28 @@ bool StoredRuns::resize(const std::string& key, std::uint64_t bytes) {
 namespace {
 
 using ReadRun = icd::Checked<std::shared_ptr<api::KeptRun>>;
+
+/// Reads a run. Skips unreadable files and damaged records, and reports them in the log and in the run's own
+/// list of attention. Blocks on the disk until all is read or `enough` returns true.
+void read_all(const RunsFolder& runs, const std::string& key, RunRecords& told,
+              const std::function<bool()>& enough) {
+  const auto all_read = read_run(runs.folder_of(key), told, enough);
+  if (all_read && told.damaged() == 0) return;
+  const std::string why = all_read ? icd::sentence("damaged records: ", told.damaged()) : all_read.error();
+  host::log(host::Level::Error, "a part of a stored run is lost; the rest is used",
+            {{"run", key}, {"why", why}});
+  told.samples().add(api::AttentionStep{told.last(), true,
+                                        "a part of the run's stored map, tracks and plots is lost: " + why});
+}
+
+/// The present run's row as it is now, others as on disk. Converts the start from the stamp clock, which the
+/// ledger uses, to the time of day, like the end.
+api::RunRow with_times(const api::RunRow& row, const api::RunRow& present) {
+  api::RunRow told = row.key == present.key ? present : row;
+  told.bytes = row.bytes;
+  if (told.began > 0 && told.stamp) told.began += told.last - *told.stamp;
+  return told;
+}
 
 std::unexpected<icd::Refusal> unread(const std::string& why) {
   return std::unexpected(icd::Refusal{icd::Status::ServiceUnavailable, "cannot read the stored run: " + why});

@@ -11,22 +11,12 @@
 
 #include "api/kept_runs.hpp"
 #include "archive/run_folder.hpp"
-#include "archive/run_records.hpp"
 #include "archive/write_queue.hpp"
 #include "loop/loop.hpp"
 #include "loop/workers.hpp"
 #include "picture/mosaic.hpp"
 
 namespace adit::archive {
-
-/// Reads a run. Skips unreadable files and damaged records, and reports them in the log and in the run's own
-/// list of attention. Blocks on the disk until all is read or `enough` returns true.
-void read_all(const RunsFolder& runs, const std::string& key, RunRecords& told,
-              const std::function<bool()>& enough);
-
-/// The present run's row as it is now, others as on disk. Converts the start from the stamp clock, which the
-/// ledger uses, to the time of day, like the end.
-api::RunRow with_times(const api::RunRow& row, const api::RunRow& present);
 
 /// The runs on disk: lists, reads, reports and removes them on the writer's thread.
 class StoredRuns {

@@ -52,7 +52,7 @@ class GpioLines final : public Lines {
     for (const Light light : kLights) {
       const auto& output = outputs_[index_of(light)];
       if (!output || output->set(lit[index_of(light)]) == 0) continue;
-      if (result) result = gpio_trouble(about(settings_, line_of(settings_, light), name_of(light)), errno);
+      if (result) result = trouble(about(settings_, line_of(settings_, light), name_of(light)), errno);
     }
     return result;
   }
@@ -72,7 +72,7 @@ class GpioButton final : public ButtonLine {
   /// Uses the level, not the edges, because the kernel drops edges during a long bounce.
   std::expected<bool, std::string> pressed() override {
     const int value = line_->drop_edges() < 0 ? -1 : line_->get();
-    if (value < 0) return gpio_trouble(about_, errno);
+    if (value < 0) return trouble(about_, errno);
     return value == 1;
   }
 
@@ -83,7 +83,7 @@ class GpioButton final : public ButtonLine {
 
 }  // namespace
 
-std::unexpected<std::string> gpio_trouble(const std::string& about, int error) {
+std::unexpected<std::string> trouble(const std::string& about, int error) {
   return std::unexpected("panel: " + about + ": " + std::system_category().message(error));
 }
 

@@ -33,7 +33,4 @@ class GpioLine {
 /// gpiod1.cpp and gpiod2.cpp define this, each with its version of libgpiod.
 std::expected<std::unique_ptr<GpioLine>, std::string> request_line(const GpioRequest& wanted);
 
-/// "panel: ABOUT: REASON". `error` is an errno.
-std::unexpected<std::string> gpio_trouble(const std::string& about, int error);
-
 }  // namespace adit::panel

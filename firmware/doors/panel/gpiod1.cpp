@@ -32,14 +32,14 @@ std::expected<Found, std::string> find(const GpioRequest& wanted) {
   if (wanted.chip.empty()) {
     gpiod_line* const line =
         gpiod_line_find(wanted.line.c_str());  // opens the chip, which the caller then owns
-    if (line == nullptr) return gpio_trouble(wanted.about, gpio_error());
+    if (line == nullptr) return trouble(wanted.about, gpio_error());
     return Found{Chip(gpiod_line_get_chip(line)), line};
   }
   Chip chip(gpiod_chip_open_lookup(wanted.chip.c_str()));
-  if (!chip) return gpio_trouble("chip " + wanted.chip, gpio_error());
+  if (!chip) return trouble("chip " + wanted.chip, gpio_error());
   errno = 0;
   gpiod_line* const line = gpiod_chip_find_line(chip.get(), wanted.line.c_str());
-  if (line == nullptr) return gpio_trouble(wanted.about, gpio_error());
+  if (line == nullptr) return trouble(wanted.about, gpio_error());
   return Found{std::move(chip), line};
 }
 
@@ -80,7 +80,7 @@ std::expected<std::unique_ptr<GpioLine>, std::string> request_line(const GpioReq
     return gpiod_line_request_both_edges_events_flags(found.line, consumer, flags) == 0;
   };
   const bool is_pulled = !wanted.is_output && request(level | pull);
-  if (!is_pulled && !request(level)) return gpio_trouble(wanted.about, errno);  // some chips have no pull
+  if (!is_pulled && !request(level)) return trouble(wanted.about, errno);  // some chips have no pull
   return std::make_unique<Line>(std::move(found));
 }
 

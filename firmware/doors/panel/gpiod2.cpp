@@ -33,7 +33,7 @@ std::expected<std::vector<std::string>, std::string> chip_paths(const std::strin
   const int failed = glob("/dev/gpiochip*", GLOB_ERR, nullptr, &found);
   std::vector<std::string> paths(found.gl_pathv, found.gl_pathv + found.gl_pathc);
   globfree(&found);
-  if (failed != 0 && failed != GLOB_NOMATCH) return gpio_trouble(about + ": /dev", errno);
+  if (failed != 0 && failed != GLOB_NOMATCH) return trouble(about + ": /dev", errno);
   return paths;
 }
 
@@ -42,12 +42,12 @@ std::expected<Found, std::string> find(const GpioRequest& wanted) {
   const bool is_any = wanted.chip.empty(), is_path = wanted.chip.starts_with('/');
   const std::string about = is_any ? wanted.about : "chip " + wanted.chip;
   const auto paths = is_path ? std::vector{wanted.chip} : ADIT_TRY(chip_paths(about));
-  auto trouble = gpio_trouble(about, ENOENT);
+  auto failure = trouble(about, ENOENT);
   for (const std::string& path : paths) {
     Chip chip(gpiod_chip_open(path.c_str()));
     const Owned<gpiod_chip_info, gpiod_chip_info_free> info(chip ? gpiod_chip_get_info(chip.get()) : nullptr);
     if (!info) {
-      trouble = gpio_trouble(is_path ? about : about + ": " + path, errno);
+      failure = trouble(is_path ? about : about + ": " + path, errno);
       continue;
     }
     const bool is_named = is_path || wanted.chip == gpiod_chip_info_get_name(info.get()) ||
@@ -55,10 +55,10 @@ std::expected<Found, std::string> find(const GpioRequest& wanted) {
     if (!is_named && !is_any) continue;
     const int offset = gpiod_chip_get_line_offset_from_name(chip.get(), wanted.line.c_str());
     if (offset >= 0) return Found{std::move(chip), static_cast<unsigned>(offset)};
-    if (!is_any) return gpio_trouble(wanted.about, errno);
-    if (errno != ENOENT) trouble = gpio_trouble(about + ": " + path, errno);
+    if (!is_any) return trouble(wanted.about, errno);
+    if (errno != ENOENT) failure = trouble(about + ": " + path, errno);
   }
-  return trouble;
+  return failure;
 }
 
 /// Sets errno and returns null if it fails.
@@ -111,7 +111,7 @@ std::expected<std::unique_ptr<GpioLine>, std::string> request_line(const GpioReq
     line = request(found, wanted, wanted.active_low ? GPIOD_LINE_BIAS_PULL_UP : GPIOD_LINE_BIAS_PULL_DOWN);
   }
   if (!line) line = request(found, wanted, GPIOD_LINE_BIAS_AS_IS);  // some chips have no pull
-  if (!line) return gpio_trouble(wanted.about, errno);
+  if (!line) return trouble(wanted.about, errno);
   return std::make_unique<Line>(std::move(line), found.offset);
 }
 

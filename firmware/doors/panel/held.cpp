@@ -7,7 +7,6 @@
 #include <cerrno>
 #include <cstdint>
 #include <optional>
-#include <system_error>
 #include <utility>
 
 #include "loop/file_descriptor.hpp"
@@ -17,6 +16,8 @@ namespace {
 
 using OpenLines = std::function<std::expected<std::unique_ptr<Lines>, std::string>()>;
 using OpenButton = std::function<std::expected<std::unique_ptr<ButtonLine>, std::string>()>;
+
+constexpr const char* kNotWatched = "the button cannot be watched";
 
 class ReopenedLines final : public Lines {
  public:
@@ -113,7 +114,7 @@ class ReopenedButton final : public ButtonLine {
     if (epoll_ctl(epoll_.get(), EPOLL_CTL_ADD, (*opened)->descriptor(), &wanted) == 0) {
       line_ = std::move(*opened);
     } else {
-      why_ = "panel: the button cannot be watched: " + std::system_category().message(errno);
+      why_ = trouble(kNotWatched, errno).error();
     }
   }
 
@@ -145,7 +146,7 @@ std::expected<std::unique_ptr<ButtonLine>, std::string> reopened_button(OpenButt
   loop::FileDescriptor epoll(epoll_create1(EPOLL_CLOEXEC)), timer = timer_of(pace);
   epoll_event wanted{.events = EPOLLIN, .data = {}};
   if (!epoll || !timer || epoll_ctl(epoll.get(), EPOLL_CTL_ADD, timer.get(), &wanted) != 0)
-    return std::unexpected("panel: the button cannot be watched: " + std::system_category().message(errno));
+    return trouble(kNotWatched, errno);
   return std::make_unique<ReopenedButton>(std::move(open), std::move(epoll), std::move(timer));
 }
 

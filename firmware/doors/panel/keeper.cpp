@@ -86,10 +86,6 @@ namespace {
 
 constexpr int kHeardAtOnce = 64;  // messages at once, so that a flood of messages cannot delay the lights
 
-bool same(const settings::Panel& one, const settings::Panel& other) {
-  return message_of(LinesRequest{one}) == message_of(LinesRequest{other});
-}
-
 }  // namespace
 
 Keeper::Keeper(loop::Loop& loop, loop::FileDescriptor listening, std::optional<settings::Panel> boards,
@@ -158,7 +154,7 @@ void Keeper::take(const EndRequest&) {
 }
 
 void Keeper::take(const LinesRequest& message) {
-  if (!knows_board_ && !(used_ && same(*used_, message.panel))) use(message.panel);
+  if (!knows_board_ && used_ != message.panel) use(message.panel);
 }
 
 /// A line can be opened only once, so the old lines are closed first.

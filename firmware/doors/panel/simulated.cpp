@@ -2,7 +2,6 @@
 #include <cstdio>
 #include <fstream>
 #include <optional>
-#include <system_error>
 
 #include "panel/lines.hpp"
 
@@ -26,7 +25,7 @@ class SimulatedLines final : public Lines {
 
   std::expected<void, std::string> set(const Lit& lit) override {
     if (shown_ == lit) return {};
-    if (!write(lit)) return std::unexpected("panel: " + file_ + ": " + std::system_category().message(errno));
+    if (!write(lit)) return trouble(file_, errno);
     shown_ = lit;
     return {};
   }

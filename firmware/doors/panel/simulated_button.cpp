@@ -5,7 +5,6 @@
 #include <array>
 #include <cerrno>
 #include <string_view>
-#include <system_error>
 
 #include "loop/file_descriptor.hpp"
 #include "panel/lines.hpp"
@@ -52,10 +51,6 @@ class SimulatedButton final : public ButtonLine {
   std::string path_, line_;
   bool pressed_ = false;
 };
-
-std::unexpected<std::string> trouble(const std::string& path, int error) {
-  return std::unexpected("panel: " + path + ": " + std::system_category().message(error));
-}
 
 }  // namespace
 

@@ -98,6 +98,7 @@ struct Panel {
     return !health.empty() || !scoring.empty() || !mapping.empty() || !attention.empty();
   }
   bool is_simulated() const { return !has_lights() && button.empty(); }
+  friend bool operator==(const Panel&, const Panel&) = default;
 };
 
 /// A robot's colours on the pages and in the run's report. Word n is the colour of the robot whose first pose

@@ -7,22 +7,17 @@
 #include <systemd/sd-journal.h>
 #include <unistd.h>
 
-#include <chrono>
 #include <cstdlib>
 #include <mutex>
 #include <utility>
 
 #include "host/log_line.hpp"
+#include "loop/loop.hpp"
 
 namespace adit::host {
 namespace {
 
 constexpr Level kLeast = Level::Info;
-
-/// Wall time, for comparison with other logs. Rules use loop::Loop::now().
-double time_now() {
-  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
-}
 
 Memory& memory() {
   static Memory records;
@@ -74,7 +69,7 @@ void write_down(double at, Level level, std::string_view message, std::span<cons
 
 void log(Level level, std::string_view message, std::initializer_list<Field> fields) {
   if (level > kLeast) return;
-  const double at = time_now();
+  const double at = loop::system_now();
   const std::string said = without_secrets(std::string(message));
   std::vector<Field> struck(fields);
   for (auto& [name, value] : struck) value = without_secrets(std::move(value));
@@ -93,7 +88,7 @@ std::string without_secrets(std::string text) {
 
 void tell_console(Level level, std::string_view message, std::initializer_list<Field> fields) {
   if (level > kLeast) return;
-  const double at = time_now();
+  const double at = loop::system_now();
   memory().keep(at, level, message, {});
   write_down(at, level, message, fields);
 }

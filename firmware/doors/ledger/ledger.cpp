@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
-#include <chrono>
 #include <optional>
 #include <system_error>
 #include <utility>
@@ -15,17 +14,13 @@
 #include "icd/try.hpp"
 #include "ledger/book.hpp"
 #include "loop/file_descriptor.hpp"
+#include "loop/loop.hpp"
 #include "store/directory.hpp"
 #include "store/frame.hpp"
 #include "store/log.hpp"
 
 namespace adit::ledger {
 namespace {
-
-double now() {
-  using std::chrono::system_clock;
-  return std::chrono::duration<double>(system_clock::now().time_since_epoch()).count();
-}
 
 Result<void> write(store::Snapshot& snapshot, const Book& book, const std::atomic<bool>& enough) {
   for (const auto& [kind, body] : book.records()) {
@@ -242,7 +237,7 @@ Result<Ledger> Ledger::open(const std::string& state, const Known& stored, const
   std::string damage;
   const bool is_damaged = !reading.gap.empty();
   if (is_damaged) {
-    const std::string found = book.salvage(now(), known.reports, reading.end_is_lost);
+    const std::string found = book.salvage(loop::system_now(), known.reports, reading.end_is_lost);
     damage = icd::sentence("The ledger was damaged (", reading.gap, "). Its files are kept in ", state, "/",
                            kDirectory, "/damaged-*; ", found, ".");
   } else if (!contents.notes.empty()) {

@@ -33,10 +33,6 @@ void must(int result, const char* doing) {
   std::abort();
 }
 
-double system_now() {
-  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
-}
-
 /// Rounded up, so that a timer is never early.
 std::uint64_t to_usec(Instant when) {
   const auto since_boot = std::chrono::ceil<std::chrono::microseconds>(when.time_since_epoch()).count();
@@ -44,6 +40,10 @@ std::uint64_t to_usec(Instant when) {
 }
 
 }  // namespace
+
+double system_now() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
 
 struct Source::State : std::enable_shared_from_this<Source::State> {
   std::function<void(std::uint32_t)> call;

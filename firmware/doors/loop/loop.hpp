@@ -50,6 +50,9 @@ class WallClock {
 using Instant = std::chrono::steady_clock::time_point;
 using Duration = std::chrono::nanoseconds;
 
+/// The system's clock, in seconds since 1970. Rules use Loop::wall_now().
+double system_now();
+
 /// A watched descriptor, timer or signal. Destroying it ends the watch, even within its own callback. An
 /// exception that leaves the callback ends the process. For watch(): destroy the Source before you close its
 /// file descriptor.

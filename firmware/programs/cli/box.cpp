@@ -11,6 +11,7 @@
 #include "clock/messages.hpp"
 #include "icd/sentence.hpp"
 #include "icd/try.hpp"
+#include "loop/loop.hpp"
 #include "update/messages.hpp"
 
 namespace adit::cli {
@@ -82,10 +83,6 @@ namespace {
 
 constexpr double kAsHere = 2;  // seconds of difference that count as equal
 
-double time_here() {
-  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
-}
-
 /// In the order of clock::Source.
 constexpr std::string_view kSetBy[] = {"not set since boot",          "continued from the last known time",
                                        "set by the robots' stamps",   "set by the Command Post's answers",
@@ -94,7 +91,7 @@ constexpr std::string_view kSetBy[] = {"not set since boot",          "continued
 static_assert(std::size(kSetBy) == std::size(clock::kSourceWords));
 
 std::string text_of(const api::ClockView& view, bool /*colour*/) {
-  const double ahead = view.now - time_here();
+  const double ahead = view.now - loop::system_now();
   const std::string apart =
       std::abs(ahead) <= kAsHere
           ? "the same as on this computer"
@@ -120,7 +117,7 @@ Result<Outcome> set_clock(const Call& call) {
   return act(call,
              {.target = "/adit/clock",
               .check = "adit clock",
-              .body = "{\"time\":" + std::to_string(time_here()) + "}"},
+              .body = "{\"time\":" + std::to_string(loop::system_now()) + "}"},
              "the clock is being set\n");
 }
 

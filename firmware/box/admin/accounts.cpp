@@ -8,10 +8,10 @@
 
 #include "access/password.hpp"
 #include "admin/kept_file.hpp"
-#include "admin/refuse.hpp"
 #include "host/log.hpp"
 #include "host/random.hpp"
 #include "host/service.hpp"
+#include "icd/sentence.hpp"
 
 namespace adit::admin {
 namespace {
@@ -47,11 +47,11 @@ icd::Checked<access::Accounts> with(access::Accounts accounts, Role role,
   accounts.of(role).reset();
   if (!password) return accounts;
   if (access::role_of(*password, accounts)) {
-    return refuse(icd::Status::UnprocessableEntity,
-                  "password: expected a password that the other role does not have");
+    return icd::refuse(icd::Status::UnprocessableEntity,
+                       "password: expected a password that the other role does not have");
   }
   auto hashed = access::hash(*password, salt);
-  if (!hashed) return refuse(icd::Status::ServiceUnavailable, hashed.error());
+  if (!hashed) return icd::refuse(icd::Status::ServiceUnavailable, hashed.error());
   accounts.of(role) = std::move(*hashed);
   return accounts;
 }
@@ -129,21 +129,22 @@ void Accounts::check(std::string password, std::string address,
 
 void Accounts::set(Role role, std::optional<std::string> password,
                    std::function<void(icd::Checked<void>)> done) {
-  if (!unread_.empty()) return done(refuse(icd::Status::ServiceUnavailable, unread_));
+  if (!unread_.empty()) return done(icd::refuse(icd::Status::ServiceUnavailable, unread_));
   if (std::exchange(setting_, true)) {
-    return done(conflict("another password is being set: try again"));
+    return done(icd::conflict("another password is being set: try again"));
   }
   access::Salt salt{};
   host::fill_random(salt);
   auto changed = std::make_shared<icd::Checked<access::Accounts>>(
-      refuse(icd::Status::ServiceUnavailable, "cannot set the password: try again"));
+      icd::refuse(icd::Status::ServiceUnavailable, "cannot set the password: try again"));
   const auto change = [changed, role, password = std::move(password), salt, accounts = accounts_] {
     *changed = with(accounts, role, password, salt);
   };
   const auto keep = [changed, file = file(), code_file = code_file()] {
     if (!*changed) return;
     if (const auto written = host::write_kept(file, access::write_accounts(**changed)); !written) {
-      *changed = refuse(icd::Status::ServiceUnavailable, "cannot store the password: " + written.error());
+      *changed =
+          icd::refuse(icd::Status::ServiceUnavailable, "cannot store the password: " + written.error());
     } else {
       unlink(code_file.c_str());  // a code is valid only without a password
     }

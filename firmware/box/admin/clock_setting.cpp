@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 
-#include "admin/refuse.hpp"
 #include "host/log.hpp"
 #include "icd/sentence.hpp"
 #include "settings/subnet.hpp"
@@ -103,14 +102,14 @@ bool ClockSetting::is_told() const {
 
 icd::Checked<void> ClockSetting::set_clock(double time) {
   const auto status = adit_clock_.status();
-  if (!status) return conflict(adit_clock_.why());
+  if (!status) return icd::conflict(adit_clock_.why());
   if (is_kept_by_ntp())
-    return conflict(
-        icd::sentence("the NTP server ", ntp_.server, " keeps the time: clock.ntp_server in the settings"));
+    return icd::conflict("the NTP server ", ntp_.server, " keeps the time: clock.ntp_server in the settings");
   if (!clock::to_be_set(status->source, {clock::Source::Operator, time}, loop_.wall_now()))
-    return refuse(icd::Status::UnprocessableEntity, "time: expected seconds since 1970, from 2026 to 2099");
+    return icd::refuse(icd::Status::UnprocessableEntity,
+                       "time: expected seconds since 1970, from 2026 to 2099");
   if (const auto asked = ask(clock::Source::Operator, time); !asked)
-    return refuse(icd::Status::ServiceUnavailable, asked.error());
+    return icd::refuse(icd::Status::ServiceUnavailable, asked.error());
   return {};
 }
 

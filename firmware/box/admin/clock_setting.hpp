@@ -22,7 +22,7 @@ class NtpWatch {
   static constexpr std::chrono::seconds kGone{15};
 
   /// `port`: of chronyd. `loop` must outlive this object.
-  explicit NtpWatch(loop::Loop& loop, std::uint16_t port = 323) : loop_(loop), port_(port) {}
+  NtpWatch(loop::Loop& loop, std::uint16_t port) : loop_(loop), port_(port) {}
 
   /// Call each second. `server`: an IPv4 address, or "" to stop asking.
   void every_second(const std::string& server);

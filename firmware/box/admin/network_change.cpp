@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "admin/refuse.hpp"
 #include "host/interfaces.hpp"
 #include "host/log.hpp"
 #include "icd/sentence.hpp"
@@ -147,12 +146,12 @@ network::Findings NetworkChange::check(const network::Numbers& wanted, const std
 }
 
 icd::Checked<void> NetworkChange::change(const network::Numbers& wanted) {
-  if (pending()) return conflict("another change is not yet confirmed or reverted");
-  if (const std::string why = hindrance(); !why.empty()) return conflict(why);
+  if (pending()) return icd::conflict("another change is not yet confirmed or reverted");
+  if (const std::string why = hindrance(); !why.empty()) return icd::conflict(why);
   wanted_ = {host::draw_nonce(), settings_.network.confirm_within, wanted};
   wanted_at_ = loop_.now();
   if (const auto asked = adit_network_.ask(network::kWantedFile, wanted_); !asked)
-    return conflict("cannot request the change: " + asked.error());
+    return icd::conflict("cannot request the change: " + asked.error());
   host::log(host::Level::Notice, "change of the addresses requested",
             {{"team", network::team_text(wanted)}, {"command_post", network::command_post_text(wanted)}});
   return {};
@@ -160,7 +159,7 @@ icd::Checked<void> NetworkChange::change(const network::Numbers& wanted) {
 
 icd::Checked<void> NetworkChange::confirm(const std::string& local) {
   const auto waits = pending();
-  if (!waits) return conflict("there is no change to confirm");
+  if (!waits) return icd::conflict("there is no change to confirm");
   if (auto may = check_confirmable(waits->wanted, local); !may) return may;
   return say(network::Decision::What::Confirm, *waits);
 }
@@ -173,12 +172,12 @@ icd::Checked<void> NetworkChange::check_confirmable(const network::Numbers& want
   const auto kept = this->kept();
   const bool stays = kept && kept->mode == wanted.mode && kept->team.address == wanted.team.address;
   if ((stays || !fixed) && adit_network_.waits())
-    return conflict("the change is not applied yet: try again in a few seconds");
+    return icd::conflict("the change is not applied yet: try again in a few seconds");
   const bool new_one = fixed ? local == settings::ipv4_text(wanted.team.address)
                              : !kept || local != settings::ipv4_text(kept->team.address);
   if (stays || new_one) return {};
-  return conflict(icd::sentence("confirm it at ", page_at(wanted), ": this request came to ", local,
-                                " and does not show that the new address works"));
+  return icd::conflict("confirm it at ", page_at(wanted), ": this request came to ", local,
+                       " and does not show that the new address works");
 }
 
 void NetworkChange::lead_to_endpoints() {
@@ -213,14 +212,14 @@ std::expected<std::string, std::string> NetworkChange::next_hop(const settings::
 
 icd::Checked<void> NetworkChange::revert() {
   const auto waits = pending();
-  if (!waits) return conflict("there is no change to revert");
+  if (!waits) return icd::conflict("there is no change to revert");
   return say(network::Decision::What::Revert, *waits);
 }
 
 icd::Checked<void> NetworkChange::say(network::Decision::What what, const network::Pending& pending) const {
   if (const auto asked = adit_network_.leave(network::kWordFile, network::Decision{pending.nonce, what});
       !asked) {
-    return conflict("cannot tell adit-network: " + asked.error());
+    return icd::conflict("cannot tell adit-network: " + asked.error());
   }
   return {};
 }

@@ -1,6 +1,5 @@
 #include "admin/setup.hpp"
 
-#include "admin/refuse.hpp"
 #include "forward/channel.hpp"
 #include "host/log.hpp"
 #include "icd/sentence.hpp"
@@ -13,7 +12,7 @@ namespace {
 using settings::Settings;
 
 icd::Checked<void> being_applied() {
-  return refuse(icd::Status::Conflict, "another change is being applied: try again");
+  return icd::refuse(icd::Status::Conflict, "another change is being applied: try again");
 }
 
 }  // namespace
@@ -82,7 +81,7 @@ icd::Checked<void> Setup::applied(const std::expected<void, std::string>& writte
                                   const std::function<void()>& apply) {
   if (!written) {
     host::log(host::Level::Error, "cannot store a change", {{"what", what}, {"why", written.error()}});
-    return refuse(icd::Status::ServiceUnavailable, "cannot store the change: " + written.error());
+    return icd::refuse(icd::Status::ServiceUnavailable, "cannot store the change: " + written.error());
   }
   host::log(host::Level::Notice, "change applied", {{"what", what}});
   applying_ = true;

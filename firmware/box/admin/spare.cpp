@@ -6,7 +6,6 @@
 #include <memory>
 #include <utility>
 
-#include "admin/refuse.hpp"
 #include "host/files.hpp"
 #include "host/log.hpp"
 #include "host/random.hpp"
@@ -66,23 +65,23 @@ std::optional<api::StickRow> SpareStick::view() const {
 
 icd::Checked<void> SpareStick::check_free() const {
   const auto now = view();
-  if (!now) return conflict(kNotHere);
-  if (!adit_spare_.status()) return conflict(adit_spare_.why());
+  if (!now) return icd::conflict(kNotHere);
+  if (!adit_spare_.status()) return icd::conflict(adit_spare_.why());
   if (now->doing.empty()) return {};
-  return conflict(icd::sentence("the box is already ", now->doing, " an export: wait"));
+  return icd::conflict("the box is already ", now->doing, " an export: wait");
 }
 
 icd::Checked<void> SpareStick::write(const std::string& name, const std::string& file) {
   ADIT_TRY(check_free());
-  if (const auto now = view(); now && !now->hindrance.empty()) return conflict(now->hindrance);
+  if (const auto now = view(); now && !now->hindrance.empty()) return icd::conflict(now->hindrance);
   const auto left = host::write_file(for_stick(), file, host::kOursAlone);
-  if (!left) return refuse(Status::ServiceUnavailable, left.error());
+  if (!left) return icd::refuse(Status::ServiceUnavailable, left.error());
   return ask(What::Write, name);
 }
 
 icd::Checked<void> SpareStick::take(const std::string& name) {
   if (!spare::is_file_name(name))
-    return refuse(Status::UnprocessableEntity, "name: expected the name of an export on the stick");
+    return icd::refuse(Status::UnprocessableEntity, "name: expected the name of an export on the stick");
   ADIT_TRY(check_free());
   return ask(What::Take, name);
 }
@@ -91,7 +90,7 @@ icd::Checked<void> SpareStick::ask(What what, const std::string& name) {
   const spare::StickRequest request{.nonce = host::draw_nonce(), .what = what, .name = name};
   if (const auto asked = adit_spare_.ask(spare::kStickRequestFile, request); !asked) {
     unlink(for_stick().c_str());
-    return refuse(Status::ServiceUnavailable, "cannot request it from adit-spare: " + asked.error());
+    return icd::refuse(Status::ServiceUnavailable, "cannot request it from adit-spare: " + asked.error());
   }
   asked_ = what;
   refusal_.clear();
@@ -160,7 +159,7 @@ bool Spare::is_of_this_rest(const std::string& file) const {
 
 icd::Checked<void> Spare::keep(const SpareFile& next) {
   if (auto written = next.write(state_); !written)
-    return refuse(Status::ServiceUnavailable, std::move(written.error()));
+    return icd::refuse(Status::ServiceUnavailable, written.error());
   file_ = next;
   return {};
 }
@@ -192,7 +191,7 @@ api::SpareView Spare::spare() const {
 
 icd::Checked<void> Spare::stand_by() {
   if (!standby_.empty() || goes_on_standby_) return {};
-  if (takes_over_) return conflict("this box is taking over just now");
+  if (takes_over_) return icd::conflict("this box is taking over just now");
   SpareFile next = file_;
   if (next.box.empty()) next.box = host::random_digits<8>();
   const double now = loop_.wall_now();
@@ -209,11 +208,11 @@ icd::Checked<void> Spare::stand_by() {
 }
 
 icd::Checked<void> Spare::resume() {
-  if (standby_.empty()) return conflict("this box is not on standby");
+  if (standby_.empty()) return icd::conflict("this box is not on standby");
   if (!is_stuck()) {
     std::string unread;
     SpareFile next = SpareFile::read(state_, unread).value_or(SpareFile());  // a damaged file is replaced
-    if (!unread.empty()) return refuse(Status::ServiceUnavailable, std::move(unread));
+    if (!unread.empty()) return icd::refuse(Status::ServiceUnavailable, unread);
     next.rest.reset();
     if (auto kept = keep(next); !kept) return kept;
     host::log(host::Level::Notice, "this box was woken up: no spare took over");
@@ -236,11 +235,11 @@ void Spare::export_to_stick(Done done) {
 }
 
 void Spare::seal(const Named& done) {
-  const auto refused = [&done](Status status, std::string why) { done(refuse(status, std::move(why)), ""); };
+  const auto refused = [&done](Status status, const std::string& why) { done(icd::refuse(status, why), ""); };
   if (!file_.rest || standby_.empty() || is_stuck())
     return refused(Status::Conflict, "this box is not on standby: only a box on standby can be exported");
   auto content = asked_.content();
-  if (!content) return refused(Status::ServiceUnavailable, std::move(content.error()));
+  if (!content) return refused(Status::ServiceUnavailable, content.error());
   content->about.box = file_.box;
   content->about.at = file_.rest->since;
   content->about.stamp = file_.rest->stamp.value_or(loop_.stamp_now());
@@ -257,13 +256,13 @@ void Spare::seal(const Named& done) {
       loop::Urgency::CanWait,
       [text, sealed, seed, code = file_.rest->code] { *sealed = spare::seal(*text, code, seed); },
       [sealed, done, name = content->about.name] {
-        if (!*sealed) return done(refuse(Status::ServiceUnavailable, std::move(sealed->error())), name);
+        if (!*sealed) return done(icd::refuse(Status::ServiceUnavailable, sealed->error()), name);
         done(std::move(**sealed), name);
       });
 }
 
 icd::Checked<void> Spare::take_from_stick(const std::string& name) {
-  if (takes_over_) return conflict("this box is taking over just now");
+  if (takes_over_) return icd::conflict("this box is taking over just now");
   return stick_.take(name);
 }
 
@@ -273,7 +272,7 @@ void Spare::taken_from_stick(std::string file) {
 }
 
 icd::Checked<void> Spare::take_in(std::string file) {
-  if (takes_over_) return conflict("this box is taking over just now");
+  if (takes_over_) return icd::conflict("this box is taking over just now");
   opened_.reset();
   sealed_ = std::make_shared<const std::string>(std::move(file));
   return {};
@@ -281,17 +280,15 @@ icd::Checked<void> Spare::take_in(std::string file) {
 
 void Spare::open(const std::string& code, Done done) {
   const auto typed = spare::code_in(code);
-  if (!typed)
-    return done(
-        refuse(Status::UnprocessableEntity, icd::sentence("code: expected ", spare::kCodeDigits, " digits")));
-  if (!sealed_) return done(conflict("there is no export to open: import one first"));
+  if (!typed) return done(icd::unprocessable("code: expected ", spare::kCodeDigits, " digits"));
+  if (!sealed_) return done(icd::conflict("there is no export to open: import one first"));
   auto text = std::make_shared<std::expected<std::string, std::string>>(
       std::unexpected("the export could not be opened"));
   workers_.submit(
       loop::Urgency::CanWait,
       [sealed = sealed_, text, code = *typed] { *text = spare::unseal(*sealed, code); },
       [this, sealed = sealed_, text, done = std::move(done)] {
-        if (sealed != sealed_) return done(conflict("another export was imported meanwhile"));
+        if (sealed != sealed_) return done(icd::conflict("another export was imported meanwhile"));
         auto checked = check(*text);
         if (!checked) return done(std::unexpected(std::move(checked.error())));
         opened_ = *std::move(checked);
@@ -302,21 +299,20 @@ void Spare::open(const std::string& code, Done done) {
 
 /// After a wrong code, the user may try again.
 icd::Checked<Spare::Opened> Spare::check(const std::expected<std::string, std::string>& text) const {
-  if (!text) return refuse(Status::UnprocessableEntity, text.error());
+  if (!text) return icd::refuse(Status::UnprocessableEntity, text.error());
   auto content = spare::read(*text);
-  if (!content) return refuse(Status::UnprocessableEntity, std::move(content.error()));
-  if (std::string why = file_.hindrance(content->about); !why.empty()) return conflict(std::move(why));
+  if (!content) return icd::refuse(Status::UnprocessableEntity, content.error());
+  if (std::string why = file_.hindrance(content->about); !why.empty()) return icd::conflict(why);
   auto settings = takeover_.check(*content);
-  if (!settings) return refuse(Status::UnprocessableEntity, std::move(settings.error()));
+  if (!settings) return icd::refuse(Status::UnprocessableEntity, settings.error());
   return Opened{*std::move(content), *std::move(settings)};
 }
 
 /// Also abandons a takeover that cannot be finished.
 icd::Checked<void> Spare::forget() {
-  if (takes_over_) return conflict("this box is taking over just now");
+  if (takes_over_) return icd::conflict("this box is taking over just now");
   if (is_stuck()) {
-    if (auto done = takeover_.abandon(); !done)
-      return refuse(Status::ServiceUnavailable, std::move(done.error()));
+    if (auto done = takeover_.abandon(); !done) return icd::refuse(Status::ServiceUnavailable, done.error());
     restart_.call_at(loop_.now());
   }
   opened_.reset();
@@ -326,11 +322,11 @@ icd::Checked<void> Spare::forget() {
 
 icd::Checked<void> Spare::take_over() {
   if (takes_over_) return {};
-  if (!opened_) return conflict("no export is open: import and open one first");
+  if (!opened_) return icd::conflict("no export is open: import and open one first");
   spare::Content content = opened_->content;
   if (!asked_.is_time_set()) content.about.told_at.reset();  // an unset time of day cannot be compared
   if (auto begun = takeover_.begin(spare::write(content)); !begun)
-    return refuse(Status::ServiceUnavailable, std::move(begun.error()));
+    return icd::refuse(Status::ServiceUnavailable, begun.error());
   takes_over_ = true;
   restart_.call_at(loop_.now());
   return {};

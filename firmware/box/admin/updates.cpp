@@ -9,7 +9,6 @@
 #include <cstring>
 #include <utility>
 
-#include "admin/refuse.hpp"
 #include "host/disk.hpp"
 #include "host/log.hpp"
 #include "icd/sentence.hpp"
@@ -170,13 +169,13 @@ const char* doing_of(update::Request::What what) {
 icd::Checked<void> check_room(const std::string& folder, std::uint64_t size) {
   const auto disk = host::disk_of(folder);
   if (!disk)
-    return refuse(icd::Status::ServiceUnavailable,
-                  "cannot read the free space of the disk: " + std::string(std::strerror(errno)));
+    return icd::refuse(icd::Status::ServiceUnavailable,
+                       "cannot read the free space of the disk: " + std::string(std::strerror(errno)));
   const std::uint64_t free = disk->free;
   if (free >= size + Updates::kSpared) return {};
-  return refuse(icd::Status::ServiceUnavailable,
-                icd::sentence("the bundle has ", size, " bytes, but the disk has room for ",
-                              free > Updates::kSpared ? free - Updates::kSpared : 0));
+  return icd::refuse(icd::Status::ServiceUnavailable, "the bundle has ", size,
+                     " bytes, but the disk has room for ",
+                     free > Updates::kSpared ? free - Updates::kSpared : 0);
 }
 
 /// Reads the newer version that apt has, a line that services/pc/newer writes on a PC.
@@ -239,22 +238,22 @@ api::UpdateView Updates::update() const {
 
 icd::Checked<void> Updates::check_free() const {
   const api::UpdateView view = update();
-  if (!view.managed) return conflict(view.why);
-  if (!view.doing.empty()) return conflict(icd::sentence("the box is already ", view.doing, ": wait"));
+  if (!view.managed) return icd::conflict(view.why);
+  if (!view.doing.empty()) return icd::conflict("the box is already ", view.doing, ": wait");
   return {};
 }
 
 icd::Checked<void> Updates::check_installable() const {
   ADIT_TRY(check_free());
   const api::UpdateView view = update();
-  if (view.trial) return conflict(update::wait_for_trial(view.running.version));
+  if (view.trial) return icd::conflict(update::wait_for_trial(view.running.version));
   return {};
 }
 
 icd::Checked<void> Updates::check_stray() const {
   const api::UpdateView view = update();
   if (!view.managed || !view.stray.empty()) return {};
-  return conflict(std::string(update::kNoStray));
+  return icd::conflict(update::kNoStray);
 }
 
 icd::Checked<std::unique_ptr<api::Upload>> Updates::receive(std::uint64_t size, bool again,
@@ -297,7 +296,7 @@ icd::Checked<void> Updates::stay() {
 icd::Checked<void> Updates::ask_for_restart(update::Request::What what, bool anyway) {
   ADIT_TRY(check_free());
   const std::string report = anyway ? "" : under_way_();
-  if (!report.empty()) return conflict(report);
+  if (!report.empty()) return icd::conflict(report);
   return ask(what, false);
 }
 
@@ -305,7 +304,8 @@ icd::Checked<void> Updates::ask(update::Request::What what, bool again) {
   const update::Request request{.nonce = host::draw_nonce(), .what = what, .again = again};
   asked_ = what;
   if (const auto asked = adit_update_.ask(update::kRequestFile, request); !asked)
-    return refuse(icd::Status::ServiceUnavailable, "cannot request it from adit-update: " + asked.error());
+    return icd::refuse(icd::Status::ServiceUnavailable,
+                       "cannot request it from adit-update: " + asked.error());
   return {};
 }
 

@@ -48,6 +48,12 @@ std::unexpected<Refusal> unprocessable_by_setting(std::string_view key, const Pa
       Refusal{.status = Status::UnprocessableEntity, .sentence = sentence(parts...), .setting = key});
 }
 
+/// The same with 409: the present state forbids it.
+template <class... Parts>
+std::unexpected<Refusal> conflict(const Parts&... parts) {
+  return std::unexpected(Refusal{Status::Conflict, sentence(parts...)});
+}
+
 /// A refusal with that status and sentence.
 template <class... Parts>
 std::unexpected<Refusal> refuse(Status status, const Parts&... parts) {

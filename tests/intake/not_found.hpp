@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "intake/icd_routes.hpp"
+#include "intake/answer.hpp"
 
 namespace adit::intake {
 

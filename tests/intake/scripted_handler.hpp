@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "icd/bearer_token.hpp"
-#include "intake/icd_routes.hpp"
+#include "intake/answer.hpp"
 #include "intake/server.hpp"
 
 namespace adit::intake {

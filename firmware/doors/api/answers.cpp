@@ -10,7 +10,7 @@
 #include "codec/json.hpp"
 #include "icd/sentence.hpp"
 #include "icd/text.hpp"
-#include "intake/icd_routes.hpp"
+#include "intake/answer.hpp"
 
 namespace adit::api {
 namespace {
@@ -151,24 +151,22 @@ class RedactedStream final : public intake::Stream {
   const PresentRedaction redaction_;
 };
 
-class RedactedResponder final : public intake::Responder {
+class RedactedResponder final : public intake::PassingResponder {
  public:
   RedactedResponder(std::shared_ptr<intake::Responder> responder, PresentRedaction redaction, bool takes_gzip)
-      : responder_(std::move(responder)), redaction_(std::move(redaction)), takes_gzip_(takes_gzip) {}
+      : PassingResponder(std::move(responder)), redaction_(std::move(redaction)), takes_gzip_(takes_gzip) {}
   void answer(intake::Answer answer) override {
     if (!is_packed(answer)) redact(**redaction_, answer.content_type, answer.body);
     if (takes_gzip_) pack_if_it_pays(answer);
-    responder_->answer(std::move(answer));
+    inner().answer(std::move(answer));
   }
   std::shared_ptr<intake::Stream> stream(std::string_view content_type) override {
-    auto stream = responder_->stream(content_type);
+    auto stream = inner().stream(content_type);
     if (!stream || content_type != kEvents) return stream;
     return std::make_shared<RedactedStream>(std::move(stream), redaction_);
   }
-  bool client_gone() const override { return responder_->client_gone(); }
 
  private:
-  const std::shared_ptr<intake::Responder> responder_;
   const PresentRedaction redaction_;
   const bool takes_gzip_;
 };

@@ -8,7 +8,7 @@
 #include "api/route.hpp"
 #include "codec/patch.hpp"
 #include "codec/row.hpp"
-#include "intake/icd_routes.hpp"
+#include "intake/answer.hpp"
 
 namespace adit::api {
 namespace {

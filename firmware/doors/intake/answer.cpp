@@ -7,7 +7,6 @@
 
 #include "codec/write.hpp"
 #include "intake/head.hpp"
-#include "intake/icd_routes.hpp"
 
 namespace adit::intake {
 namespace {
@@ -31,8 +30,8 @@ Answer error_answer(icd::Status status, std::string_view sentence) {
   return {.status = status, .body = codec::json_string(sentence), .headers = {}};
 }
 
-Answer no_room(std::string_view sentence) {
-  Answer answer = error_answer(icd::Status::ServiceUnavailable, sentence);
+Answer retry_answer(icd::Status status, std::string_view sentence) {
+  Answer answer = error_answer(status, sentence);
   answer.headers.push_back({"Retry-After", "1"});
   return answer;
 }

@@ -9,11 +9,13 @@ struct MHD_Response;
 
 namespace adit::intake {
 
+/// An error answer with `sentence` as a JSON string.
+Answer error_answer(icd::Status status, std::string_view sentence);
+/// The same with Retry-After: 1.
+Answer retry_answer(icd::Status status, std::string_view sentence);
+
 /// True if `text` is a field value: not empty, without control characters except the tab (RFC 9110 5.5).
 bool is_field_value(std::string_view text);
-
-/// 503 with the sentence and Retry-After: 1.
-Answer no_room(std::string_view sentence);
 
 /// Makes the response for libmicrohttpd, and leaves out invalid fields. Null if there is no memory. Moves the
 /// body out of `answer`, because it may be megabytes.

@@ -15,7 +15,6 @@
 
 #include "icd/text.hpp"
 #include "intake/answer.hpp"
-#include "intake/icd_routes.hpp"
 #include "intake/request.hpp"
 
 namespace adit::intake {
@@ -156,7 +155,9 @@ void Client::give_way() {
   engine_.tell(stage_.phase == Phase::Idle ? Ended::Idle : Ended::GaveWay, addresses_.peer);
   if (stage_.phase == Phase::Head || (stage_.phase == Phase::Request && request_->is_unanswered())) {
     say_last(last_answer_text(
-        no_room("too many connections are open; this connection was closed for another; try again"), true));
+        retry_answer(icd::Status::ServiceUnavailable,
+                     "too many connections are open; this connection was closed for another; try again"),
+        true));
   }
   cut();
 }

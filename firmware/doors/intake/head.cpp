@@ -11,10 +11,6 @@ namespace {
 
 using icd::is_digit, icd::is_letter_or_digit;
 
-bool is_token_letter(char letter) {
-  return is_letter_or_digit(letter) || std::string_view("!#$%&'*+-.^_`|~").contains(letter);
-}
-
 bool is_ip_literal(std::string_view text) {
   return text.size() > 2 && std::ranges::all_of(text.substr(1, text.size() - 2), [](char letter) {
            return is_letter_or_digit(letter) || letter == ':' || letter == '.';
@@ -28,6 +24,10 @@ bool is_registered_name(std::string_view text) {
 }
 
 }  // namespace
+
+bool is_token_letter(char letter) {
+  return is_letter_or_digit(letter) || std::string_view("!#$%&'*+-.^_`|~").contains(letter);
+}
 
 bool is_token(std::string_view text) {
   return !text.empty() && std::ranges::all_of(text, is_token_letter);

@@ -11,6 +11,9 @@
 
 namespace adit::intake {
 
+/// True for a character of a token (RFC 9110 5.6.2).
+bool is_token_letter(char letter);
+
 /// True for a token: the name of a method or of a field, not empty (RFC 9110 5.6.2).
 bool is_token(std::string_view text);
 

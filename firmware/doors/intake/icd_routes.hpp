@@ -81,7 +81,4 @@ class IcdRoutes final : public Handler {
   bool stopping_ = false;
 };
 
-/// An error answer with `sentence` as a JSON string.
-Answer error_answer(icd::Status status, std::string_view sentence);
-
 }  // namespace adit::intake

@@ -3,7 +3,6 @@
 #include <microhttpd.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cstring>
 #include <utility>
 
@@ -11,7 +10,6 @@
 #include "intake/answer.hpp"
 #include "intake/client.hpp"
 #include "intake/head.hpp"
-#include "intake/icd_routes.hpp"
 #include "loop/guard.hpp"
 
 namespace adit::intake {
@@ -65,12 +63,13 @@ void ChunkReader::size_line() {
   const std::string_view line = line_;
   const std::string_view digits = line.substr(0, line.find_first_not_of("0123456789abcdefABCDEF"));
   const std::string_view rest = icd::trimmed(line.substr(digits.size()), kBlanks);
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), left_, 16);
+  const auto size = icd::number_in<std::uint64_t>(digits, 16);
   const bool is_extended = rest.starts_with(';') && has_no_controls(rest);
-  if (digits.empty() || digits.size() > 16 || error != std::errc() ||
-      left_ > static_cast<std::uint64_t>(INT64_MAX) || (digits.size() != line.size() && !is_extended)) {
+  if (!size || digits.size() > 16 || *size > static_cast<std::uint64_t>(INT64_MAX) ||
+      (digits.size() != line.size() && !is_extended)) {
     refuse("chunked body: expected the size of a chunk in hexadecimal digits");
   } else {
+    left_ = *size;
     in_ = left_ > 0 ? In::Data : In::Trailers;
   }
 }
@@ -179,23 +178,16 @@ Answer failure() {
 
 /// The handler's Responder. If the handler drops it without an answer, even by an exception, the request gets
 /// a 500, so that its client does not wait for ever.
-class Owed final : public Responder {
+class Owed final : public PassingResponder {
  public:
-  explicit Owed(std::shared_ptr<Responder> request) : request_(std::move(request)) {}
+  using PassingResponder::PassingResponder;
   Owed(const Owed&) = delete;
   Owed& operator=(const Owed&) = delete;
   ~Owed() override {
-    loop::guarded("the answer to a dropped request", [this] { request_->answer(failure()); });
+    loop::guarded("the answer to a dropped request", [this] { inner().answer(failure()); });
   }
 
-  void answer(Answer answer) override { request_->answer(std::move(answer)); }
-  std::shared_ptr<Stream> stream(std::string_view content_type) override {
-    return request_->stream(content_type);
-  }
-  bool client_gone() const override { return request_->client_gone(); }
-
- private:
-  const std::shared_ptr<Responder> request_;
+  void answer(Answer answer) override { inner().answer(std::move(answer)); }
 };
 
 }  // namespace
@@ -232,7 +224,7 @@ void Request::refuse_head(std::string_view sentence) {
 }
 
 void Request::refuse_for_room(std::string_view sentence) {
-  answer_ = no_room(sentence);
+  answer_ = retry_answer(icd::Status::ServiceUnavailable, sentence);
   refuse(*answer_);
 }
 

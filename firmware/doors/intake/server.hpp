@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "icd/status.hpp"
@@ -89,6 +90,22 @@ class Responder {
   virtual void answer(Answer answer) = 0;
   virtual std::shared_ptr<Stream> stream(std::string_view content_type) = 0;
   virtual bool client_gone() const = 0;
+};
+
+/// A base for a Responder that gives its answers to another one, changed or later.
+class PassingResponder : public Responder {
+ public:
+  explicit PassingResponder(std::shared_ptr<Responder> inner) : inner_(std::move(inner)) {}
+  std::shared_ptr<Stream> stream(std::string_view content_type) override {
+    return inner_->stream(content_type);
+  }
+  bool client_gone() const override { return inner_->client_gone(); }
+
+ protected:
+  Responder& inner() const { return *inner_; }
+
+ private:
+  const std::shared_ptr<Responder> inner_;
 };
 
 /// Receives the body of one request.

@@ -48,26 +48,21 @@ namespace {
 using Looked = TokenGuesses::Looked;
 
 /// Delays the answer. Owned by its Late, which lives as long as the request.
-class LateResponder final : public Responder {
+class LateResponder final : public PassingResponder {
  public:
   LateResponder(loop::Loop& loop, std::shared_ptr<Responder> responder, std::chrono::milliseconds late)
-      : loop_(loop), responder_(std::move(responder)), late_(late) {}
+      : PassingResponder(std::move(responder)), loop_(loop), late_(late) {}
 
   void answer(Answer answer) override {
     if (answer_) return;
     answer_ = std::move(answer);
-    timer_ = loop_.timer([this] { responder_->answer(std::move(*answer_)); });
+    timer_ = loop_.timer([this] { inner().answer(std::move(*answer_)); });
     timer_.call_at(loop_.now() + late_);
   }
-  std::shared_ptr<Stream> stream(std::string_view content_type) override {
-    return responder_->stream(content_type);
-  }
-  bool client_gone() const override { return responder_->client_gone(); }
   bool has_answer() const { return answer_.has_value(); }
 
  private:
   loop::Loop& loop_;
-  const std::shared_ptr<Responder> responder_;
   const std::chrono::milliseconds late_;
   std::optional<Answer> answer_;
   loop::Source timer_;
@@ -95,11 +90,9 @@ class Late final : public BodySink {
 };
 
 Answer not_looked_at() {
-  Answer answer = error_answer(
+  return retry_answer(
       icd::Status::TooManyRequests,
       "too many wrong tokens from this address; this token was not checked; try again in a second");
-  answer.headers.push_back({"Retry-After", "1"});
-  return answer;
 }
 
 }  // namespace

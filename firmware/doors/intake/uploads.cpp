@@ -45,7 +45,7 @@ void SmallUpload::on_end() {
 void SmallUpload::give_to_desk(const codec::Document& document) {
   switch (visit_.uri) {
     case icd::Uri::StateUpdate:
-      return take_parts(visit_, codec::read_state_parts(document, rules_));
+      return take_state(document);
     case icd::Uri::ArtifactReports:
       return take_report(document);
     case icd::Uri::Status:
@@ -53,6 +53,14 @@ void SmallUpload::give_to_desk(const codec::Document& document) {
     case icd::Uri::MarkersUpdate:
       icd::require(false);
   }
+}
+
+void SmallUpload::take_state(const codec::Document& document) {
+  auto read = codec::read_state_parts(document, rules_);
+  if (!read) return visit_.refuse(read.error());
+  auto taken = visit_.desk.take(std::move(read->message), visit_.sender_at_end());
+  if (taken && read->refused.count > 0) taken = std::unexpected(read->refused.refusal());
+  visit_.answer(taken);
 }
 
 void SmallUpload::take_report(const codec::Document& document) {

@@ -5,23 +5,12 @@
 #include <vector>
 
 #include "codec/body_decoder.hpp"
-#include "codec/read.hpp"
 #include "icd/rules.hpp"
 #include "intake/upload.hpp"
 #include "intake/visit.hpp"
 #include "loop/workers.hpp"
 
 namespace adit::intake {
-
-/// Gives the accepted parts of a state or of markers to the desk. If the desk accepts them, the answer is
-/// about the rejected parts.
-template <class Message>
-void take_parts(const Visit& visit, icd::Checked<codec::CheckedParts<Message>> read) {
-  if (!read) return visit.refuse(read.error());
-  auto taken = visit.desk.take(std::move(read->message), visit.sender_at_end());
-  if (taken && read->refused.count > 0) taken = std::unexpected(read->refused.refusal());
-  visit.answer(taken);
-}
 
 /// Receives a state or a report of at most a megabyte. The loop decodes it as it arrives.
 class SmallUpload final : public Upload {
@@ -44,6 +33,8 @@ class SmallUpload final : public Upload {
 
  private:
   void give_to_desk(const codec::Document& document);
+  /// Gives the accepted parts to the desk. If the desk accepts them, the answer is about the rejected parts.
+  void take_state(const codec::Document& document);
   void take_report(const codec::Document& document);
 
   Visit visit_;

@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "icd/sentence.hpp"
+#include "intake/answer.hpp"
+#include "intake/head.hpp"
 #include "intake/icd_routes.hpp"
 #include "intake/upload.hpp"
 
@@ -12,28 +14,19 @@ namespace {
 constexpr std::string_view kHeadersOfClients = "authorization, content-type, content-encoding";
 constexpr std::size_t kLongestHeaderList = 512;
 
-class CorsResponder final : public Responder {
+class CorsResponder final : public PassingResponder {
  public:
-  explicit CorsResponder(std::shared_ptr<Responder> inner) : inner_(std::move(inner)) {}
+  using PassingResponder::PassingResponder;
   void answer(Answer answer) override {
     answer.headers.push_back({"Access-Control-Allow-Origin", "*"});
-    inner_->answer(std::move(answer));
+    inner().answer(std::move(answer));
   }
-  std::shared_ptr<Stream> stream(std::string_view content_type) override {
-    return inner_->stream(content_type);
-  }
-  bool client_gone() const override { return inner_->client_gone(); }
-
- private:
-  std::shared_ptr<Responder> inner_;
 };
 
 /// Field names (RFC 9110 5.6.2 tokens) with commas and blanks between them.
 bool is_token_list(std::string_view text) {
   return !text.empty() && text.size() <= kLongestHeaderList && std::ranges::all_of(text, [](char letter) {
-    constexpr std::string_view kOthers = "!#$%&'*+-.^_`|~, \t";
-    return (letter >= '0' && letter <= '9') || (letter >= 'A' && letter <= 'Z') ||
-           (letter >= 'a' && letter <= 'z') || kOthers.find(letter) != std::string_view::npos;
+    return is_token_letter(letter) || letter == ',' || kBlanks.contains(letter);
   });
 }
 

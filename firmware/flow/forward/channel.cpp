@@ -11,7 +11,7 @@
 #include "icd/require.hpp"
 #include "icd/sentence.hpp"
 #include "icd/status.hpp"
-#include "intake/icd_routes.hpp"
+#include "intake/answer.hpp"
 
 namespace adit::forward {
 intake::Answer client_answer(const uplink::Answered& answered) {

@@ -15,7 +15,7 @@
 #include "icd/require.hpp"
 #include "icd/sentence.hpp"
 #include "icd/try.hpp"
-#include "intake/icd_routes.hpp"
+#include "intake/answer.hpp"
 #include "spool/kept_message.hpp"
 
 namespace adit::forward {

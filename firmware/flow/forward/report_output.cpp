@@ -4,7 +4,7 @@
 
 #include "forward/channel.hpp"
 #include "host/log.hpp"
-#include "intake/icd_routes.hpp"
+#include "intake/answer.hpp"
 
 namespace adit::forward {
 namespace {

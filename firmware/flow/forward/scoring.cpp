@@ -12,7 +12,7 @@
 #include "dispatch/verdicts.hpp"
 #include "forward/channel.hpp"
 #include "host/log.hpp"
-#include "intake/icd_routes.hpp"
+#include "intake/answer.hpp"
 
 namespace adit::forward {
 namespace {
@@ -96,10 +96,7 @@ dispatch::Reports::Outcome carry_out(dispatch::Reports& reports, std::int64_t nu
 
 /// Without a recent status.
 intake::Answer no_status(const std::string& why) {
-  intake::Answer answer =
-      intake::error_answer(icd::Status::ServiceUnavailable, "the status of the run is not known: " + why);
-  answer.headers.push_back({"Retry-After", "1"});
-  return answer;
+  return intake::retry_answer(icd::Status::ServiceUnavailable, "the status of the run is not known: " + why);
 }
 
 /// If the Command Post answered without a status.

@@ -271,8 +271,6 @@ TestStep run_clock(std::optional<double> first, std::optional<double> second) {
 
 namespace {
 
-constexpr int kTooMany = 429;
-
 /// From an answer to GET /api/status.
 std::optional<double> run_clock_in(const uplink::Answered& answer) {
   if (answer.status != 200) return std::nullopt;
@@ -375,8 +373,7 @@ void EndpointTest::token_answered(const uplink::Outcome& outcome) {
     page_ = *answer;
   const bool is_redirected = answer != nullptr && (answer->wants_slash == true || (page_ && !wants_slash_));
   if (is_redirected) wants_slash_ = true;
-  const bool is_throttled =
-      answer != nullptr && answer->status == kTooMany && !std::exchange(asked_again_, true);
+  const bool is_throttled = answer != nullptr && answer->status == 429 && !std::exchange(asked_again_, true);
   if (!is_redirected && !is_throttled) return done_(steps::token(asked_, outcome, wants_slash_));
   when_due_ = [this] { check_token(); };
   timer_.call_at(loop_.now() + kAskAgain);

@@ -1,11 +1,11 @@
 #include "api/metrics.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "api/verdicts.hpp"
 #include "dispatch/report.hpp"
+#include "icd/sentence.hpp"
 
 namespace adit::api {
 namespace {
@@ -28,9 +28,7 @@ std::string escaped(std::string_view text, bool quoted) {
 std::string sample_text(double value) {
   if (std::isnan(value)) return "NaN";
   if (std::isinf(value)) return value > 0 ? "+Inf" : "-Inf";
-  char text[32];
-  const auto [end, error] = std::to_chars(text, text + sizeof text, value);
-  return {text, end};
+  return icd::number_text(value);
 }
 
 constexpr double kBytesPerMbit = 1e6 / 8;

@@ -1,13 +1,13 @@
 #include "api/reports_csv.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <ctime>
 #include <string_view>
 
 #include "codec/utf8.hpp"
+#include "icd/sentence.hpp"
 
 namespace adit::api {
 namespace {
@@ -60,17 +60,12 @@ std::string cell(std::string_view text) {
   return quoted.append("\"");
 }
 
-std::string cell(double number) {
-  char text[32];  // the shortest exact form has at most 24 characters
-  return {text, std::to_chars(text, text + sizeof text, number).ptr};
-}
-
 /// Empty for null.
 std::string cell(const codec::Value& value, codec::Cell form) {
   if (const auto* const text = std::get_if<std::string>(&value.is)) return cell(*text);
   if (const auto* const flag = std::get_if<bool>(&value.is)) return *flag ? "yes" : "no";
   if (const auto* const real = std::get_if<double>(&value.is))
-    return form == codec::Cell::Time ? iso_time(*real) : cell(*real);
+    return form == codec::Cell::Time ? iso_time(*real) : icd::number_text(*real);
   const auto* const whole = std::get_if<std::int64_t>(&value.is);
   return whole == nullptr || (*whole == 0 && form == codec::Cell::NotZero) ? "" : std::to_string(*whole);
 }

@@ -302,10 +302,8 @@ constexpr Row Tracks::kRow = {"Tracks", kTracks};
 
 bool has_moved(const TrackPose& from, const TrackPose& to) {
   constexpr double kMoved = 0.1, kTurned = 0.2;
-  const double x = to.position.x - from.position.x, y = to.position.y - from.position.y,
-               z = to.position.z - from.position.z;
   const double turned = std::abs(std::remainder(to.heading - from.heading, 2 * M_PI));
-  return std::hypot(x, y, z) >= kMoved || turned >= kTurned;
+  return apart(from.position, to.position) >= kMoved || turned >= kTurned;
 }
 
 }  // namespace adit::api

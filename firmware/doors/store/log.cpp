@@ -46,6 +46,11 @@ Result<void> make_zeros(const Directory& directory, const FileName& name, std::s
   return made;
 }
 
+std::unexpected<Error> too_long(std::string_view body) {
+  return std::unexpected(
+      Error{Error::Cause::TooLong, "a record of " + std::to_string(body.size()) + " bytes"});
+}
+
 }  // namespace
 
 Result<void> Log::start(const Contents& contents) {
@@ -94,9 +99,7 @@ Result<void> Log::rewrite(const Contents& contents) {
 }
 
 Result<void> Log::append(std::uint8_t kind, std::string_view body, Durability durability) {
-  if (body.size() > kMostBody)
-    return std::unexpected(
-        Error{Error::Cause::TooLong, "a record of " + std::to_string(body.size()) + " bytes"});
+  if (body.size() > kMostBody) return too_long(body);
   if (room() < bytes_of(body.size())) {
     if (auto turned = turn_for(body.size()); !turned) return turned;
   }
@@ -239,9 +242,7 @@ Snapshot::~Snapshot() {
 }
 
 Result<void> Snapshot::add(std::uint8_t kind, std::string_view body) {
-  if (body.size() > kMostBody)
-    return std::unexpected(
-        Error{Error::Cause::TooLong, "a record of " + std::to_string(body.size()) + " bytes"});
+  if (body.size() > kMostBody) return too_long(body);
   return write(kind, ++count_, body);
 }
 

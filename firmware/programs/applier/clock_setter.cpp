@@ -156,7 +156,7 @@ void set_chip(const std::string& device, std::time_t now) {
 Clocks clocks_of_machine(const std::string& chip_device) {
   return {.wall = [] { return time_of(CLOCK_REALTIME); },
           .monotonic = [] { return time_of(CLOCK_MONOTONIC); },
-          .set = [chip_device](double now) -> std::expected<void, std::string> {
+          .set = [](double now) -> std::expected<void, std::string> {
             double whole = 0;
             const double rest = std::modf(now, &whole);
             const timespec time{.tv_sec = static_cast<std::time_t>(whole),

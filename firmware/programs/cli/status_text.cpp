@@ -248,10 +248,6 @@ std::string endpoints_table(const RunView& view, bool colour) {
   return table.empty() ? "" : "\nCommand Post\n" + table.written(colour);
 }
 
-std::string ago(double seconds) {
-  return duration(seconds) + " ago";
-}
-
 /// Size of the last sent map. The last accepted map may be another.
 std::string sent_size(const api::ActivityRow& row) {
   return row.age ? size(row.bytes_sent) : "";
@@ -299,7 +295,7 @@ std::string refusals_table(const RunView& view, bool colour) {
   Table table({{}, {}, {}, {}, {}});
   for (std::size_t i = 0; i < view.refusals.size() && i < kShown; ++i) {
     const api::RefusalRow& refusal = view.refusals[i];
-    table.add({{ago(view.now - refusal.at), Tone::Faint},
+    table.add({{duration(view.now - refusal.at) + " ago", Tone::Faint},
                {refusal.sender},
                {refusal.uri},
                {std::to_string(refusal.status), Tone::Warning},

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "icd/in_html.hpp"
+#include "icd/text.hpp"
 
 namespace adit::icd {
 namespace {
@@ -90,17 +91,11 @@ bool is_one_of(std::span<const BearerToken> tokens, std::string_view presented) 
 
 std::string_view token_in(std::string_view authorization) {
   constexpr std::string_view kBlanks = " \t";
-  const auto start = authorization.find_first_not_of(kBlanks);
-  if (start == std::string_view::npos) return {};
-  authorization.remove_prefix(start);
-  authorization = authorization.substr(0, authorization.find_last_not_of(kBlanks) + 1);
-
   constexpr std::string_view kScheme = "bearer";
-  const auto same_letter = [](char wanted, char given) { return wanted == (given | 0x20); };
+  authorization = trimmed(authorization, kBlanks);
   if (authorization.size() <= kScheme.size() ||
-      !std::ranges::equal(kScheme, authorization.substr(0, kScheme.size()), same_letter)) {
+      !same_but_for_case(authorization.substr(0, kScheme.size()), kScheme))
     return {};
-  }
   authorization.remove_prefix(kScheme.size());
   if (kBlanks.find(authorization.front()) == std::string_view::npos) return {};
   authorization.remove_prefix(authorization.find_first_not_of(kBlanks));

@@ -2,18 +2,19 @@
 
 #include <algorithm>
 
+#include "icd/text.hpp"
+
 namespace adit::icd {
 namespace {
 
-bool may_stand_in_a_name(char letter) {
-  return (letter >= 'a' && letter <= 'z') || (letter >= 'A' && letter <= 'Z') ||
-         (letter >= '0' && letter <= '9') || letter == '_';
+bool is_word_letter(char letter) {
+  return is_letter_or_digit(letter) || letter == '_';
 }
 
 }  // namespace
 
 std::optional<RobotName> RobotName::parse(std::string_view text) {
-  if (text.empty() || text.size() > kLongest || !std::ranges::all_of(text, may_stand_in_a_name)) {
+  if (text.empty() || text.size() > kLongest || !std::ranges::all_of(text, is_word_letter)) {
     return std::nullopt;
   }
   return RobotName(std::string(text));

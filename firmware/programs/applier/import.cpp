@@ -69,9 +69,7 @@ class Reader {
     if (!names) return refuse("", names.error());
     for (const std::string& written : *names) {
       std::string name = written;  // FAT ignores case
-      std::ranges::transform(name, name.begin(), [](char letter) {
-        return letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter | 0x20) : letter;
-      });
+      std::ranges::transform(name, name.begin(), icd::lower);
       const bool known =
           name == kCardSettings || name == kCardNetwork || name == kCardSecrets || is_spent(name);
       if (!known) found_.left_alone.push_back(written);

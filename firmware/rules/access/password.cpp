@@ -8,6 +8,7 @@
 
 #include "icd/bearer_token.hpp"
 #include "icd/sentence.hpp"
+#include "icd/text.hpp"
 
 namespace adit::access {
 namespace {
@@ -35,7 +36,7 @@ std::size_t characters(std::string_view utf8) {
 }  // namespace
 
 bool is_code(std::string_view text) {
-  return text.size() == kCodeDigits && std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; });
+  return text.size() == kCodeDigits && std::ranges::all_of(text, icd::is_digit);
 }
 
 std::string code_from(std::uint64_t random) {

@@ -5,13 +5,12 @@
 #include <algorithm>
 #include <string>
 
+#include "icd/text.hpp"
+
 namespace adit::access {
 namespace {
 
-bool same(std::string_view one, std::string_view other) {
-  const auto low = [](char letter) { return letter >= 'A' && letter <= 'Z' ? letter + 32 : letter; };
-  return std::ranges::equal(one, other, {}, low, low);
-}
+using icd::same_but_for_case;
 
 bool is_address(int family, std::string_view text) {
   unsigned char bytes[sizeof(in6_addr)];
@@ -21,15 +20,15 @@ bool is_address(int family, std::string_view text) {
 /// "adit.local": one label, of letters, digits and hyphens (RFC 6762 3).
 bool is_multicast_name(std::string_view name) {
   constexpr std::string_view kEnd = ".local";
-  if (name.size() <= kEnd.size() || !same(name.substr(name.size() - kEnd.size()), kEnd)) return false;
-  return std::ranges::all_of(name.substr(0, name.size() - kEnd.size()), [](char c) {
-    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '-';
-  });
+  if (name.size() <= kEnd.size() || !same_but_for_case(name.substr(name.size() - kEnd.size()), kEnd))
+    return false;
+  return std::ranges::all_of(name.substr(0, name.size() - kEnd.size()),
+                             [](char letter) { return icd::is_letter_or_digit(letter) || letter == '-'; });
 }
 
 bool is_port(std::string_view text) {
-  return text.empty() || (text.front() == ':' && text.size() <= 6 &&
-                          std::ranges::all_of(text.substr(1), [](char c) { return c >= '0' && c <= '9'; }));
+  return text.empty() ||
+         (text.front() == ':' && text.size() <= 6 && std::ranges::all_of(text.substr(1), icd::is_digit));
 }
 
 }  // namespace
@@ -42,25 +41,22 @@ bool names_this_box(std::string_view host) {
   }
   const std::string_view name = host.substr(0, host.find(':'));
   if (!is_port(host.substr(name.size()))) return false;
-  return same(name, "localhost") || is_multicast_name(name) || is_address(AF_INET, name);
+  return same_but_for_case(name, "localhost") || is_multicast_name(name) || is_address(AF_INET, name);
 }
 
 bool is_same_origin(std::string_view origin, std::string_view host) {
   for (const std::string_view scheme : {"http://", "https://"}) {
-    if (same(origin.substr(0, scheme.size()), scheme)) return same(origin.substr(scheme.size()), host);
+    if (same_but_for_case(origin.substr(0, scheme.size()), scheme))
+      return same_but_for_case(origin.substr(scheme.size()), host);
   }
   return false;
 }
 
 std::string_view cookie_in(std::string_view cookies, std::string_view name) {
   while (!cookies.empty()) {
-    std::string_view pair = cookies.substr(0, cookies.find(';'));
-    cookies.remove_prefix(std::min(pair.size() + 1, cookies.size()));
-    pair.remove_prefix(std::min(pair.find_first_not_of(" \t"), pair.size()));
-    if (pair.starts_with(name) && pair.substr(name.size()).starts_with('=')) {
-      pair.remove_prefix(name.size() + 1);
-      return pair.substr(0, pair.find_last_not_of(" \t") + 1);
-    }
+    const std::string_view pair = icd::trimmed(icd::cut(cookies, ';'), " \t");
+    if (pair.starts_with(name) && pair.substr(name.size()).starts_with('='))
+      return pair.substr(name.size() + 1);
   }
   return {};
 }

@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "icd/sentence.hpp"
+#include "icd/text.hpp"
 
 namespace adit::dispatch {
 namespace {
@@ -79,22 +80,10 @@ std::optional<ReportState> state_named(std::string_view text) {
   return static_cast<ReportState>(word - std::begin(kStateWords));
 }
 
-namespace {
-
-char lower(char letter) {
-  return letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter - 'A' + 'a') : letter;
-}
-
-bool is_one_type(const std::string& one, const std::string& other) {
-  return std::ranges::equal(one, other, {}, lower, lower);
-}
-
-}  // namespace
-
 bool is_same(const icd::ArtifactReport& one, const icd::ArtifactReport& other) {
   const auto is_near = [](double a, double b) { return std::abs(a - b) <= kSamePlace; };
   return is_near(one.position.x, other.position.x) && is_near(one.position.y, other.position.y) &&
-         is_near(one.position.z, other.position.z) && is_one_type(one.type, other.type);
+         is_near(one.position.z, other.position.z) && icd::same_but_for_case(one.type, other.type);
 }
 
 double distance(const icd::ArtifactReport& one, const icd::ArtifactReport& other) {
@@ -103,7 +92,7 @@ double distance(const icd::ArtifactReport& one, const icd::ArtifactReport& other
 }
 
 bool is_near(const icd::ArtifactReport& one, const icd::ArtifactReport& other, double metres) {
-  return is_one_type(one.type, other.type) && distance(one, other) <= metres;
+  return icd::same_but_for_case(one.type, other.type) && distance(one, other) <= metres;
 }
 
 std::string described(const icd::ArtifactReport& report) {

@@ -178,8 +178,8 @@ std::string_view name_of(const Kind& kind) {
 }
 
 bool is_word(std::string_view text, std::size_t longest) {
-  return !text.empty() && text.size() <= longest && std::ranges::all_of(text, [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+  return !text.empty() && text.size() <= longest && std::ranges::all_of(text, [](char letter) {
+    return icd::is_letter_or_digit(letter) || letter == '_' || letter == '-';
   });
 }
 

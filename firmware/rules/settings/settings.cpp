@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "icd/require.hpp"
+#include "icd/text.hpp"
 #include "icd/try.hpp"
 #include "settings/reader.hpp"
 #include "settings/written.hpp"
@@ -60,9 +61,8 @@ std::expected<Saved, std::vector<Error>> parse_saved(std::string_view json) {
 std::vector<std::string_view> words(std::string_view text) {
   std::vector<std::string_view> all;
   while (!text.empty()) {
-    const std::string_view word = text.substr(0, text.find(' '));
+    const std::string_view word = icd::cut(text, ' ');
     if (!word.empty()) all.push_back(word);
-    text.remove_prefix(std::min(word.size() + 1, text.size()));
   }
   return all;
 }

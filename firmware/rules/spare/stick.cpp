@@ -6,6 +6,7 @@
 
 #include "codec/nonce.hpp"
 #include "icd/sentence.hpp"
+#include "icd/text.hpp"
 
 namespace adit::spare {
 namespace {
@@ -15,9 +16,8 @@ constexpr std::size_t kLongest = 96, kLongestBox = 48;
 constexpr const char* kTime = "%Y%m%dT%H%M%SZ";
 constexpr std::size_t kTimeLetters = 16;
 
-bool is_plain(char each) {
-  return (each >= '0' && each <= '9') || (each >= 'a' && each <= 'z') || (each >= 'A' && each <= 'Z') ||
-         each == '.';
+bool is_plain(char letter) {
+  return icd::is_letter_or_digit(letter) || letter == '.';
 }
 
 std::string written(double at) {

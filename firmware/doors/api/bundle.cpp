@@ -7,6 +7,7 @@
 
 #include "codec/gzip.hpp"
 #include "icd/sentence.hpp"
+#include "icd/text.hpp"
 
 namespace adit::api {
 namespace {
@@ -61,10 +62,6 @@ std::size_t longest_allowed(const std::vector<BundleFile>& files, std::size_t mo
   return most;
 }
 
-bool begins_a_character(char byte) {
-  return (static_cast<unsigned char>(byte) & 0xc0) != 0x80;  // UTF-8
-}
-
 void cut(std::string& body, std::size_t longest) {
   const std::size_t length = body.size();
   const auto line = [length](std::size_t gone) {
@@ -73,7 +70,7 @@ void cut(std::string& body, std::size_t longest) {
   };
   const std::size_t words = line(length).size();
   std::size_t begin = length - (longest > words ? longest - words : 0);
-  while (begin < length && !begins_a_character(body[begin])) ++begin;
+  while (begin < length && !icd::begins_character(body[begin])) ++begin;
   body = line(begin) + body.substr(begin);
 }
 

@@ -14,20 +14,15 @@ using icd::Marker;
 using icd::MarkerType;
 using icd::Point;
 
-/// The first bytes of a text, without half a character at the end.
-std::string beginning(std::string text) {
-  if (text.size() <= DrawnMarker::kLongestText) return text;
-  std::size_t end = DrawnMarker::kLongestText;
-  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
-  text.resize(end);
-  return text;
+std::string beginning(std::string_view text) {
+  return std::string(icd::beginning_of(text, DrawnMarker::kLongestText));
 }
 
 /// "drill" of "package://artifacts/meshes/drill.dae".
 std::string file_name(const std::string& url) {
   std::string name = url.substr(url.rfind('/') + 1);
   if (const auto dot = name.rfind('.'); dot != std::string::npos && dot > 0) name.resize(dot);
-  return beginning(std::move(name));
+  return beginning(name);
 }
 
 /// Points of one part; 0: the marker has no points.

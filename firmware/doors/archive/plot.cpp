@@ -9,6 +9,7 @@
 #include "icd/in_html.hpp"
 #include "icd/require.hpp"
 #include "icd/sentence.hpp"
+#include "icd/text.hpp"
 
 namespace adit::archive {
 
@@ -28,14 +29,6 @@ std::string lasted(double seconds) {
       std::snprintf(text, sizeof text, "%ld:%02ld:%02ld", whole / 3600, whole / 60 % 60, whole % 60);
   return {text, static_cast<std::size_t>(std::clamp(size, 0, 47))};
 }
-
-namespace {
-
-bool begins_character(char byte) {
-  return (static_cast<std::uint8_t>(byte) & 0xC0) != 0x80;
-}
-
-}  // namespace
 
 bool Labels::is_free(const Box& box) const {
   return frame_.contains(box) &&
@@ -62,7 +55,7 @@ std::optional<Box> Labels::place(double x, double y, double radius, double width
 double width_of(std::string_view text, double font_size) {
   double width = 0;
   for (const char byte : text) {
-    if (!begins_character(byte)) continue;
+    if (!icd::begins_character(byte)) continue;
     const bool is_ascii = static_cast<std::uint8_t>(byte) < 0x80;
     const bool is_wide = std::string_view("mwMW@%").find(byte) != std::string_view::npos;
     width += !is_ascii || is_wide ? 1.05 : byte >= 'A' && byte <= 'Z' ? 0.75 : 0.65;
@@ -73,7 +66,7 @@ double width_of(std::string_view text, double font_size) {
 std::string shortened(std::string_view text, std::size_t most) {
   std::size_t characters = 0, end = 0;
   for (std::size_t i = 0; i < text.size(); ++i) {
-    if (!begins_character(text[i])) continue;
+    if (!icd::begins_character(text[i])) continue;
     if (++characters == most) end = i;  // the ellipsis is the last one
     if (characters > most) return std::string(text.substr(0, end)) + "\u2026";
   }

@@ -7,6 +7,7 @@
 
 #include "codec/utf8.hpp"
 #include "icd/require.hpp"
+#include "icd/text.hpp"
 #include "store/frame.hpp"
 
 namespace adit::archive {
@@ -153,11 +154,7 @@ class Put : public store::Writer {
  public:
   using store::Writer::operator();
   /// Truncates a text between two UTF-8 characters.
-  void operator()(const std::string& text) {
-    std::size_t end = std::min(text.size(), kMostText);
-    while (end < text.size() && end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
-    (*this)(std::string_view(text).substr(0, end));
-  }
+  void operator()(const std::string& text) { (*this)(icd::beginning_of(text, kMostText)); }
   void operator()(const picture::Tile& tile) {
     (*this)(tile ? tile->crc : 0);
     (*this)(

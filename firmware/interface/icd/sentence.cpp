@@ -5,14 +5,12 @@
 #include <cstdint>
 #include <ctime>
 
+#include "icd/text.hpp"
+
 namespace adit::icd {
 namespace {
 
 constexpr std::size_t kMostQuoted = 40;
-
-bool continues_a_character(char byte) {
-  return (static_cast<std::uint8_t>(byte) & 0xc0U) == 0x80U;
-}
 
 }  // namespace
 
@@ -29,13 +27,8 @@ std::string real_text(double number) {
 
 std::string in_quotes(std::string_view text) {
   const bool cut = text.size() > kMostQuoted;
-  if (cut) {
-    std::size_t end = kMostQuoted;
-    while (end > 0 && continues_a_character(text[end])) --end;  // never half a UTF-8 character
-    text = text.substr(0, end);
-  }
   std::string quote = "\"";
-  for (const char byte : text) {
+  for (const char byte : beginning_of(text, kMostQuoted)) {
     const auto code = static_cast<std::uint8_t>(byte);
     quote += code < 0x20 || code == 0x7f ? '?' : byte;
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -64,6 +65,23 @@ constexpr bool is_letter_or_digit(char letter) {
 /// True if both are equal except for the case of ASCII letters.
 constexpr bool same_but_for_case(std::string_view one, std::string_view other) {
   return std::ranges::equal(one, other, {}, lower, lower);
+}
+
+/// Whether a character of UTF-8 begins with this byte.
+constexpr bool begins_character(char byte) {
+  return (static_cast<std::uint8_t>(byte) & 0xC0) != 0x80;
+}
+
+/// The characters of a UTF-8 text.
+constexpr std::size_t count_characters(std::string_view text) {
+  return static_cast<std::size_t>(std::ranges::count_if(text, begins_character));
+}
+
+/// The first whole characters of a UTF-8 text, at most `most` bytes.
+constexpr std::string_view beginning_of(std::string_view text, std::size_t most) {
+  if (text.size() <= most) return text;
+  while (most > 0 && !begins_character(text[most])) --most;
+  return text.substr(0, most);
 }
 
 /// Two hexadecimal digits for each byte: "0aff".

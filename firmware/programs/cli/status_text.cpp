@@ -430,10 +430,6 @@ std::size_t behind_colour(std::string_view line, std::size_t at) {
   return end == std::string_view::npos ? line.size() : end + 1;
 }
 
-bool continues(char byte) {  // UTF-8 continuation byte
-  return (static_cast<unsigned char>(byte) & 0xc0u) == 0x80u;
-}
-
 std::string cut(std::string_view line, std::size_t columns) {
   std::string text;
   std::size_t shown = 0;
@@ -442,7 +438,7 @@ std::string cut(std::string_view line, std::size_t columns) {
     if (end == at) {
       if (++shown > columns) return text + "\033[0m";
       do ++end;
-      while (end < line.size() && continues(line[end]));
+      while (end < line.size() && !icd::begins_character(line[end]));
     }
     text += line.substr(at, end - at);
     at = end;

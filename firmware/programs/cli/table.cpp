@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "host/log.hpp"
+#include "icd/text.hpp"
 
 namespace adit::cli {
 namespace {
@@ -19,11 +20,6 @@ constexpr double kLongestTime = 1e9;  // seconds; a larger value is an error of 
 std::string painted(const std::string& text, Tone tone, bool colour) {
   if (!colour || tone == Tone::Plain || text.empty()) return text;
   return kCodes[static_cast<std::size_t>(tone)] + text + "\033[0m";
-}
-
-std::size_t width_of(std::string_view text) {
-  return static_cast<std::size_t>(std::ranges::count_if(
-      text, [](char byte) { return (static_cast<std::uint8_t>(byte) & 0xc0u) != 0x80u; }));
 }
 
 std::string duration(double seconds) {
@@ -77,7 +73,7 @@ std::string row_text(const std::vector<Cell>& cells, const std::vector<Table::Co
   std::string text;
   std::size_t owed = 0;  // spaces written only before visible text, so that lines have none at their ends
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    const std::size_t spare = widths[i] - width_of(cells[i].text);
+    const std::size_t spare = widths[i] - icd::count_characters(cells[i].text);
     const bool right = columns[i].align == Table::Align::Right;
     owed += 2 + (right ? spare : 0);
     if (!cells[i].text.empty()) {
@@ -100,10 +96,11 @@ std::string Table::written(bool colour) const {
   std::vector<std::size_t> widths;
   for (const Column& column : columns_) {
     names.push_back({column.name, Tone::Faint});
-    widths.push_back(width_of(column.name));
+    widths.push_back(icd::count_characters(column.name));
   }
   for (const auto& row : rows_) {
-    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], width_of(row[i].text));
+    for (std::size_t i = 0; i < row.size(); ++i)
+      widths[i] = std::max(widths[i], icd::count_characters(row[i].text));
   }
   const bool named = std::ranges::any_of(columns_, [](const Column& column) { return !column.name.empty(); });
   std::string text = named ? row_text(names, columns_, widths, colour) : "";

@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "host/log.hpp"
@@ -15,9 +14,6 @@ enum class Tone : std::uint8_t { Plain, Faint, Strong, Good, Warning, Bad };
 
 /// Applies the tone's colour if `colour`.
 std::string painted(const std::string& text, Tone tone, bool colour);
-
-/// Number of UTF-8 characters.
-std::size_t width_of(std::string_view text);
 
 /// A line of strings and numbers, escaped.
 template <class... Parts>

@@ -28,11 +28,6 @@ std::string crypted(const std::string& password, const std::string& setting) {
   return text == nullptr || *text == '*' ? "" : text;  // "*0": failure (crypt(3))
 }
 
-std::size_t characters(std::string_view utf8) {
-  return static_cast<std::size_t>(std::ranges::count_if(
-      utf8, [](char byte) { return (static_cast<unsigned char>(byte) & 0xc0) != 0x80; }));
-}
-
 }  // namespace
 
 bool is_code(std::string_view text) {
@@ -48,7 +43,7 @@ std::string code_from(std::uint64_t random) {
 }
 
 std::expected<void, std::string> check_new(std::string_view password) {
-  const std::size_t size = characters(password);
+  const std::size_t size = icd::count_characters(password);
   if (size < kShortest || size > kLongest || password.size() > kMostBytes) {
     return std::unexpected(
         icd::sentence("expected ", kShortest, " to ", kLongest, " characters, got ", size));

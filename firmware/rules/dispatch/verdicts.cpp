@@ -7,6 +7,7 @@
 #include "dispatch/report.hpp"
 #include "icd/sentence.hpp"
 #include "icd/status.hpp"
+#include "icd/text.hpp"
 
 namespace adit::dispatch {
 namespace {
@@ -53,10 +54,7 @@ constexpr std::size_t kLongestSentence = 300;
 
 std::string cut(std::string text) {
   if (text.size() <= kLongestSentence) return text;
-  std::size_t end = kLongestSentence;
-  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80)
-    --end;  // not within a UTF-8 sequence
-  text.resize(end);
+  text.resize(icd::beginning_of(text, kLongestSentence).size());
   return text + "...";
 }
 

@@ -326,16 +326,6 @@ std::size_t SenderQueue::largest_replaceable() const {
   return most;
 }
 
-/// Updates the sums over all queues. If `change` throws, it must have changed nothing.
-template <class Change>
-auto MapQueue::change(SenderQueue& queue, Change change) {
-  const std::size_t count = queue.count(), bytes = queue.bytes();
-  auto result = change(queue);
-  count_ = count_ - count + queue.count();
-  bytes_ = bytes_ - bytes + queue.bytes();
-  return result;
-}
-
 const SenderQueue* MapQueue::queue_of(const Sender& sender) const {
   const auto found = senders_.find(sender);
   return found == senders_.end() ? nullptr : &found->second.queue;
@@ -364,7 +354,7 @@ Replaced MapQueue::add(std::uint64_t number, icd::MapUpdate map, Instant now) {
   QueuedMap added = waiting(number, std::move(map), now);
   Waiting& its = joins(Sender::of(added.map));
   inherit(added.trial, its.trial);
-  return change(its.queue, [&](SenderQueue& queue) { return queue.add(std::move(added)); });
+  return its.queue.add(std::move(added));
 }
 
 void MapQueue::restore(std::uint64_t number, icd::MapUpdate map, Instant now,
@@ -373,14 +363,11 @@ void MapQueue::restore(std::uint64_t number, icd::MapUpdate map, Instant now,
   restored.bounds = bounds;
   restored.packing = packing;
   Waiting& its = joins(Sender::of(restored.map));
-  change(its.queue, [&](SenderQueue& queue) {
-    queue.append(std::move(restored));
-    return true;
-  });
+  its.queue.append(std::move(restored));
 }
 
 /// The sender whose turn it is, among those with a map that may go. If all maps rest, the sender of the map
-/// that has rested longest.
+/// that has rested longest. The end if no map is queued.
 MapQueue::Senders::iterator MapQueue::next(Instant now) {
   auto next = senders_.end();
   for (auto each = senders_.begin(); each != senders_.end(); ++each) {
@@ -404,12 +391,12 @@ Precision MapQueue::precision_of(const Sender& sender, const SenderQueue& queue)
 }
 
 std::optional<QueuedMap> MapQueue::take(Instant now) {
-  if (count_ == 0) return {};
   const auto chosen = next(now);
+  if (chosen == senders_.end()) return {};
   Waiting& its = chosen->second;
   const Precision precision = precision_of(chosen->first, its.queue);
   const std::size_t most = std::min(merge_bytes_, holds_[static_cast<std::size_t>(precision)]);
-  QueuedMap taken = change(its.queue, [&](SenderQueue& queue) { return queue.take(now, most, canvases_); });
+  QueuedMap taken = its.queue.take(now, most, canvases_);
   taken.precision = precision;
   its.turn = turns_.served(its.turn);
   forget_those_that_are_gone();
@@ -449,23 +436,17 @@ void MapQueue::carried(const Sender& sender, std::size_t bytes) {
 
 Replaced MapQueue::put_back(QueuedMap map) {
   Waiting& its = joins(Sender::of(map.map));
-  return change(its.queue, [&](SenderQueue& queue) { return queue.put_back(std::move(map)); });
+  return its.queue.put_back(std::move(map));
 }
 
 void MapQueue::put_back_apart(QueuedMap map) {
   Waiting& its = joins(Sender::of(map.map));
-  change(its.queue, [&](SenderQueue& queue) {
-    queue.put_back_apart(std::move(map));
-    return true;
-  });
+  its.queue.put_back_apart(std::move(map));
 }
 
 void MapQueue::put_back_halves(QueuedMap map) {
   Waiting& its = joins(Sender::of(map.map));
-  change(its.queue, [&](SenderQueue& queue) {
-    queue.put_back_halves(std::move(map));
-    return true;
-  });
+  its.queue.put_back_halves(std::move(map));
 }
 
 void MapQueue::restart_pieces() {
@@ -482,8 +463,7 @@ std::optional<Successive> MapQueue::to_compare() const {
 
 std::vector<std::uint64_t> MapQueue::replace(const Successive& two) {
   const auto found = senders_.find(two.sender);
-  if (found == senders_.end()) return {};
-  return change(found->second.queue, [&](SenderQueue& queue) { return queue.replace(two); });
+  return found == senders_.end() ? std::vector<std::uint64_t>{} : found->second.queue.replace(two);
 }
 
 void MapQueue::keep_both(const Successive& two) {
@@ -504,6 +484,18 @@ bool MapQueue::joins(const icd::MapUpdate& map) const {
 std::optional<Replaced> MapQueue::absorb(const QueuedMap& map) {
   const auto found = senders_.find(Sender::of(map.map));
   return found == senders_.end() ? std::nullopt : found->second.queue.absorb(map);
+}
+
+std::size_t MapQueue::count() const {
+  std::size_t count = 0;
+  for (const auto& [sender, waiting] : senders_) count += waiting.queue.count();
+  return count;
+}
+
+std::size_t MapQueue::bytes() const {
+  std::size_t bytes = 0;
+  for (const auto& [sender, waiting] : senders_) bytes += waiting.queue.bytes();
+  return bytes;
 }
 
 std::size_t MapQueue::count(const Sender& sender) const {

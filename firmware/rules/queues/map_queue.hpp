@@ -254,11 +254,11 @@ class MapQueue {
   /// does.
   std::optional<Replaced> absorb(const QueuedMap& map);
 
-  std::size_t count() const { return count_; }
+  std::size_t count() const;
   std::size_t count(const Sender& sender) const;
   /// When the oldest queued map of that sender was accepted, or nothing.
   std::optional<Instant> oldest(const Sender& sender) const;
-  std::size_t bytes() const { return bytes_; }  // of memory, held by all queued maps
+  std::size_t bytes() const;  // of memory, held by all queued maps
   /// The size of the largest queued grid or whole cloud, in bytes: a map that replaces it may need as much.
   std::size_t largest_replaceable() const;
   /// The number of known senders: those with queued maps, and those that still pay with turns.
@@ -275,8 +275,6 @@ class MapQueue {
   Senders::iterator next(Instant now);
   Waiting& joins(const Sender& sender);
   void forget_those_that_are_gone();
-  template <class Change>
-  auto change(SenderQueue& queue, Change change);
   const SenderQueue* queue_of(const Sender& sender) const;
   QueuedMap waiting(std::uint64_t number, icd::MapUpdate map, Instant now) const;
   Precision precision_of(const Sender& sender, const SenderQueue& queue) const;
@@ -289,7 +287,6 @@ class MapQueue {
   Canvases canvases_;
   std::size_t merge_bytes_;
   std::size_t slot_bytes_ = 8u << 20;
-  std::size_t count_ = 0, bytes_ = 0;
 };
 
 }  // namespace adit::queues

@@ -4,10 +4,13 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "codec/cbor.hpp"
 #include "codec/splitter.hpp"
 #include "codec/utf8.hpp"
+#include "icd/require.hpp"
 
 namespace adit::codec {
 namespace {
@@ -33,13 +36,115 @@ Value simple(const CborHead& head) {
   return {};
 }
 
+icd::Checked<Value> with_lists_at(const SharedText& text, std::size_t begin, std::size_t end);
+bool reals_in(std::string_view object, std::span<const std::string_view> names, std::span<double> into);
+constexpr List::Format kCborLists = {.element = with_lists_at, .reals = reals_in, .gap = 0};
+
+/// Moves past the next head of well-formed items.
+CborHead take_head(std::string_view& items) {
+  CborHead head;
+  items.remove_prefix(head.next(items));
+  return head;
+}
+
+/// Moves past the elements, pairs or chunks of an item with this head. `visit` moves past one of them.
+template <class Visit>
+void take_each(std::string_view& items, const CborHead& head, const Visit& visit) {
+  if (!head.indefinite()) {
+    for (std::uint64_t left = head.argument(); left > 0; --left) visit();
+    return;
+  }
+  while (items[0] != '\xFF') visit();
+  items.remove_prefix(1);
+}
+
+/// The value at the beginning of a text, with its outermost arrays replaced by empty ones.
+struct Cut {
+  std::string rest;
+  std::vector<List::Starts> arrays;  // in order
+  std::size_t values = 0;            // number of values in `rest`
+};
+
+/// Walks well-formed items. BodyDecoder::kDeepest limits the recursion.
+class CborCutter {
+ public:
+  CborCutter(std::string_view text, std::size_t begin, Cut& cut)
+      : text_(text), left_(text.substr(begin)), cut_(cut) {}
+
+  /// Copies an item without its outermost arrays.
+  void keep() {
+    ++cut_.values;
+    const std::size_t begin = at();
+    const CborHead head = take_head(left_);
+    if (head.major() == Major::Array) {
+      cut_.rest += '\x80';
+      cut_.arrays.push_back(starts_in(head));
+    } else if (head.major() == Major::Map) {
+      cut_.rest += head.raw();
+      take_each(left_, head, [this] { keep_member(); });
+      if (head.indefinite()) cut_.rest += '\xFF';
+    } else {
+      skip_rest(head);
+      cut_.rest += text_.substr(begin, at() - begin);
+    }
+  }
+
+ private:
+  std::size_t at() const { return text_.size() - left_.size(); }
+
+  void keep_member() {
+    keep();
+    --cut_.values;  // names are not counted
+    keep();
+  }
+
+  List::Starts starts_in(const CborHead& head) {
+    List::Starts starts;
+    take_each(left_, head, [&] {
+      starts.push_back(static_cast<std::uint32_t>(at()));  // the text is at most a few MB
+      skip();
+    });
+    if (starts.empty()) return starts;
+    starts.push_back(static_cast<std::uint32_t>(at() - (head.indefinite() ? 1 : 0)));
+    return starts;
+  }
+
+  void skip() { skip_rest(take_head(left_)); }
+
+  void skip_rest(const CborHead& head) {
+    switch (head.major()) {
+      case Major::Bytes:
+      case Major::Text:
+        if (head.indefinite()) return take_each(left_, head, [this] { skip(); });
+        left_.remove_prefix(head.argument());
+        return;
+      case Major::Array:
+        return take_each(left_, head, [this] { skip(); });
+      case Major::Map:
+        return take_each(left_, head, [this] { skip(), skip(); });
+      case Major::Tag:
+        return skip();
+      case Major::Unsigned:
+      case Major::Negative:
+      case Major::Simple:
+        return;
+    }
+  }
+
+  std::string_view text_, left_;
+  Cut& cut_;
+};
+
 /// Reads well-formed items. BodyDecoder::kDeepest limits the recursion.
 class CborReader {
  public:
-  CborReader(std::string_view bytes, Lists* lists) : left_(bytes), lists_(lists) {}
+  explicit CborReader(std::string_view bytes) : left_(bytes) {}
+  /// Reads a Cut of `whole`, whose arrays stay text.
+  CborReader(Cut& cut, const SharedText& whole)
+      : left_(cut.rest), arrays_(std::move(cut.arrays)), whole_(whole) {}
 
   Value value() {
-    const CborHead head = next_head();
+    const CborHead head = take_head(left_);
     switch (head.major()) {
       case Major::Unsigned:
         return whole(head.argument());
@@ -52,7 +157,7 @@ class CborReader {
       case Major::Text:
         return {string(head)};
       case Major::Array:
-        return lists_ != nullptr ? lists_->next() : array(head);  // arrays in a Cut are empty
+        return whole_ != nullptr ? list() : array(head);
       case Major::Map:
         return object(head);
       case Major::Tag:
@@ -65,18 +170,6 @@ class CborReader {
   }
 
  private:
-  CborHead next_head() {
-    CborHead head;
-    left_.remove_prefix(head.next(left_));
-    return head;
-  }
-
-  bool take_break() {
-    if (left_[0] != '\xFF') return false;
-    left_.remove_prefix(1);
-    return true;
-  }
-
   void append(std::string& text, const CborHead& head) {
     text += left_.substr(0, head.argument());
     left_.remove_prefix(head.argument());
@@ -87,7 +180,7 @@ class CborReader {
     if (!head.indefinite()) {
       append(text, head);
     } else {
-      while (!take_break()) append(text, next_head());
+      take_each(left_, head, [&] { append(text, take_head(left_)); });
     }
     return text;
   }
@@ -96,13 +189,15 @@ class CborReader {
   template <class Items, class Add>
   Value filled(const CborHead& head, const Add& add) {
     Items items;
-    if (!head.indefinite()) {
-      items.reserve(head.argument());  // each has at least one byte
-      for (std::uint64_t left = head.argument(); left > 0; --left) add(items);
-    } else {
-      while (!take_break()) add(items);
-    }
+    if (!head.indefinite()) items.reserve(head.argument());  // each has at least one byte
+    take_each(left_, head, [&] { add(items); });
     return {std::move(items)};
+  }
+
+  /// The array that was cut here.
+  Value list() {
+    icd::require(next_ < arrays_.size());
+    return {std::make_shared<const List>(whole_, std::move(arrays_[next_++]), kCborLists)};
   }
 
   Value array(const CborHead& head) {
@@ -127,7 +222,9 @@ class CborReader {
   }
 
   std::string_view left_;
-  Lists* lists_;
+  std::vector<List::Starts> arrays_;
+  std::size_t next_ = 0;
+  SharedText whole_;  // null: no array was cut
 };
 
 std::optional<double> real_of(const CborHead& head) {
@@ -140,39 +237,32 @@ std::optional<double> real_of(const CborHead& head) {
 
 /// List::reals() for well-formed bytes.
 bool reals_in(std::string_view object, std::span<const std::string_view> names, std::span<double> into) {
-  const auto next = [&] {
-    CborHead head;
-    object.remove_prefix(head.next(object));
-    return head;
-  };
-  if (const CborHead map = next(); map.major() != Major::Map || map.argument() != names.size()) return false;
+  if (const CborHead map = take_head(object); map.major() != Major::Map || map.argument() != names.size())
+    return false;
   for (std::size_t i = 0; i < names.size(); ++i) {
-    const CborHead name = next();
+    const CborHead name = take_head(object);
     if (name.major() != Major::Text || name.argument() != names[i].size() || !object.starts_with(names[i]))
       return false;
     object.remove_prefix(names[i].size());
-    const auto number = real_of(next());
+    const auto number = real_of(take_head(object));
     if (!number || !std::isfinite(*number)) return false;
     into[i] = *number;
   }
   return object.empty();
 }
 
-icd::Checked<Value> with_lists_at(const SharedText& text, std::size_t begin, std::size_t end);
-constexpr ListFormat kCborLists = {.element = with_lists_at, .reals = reals_in, .gap = 0};
-
 /// The value at `begin`.
 icd::Checked<Value> with_lists_at(const SharedText& text, std::size_t begin, std::size_t /*end*/) {
-  Cut cut = cut_cbor(*text, begin);
+  Cut cut;
+  CborCutter(*text, begin, cut).keep();
   if (cut.values > kMostOutsideLists) return std::unexpected(too_many_outside_lists(kMostOutsideLists));
-  Lists lists(text, std::move(cut.arrays), kCborLists);
-  return CborReader(cut.rest, &lists).value();
+  return CborReader(cut, text).value();
 }
 
 }  // namespace
 
 Value cbor_value(std::string_view bytes) {
-  return CborReader(bytes, nullptr).value();
+  return CborReader(bytes).value();
 }
 
 icd::Checked<Value> cbor_value_with_lists(std::string bytes) {

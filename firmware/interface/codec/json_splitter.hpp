@@ -10,7 +10,6 @@
 
 #include "codec/base64.hpp"
 #include "codec/bulk_data.hpp"
-#include "codec/cut_lists.hpp"
 #include "codec/data_path.hpp"
 #include "codec/json_number.hpp"
 #include "codec/splitter.hpp"

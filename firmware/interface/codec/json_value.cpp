@@ -18,7 +18,7 @@ namespace {
 bool reals_in(std::string_view object, std::span<const std::string_view> names, std::span<double> into);
 icd::Checked<Value> element_at(const SharedText& text, std::size_t begin, std::size_t end);
 constexpr std::size_t kUsualMembers = 4;  // of an object: a quaternion
-constexpr ListFormat kJsonLists = {.element = element_at, .reals = reals_in, .gap = 1};
+constexpr List::Format kJsonLists = {.element = element_at, .reals = reals_in, .gap = 1};
 
 /// Whether the number stands for exactly one integer.
 bool is_whole(double number) {
@@ -154,7 +154,7 @@ class JsonReader {
   }
 
   bool list(Value& into) {
-    Starts starts;
+    List::Starts starts;
     const auto offset = [this] {
       return static_cast<std::uint32_t>(at_ - (*whole_)->data());  // a text with lists has a few MB
     };
@@ -164,7 +164,7 @@ class JsonReader {
     };
     if (!items(']', element)) return false;
     if (!starts.empty()) starts.push_back(offset());
-    into = list_of(*whole_, std::move(starts), kJsonLists);
+    into.is = std::make_shared<const List>(*whole_, std::move(starts), kJsonLists);
     return true;
   }
 

@@ -6,7 +6,6 @@
 #include <string>
 #include <string_view>
 
-#include "codec/cut_lists.hpp"
 #include "codec/value.hpp"
 #include "icd/status.hpp"
 

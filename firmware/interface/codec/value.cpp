@@ -3,6 +3,7 @@
 #include <array>
 
 #include "codec/cbor.hpp"
+#include "icd/require.hpp"
 
 namespace adit::codec {
 
@@ -17,6 +18,17 @@ std::string Value::kind() const {
 
 bool operator==(const Value& one, const Value& other) {
   return one.is == other.is;
+}
+
+icd::Checked<Value> List::element(std::size_t index) const {
+  icd::require(index < size());
+  return format_.element(text_, starts_[index], end_of(index));
+}
+
+bool List::reals(std::size_t index, std::span<const std::string_view> names, std::span<double> into) const {
+  icd::require(index < size() && names.size() == into.size());
+  const std::string_view text = *text_;
+  return format_.reals(text.substr(starts_[index], end_of(index) - starts_[index]), names, into);
 }
 
 }  // namespace adit::codec

@@ -49,21 +49,38 @@ struct Value {
   friend bool operator==(const Value& one, const Value& other);
 };
 
-/// An array left as text. Each element is parsed on request and not stored.
+using SharedText = std::shared_ptr<const std::string>;
+
+/// An array left as text of a well-formed document, so that a large message is never a tree in memory. Each
+/// element is parsed on request and not stored.
 class List {
  public:
-  List() = default;
-  virtual ~List() = default;
-  List(const List&) = delete;
-  List& operator=(const List&) = delete;
+  /// Start of each element in the text, then the start of a next one. Empty for an empty array.
+  using Starts = std::vector<std::uint32_t>;
+  /// Functions that read elements of a format.
+  struct Format {
+    icd::Checked<Value> (*element)(const SharedText& text, std::size_t begin, std::size_t end);
+    bool (*reals)(std::string_view element, std::span<const std::string_view> names, std::span<double> into);
+    std::size_t gap;  // bytes between elements
+  };
 
-  virtual std::size_t size() const = 0;
+  /// `format` must outlive it.
+  List(SharedText text, Starts starts, const Format& format)
+      : text_(std::move(text)), starts_(std::move(starts)), format_(format) {}
+
+  std::size_t size() const { return starts_.empty() ? 0 : starts_.size() - 1; }
   /// `index` must be below size(). Error 413: more than kMostOutsideLists values outside its own lists.
-  virtual icd::Checked<Value> element(std::size_t index) const = 0;
+  icd::Checked<Value> element(std::size_t index) const;
   /// Reads an element that is an object of exactly these members, in this order, with finite numbers. False:
   /// another element, which element() then describes. Reads points and colors at a fifth of the cost.
-  virtual bool reals(std::size_t index, std::span<const std::string_view> names,
-                     std::span<double> into) const = 0;
+  bool reals(std::size_t index, std::span<const std::string_view> names, std::span<double> into) const;
+
+ private:
+  std::size_t end_of(std::size_t index) const { return starts_[index + 1] - format_.gap; }
+
+  const SharedText text_;
+  const Starts starts_;
+  const Format& format_;
 };
 
 inline constexpr std::size_t kMostOutsideLists = 20'000;  // values of a document, or of a list's element

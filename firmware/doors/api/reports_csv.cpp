@@ -94,12 +94,9 @@ std::string line(const auto& each) {
 
 std::string line(const codec::Value::Object& row) {
   return line([&row](const codec::Member& member, const codec::Member& inner) {
-    const codec::Value& value = std::ranges::find(row, member.name, &codec::Value::Member::first)->second;
+    const codec::Value& value = *codec::find_member(row, member.name);
     const auto* const members = std::get_if<codec::Value::Object>(&value.is);
-    return cell(members == nullptr
-                    ? value
-                    : std::ranges::find(*members, inner.name, &codec::Value::Member::first)->second,
-                member.cell);
+    return cell(members == nullptr ? value : *codec::find_member(*members, inner.name), member.cell);
   });
 }
 

@@ -22,8 +22,7 @@ std::string with_figures(const std::string& body, const icd::RunStatus& run) {
   auto status = codec::parse_json(body);
   auto* const members = status ? std::get_if<codec::Value::Object>(&status->is) : nullptr;
   if (members == nullptr) return body;
-  const bool has_run_clock =
-      std::ranges::find(*members, "run_clock", &codec::Value::Member::first) != members->end();
+  const bool has_run_clock = codec::find_member(*members, "run_clock") != nullptr;
   for (auto& [name, value] : *members) {
     if (name == "score") value.is = run.score;
     if (name == "remaining_reports") value.is = run.remaining_reports;

@@ -14,11 +14,6 @@ namespace {
 
 constexpr std::size_t kMostRows = 100'000;  // most rows that a patch may create in a list
 
-const Value* member_of(const Value::Object& object, std::string_view name) {
-  const auto found = std::ranges::find(object, name, &Value::Member::first);
-  return found == object.end() ? nullptr : &found->second;
-}
-
 std::optional<std::size_t> count_of(const Value& value) {
   std::uint64_t count = kMostRows + 1;
   if (const auto* const whole = std::get_if<std::int64_t>(&value.is); whole != nullptr && *whole >= 0) {
@@ -40,8 +35,8 @@ bool keep(const Value& run, Value::Array& before, Value::Array& now) {
 }
 
 std::optional<Value> patched_list(Value::Array before, const Value::Object& patch) {
-  const Value *const length = member_of(patch, "length"), *const kept = member_of(patch, "kept"),
-                     *const rows = member_of(patch, "rows");
+  const Value *const length = find_member(patch, "length"), *const kept = find_member(patch, "kept"),
+                     *const rows = find_member(patch, "rows");
   const auto size = length == nullptr ? std::optional(before.size()) : count_of(*length);
   if (!size) return std::nullopt;
   Value::Array now;
@@ -71,14 +66,14 @@ std::optional<Value> patched_list(Value::Array before, const Value::Object& patc
 
 std::optional<Value> patched_object(Value::Object object, const Value::Object& patch) {
   for (const auto& [name, change] : patch) {
-    const auto known = std::ranges::find(object, name, &Value::Member::first);
-    if (known == object.end()) {
+    Value* const known = find_member(object, name);
+    if (known == nullptr) {
       object.emplace_back(name, change);
       continue;
     }
-    auto value = apply_patch(std::move(known->second), change);
+    auto value = apply_patch(std::move(*known), change);
     if (!value) return std::nullopt;
-    known->second = *std::move(value);
+    *known = *std::move(value);
   }
   return Value{std::move(object)};
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -48,6 +49,13 @@ struct Value {
   /// Equal kinds and values. Lists left as text are equal only if they are the same object.
   friend bool operator==(const Value& one, const Value& other);
 };
+
+/// The first member of that name, or null.
+template <class Object>  // Value::Object, const or not
+auto* find_member(Object& object, std::string_view name) {
+  const auto found = std::ranges::find(object, name, &Value::Member::first);
+  return found == object.end() ? nullptr : &found->second;
+}
 
 using SharedText = std::shared_ptr<const std::string>;
 

@@ -115,9 +115,7 @@ class Reader {
   static std::expected<network::Numbers, std::vector<settings::Error>> numbers_of(const codec::Value& value,
                                                                                   const std::string& text) {
     const auto* object = std::get_if<codec::Value::Object>(&value.is);
-    const bool has_format =
-        object != nullptr &&
-        std::ranges::find(*object, "format", &codec::Value::Member::first) != object->end();
+    const bool has_format = object != nullptr && codec::find_member(*object, "format") != nullptr;
     if (!has_format) return network::read_numbers(value);
     auto numbers = network::read_kept(text);
     if (!numbers) return std::unexpected(std::vector<settings::Error>{{"", std::move(numbers.error())}});

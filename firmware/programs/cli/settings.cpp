@@ -23,9 +23,7 @@ using codec::Value;
 template <class SomeValue>  // const or not
 SomeValue* member_of(SomeValue& object, std::string_view name) {
   auto* const members = std::get_if<Value::Object>(&object.is);
-  if (members == nullptr) return nullptr;
-  const auto found = std::ranges::find(*members, name, &Value::Member::first);
-  return found == members->end() ? nullptr : &found->second;
+  return members == nullptr ? nullptr : codec::find_member(*members, name);
 }
 
 std::string text_at(const Value& object, std::string_view name) {

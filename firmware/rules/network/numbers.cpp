@@ -35,9 +35,7 @@ class Members {
   }
   const Value* find(std::string_view name) {
     known_.emplace_back(name);
-    if (object_ == nullptr) return nullptr;
-    const auto found = std::ranges::find(*object_, name, &Value::Member::first);
-    return found == object_->end() ? nullptr : &found->second;
+    return object_ == nullptr ? nullptr : codec::find_member(*object_, name);
   }
   void refuse(std::string_view name, std::string what) {
     errors_.push_back({path_of(name), std::move(what)});

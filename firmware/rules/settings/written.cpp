@@ -83,9 +83,8 @@ void write(const Value& value, const std::string& indent, std::string& text) {
 
 /// An item's name, or its index.
 std::string name_in(const Value& item, std::size_t index) {
-  const auto& members = std::get<Value::Object>(item.is);
-  const auto name = std::ranges::find(members, "name", &Value::Member::first);
-  return name == members.end() ? std::to_string(index) : std::get<std::string>(name->second.is);
+  const Value* const name = codec::find_member(std::get<Value::Object>(item.is), "name");
+  return name == nullptr ? std::to_string(index) : std::get<std::string>(name->is);
 }
 
 using Leaves = std::vector<std::pair<std::string, Value>>;

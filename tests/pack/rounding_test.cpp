@@ -30,7 +30,7 @@ icd::PointCloud2 xyz_and_number(icd::Datatype datatype) {
 /// Each point has its number, which identifies it.
 icd::MapUpdate numbered(const icd::PointCloud2& form, const Places& places) {
   Bytes bytes(places.size() * form.point_step);
-  const auto axes = axes_of(form);
+  const auto axes = icd::axes_of(form);
   for (std::uint32_t number = 0; number < places.size(); ++number) {
     std::uint8_t* const point = bytes.data() + number * form.point_step;
     for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -39,7 +39,7 @@ class Put : public store::Writer {
  public:
   using store::Writer::operator();
   void operator()(ReportState state) { (*this)(dispatch::name_of(state)); }
-  void operator()(const std::optional<icd::RobotName>& robot) { (*this)(robot ? robot->text() : ""); }
+  void operator()(const std::optional<icd::RobotName>& robot) { (*this)(icd::text_of(robot)); }
   void operator()(const char* /*name*/, const auto& value) { store::walk(*this, value); }
 };
 
@@ -72,7 +72,7 @@ class Show {
     (*this)(name, std::string(dispatch::name_of(state)));
   }
   void operator()(const char* name, const std::optional<icd::RobotName>& robot) {
-    (*this)(name, robot ? robot->text() : "");
+    (*this)(name, icd::text_of(robot));
   }
   void operator()(const char* name, const std::optional<dispatch::Clock>& clock) {
     Show shown;

@@ -279,7 +279,7 @@ void AcceptedMaps::compare() {
 
 void AcceptedMaps::compared(const queues::Successive& two, bool has_all) {
   comparing_ = false;
-  const Traffic traffic{Kind::Cloud, two.sender.name ? two.sender.name->text() : ""};
+  const Traffic traffic{Kind::Cloud, icd::text_of(two.sender.name)};
   if (has_all) {
     const auto replaced = queue_.replace(two);
     counts_.replaced(traffic, replaced.size());

@@ -123,7 +123,7 @@ bool Clocks::hear(double there) {
 }
 
 void Clocks::stamp(icd::MapUpdate& update, const queues::Upload& upload) {
-  const queues::Stamper stamper{upload.address, icd::Uri::MapUpdate, update.name ? update.name->text() : ""};
+  const queues::Stamper stamper{upload.address, icd::Uri::MapUpdate, icd::text_of(update.name)};
   std::optional<icd::Stamp>& stamp = update.header().stamp;
   stamp = senders_.shift(stamper, stamp, loop_.stamp_now(), upload);
   keep();

@@ -33,7 +33,7 @@ queues::Sender sender_of(const Traffic& traffic) {
 
 /// For queues::Blame.
 std::string whose(const icd::MapUpdate& map) {
-  return (map.is_grid() ? "grid " : "cloud ") + (map.name ? map.name->text() : "");
+  return (map.is_grid() ? "grid " : "cloud ") + icd::text_of(map.name);
 }
 
 }  // namespace

@@ -107,7 +107,7 @@ icd::Checked<queues::RejectedMessage> read_item(const std::string& path, const s
 }
 
 std::string who(const queues::Message& message) {
-  if (const auto* map = std::get_if<icd::MapUpdate>(&message)) return map->name ? map->name->text() : "";
+  if (const auto* map = std::get_if<icd::MapUpdate>(&message)) return icd::text_of(map->name);
   const auto* state = std::get_if<icd::StateUpdate>(&message);
   return state != nullptr && state->poses.size() == 1 ? state->poses.front().name.text() : "";
 }

@@ -15,7 +15,7 @@ const char* name_of(Kind kind) {
 }  // namespace
 
 Traffic traffic_of(const icd::MapUpdate& update) {
-  return {update.is_grid() ? Kind::Grid : Kind::Cloud, update.name ? update.name->text() : ""};
+  return {update.is_grid() ? Kind::Grid : Kind::Cloud, icd::text_of(update.name)};
 }
 
 api::ActivityRow& TrafficCounts::row(const Traffic& traffic) {

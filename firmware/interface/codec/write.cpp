@@ -97,7 +97,7 @@ void write_compression(CborWriter& out, const icd::MapData& data) {
 
 void write_type_and_name(CborWriter& out, const icd::MapUpdate& update) {
   write_text(out, "type", update.is_grid() ? "OccupancyGrid" : "PointCloud2");
-  write_text(out, "name", update.name ? update.name->text() : std::string_view());
+  write_text(out, "name", icd::text_of(update.name));
 }
 
 /// Writes the message up to the data, from the data's size and the number of members in msg.

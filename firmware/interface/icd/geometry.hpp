@@ -15,6 +15,7 @@ struct Point {
 /// A rotation. Its length differs from 1 by at most kLengthNoise.
 struct Quaternion {
   double x = 0, y = 0, z = 0, w = 1;
+  bool is_turned() const { return x != 0 || y != 0 || z != 0; }
   friend bool operator==(const Quaternion&, const Quaternion&) = default;
 };
 

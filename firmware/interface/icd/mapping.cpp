@@ -1,5 +1,9 @@
 #include "icd/mapping.hpp"
 
+#include <algorithm>
+
+#include "icd/require.hpp"
+
 namespace adit::icd {
 
 std::size_t size_of(Datatype datatype) {
@@ -18,6 +22,16 @@ std::size_t size_of(Datatype datatype) {
       return 8;
   }
   return 0;
+}
+
+const FieldSchema& field_of(const PointCloud2& cloud, std::string_view name) {
+  const auto field = std::ranges::find(cloud.fields, name, &FieldSchema::name);
+  require(field != cloud.fields.end());
+  return *field;
+}
+
+std::array<std::size_t, 3> axes_of(const PointCloud2& cloud) {
+  return {field_of(cloud, "x").offset, field_of(cloud, "y").offset, field_of(cloud, "z").offset};
 }
 
 const Header& MapUpdate::header() const {

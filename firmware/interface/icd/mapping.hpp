@@ -1,9 +1,11 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -77,6 +79,11 @@ struct PointCloud2 {
   std::uint32_t point_step = 0;  // bytes; at least 1
   friend bool operator==(const PointCloud2&, const PointCloud2&) = default;
 };
+
+/// The field of that name. Requires it.
+const FieldSchema& field_of(const PointCloud2& cloud, std::string_view name);
+/// The offsets of x, y and z in a point.
+std::array<std::size_t, 3> axes_of(const PointCloud2& cloud);
 
 /// How MapData's bytes are compressed.
 enum class Compression : std::uint8_t {

@@ -23,4 +23,9 @@ class RobotName {
   std::string text_;
 };
 
+/// "" without a name.
+inline std::string text_of(const std::optional<RobotName>& name) {
+  return name ? name->text() : "";
+}
+
 }  // namespace adit::icd

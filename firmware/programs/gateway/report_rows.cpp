@@ -28,7 +28,7 @@ api::ReportRow row_of(const dispatch::Reports& reports, const dispatch::Report& 
                      .type = report.report.type,
                      .position = report.is_lost() ? std::nullopt : std::optional(report.report.position),
                      .sender = report.sender,
-                     .robot = report.report.robot ? report.report.robot->text() : "",
+                     .robot = icd::text_of(report.report.robot),
                      .received = report.received,
                      .changed = report.changed,
                      .state = std::string(dispatch::name_of(report.state)),

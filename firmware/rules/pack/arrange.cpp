@@ -203,10 +203,6 @@ bool may_be_turned(const icd::PointCloud2& cloud) {
   });
 }
 
-bool is_turned(const icd::Quaternion& q) {
-  return q.x != 0 || q.y != 0 || q.z != 0;
-}
-
 /// The box that holds all corners of the placed `box`.
 Box placed_box(const Box& box, const icd::Placement& placed) {
   Box all;
@@ -239,7 +235,7 @@ bool shift(double binade, double unit, double low, double high, double& placed, 
 
 std::optional<Shift> shift_of(const icd::PointCloud2& cloud, const Box& box, double unit) {
   const icd::Pose origin = cloud.origin.value_or(icd::Pose{});
-  if (is_turned(origin.orientation) && !may_be_turned(cloud)) return std::nullopt;
+  if (origin.orientation.is_turned() && !may_be_turned(cloud)) return std::nullopt;
   Shift found{.placed = icd::Placement{origin}, .origin = {}};
   const Box all = placed_box(box, found.placed);
   const double binade = 0x1p23 * unit;
@@ -260,7 +256,7 @@ icd::PointCloud2 in_float32(icd::PointCloud2 cloud) {
 /// Works in place, because the new points are not larger.
 void shift_points(Arranged& arranged, const PointLayout& layout, const icd::Placement& placed) {
   const CoordinateReader coordinates{arranged.cloud};
-  const auto axes = axes_of(layout.cloud);
+  const auto axes = icd::axes_of(layout.cloud);
   const std::size_t step = arranged.cloud.point_step, new_step = layout.cloud.point_step;
   std::vector<std::uint8_t> point(step);
   std::size_t end = 0;  // of the new points

@@ -18,13 +18,10 @@ namespace adit::pack {
 /// x, y and z of a point, in metres, in the frame of its cloud.
 using Coordinates = std::array<double, 3>;
 
-/// The offsets of x, y and z in a point of a cloud that check() accepts.
-std::array<std::size_t, 3> axes_of(const icd::PointCloud2& cloud);
-
 /// Reads the coordinates of a cloud's points: float32 or float64 in either byte order (ICD 6.3.2).
 class CoordinateReader {
  public:
-  /// Requires check(cloud).
+  /// Of a cloud with x, y and z (icd::axes_of()).
   explicit CoordinateReader(const icd::PointCloud2& cloud);
 
   /// `point` has point_step bytes.

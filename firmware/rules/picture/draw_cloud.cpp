@@ -15,6 +15,7 @@
 #include "picture/palette.hpp"
 
 namespace adit::picture {
+namespace {
 
 /// Cuts a cloud's data into points, piece by piece. Calls `visit(bytes)` with the first of every `stride`
 /// points.
@@ -57,15 +58,6 @@ Float coordinate(const std::uint8_t* at) {
   return std::bit_cast<Float>(bytes);
 }
 
-namespace {
-
-/// Offsets of x, y and z in a point.
-using Offsets = std::array<std::size_t, 3>;
-
-const icd::FieldSchema& field_of(const icd::PointCloud2& cloud, std::string_view name) {
-  return *std::ranges::find(cloud.fields, name, &icd::FieldSchema::name);
-}
-
 /// Draws points as seen from above.
 class Dabber {
  public:
@@ -94,7 +86,7 @@ class Dabber {
 template <class Float, bool Bigendian>
 icd::Checked<std::size_t> draw_points(const icd::PointCloud2& cloud, const icd::MapData& data, Sheet& sheet,
                                       const Between& between) {
-  const Offsets at{field_of(cloud, "x").offset, field_of(cloud, "y").offset, field_of(cloud, "z").offset};
+  const auto at = icd::axes_of(cloud);
   const std::size_t points = data.raw_size / cloud.point_step;
   PointCutter cutter{cloud.point_step, std::max<std::size_t>(1, (points + kMostPoints - 1) / kMostPoints)};
   Dabber dabber{cloud, sheet};
@@ -113,7 +105,7 @@ icd::Checked<std::size_t> draw_points(const icd::PointCloud2& cloud, const icd::
 
 icd::Checked<std::size_t> draw_cloud(const icd::PointCloud2& cloud, const icd::MapData& data, Sheet& sheet,
                                      const Between& between) {
-  const bool is_double = field_of(cloud, "x").datatype == icd::Datatype::Float64;
+  const bool is_double = icd::field_of(cloud, "x").datatype == icd::Datatype::Float64;
   if (cloud.is_bigendian) {
     return is_double ? draw_points<double, true>(cloud, data, sheet, between)
                      : draw_points<float, true>(cloud, data, sheet, between);

@@ -47,7 +47,7 @@ struct Layer {
 };
 
 inline Layer layer_of(const icd::MapUpdate& map) {
-  return {map.name ? map.name->text() : "", map.is_grid() ? Kind::Grid : Kind::Cloud};
+  return {icd::text_of(map.name), map.is_grid() ? Kind::Grid : Kind::Cloud};
 }
 
 /// The tile that covers x to x + 1 and y to y + 1, in units of kSide pixels of its level.

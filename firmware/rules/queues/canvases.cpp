@@ -52,7 +52,7 @@ bool are_filled(const Cells& part, std::span<const Cells> grids, std::size_t& lo
 Extent extent_of(const icd::OccupancyGrid& grid) {
   const auto& [x, y, z] = grid.origin.position;
   const double width = grid.resolution * (grid.width + 1.0), height = grid.resolution * (grid.height + 1.0);
-  const bool is_turned = !Canvas::is_straight(grid);
+  const bool is_turned = grid.origin.orientation.is_turned();
   const double left = x - (is_turned ? width + height : grid.resolution);
   const double bottom = y - (is_turned ? width + height : grid.resolution);
   const Extent extent{left, bottom, x + width + (is_turned ? height : 0),
@@ -67,14 +67,9 @@ Canvas::Canvas(std::uint64_t number, const icd::OccupancyGrid& lattice, const st
   if (before) before_ = cells_about(lattice_, *before);
 }
 
-bool Canvas::is_straight(const icd::OccupancyGrid& grid) {
-  const auto& [x, y, z, w] = grid.origin.orientation;
-  return x == 0 && y == 0 && z == 0;
-}
-
 bool Canvas::can_draw(const icd::OccupancyGrid& grid) {
   const Cells cells{0, 0, grid.width, grid.height};
-  if (!is_straight(grid) || cells.width > kMostStitchedCells / cells.height) return false;
+  if (grid.origin.orientation.is_turned() || cells.width > kMostStitchedCells / cells.height) return false;
   return (cells.width / CanvasTile::kSide + 2) * (cells.height / CanvasTile::kSide + 2) <= kMostTouched;
 }
 
@@ -143,10 +138,6 @@ void Canvas::forget_before(std::uint64_t when) noexcept {
 
 namespace {
 
-std::string text_of(const std::optional<icd::RobotName>& name) {
-  return name ? name->text() : "";
-}
-
 void add(Canvases::Posted& to, const std::string& name, const Extent& extent) {
   if (to.size() >= Canvases::kMostNames && !to.contains(name)) {
     to[Canvases::kAnyName] = Extent::everywhere();
@@ -184,7 +175,7 @@ void Canvases::lead_to(std::string command_post) {
 
 std::optional<std::pair<std::string, Extent>> Canvases::grows(const icd::MapUpdate& grid) const {
   if (posted_.contains(kAnyName)) return {};
-  const std::string name = text_of(grid.name);
+  const std::string name = icd::text_of(grid.name);
   const Extent extent = extent_of(std::get<icd::OccupancyGrid>(grid.msg));
   const auto before = posted_.find(name);
   if (before == posted_.end() && posted_.size() >= kMostNames) return {{kAnyName, Extent::everywhere()}};
@@ -203,7 +194,8 @@ Canvases::Sent& Canvases::here() {
 void Canvases::heard(std::span<const icd::MapUpdate* const> under_way) {
   Posted newer;
   for (const icd::MapUpdate* map : under_way) {
-    if (map->is_grid()) add(newer, text_of(map->name), extent_of(std::get<icd::OccupancyGrid>(map->msg)));
+    if (map->is_grid())
+      add(newer, icd::text_of(map->name), extent_of(std::get<icd::OccupancyGrid>(map->msg)));
   }
   Sent& sent = here();
   sent.older = std::exchange(sent.newer, std::move(newer));
@@ -232,7 +224,7 @@ const Canvas* Canvases::find(const std::optional<icd::RobotName>& name) const {
 void Canvases::sends(QueuedMap& next) {
   const auto& grid = std::get<icd::OccupancyGrid>(next.map.msg);
   const Extent extent = extent_of(grid);
-  const std::string name = text_of(next.map.name);
+  const std::string name = icd::text_of(next.map.name);
   Sent& sent = here();
   const std::optional<Extent> before = extent_in(sent.all, name);
   add(sent.newer, name, extent);

@@ -28,9 +28,6 @@ class Canvas {
   /// Whether a canvas can hold the grid: it is not rotated, and not too large.
   static bool can_draw(const icd::OccupancyGrid& grid);
 
-  /// Whether the grid's cells lie along the axes of the frame.
-  static bool is_straight(const icd::OccupancyGrid& grid);
-
   std::uint64_t number() const { return number_; }
   /// The grid's cells on this lattice, or nothing if the grid has another lattice.
   std::optional<Cells> cells_of(const icd::OccupancyGrid& grid) const { return cells_in(lattice_, grid); }

@@ -37,8 +37,7 @@ void MapArrival::store(icd::ChunkedBytes bytes, std::function<void(icd::ChunkedB
 icd::Checked<icd::ChunkedBytes> MapArrival::stored() {
   if (!stored_->file || stored_->file->stored_bytes() == 0) return {};
   icd::ChunkedBytes data = stored_->file->stored();
-  if (data.empty())
-    return icd::refuse(icd::Status::ServiceUnavailable, "Adit cannot store this map; send it again later");
+  if (data.empty()) return std::unexpected(not_stored());
   return data;
 }
 
@@ -119,21 +118,16 @@ void MapStore::discard(std::shared_ptr<spool::MapFile> file) {
 }
 
 void MapStore::forget(std::span<const std::uint64_t> numbers) {
-  if (numbers.empty()) return;
-  spool_.forget_ends(numbers);
-  writer_.submit(
-      [&spool = spool_, gone = std::vector(numbers.begin(), numbers.end())] {
-        for (const std::uint64_t number : gone) spool.forget(number);
-      },
-      [] {});
+  forget(queues::Replaced{.numbers = {numbers.begin(), numbers.end()}});
 }
 
 void MapStore::forget(queues::Replaced replaced) {
-  if (!replaced.bounds) return forget(std::span<const std::uint64_t>(replaced.numbers));
+  if (replaced.numbers.empty() && !replaced.bounds) return;
   spool_.forget_ends(replaced.numbers);
   writer_.submit(
       [&spool = spool_, replaced = std::move(replaced)] {
-        if (!spool.keep_bounds(replaced.bounds->first, replaced.bounds->second)) return;
+        const auto& bounds = replaced.bounds;
+        if (bounds && !spool.keep_bounds(bounds->first, bounds->second)) return;
         for (const std::uint64_t number : replaced.numbers) spool.forget(number);
       },
       [] {});

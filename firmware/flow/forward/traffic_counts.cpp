@@ -5,14 +5,6 @@
 #include "icd/sentence.hpp"
 
 namespace adit::forward {
-namespace {
-
-const char* name_of(Kind kind) {
-  static constexpr const char* kNames[] = {"grid", "cloud", "state", "markers"};
-  return kNames[static_cast<std::size_t>(kind)];
-}
-
-}  // namespace
 
 Traffic traffic_of(const icd::MapUpdate& update) {
   return {update.is_grid() ? Kind::Grid : Kind::Cloud, icd::text_of(update.name)};
@@ -23,7 +15,7 @@ api::ActivityRow& TrafficCounts::row(const Traffic& traffic) {
   if (known != rows_.end()) return known->second;
   const bool full = rows_.size() >= kMostRows;
   api::ActivityRow& made = rows_[full ? Traffic{traffic.kind, "(others)"} : traffic];
-  made.kind = name_of(traffic.kind);
+  made.kind = kKindWords[static_cast<std::size_t>(traffic.kind)];
   made.robot = full ? "(others)" : traffic.robot;
   return made;
 }

@@ -5,6 +5,7 @@
 #include <deque>
 #include <functional>
 #include <map>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -26,8 +27,10 @@ enum class Kind : std::uint8_t { Grid, Cloud, State, Markers };
 /// Throttled and Failed messages are retried.
 enum class DeliveryFailure : std::uint8_t { Throttled, Failed, Refused };
 
-/// Kinds whose times survive a restart, in the API's words; the first ones of Kind.
-inline constexpr std::string_view kHeardKinds[] = {"grid", "cloud", "state"};
+/// Each Kind in the API's words.
+inline constexpr std::string_view kKindWords[] = {"grid", "cloud", "state", "markers"};
+/// The kinds whose times survive a restart.
+inline constexpr auto kHeardKinds = std::span(kKindWords).first<3>();
 
 /// The time of day of a stamp, at most now. NaN for NaN.
 inline api::Time time_of(const loop::Loop& loop, icd::Stamp stamp) {

@@ -2,7 +2,6 @@
 
 #include <cjson/cJSON.h>
 
-#include <cmath>
 #include <memory>
 #include <optional>
 
@@ -12,7 +11,7 @@
 #include "codec/json_value.hpp"
 #include "codec/value.hpp"
 #include "codec/write.hpp"
-#include "icd/sentence.hpp"
+#include "icd/text.hpp"
 
 namespace adit::codec {
 namespace {
@@ -24,7 +23,7 @@ std::size_t plain_number(std::string_view text) {
   JsonNumber grammar;
   const std::size_t length = grammar.next(text);
   const bool whole = grammar.complete() && text.substr(0, length).find_first_of("eE") == text.npos;
-  const bool ended = length == text.size() || text[length] < '0' || text[length] > '9';
+  const bool ended = length == text.size() || !icd::is_digit(text[length]);
   return whole && ended && length <= kShort ? length : 0;
 }
 
@@ -39,7 +38,7 @@ bool is_plain(std::string_view text) {
       do {
         if (!printable(++at) || text[at] == '\\') return false;
       } while (text[at] != '"');
-    } else if (c == '-' || (c >= '0' && c <= '9')) {
+    } else if (c == '-' || icd::is_digit(c)) {
       const std::size_t length = plain_number(text.substr(at));
       if (length == 0) return false;
       at += length - 1;
@@ -101,7 +100,7 @@ struct Writer {
   void operator()(bool value) const { text += value ? "true" : "false"; }
   void operator()(std::int64_t value) const { text += std::to_string(value); }
   void operator()(std::uint64_t value) const { text += std::to_string(value); }
-  void operator()(double value) const { text += std::isfinite(value) ? icd::real_text(value) : "null"; }
+  void operator()(double value) const { text += json_number(value); }
   void operator()(const std::string& value) const { text += json_string(value); }
   void operator()(const Value::Bytes&) const { text += "null"; }
   void operator()(Value::UnderTag) const { text += "null"; }

@@ -7,6 +7,8 @@
 #include <string>
 #include <system_error>
 
+#include "icd/text.hpp"
+
 namespace adit::codec {
 
 std::size_t JsonNumber::next(std::string_view in) {
@@ -16,13 +18,13 @@ std::size_t JsonNumber::next(std::string_view in) {
     ++at;
     const bool is_among_digits =
         place_ == Place::Integer || place_ == Place::Fraction || place_ == Place::Exponent;
-    if (is_among_digits) at = std::find_if_not(at, end, is_digit);
+    if (is_among_digits) at = std::find_if_not(at, end, icd::is_digit);
   }
   return static_cast<std::size_t>(at - in.data());
 }
 
 bool JsonNumber::accept(char c) {
-  const bool digit = c >= '0' && c <= '9';
+  const bool digit = icd::is_digit(c);
   const auto go = [this](Place place) {
     place_ = place;
     return true;

@@ -15,7 +15,7 @@ namespace adit::codec {
 namespace {
 
 bool is_hex(char c) {
-  return is_digit(c) || (c >= 'a' && c <= 'f') || (c >= 'A' && c <= 'F');
+  return icd::is_digit(c) || (c >= 'a' && c <= 'f') || (c >= 'A' && c <= 'F');
 }
 
 /// Requires four hex digits.
@@ -108,7 +108,7 @@ namespace {
 constexpr std::size_t kSmallText = 1024;
 
 bool starts_number(char c) {
-  return c == '-' || is_digit(c);
+  return c == '-' || icd::is_digit(c);
 }
 
 }  // namespace

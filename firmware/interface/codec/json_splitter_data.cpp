@@ -5,6 +5,7 @@
 
 #include "codec/json_splitter.hpp"
 #include "codec/splitter.hpp"
+#include "icd/text.hpp"
 #include "icd/try.hpp"
 
 namespace adit::codec {
@@ -70,7 +71,7 @@ icd::Checked<std::size_t> JsonSplitter::number(std::string_view in) {
 
 icd::Checked<void> JsonSplitter::number_ended(std::optional<char> next) {
   if (!number_.grammar.complete()) return std::unexpected(fault_at(number_.at, "a number that is cut short"));
-  if (number_.grammar.zero() && next >= '0' && next <= '9') {
+  if (number_.grammar.zero() && next && icd::is_digit(*next)) {
     return std::unexpected(fault_at(number_.at, "a number with a leading zero"));
   }
   if (auto taken = diverted_ == Diverted::No ? keep_number() : divert_number(); !taken) return taken;

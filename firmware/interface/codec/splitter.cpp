@@ -6,6 +6,7 @@
 #include "codec/json_number.hpp"
 #include "icd/require.hpp"
 #include "icd/sentence.hpp"
+#include "icd/text.hpp"
 
 namespace adit::codec {
 namespace {
@@ -84,7 +85,7 @@ std::optional<Element> element(std::string_view text, std::size_t at) {
   constexpr std::size_t kMostDigits = 3;
   unsigned value = 0;
   std::size_t end = at;
-  while (end < text.size() && end < at + kMostDigits && is_digit(text[end])) {
+  while (end < text.size() && end < at + kMostDigits && icd::is_digit(text[end])) {
     value = 10 * value + static_cast<unsigned>(text[end++] - '0');
   }
   const bool leading_zero = end > at + 1 && text[at] == '0';

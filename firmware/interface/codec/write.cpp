@@ -17,12 +17,6 @@
 namespace adit::codec {
 namespace {
 
-/// The fewest digits that preserve the double, in the ICD's form of <float>: 11.0, not 11. Messages never
-/// hold NaN or infinity; if one did, it would become null, and the server would reject a needed field.
-std::string json_number(double number) {
-  return std::isfinite(number) ? icd::real_text(number) : "null";
-}
-
 /// Bytes of the first UTF-8 character of `text`, or 0.
 std::size_t character_size(std::string_view text) {
   Utf8Checker checker;
@@ -59,6 +53,10 @@ std::string write_artifact_report(const icd::ArtifactReport& report) {
       "{\"x\": ", json_number(report.position.x), ", \"y\": ", json_number(report.position.y),
       ", \"z\": ", json_number(report.position.z), ", \"type\": ", json_string(report.type),
       report.robot ? icd::sentence(", \"name\": ", json_string(report.robot->text())) : "", "}");
+}
+
+std::string json_number(double number) {
+  return std::isfinite(number) ? icd::real_text(number) : "null";
 }
 
 std::string json_string(std::string_view text) {

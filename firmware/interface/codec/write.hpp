@@ -34,6 +34,10 @@ icd::ChunkedBytes write_state_update(const icd::StateUpdate& update);
 icd::ChunkedBytes write_markers_update(const icd::MarkersUpdate& update);
 std::string write_artifact_report(const icd::ArtifactReport& report);
 
+/// The fewest digits that preserve the double, in the ICD's form of <float>: 11.0, not 11. "null" for NaN and
+/// infinity, which messages never hold; the server would reject a needed field.
+std::string json_number(double number);
+
 /// `text` as a quoted JSON string (the body of error replies, ICD 4). Bytes that are not UTF-8 become U+FFFD.
 std::string json_string(std::string_view text);
 

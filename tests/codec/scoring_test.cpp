@@ -240,9 +240,7 @@ TEST(ReadRunStatus, NamesTheFault) {
 }
 
 TEST(ReadReportReply, AcceptsTheExampleOfTheIcdAndOfServers) {
-  const icd::ReportReply expected{.id = 1,
-                                  .run = "1",
-                                  .team = "subt",
+  const icd::ReportReply expected{.run = "1",
                                   .run_clock = 721.4,
                                   .report_status = "scored",
                                   .score_change = 1,
@@ -259,7 +257,7 @@ TEST(ReadReportReply, AcceptsTheExampleOfTheIcdAndOfServers) {
 }
 
 TEST(ReadReportReply, AcceptsMissingOptionalMembers) {
-  const icd::ReportReply least{.run = "", .team = "", .report_status = "admin stop", .score_change = 0};
+  const icd::ReportReply least{.run = "", .report_status = "admin stop", .score_change = 0};
   EXPECT_EQ(read_report_reply(R"({"report_status": "admin stop", "score_change": 0})"), least);
   EXPECT_EQ(read_report_reply(R"({"id": "a-7", "run": null, "team": 5.0e300, "run_clock": null,
                                   "report_status": "admin stop", "score_change": 0.0})")

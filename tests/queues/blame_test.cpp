@@ -179,7 +179,7 @@ TEST(MapQueueOnTrial, KeepsLaterGridsOfItsNameBehindItAtFirst) {
   queue.add(2, grid_update("ugv1", grid(0.25, 0.25, 10, 10)),
             at(1));  // overlaps it without forming a rectangle
   Blame blame;
-  for (int i = 0; i < MapQueue::kInPlace; ++i) {
+  for (int i = 0; i < SenderQueue::kInPlace; ++i) {
     auto taken = queue.take(at(10 * i));
     ASSERT_EQ(taken->updates.front(), 1) << i;
     blame.failed("ugv1", taken->trial, at(10 * i));

@@ -88,9 +88,7 @@ std::optional<icd::ArtifactReport> report_in(const Field& body) {
 
 icd::ReportReply reply_of(const Field& body) {
   icd::ReportReply reply;
-  if (const Field id = body.member("id"); id.is<std::int64_t>()) reply.id = id.whole<std::int64_t>();
   reply.run = read_name(body.member("run"));
-  reply.team = read_name(body.member("team"));
   if (const Field clock = body.member("run_clock"); has_number(clock)) reply.run_clock = clock.number();
   reply.report_status = body.member("report_status").text();
   reply.score_change = body.member("score_change").whole<std::int32_t>();

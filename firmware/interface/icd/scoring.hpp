@@ -40,9 +40,7 @@ struct RunStatus {
 /// The members that Adit reads of an answer to POST /api/artifact_reports with 200 or 201 (ICD 5.2). The
 /// client gets the Command Post's original bytes.
 struct ReportReply {
-  std::int64_t id = 0;
   std::string run;  // as text, even if the Command Post sent a number
-  std::string team;
   double run_clock = 0;
   std::string report_status;  // "scored", "admin stop", "run not started", ...
   std::int64_t score_change = 0;

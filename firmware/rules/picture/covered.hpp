@@ -40,7 +40,6 @@ class CoveredArea {
   void update(const Changes& changes, const Between& between = [] {});
   /// The state after the last update(), which must have returned.
   Covered now() const;
-  std::uint64_t version() const { return version_; }
 
  private:
   struct Counts {

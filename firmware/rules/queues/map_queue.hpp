@@ -207,8 +207,6 @@ class MapQueue {
   void restore(std::uint64_t number, icd::MapUpdate map, Instant now,
                std::optional<icd::GridBounds> bounds = {}, PackingRule packing = PackingRule::Any);
 
-  static constexpr int kInPlace = SenderQueue::kInPlace;
-
   /// Takes the next map to be sent out of the queue. Without `now`, maps that rest are taken as well.
   std::optional<QueuedMap> take(Instant now = Instant::max());
 

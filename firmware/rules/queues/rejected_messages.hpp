@@ -56,7 +56,6 @@ class RejectedMessages {
   std::optional<RejectedMessage> take(std::uint64_t number);
   /// Oldest first.
   const std::deque<RejectedMessage>& items() const { return items_; }
-  std::uint64_t last_number() const { return numbers_; }
 
  private:
   std::uint64_t numbers_ = 0;

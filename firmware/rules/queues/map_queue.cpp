@@ -63,9 +63,7 @@ Replaced SenderQueue::add(QueuedMap added) {
   Replaced replaced;
   for (auto it = gone; it != waiting_.end(); ++it) {
     bytes_ -= bytes_held(*it);
-    add_own_numbers(replaced.numbers, *it);
-    take_bounds(added, *it, replaced);
-    take_over(added, std::move(*it));
+    queues::replace(added, std::move(*it), replaced);
   }
   waiting_.erase(gone, waiting_.end());
   append(std::move(added));
@@ -129,19 +127,16 @@ QueuedMap SenderQueue::take(Instant now, std::size_t merge_bytes, Canvases& canv
 }
 
 void SenderQueue::merge_followers(QueuedMap& next, std::size_t merge_bytes, std::vector<bool>& leaves) const {
-  const icd::PointCloud2* first = loose_cloud_in(next.map);
-  for (std::size_t i = 0; i < waiting_.size() && first != nullptr; ++i) {
+  for (std::size_t i = 0; i < waiting_.size(); ++i) {
     const QueuedMap& other = waiting_[i];
     if (leaves[i]) continue;
     if (other.trial.failures > 0) continue;  // a map on trial goes alone
-    const icd::PointCloud2* cloud = loose_cloud_in(other.map);
-    const bool fits = cloud != nullptr && may_join(other) && mergeable(*first, *cloud) &&
+    const bool fits = may_join(other) && can_merge(next.map, other.map) &&
                       next.map.data.raw_size + other.map.data.raw_size <= merge_bytes;
     if (!fits) return;
     leaves[i] = true;
     join(next, other);
     next.map = merge(std::move(next.map), other.map);
-    first = loose_cloud_in(next.map);
   }
 }
 
@@ -218,10 +213,8 @@ Replaced SenderQueue::put_back(QueuedMap map) {
     return {};
   }
   Replaced replaced;
-  add_own_numbers(replaced.numbers, map);
   const std::size_t before = bytes_held(*newer);
-  take_bounds(*newer, map, replaced);
-  take_over(*newer, std::move(map));
+  queues::replace(*newer, std::move(map), replaced);
   bytes_ += bytes_held(*newer) - before;
   return replaced;
 }
@@ -258,14 +251,13 @@ void SenderQueue::step_forward() {
 std::optional<Successive> SenderQueue::to_compare() const {
   if (waiting_.size() < 2 || waiting_.back().is_compared) return {};
   const QueuedMap &older = waiting_[waiting_.size() - 2], &newer = waiting_.back();
-  const auto *const before = loose_cloud_in(older.map), *const cloud = loose_cloud_in(newer.map);
-  if (before == nullptr || cloud == nullptr || !mergeable(*before, *cloud)) return {};
+  if (!can_merge(older.map, newer.map)) return {};
   return Successive{.sender = Sender::of(newer.map),
                     .older_updates = older.updates,
                     .newer_updates = newer.updates,
                     .older = older.map.data,
                     .newer = newer.map.data,
-                    .point_step = cloud->point_step};
+                    .point_step = std::get<icd::PointCloud2>(newer.map.msg).point_step};
 }
 
 void SenderQueue::keep_both(const Successive& two) {
@@ -281,13 +273,12 @@ std::vector<std::uint64_t> SenderQueue::replace(const Successive& two) {
       older->updates == two.older_updates && older->map.data.raw_size == two.older.raw_size &&
       newer->updates == two.newer_updates && newer->map.data.raw_size == two.newer.raw_size;
   if (!are_those) return {};
-  std::vector<std::uint64_t> replaced;
-  add_own_numbers(replaced, *older);
+  Replaced replaced;
   bytes_ -= bytes_held(*older) + bytes_held(*newer);
-  take_over(*newer, std::move(*older));
+  queues::replace(*newer, std::move(*older), replaced);
   bytes_ += bytes_held(*newer);
   waiting_.erase(older);
-  return replaced;
+  return replaced.numbers;
 }
 
 bool SenderQueue::replaces_any(const QueuedMap& map) const {
@@ -308,8 +299,7 @@ bool SenderQueue::joins(const QueuedMap& map) const {
   if (map.map.is_grid())
     return cells_in(std::get<icd::OccupancyGrid>(last.msg), std::get<icd::OccupancyGrid>(map.map.msg))
         .has_value();
-  const auto *const before = loose_cloud_in(last), *const cloud = loose_cloud_in(map.map);
-  return before != nullptr && cloud != nullptr && mergeable(*before, *cloud);
+  return can_merge(last, map.map);
 }
 
 std::optional<Instant> SenderQueue::oldest() const {

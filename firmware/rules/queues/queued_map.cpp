@@ -32,12 +32,13 @@ std::size_t row_at(const icd::OccupancyGrid& grid, const icd::Point& point) {
   return row >= 0 && row < grid.height ? static_cast<std::size_t>(row) : 0;
 }
 
-}  // namespace
-
+/// Null for a grid and for packed points.
 const icd::PointCloud2* loose_cloud_in(const icd::MapUpdate& map) {
   if (map.data.compression != icd::Compression::None) return nullptr;
   return std::get_if<icd::PointCloud2>(&map.msg);
 }
+
+}  // namespace
 
 bool Cuts::check(std::size_t now_at, std::uint64_t now_delivered) {
   const std::size_t apart = std::max(at, now_at) - std::min(at, now_at);
@@ -191,6 +192,8 @@ void add_own_numbers(std::vector<std::uint64_t>& numbers, const QueuedMap& of) {
   for (const QueuedMap& part : of.parts) numbers.push_back(part.updates.back());
 }
 
+namespace {
+
 /// A stitched grid's parts may be queued singly later, so one of them also takes the bounds.
 void take_bounds(QueuedMap& to, const QueuedMap& from, Replaced& replaced) {
   if (!to.map.is_grid()) return;
@@ -206,6 +209,8 @@ void take_bounds(QueuedMap& to, const QueuedMap& from, Replaced& replaced) {
     replaced.bounds = {heir->updates.back(), *heir->bounds};
 }
 
+}  // namespace
+
 std::optional<Replaced> absorb(QueuedMap& to, const QueuedMap& from) {
   if (!replaces(to, from)) return {};
   Replaced replaced;
@@ -213,7 +218,9 @@ std::optional<Replaced> absorb(QueuedMap& to, const QueuedMap& from) {
   return replaced;
 }
 
-void take_over(QueuedMap& to, QueuedMap from) {
+void replace(QueuedMap& to, QueuedMap from, Replaced& replaced) {
+  add_own_numbers(replaced.numbers, from);
+  take_bounds(to, from, replaced);
   if (to.map.is_grid() && to.piece.size == 0 && from.piece.at > 0) {
     const auto& grid = std::get<icd::OccupancyGrid>(to.map.msg);
     const auto& older = std::get<icd::OccupancyGrid>(from.map.msg);
@@ -237,6 +244,11 @@ void inherit(Trial& to, const Trial& from) {
 bool mergeable(const icd::PointCloud2& a, const icd::PointCloud2& b) {
   return a.fields == b.fields && a.point_step == b.point_step && a.is_bigendian == b.is_bigendian &&
          a.origin.value_or(icd::Pose{}) == b.origin.value_or(icd::Pose{});
+}
+
+bool can_merge(const icd::MapUpdate& a, const icd::MapUpdate& b) {
+  const auto *const one = loose_cloud_in(a), *const other = loose_cloud_in(b);
+  return one != nullptr && other != nullptr && mergeable(*one, *other);
 }
 
 icd::MapUpdate merge(icd::MapUpdate older, const icd::MapUpdate& newer) {

@@ -26,6 +26,8 @@ struct Sender {
 
 /// Whether one message can have the points of both: fields, point_step, byte order and origin are the same.
 bool mergeable(const icd::PointCloud2& a, const icd::PointCloud2& b);
+/// The same of two maps. False for grids and for packed points.
+bool can_merge(const icd::MapUpdate& a, const icd::MapUpdate& b);
 
 /// One update with older's points, then newer's, and newer's header. Shares their bytes. Requires mergeable
 /// clouds of one name with uncompressed data.
@@ -119,16 +121,13 @@ struct Replaced {
   std::optional<std::pair<std::uint64_t, icd::GridBounds>> bounds{};
 };
 
-/// `to` stands for `from`, and takes its bounds. If these have to be stored, they are in `replaced` then.
-void take_bounds(QueuedMap& to, const QueuedMap& from, Replaced& replaced);
-
 /// `to` stands for `from`, which is not queued. Nothing: `to` is older, or does not contain it.
 std::optional<Replaced> absorb(QueuedMap& to, const QueuedMap& from);
 
-/// `to` replaces `from`, and takes its updates and age. If `from` is a grid in pieces, `to` begins with the
-/// rows that `from` would have sent next, so that each row is sent even if grids are replaced faster than
-/// their pieces are sent. Call take_bounds() first.
-void take_over(QueuedMap& to, QueuedMap from);
+/// `to` replaces `from`, which is added to `replaced`, and takes its updates, age and bounds. If `from` is a
+/// grid in pieces, `to` begins with the rows that `from` would have sent next, so that each row is sent even
+/// if grids are replaced faster than their pieces are sent.
+void replace(QueuedMap& to, QueuedMap from, Replaced& replaced);
 
 /// Unless `to` has failed itself, it takes the strikes and the rest of `from`, but never the last two
 /// strikes: it must fail itself to be rejected.
@@ -156,8 +155,5 @@ bool next_piece(QueuedMap& map);
 
 /// Whether it may be merged or stitched with others.
 bool may_join(const QueuedMap& map);
-
-/// The cloud, if its points can be joined to others; null for a grid and for packed points.
-const icd::PointCloud2* loose_cloud_in(const icd::MapUpdate& map);
 
 }  // namespace adit::queues

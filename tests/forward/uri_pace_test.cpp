@@ -26,7 +26,21 @@ TEST(UriPace, StampsDoNotGoBackAfterARestart) {
   of_maps.carry_on(carried, loop.now());
   EXPECT_EQ(pace.next_stamp(8), 10);
   EXPECT_EQ(pace.next_stamp(12), 12);
+  pace.carry_on(carried, loop.now());
+  EXPECT_EQ(pace.next_stamp(11), 12);
   EXPECT_EQ(of_maps.next_stamp(8), 8) << "each URI has its own order";
+}
+
+TEST(UriPace, StampsNeverGoBack) {
+  const host::Folder folder;
+  loop::Loop loop;
+  std::mt19937_64 random{1};
+  journal::Journal journal(loop, folder.path() + "/journal");
+  UriPace pace(icd::Uri::StateUpdate, 1, random, journal);
+  EXPECT_EQ(pace.next_stamp(10), 10);
+  EXPECT_EQ(pace.next_stamp(10.5), 10.5);
+  EXPECT_EQ(pace.next_stamp(9), 10.5);
+  EXPECT_EQ(pace.next_stamp(10.6), 10.6);
 }
 
 TEST(UriPace, ObeysTheRetryAfterOfA503) {

@@ -283,21 +283,5 @@ TEST(StampShift, ForgetsTheLongestSilentAddressAfterARestart) {
   EXPECT_EQ(next.shift(at(1), 6.0, kNow + 9), kNow + 9);
 }
 
-TEST(StampOrder, ContinuesFromTheLastStampAfterARestart) {
-  StampOrder order;
-  order.carry_on(10);
-  EXPECT_EQ(order.next(9), 10);
-  order.carry_on(8);
-  EXPECT_EQ(order.next(9.5), 10);
-}
-
-TEST(StampOrder, NeverGoesBack) {
-  StampOrder order;
-  EXPECT_EQ(order.next(10), 10);
-  EXPECT_EQ(order.next(10.5), 10.5);
-  EXPECT_EQ(order.next(9), 10.5);
-  EXPECT_EQ(order.next(10.6), 10.6);
-}
-
 }  // namespace
 }  // namespace adit::queues

@@ -5,10 +5,10 @@
 #include <optional>
 #include <random>
 
+#include "icd/mapping.hpp"
 #include "icd/uri.hpp"
 #include "journal/journal.hpp"
 #include "pace/rate_limit.hpp"
-#include "queues/stamps.hpp"
 #include "settings/settings.hpp"
 #include "uplink/connection.hpp"
 
@@ -49,7 +49,7 @@ class UriPace {
     const auto learned = carried.paces().find(uri_);
     if (learned != carried.paces().end()) rate_.carry_on(learned->second, now);
     const auto last = carried.stamps().find(uri_);
-    if (last != carried.stamps().end()) stamps_.carry_on(last->second);
+    if (last != carried.stamps().end()) last_stamp_ = std::max(last_stamp_, last->second);
   }
 
   /// Not before the next request of `other`.
@@ -70,7 +70,7 @@ class UriPace {
 
   /// `stamp`, or the last stamp if that is later (promise 5). Call keep_stamp() with the message's last
   /// stamp.
-  icd::Stamp next_stamp(icd::Stamp stamp) { return stamps_.next(stamp); }
+  icd::Stamp next_stamp(icd::Stamp stamp) { return last_stamp_ = std::max(last_stamp_, stamp); }
   void keep_stamp(icd::Stamp last) { journal_.stamped(uri_, last); }
 
   /// Call before it leaves, so that the journal has it if the process ends.
@@ -129,7 +129,7 @@ class UriPace {
   icd::Uri uri_;
   journal::Journal& journal_;
   pace::RateLimit rate_;
-  queues::StampOrder stamps_;
+  icd::Stamp last_stamp_ = 0;
   pace::Backoff backoff_;
   pace::Instant retry_at_{};
   std::mt19937_64& random_;

@@ -280,8 +280,4 @@ void StampShift::given(const Stamper& stamper, icd::Stamp stamp) {
     clock->latest = std::max(clock->latest, clock->theirs + (stamp - clock->ours));
 }
 
-icd::Stamp StampOrder::next(icd::Stamp stamp) {
-  return last_ = std::max(last_, stamp);
-}
-
 }  // namespace adit::queues

@@ -57,12 +57,13 @@ class OvertakenMaps {
     std::uint64_t ended = 0;
     icd::GridBounds bounds = {};
   };
-  std::map<std::string, std::vector<Accepted>> clients_;  // by address
   struct Stored {
     Upload upload;
     bool is_overtaken = false;
   };
-  std::vector<Stored> stored_;  // now
+
+  std::map<std::string, std::vector<Accepted>> clients_;  // by address
+  std::vector<Stored> stored_;                            // now
 };
 
 /// Rectangles of the cells of `older` that no newer grid covers. A cell is covered if its middle is
@@ -197,18 +198,6 @@ class StampShift {
   std::map<std::string, Address> addresses_;
   std::vector<Stamper> changed_;
   std::uint64_t uses_ = 0;
-};
-
-/// Keeps the stamps that are sent to one URI from going back.
-class StampOrder {
- public:
-  /// `stamp`, or the previous result if that is later.
-  icd::Stamp next(icd::Stamp stamp);
-  /// `last`: the last stamp of an earlier process.
-  void carry_on(icd::Stamp last) { last_ = std::max(last_, last); }
-
- private:
-  icd::Stamp last_ = 0;
 };
 
 }  // namespace adit::queues

@@ -211,7 +211,7 @@ void AcceptedMaps::send_again(icd::MapUpdate update, std::function<bool(bool kep
                               const std::optional<icd::GridBounds>& bounds, int faults) {
   queues::QueuedMap back = waiting_again(store_.next_again(), update, bounds, {.faults = faults});
   auto absorbed = queue_.absorb(back);
-  if (!absorbed) absorbed = absorb_(back);
+  if (!absorbed) absorbed = prepared_.absorb(back);
   if (absorbed) {
     store_.forget(*std::move(absorbed));
     done(true);
@@ -239,7 +239,7 @@ void AcceptedMaps::stored_again(MapStore::Stored& stored, queues::QueuedMap back
   back.updates = {stored.number};
   back.accepted = loop_.now();
   if (!is_wanted) return store_.forget({&stored.number, 1});
-  if (auto absorbed = absorb_(back)) {
+  if (auto absorbed = prepared_.absorb(back)) {
     absorbed->numbers.push_back(stored.number);
     return store_.forget(*std::move(absorbed));
   }

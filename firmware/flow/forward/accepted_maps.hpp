@@ -1,6 +1,7 @@
 #pragma once
 
 #include "forward/map_store.hpp"
+#include "forward/prepared_maps.hpp"
 #include "forward/traffic_counts.hpp"
 #include "journal/journal.hpp"
 #include "pack/stitch.hpp"
@@ -18,12 +19,10 @@ class AcceptedMaps {
   /// queued ones are accepted.
   static constexpr std::size_t kMostMaps = 20'000, kMostWithJoined = 40'000;
 
-  /// `queued`: called after each change of `queue`. `absorb`: PreparedMaps::absorb(). All
-  /// outlive this.
+  /// `queued`: called after each change of `queue`. All outlive this.
   AcceptedMaps(loop::Loop& loop, loop::Workers& workers, const settings::Settings& settings,
                TrafficCounts& counts, journal::Journal& journal, queues::MapQueue& queue, MapStore& store,
-               std::function<void()> queued,
-               std::function<std::optional<queues::Replaced>(const queues::QueuedMap&)> absorb)
+               PreparedMaps& prepared, std::function<void()> queued)
       : loop_(loop),
         workers_(workers),
         settings_(settings),
@@ -31,8 +30,8 @@ class AcceptedMaps {
         journal_(journal),
         queue_(queue),
         store_(store),
-        queued_(std::move(queued)),
-        absorb_(std::move(absorb)) {}
+        prepared_(prepared),
+        queued_(std::move(queued)) {}
 
   /// Maps::carry_on(), restore(), take() and send_again().
   void carry_on(const journal::Carried& carried, bool ran_before);
@@ -90,8 +89,8 @@ class AcceptedMaps {
   queues::OvertakenMaps overtaken_;
   std::vector<std::shared_ptr<Arrived>> waiting_;  // for others that are being stored
   MapStore& store_;
+  PreparedMaps& prepared_;
   std::function<void()> queued_;
-  std::function<std::optional<queues::Replaced>(const queues::QueuedMap&)> absorb_;
   bool are_grids_told_ = true;  // the journal has the areas of grids
   bool comparing_ = false;      // a worker compares two clouds
   bool stopping_ = false;

@@ -55,11 +55,9 @@ Maps::Maps(loop::Loop& loop, uplink::Servers& servers, loop::Workers& workers, l
       wake_(loop.timer([this] { pump(); })),
       queue_(settings.queues.merge_bytes),
       store_(writer, spool),
-      accepted_(
-          loop, workers, settings, counts, journal, queue_, store_, [this] { pump(); },
-          [this](const queues::QueuedMap& back) { return prepared_.absorb(back); }),
       prepared_(loop, workers, settings, counts, pace_, queue_, store_,
-                [this](bool is_done) { packed(is_done); }) {
+                [this](bool is_done) { packed(is_done); }),
+      accepted_(loop, workers, settings, counts, journal, queue_, store_, prepared_, [this] { pump(); }) {
   take_settings();
   queue_.canvases().lead_to(channel_.address());
 }
@@ -87,7 +85,7 @@ void Maps::put_aside(spool::Spool::KeptMap kept) {
   counts_.accepted(traffic, bytes, time_of(loop_, kept.map.header().stamp.value_or(loop_.stamp_now())));
   counts_.not_taken(traffic, DeliveryFailure::Failed, 0, why);
   rejected_.add(std::move(kept.map), 0, why, bytes,
-                {.let_go = [this, number = kept.number] { forget({&number, 1}); }}, kept.bounds,
+                {.let_go = [this, number = kept.number] { store_.forget({&number, 1}); }}, kept.bounds,
                 kept.ends.faults);
 }
 
@@ -118,7 +116,8 @@ void Maps::pump() noexcept {
     blame_ = {};
     ahead_ = {};
     prepared_.slot().forget_sizes();
-    leads_elsewhere();
+    queue_.canvases().lead_to(channel_.address());
+    prepared_.pack_again();
   }
   if (stopping_ || prepared_.is_packing() || !channel_.has_token()) return;
   go_on();
@@ -224,7 +223,7 @@ void Maps::taken(const Place& sent, const uplink::Answered& answered) {
   if (sent->waiting.again) map.header().stamp = sent->waiting.again;
   // First: the writer works in order.
   for (const icd::MapUpdate* const said : queues::said_by(sent->waiting)) rejected_.taken(*said);
-  forget(sent->waiting.updates);
+  store_.forget(sent->waiting.updates);
   counts_.forwarded(traffic_of(map), updates, sent->packed.body.size(), answered.status, loop_.wall_now());
   if (!map.is_grid()) counts_.rounded_to(traffic_of(map), sent->packed.precision);
   taken_(std::move(map));
@@ -334,7 +333,7 @@ void Maps::give_up(const Place& sent, int status, const std::string& sentence) {
   if (waiting.again) waiting.map.header().stamp = waiting.again;
   if (waiting.parts.empty()) {
     rejected_.add(waiting.map, status, sentence, waiting.map.data.bytes.size(),
-                  {.let_go = [this, numbers = waiting.updates] { forget(numbers); }}, waiting.bounds);
+                  {.let_go = [this, numbers = waiting.updates] { store_.forget(numbers); }}, waiting.bounds);
     return prepared_.leaves(sent);
   }
   if (sent == prepared_.first()) prepared_.put_back_following();
@@ -364,11 +363,6 @@ void Maps::change_run(dispatch::NextMap next) {
   canvases.change_run();
 }
 
-void Maps::leads_elsewhere() {
-  queue_.canvases().lead_to(channel_.address());
-  prepared_.pack_again();
-}
-
 void Maps::link_is_back() {
   pace_.link_is_back();
   channel_.hurry();
@@ -394,8 +388,6 @@ std::optional<loop::Instant> Maps::waits_since(const Traffic& traffic) const {
 
 namespace {
 
-/// How the map before leaves is looked at no more often.
-constexpr std::chrono::milliseconds kLookAtLeaving{10};
 /// A connection for the next map is made so long before it may start, and the end of the one before is looked
 /// for so often from then on: the link is idle in between.
 constexpr std::chrono::milliseconds kGetReady{50}, kLookForEnd{2};
@@ -417,7 +409,7 @@ void Maps::go_ahead(loop::Instant now) {
   PreparedMap& first = *prepared_.first();
   const std::size_t size = first.packed.body.size(), left = size - std::min(size, channel_.sent_of_it());
   if (!first.arrived && left > 0)
-    return wake_.call_at(now + std::max<loop::Duration>(prepared_.slot().transfer(left) / 2, kLookAtLeaving));
+    return wake_.call_at(now + std::max<loop::Duration>(prepared_.slot().transfer(left) / 2, kLookAtSending));
   if (now < starts() - kGetReady) return wake_.call_at(starts() - kGetReady);
   channel_.get_ready();
   const auto arrived = first.arrived ? std::nullopt : channel_.has_arrived();

@@ -89,9 +89,7 @@ class Maps {
   using Place = PreparedMaps::Place;
 
   void take_settings();
-  void leads_elsewhere();
   bool is_heard_from() const;
-  void forget(std::span<const std::uint64_t> numbers) { store_.forget(numbers); }
   void pump() noexcept;
   void go_on();
   void packed(bool is_done);
@@ -124,8 +122,8 @@ class Maps {
 
   queues::MapQueue queue_;
   MapStore store_;
-  AcceptedMaps accepted_;
   PreparedMaps prepared_;
+  AcceptedMaps accepted_;
   queues::Pipelining ahead_;
   queues::Blame blame_;
   bool stopping_ = false;

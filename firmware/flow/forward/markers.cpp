@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "codec/write.hpp"
-#include "forward/telemetry.hpp"
 #include "icd/sentence.hpp"
 
 namespace adit::forward {
@@ -281,7 +280,7 @@ bool Markers::is_to_blame(const queues::QueuedMarkers& markers, bool may_reject)
   if (markers.is_ahead) return false;
   if (markers.update.markers.size() != 1) {
     // A marker that failed alone is still queued: it is at fault again.
-    const bool narrow = ++failed_ >= States::kTriesTogether || !trials_.empty();
+    const bool narrow = ++failed_ >= kTriesTogether || !trials_.empty();
     if (narrow) pace_.forget_failures();
     if (!narrow) put_back(markers);
     return narrow;

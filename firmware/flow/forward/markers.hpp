@@ -94,6 +94,8 @@ class Markers {
   static constexpr icd::Uri kUri = icd::Uri::MarkersUpdate;
   static constexpr const char* kMessages = "markers";
   static constexpr std::size_t kAtOnce = 500;  // markers to write or to show in one turn
+  /// Joint failures before fewer markers are sent in a message, or each robot's state alone.
+  static constexpr int kTriesTogether = 3;
 
   /// `came` is called after each arrival. All outlive this.
   Markers(loop::Loop& loop, loop::Workers& workers, const settings::Settings& settings, TrafficCounts& counts,

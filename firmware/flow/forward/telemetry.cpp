@@ -109,7 +109,7 @@ bool States::is_on_trial(const queues::QueuedState& state) {
 bool States::is_to_blame(const queues::QueuedState& state, bool may_reject) {
   bool to_blame = false;
   if (state.update.poses.size() > 1) {
-    to_blame = ++failed_ >= kTriesTogether;
+    to_blame = ++failed_ >= Markers::kTriesTogether;
     if (to_blame) pace_.forget_failures();
   } else if (queues::Trial* const trial = queue_.trial_of(state)) {
     to_blame = blame_.failed(state.update.poses.front().name.text(), *trial, loop_.now(), may_reject) ==
@@ -201,14 +201,8 @@ void Telemetry::send_next() {
   const dispatch::Turn turn = dispatch::oldest_first(candidates, loop_.now());
   if (turn.wake) wake_.call_at(*turn.wake);
   if (!turn.candidate || !channel_.claim_turn()) return;
-  if (turn.candidate == 0) send_state();
-  if (turn.candidate == 1) send_markers();
-}
-
-void Telemetry::send_state() {
-  const States::Sent next = states_.take();
-  if (!next) return;
-  send(states_, next);
+  if (turn.candidate == 1) return send_markers();
+  if (const States::Sent next = states_.take()) send(states_, next);
 }
 
 /// Many markers are written in a turn of their own.

@@ -26,8 +26,6 @@ class States {
   using Sent = std::shared_ptr<const queues::QueuedState>;
   static constexpr icd::Uri kUri = icd::Uri::StateUpdate;
   static constexpr const char* kMessages = "robots' states";
-  /// Joint failures before each robot's state is sent alone, or fewer markers in a message.
-  static constexpr int kTriesTogether = 3;
 
   /// `delivered` gets delivered states. Until then the journal has them. All outlive this.
   States(loop::Loop& loop, const settings::Settings& settings, TrafficCounts& counts, std::mt19937_64& random,
@@ -136,7 +134,6 @@ class Telemetry {
  private:
   void pump() noexcept;
   void send_next();
-  void send_state();
   void send_markers();
   // `Of`: States or Markers, whose message is sent.
   template <class Of>

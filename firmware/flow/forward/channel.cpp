@@ -69,7 +69,7 @@ void LastAnswer::note(const Request& request, const uplink::Outcome& outcome) {
   const bool is_foreign = no_status || (!too_large && comes_from_another(outcome, body));
   if (is_foreign) ++foreign_;
   const auto* answered = std::get_if<uplink::Answered>(&outcome);
-  if (answered != nullptr && answered->status == 429) ++throttled_;
+  if (answered != nullptr && answered->status == icd::kTooManyRequests) ++throttled_;
   if (request.is_vain) return;
   ++ended_;
   is_foreign_ = is_foreign;

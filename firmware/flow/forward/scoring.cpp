@@ -407,7 +407,7 @@ void Scoring::classify_status(const uplink::Outcome& outcome, loop::Instant aske
   if (answered == nullptr) {
     pace_.status_failed(outcome, now);
     status_clients_.answer_all(known_or(no_status(sentence_of(outcome))));
-  } else if (answered->status == 429) {
+  } else if (answered->status == icd::kTooManyRequests) {
     pace_.status_throttled(answered->sent, answered->retry_after, now);
     status_clients_.answer_all(known_or(client_answer(*answered)));
   } else {

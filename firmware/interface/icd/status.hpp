@@ -44,6 +44,13 @@ struct Refusal {
 template <class T>
 using Checked = std::expected<T, Refusal>;
 
+inline constexpr int kTooManyRequests = static_cast<int>(Status::TooManyRequests);
+
+/// A status of the endpoint or the token rather than of the message: other messages would get it, too.
+constexpr bool concerns_all_messages(int status) {
+  return status == 401 || status == 403 || status == 404 || status == 405 || status == 407;
+}
+
 /// A 2xx answer (RFC 9110 15.3).
 constexpr bool is_success(int status) {
   return status >= 200 && status < 300;

@@ -2,16 +2,13 @@
 
 #include <algorithm>
 
+#include "icd/status.hpp"
+
 namespace adit::alarms {
-namespace {
-
-constexpr int kTooMany = 429;
-
-}  // namespace
 
 Arrival arrival_of(const Stream& stream, double turn, bool silent) {
   const double behind = stream.behind.value_or(0), late = kLateAfter + turn;
-  const bool throttled = stream.last_status == kTooMany;
+  const bool throttled = stream.last_status == icd::kTooManyRequests;
   if (stream.last_status >= 400 && stream.last_status < 500 && !throttled) return Arrival::Refused;
   if (behind > std::max(kStuckAfter, 3 * late)) return Arrival::NotArriving;
   if (throttled) return Arrival::Throttled;

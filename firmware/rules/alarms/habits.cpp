@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "icd/status.hpp"
+
 namespace adit::alarms {
 namespace {
 
@@ -107,7 +109,7 @@ void EndpointWatch::look(ConnectionState& way, const ConnectionSample& seen, dou
   const bool ended = seen.ended != way.seen.ended;
   const bool answered = ended && seen.status != 0;
   const bool moved = seen.sent != way.seen.sent;
-  if (answered && !is_barred(seen) && !is_error(seen.status) && seen.status != 429) {
+  if (answered && !is_barred(seen) && !is_error(seen.status) && seen.status != icd::kTooManyRequests) {
     way.well = now;
     way.failing.reset();
   }

@@ -5,6 +5,7 @@
 
 #include "alarms/alarm.hpp"
 #include "icd/sentence.hpp"
+#include "icd/status.hpp"
 
 namespace adit::alarms {
 namespace {
@@ -14,16 +15,11 @@ const Endpoint* mapping(const Facts& facts) {
   return found == facts.endpoints.end() ? nullptr : &*found;
 }
 
-/// Whether the status concerns the endpoint or its token rather than the message (EndpointWatch).
-bool is_of_endpoint(int status) {
-  return status == 401 || status == 403 || status == 404 || status == 405 || status == 407;
-}
-
 /// Whether the stream's last result may date from when the endpoint was stopped.
 bool is_catching_up(const Stream& stream, const Facts& facts) {
   const Endpoint* const endpoint = mapping(facts);
   return endpoint != nullptr && endpoint->well_for && *endpoint->well_for < kLateAfter + facts.turn &&
-         (stream.behind || stream.failed || is_of_endpoint(stream.last_status));
+         (stream.behind || stream.failed || icd::concerns_all_messages(stream.last_status));
 }
 
 using icd::sentence;
@@ -131,7 +127,7 @@ Standing standing_of(const Stream& stream, const Facts& facts) {
   const bool is_kept_back = is_stopped && (stream.behind || stream.failed || level == Level::Bad);
   if (is_kept_back) return {Arrival::NotArriving, Level::Quiet};
   const bool is_of_before = arrival == Arrival::NotArriving || arrival == Arrival::Failing ||
-                            (arrival == Arrival::Refused && is_of_endpoint(stream.last_status));
+                            (arrival == Arrival::Refused && icd::concerns_all_messages(stream.last_status));
   if (is_of_before && is_catching_up(stream, facts)) return {Arrival::Late, Level::Wait};
   return {arrival, level};
 }

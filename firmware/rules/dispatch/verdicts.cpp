@@ -12,7 +12,6 @@
 namespace adit::dispatch {
 namespace {
 
-constexpr int kThrottled = 429;
 /// A handler of the Command Post failed at a message. Proxies send other 5xx.
 constexpr int kHandlerFailed = 500;
 
@@ -26,7 +25,7 @@ Body body_of(std::string_view body) {
 
 bool may_be_the_command_post(int status, Body body) {
   if (status >= 300 && status < 400) return false;
-  return body != Body::Other || status == 404 || status == 429 || status >= 500;
+  return body != Body::Other || status == 404 || status == icd::kTooManyRequests || status >= 500;
 }
 
 bool is_the_command_post(int status, Body body) {
@@ -35,7 +34,7 @@ bool is_the_command_post(int status, Body body) {
 
 MappingVerdict mapping_verdict(int status, Body body) {
   if (icd::is_success(status)) return body == Body::Other ? MappingVerdict::Failing : MappingVerdict::Taken;
-  if (status == kThrottled) return MappingVerdict::Throttled;
+  if (status == icd::kTooManyRequests) return MappingVerdict::Throttled;
   if (status == kTooLarge) return MappingVerdict::TooLarge;
   if (status == 409 || status == 415 || status == kHandlerFailed) return MappingVerdict::Suspect;
   if (status == 400 || status == 422) {
@@ -45,7 +44,7 @@ MappingVerdict mapping_verdict(int status, Body body) {
 }
 
 bool may_concern_a_part(int status) {
-  return status >= 300 && status != kThrottled;
+  return status >= 300 && status != icd::kTooManyRequests;
 }
 
 namespace {
@@ -90,21 +89,10 @@ ReportEvent event_of(int status, bool tells_of_a_report, Body body, bool is_unpr
   if (icd::is_success(status)) {
     return tells_of_a_report ? ReportEvent::Recorded : ReportEvent::Lost;
   }
-  switch (status) {
-    case 401:
-    case 403:
-    case 404:
-    case 405:
-    case 407:
-      return ReportEvent::Barred;
-    case 408:
-      return ReportEvent::Lost;
-    case 429:
-      return ReportEvent::Throttled;
-    default:
-      if (status < 400 || status >= 500 || body == Body::Other) return ReportEvent::Lost;
-      return ReportEvent::Rejected;
-  }
+  if (icd::concerns_all_messages(status)) return ReportEvent::Barred;
+  if (status == icd::kTooManyRequests) return ReportEvent::Throttled;
+  const bool is_rejected = status >= 400 && status < 500 && status != 408 && body != Body::Other;
+  return is_rejected ? ReportEvent::Rejected : ReportEvent::Lost;
 }
 
 bool is_about_another(const icd::ReportReply& reply, const icd::ArtifactReport& report) {

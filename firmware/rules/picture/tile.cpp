@@ -45,15 +45,18 @@ Packer::Packer() : streams_(std::make_unique<Streams>()), rows_(kRow * kSide) {
 }
 Packer::~Packer() = default;
 
-bool Packer::is_whole(const Packed& packed) {
+bool Packer::read_rows(const Packed& packed) {
   z_stream& zlib = streams_->in;
   inflateReset(&zlib);
-  zlib.next_in = const_cast<Bytef*>(packed.deflated.data());
+  zlib.next_in = const_cast<Bytef*>(packed.deflated.data());  // zlib does not change its input
   zlib.avail_in = static_cast<uInt>(packed.deflated.size());
   zlib.next_out = rows_.data();
   zlib.avail_out = static_cast<uInt>(rows_.size());
-  const bool whole = inflate(&zlib, Z_FINISH) == Z_STREAM_END && zlib.avail_out == 0 && zlib.avail_in == 0;
-  if (!whole || crc_of(packed.deflated) != packed.crc) return false;
+  return inflate(&zlib, Z_FINISH) == Z_STREAM_END && zlib.avail_out == 0 && zlib.avail_in == 0;
+}
+
+bool Packer::is_whole(const Packed& packed) {
+  if (!read_rows(packed) || crc_of(packed.deflated) != packed.crc) return false;
   for (std::size_t row = 0; row < kSide; ++row) {
     if (rows_[row * kRow] != 0) return false;  // a filter
   }
@@ -79,13 +82,7 @@ Tile Packer::pack(const Pixels& pixels) {
 }
 
 void Packer::unpack(const Packed& packed, Pixels& pixels) {
-  z_stream& zlib = streams_->in;
-  inflateReset(&zlib);
-  zlib.next_in = const_cast<Bytef*>(packed.deflated.data());  // zlib does not change its input
-  zlib.avail_in = static_cast<uInt>(packed.deflated.size());
-  zlib.next_out = rows_.data();
-  zlib.avail_out = static_cast<uInt>(rows_.size());
-  inflate(&zlib, Z_FINISH);  // cannot fail: pack() made it
+  read_rows(packed);  // cannot fail: pack() made it
   for (std::size_t row = 0; row < kSide; ++row) {
     std::copy_n(rows_.data() + row * kRow + 1, kSide, pixels.data() + row * kSide);
   }

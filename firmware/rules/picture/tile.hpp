@@ -129,6 +129,9 @@ class Packer {
 
  private:
   struct Streams;
+  /// Inflates into rows_. False: not one whole tile.
+  bool read_rows(const Packed& packed);
+
   std::unique_ptr<Streams> streams_;
   std::vector<std::uint8_t> rows_, made_;
 };

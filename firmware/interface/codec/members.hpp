@@ -32,11 +32,8 @@ icd::MarkerAction read_action(const Field& field);
 /// Replaces an alias by its name. Refuses and returns std::nullopt if the text is not a robot's name (ICD 2).
 std::optional<icd::RobotName> read_robot_name(const Field& field, const icd::Rules& rules);
 
-}  // namespace adit::codec
-
-/// Parts of a message, each member described once: name, kind, bounds, and whether it may be absent. Reading
-/// JSON and CBOR and writing CBOR use the description.
-namespace adit::codec {
+// Parts of a message, each member described once: name, kind, bounds, and whether it may be absent. Reading
+// JSON and CBOR and writing CBOR use the description.
 
 /// Whether a member may be absent. An absent one has the struct's default.
 enum class Need : std::uint8_t {
@@ -253,10 +250,7 @@ void write_struct(CborWriter& out, const Struct& from) {
   write_members(out, from);
 }
 
-}  // namespace adit::codec
-
-/// The ICD's messages (6), each member in the order of its listings, and ROS's further members.
-namespace adit::codec {
+// The ICD's messages (6), each member in the order of its listings, and ROS's further members.
 
 /// "header": {"stamp", "frame_id"}.
 struct HeaderMember {

@@ -355,11 +355,8 @@ std::string to_json(const T& value) {
   return write_json(json(value));
 }
 
-}  // namespace adit::codec
-
-/// Small files of aditd and root programs, for messages and stored state. Each is one row as a JSON object
-/// with the member "format": 1.
-namespace adit::codec {
+// Small files of aditd and root programs, for messages and stored state. Each is one row as a JSON object
+// with the member "format": 1.
 
 std::string write_row_file(const Row& row, const void* from);
 /// A sentence about the first error, or "".

@@ -54,8 +54,6 @@ std::string write_accounts(const Accounts& accounts) {
 
 namespace {
 
-using codec::Value;
-
 constexpr std::int64_t kDevicesVersion = 2;
 
 std::string_view password_of(Role role, const Accounts& accounts) {

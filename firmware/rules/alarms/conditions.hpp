@@ -5,20 +5,19 @@
 #include "alarms/alarm.hpp"
 #include "alarms/facts.hpp"
 
-/// The parts of conditions_of(), one for each side of the box.
 namespace adit::alarms {
 
-using Found = std::vector<Condition>;
+/// All conditions, for page, lights, `adit` and metrics. A condition that follows from a larger cause is
+/// counted in that cause's `hides` and is not listed. Order: bad, ask, wait.
+std::vector<Condition> conditions_of(const Facts& facts);
 
+/// Its parts, one for each side of the box.
+using Found = std::vector<Condition>;
 void find_post_troubles(const Facts& facts, Found& found);
 void find_network_troubles(const Facts& facts, Found& found);
 void find_robot_troubles(const Facts& facts, Found& found);
 void find_report_troubles(const Facts& facts, Found& found);
 void find_box_troubles(const Facts& facts, Found& found);
-
-/// All conditions, for page, lights, `adit` and metrics. A condition that follows from a larger cause is
-/// counted in that cause's `hides` and is not listed. Order: bad, ask, wait.
-std::vector<Condition> conditions_of(const Facts& facts);
 
 /// Reports left at which the alarm starts.
 inline constexpr std::int64_t kFewReports = 5;

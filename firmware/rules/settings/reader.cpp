@@ -29,16 +29,17 @@ std::string range_of(const List& list) {
                          : icd::sentence("a list of ", list.least, " to ", list.most, " items");
 }
 
+/// "team.listen"
+std::string joined(const std::string& path, std::string_view name) {
+  return path.empty() ? std::string(name) : path + "." + std::string(name);
+}
+
 }  // namespace
 
 std::expected<Value, std::vector<Error>> read_json(std::string_view json) {
   auto root = codec::parse_json(json);
   if (!root) return std::unexpected(std::vector<Error>{{"", "not JSON: " + root.error()}});
   return *std::move(root);
-}
-
-std::string joined(const std::string& path, std::string_view name) {
-  return path.empty() ? std::string(name) : path + "." + std::string(name);
 }
 
 void Reader::read_object(const Value& value, const std::string& pattern, const std::string& path) {

@@ -35,9 +35,6 @@ class Reader {
 /// The value of a JSON text. An error has no path.
 std::expected<codec::Value, std::vector<Error>> read_json(std::string_view json);
 
-/// "team.listen"
-std::string joined(const std::string& path, std::string_view name);
-
 /// Contradictions between settings that are valid on their own.
 std::vector<Error> contradictions(const Settings& settings);
 

@@ -85,15 +85,6 @@ std::string sentence_of(const std::vector<Error>& errors) {
   return sentences;
 }
 
-std::vector<std::string> token_names(const Settings& settings) {
-  std::vector<std::string> names = {"scoring", "mapping", "team"};
-  for (const Course& course : settings.courses) {
-    names.push_back("course." + course.name + ".scoring");
-    names.push_back("course." + course.name + ".mapping");
-  }
-  return names;
-}
-
 namespace {
 
 struct Row {

@@ -151,4 +151,13 @@ std::vector<Change> changes(const Settings& from, const Settings& to) {
   return changes;
 }
 
+std::vector<std::string> token_names(const Settings& settings) {
+  std::vector<std::string> names = {"scoring", "mapping", "team"};
+  for (const Course& course : settings.courses) {
+    names.push_back("course." + course.name + ".scoring");
+    names.push_back("course." + course.name + ".mapping");
+  }
+  return names;
+}
+
 }  // namespace adit::settings

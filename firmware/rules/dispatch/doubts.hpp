@@ -61,8 +61,7 @@ class ReportReview {
   void await_undo(std::int64_t number, Time time);
   bool awaits_undo(std::int64_t number) const { return undo_.contains(number); }
   void undo_over(std::int64_t number);
-  /// When a held report is sent unless the operator withdraws it, in seconds since 1970. nullopt: the
-  /// operator decides, or it is not held.
+  /// Reports::sends_at().
   std::optional<double> sends_at(std::int64_t number) const;
   std::optional<Instant> next_undo() const;
   /// Reports whose time is over. Their next time is a second later, in case that a write fails.
@@ -143,7 +142,7 @@ class Doubts {
   /// The counts no longer show what became of all(): the operator decides.
   void leave_to_operator(const std::string& why, Time time);
 
-  /// True if the report is in doubt and Adit still asks about it.
+  /// Reports::is_asking().
   bool is_asking(const Report& report) const;
   /// Other reports must wait.
   bool is_pending(Instant now) const;

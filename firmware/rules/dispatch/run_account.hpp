@@ -91,7 +91,7 @@ class RunAccount {
   /// The step that is subtracted from the run's silence.
   void clock_stepped(const ClockStep& step) { clock_step_ = step; }
   double between(double from, double until) const { return clock_step_.between(from, until); }
-  /// `latest`: highest run number of a report, which may have been written before its run.
+  /// `latest`: Runs::open().
   void open(std::vector<Run> all, std::int64_t latest, const std::string& post);
 
   const Run& run() const { return runs_.present(); }
@@ -99,7 +99,7 @@ class RunAccount {
   /// answered later may belong to the next run.
   double status_at() const { return status_at_; }
   const Runs& runs() const { return runs_; }
-  /// The run of a report that is posted now: run(), or the run of will_be().
+  /// Runs::meant().
   const Run& meant_run() const { return runs_.meant(); }
   /// True for reports of meant_run(), and for the one in flight, which a later run may record.
   bool is_of_run(const Report& report) const;
@@ -135,7 +135,7 @@ class RunAccount {
   /// be if there are signs, or 0.
   void begin(const AnotherRun& another, std::int64_t may_be, const std::optional<icd::RunStatus>& status,
              std::span<const Report> steps, Time time);
-  /// Run `number` will be the present one. 0: no change is due.
+  /// Runs::will_be().
   void will_be(std::int64_t number) { runs_.will_be(number); }
   /// The same for a new run at `post`, which it writes so that a restart finds it. Returns its number.
   std::int64_t announce(const std::string& why, const std::string& post, Time time);

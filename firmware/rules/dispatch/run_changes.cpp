@@ -175,7 +175,6 @@ void RunChanges::will_move(const std::string& post, Time time) {
   if (!steps.empty()) book_.change(steps, run);
 }
 
-/// Queued reports for the old Command Post are kept for it.
 void RunChanges::change_post(const std::string& post, Time time) {
   const std::string from = account_.run().post;
   const Run* const known = account_.runs().at_post(post);

@@ -23,6 +23,10 @@ constexpr int kMostTurns = 100000;
 
 }  // namespace
 
+double system_now() {
+  return World::current().stamp();
+}
+
 void close_descriptor(int fd) noexcept {
   if (!simulation::Network::is_simulated(fd)) {
     ::close(fd);

@@ -202,7 +202,7 @@ TEST_F(StoreTest, NamesDamagedTokensAndKeepsTheirFiles) {
 
 TEST_F(StoreTest, UsesNoGivenTokenInsteadOfALostOne) {
   (void)store_.save_token("scoring", icd::BearerToken::parse("saved-1"));
-  std::filesystem::remove(state_ / "secrets/scoring.token");
+  std::filesystem::remove_all(state_ / "secrets");
   for (int start = 0; start < 2; ++start) {
     const auto loaded = store_.load().value();
     EXPECT_FALSE(loaded.secrets.token("scoring"));
@@ -268,8 +268,8 @@ TEST_F(StoreTest, ForgetDeletesOnlySavedFiles) {
   (void)store_.save_token("scoring", icd::BearerToken::parse("saved-1"));
   state_.put("settings.json.damaged", "what nobody could read");
   ASSERT_TRUE(store_.forget().has_value());
-  for (const char* gone :
-       {"settings.json", "settings.json.before", "settings.json.damaged", "settings.json.saved", "secrets"})
+  for (const char* gone : {"settings.json", "settings.json.before", "settings.json.damaged",
+                           "settings.json.saved", "scoring.token.saved", "secrets"})
     EXPECT_FALSE(kept(gone)) << gone;
   EXPECT_TRUE(kept("ledger"));
   EXPECT_EQ(connections(), 20u);

@@ -19,13 +19,14 @@ class ReadSecrets : public testing::Test {
     folder_.put("scoring.token", "flux230{showroom\n");
     folder_.put("mapping.token", " mapping-token\r\n");
     folder_.put("team.token", "team-token");
+    std::filesystem::create_directory(state_ / "secrets");
   }
   ~ReadSecrets() override { unsetenv("CREDENTIALS_DIRECTORY"); }
   std::expected<Secrets, std::string> read(const std::string& given) const {
     static const std::vector<std::string> kNames = {"scoring", "mapping", "team", "course.A.scoring"};
-    return read_secrets(given, saved_.path(), kNames);
+    return read_secrets(given, state_ / "secrets", kNames);
   }
-  Folder folder_, saved_;
+  Folder folder_, state_;
 };
 
 TEST_F(ReadSecrets, TrimsEachToken) {
@@ -68,45 +69,49 @@ TEST_F(ReadSecrets, AllowsNoTokens) {
 }
 
 TEST_F(ReadSecrets, PrefersSavedToGivenTokens) {
-  saved_.put("scoring.token", "saved-one");
-  saved_.put("course.A.scoring.token", "of-course-a");
-  saved_.put("another.token", "nobody asks for it");
+  state_.put("secrets/scoring.token", "saved-one");
+  state_.put("secrets/course.A.scoring.token", "of-course-a");
+  state_.put("secrets/another.token", "nobody asks for it");
   const auto secrets = read(folder_.path());
   ASSERT_TRUE(secrets.has_value()) << secrets.error();
   EXPECT_EQ(secrets->token("scoring")->reveal(), "saved-one");
   EXPECT_EQ(secrets->token("mapping")->reveal(), "mapping-token");
   EXPECT_EQ(secrets->token("course.A.scoring")->reveal(), "of-course-a");
   EXPECT_EQ(secrets->tokens.size(), 4u);
-  chmod((saved_ / "scoring.token").c_str(), 0644);
-  EXPECT_THAT(read(folder_.path())->damaged["scoring"], HasSubstr("chmod 600 " + (saved_ / "scoring.token")));
+  chmod((state_ / "secrets/scoring.token").c_str(), 0644);
+  EXPECT_THAT(read(folder_.path())->damaged["scoring"],
+              HasSubstr("chmod 600 " + (state_ / "secrets/scoring.token")));
 }
 
 TEST_F(ReadSecrets, ReplacesNoDamagedSavedToken) {
-  saved_.put("mapping.token", "saved-one");
+  state_.put("secrets/mapping.token", "saved-one");
   for (const char* const damaged : {"two words", "", " \n"}) {
-    saved_.put("scoring.token", damaged);
+    state_.put("secrets/scoring.token", damaged);
     const auto secrets = read(folder_.path());
     ASSERT_TRUE(secrets.has_value()) << secrets.error();
     EXPECT_FALSE(secrets->token("scoring")) << "the given one was replaced";
     EXPECT_EQ(secrets->token("mapping")->reveal(), "saved-one");
     EXPECT_EQ(secrets->odd_tokens()["scoring"],
-              "the saved token scoring is damaged; set it again: " + (saved_ / "scoring.token") +
+              "the saved token scoring is damaged; set it again: " + (state_ / "secrets/scoring.token") +
                   ": expected one token of 1 to 256 visible ASCII characters");
   }
 }
 
 TEST_F(ReadSecrets, ReplacesNoLostSavedToken) {
-  saved_.put(std::string("scoring.token") + kSavedMark, "");
+  state_.put("scoring.token.saved", "");
   const auto secrets = read(folder_.path());
   ASSERT_TRUE(secrets.has_value()) << secrets.error();
   EXPECT_FALSE(secrets->token("scoring")) << "the given one is valid again";
-  EXPECT_EQ(secrets->odd_tokens()["scoring"],
-            "the saved token scoring is lost; set it again: " + (saved_ / "scoring.token") + " is gone");
+  EXPECT_EQ(secrets->odd_tokens()["scoring"], "the saved token scoring is lost; set it again: " +
+                                                  (state_ / "secrets/scoring.token") + " is gone");
+  std::filesystem::remove(state_ / "secrets");
+  EXPECT_FALSE(read(folder_.path())->token("scoring")) << "with its directory";
+  EXPECT_TRUE(read(folder_.path())->token("mapping")) << "it was never saved";
 }
 
 TEST_F(ReadSecrets, ReportsAnUnreadableFileAndReadsTheOthers) {
   for (const std::string& path :
-       {saved_ / "team.token", saved_ / "team.token.saved", folder_ / "label.code"}) {
+       {state_ / "secrets/team.token", state_ / "team.token.saved", folder_ / "label.code"}) {
     std::filesystem::create_directory(path);
     const auto secrets = read(folder_.path());
     ASSERT_TRUE(secrets.has_value()) << secrets.error();

@@ -32,16 +32,15 @@ bool is_there(const std::string& file) {
 }
 
 /// A failure is logged.
-void mark_saved(const std::string& file) {
-  const std::string mark = file + host::kSavedMark;
+void mark_saved(const std::string& file, const std::string& mark) {
   if (!is_there(file) || host::may_exist(mark)) return;
   host::log_failure(host::Level::Warning, "the loss of a saved file may not be noticed",
                     host::write_file(mark, "", host::kOursAlone));
 }
 
 /// On purpose, so it is no loss.
-std::expected<void, std::string> remove_saved(const std::string& file) {
-  ADIT_TRY(host::remove_file(file + host::kSavedMark));
+std::expected<void, std::string> remove_saved(const std::string& file, const std::string& mark) {
+  ADIT_TRY(host::remove_file(mark));
   return host::remove_file(file);
 }
 
@@ -94,7 +93,7 @@ std::expected<Store::Loaded, std::string> Store::read(std::string& unread) const
     }
     if (saved) loaded.settings = std::move(saved->settings);
   }
-  if (!host::may_exist(file()) && is_there(file() + host::kSavedMark))
+  if (!host::may_exist(file()) && is_there(mark()))
     loaded.trouble = "the saved settings are lost; the initial settings are in use: " + file() + " is gone";
   if (!loaded.saved) {
     const auto parse = [](std::string_view json) { return settings::parse(json); };
@@ -118,7 +117,7 @@ std::expected<void, std::string> Store::save(const settings::Settings& settings)
     if (const auto kept = host::write_kept(file_before(), *before); !kept) return kept;
   }
   ADIT_TRY(host::write_kept(file(), settings::file_of(settings)));
-  mark_saved(file());
+  mark_saved(file(), mark());
   return {};
 }
 
@@ -133,10 +132,10 @@ std::expected<void, std::string> Store::make_secrets_folder() {
 std::expected<void, std::string> Store::save_token(const std::string& name,
                                                    const std::optional<icd::BearerToken>& token) {
   ADIT_TRY(keep_replaced(name, token));
-  if (!token) return remove_saved(token_file(name));
+  if (!token) return remove_saved(token_file(name), token_mark(name));
   if (auto made = make_secrets_folder(); !made) return made;
   ADIT_TRY(host::write_kept(token_file(name), token->reveal() + "\n"));
-  mark_saved(token_file(name));
+  mark_saved(token_file(name), token_mark(name));
   return {};
 }
 
@@ -165,10 +164,10 @@ void Store::settle(const settings::Settings& settings) {
     host::log_failure(host::Level::Warning, "logs may show an unused token",
                       keep_replaced(file.stem(), std::nullopt));
     host::log_failure(host::Level::Warning, "unused tokens may remain",
-                      remove_saved(secrets_folder() / file));
+                      remove_saved(secrets_folder() / file, token_mark(file.stem())));
   }
-  mark_saved(file());
-  for (const std::string& name : names) mark_saved(token_file(name));
+  mark_saved(file(), mark());
+  for (const std::string& name : names) mark_saved(token_file(name), token_mark(name));
   if (!host::remove_file(file_before())) {
     host::log(host::Level::Warning, "cannot remove a file", {{"file", file_before()}});
   }
@@ -176,7 +175,7 @@ void Store::settle(const settings::Settings& settings) {
 
 std::expected<void, std::string> Store::put_back() {
   const auto before = ADIT_TRY(host::read_file(file_before()));
-  return before == settings::kNoneBefore ? remove_saved(file()) : host::write_kept(file(), before);
+  return before == settings::kNoneBefore ? remove_saved(file(), mark()) : host::write_kept(file(), before);
 }
 
 bool Store::revert() {
@@ -186,13 +185,16 @@ bool Store::revert() {
 }
 
 std::expected<void, std::string> Store::forget() {
+  const auto names = host::names_in(state_);
+  if (!names) return std::unexpected(state_ + ": " + names.error());
+  for (const std::string& name : *names) {
+    if (name.ends_with(host::kSavedMark)) ADIT_TRY(host::remove_file(state_ + '/' + name));
+  }
   std::error_code error;
   fs::remove_all(secrets_folder(), error);
   if (error) return std::unexpected(secrets_folder() + ": " + error.message());
-  for (const std::string& each :
-       {file() + host::kSavedMark, file_before(), file(), file() + host::kDamaged}) {
-    if (auto removed = host::remove_file(each); !removed) return removed;
-  }
+  for (const std::string& each : {file_before(), file(), file() + host::kDamaged})
+    ADIT_TRY(host::remove_file(each));
   return {};
 }
 

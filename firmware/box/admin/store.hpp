@@ -52,11 +52,13 @@ class Store {
 
  private:
   std::string file() const { return state_ + '/' + settings::kSavedFile; }
+  std::string mark() const { return file() + host::kSavedMark; }
   std::string file_before() const { return state_ + '/' + settings::kFileBefore; }
   std::string secrets_folder() const { return state_ + '/' + settings::kSecretsFolder; }
   std::string token_file(const std::string& name) const {
     return secrets_folder() + "/" + name + settings::kTokenEnding;
   }
+  std::string token_mark(const std::string& name) const { return host::token_mark(secrets_folder(), name); }
   std::expected<void, std::string> make_secrets_folder();
   /// Keeps the present token of this name out of logs and exports, if it is another one than `next`.
   std::expected<void, std::string> keep_replaced(const std::string& name,

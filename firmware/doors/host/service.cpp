@@ -71,21 +71,27 @@ std::map<std::string, std::string> Secrets::odd_tokens() const {
   return odd;
 }
 
+std::string token_mark(const std::string& saved, std::string_view name) {
+  return (std::filesystem::path(saved) / "").parent_path().parent_path() /
+         icd::sentence(name, ".token", kSavedMark);
+}
+
 std::expected<Secrets, std::string> read_secrets(const std::string& given, const std::string& saved,
                                                  std::span<const std::string> names) {
   const Place place = holds_credentials(given) ? Place::Credentials : Place::Given;
   Secrets secrets;
   for (const std::string& name : names) {
     const std::string file = saved + "/" + name + ".token";
+    const std::string mark_file = token_mark(saved, name);
     auto token = read_token(file, Place::Saved);
     const bool is_saved = !token || *token;
     if (!is_saved) {
-      const auto mark = slurp(file + kSavedMark);
+      const auto mark = slurp(mark_file);
       if (mark)
         secrets.damaged[name] =
             icd::sentence("the saved token ", name, " is lost; set it again: ", file, " is gone");
       else if (mark.error() != ENOENT)
-        secrets.unread = trouble(file + kSavedMark, mark.error());
+        secrets.unread = trouble(mark_file, mark.error());
       if (mark || mark.error() != ENOENT) continue;
       token = read_token(given + "/" + name + ".token", place);
     }

@@ -89,9 +89,12 @@ struct Secrets {
 /// Below the saved tokens: earlier tokens, each in a line.
 inline constexpr const char* kReplacedFile = "replaced";
 
-/// Ending of an empty file beside a saved file. While it is there, a saved file that is gone is lost, and no
-/// given one takes its place.
+/// Ending of an empty file that marks a file as saved. While it is there, a saved file that is gone is lost,
+/// and no given one takes its place.
 inline constexpr const char* kSavedMark = ".saved";
+
+/// The mark of NAME.token in `saved`. It is beside `saved`, so that it remains if that directory is lost.
+std::string token_mark(const std::string& saved, std::string_view name);
 
 /// Reads the tokens of these names, each from NAME.token in `saved` or else in `given`, and `label.code` in
 /// `given`. A lost token (kSavedMark) is damaged. `given` holds systemd credentials, or has mode 0700 and

@@ -94,17 +94,21 @@ class Everyday(Contained):
         self.assertEqual(answer.status_code, 200, answer.text)
         programs.wait_until(lambda: len(self.stage.post.requests(uri)) > before, f"{uri} to go on", 60)
 
+    def report_states(self):
+        return [each["state"] for each in self.box.reports()]
+
     def takes_no(self, report):
         """And other messages are sent."""
         refused = submit(self.stage, report)
         self.assertEqual(refused.status_code, 503, refused.text)
         self.assertEqual(self.stage.post.recorded(report), [])
-        self.assertEqual([each["state"] for each in self.box.reports()], ["answered"], "what can be read is shown")
+        self.assertEqual(self.report_states(), ["answered"], "what can be read is shown")
         self.flows("/state/update", {"poses": [POSE]})
         self.flows("/map/update", messages.map_update(maps.made_grid(20, 20), "r1", time.time(), JSON))
 
     def test_unwritable_state_directory(self):
-        """A file system of its own, that is read-only as after an error of the disk, then full, with room in the ledger's files."""
+        """A file system of its own, that is read-only as after an error of the disk, then full, with room in the ledger's files. Without it, an
+        older copy of the ledger is back: it is told, and what was sent since is the operator's."""
         self.shell(f"""systemctl stop adit.service; cp -a {STATE} /run/was
             mount -t tmpfs -o size=32m,mode=0700 tmpfs {STATE}; cp -aT /run/was {STATE}; mount -o remount,ro {STATE}
             systemctl start adit.service""")
@@ -118,6 +122,9 @@ class Everyday(Contained):
         self.assertFalse(self.box.alarms() & {"ledger_unwritable", "ledger_damaged"})
         self.shell(f"""systemctl stop adit.service; umount {STATE}; systemctl start adit.service""")
         programs.wait_until(self.box.knows_the_run, "it to start", 60)
+        self.assertIn("ledger_damaged", self.box.alarms())
+        self.assertEqual(self.report_states(), ["answered", "in_doubt"])
+        self.assertEqual(len(self.stage.post.recorded(another(2))), 1)
 
     def test_it_is_started_again_after_a_kill(self):
         before = programs.wait_until(self.box.pid, "it to run", 60)
@@ -314,10 +321,11 @@ class Everyday(Contained):
         programs.wait_until(self.box.knows_the_run, "it to go on", 60)
 
     def test_settings_reports_and_journal_survive_a_boot(self):
+        before = self.report_states()
         self.box.stop()
         self.stage.network.cable_the_box()
         self.box.start()
-        self.assertEqual([each["state"] for each in self.box.reports()], ["answered"])
+        self.assertEqual(self.report_states(), before)
         programs.wait_until(self.box.knows_the_run, "the Command Post to be heard again by the confirmed address", 60)
         boots = self.box.run("journalctl", "--list-boots", "-q", "--no-pager").stdout
         self.assertEqual(len(boots.splitlines()), 2, boots)

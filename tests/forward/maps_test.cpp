@@ -370,14 +370,14 @@ TEST_F(MapsTest, AreLimitedInNumberUnlessTheyMerge) {
     return map;
   };
   std::size_t taken = 0;
-  for (std::size_t i = 0; i < AcceptedMaps::kMostMaps; ++i) {
+  for (std::size_t i = 0; i < Maps::kMostMaps; ++i) {
     maps_.take(cloud_of(i % 2 == 0), {.bytes = 10}, nullptr, [&](const icd::Checked<void>& said) {
       if (said) ++taken;
     });
     loop_.turn(std::chrono::milliseconds{0});
   }
   EXPECT_TRUE(loop::turn_until(loop_, [&] { return maps_.all_kept(); }, std::chrono::seconds{60}));
-  EXPECT_EQ(taken, AcceptedMaps::kMostMaps);
+  EXPECT_EQ(taken, Maps::kMostMaps);
   EXPECT_EQ(status(take(cloud_of(true))), icd::Status::TooManyRequests);
   EXPECT_EQ(status(take(cloud_of(false))), icd::Status::Ok) << "merged into the last queued one";
   EXPECT_EQ(status(take(cloud_of(true))), icd::Status::TooManyRequests);

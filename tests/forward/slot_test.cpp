@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "forward/prepared_maps.hpp"
+#include "forward/slot.hpp"
 
 namespace adit::forward {
 namespace {

@@ -1,18 +1,66 @@
 #include "forward/maps.hpp"
 
 #include <algorithm>
+#include <utility>
 
+#include "codec/read.hpp"
 #include "codec/write.hpp"
 #include "dispatch/verdicts.hpp"
 #include "forward/channel.hpp"
 #include "host/log.hpp"
 #include "icd/sentence.hpp"
+#include "loop/guard.hpp"
 #include "pace/budget.hpp"
+#include "pack/has_all_points.hpp"
 
 namespace adit::forward {
 namespace {
 
 using dispatch::MappingVerdict;
+
+/// A map after whose packing processes ended. Alone, because a fault counts against all maps in one message.
+queues::PackingRule rule_after(const spool::Spool::Ends& ends) {
+  using enum queues::PackingRule;
+  constexpr int kMost = spool::Spool::Ends::kMost;
+  if (ends.others > kMost) return LastAsItIs;
+  if (ends.others == kMost || ends.faults >= kMost) return Last;
+  return ends.faults > 0 ? Alone : Any;
+}
+
+std::vector<pack::Tile> tiles_outside(const icd::OccupancyGrid& grid,
+                                      std::span<const icd::GridBounds> newer) {
+  std::vector<pack::Tile> tiles;
+  for (const queues::Cells& cells : queues::cells_outside(grid, newer)) {
+    tiles.push_back({.data = {},
+                     .column = static_cast<std::size_t>(cells.x),
+                     .row = static_cast<std::size_t>(cells.y),
+                     .width = static_cast<std::size_t>(cells.width),
+                     .height = static_cast<std::size_t>(cells.height)});
+  }
+  return tiles;
+}
+
+/// Makes the part of `grid` out of it that `tile` is.
+void crop(icd::OccupancyGrid& grid, const pack::Tile& tile) {
+  const auto column = static_cast<std::int64_t>(tile.column), row = static_cast<std::int64_t>(tile.row);
+  if (column > 0 || row > 0) grid.origin = queues::corner_at(grid, column, row).value_or(grid.origin);
+  grid.width = static_cast<std::uint32_t>(tile.width);
+  grid.height = static_cast<std::uint32_t>(tile.height);
+}
+
+/// The damaged maps among the `unread` ones in `waiting`.
+std::vector<MapStore::Damaged> damaged_in(const queues::QueuedMap& waiting,
+                                          const std::vector<std::uint64_t>& unread) {
+  std::vector<MapStore::Damaged> damaged;
+  const auto look_at = [&](const queues::QueuedMap& one) {
+    if (std::ranges::find(unread, one.updates.back()) == unread.end()) return;
+    if (auto checked = codec::check_data(one.map); !checked)
+      damaged.push_back({one.updates.back(), std::move(checked.error().sentence)});
+  };
+  if (waiting.parts.empty()) look_at(waiting);
+  for (const queues::QueuedMap& part : waiting.parts) look_at(part);
+  return damaged;
+}
 
 /// How often a map in flight is checked.
 constexpr std::chrono::milliseconds kLookAtSending{10}, kLookAtConnecting{100};
@@ -36,6 +84,19 @@ std::string whose(const icd::MapUpdate& map) {
   return (map.is_grid() ? "grid " : "cloud ") + icd::text_of(map.name);
 }
 
+/// A connection for the next map is made so long before it may start, and the end of the one before is looked
+/// for so often from then on: the link is idle in between.
+constexpr std::chrono::milliseconds kGetReady{50}, kLookForEnd{2};
+
+/// A Command Post may read both at the same time, and then check the small one before a large one that
+/// arrived first. Its stamp would run backward. A slow one reads so many bytes of a map's data in a second.
+constexpr double kReads = 20e6;
+
+loop::Duration reading_takes(const icd::MapUpdate& map) {
+  return std::chrono::duration_cast<loop::Duration>(
+      std::chrono::duration<double>(static_cast<double>(map.data.raw_size) / kReads));
+}
+
 }  // namespace
 
 Maps::Maps(loop::Loop& loop, uplink::Servers& servers, loop::Workers& workers, loop::Writer& writer,
@@ -43,9 +104,11 @@ Maps::Maps(loop::Loop& loop, uplink::Servers& servers, loop::Workers& workers, l
            TrafficCounts& counts, RejectedStore& rejected, std::mt19937_64& random, journal::Journal& journal,
            std::function<void(icd::MapUpdate)> taken)
     : loop_(loop),
+      workers_(workers),
       settings_(settings),
       counts_(counts),
       rejected_(rejected),
+      journal_(journal),
       taken_(std::move(taken)),
       channel_(loop, servers, "mapping",
                access_to_mapping(settings.command_post, std::move(token),
@@ -55,16 +118,170 @@ Maps::Maps(loop::Loop& loop, uplink::Servers& servers, loop::Workers& workers, l
       wake_(loop.timer([this] { pump(); })),
       queue_(settings.queues.merge_bytes),
       store_(writer, spool),
-      prepared_(loop, workers, settings, counts, pace_, queue_, store_,
-                [this](bool is_done) { packed(is_done); }),
-      accepted_(loop, workers, settings, counts, journal, queue_, store_, prepared_, [this] { pump(); }) {
+      slot_(pace::map_bytes_per_second(settings.command_post.budget_mbit)),
+      packing_(loop, [this] { store_.work_overruns(); }) {
   take_settings();
   queue_.canvases().lead_to(channel_.address());
 }
 
+void Maps::take_settings() {
+  queue_.a_slot_carries(slot_of(settings_.command_post));
+  queue_.merge_at_most(settings_.queues.merge_bytes);
+  queue_.clouds_are(settings::by_robot(settings_.robots, &settings::Robot::clouds));
+  queue_.precisions_are(settings::by_robot(settings_.robots, &settings::Robot::precision));
+}
+
+void Maps::settings_changed() {
+  take_settings();
+  slot_.allow(pace::map_bytes_per_second(settings_.command_post.budget_mbit));
+  pace_.allow(settings_.command_post.rates.map_hz, loop_.now());
+  pump();
+}
+
+void Maps::endpoint_changed(std::optional<icd::BearerToken> token) {
+  const settings::CommandPost& post = settings_.command_post;
+  channel_.lead_to(access_to_mapping(post, std::move(token), pace::map_bytes_per_second(post.budget_mbit)));
+  channel_.give_up();
+  pump();
+}
+
+/// After a power cut the areas of earlier grids are unknown. The record that begins grids shows it.
 void Maps::carry_on(const journal::Carried& carried, bool ran_before) {
-  accepted_.carry_on(carried, ran_before);
+  queues::Canvases::Posted posted = carried.grids().value_or(queues::Canvases::Posted{});
+  if (!carried.grids()) {
+    const auto everywhere = queues::Extent::everywhere();
+    const auto told =
+        ran_before ? journal_.grids_posted(queues::Canvases::kAnyName, everywhere) : journal_.grids_begin();
+    if (ran_before || !told) posted[queues::Canvases::kAnyName] = everywhere;
+    are_grids_told_ = told.has_value();
+  }
+  queue_.canvases().carry_on(std::move(posted));
   pace_.carry_on(carried, loop_.now());
+}
+
+/// Journals posted areas, so that later processes know the cells that were never sent. False: not journaled,
+/// do not accept the grid. If the start could not read the journal, it is left for the next process.
+bool Maps::is_told(const icd::MapUpdate& update) {
+  if (!update.is_grid()) return true;
+  if (!are_grids_told_) {
+    const auto everywhere = queues::Extent::everywhere();
+    are_grids_told_ = journal_.grids_posted(queues::Canvases::kAnyName, everywhere).has_value();
+    if (!are_grids_told_) return false;
+  }
+  const auto grows = queue_.canvases().grows(update);
+  if (!grows) return true;
+  if (!journal_.grids_posted(grows->first, grows->second)) return false;
+  queue_.canvases().grown(*grows);
+  return true;
+}
+
+/// A full queue accepts replacing maps. If it is full by number alone, it accepts merging maps.
+bool Maps::has_room_for(const icd::MapUpdate& update, bool replaces) const {
+  const std::size_t waiting = queue_.bytes() + store_.bytes();
+  const std::size_t count = queue_.count() + store_.count();
+  if (!replaces && count >= kMostMaps && (count >= kMostWithJoined || !queue_.joins(update))) return false;
+  return replaces || waiting == 0 || waiting + update.data.bytes.size() <= settings_.queues.map_bytes;
+}
+
+void Maps::take(const std::shared_ptr<Arrived>& map) {
+  if (overtaken_.must_wait(map->upload)) return waiting_.push_back(map);
+  icd::MapUpdate& update = map->update;
+  const bool is_whole = queue_.clouds_of(queues::Sender::of(update)) == queues::Clouds::Whole;
+  const auto newer = update.is_grid() || is_whole ? overtaken_.find_newer(update, map->upload)
+                                                  : std::vector<icd::GridBounds>();
+  const bool replaces = newer.empty() && queue_.replaces_any(update);
+  if (!has_room_for(update, replaces)) {
+    counts_.no_room(traffic_of(update), loop_.wall_now());
+    return refuse(*map, {icd::Status::TooManyRequests,
+                         icd::sentence("the queue is full: ", queue_.count() + store_.count(), " maps, ",
+                                       (queue_.bytes() + store_.bytes()) / 1000000,
+                                       " MB; this map was not accepted, send it again later")});
+  }
+  if (!is_told(update)) return refuse(*map, not_stored());
+  overtaken_.begin(map->upload, !newer.empty());
+  if (!newer.empty()) return leave_out(map, newer);
+  // Newer grids and whole clouds need room beside the old one.
+  const std::uint64_t of_its_own = update.is_grid() || is_whole ? update.data.bytes.size() : 0;
+  const std::uint64_t spare =
+      replaces ? 0 : std::max<std::uint64_t>(queue_.largest_replaceable(), of_its_own);
+  store_.store(std::move(update), std::move(map->file), spare, /*again=*/false,
+               [this, map](MapStore::Stored& stored) { this->stored(stored, *map); });
+}
+
+/// Queued now; the sender may know.
+void Maps::stored(MapStore::Stored& stored, Arrived& map) {
+  if (stored.has_no_valid_point) {
+    counts_.no_valid_point(traffic_of(*stored.map), map.upload.bytes, loop_.wall_now());
+    store_.forget({&stored.number, 1});
+    return end(map, {});
+  }
+  if (!stored.map) return refuse(map, std::move(stored.map.error()));
+  map.update.name = stored.map->name;
+  map.update.msg = stored.map->msg;
+  queue(stored);
+  accept(map);
+}
+
+void Maps::queue(MapStore::Stored& stored) {
+  const Traffic traffic = traffic_of(*stored.map);
+  tell_clouds(*stored.map);
+  const auto replaced = queue_.add(stored.number, std::move(*stored.map), loop_.now());
+  counts_.replaced(traffic, replaced.numbers.size());
+  store_.forget(replaced);
+}
+
+void Maps::leave_out(const std::shared_ptr<Arrived>& map, std::span<const icd::GridBounds> newer) {
+  const auto* const grid = std::get_if<icd::OccupancyGrid>(&map->update.msg);
+  if (grid != nullptr) map->tiles = tiles_outside(*grid, newer);
+  if (map->tiles.empty()) {  // the Command Post has newer data, or will have it
+    counts_.replaced(traffic_of(map->update), 1);
+    return accept(*map);
+  }
+  map->cut = std::unexpected(not_stored());
+  workers_.submit(
+      loop::Urgency::OnTheWay,
+      [map, width = grid->width] { map->cut = pack::cut(map->update.data, width, map->tiles); },
+      [this, map] {
+        if (!map->cut) return refuse(*map, std::move(map->cut.error()));
+        map->update.data = {};
+        store_next_tile(map);
+      });
+}
+
+void Maps::store_next_tile(const std::shared_ptr<Arrived>& map) {
+  icd::MapUpdate part = map->update;
+  crop(std::get<icd::OccupancyGrid>(part.msg), map->tiles.back());
+  part.data = std::move(map->tiles.back().data);
+  map->tiles.pop_back();
+  store_.store(std::move(part), nullptr, /*spare=*/0, /*again=*/false, [this, map](MapStore::Stored& stored) {
+    if (!stored.map) {
+      for (const MapStore::Stored& part : map->parts) store_.forget({&part.number, 1});
+      return refuse(*map, std::move(stored.map.error()));
+    }
+    map->parts.push_back(std::move(stored));
+    if (!map->tiles.empty()) return store_next_tile(map);
+    for (MapStore::Stored& part : map->parts) queue(part);
+    accept(*map);
+  });
+}
+
+void Maps::accept(Arrived& map) {
+  counts_.accepted(traffic_of(map.update), map.upload.bytes, loop_.wall_now());
+  overtaken_.record(map.update, map.upload);
+  end(map, {});
+  compare();
+  pump();
+}
+
+void Maps::refuse(Arrived& map, icd::Refusal why) {
+  end(map, std::unexpected(std::move(why)));
+}
+
+void Maps::end(Arrived& map, const icd::Checked<void>& outcome) {
+  store_.discard(std::exchange(map.file, nullptr));
+  overtaken_.end(map.upload);
+  map.done(outcome);
+  for (const auto& each : std::exchange(waiting_, {})) take(each);
 }
 
 void Maps::restore(spool::Spool::Kept kept) {
@@ -72,7 +289,8 @@ void Maps::restore(spool::Spool::Kept kept) {
       kept, [](const spool::Spool::KeptMap& each) { return each.ends.faults < spool::Spool::Ends::kMost; });
   for (spool::Spool::KeptMap& each : at_fault) put_aside(std::move(each));
   kept.erase(at_fault.begin(), at_fault.end());
-  accepted_.restore(std::move(kept));
+  store_.read_trouble();
+  for (spool::Spool::KeptMap& each : kept) restore(std::move(each));
 }
 
 /// Its file stays until the rejected messages have one.
@@ -89,25 +307,270 @@ void Maps::put_aside(spool::Spool::KeptMap kept) {
                 kept.ends.faults);
 }
 
-void Maps::take_settings() {
-  queue_.a_slot_carries(slot_of(settings_.command_post));
-  queue_.merge_at_most(settings_.queues.merge_bytes);
-  queue_.clouds_are(settings::by_robot(settings_.robots, &settings::Robot::clouds));
-  queue_.precisions_are(settings::by_robot(settings_.robots, &settings::Robot::precision));
-}
-
-void Maps::settings_changed() {
-  take_settings();
-  prepared_.slot().allow(pace::map_bytes_per_second(settings_.command_post.budget_mbit));
-  pace_.allow(settings_.command_post.rates.map_hz, loop_.now());
+void Maps::restore(spool::Spool::KeptMap kept) {
+  const std::uint64_t number = kept.number;
+  icd::MapUpdate update = std::move(kept.map);
+  const bool again = store_.restored(number);
+  const icd::Stamp stamp = update.header().stamp.value_or(loop_.stamp_now());
+  counts_.accepted(traffic_of(update), update.data.bytes.size(), time_of(loop_, stamp));
+  if (again) {
+    store_.forget(queue_.put_back(waiting_again(number, std::move(update), kept.bounds, kept.ends)));
+  } else {
+    tell_clouds(update);
+    queue_.restore(number, std::move(update), loop_.now(), kept.bounds, rule_after(kept.ends));
+  }
+  compare();
   pump();
 }
 
-void Maps::endpoint_changed(std::optional<icd::BearerToken> token) {
-  const settings::CommandPost& post = settings_.command_post;
-  channel_.lead_to(access_to_mapping(post, std::move(token), pace::map_bytes_per_second(post.budget_mbit)));
-  channel_.give_up();
+void Maps::tell_clouds(const icd::MapUpdate& update) {
+  const queues::Clouds clouds = queue_.clouds_of(queues::Sender::of(update));
+  if (clouds != queues::Clouds::Auto) counts_.clouds_are(traffic_of(update), clouds);
+}
+
+/// It must not follow a newer map that contains it.
+void Maps::send_again(icd::MapUpdate update, std::function<bool(bool kept)> done,
+                      const std::optional<icd::GridBounds>& bounds, int faults) {
+  queues::QueuedMap back = waiting_again(store_.next_again(), update, bounds, {.faults = faults});
+  auto absorbed = queue_.absorb(back);
+  if (!absorbed) absorbed = absorb(back);
+  if (absorbed) {
+    store_.forget(*std::move(absorbed));
+    done(true);
+    return;
+  }
+  update.header().stamp = loop_.stamp_now();
+  back.map.data = {};  // so that the writer frees it chunk by chunk
+  store_.store(
+      std::move(update), nullptr, 0, /*again=*/true,
+      [this, back = std::move(back), faults, done = std::move(done)](MapStore::Stored& stored) {
+        if (stored.map && faults > 0) store_.remember(stored.number, {.faults = faults});
+        stored_again(stored, back, done);
+      },
+      bounds);
+}
+
+void Maps::stored_again(MapStore::Stored& stored, queues::QueuedMap back,
+                        const std::function<bool(bool kept)>& done) {
+  const bool is_wanted = done(stored.map.has_value());
+  if (!stored.map) {
+    return host::log(host::Level::Error, "cannot send a rejected map again",
+                     {{"why", stored.map.error().sentence}});
+  }
+  back.map = std::move(*stored.map);
+  back.updates = {stored.number};
+  back.accepted = loop_.now();
+  if (!is_wanted) return store_.forget({&stored.number, 1});
+  if (auto absorbed = absorb(back)) {
+    absorbed->numbers.push_back(stored.number);
+    return store_.forget(*std::move(absorbed));
+  }
+  store_.must_check(stored.number);  // perhaps rejected by an earlier process
+  store_.forget(queue_.put_back(std::move(back)));
   pump();
+}
+
+queues::QueuedMap Maps::waiting_again(std::uint64_t number, icd::MapUpdate update,
+                                      const std::optional<icd::GridBounds>& bounds,
+                                      const spool::Spool::Ends& ends) const {
+  const icd::Stamp stamp = update.header().stamp.value_or(0);
+  return {.map = std::move(update),
+          .accepted = loop_.now(),
+          .updates = {number},
+          .packing = std::max(queues::PackingRule::Alone, rule_after(ends)),
+          .bounds = bounds,
+          .again = stamp};
+}
+
+/// One pair at a time, to save memory. Both stay queued and may be sent.
+void Maps::compare() {
+  if (is_comparing_ || stopping_) return;
+  auto next = queue_.to_compare();
+  if (!next) return;
+  struct Comparison {
+    queues::Successive two;
+    bool has_all = false;
+  };
+  const auto it = std::make_shared<Comparison>(Comparison{*std::move(next)});
+  workers_.submit(
+      loop::Urgency::OnTheWay,
+      [it] { it->has_all = pack::has_all_points(it->two.newer, it->two.older, it->two.point_step); },
+      [this, it] { compared(it->two, it->has_all); });
+  is_comparing_ = true;
+}
+
+void Maps::compared(const queues::Successive& two, bool has_all) {
+  is_comparing_ = false;
+  const Traffic traffic{Kind::Cloud, icd::text_of(two.sender.name)};
+  if (has_all) {
+    const auto replaced = queue_.replace(two);
+    counts_.replaced(traffic, replaced.size());
+    store_.forget(replaced);
+  } else {
+    queue_.keep_both(two);
+  }
+  counts_.clouds_are(traffic, has_all ? queues::Clouds::Whole : queues::Clouds::Parts);
+  compare();
+}
+
+std::vector<const Maps::Prepared*> Maps::prepared_of(const Traffic& traffic) const {
+  std::vector<const Prepared*> all;
+  for (const Prepared* each : {first_.get(), following_.get()}) {
+    if (each != nullptr && traffic_of(each->waiting.map) == traffic) all.push_back(each);
+  }
+  return all;
+}
+
+/// A worker that packs the map reads no bounds.
+std::optional<queues::Replaced> Maps::absorb(const queues::QueuedMap& back) {
+  for (const Place& place : {first_, following_}) {
+    if (!place) continue;
+    if (auto replaced = queues::absorb(place->waiting, back)) return replaced;
+  }
+  return {};
+}
+
+void Maps::prepare(bool follows) {
+  slot_.link_delivers(channel_.delivers());
+  queue_.a_message_holds(slot_.points_within(pace_.spacing()));
+  auto waiting = queue_.take(loop_.now());
+  if (!waiting) return;
+  Place& place = follows ? following_ : first_;
+  place = std::make_shared<Prepared>(Prepared{.waiting = std::move(*waiting)});
+  pack(place);
+}
+
+void Maps::pack(const Place& prepared) {
+  icd::Header& header = prepared->waiting.map.header();
+  header.stamp = pace_.next_stamp(header.stamp.value_or(loop_.stamp_now()));
+  pace_.keep_stamp(*header.stamp);
+  const loop::Instant began = loop_.now();
+  const Packing packing{settings_.command_post.arrange_clouds, slot_.hurry(pace_.spacing())};
+  const auto unread = store_.work_begins(prepared->waiting);
+  workers_.submit(
+      loop::Urgency::OnTheWay,
+      [prepared, packing, unread, &loop = loop_, starts = packing_.begin(), file = store_.work_file()] {
+        const loop::FaultCounter faults(file.c_str());
+        const loop::Instant begins = loop.now();
+        starts();
+        prepared->damaged = damaged_in(prepared->waiting, unread);
+        if (!prepared->damaged.empty()) return;
+        prepared->packed = packed(prepared->waiting, packing);
+        prepared->packing_took = loop.now() - begins;
+        if (!prepared->packed.body.empty() || prepared->packed.has_no_valid_point) return;
+        std::vector<std::uint64_t> numbers;
+        queues::add_own_numbers(numbers, prepared->waiting);
+        prepared->damaged = damaged_in(prepared->waiting, numbers);
+      },
+      [this, began, prepared, unread] {
+        is_packing_ = false;
+        packing_.end();
+        const bool is_good = prepared->damaged.empty();
+        store_.work_ends(is_good, unread);
+        if (is_good) slot_.packing_took(loop_.now() - began);
+        work_done(prepared);
+        pump();
+      },
+      [this, prepared] { work_failed(prepared); });
+  is_packing_ = true;
+}
+
+/// Null if it returned to the queue meanwhile.
+Maps::Place* Maps::place_of(const Place& prepared) {
+  if (prepared == first_) return &first_;
+  return prepared == following_ ? &following_ : nullptr;
+}
+
+/// Records the damaged maps as failed and renames their files. The other parts are queued again, each alone.
+void Maps::is_damaged(Place& place) {
+  const auto it = place;
+  queues::QueuedMap rest = it->waiting;
+  std::vector<std::uint64_t> gone;
+  for (const MapStore::Damaged& each : it->damaged) gone.push_back(each.number);
+  const auto is_gone = [&](std::uint64_t number) { return std::ranges::find(gone, number) != gone.end(); };
+  std::erase_if(rest.parts, [&](const queues::QueuedMap& part) { return is_gone(part.updates.back()); });
+  std::erase_if(rest.updates, is_gone);
+  store_.set_aside(it->damaged);
+  if (!rest.parts.empty()) queue_.put_back_apart(std::move(rest));
+  place.reset();  // the damaged maps are not retried
+  for (const MapStore::Damaged& each : it->damaged) {
+    counts_.not_taken(traffic_of(it->waiting.map), DeliveryFailure::Failed, 0,
+                      "its stored copy is damaged: " + each.why);
+  }
+  store_.forget(gone);
+}
+
+/// Parts that cannot be stitched return to the queue, each alone.
+void Maps::work_done(const Place& prepared) {
+  if (prepared->damaged.empty()) {
+    const Packed& packed = prepared->packed;
+    slot_.worker_took(prepared->packing_took, packed.expected);
+    slot_.packed(packed.points_size, packed.full_size, packed.precision);
+  }
+  Place* const place = place_of(prepared);
+  if (place == nullptr) return;
+  if (!prepared->damaged.empty()) return is_damaged(*place);
+  if (prepared->packed.has_no_valid_point) return skip_piece(*place);
+  if (prepared->packed.drawn) queue_.canvases().lay(prepared->waiting.map.name, *prepared->packed.drawn);
+  prepared->packed.drawn.reset();
+  if (!prepared->packed.body.empty()) {
+    if (prepared->packed.stitched.raw_size > 0)
+      prepared->waiting.map.data = std::move(prepared->packed.stitched);
+    return;
+  }
+  host::log(host::Level::Warning, "cannot join grids: their data is damaged");
+  queue_.put_back_apart(prepared->waiting);
+  place->reset();
+}
+
+/// It has no valid point.
+void Maps::skip_piece(Place& place) {
+  const auto piece = std::exchange(place, nullptr);
+  if (queues::next_piece(piece->waiting)) return store_.forget(queue_.put_back(std::move(piece->waiting)));
+  counts_.replaced(traffic_of(piece->waiting.map), piece->waiting.updates.size());
+  store_.forget(piece->waiting.updates);
+}
+
+void Maps::work_failed(const Place& prepared) {
+  is_packing_ = false;
+  packing_.end();
+  store_.work_ends(false, {});
+  prepared->packed = {};
+  if (Place* const place = place_of(prepared)) {
+    counts_.not_taken(traffic_of(prepared->waiting.map), DeliveryFailure::Failed, 0,
+                      "it could not be compressed");
+    put_back(*place);
+  }
+  pace_.failed(loop_.now());
+  wake_.call_at(pace_.ready());
+}
+
+void Maps::leaves(const Place& sent) {
+  if (sent == following_) return following_.reset();
+  if (sent == first_) first_ = std::exchange(following_, nullptr);
+}
+
+void Maps::queue_again(const Place& sent) {
+  if (sent == first_) put_back(following_);
+  if (Place* const place = place_of(sent)) put_back(*place);
+  if (!first_) first_ = std::exchange(following_, nullptr);
+}
+
+/// Except one in flight.
+void Maps::put_back(Place& prepared) {
+  if (!prepared || prepared->is_under_way) return;
+  const auto replaced = queue_.put_back(prepared->waiting);
+  prepared.reset();
+  store_.forget(replaced);
+}
+
+void Maps::pack_again() {
+  put_back(following_);
+  put_back(first_);
+  queue_.restart_pieces();
+  for (const Place& place : {first_, following_}) {
+    if (place && std::exchange(place->waiting.piece, {}).size > 0) place->begins_again = true;
+  }
 }
 
 void Maps::pump() noexcept {
@@ -115,20 +578,20 @@ void Maps::pump() noexcept {
     pace_.link_is_back();
     blame_ = {};
     ahead_ = {};
-    prepared_.slot().forget_sizes();
+    slot_.forget_sizes();
     queue_.canvases().lead_to(channel_.address());
-    prepared_.pack_again();
+    pack_again();
   }
-  if (stopping_ || prepared_.is_packing() || !channel_.has_token()) return;
+  if (stopping_ || is_packing_ || !channel_.has_token()) return;
   go_on();
 }
 
 void Maps::go_on() {
   const loop::Instant now = loop_.now();
   const bool follows = channel_.busy();
-  const Place& next = follows ? prepared_.following() : prepared_.first();
+  const Place& next = follows ? following_ : first_;
   if (next && next->is_under_way) return;
-  if (next && next->packed.body.empty()) return prepared_.pack(next);
+  if (next && next->packed.body.empty()) return pack(next);
   if (next && must_split(*next)) {
     split(next);
     return go_on();
@@ -141,14 +604,8 @@ void Maps::go_on() {
   }
   if (queue_.count() == 0) return;
   const loop::Instant begin = begins_to_pack(now);
-  if (now >= begin) return prepared_.prepare(follows, channel_.delivers());
+  if (now >= begin) return prepare(follows);
   wake_.call_at(begin);
-}
-
-void Maps::packed(bool is_done) {
-  if (is_done) return pump();
-  pace_.failed(loop_.now());
-  wake_.call_at(pace_.ready());
 }
 
 /// Of the next map, whose last byte is held back, except to a serial server.
@@ -162,13 +619,42 @@ loop::Instant Maps::starts() const {
 /// No packing while the link is down.
 loop::Instant Maps::begins_to_pack(loop::Instant now) const {
   loop::Instant free = now;
-  if (channel_.busy() && !prepared_.first()->arrived) {
+  if (channel_.busy() && !first_->arrived) {
     if (!channel_.connected()) return now + kLookAtConnecting;
-    const std::size_t size = prepared_.first()->packed.body.size();
-    free += prepared_.slot().transfer(size - std::min(size, channel_.sent_of_it()));
+    const std::size_t size = first_->packed.body.size();
+    free += slot_.transfer(size - std::min(size, channel_.sent_of_it()));
   }
-  const loop::Instant begin = std::max(starts(), free) - prepared_.slot().lead();
+  const loop::Instant begin = std::max(starts(), free) - slot_.lead();
   return begin <= now ? begin : std::max(begin, now + kLookAtSending);
+}
+
+/// Once the one that is under way has arrived; it is looked for when the next may start, and not before.
+void Maps::go_ahead(loop::Instant now) {
+  if (!may_go_ahead(now)) return;
+  Prepared& first = *first_;
+  const std::size_t size = first.packed.body.size(), left = size - std::min(size, channel_.sent_of_it());
+  if (!first.arrived && left > 0)
+    return wake_.call_at(now + std::max<loop::Duration>(slot_.transfer(left) / 2, kLookAtSending));
+  if (now < starts() - kGetReady) return wake_.call_at(starts() - kGetReady);
+  channel_.get_ready();
+  const auto arrived = first.arrived ? std::nullopt : channel_.has_arrived();
+  if (arrived) {
+    first.arrived = arrived->last;
+    pace_.left(*arrived);
+  }
+  loop::Instant begin = starts();
+  if (first.arrived) begin = std::max(begin, *first.arrived + reading_takes(first.waiting.map));
+  if (first.arrived && channel_.can_go_ahead() && now >= begin) return send(following_);
+  wake_.call_at(std::max(begin, now + kLookForEnd));
+}
+
+/// If not, the answer to the one that is under way is awaited.
+bool Maps::may_go_ahead(loop::Instant now) const {
+  const Prepared& first = *first_;
+  const queues::Pipelining::Before before{
+      .map = first.waiting, .arrived = first.arrived.value_or(now), .went_ahead = first.went_ahead};
+  return first.is_under_way && !channel_.is_serial() && pace_.may_go_ahead(now) &&
+         ahead_.may_go(following_->waiting, before, now);
 }
 
 void Maps::send(const Place& prepared) {
@@ -203,8 +689,8 @@ void Maps::classify(const Place& sent, const uplink::Outcome& outcome) {
 
 void Maps::taken(const Place& sent, const uplink::Answered& answered) {
   pace_.taken(answered.sent, loop_.now());
-  prepared_.slot().left(sent->packed.body.size(), answered.sent, sent->last_byte_not_before);
-  prepared_.slot().on_passed(sent->packed.body.size());
+  slot_.left(sent->packed.body.size(), answered.sent, sent->last_byte_not_before);
+  slot_.on_passed(sent->packed.body.size());
   icd::MapUpdate& map = sent->waiting.map;
   if (sent->begins_again) {
     counts_.forwarded(traffic_of(map), 0, sent->packed.body.size(), answered.status, loop_.wall_now());
@@ -216,9 +702,9 @@ void Maps::taken(const Place& sent, const uplink::Answered& answered) {
   queue_.carried(queues::Sender::of(map), sent->packed.body.size());
   if (queues::next_piece(sent->waiting)) {
     counts_.forwarded(traffic_of(map), 0, sent->packed.body.size(), answered.status, loop_.wall_now());
-    return prepared_.again(sent);
+    return queue_again(sent);
   }
-  prepared_.leaves(sent);
+  leaves(sent);
   const std::size_t updates = sent->waiting.updates.size();
   if (sent->waiting.again) map.header().stamp = sent->waiting.again;
   // First: the writer works in order.
@@ -270,7 +756,7 @@ void Maps::on_too_large(const Place& sent, const uplink::Answered& answered, con
   queue_.carried(sender, sent->packed.body.size());
   const std::size_t size = sent->packed.body.size();
   if (queues::can_split(waiting, size)) return send_smaller(sent, size, answered.status, sentence);
-  prepared_.slot().on_too_large(size);
+  slot_.on_too_large(size);
   const bool is_page = dispatch::body_of(answered.body) == dispatch::Body::Other;
   if (!is_page) return give_up(sent, answered.status, sentence);
   const auto next = blame_.failed(whose(waiting.map), waiting.trial, loop_.now());
@@ -281,14 +767,14 @@ void Maps::on_too_large(const Place& sent, const uplink::Answered& answered, con
 }
 
 /// The endpoint would not accept it.
-bool Maps::must_split(const PreparedMap& prepared) const {
+bool Maps::must_split(const Prepared& prepared) const {
   const std::size_t size = prepared.packed.body.size();
-  return !prepared_.slot().fits(size) && queues::can_split(prepared.waiting, size);
+  return !slot_.fits(size) && queues::can_split(prepared.waiting, size);
 }
 
 /// Of two maps in flight the bytes that had left are not known. A map that cannot be split is retried,
 /// because a fault of the link is never a reason to reject it.
-bool Maps::is_cut_by_size(PreparedMap& sent) {
+bool Maps::is_cut_by_size(Prepared& sent) {
   const std::size_t size = sent.packed.body.size();
   if (size < queues::Cuts::kLeastBody || !queues::can_split(sent.waiting, size)) return false;
   if (sent.went_ahead || channel_.busy()) return false;
@@ -299,7 +785,7 @@ bool Maps::is_cut_by_size(PreparedMap& sent) {
 void Maps::send_smaller(const Place& sent, std::size_t bytes, int status, const std::string& sentence) {
   counts_.not_taken(traffic_of(sent->waiting.map), DeliveryFailure::Failed, status,
                     sentence + "; it is sent in smaller messages");
-  prepared_.slot().on_too_large(std::min(bytes, sent->packed.body.size()));
+  slot_.on_too_large(std::min(bytes, sent->packed.body.size()));
   ahead_.failed(false);
   split(sent);
 }
@@ -307,22 +793,22 @@ void Maps::send_smaller(const Place& sent, std::size_t bytes, int status, const 
 /// A single cloud or grid goes on in pieces within the limit.
 void Maps::split(const Place& place) {
   queues::QueuedMap& waiting = place->waiting;
-  if (place == prepared_.first()) prepared_.put_back_following();
+  if (place == first_) put_back(following_);
   if (!waiting.parts.empty()) {
     queue_.put_back_halves(waiting);
   } else {
     const std::size_t size = place->packed.body.size();
     std::size_t pieces = 2;
-    while (!prepared_.slot().fits(size / pieces)) ++pieces;
+    while (!slot_.fits(size / pieces)) ++pieces;
     queues::shrink(waiting, pieces);
     store_.forget(queue_.put_back(waiting));
   }
-  prepared_.leaves(place);
+  leaves(place);
 }
 
 void Maps::again(const Place& sent) {
   ahead_.failed(sent->went_ahead || channel_.busy());
-  prepared_.again(sent);
+  queue_again(sent);
 }
 
 /// Parts of a merged or stitched map are tried separately.
@@ -334,11 +820,11 @@ void Maps::give_up(const Place& sent, int status, const std::string& sentence) {
   if (waiting.parts.empty()) {
     rejected_.add(waiting.map, status, sentence, waiting.map.data.bytes.size(),
                   {.let_go = [this, numbers = waiting.updates] { store_.forget(numbers); }}, waiting.bounds);
-    return prepared_.leaves(sent);
+    return leaves(sent);
   }
-  if (sent == prepared_.first()) prepared_.put_back_following();
+  if (sent == first_) put_back(following_);
   queue_.put_back_apart(waiting);
-  prepared_.leaves(sent);
+  leaves(sent);
 }
 
 /// False if maps go to another Command Post, whose statuses Adit does not read.
@@ -349,14 +835,14 @@ bool Maps::is_heard_from() const {
 void Maps::heard() {
   if (!is_heard_from()) return;
   std::vector<const icd::MapUpdate*> under_way;
-  for (const Place& place : {prepared_.first(), prepared_.following()}) {
+  for (const Place& place : {first_, following_}) {
     if (place) under_way.push_back(&place->waiting.map);
   }
   queue_.canvases().heard(under_way);
 }
 
 void Maps::change_run(dispatch::NextMap next) {
-  prepared_.pack_again();
+  pack_again();
   queues::Canvases& canvases = queue_.canvases();
   if (next == dispatch::NextMap::Empty && is_heard_from()) return canvases.begin_run();
   if (next == dispatch::NextMap::Earlier) return canvases.take_up_run();
@@ -375,61 +861,15 @@ bool Maps::stop() {
 }
 
 std::size_t Maps::waiting(const Traffic& traffic) const {
-  return queue_.count(sender_of(traffic)) + prepared_.of(traffic).size();
+  return queue_.count(sender_of(traffic)) + prepared_of(traffic).size();
 }
 
 std::optional<loop::Instant> Maps::waits_since(const Traffic& traffic) const {
   std::optional<loop::Instant> oldest = queue_.oldest(sender_of(traffic));
-  for (const PreparedMap* prepared : prepared_.of(traffic)) {
+  for (const Prepared* prepared : prepared_of(traffic)) {
     oldest = std::min(oldest.value_or(prepared->waiting.accepted), prepared->waiting.accepted);
   }
   return oldest;
-}
-
-namespace {
-
-/// A connection for the next map is made so long before it may start, and the end of the one before is looked
-/// for so often from then on: the link is idle in between.
-constexpr std::chrono::milliseconds kGetReady{50}, kLookForEnd{2};
-
-/// A Command Post may read both at the same time, and then check the small one before a large one that
-/// arrived first. Its stamp would run backward. A slow one reads so many bytes of a map's data in a second.
-constexpr double kReads = 20e6;
-
-loop::Duration reading_takes(const icd::MapUpdate& map) {
-  return std::chrono::duration_cast<loop::Duration>(
-      std::chrono::duration<double>(static_cast<double>(map.data.raw_size) / kReads));
-}
-
-}  // namespace
-
-/// Once the one that is under way has arrived; it is looked for when the next may start, and not before.
-void Maps::go_ahead(loop::Instant now) {
-  if (!may_go_ahead(now)) return;
-  PreparedMap& first = *prepared_.first();
-  const std::size_t size = first.packed.body.size(), left = size - std::min(size, channel_.sent_of_it());
-  if (!first.arrived && left > 0)
-    return wake_.call_at(now + std::max<loop::Duration>(prepared_.slot().transfer(left) / 2, kLookAtSending));
-  if (now < starts() - kGetReady) return wake_.call_at(starts() - kGetReady);
-  channel_.get_ready();
-  const auto arrived = first.arrived ? std::nullopt : channel_.has_arrived();
-  if (arrived) {
-    first.arrived = arrived->last;
-    pace_.left(*arrived);
-  }
-  loop::Instant begin = starts();
-  if (first.arrived) begin = std::max(begin, *first.arrived + reading_takes(first.waiting.map));
-  if (first.arrived && channel_.can_go_ahead() && now >= begin) return send(prepared_.following());
-  wake_.call_at(std::max(begin, now + kLookForEnd));
-}
-
-/// If not, the answer to the one that is under way is awaited.
-bool Maps::may_go_ahead(loop::Instant now) const {
-  const PreparedMap& first = *prepared_.first();
-  const queues::Pipelining::Before before{
-      .map = first.waiting, .arrived = first.arrived.value_or(now), .went_ahead = first.went_ahead};
-  return first.is_under_way && !channel_.is_serial() && pace_.may_go_ahead(now) &&
-         ahead_.may_go(prepared_.following()->waiting, before, now);
 }
 
 }  // namespace adit::forward

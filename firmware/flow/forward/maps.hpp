@@ -1,16 +1,27 @@
 #pragma once
 
+#include <functional>
+#include <memory>
 #include <optional>
 #include <random>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "dispatch/runs.hpp"
-#include "forward/accepted_maps.hpp"
 #include "forward/channel.hpp"
-#include "forward/prepared_maps.hpp"
+#include "forward/map_store.hpp"
 #include "forward/rejected.hpp"
+#include "forward/slot.hpp"
+#include "forward/stitched.hpp"
+#include "forward/traffic_counts.hpp"
 #include "forward/uri_pace.hpp"
+#include "journal/journal.hpp"
+#include "loop/watchdog.hpp"
+#include "pack/stitch.hpp"
 #include "queues/map_queue.hpp"
+#include "queues/stamps.hpp"
+#include "settings/settings.hpp"
 
 namespace adit::forward {
 
@@ -24,6 +35,10 @@ namespace adit::forward {
 /// of sending.
 class Maps {
  public:
+  /// Each map has a mapped file (vm.max_map_count is 65,530). Beyond kMostMaps only maps that merge with
+  /// queued ones are accepted.
+  static constexpr std::size_t kMostMaps = 20'000, kMostWithJoined = 40'000;
+
   /// `taken` gets delivered maps. `spool` outlives the writer.
   Maps(loop::Loop& loop, uplink::Servers& servers, loop::Workers& workers, loop::Writer& writer,
        spool::Spool& spool, const settings::Settings& settings, std::optional<icd::BearerToken> token,
@@ -54,31 +69,26 @@ class Maps {
   /// are queued; a whole cloud that was overtaken is not.
   void take(icd::MapUpdate update, const queues::Upload& upload, std::shared_ptr<spool::MapFile> file,
             std::function<void(icd::Checked<void>)> done) {
-    accepted_.take(std::move(update), upload, std::move(file), std::move(done));
+    take(std::make_shared<Arrived>(Arrived{std::move(update), upload, std::move(file), std::move(done)}));
   }
 
   /// Queues a rejected map before its sender's other maps. `done` is called with true if it is stored, or if
   /// a queued or sent map contains it. It returns false if such a map was accepted since; then it is not
   /// sent. `bounds`, `faults`: queues::RejectedMessage.
   void send_again(icd::MapUpdate update, std::function<bool(bool kept)> done,
-                  const std::optional<icd::GridBounds>& bounds = {}, int faults = 0) {
-    accepted_.send_again(std::move(update), std::move(done), bounds, faults);
-  }
+                  const std::optional<icd::GridBounds>& bounds = {}, int faults = 0);
 
-  /// Stops sending. False while an answer is awaited.
+  /// Stops sending, and compares no more clouds. False while an answer is awaited.
   bool stop();
-  void stand_by() {
-    stopping_ = true;
-    accepted_.stop();
-  }
+  void stand_by() { stopping_ = true; }
   /// True if no map is being stored.
-  bool all_kept() const { return accepted_.all_kept(); }
+  bool all_kept() const { return overtaken_.empty() && store_.count() == 0; }
   /// Why the last map could not be stored, or "".
   const std::string& trouble() const { return store_.trouble(); }
   /// The cable is in again: retries at once.
   void link_is_back();
 
-  bool packing() const { return prepared_.is_packing(); }
+  bool packing() const { return is_packing_; }
   const Channel& channel() const { return channel_; }
   std::size_t queued_bytes() const { return queue_.bytes(); }
   std::size_t waiting(const Traffic& traffic) const;
@@ -86,35 +96,97 @@ class Maps {
   std::optional<loop::Instant> waits_since(const Traffic& traffic) const;
 
  private:
-  using Place = PreparedMaps::Place;
+  /// A whole map that is not queued yet.
+  struct Arrived {
+    icd::MapUpdate update;
+    queues::Upload upload;
+    std::shared_ptr<spool::MapFile> file;
+    std::function<void(icd::Checked<void>)> done;
+    /// If newer grids overtook it: its cells outside of them, which are queued as grids of their own.
+    std::vector<pack::Tile> tiles = {};
+    icd::Checked<void> cut = {};
+    std::vector<MapStore::Stored> parts = {};  // stored tiles
+  };
+  /// A map that was taken from the queue.
+  struct Prepared {
+    queues::QueuedMap waiting;
+    Packed packed{};                           // empty body: not packed, or nothing to send
+    std::vector<MapStore::Damaged> damaged{};  // cannot be sent
+    loop::Duration packing_took{0};            // by the worker
+    bool is_under_way = false, went_ahead = false;
+    bool begins_again = false;  // a piece, in flight when the Command Post may have lost those before it
+    loop::Instant last_byte_not_before{};
+    std::optional<loop::Instant> arrived{};  // estimate
+  };
+  using Place = std::shared_ptr<Prepared>;
 
   void take_settings();
   bool is_heard_from() const;
   void pump() noexcept;
+
+  // Arrival: a map for which there is room is queued once it is stored. A worker then finds queued
+  // clouds that newer ones contain.
+  void take(const std::shared_ptr<Arrived>& map);
+  bool has_room_for(const icd::MapUpdate& update, bool replaces) const;
+  bool is_told(const icd::MapUpdate& update);
+  void stored(MapStore::Stored& stored, Arrived& map);
+  void queue(MapStore::Stored& stored);
+  void leave_out(const std::shared_ptr<Arrived>& map, std::span<const icd::GridBounds> newer);
+  void store_next_tile(const std::shared_ptr<Arrived>& map);
+  void accept(Arrived& map);
+  void refuse(Arrived& map, icd::Refusal why);
+  void end(Arrived& map, const icd::Checked<void>& outcome);
+  void restore(spool::Spool::KeptMap kept);
+  void put_aside(spool::Spool::KeptMap kept);
+  void stored_again(MapStore::Stored& stored, queues::QueuedMap back,
+                    const std::function<bool(bool kept)>& done);
+  queues::QueuedMap waiting_again(std::uint64_t number, icd::MapUpdate update,
+                                  const std::optional<icd::GridBounds>& bounds,
+                                  const spool::Spool::Ends& ends) const;
+  void tell_clouds(const icd::MapUpdate& update);
+  void compare();
+  void compared(const queues::Successive& two, bool has_all);
+
+  // Packing: a worker packs one map at a time, the next one to send.
+  void prepare(bool follows);
+  void pack(const Place& prepared);
+  void work_done(const Place& prepared);
+  void work_failed(const Place& prepared);
+  void is_damaged(Place& place);
+  void skip_piece(Place& place);
+  Place* place_of(const Place& prepared);
+  std::vector<const Prepared*> prepared_of(const Traffic& traffic) const;
+  std::optional<queues::Replaced> absorb(const queues::QueuedMap& back);
+  void leaves(const Place& sent);
+  void queue_again(const Place& sent);
+  void put_back(Place& prepared);
+  void pack_again();
+
+  // Sending, and the answers.
   void go_on();
-  void packed(bool is_done);
   loop::Instant starts() const;
   loop::Instant begins_to_pack(loop::Instant now) const;
-  void send(const Place& prepared);
   void go_ahead(loop::Instant now);
   bool may_go_ahead(loop::Instant now) const;
+  void send(const Place& prepared);
   void answered(const Place& sent, const uplink::Outcome& outcome);
   void classify(const Place& sent, const uplink::Outcome& outcome);
   void verdict(const Place& sent, const uplink::Answered& answered);
   void taken(const Place& sent, const uplink::Answered& answered);
   void on_too_large(const Place& sent, const uplink::Answered& answered, const std::string& sentence);
-  bool must_split(const PreparedMap& prepared) const;
-  bool is_cut_by_size(PreparedMap& sent);
+  bool must_split(const Prepared& prepared) const;
+  bool is_cut_by_size(Prepared& sent);
   void send_smaller(const Place& sent, std::size_t bytes, int status, const std::string& sentence);
   void split(const Place& place);
   void again(const Place& sent);
   void give_up(const Place& sent, int status, const std::string& sentence);
-  void put_aside(spool::Spool::KeptMap kept);
 
   loop::Loop& loop_;
+  loop::Workers& workers_;
   const settings::Settings& settings_;
   TrafficCounts& counts_;
   RejectedStore& rejected_;
+  journal::Journal& journal_;
   std::function<void(icd::MapUpdate)> taken_;
   Channel channel_;
   UriPace pace_;
@@ -122,8 +194,14 @@ class Maps {
 
   queues::MapQueue queue_;
   MapStore store_;
-  PreparedMaps prepared_;
-  AcceptedMaps accepted_;
+  Slot slot_;
+  queues::OvertakenMaps overtaken_;
+  std::vector<std::shared_ptr<Arrived>> waiting_;  // for others that are being stored
+  bool are_grids_told_ = true;                     // the journal has the areas of grids
+  bool is_comparing_ = false;                      // a worker compares two clouds
+  Place first_, following_;                        // the next map or the one in flight, and its follower
+  bool is_packing_ = false;
+  loop::JobWatch packing_;
   queues::Pipelining ahead_;
   queues::Blame blame_;
   bool stopping_ = false;

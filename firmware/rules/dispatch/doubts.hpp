@@ -115,8 +115,13 @@ class Doubts {
   /// Call at a start, before begin(). Reports of a box that this one replaces may have come into doubt
   /// together.
   void open();
-  /// Starts again, for all() doubts. Call it if one is added or leaves, or with another run.
+  /// Starts again, for all() doubts. Call it if one is added or leaves, or if runs were one.
   void begin(Instant now);
+  /// begin() with another run. Notes its state in `before`, the doubts of the run before.
+  void begin_run(const Reports& before, Time time) {
+    begin(time.now);
+    explain(before, "", time);
+  }
   /// Report `number` came into doubt.
   void lost(std::int64_t number, Instant now);
   /// A status that was requested at `asked`. Returns the steps that it decides: of all reports of a group, or

@@ -197,8 +197,7 @@ void RunChanges::change_post(const std::string& post, Time time) {
   } else {
     account_.begin({why_at(post, from), {}}, 0, std::nullopt, steps, time);
   }
-  doubts_.explain(doubts, "", time);
-  doubts_.begin(time.now);
+  doubts_.begin_run(doubts, time);
 }
 
 void RunChanges::meet(const icd::RunStatus& status, Time time) {
@@ -352,8 +351,7 @@ void RunChanges::begin(const AnotherRun& another, std::int64_t may_be,
     if (status && report.run == account_.run().number && since) steps.emplace_back(report).run = next;
   }
   account_.begin(another, may_be, status, steps, time);
-  doubts_.begin(time.now);
-  doubts_.explain(doubts, "", time);
+  doubts_.begin_run(doubts, time);
 }
 
 void RunChanges::take_up(const Run& known, const std::string& why, Time time) {
@@ -361,8 +359,7 @@ void RunChanges::take_up(const Run& known, const std::string& why, Time time) {
   const auto doubts = doubts_.all();
   const auto steps = steps_into(number, why, time);
   account_.take_up(number, steps, time);
-  doubts_.explain(doubts, "", time);
-  doubts_.begin(time.now);
+  doubts_.begin_run(doubts, time);
 }
 
 /// The present run is `known`, and so are the runs between them: all their reports move there, and reports

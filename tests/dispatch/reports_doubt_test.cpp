@@ -37,7 +37,7 @@ TEST_F(Doubt, IsSettledByTwoStatusesThatCountTheReport) {
   EXPECT_THAT(told.body, HasSubstr(R"("score_change":1)"));
   EXPECT_THAT(told.body, HasSubstr(R"("reconciled":true)"));
   EXPECT_EQ(scene_.report(1).note,
-            "found recorded: remaining_reports went from 20 to 19 and the score from 0 to 1");
+            "found recorded: remaining_reports went from 20 to 19 and the score went from 0 to 1");
 }
 
 TEST_F(Doubt, GivesARepeatTheReconciledAnswer) {

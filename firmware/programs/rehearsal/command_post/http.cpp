@@ -1,51 +1,11 @@
 #include "rehearsal/command_post/http.hpp"
 
 #include <array>
+#include <boost/beast/http/status.hpp>
 #include <ctime>
 
 namespace adit::rehearsal {
 namespace {
-
-std::string_view reason_of(int status) {
-  switch (status) {
-    case 200:
-      return "OK";
-    case 201:
-      return "Created";
-    case 301:
-      return "Moved Permanently";
-    case 308:
-      return "Permanent Redirect";
-    case 400:
-      return "Bad Request";
-    case 401:
-      return "Unauthorized";
-    case 404:
-      return "Not Found";
-    case 405:
-      return "Method Not Allowed";
-    case 408:
-      return "Request Timeout";
-    case 409:
-      return "Conflict";
-    case 413:
-      return "Content Too Large";
-    case 415:
-      return "Unsupported Media Type";
-    case 422:
-      return "Unprocessable Entity";
-    case 429:
-      return "Too Many Requests";
-    case 431:
-      return "Request Header Fields Too Large";
-    case 500:
-      return "Internal Server Error";
-    case 501:
-      return "Not Implemented";
-    default:
-      return "";
-  }
-}
 
 /// "Sun, 06 Nov 1994 08:49:37 GMT" (RFC 9110 5.6.7); no program here has a locale.
 std::string http_date(std::chrono::system_clock::time_point now) {
@@ -69,8 +29,9 @@ std::string_view path_of(std::string_view target) {
 
 std::string bytes_of(const Outcome& outcome, bool head, std::chrono::system_clock::time_point now) {
   const Answer& answer = outcome.answer;
-  std::string bytes =
-      "HTTP/1.1 " + std::to_string(answer.status) + " " + std::string(reason_of(answer.status));
+  namespace http = boost::beast::http;
+  const std::string reason(http::obsolete_reason(http::int_to_status(static_cast<unsigned>(answer.status))));
+  std::string bytes = "HTTP/1.1 " + std::to_string(answer.status) + " " + reason;
   bytes += "\r\nContent-Length: " + std::to_string(answer.body.size());
   bytes += "\r\nDate: " + http_date(now);
   if (!answer.content_type.empty()) bytes += "\r\nContent-Type: " + answer.content_type;

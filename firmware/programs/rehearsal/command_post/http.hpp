@@ -1,8 +1,5 @@
 #pragma once
 
-#include <boost/beast/core/buffers_range.hpp>
-#include <boost/beast/core/error.hpp>
-#include <boost/beast/http/message.hpp>
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -80,32 +77,5 @@ struct Outcome {
 /// The answer's bytes as they go to the socket; without its body for a HEAD request. Dated, as what has a
 /// clock must do (RFC 9110 6.6.1).
 std::string bytes_of(const Outcome& outcome, bool head, std::chrono::system_clock::time_point now);
-
-/// A request's body (of Beast's concept Body), held as it comes: no memory is taken for a length that is only
-/// announced, as Beast's own string_body does. The parser's body_limit bounds it.
-struct HeldBody {
-  using value_type = std::string;
-  class reader {
-   public:
-    template <bool isRequest, class Fields>
-    reader(boost::beast::http::header<isRequest, Fields>&, std::string& body) : body_(body) {}
-
-    void init(const boost::optional<std::uint64_t>&, boost::beast::error_code& error) { error = {}; }
-    template <class Buffers>
-    std::size_t put(const Buffers& buffers, boost::beast::error_code& error) {
-      error = {};
-      std::size_t taken = 0;
-      for (const boost::asio::const_buffer piece : boost::beast::buffers_range_ref(buffers)) {
-        body_.append(static_cast<const char*>(piece.data()), piece.size());
-        taken += piece.size();
-      }
-      return taken;
-    }
-    void finish(boost::beast::error_code& error) { error = {}; }
-
-   private:
-    std::string& body_;
-  };
-};
 
 }  // namespace adit::rehearsal

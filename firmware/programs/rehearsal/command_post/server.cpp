@@ -2,17 +2,268 @@
 
 #include <netinet/in.h>
 #include <netinet/tcp.h>
+#include <poll.h>
 #include <sys/eventfd.h>
 #include <sys/socket.h>
 
 #include <array>
+#include <boost/asio/buffer.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/beast/core/buffers_to_string.hpp>
+#include <boost/beast/http/dynamic_body.hpp>
+#include <boost/beast/http/parser.hpp>
+#include <cerrno>
 #include <cstdio>
 #include <exception>
+#include <system_error>
 
-#include "rehearsal/command_post/connection.hpp"
+#include "rehearsal/command_post/http.hpp"
 
 namespace adit::rehearsal {
 namespace {
+
+namespace http = boost::beast::http;
+using Parser =
+    http::request_parser<http::dynamic_body>;  // takes no memory for a length that is only announced
+using boost::asio::ip::tcp;
+using Milliseconds = std::chrono::milliseconds;
+
+constexpr std::uint32_t kMostHeader = 16 * 1024;
+constexpr std::size_t kPiece = std::size_t{64} << 10;
+constexpr int kForEver = -1;  // milliseconds
+
+/// poll(2), again after a signal. Returns how many are ready, 0 after `patience_ms`.
+int poll_again(std::array<pollfd, 2>& waited, int patience_ms) {
+  int ready = -1;
+  do {
+    ready = ::poll(waited.data(), waited.size(), patience_ms);
+  } while (ready < 0 && errno == EINTR);
+  return ready;
+}
+
+/// A TCP socket that listens on `address`. The error is a sentence.
+std::expected<loop::FileDescriptor, std::string> listening_socket(const Address& address) {
+  const auto failed = [&] {
+    return std::unexpected(address.text() + ": " + std::error_code(errno, std::generic_category()).message());
+  };
+  boost::system::error_code wrong;
+  const tcp::endpoint endpoint(boost::asio::ip::make_address(address.host, wrong), address.port);
+  if (wrong) return std::unexpected(address.text() + ": not a numeric address");
+  loop::FileDescriptor socket(
+      ::socket(endpoint.protocol().family(), SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  if (!socket) return failed();
+  const int yes = 1;
+  ::setsockopt(socket.get(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+  if (::bind(socket.get(), endpoint.data(), static_cast<socklen_t>(endpoint.size())) != 0) return failed();
+  if (::listen(socket.get(), SOMAXCONN) != 0) return failed();
+  return socket;
+}
+
+/// The address that a socket is bound to.
+Address local_address_of(int socket) {
+  tcp::endpoint bound;
+  auto size = static_cast<socklen_t>(bound.capacity());
+  if (::getsockname(socket, bound.data(), &size) != 0) return {};
+  bound.resize(size);
+  return {bound.address().to_string(), bound.port()};
+}
+
+std::optional<std::string> field(const http::fields& fields, http::field name) {
+  const auto found = fields.find(name);
+  if (found == fields.end()) return std::nullopt;
+  return std::string(found->value());
+}
+
+HttpFault fault_of(const boost::system::error_code& error) {
+  if (error == http::error::body_limit) return {413, "The body is larger than this Command Post accepts"};
+  if (error == http::error::header_limit) return {431, "The header is larger than this Command Post accepts"};
+  return {400, "Not an HTTP/1.1 request: " + error.message()};
+}
+
+/// RFC 9112 3.2; RFC 9110 5.3: a field that is no list stands once.
+std::string head_fault_of(const http::request_header<>& head) {
+  using enum http::field;
+  constexpr unsigned kFirstWithHost = 11;  // HTTP/1.1
+  if (head.version() >= kFirstWithHost && head.count(host) == 0) return "Host: missing (RFC 9112 3.2)";
+  for (const auto name : {host, authorization, content_type, content_encoding, origin}) {
+    if (head.count(name) > 1) return std::string(http::to_string(name)) + ": given twice (RFC 9110 5.3)";
+  }
+  return "";
+}
+
+void take_header(const Parser& parser, const WireManner& manner, Request& request) {
+  const auto& message = parser.get();
+  request.method = std::string(message.method_string());
+  request.target = std::string(message.target());
+  request.path = path_of(request.target);
+  if (manner.slash && request.path.ends_with('/')) request.path.pop_back();
+  request.authorization = field(message, http::field::authorization);
+  request.content_type = field(message, http::field::content_type);
+  request.content_encoding = field(message, http::field::content_encoding);
+  request.origin = field(message, http::field::origin);
+  request.head_fault = head_fault_of(message);
+  request.expects_continue = field(message, http::field::expect).has_value();
+  request.keep_alive = message.keep_alive();
+}
+
+/// Feeds what was received to the parser and takes it out. Gives whether the parser needs more.
+bool feed(Parser& parser, std::string& received, boost::system::error_code& error) {
+  std::size_t used = 0;
+  while (used < received.size() && !parser.is_done() && !error) {
+    const bool had_header = parser.is_header_done();
+    const std::size_t more =
+        parser.put(boost::asio::buffer(received.data() + used, received.size() - used), error);
+    used += more;
+    // The parser stops behind the header, so that Expect can be answered before the body is waited for.
+    if (more == 0 || had_header != parser.is_header_done()) break;
+  }
+  received.erase(0, used);
+  if (error == http::error::need_more) error = {};
+  return !parser.is_done();
+}
+
+/// One connection of a client: reads requests and writes what was decided about each, one after the other.
+class Connection {
+ public:
+  /// `stop_event`: becomes readable when the connection is to end.
+  Connection(loop::FileDescriptor socket, int stop_event, const WireManner& manner, const Decide& decide)
+      : socket_(std::move(socket)), stop_event_(stop_event), manner_(manner), decide_(decide) {}
+
+  /// Until the connection ends. Returns whether a request killed the endpoint.
+  bool serve();
+
+ private:
+  enum class Event { Ready, Closed, Late, Stopped };
+
+  /// Waits for the socket's `events`, or for the stop alone if there are none.
+  Event wait(short events, int patience_ms) const;
+  Event receive();
+  /// Nothing if there is no further request: closed, idle for too long, or stopped.
+  std::optional<Request> read_request();
+  bool write(const std::string& bytes) const;
+  void end(After after) const;
+
+  loop::FileDescriptor socket_;
+  const int stop_event_;
+  const WireManner& manner_;
+  const Decide& decide_;
+  std::string received_;  // not yet parsed
+};
+
+Connection::Event Connection::wait(short events, int patience_ms) const {
+  const int socket = events != 0 ? socket_.get() : -1;
+  std::array<pollfd, 2> waited = {pollfd{stop_event_, POLLIN, 0}, pollfd{socket, events, 0}};
+  if (poll_again(waited, patience_ms) <= 0) return Event::Late;
+  return waited[0].revents != 0 ? Event::Stopped : Event::Ready;
+}
+
+Connection::Event Connection::receive() {
+  const auto patience = static_cast<int>(Milliseconds(manner_.patience).count());
+  if (const Event event = wait(POLLIN, patience); event != Event::Ready) return event;
+  std::array<char, kPiece> piece;
+  const ssize_t got = ::recv(socket_.get(), piece.data(), piece.size(), 0);
+  if (got <= 0) return Event::Closed;
+  received_.append(piece.data(), static_cast<std::size_t>(got));
+  if (!manner_.link) return Event::Ready;
+  const auto arrives = static_cast<int>(manner_.link->pass(static_cast<std::size_t>(got)).count());
+  return wait(0, arrives) == Event::Stopped ? Event::Stopped : Event::Ready;
+}
+
+std::optional<Request> Connection::read_request() {
+  Parser parser;
+  parser.eager(false);
+  parser.header_limit(kMostHeader);
+  parser.body_limit(manner_.most_body);
+  Request request;
+  request.local_address = local_address_of(socket_.get()).text();
+  boost::system::error_code error;
+  bool begun = !received_.empty();
+  bool header_taken = false;
+  while (feed(parser, received_, error)) {
+    if (parser.is_header_done() && !header_taken && !error) {
+      header_taken = true;
+      request.at = Clock::now();
+      take_header(parser, manner_, request);
+      parser.eager(true);
+      if (request.expects_continue && manner_.answers_expect && !write("HTTP/1.1 100 Continue\r\n\r\n")) {
+        request.fault = HttpFault{0, "The client closed the connection before 100 Continue"};
+        return request;
+      }
+      continue;
+    }
+    if (error) break;
+    const Event event = receive();
+    begun = begun || event == Event::Ready;
+    if (event == Event::Ready) continue;
+    if (!begun || event == Event::Stopped) return std::nullopt;
+    if (!header_taken) request.at = Clock::now();
+    request.fault = event == Event::Late ? HttpFault{408, "The request was not complete in time"}
+                                         : HttpFault{0, "The client closed the connection within a request"};
+    return request;
+  }
+  if (!header_taken) {
+    request.at = Clock::now();
+    if (!error) take_header(parser, manner_, request);
+  }
+  if (error) request.fault = fault_of(error);
+  request.whole = Clock::now();
+  request.ended = std::chrono::system_clock::now();
+  request.body = boost::beast::buffers_to_string(parser.get().body().data());
+  return request;
+}
+
+bool Connection::write(const std::string& bytes) const {
+  constexpr int patience_ms = 10'000;
+  std::size_t written = 0;
+  while (written < bytes.size()) {
+    if (wait(POLLOUT, patience_ms) != Event::Ready) return false;
+    const ssize_t sent =
+        ::send(socket_.get(), bytes.data() + written, bytes.size() - written, MSG_NOSIGNAL | MSG_DONTWAIT);
+    if (sent < 0 && (errno == EAGAIN || errno == EINTR)) continue;
+    if (sent <= 0) return false;
+    written += static_cast<std::size_t>(sent);
+  }
+  return true;
+}
+
+void Connection::end(After after) const {
+  if (after == After::Reset) {  // closing sends a RST, and nothing that is still to be sent
+    const linger at_once{.l_onoff = 1, .l_linger = 0};
+    ::setsockopt(socket_.get(), SOL_SOCKET, SO_LINGER, &at_once, sizeof at_once);
+    return;
+  }
+  // Reads on for a moment after the last answer: closing with bytes unread would send a reset, and the client
+  // might never read its answer.
+  constexpr int patience_ms = 500;
+  ::shutdown(socket_.get(), SHUT_WR);
+  const auto until = Clock::now() + Milliseconds(patience_ms);
+  std::array<char, kPiece> piece;
+  while (Clock::now() < until && wait(POLLIN, patience_ms) == Event::Ready) {
+    if (::recv(socket_.get(), piece.data(), piece.size(), 0) <= 0) return;
+  }
+}
+
+bool Connection::serve() {
+  while (auto request = read_request()) {
+    Outcome outcome = decide_(*request);
+    while (outcome.kind == Outcome::Kind::Later) {
+      if (wait(0, static_cast<int>(outcome.delay.count())) == Event::Stopped) return false;
+      outcome = outcome.then();
+    }
+    if (!request->keep_alive && outcome.after == After::KeepOpen) outcome.after = After::Close;
+    const bool answers = outcome.kind == Outcome::Kind::Answered && outcome.answer.status != 0;
+    if (outcome.kind == Outcome::Kind::Dies) return true;
+    if (outcome.kind == Outcome::Kind::Hangs) wait(0, kForEver);
+    if (!answers && outcome.kind != Outcome::Kind::Breaks) return false;
+    if (answers)
+      outcome.bytes = bytes_of(outcome, request->method == "HEAD", std::chrono::system_clock::now());
+    if (!write(outcome.bytes)) return false;
+    if (outcome.after == After::KeepOpen) continue;
+    end(outcome.after);
+    return false;
+  }
+  return false;
+}
 
 void given_up(const char* why) {
   std::fprintf(stderr, "adit-rehearsal: connection aborted: %s\n", why);
@@ -24,22 +275,21 @@ std::expected<std::unique_ptr<Server>, std::string> Server::listen(const Address
                                                                    Decide decide) {
   auto listener = listening_socket(address);
   if (!listener) return std::unexpected(std::move(listener.error()));
-  const auto bound = local_address_of(listener->get());
   if (manner.link) {  // else a whole map waits here, and its sender takes it for sent
     constexpr int most_waiting = 64 << 10;
     ::setsockopt(listener->get(), SOL_SOCKET, SO_RCVBUF, &most_waiting, sizeof most_waiting);
   }
   loop::FileDescriptor stop_event(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK));
-  if (!stop_event || !bound) return std::unexpected(address.text() + ": no more file descriptors");
+  if (!stop_event) return std::unexpected(address.text() + ": no more file descriptors");
   return std::unique_ptr<Server>(
-      new Server(std::move(*listener), std::move(stop_event), *bound, manner, std::move(decide)));
+      new Server(std::move(*listener), std::move(stop_event), manner, std::move(decide)));
 }
 
-Server::Server(loop::FileDescriptor listener, loop::FileDescriptor stop_event, Address address,
-               WireManner manner, Decide decide)
+Server::Server(loop::FileDescriptor listener, loop::FileDescriptor stop_event, WireManner manner,
+               Decide decide)
     : listener_(std::move(listener)),
       stop_event_(std::move(stop_event)),
-      address_(std::move(address)),
+      address_(local_address_of(listener_.get())),
       manner_(manner),
       decide_(std::move(decide)),
       acceptor_([this] { accept_all(); }) {}
@@ -65,7 +315,7 @@ bool Server::drained(std::chrono::milliseconds patience) {
 void Server::accept_all() {
   while (true) {
     std::array<pollfd, 2> waited = {pollfd{stop_event_.get(), POLLIN, 0}, pollfd{listener_.get(), POLLIN, 0}};
-    if (poll_again(waited, -1) < 0 || waited[0].revents != 0) return;
+    if (poll_again(waited, kForEver) < 0 || waited[0].revents != 0) return;
     loop::FileDescriptor socket(::accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC));
     if (!socket) {
       if ((waited[1].revents & (POLLHUP | POLLERR)) != 0) return;
@@ -95,7 +345,7 @@ void Server::begin(loop::FileDescriptor socket) {
 void Server::serve(loop::FileDescriptor socket) {
   try {
     Connection connection(std::move(socket), stop_event_.get(), manner_, decide_);
-    if (connection.serve() == Connection::End::EndpointDies) stop();
+    if (connection.serve()) stop();
   } catch (const std::exception& error) {  // memory that has run out
     given_up(error.what());
   }

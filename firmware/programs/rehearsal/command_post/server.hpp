@@ -88,8 +88,7 @@ class Server {
   bool drained(std::chrono::milliseconds patience);
 
  private:
-  Server(loop::FileDescriptor listener, loop::FileDescriptor stop_event, Address address, WireManner manner,
-         Decide decide);
+  Server(loop::FileDescriptor listener, loop::FileDescriptor stop_event, WireManner manner, Decide decide);
   void accept_all();
   void begin(loop::FileDescriptor socket);
   void serve(loop::FileDescriptor socket);

@@ -50,12 +50,46 @@ Judgement judge_fault(const HttpFault& fault) {
   return judgement;
 }
 
+/// The aim of a request to either endpoint, if it has one. As measured, slashes may end the path.
+std::optional<Aim> scoring_aim(const Request& request, Manner manner) {
+  std::string_view path = request.path;
+  if (manner == Manner::AsMeasured) path = without_slash(path);
+  if (request.fault) return std::nullopt;
+  if (request.method == "POST" && path == kReportsUri) return Aim::Reports;
+  if (request.method == "GET" && path == kStatusUri) return Aim::Status;
+  return std::nullopt;
+}
+
+std::optional<Aim> mapping_aim(const Request& request) {
+  if (request.fault || !names_one_of(request, kMappingFunctions)) return std::nullopt;
+  return Aim::Mapping;
+}
+
+/// Of a request that a fault keeps from its judge. It breaks no rule of the ICD, since nobody looked.
+Judgement unjudged(Aim aim, const Request& request) {
+  Judgement judgement;
+  judgement.uri = aim == Aim::Mapping ? request.path : without_slash(request.path);
+  if (aim == Aim::Reports) {  // so that the transcript shows which report came to nothing
+    if (auto document = read_document(request.body, Format::JsonText)) judgement.message = document->value;
+  }
+  return judgement;
+}
+
 /// Of a request that is answered before anything of it is judged.
 Judgement turned_away(const Request& request, std::optional<Aim> aim, Outcome outcome) {
-  Judgement judgement = aim ? unjudged({}, *aim, request, Manner::Strict) : Judgement{};
+  Judgement judgement = aim ? unjudged(*aim, request) : Judgement{};
   judgement.uri = request.path;
   judgement.outcome = std::move(outcome);
   return judgement;
+}
+
+/// `then` decides, after `delay`.
+Outcome later(Fault::Seconds delay, std::function<Outcome()> then) {
+  Outcome outcome;
+  outcome.kind = Outcome::Kind::Later;
+  outcome.delay = std::chrono::duration_cast<std::chrono::milliseconds>(delay);
+  outcome.then = std::move(then);
+  return outcome;
 }
 
 /// A judge never falls, whatever it reads: memory that runs out is answered, too.
@@ -118,7 +152,7 @@ void CommandPost::note_names(Judgement& judgement) const {
 void CommandPost::note_order(const Request& request, const Fault& fault, Judgement& judgement) {
   const double hz = options_.rate.value_or(options_.manner == Manner::Strict ? 1 : 0);
   if (judgement.report) reported_.reset();
-  if (judgement.report && words_of(fault) == words_of({})) reported_ = request.at;
+  if (judgement.report && words_of(fault) == kOk) reported_ = request.at;
   if (judgement.uri != kStatusUri || hz == 0 || !reported_) return;
   constexpr double kTolerance = 0.95;  // as RateLimit's
   if (request.at - *reported_ < std::chrono::duration<double>(kTolerance / hz))
@@ -126,7 +160,7 @@ void CommandPost::note_order(const Request& request, const Fault& fault, Judgeme
 }
 
 /// Before there was one: no answer.
-Outcome CommandPost::answer_again(Aim aim) {
+Outcome CommandPost::last_answer_to(Aim aim) {
   const std::lock_guard lock(answers_mutex_);
   const auto& before = answers_[static_cast<std::size_t>(aim)];
   Outcome outcome;
@@ -160,18 +194,15 @@ Judgement CommandPost::judge(Side& side, std::optional<Aim> aim, const Fault& fa
   if (redirects(request)) return turned_away(request, aim, redirected(request));
   if (is_too_large(request))  // as nginx does by client_max_body_size
     return turned_away(request, aim, last_answer(page(413, "Request Entity Too Large")));
-  Judgement judgement = aim && !fault.records() ? unjudged(fault, *aim, request, options_.manner)
-                                                : judge_safely(*side.endpoint, request);
+  const bool judged = !aim || records(fault);
+  Judgement judgement = judged ? judge_safely(*side.endpoint, request) : unjudged(*aim, request);
   note_names(judgement);
   display_.show(judgement.markers, judgement.findings);
-  if (fault.action == Fault::Action::RepeatAnswer) {
-    judgement.outcome = answer_again(*aim);
-  } else if (aim && fault.records()) {
-    note_answer(*aim, judgement.outcome);
-  }
+  if (!judged) judgement.outcome = last_answer_to(*aim);
+  if (judged && aim) note_answer(*aim, judgement.outcome);
   note_order(request, fault, judgement);
-  spoil(fault, request, judgement);
-  if (const std::string words = words_of(fault); words != words_of({})) judgement.fault = words;
+  if (aim) spoil(fault, *aim, options_.manner, judgement);
+  if (const std::string words = words_of(fault); words != kOk) judgement.fault = words;
   return judgement;
 }
 

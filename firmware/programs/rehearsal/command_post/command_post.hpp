@@ -61,7 +61,7 @@ class CommandPost {
   }
   void note_order(const Request& request, const Fault& fault, Judgement& judgement);
   void note_names(Judgement& judgement) const;
-  Outcome answer_again(Aim aim);
+  Outcome last_answer_to(Aim aim);
   void note_answer(Aim aim, const Outcome& outcome);
   Outcome receive(Side& side, std::optional<Aim> aim, const Request& request);
   Judgement judge(Side& side, std::optional<Aim> aim, const Fault& fault, const Request& request);

@@ -3,43 +3,10 @@
 #include <algorithm>
 #include <charconv>
 
+#include "rehearsal/command_post/misbehave.hpp"
+
 namespace adit::rehearsal {
 namespace {
-
-using Action = Fault::Action;
-using Taken = std::expected<void, std::string>;
-
-struct ActionWord {
-  std::string_view word;
-  Action action;
-};
-
-constexpr std::array<ActionWord, 21> kActions = {{{"drop", Action::Drop},
-                                                  {"record-then-drop", Action::RecordThenDrop},
-                                                  {"half-answer", Action::HalfAnswer},
-                                                  {"reset", Action::Reset},
-                                                  {"reset-unrecorded", Action::ResetUnrecorded},
-                                                  {"garbage", Action::Garbage},
-                                                  {"401", Action::Unauthorized},
-                                                  {"429", Action::TooMany},
-                                                  {"500", Action::Fail},
-                                                  {"500-recorded", Action::RecordThenFail},
-                                                  {"repeat-answer", Action::RepeatAnswer},
-                                                  {"html-200", Action::PageOk},
-                                                  {"html-302", Action::PageElsewhere},
-                                                  {"html-400", Action::PageBad},
-                                                  {"html-422", Action::PageUnprocessable},
-                                                  {"length-huge", Action::LengthHuge},
-                                                  {"chunk-huge", Action::ChunkHuge},
-                                                  {"header-flood", Action::HeaderFlood},
-                                                  {"endless-body", Action::EndlessBody},
-                                                  {"1xx-flood", Action::InterimFlood},
-                                                  {"json-deep", Action::JsonDeep}}};
-
-/// Of any action but Behave.
-std::string_view word_for(Action action) {
-  return std::ranges::find(kActions, action, &ActionWord::action)->word;
-}
 
 constexpr int kMostTimes = 10'000;
 constexpr int kMostOffset = 1'000'000;
@@ -83,20 +50,20 @@ std::unexpected<std::string> wanted(const Word& word, std::string_view what) {
 }
 
 template <class Value>
-Taken set_once(std::optional<Value>& place, Value value, const Word& word) {
+Told set_once(std::optional<Value>& place, Value value, const Word& word) {
   if (place) return std::unexpected(quoted(word.name) + " is given twice");
   place = value;
   return {};
 }
 
-Taken take_seconds(const Word& word, std::optional<Fault::Seconds>& place) {
+Told take_seconds(const Word& word, std::optional<Fault::Seconds>& place) {
   const auto seconds = number_of<double>(word.argument.value_or(""), 0, kMostSeconds);
   if (!seconds) return wanted(word, "seconds from 0 to 3600, as in " + std::string(word.name) + "=2.5");
   return set_once(place, Fault::Seconds(*seconds), word);
 }
 
 /// The sign has to be there: it is an offset, not what is to be shown.
-Taken take_remaining(const Word& word, Fault& fault) {
+Told take_remaining(const Word& word, Fault& fault) {
   std::string_view text = word.argument.value_or("");
   const bool sign = text.starts_with('+') || text.starts_with('-');
   if (text.starts_with('+')) text.remove_prefix(text.starts_with("+-") ? 0 : 1);
@@ -105,33 +72,33 @@ Taken take_remaining(const Word& word, Fault& fault) {
   return set_once(fault.remaining, *offset, word);
 }
 
-Taken take_action(const Word& word, Action action, Fault& fault) {
-  if (fault.action != Action::Behave) {
-    return std::unexpected(quoted(word.name) + " cannot happen to a request together with '" +
-                           std::string(word_for(fault.action)) + "'");
+Told take_effect(const Word& word, const Effect& effect, Fault& fault) {
+  if (fault.effect != nullptr) {
+    return std::unexpected(quoted(word.name) + " cannot happen to a request together with " +
+                           quoted(fault.effect->word));
   }
-  fault.action = action;
+  fault.effect = &effect;
   if (!word.argument) return {};
-  if (action != Action::TooMany) return std::unexpected(quoted(word.name) + " takes no '='");
+  if (word.name != "429") return std::unexpected(quoted(word.name) + " takes no '='");
   const auto times = number_of<int>(*word.argument, 1, kMostTimes);
   if (!times) return wanted(word, "how many requests, from 1 to 10000, as in 429=3");
   fault.times = *times;
   return {};
 }
 
-Taken take(const Word& word, Fault& fault) {
+Told take(const Word& word, Fault& fault) {
+  const std::string_view value = word.argument.value_or("");
   if (word.name == "record-after") return take_seconds(word, fault.record_after);
   if (word.name == "answer-after") return take_seconds(word, fault.answer_after);
   if (word.name == "for") return take_seconds(word, fault.lasts);
+  if (word.name == "remaining") return take_remaining(word, fault);
   if (word.name == "robot") {
-    const std::string_view name = word.argument.value_or("");
-    if (name.empty() || name.size() > kLongestName) return wanted(word, "a robot's name, as in robot=ugv1");
-    fault.robot = name;
+    if (value.empty() || value.size() > kLongestName) return wanted(word, "a robot's name, as in robot=ugv1");
+    fault.robot = value;
     return {};
   }
-  if (word.name == "remaining") return take_remaining(word, fault);
   if (word.name == "retry-after") {
-    const auto seconds = number_of<int>(word.argument.value_or(""), 0, kMostRetryAfter);
+    const auto seconds = number_of<int>(value, 0, kMostRetryAfter);
     if (!seconds) return wanted(word, "whole seconds from 0 to 2000000000, as in retry-after=2");
     return set_once(fault.retry_after, *seconds, word);
   }
@@ -140,33 +107,20 @@ Taken take(const Word& word, Fault& fault) {
     fault.other_sender = true;
     return {};
   }
-  const auto* const found = std::ranges::find(kActions, word.name, &ActionWord::word);
-  if (found != kActions.end()) return take_action(word, found->action, fault);
+  const auto effects = all_effects();
+  const auto found = std::ranges::find(effects, word.name, &Effect::word);
+  if (found != effects.end()) return take_effect(word, *found, fault);
   std::string sentence = "no such fault: " + quoted(word.name) + "; there are ok";
-  for (const ActionWord& action : kActions) sentence.append(", ").append(action.word);
+  for (const Effect& effect : effects) sentence.append(", ").append(effect.word);
   return std::unexpected(sentence +
                          ", answer-after, record-after, remaining, other-sender, retry-after, for, robot");
 }
 
 }  // namespace
 
-bool Fault::records() const {
-  constexpr std::array unrecorded = {Action::Drop,
-                                     Action::ResetUnrecorded,
-                                     Action::Unauthorized,
-                                     Action::TooMany,
-                                     Action::Fail,
-                                     Action::PageOk,
-                                     Action::PageElsewhere,
-                                     Action::PageBad,
-                                     Action::PageUnprocessable,
-                                     Action::RepeatAnswer};
-  return std::ranges::find(unrecorded, action) == unrecorded.end();
-}
-
 std::expected<Fault, std::string> read_fault(std::string_view words) {
   Fault fault;
-  if (words == "ok") return fault;
+  if (words == kOk) return fault;
   while (true) {
     const auto comma = words.find(',');
     if (const auto taken = take(word_of(words.substr(0, comma)), fault); !taken) {
@@ -190,18 +144,17 @@ std::string words_of(const Fault& fault) {
   if (fault.clock_stands) add("clock:constant");
   if (fault.record_after) add("record-after=") += text_of(fault.record_after->count());
   if (fault.answer_after) add("answer-after=") += text_of(fault.answer_after->count());
-  if (fault.action != Action::Behave) add(word_for(fault.action));
+  if (fault.effect != nullptr) add(fault.effect->word);
   if (fault.times > 1) words.append("=").append(std::to_string(fault.times));
   if (fault.lasts) add("for=") += text_of(fault.lasts->count());
   if (!fault.robot.empty()) add("robot=") += fault.robot;
   if (fault.retry_after) add("retry-after=") += std::to_string(*fault.retry_after);
-  return words.empty() ? "ok" : words;
+  return words.empty() ? std::string(kOk) : words;
 }
 
 namespace {
 
 constexpr const char* kClock = "clock";
-constexpr std::string_view kClockAim = "clock:";
 constexpr const char* kConstant = "constant";
 constexpr const char* kRunning = "running";
 constexpr const char* kTooMany = "at most 10000 faults can be queued";
@@ -221,29 +174,55 @@ bool is_of(const Fault& fault, std::string_view body) {
   return fault.robot.empty() || body.find(fault.robot) != std::string_view::npos;
 }
 
-/// Of the word behind "clock:".
-std::expected<bool, std::string> clocks_stand_by(std::string_view word) {
-  if (word == kConstant) return true;
-  if (word == kRunning) return false;
-  return std::unexpected("expected constant or running, got " + quoted(word));
+/// The words for an aim, or for the clock. `place` is where they stand, for the error.
+Told read_words(std::string_view aim, std::string_view words, const std::string& place, Orders& orders) {
+  if (aim == kClock) {
+    if (words != kConstant && words != kRunning)
+      return std::unexpected(place + ": expected constant or running, got " + quoted(words));
+    orders.clocks_stand = words == kConstant;
+    return {};
+  }
+  const auto fault = read_fault(words);
+  if (!fault) return std::unexpected(place + ": " + fault.error());
+  orders.aimed.emplace_back(*aim_named(aim), *fault);
+  return {};
 }
 
-}  // namespace
-
-std::expected<Faults::Aimed, std::string> Faults::read_aimed(std::string_view text) {
+/// "reports:record-then-drop", "clock:constant".
+std::expected<Orders, std::string> read_order(std::string_view text) {
   const auto colon = text.find(':');
   if (colon == std::string_view::npos) {
     return std::unexpected("expected an aim and a fault, as in reports:record-then-drop, got '" +
                            std::string(text) + "'");
   }
-  const auto aim = aim_named(text.substr(0, colon));
-  if (!aim) return std::unexpected(no_such_aim(text.substr(0, colon)));
-  const auto fault = read_fault(text.substr(colon + 1));
-  if (!fault) return std::unexpected(std::string(text.substr(0, colon)) + ": " + fault.error());
-  return Aimed{*aim, *fault};
+  const std::string aim(text.substr(0, colon));
+  if (!aim_named(aim) && aim != kClock) return std::unexpected(no_such_aim(aim));
+  Orders orders;
+  if (const auto read = read_words(aim, text.substr(colon + 1), aim, orders); !read)
+    return std::unexpected(read.error());
+  return orders;
 }
 
-Faults::Told Faults::obey(const Orders& orders) {
+/// {"reports": ["record-then-drop", "ok"], "clock": ["constant"]}.
+std::expected<Orders, std::string> read_orders(const Json& told) {
+  if (!told.is_object()) return std::unexpected(R"(expected an object, as in {"reports": ["drop"]})");
+  Orders orders;
+  for (const auto& [aim, list] : told.items()) {
+    if (!aim_named(aim) && aim != kClock) return std::unexpected(no_such_aim(aim));
+    if (!list.is_array()) return std::unexpected(aim + ": expected an array of faults");
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      const std::string place = aim + "[" + std::to_string(i) + "]";
+      if (!list[i].is_string()) return std::unexpected(place + R"(: expected a text, as in "drop")");
+      const auto read = read_words(aim, list[i].get_ref<const std::string&>(), place, orders);
+      if (!read) return std::unexpected(read.error());
+    }
+  }
+  return orders;
+}
+
+}  // namespace
+
+Told Faults::obey(const Orders& orders) {
   const std::lock_guard lock(mutex_);
   std::size_t waiting = orders.aimed.size();
   for (const auto& queue : queues_) waiting += queue.size();
@@ -253,18 +232,12 @@ Faults::Told Faults::obey(const Orders& orders) {
   return {};
 }
 
-Faults::Told Faults::tell(std::string_view aim_and_fault) {
-  if (aim_and_fault.starts_with(kClockAim)) {
-    const auto stand = clocks_stand_by(aim_and_fault.substr(kClockAim.size()));
-    if (!stand) return std::unexpected("clock: " + stand.error());
-    return obey({.aimed = {}, .clocks_stand = *stand});
-  }
-  const auto aimed = read_aimed(aim_and_fault);
-  if (!aimed) return std::unexpected(aimed.error());
-  return obey({.aimed = {*aimed}, .clocks_stand = {}});
+Told Faults::tell(std::string_view aim_and_fault) {
+  const auto orders = read_order(aim_and_fault);
+  return orders ? obey(*orders) : std::unexpected(orders.error());
 }
 
-Faults::Told Faults::tell_rate(std::string_view aim_fault_and_rate) {
+Told Faults::tell_rate(std::string_view aim_fault_and_rate) {
   const auto equals = aim_fault_and_rate.rfind('=');
   const std::string_view text = equals == std::string_view::npos ? "" : aim_fault_and_rate.substr(equals + 1);
   const auto rate = number_of<double>(text, 0, 1);
@@ -273,49 +246,24 @@ Faults::Told Faults::tell_rate(std::string_view aim_fault_and_rate) {
         "expected a rate from 0 to 1 at the end, as in reports:record-then-drop=0.1, got '" +
         std::string(aim_fault_and_rate) + "'");
   }
-  const auto aimed = read_aimed(aim_fault_and_rate.substr(0, equals));
-  if (!aimed) return std::unexpected(aimed.error());
+  const auto orders = read_order(aim_fault_and_rate.substr(0, equals));
+  if (!orders) return std::unexpected(orders.error());
+  if (orders->aimed.empty()) return std::unexpected(no_such_aim(kClock));
+  const auto& [aim, fault] = orders->aimed.front();
   const std::lock_guard lock(mutex_);
   double sum = *rate;
-  for (const Rate& other : rates_) sum += other.aim == aimed->first ? other.rate : 0;
+  for (const Rate& other : rates_) sum += other.aim == aim ? other.rate : 0;
   if (sum > 1) {
-    return std::unexpected(std::string(kAims[static_cast<std::size_t>(aimed->first)]) +
+    return std::unexpected(std::string(kAims[static_cast<std::size_t>(aim)]) +
                            ": the rates come to more than 1");
   }
-  rates_.push_back({aimed->first, aimed->second, *rate});
+  rates_.push_back({aim, fault, *rate});
   return {};
 }
 
-/// The array `list` that stands under `name`.
-Faults::Told Faults::read_list(const std::string& name, const Json& list, Orders& orders) {
-  const bool of_clocks = name == kClock;
-  const auto aim = aim_named(name);
-  if (!aim && !of_clocks) return std::unexpected(no_such_aim(name));
-  if (!list.is_array()) return std::unexpected(name + ": expected an array of faults");
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    const std::string where = name + "[" + std::to_string(i) + "]: ";
-    if (!list[i].is_string()) return std::unexpected(where + R"(expected a text, as in "drop")");
-    const auto& words = list[i].get_ref<const std::string&>();
-    if (of_clocks) {
-      const auto stand = clocks_stand_by(words);
-      if (!stand) return std::unexpected(where + stand.error());
-      orders.clocks_stand = *stand;
-    } else {
-      const auto fault = read_fault(words);
-      if (!fault) return std::unexpected(where + fault.error());
-      orders.aimed.emplace_back(*aim, *fault);
-    }
-  }
-  return {};
-}
-
-Faults::Told Faults::tell_all(const Json& told) {
-  if (!told.is_object()) return std::unexpected(R"(expected an object, as in {"reports": ["drop"]})");
-  Orders orders;
-  for (const auto& [name, list] : told.items()) {
-    if (const auto read = read_list(name, list, orders); !read) return read;
-  }
-  return obey(orders);
+Told Faults::tell_all(const Json& told) {
+  const auto orders = read_orders(told);
+  return orders ? obey(*orders) : std::unexpected(orders.error());
 }
 
 void Faults::clear() {

@@ -19,57 +19,31 @@
 
 namespace adit::rehearsal {
 
-/// What is wrong with one request's answer, on purpose. One action at most, and what may go with any.
+struct Effect;  // misbehave.hpp
+
+/// What is wrong with one request's answer, on purpose. One effect at most, and what may go with any.
 struct Fault {
-  enum class Action : std::uint8_t {
-    Behave,
-    Drop,
-    RecordThenDrop,
-    HalfAnswer,
-    Reset,
-    ResetUnrecorded,
-    Garbage,
-    Unauthorized,
-    TooMany,
-    Fail,
-    RecordThenFail,
-    RepeatAnswer,  // the last good answer to a request of this aim; as a broken proxy has it
-    // A page of HTML in place of an answer, as of a captive portal.
-    PageOk,
-    PageElsewhere,
-    PageBad,
-    PageUnprocessable,
-    // What would end a client that takes a peer at its word.
-    LengthHuge,
-    ChunkHuge,
-    HeaderFlood,
-    EndlessBody,
-    InterimFlood,
-    JsonDeep
-  };
   using Seconds = std::chrono::duration<double>;
 
-  Action action = Action::Behave;
-  int times = 1;                 // that many requests, one after the other (429=COUNT)
-  std::optional<Seconds> lasts;  // from its first request on, all those of its aim
-  std::string robot;             // of whose messages alone; "": of all
+  const Effect* effect = nullptr;  // null: none
+  int times = 1;                   // that many requests, one after the other (429=COUNT)
+  std::optional<Seconds> lasts;    // from its first request on, all those of its aim
+  std::string robot;               // of whose messages alone; "": of all
   bool other_sender = false;
   std::optional<std::int64_t> remaining;  // added to remaining_reports, from then on
   std::optional<Seconds> record_after;
   std::optional<Seconds> answer_after;
   std::optional<int> retry_after;  // seconds, in a header of the answer
   bool clock_stands = false;       // run_clock is what the measured server always says
-
-  /// Whether the request is judged at all.
-  bool records() const;
 };
 
 /// Reads "record-then-drop", "429=3,retry-after=2", "ok": words with a comma between them. An error is a
 /// sentence that names the word.
 std::expected<Fault, std::string> read_fault(std::string_view words);
 
-/// The words again, in one order; "ok" where there is nothing wrong.
+/// The words again, in one order; kOk if there is nothing wrong.
 std::string words_of(const Fault& fault);
+inline constexpr std::string_view kOk = "ok";
 
 /// The requests that faults can be aimed at.
 enum class Aim : std::uint8_t {
@@ -79,6 +53,14 @@ enum class Aim : std::uint8_t {
 };
 inline constexpr std::array<std::string_view, 3> kAims = {"reports", "status", "mapping"};
 
+/// The faults of one order, and whether the clocks stand from then on.
+struct Orders {
+  std::vector<std::pair<Aim, Fault>> aimed;
+  std::optional<bool> clocks_stand;
+};
+
+using Told = std::expected<void, std::string>;
+
 /// The faults that wait for their requests: a queue for each aim, and random faults if a queue is empty. Also
 /// whether the run's clocks stand, which is given like a fault and applies to all requests. An error is a
 /// sentence that names the unknown word. Safe for use by several threads.
@@ -87,8 +69,6 @@ class Faults {
   static constexpr std::size_t kMost = 10'000;
 
   explicit Faults(std::uint64_t seed) : chance_(seed) {}
-
-  using Told = std::expected<void, std::string>;
 
   /// "reports:record-then-drop": appended to that queue. "clock:constant", "clock:running": from now on.
   Told tell(std::string_view aim_and_fault);
@@ -116,15 +96,7 @@ class Faults {
     Fault fault;
     double rate;
   };
-  using Aimed = std::pair<Aim, Fault>;
-  /// The orders of one request: faults that wait, and whether the clocks stand from now on.
-  struct Orders {
-    std::vector<Aimed> aimed;
-    std::optional<bool> clocks_stand;
-  };
 
-  static std::expected<Aimed, std::string> read_aimed(std::string_view text);
-  static Told read_list(const std::string& name, const Json& list, Orders& orders);
   Told obey(const Orders& orders);
   std::optional<Fault> from_queue(Aim aim, std::string_view body, Clock::time_point now);
   Fault at_random(Aim aim, std::string_view body, Clock::time_point now);

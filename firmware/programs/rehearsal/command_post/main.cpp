@@ -28,7 +28,7 @@ int complain(const std::string& why) {
   return kWrongUse;
 }
 
-Faults::Told tell_faults(const Options& options, Faults& faults) {
+Told tell_faults(const Options& options, Faults& faults) {
   for (const std::string& text : options.faults) {
     if (auto told = faults.tell(text); !told) return std::unexpected("--fault: " + told.error());
   }

@@ -1,5 +1,8 @@
 #include "rehearsal/command_post/misbehave.hpp"
 
+#include <array>
+#include <functional>
+
 #include "rehearsal/command_post/gate.hpp"
 #include "rehearsal/command_post/json.hpp"
 #include "rehearsal/command_post/run.hpp"
@@ -7,14 +10,10 @@
 namespace adit::rehearsal {
 namespace {
 
-using Action = Fault::Action;
-
 /// Neither a status line nor the start of one.
 constexpr std::string_view kGarbage("\x16\x03\x01\x00\x05this is no HTTP\r\n\r\n\0\xff", 26);
 
-Outcome failure() {
-  return page(500, "Server Error (500)");
-}
+constexpr std::string_view kServerError = "Server Error (500)";
 
 /// As a captive portal says it, or a server that is none of the ICD's.
 Outcome portal(int status) {
@@ -30,35 +29,11 @@ std::string repeated(std::string_view text, std::size_t bytes) {
   return all;
 }
 
-/// The bytes of the actions that would end a client which takes a peer at its word.
-std::string overwhelming(Action action) {
-  constexpr std::size_t kMuch = std::size_t{4} << 20;
-  switch (action) {
-    case Action::LengthHuge:
-      return "HTTP/1.1 200 OK\r\nContent-Type: application/json\r\nContent-Length: 30000000000\r\n\r\n{";
-    case Action::ChunkHuge:
-      return "HTTP/1.1 200 OK\r\nTransfer-Encoding: chunked\r\n\r\n6fc23ac00\r\n{";
-    case Action::HeaderFlood:
-      return "HTTP/1.1 200 OK\r\n" + repeated("X-Flood: 0123456789\r\n", kMuch);
-    case Action::EndlessBody:
-      return "HTTP/1.1 200 OK\r\nContent-Type: application/json\r\n\r\n[" + repeated("0,", kMuch);
-    case Action::InterimFlood:
-      return repeated("HTTP/1.1 100 Continue\r\n\r\n", kMuch);
-    case Action::JsonDeep: {
-      const std::string body(15'000, '[');
-      return "HTTP/1.1 200 OK\r\nContent-Type: application/json\r\nConnection: close\r\nContent-Length: " +
-             std::to_string(body.size()) + "\r\n\r\n" + body;
-    }
-    default:
-      return "";
-  }
-}
-
 /// 401 and 429, as the endpoint itself says them.
-Outcome refusal(int status, Aim aim, Manner manner) {
+Outcome refusal(int status, const Spoilt& spoilt) {
   const bool unauthorized = status == 401;
-  if (manner == Manner::Strict) return refused(status, unauthorized ? kWrongToken : kTooManyRequests);
-  if (aim == Aim::Mapping) {
+  if (spoilt.manner == Manner::Strict) return refused(status, unauthorized ? kWrongToken : kTooManyRequests);
+  if (spoilt.aim == Aim::Mapping) {
     Outcome outcome = refused(status, unauthorized ? kWrongToken : kTooManyClouds);
     outcome.after = After::CloseThoughPromisingNot;
     return outcome;
@@ -77,43 +52,51 @@ Outcome broken(std::string bytes, After after = After::Close) {
   return outcome;
 }
 
-Outcome spoiled(Action action, const Request& request, Outcome decided) {
-  switch (action) {
-    case Action::Drop:
-    case Action::RecordThenDrop:
-      return broken("");
-    case Action::Reset:
-    case Action::ResetUnrecorded:
-      return broken("", After::Reset);
-    case Action::Garbage:
-      return broken(std::string(kGarbage));
-    case Action::RecordThenFail:
-      return failure();
-    case Action::HalfAnswer: {
-      std::string bytes = bytes_of(decided, request.method == "HEAD", std::chrono::system_clock::now());
-      bytes.resize(bytes.size() / 2);
-      return broken(std::move(bytes));
-    }
-    case Action::LengthHuge:
-    case Action::ChunkHuge:
-    case Action::HeaderFlood:
-    case Action::EndlessBody:
-    case Action::InterimFlood:
-    case Action::JsonDeep:
-      return broken(overwhelming(action));
-    case Action::Behave:
-    case Action::Unauthorized:
-    case Action::TooMany:
-    case Action::Fail:
-    case Action::PageOk:
-    case Action::PageElsewhere:
-    case Action::PageBad:
-    case Action::PageUnprocessable:
-    case Action::RepeatAnswer:
-      break;
-  }
-  return decided;
+Outcome half(const Spoilt& spoilt) {
+  std::string bytes = bytes_of(spoilt.outcome, false, std::chrono::system_clock::now());
+  bytes.resize(bytes.size() / 2);
+  return broken(std::move(bytes));
 }
+
+constexpr std::size_t kMuch = std::size_t{4} << 20;
+constexpr std::string_view kOkLine = "HTTP/1.1 200 OK\r\n", kJsonType = "Content-Type: application/json\r\n";
+
+/// A 200 of JSON with these bytes behind its first lines, where further header fields may follow.
+Outcome json_then(const std::string& bytes) {
+  return broken(std::string(kOkLine).append(kJsonType).append(bytes));
+}
+
+using In = const Spoilt&;
+
+constexpr auto kEffects = std::to_array<Effect>({
+    {"drop", false, [](In) { return broken(""); }},
+    {"record-then-drop", true, [](In) { return broken(""); }},
+    {"half-answer", true, half},
+    {"reset", true, [](In) { return broken("", After::Reset); }},
+    {"reset-unrecorded", false, [](In) { return broken("", After::Reset); }},
+    {"garbage", true, [](In) { return broken(std::string(kGarbage)); }},
+    {"401", false, [](In spoilt) { return refusal(401, spoilt); }},
+    {"429", false, [](In spoilt) { return refusal(429, spoilt); }},
+    {"500", false, [](In) { return page(500, kServerError); }},
+    {"500-recorded", true, [](In) { return page(500, kServerError); }},
+    {"repeat-answer", false, [](In spoilt) { return spoilt.outcome; }},
+    {"html-200", false, [](In) { return portal(200); }},
+    {"html-302", false, [](In) { return portal(302); }},
+    {"html-400", false, [](In) { return portal(400); }},
+    {"html-422", false, [](In) { return portal(422); }},
+    // These would end a client that takes a peer at its word.
+    {"length-huge", true, [](In) { return json_then("Content-Length: 30000000000\r\n\r\n{"); }},
+    {"chunk-huge", true,
+     [](In) { return broken(std::string(kOkLine) + "Transfer-Encoding: chunked\r\n\r\n6fc23ac00\r\n{"); }},
+    {"header-flood", true,
+     [](In) { return broken(std::string(kOkLine) + repeated("X-Flood: 0123456789\r\n", kMuch)); }},
+    {"endless-body", true, [](In) { return json_then("\r\n[" + repeated("0,", kMuch)); }},
+    {"1xx-flood", true, [](In) { return broken(repeated("HTTP/1.1 100 Continue\r\n\r\n", kMuch)); }},
+    {"json-deep", true,
+     [](In) {
+       return json_then("Connection: close\r\nContent-Length: 15000\r\n\r\n" + std::string(15'000, '['));
+     }},
+});
 
 /// Calls `change` with that member of the answer's body, if there is one.
 void misstate(Answer& answer, const char* member, const std::function<void(OrderedJson&)>& change) {
@@ -126,40 +109,14 @@ void misstate(Answer& answer, const char* member, const std::function<void(Order
 
 }  // namespace
 
-std::optional<Aim> scoring_aim(const Request& request, Manner manner) {
-  std::string_view path = request.path;
-  if (manner == Manner::AsMeasured) path = without_slash(path);
-  if (request.fault) return std::nullopt;
-  if (request.method == "POST" && path == kReportsUri) return Aim::Reports;
-  if (request.method == "GET" && path == kStatusUri) return Aim::Status;
-  return std::nullopt;
+std::span<const Effect> all_effects() {
+  return kEffects;
 }
 
-std::optional<Aim> mapping_aim(const Request& request) {
-  if (request.fault || !names_one_of(request, kMappingFunctions)) return std::nullopt;
-  return Aim::Mapping;
-}
-
-Judgement unjudged(const Fault& fault, Aim aim, const Request& request, Manner manner) {
-  Judgement judgement;
-  judgement.uri = aim == Aim::Mapping ? request.path : without_slash(request.path);
-  if (aim == Aim::Reports) {  // so that the transcript shows which report came to nothing
-    if (auto document = read_document(request.body, Format::JsonText)) judgement.message = document->value;
-  }
-  if (fault.action == Action::Unauthorized) judgement.outcome = refusal(401, aim, manner);
-  if (fault.action == Action::TooMany) judgement.outcome = refusal(429, aim, manner);
-  if (fault.action == Action::Fail) judgement.outcome = failure();
-  if (fault.action == Action::PageOk) judgement.outcome = portal(200);
-  if (fault.action == Action::PageElsewhere) judgement.outcome = portal(302);
-  if (fault.action == Action::PageBad) judgement.outcome = portal(400);
-  if (fault.action == Action::PageUnprocessable) judgement.outcome = portal(422);
-  return judgement;
-}
-
-void spoil(const Fault& fault, const Request& request, Judgement& judgement) {
+void spoil(const Fault& fault, Aim aim, Manner manner, Judgement& judgement) {
   Outcome& outcome = judgement.outcome;
-  if (outcome.kind != Outcome::Kind::Answered || outcome.answer.status == 0) return;
-  const bool is_status = judgement.uri == kStatusUri;
+  if (records(fault) && (outcome.kind != Outcome::Kind::Answered || outcome.answer.status == 0)) return;
+  const bool is_status = aim == Aim::Status;
   if (fault.remaining && is_status) {
     misstate(outcome.answer, "remaining_reports",
              [&](OrderedJson& shown) { shown = shown.get<std::int64_t>() + *fault.remaining; });
@@ -168,18 +125,10 @@ void spoil(const Fault& fault, const Request& request, Judgement& judgement) {
     misstate(outcome.answer, "run_clock",
              [&](OrderedJson& shown) { shown = is_status ? kMeasuredStatusClock : kMeasuredReportClock; });
   }
-  outcome = spoiled(fault.action, request, std::move(outcome));
+  if (fault.effect != nullptr) outcome = fault.effect->outcome_of({aim, manner, std::move(outcome)});
   if (fault.retry_after) {
     outcome.answer.headers.emplace_back("Retry-After", std::to_string(*fault.retry_after));
   }
-}
-
-Outcome later(Fault::Seconds delay, std::function<Outcome()> then) {
-  Outcome outcome;
-  outcome.kind = Outcome::Kind::Later;
-  outcome.delay = std::chrono::duration_cast<std::chrono::milliseconds>(delay);
-  outcome.then = std::move(then);
-  return outcome;
 }
 
 }  // namespace adit::rehearsal

@@ -1,26 +1,36 @@
 #pragma once
 
-#include <functional>
-#include <optional>
+#include <span>
+#include <string_view>
 
 #include "rehearsal/command_post/fault.hpp"
 #include "rehearsal/command_post/judgement.hpp"
 
 namespace adit::rehearsal {
 
-/// What a request to either endpoint is aimed at by, or nothing. In the measured manner with slashes behind
-/// its path, too.
-std::optional<Aim> scoring_aim(const Request& request, Manner manner);
-std::optional<Aim> mapping_aim(const Request& request);
+/// A request whose answer is to be spoiled.
+struct Spoilt {
+  Aim aim;
+  Manner manner;
+  Outcome outcome;  // as it was judged; if it was not, the last good answer to its aim
+};
 
-/// What becomes of a request that the fault keeps from its judge: refused as that manner's endpoint refuses,
-/// or cut off. It breaks no rule of the ICD, since nobody looked.
-Judgement unjudged(const Fault& fault, Aim aim, const Request& request, Manner manner);
+/// What may become of one request's answer (README.md, 'Rehearse with a bad Command Post').
+struct Effect {
+  std::string_view word;
+  bool records;  // the request is judged
+  Outcome (*outcome_of)(const Spoilt& spoilt);
+};
 
-/// Puts the fault between a decided outcome and the connection. An outcome that is no answer stays as it is.
-void spoil(const Fault& fault, const Request& request, Judgement& judgement);
+std::span<const Effect> all_effects();
 
-/// `then` decides, after `delay`.
-Outcome later(Fault::Seconds delay, std::function<Outcome()> then);
+/// Whether the request is judged at all.
+inline bool records(const Fault& fault) {
+  return fault.effect == nullptr || fault.effect->records;
+}
+
+/// Puts the fault between a decided outcome and the connection. The outcome of a request that was judged
+/// stays if it is no answer.
+void spoil(const Fault& fault, Aim aim, Manner manner, Judgement& judgement);
 
 }  // namespace adit::rehearsal

@@ -15,7 +15,7 @@ struct Spoilt {
   Outcome outcome;  // as it was judged; if it was not, the last good answer to its aim
 };
 
-/// What may become of one request's answer (README.md, 'Rehearse with a bad Command Post').
+/// A wrong answer to a request (README.md, 'Rehearse with a bad Command Post').
 struct Effect {
   std::string_view word;
   bool records;  // the request is judged

@@ -1,10 +1,8 @@
 #pragma once
 
-#include <charconv>
 #include <cstdint>
 #include <expected>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -16,47 +14,6 @@ namespace adit::robots {
 
 /// A file's whole text, up to 256 MiB.
 std::expected<std::string, std::string> read_file(const std::filesystem::path& file);
-
-/// Takes the next line off `rest`, without its \n or \r\n. Nothing at the end.
-std::optional<std::string_view> take_line(std::string_view& rest);
-
-/// The words of a line, split at blanks.
-std::vector<std::string_view> words_of(std::string_view line);
-
-/// All of `text` as one number, and nothing else.
-template <class Number>
-std::optional<Number> parse_number(std::string_view text) {
-  Number number{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return number;
-}
-
-/// A file's points: fields one after another, in the file's order. What PCD and PLY have in common.
-class PointTable {
- public:
-  /// Adds `count` values of the ICD's `datatype`. A name of "_" is padding.
-  void add_field(std::string name, int datatype, std::uint32_t count);
-
-  /// Whether x, y and z are there, each once and single, all float32 or all float64 (what the ICD and the
-  /// Command Posts take), and no field twice.
-  std::expected<void, std::string> check() const;
-
-  std::uint32_t point_step() const { return step_; }
-
-  /// `points` points from the start of `bytes`, little endian.
-  std::expected<Cloud, std::string> from_binary(std::string_view bytes, std::uint64_t points) const;
-  /// One point a line; `first_line` numbers the lines of errors.
-  std::expected<Cloud, std::string> from_ascii(std::string_view text, std::uint64_t points,
-                                               std::size_t first_line) const;
-
- private:
-  Cloud cloud_of(const std::vector<std::uint8_t>& bytes) const;
-  bool is_finite(const std::uint8_t* point) const;
-
-  std::vector<CloudField> fields_;
-  std::uint32_t step_ = 0;
-};
 
 /// A Point Cloud Library file, version 0.7, `DATA ascii` or `DATA binary`. Its VIEWPOINT becomes the cloud's
 /// origin, as pcl_viewer takes it, unless it is the identity. Points that are NaN are left out.

@@ -13,9 +13,6 @@
 #include <utility>
 #include <vector>
 
-#include "rehearsal/command_post/fields.hpp"
-#include "rehearsal/command_post/pictures.hpp"
-
 namespace adit::rehearsal {
 namespace {
 
@@ -120,17 +117,15 @@ std::expected<void, std::string> MarkerDisplay::told(const Json& posted) {
   for (const Field& one : all.value_or(std::vector<Field>{})) {
     const auto standing = one.optional_member("standing");
     if (!standing) continue;
-    const auto robot = one.member("robot");
-    const auto name = robot ? robot->text() : std::nullopt;
+    const auto name = one.text("robot");
     const auto markers = standing->elements();
     if (!name || !markers || (posted_.size() >= kMostRobots && !posted_.contains(*name))) break;
     Places places;
     for (const Field& marker : *markers) {
-      const auto ns = marker.member("ns"), id = marker.member("id"), x = marker.member("x");
-      const auto text = ns ? ns->text() : std::nullopt;
-      const auto number = id ? id->integer(INT32_MIN, INT32_MAX) : std::nullopt;
-      const auto at = x ? x->number() : std::nullopt;
-      if (text && number && at && places.size() < kMostMarkers) places[{*text, *number}] = *at;
+      const auto ns = marker.text("ns");
+      const auto id = marker.integer("id", INT32_MIN, INT32_MAX);
+      const auto x = marker.number("x");
+      if (ns && id && x && places.size() < kMostMarkers) places[{*ns, *id}] = *x;
     }
     posted_[*name] = std::move(places);
   }
@@ -264,18 +259,15 @@ std::expected<void, std::string> Arrivals::told(const Json& posted) {
   const std::lock_guard lock(mutex_);
   for (const Field& one : all.value_or(std::vector<Field>{})) {
     if (one.optional_member("standing")) continue;  // markers: of MarkerDisplay
-    const auto robot = one.member("robot"), kind = one.member("kind");
-    const auto amount = one.member("amount"), newest = one.member("newest");
-    if (!robot || !kind || !amount || !newest) break;
-    const auto name = robot->text(), of = kind->text();
-    const auto count = amount->integer(0, INT64_MAX), at = newest->integer(0, INT64_MAX);
+    const auto robot = one.text("robot"), kind = one.text("kind");
+    const auto amount = one.integer("amount", 0, INT64_MAX), newest = one.integer("newest", 0, INT64_MAX);
     const auto told_places = one.optional_member("places");
     const auto places = told_places ? told_places->integer(0, INT64_MAX) : 0;
-    if (!name || !of || !count || !at || !places) break;
-    if (Arrived* const here = arrived(*name, *of)) {
-      here->posted = {.amount = static_cast<std::uint64_t>(*count),
+    if (!robot || !kind || !amount || !newest || !places) break;
+    if (Arrived* const here = arrived(*robot, *kind)) {
+      here->posted = {.amount = static_cast<std::uint64_t>(*amount),
                       .places = static_cast<std::uint64_t>(*places),
-                      .newest = Moment(Milliseconds(*at))};
+                      .newest = Moment(Milliseconds(*newest))};
     }
   }
   if (findings.all().empty()) return {};

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <optional>
 
 #include "rehearsal/command_post/fields.hpp"
@@ -22,13 +22,6 @@ bool same_letters(std::string_view a, std::string_view b) {
   return lower(std::string(a)) == lower(std::string(b));
 }
 
-std::optional<double> number_of(std::string_view text) {
-  double number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(number)) return std::nullopt;
-  return number;
-}
-
 std::optional<Artifact> artifact_of(std::string_view line) {
   std::array<std::string_view, 4> cells;
   for (std::size_t i = 0; i < cells.size(); ++i) {
@@ -37,9 +30,9 @@ std::optional<Artifact> artifact_of(std::string_view line) {
     cells[i] = trimmed(line.substr(0, comma));
     line.remove_prefix(comma == std::string_view::npos ? line.size() : comma + 1);
   }
-  const auto x = number_of(cells[1]);
-  const auto y = number_of(cells[2]);
-  const auto z = number_of(cells[3]);
+  constexpr double kMost = std::numeric_limits<double>::max();
+  const auto x = number_of(cells[1], -kMost, kMost), y = number_of(cells[2], -kMost, kMost),
+             z = number_of(cells[3], -kMost, kMost);
   if (!is_artifact_type(cells[0]) || !x || !y || !z) return std::nullopt;
   return Artifact{std::string(cells[0]), {*x, *y, *z}};
 }

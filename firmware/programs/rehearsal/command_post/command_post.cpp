@@ -18,18 +18,16 @@ namespace adit::rehearsal {
 namespace {
 
 std::unique_ptr<Endpoint> scoring_of(const Options& options, const Secrets& secrets, Run& run) {
-  if (options.manner == Manner::Strict) {
-    return std::make_unique<StrictScoring>(secrets.scoring, options.rate.value_or(1), options.one_api_limit,
-                                           run);
-  }
-  return std::make_unique<MeasuredScoring>(secrets.scoring, options.rate.value_or(0), run);
+  if (options.manner == Manner::Strict)
+    return strict_scoring(secrets.scoring, options.rate.value_or(1), options.one_api_limit, run);
+  return measured_scoring(secrets.scoring, options.rate.value_or(0), run);
 }
 
 std::unique_ptr<Endpoint> mapping_of(const Options& options, const Secrets& secrets) {
   const double hz = options.rate.value_or(1);
   if (options.manner == Manner::Strict)
-    return std::make_unique<StrictMapping>(secrets.mapping, hz, options.counted.value_or(Counted::Starts));
-  return std::make_unique<MeasuredMapping>(secrets.mapping, hz, options.counted.value_or(Counted::Decoded));
+    return strict_mapping(secrets.mapping, hz, options.counted.value_or(Counted::Starts));
+  return measured_mapping(secrets.mapping, hz, options.counted.value_or(Counted::Decoded));
 }
 
 /// After it the connection ends.

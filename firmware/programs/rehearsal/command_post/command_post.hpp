@@ -11,11 +11,11 @@
 
 #include "rehearsal/command_post/arrivals.hpp"
 #include "rehearsal/command_post/fault.hpp"
-#include "rehearsal/command_post/judgement.hpp"
+#include "rehearsal/command_post/gate.hpp"
 #include "rehearsal/command_post/options.hpp"
 #include "rehearsal/command_post/record.hpp"
 #include "rehearsal/command_post/run.hpp"
-#include "rehearsal/command_post/secrets.hpp"
+#include "rehearsal/command_post/transcript.hpp"
 
 namespace adit::rehearsal {
 

@@ -1,8 +1,8 @@
 #include "rehearsal/command_post/fault.hpp"
 
 #include <algorithm>
-#include <charconv>
 
+#include "rehearsal/command_post/fields.hpp"
 #include "rehearsal/command_post/misbehave.hpp"
 
 namespace adit::rehearsal {
@@ -30,15 +30,6 @@ std::string quoted(std::string_view text) {
   constexpr std::size_t longest = 80;
   std::string sentence = "'";
   return sentence.append(text.substr(0, longest)).append("'");
-}
-
-template <class Number>
-std::optional<Number> number_of(std::string_view text, Number low, Number high) {
-  Number number{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  if (!(number >= low && number <= high)) return std::nullopt;  // not a number is neither
-  return number;
 }
 
 std::unexpected<std::string> wanted(const Word& word, std::string_view what) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace adit::rehearsal {
 namespace {
@@ -127,6 +128,21 @@ std::optional<std::string> Field::text() const {
   return value_->get<std::string>();
 }
 
+std::optional<double> Field::number(const char* name) const {
+  const auto field = member(name);
+  return field ? field->number() : std::nullopt;
+}
+
+std::optional<std::int64_t> Field::integer(const char* name, std::int64_t least, std::int64_t most) const {
+  const auto field = member(name);
+  return field ? field->integer(least, most) : std::nullopt;
+}
+
+std::optional<std::string> Field::text(const char* name) const {
+  const auto field = member(name);
+  return field ? field->text() : std::nullopt;
+}
+
 std::string lower(std::string text) {
   std::ranges::transform(text, text.begin(),
                          [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
@@ -142,6 +158,13 @@ std::string_view trimmed(std::string_view text) {
 
 bool is_word_character(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+}
+
+std::string tame(std::string_view text) {
+  constexpr std::size_t longest = 32;
+  std::string tamed(text.substr(0, longest));
+  std::ranges::replace_if(tamed, std::not_fn(is_word_character), '_');
+  return tamed;
 }
 
 bool is_robot_name(std::string_view name) {

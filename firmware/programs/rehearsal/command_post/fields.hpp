@@ -1,5 +1,6 @@
 #pragma once
 
+#include <charconv>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -100,6 +101,11 @@ class Field {
   std::optional<bool> boolean() const;
   std::optional<std::string> text() const;
 
+  // The value of a member that must be there.
+  std::optional<double> number(const char* name) const;
+  std::optional<std::int64_t> integer(const char* name, std::int64_t least, std::int64_t most) const;
+  std::optional<std::string> text(const char* name) const;
+
   const Json& value() const { return *value_; }
   const std::string& path() const { return path_; }
   Findings& findings() const { return *findings_; }
@@ -116,6 +122,16 @@ class Field {
   Findings* findings_;
 };
 
+/// All of `text` as a number from `low` to `high`, and nothing else.
+template <class Number>
+std::optional<Number> number_of(std::string_view text, Number low, Number high) {
+  Number number{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  if (!(number >= low && number <= high)) return std::nullopt;  // not a number is neither
+  return number;
+}
+
 /// ASCII in lower case.
 std::string lower(std::string text);
 
@@ -124,6 +140,10 @@ std::string_view trimmed(std::string_view text);
 
 /// A letter, a digit or an underscore, of ASCII.
 bool is_word_character(char c);
+
+/// `text` with all but letters, digits and underscores made underscores, at most 32 characters: safe as part
+/// of a file's name and as a word of a PCD header.
+std::string tame(std::string_view text);
 
 /// Whether `name` is one that a robot may have: 1 to 10 letters, digits and underscores (ICD 2).
 bool is_robot_name(std::string_view name);

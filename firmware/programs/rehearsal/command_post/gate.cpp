@@ -2,17 +2,23 @@
 
 #include <algorithm>
 
-#include "rehearsal/command_post/judgement.hpp"
-
 namespace adit::rehearsal {
 
-bool RateLimit::too_soon(const Request& request, Clock::time_point now) const {
+bool RateLimit::too_soon(const Request& request) {
+  const std::lock_guard lock(mutex_);
   const double tolerance = counted_ == Counted::Decoded ? 1 : 0.95;
-  if (hz_ <= 0 || !last_) return false;
+  const Clock::time_point now = Clock::now();
   const Clock::time_point comes = counted_ == Counted::LastBytes ? request.whole
                                   : counted_ == Counted::Decoded ? now
                                                                  : request.at;
-  return comes - *last_ < std::chrono::duration<double>(tolerance / hz_);
+  if (hz_ > 0 && last_ && comes - *last_ < std::chrono::duration<double>(tolerance / hz_)) return true;
+  count(request, now);
+  return false;
+}
+
+void RateLimit::count(const Request& request) {
+  const std::lock_guard lock(mutex_);
+  count(request, Clock::now());
 }
 
 void RateLimit::count(const Request& request, Clock::time_point now) {

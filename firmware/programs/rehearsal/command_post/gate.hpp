@@ -1,13 +1,17 @@
 #pragma once
 
 #include <cstdint>
+#include <mutex>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "rehearsal/command_post/fields.hpp"
 #include "rehearsal/command_post/http.hpp"
 #include "rehearsal/command_post/json.hpp"
+#include "rehearsal/command_post/messages.hpp"
 
 namespace adit::rehearsal {
 
@@ -20,19 +24,22 @@ enum class Counted : std::uint8_t {
 };
 
 /// "Approximately" `hz` requests a second (ICD 4.1): one that comes sooner than 95 % of the interval after
-/// the last one counted is too many, as measured 100 %. 0 Hz: no limit. Not safe for several threads.
+/// the last one counted is too many, as measured 100 %. 0 Hz: no limit. Safe for use by several threads.
 class RateLimit {
  public:
   explicit RateLimit(double hz, Counted counted = Counted::Starts) : hz_(hz), counted_(counted) {}
 
-  /// `now`: when it was decoded.
-  bool too_soon(const Request& request, Clock::time_point now) const;
-  /// `now`: when it was judged; may be said again, and then the later one holds.
-  void count(const Request& request, Clock::time_point now);
+  /// Whether the request, which was decoded now, is too many. If it is not, it counts.
+  bool too_soon(const Request& request);
+  /// It was judged now, and counts in any case. If it counted before, the later moment holds.
+  void count(const Request& request);
 
  private:
-  double hz_;
-  Counted counted_;
+  void count(const Request& request, Clock::time_point now);
+
+  const double hz_;
+  const Counted counted_;
+  std::mutex mutex_;
   std::optional<Clock::time_point> last_;
 };
 
@@ -51,6 +58,45 @@ struct Function {
 inline constexpr Function kScoringFunctions[] = {{"GET", kStatusUri}, {"POST", kReportsUri}};
 inline constexpr Function kMappingFunctions[] = {
     {"POST", kMapUri}, {"POST", kStateUri}, {"POST", kMarkersUri}};
+
+/// A part of a message that was taken, as it is counted.
+struct Accepted {
+  std::string kind;   // "grid", "cloud", "pose", "marker", "report"
+  std::string robot;  // a map's or a pose's name, a marker's ns; "" where there is none
+};
+
+/// All that an endpoint has to say of one request: what is done about it and what is written down.
+struct Judgement {
+  Outcome outcome;
+  std::string uri;  // one of the ICD's five; "": none of them
+  Findings findings;
+  std::optional<Json> message;        // as it came
+  std::optional<MapMessage> map;      // where one was taken
+  std::optional<OrderedJson> report;  // where one was recorded: what was answered
+  std::vector<Accepted> accepted;
+  std::vector<MarkerChange> markers;  // that were taken
+  std::string fault;                  // the rehearsed fault; "": none
+};
+
+/// One of the Command Post's two endpoints, of one manner. Safe for use by several threads.
+class Endpoint {
+ public:
+  Endpoint() = default;
+  Endpoint(const Endpoint&) = delete;
+  Endpoint& operator=(const Endpoint&) = delete;
+  virtual ~Endpoint() = default;
+
+  virtual Judgement judge(const Request& request) = 0;
+};
+
+/// An answer whose body is this JSON.
+template <class AnyJson>
+Outcome answered(int status, const AnyJson& body) {
+  Outcome outcome;
+  outcome.answer.status = status;
+  outcome.answer.body = line_of(body);
+  return outcome;
+}
 
 /// Whether a request has the method and the path of one of the functions.
 bool names_one_of(const Request& request, std::span<const Function> functions);

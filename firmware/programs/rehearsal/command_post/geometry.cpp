@@ -6,16 +6,9 @@
 namespace adit::rehearsal {
 namespace {
 
-std::optional<double> number_in(const Field& parent, const char* name) {
-  const auto field = parent.member(name);
-  return field ? field->number() : std::nullopt;
-}
-
 std::optional<Quaternion> read_quaternion(const Field& quaternion) {
-  const auto x = number_in(quaternion, "x");
-  const auto y = number_in(quaternion, "y");
-  const auto z = number_in(quaternion, "z");
-  const auto w = number_in(quaternion, "w");
+  const auto x = quaternion.number("x"), y = quaternion.number("y"), z = quaternion.number("z"),
+             w = quaternion.number("w");
   if (!x || !y || !z || !w) return std::nullopt;
   constexpr double kNoise = 2e-6;  // of float32, and of printed digits
   const double length = std::hypot(std::hypot(*x, *y, *z), *w);
@@ -29,9 +22,7 @@ std::optional<Quaternion> read_quaternion(const Field& quaternion) {
 }  // namespace
 
 std::optional<Point> read_point(const Field& point) {
-  const auto x = number_in(point, "x");
-  const auto y = number_in(point, "y");
-  const auto z = number_in(point, "z");
+  const auto x = point.number("x"), y = point.number("y"), z = point.number("z");
   if (!x || !y || !z) return std::nullopt;
   return Point{*x, *y, *z};
 }

@@ -21,33 +21,24 @@ constexpr std::int64_t kFloat64 = 8;
 std::optional<Grid> read_grid(const Field& msg) {
   const auto info = msg.member("info");
   if (!info) return std::nullopt;
-  const auto resolution = info->member("resolution");
-  const auto width = info->member("width");
-  const auto height = info->member("height");
+  const auto metres = info->number("resolution");
+  const auto columns = info->integer("width", 1, UINT32_MAX);
+  const auto rows = info->integer("height", 1, UINT32_MAX);
   const auto origin = info->member("origin");
-  if (!resolution || !width || !height || !origin) return std::nullopt;
-  const auto metres = resolution->number();
-  const auto columns = width->integer(1, UINT32_MAX);
-  const auto rows = height->integer(1, UINT32_MAX);
-  const auto pose = read_pose(*origin);
+  const auto pose = origin ? read_pose(*origin) : std::nullopt;
   if (!metres || !columns || !rows || !pose) return std::nullopt;
-  if (*metres <= 0) resolution->breaks("expected more than 0", Measured::Takes);
+  if (*metres <= 0) info->member("resolution")->breaks("expected more than 0", Measured::Takes);
   return Grid{*metres, static_cast<std::uint32_t>(*columns), static_cast<std::uint32_t>(*rows), *pose};
 }
 
 std::optional<CloudField> read_cloud_field(const Field& field) {
-  const auto name = field.member("name");
-  const auto offset = field.member("offset");
-  const auto datatype = field.member("datatype");
-  const auto count = field.member("count");
+  const auto name = field.text("name");
+  const auto offset = field.integer("offset", 0, UINT32_MAX);
+  const auto datatype = field.integer("datatype", 1, kFloat64);
+  const auto count = field.integer("count", 1, UINT32_MAX);
   if (!name || !offset || !datatype || !count) return std::nullopt;
-  const auto text = name->text();
-  const auto start = offset->integer(0, UINT32_MAX);
-  const auto kind = datatype->integer(1, kFloat64);
-  const auto copies = count->integer(1, UINT32_MAX);
-  if (!text || !start || !kind || !copies) return std::nullopt;
-  return CloudField{*text, static_cast<std::uint32_t>(*start), static_cast<std::uint32_t>(*kind),
-                    static_cast<std::uint32_t>(*copies)};
+  return CloudField{*name, static_cast<std::uint32_t>(*offset), static_cast<std::uint32_t>(*datatype),
+                    static_cast<std::uint32_t>(*count)};
 }
 
 /// A field that ends past the point kills the measured server. The rehearsal goes on.

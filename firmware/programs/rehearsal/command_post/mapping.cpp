@@ -1,6 +1,10 @@
 #include "rehearsal/command_post/mapping.hpp"
 
 #include <algorithm>
+#include <expected>
+#include <map>
+#include <mutex>
+#include <utility>
 
 #include "rehearsal/command_post/base64.hpp"
 #include "rehearsal/command_post/gate.hpp"
@@ -8,78 +12,90 @@
 
 namespace adit::rehearsal {
 
-void StampOrder::check(const std::string& uri, const std::vector<Stamp>& stamps, bool taken_anyhow,
-                       Findings& findings) {
-  const std::lock_guard lock(mutex_);
-  double latest = latest_[uri];  // stamps are not negative
-  bool forward = true;
-  for (const Stamp& stamp : stamps) {
-    if (stamp.seconds < latest && forward) {
-      forward = false;
-      findings.breaks(stamp.path + ": runs backward, " + line_of(Json(stamp.seconds)) + " after " +
-                          line_of(Json(latest)) + " (ICD 6.2)",
-                      Measured::Takes);
-    }
-    latest = std::max(latest, stamp.seconds);
-  }
-  if (forward || taken_anyhow) latest_[uri] = latest;
-}
-
-bool StrictMapping::too_many(const std::string& uri, const Request& request) {
-  const std::lock_guard lock(mutex_);
-  RateLimit& limit = limits_.try_emplace(uri, hz_, counted_).first->second;
-  const Clock::time_point now = Clock::now();
-  if (limit.too_soon(request, now)) return true;
-  limit.count(request, now);
-  return false;
-}
-
-/// It has been judged: its answer follows.
-void StrictMapping::count(const std::string& uri, const Request& request) {
-  const std::lock_guard lock(mutex_);
-  limits_.at(uri).count(request, Clock::now());
-}
-
-Judgement StrictMapping::judge(const Request& request) {
-  Judgement judgement;
-  check_entry(request, kMappingFunctions, token_, judgement.findings);
-  const Finding* const finding = judgement.findings.decisive(Manner::Strict);
-  if (finding == nullptr || finding->status != 404) judgement.uri = request.path;
-  if (finding != nullptr) {
-    judgement.outcome = refused(*finding);
-  } else if (too_many(judgement.uri, request)) {
-    judgement.outcome = refused(429, kTooManyRequests);
-  } else {
-    judge_body(request, judgement);
-    count(judgement.uri, request);
-  }
-  return judgement;
-}
-
-void StrictMapping::judge_body(const Request& request, Judgement& judgement) {
-  Findings& findings = judgement.findings;
-  check_content(request, true, findings);
-  std::optional<MappingMessage> message;
-  if (findings.decisive(Manner::Strict) == nullptr) {
-    const Format format = request.content_type == "application/cbor" ? Format::CborBytes : Format::JsonText;
-    message = read_mapping(request.body, format, judgement);
-  }
-  if (message && findings.decisive(Manner::Strict) == nullptr) {
-    stamps_.check(judgement.uri, message->stamps, false, findings);
-  }
-  if (const Finding* const finding = findings.decisive(Manner::Strict)) {
-    judgement.outcome = refused(*finding);
-  } else if (message) {
-    judgement.outcome = answered(200, Json(nullptr));
-    judgement.accepted = std::move(message->parts);
-    judgement.markers = std::move(message->markers);
-    judgement.map = std::move(message->map);
-  } else {
-    judgement.outcome = refused(422, kUnreadable);
-  }
-}
-
 namespace {
+
+/// Said where a message could not be read and no finding tells why.
+constexpr const char* kUnreadable = "The message could not be read";
+
+/// ICD 6.2: the stamps of a URI never run backward, within a message and from one to the next; equal ones are
+/// fine. Safe for use by several threads.
+class StampOrder {
+ public:
+  /// Writes down the first stamp that is before one that came earlier. A message that passes, or that is
+  /// taken all the same (`taken_anyhow`), counts from then on.
+  void check(const std::string& uri, const std::vector<Stamp>& stamps, bool taken_anyhow,
+             Findings& findings) {
+    const std::lock_guard lock(mutex_);
+    double latest = latest_[uri];  // stamps are not negative
+    bool forward = true;
+    for (const Stamp& stamp : stamps) {
+      if (stamp.seconds < latest && forward) {
+        forward = false;
+        findings.breaks(stamp.path + ": runs backward, " + line_of(Json(stamp.seconds)) + " after " +
+                            line_of(Json(latest)) + " (ICD 6.2)",
+                        Measured::Takes);
+      }
+      latest = std::max(latest, stamp.seconds);
+    }
+    if (forward || taken_anyhow) latest_[uri] = latest;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::map<std::string, double> latest_;
+};
+
+class StrictMapping : public Endpoint {
+ public:
+  StrictMapping(std::string token, double hz, Counted counted) : token_(std::move(token)) {
+    for (const Function& function : kMappingFunctions)
+      limits_.try_emplace(std::string(function.uri), hz, counted);
+  }
+
+  Judgement judge(const Request& request) override {
+    Judgement judgement;
+    check_entry(request, kMappingFunctions, token_, judgement.findings);
+    const Finding* const finding = judgement.findings.decisive(Manner::Strict);
+    if (finding == nullptr || finding->status != 404) judgement.uri = request.path;
+    if (finding != nullptr) {
+      judgement.outcome = refused(*finding);
+    } else if (limits_.at(judgement.uri).too_soon(request)) {
+      judgement.outcome = refused(429, kTooManyRequests);
+    } else {
+      judge_body(request, judgement);
+      limits_.at(judgement.uri).count(request);  // its answer follows
+    }
+    return judgement;
+  }
+
+ private:
+  void judge_body(const Request& request, Judgement& judgement) {
+    Findings& findings = judgement.findings;
+    check_content(request, true, findings);
+    std::optional<MappingMessage> message;
+    if (findings.decisive(Manner::Strict) == nullptr) {
+      const Format format = request.content_type == "application/cbor" ? Format::CborBytes : Format::JsonText;
+      message = read_mapping(request.body, format, judgement);
+    }
+    if (message && findings.decisive(Manner::Strict) == nullptr) {
+      stamps_.check(judgement.uri, message->stamps, false, findings);
+    }
+    if (const Finding* const finding = findings.decisive(Manner::Strict)) {
+      judgement.outcome = refused(*finding);
+    } else if (message) {
+      judgement.outcome = answered(200, Json(nullptr));
+      judgement.accepted = std::move(message->parts);
+      judgement.markers = std::move(message->markers);
+      judgement.map = std::move(message->map);
+    } else {
+      judgement.outcome = refused(422, kUnreadable);
+    }
+  }
+
+  const std::string token_;
+  StampOrder stamps_;
+  std::map<std::string, RateLimit> limits_;  // by URI
+};
 
 /// After a 4xx it promises keep-alive and closes.
 Outcome closing(Outcome outcome) {
@@ -111,64 +127,75 @@ Outcome outcome_of(const Finding& finding) {
   return outcome;
 }
 
+class MeasuredMapping : public Endpoint {
+ public:
+  MeasuredMapping(std::string token, double hz, Counted counted)
+      : token_(std::move(token)), cloud_limit_(hz, counted) {}
+
+  Judgement judge(const Request& request) override {
+    Judgement judgement;
+    check_entry(request, kMappingFunctions, token_, judgement.findings);
+    const auto& found = judgement.findings.all();
+    const bool known = found.empty() || found.front().status != 404;
+    if (known) judgement.uri = request.path;
+    if (!known) {
+      judgement.outcome = not_implemented();
+    } else if (!found.empty()) {  // its match of the whole Authorization header is exact, as ours is
+      judgement.outcome = closing(refused(found.front()));
+    } else {
+      judge_body(request, judgement);
+    }
+    return judgement;
+  }
+
+ private:
+  void judge_body(const Request& request, Judgement& judgement) {
+    Findings& findings = judgement.findings;
+    check_content(request, true, findings);
+    if (request.content_type != "application/json" && request.content_type != "application/cbor") {
+      judgement.outcome = closing(refused(422, "Unknown Content-Type"));
+      return;
+    }
+    const auto body = whole_body(request);
+    if (!body) {
+      judgement.outcome = closing(refused(400, "The body is not what Content-Encoding says"));
+      return;
+    }
+    const Format format = request.content_type == "application/cbor" ? Format::CborBytes : Format::JsonText;
+    auto message = read_mapping(*body, format, judgement);
+    if (const Finding* const finding = findings.decisive(Manner::AsMeasured)) {
+      judgement.outcome = outcome_of(*finding);
+      return;
+    }
+    if (!message) {
+      judgement.outcome = closing(refused(422, kUnreadable));
+      return;
+    }
+    stamps_.check(judgement.uri, message->stamps, true, findings);
+    judgement.outcome = answered(200, Json(nullptr));
+    if (message->map && std::holds_alternative<Cloud>(message->map->msg)) {
+      // Too many clouds are answered with 429, and accepted: each counts.
+      if (cloud_limit_.too_soon(request)) judgement.outcome = closing(refused(429, kTooManyClouds));
+      cloud_limit_.count(request);
+    }
+    judgement.accepted = std::move(message->parts);
+    judgement.markers = std::move(message->markers);
+    judgement.map = std::move(message->map);
+  }
+
+  const std::string token_;
+  StampOrder stamps_;
+  RateLimit cloud_limit_;
+};
+
 }  // namespace
 
-/// Of a cloud that has been decoded.
-bool MeasuredMapping::cloud_too_soon(const Request& request) {
-  const std::lock_guard lock(mutex_);
-  const Clock::time_point now = Clock::now();
-  const bool soon = cloud_limit_.too_soon(request, now);
-  cloud_limit_.count(request, now);
-  return soon;
+std::unique_ptr<Endpoint> strict_mapping(std::string token, double hz, Counted counted) {
+  return std::make_unique<StrictMapping>(std::move(token), hz, counted);
 }
 
-Judgement MeasuredMapping::judge(const Request& request) {
-  Judgement judgement;
-  check_entry(request, kMappingFunctions, token_, judgement.findings);
-  const auto& found = judgement.findings.all();
-  const bool known = found.empty() || found.front().status != 404;
-  if (known) judgement.uri = request.path;
-  if (!known) {
-    judgement.outcome = not_implemented();
-  } else if (!found.empty()) {  // its match of the whole Authorization header is exact, as ours is
-    judgement.outcome = closing(refused(found.front()));
-  } else {
-    judge_body(request, judgement);
-  }
-  return judgement;
-}
-
-void MeasuredMapping::judge_body(const Request& request, Judgement& judgement) {
-  Findings& findings = judgement.findings;
-  check_content(request, true, findings);
-  if (request.content_type != "application/json" && request.content_type != "application/cbor") {
-    judgement.outcome = closing(refused(422, "Unknown Content-Type"));
-    return;
-  }
-  const auto body = whole_body(request);
-  if (!body) {
-    judgement.outcome = closing(refused(400, "The body is not what Content-Encoding says"));
-    return;
-  }
-  const Format format = request.content_type == "application/cbor" ? Format::CborBytes : Format::JsonText;
-  auto message = read_mapping(*body, format, judgement);
-  if (const Finding* const finding = findings.decisive(Manner::AsMeasured)) {
-    judgement.outcome = outcome_of(*finding);
-    return;
-  }
-  if (!message) {
-    judgement.outcome = closing(refused(422, kUnreadable));
-    return;
-  }
-  stamps_.check(judgement.uri, message->stamps, true, findings);
-  judgement.outcome = answered(200, Json(nullptr));
-  // Too many clouds are answered with 429, and accepted.
-  if (message->map && std::holds_alternative<Cloud>(message->map->msg) && cloud_too_soon(request)) {
-    judgement.outcome = closing(refused(429, kTooManyClouds));
-  }
-  judgement.accepted = std::move(message->parts);
-  judgement.markers = std::move(message->markers);
-  judgement.map = std::move(message->map);
+std::unique_ptr<Endpoint> measured_mapping(std::string token, double hz, Counted counted) {
+  return std::make_unique<MeasuredMapping>(std::move(token), hz, counted);
 }
 
 }  // namespace adit::rehearsal

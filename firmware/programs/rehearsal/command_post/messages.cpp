@@ -86,10 +86,9 @@ constexpr std::int64_t kLineStrip = 4, kLineList = 5, kPoints = 8, kText = 9, kT
 
 bool read_color(const Field& color) {
   for (const char* const name : {"r", "g", "b", "a"}) {
-    const auto component = color.member(name);
-    const auto value = component ? component->number() : std::nullopt;
+    const auto value = color.number(name);
     if (!value) return false;
-    if (*value < 0 || *value > 1) component->breaks("expected 0 to 1 (ICD 6.6)", Measured::Takes);
+    if (*value < 0 || *value > 1) color.member(name)->breaks("expected 0 to 1 (ICD 6.6)", Measured::Takes);
   }
   return true;
 }
@@ -197,16 +196,12 @@ bool read_marker(const Field& marker, MarkersMessage& message) {
   if (!marker.is_object()) return false;
   read_header(marker, message.stamps);
   auto change = read_identity(marker);
-  const auto type = marker.member("type");
-  const auto action = marker.member("action");
+  const auto shape = marker.integer("type", 0, kLastType);
+  const auto kind = marker.integer("action", 0, 3);
   const auto pose = marker.member("pose");
-  if (!change || !type || !action || !pose) return false;
-  const auto shape = type->integer(0, kLastType);
-  if (!shape) return false;
-  const auto kind = action->integer(0, 3);
-  const auto place = read_pose(*pose);
-  if (!kind || !place) return false;
-  if (*kind == 1) action->breaks("expected 0, 2 or 3 (ICD 6.6)", Measured::Takes);
+  const auto place = pose ? read_pose(*pose) : std::nullopt;
+  if (!change || !shape || !kind || !place) return false;
+  if (*kind == 1) marker.member("action")->breaks("expected 0, 2 or 3 (ICD 6.6)", Measured::Takes);
   check_looks(marker);
   check_geometry(marker, *shape);
   if (*kind == 0) {
@@ -243,14 +238,14 @@ std::optional<StateMessage> read_state(const Json& document, Findings& findings)
   const auto elements = poses ? poses->elements() : std::nullopt;
   if (!elements) return std::nullopt;
   for (const Field& pose : *elements) {
-    const auto name = pose.member("name");
-    const auto text = name ? name->text() : std::nullopt;
+    const auto name = pose.text("name");
     const auto place = read_pose(pose);
-    if (!text || !place) return std::nullopt;
-    if (!is_robot_name(*text)) {
-      name->breaks("expected 1 to 10 letters, digits and underscores (ICD 2)", Measured::Takes);
+    if (!name || !place) return std::nullopt;
+    if (!is_robot_name(*name)) {
+      pose.member("name")->breaks("expected 1 to 10 letters, digits and underscores (ICD 2)",
+                                  Measured::Takes);
     }
-    message.names.push_back(*text);
+    message.names.push_back(*name);
   }
   return message;
 }

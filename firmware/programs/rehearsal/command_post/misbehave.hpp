@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "rehearsal/command_post/fault.hpp"
-#include "rehearsal/command_post/judgement.hpp"
+#include "rehearsal/command_post/gate.hpp"
 
 namespace adit::rehearsal {
 

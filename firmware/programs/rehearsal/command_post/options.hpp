@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <expected>
 #include <optional>
 #include <string>
 #include <vector>
@@ -41,5 +42,15 @@ struct Options {
 };
 
 [[gnu::cold]] command_line::Program command_line_of(Options& options);
+
+/// The tokens that the two endpoints know the team by.
+struct Secrets {
+  std::string scoring;
+  std::string mapping;
+};
+
+/// `scoring.token` and `mapping.token` in `folder`; white space around a token is cut. An error names the
+/// file, never what is in it.
+std::expected<Secrets, std::string> read_secrets(const std::string& folder);
 
 }  // namespace adit::rehearsal

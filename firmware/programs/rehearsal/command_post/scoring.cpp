@@ -43,8 +43,7 @@ std::optional<Sent> read_report(const Json& document, Findings& findings) {
   return Sent{*text, *position};
 }
 
-}  // namespace
-
+/// The body of GET /api/status (ICD 5.1).
 OrderedJson status_body(const Run& run, Clock::time_point now) {
   const Run::Standing standing = run.standing(now);
   return {{"score", standing.score},
@@ -52,6 +51,14 @@ OrderedJson status_body(const Run& run, Clock::time_point now) {
           {"remaining_reports", standing.remaining_reports},
           {"current_team", lower(standing.team)}};
 }
+
+/// Writes down that the report was scored before.
+void tell_repeat(const Run::Ruling& ruling, Findings& findings) {
+  if (ruling.repeats == 0) return;
+  findings.tells("the same report as report " + std::to_string(ruling.repeats) + " of this run");
+}
+
+}  // namespace
 
 OrderedJson report_body(const Run::Ruling& ruling, const Json& sent, const std::string& authority) {
   const std::string path = std::string(kReportsUri) + "/" + std::to_string(ruling.id);
@@ -69,65 +76,67 @@ OrderedJson report_body(const Run::Ruling& ruling, const Json& sent, const std::
           {"score_change", ruling.score_change}};
 }
 
-void tell_repeat(const Run::Ruling& ruling, Findings& findings) {
-  if (ruling.repeats == 0) return;
-  findings.tells("the same report as report " + std::to_string(ruling.repeats) + " of this run");
-}
-
-StrictScoring::StrictScoring(std::string token, double hz, bool one_limit, Run& run)
-    : token_(std::move(token)), run_(run), one_limit_(one_limit), status_limit_(hz), report_limit_(hz) {}
-
-bool StrictScoring::too_many(const Request& request) {
-  const std::lock_guard lock(mutex_);
-  RateLimit& limit = request.path == kStatusUri && !one_limit_ ? status_limit_ : report_limit_;
-  if (limit.too_soon(request, Clock::now())) return true;
-  limit.count(request, request.at);
-  return false;
-}
-
-Judgement StrictScoring::judge(const Request& request) {
-  Judgement judgement;
-  check_entry(request, kScoringFunctions, token_, judgement.findings);
-  const Finding* const finding = judgement.findings.decisive(Manner::Strict);
-  if (finding == nullptr || finding->status != 404) judgement.uri = request.path;
-  if (finding != nullptr) {
-    judgement.outcome = refused(*finding);
-  } else if (too_many(request)) {
-    judgement.outcome = refused(429, kTooManyRequests);
-  } else if (judgement.uri == kStatusUri) {
-    judgement.outcome = answered(200, status_body(run_, Clock::now()));
-  } else {
-    classify_report(request, judgement);
-  }
-  return judgement;
-}
-
-void StrictScoring::classify_report(const Request& request, Judgement& judgement) {
-  Findings& findings = judgement.findings;
-  check_content(request, false, findings);
-  const auto document = read_document(request.body, Format::JsonText);
-  std::optional<Sent> sent;
-  if (document) {
-    judgement.message = document->value;
-    if (const auto& repeated = document->repeated) findings.breaks("'" + *repeated + "' is given twice");
-    sent = read_report(document->value, findings);
-  } else {
-    findings.breaks("JSON parsing failed: " + document.error(), Measured::Refuses, 400);
-  }
-  if (const Finding* const finding = findings.decisive(Manner::Strict)) {
-    judgement.outcome = refused(*finding);
-  } else if (sent) {
-    const Run::Ruling ruling = run_.submit(sent->type, sent->position, Clock::now());
-    tell_repeat(ruling, findings);
-    const auto& body = judgement.report.emplace(report_body(ruling, document->value, request.local_address));
-    judgement.outcome = answered(201, body);
-    judgement.accepted.push_back({"report", ""});
-  } else {
-    judgement.outcome = refused(422, "The report could not be read");
-  }
-}
-
 namespace {
+
+class StrictScoring : public Endpoint {
+ public:
+  StrictScoring(std::string token, double hz, bool one_limit, Run& run)
+      : token_(std::move(token)), run_(run), one_limit_(one_limit), status_limit_(hz), report_limit_(hz) {}
+
+  Judgement judge(const Request& request) override {
+    Judgement judgement;
+    check_entry(request, kScoringFunctions, token_, judgement.findings);
+    const Finding* const finding = judgement.findings.decisive(Manner::Strict);
+    if (finding == nullptr || finding->status != 404) judgement.uri = request.path;
+    if (finding != nullptr) {
+      judgement.outcome = refused(*finding);
+    } else if (limit_of(judgement.uri).too_soon(request)) {
+      judgement.outcome = refused(429, kTooManyRequests);
+    } else if (judgement.uri == kStatusUri) {
+      judgement.outcome = answered(200, status_body(run_, Clock::now()));
+    } else {
+      classify_report(request, judgement);
+    }
+    return judgement;
+  }
+
+ private:
+  RateLimit& limit_of(std::string_view uri) {
+    return uri == kStatusUri && !one_limit_ ? status_limit_ : report_limit_;
+  }
+
+  void classify_report(const Request& request, Judgement& judgement) {
+    Findings& findings = judgement.findings;
+    check_content(request, false, findings);
+    const auto document = read_document(request.body, Format::JsonText);
+    std::optional<Sent> sent;
+    if (document) {
+      judgement.message = document->value;
+      if (const auto& repeated = document->repeated) findings.breaks("'" + *repeated + "' is given twice");
+      sent = read_report(document->value, findings);
+    } else {
+      findings.breaks("JSON parsing failed: " + document.error(), Measured::Refuses, 400);
+    }
+    if (const Finding* const finding = findings.decisive(Manner::Strict)) {
+      judgement.outcome = refused(*finding);
+    } else if (sent) {
+      const Run::Ruling ruling = run_.submit(sent->type, sent->position, Clock::now());
+      tell_repeat(ruling, findings);
+      const auto& body =
+          judgement.report.emplace(report_body(ruling, document->value, request.local_address));
+      judgement.outcome = answered(201, body);
+      judgement.accepted.push_back({"report", ""});
+    } else {
+      judgement.outcome = refused(422, "The report could not be read");
+    }
+  }
+
+  const std::string token_;
+  Run& run_;
+  const bool one_limit_;
+  RateLimit status_limit_;
+  RateLimit report_limit_;  // of statuses too, if there is one limit
+};
 
 Outcome preflight() {
   Outcome outcome;
@@ -150,98 +159,106 @@ bool is_json(const std::optional<std::string>& content_type) {
   return content_type && content_type->substr(0, content_type->find(';')) == "application/json";
 }
 
-}  // namespace
+class MeasuredScoring : public Endpoint {
+ public:
+  MeasuredScoring(std::string token, double hz, Run& run) : token_(std::move(token)), run_(run), limit_(hz) {}
 
-MeasuredScoring::MeasuredScoring(std::string token, double hz, Run& run)
-    : token_(std::move(token)), run_(run), limit_(hz) {}
-
-bool MeasuredScoring::too_many(const Request& request) {
-  const std::lock_guard lock(mutex_);
-  if (limit_.too_soon(request, Clock::now())) return true;
-  limit_.count(request, request.at);
-  return false;
-}
-
-Judgement MeasuredScoring::judge(const Request& request) {
-  Judgement judgement;
-  if (request.method == "OPTIONS") {
-    judgement.outcome = preflight();
-  } else {
-    check_entry(request, kScoringFunctions, token_, judgement.findings);
-    const std::string_view path = without_slash(request.path);
-    if (path == kStatusUri || path == kReportsUri) {
-      judgement.uri = path;
-      judge_known(request, judgement);
+  Judgement judge(const Request& request) override {
+    Judgement judgement;
+    if (request.method == "OPTIONS") {
+      judgement.outcome = preflight();
     } else {
-      judgement.outcome = page(404, "Not Found");
+      check_entry(request, kScoringFunctions, token_, judgement.findings);
+      const std::string_view path = without_slash(request.path);
+      if (path == kStatusUri || path == kReportsUri) {
+        judgement.uri = path;
+        judge_known(request, judgement);
+      } else {
+        judgement.outcome = page(404, "Not Found");
+      }
+    }
+    if (request.origin) judgement.outcome.answer.headers.emplace_back("Access-Control-Allow-Origin", "*");
+    return judgement;
+  }
+
+ private:
+  void judge_known(const Request& request, Judgement& judgement) {
+    if (!shows(request.authorization, token_)) {
+      judgement.outcome = detailed(
+          401, request.authorization ? kInvalidToken : "Authentication credentials were not provided.");
+      judgement.outcome.answer.headers.emplace_back("WWW-Authenticate", "Bearer");
+    } else if (limit_.too_soon(request)) {
+      judgement.outcome = detailed(429, kThrottled);
+    } else if (request.method != (judgement.uri == kStatusUri ? "GET" : "POST")) {
+      judgement.outcome = detailed(405, "Method \"" + request.method + "\" not allowed.");
+    } else if (judgement.uri == kStatusUri) {
+      OrderedJson body = status_body(run_, Clock::now());
+      body["run_clock"] = kMeasuredStatusClock;
+      judgement.outcome = answered(200, body);
+    } else {
+      classify_report(request, judgement);
     }
   }
-  if (request.origin) judgement.outcome.answer.headers.emplace_back("Access-Control-Allow-Origin", "*");
-  return judgement;
+
+  void classify_report(const Request& request, Judgement& judgement) {
+    check_content(request, false, judgement.findings);
+    if (!is_json(request.content_type)) {
+      judgement.outcome = detailed(415, "Unsupported media type in request.");
+      return;
+    }
+    const auto document = read_document(request.body, Format::JsonText);
+    if (!document) {
+      judgement.findings.breaks("JSON parsing failed: " + document.error(), Measured::Refuses, 400);
+      judgement.outcome = detailed(400, "JSON parse error - " + document.error());
+      return;
+    }
+    const Json& sent = document->value;
+    judgement.message = sent;
+    for (const char* const name : {"x", "y", "z", "type"}) {
+      if (sent.is_object() && sent.contains(name)) continue;
+      const std::string sentence = std::string("Missing field: '") + name + "'";
+      judgement.findings.breaks(sentence);
+      judgement.outcome = refused(422, sentence);
+      return;
+    }
+    if (!sent["type"].is_string()) {  // its handler crashes
+      judgement.findings.breaks("type: expected a text string", Measured::Refuses, 500);
+      judgement.outcome = page(500, "Server Error (500)");
+      return;
+    }
+    // Types that do not exist and coordinates that are no numbers are recorded, and score nothing.
+    const auto type = sent["type"].get<std::string>();
+    std::optional<Point> position;
+    if (sent["x"].is_number() && sent["y"].is_number() && sent["z"].is_number()) {
+      position = Point{sent["x"].get<double>(), sent["y"].get<double>(), sent["z"].get<double>()};
+    } else {
+      judgement.findings.breaks("x, y, z: expected numbers", Measured::Takes);
+    }
+    if (!is_artifact_type(type)) {
+      judgement.findings.breaks("type: expected an artifact type of the final event (ICD 5.2)",
+                                Measured::Takes);
+    }
+    Run::Ruling ruling = run_.submit(type, position, Clock::now());
+    ruling.clock = kMeasuredReportClock;
+    tell_repeat(ruling, judgement.findings);
+    judgement.report = report_body(ruling, sent, kNoAuthority);
+    judgement.outcome = answered(201, *judgement.report);
+    judgement.accepted.push_back({"report", ""});
+  }
+
+  const std::string token_;
+  Run& run_;
+  RateLimit limit_;
+};
+
+}  // namespace
+
+std::unique_ptr<Endpoint> strict_scoring(std::string token, double hz, bool one_limit, Run& run) {
+  return std::make_unique<StrictScoring>(std::move(token), hz, one_limit, run);
 }
 
-void MeasuredScoring::judge_known(const Request& request, Judgement& judgement) {
-  if (!shows(request.authorization, token_)) {
-    judgement.outcome = detailed(
-        401, request.authorization ? kInvalidToken : "Authentication credentials were not provided.");
-    judgement.outcome.answer.headers.emplace_back("WWW-Authenticate", "Bearer");
-  } else if (too_many(request)) {
-    judgement.outcome = detailed(429, kThrottled);
-  } else if (request.method != (judgement.uri == kStatusUri ? "GET" : "POST")) {
-    judgement.outcome = detailed(405, "Method \"" + request.method + "\" not allowed.");
-  } else if (judgement.uri == kStatusUri) {
-    OrderedJson body = status_body(run_, Clock::now());
-    body["run_clock"] = kMeasuredStatusClock;
-    judgement.outcome = answered(200, body);
-  } else {
-    classify_report(request, judgement);
-  }
-}
-
-void MeasuredScoring::classify_report(const Request& request, Judgement& judgement) {
-  check_content(request, false, judgement.findings);
-  if (!is_json(request.content_type)) {
-    judgement.outcome = detailed(415, "Unsupported media type in request.");
-    return;
-  }
-  const auto document = read_document(request.body, Format::JsonText);
-  if (!document) {
-    judgement.findings.breaks("JSON parsing failed: " + document.error(), Measured::Refuses, 400);
-    judgement.outcome = detailed(400, "JSON parse error - " + document.error());
-    return;
-  }
-  const Json& sent = document->value;
-  judgement.message = sent;
-  for (const char* const name : {"x", "y", "z", "type"}) {
-    if (sent.is_object() && sent.contains(name)) continue;
-    const std::string sentence = std::string("Missing field: '") + name + "'";
-    judgement.findings.breaks(sentence);
-    judgement.outcome = refused(422, sentence);
-    return;
-  }
-  if (!sent["type"].is_string()) {  // its handler crashes
-    judgement.findings.breaks("type: expected a text string", Measured::Refuses, 500);
-    judgement.outcome = page(500, "Server Error (500)");
-    return;
-  }
-  // Types that do not exist and coordinates that are no numbers are recorded, and score nothing.
-  const auto type = sent["type"].get<std::string>();
-  std::optional<Point> position;
-  if (sent["x"].is_number() && sent["y"].is_number() && sent["z"].is_number()) {
-    position = Point{sent["x"].get<double>(), sent["y"].get<double>(), sent["z"].get<double>()};
-  } else {
-    judgement.findings.breaks("x, y, z: expected numbers", Measured::Takes);
-  }
-  if (!is_artifact_type(type)) {
-    judgement.findings.breaks("type: expected an artifact type of the final event (ICD 5.2)",
-                              Measured::Takes);
-  }
-  Run::Ruling ruling = run_.submit(type, position, Clock::now());
-  ruling.clock = kMeasuredReportClock;
-  tell_repeat(ruling, judgement.findings);
-  judgement.report = report_body(ruling, sent, kNoAuthority);
-  judgement.outcome = answered(201, *judgement.report);
-  judgement.accepted.push_back({"report", ""});
+std::unique_ptr<Endpoint> measured_scoring(std::string token, double hz, Run& run) {
+  return std::make_unique<MeasuredScoring>(std::move(token), hz, run);
 }
 
 }  // namespace adit::rehearsal

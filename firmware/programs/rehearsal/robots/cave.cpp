@@ -12,6 +12,13 @@
 namespace adit::robots {
 namespace {
 
+/// 1 where the mountain is hollow.
+using Hollow = Raster<std::uint8_t>;
+
+struct Chamber {
+  double x = 0, y = 0, floor = 0, radius = 0;  // metres
+};
+
 constexpr int kRim = 3;  // cells of rock left standing all round
 
 double distance(const Chamber& a, const Chamber& b) {
@@ -132,8 +139,7 @@ void fill_unreachable(Hollow& hollow, Cell entrance) {
   hollow = std::move(reached);
 }
 
-}  // namespace
-
+/// The entrance at (0, 0), which is the first, and chambers spread over the lattice.
 std::vector<Chamber> spread_chambers(const Lattice& lattice, Random& random) {
   constexpr std::size_t kChambers = 11;
   constexpr double kMargin = 6;    // metres from the lattice's edge
@@ -153,6 +159,8 @@ std::vector<Chamber> spread_chambers(const Lattice& lattice, Random& random) {
   return chambers;
 }
 
+/// Carves the chambers and the tunnels that join them all, roughens the walls, and fills whatever cannot be
+/// reached from the entrance.
 Hollow carve(const Lattice& lattice, const std::vector<Chamber>& chambers, Random& random) {
   Hollow hollow(lattice, 0);
   for (const Chamber& chamber : chambers) carve_chamber(hollow, chamber, random);
@@ -163,8 +171,6 @@ Hollow carve(const Lattice& lattice, const std::vector<Chamber>& chambers, Rando
   fill_unreachable(hollow, lattice.cell_at(chambers.front().x, chambers.front().y));
   return hollow;
 }
-
-namespace {
 
 constexpr Lattice kLattice{.resolution = 0.2, .left = -6, .bottom = -32, .width = 480, .height = 320};
 

@@ -12,7 +12,7 @@ namespace {
 using Counts = std::map<std::string, std::uint64_t>;
 
 /// A hostile server may send a new sentence each time.
-void count(Counts& counts, const std::string& what) {
+void add(Counts& counts, const std::string& what) {
   constexpr std::size_t kMost = 50;
   const bool room = counts.contains(what) || counts.size() < kMost;
   ++counts[room ? what : "(others)"];
@@ -26,60 +26,42 @@ void list(std::string& text, std::string_view title, const Counts& counts) {
 
 }  // namespace
 
-void Tally::posted(Kind kind) {
+void Tally::count(Kind kind, Fate fate, const std::string& why) {
   const std::scoped_lock lock(mutex_);
-  ++row(kind).posted;
-}
-
-void Tally::accepted(Kind kind) {
-  const std::scoped_lock lock(mutex_);
-  ++row(kind).accepted;
-}
-
-void Tally::throttled(Kind kind) {
-  const std::scoped_lock lock(mutex_);
-  ++row(kind).throttled;
-}
-
-void Tally::refused(Kind kind, int status, const std::string& sentence) {
-  const std::scoped_lock lock(mutex_);
-  ++row(kind).refused;
-  count(refusals_, std::string(name_of(kind)) + ": " + std::to_string(status) + " " + sentence);
-}
-
-void Tally::unanswered(Kind kind, const std::string& reason) {
-  const std::scoped_lock lock(mutex_);
-  ++row(kind).unanswered;
-  count(silences_, std::string(name_of(kind)) + ": " + reason);
+  ++rows_[static_cast<std::size_t>(kind)][static_cast<std::size_t>(fate)];
+  const std::string what = std::string(name_of(kind)) + ": " + why;
+  if (fate == Fate::Rejected) add(rejections_, what);
+  if (fate == Fate::Unanswered) add(silences_, what);
 }
 
 void Tally::report_came_to(const std::string& outcome) {
   const std::scoped_lock lock(mutex_);
-  count(reports_, outcome);
+  add(reports_, outcome);
 }
 
 void Tally::failed(const std::string& what) {
   const std::scoped_lock lock(mutex_);
-  count(failures_, what);
+  add(failures_, what);
 }
 
 std::uint64_t Tally::accepted_of(Kind kind) const {
   const std::scoped_lock lock(mutex_);
-  return rows_[static_cast<std::size_t>(kind)].accepted;
+  return of(rows_[static_cast<std::size_t>(kind)], Fate::Accepted);
 }
 
 bool Tally::clean() const {
   const std::scoped_lock lock(mutex_);
-  return failures_.empty() && std::ranges::all_of(rows_, [](const Row& row) { return row.refused == 0; });
+  return failures_.empty() &&
+         std::ranges::all_of(rows_, [](const Row& row) { return of(row, Fate::Rejected) == 0; });
 }
 
 std::string Tally::line() const {
   const std::scoped_lock lock(mutex_);
   std::string text;
   for (std::size_t i = 0; i < kKinds; ++i) {
-    if (rows_[i].posted == 0) continue;
+    if (of(rows_[i], Fate::Posted) == 0) continue;
     text += (text.empty() ? "" : ", ") + std::string(name_of(static_cast<Kind>(i))) + " " +
-            std::to_string(rows_[i].accepted) + "/" + std::to_string(rows_[i].posted);
+            std::to_string(of(rows_[i], Fate::Accepted)) + "/" + std::to_string(of(rows_[i], Fate::Posted));
   }
   return text;
 }
@@ -88,17 +70,19 @@ std::string Tally::summary() const {
   const std::scoped_lock lock(mutex_);
   std::string text = "kind         posted  accepted       429  rejected  no answer\n";
   for (std::size_t i = 0; i < kKinds; ++i) {
-    const Row& row = rows_[i];
-    if (row.posted == 0) continue;
-    std::array<char, 96> line{};
-    (void)std::snprintf(
-        line.data(), line.size(), "%-9s %9llu %9llu %9llu %9llu %10llu\n",
-        std::string(name_of(static_cast<Kind>(i))).c_str(), static_cast<unsigned long long>(row.posted),
-        static_cast<unsigned long long>(row.accepted), static_cast<unsigned long long>(row.throttled),
-        static_cast<unsigned long long>(row.refused), static_cast<unsigned long long>(row.unanswered));
-    text += line.data();
+    if (of(rows_[i], Fate::Posted) == 0) continue;
+    std::array<char, 32> cell{};
+    (void)std::snprintf(cell.data(), cell.size(), "%-9s", std::string(name_of(static_cast<Kind>(i))).c_str());
+    text += cell.data();
+    for (std::size_t fate = 0; fate < kFates; ++fate) {
+      const int width = fate + 1 < kFates ? 9 : 10;
+      (void)std::snprintf(cell.data(), cell.size(), " %*llu", width,
+                          static_cast<unsigned long long>(rows_[i][fate]));
+      text += cell.data();
+    }
+    text += '\n';
   }
-  list(text, "rejected:", refusals_);
+  list(text, "rejected:", rejections_);
   list(text, "no answer:", silences_);
   list(text, "reports:", reports_);
   list(text, "failed:", failures_);
@@ -145,38 +129,35 @@ std::optional<HttpReply> Client::send(const Message& message) {
 
 std::optional<HttpReply> Client::exchange(Connection& connection, Kind kind, const HttpRequest& request) {
   const bool report = kind == Kind::Report;
-  tally_.posted(kind);
+  tally_.count(kind, Fate::Posted);
   auto reply = connection.exchange(request, report ? kReportPatience : kPatience, report);
   if (!reply) {
-    tally_.unanswered(kind, reply.error());
+    tally_.count(kind, Fate::Unanswered, reply.error());
     return std::nullopt;
   }
   if (is_success(kind, reply->status)) {
-    tally_.accepted(kind);
+    tally_.count(kind, Fate::Accepted);
   } else if (reply->status == 429) {
-    tally_.throttled(kind);
+    tally_.count(kind, Fate::Throttled);
   } else {
-    tally_.refused(kind, reply->status, sentence_of(reply->body));
+    tally_.count(kind, Fate::Rejected, std::to_string(reply->status) + " " + sentence_of(reply->body));
   }
   return *std::move(reply);
 }
 
 bool Client::may_send(Connection& connection, const HttpRequest& request) {
   if (!style_.browser) return true;
-  tally_.posted(Kind::Preflight);
+  tally_.count(Kind::Preflight, Fate::Posted);
   const auto reply = connection.exchange(Encoder::preflight(request), kPatience);
   if (!reply) {
-    tally_.unanswered(Kind::Preflight, reply.error());
+    tally_.count(Kind::Preflight, Fate::Unanswered, reply.error());
     return false;
   }
   const bool allowed = reply->status >= 200 && reply->status < 300 &&
                        (reply->allowed_origin == "*" || reply->allowed_origin == Encoder::kOrigin) &&
                        allows(reply->allowed_headers, "authorization");
-  if (allowed) {
-    tally_.accepted(Kind::Preflight);
-  } else {
-    tally_.refused(Kind::Preflight, reply->status, "for " + request.method + " " + request.target);
-  }
+  tally_.count(Kind::Preflight, allowed ? Fate::Accepted : Fate::Rejected,
+               std::to_string(reply->status) + " for " + request.method + " " + request.target);
   return allowed;
 }
 
@@ -186,10 +167,6 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::seconds kStatusEvery{5};
 constexpr std::chrono::milliseconds kAfter429{1200};  // the Command Post takes about one a second (ICD 5)
-
-std::string signed_number(int number) {
-  return std::string(number < 0 ? "" : "+").append(std::to_string(number));
-}
 
 }  // namespace
 
@@ -235,8 +212,8 @@ void OperatorDesk::ask_status(const std::stop_token& abort) {
   Client client(post_, "operator", style_, tally_, abort);
   const auto reply = client.send(StatusQuery{});
   if (!reply || reply->status != 200) return;  // counted by the client
-  const auto status = parse_status_answer(reply->body);
-  if (!status) tally_.failed("GET /api/status: " + status.error());
+  if (const auto status = check_status_answer(reply->body); !status)
+    tally_.failed("GET /api/status: " + status.error());
 }
 
 void OperatorDesk::tell(const Finding& finding, const std::string& outcome) const {
@@ -265,14 +242,13 @@ void OperatorDesk::report(const Finding& finding, const std::stop_token& finish,
       tally_.report_came_to("rejected with " + std::to_string(reply->status));
       return tell(finding, std::to_string(reply->status) + " " + sentence_of(reply->body));
     }
-    const auto answer = parse_report_answer(reply->body);
-    if (!answer) {
-      tally_.failed("POST /api/artifact_reports: " + answer.error());
-      return tell(finding, answer.error());
+    const auto outcome = parse_report_answer(reply->body);
+    if (!outcome) {
+      tally_.failed("POST /api/artifact_reports: " + outcome.error());
+      return tell(finding, outcome.error());
     }
-    const std::string outcome = answer->report_status + " " + signed_number(answer->score_change);
-    tally_.report_came_to(outcome);
-    return tell(finding, std::to_string(reply->status) + " " + outcome);
+    tally_.report_came_to(*outcome);
+    return tell(finding, std::to_string(reply->status) + " " + *outcome);
   }
 }
 

@@ -20,17 +20,14 @@
 
 namespace adit::robots {
 
+/// What may become of a message. Throttled: 429, which is normal for a team that goes too fast.
+enum class Fate : std::uint8_t { Posted, Accepted, Throttled, Rejected, Unanswered };
+
 /// The posted messages and their outcomes. Any thread may write to it.
 class Tally {
  public:
-  void posted(Kind kind);
-  void accepted(Kind kind);
-  /// 429: the team went too fast, which is normal.
-  void throttled(Kind kind);
-  /// Any other refusal.
-  void refused(Kind kind, int status, const std::string& sentence);
-  /// No answer came, for `reason`.
-  void unanswered(Kind kind, const std::string& reason);
+  /// `why`: the refusal's status and sentence, or why there was no answer.
+  void count(Kind kind, Fate fate, const std::string& why = "");
   /// What an answered report came to: "scored +1", "run not started", ...
   void report_came_to(const std::string& outcome);
   /// Something of the team's own that is wrong, such as a map file.
@@ -48,14 +45,14 @@ class Tally {
   std::string summary() const;
 
  private:
-  struct Row {
-    std::uint64_t posted = 0, accepted = 0, throttled = 0, refused = 0, unanswered = 0;
-  };
-  Row& row(Kind kind) { return rows_[static_cast<std::size_t>(kind)]; }
+  static constexpr std::size_t kFates = 5;
+  using Row = std::array<std::uint64_t, kFates>;  // by fate
+
+  static std::uint64_t of(const Row& row, Fate fate) { return row[static_cast<std::size_t>(fate)]; }
 
   mutable std::mutex mutex_;  // guards all below
   std::array<Row, kKinds> rows_{};
-  std::map<std::string, std::uint64_t> refusals_;  // "markers: 422 ..."
+  std::map<std::string, std::uint64_t> rejections_;  // "markers: 422 ..."
   std::map<std::string, std::uint64_t> silences_;
   std::map<std::string, std::uint64_t> reports_;
   std::map<std::string, std::uint64_t> failures_;

@@ -32,17 +32,14 @@ void MarkerScene::draw_way(const Vector3& position) {
   if (way_.size() > kWayPoints) way_.erase(way_.begin());
   change({.ns = robot_ + "/way",
           .type = Marker::LineStrip,
-          .position = {},
           .size = 0.05,
           .color = {.r = 0, .g = 1, .b = 0},
-          .text = {},
           .points = way_});
   change({.ns = robot_ + "/shape",
           .type = Marker::Mesh,
           .position = position,
           .size = 1,
           .color = {.r = 0.8, .g = 0.8, .b = 0.8},
-          .text = {},
           .mesh_resource = "package://rehearsal/meshes/robot.dae"});
 }
 
@@ -54,8 +51,7 @@ void MarkerScene::pass(const Vector3& position, double walked, double seconds) {
             .id = path_nodes_++,
             .position = position,
             .size = 0.2,
-            .color = {.r = 0, .g = 0.75, .b = 1},
-            .text = {}});
+            .color = {.r = 0, .g = 0.75, .b = 1}});
   }
   if (path_nodes_ - oldest_node_ > kPathNodes) {
     Marker oldest = standing_.at({path, oldest_node_++});
@@ -68,8 +64,7 @@ void MarkerScene::pass(const Vector3& position, double walked, double seconds) {
             .type = Marker::Cube,
             .position = position,
             .size = 0.4,
-            .color = {.r = 1, .g = 0.5, .b = 0},
-            .text = {}});
+            .color = {.r = 1, .g = 0.5, .b = 0}});
   }
   while (!candidates_until_.empty() && candidates_until_.begin()->second <= seconds) {
     Marker settled = standing_.at({robot_ + "/artifact", candidates_until_.begin()->first});

@@ -7,7 +7,7 @@
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http.hpp>
 #include <charconv>
-#include <cmath>
+#include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -154,43 +154,21 @@ Json parse(std::string_view body) {
   return Json::parse(body, nullptr, /*allow_exceptions=*/false);
 }
 
-/// Reads members one by one and remembers the first that is wrong.
-class Reader {
- public:
-  explicit Reader(const Json& object) : object_(object) {
-    if (!object.is_object()) wrong_ = "the answer is not a JSON object";
-  }
+using Names = std::initializer_list<const char*>;
 
-  double number(const char* name) {
-    const Json* value = find(name);
-    if (value != nullptr && value->is_number()) return value->get<double>();
-    complain(name, "a number");
-    return 0;
+/// A sentence about the first member that is not there, or of another type; "" if there is none.
+std::string wrong_member(const Json& answer, Names numbers, Names texts) {
+  if (!answer.is_object()) return "the answer is not a JSON object";
+  for (const char* name : numbers) {
+    if (!answer.contains(name) || !answer[name].is_number())
+      return std::string("the answer's '") + name + "' is not a number";
   }
-
-  std::string text(const char* name) {
-    const Json* value = find(name);
-    if (value != nullptr && value->is_string()) return value->get<std::string>();
-    complain(name, "a string");
-    return {};
+  for (const char* name : texts) {
+    if (!answer.contains(name) || !answer[name].is_string())
+      return std::string("the answer's '") + name + "' is not a string";
   }
-
-  bool has(const char* name) const { return find(name) != nullptr; }
-  const std::string& wrong() const { return wrong_; }
-
- private:
-  const Json* find(const char* name) const {
-    if (!object_.is_object()) return nullptr;
-    const auto found = object_.find(name);
-    return found == object_.end() ? nullptr : &*found;
-  }
-  void complain(const char* name, const char* expected) {
-    if (wrong_.empty()) wrong_ = std::string("the answer's '") + name + "' is not " + expected;
-  }
-
-  const Json& object_;
-  std::string wrong_;
-};
+  return "";
+}
 
 }  // namespace
 
@@ -207,30 +185,21 @@ std::string sentence_of(std::string_view body) {
   return (json.is_discarded() ? "not JSON: " : "") + line;
 }
 
-std::expected<ReportAnswer, std::string> parse_report_answer(std::string_view body) {
-  const Json json = parse(body);
-  Reader reader(json);
-  ReportAnswer answer{
-      .type = reader.text("type"),
-      .x = reader.number("x"),
-      .y = reader.number("y"),
-      .z = reader.number("z"),
-      .run_clock = reader.number("run_clock"),
-      .report_status = reader.text("report_status"),
-      .score_change = static_cast<int>(std::clamp(reader.number("score_change"), -99.0, 99.0))};
-  if (!reader.wrong().empty()) return std::unexpected(reader.wrong());
-  return answer;
+std::expected<std::string, std::string> parse_report_answer(std::string_view body) {
+  const Json answer = parse(body);
+  const std::string wrong =
+      wrong_member(answer, {"x", "y", "z", "run_clock", "score_change"}, {"type", "report_status"});
+  if (!wrong.empty()) return std::unexpected(wrong);
+  const int change = static_cast<int>(std::clamp(answer["score_change"].get<double>(), -99.0, 99.0));
+  return answer["report_status"].get<std::string>() + (change < 0 ? " " : " +") + std::to_string(change);
 }
 
-std::expected<std::string, std::string> parse_status_answer(std::string_view body) {
-  const Json json = parse(body);
-  Reader reader(json);
-  const double score = reader.number("score");
-  const double remaining = reader.number("remaining_reports");
-  const double clock = reader.number(reader.has("run_clock") ? "run_clock" : "clock");  // ICD 5.1 has both
-  if (!reader.wrong().empty()) return std::unexpected(reader.wrong());
-  return "score " + std::to_string(std::llround(score)) + ", " + std::to_string(std::llround(remaining)) +
-         " reports left, run clock " + std::to_string(std::llround(clock)) + " s";
+std::expected<void, std::string> check_status_answer(std::string_view body) {
+  const Json answer = parse(body);
+  const char* const clock = answer.contains("run_clock") ? "run_clock" : "clock";  // ICD 5.1 has both
+  const std::string wrong = wrong_member(answer, {"score", "remaining_reports", clock}, {});
+  if (!wrong.empty()) return std::unexpected(wrong);
+  return {};
 }
 
 }  // namespace adit::robots

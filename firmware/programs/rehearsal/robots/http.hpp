@@ -57,19 +57,11 @@ class Connection {
 /// else the first line of the body ("not JSON: ...").
 std::string sentence_of(std::string_view body);
 
-/// What clients read of the answer to a report (ICD 5.2), and insist on.
-struct ReportAnswer {
-  std::string type;
-  double x = 0, y = 0, z = 0;
-  double run_clock = 0;
-  std::string report_status;
-  int score_change = 0;
-};
+/// "scored +1", of the answer to a report (ICD 5.2); or which member that clients insist on is not there as
+/// it should be.
+std::expected<std::string, std::string> parse_report_answer(std::string_view body);
 
-/// Or which member is not there as it should be.
-std::expected<ReportAnswer, std::string> parse_report_answer(std::string_view body);
-
-/// "score 3, 22 reports left, run clock 41 s"; or the fault of the answer to GET /api/status.
-std::expected<std::string, std::string> parse_status_answer(std::string_view body);
+/// Or the fault of the answer to GET /api/status.
+std::expected<void, std::string> check_status_answer(std::string_view body);
 
 }  // namespace adit::robots

@@ -60,14 +60,18 @@ constexpr std::array<std::pair<std::string_view, CloudForm>, 3> kCloudForms = {
     {{"differential", CloudForm::Differential}, {"whole", CloudForm::Whole}, {"none", CloudForm::None}}};
 
 template <class Form, std::size_t N>
-std::optional<std::vector<Form>> read_forms(std::string_view text,
-                                            const std::array<std::pair<std::string_view, Form>, N>& names) {
+std::expected<std::vector<Form>, std::string> parse_forms(
+    std::string_view text, const std::array<std::pair<std::string_view, Form>, N>& names) {
   std::vector<Form> forms;
   for (std::size_t at = 0; at <= text.size();) {
     const std::size_t end = std::min(text.find(',', at), text.size());
     const auto* const known =
         std::ranges::find(names, text.substr(at, end - at), &std::pair<std::string_view, Form>::first);
-    if (known == names.end()) return std::nullopt;
+    if (known == names.end()) {
+      std::string sentence = "expected ";
+      for (const auto& [name, form] : names) sentence.append(name).append(", ");
+      return std::unexpected(sentence + "got '" + std::string(text) + "'");
+    }
     forms.push_back(known->second);
     at = end + 1;
   }
@@ -93,12 +97,12 @@ bool MapOffers::has_clouds() const {
   return std::ranges::any_of(clouds, [](CloudForm form) { return form != CloudForm::None; });
 }
 
-std::optional<std::vector<GridForm>> read_grid_forms(std::string_view text) {
-  return read_forms(text, kGridForms);
+std::expected<std::vector<GridForm>, std::string> parse_grid_forms(std::string_view text) {
+  return parse_forms(text, kGridForms);
 }
 
-std::optional<std::vector<CloudForm>> read_cloud_forms(std::string_view text) {
-  return read_forms(text, kCloudForms);
+std::expected<std::vector<CloudForm>, std::string> parse_cloud_forms(std::string_view text) {
+  return parse_forms(text, kCloudForms);
 }
 
 namespace {

@@ -3,7 +3,9 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <expected>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -55,9 +57,9 @@ struct MapOffers {
   bool has_clouds() const;
 };
 
-/// "whole,tiles": forms with commas between them; nothing if one is none.
-std::optional<std::vector<GridForm>> read_grid_forms(std::string_view text);
-std::optional<std::vector<CloudForm>> read_cloud_forms(std::string_view text);
+/// "whole,tiles": forms with commas between them.
+std::expected<std::vector<GridForm>, std::string> parse_grid_forms(std::string_view text);
+std::expected<std::vector<CloudForm>, std::string> parse_cloud_forms(std::string_view text);
 
 /// When a map is made: by the robot's own clock, and by the machine's.
 struct MapTime {

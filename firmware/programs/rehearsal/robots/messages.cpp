@@ -1,5 +1,6 @@
 #include "rehearsal/robots/messages.hpp"
 
+#include <sodium/utils.h>
 #include <zlib.h>
 
 #include <array>
@@ -36,12 +37,12 @@ std::string_view name_of(Kind kind) {
   return kNames[static_cast<std::size_t>(kind)];
 }
 
-std::optional<TeamStyle> TeamStyle::parse(std::string_view name) {
+std::expected<TeamStyle, std::string> TeamStyle::parse(std::string_view name) {
   if (name == "mixed") return TeamStyle();
   for (std::size_t i = 0; i < kStyles.size(); ++i) {
     if (kStyles[i].name == name) return TeamStyle(i);
   }
-  return std::nullopt;
+  return std::unexpected("unknown style '" + std::string(name) + "'");
 }
 
 std::vector<std::uint8_t> gzip(std::span<const std::uint8_t> bytes) {
@@ -65,19 +66,10 @@ std::vector<std::uint8_t> gzip(std::span<const std::uint8_t> bytes) {
 }
 
 std::string base64(std::span<const std::uint8_t> bytes) {
-  constexpr std::string_view kAlphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t left = bytes.size() - i;
-    const unsigned group = static_cast<unsigned>(bytes[i]) << 16 |
-                           (left > 1 ? static_cast<unsigned>(bytes[i + 1]) << 8 : 0u) |
-                           (left > 2 ? static_cast<unsigned>(bytes[i + 2]) : 0u);
-    text += kAlphabet[group >> 18 & 63];
-    text += kAlphabet[group >> 12 & 63];
-    text += left > 1 ? kAlphabet[group >> 6 & 63] : '=';
-    text += left > 2 ? kAlphabet[group & 63] : '=';
-  }
+  constexpr int kPadded = sodium_base64_VARIANT_ORIGINAL;
+  std::string text(sodium_base64_encoded_len(bytes.size(), kPadded), '\0');
+  (void)sodium_bin2base64(text.data(), text.size(), bytes.data(), bytes.size(), kPadded);
+  text.pop_back();  // its terminating NUL
   return text;
 }
 
@@ -263,23 +255,10 @@ class Body {
   std::uint32_t seq_;
 };
 
-const char* target_of(Kind kind) {
-  switch (kind) {
-    case Kind::Grid:
-    case Kind::Cloud:
-      return "/map/update";
-    case Kind::State:
-      return "/state/update";
-    case Kind::Markers:
-      return "/markers/update";
-    case Kind::Report:
-      return "/api/artifact_reports";
-    case Kind::Status:
-    case Kind::Preflight:
-      break;
-  }
-  return "/api/status";
-}
+/// By kind.
+constexpr std::array<const char*, kKinds> kTargets = {
+    "/map/update",           "/map/update", "/state/update", "/markers/update",
+    "/api/artifact_reports", "/api/status", "/api/status"};
 
 }  // namespace
 
@@ -288,7 +267,8 @@ Encoder::Encoder(std::string robot, const Style& style, std::string token)
 
 HttpRequest Encoder::encode(const Message& message) {
   const Kind kind = kind_of(message);
-  HttpRequest request{.method = "POST", .target = target_of(kind), .fields = {}, .body = {}};
+  HttpRequest request{
+      .method = "POST", .target = kTargets.at(static_cast<std::size_t>(kind)), .fields = {}, .body = {}};
   if (style_.browser) {
     request.target += '/';
     request.fields.emplace_back("Origin", kOrigin);

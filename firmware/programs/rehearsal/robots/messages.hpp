@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <expected>
 #include <optional>
 #include <span>
 #include <string>
@@ -85,15 +86,15 @@ struct Color {
 struct Marker {
   enum Type : int { Cube = 1, Sphere = 2, LineStrip = 4, Text = 9, Mesh = 10 };
   enum Action : int { Add = 0, Delete = 2 };
-  std::string ns;
+  std::string ns = {};
   int id = 0;
   Type type = Sphere;
   Action action = Add;
-  Vector3 position;
+  Vector3 position = {};
   double size = 0.3;  // metres
-  Color color;
+  Color color = {};
   double lifetime = 0;  // seconds
-  std::string text;
+  std::string text = {};
   std::vector<Vector3> points = {};  // of a LineStrip
   std::string mesh_resource = {};    // of a Mesh
 };
@@ -156,8 +157,7 @@ class TeamStyle {
   /// Mixed.
   TeamStyle() = default;
 
-  /// std::nullopt for an unknown name.
-  static std::optional<TeamStyle> parse(std::string_view name);
+  static std::expected<TeamStyle, std::string> parse(std::string_view name);
 
   const Style& of(std::size_t robot) const { return kStyles[one_.value_or(robot % kStyles.size())]; }
 

@@ -13,36 +13,17 @@ using command_line::number;
 using command_line::take;
 using command_line::Wrong;
 
-Wrong take_url(Endpoint& into, const std::string& text) {
-  auto endpoint = parse_url(text);
-  if (!endpoint) return endpoint.error();
-  into = *std::move(endpoint);
+template <auto Parse, class Into>
+Wrong take_parsed(Into& into, const std::string& text) {
+  auto parsed = Parse(text);
+  if (!parsed) return parsed.error();
+  into = *std::move(parsed);
   return std::nullopt;
 }
 
-Wrong take_control(std::optional<Endpoint>& into, const std::string& text) {
-  return take_url(into.emplace(), text);
-}
-
-Wrong take_style(TeamStyle& into, const std::string& text) {
-  const auto style = TeamStyle::parse(text);
-  if (!style) return "unknown style '" + text + "'";
-  into = *style;
-  return std::nullopt;
-}
-
-Wrong take_grids(std::vector<GridForm>& into, const std::string& text) {
-  auto forms = read_grid_forms(text);
-  if (!forms) return "expected whole, drifting, rolling, tiles, none, got '" + text + "'";
-  into = *std::move(forms);
-  return std::nullopt;
-}
-
-Wrong take_clouds(std::vector<CloudForm>& into, const std::string& text) {
-  auto forms = read_cloud_forms(text);
-  if (!forms) return "expected differential, whole, none, got '" + text + "'";
-  into = *std::move(forms);
-  return std::nullopt;
+template <auto Parse, class Into>
+command_line::Take parsed(Into& into) {
+  return take<take_parsed<Parse, Into>>(into);
 }
 
 std::expected<Options, std::string> complete(Options options) {
@@ -69,32 +50,33 @@ command_line::Program command_line_of(Options& options) {
       .about =
           "Simulated team of robots that explores a generated cave and posts the messages of real teams.",
       .rows =
-          {{"--post", "URL", "address to post to: Adit, as http://ADDR:PORT", take<take_url>(options.post)},
+          {{"--post", "URL", "address to post to: Adit, as http://ADDR:PORT",
+            parsed<parse_url>(options.post)},
            {"--scoring", "URL", "another address for reports and status, to use a Command Post without Adit",
-            take<take_url>(options.scoring)},
+            parsed<parse_url>(options.scoring)},
            {"--control", "URL",
             "control port of adit-rehearsal: send it the amounts posted, and print the age of the maps at "
             "arrival",
-            take<take_control>(options.control)},
+            parsed<parse_url>(options.control)},
            {"--secrets", "DIR", "directory of the team's token: team.token", &options.secrets},
            {"--robots", "N", "number of robots, 0 to 50 (3)", number<0, 50>(options.robots)},
            {"--style", "STYLE",
             "cbor, cbor-plain, cbor-body-gzip, json-base64, json-array, ros, browser or mixed: format of the "
             "messages; mixed: one format after the other, robot by robot (mixed)",
-            take<take_style>(options.style)},
+            parsed<TeamStyle::parse>(options.style)},
            {"--grids", "FORMS",
             "whole, drifting (whole, with an origin that is off by millimetres), rolling (10 m around the "
             "robot), tiles, none: form of the grids; of several, separated by commas, each robot takes the "
             "next "
             "(whole)",
-            take<take_grids>(options.offers.grids)},
+            parsed<parse_grid_forms>(options.offers.grids)},
            {"--grid-hz", "HZ", "grids per second from each robot (1)",
             number<0.01, kMostHz>(options.offers.grid_hz)},
            {"--grid-mb", "MB", "size in MB of a grid of the whole cave, reached with smaller cells (0.15)",
             number<0.0, kMostMegabytes>(options.offers.grid_mb)},
            {"--clouds", "FORMS",
             "differential, whole, none: form of the clouds; several as for --grids (differential)",
-            take<take_clouds>(options.offers.clouds)},
+            parsed<parse_cloud_forms>(options.offers.clouds)},
            {"--cloud-hz", "HZ", "clouds per second from each robot (1, 2 and 0.5 in turn)",
             number<0.01, kMostHz>(options.offers.cloud_hz)},
            {"--cloud-mb", "MB",

@@ -13,7 +13,6 @@
 #include "rehearsal/robots/client.hpp"
 #include "rehearsal/robots/map_maker.hpp"
 #include "rehearsal/robots/messages.hpp"
-#include "rehearsal/robots/posted.hpp"
 #include "rehearsal/robots/robot.hpp"
 
 namespace adit::robots {
@@ -44,6 +43,32 @@ class MarkerScene {
   std::vector<Vector3> way_;
   std::map<int, double> candidates_until_;  // id: seconds
 };
+
+/// The amount of map data and the markers that each robot posted, rejected posts included. A rehearsal
+/// Command Post compares them with its own. Any thread may write to it.
+class Posted {
+ public:
+  struct Amount {
+    std::uint64_t amount = 0;  // cells or points posted so far, each counted once
+    std::uint64_t places = 0;  // that have points (KnownPlaces); of grids 0
+    Moment newest;             // the last map's date
+  };
+  void note(const std::string& robot, Kind kind, const Amount& amount);
+  /// The robot's markers after its last post.
+  void note(const std::string& robot, const std::vector<Marker>& standing);
+
+  /// As POST /posted on the control port takes it.
+  std::string json() const;
+
+ private:
+  mutable std::mutex mutex_;  // guards all below
+  std::map<std::pair<std::string, Kind>, Amount> amounts_;
+  std::map<std::string, std::vector<Marker>> standing_;  // by robot
+};
+
+/// Tells the rehearsal Command Post's control port what was posted. How old that was when it came and how
+/// much of it is there, as a table; or a line that says why there is none.
+std::string arrivals_of(const Posted& posted, const Endpoint& control);
 
 /// Sleeps until `time`, or less where `stop` is requested.
 inline void pause_until(std::chrono::steady_clock::time_point time, const std::stop_token& stop) {

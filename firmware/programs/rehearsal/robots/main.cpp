@@ -19,7 +19,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr int kGood = 0, kNotAllPosted = 1, kWrongUsage = 2;
-constexpr double kMetresPerSecond = 2;
 
 int complain(const std::string& what) {
   (void)std::fprintf(stderr, "adit-robots: %s\n", what.c_str());
@@ -103,14 +102,7 @@ int run(const Options& options, const Cave& cave) {
   Tally tally;
   Posted posted;
   Console console(options.quiet);
-  Team team({.post = {.mapping = options.post, .scoring = options.scoring, .token = *token},
-             .style = options.style,
-             .robots = options.robots,
-             .seed = options.seed,
-             .metres_per_second = kMetresPerSecond * options.speed,
-             .offers = options.offers,
-             .maps = maps},
-            cave, tally, posted, console);
+  Team team(options, *token, maps, cave, tally, posted, console);
   team.start();
   team.stop(watch(options, kinds, team, tally, console, signals));
   console.finish(tally.summary());

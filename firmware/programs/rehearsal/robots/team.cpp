@@ -7,7 +7,6 @@
 #include <exception>
 #include <utility>
 
-#include "rehearsal/robots/explorer.hpp"
 #include "rehearsal/robots/maps/map_file.hpp"
 
 namespace adit::robots {
@@ -36,6 +35,7 @@ std::expected<std::string, std::string> replay_file(const std::filesystem::path&
 
 namespace {
 
+constexpr double kMetresPerSecond = 2;
 constexpr const char* kClearLine = "\r\033[K";
 
 void print(const std::string& text) {
@@ -70,14 +70,16 @@ void Console::finish(const std::string& text) {
   live_.clear();
 }
 
-Team::Team(TeamPlan plan, const Cave& cave, Tally& tally, Posted& posted, Console& console)
-    : plan_(std::move(plan)),
+Team::Team(const Options& options, const std::string& token, std::vector<std::filesystem::path> maps,
+           const Cave& cave, Tally& tally, Posted& posted, Console& console)
+    : options_(options),
+      post_{.mapping = options.post, .scoring = options.scoring, .token = token},
+      maps_(std::move(maps)),
       cave_(cave),
       tally_(tally),
       posted_(posted),
       console_(console),
-      desk_(plan_.post, plan_.style.of(0), tally,
-            [&console](const std::string& line) { console.say(line); }) {}
+      desk_(post_, options.style.of(0), tally, [&console](const std::string& line) { console.say(line); }) {}
 
 Team::~Team() {
   stop(std::chrono::milliseconds(0));
@@ -97,23 +99,24 @@ void Team::run(Work work) {
 }
 
 void Team::start() {
-  for (std::size_t index = 0; index < plan_.robots; ++index) run([this, index] { explore(index); });
-  if (plan_.robots > 0) run([this] { desk_.work(finish_.get_token(), abort_.get_token()); });
+  for (std::size_t index = 0; index < options_.robots; ++index) run([this, index] { explore(index); });
+  if (options_.robots > 0) run([this] { desk_.work(finish_.get_token(), abort_.get_token()); });
   run([this] { replay(); });
 }
 
 void Team::explore(std::size_t index) {
   const std::string name = std::string("r").append(std::to_string(index + 1));
-  const Style& style = plan_.style.of(index);
-  Client client(plan_.post, name, style, tally_, abort_.get_token());
-  Explorer explorer(cave_, plan_.seed, index, name, style, plan_.offers.of(index), client, desk_, posted_);
-  explorer.work(plan_.metres_per_second, finish_.get_token());
+  const Style& style = options_.style.of(index);
+  Client client(post_, name, style, tally_, abort_.get_token());
+  Explorer explorer(cave_, options_.seed, index, name, style, options_.offers.of(index), client, desk_,
+                    posted_);
+  explorer.work(kMetresPerSecond * options_.speed, finish_.get_token());
 }
 
 void Team::replay() {
-  for (std::size_t i = 0; i < plan_.maps.size(); ++i) {
-    Client client(plan_.post, "replay", plan_.style.of(i), tally_, abort_.get_token());
-    if (auto said = replay_file(plan_.maps[i], client, finish_.get_token()); said) {
+  for (std::size_t i = 0; i < maps_.size(); ++i) {
+    Client client(post_, "replay", options_.style.of(i), tally_, abort_.get_token());
+    if (auto said = replay_file(maps_[i], client, finish_.get_token()); said) {
       console_.say(*said);
     } else {
       tally_.failed(said.error());

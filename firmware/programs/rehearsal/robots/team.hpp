@@ -12,8 +12,8 @@
 
 #include "rehearsal/robots/cave.hpp"
 #include "rehearsal/robots/client.hpp"
-#include "rehearsal/robots/map_maker.hpp"
-#include "rehearsal/robots/posted.hpp"
+#include "rehearsal/robots/explorer.hpp"
+#include "rehearsal/robots/options.hpp"
 
 namespace adit::robots {
 
@@ -43,21 +43,12 @@ class Console {
   std::string live_;
 };
 
-struct TeamPlan {
-  Post post;
-  TeamStyle style;
-  std::size_t robots = 3;
-  std::uint64_t seed = 1;
-  double metres_per_second = 2;
-  MapOffers offers;
-  std::vector<std::filesystem::path> maps;  // files that the robot `replay` posts
-};
-
 /// The team at work: a thread for each robot, one for the operator, one that replays map files.
 class Team {
  public:
-  /// `cave`, `tally`, `posted` and `console` outlive the team.
-  Team(TeamPlan plan, const Cave& cave, Tally& tally, Posted& posted, Console& console);
+  /// All but `token` and `maps` outlive the team. `maps`: files that the robot `replay` posts.
+  Team(const Options& options, const std::string& token, std::vector<std::filesystem::path> maps,
+       const Cave& cave, Tally& tally, Posted& posted, Console& console);
   ~Team();
   Team(const Team&) = delete;
   Team& operator=(const Team&) = delete;
@@ -76,7 +67,9 @@ class Team {
   void explore(std::size_t index);
   void replay();
 
-  TeamPlan plan_;
+  const Options& options_;
+  const Post post_;
+  const std::vector<std::filesystem::path> maps_;
   const Cave& cave_;
   Tally& tally_;
   Posted& posted_;

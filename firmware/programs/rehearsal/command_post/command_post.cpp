@@ -319,12 +319,9 @@ Outcome begin_new_run(CommandPost& post, const std::optional<Json>& wanted) {
 }
 
 bool is_report(const Json& sent) {
-  const auto has = [&sent](const char* name, auto kind) {
-    const auto found = sent.find(name);
-    return found != sent.end() && ((*found).*kind)();
-  };
-  return sent.is_object() && has("x", &Json::is_number) && has("y", &Json::is_number) &&
-         has("z", &Json::is_number) && has("type", &Json::is_string);
+  Findings findings;
+  const Field report(sent, "", findings);
+  return read_point(report) && report.text("type");
 }
 
 Outcome submit_by_other(CommandPost& post, const std::optional<Json>& sent) {

@@ -5,52 +5,20 @@
 #include <functional>
 
 namespace adit::rehearsal {
-namespace {
-
-std::string kind_of(const Json& value) {
-  switch (value.type()) {
-    case Json::value_t::null:
-      return "null";
-    case Json::value_t::object:
-      return "an object";
-    case Json::value_t::array:
-      return "an array";
-    case Json::value_t::string:
-      return "a text string";
-    case Json::value_t::boolean:
-      return "a boolean";
-    case Json::value_t::number_integer:
-    case Json::value_t::number_unsigned:
-    case Json::value_t::number_float:
-      return line_of(value);
-    case Json::value_t::binary:
-      return "a byte string";
-    case Json::value_t::discarded:
-      break;
-  }
-  return "nothing";
-}
-
-/// Integers over int64_t become the largest one, which no field may hold.
-std::int64_t integer_of(const Json& value) {
-  if (!value.is_number_unsigned()) return value.get<std::int64_t>();
-  constexpr auto most = static_cast<std::uint64_t>(INT64_MAX);
-  return static_cast<std::int64_t>(std::min(value.get<std::uint64_t>(), most));
-}
-
-}  // namespace
-
 std::string Field::path_of(std::string_view name) const {
   return path_.empty() ? std::string(name) : path_ + "." + std::string(name);
 }
 
-void Field::breaks(std::string_view what, Measured measured) const {
+std::nullopt_t Field::breaks(std::string_view what, Measured measured) const {
   const std::string where = path_.empty() ? "the body" : path_;
   findings_->breaks(where + ": " + std::string(what), measured);
+  return std::nullopt;
 }
 
-void Field::expected(std::string_view what) const {
-  breaks("expected " + std::string(what) + ", got " + kind_of(*value_));
+std::nullopt_t Field::expected(std::string_view what) const {
+  const std::string got =
+      value_->is_number() ? line_of(*value_) : std::string("a value of type ") + value_->type_name();
+  return breaks("expected " + std::string(what) + ", got " + got);
 }
 
 std::optional<Field> Field::optional_member(const char* name) const {
@@ -68,10 +36,7 @@ std::optional<Field> Field::member(const char* name, Measured measured) const {
 }
 
 std::optional<std::vector<Field>> Field::elements() const {
-  if (!value_->is_array()) {
-    expected("an array");
-    return std::nullopt;
-  }
+  if (!value_->is_array()) return expected("an array");
   std::vector<Field> all;
   all.reserve(value_->size());
   for (const Json& element : *value_) {
@@ -86,45 +51,27 @@ bool Field::is_object() const {
 }
 
 std::optional<double> Field::number() const {
-  if (!value_->is_number()) {
-    expected("a number");
-    return std::nullopt;
-  }
+  if (!value_->is_number()) return expected("a number");
   const auto number = value_->get<double>();
-  if (!std::isfinite(number)) {  // CBOR can say so, JSON cannot
-    breaks("expected a finite number");
-    return std::nullopt;
-  }
+  if (!std::isfinite(number)) return breaks("expected a finite number");  // CBOR can say so, JSON cannot
   return number;
 }
 
 std::optional<std::int64_t> Field::integer(std::int64_t least, std::int64_t most) const {
-  const std::string range = "an integer from " + std::to_string(least) + " to " + std::to_string(most);
-  if (!value_->is_number_integer()) {
-    expected(range);
-    return std::nullopt;
-  }
-  const std::int64_t integer = integer_of(*value_);
-  if (integer < least || integer > most) {
-    expected(range);
-    return std::nullopt;
-  }
-  return integer;
+  const bool fits = value_->is_number_integer() &&
+                    !(value_->is_number_unsigned() && value_->get<std::uint64_t>() > INT64_MAX);
+  const std::int64_t integer = fits ? value_->get<std::int64_t>() : 0;
+  if (fits && integer >= least && integer <= most) return integer;
+  return expected("an integer from " + std::to_string(least) + " to " + std::to_string(most));
 }
 
 std::optional<bool> Field::boolean() const {
-  if (!value_->is_boolean()) {
-    expected("a boolean");
-    return std::nullopt;
-  }
+  if (!value_->is_boolean()) return expected("a boolean");
   return value_->get<bool>();
 }
 
 std::optional<std::string> Field::text() const {
-  if (!value_->is_string()) {
-    expected("a text string");
-    return std::nullopt;
-  }
+  if (!value_->is_string()) return expected("a text string");
   return value_->get<std::string>();
 }
 

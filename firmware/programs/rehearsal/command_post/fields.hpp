@@ -110,12 +110,13 @@ class Field {
   const std::string& path() const { return path_; }
   Findings& findings() const { return *findings_; }
 
-  /// Writes down "<path>: <what>".
-  void breaks(std::string_view what, Measured measured = Measured::Refuses) const;
+  /// Writes down "<path>: <what>". Returns nothing, for a reader to return.
+  std::nullopt_t breaks(std::string_view what, Measured measured = Measured::Refuses) const;
 
  private:
   std::string path_of(std::string_view name) const;
-  void expected(std::string_view what) const;  // "<path>: expected <what>, got <kind of value>"
+  /// Writes down "<path>: expected <what>, got <a number, or the type>".
+  std::nullopt_t expected(std::string_view what) const;
 
   const Json* value_;
   std::string path_;

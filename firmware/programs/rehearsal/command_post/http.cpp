@@ -5,18 +5,14 @@
 #include <ctime>
 
 namespace adit::rehearsal {
-namespace {
 
-/// "Sun, 06 Nov 1994 08:49:37 GMT" (RFC 9110 5.6.7); no program here has a locale.
-std::string http_date(std::chrono::system_clock::time_point now) {
-  const std::time_t seconds = std::chrono::system_clock::to_time_t(now);
+std::string utc_text(const char* format, std::chrono::system_clock::time_point time) {
+  const std::time_t seconds = std::chrono::system_clock::to_time_t(time);
   std::tm utc{};
   (void)gmtime_r(&seconds, &utc);
-  std::array<char, 32> text{};
-  return {text.data(), std::strftime(text.data(), text.size(), "%a, %d %b %Y %H:%M:%S GMT", &utc)};
+  std::array<char, 64> text{};
+  return {text.data(), std::strftime(text.data(), text.size(), format, &utc)};
 }
-
-}  // namespace
 
 std::string_view path_of(std::string_view target) {
   constexpr std::string_view scheme = "http://";
@@ -33,7 +29,7 @@ std::string bytes_of(const Outcome& outcome, bool head, std::chrono::system_cloc
   const std::string reason(http::obsolete_reason(http::int_to_status(static_cast<unsigned>(answer.status))));
   std::string bytes = "HTTP/1.1 " + std::to_string(answer.status) + " " + reason;
   bytes += "\r\nContent-Length: " + std::to_string(answer.body.size());
-  bytes += "\r\nDate: " + http_date(now);
+  bytes += "\r\nDate: " + utc_text("%a, %d %b %Y %H:%M:%S GMT", now);
   if (!answer.content_type.empty()) bytes += "\r\nContent-Type: " + answer.content_type;
   for (const auto& [name, value] : answer.headers)
     bytes.append("\r\n").append(name).append(": ").append(value);

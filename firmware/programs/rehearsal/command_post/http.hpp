@@ -42,6 +42,9 @@ struct Request {
 /// The path of a target in origin form or absolute form (RFC 7230 5.3), without its query.
 std::string_view path_of(std::string_view target);
 
+/// In UTC, by a format of strftime(3). No program here has a locale.
+std::string utc_text(const char* format, std::chrono::system_clock::time_point time);
+
 struct Answer {
   int status = 200;
   std::string body;

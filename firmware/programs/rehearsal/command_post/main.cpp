@@ -21,6 +21,7 @@ namespace adit::rehearsal {
 namespace {
 
 constexpr int kWrongUse = 2;
+constexpr std::size_t kMostSmallBody = std::size_t{1} << 20;  // of scoring and control
 constexpr int kKilled = 3;  // the mapping server as measured died of a message
 
 int complain(const std::string& why) {
@@ -77,26 +78,31 @@ struct Servers {
 };
 
 std::expected<Servers, std::string> listen(const Options& options, CommandPost& post) {
-  const bool strict = options.manner == Manner::Strict;
+  std::string wrong;
+  const auto listen_on = [&](const char* name, const Address& address, const WireManner& manner,
+                             Decide decide) {
+    auto server = Server::listen(address, manner, std::move(decide));
+    if (!server && wrong.empty()) wrong = std::string(name) + ": " + server.error();
+    return server ? std::move(*server) : nullptr;
+  };
   const auto link = options.link > 0 ? std::make_shared<Link>(options.link) : nullptr;
+  const WireManner mapping{.answers_expect = options.manner == Manner::Strict,
+                           .slash = options.slash,
+                           .serial = options.serial,
+                           .link = link};
+  WireManner scoring = mapping;
+  scoring.answers_expect = true;
+  scoring.most_body = kMostSmallBody;
   Servers servers;
-  auto scoring = Server::listen(
-      options.scoring,
-      {.most_body = std::size_t{1} << 20, .slash = options.slash, .serial = options.serial, .link = link},
-      [&post](const Request& request) { return post.scoring(request); });
-  if (!scoring) return std::unexpected("scoring: " + scoring.error());
-  servers.scoring = std::move(*scoring);
-  auto mapping = Server::listen(
-      options.mapping,
-      {.answers_expect = strict, .slash = options.slash, .serial = options.serial, .link = link},
-      [&post](const Request& request) { return post.mapping(request); });
-  if (!mapping) return std::unexpected("mapping: " + mapping.error());
-  servers.mapping = std::move(*mapping);
-  if (!options.control) return servers;
-  auto controlled = Server::listen(*options.control, {.most_body = std::size_t{1} << 20},
-                                   [&post](const Request& request) { return control(post, request); });
-  if (!controlled) return std::unexpected("control: " + controlled.error());
-  servers.control = std::move(*controlled);
+  servers.scoring = listen_on("scoring", options.scoring, scoring,
+                              [&post](const Request& request) { return post.scoring(request); });
+  servers.mapping = listen_on("mapping", options.mapping, mapping,
+                              [&post](const Request& request) { return post.mapping(request); });
+  if (options.control) {
+    servers.control = listen_on("control", *options.control, {.most_body = kMostSmallBody},
+                                [&post](const Request& request) { return control(post, request); });
+  }
+  if (!wrong.empty()) return std::unexpected(wrong);
   return servers;
 }
 

@@ -102,10 +102,7 @@ std::optional<Cloud> read_cloud(const Field& msg) {
     if (!field) return std::nullopt;
     cloud.fields.push_back(std::move(*field));
   }
-  if (*bytes == 0) {
-    step->breaks("expected at least 1, got 0", Measured::Dies);
-    return std::nullopt;
-  }
+  if (*bytes == 0) return step->breaks("expected at least 1, got 0", Measured::Dies);
   cloud.point_step = static_cast<std::uint32_t>(*bytes);
   if (!check_ends(cloud, *fields) || !check_axes(cloud, *fields)) return std::nullopt;
   return cloud;
@@ -152,37 +149,24 @@ void check_points(const Cloud& cloud, const std::string& data, const Field& msg)
 /// ICD 6.3 (a) and (b): base64 in JSON, a byte string in CBOR.
 std::optional<std::string> read_bytes(const Field& data, Format format) {
   if (format == Format::CborBytes) {
-    if (!data.value().is_binary()) {
-      data.breaks("expected a byte string (ICD 6.3 b)");
-      return std::nullopt;
-    }
+    if (!data.value().is_binary()) return data.breaks("expected a byte string (ICD 6.3 b)");
     const auto& binary = data.value().get_binary();
     return std::string(binary.begin(), binary.end());
   }
-  if (!data.value().is_string()) {
-    data.breaks("expected a base64 string (ICD 6.3 a)");
-    return std::nullopt;
-  }
+  if (!data.value().is_string()) return data.breaks("expected a base64 string (ICD 6.3 a)");
   auto bytes = base64_decoded(data.value().get_ref<const std::string&>());
-  if (!bytes) data.breaks("expected padded base64 (RFC 4648) without white space");
+  if (!bytes) return data.breaks("expected padded base64 (RFC 4648) without white space");
   return bytes;
 }
 
 std::optional<std::string> inflated(const Field& data, std::string_view bytes, std::size_t most) {
   auto whole = gunzip(bytes, most);
   if (whole) return std::move(*whole);
-  switch (whole.error()) {
-    case InflateFault::Broken:
-      data.breaks("expected a complete gzip member (RFC 1952)");
-      break;
-    case InflateFault::TooLarge:
-      data.breaks("inflates to more than " + std::to_string(most) + " bytes");
-      break;
-    case InflateFault::Followed:
-      data.breaks("bytes after the end of the one gzip member", Measured::Hangs);
-      break;
-  }
-  return std::nullopt;
+  if (whole.error() == InflateFault::TooLarge)
+    return data.breaks("inflates to more than " + std::to_string(most) + " bytes");
+  if (whole.error() == InflateFault::Followed)
+    return data.breaks("bytes after the end of the one gzip member", Measured::Hangs);
+  return data.breaks("expected a complete gzip member (RFC 1952)");
 }
 
 /// `data` and `compression`; `most`: how many bytes it may inflate to.
@@ -191,10 +175,7 @@ std::optional<std::string> read_data(const Field& msg, Format format, std::size_
   if (const auto field = msg.optional_member("compression")) {
     const auto text = field->text();
     if (!text) return std::nullopt;
-    if (*text != "none" && *text != "gzip") {
-      field->breaks("expected \"none\" or \"gzip\" (ICD 6.3)");
-      return std::nullopt;
-    }
+    if (*text != "none" && *text != "gzip") return field->breaks("expected \"none\" or \"gzip\" (ICD 6.3)");
     compression = *text;
   }
   const auto data = msg.member("data");
@@ -290,8 +271,7 @@ std::optional<MapMessage> read_map(const Json& document, Format format, Findings
   read_header(*msg, message.stamps);
   if (*kind == "OccupancyGrid") return read_grid_message(*msg, format, std::move(message));
   if (*kind == "PointCloud2") return read_cloud_message(*msg, format, std::move(message));
-  type->breaks("expected \"OccupancyGrid\" or \"PointCloud2\" (ICD 6.4)");
-  return std::nullopt;
+  return type->breaks("expected \"OccupancyGrid\" or \"PointCloud2\" (ICD 6.4)");
 }
 
 }  // namespace adit::rehearsal

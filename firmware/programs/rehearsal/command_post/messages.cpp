@@ -29,56 +29,16 @@ void describe_data(Json& document, const std::optional<MapMessage>& map) {
   }
 }
 
-std::optional<MappingMessage> message_of(MapMessage&& map) {
+std::optional<MappingMessage> read_named_map(Json& document, Format format, Findings& findings) {
+  auto map = read_map(document, format, findings);
+  describe_data(document, map);
+  if (!map) return std::nullopt;
   MappingMessage message;
-  message.stamps = map.stamps;
-  message.parts.push_back({std::holds_alternative<Grid>(map.msg) ? "grid" : "cloud", map.name});
+  message.stamps = map->stamps;
+  message.parts.push_back({std::holds_alternative<Grid>(map->msg) ? "grid" : "cloud", map->name});
   message.map = std::move(map);
   return message;
 }
-
-MappingMessage message_of(const std::vector<Stamp>& stamps, const char* kind,
-                          const std::vector<std::string>& names) {
-  MappingMessage message{.stamps = stamps, .parts = {}, .map = std::nullopt, .markers = {}};
-  for (const std::string& name : names) message.parts.push_back({kind, name});
-  return message;
-}
-
-}  // namespace
-
-std::optional<MappingMessage> read_mapping(const std::string& body, Format format, Judgement& judgement) {
-  Findings& findings = judgement.findings;
-  auto read = read_document(body, format);
-  if (!read) {
-    const std::string name = format == Format::JsonText ? "JSON" : "CBOR";
-    findings.breaks(name + " parsing failed: " + read.error(), Measured::Refuses, 400);
-    return std::nullopt;
-  }
-  if (const auto& repeated = read->repeated) {
-    findings.breaks("'" + *repeated + "' is given twice", Measured::Takes);
-  }
-  Json& document = judgement.message.emplace(std::move(read->value));
-  if (document.is_object() && document.empty()) return std::nullopt;  // asks if the token is accepted
-  if (judgement.uri == kMapUri) {
-    auto map = read_map(document, format, findings);
-    describe_data(document, map);
-    return map ? message_of(std::move(*map)) : std::nullopt;
-  }
-  if (judgement.uri == kStateUri) {
-    const auto state = read_state(document, findings);
-    if (!state) return std::nullopt;
-    return message_of(state->stamps, "pose", state->names);
-  }
-  auto markers = read_markers(document, findings);
-  if (!markers) return std::nullopt;
-  std::vector<std::string> names;
-  for (const MarkerChange& change : markers->changes) names.push_back(change.ns);
-  MappingMessage message = message_of(markers->stamps, "marker", names);
-  message.markers = std::move(markers->changes);
-  return message;
-}
-
-namespace {
 
 // Of visualization_msgs/Marker.
 constexpr std::int64_t kLineStrip = 4, kLineList = 5, kPoints = 8, kText = 9, kTriangleList = 11,
@@ -192,7 +152,7 @@ void check_sense(const Field& marker, std::int64_t type) {
   if (is_negative) told(".scale: negative");
 }
 
-bool read_marker(const Field& marker, MarkersMessage& message) {
+bool read_marker(const Field& marker, MappingMessage& message) {
   if (!marker.is_object()) return false;
   read_header(marker, message.stamps);
   auto change = read_identity(marker);
@@ -210,28 +170,27 @@ bool read_marker(const Field& marker, MarkersMessage& message) {
   }
   change->action = *kind;
   change->x = place->position.x;
-  message.changes.push_back(*std::move(change));
+  message.parts.push_back({"marker", change->ns});
+  message.markers.push_back(*std::move(change));
   return true;
 }
 
-}  // namespace
-
-std::optional<MarkersMessage> read_markers(const Json& document, Findings& findings) {
+std::optional<MappingMessage> read_markers(const Json& document, Findings& findings) {
   const Field body(document, "", findings);
   const auto markers = body.member("markers");
   const auto elements = markers ? markers->elements() : std::nullopt;
   if (!elements) return std::nullopt;
-  MarkersMessage message;
+  MappingMessage message;
   for (const Field& marker : *elements) {
     if (!read_marker(marker, message)) return std::nullopt;
   }
   return message;
 }
 
-std::optional<StateMessage> read_state(const Json& document, Findings& findings) {
+std::optional<MappingMessage> read_state(const Json& document, Findings& findings) {
   const Field body(document, "", findings);
   if (!body.is_object()) return std::nullopt;
-  StateMessage message;
+  MappingMessage message;
   if (!body.optional_member("header")) findings.displeases("Missing field 'header'");
   read_header(body, message.stamps);
   const auto poses = body.member("poses");
@@ -245,9 +204,28 @@ std::optional<StateMessage> read_state(const Json& document, Findings& findings)
       pose.member("name")->breaks("expected 1 to 10 letters, digits and underscores (ICD 2)",
                                   Measured::Takes);
     }
-    message.names.push_back(*name);
+    message.parts.push_back({"pose", *name});
   }
   return message;
+}
+
+}  // namespace
+
+std::optional<MappingMessage> read_mapping(const std::string& body, Format format, Judgement& judgement) {
+  Findings& findings = judgement.findings;
+  auto read = read_document(body, format);
+  if (!read) {
+    const std::string name = format == Format::JsonText ? "JSON" : "CBOR";
+    findings.breaks(name + " parsing failed: " + read.error(), Measured::Refuses, 400);
+    return std::nullopt;
+  }
+  if (const auto& repeated = read->repeated) {
+    findings.breaks("'" + *repeated + "' is given twice", Measured::Takes);
+  }
+  Json& document = judgement.message.emplace(std::move(read->value));
+  if (document.is_object() && document.empty()) return std::nullopt;  // asks if the token is accepted
+  if (judgement.uri == kMapUri) return read_named_map(document, format, findings);
+  return judgement.uri == kStateUri ? read_state(document, findings) : read_markers(document, findings);
 }
 
 }  // namespace adit::rehearsal

@@ -47,12 +47,6 @@ struct MapMessage {
   std::vector<Stamp> stamps;
 };
 
-/// POST /state/update (ICD 6.5).
-struct StateMessage {
-  std::vector<std::string> names;
-  std::vector<Stamp> stamps;
-};
-
 /// POST /markers/update (ICD 6.6): what each marker says of which one.
 struct MarkerChange {
   std::string ns;
@@ -60,15 +54,9 @@ struct MarkerChange {
   std::int64_t action = 0;
   double x = 0;  // metres
 };
-struct MarkersMessage {
-  std::vector<MarkerChange> changes;
-  std::vector<Stamp> stamps;
-};
 
-/// Each reads a document and writes down all that the ICD or the measured server minds. Nothing where so much
+/// Reads a document and writes down all that the ICD or the measured server minds. Nothing where so much
 /// is wrong that there is no message; a message that is there may still have decisive findings.
 std::optional<MapMessage> read_map(const Json& document, Format format, Findings& findings);
-std::optional<StateMessage> read_state(const Json& document, Findings& findings);
-std::optional<MarkersMessage> read_markers(const Json& document, Findings& findings);
 
 }  // namespace adit::rehearsal

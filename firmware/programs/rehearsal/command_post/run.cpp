@@ -1,5 +1,6 @@
 #include "rehearsal/command_post/run.hpp"
 
+#include <array>
 #include <cmath>
 
 #include "rehearsal/command_post/fields.hpp"
@@ -92,41 +93,21 @@ std::int64_t Run::grant(Clock::time_point now) {
 }
 
 Run::Standing Run::standing(Clock::time_point now) const {
+  constexpr std::array<const char*, 4> kStates = {"not started", "running", "admin stop", "ended"};
   const std::lock_guard lock(mutex_);
-  Standing standing{plan_.team, plan_.id, "running", clock_at(now), score_, plan_.reports + granted_ - used_};
-  switch (state_at(now)) {
-    case State::NotStarted:
-      standing.state = "not started";
-      break;
-    case State::Running:
-      break;
-    case State::AdminStop:
-      standing.state = "admin stop";
-      break;
-    case State::Ended:
-      standing.state = "ended";
-      break;
-  }
-  return standing;
+  return {plan_.team,    plan_.id, kStates.at(static_cast<std::size_t>(state_at(now))),
+          clock_at(now), score_,   plan_.reports + granted_ - used_};
 }
 
 Run::Ruling Run::submit(const std::string& type, const std::optional<Point>& position,
                         Clock::time_point now) {
+  constexpr std::array<const char*, 4> kStatuses = {"run not started", "scored", "admin stop",
+                                                    "time limit exceeded"};
   const std::lock_guard lock(mutex_);
-  Ruling ruling{++last_id_, plan_.team, plan_.id, clock_at(now), "scored", 0};
-  switch (state_at(now)) {
-    case State::NotStarted:
-      ruling.status = "run not started";
-      return ruling;
-    case State::Ended:
-      ruling.status = "time limit exceeded";
-      return ruling;
-    case State::AdminStop:
-      ruling.status = "admin stop";
-      return ruling;
-    case State::Running:
-      break;
-  }
+  const State state = state_at(now);
+  Ruling ruling{
+      ++last_id_, plan_.team, plan_.id, clock_at(now), kStatuses.at(static_cast<std::size_t>(state)), 0};
+  if (state != State::Running) return ruling;
   if (used_ >= plan_.reports + granted_) {
     ruling.status = "report limit exceeded";
     return ruling;

@@ -1,7 +1,6 @@
 #include "rehearsal/command_post/scoring.hpp"
 
-#include <cstdio>
-#include <ctime>
+#include <chrono>
 
 #include "rehearsal/command_post/fields.hpp"
 #include "rehearsal/command_post/gate.hpp"
@@ -10,18 +9,12 @@
 namespace adit::rehearsal {
 namespace {
 
-/// ISO 8601, combined date and time, in UTC.
+/// ISO 8601, combined date and time, in UTC, with microseconds.
 std::string date_and_time() {
-  const auto since = std::chrono::system_clock::now().time_since_epoch();
-  const auto micros = std::chrono::duration_cast<std::chrono::microseconds>(since).count();
-  const std::time_t seconds = micros / 1'000'000;
-  std::tm parts{};
-  char text[64];
-  if (gmtime_r(&seconds, &parts) == nullptr) return "";
-  const std::size_t date = std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%S", &parts);
-  const int rest =
-      std::snprintf(text + date, sizeof text - date, ".%06d+00:00", static_cast<int>(micros % 1'000'000));
-  return {text, date + static_cast<std::size_t>(rest)};
+  const auto now = std::chrono::system_clock::now();
+  const auto whole = std::chrono::floor<std::chrono::seconds>(now);
+  const auto micros = std::chrono::floor<std::chrono::microseconds>(now - whole).count();
+  return utc_text("%Y-%m-%dT%H:%M:%S.", whole) + std::to_string(1'000'000 + micros).substr(1) + "+00:00";
 }
 
 struct Sent {

@@ -23,6 +23,14 @@ constexpr std::size_t kDigits = 5;
 constexpr std::int64_t kBase = 101, kModulus = kBase * kBase * kBase * kBase * kBase;
 constexpr std::uint32_t kUint32 = 6;  // ICD 6.3.2
 
+/// When a map's data was posted, as adit-robots writes it into its maps (README.md, 'How old').
+struct Dates {
+  Moment newest;
+  // Of a cloud: how many different points were posted then. A cloud that was joined of several has some of
+  // them twice.
+  std::map<Moment, std::uint64_t> points;
+};
+
 /// The moment nearest to `now` whose milliseconds since 1970 are `value` modulo `modulus`.
 Moment nearest(std::int64_t value, std::int64_t modulus, Moment now) {
   std::int64_t before = (now.time_since_epoch().count() - value) % modulus;
@@ -77,14 +85,11 @@ std::optional<Dates> dates_of_cloud(const Cloud& cloud, std::string_view data, M
   return dates;
 }
 
-}  // namespace
-
+/// Nothing of a map that tells no date. A date is read as the one nearest to `now`.
 std::optional<Dates> dates_of(const MapMessage& map, Moment now) {
   const auto* const cloud = std::get_if<Cloud>(&map.msg);
   return cloud != nullptr ? dates_of_cloud(*cloud, map.data, now) : dates_of_grid(map.data, now);
 }
-
-namespace {
 
 constexpr int kDelete = 2, kDeleteAll = 3;
 constexpr std::size_t kMostMarkers = 100'000, kMostRobots = 1000, kMostDifferences = 20;
@@ -202,6 +207,12 @@ std::string written(const OrderedJson& value, int digits) {
   return text.data();
 }
 
+/// Aligned right in its column.
+std::string right(const std::string& text) {
+  constexpr std::size_t width = 8;
+  return std::string(width - std::min(width, text.size()), ' ') + text;
+}
+
 std::string percent(const OrderedJson& share) {
   return share.is_null() ? "-" : written(100 * share.get<double>(), 1) + "%";
 }
@@ -305,14 +316,14 @@ std::string Arrivals::table() const {
   text += "  robot      kind    maps      p50     p99    most  behind    here  places\n";
   for (const OrderedJson& row : rows) {
     const std::string robot = row["robot"];
-    std::array<char, 160> line{};
-    (void)std::snprintf(
-        line.data(), line.size(), "  %-10.10s %-6.6s %5llu %8s%8s%8s%8s%8s%8s\n",
-        robot.empty() ? "(merged)" : tame(robot).c_str(), row["kind"].get_ref<const std::string&>().c_str(),
-        static_cast<unsigned long long>(row["maps"].get<std::uint64_t>()), written(row["p50"], 2).c_str(),
-        written(row["p99"], 2).c_str(), written(row["most"], 2).c_str(), written(row["behind"], 2).c_str(),
-        percent(row["share"]).c_str(), percent(row["places"]).c_str());
+    std::array<char, 64> line{};
+    (void)std::snprintf(line.data(), line.size(), "  %-10.10s %-6.6s %5llu ",
+                        robot.empty() ? "(merged)" : tame(robot).c_str(),
+                        row["kind"].get_ref<const std::string&>().c_str(),
+                        static_cast<unsigned long long>(row["maps"].get<std::uint64_t>()));
     text += line.data();
+    for (const char* const age : {"p50", "p99", "most", "behind"}) text += right(written(row[age], 2));
+    text += right(percent(row["share"])) + right(percent(row["places"])) + "\n";
   }
   return text;
 }

@@ -279,10 +279,10 @@ std::expected<std::optional<Json>, std::string> body_of(const Request& request) 
   return std::move(document->value);
 }
 
-Outcome change_state(CommandPost& post, bool (Run::*wanted)(Clock::time_point)) {
+Outcome change_state(Run& run, bool (Run::*wanted)(Clock::time_point)) {
   const auto now = Clock::now();
-  const bool done = (post.run().*wanted)(now);
-  const std::string state = post.run().standing(now).state;
+  const bool done = (run.*wanted)(now);
+  const std::string state = run.standing(now).state;
   if (!done) return refused(409, "the run is: " + state);
   return answered(200, OrderedJson{{"state", state}});
 }
@@ -308,12 +308,12 @@ std::expected<NewRun, std::string> read_new_run(const Json& wanted) {
   return run;
 }
 
-Outcome begin_new_run(CommandPost& post, const std::optional<Json>& wanted) {
-  const auto run = wanted ? read_new_run(*wanted) : NewRun{};
-  if (!run) return refused(422, run.error());
+Outcome begin_new_run(Run& run, const std::optional<Json>& sent) {
+  const auto wanted = sent ? read_new_run(*sent) : NewRun{};
+  if (!wanted) return refused(422, wanted.error());
   const auto now = Clock::now();
-  post.run().begin_again(*run, now);
-  const Run::Standing standing = post.run().standing(now);
+  run.begin_again(*wanted, now);
+  const Run::Standing standing = run.standing(now);
   return answered(200,
                   OrderedJson{{"state", standing.state}, {"run", standing.run}, {"team", standing.team}});
 }
@@ -324,60 +324,47 @@ bool is_report(const Json& sent) {
   return read_point(report) && report.text("type");
 }
 
-Outcome submit_by_other(CommandPost& post, const std::optional<Json>& sent) {
-  if (sent && !is_report(*sent)) {
-    return refused(422, R"(expected a report, as in {"x": 1, "y": 2, "z": 3, "type": "Drill"})");
-  }
-  return answered(201, post.other_sender(sent));
-}
-
-Outcome tell_faults(CommandPost& post, const std::optional<Json>& told) {
-  if (const auto taken = post.faults().tell_all(told.value_or(Json())); !taken) {
-    return refused(422, taken.error());
-  }
-  return answered(200, post.faults().left());
-}
-
-Outcome arrivals(const CommandPost& post) {
-  return answered(200, OrderedJson{{"maps", post.arrivals().json()},
-                                   {"markers", post.display().json()},
-                                   {"table", post.compared()}});
-}
-
-Outcome tell_posted(CommandPost& post, const std::optional<Json>& posted) {
-  const Json all = posted.value_or(Json());
-  if (const auto told = post.arrivals().told(all); !told) return refused(422, told.error());
-  if (const auto told = post.display().told(all); !told) return refused(422, told.error());
-  return arrivals(post);
-}
-
-Outcome clear_faults(CommandPost& post) {
-  post.faults().clear();
-  return answered(200, post.faults().left());
-}
-
 }  // namespace
 
-Outcome control(CommandPost& post, const Request& request) {
+Outcome CommandPost::show_arrivals() const {
+  return answered(
+      200, OrderedJson{{"maps", arrivals_.json()}, {"markers", display_.json()}, {"table", compared()}});
+}
+
+Outcome CommandPost::control(const Request& request) {
   if (request.fault) return last_answer(refused(request.fault->status, request.fault->sentence));
   const std::string wanted = request.method + " " + std::string(path_of(request.target));
   const auto body = body_of(request);
   if (!body) return refused(400, body.error());
-  if (wanted == "GET /record") return answered(200, post.record());
-  if (wanted == "GET /arrivals") return arrivals(post);
-  if (wanted == "POST /posted") return tell_posted(post, *body);
-  if (wanted == "GET /faults") return answered(200, post.faults().left());
-  if (wanted == "POST /faults") return tell_faults(post, *body);
-  if (wanted == "DELETE /faults") return clear_faults(post);
-  if (wanted == "POST /new-run") return begin_new_run(post, *body);
+  const std::optional<Json>& sent = *body;
+  if (wanted == "GET /record") return answered(200, record());
+  if (wanted == "GET /arrivals") return show_arrivals();
+  if (wanted == "POST /posted") {
+    Told told = arrivals_.told(sent.value_or(Json()));
+    if (told) told = display_.told(sent.value_or(Json()));
+    return told ? show_arrivals() : refused(422, told.error());
+  }
+  if (wanted == "GET /faults") return answered(200, faults_.left());
+  if (wanted == "POST /faults") {
+    const Told told = faults_.tell_all(sent.value_or(Json()));
+    return told ? answered(200, faults_.left()) : refused(422, told.error());
+  }
+  if (wanted == "DELETE /faults") {
+    faults_.clear();
+    return answered(200, faults_.left());
+  }
+  if (wanted == "POST /other-sender") {
+    if (!sent || is_report(*sent)) return answered(201, other_sender(sent));
+    return refused(422, R"(expected a report, as in {"x": 1, "y": 2, "z": 3, "type": "Drill"})");
+  }
+  if (wanted == "POST /new-run") return begin_new_run(run_, sent);
   if (wanted == "POST /grant")
-    return answered(200, OrderedJson{{"remaining_reports", post.run().grant(Clock::now())}});
-  if (wanted == "POST /rename") return answered(200, OrderedJson{{"run", post.run().rename()}});
-  if (wanted == "POST /other-sender") return submit_by_other(post, *body);
-  if (wanted == "POST /start") return change_state(post, &Run::start);
-  if (wanted == "POST /stop") return change_state(post, &Run::admin_stop);
-  if (wanted == "POST /resume") return change_state(post, &Run::resume);
-  if (wanted == "POST /end") return change_state(post, &Run::end);
+    return answered(200, OrderedJson{{"remaining_reports", run_.grant(Clock::now())}});
+  if (wanted == "POST /rename") return answered(200, OrderedJson{{"run", run_.rename()}});
+  if (wanted == "POST /start") return change_state(run_, &Run::start);
+  if (wanted == "POST /stop") return change_state(run_, &Run::admin_stop);
+  if (wanted == "POST /resume") return change_state(run_, &Run::resume);
+  if (wanted == "POST /end") return change_state(run_, &Run::end);
   return refused(
       404,
       "POST /start, /stop, /resume, /end, /new-run, /grant, /rename, /other-sender or /posted, GET "

@@ -32,20 +32,11 @@ class CommandPost {
   Outcome scoring(const Request& request);
   Outcome mapping(const Request& request);
 
-  /// Another sender on the same token submits a report; where `sent` holds nothing, one that no artifact is
-  /// near. `sent`: numbers x, y, z and a text type. Gives the report as it was recorded.
-  OrderedJson other_sender(const std::optional<Json>& sent);
+  /// The control port (README.md, 'The control port'). POST /posted, of adit-robots, is described at
+  /// Arrivals::told and MarkerDisplay::told.
+  Outcome control(const Request& request);
 
-  Run& run() { return run_; }
   Faults& faults() { return faults_; }
-  Arrivals& arrivals() { return arrivals_; }
-  const Arrivals& arrivals() const { return arrivals_; }
-  MarkerDisplay& display() { return display_; }
-  const MarkerDisplay& display() const { return display_; }
-  /// Tables that compare the received maps and markers with the posted ones; "" if the robots told no
-  /// amounts.
-  std::string compared() const { return arrivals_.table() + display_.text(); }
-  OrderedJson record() const;
   std::string summary() const { return record_.summary(run_.standing(Clock::now())) + compared(); }
   std::string killed_by() const { return record_.killed_by(); }
 
@@ -66,6 +57,14 @@ class CommandPost {
   Outcome receive(Side& side, std::optional<Aim> aim, const Request& request);
   Judgement judge(Side& side, std::optional<Aim> aim, const Fault& fault, const Request& request);
   Outcome decide(Side& side, std::optional<Aim> aim, const Fault& fault, const Request& request);
+  /// Another sender on the same token submits a report; if `sent` holds nothing, one that no artifact is
+  /// near. `sent`: numbers x, y, z and a text type. Gives the report as it was recorded.
+  OrderedJson other_sender(const std::optional<Json>& sent);
+  /// Tables that compare the received maps and markers with the posted ones; "" if the robots told no
+  /// amounts.
+  std::string compared() const { return arrivals_.table() + display_.text(); }
+  Outcome show_arrivals() const;
+  OrderedJson record() const;
   void keep(OrderedJson report, const char* by, const OrderedJson& request);
   void show(std::uint64_t number, const Request& request, const Judgement& judgement) const;
 
@@ -87,18 +86,5 @@ class CommandPost {
   std::atomic<std::uint64_t> number_;
   std::atomic<int> by_others_ = 0;
 };
-
-/// The control port, for tests and for whoever leads a rehearsal:
-///  POST /start, /stop (admin stop), /resume, /end: the run's new state, or 409 where its state does not
-///    allow it
-///  POST /new-run: another run, whatever became of this one; the body, if there is one, may be
-///    {"run": "2", "team": "other", "started": false}
-///  POST /other-sender: a report by another sender with the same token; the body, if there is one, is that
-///    report
-///  POST, GET and DELETE /faults: appends to the next faults, shows the remaining ones, and clears them
-///  GET /record: all that was counted
-///  POST /posted: what adit-robots posted so far (Arrivals::told); its answer and that to GET /arrivals:
-///    the ages of maps at their arrival, as rows and as a table to print
-Outcome control(CommandPost& post, const Request& request);
 
 }  // namespace adit::rehearsal

@@ -100,7 +100,7 @@ std::expected<Servers, std::string> listen(const Options& options, CommandPost& 
                               [&post](const Request& request) { return post.mapping(request); });
   if (options.control) {
     servers.control = listen_on("control", *options.control, {.most_body = kMostSmallBody},
-                                [&post](const Request& request) { return control(post, request); });
+                                [&post](const Request& request) { return post.control(request); });
   }
   if (!wrong.empty()) return std::unexpected(wrong);
   return servers;

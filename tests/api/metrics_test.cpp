@@ -107,7 +107,7 @@ TEST(Metrics, CountReportsByState) {
 
 TEST(Exposition, EscapesTextThatCouldForgeASample) {
   Exposition out;
-  out.gauge("adit_x", "One line\nof \\ help.");
+  out.begin("adit_x", "One line\nof \\ help.");
   out.sample({{"robot", "a\"} 1\nadit_y 2\\"}}, 0.5);
   EXPECT_EQ(out.text(),
             "# HELP adit_x One line\\nof \\\\ help.\n# TYPE adit_x gauge\n"

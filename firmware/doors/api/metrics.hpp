@@ -1,6 +1,7 @@
 #pragma once
 
 #include <initializer_list>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -16,17 +17,21 @@ class Exposition {
   static constexpr const char* kContentType = "text/plain; version=0.0.4; charset=utf-8";
   using Label = std::pair<std::string_view, std::string_view>;
 
-  /// Begins a metric. A counter's name must end in "_total".
-  void counter(std::string_view name, std::string_view help) { begin(name, "counter", help); }
-  void gauge(std::string_view name, std::string_view help) { begin(name, "gauge", help); }
+  /// Begins a metric: a counter if its name ends in "_total", otherwise a gauge.
+  void begin(std::string_view name, std::string_view help);
   /// Adds a sample to the last metric. Each set of labels may occur once.
-  void sample(std::initializer_list<Label> labels, double value);
-  void sample(double value) { sample({}, value); }
+  void sample(std::initializer_list<Label> labels, auto value) { sample(std::span(labels), value); }
+  void sample(std::span<const Label> labels, auto value) { write_sample(labels, static_cast<double>(value)); }
+  /// A metric with one sample.
+  void add(std::string_view name, std::string_view help, auto value) {
+    begin(name, help);
+    sample({}, value);
+  }
 
   const std::string& text() const { return text_; }
 
  private:
-  void begin(std::string_view name, std::string_view type, std::string_view help);
+  void write_sample(std::span<const Label> labels, double value);
 
   std::string text_, name_;
 };

@@ -42,7 +42,7 @@ class ClockSettingTest : public testing::Test {
     }));
     ASSERT_TRUE(time_.pass_until(loop_, [&] {
       setting_.every_second(ntp_);
-      return setting_.ntp_trouble().empty() && (asked() || setting_.clock().is_kept);
+      return setting_.ntp_trouble().empty() && (asked() || setting_.state().is_kept);
     }));
   }
 
@@ -56,10 +56,10 @@ class ClockSettingTest : public testing::Test {
 
 TEST_F(ClockSettingTest, ExplainsItselfIfAditClockDoesNotRun) {
   setting_.every_second(ntp_);
-  EXPECT_FALSE(setting_.clock().managed);
-  EXPECT_EQ(setting_.clock().source, std::nullopt) << "no source is known, but the time may be right";
-  EXPECT_TRUE(setting_.clock().is_set);
-  EXPECT_THAT(setting_.clock().why, HasSubstr("adit-clock"));
+  EXPECT_FALSE(setting_.state().managed);
+  EXPECT_EQ(setting_.state().source, std::nullopt) << "no source is known, but the time may be right";
+  EXPECT_TRUE(setting_.state().is_set);
+  EXPECT_THAT(setting_.state().why, HasSubstr("adit-clock"));
   EXPECT_EQ(setting_.is_set(), std::nullopt) << "the machine manages its clock";
   EXPECT_EQ(setting_.set_clock(now()).error().status, icd::Status::Conflict);
   setting_.offered({Source::CommandPost, now() + 60});
@@ -70,16 +70,16 @@ TEST_F(ClockSettingTest, TakesTheTimeForUnsetIfTheStatusCannotBeRead) {
   run_.put(host::kStatusFile, "damaged");
   setting_.every_second(ntp_);
   EXPECT_EQ(setting_.is_set(), false) << "an alarm tells the operator";
-  EXPECT_FALSE(setting_.clock().is_set);
-  EXPECT_THAT(setting_.clock().why, HasSubstr("cannot read the status of adit-clock"));
+  EXPECT_FALSE(setting_.state().is_set);
+  EXPECT_THAT(setting_.state().why, HasSubstr("cannot read the status of adit-clock"));
 }
 
 TEST_F(ClockSettingTest, ReportsNoTimeAndNoTroubleWhileAditClockStarts) {
   run_.put("adit-clock.service", "");
   ClockSetting starting{loop_, state_.path(), run_.path(), chronyd_.port(), run_.path()};
   starting.every_second({.server = "10.0.0.5", .clients = ""});
-  EXPECT_FALSE(starting.clock().is_set) << "the clock has the time at boot";
-  EXPECT_EQ(starting.clock().why, "adit-clock is starting: wait a minute");
+  EXPECT_FALSE(starting.state().is_set) << "the clock has the time at boot";
+  EXPECT_EQ(starting.state().why, "adit-clock is starting: wait a minute");
   EXPECT_EQ(starting.ntp_trouble(), "");
 }
 
@@ -97,7 +97,7 @@ TEST_F(ClockSettingTest, RequestsTheOperatorsTimeAsOfItsEntry) {
             "");
   write_status({.nonce = request->nonce, .refusal = "", .source = Source::Operator});
   EXPECT_EQ(setting_.is_set(), true);
-  EXPECT_EQ(setting_.clock().refusal, "");
+  EXPECT_EQ(setting_.state().refusal, "");
 }
 
 TEST_F(ClockSettingTest, RejectsAnImpossibleTime) {
@@ -135,7 +135,7 @@ TEST_F(ClockSettingTest, TellsWhyTheClockWasNotSet) {
   write_status({});
   ASSERT_TRUE(setting_.set_clock(1.8e9));
   write_status({.nonce = asked()->nonce, .refusal = "cannot set the clock: no", .source = Source::None});
-  EXPECT_THAT(setting_.clock().refusal, HasSubstr("cannot set the clock"));
+  EXPECT_THAT(setting_.state().refusal, HasSubstr("cannot set the clock"));
   EXPECT_EQ(setting_.is_set(), false);
   ASSERT_TRUE(host::remove_file(state_ / clock::kRequestFile));
   setting_.offered({Source::CommandPost, now() + 600});
@@ -150,7 +150,7 @@ TEST_F(ClockSettingTest, RetriesAnUnansweredRequest) {
   ASSERT_TRUE(first);
   time_.pass(ClockSetting::kTakenUpWithin);
   setting_.every_second(ntp_);
-  EXPECT_THAT(setting_.clock().refusal, HasSubstr("did not read the request"));
+  EXPECT_THAT(setting_.state().refusal, HasSubstr("did not read the request"));
   EXPECT_FALSE(asked()) << "the request would be too old";
   setting_.offered({Source::CommandPost, now() + 600});
   const auto second = asked();
@@ -197,7 +197,7 @@ TEST_F(ClockSettingTest, TellsThatNtpNeedsAditClock) {
   ntp_ = {.server = "10.0.0.5", .clients = ""};
   setting_.every_second(ntp_);
   EXPECT_THAT(setting_.ntp_trouble(), HasSubstr("does not set the clock of this machine"));
-  EXPECT_EQ(setting_.clock().ntp, setting_.ntp_trouble());
+  EXPECT_EQ(setting_.state().ntp, setting_.ntp_trouble());
   EXPECT_FALSE(asked_for_ntp());
 }
 
@@ -217,7 +217,7 @@ TEST_F(ClockSettingTest, AcceptsAnyStepFromANewNtpServer) {
   EXPECT_FALSE(asked()) << "the earlier source is trusted like the operator";
   hear(-3600);
   ASSERT_TRUE(asked());
-  EXPECT_FALSE(setting_.clock().is_kept);
+  EXPECT_FALSE(setting_.state().is_kept);
   EXPECT_EQ(asked()->source, Source::Ntp);
   EXPECT_EQ(asked()->server, "10.0.0.5");
   EXPECT_NEAR(asked()->time, now() - 3600, 1);
@@ -241,7 +241,7 @@ TEST_F(ClockSettingTest, OperatorSetsItOnlyIfNoNtpServerIsHeard) {
   write_status({.nonce = asked()->nonce, .source = Source::Ntp, .server = ntp_.server, .ntp = ntp_});
   ASSERT_TRUE(host::remove_file(state_ / clock::kRequestFile));
   hear(0.001);
-  EXPECT_TRUE(setting_.clock().is_kept);
+  EXPECT_TRUE(setting_.state().is_kept);
   const auto refused = setting_.set_clock(1.8e9);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().status, icd::Status::Conflict);
@@ -266,7 +266,7 @@ TEST_F(ClockSettingTest, IgnoresOtherAndSilentNtpServers) {
       setting_.every_second(ntp_);
       return chronyd_.answers > before + 1;
     }));
-    EXPECT_FALSE(setting_.clock().is_kept);
+    EXPECT_FALSE(setting_.state().is_kept);
   }
 }
 
@@ -276,9 +276,9 @@ TEST_F(ClockSettingTest, TellsWhatChronydDoesOrWhyItFails) {
   EXPECT_THAT(setting_.ntp_trouble(), HasSubstr("cannot start chronyd"));
   write_status({.source = Source::None, .ntp = ntp_});
   EXPECT_EQ(setting_.ntp_trouble(), "");
-  EXPECT_EQ(setting_.clock().ntp, "once the time is set, NTP gives it to 10.0.0.0/24");
+  EXPECT_EQ(setting_.state().ntp, "once the time is set, NTP gives it to 10.0.0.0/24");
   write_status({.source = Source::Operator, .ntp = ntp_});
-  EXPECT_EQ(setting_.clock().ntp, "NTP gives the time to 10.0.0.0/24");
+  EXPECT_EQ(setting_.state().ntp, "NTP gives the time to 10.0.0.0/24");
 }
 
 }  // namespace

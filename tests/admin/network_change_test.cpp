@@ -99,9 +99,9 @@ TEST_F(NetworkChangeTest, ModeIsConfirmedAtAnyAddressButTheOld) {
 TEST_F(NetworkChangeTest, HidesTheLastChangeWhileAnotherIsPending) {
   status.ended = network::Ended::Confirmed;
   write_status();
-  EXPECT_EQ(change.network().last, "confirmed");
+  EXPECT_EQ(change.state().last, "confirmed");
   wait(numbers("192.168.8.11/24"));
-  EXPECT_EQ(change.network().last, "");
+  EXPECT_EQ(change.state().last, "");
 }
 
 TEST_F(NetworkChangeTest, FindsTheHopToTheCommandPost) {
@@ -118,7 +118,7 @@ TEST_F(NetworkChangeTest, FindsTheHopToTheCommandPost) {
 TEST_F(NetworkChangeTest, TellsWhyAditNetworkCannotWork) {
   status.trouble = "confirmed.json: Input/output error";
   write_status();
-  const api::NetworkView view = change.network();
+  const api::NetworkView view = change.state();
   EXPECT_TRUE(view.runs_here) << "the error must be shown";
   EXPECT_FALSE(view.managed);
   EXPECT_EQ(view.why, "adit-network cannot work: confirmed.json: Input/output error");
@@ -128,12 +128,12 @@ TEST_F(NetworkChangeTest, TellsWhyAditNetworkCannotWork) {
 TEST_F(NetworkChangeTest, TellsThatInterfacesCannotBeRead) {
   status.kept.reset();
   write_status();
-  change.network();  // reads the status, which is then fresh
+  change.state();  // reads the status, which is then fresh
   rlimit before{};
   getrlimit(RLIMIT_NOFILE, &before);
   const rlimit none{.rlim_cur = 0, .rlim_max = before.rlim_max};
   setrlimit(RLIMIT_NOFILE, &none);
-  const api::NetworkView view = change.network();
+  const api::NetworkView view = change.state();
   const auto hop = change.next_hop(settings.command_post.scoring);
   setrlimit(RLIMIT_NOFILE, &before);
   EXPECT_THAT(view.why, HasSubstr("cannot read this machine's addresses"));

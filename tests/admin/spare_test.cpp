@@ -62,7 +62,7 @@ class Box {
   void read_from_stick(const std::string& file) {
     stick_.put(spare::kFromStickFile, file);
     write_status({.nonce = asked_of_stick().nonce});
-    while (!spare_->spare().stick->doing.empty()) loop_.turn(100ms);
+    while (!spare_->state().stick->doing.empty()) loop_.turn(100ms);
   }
   Spare& spare() { return *spare_; }
   /// Runs the loop until all immediate events are handled.
@@ -108,7 +108,7 @@ TEST(SpareBox, ExportsOnlyOnStandby) {
   EXPECT_EQ(box.spare().standby(), "") << "standby waits for requests in flight";
   box.restart();
   EXPECT_THAT(box.spare().standby(), HasSubstr("its spare takes over"));
-  EXPECT_EQ(box.spare().spare().code.size(), 19U);
+  EXPECT_EQ(box.spare().state().code.size(), 19U);
   EXPECT_TRUE(box.exported());
 }
 
@@ -129,12 +129,12 @@ TEST(SpareBox, EachStandbyHasItsOwnCode) {
   Box box;
   ASSERT_TRUE(box.spare().stand_by());
   box.restart();
-  const std::string first = box.spare().spare().code;
+  const std::string first = box.spare().state().code;
   ASSERT_TRUE(box.spare().resume());
   box.restart();
   ASSERT_TRUE(box.spare().stand_by());
   box.restart();
-  EXPECT_NE(box.spare().spare().code, first);
+  EXPECT_NE(box.spare().state().code, first);
 }
 
 TEST(SpareBox, ImportsTheExportThatItsCodeOpens) {
@@ -145,14 +145,14 @@ TEST(SpareBox, ImportsTheExportThatItsCodeOpens) {
   ASSERT_TRUE(file);
   EXPECT_EQ(why(second.opened("1234567890123456")), "there is no export to open: import one first");
   ASSERT_TRUE(second.spare().take_in(*file));
-  EXPECT_TRUE(second.spare().spare().asks_code);
+  EXPECT_TRUE(second.spare().state().asks_code);
   EXPECT_EQ(why(second.opened("12")), "code: expected 16 digits");
   EXPECT_THAT(why(second.opened("1234567890123456")), HasSubstr("not that of this export"));
-  EXPECT_TRUE(second.spare().spare().asks_code) << "the code may be typed again";
+  EXPECT_TRUE(second.spare().state().asks_code) << "the code may be typed again";
   EXPECT_EQ(why(second.spare().take_over()), "no export is open: import and open one first");
-  ASSERT_TRUE(second.opened(first.spare().spare().code));
-  EXPECT_EQ(second.spare().spare().taken_in->name, "192.168.7.11");
-  EXPECT_EQ(second.spare().spare().taken_in->port, 8000);
+  ASSERT_TRUE(second.opened(first.spare().state().code));
+  EXPECT_EQ(second.spare().state().taken_in->name, "192.168.7.11");
+  EXPECT_EQ(second.spare().state().taken_in->port, 8000);
   EXPECT_EQ(second.turned().restarts, 0) << "the box restarted too early";
   ASSERT_TRUE(second.spare().take_over());
   EXPECT_EQ(second.turned().restarts, 1);
@@ -168,7 +168,7 @@ TEST(SpareBox, ExportsToTheStickOnlyOnStandby) {
   ASSERT_TRUE(box.to_stick());
   EXPECT_THAT(box.for_stick().first,
               testing::MatchesRegex("adit-192\\.168\\.7\\.11-[0-9]{8}T[0-9]{6}Z\\.adit-spare"));
-  const auto content = spare::unseal(box.for_stick().second, *spare::code_in(box.spare().spare().code));
+  const auto content = spare::unseal(box.for_stick().second, *spare::code_in(box.spare().state().code));
   ASSERT_TRUE(content) << content.error();
   EXPECT_EQ(spare::read(*content)->about.name, "192.168.7.11");
 }
@@ -179,10 +179,10 @@ TEST(SpareBox, ImportsFromTheStickLikeAnUpload) {
   first.restart();
   second.write_status({.exports = {"a.adit-spare"}});
   ASSERT_TRUE(second.spare().take_from_stick("a.adit-spare"));
-  EXPECT_FALSE(second.spare().spare().asks_code);
+  EXPECT_FALSE(second.spare().state().asks_code);
   second.read_from_stick(*first.exported());
-  EXPECT_TRUE(second.spare().spare().asks_code);
-  ASSERT_TRUE(second.opened(first.spare().spare().code));
+  EXPECT_TRUE(second.spare().state().asks_code);
+  ASSERT_TRUE(second.opened(first.spare().state().code));
   ASSERT_TRUE(second.spare().take_over());
   EXPECT_EQ(why(second.spare().take_from_stick("a.adit-spare")), "this box is taking over just now");
 }
@@ -192,7 +192,7 @@ TEST(SpareBox, DoesNotTakeOverFromItself) {
   ASSERT_TRUE(box.spare().stand_by());
   box.restart();
   ASSERT_TRUE(box.spare().take_in(*box.exported()));
-  EXPECT_THAT(why(box.opened(box.spare().spare().code)), HasSubstr("this box made the export itself"));
+  EXPECT_THAT(why(box.opened(box.spare().state().code)), HasSubstr("this box made the export itself"));
 }
 
 TEST(SpareBox, StaysOnStandbyIfTakeOverFails) {
@@ -213,18 +213,18 @@ TEST(SpareBox, HidesExportsOfAnEarlierStandby) {
   const std::string file = box.for_stick().first;
   box.write_status({.nonce = box.asked_of_stick().nonce, .written = file});
   box.restart();
-  EXPECT_EQ(box.spare().spare().stick->written, file);
+  EXPECT_EQ(box.spare().state().stick->written, file);
   box.write_status({.written = "adit-192.168.7.11-20200101T000000Z.adit-spare"});
   box.restart();
-  EXPECT_EQ(box.spare().spare().stick->written, "");
+  EXPECT_EQ(box.spare().state().stick->written, "");
   box.write_status({.written = "named-by-hand.adit-spare"});
   box.restart();
-  EXPECT_EQ(box.spare().spare().stick->written, "");
+  EXPECT_EQ(box.spare().state().stick->written, "");
 }
 
 /// The export, opened with its code.
 spare::About about_of(Box& box) {
-  const auto text = spare::unseal(*box.exported(), *spare::code_in(box.spare().spare().code));
+  const auto text = spare::unseal(*box.exported(), *spare::code_in(box.spare().state().code));
   return spare::read(*text)->about;
 }
 

@@ -76,7 +76,7 @@ TEST_F(UpdatesTest, ShowTheStatusOfAditUpdate) {
                 .doing = "installing",
                 .progress = 40,
                 .last = {update::Stage::Installing, "0.2.0", "B", "boot", ""}});
-  const auto view = updates_.update();
+  const auto view = updates_.state();
   EXPECT_TRUE(view.managed);
   EXPECT_EQ(view.running.version, "0.1.0");
   EXPECT_EQ(view.doing, "installing");
@@ -87,8 +87,8 @@ TEST_F(UpdatesTest, ShowTheStatusOfAditUpdate) {
 
 TEST_F(UpdatesTest, ReportIfAditUpdateIsMissing) {
   fs::remove(run_ / host::kStatusFile);
-  EXPECT_FALSE(updates_.update().managed || updates_.update().runs_here);
-  EXPECT_THAT(updates_.update().why, HasSubstr("adit-update does not run here"));
+  EXPECT_FALSE(updates_.state().managed || updates_.state().runs_here);
+  EXPECT_THAT(updates_.state().why, HasSubstr("adit-update does not run here"));
   for (const auto& refused : {upload("x", 1), updates_.install_from_stick(false), updates_.restart(true)}) {
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().status, icd::Status::Conflict);
@@ -96,28 +96,28 @@ TEST_F(UpdatesTest, ReportIfAditUpdateIsMissing) {
   wait();
   write_status({.trouble = "RAUC does not run here: no"});
   EXPECT_EQ(updates_.restart(true).error().sentence, "RAUC does not run here: no");
-  EXPECT_TRUE(updates_.update().runs_here) << "the error must be shown";
+  EXPECT_TRUE(updates_.state().runs_here) << "the error must be shown";
   EXPECT_FALSE(asked());
 }
 
 TEST_F(UpdatesTest, ShowANewerVersionFromApt) {
-  EXPECT_EQ(updates_.update().newer, std::nullopt);
-  EXPECT_EQ(updates_.update().newer_why, "") << "apt is not installed here";
+  EXPECT_EQ(updates_.state().newer, std::nullopt);
+  EXPECT_EQ(updates_.state().newer_why, "") << "apt is not installed here";
   const std::string file = run_.put(update::kNewerFile, "\n");
-  EXPECT_EQ(updates_.update().newer, "");
+  EXPECT_EQ(updates_.state().newer, "");
   run_.put(update::kNewerFile, "1:0.2.0~rc1+deb13\n");
-  EXPECT_EQ(updates_.update().newer, "1:0.2.0~rc1+deb13");
+  EXPECT_EQ(updates_.state().newer, "1:0.2.0~rc1+deb13");
   for (const std::string wrong :
        {"", "0.2.0", "0.2 0\n", "0.2.0\n\n", "<b>\n", "apt-cache failed: E: \x1b[2J\n"}) {
     run_.put(update::kNewerFile, wrong);
-    EXPECT_EQ(updates_.update().newer, std::nullopt) << wrong;
-    EXPECT_THAT(updates_.update().newer_why, StartsWith(file + ": expected a version"));
+    EXPECT_EQ(updates_.state().newer, std::nullopt) << wrong;
+    EXPECT_THAT(updates_.state().newer_why, StartsWith(file + ": expected a version"));
   }
-  EXPECT_THAT(updates_.update().newer_why, EndsWith("got 'apt-cache failed: E: \\x1b[2J'"));
+  EXPECT_THAT(updates_.state().newer_why, EndsWith("got 'apt-cache failed: E: \\x1b[2J'"));
   fs::remove(file);
   fs::create_directory(file);
-  EXPECT_EQ(updates_.update().newer, std::nullopt);
-  EXPECT_THAT(updates_.update().newer_why, HasSubstr(file));
+  EXPECT_EQ(updates_.state().newer, std::nullopt);
+  EXPECT_THAT(updates_.state().newer_why, HasSubstr(file));
 }
 
 TEST_F(UpdatesTest, StoreAWholeBundleAndRequestIt) {
@@ -129,22 +129,22 @@ TEST_F(UpdatesTest, StoreAWholeBundleAndRequestIt) {
   ASSERT_TRUE(asked());
   EXPECT_EQ(asked()->what, update::Request::What::Install);
   EXPECT_TRUE(asked()->again);
-  EXPECT_EQ(updates_.update().doing, "checking");
+  EXPECT_EQ(updates_.state().doing, "checking");
   EXPECT_FALSE(fs::exists(state_ / "update.raucb.part"));
 }
 
 TEST_F(UpdatesTest, AcceptOneAtATime) {
   auto first = updates_.receive(100, false, [] {});
   ASSERT_TRUE(first);
-  EXPECT_EQ(updates_.update().doing, "receiving");
-  EXPECT_EQ(updates_.update().progress, 0);
+  EXPECT_EQ(updates_.state().doing, "receiving");
+  EXPECT_EQ(updates_.state().progress, 0);
   const std::uint8_t piece[50] = {};
   EXPECT_TRUE((*first)->write(piece));
-  EXPECT_EQ(updates_.update().progress, 50);
+  EXPECT_EQ(updates_.state().progress, 50);
   EXPECT_EQ(updates_.receive(100, false, [] {}).error().sentence, "the box is already receiving: wait");
   EXPECT_EQ(updates_.restart(true).error().status, icd::Status::Conflict);
   first->reset();
-  EXPECT_EQ(updates_.update().doing, "");
+  EXPECT_EQ(updates_.state().doing, "");
   EXPECT_FALSE(fs::exists(state_ / "update.raucb.part"));
   EXPECT_TRUE(updates_.receive(100, false, [] {}));
 }
@@ -153,7 +153,7 @@ TEST_F(UpdatesTest, RejectATruncatedBundle) {
   EXPECT_THAT(upload("abc", 5).error().sentence, HasSubstr("got 3 of 5 bytes"));
   EXPECT_FALSE(asked());
   EXPECT_TRUE(fs::is_empty(state_.path()));
-  EXPECT_EQ(updates_.update().doing, "");
+  EXPECT_EQ(updates_.state().doing, "");
 }
 
 TEST_F(UpdatesTest, RejectABundleLargerThanTheDisk) {
@@ -216,11 +216,11 @@ TEST_F(UpdatesTest, EndWithTheAnswerOfAditUpdate) {
   const auto request = asked();
   ASSERT_TRUE(request);
   EXPECT_EQ(request->what, update::Request::What::Stick);
-  EXPECT_EQ(updates_.update().doing, "checking");
+  EXPECT_EQ(updates_.state().doing, "checking");
   write_status({.nonce = request->nonce, .refusal = "no stick has an update"});
   wait();
-  EXPECT_EQ(updates_.update().doing, "");
-  EXPECT_EQ(updates_.update().refusal, "no stick has an update");
+  EXPECT_EQ(updates_.state().doing, "");
+  EXPECT_EQ(updates_.state().refusal, "no stick has an update");
 }
 
 TEST_F(UpdatesTest, RestartDuringAReportOnlyIfConfirmed) {
@@ -229,7 +229,7 @@ TEST_F(UpdatesTest, RestartDuringAReportOnlyIfConfirmed) {
   EXPECT_FALSE(asked());
   ASSERT_TRUE(updates_.restart(true));
   EXPECT_EQ(asked()->what, update::Request::What::Restart);
-  EXPECT_EQ(updates_.update().doing, "restarting");
+  EXPECT_EQ(updates_.state().doing, "restarting");
 }
 
 TEST_F(UpdatesTest, OfferGoBackAndStayInAnUnexpectedSlot) {
@@ -238,12 +238,12 @@ TEST_F(UpdatesTest, OfferGoBackAndStayInAnUnexpectedSlot) {
   EXPECT_FALSE(asked());
   wait();
   write_status({.stray = "slot B runs, with 0.1.0"});
-  EXPECT_EQ(updates_.update().stray, "slot B runs, with 0.1.0");
+  EXPECT_EQ(updates_.state().stray, "slot B runs, with 0.1.0");
   under_way_ = "report 7 is being sent";
   EXPECT_EQ(updates_.go_back(false).error().sentence, "report 7 is being sent");
   ASSERT_TRUE(updates_.go_back(true));
   EXPECT_EQ(asked()->what, update::Request::What::Back);
-  EXPECT_EQ(updates_.update().doing, "restarting");
+  EXPECT_EQ(updates_.state().doing, "restarting");
 }
 
 TEST_F(UpdatesTest, RequestToStayInTheSlot) {

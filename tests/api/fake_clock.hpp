@@ -8,7 +8,7 @@ namespace adit::api {
 
 /// A clock whose state a test sets. Records the times that it is set to.
 struct FakeClock final : Clock {
-  ClockView clock() const override { return view; }
+  ClockView state() const override { return view; }
   icd::Checked<void> set_clock(double time) override {
     if (outcome) set.push_back(time);
     if (outcome) view.now = time;

@@ -11,7 +11,7 @@ namespace adit::api {
 
 /// Has the addresses that a test sets, and records requests.
 struct FakeNetwork final : Network {
-  NetworkView network() const override { return view; }
+  NetworkView state() const override { return view; }
   network::Findings check(const network::Numbers&, const std::string& asker) const override {
     askers.push_back(asker);
     return findings;
@@ -39,7 +39,7 @@ struct FakeNetwork final : Network {
 };
 
 struct FakeTest final : SelfTest {
-  TestView test() const override { return view; }
+  TestView state() const override { return view; }
   icd::Checked<void> begin_test(const Candidate& candidate) override {
     if (!outcome) return outcome;
     if (std::exchange(view.running, true))

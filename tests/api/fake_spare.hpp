@@ -10,7 +10,7 @@ namespace adit::api {
 
 /// Has the state that a test sets, and records requests.
 struct FakeSpare final : Spare {
-  SpareView spare() const override { return view; }
+  SpareView state() const override { return view; }
   icd::Checked<void> stand_by() override { return record("standby"); }
   icd::Checked<void> resume() override { return record("resume"); }
   void export_to(Sealed done) override {

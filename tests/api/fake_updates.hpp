@@ -18,7 +18,7 @@ struct FakeUpdates final : Updates {
     std::function<void(icd::Checked<void>)> done;
   };
 
-  UpdateView update() const override { return view; }
+  UpdateView state() const override { return view; }
   icd::Checked<std::unique_ptr<Upload>> receive(std::uint64_t size, bool again,
                                                 std::function<void()> resume) override {
     if (!outcome) return std::unexpected(outcome.error());

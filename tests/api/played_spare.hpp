@@ -20,7 +20,7 @@ struct PlayedSpare final : Spare {
                     {.name = "zip.adit-spare", .box = "", .at = std::nullopt}}};
   }
 
-  SpareView spare() const override {
+  SpareView state() const override {
     SpareView shown = view;
     step();
     return shown;

@@ -14,7 +14,7 @@ struct PlayedUpdates final : Updates {
     view.last = {update::Stage::Left, "0.0.9", "B", "", "the update did not become healthy in three starts"};
     view.stick = update::Offer{"adit-a-board-0.3.0.raucb", "0.3.0"};
   }
-  UpdateView update() const override { return view; }
+  UpdateView state() const override { return view; }
   icd::Checked<std::unique_ptr<Upload>> receive(std::uint64_t, bool, std::function<void()>) override {
     return std::make_unique<Taking>(view);
   }

@@ -76,7 +76,7 @@ std::optional<double> NtpWatch::behind() const {
   return told_->behind;
 }
 
-api::ClockView ClockSetting::clock() const {
+api::ClockView ClockSetting::state() const {
   const auto status = adit_clock_.status();
   api::ClockView view{
       .now = loop_.wall_now(), .managed = status != nullptr, .why = adit_clock_.why(), .refusal = trouble()};

@@ -63,7 +63,7 @@ class ClockSetting final : public api::Clock {
         adit_clock_(loop, "adit-clock", state_folder, status_folder, kTakenUpWithin, units),
         watch_(loop, chronyd) {}
 
-  api::ClockView clock() const override;
+  api::ClockView state() const override;
   icd::Checked<void> set_clock(double time) override;
 
   /// Call each second. `ntp`: from the settings.

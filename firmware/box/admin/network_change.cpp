@@ -87,7 +87,7 @@ std::expected<std::optional<network::Numbers>, std::string> NetworkChange::prese
   return network::Numbers{.team = *team, .command_post = std::move(post)};
 }
 
-api::NetworkView NetworkChange::network() const {
+api::NetworkView NetworkChange::state() const {
   api::NetworkView view;
   view.now = loop_.wall_now();
   view.why = hindrance();

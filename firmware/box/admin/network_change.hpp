@@ -28,7 +28,7 @@ class NetworkChange final : public api::Network {
         adit_network_(adit_network),
         taken_file_(watch_folder + '/' + network::kTakenFile) {}
 
-  api::NetworkView network() const override;
+  api::NetworkView state() const override;
   network::Findings check(const network::Numbers& wanted, const std::string& asker) const override;
   icd::Checked<void> change(const network::Numbers& wanted) override;
   icd::Checked<void> confirm(const std::string& local) override;

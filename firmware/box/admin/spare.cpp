@@ -164,7 +164,7 @@ icd::Checked<void> Spare::keep(const SpareFile& next) {
   return {};
 }
 
-api::SpareView Spare::spare() const {
+api::SpareView Spare::state() const {
   api::SpareView view;
   view.standby = !standby_.empty();
   view.why = standby_;

@@ -80,7 +80,7 @@ class Spare final : public api::Spare {
   /// Call when the gateway ends without requests in flight. `expected`: the answer of /api/status then.
   void ends(const std::optional<icd::RunStatus>& expected);
 
-  api::SpareView spare() const override;
+  api::SpareView state() const override;
   icd::Checked<void> stand_by() override;
   icd::Checked<void> resume() override;
   void export_to(Sealed done) override;

@@ -206,7 +206,7 @@ void Updates::every_second() {
   if (adit_update_.check()) unlink(bundle_file().c_str());
 }
 
-api::UpdateView Updates::update() const {
+api::UpdateView Updates::state() const {
   const auto status = adit_update_.status();
   api::UpdateView view;
   view.why = status ? status->trouble : adit_update_.why();
@@ -237,7 +237,7 @@ api::UpdateView Updates::update() const {
 }
 
 icd::Checked<void> Updates::check_free() const {
-  const api::UpdateView view = update();
+  const api::UpdateView view = state();
   if (!view.managed) return icd::conflict(view.why);
   if (!view.doing.empty()) return icd::conflict("the box is already ", view.doing, ": wait");
   return {};
@@ -245,13 +245,13 @@ icd::Checked<void> Updates::check_free() const {
 
 icd::Checked<void> Updates::check_installable() const {
   ADIT_TRY(check_free());
-  const api::UpdateView view = update();
+  const api::UpdateView view = state();
   if (view.trial) return icd::conflict(update::wait_for_trial(view.running.version));
   return {};
 }
 
 icd::Checked<void> Updates::check_stray() const {
-  const api::UpdateView view = update();
+  const api::UpdateView view = state();
   if (!view.managed || !view.stray.empty()) return {};
   return icd::conflict(update::kNoStray);
 }

@@ -57,7 +57,7 @@ class Updates final : public api::Updates {
   Updates(loop::Loop& loop, loop::Writer& writer, const std::string& state_folder,
           const std::string& status_folder, std::function<std::string()> under_way);
 
-  api::UpdateView update() const override;
+  api::UpdateView state() const override;
   icd::Checked<std::unique_ptr<api::Upload>> receive(std::uint64_t size, bool again,
                                                      std::function<void()> resume) override;
   icd::Checked<void> install_from_stick(bool again) override;
@@ -69,7 +69,7 @@ class Updates final : public api::Updates {
   void every_second();
 
   /// Whether a bundle is being received, checked or installed, or the box is about to restart.
-  bool running() const { return !update().doing.empty(); }
+  bool running() const { return !state().doing.empty(); }
 
  private:
   /// Path of a bundle, and during its upload.

@@ -155,7 +155,7 @@ class SelfTest final : public api::SelfTest {
            host::RootProgram<network::Status>& adit_network, const admin::NetworkChange& network,
            std::function<void()> changed);
 
-  api::TestView test() const override { return view_; }
+  api::TestView state() const override { return view_; }
   icd::Checked<void> begin_test(const api::Candidate& candidate) override;
   /// Call when settings or tokens are applied. Marks the present result as outdated.
   void settings_changed() { view_.outdated = view_.number > 0; }

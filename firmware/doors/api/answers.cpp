@@ -117,8 +117,8 @@ intake::Answer refusal(icd::Status status, std::string_view sentence) {
   return guarded(intake::error_answer(status, sentence));
 }
 
-intake::Answer nothing_at(std::string_view path) {
-  return refusal(icd::Status::NotFound, icd::sentence("there is no resource at ", icd::in_quotes(path)));
+icd::Refusal nothing_at(std::string_view path) {
+  return {icd::Status::NotFound, icd::sentence("there is no resource at ", icd::in_quotes(path))};
 }
 
 intake::Answer wrong_method(std::string_view allowed) {

@@ -47,10 +47,15 @@ intake::Answer refusal(icd::Status status, std::string_view sentence);
 intake::Answer refused(const icd::Refusal& why);
 /// 422 for numbers or settings that have these errors.
 intake::Answer refused(const std::vector<settings::Error>& errors);
+/// The answer to an action of an interface such as Clock: its state(), or the refusal.
+template <class Part>
+intake::Answer after(const Part& part, const icd::Checked<void>& done) {
+  return done ? fresh(part.state()) : refused(done.error());
+}
 /// Refusal of a change of the settings. 409 while another change is being applied (api::Setup) has
 /// Retry-After, because that takes a second.
 intake::Answer refused_change(const icd::Refusal& why);
-intake::Answer nothing_at(std::string_view path);
+icd::Refusal nothing_at(std::string_view path);
 /// 405; `allowed` as in RFC 9110 10.2.1: "GET, HEAD".
 intake::Answer wrong_method(std::string_view allowed);
 

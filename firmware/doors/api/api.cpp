@@ -63,7 +63,8 @@ std::unique_ptr<intake::BodySink> Api::open(const intake::RequestHead& head,
   const auto asker = entrance_.admit(head, found.who);
   if (!asker) return answer_with(turned_away(asker.error()));
   if (!found.route)
-    return answer_with(found.allowed.empty() ? nothing_at(head.path()) : wrong_method(found.allowed));
+    return answer_with(found.allowed.empty() ? refused(nothing_at(head.path()))
+                                             : wrong_method(found.allowed));
   const Route& route = *found.route;
   if (auto why = unfit(route.body, head)) return answer_with(std::move(*why));
   Call call{.head = head,

@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "api/after.hpp"
 #include "api/answers.hpp"
 #include "api/bundle.hpp"
 #include "api/metrics.hpp"
@@ -16,6 +15,7 @@
 #include "codec/row.hpp"
 #include "icd/sentence.hpp"
 #include "icd/text.hpp"
+#include "icd/try.hpp"
 #include "spare/sealed.hpp"
 
 namespace adit::api {
@@ -35,12 +35,24 @@ std::string bundle_name(Time now) {
 
 }  // namespace
 
+/// A selection of log records.
+struct LogFilter {
+  int severity = 7;         // this severity and worse ones
+  std::string text;         // part of the line, ignoring case; "": any
+  std::uint64_t after = 0;  // only larger numbers
+
+  bool lets(const LogRecord& record) const;
+};
+
 bool LogFilter::lets(const LogRecord& record) const {
   if (record.severity > severity || record.seq <= after) return false;
   const auto same = [](char a, char b) { return icd::lower(a) == icd::lower(b); };
   return text.empty() || !std::ranges::search(record.line, text, same).empty();
 }
 
+namespace {
+
+/// Reads `?level=warning&text=...&since=17`. Error 400: an invalid value.
 icd::Checked<LogFilter> read_log_filter(const intake::RequestHead& head) {
   LogFilter filter{.text = std::string(head.query("text"))};
   if (const auto level = head.query("level"); !level.empty()) {
@@ -57,6 +69,8 @@ icd::Checked<LogFilter> read_log_filter(const intake::RequestHead& head) {
   return filter;
 }
 
+}  // namespace
+
 std::string BoxRoutes::metrics_text() const {
   Measured measured{.view = source_.view(),
                     .reports = source_.report_counts(),
@@ -72,12 +86,11 @@ intake::Answer BoxRoutes::metrics() const {
   return fresh(Exposition::kContentType, metrics_text());
 }
 
-intake::Answer BoxRoutes::log(const intake::RequestHead& head) const {
-  const auto filter = read_log_filter(head);
-  if (!filter) return refused(filter.error());
-  auto records = box_.log(filter->after);
-  std::erase_if(records, [&](const LogRecord& record) { return !filter->lets(record); });
-  return fresh(LogPage{box_.logged(), std::move(records)});
+icd::Checked<LogPage> BoxRoutes::log(const intake::RequestHead& head) const {
+  const auto filter = ADIT_TRY(read_log_filter(head));
+  auto records = box_.log(filter.after);
+  std::erase_if(records, [&](const LogRecord& record) { return !filter.lets(record); });
+  return LogPage{box_.logged(), std::move(records)};
 }
 
 std::string BoxRoutes::log_lines(const LogFilter& filter) const {
@@ -88,10 +101,9 @@ std::string BoxRoutes::log_lines(const LogFilter& filter) const {
   return lines;
 }
 
-intake::Answer BoxRoutes::log_text(const intake::RequestHead& head) const {
-  const auto filter = read_log_filter(head);
-  if (!filter) return refused(filter.error());
-  return download(fresh("text/plain; charset=utf-8", log_lines(*filter)), "adit-log.txt");
+icd::Checked<intake::Answer> BoxRoutes::log_text(const intake::RequestHead& head) const {
+  const auto filter = ADIT_TRY(read_log_filter(head));
+  return download(fresh("text/plain; charset=utf-8", log_lines(filter)), "adit-log.txt");
 }
 
 std::string BoxRoutes::about_json() const {
@@ -145,14 +157,14 @@ std::expected<network::Numbers, std::vector<settings::Error>> numbers_in(const s
 
 namespace network_routes {
 
-intake::Answer check(Network& network, const Call& call) {
+CheckView check(Network& network, const Call& call) {
   const auto wanted = numbers_in(call.body);
   const auto findings =
       wanted ? network.check(*wanted, call.head.peer()) : network::Findings{wanted.error(), {}, {}};
   CheckView checked{.errors = findings.errors, .changes = {.changes = {}, .warnings = findings.warnings}};
   for (const network::Difference& each : findings.changes)
     checked.changes.changes.push_back({each.path, {each.from}, {each.to}});
-  return fresh(checked);
+  return checked;
 }
 
 intake::Answer change(Network& network, const Call& call) {
@@ -163,8 +175,8 @@ intake::Answer change(Network& network, const Call& call) {
   return after(network, network.change(*wanted));
 }
 
-intake::Answer confirm(Network& network, const Call& call) {
-  return after(network, network.confirm(call.head.local()));
+icd::Checked<void> confirm(Network& network, const Call& call) {
+  return network.confirm(call.head.local());
 }
 
 }  // namespace network_routes
@@ -296,14 +308,12 @@ void open(Spare& spare, const Call& call) {
   });
 }
 
-intake::Answer take_over(Spare& spare, const std::string& body) {
-  const auto unplugged =
-      read_body<bool>(body, [](const codec::Field& root) { return root.member("unplugged").truth(); });
-  if (!unplugged) return refused(unplugged.error());
-  if (!*unplugged)
-    return refusal(icd::Status::UnprocessableEntity,
-                   "unplugged: expected true, because the box that made the export must be off");
-  return after(spare, spare.take_over());
+icd::Checked<void> take_over(Spare& spare, const std::string& body) {
+  const auto unplugged = ADIT_TRY(
+      read_body<bool>(body, [](const codec::Field& root) { return root.member("unplugged").truth(); }));
+  if (!unplugged)
+    return icd::unprocessable("unplugged: expected true, because the box that made the export must be off");
+  return spare.take_over();
 }
 
 }  // namespace spare_routes

@@ -11,6 +11,7 @@
 #include "api/network.hpp"
 #include "api/report_routes.hpp"
 #include "api/route.hpp"
+#include "api/settings_rows.hpp"
 #include "api/source.hpp"
 #include "api/spare.hpp"
 #include "api/updates.hpp"
@@ -18,17 +19,7 @@
 
 namespace adit::api {
 
-/// A selection of log records.
-struct LogFilter {
-  int severity = 7;         // this severity and worse ones
-  std::string text;         // part of the line, ignoring case; "": any
-  std::uint64_t after = 0;  // only larger numbers
-
-  bool lets(const LogRecord& record) const;
-};
-
-/// Reads `?level=warning&text=...&since=17`. Error 400: an invalid value.
-icd::Checked<LogFilter> read_log_filter(const intake::RequestHead& head);
+struct LogFilter;
 
 /// The box: metrics, log, about and support bundle. Routes: README.md.
 class BoxRoutes {
@@ -39,8 +30,8 @@ class BoxRoutes {
       : source_(source), lists_(lists), box_(box), entrance_(entrance), redaction_(redaction), loop_(loop) {}
 
   intake::Answer metrics() const;
-  intake::Answer log(const intake::RequestHead& head) const;
-  intake::Answer log_text(const intake::RequestHead& head) const;
+  icd::Checked<LogPage> log(const intake::RequestHead& head) const;
+  icd::Checked<intake::Answer> log_text(const intake::RequestHead& head) const;
   intake::Answer about() const;
   void bundle(const Call& call);
 
@@ -61,10 +52,10 @@ class BoxRoutes {
 /// The box's addresses: README.md.
 namespace network_routes {
 
-intake::Answer check(Network& network, const Call& call);
+CheckView check(Network& network, const Call& call);
 intake::Answer change(Network& network, const Call& call);
 /// Uses the address of the request's connection.
-intake::Answer confirm(Network& network, const Call& call);
+icd::Checked<void> confirm(Network& network, const Call& call);
 
 }  // namespace network_routes
 
@@ -83,7 +74,7 @@ void exported(Spare& spare, const Call& call);
 void to_stick(Spare& spare, const Call& call);
 std::unique_ptr<intake::BodySink> take_in(Spare& spare, const Call& call);
 void open(Spare& spare, const Call& call);
-intake::Answer take_over(Spare& spare, const std::string& body);
+icd::Checked<void> take_over(Spare& spare, const std::string& body);
 
 }  // namespace spare_routes
 }  // namespace adit::api

@@ -26,7 +26,7 @@ struct ClockView {
 class Clock {
  public:
   virtual ~Clock() = default;
-  virtual ClockView clock() const = 0;
+  virtual ClockView state() const = 0;
   /// Requests the operator's time; takes effect soon.
   virtual icd::Checked<void> set_clock(double time) = 0;
 };

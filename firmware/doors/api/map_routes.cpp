@@ -11,10 +11,13 @@
 #include "api/map_json.hpp"
 #include "api/route.hpp"
 #include "icd/sentence.hpp"
+#include "icd/try.hpp"
 #include "picture/palette.hpp"
 
 namespace adit::api {
 namespace {
+
+using icd::Status;
 
 constexpr Time kLongest = 10;  // seconds, as between the poses of a robot that stands
 
@@ -46,34 +49,30 @@ std::vector<TrackPose> thinned(std::span<const TrackPose> poses) {
   return kept;
 }
 
-}  // namespace
-
+/// Leaves out poses that lie on a straight way, so that interpolation in time between the others gives each
+/// of them back (has_moved() tells no difference). A way is at most 10 s long. First and last pose stay.
 Tracks thinned(std::vector<Track> tracks) {
   for (Track& track : tracks) track.poses = thinned(track.poses);
   return {std::move(tracks)};
 }
 
-namespace {
-
 constexpr std::string_view kMerged = "-";  // stands for the robot "", which a path cannot name
 
-intake::Answer bad_tile(std::string_view sentence) {
-  return refusal(icd::Status::BadRequest, sentence);
-}
-
-/// A colour in the query, six digits without "#". `wrong`: present but invalid.
-struct AskedColour {
-  std::optional<picture::Colour> colour;
-  bool wrong = false;
+/// A request for a tile: place, colours, and the client's cached state.
+struct TileAsked {
+  picture::Layer layer;
+  picture::TileIndex at;
+  std::optional<double> stamp, low, high;
+  std::optional<picture::Colour> from, to;  // for free or lowest, and for occupied or highest
+  std::string has;                          // If-None-Match
 };
 
-AskedColour asked_colour(const intake::RequestHead& head, std::string_view name) {
-  const std::string_view text = head.query(name);
-  if (text.empty()) return {};
+/// A colour of six hexadecimal digits.
+std::optional<picture::Colour> colour_in(std::string_view text) {
   const auto value = icd::number_in<std::uint32_t>(text, 16);
-  if (!value || text.size() != 6) return {.colour = {}, .wrong = true};
+  if (!value || text.size() != 6) return std::nullopt;
   const auto part = [value](int shift) { return static_cast<std::uint8_t>(*value >> shift); };
-  return {.colour = picture::Colour{part(16), part(8), part(0)}};
+  return picture::Colour{part(16), part(8), part(0)};
 }
 
 std::string coloured(const picture::Packed& tile, const TileAsked& asked) {
@@ -108,42 +107,47 @@ intake::Answer image_of(const picture::Packed& tile, const TileAsked& asked, std
   return answer;
 }
 
-}  // namespace
-
-std::expected<std::uint64_t, intake::Answer> version_asked(const intake::RequestHead& head) {
+/// The number in ?since=, or 0 without it.
+icd::Checked<std::uint64_t> version_asked(const intake::RequestHead& head) {
   const std::string_view text = head.query("since");
   const auto version = text.empty() ? 0 : icd::number_in<std::uint64_t>(text);
-  if (!version) return std::unexpected(bad_tile("since: expected a version, a whole number"));
+  if (!version) return icd::refuse(Status::BadRequest, "since: expected a version, a whole number");
   return *version;
 }
 
-std::expected<TileAsked, intake::Answer> tile_asked(const intake::RequestHead& head,
-                                                    std::span<const std::string> parts) {
+icd::Checked<Time> time_asked(const intake::RequestHead& head) {
+  const auto since = ADIT_TRY(asked_number(head, "since", "since: expected seconds since 1970"));
+  return since.value_or(0);
+}
+
+/// `parts`: kind, robot, level, x and y from the path.
+icd::Checked<TileAsked> tile_asked(const intake::RequestHead& head, std::span<const std::string> parts) {
   if (parts[0] != "grid" && parts[0] != "cloud") return std::unexpected(nothing_at(head.path()));
   const auto level = icd::number_in<int>(parts[2]), x = icd::number_in<int>(parts[3]),
              y = icd::number_in<int>(parts[4]);
   if (!level || !x || !y) return std::unexpected(nothing_at(head.path()));
-  const AskedNumber at = asked_number(head, "at"), low = asked_number(head, "low"),
-                    high = asked_number(head, "high");
-  if (at.wrong) return std::unexpected(bad_tile("at: expected seconds since 1970"));
-  if (at.number && *level < 0) return std::unexpected(bad_tile("at: finer levels exist only for now"));
-  if (low.wrong || high.wrong) return std::unexpected(bad_tile("low and high: expected metres"));
-  const AskedColour from = asked_colour(head, "from"), to = asked_colour(head, "to");
-  if (from.wrong || to.wrong || from.colour.has_value() != to.colour.has_value()) {
-    return std::unexpected(
-        bad_tile("from and to: expected both or neither, each with six hexadecimal digits, as in 2266ee"));
-  }
+  const auto at = ADIT_TRY(asked_number(head, "at", "at: expected seconds since 1970"));
+  if (at && *level < 0) return icd::refuse(Status::BadRequest, "at: finer levels exist only for now");
+  const auto low = ADIT_TRY(asked_number(head, "low", "low and high: expected metres"));
+  const auto high = ADIT_TRY(asked_number(head, "high", "low and high: expected metres"));
+  const std::string_view from_text = head.query("from"), to_text = head.query("to");
+  const auto from = colour_in(from_text), to = colour_in(to_text);
+  if (!(from && to) && !(from_text.empty() && to_text.empty()))
+    return icd::refuse(Status::BadRequest,
+                       "from and to: expected both or neither, each with six hexadecimal digits, as in "
+                       "2266ee");
   return TileAsked{.layer = {.robot = parts[1] == kMerged ? "" : parts[1],
                              .kind = parts[0] == "grid" ? picture::Kind::Grid : picture::Kind::Cloud},
                    .at = {*level, *x, *y},
-                   .stamp = at.number,
-                   .low = low.number,
-                   .high = high.number,
-                   .from = from.colour,
-                   .to = to.colour,
+                   .stamp = at,
+                   .low = low,
+                   .high = high,
+                   .from = from,
+                   .to = to,
                    .has = std::string(head.header("If-None-Match"))};
 }
 
+/// The PNG, or the reason for its absence.
 intake::Answer tile_of(const picture::Mosaic& map, const TileAsked& asked) {
   const auto shown = map.tile(asked.layer, asked.at, asked.stamp);
   if (shown.tile == nullptr) return nothing_drawn();
@@ -155,6 +159,7 @@ intake::Answer tile_of(const picture::Mosaic& map, const TileAsked& asked) {
   return guarded(std::move(answer));
 }
 
+/// The same for a drawn tile of a finer level. Null: 204, because the client cannot know which tiles exist.
 intake::Answer finer_tile(const picture::Tile& tile, const TileAsked& asked) {
   return guarded(tile ? image_of(*tile, asked, "no-cache")
                       : intake::Answer{.status = icd::Status::NoContent,
@@ -162,29 +167,28 @@ intake::Answer finer_tile(const picture::Tile& tile, const TileAsked& asked) {
                                        .headers = {{"Cache-Control", "no-store"}}});
 }
 
-intake::Answer MapRoutes::layers(const intake::RequestHead& head) const {
-  const auto since = version_asked(head);
-  if (!since) return since.error();
-  MapView view = map_view(source_.map(), *since);
-  for (picture::LayerView& layer : view.layers) layer.finer = finer_.finer(layer.layer, *since);
-  return fresh(view);
+}  // namespace
+
+icd::Checked<MapView> MapRoutes::layers(const intake::RequestHead& head) const {
+  const auto since = ADIT_TRY(version_asked(head));
+  MapView view = map_view(source_.map(), since);
+  for (picture::LayerView& layer : view.layers) layer.finer = finer_.finer(layer.layer, since);
+  return view;
 }
 
-intake::Answer MapRoutes::markers(const intake::RequestHead& head) const {
-  const auto since = version_asked(head);
-  if (!since) return since.error();
-  return fresh(source_.markers(*since));
+icd::Checked<MarkerChanges> MapRoutes::markers(const intake::RequestHead& head) const {
+  const auto since = ADIT_TRY(version_asked(head));
+  return source_.markers(since);
 }
 
-intake::Answer MapRoutes::tracks(const intake::RequestHead& head) const {
-  const AskedNumber since = asked_number(head, "since");
-  if (since.wrong) return refusal(icd::Status::BadRequest, "since: expected seconds since 1970");
-  return fresh(thinned(source_.tracks(since.number.value_or(0))));
+icd::Checked<Tracks> MapRoutes::tracks(const intake::RequestHead& head) const {
+  const auto since = ADIT_TRY(time_asked(head));
+  return thinned(source_.tracks(since));
 }
 
 void MapRoutes::tile(const Call& call) const {
   const auto asked = tile_asked(call.head, call.parameters);
-  if (!asked) return call.responder->answer(asked.error());
+  if (!asked) return call.responder->answer(refused(asked.error()));
   if (asked->at.level >= 0 || !picture::is_in_world(asked->at))
     return call.responder->answer(tile_of(source_.map(), *asked));
   finer_.tile(asked->layer, asked->at,
@@ -230,14 +234,9 @@ const RunRow* KeptRunsRoutes::row_of(const RunList& list, const std::string& key
   return found == list.runs.end() ? nullptr : &*found;
 }
 
-intake::Answer KeptRunsRoutes::history(const intake::RequestHead& head) const {
-  const AskedNumber since = asked_number(head, "since");
-  if (since.wrong) return refusal(icd::Status::BadRequest, "since: expected seconds since 1970");
-  return fresh(runs_.history(since.number.value_or(0)));
-}
-
-intake::Answer KeptRunsRoutes::list() const {
-  return fresh(runs_.list());
+icd::Checked<History> KeptRunsRoutes::history(const intake::RequestHead& head) const {
+  const auto since = ADIT_TRY(time_asked(head));
+  return runs_.history(since);
 }
 
 intake::Answer KeptRunsRoutes::one(const Call& call) const {
@@ -274,13 +273,13 @@ void KeptRunsRoutes::came(const std::string& key, const icd::Checked<std::shared
 
 void KeptRunsRoutes::layers(const Call& call) {
   const auto since = version_asked(call.head);
-  if (!since) return call.responder->answer(since.error());
+  if (!since) return call.responder->answer(refused(since.error()));
   with_run(call, [since = *since](const KeptRun& run) { return fresh(map_view(run.picture, since)); });
 }
 
 void KeptRunsRoutes::tile(const Call& call) {
   const auto asked = tile_asked(call.head, std::span(call.parameters).subspan(1));
-  if (!asked) return call.responder->answer(asked.error());
+  if (!asked) return call.responder->answer(refused(asked.error()));
   with_run(call, [asked = *asked](const KeptRun& run) { return tile_of(run.picture, asked); });
 }
 

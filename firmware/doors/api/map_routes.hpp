@@ -1,51 +1,21 @@
 #pragma once
 
-#include <expected>
 #include <functional>
 #include <map>
 #include <memory>
-#include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "api/finer_map.hpp"
 #include "api/kept_runs.hpp"
+#include "api/map_json.hpp"
 #include "api/route.hpp"
 #include "api/scene.hpp"
 #include "api/source.hpp"
 #include "intake/server.hpp"
 #include "loop/loop.hpp"
-#include "picture/mosaic.hpp"
-#include "picture/palette.hpp"
 
 namespace adit::api {
-
-/// Leaves out poses that lie on a straight way, so that interpolation in time between the others gives each
-/// of them back (has_moved() tells no difference). A way is at most 10 s long. First and last pose stay.
-Tracks thinned(std::vector<Track> tracks);
-
-/// A request for a tile: place, colours, and the client's cached state.
-struct TileAsked {
-  picture::Layer layer;
-  picture::TileIndex at;
-  std::optional<double> stamp, low, high;
-  std::optional<picture::Colour> from, to;  // for free or lowest, and for occupied or highest
-  std::string has;                          // If-None-Match
-};
-
-/// `parts`: kind, robot, level, x and y from the path. An error is the answer.
-std::expected<TileAsked, intake::Answer> tile_asked(const intake::RequestHead& head,
-                                                    std::span<const std::string> parts);
-
-/// The PNG, or the reason for its absence.
-intake::Answer tile_of(const picture::Mosaic& map, const TileAsked& asked);
-
-/// The same for a drawn tile of a finer level. Null: 204, because the client cannot know which tiles exist.
-intake::Answer finer_tile(const picture::Tile& tile, const TileAsked& asked);
-
-/// The number in ?since=, or 0 without it. An error is the answer.
-std::expected<std::uint64_t, intake::Answer> version_asked(const intake::RequestHead& head);
 
 /// The map, the markers and the robots' tracks: README.md.
 class MapRoutes {
@@ -54,11 +24,11 @@ class MapRoutes {
   MapRoutes(const Source& source, FinerMap& finer, CoveredMap& covered)
       : source_(source), finer_(finer), covered_(covered) {}
 
-  intake::Answer layers(const intake::RequestHead& head) const;
+  icd::Checked<MapView> layers(const intake::RequestHead& head) const;
   void tile(const Call& call) const;
   void covered(const Call& call) const;
-  intake::Answer markers(const intake::RequestHead& head) const;
-  intake::Answer tracks(const intake::RequestHead& head) const;
+  icd::Checked<MarkerChanges> markers(const intake::RequestHead& head) const;
+  icd::Checked<Tracks> tracks(const intake::RequestHead& head) const;
 
  private:
   const Source& source_;
@@ -77,9 +47,9 @@ class KeptRunsRoutes {
   KeptRunsRoutes(loop::Loop& loop, KeptRuns& runs, const Source& source);
 
   /// The plots of the present run.
-  intake::Answer history(const intake::RequestHead& head) const;
+  icd::Checked<History> history(const intake::RequestHead& head) const;
 
-  intake::Answer list() const;
+  RunList list() const { return runs_.list(); }
   intake::Answer one(const Call& call) const;
   void layers(const Call& call);
   void tile(const Call& call);

@@ -57,7 +57,7 @@ struct NetworkView {
 class Network {
  public:
   virtual ~Network() = default;
-  virtual NetworkView network() const = 0;
+  virtual NetworkView state() const = 0;
   /// `asker`: the client's address.
   virtual network::Findings check(const network::Numbers& wanted, const std::string& asker) const = 0;
   /// Applies numbers that passed check(), until they are confirmed or reverted. adit-network checks them

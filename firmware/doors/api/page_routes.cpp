@@ -53,7 +53,7 @@ intake::Answer answer_with(const site::File& file, const intake::RequestHead& he
 
 intake::Answer PageRoutes::file(const intake::RequestHead& head) const {
   const auto* const file = site::file_at(head.path());
-  if (file == nullptr) return nothing_at(head.path());
+  if (file == nullptr) return refused(nothing_at(head.path()));
   return only_reads(head) ? answer_with(*file, head) : wrong_method(kReading);
 }
 

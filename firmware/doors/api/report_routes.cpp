@@ -12,6 +12,7 @@
 #include "codec/read.hpp"
 #include "codec/row.hpp"
 #include "icd/sentence.hpp"
+#include "icd/try.hpp"
 #include "intake/type_hint.hpp"
 
 namespace adit::api {
@@ -63,26 +64,23 @@ namespace {
 constexpr std::string_view kAll = "all", kPresent = "present";
 constexpr auto kAccepted = static_cast<icd::Status>(202);  // RFC 9110 15.3.3; not in the ICD
 
-intake::Answer no_such(std::int64_t number) {
-  return refusal(icd::Status::NotFound, icd::sentence("there is no report ", number));
+std::unexpected<icd::Refusal> no_such(std::int64_t number) {
+  return icd::refuse(icd::Status::NotFound, "there is no report ", number);
 }
 
 /// Reads the operator's report and gives it to `take`, which returns its number or why it was not accepted.
 template <class Take>
-intake::Answer accept(const std::string& body, Take take) {
-  const auto document = codec::decode({}, codec::Split::Nothing, body);
-  if (!document) return refused(document.error());
-  const auto read = codec::read_artifact_report(*document, {}, intake::type_hint);
-  if (!read) return refused(read.error());
+icd::Checked<intake::Answer> accept(const std::string& body, Take take) {
+  const auto document = ADIT_TRY(codec::decode({}, codec::Split::Nothing, body));
+  const auto read = ADIT_TRY(codec::read_artifact_report(document, {}, intake::type_hint));
   codec::Reading reading;
-  const codec::Field root(document->root, reading);
+  const codec::Field root(document.root, reading);
   const codec::Field resubmit = root.member("resubmit");
-  const auto again = reading.outcome(!resubmit.is_absent() && resubmit.truth());
-  if (!again) return refused(again.error());
-  const auto number = take(read->report, *again);
-  if (!number) return refusal(icd::Status::Conflict, number.error());
+  const bool again = ADIT_TRY(reading.outcome(!resubmit.is_absent() && resubmit.truth()));
+  const auto number = take(read.report, again);
+  if (!number) return icd::conflict(number.error());
   codec::Value::Object told{{"report", json(*number)}};
-  if (!read->left_out.empty()) told.emplace_back("left_out", json(read->left_out));
+  if (!read.left_out.empty()) told.emplace_back("left_out", json(read.left_out));
   return object(std::move(told));
 }
 
@@ -112,29 +110,29 @@ void ReportRoutes::csv(const Call& call) const {
          download(fresh("text/csv; charset=utf-8; header=present", ""), "adit-reports.csv"));
 }
 
-intake::Answer ReportRoutes::one(std::int64_t number) const {
-  const auto report = source_.report(number);
-  return report ? fresh(*report) : no_such(number);
+icd::Checked<ReportDetail> ReportRoutes::one(std::int64_t number) const {
+  if (auto report = source_.report(number)) return *std::move(report);
+  return no_such(number);
 }
 
-intake::Answer ReportRoutes::decide(std::int64_t number, Action action) {
+icd::Checked<intake::Answer> ReportRoutes::decide(std::int64_t number, Action action) {
   if (!source_.report(number)) return no_such(number);
   const auto moved = operator_.decide(number, action);
-  if (!moved) return refusal(icd::Status::Conflict, moved.error());
+  if (!moved) return icd::conflict(moved.error());
   return object({{"report", json(*moved)}});
 }
 
-intake::Answer ReportRoutes::compose(const std::string& body) {
+icd::Checked<intake::Answer> ReportRoutes::compose(const std::string& body) {
   auto answer = accept(body, [this](const icd::ArtifactReport& report, bool resubmit) {
     return operator_.report(report, resubmit);
   });
-  if (answer.status == icd::Status::Ok) answer.status = kAccepted;
+  if (answer) answer->status = kAccepted;
   return answer;
 }
 
-intake::Answer ReportRoutes::correct(const Call& call) {
+icd::Checked<intake::Answer> ReportRoutes::correct(const Call& call) {
   const auto number = icd::number_in<std::int64_t>(call.parameters.front());
-  if (!number) return nothing_at(call.head.path());
+  if (!number) return std::unexpected(nothing_at(call.head.path()));
   if (!source_.report(*number)) return no_such(*number);
   return accept(call.body, [this, number](const icd::ArtifactReport& report, bool /*resubmit*/) {
     return operator_.correct(*number, report);

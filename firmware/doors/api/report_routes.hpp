@@ -53,18 +53,18 @@ class ReportRoutes {
 
   void list(const Call& call) const;
   void csv(const Call& call) const;
-  intake::Answer one(std::int64_t number) const;
+  icd::Checked<ReportDetail> one(std::int64_t number) const;
   template <Action action>
-  intake::Answer decide(std::int64_t number) {
+  icd::Checked<intake::Answer> decide(std::int64_t number) {
     return decide(number, action);
   }
-  intake::Answer compose(const std::string& body);
-  intake::Answer correct(const Call& call);
+  icd::Checked<intake::Answer> compose(const std::string& body);
+  icd::Checked<intake::Answer> correct(const Call& call);
 
  private:
   /// Completes `begun` with the list of the run in the request (its number, "present" or "all").
   void listed(const Call& call, ListForm form, intake::Answer begun) const;
-  intake::Answer decide(std::int64_t number, Action action);
+  icd::Checked<intake::Answer> decide(std::int64_t number, Action action);
 
   const ReportLists& lists_;
   const Source& source_;

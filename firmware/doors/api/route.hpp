@@ -89,18 +89,14 @@ struct Route {
   Handle handle;
 };
 
-/// A number in the query. `wrong`: present but not a finite number.
-struct AskedNumber {
-  std::optional<double> number;
-  bool wrong = false;
-};
-
-inline AskedNumber asked_number(const intake::RequestHead& head, std::string_view name) {
+/// A number in the query, if present. `expected`: the sentence of the refusal if it is not a finite number.
+inline icd::Checked<std::optional<double>> asked_number(const intake::RequestHead& head,
+                                                        std::string_view name, std::string_view expected) {
   const std::string_view text = head.query(name);
-  if (text.empty()) return {};
+  if (text.empty()) return std::nullopt;
   const auto number = icd::number_in<double>(text);
-  if (!number || !std::isfinite(*number)) return {.number = {}, .wrong = true};
-  return {.number = number};
+  if (!number || !std::isfinite(*number)) return icd::refuse(icd::Status::BadRequest, expected);
+  return number;
 }
 
 /// Applies `read` to a body, which must be one JSON object.

@@ -7,14 +7,15 @@
 #include <string>
 #include <type_traits>
 
-#include "api/after.hpp"
 #include "api/answers.hpp"
 #include "api/box_routes.hpp"
+#include "api/clock.hpp"
 #include "api/map_routes.hpp"
 #include "api/page_routes.hpp"
 #include "api/report_routes.hpp"
 #include "api/route.hpp"
 #include "api/run_routes.hpp"
+#include "api/self_test.hpp"
 #include "api/session_routes.hpp"
 #include "api/settings_routes.hpp"
 #include "spare/sealed.hpp"
@@ -44,11 +45,13 @@ template <class Class, class Gives, class Parameter>
 struct Signature<Gives (*)(Class&, Parameter)> : Signature<Gives (std::remove_const_t<Class>::*)(Parameter)> {
 };
 
-/// The result of a handler's function, as the Answer if it is a row or the success of an action.
+/// The result of a handler's function, as the Answer if it is a row, a refusal or the success of an action.
 template <class Handler, class Result>
 auto answered(const Handler& handler, Result result) {
   if constexpr (std::same_as<Result, icd::Checked<void>>) {
     return after(handler, result);
+  } else if constexpr (requires { result.error(); }) {
+    return result ? answered(handler, *std::move(result)) : refused(result.error());
   } else if constexpr (requires { Result::kRow; }) {
     return fresh(result);
   } else {
@@ -67,20 +70,24 @@ auto call_of(const Handlers& handlers, const Call& call) {
     return answered(handler, std::invoke(function, handler));
   } else if constexpr (std::integral<Argument>) {
     const auto number = icd::number_in<Argument>(call.parameters.front());
-    return number ? std::invoke(function, handler, *number) : nothing_at(call.head.path());
+    return number ? answered(handler, std::invoke(function, handler, *number))
+                  : refused(nothing_at(call.head.path()));
   } else if constexpr (std::same_as<Argument, std::string>) {
-    return std::invoke(function, handler, call.body);
+    return answered(handler, std::invoke(function, handler, call.body));
   } else if constexpr (std::same_as<Argument, intake::RequestHead>) {
-    return std::invoke(function, handler, call.head);
-  } else {
+    return answered(handler, std::invoke(function, handler, call.head));
+  } else if constexpr (std::is_void_v<decltype(std::invoke(function, handler, call))>) {
     return std::invoke(function, handler, call);
+  } else {
+    return answered(handler, std::invoke(function, handler, call));
   }
 }
 
 /// Wraps a function on one of the Handlers: a member, or with the handler as first parameter. Its parameter
 /// is what `reader` reads from the body; without a reader the number in the path (404 if it is not a number),
-/// the body (std::string), the RequestHead or the Call. It returns the Answer, a row, or the success of an
-/// action (api/after.hpp), or void and answers by Call::responder, or the object that receives the body.
+/// the body (std::string), the RequestHead or the Call. It returns the Answer, a row, a refusal, or the
+/// success of an action (after()), or void and answers by Call::responder, or the object that receives the
+/// body.
 template <auto function, auto reader = nullptr>
 consteval Handle by() {
   constexpr auto kCall = call_of<function, reader>;
@@ -270,7 +277,7 @@ constexpr Route kRoutes[] = {
     get("/adit/bundle", Operator, by<&BoxRoutes::bundle>(), "box",
         "The support bundle for fault-finding, without tokens and passwords: a .tar.gz of at most 10 MB.",
         "The support bundle.", "application/gzip"),
-    get("/adit/settings", Viewer, by<&settings_routes::shown>(), "settings",
+    get("/adit/settings", Viewer, by<&setup_view>(), "settings",
         "The settings in use, and what a form for them needs.", "The settings.", "Setup"),
     post("/adit/settings", Operator, kJson<262144>, by<&settings_routes::save>(), "NewSettings", "settings",
          "Save and apply settings.", "The settings are saved, and about to be applied.", "Changes",
@@ -280,7 +287,7 @@ constexpr Route kRoutes[] = {
          "The findings.", "Checked", "400"),
     get("/adit/settings/export", Viewer, by<&settings_routes::exported>(), "settings",
         "The settings file, for a download.", "The file, without tokens.", "Settings"),
-    get("/adit/network", Viewer, by<&Network::network>(), "network",
+    get("/adit/network", Viewer, by<&Network::state>(), "network",
         "The box's own addresses, and a change of them that is not yet confirmed.", "The addresses.",
         "Network"),
     post("/adit/network", Operator, kJson<4096>, by<&network_routes::change>(), "Numbers", "network",
@@ -294,7 +301,7 @@ constexpr Route kRoutes[] = {
          "409"),
     post("/adit/network/revert", Operator, kJson<4096>, by<&Network::revert>(), "Nothing", "network",
          "Revert the change now.", "The change is being reverted.", "Network", "409"),
-    get("/adit/update", Viewer, by<&Updates::update>(), "box",
+    get("/adit/update", Viewer, by<&Updates::state>(), "box",
         "The running version, and the state of an update.", "The state.", "Update"),
     post("/adit/update", Operator, kBundle, by<&update_routes::receive>(), "Bundle", "box",
          "Upload an update. The box checks it and installs it into the slot that is not running.",
@@ -310,11 +317,11 @@ constexpr Route kRoutes[] = {
     post("/adit/update/stay", Operator, kJson<1024>, by<&Updates::stay>(), "Nothing", "box",
          "Keep the running slot, if it is not the expected one (`stray`).",
          "The slot is being recorded as the expected one.", "Update", "409 503"),
-    get("/adit/clock", Viewer, by<&Clock::clock>(), "box", "The time of day, and the source that set it.",
+    get("/adit/clock", Viewer, by<&Clock::state>(), "box", "The time of day, and the source that set it.",
         "The clock.", "Clock"),
     post("/adit/clock", Operator, kJson<1024>, by<&Clock::set_clock, &time_in>(), "ClockToSet", "box",
          "Set the time of day to the client's time.", "The time is about to be set.", "Clock", "400 409"),
-    get("/adit/spare", Operator, by<&Spare::spare>(), "box",
+    get("/adit/spare", Operator, by<&Spare::state>(), "box",
         "Whether the box is on standby, the code of its export, and the export of another box.", "The state.",
         "Spare"),
     post("/adit/spare/standby", Operator, kJson<1024>, by<&Spare::stand_by>(), "Nothing", "box",
@@ -345,7 +352,7 @@ constexpr Route kRoutes[] = {
     post("/adit/spare/take-over", Operator, kJson<1024>, by<&spare_routes::take_over>(), "TakeOver", "box",
          "Take over from the box that made the export, with its reports, settings and tokens.",
          "The take-over is about to begin.", "Spare", "400 409 503"),
-    get("/adit/test", Viewer, by<&SelfTest::test>(), "network", "The Test, step by step.", "The steps.",
+    get("/adit/test", Viewer, by<&SelfTest::state>(), "network", "The Test, step by step.", "The steps.",
         "Test"),
     post("/adit/test", Operator, kJson<4096>, by<&SelfTest::begin_test, &read_candidate>(), "Candidate",
          "network",

@@ -8,6 +8,7 @@
 #include "api/route.hpp"
 #include "codec/patch.hpp"
 #include "codec/row.hpp"
+#include "icd/try.hpp"
 #include "intake/answer.hpp"
 
 namespace adit::api {
@@ -119,10 +120,6 @@ void Live::drop_the_gone(std::string_view event) {
 
 using codec::json;
 
-intake::Answer RunRoutes::run() const {
-  return fresh(source_.view());
-}
-
 std::unique_ptr<intake::BodySink> RunRoutes::events(const Call& call) {
   live_.open(*call.responder, entrance_.may_stay(call.asker));
   return nullptr;
@@ -142,18 +139,16 @@ intake::Answer RunRoutes::rejected(std::uint64_t number, RejectedAction action) 
   return done ? object({{"rejected", json(number)}}) : refusal(icd::Status::Conflict, done.error());
 }
 
-intake::Answer RunRoutes::acknowledge(const std::string& body) {
-  const auto id = read_text(body, "id");
-  if (!id) return refused(id.error());
-  const auto done = caretaker_.acknowledge(*id);
-  return done ? object({{"acknowledged", json(*id)}}) : refusal(icd::Status::Conflict, done.error());
+icd::Checked<intake::Answer> RunRoutes::acknowledge(const std::string& body) {
+  const auto id = ADIT_TRY(read_text(body, "id"));
+  const auto done = caretaker_.acknowledge(id);
+  return done ? object({{"acknowledged", json(id)}}) : refusal(icd::Status::Conflict, done.error());
 }
 
-intake::Answer RunRoutes::identify(const std::string& body) {
-  const auto seconds = read_body<double>(
-      body, [](const codec::Field& root) { return root.member("seconds").number(kLeast, kMost); });
-  if (!seconds) return refused(seconds.error());
-  return object({{"identify_until", json(caretaker_.identify(*seconds))}});
+icd::Checked<intake::Answer> RunRoutes::identify(const std::string& body) {
+  const auto seconds = ADIT_TRY(read_body<double>(
+      body, [](const codec::Field& root) { return root.member("seconds").number(kLeast, kMost); }));
+  return object({{"identify_until", json(caretaker_.identify(seconds))}});
 }
 
 }  // namespace adit::api

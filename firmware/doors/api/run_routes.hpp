@@ -71,7 +71,7 @@ class RunRoutes {
   RunRoutes(const Source& source, Operator& decisions, Caretaker& caretaker, Live& live, Entrance& entrance)
       : source_(source), operator_(decisions), caretaker_(caretaker), live_(live), entrance_(entrance) {}
 
-  intake::Answer run() const;
+  RunView run() const { return source_.view(); }
   std::unique_ptr<intake::BodySink> events(const Call& call);
   intake::Answer begin_run();
   /// Replaces a ledger that cannot be read.
@@ -82,9 +82,9 @@ class RunRoutes {
     return rejected(number, action);
   }
   /// Acknowledges an alarm.
-  intake::Answer acknowledge(const std::string& body);
+  icd::Checked<intake::Answer> acknowledge(const std::string& body);
   /// Flashes the box's lights for some seconds, to identify the box.
-  intake::Answer identify(const std::string& body);
+  icd::Checked<intake::Answer> identify(const std::string& body);
 
  private:
   intake::Answer rejected(std::uint64_t number, RejectedAction action);

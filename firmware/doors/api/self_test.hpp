@@ -61,7 +61,7 @@ icd::Checked<Candidate> read_candidate(const std::string& body);
 class SelfTest {
  public:
   virtual ~SelfTest() = default;
-  virtual TestView test() const = 0;
+  virtual TestView state() const = 0;
   /// Error 409: a test is running; watch its result. 422: an impossible endpoint.
   virtual icd::Checked<void> begin_test(const Candidate& candidate) = 0;
 };

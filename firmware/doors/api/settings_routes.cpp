@@ -10,6 +10,7 @@
 #include "codec/field.hpp"
 #include "icd/sentence.hpp"
 #include "icd/text.hpp"
+#include "icd/try.hpp"
 
 namespace adit::api {
 namespace {
@@ -81,32 +82,26 @@ intake::Answer apply(Setup& setup, const settings::Settings& next) {
 
 namespace settings_routes {
 
-intake::Answer shown(const Setup& setup) {
-  return fresh(setup_view(setup));
-}
-
 intake::Answer exported(const Setup& setup) {
   return download(fresh("application/json", settings::file_of(setup.settings())), "adit-settings.json");
 }
 
-intake::Answer check(const Setup& setup, const std::string& body) {
-  const auto posted = read_posted(body, false);
-  if (!posted) return refused(posted.error());
-  const auto next = settings::parse(posted->settings);
-  if (!next) return fresh(CheckView{.errors = next.error(), .changes = {}});
+icd::Checked<CheckView> check(const Setup& setup, const std::string& body) {
+  const auto posted = ADIT_TRY(read_posted(body, false));
+  const auto next = settings::parse(posted.settings);
+  if (!next) return CheckView{.errors = next.error(), .changes = {}};
   const auto unfit = unfit_to_save(setup.settings(), *next);
-  if (!unfit.empty()) return fresh(CheckView{.errors = unfit, .changes = {}});
-  return fresh(CheckView{.errors = {},
-                         .changes = {settings::changes(setup.settings(), *next), setup.warnings(*next)}});
+  if (!unfit.empty()) return CheckView{.errors = unfit, .changes = {}};
+  return CheckView{.errors = {},
+                   .changes = {settings::changes(setup.settings(), *next), setup.warnings(*next)}};
 }
 
-intake::Answer save(Setup& setup, const std::string& body) {
-  const auto posted = read_posted(body, true);
-  if (!posted) return refused(posted.error());
-  if (posted->base != settings::tag_of(setup.settings())) {
+icd::Checked<intake::Answer> save(Setup& setup, const std::string& body) {
+  const auto posted = ADIT_TRY(read_posted(body, true));
+  if (posted.base != settings::tag_of(setup.settings())) {
     return refusal(icd::Status::Conflict, "another user has changed the settings meanwhile: reload them");
   }
-  const auto next = settings::parse(posted->settings);
+  const auto next = settings::parse(posted.settings);
   if (!next) return refused(next.error());
   const auto unfit = unfit_to_save(setup.settings(), *next);
   if (!unfit.empty()) return refused(unfit);
@@ -121,17 +116,15 @@ intake::Answer switch_course(Setup& setup, const std::string& name) {
   return apply(setup, *checked);
 }
 
-intake::Answer set_token(Setup& setup, const std::string& body) {
-  const auto posted = read_token(body);
-  if (!posted) return refused(posted.error());
+icd::Checked<intake::Answer> set_token(Setup& setup, const std::string& body) {
+  const auto posted = ADIT_TRY(read_token(body));
   const auto rows = setup.tokens();
-  if (std::ranges::find(rows, posted->name, &TokenRow::name) == rows.end())
-    return refusal(icd::Status::UnprocessableEntity,
-                   icd::sentence("name: expected one of ", icd::listed(rows, &TokenRow::name), ", got ",
-                                 icd::in_quotes(posted->name)));
-  if (const auto kept = setup.set_token(posted->name, posted->token); !kept)
+  if (std::ranges::find(rows, posted.name, &TokenRow::name) == rows.end())
+    return icd::unprocessable("name: expected one of ", icd::listed(rows, &TokenRow::name), ", got ",
+                              icd::in_quotes(posted.name));
+  if (const auto kept = setup.set_token(posted.name, posted.token); !kept)
     return refused_change(kept.error());
-  return object({{"name", {posted->name}}, {"set", {posted->token.has_value()}}});
+  return object({{"name", {posted.name}}, {"set", {posted.token.has_value()}}});
 }
 
 }  // namespace settings_routes

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "api/settings_rows.hpp"
 #include "api/setup.hpp"
 #include "intake/server.hpp"
 
@@ -10,11 +11,10 @@ namespace adit::api {
 /// Settings, tokens and courses. Routes: README.md.
 namespace settings_routes {
 
-intake::Answer shown(const Setup& setup);
 intake::Answer exported(const Setup& setup);
-intake::Answer check(const Setup& setup, const std::string& body);
-intake::Answer save(Setup& setup, const std::string& body);
-intake::Answer set_token(Setup& setup, const std::string& body);
+icd::Checked<CheckView> check(const Setup& setup, const std::string& body);
+icd::Checked<intake::Answer> save(Setup& setup, const std::string& body);
+icd::Checked<intake::Answer> set_token(Setup& setup, const std::string& body);
 intake::Answer switch_course(Setup& setup, const std::string& name);
 
 }  // namespace settings_routes

@@ -62,7 +62,7 @@ class Spare {
   using Done = std::function<void(icd::Checked<void>)>;
 
   virtual ~Spare() = default;
-  virtual SpareView spare() const = 0;
+  virtual SpareView state() const = 0;
   /// Makes the box a standby until resume(), across power cuts.
   virtual icd::Checked<void> stand_by() = 0;
   virtual icd::Checked<void> resume() = 0;

@@ -47,7 +47,7 @@ class Upload {
 class Updates {
  public:
   virtual ~Updates() = default;
-  virtual UpdateView update() const = 0;
+  virtual UpdateView state() const = 0;
   /// Starts to receive a bundle of `size` bytes, one at a time. `again`: allows the running version.
   virtual icd::Checked<std::unique_ptr<Upload>> receive(std::uint64_t size, bool again,
                                                         std::function<void()> resume) = 0;

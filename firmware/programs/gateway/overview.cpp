@@ -348,7 +348,7 @@ void Overview::add_box(alarms::Facts& facts) const {
   facts.board_trouble = rooms_.parts.board_trouble;
   facts.lights_trouble = rooms_.lights.trouble();
   facts.notices = notices_;
-  const api::UpdateView update = rooms_.updates.update();
+  const api::UpdateView update = rooms_.updates.state();
   facts.update.on_trial = update.trial;
   facts.update.version = update.last.version;
   facts.update.stray = update.stray;

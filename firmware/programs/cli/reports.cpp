@@ -243,27 +243,21 @@ Result<Outcome> identify(const Call& call) {
 
 namespace {
 
-using Align = Table::Align;
-
-std::string table_of(const api::RunView& view, bool colour) {
+std::string rejected_text(const api::RunView& view, bool colour) {
   if (view.rejected.empty()) return "0 rejected messages\n";
-  Table table({{"number", Align::Right},
-               {"kind"},
-               {"robot"},
-               {"rejected", Align::Right},
-               {"size", Align::Right},
-               {"answer"},
-               {""}});
-  for (const api::RejectedRow& row : view.rejected) {
-    table.add({{std::to_string(row.number), Tone::Strong},
-               {row.kind},
-               {row.robot.empty() ? "(all)" : row.robot},
-               {duration(view.now - row.at) + " ago"},
-               {size(row.bytes)},
-               {answer_of(row.status, row.why), row.replaced ? Tone::Faint : Tone::Bad},
-               {row.replaced ? "replaced by a newer one" : "", Tone::Faint}});
-  }
-  return table.written(colour);
+  using Row = api::RejectedRow;
+  const auto answer = [](const Row& row) {
+    return Cell(answer_of(row.status, row.why), row.replaced ? Tone::Faint : Tone::Bad);
+  };
+  const std::vector<ColumnOf<Row>> columns = {
+      {"number", [](const Row& row) { return Cell(std::to_string(row.number), Tone::Strong); }, kRight},
+      {"kind", &Row::kind},
+      {"robot", [](const Row& row) { return row.robot.empty() ? "(all)" : row.robot; }},
+      {"rejected", [&view](const Row& row) { return duration(view.now - row.at) + " ago"; }, kRight},
+      {"size", [](const Row& row) { return size(row.bytes); }, kRight},
+      {"answer", answer},
+      {"", [](const Row& row) { return Cell(row.replaced ? "replaced by a newer one" : "", Tone::Faint); }}};
+  return table_of(view.rejected, columns, colour);
 }
 
 }  // namespace
@@ -272,7 +266,7 @@ Result<Outcome> list_rejected(const Call& call) {
   const api::RunView view = ADIT_TRY(fetch<api::RunView>(call.adit, "/adit/run")).row;
   const bool waits =
       std::ranges::any_of(view.rejected, [](const api::RejectedRow& row) { return !row.replaced; });
-  return printed(call, codec::to_json(view.rejected), table_of(view, call.console.colour),
+  return printed(call, codec::to_json(view.rejected), rejected_text(view, call.console.colour),
                  waits ? Exit::Attention : Exit::Fine);
 }
 

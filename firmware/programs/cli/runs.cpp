@@ -13,7 +13,6 @@
 namespace adit::cli {
 namespace {
 
-using Align = Table::Align;
 using api::RunRow;
 
 constexpr std::chrono::seconds kPrinted{60};  // the box reads and draws the run first
@@ -27,34 +26,21 @@ std::string begin_of(const RunRow& run) {
   return run.began > 0 ? api::iso_time(run.began) : "";
 }
 
-std::string course_of(const RunRow& run) {
-  return run.course.empty() ? run.post : run.course;
-}
-
 std::string text_of(const api::RunList& list, bool colour) {
   std::string text;
   if (!list.trouble.empty())
     text = painted("Runs are not being kept: " + host::escaped(list.trouble), Tone::Bad, colour) + '\n';
   if (list.runs.empty()) return text + "0 runs are kept\n";
-  Table table({{"key", Align::Right},
-               {"began"},
-               {"course"},
-               {"score", Align::Right},
-               {"reports left", Align::Right},
-               {"robots", Align::Right},
-               {"size", Align::Right},
-               {""}});
-  for (const RunRow& run : list.runs) {
-    table.add({{run.key, Tone::Strong},
-               {begin_of(run)},
-               {course_of(run)},
-               {number_or_none(run.score), Tone::Strong},
-               {number_or_none(run.remaining_reports)},
-               {std::to_string(run.robots.size())},
-               {size(run.bytes)},
-               {run.is_present ? "now" : "", Tone::Good}});
-  }
-  return text + table.written(colour);
+  const std::vector<ColumnOf<RunRow>> columns = {
+      {"key", [](const RunRow& run) { return Cell(run.key, Tone::Strong); }, kRight},
+      {"began", begin_of},
+      {"course", [](const RunRow& run) { return run.course.empty() ? run.post : run.course; }},
+      {"score", [](const RunRow& run) { return Cell(number_or_none(run.score), Tone::Strong); }, kRight},
+      {"reports left", [](const RunRow& run) { return number_or_none(run.remaining_reports); }, kRight},
+      {"robots", [](const RunRow& run) { return std::to_string(run.robots.size()); }, kRight},
+      {"size", [](const RunRow& run) { return size(run.bytes); }, kRight},
+      {"", [](const RunRow& run) { return Cell(run.is_present ? "now" : "", Tone::Good); }}};
+  return text + table_of(list.runs, columns, colour);
 }
 
 std::string text_of(const RunRow& run, bool colour) {

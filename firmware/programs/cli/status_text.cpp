@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <set>
 #include <vector>
@@ -20,7 +21,6 @@ namespace adit::cli {
 namespace {
 
 using dispatch::ReportState;
-using Align = Table::Align;
 
 std::string counted(std::size_t count, const char* one, const char* several) {
   return count == 0 ? "" : std::to_string(count) + (count == 1 ? one : several);
@@ -32,8 +32,10 @@ std::string not_listed(const OmittedReports& rest) {
                  " reports of other runs are not listed: adit reports --run all\n");
 }
 
-std::string coordinate(const api::ReportRow& report, double icd::Point::* axis) {
-  return report.position ? decimal((*report.position).*axis, 2) : "lost";
+std::function<Cell(const api::ReportRow&)> coordinate(double icd::Point::* axis) {
+  return [axis](const api::ReportRow& report) {
+    return report.position ? decimal((*report.position).*axis, 2) : "lost";
+  };
 }
 
 /// A state unknown to this adit is shown as in doubt.
@@ -112,33 +114,21 @@ std::string reports_text(const std::vector<api::ReportRow>& reports, const Omitt
   if (reports.empty())
     return (rest.of_other_runs == 0 ? "No reports so far.\n" : "No reports in this run so far.\n") +
            not_listed(rest);
-  Table table({{"no.", Align::Right},
-               {"run", Align::Right},
-               {"type"},
-               {"x", Align::Right},
-               {"y", Align::Right},
-               {"z", Align::Right},
-               {"state"},
-               {"score", Align::Right},
-               {"answer or reason"},
-               {"sender"},
-               {"robot"},
-               {"received", Align::Right}});
-  for (const api::ReportRow& report : reports) {
-    table.add({{std::to_string(report.number)},
-               {std::to_string(report.run)},
-               {report.type, Tone::Strong},
-               {coordinate(report, &icd::Point::x)},
-               {coordinate(report, &icd::Point::y)},
-               {coordinate(report, &icd::Point::z)},
-               {life_of(report), tone_of(report)},
-               {gained_by(report)},
-               {icd::listed(std::array{said_of(report), report.note})},
-               {report.sender},
-               {report.robot},
-               {duration(now - report.received) + " ago"}});
-  }
-  return table.written(colour) + not_listed(rest);
+  using Row = api::ReportRow;
+  const std::vector<ColumnOf<Row>> columns = {
+      {"no.", [](const Row& row) { return std::to_string(row.number); }, kRight},
+      {"run", [](const Row& row) { return std::to_string(row.run); }, kRight},
+      {"type", [](const Row& row) { return Cell(row.type, Tone::Strong); }},
+      {"x", coordinate(&icd::Point::x), kRight},
+      {"y", coordinate(&icd::Point::y), kRight},
+      {"z", coordinate(&icd::Point::z), kRight},
+      {"state", [](const Row& row) { return Cell(life_of(row), tone_of(row)); }},
+      {"score", gained_by, kRight},
+      {"answer or reason", [](const Row& row) { return icd::listed(std::array{said_of(row), row.note}); }},
+      {"sender", &Row::sender},
+      {"robot", &Row::robot},
+      {"received", [now](const Row& row) { return duration(now - row.received) + " ago"; }, kRight}};
+  return table_of(reports, columns, colour) + not_listed(rest);
 }
 
 namespace {
@@ -248,11 +238,6 @@ std::string endpoints_table(const RunView& view, bool colour) {
   return table.empty() ? "" : "\nCommand Post\n" + table.written(colour);
 }
 
-/// Size of the last sent map. The last accepted map may be another.
-std::string sent_size(const api::ActivityRow& row) {
-  return row.age ? size(row.bytes_sent) : "";
-}
-
 /// With the mode of clouds, and what was not sent or is not seen.
 std::string kind_of(const api::ActivityRow& row) {
   std::string kind = row.kind;
@@ -264,30 +249,29 @@ std::string kind_of(const api::ActivityRow& row) {
 }
 
 std::string activities_table(const RunView& view, bool colour) {
-  Table table({{"robot"},
-               {"kind"},
-               {"arriving"},
-               {"accepted", Align::Right},
-               {"sent", Align::Right},
-               {"queued", Align::Right},
-               {"no room", Align::Right},
-               {"age", Align::Right},
-               {"size", Align::Right},
-               {"last answer"}});
-  for (const api::ActivityRow& row : view.activities) {
-    table.add({{row.robot.empty() ? "(all)" : row.robot, Tone::Strong},
-               {kind_of(row)},
-               {row.word, tone_of_level(row.level)},
-               {std::to_string(row.accepted)},
-               {std::to_string(row.forwarded)},
-               {std::to_string(row.queued)},
-               {row.no_room == 0 ? "" : std::to_string(row.no_room), Tone::Warning},
-               {row.age ? duration(*row.age) : "never"},
-               {sent_size(row)},
-               {answer_of(row.last_status, row.last_sentence),
-                row.level == alarms::Level::Bad ? Tone::Bad : Tone::Plain}});
-  }
-  return table.empty() ? "" : "\nMaps, states and markers\n" + table.written(colour);
+  using Row = api::ActivityRow;
+  const auto no_room = [](const Row& row) {
+    return Cell(row.no_room == 0 ? "" : std::to_string(row.no_room), Tone::Warning);
+  };
+  const auto answer = [](const Row& row) {
+    const Tone tone = row.level == alarms::Level::Bad ? Tone::Bad : Tone::Plain;
+    return Cell(answer_of(row.last_status, row.last_sentence), tone);
+  };
+  const std::vector<ColumnOf<Row>> columns = {
+      {"robot", [](const Row& row) { return Cell(row.robot.empty() ? "(all)" : row.robot, Tone::Strong); }},
+      {"kind", kind_of},
+      {"arriving", [](const Row& row) { return Cell(row.word, tone_of_level(row.level)); }},
+      {"accepted", [](const Row& row) { return std::to_string(row.accepted); }, kRight},
+      {"sent", [](const Row& row) { return std::to_string(row.forwarded); }, kRight},
+      {"queued", [](const Row& row) { return std::to_string(row.queued); }, kRight},
+      {"no room", no_room, kRight},
+      {"age", [](const Row& row) { return row.age ? duration(*row.age) : "never"; }, kRight},
+      // of the last sent map; the last accepted map may be another
+      {"size", [](const Row& row) { return row.age ? size(row.bytes_sent) : ""; }, kRight},
+      {"last answer", answer}};
+  return view.activities.empty()
+             ? ""
+             : "\nMaps, states and markers\n" + table_of(view.activities, columns, colour);
 }
 
 std::string refusals_table(const RunView& view, bool colour) {

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "host/log.hpp"
@@ -33,8 +35,9 @@ std::string answer_of(int status, const std::string& sentence);
 std::string decimal(double number, int digits);
 
 struct Cell {
+  Cell(std::string shown = "", Tone tone_of_it = Tone::Plain) : text(std::move(shown)), tone(tone_of_it) {}
   std::string text;
-  Tone tone = Tone::Plain;
+  Tone tone;
 };
 
 /// Rows of cells in aligned columns. Escapes all text.
@@ -59,6 +62,31 @@ class Table {
   std::vector<Column> columns_;
   std::vector<std::vector<Cell>> rows_;
 };
+
+inline constexpr auto kRight = Table::Align::Right;
+
+/// A column of a table with a row for each item.
+template <class Item>
+struct ColumnOf {
+  const char* name;
+  std::function<Cell(const Item& item)> cell;
+  Table::Align align = Table::Align::Left;
+};
+
+/// The table as Table::written(), or "" without items.
+template <class Item>
+std::string table_of(const std::vector<Item>& items, const std::vector<ColumnOf<Item>>& columns,
+                     bool colour) {
+  std::vector<Table::Column> heading;
+  for (const auto& column : columns) heading.push_back({column.name, column.align});
+  Table table(std::move(heading));
+  for (const Item& item : items) {
+    std::vector<Cell> cells;
+    for (const auto& column : columns) cells.push_back(column.cell(item));
+    table.add(std::move(cells));
+  }
+  return table.empty() ? "" : table.written(colour);
+}
 
 /// Lines of a name and a value.
 class Facts {

@@ -7,6 +7,45 @@
 namespace adit::api {
 namespace {
 
+extern const codec::Row kTile, kArea, kHeights, kFiner, kLayer;
+
+}  // namespace
+}  // namespace adit::api
+
+namespace adit::codec {
+
+template <>
+struct KindOf<picture::TileView> : KindOfRow<picture::TileView, api::kTile> {};
+template <>
+struct KindOf<picture::Area> : KindOfRow<picture::Area, api::kArea> {};
+template <>
+struct KindOf<picture::Heights> : KindOfRow<picture::Heights, api::kHeights> {};
+template <>
+struct KindOf<picture::Finer> : KindOfRow<picture::Finer, api::kFiner> {};
+template <>
+struct KindOf<picture::LayerView> : KindOfRow<picture::LayerView, api::kLayer> {};
+
+template <>
+struct KindOf<picture::Kind> : WriteOnly {
+  static Value write(picture::Kind kind) { return {kind == picture::Kind::Grid ? "grid" : "cloud"}; }
+  static constexpr Schema schema = KindOf<std::string>::schema;
+};
+
+/// In CSS form: "#c8d2da".
+template <>
+struct KindOf<picture::Colour> : WriteOnly {
+  static Value write(const picture::Colour& colour) {
+    return {"#" + icd::hex(std::array{colour.red, colour.green, colour.blue})};
+  }
+  static constexpr Schema schema = {
+      .type = "string", .more = R"("pattern":"^#[0-9a-f]{6}$")", .name = "Colour"};
+};
+
+}  // namespace adit::codec
+
+namespace adit::api {
+namespace {
+
 using codec::member;
 using codec::Member;
 using codec::Row;
@@ -38,54 +77,12 @@ constexpr Member kHeightsMembers[] = {
 };
 constexpr Row kHeights = {"", kHeightsMembers, "Metres."};
 
-}  // namespace
-}  // namespace adit::api
-
-namespace adit::codec {
-
-template <>
-struct KindOf<picture::TileView> : KindOfRow<picture::TileView, api::kTile> {};
-template <>
-struct KindOf<picture::Area> : KindOfRow<picture::Area, api::kArea> {};
-template <>
-struct KindOf<picture::Heights> : KindOfRow<picture::Heights, api::kHeights> {};
-
-template <>
-struct KindOf<picture::Kind> : WriteOnly {
-  static Value write(picture::Kind kind) { return {kind == picture::Kind::Grid ? "grid" : "cloud"}; }
-  static constexpr Schema schema = KindOf<std::string>::schema;
-};
-
-/// In CSS form: "#c8d2da".
-template <>
-struct KindOf<picture::Colour> : WriteOnly {
-  static Value write(const picture::Colour& colour) {
-    return {"#" + icd::hex(std::array{colour.red, colour.green, colour.blue})};
-  }
-  static constexpr Schema schema = {
-      .type = "string", .more = R"("pattern":"^#[0-9a-f]{6}$")", .name = "Colour"};
-};
-
-}  // namespace adit::codec
-
-namespace adit::api {
-namespace {
-
 constexpr Member kFinerMembers[] = {
     member<&picture::Finer::level>("level", "finest level: -1 or -2"),
     member<&picture::Finer::version>("version"),
     member<&picture::Finer::area>("area", "area that changed"),
 };
 constexpr Row kFiner = {"", kFinerMembers, "The finer tiles that exist now."};
-
-}  // namespace
-}  // namespace adit::api
-
-template <>
-struct adit::codec::KindOf<adit::picture::Finer> : KindOfRow<adit::picture::Finer, adit::api::kFiner> {};
-
-namespace adit::api {
-namespace {
 
 constexpr std::string_view kMapKinds[] = {"grid", "cloud"};
 
@@ -103,16 +100,6 @@ constexpr Member kLayerMembers[] = {
     member<&LayerView::tiles>("tiles"),
 };
 constexpr Row kLayer = {"Layer", kLayerMembers};
-
-}  // namespace
-}  // namespace adit::api
-
-template <>
-struct adit::codec::KindOf<adit::picture::LayerView>
-    : KindOfRow<adit::picture::LayerView, adit::api::kLayer> {};
-
-namespace adit::api {
-namespace {
 
 constexpr Member kColours[] = {
     member<&MapColours::free>("free"),

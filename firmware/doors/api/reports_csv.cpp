@@ -12,15 +12,6 @@
 namespace adit::api {
 namespace {
 
-/// Bytes of the first UTF-8 character of `text`, or 0.
-std::size_t first_character(std::string_view text) {
-  codec::Utf8Checker checker;
-  for (std::size_t i = 0; i < text.size() && checker.next(static_cast<std::uint8_t>(text[i])); ++i) {
-    if (checker.complete()) return i + 1;
-  }
-  return 0;
-}
-
 /// C0 controls and DEL, or C1 controls (U+0080 to U+009F), which some terminals execute.
 bool is_control(std::string_view character) {
   const auto last = static_cast<unsigned char>(character.back());
@@ -32,7 +23,7 @@ bool is_control(std::string_view character) {
 std::string plain(std::string_view text) {
   std::string all;
   while (!text.empty()) {
-    const std::size_t size = first_character(text);
+    const std::size_t size = codec::character_size(text);
     const std::string_view character = text.substr(0, std::max<std::size_t>(size, 1));
     if (size == 0) {
       all += "\xef\xbf\xbd";

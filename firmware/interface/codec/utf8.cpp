@@ -28,6 +28,14 @@ std::optional<std::size_t> Utf8Checker::feed(std::string_view bytes) {
   return std::nullopt;
 }
 
+std::size_t character_size(std::string_view text) {
+  Utf8Checker checker;
+  for (std::size_t i = 0; i < text.size() && checker.next(static_cast<std::uint8_t>(text[i])); ++i) {
+    if (checker.complete()) return i + 1;
+  }
+  return 0;
+}
+
 bool is_utf8(std::string_view text) {
   Utf8Checker checker;
   return !checker.feed(text) && checker.complete();

@@ -42,6 +42,9 @@ class Utf8Checker {
 
 bool is_utf8(std::string_view text);
 
+/// Bytes of the first character of `text`, or 0 if it is invalid.
+std::size_t character_size(std::string_view text);
+
 /// Requires a scalar value: at most U+10FFFF and no surrogate.
 void append_utf8(std::string& text, char32_t character);
 

@@ -17,15 +17,6 @@
 namespace adit::codec {
 namespace {
 
-/// Bytes of the first UTF-8 character of `text`, or 0.
-std::size_t character_size(std::string_view text) {
-  Utf8Checker checker;
-  for (std::size_t i = 0; i < text.size() && checker.next(static_cast<std::uint8_t>(text[i])); ++i) {
-    if (checker.complete()) return i + 1;
-  }
-  return 0;
-}
-
 void append_escaped(std::string& out, char control) {
   switch (control) {
     case '\n':

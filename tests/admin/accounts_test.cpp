@@ -90,6 +90,8 @@ TEST(Accounts, DamagedFileIsRenamedAndTheCodeIsRequired) {
   const host::Folder folder;
   AditdProcess(folder).set(Role::Operator, kOld);
   folder.put(Accounts::kFile, "{\"version\":1,\"oper");
+  EXPECT_FALSE(AditdProcess(folder).accounts.first_start()) << "it has a copy";
+  folder.put(std::string(Accounts::kFile) + host::kCopy, "");
   const AditdProcess process(folder);
   EXPECT_TRUE(process.accounts.is_code("12345678"));
   EXPECT_TRUE(std::filesystem::exists(folder / "access.json.damaged"));

@@ -192,7 +192,8 @@ TEST_F(StoreTest, UnreadableFilesAreKeptAndPreventARevert) {
 TEST_F(StoreTest, NamesDamagedTokensAndKeepsTheirFiles) {
   for (const char* const name : {"mapping", "scoring"}) {
     (void)store_.save_token(name, icd::BearerToken::parse("saved-1"));
-    state_.put("secrets/" + std::string(name) + ".token", "saved 1");
+    for (const char* const copy : {"", host::kCopy})
+      state_.put("secrets/" + std::string(name) + ".token" + copy, "saved 1");
   }
   const auto trouble = store_.load().value().trouble;
   EXPECT_THAT(trouble, HasSubstr("the saved token mapping is damaged"));
@@ -248,11 +249,33 @@ TEST_F(StoreTest, NamesLostSettings) {
   EXPECT_EQ(store_.load()->trouble, "");
 }
 
+TEST_F(StoreTest, UsesCopiesOfDamagedFiles) {
+  (void)store_.save(with_connections(30));
+  (void)store_.save_token("team", icd::BearerToken::parse("first-team-token"));
+  (void)store_.save_token("team", icd::BearerToken::parse("next-team-token"));
+  store_.settle(with_connections(30));
+  for (const char* const file : {"settings.json", "secrets/team.token", "secrets/replaced"}) {
+    std::filesystem::resize_file(state_ / file, 4);
+    const auto loaded = store_.load().value();
+    EXPECT_EQ(loaded.trouble, "") << file;
+    EXPECT_EQ(loaded.settings.team.connections, 30u);
+    EXPECT_EQ(loaded.secrets.token("team")->reveal(), "next-team-token");
+    std::string text = "first-team-token";
+    loaded.secrets.redaction().strike_from(text);
+    EXPECT_NE(text, "first-team-token");
+    store_.settle(with_connections(30));  // copies no damage
+  }
+  ASSERT_TRUE(store_.save_token("team", std::nullopt).has_value());
+  EXPECT_FALSE(kept("secrets/team.token.copy"));
+}
+
 /// As adit-import does from a card.
 TEST_F(StoreTest, NoticesTheLossOfFilesThatAnotherProgramSaved) {
   std::filesystem::create_directory(state_ / "secrets");
   state_.put("secrets/scoring.token", "saved-1");
   store_.settle(with_connections(30));
+  state_.put("secrets/scoring.token", "");
+  EXPECT_EQ(store_.load()->secrets.token("scoring")->reveal(), "saved-1");
   std::filesystem::remove(state_ / "secrets/scoring.token");
   EXPECT_FALSE(store_.load()->secrets.token("scoring"));
 }

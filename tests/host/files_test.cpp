@@ -72,6 +72,33 @@ TEST(WriteKept, ReadsBackTheSameAndDetectsFlippedBits) {
   EXPECT_EQ(read_file(folder.put("edited", text)).value(), text) << "by a person";
 }
 
+TEST(ParseKept, TakesTheCopyOfADamagedFileAlone) {
+  const Folder folder;
+  const auto parse = [](std::string_view text) -> std::expected<int, std::string> {
+    if (text == "1" || text == "2") return text[0] - '0';
+    return std::unexpected("expected 1 or 2, got " + std::string(text));
+  };
+  const auto read = [&] { return parse_kept(folder / "kept", parse).value(); };
+  ASSERT_TRUE(write_kept(folder / "kept", "1"));
+  folder.put("kept", "");
+  EXPECT_EQ(read(), 1);
+  keep_copy(folder / "kept");
+  EXPECT_EQ(read(), 1) << "a file without a checksum may be damaged, so it is not copied";
+  folder.put("kept", "2");
+  EXPECT_EQ(read(), 2) << "by a person";
+  folder.put("kept", "5");
+  folder.put("kept.copy", "6");
+  EXPECT_EQ(read().error(), "expected 1 or 2, got 5");
+  std::filesystem::remove(folder / "kept.copy");
+  folder.put("kept", "2");
+  keep_copy(folder / "kept");
+  folder.put("kept", "");
+  EXPECT_EQ(read(), 2) << "by an earlier version";
+  ASSERT_TRUE(remove_file(folder / "kept"));
+  EXPECT_FALSE(may_exist(folder / "kept.copy"));
+  EXPECT_THAT(parse_kept(folder / "kept", parse).error(), HasSubstr("No such file"));
+}
+
 TEST(WriteFile, ReplacesTheFileAtomically) {
   const Folder folder;
   folder.put("settings", "old");

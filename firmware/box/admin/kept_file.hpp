@@ -19,11 +19,10 @@ template <class Read>
 auto read_kept_file(const std::string& file, Read read, std::string& unread)
     -> decltype(read(std::string_view())) {
   if (!host::may_exist(file)) return {};
-  const auto text = host::read_file(file);
-  if (!text) return std::unexpected(unread = text.error());
-  auto kept = read(*text);
-  if (!kept) return std::unexpected(file + ": " + kept.error());
-  return kept;
+  auto kept = host::parse_kept(file, read);
+  if (!kept) return std::unexpected(unread = kept.error());
+  if (!*kept) return std::unexpected(file + ": " + kept->error());
+  return *std::move(kept);
 }
 
 /// Stores the acknowledged alarms in a file that only aditd can read, across restarts. If the file is damaged

@@ -18,11 +18,10 @@ namespace fs = std::filesystem;
 template <class Parse>
 auto read_settings(const std::string& file, Parse parse, std::string& unread)
     -> std::expected<typename decltype(parse(""))::value_type, std::string> {
-  const auto text = host::read_file(file);
-  if (!text) return std::unexpected(unread = text.error());
-  auto settings = parse(*text);
-  if (settings) return std::move(*settings);
-  return std::unexpected(file + ": " + settings::sentence_of(settings.error()));
+  auto settings = host::parse_kept(file, parse);
+  if (!settings) return std::unexpected(unread = settings.error());
+  if (*settings) return std::move(**settings);
+  return std::unexpected(file + ": " + settings::sentence_of(settings->error()));
 }
 
 /// False if it is unknown.
@@ -33,7 +32,9 @@ bool is_there(const std::string& file) {
 
 /// A failure is logged.
 void mark_saved(const std::string& file, const std::string& mark) {
-  if (!is_there(file) || host::may_exist(mark)) return;
+  if (!is_there(file)) return;
+  host::keep_copy(file);
+  if (host::may_exist(mark)) return;
   host::log_failure(host::Level::Warning, "the loss of a saved file may not be noticed",
                     host::write_file(mark, "", host::kOursAlone));
 }

@@ -117,7 +117,20 @@ std::expected<void, std::string> write_file(const std::string& path, const std::
 }
 
 std::expected<void, std::string> write_kept(const std::string& path, const std::string& text) {
-  return write_file(path, text + checksum_of(text), kOursAlone);
+  const std::string whole = text + checksum_of(text);
+  ADIT_TRY(write_file(path + kCopy, whole, kOursAlone));
+  return write_file(path, whole, kOursAlone);
+}
+
+void keep_copy(const std::string& path) {
+  const auto file = slurp(path), copy = slurp(path + kCopy);
+  if (!file || (!copy && copy.error() != ENOENT) || (copy && copy->text == file->text)) return;
+  if (copy && without_checksum(file->text) == file->text) return;  // perhaps it is damaged
+  log_failure(Level::Warning, "a saved file has no copy", write_file(path + kCopy, file->text, kOursAlone));
+}
+
+void log_use_of_copy(const std::string& path) {
+  log(Level::Error, "a saved file is damaged; its copy is used", {{"file", path}});
 }
 
 std::expected<void, std::string> write_over(const std::string& path, const std::string& text) {
@@ -164,8 +177,10 @@ std::expected<std::vector<std::string>, std::string> names_in(const std::string&
 }
 
 std::expected<void, std::string> remove_file(const std::string& path) {
-  if (unlink(path.c_str()) != 0 && errno != ENOENT)
-    return std::unexpected(trouble(path + ": cannot be removed", errno));
+  for (const std::string& each : {path + kCopy, path}) {
+    if (unlink(each.c_str()) != 0 && errno != ENOENT)
+      return std::unexpected(trouble(each + ": cannot be removed", errno));
+  }
   // Also for an absent file, because the sync after an earlier removal may have failed.
   if (!sync_folder(path) && errno != ENOENT) return std::unexpected(trouble(folder_of(path), errno));
   return {};

@@ -31,7 +31,7 @@ struct Fault {
 enum class Place : std::uint8_t { Saved, Given, Credentials };
 
 /// No token if the file is absent, or if a given file is empty. Errors never show the file's content.
-std::expected<Token, Fault> read_token(const std::string& path, Place place) {
+std::expected<Token, Fault> read_one(const std::string& path, Place place) {
   const auto file = slurp(path);
   if (!file && file.error() == ENOENT) return Token();
   if (!file) return std::unexpected(Fault{trouble(path, file.error()), true});
@@ -45,6 +45,23 @@ std::expected<Token, Fault> read_token(const std::string& path, Place place) {
   if (!token)
     return std::unexpected(Fault{path + ": expected one token of 1 to 256 visible ASCII characters"});
   return token;
+}
+
+/// Half a token is a token, too.
+bool is_half_of(const std::string& path, const std::string& copy) {
+  const auto half = slurp(path), whole = slurp(copy);
+  return half && whole && half->text.size() < whole->text.size() && whole->text.starts_with(half->text);
+}
+
+/// The same, or of its copy if a saved file is damaged.
+std::expected<Token, Fault> read_token(const std::string& path, Place place) {
+  auto token = read_one(path, place);
+  if (place != Place::Saved || (!token && token.error().is_unread)) return token;
+  if (token && !is_half_of(path, path + kCopy)) return token;
+  auto copy = read_one(path + kCopy, place);
+  if (!copy || !*copy) return token;
+  log_use_of_copy(path);
+  return copy;
 }
 
 }  // namespace
@@ -106,12 +123,14 @@ std::expected<Secrets, std::string> read_secrets(const std::string& given, const
       return std::unexpected(std::move(token.error().why));
     }
   }
-  const auto replaced = slurp(saved + '/' + kReplacedFile);
-  if (!replaced && replaced.error() != ENOENT)
-    secrets.unread = trouble(saved + '/' + kReplacedFile, replaced.error());
-  const std::string lines = replaced ? without_checksum(replaced->text) : "";
-  for (std::string_view rest = lines; !rest.empty();) {
-    if (auto token = icd::BearerToken::parse(icd::cut(rest, '\n'))) secrets.replaced.push_back(*token);
+  for (const std::string& file : {saved + '/' + kReplacedFile, saved + '/' + kReplacedFile + kCopy}) {
+    const auto replaced = slurp(file);
+    if (!replaced && replaced.error() != ENOENT) secrets.unread = trouble(file, replaced.error());
+    const std::string lines = replaced ? without_checksum(replaced->text) : "";
+    for (std::string_view rest = lines; !rest.empty();) {
+      if (auto token = icd::BearerToken::parse(icd::cut(rest, '\n'))) secrets.replaced.push_back(*token);
+    }
+    if (replaced && lines.size() < replaced->text.size()) break;  // its checksum is right
   }
   auto label = read_token(given + "/label.code", place);
   if (!label && !label.error().is_unread) return std::unexpected(std::move(label.error().why));

@@ -35,6 +35,9 @@ inline constexpr const char* kDamaged = ".damaged";
 /// person. Logs `what`, `why` and the path, and a failure to rename.
 void set_damaged_aside(const std::string& path, std::string_view what, const std::string& why);
 
+/// "a saved file is damaged; its copy is used"
+void log_use_of_copy(const std::string& path);
+
 /// Reads a small text file, at most 1 MiB, without the line of write_kept(). If the checksum is wrong, that
 /// line stays, so the parser finds the text damaged.
 std::expected<std::string, std::string> read_file(const std::string& path);
@@ -45,8 +48,29 @@ inline constexpr int kForAll = 0644, kOursAlone = 0600;
 /// Writes `text` so that a crash leaves the old file or the new one: temporary file (PATH.writing), fsync,
 /// rename, fsync of the directory. One call at a time for each path.
 std::expected<void, std::string> write_file(const std::string& path, const std::string& text, int mode);
-/// The same for this user alone, with a checksum in the last line ("crc32 1a2b3c4d").
+/// The same for this user alone, with a checksum in the last line ("crc32 1a2b3c4d"), in two copies: first
+/// PATH + kCopy, then PATH.
 std::expected<void, std::string> write_kept(const std::string& path, const std::string& text);
+inline constexpr const char* kCopy = ".copy";
+/// Makes the copy of a file that another program wrote, or an earlier version, if there is none or the file
+/// has a right checksum. A failure is logged.
+void keep_copy(const std::string& path);
+/// The result of parse(text): of the file, or if that is an error, of its copy, which is logged. The outer
+/// error: the file cannot be read.
+template <class Parse>
+auto parse_kept(const std::string& path, Parse parse)
+    -> std::expected<decltype(parse(std::string_view())), std::string> {
+  const auto text = read_file(path);
+  if (!text) return std::unexpected(text.error());
+  auto parsed = parse(std::string_view(*text));
+  if (parsed) return parsed;
+  const auto copy = read_file(path + kCopy);
+  if (!copy) return parsed;
+  auto copied = parse(std::string_view(*copy));
+  if (!copied) return parsed;
+  log_use_of_copy(path);
+  return copied;
+}
 /// Overwrites an existing file, which needs no space on a full disk. After a crash, each sector of 512 bytes
 /// is the old or the new one.
 std::expected<void, std::string> write_over(const std::string& path, const std::string& text);
@@ -64,7 +88,7 @@ inline constexpr std::size_t kMostNames = 256;
 std::expected<std::vector<std::string>, std::string> names_in(const std::string& folder,
                                                               std::size_t most = kMostNames);
 
-/// Removes a file, and syncs the removal. An absent file is no error. An error names the file.
+/// Removes a file and its copy, and syncs the removal. An absent file is no error. An error names the file.
 std::expected<void, std::string> remove_file(const std::string& path);
 
 struct Secrets {

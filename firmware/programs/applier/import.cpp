@@ -185,8 +185,9 @@ Done give_to_owner(UntrustedFolder& folder, const std::string& path) {
   return std::unexpected(host::trouble(path, errno));
 }
 
-/// Writes a file of aditd. aditd owns the directory, so its path is not trusted.
+/// Writes a file of aditd, which makes the copy of it. aditd owns the directory, so its path is not trusted.
 Done put(UntrustedFolder& folder, const std::string& name, const std::string& text) {
+  ADIT_TRY(folder.remove(name + host::kCopy));
   const std::string path = folder.path_by_descriptor() + '/' + name;
   ADIT_TRY(host::write_file(path, text, host::kOursAlone));
   return give_to_owner(folder, path);

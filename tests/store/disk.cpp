@@ -92,6 +92,11 @@ std::map<std::string, std::string> Disk::files() const {
   return files;
 }
 
+void Disk::replace(const std::map<std::string, std::string>& files) const {
+  for (const auto& [name, bytes] : this->files()) fs::remove(fs::path(log()) / name);
+  for (const auto& [name, bytes] : files) std::ofstream(fs::path(log()) / name, std::ios::binary) << bytes;
+}
+
 Disk* Disk::of(int fd, const char* name) {
   if (the_one == nullptr) return nullptr;
   const std::string path = name != nullptr && *name == '/' ? name : path_of(fd);

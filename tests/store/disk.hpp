@@ -37,6 +37,8 @@ class Disk {
   /// Makes a file 1 TB long. The disk can lose no more power then.
   void lengthen();
   std::map<std::string, std::string> files() const;
+  /// Puts these files in place of all others.
+  void replace(const std::map<std::string, std::string>& files) const;
 
   // Probabilities per call.
   double kills = 0, failing_syncs = 0, failing_writes = 0, full = 0, failing_opens = 0;

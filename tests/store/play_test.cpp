@@ -1,8 +1,10 @@
 // Processes of random lengths append to one log, and are killed, lose power, or meet a failing disk. Each
-// process's reading is compared with the results that earlier processes got.
+// process's reading is compared with the results that earlier processes got. Older copies and zeros must show.
 #include <gmock/gmock.h>
 
 #include <cstdlib>
+#include <map>
+#include <optional>
 
 #include "store/disk.hpp"
 #include "store/log.hpp"
@@ -71,8 +73,10 @@ class Play {
       }
       quiet();
       if (on_disk_ && random_.chance(0.6)) disk_.cut_power();
+      copies_.push_back(disk_.files());
       if (on_disk_ && random_.chance(0.2)) disk_.flip_bit();
     }
+    if (on_disk_ && trouble_.empty()) lose_what_was_synced();
     for (int i = 0; i < 2 && trouble_.empty(); ++i) {
       disk_.lengthen();
       disk_.start();
@@ -121,6 +125,45 @@ class Play {
              {}};
     if (!started && !on_disk_) return;
     for (std::uint64_t left = random_.below(40); left > 0; --left) step(*directory, log);
+  }
+
+  struct Reading {
+    Found found;
+    std::uint64_t last = 0, durable = 0;
+  };
+  std::optional<Reading> read() const {
+    const auto directory = Directory::lock(disk_.log());
+    const auto contents =
+        directory ? Contents::read(*directory, keeping_) : std::unexpected(directory.error());
+    if (!contents) return std::nullopt;
+    return Reading{found_in(*contents), contents->last, contents->durable};
+  }
+
+  /// An older copy of all files is put back, or zeros are in one of them from some place on. The reading
+  /// shows it, or its last number is below the durable one, which is why that is kept elsewhere. Then the
+  /// files of before are put back.
+  void lose_what_was_synced() {
+    disk_.start();
+    const auto before = disk_.files();
+    const auto whole = read();
+    if (before.empty() || !whole || !whole->found.gaps.empty()) return;
+    const auto expect_shown = [&](const char* what) {
+      const auto now = read();
+      const bool is_shown = !now || !now->found.gaps.empty() || now->last < whole->durable;
+      if (is_shown || now->found.bodies == whole->found.bodies) return;
+      const std::size_t least = whole->found.bodies.size() - (whole->last - whole->durable);
+      if (now->found.bodies.size() < least) trouble_ = std::string(what) + " shows in nothing";
+    };
+    disk_.replace(copies_[random_.below(copies_.size())]);
+    expect_shown("an older copy");
+    auto zeroed = before;
+    std::string& bytes =
+        std::next(zeroed.begin(), static_cast<std::ptrdiff_t>(random_.below(zeroed.size())))->second;
+    if (!bytes.empty())
+      std::fill(bytes.begin() + static_cast<std::ptrdiff_t>(random_.below(bytes.size())), bytes.end(), '\0');
+    disk_.replace(zeroed);
+    expect_shown("a zeroed tail");
+    disk_.replace(before);
   }
 
   static std::size_t durable_in(const Contents& contents) {
@@ -173,6 +216,7 @@ class Play {
   const bool on_disk_;
   Keeping keeping_;
   Book book_;
+  std::vector<std::map<std::string, std::string>> copies_;  // of the files, after each process
   std::uint64_t count_ = 0;
   std::string trouble_;
 };

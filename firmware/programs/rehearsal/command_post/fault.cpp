@@ -98,7 +98,7 @@ Told take(const Word& word, Fault& fault) {
     fault.other_sender = true;
     return {};
   }
-  const auto effects = all_effects();
+  const auto effects = known_effects();
   const auto found = std::ranges::find(effects, word.name, &Effect::word);
   if (found != effects.end()) return take_effect(word, *found, fault);
   std::string sentence = "no such fault: " + quoted(word.name) + "; there are ok";
@@ -165,7 +165,7 @@ bool is_of(const Fault& fault, std::string_view body) {
   return fault.robot.empty() || body.find(fault.robot) != std::string_view::npos;
 }
 
-/// The words for an aim, or for the clock. `place` is where they stand, for the error.
+/// Reads the words of a fault of that aim, or of the clock. The error begins with `place`.
 Told read_words(std::string_view aim, std::string_view words, const std::string& place, Orders& orders) {
   if (aim == kClock) {
     if (words != kConstant && words != kRunning)

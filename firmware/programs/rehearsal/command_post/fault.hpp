@@ -21,7 +21,7 @@ namespace adit::rehearsal {
 
 struct Effect;  // misbehave.hpp
 
-/// What is wrong with one request's answer, on purpose. One effect at most, and what may go with any.
+/// A fault of one request's answer, on purpose: at most one effect, and additions that go with any.
 struct Fault {
   using Seconds = std::chrono::duration<double>;
 

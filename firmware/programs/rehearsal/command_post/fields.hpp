@@ -110,7 +110,7 @@ class Field {
   const std::string& path() const { return path_; }
   Findings& findings() const { return *findings_; }
 
-  /// Writes down "<path>: <what>". Returns nothing, for a reader to return.
+  /// Writes down "<path>: <what>". The result is empty, so that a reader can return it.
   std::nullopt_t breaks(std::string_view what, Measured measured = Measured::Refuses) const;
 
  private:

@@ -62,17 +62,17 @@ inline constexpr Function kMappingFunctions[] = {
 /// A part of a message that was taken, as it is counted.
 struct Accepted {
   std::string kind;   // "grid", "cloud", "pose", "marker", "report"
-  std::string robot;  // a map's or a pose's name, a marker's ns; "" where there is none
+  std::string robot;  // a map's or a pose's name, a marker's ns; may be ""
 };
 
-/// All that an endpoint has to say of one request: what is done about it and what is written down.
+/// An endpoint's decision about one request, and its findings.
 struct Judgement {
   Outcome outcome;
-  std::string uri;  // one of the ICD's five; "": none of them
+  std::string uri;  // one of the ICD's five, or ""
   Findings findings;
   std::optional<Json> message;        // as it came
   std::optional<MapMessage> map;      // where one was taken
-  std::optional<OrderedJson> report;  // where one was recorded: what was answered
+  std::optional<OrderedJson> report;  // the answer to a recorded report
   std::vector<Accepted> accepted;
   std::vector<MarkerChange> markers;  // that were taken
   std::string fault;                  // the rehearsed fault; "": none

@@ -2,7 +2,6 @@
 
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -11,6 +10,8 @@
 #include <filesystem>
 #include <memory>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "command_line/read.hpp"
 #include "rehearsal/command_post/command_post.hpp"
@@ -73,55 +74,46 @@ void print(const std::string& text) {
   (void)std::fflush(stdout);
 }
 
-struct Servers {
-  std::unique_ptr<Server> scoring, mapping, control;
-};
+using Servers = std::vector<std::pair<const char*, std::unique_ptr<Server>>>;  // with their names
 
 std::expected<Servers, std::string> listen(const Options& options, CommandPost& post) {
+  Servers servers;
   std::string wrong;
-  const auto listen_on = [&](const char* name, const Address& address, const WireManner& manner,
-                             Decide decide) {
+  const auto add = [&](const char* name, const Address& address, const WireManner& manner, Decide decide) {
     auto server = Server::listen(address, manner, std::move(decide));
+    if (server) servers.emplace_back(name, std::move(*server));
     if (!server && wrong.empty()) wrong = std::string(name) + ": " + server.error();
-    return server ? std::move(*server) : nullptr;
   };
-  const auto link = options.link > 0 ? std::make_shared<Link>(options.link) : nullptr;
   const WireManner mapping{.answers_expect = options.manner == Manner::Strict,
                            .slash = options.slash,
                            .serial = options.serial,
-                           .link = link};
+                           .link = options.link > 0 ? std::make_shared<Link>(options.link) : nullptr};
   WireManner scoring = mapping;
   scoring.answers_expect = true;
   scoring.most_body = kMostSmallBody;
-  Servers servers;
-  servers.scoring = listen_on("scoring", options.scoring, scoring,
-                              [&post](const Request& request) { return post.scoring(request); });
-  servers.mapping = listen_on("mapping", options.mapping, mapping,
-                              [&post](const Request& request) { return post.mapping(request); });
+  add("scoring", options.scoring, scoring, [&post](const Request& request) { return post.scoring(request); });
+  add("mapping", options.mapping, mapping, [&post](const Request& request) { return post.mapping(request); });
   if (options.control) {
-    servers.control = listen_on("control", *options.control, {.most_body = kMostSmallBody},
-                                [&post](const Request& request) { return post.control(request); });
+    add("control", *options.control, {.most_body = kMostSmallBody},
+        [&post](const Request& request) { return post.control(request); });
   }
   if (!wrong.empty()) return std::unexpected(wrong);
   return servers;
 }
 
 std::string first_line(const Servers& servers) {
-  std::string line = "adit-rehearsal: scoring " + servers.scoring->address().text() + " mapping " +
-                     servers.mapping->address().text();
-  if (servers.control) line += " control " + servers.control->address().text();
+  std::string line = "adit-rehearsal:";
+  for (const auto& [name, server] : servers)
+    line.append(" ").append(name).append(" ").append(server->address().text());
   return line + "\n";
 }
 
 /// Whoever is in the middle of a large map has this long; then the process ends all the same.
 bool stop_all(const Servers& servers) {
   constexpr std::chrono::milliseconds patience{250};
-  const std::array<Server*, 3> all = {servers.scoring.get(), servers.mapping.get(), servers.control.get()};
-  for (Server* const server : all) {
-    if (server != nullptr) server->stop();
-  }
+  for (const auto& [name, server] : servers) server->stop();
   bool drained = true;
-  for (Server* const server : all) drained = (server == nullptr || server->drained(patience)) && drained;
+  for (const auto& [name, server] : servers) drained = server->drained(patience) && drained;
   return drained;
 }
 

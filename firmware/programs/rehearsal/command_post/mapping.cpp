@@ -11,7 +11,6 @@
 #include "rehearsal/command_post/json.hpp"
 
 namespace adit::rehearsal {
-
 namespace {
 
 /// Said where a message could not be read and no finding tells why.

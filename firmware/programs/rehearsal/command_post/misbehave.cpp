@@ -109,7 +109,7 @@ void misstate(Answer& answer, const char* member, const std::function<void(Order
 
 }  // namespace
 
-std::span<const Effect> all_effects() {
+std::span<const Effect> known_effects() {
   return kEffects;
 }
 

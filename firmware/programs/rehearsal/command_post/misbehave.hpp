@@ -22,7 +22,7 @@ struct Effect {
   Outcome (*outcome_of)(const Spoilt& spoilt);
 };
 
-std::span<const Effect> all_effects();
+std::span<const Effect> known_effects();
 
 /// Whether the request is judged at all.
 inline bool records(const Fault& fault) {

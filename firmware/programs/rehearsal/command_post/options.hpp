@@ -50,7 +50,7 @@ struct Secrets {
 };
 
 /// `scoring.token` and `mapping.token` in `folder`; white space around a token is cut. An error names the
-/// file, never what is in it.
+/// file, never its content.
 std::expected<Secrets, std::string> read_secrets(const std::string& folder);
 
 }  // namespace adit::rehearsal

@@ -106,7 +106,7 @@ void take_header(const Parser& parser, const WireManner& manner, Request& reques
   request.keep_alive = message.keep_alive();
 }
 
-/// Feeds what was received to the parser and takes it out. Gives whether the parser needs more.
+/// Feeds received bytes to the parser and removes them. Returns whether the parser needs more.
 bool feed(Parser& parser, std::string& received, boost::system::error_code& error) {
   std::size_t used = 0;
   while (used < received.size() && !parser.is_done() && !error) {
@@ -122,7 +122,7 @@ bool feed(Parser& parser, std::string& received, boost::system::error_code& erro
   return !parser.is_done();
 }
 
-/// One connection of a client: reads requests and writes what was decided about each, one after the other.
+/// One connection of a client: reads requests and writes the outcome of each, one after the other.
 class Connection {
  public:
   /// `stop_event`: becomes readable when the connection is to end.

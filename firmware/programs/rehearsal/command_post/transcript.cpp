@@ -62,8 +62,8 @@ void write_values(std::ofstream& file, const char* value, const CloudField& fiel
 }
 
 /// Writes `stem`.pcd, PCD v0.7, binary: the message's fields without the gaps between them, little-endian,
-/// its origin as the VIEWPOINT. What is left over after the last whole point is not written. False: the disk
-/// did not take it.
+/// its origin as the VIEWPOINT. Bytes after the last whole point are left out. Returns false if the disk did
+/// not take it.
 bool write_cloud(const Cloud& cloud, const std::string& data, const std::string& stem) {
   const std::size_t points = data.size() / cloud.point_step;
   std::ofstream file(stem + ".pcd", std::ios::binary);

@@ -46,22 +46,23 @@ void Tally::failed(const std::string& what) {
 
 std::uint64_t Tally::accepted_of(Kind kind) const {
   const std::scoped_lock lock(mutex_);
-  return of(rows_[static_cast<std::size_t>(kind)], Fate::Accepted);
+  return times(rows_[static_cast<std::size_t>(kind)], Fate::Accepted);
 }
 
 bool Tally::clean() const {
   const std::scoped_lock lock(mutex_);
   return failures_.empty() &&
-         std::ranges::all_of(rows_, [](const Row& row) { return of(row, Fate::Rejected) == 0; });
+         std::ranges::all_of(rows_, [](const Row& row) { return times(row, Fate::Rejected) == 0; });
 }
 
 std::string Tally::line() const {
   const std::scoped_lock lock(mutex_);
   std::string text;
   for (std::size_t i = 0; i < kKinds; ++i) {
-    if (of(rows_[i], Fate::Posted) == 0) continue;
+    if (times(rows_[i], Fate::Posted) == 0) continue;
     text += (text.empty() ? "" : ", ") + std::string(name_of(static_cast<Kind>(i))) + " " +
-            std::to_string(of(rows_[i], Fate::Accepted)) + "/" + std::to_string(of(rows_[i], Fate::Posted));
+            std::to_string(times(rows_[i], Fate::Accepted)) + "/" +
+            std::to_string(times(rows_[i], Fate::Posted));
   }
   return text;
 }
@@ -70,7 +71,7 @@ std::string Tally::summary() const {
   const std::scoped_lock lock(mutex_);
   std::string text = "kind         posted  accepted       429  rejected  no answer\n";
   for (std::size_t i = 0; i < kKinds; ++i) {
-    if (of(rows_[i], Fate::Posted) == 0) continue;
+    if (times(rows_[i], Fate::Posted) == 0) continue;
     std::array<char, 32> cell{};
     (void)std::snprintf(cell.data(), cell.size(), "%-9s", std::string(name_of(static_cast<Kind>(i))).c_str());
     text += cell.data();
@@ -135,13 +136,10 @@ std::optional<HttpReply> Client::exchange(Connection& connection, Kind kind, con
     tally_.count(kind, Fate::Unanswered, reply.error());
     return std::nullopt;
   }
-  if (is_success(kind, reply->status)) {
-    tally_.count(kind, Fate::Accepted);
-  } else if (reply->status == 429) {
-    tally_.count(kind, Fate::Throttled);
-  } else {
-    tally_.count(kind, Fate::Rejected, std::to_string(reply->status) + " " + sentence_of(reply->body));
-  }
+  const Fate fate = is_success(kind, reply->status) ? Fate::Accepted
+                    : reply->status == 429          ? Fate::Throttled
+                                                    : Fate::Rejected;
+  tally_.count(kind, fate, std::to_string(reply->status) + " " + sentence_of(reply->body));
   return *std::move(reply);
 }
 
@@ -203,11 +201,6 @@ void OperatorDesk::work(const std::stop_token& finish, const std::stop_token& ab
   }
 }
 
-void OperatorDesk::sleep(std::chrono::milliseconds time, const std::stop_token& stop) {
-  std::unique_lock lock(mutex_);
-  (void)changed_.wait_for(lock, stop, time, [] { return false; });
-}
-
 void OperatorDesk::ask_status(const std::stop_token& abort) {
   Client client(post_, "operator", style_, tally_, abort);
   const auto reply = client.send(StatusQuery{});
@@ -235,7 +228,7 @@ void OperatorDesk::report(const Finding& finding, const std::stop_token& finish,
       return tell(finding, "no answer");
     }
     if (reply->status == 429) {
-      sleep(kAfter429, finish);
+      pause_until(Clock::now() + kAfter429, finish);
       continue;
     }
     if (reply->status != 200 && reply->status != 201) {

@@ -20,7 +20,7 @@
 
 namespace adit::robots {
 
-/// What may become of a message. Throttled: 429, which is normal for a team that goes too fast.
+/// The fate of a message. Throttled: 429, which is normal for a fast team.
 enum class Fate : std::uint8_t { Posted, Accepted, Throttled, Rejected, Unanswered };
 
 /// The posted messages and their outcomes. Any thread may write to it.
@@ -48,7 +48,7 @@ class Tally {
   static constexpr std::size_t kFates = 5;
   using Row = std::array<std::uint64_t, kFates>;  // by fate
 
-  static std::uint64_t of(const Row& row, Fate fate) { return row[static_cast<std::size_t>(fate)]; }
+  static std::uint64_t times(const Row& row, Fate fate) { return row[static_cast<std::size_t>(fate)]; }
 
   mutable std::mutex mutex_;  // guards all below
   std::array<Row, kKinds> rows_{};
@@ -87,6 +87,14 @@ class Client {
   Connection mapping_;
 };
 
+/// Sleeps until `time`, or less where `stop` is requested.
+inline void pause_until(std::chrono::steady_clock::time_point time, const std::stop_token& stop) {
+  std::mutex mutex;
+  std::condition_variable_any never;
+  std::unique_lock lock(mutex);
+  (void)never.wait_until(lock, stop, time, [] { return false; });
+}
+
 /// The operator's desk: takes what robots found, once for each artifact, and submits it, one report after
 /// another, while the robots go on. Also asks for the run's status now and then.
 class OperatorDesk {
@@ -111,7 +119,6 @@ class OperatorDesk {
  private:
   void ask_status(const std::stop_token& abort);
   void report(const Finding& finding, const std::stop_token& finish, const std::stop_token& abort);
-  void sleep(std::chrono::milliseconds time, const std::stop_token& stop);
   void tell(const Finding& finding, const std::string& outcome) const;
 
   Post post_;

@@ -1,11 +1,9 @@
 #pragma once
 
 #include <chrono>
-#include <condition_variable>
 #include <cstdint>
 #include <map>
 #include <mutex>
-#include <stop_token>
 #include <string>
 #include <utility>
 #include <vector>
@@ -66,17 +64,9 @@ class Posted {
   std::map<std::string, std::vector<Marker>> standing_;  // by robot
 };
 
-/// Tells the rehearsal Command Post's control port what was posted. How old that was when it came and how
-/// much of it is there, as a table; or a line that says why there is none.
+/// Tells the rehearsal Command Post's control port the posted amounts. Returns its table of ages and shares,
+/// or a line with the reason why there is no table.
 std::string arrivals_of(const Posted& posted, const Endpoint& control);
-
-/// Sleeps until `time`, or less where `stop` is requested.
-inline void pause_until(std::chrono::steady_clock::time_point time, const std::stop_token& stop) {
-  std::mutex mutex;
-  std::condition_variable_any never;
-  std::unique_lock lock(mutex);
-  (void)never.wait_until(lock, stop, time, [] { return false; });
-}
 
 /// A robot and the software on it: walks, and posts what it knows at the rates of the field. Poses 5 or 10
 /// times a second, markers every 2 s, and the maps of its offer.

@@ -31,35 +31,30 @@ bool write_truth(const Cave& cave, const std::filesystem::path& file) {
   return stream.good();
 }
 
-/// SIGINT and SIGTERM, taken in the main thread alone. To be made before any other thread.
-class Signals {
- public:
-  Signals() {
-    (void)sigemptyset(&set_);
-    (void)sigaddset(&set_, SIGINT);
-    (void)sigaddset(&set_, SIGTERM);
-    (void)pthread_sigmask(SIG_BLOCK, &set_, nullptr);
-  }
-  /// Waits up to 100 ms for one.
-  bool came() const {
-    constexpr timespec kWait{.tv_sec = 0, .tv_nsec = 100'000'000};
-    return sigtimedwait(&set_, nullptr, &kWait) > 0;
-  }
+/// SIGINT and SIGTERM, taken in the main thread alone. To be called before any other thread begins.
+sigset_t block_signals() {
+  sigset_t signals;
+  (void)sigemptyset(&signals);
+  for (const int signal : {SIGINT, SIGTERM}) (void)sigaddset(&signals, signal);
+  (void)pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  return signals;
+}
 
- private:
-  sigset_t set_{};
-};
+/// Waits up to 100 ms for one of them.
+bool has_come(const sigset_t& signals) {
+  constexpr timespec kWait{.tv_sec = 0, .tv_nsec = 100'000'000};
+  return sigtimedwait(&signals, nullptr, &kWait) > 0;
+}
 
 std::vector<Kind> kinds_to_post(const Options& options, const std::vector<std::filesystem::path>& maps) {
-  if (options.robots > 0) {
-    std::vector<Kind> kinds = {Kind::State, Kind::Markers, Kind::Report, Kind::Status};
-    if (options.offers.has_grids()) kinds.push_back(Kind::Grid);
-    if (options.offers.has_clouds()) kinds.push_back(Kind::Cloud);
+  std::vector<Kind> kinds;
+  if (options.robots == 0) {
+    for (const auto& map : maps) kinds.push_back(map.extension() == ".pgm" ? Kind::Grid : Kind::Cloud);
     return kinds;
   }
-  std::vector<Kind> kinds;
-  kinds.reserve(maps.size());
-  for (const auto& map : maps) kinds.push_back(map.extension() == ".pgm" ? Kind::Grid : Kind::Cloud);
+  kinds = {Kind::State, Kind::Markers, Kind::Report, Kind::Status};
+  if (options.offers.has_grids()) kinds.push_back(Kind::Grid);
+  if (options.offers.has_clouds()) kinds.push_back(Kind::Cloud);
   return kinds;
 }
 
@@ -69,12 +64,12 @@ bool all_posted(const std::vector<Kind>& kinds, const Tally& tally) {
 
 /// Until the time is over, all is posted, or a signal comes; and how long then to wait for answers.
 std::chrono::milliseconds watch(const Options& options, const std::vector<Kind>& kinds, const Team& team,
-                                const Tally& tally, Console& console, const Signals& signals) {
+                                const Tally& tally, Console& console, const sigset_t& signals) {
   constexpr std::chrono::milliseconds kGrace{2000};
   const std::chrono::seconds every{console.is_terminal() ? 1 : 5};
   const Clock::time_point start = Clock::now();
   Clock::time_point next_line = start + every;
-  while (!signals.came()) {
+  while (!has_come(signals)) {
     const Clock::time_point now = Clock::now();
     if (options.run_for && now - start >= *options.run_for) return kGrace;
     if (options.stop_when_posted && team.replay_done() && all_posted(kinds, tally)) return kGrace;
@@ -88,7 +83,7 @@ std::chrono::milliseconds watch(const Options& options, const std::vector<Kind>&
 }
 
 int run(const Options& options, const Cave& cave) {
-  const Signals signals;
+  const sigset_t signals = block_signals();
   auto token = read_team_token(options.secrets);
   if (!token) return complain(token.error());
   std::vector<std::filesystem::path> maps;

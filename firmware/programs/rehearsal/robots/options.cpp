@@ -6,7 +6,6 @@
 #include "rehearsal/robots/maps/map_file.hpp"
 
 namespace adit::robots {
-
 namespace {
 
 using command_line::number;

@@ -5,12 +5,16 @@
 #include <chrono>
 #include <cstdio>
 #include <exception>
+#include <expected>
 #include <utility>
 
 #include "rehearsal/robots/maps/map_file.hpp"
 
 namespace adit::robots {
+namespace {
 
+/// Posts one map file, and again after a 429 or without an answer. Then waits as long as a client that keeps
+/// to one map a second. Returns a line about the answer, or the fault of the file.
 std::expected<std::string, std::string> replay_file(const std::filesystem::path& file, Client& client,
                                                     const std::stop_token& finish) {
   constexpr std::chrono::milliseconds kBetween{1100};
@@ -32,8 +36,6 @@ std::expected<std::string, std::string> replay_file(const std::filesystem::path&
   }
   return "replay did not post " + file.string();
 }
-
-namespace {
 
 constexpr double kMetresPerSecond = 2;
 constexpr const char* kClearLine = "\r\033[K";

@@ -2,7 +2,6 @@
 
 #include <atomic>
 #include <cstdint>
-#include <expected>
 #include <filesystem>
 #include <mutex>
 #include <stop_token>
@@ -16,11 +15,6 @@
 #include "rehearsal/robots/options.hpp"
 
 namespace adit::robots {
-
-/// Posts one map file, again after a 429 or where no answer came, and then waits as long as a client that
-/// keeps to one map a second. A sentence of what was posted; or why the file cannot be.
-std::expected<std::string, std::string> replay_file(const std::filesystem::path& file, Client& client,
-                                                    const std::stop_token& finish);
 
 /// Standard output, shared by the team's threads: lines that stay, and on a terminal one live line below
 /// them.

@@ -10,8 +10,10 @@
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/beast/core/buffers_to_string.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http/dynamic_body.hpp>
 #include <boost/beast/http/parser.hpp>
+#include <boost/beast/http/read.hpp>
 #include <cerrno>
 #include <cstdio>
 #include <exception>
@@ -22,10 +24,12 @@
 namespace adit::rehearsal {
 namespace {
 
+namespace asio = boost::asio;
 namespace http = boost::beast::http;
 using Parser =
     http::request_parser<http::dynamic_body>;  // takes no memory for a length that is only announced
-using boost::asio::ip::tcp;
+using asio::ip::tcp;
+using boost::system::error_code;
 using Milliseconds = std::chrono::milliseconds;
 
 constexpr std::uint32_t kMostHeader = 16 * 1024;
@@ -46,8 +50,8 @@ std::expected<loop::FileDescriptor, std::string> listening_socket(const Address&
   const auto failed = [&] {
     return std::unexpected(address.text() + ": " + std::error_code(errno, std::generic_category()).message());
   };
-  boost::system::error_code wrong;
-  const tcp::endpoint endpoint(boost::asio::ip::make_address(address.host, wrong), address.port);
+  error_code wrong;
+  const tcp::endpoint endpoint(asio::ip::make_address(address.host, wrong), address.port);
   if (wrong) return std::unexpected(address.text() + ": not a numeric address");
   loop::FileDescriptor socket(
       ::socket(endpoint.protocol().family(), SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
@@ -74,7 +78,10 @@ std::optional<std::string> field(const http::fields& fields, http::field name) {
   return std::string(found->value());
 }
 
-HttpFault fault_of(const boost::system::error_code& error) {
+/// Why a request did not arrive whole.
+HttpFault fault_of(const error_code& error) {
+  if (error == asio::error::timed_out) return {408, "The request was not complete in time"};
+  if (error == http::error::partial_message) return {0, "The client closed the connection within a request"};
   if (error == http::error::body_limit) return {413, "The body is larger than this Command Post accepts"};
   if (error == http::error::header_limit) return {431, "The header is larger than this Command Post accepts"};
   return {400, "Not an HTTP/1.1 request: " + error.message()};
@@ -106,38 +113,34 @@ void take_header(const Parser& parser, const WireManner& manner, Request& reques
   request.keep_alive = message.keep_alive();
 }
 
-/// Feeds received bytes to the parser and removes them. Returns whether the parser needs more.
-bool feed(Parser& parser, std::string& received, boost::system::error_code& error) {
-  std::size_t used = 0;
-  while (used < received.size() && !parser.is_done() && !error) {
-    const bool had_header = parser.is_header_done();
-    const std::size_t more =
-        parser.put(boost::asio::buffer(received.data() + used, received.size() - used), error);
-    used += more;
-    // The parser stops behind the header, so that Expect can be answered before the body is waited for.
-    if (more == 0 || had_header != parser.is_header_done()) break;
-  }
-  received.erase(0, used);
-  if (error == http::error::need_more) error = {};
-  return !parser.is_done();
-}
-
 /// One connection of a client: reads requests and writes the outcome of each, one after the other.
 class Connection {
  public:
   /// `stop_event`: becomes readable when the connection is to end.
   Connection(loop::FileDescriptor socket, int stop_event, const WireManner& manner, const Decide& decide)
-      : socket_(std::move(socket)), stop_event_(stop_event), manner_(manner), decide_(decide) {}
+      : socket_(std::move(socket)), stop_event_(stop_event), manner_(manner), decide_(decide) {
+    buffer_.reserve(kPiece);
+  }
 
   /// Until the connection ends. Returns whether a request killed the endpoint.
   bool serve();
 
+  // Beast reads from a connection as from a stream.
+  template <class Buffers>
+  std::size_t read_some(const Buffers& buffers, error_code& error);
+  template <class Buffers>
+  std::size_t read_some(const Buffers& buffers) {
+    error_code error;
+    const std::size_t got = read_some(buffers, error);
+    if (error) throw boost::system::system_error(error);
+    return got;
+  }
+
  private:
-  enum class Event { Ready, Closed, Late, Stopped };
+  enum class Event { Ready, Late, Stopped };
 
   /// Waits for the socket's `events`, or for the stop alone if there are none.
   Event wait(short events, int patience_ms) const;
-  Event receive();
   /// Nothing if there is no further request: closed, idle for too long, or stopped.
   std::optional<Request> read_request();
   bool write(const std::string& bytes) const;
@@ -147,7 +150,7 @@ class Connection {
   const int stop_event_;
   const WireManner& manner_;
   const Decide& decide_;
-  std::string received_;  // not yet parsed
+  boost::beast::flat_buffer buffer_;  // received, not yet parsed
 };
 
 Connection::Event Connection::wait(short events, int patience_ms) const {
@@ -157,54 +160,41 @@ Connection::Event Connection::wait(short events, int patience_ms) const {
   return waited[0].revents != 0 ? Event::Stopped : Event::Ready;
 }
 
-Connection::Event Connection::receive() {
-  const auto patience = static_cast<int>(Milliseconds(manner_.patience).count());
-  if (const Event event = wait(POLLIN, patience); event != Event::Ready) return event;
-  std::array<char, kPiece> piece;
+template <class Buffers>
+std::size_t Connection::read_some(const Buffers& buffers, error_code& error) {
+  const auto stopped = asio::error::operation_aborted;
+  const Event event = wait(POLLIN, static_cast<int>(Milliseconds(manner_.patience).count()));
+  error = event == Event::Late ? asio::error::timed_out : stopped;
+  if (event != Event::Ready) return 0;
+  const asio::mutable_buffer piece = *asio::buffer_sequence_begin(buffers);
   const ssize_t got = ::recv(socket_.get(), piece.data(), piece.size(), 0);
-  if (got <= 0) return Event::Closed;
-  received_.append(piece.data(), static_cast<std::size_t>(got));
-  if (!manner_.link) return Event::Ready;
-  const auto arrives = static_cast<int>(manner_.link->pass(static_cast<std::size_t>(got)).count());
-  return wait(0, arrives) == Event::Stopped ? Event::Stopped : Event::Ready;
+  error = asio::error::eof;
+  if (got <= 0) return 0;
+  error = {};
+  const auto bytes = static_cast<std::size_t>(got);
+  if (manner_.link && wait(0, static_cast<int>(manner_.link->pass(bytes).count())) == Event::Stopped)
+    error = stopped;
+  return bytes;
 }
 
 std::optional<Request> Connection::read_request() {
   Parser parser;
-  parser.eager(false);
   parser.header_limit(kMostHeader);
   parser.body_limit(manner_.most_body);
   Request request;
   request.local_address = local_address_of(socket_.get()).text();
-  boost::system::error_code error;
-  bool begun = !received_.empty();
-  bool header_taken = false;
-  while (feed(parser, received_, error)) {
-    if (parser.is_header_done() && !header_taken && !error) {
-      header_taken = true;
-      request.at = Clock::now();
-      take_header(parser, manner_, request);
-      parser.eager(true);
-      if (request.expects_continue && manner_.answers_expect && !write("HTTP/1.1 100 Continue\r\n\r\n")) {
-        request.fault = HttpFault{0, "The client closed the connection before 100 Continue"};
-        return request;
-      }
-      continue;
+  error_code error;
+  http::read_header(*this, buffer_, parser, error);
+  request.at = Clock::now();
+  if (!error) {
+    take_header(parser, manner_, request);
+    if (request.expects_continue && manner_.answers_expect && !write("HTTP/1.1 100 Continue\r\n\r\n")) {
+      request.fault = HttpFault{0, "The client closed the connection before 100 Continue"};
+      return request;
     }
-    if (error) break;
-    const Event event = receive();
-    begun = begun || event == Event::Ready;
-    if (event == Event::Ready) continue;
-    if (!begun || event == Event::Stopped) return std::nullopt;
-    if (!header_taken) request.at = Clock::now();
-    request.fault = event == Event::Late ? HttpFault{408, "The request was not complete in time"}
-                                         : HttpFault{0, "The client closed the connection within a request"};
-    return request;
+    http::read(*this, buffer_, parser, error);
   }
-  if (!header_taken) {
-    request.at = Clock::now();
-    if (!error) take_header(parser, manner_, request);
-  }
+  if (!parser.got_some() || error == asio::error::operation_aborted) return std::nullopt;
   if (error) request.fault = fault_of(error);
   request.whole = Clock::now();
   request.ended = std::chrono::system_clock::now();

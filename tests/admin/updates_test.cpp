@@ -78,10 +78,10 @@ TEST_F(UpdatesTest, ShowTheStatusOfAditUpdate) {
                 .last = {update::Stage::Installing, "0.2.0", "B", "boot", ""}});
   const auto view = updates_.state();
   EXPECT_TRUE(view.managed);
-  EXPECT_EQ(view.running.version, "0.1.0");
-  EXPECT_EQ(view.doing, "installing");
-  EXPECT_EQ(view.progress, 40);
-  EXPECT_EQ(view.refusal, "the update is older");
+  EXPECT_EQ(view.status.running.version, "0.1.0");
+  EXPECT_EQ(view.status.doing, "installing");
+  EXPECT_EQ(view.status.progress, 40);
+  EXPECT_EQ(view.status.refusal, "the update is older");
   EXPECT_TRUE(updates_.running());
 }
 
@@ -129,22 +129,22 @@ TEST_F(UpdatesTest, StoreAWholeBundleAndRequestIt) {
   ASSERT_TRUE(asked());
   EXPECT_EQ(asked()->what, update::Request::What::Install);
   EXPECT_TRUE(asked()->again);
-  EXPECT_EQ(updates_.state().doing, "checking");
+  EXPECT_EQ(updates_.state().status.doing, "checking");
   EXPECT_FALSE(fs::exists(state_ / "update.raucb.part"));
 }
 
 TEST_F(UpdatesTest, AcceptOneAtATime) {
   auto first = updates_.receive(100, false, [] {});
   ASSERT_TRUE(first);
-  EXPECT_EQ(updates_.state().doing, "receiving");
-  EXPECT_EQ(updates_.state().progress, 0);
+  EXPECT_EQ(updates_.state().status.doing, "receiving");
+  EXPECT_EQ(updates_.state().status.progress, 0);
   const std::uint8_t piece[50] = {};
   EXPECT_TRUE((*first)->write(piece));
-  EXPECT_EQ(updates_.state().progress, 50);
+  EXPECT_EQ(updates_.state().status.progress, 50);
   EXPECT_EQ(updates_.receive(100, false, [] {}).error().sentence, "the box is already receiving: wait");
   EXPECT_EQ(updates_.restart(true).error().status, icd::Status::Conflict);
   first->reset();
-  EXPECT_EQ(updates_.state().doing, "");
+  EXPECT_EQ(updates_.state().status.doing, "");
   EXPECT_FALSE(fs::exists(state_ / "update.raucb.part"));
   EXPECT_TRUE(updates_.receive(100, false, [] {}));
 }
@@ -153,7 +153,7 @@ TEST_F(UpdatesTest, RejectATruncatedBundle) {
   EXPECT_THAT(upload("abc", 5).error().sentence, HasSubstr("got 3 of 5 bytes"));
   EXPECT_FALSE(asked());
   EXPECT_TRUE(fs::is_empty(state_.path()));
-  EXPECT_EQ(updates_.state().doing, "");
+  EXPECT_EQ(updates_.state().status.doing, "");
 }
 
 TEST_F(UpdatesTest, RejectABundleLargerThanTheDisk) {
@@ -216,11 +216,11 @@ TEST_F(UpdatesTest, EndWithTheAnswerOfAditUpdate) {
   const auto request = asked();
   ASSERT_TRUE(request);
   EXPECT_EQ(request->what, update::Request::What::Stick);
-  EXPECT_EQ(updates_.state().doing, "checking");
+  EXPECT_EQ(updates_.state().status.doing, "checking");
   write_status({.nonce = request->nonce, .refusal = "no stick has an update"});
   wait();
-  EXPECT_EQ(updates_.state().doing, "");
-  EXPECT_EQ(updates_.state().refusal, "no stick has an update");
+  EXPECT_EQ(updates_.state().status.doing, "");
+  EXPECT_EQ(updates_.state().status.refusal, "no stick has an update");
 }
 
 TEST_F(UpdatesTest, RestartDuringAReportOnlyIfConfirmed) {
@@ -229,7 +229,7 @@ TEST_F(UpdatesTest, RestartDuringAReportOnlyIfConfirmed) {
   EXPECT_FALSE(asked());
   ASSERT_TRUE(updates_.restart(true));
   EXPECT_EQ(asked()->what, update::Request::What::Restart);
-  EXPECT_EQ(updates_.state().doing, "restarting");
+  EXPECT_EQ(updates_.state().status.doing, "restarting");
 }
 
 TEST_F(UpdatesTest, OfferGoBackAndStayInAnUnexpectedSlot) {
@@ -238,12 +238,12 @@ TEST_F(UpdatesTest, OfferGoBackAndStayInAnUnexpectedSlot) {
   EXPECT_FALSE(asked());
   wait();
   write_status({.stray = "slot B runs, with 0.1.0"});
-  EXPECT_EQ(updates_.state().stray, "slot B runs, with 0.1.0");
+  EXPECT_EQ(updates_.state().status.stray, "slot B runs, with 0.1.0");
   under_way_ = "report 7 is being sent";
   EXPECT_EQ(updates_.go_back(false).error().sentence, "report 7 is being sent");
   ASSERT_TRUE(updates_.go_back(true));
   EXPECT_EQ(asked()->what, update::Request::What::Back);
-  EXPECT_EQ(updates_.state().doing, "restarting");
+  EXPECT_EQ(updates_.state().status.doing, "restarting");
 }
 
 TEST_F(UpdatesTest, RequestToStayInTheSlot) {

@@ -10,28 +10,29 @@ namespace adit::api {
 struct PlayedUpdates final : Updates {
   PlayedUpdates() {
     view.managed = view.runs_here = true;
-    view.running = {"adit-a-board", "0.1.0", "A", "B"};
-    view.last = {update::Stage::Left, "0.0.9", "B", "", "the update did not become healthy in three starts"};
-    view.stick = update::Offer{"adit-a-board-0.3.0.raucb", "0.3.0"};
+    view.status.running = {"adit-a-board", "0.1.0", "A", "B"};
+    view.status.last = {update::Stage::Left, "0.0.9", "B", "",
+                        "the update did not become healthy in three starts"};
+    view.status.stick = update::Offer{"adit-a-board-0.3.0.raucb", "0.3.0"};
   }
   UpdateView state() const override { return view; }
   icd::Checked<std::unique_ptr<Upload>> receive(std::uint64_t, bool, std::function<void()>) override {
     return std::make_unique<Taking>(view);
   }
   icd::Checked<void> install_from_stick(bool) override {
-    view.doing = "installing";
-    view.progress = 40;
+    view.status.doing = "installing";
+    view.status.progress = 40;
     return {};
   }
   icd::Checked<void> restart(bool anyway) override {
     if (!anyway) return std::unexpected(icd::Refusal{icd::Status::Conflict, "1 report waits to be sent"});
-    view.doing = "restarting";
+    view.status.doing = "restarting";
     return {};
   }
 
   icd::Checked<void> go_back(bool anyway) override { return restart(anyway); }
   icd::Checked<void> stay() override {
-    view.stray.clear();
+    view.status.stray.clear();
     return {};
   }
 
@@ -45,8 +46,8 @@ struct PlayedUpdates final : Updates {
       return true;
     }
     void finish(std::function<void(icd::Checked<void>)> done) override {
-      view.refusal = last == 'x' ? "Invalid bundle format: Signature size is 0" : "";
-      if (last != 'x') view.last = {update::Stage::Installed, "0.2.0", "B", "", ""};
+      view.status.refusal = last == 'x' ? "Invalid bundle format: Signature size is 0" : "";
+      if (last != 'x') view.status.last = {update::Stage::Installed, "0.2.0", "B", "", ""};
       done({});
     }
     UpdateView& view;

@@ -25,7 +25,7 @@ class UpdateRoutesTest : public OnPage {
 
 TEST_F(UpdateRoutesTest, ShowTheRunningVersion) {
   updates.view.managed = true;
-  updates.view.running = {"adit-qemu-virt", "0.1.0", "A", "B"};
+  updates.view.status.running = {"adit-qemu-virt", "0.1.0", "A", "B"};
   EXPECT_EQ(json::parse(ask("GET", "/adit/update").body), json::parse(R"({
     "managed": true, "why": "", "runs_here": false, "board": "adit-qemu-virt", "version": "0.1.0", "slot": "A", "other_slot": "B", "trial": false,
     "doing": null, "stray": null, "progress": null, "refusal": null, "last": null, "stick": null, "stick_why": null,
@@ -34,13 +34,13 @@ TEST_F(UpdateRoutesTest, ShowTheRunningVersion) {
 
 TEST_F(UpdateRoutesTest, ShowAnUpdate) {
   updates.view.why = "RAUC does not run here";
-  updates.view.doing = "installing";
-  updates.view.progress = 40;
-  updates.view.refusal = "the update is older";
-  updates.view.trial = true;
-  updates.view.last = {update::Stage::Left, "0.2.0", "B", "boot", "it did not"};
-  updates.view.stick = update::Offer{"adit-x.raucb", "0.3.0"};
-  updates.view.stick_why = "too old";
+  updates.view.status.doing = "installing";
+  updates.view.status.progress = 40;
+  updates.view.status.refusal = "the update is older";
+  updates.view.status.trial = true;
+  updates.view.status.last = {update::Stage::Left, "0.2.0", "B", "boot", "it did not"};
+  updates.view.status.stick = update::Offer{"adit-x.raucb", "0.3.0"};
+  updates.view.status.stick_trouble = "too old";
   updates.view.newer = "";
   updates.view.newer_why = "no";
   const json shown = json::parse(ask("GET", "/adit/update").body);
@@ -156,7 +156,7 @@ TEST_F(UpdateRoutesTest, InstallFromTheStickAndRestartOnRequest) {
 }
 
 TEST_F(UpdateRoutesTest, GoBackToTheExpectedSlotOrStay) {
-  updates.view.stray = "slot B runs, with 0.1.0";
+  updates.view.status.stray = "slot B runs, with 0.1.0";
   EXPECT_EQ(json::parse(ask("GET", "/adit/update").body)["stray"], "slot B runs, with 0.1.0");
   EXPECT_EQ(ask("POST", "/adit/update/back", R"({"anyway": true})").status, icd::Status::Ok);
   EXPECT_THAT(updates.backs, ElementsAre(true));

@@ -56,7 +56,7 @@ TEST(Status, ReadsEachMemberOfTheApi) {
 TEST(Status, NamesNewerVersions) {
   api::UpdateView update;
   update.newer = "0.2.0";
-  update.stick = {"adit-a-board-0.3.0.raucb", "0.3.0"};
+  update.status.stick = {"adit-a-board-0.3.0.raucb", "0.3.0"};
   Server::Answers answers{{"GET /adit/run", Server::ok(codec::to_json(sample_view()))},
                           {"GET /adit/update", Server::ok(codec::to_json(update))}};
   EXPECT_EQ(run_adit(Server(answers), {"status"}).out,

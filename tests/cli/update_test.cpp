@@ -14,8 +14,8 @@ constexpr const char* kWhy = "slot A with 0.1.0 runs, and slot B with 0.2.0 was 
 api::UpdateView a_box(const std::string& stray) {
   api::UpdateView view;
   view.managed = true;
-  view.running = {"adit-a-board", "0.1.0", "A", "B"};
-  view.stray = stray;
+  view.status.running = {"adit-a-board", "0.1.0", "A", "B"};
+  view.status.stray = stray;
   return view;
 }
 

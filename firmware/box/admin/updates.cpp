@@ -212,26 +212,16 @@ api::UpdateView Updates::state() const {
   view.why = status ? status->trouble : adit_update_.why();
   view.managed = view.why.empty();
   view.runs_here = adit_update_.runs_here();
-  if (status) {
-    view.running = status->running;
-    view.doing = status->doing;
-    view.progress = status->progress;
-    view.refusal = status->refusal;
-    view.last = status->last;
-    view.trial = status->trial;
-    view.stray = status->stray;
-    view.stick = status->stick;
-    view.stick_why = status->stick_trouble;
-  }
+  if (status) view.status = *status;
   read_newer(adit_update_.directory() + '/' + update::kNewerFile, view);
-  if (auto trouble = adit_update_.trouble(); !trouble.empty()) view.refusal = std::move(trouble);
+  if (auto trouble = adit_update_.trouble(); !trouble.empty()) view.status.refusal = std::move(trouble);
   if (receiving_ != nullptr) {
-    view.doing = "receiving";
-    view.progress = static_cast<int>(100 * receiving_->received() / expected_);
-    view.refusal.clear();
+    view.status.doing = "receiving";
+    view.status.progress = static_cast<int>(100 * receiving_->received() / expected_);
+    view.status.refusal.clear();
   } else if (adit_update_.waits()) {
-    view.doing = doing_of(asked_);
-    view.refusal.clear();
+    view.status.doing = doing_of(asked_);
+    view.status.refusal.clear();
   }
   return view;
 }
@@ -239,20 +229,20 @@ api::UpdateView Updates::state() const {
 icd::Checked<void> Updates::check_free() const {
   const api::UpdateView view = state();
   if (!view.managed) return icd::conflict(view.why);
-  if (!view.doing.empty()) return icd::conflict("the box is already ", view.doing, ": wait");
+  if (!view.status.doing.empty()) return icd::conflict("the box is already ", view.status.doing, ": wait");
   return {};
 }
 
 icd::Checked<void> Updates::check_installable() const {
   ADIT_TRY(check_free());
   const api::UpdateView view = state();
-  if (view.trial) return icd::conflict(update::wait_for_trial(view.running.version));
+  if (view.status.trial) return icd::conflict(update::wait_for_trial(view.status.running.version));
   return {};
 }
 
 icd::Checked<void> Updates::check_stray() const {
   const api::UpdateView view = state();
-  if (!view.managed || !view.stray.empty()) return {};
+  if (!view.managed || !view.status.stray.empty()) return {};
   return icd::conflict(update::kNoStray);
 }
 

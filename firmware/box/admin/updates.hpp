@@ -69,7 +69,7 @@ class Updates final : public api::Updates {
   void every_second();
 
   /// Whether a bundle is being received, checked or installed, or the box is about to restart.
-  bool running() const { return !state().doing.empty(); }
+  bool running() const { return !state().status.doing.empty(); }
 
  private:
   /// Path of a bundle, and during its upload.

@@ -7,6 +7,7 @@ using codec::member;
 using codec::Member;
 using codec::Row;
 using update::LastUpdate;
+using update::Status;
 
 constexpr auto kStages = std::span(update::kStageWords).subspan(1);  // without the empty one
 constexpr std::string_view kDoing[] = {"receiving", "checking", "installing", "restarting"};
@@ -35,19 +36,23 @@ constexpr Member kUpdate[] = {
     member<&UpdateView::why>("why", "why the box cannot be updated here"),
     member<&UpdateView::runs_here>("runs_here",
                                    "false: this machine has no adit-update, as a PC with its own updates"),
-    member<&UpdateView::running, &update::Running::compatible>("board"),
-    member<&UpdateView::running, &update::Running::version>("version"),
-    member<&UpdateView::running, &update::Running::slot>("slot", "running slot"),
-    member<&UpdateView::running, &update::Running::other>("other_slot", "slot for the next update"),
-    member<&UpdateView::trial>(
+    member<&UpdateView::status, &Status::running, &update::Running::compatible>("board"),
+    member<&UpdateView::status, &Status::running, &update::Running::version>("version"),
+    member<&UpdateView::status, &Status::running, &update::Running::slot>("slot", "running slot"),
+    member<&UpdateView::status, &Status::running, &update::Running::other>("other_slot",
+                                                                           "slot for the next update"),
+    member<&UpdateView::status, &Status::trial>(
         "trial", "whether the running version was installed last and has not yet been healthy for a minute"),
-    member<&UpdateView::stray>("stray", "which unexpected slot is running, and why").as(codec::kTextOrNull),
-    member<&UpdateView::doing>("doing").as(codec::kTextOrNull).one_of(kDoing),
-    member<&UpdateView::progress>("progress").from(0).to(100),
-    member<&UpdateView::refusal>("refusal", "why the last update was not installed").as(codec::kTextOrNull),
-    member<&UpdateView::last>("last").as(codec::kind_as<LastUpdate, LastOrNull>),
-    member<&UpdateView::stick>("stick"),
-    member<&UpdateView::stick_why>("stick_why", "why the update on a stick cannot be installed")
+    member<&UpdateView::status, &Status::stray>("stray", "which unexpected slot is running, and why")
+        .as(codec::kTextOrNull),
+    member<&UpdateView::status, &Status::doing>("doing").as(codec::kTextOrNull).one_of(kDoing),
+    member<&UpdateView::status, &Status::progress>("progress").from(0).to(100),
+    member<&UpdateView::status, &Status::refusal>("refusal", "why the last update was not installed")
+        .as(codec::kTextOrNull),
+    member<&UpdateView::status, &Status::last>("last").as(codec::kind_as<LastUpdate, LastOrNull>),
+    member<&UpdateView::status, &Status::stick>("stick"),
+    member<&UpdateView::status, &Status::stick_trouble>("stick_why",
+                                                        "why the update on a stick cannot be installed")
         .as(codec::kTextOrNull),
     member<&UpdateView::newer>(
         "newer", "newer version that apt has; empty: no newer one; null: not known, as without apt"),

@@ -18,15 +18,7 @@ struct UpdateView {
   bool managed = false;    // whether it can be updated here
   std::string why;         // why not, or ""
   bool runs_here = false;  // whether adit-update runs, is starting, or has an unreadable status
-  update::Running running;
-  std::string doing;            // "": idle
-  std::optional<int> progress;  // per cent of receiving and installing
-  std::string refusal;          // why the last request failed, or ""
-  update::LastUpdate last;
-  bool trial = false;  // the running version is on trial
-  std::string stray;   // why an unexpected slot runs, with its name, or ""
-  std::optional<update::Offer> stick;
-  std::string stick_why;             // why the stick's files cannot be installed, or ""
+  update::Status status;   // of adit-update, or "receiving" with its per cent, without an earlier refusal
   std::optional<std::string> newer;  // newer version that apt has; "": none; std::nullopt: not known
   std::string newer_why;             // why that cannot be read, or ""
 

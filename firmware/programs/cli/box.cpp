@@ -137,39 +137,39 @@ constexpr Waiting kInstalling{.within = std::chrono::minutes(25),
 
 /// The result of the last update, or "".
 std::string last_line(const UpdateView& view) {
-  if (view.last.stage == Stage::None) return "";
-  const std::string name = "update " + view.last.version;
-  if (view.last.stage == Stage::Good) return line(name, " came up healthy");
-  if (view.trial) return line(name, " is on trial until it has been healthy for a minute");
-  if (view.last.stage == Stage::Installed)
+  if (view.status.last.stage == Stage::None) return "";
+  const std::string name = "update " + view.status.last.version;
+  if (view.status.last.stage == Stage::Good) return line(name, " came up healthy");
+  if (view.status.trial) return line(name, " is on trial until it has been healthy for a minute");
+  if (view.status.last.stage == Stage::Installed)
     return line(name, " is installed: restart to use it (adit update --restart)");
-  if (view.last.stage == Stage::Installing) return line(name, " is being installed");
-  return line(name, " was ", name_of(view.last.stage), ": ", view.last.why);
+  if (view.status.last.stage == Stage::Installing) return line(name, " is being installed");
+  return line(name, " was ", name_of(view.status.last.stage), ": ", view.status.last.why);
 }
 
 std::string text_of(const UpdateView& view, bool /*colour*/) {
   if (!view.runs_here && view.newer)
     return view.newer->empty() ? line("apt has no newer version") : newer_lines(view);
   if (!view.managed) return line("This box cannot be updated: ", view.why) + newer_lines(view);
-  const update::Running& running = view.running;
+  const update::Running& running = view.status.running;
   std::string out = line(running.version, " runs, in slot ", running.slot, " (an update goes into slot ",
                          running.other, ") of ", running.compatible);
-  if (!view.stray.empty())
-    out += line("An unexpected slot runs: ", view.stray) +
+  if (!view.status.stray.empty())
+    out += line("An unexpected slot runs: ", view.status.stray) +
            line("  adit update --back   restart the box into the slot that was good last") +
            line("  adit update --stay   keep the slot that runs");
-  if (!view.doing.empty()) out += line("The box is ", view.doing);
-  if (!view.refusal.empty()) out += line("The last update was rejected: ", view.refusal);
+  if (!view.status.doing.empty()) out += line("The box is ", view.status.doing);
+  if (!view.status.refusal.empty()) out += line("The last update was rejected: ", view.status.refusal);
   out += last_line(view);
-  if (!view.stick_why.empty()) out += line("On the stick: ", view.stick_why);
+  if (!view.status.stick_trouble.empty()) out += line("On the stick: ", view.status.stick_trouble);
   return out + newer_lines(view);
 }
 
 bool is_fine(const UpdateView& view) {
-  const Stage stage = view.last.stage;
+  const Stage stage = view.status.last.stage;
   const bool has_failed = stage == Stage::Failed || stage == Stage::Left || stage == Stage::Interrupted;
-  return !has_failed && (view.managed || (!view.runs_here && view.newer)) && view.refusal.empty() &&
-         view.stray.empty();
+  return !has_failed && (view.managed || (!view.runs_here && view.newer)) && view.status.refusal.empty() &&
+         view.status.stray.empty();
 }
 
 Result<std::string> read_bundle(const std::string& path) {
@@ -189,17 +189,19 @@ Result<Outcome> follow(const Call& call) {
   std::string last;
   const auto told =
       ADIT_TRY(fetch_until<UpdateView>(call.adit, kUpdate, kInstalling, [&](const UpdateView& view) {
-        if (view.doing.empty()) return true;
-        const std::string progress = view.progress ? icd::sentence(" ", *view.progress, " %") : "";
-        const std::string now = line(view.doing, progress);
+        if (view.status.doing.empty()) return true;
+        const std::string progress =
+            view.status.progress ? icd::sentence(" ", *view.status.progress, " %") : "";
+        const std::string now = line(view.status.doing, progress);
         if (!call.options.json && now != last) call.console.print(now);
         last = now;
         return false;
       }));
   const UpdateView& view = told.row;
-  return printed(call, told.json,
-                 view.refusal.empty() ? last_line(view) : line("the update was rejected: ", view.refusal),
-                 is_fine(view) ? Exit::Fine : Exit::Attention);
+  return printed(
+      call, told.json,
+      view.status.refusal.empty() ? last_line(view) : line("the update was rejected: ", view.status.refusal),
+      is_fine(view) ? Exit::Fine : Exit::Attention);
 }
 
 Result<Outcome> upload(const Call& call) {
@@ -217,8 +219,9 @@ Result<Outcome> upload(const Call& call) {
 
 std::string newer_lines(const UpdateView& view) {
   std::string out;
-  if (view.stick)
-    out += line("On the stick is ", view.stick->version, " (", view.stick->name, "): adit update --stick");
+  if (view.status.stick)
+    out += line("On the stick is ", view.status.stick->version, " (", view.status.stick->name,
+                "): adit update --stick");
   if (view.newer && !view.newer->empty()) out += line("apt has ", *view.newer, ": apt upgrade");
   if (!view.newer_why.empty()) out += line("The newer version of apt is not known: ", view.newer_why);
   return out;

@@ -349,9 +349,9 @@ void Overview::add_box(alarms::Facts& facts) const {
   facts.lights_trouble = rooms_.lights.trouble();
   facts.notices = notices_;
   const api::UpdateView update = rooms_.updates.state();
-  facts.update.on_trial = update.trial;
-  facts.update.version = update.last.version;
-  facts.update.stray = update.stray;
+  facts.update.on_trial = update.status.trial;
+  facts.update.version = update.status.last.version;
+  facts.update.stray = update.status.stray;
   facts.standby = rooms_.spare.standby();
 }
 

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <vector>
 
-#include "cli/command.hpp"
+#include "cli/commands.hpp"
 #include "project_files.hpp"
 
 namespace adit::cli {

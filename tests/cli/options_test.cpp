@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <vector>
 
-#include "cli/command.hpp"
 #include "cli/commands.hpp"
 
 namespace adit::cli {

@@ -207,11 +207,6 @@ namespace {
 
 constexpr std::size_t kDetailsInATurn = 16;  // each is a query of the ledger
 
-intake::Answer not_listed(const RunList& all) {
-  return all.unreadable.empty() ? refused(no_such_run())
-                                : refusal(icd::Status::ServiceUnavailable, all.unreadable);
-}
-
 /// A run's report contains its style and images, and no script. Other content must not load.
 intake::Answer printed(std::string html) {
   return {.content_type = "text/html; charset=utf-8",
@@ -229,20 +224,17 @@ intake::Answer printed(std::string html) {
 KeptRunsRoutes::KeptRunsRoutes(loop::Loop& loop, KeptRuns& runs, const Source& source)
     : loop_(loop), runs_(runs), source_(source), forget_(loop.timer([this] { held_.reset(); })) {}
 
-const RunRow* KeptRunsRoutes::row_of(const RunList& list, const std::string& key) const {
-  const auto found = std::ranges::find(list.runs, key, &RunRow::key);
-  return found == list.runs.end() ? nullptr : &*found;
+icd::Checked<RunRow> KeptRunsRoutes::row_of(const std::string& key) const {
+  const RunList all = runs_.list();
+  const auto found = std::ranges::find(all.runs, key, &RunRow::key);
+  if (found != all.runs.end()) return *found;
+  if (all.unreadable.empty()) return std::unexpected(no_such_run());
+  return icd::refuse(Status::ServiceUnavailable, all.unreadable);
 }
 
 icd::Checked<History> KeptRunsRoutes::history(const intake::RequestHead& head) const {
   const auto since = ADIT_TRY(time_asked(head));
   return runs_.history(since);
-}
-
-intake::Answer KeptRunsRoutes::one(const Call& call) const {
-  const RunList all = runs_.list();
-  const RunRow* row = row_of(all, call.parameters.front());
-  return row != nullptr ? fresh(*row) : not_listed(all);
 }
 
 void KeptRunsRoutes::with_run(const Call& call, Answering answer) {
@@ -264,9 +256,8 @@ void KeptRunsRoutes::came(const std::string& key, const icd::Checked<std::shared
   const auto waiting = std::exchange(waiting_[key], {});
   waiting_.erase(key);
   for (const Waiting& each : waiting) each.responder->answer(run ? each.answer(**run) : refused(run.error()));
-  const RunList all = runs_.list();
-  const RunRow* row = row_of(all, key);
-  if (!run || row == nullptr || row->is_present) return;  // the present run changes
+  const auto row = row_of(key);
+  if (!run || !row || row->is_present) return;  // the present run changes
   held_ = *run;
   forget_.call_at(loop_.now() + kHeld);
 }
@@ -300,9 +291,8 @@ struct KeptRunsRoutes::Gathering {
 };
 
 void KeptRunsRoutes::report(const Call& call) {
-  const RunList all = runs_.list();
-  const RunRow* row = row_of(all, call.parameters.front());
-  if (row == nullptr) return call.responder->answer(not_listed(all));
+  const auto row = row_of(call.parameters.front());
+  if (!row) return call.responder->answer(refused(row.error()));
   gather(std::make_shared<Gathering>(row->key, row->run, 0, std::vector<ReportDetail>(), call.responder));
 }
 
@@ -323,9 +313,8 @@ void KeptRunsRoutes::gather(const std::shared_ptr<Gathering>& gathering) {
 }
 
 void KeptRunsRoutes::remove(const Call& call) {
-  const RunList all = runs_.list();
-  const RunRow* row = row_of(all, call.parameters.front());
-  if (row == nullptr) return call.responder->answer(not_listed(all));
+  const auto row = row_of(call.parameters.front());
+  if (!row) return call.responder->answer(refused(row.error()));
   if (held_ && held_->facts.key == row->key) held_.reset();
   runs_.remove(row->key,
                [key = row->key, responder = call.responder](const std::expected<void, std::string>& done) {

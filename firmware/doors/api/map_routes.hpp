@@ -50,7 +50,7 @@ class KeptRunsRoutes {
   icd::Checked<History> history(const intake::RequestHead& head) const;
 
   RunList list() const { return runs_.list(); }
-  intake::Answer one(const Call& call) const;
+  icd::Checked<RunRow> one(const Call& call) const { return row_of(call.parameters.front()); }
   void layers(const Call& call);
   void tile(const Call& call);
   void tracks(const Call& call);
@@ -69,7 +69,8 @@ class KeptRunsRoutes {
   void with_run(const Call& call, Answering answer);
   void came(const std::string& key, const icd::Checked<std::shared_ptr<const KeptRun>>& run);
   void gather(const std::shared_ptr<Gathering>& gathering);
-  const RunRow* row_of(const RunList& list, const std::string& key) const;
+  /// Error: 404, or 503 if the list may lack a run.
+  icd::Checked<RunRow> row_of(const std::string& key) const;
 
   loop::Loop& loop_;
   KeptRuns& runs_;

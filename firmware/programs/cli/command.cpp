@@ -1,5 +1,3 @@
-#include "cli/command.hpp"
-
 #include <algorithm>
 #include <deque>
 

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <type_traits>
 
 #include "api/answers.hpp"
@@ -22,28 +23,19 @@
 
 namespace adit::api {
 
+/// The class of a handler's function, and the type of its parameter, or void.
 template <class Function>
 struct Signature;
-template <class Class, class Gives>
-struct Signature<Gives (Class::*)()> {
+template <class Class, class Gives, class... Parameters>
+struct Signature<Gives (Class::*)(Parameters...)> {
   using Handler = Class;
-  using Argument = void;
+  using Argument = std::remove_cvref_t<std::tuple_element_t<0, std::tuple<Parameters..., void>>>;
 };
-template <class Class, class Gives, class Parameter>
-struct Signature<Gives (Class::*)(Parameter)> {
-  using Handler = Class;
-  using Argument = std::remove_cvref_t<Parameter>;
-};
-template <class Class, class Gives>
-struct Signature<Gives (Class::*)() const> : Signature<Gives (Class::*)()> {};
-template <class Class, class Gives, class Parameter>
-struct Signature<Gives (Class::*)(Parameter) const> : Signature<Gives (Class::*)(Parameter)> {};
-
-template <class Class, class Gives>
-struct Signature<Gives (*)(Class&)> : Signature<Gives (std::remove_const_t<Class>::*)()> {};
-template <class Class, class Gives, class Parameter>
-struct Signature<Gives (*)(Class&, Parameter)> : Signature<Gives (std::remove_const_t<Class>::*)(Parameter)> {
-};
+template <class Class, class Gives, class... Parameters>
+struct Signature<Gives (Class::*)(Parameters...) const> : Signature<Gives (Class::*)(Parameters...)> {};
+template <class Class, class Gives, class... Parameters>
+struct Signature<Gives (*)(Class&, Parameters...)>
+    : Signature<Gives (std::remove_const_t<Class>::*)(Parameters...)> {};
 
 /// The result of a handler's function, as the Answer if it is a row, a refusal or the success of an action.
 template <class Handler, class Result>

@@ -1,5 +1,6 @@
 // Processes of random lengths append to one log, and are killed, lose power, or meet a failing disk. Each
-// process's reading is compared with the results that earlier processes got. Older copies and zeros must show.
+// process's reading is compared with the results that earlier processes got. Older copies and zeros must
+// show.
 #include <gmock/gmock.h>
 
 #include <cstdlib>

@@ -114,7 +114,7 @@ CommandPost::CommandPost(const Options& options, const Secrets& secrets, std::ve
       mapping_{mapping_of(options, secrets), "mapping"},
       transcript_(std::move(transcript)),
       number_(transcript_ ? transcript_->requests() : 0) {
-  if (!options.not_started) run_.start(Clock::now());
+  if (!options.not_started) run_.change(Run::Change::Start, Clock::now());
 }
 
 Outcome CommandPost::scoring(const Request& request) {
@@ -279,9 +279,9 @@ std::expected<std::optional<Json>, std::string> body_of(const Request& request) 
   return std::move(document->value);
 }
 
-Outcome change_state(Run& run, bool (Run::*wanted)(Clock::time_point)) {
+Outcome change_state(Run& run, Run::Change wanted) {
   const auto now = Clock::now();
-  const bool done = (run.*wanted)(now);
+  const bool done = run.change(wanted, now);
   const std::string state = run.standing(now).state;
   if (!done) return refused(409, "the run is: " + state);
   return answered(200, OrderedJson{{"state", state}});
@@ -361,10 +361,10 @@ Outcome CommandPost::control(const Request& request) {
   if (wanted == "POST /grant")
     return answered(200, OrderedJson{{"remaining_reports", run_.grant(Clock::now())}});
   if (wanted == "POST /rename") return answered(200, OrderedJson{{"run", run_.rename()}});
-  if (wanted == "POST /start") return change_state(run_, &Run::start);
-  if (wanted == "POST /stop") return change_state(run_, &Run::admin_stop);
-  if (wanted == "POST /resume") return change_state(run_, &Run::resume);
-  if (wanted == "POST /end") return change_state(run_, &Run::end);
+  if (wanted == "POST /start") return change_state(run_, Run::Change::Start);
+  if (wanted == "POST /stop") return change_state(run_, Run::Change::Stop);
+  if (wanted == "POST /resume") return change_state(run_, Run::Change::Resume);
+  if (wanted == "POST /end") return change_state(run_, Run::Change::End);
   return refused(
       404,
       "POST /start, /stop, /resume, /end, /new-run, /grant, /rename, /other-sender or /posted, GET "

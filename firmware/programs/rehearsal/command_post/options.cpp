@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <sstream>
 
 #include "command_line/program.hpp"
@@ -40,15 +41,11 @@ Wrong take_megabytes(std::uint64_t& bytes, const std::string& text) {
 }
 
 Wrong take_counted(std::optional<Counted>& counted, const std::string& text) {
-  if (text == "starts") {
-    counted = Counted::Starts;
-  } else if (text == "last-bytes") {
-    counted = Counted::LastBytes;
-  } else if (text == "answers") {
-    counted = Counted::Answers;
-  } else {
-    return "expected starts, last-bytes or answers, got '" + text + "'";
-  }
+  static const std::map<std::string, Counted> kWords = {
+      {"starts", Counted::Starts}, {"last-bytes", Counted::LastBytes}, {"answers", Counted::Answers}};
+  const auto found = kWords.find(text);
+  if (found == kWords.end()) return "expected starts, last-bytes or answers, got '" + text + "'";
+  counted = found->second;
   return std::nullopt;
 }
 

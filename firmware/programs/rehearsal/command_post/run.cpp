@@ -37,31 +37,17 @@ double Run::clock_at(Clock::time_point now) const {
   return std::round(seconds * 1000) / 1000;
 }
 
-bool Run::start(Clock::time_point now) {
+bool Run::change(Change change, Clock::time_point now) {
   const std::lock_guard lock(mutex_);
-  if (state_at(now) != State::NotStarted) return false;
-  started_ = now;
-  return true;
-}
-
-bool Run::admin_stop(Clock::time_point now) {
-  const std::lock_guard lock(mutex_);
-  if (state_at(now) != State::Running) return false;
-  stopped_ = true;
-  return true;
-}
-
-bool Run::resume(Clock::time_point now) {
-  const std::lock_guard lock(mutex_);
-  if (state_at(now) != State::AdminStop) return false;
-  stopped_ = false;
-  return true;
-}
-
-bool Run::end(Clock::time_point now) {
-  const std::lock_guard lock(mutex_);
-  if (state_at(now) == State::Ended) return false;
-  ended_ = true;
+  const State state = state_at(now);
+  const bool is_allowed = change == Change::Start    ? state == State::NotStarted
+                          : change == Change::Stop   ? state == State::Running
+                          : change == Change::Resume ? state == State::AdminStop
+                                                     : state != State::Ended;
+  if (!is_allowed) return false;
+  if (change == Change::Start) started_ = now;
+  if (change == Change::End) ended_ = true;
+  stopped_ = change == Change::Stop;
   return true;
 }
 

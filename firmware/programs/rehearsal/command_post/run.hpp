@@ -60,11 +60,10 @@ class Run {
   Run(RunPlan plan, std::vector<Artifact> artifacts)
       : plan_(std::move(plan)), artifacts_(std::move(artifacts)) {}
 
-  /// Each gives false where the run's state does not allow it.
-  bool start(Clock::time_point now);
-  bool admin_stop(Clock::time_point now);
-  bool resume(Clock::time_point now);
-  bool end(Clock::time_point now);
+  enum class Change { Start, Stop, Resume, End };  // Stop: an admin stop
+
+  /// False if the run's state does not allow it.
+  bool change(Change change, Clock::time_point now);
 
   /// Whatever became of the last run: the clock and the score at 0, no report used, no artifact found.
   void begin_again(const NewRun& wanted, Clock::time_point now);

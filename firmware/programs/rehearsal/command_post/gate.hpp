@@ -81,11 +81,7 @@ struct Judgement {
 /// One of the Command Post's two endpoints, of one manner. Safe for use by several threads.
 class Endpoint {
  public:
-  Endpoint() = default;
-  Endpoint(const Endpoint&) = delete;
-  Endpoint& operator=(const Endpoint&) = delete;
   virtual ~Endpoint() = default;
-
   virtual Judgement judge(const Request& request) = 0;
 };
 

@@ -71,6 +71,16 @@ TEST_F(LostReport, HoldsNoReportOfAnotherRun) {
   EXPECT_THAT(scene_.undecided(), ElementsAre(HasSubstr(kNote))) << "still open";
 }
 
+/// Reports that were lost after the last word of their run may be of the next one.
+TEST_F(LostReport, HoldsNewReportsOfARunThatTheFirstStatusShows) {
+  scene_.output().ledger[2].sent = scene_.reports().run().heard;
+  scene_.restart();
+  scene_.hear(25, 0);
+  ASSERT_EQ(scene_.reports().run().number, 2);
+  scene_.post(2);
+  EXPECT_EQ(scene_.state(3), Held);
+}
+
 TEST_F(LostReport, CannotBeSent) {
   for (const auto& said :
        {scene_.reports().send(2, scene_.time()), scene_.reports().resubmit(2, scene_.time())}) {

@@ -202,6 +202,17 @@ TEST_F(DamagedLedger, IsNoLedgerThatLacksAnUnsyncedRecord) {
   EXPECT_EQ(open_or_fail(state_.path(), known_).damage(), "");
 }
 
+/// So they also belong to the run that the next status shows, if the earlier run was heard last before the
+/// damage.
+TEST_F(DamagedLedger, MayHaveSentReportsAfterTheLastWordOfTheRun) {
+  ASSERT_TRUE(open_or_fail(state_.path(), known_).write(dispatch::Run{.number = 1, .began = 5, .heard = 90}));
+  const auto ledger = open_or_fail(state_.path(), {.reports = 6, .log = 1});
+  for (const std::int64_t number : {3, 4, 6}) {
+    ASSERT_EQ(find_or_fail(ledger, number).state, ReportState::InDoubt);
+    EXPECT_GE(find_or_fail(ledger, number).sent, 90) << number;
+  }
+}
+
 TEST_F(DamagedLedger, ReportsAMissingLastFile) {
   expect_said({.reports = known_.reports, .log = 2}, "reports from 5 on may be lost from the ledger");
 }

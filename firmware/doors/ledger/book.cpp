@@ -197,6 +197,7 @@ std::string Book::salvage(double now, std::int64_t expected, bool end_is_lost) {
   for (Report report : all) {
     if (is_final(report)) continue;
     report.state = ReportState::InDoubt;
+    report.sent = std::max(report.sent, last_word());
     report.changed = now;
     report.note = kHeld;
     report.before.reset();
@@ -236,6 +237,14 @@ std::string Book::salvage(double now, std::int64_t expected, bool end_is_lost) {
   return icd::sentence(all.size(), all.size() == 1 ? " report was read" : " reports were read", missing);
 }
 
+/// The last time at which a run was heard. A report whose steps are missing may have been sent later, so it
+/// may be of a run that began since.
+double Book::last_word() const {
+  double last = 0;
+  for (const auto& [number, run] : runs_) last = std::max(last, run_in(run)->heard);
+  return last;
+}
+
 void Book::put(const Report& report) {
   Kept& kept = reports_[report.number];
   kept.record = encoded(report, more_of_report(kept.record));
@@ -254,7 +263,8 @@ void Book::lose(std::int64_t last, const std::string& note, double now) {
        .changed = now,
        .state = ReportState::InDoubt,
        .note = note,
-       .run = present->number});
+       .run = present->number,
+       .sent = last_word()});
 }
 
 }  // namespace adit::ledger

@@ -16,6 +16,7 @@
 #include "loop/file_descriptor.hpp"
 #include "settings/settings.hpp"
 #include "simulation/command_post.hpp"
+#include "simulation/ledger_reading.hpp"
 #include "simulation/world.hpp"
 
 namespace adit::simulation {
@@ -27,6 +28,7 @@ constexpr std::size_t kLargestMap = 64u << 10;  // of a robot or a flood
 constexpr std::size_t kLargeMap = 4u << 20;     // in a world of large maps
 constexpr std::uint64_t kRightThen = 4, kSoon = 40, kMostCrossings = 400;
 constexpr double kDiesInExec = 0.3;
+constexpr const char* kCopy = "ledger";  // beside the box's directories
 /// Seconds until a killed process is restarted, and until a machine without power is booted.
 constexpr double kRestart[] = {0.05, 2}, kBoot[] = {5, 20};
 
@@ -158,6 +160,7 @@ void Box::run_process() {
   options.update = folder_ / "update";
   options.notices = folder_ / "notices";
   options.block = folder_ / "block";
+  if (is_copy_due_ && !starts_again_) replace_ledger();
   ::setenv("RUNTIME_DIRECTORY", (folder_ / "runtime").c_str(), 1);
   world_.begin_process(std::exchange(starts_again_, false));
   world_.note(
@@ -200,6 +203,33 @@ void Box::terminate() {
 void Box::die(World::How how) {
   if (!world_.is_dead()) return die_soon(how);
   dies_at_start_ = how;
+}
+
+void Box::copy_ledger() {
+  world_.disk().look_on([this] {
+    const fs::path ledger = folder_ / Disk::kLedger, copy = top_ / kCopy;
+    if (!fs::exists(ledger)) return;
+    fs::remove_all(copy);
+    copy_folder(ledger, copy);
+    has_copy_ = true;
+    world_.note({.actor = Actor::Disk, .kind = Kind::Copied, .what = "ledger", .who = ""});
+  });
+}
+
+void Box::put_ledger_back() {
+  is_copy_due_ = has_copy_;
+}
+
+/// The person syncs what he copies.
+void Box::replace_ledger() {
+  has_copy_ = is_copy_due_ = false;
+  const fs::path ledger = folder_ / Disk::kLedger, copy = top_ / kCopy;
+  const bool lacks = fs::exists(ledger) && lacks_records(copy, ledger);
+  fs::remove_all(ledger);
+  fs::rename(copy, ledger);
+  world_.disk().ledger_replaced();
+  world_.note(
+      {.actor = Actor::Disk, .kind = Kind::PutBack, .what = "ledger", .who = "", .serial = lacks ? 1 : 0});
 }
 
 void Box::die_soon(World::How how) {

@@ -29,6 +29,10 @@ class Box {
   void terminate();
   /// The process dies at a drawn call of the seam, counted from now or from the next start.
   void die(World::How how);
+  /// Copies the ledger's directory as it reads now. The copy replaces the one before.
+  void copy_ledger();
+  /// The next process after this one starts with the copy in place of the ledger. No effect without a copy.
+  void put_ledger_back();
 
   std::string state() const { return (folder_ / "state").string(); }
   std::string runtime() const { return (folder_ / "runtime").string(); }
@@ -42,6 +46,7 @@ class Box {
   void die_soon(World::How how);
   void died();
   void lost_power();
+  void replace_ledger();
 
   World& world_;
   Random random_;
@@ -49,6 +54,7 @@ class Box {
   std::size_t most_map_bytes_ = 0;
   int folders_ = 0;
   bool finished_ = false, boots_ = false, starts_again_ = false;
+  bool has_copy_ = false, is_copy_due_ = false;
   std::optional<World::How> dies_at_start_;
 };
 

@@ -73,6 +73,7 @@ Broken all_checks(const Evidence& evidence) {
                            alive,
                            obeyed,
                            bounded,
+                           older_copy,
                            has_room})
     check(evidence, broken);
   const std::vector<Event> told = with_losses(evidence.events);

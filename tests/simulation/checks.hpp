@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -60,6 +61,7 @@ void honest(const Evidence& evidence, Broken& broken);
 void lights(const Evidence& evidence, Broken& broken);
 void obeyed(const Evidence& evidence, Broken& broken);
 void bounded(const Evidence& evidence, Broken& broken);
+void older_copy(const Evidence& evidence, Broken& broken);
 void has_room(const Evidence& evidence, Broken& broken);
 void alive(const Evidence& evidence, Broken& broken);
 
@@ -78,6 +80,37 @@ class DiskFaultsSeen {
   bool forgets_ = false;
   double last_ = -1e9;
 };
+
+/// Older copies of the ledger that were put back and lack records. The number of the last record outside
+/// the ledger tells that. It has each step at once in memory, which a power cut clears, and later on the
+/// disk.
+class OlderCopies {
+ public:
+  struct PutBack {
+    double copied = 0;       // when the copy was made
+    double ended = 0;        // the process before
+    double at = 0;           // when the copy was put back
+    double known_until = 0;  // Adit must find that steps of a time up to this one are missing
+    double on_disk = 0;      // the same, by the disk alone
+  };
+  explicit OlderCopies(const std::vector<Event>& events);
+  const std::vector<PutBack>& all() const { return all_; }
+  /// The copy that may have taken a step of this time, or null.
+  const PutBack* taken_by(double step) const;
+  /// Whether a step of this time may be missing at `now`, and Adit may not know that.
+  bool may_forget(double step, double now) const;
+
+ private:
+  std::vector<PutBack> all_;
+};
+/// The reports that Adit has sent, by serial.
+struct SentReports {
+  SentReports(const std::vector<Event>& events, const OlderCopies& copies);
+  std::map<std::int64_t, double> kept;  // must be in the ledger, with the time when each was sent
+  std::set<std::int64_t> lost;          // Adit must find that they are missing
+};
+/// A record of a report that Adit has not sent, or has forgotten.
+bool is_anothers(const Event& event, const OlderCopies& copies);
 std::int64_t serial_of(const dispatch::Report& report);
 
 Broken all_checks(const Evidence& evidence);

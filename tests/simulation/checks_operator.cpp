@@ -25,6 +25,7 @@ bool is_word(const Event& event, const char* what) {
 /// begins.
 void check_held(const Evidence& evidence, Broken& broken) {
   std::map<std::int64_t, const Event*> kept;
+  const OlderCopies copies(evidence.events);
   std::map<std::int64_t, int> reports;  // per serial: several runs can have one each
   for (const dispatch::Report& report : evidence.reports) ++reports[serial_of(report)];
   for (const Event& event : evidence.events) {
@@ -33,6 +34,8 @@ void check_held(const Evidence& evidence, Broken& broken) {
     if (is_done && is_word(event, kCorrect)) kept[event.serial - kCorrections] = &event;
     if (event.kind == Kind::Invoke && is_word(event, kSend)) kept.erase(event.serial);
     if (event.kind == Kind::NewRun) kept.clear();
+    if (event.kind == Kind::PutBack)
+      std::erase_if(kept, [&](const auto& each) { return copies.may_forget(each.second->at, event.at); });
     if (event.kind != Kind::Left || event.what != kReports || !kept.contains(event.serial) ||
         reports[event.serial] > 1)
       continue;
@@ -103,10 +106,11 @@ void check_undo(const Evidence& evidence, Broken& broken) {
 /// A composed report that was answered is in the ledger.
 void check_composed(const Evidence& evidence, Broken& broken) {
   std::set<std::int64_t> kept;
+  const OlderCopies copies(evidence.events);
   for (const dispatch::Report& report : evidence.reports) kept.insert(serial_of(report));
   for (const Event& event : evidence.events) {
     if (event.kind != Kind::Answered || event.status != 202 || !is_word(event, kCompose) ||
-        kept.contains(event.serial))
+        kept.contains(event.serial) || copies.taken_by(event.at) != nullptr)
       continue;
     broken.push_back(icd::sentence("Obeyed: the operator's report ", event.serial,
                                    " was answered 202, but is not in the ledger"));

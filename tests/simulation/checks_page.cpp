@@ -138,8 +138,9 @@ void check_run(const Evidence& evidence, std::size_t begun, const Reading& readi
 bool is_blurred(const Evidence& evidence, const Json& row) {
   const Window window =
       window_of(evidence, row.at("received").get<double>() - kLongestDoubt, row.at("changed").get<double>());
+  const OlderCopies copies(evidence.events);
   return std::ranges::any_of(evidence.events, [&](const Event& event) {
-    return event.kind == Kind::Another && window.has(World::kEpoch + event.at);
+    return is_anothers(event, copies) && window.has(World::kEpoch + event.at);
   });
 }
 
@@ -272,7 +273,8 @@ void check_rest(const Evidence& evidence, const Reading& reading, Broken& broken
   const bool beside = std::ranges::any_of(evidence.events, [](const Event& event) {
     const bool is_told = event.what != kSameMap && !event.who.ends_with(kNameless);
     const bool renames = event.kind == Kind::Fault && event.who == kRenames;
-    return event.kind == Kind::Another || renames || (event.kind == Kind::NewRun && !is_told);
+    return event.kind == Kind::Another || event.kind == Kind::PutBack || renames ||
+           (event.kind == Kind::NewRun && !is_told);
   });
   if (called > 0 && undecided == 0 && !beside && reading.view.at("rejected").empty())
     broken.push_back(

@@ -41,8 +41,9 @@ bool is_grant(const Event& event) {
 /// this report's, and a granted report makes it look unrecorded.
 bool is_blurred(const Evidence& evidence, const dispatch::Report& report) {
   const Window window = window_of(evidence, report.sent - kLongestDoubt, report.changed);
+  const OlderCopies copies(evidence.events);
   return std::ranges::any_of(evidence.events, [&](const Event& event) {
-    return (event.kind == Kind::Another || is_grant(event)) && window.has(World::kEpoch + event.at);
+    return (is_anothers(event, copies) || is_grant(event)) && window.has(World::kEpoch + event.at);
   });
 }
 
@@ -74,6 +75,9 @@ class AnsweredRecords {
     if (event.kind == Kind::Dies || event.kind == Kind::Ended) forget_unwritten(event.at);
   }
   bool has(const Record& record) const { return answered_.contains(record); }
+  void forget(const OlderCopies& copies, double now) {
+    std::erase_if(answered_, [&](const auto& each) { return copies.may_forget(each.second, now); });
+  }
 
  private:
   /// An answer is on the disk within a second, or when the disk can be written again.
@@ -105,6 +109,9 @@ class RisesHeard {
     before->second = left;
   }
   double last() const { return last_; }
+  void forget(const OlderCopies& copies, double now) {
+    if (copies.may_forget(last_, now)) last_ = -1e9;
+  }
 
  private:
   DiskFaultsSeen disk_;
@@ -132,28 +139,36 @@ class LooksLikeAnother {
 };
 
 void once(const Evidence& evidence, Broken& broken) {
+  struct Sent {
+    double first = 0, last = 0;  // since the record before
+  };
   struct Record {
-    double left = 0, at = 0;
+    Sent sent;
+    double at = 0;
   };
   std::map<std::pair<std::int64_t, std::string>, Record> records;  // the first of each
-  std::map<std::uint64_t, double> left;                            // by request
+  std::map<std::int64_t, Sent> sent;                               // by serial
   IntendedRuns meant;
   AnsweredRecords answers;
   RisesHeard rises;
   LooksLikeAnother another;
   double granted = -kLongestDoubt;
+  const OlderCopies copies(evidence.events);
   for (const Event& event : evidence.events) {
+    if (event.kind == Kind::PutBack) answers.forget(copies, event.at), rises.forget(copies, event.at);
     meant.add(event);
     another.add(event);
     if (is_grant(event)) granted = event.at;
-    if (is_report(event, Kind::Left)) left[event.request] = event.at;
+    if (is_report(event, Kind::Left))
+      sent.try_emplace(event.serial, Sent{.first = event.at}).first->second.last = event.at;
     if (!is_report(event, Kind::Taken)) {
       answers.add(event);
       rises.add(event);
       continue;
     }
     const bool costs = !event.who.ends_with(kInAStop);
-    const Record record{.left = left[event.request], .at = event.at};
+    const auto its = sent.extract(event.serial);
+    const Record record{.sent = its ? its.mapped() : Sent(), .at = event.at};
     const auto [place, is_first] = records.try_emplace({event.serial, event.who}, record);
     const Record& first = place->second;
     const bool again = !is_first;
@@ -165,8 +180,10 @@ void once(const Evidence& evidence, Broken& broken) {
     answers.add(event);
     const bool is_deceived = another.last() > first.at;
     // A serial server reads a report long after Adit has given it up. The operator may send it before.
-    const bool is_late = meant.is_sent_within(event.serial, first.left, first.at);
-    if (costs && again && could_tell && !is_deceived && !is_late && !meant.is_sent_across(event.serial)) {
+    const bool is_late = meant.is_sent_within(event.serial, first.sent.first, first.at);
+    const bool may_be_forgotten = copies.may_forget(first.sent.last, event.at);
+    if (costs && again && could_tell && !is_deceived && !is_late && !may_be_forgotten &&
+        !meant.is_sent_across(event.serial)) {
       broken.push_back(icd::sentence("Once: report ", event.serial, " was recorded again in ", event.who,
                                      " at ", event.at));
     }
@@ -199,11 +216,10 @@ void not_lost(const Evidence& evidence, Broken& broken) {
   }
   std::set<std::int64_t> known;
   for (const dispatch::Report& report : evidence.reports) known.insert(serial_of(report));
-  for (const Event& event : evidence.events) {
-    if (is_report(event, Kind::Left) && known.insert(event.serial).second) {
-      broken.push_back(icd::sentence("NotLost: report ", event.serial, " was sent at ", event.at,
-                                     ", but is not in the ledger"));
-    }
+  for (const auto& [serial, at] : SentReports(evidence.events, OlderCopies(evidence.events)).kept) {
+    if (!known.contains(serial))
+      broken.push_back(
+          icd::sentence("NotLost: report ", serial, " was sent at ", at, ", but is not in the ledger"));
   }
   for (const dispatch::Report& report : evidence.reports) {
     const bool claimed =
@@ -218,7 +234,7 @@ void not_lost(const Evidence& evidence, Broken& broken) {
 /// A fault after which the counts prove no report for longer, by README.md of dispatch.
 bool ends_proof(const Event& event) {
   const bool is_fault = event.kind == Kind::Fault;
-  return event.kind == Kind::Another || is_grant(event) ||
+  return event.kind == Kind::Another || event.kind == Kind::PutBack || is_grant(event) ||
          (is_fault &&
           (event.who == name_of(Fault::AdminStop) || event.who == kSetBack || event.who == kRepeats));
 }

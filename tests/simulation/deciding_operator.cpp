@@ -72,8 +72,12 @@ void DecidingOperator::read_view(const nlohmann::json& view) {
 }
 
 void DecidingOperator::decide(const nlohmann::json& row) {
-  if (row.at("position").is_null()) return;  // of a damaged ledger: its content is unknown
   const std::string state = row.at("state");
+  if (row.at("position").is_null()) {  // lost from a damaged ledger
+    // Before, a client may post it again.
+    if (is_over() && state == "in_doubt") push_decision(row.at("number"), kSettle, 0);
+    return;
+  }
   const std::int64_t id = row.at("number"),
                      serial = std::llround(row.at("position").at("x").get<double>() / 100);
   if (!is_over() && random_.chance(0.4)) return;

@@ -364,15 +364,21 @@ std::string Disk::settings() const {
 }
 
 std::uint64_t Disk::stored(const std::string& beginning) {
-  looks_on_ = true;
   std::uint64_t bytes = 0;
-  std::error_code gone;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_, gone)) {
-    if (entry.is_regular_file(gone) && entry.path().native().starts_with(folder_ + beginning))
-      bytes += entry.file_size(gone);
-  }
-  looks_on_ = false;
+  look_on([&] {
+    std::error_code gone;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_, gone)) {
+      if (entry.is_regular_file(gone) && entry.path().native().starts_with(folder_ + beginning))
+        bytes += entry.file_size(gone);
+    }
+  });
   return bytes;
+}
+
+void Disk::look_on(const std::function<void()>& look) {
+  looks_on_ = true;
+  look();
+  looks_on_ = false;
 }
 
 void Disk::note_settings(const std::string& mark) {

@@ -3,6 +3,7 @@
 #include <sys/types.h>
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <span>
@@ -24,6 +25,7 @@ class Disk {
  public:
   static constexpr const char* kRuntime = "runtime";
   static constexpr const char* kSettings = "state/settings.json";
+  static constexpr const char* kLedger = "state/ledger";
   static constexpr std::uint64_t kRoom = 256 << 20;  // bytes of each file system
 
   explicit Disk(World& world);
@@ -46,6 +48,10 @@ class Disk {
   void let_go() { open_.clear(); }
   /// Changes `tree`, a copy of the directory, into the files after a power cut.
   void cut_power(const std::filesystem::path& tree);
+  /// Call after a person has replaced the ledger's directory while no process runs.
+  void ledger_replaced() { unsynced_.replaced_folder(kLedger); }
+  /// Calls `look`, whose calls are not the box's: no fault hits them.
+  void look_on(const std::function<void()>& look);
   DiskFaults& faults() { return faults_; }
   CallFaults& calls() { return calls_; }
 

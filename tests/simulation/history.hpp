@@ -36,6 +36,8 @@ enum class Kind : std::uint8_t {
   Written,   // a settings file was put in place; `who` is its digest
   Serves,    // a process begins with those settings
   Mended,    // a fault of the disk has ended
+  Copied,    // a copy of the ledger's directory was made
+  PutBack,   // that copy replaced the directory, while no process runs; the serial is 1 if it lacks records
   Slow,      // the process stands still for its disk, for `stamp` seconds
   Calm,      // all faults have ended
   Told,      // a message to systemd: "READY", "STATUS", "STOPPING", "WATCHDOG"

@@ -1,5 +1,6 @@
 #include "simulation/ledger_reading.hpp"
 
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -91,17 +92,32 @@ dispatch::Report report_of(Cursor members) {
   return report;
 }
 
-}  // namespace
-
-LedgerReading read_ledger(const std::string& directory) {
+std::map<std::string, std::string> files_in(const std::string& directory) {
   std::map<std::string, std::string> files;
-  if (!fs::exists(directory)) return {};
   for (const auto& file : fs::directory_iterator(directory)) {
     std::ifstream bytes(file.path(), std::ios::binary);
     if (file.is_regular_file()) files[file.path().filename()] = {std::istreambuf_iterator<char>(bytes), {}};
   }
+  return files;
+}
+
+}  // namespace
+
+bool lacks_records(const std::string& copy, const std::string& directory) {
+  const auto older = files_in(copy), newer = files_in(directory);
+  const store::SecondReading before = store::read_again(older), after = store::read_again(newer);
+  return std::ranges::any_of(newer,
+                             [&](const auto& file) {
+                               return file.first.starts_with("log-") && !older.contains(file.first);
+                             }) ||
+         std::ranges::any_of(after.records,
+                             [&](const auto& record) { return !before.records.contains(record.first); });
+}
+
+LedgerReading read_ledger(const std::string& directory) {
+  if (!fs::exists(directory)) return {};
   std::map<std::int64_t, dispatch::Report> reports;
-  const store::SecondReading read = store::read_again(files);
+  const store::SecondReading read = store::read_again(files_in(directory));
   for (const std::string& body : read.bodies()) {
     Cursor record(body);
     record.number();  // the highest number

@@ -1,5 +1,7 @@
 #include "simulation/run.hpp"
 
+#include <algorithm>
+
 #include "simulation/box.hpp"
 #include "simulation/checks.hpp"
 #include "simulation/courses.hpp"
@@ -58,6 +60,25 @@ void plan_calls(World& world, Box& box, double trouble_for) {
   }
 }
 
+/// In a fifth of the runs: once or twice a person copies the ledger, and later, between two processes, puts
+/// the copy back.
+void plan_older_copies(World& world, Box& box, double trouble_for) {
+  Random random = world.random("older copies");
+  if (!random.chance(0.2)) return;
+  for (std::uint64_t i = 1 + random.below(2); i > 0; --i) {
+    const double one = random.between(0, trouble_for), other = random.between(0, trouble_for);
+    const double how = random.unit();
+    if (world.omits("older copies")) continue;
+    world.after(seconds(std::min(one, other)), [&box] { box.copy_ledger(); });
+    world.after(seconds(std::max(one, other)), [&world, &box, how] {
+      box.put_ledger_back();
+      if (world.is_dead()) return;
+      if (how < 0.2) return box.terminate();
+      box.die(how < 0.5 ? World::How::Killed : World::How::PowerCut);
+    });
+  }
+}
+
 }  // namespace
 
 Outcome play(const Plan& plan) {
@@ -77,6 +98,7 @@ Outcome play(const Plan& plan) {
   plan_clock(world, trouble_for);
   world.disk().faults().plan(trouble_for);
   plan_calls(world, box, trouble_for);
+  plan_older_copies(world, box, trouble_for);
   world.network().stalls().plan(trouble_for);
   world.after(seconds(trouble_for), [&] { posts.calm(); });
   reader.wait_for_rest(trouble_for + kLeastRest, trouble_for + kMostRest, [&] { box.finish(); });

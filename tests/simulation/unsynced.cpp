@@ -146,6 +146,11 @@ void Unsynced::forget_below(const std::string& folder) {
   std::erase_if(namings_, [&](const Naming& each) { return each.name.starts_with(begins); });
 }
 
+void Unsynced::replaced_folder(const std::string& name) {
+  forget_below(name);
+  std::erase_if(namings_, [&](const Naming& each) { return each.name == name; });
+}
+
 void Unsynced::synced_folder(const std::string& name) {
   std::erase_if(namings_, [&](const Naming& each) { return folder_of(each.name) == name; });
 }

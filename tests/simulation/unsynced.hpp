@@ -64,6 +64,8 @@ class Unsynced {
   /// `replaced`: the content of the file that had the name `to`.
   void renamed(const std::string& from, const std::string& to, std::optional<Content> replaced);
   void synced_folder(const std::string& name);
+  /// Another directory, which is synced, has that name now.
+  void replaced_folder(const std::string& name);
 
   /// Changes `tree`, a copy of the directory, into the state after a power cut, which is then synced.
   void cut(const std::filesystem::path& tree, Random& random);

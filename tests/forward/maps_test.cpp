@@ -186,6 +186,18 @@ TEST_F(OvertakenGrid, IsTheNewestIfItHasTheNewerStamp) {
   EXPECT_EQ(kept[0].map.header().stamp, 10);
 }
 
+/// A third one, posted after the newest one, has an older stamp, because its client's clock was set back.
+TEST_F(OvertakenGrid, IsNewerThanAThirdOneOnlyWithTheCellsThatAreQueued) {
+  EXPECT_EQ(take_newer(columns(0, 10)), icd::Status::Ok);
+  EXPECT_EQ(status(take(columns(-1, 9), [] {}, {.bytes = 10, .began = 1, .ended = 5, .overlaps = 4})),
+            icd::Status::Ok);
+  EXPECT_EQ(status(take(columns(0, 8), [] {}, {.bytes = 10, .began = 4, .ended = 6})), icd::Status::Ok);
+  const auto kept = stored();
+  ASSERT_EQ(kept.size(), 2u) << "the third one replaced the first one";
+  EXPECT_EQ(std::get<icd::OccupancyGrid>(kept[0].map.msg).width, 4u);
+  EXPECT_EQ(std::get<icd::OccupancyGrid>(kept[1].map.msg).width, 20u);
+}
+
 TEST_F(OvertakenGrid, IsQueuedAsAWholeOrNotAtAll) {
   EXPECT_EQ(take_newer(columns(0, 10)), icd::Status::Ok);
   icd::MapUpdate older = columns(-1, 9);

@@ -218,6 +218,7 @@ void Maps::stored(MapStore::Stored& stored, Arrived& map) {
   if (!stored.map) return refuse(map, std::move(stored.map.error()));
   map.update.name = stored.map->name;
   map.update.msg = stored.map->msg;
+  overtaken_.record(map.update, map.upload);
   queue(stored);
   accept(map);
 }
@@ -260,14 +261,16 @@ void Maps::store_next_tile(const std::shared_ptr<Arrived>& map) {
     }
     map->parts.push_back(std::move(stored));
     if (!map->tiles.empty()) return store_next_tile(map);
-    for (MapStore::Stored& part : map->parts) queue(part);
+    for (MapStore::Stored& part : map->parts) {
+      overtaken_.record(*part.map, map->upload);
+      queue(part);
+    }
     accept(*map);
   });
 }
 
 void Maps::accept(Arrived& map) {
   counts_.accepted(traffic_of(map.update), map.upload.bytes, loop_.wall_now());
-  overtaken_.record(map.update, map.upload);
   end(map, {});
   compare();
   pump();

@@ -46,7 +46,8 @@ class OvertakenMaps {
   /// A map is being stored; until end().
   void begin(const Upload& upload, bool is_overtaken) { stored_.push_back({upload, is_overtaken}); }
   void end(const Upload& upload);
-  /// `map`, which has a stamp, was accepted.
+  /// `map`, which has a stamp, was accepted. Of a grid that was overtaken, call it for each part that is
+  /// queued: the others have no newer cells.
   void record(const icd::MapUpdate& map, const Upload& upload);
   bool empty() const { return stored_.empty(); }
 

@@ -1,6 +1,6 @@
-#include <gtest/gtest.h>
-
 #include "forward/slot.hpp"
+
+#include <gtest/gtest.h>
 
 namespace adit::forward {
 namespace {

@@ -78,10 +78,12 @@ template <class Item>
 std::string table_of(const std::vector<Item>& items, const std::vector<ColumnOf<Item>>& columns,
                      bool colour) {
   std::vector<Table::Column> heading;
+  heading.reserve(columns.size());
   for (const auto& column : columns) heading.push_back({column.name, column.align});
   Table table(std::move(heading));
   for (const Item& item : items) {
     std::vector<Cell> cells;
+    cells.reserve(columns.size());
     for (const auto& column : columns) cells.push_back(column.cell(item));
     table.add(std::move(cells));
   }

@@ -53,11 +53,17 @@ bool is_before(const Change& change, const Change& other, const Changes& all,
                                      is_overtaken(*change.asked, change.item, *other.asked, other.item));
   if (!change.is_of_one_clock(other) || by_stamps == by_arrival) return by_arrival;
   const double from = std::min(change.began, other.began), to = std::max(change.ended, other.ended);
-  const bool is_apart = std::ranges::any_of(forgets, [&](double at) { return at > from && at < to; }) ||
-                        std::ranges::any_of(all, [&](const Change& third) {
-                          return !third.is_of_one_clock(change) && third.ended > from && third.began < to;
-                        });
-  return is_apart ? by_arrival : by_stamps;
+  const double first_ended = change.began < other.began ? change.ended : other.ended;
+  const bool is_apart =
+      std::ranges::any_of(forgets, [&](double at) { return at > first_ended && at < to; }) ||
+      std::ranges::any_of(all, [&](const Change& third) {
+        return !third.is_of_one_clock(change) && third.ended > from && third.began < to;
+      });
+  if (is_apart) return by_arrival;
+  // The process before may have accepted the first one, or the next one.
+  const bool is_unsure =
+      std::ranges::any_of(forgets, [&](double at) { return at > from && at <= first_ended; });
+  return by_stamps && !is_unsure;
 }
 
 /// Whether `early` may have replaced `late`, which was posted after it, because its stamp is later. That is

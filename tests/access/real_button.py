@@ -113,7 +113,7 @@ class Button(unittest.TestCase):
         self.await_restart(1)
         self.assertGreater(time.monotonic() - pressed, 10)
         self.assertEqual(box.ask("GET /adit/session")[1]["first_start"], True)
-        for gone in ("settings.json", "secrets", "access.json"):
+        for gone in ("settings.json", "settings.json.copy", "secrets", "access.json", "access.json.copy"):
             self.assertFalse((box.state / gone).exists(), gone)
         self.assertEqual(box.ask("GET /adit/sessions", **self.me)[0], 401)
         self.assertIn("button held: factory reset", box.output())

@@ -78,7 +78,8 @@ class Facts(WithAlarms):
         for alarm in ("queue_full", "queue_nearly_full", f"reports_elsewhere:{hosts.SCORING}:{programs.PORT}"):
             wait_until(lambda alarm=alarm: self.alarm(stage, alarm), alarm)
         self.assertEqual(stage.box.stop(), 0)
-        (stage.box.state / "settings.json").write_text("{")
+        for file in ("settings.json", "settings.json.copy"):
+            (stage.box.state / file).write_text("{")
         stage.restart_box()
         wait_until(lambda: self.alarm(stage, "settings_not_used"), "settings_not_used")
         held = stage.box.ask("GET /adit/settings")[1]

@@ -96,6 +96,10 @@ TEST(ParseKept, TakesTheCopyOfADamagedFileAlone) {
   EXPECT_EQ(read(), 2) << "by an earlier version";
   ASSERT_TRUE(remove_file(folder / "kept"));
   EXPECT_FALSE(may_exist(folder / "kept.copy"));
+  folder.put("kept", "5");
+  std::filesystem::create_directory(folder / "kept.copy");
+  EXPECT_THAT(parse_kept(folder / "kept", parse).error(), HasSubstr("not a regular file")) << "not damaged";
+  std::filesystem::remove(folder / "kept");
   EXPECT_THAT(parse_kept(folder / "kept", parse).error(), HasSubstr("No such file"));
 }
 

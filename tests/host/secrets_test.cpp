@@ -97,6 +97,24 @@ TEST_F(ReadSecrets, ReplacesNoDamagedSavedToken) {
   }
 }
 
+TEST_F(ReadSecrets, TakesACopyOnlyOfADamagedToken) {
+  ASSERT_TRUE(write_kept(state_ / "secrets/scoring.token", "saved-token\n"));
+  const std::string file = state_ / "secrets/scoring.token", copy = file + kCopy;
+  chmod(file.c_str(), 0644);
+  EXPECT_THAT(read(folder_.path())->damaged["scoring"], HasSubstr("chmod 600 " + file));
+  for (const char* const damaged : {"saved", "two words", ""}) {
+    state_.put("secrets/scoring.token", damaged);
+    chmod(file.c_str(), 0600);
+    EXPECT_EQ(read(folder_.path())->token("scoring")->reveal(), "saved-token") << damaged;
+  }
+  state_.put("secrets/scoring.token", "edited-token\n");
+  EXPECT_EQ(read(folder_.path())->token("scoring")->reveal(), "edited-token") << "by a person";
+  std::filesystem::remove(copy);
+  std::filesystem::create_directory(copy);
+  state_.put("secrets/scoring.token", "two words");
+  EXPECT_EQ(read(folder_.path())->unread, copy + ": is not a regular file");
+}
+
 TEST_F(ReadSecrets, ReplacesNoLostSavedToken) {
   state_.put("scoring.token.saved", "");
   const auto secrets = read(folder_.path());

@@ -25,7 +25,8 @@ using Token = std::optional<icd::BearerToken>;
 
 struct Fault {
   std::string why;
-  bool is_unread = false;  // the file cannot be read; otherwise it holds no token
+  bool is_unread = false;   // the file cannot be read
+  bool is_damaged = false;  // it holds no token
 };
 
 enum class Place : std::uint8_t { Saved, Given, Credentials };
@@ -43,23 +44,27 @@ std::expected<Token, Fault> read_one(const std::string& path, Place place) {
   if (text.empty() && place != Place::Saved) return Token();
   auto token = icd::BearerToken::parse(text);
   if (!token)
-    return std::unexpected(Fault{path + ": expected one token of 1 to 256 visible ASCII characters"});
+    return std::unexpected(
+        Fault{path + ": expected one token of 1 to 256 visible ASCII characters", false, true});
   return token;
 }
 
-/// Half a token is a token, too.
-bool is_half_of(const std::string& path, const std::string& copy) {
-  const auto half = slurp(path), whole = slurp(copy);
-  return half && whole && half->text.size() < whole->text.size() && whole->text.starts_with(half->text);
+bool has_checksum(const std::string& path) {
+  const auto file = slurp(path);
+  return file && without_checksum(file->text).size() < file->text.size();
 }
 
-/// The same, or of its copy if a saved file is damaged.
+/// The same, or of its copy if a saved file is damaged. Half a token is a token, too, without a checksum.
 std::expected<Token, Fault> read_token(const std::string& path, Place place) {
   auto token = read_one(path, place);
-  if (place != Place::Saved || (!token && token.error().is_unread)) return token;
-  if (token && !is_half_of(path, path + kCopy)) return token;
+  const bool may_be_damaged = token ? *token && !has_checksum(path) : token.error().is_damaged;
+  if (place != Place::Saved || !may_be_damaged) return token;
   auto copy = read_one(path + kCopy, place);
+  if (!copy && copy.error().is_unread) return copy;
   if (!copy || !*copy) return token;
+  const bool is_half = token && (*copy)->reveal() != (*token)->reveal() &&
+                       std::string_view((*copy)->reveal()).starts_with((*token)->reveal());
+  if (token && !is_half) return token;
   log_use_of_copy(path);
   return copy;
 }

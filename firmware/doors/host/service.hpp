@@ -56,7 +56,7 @@ inline constexpr const char* kCopy = ".copy";
 /// has a right checksum. A failure is logged.
 void keep_copy(const std::string& path);
 /// The result of parse(text): of the file, or if that is an error, of its copy, which is logged. The outer
-/// error: the file cannot be read.
+/// error: the file, or the copy of a damaged one, cannot be read.
 template <class Parse>
 auto parse_kept(const std::string& path, Parse parse)
     -> std::expected<decltype(parse(std::string_view())), std::string> {
@@ -64,8 +64,9 @@ auto parse_kept(const std::string& path, Parse parse)
   if (!text) return std::unexpected(text.error());
   auto parsed = parse(std::string_view(*text));
   if (parsed) return parsed;
+  if (!may_exist(path + kCopy)) return parsed;
   const auto copy = read_file(path + kCopy);
-  if (!copy) return parsed;
+  if (!copy) return std::unexpected(copy.error());
   auto copied = parse(std::string_view(*copy));
   if (!copied) return parsed;
   log_use_of_copy(path);

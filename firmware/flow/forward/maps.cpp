@@ -553,7 +553,7 @@ void Maps::leaves(const Place& sent) {
   if (sent == first_) first_ = std::exchange(following_, nullptr);
 }
 
-void Maps::queue_again(const Place& sent) {
+void Maps::return_to_queue(const Place& sent) {
   if (sent == first_) put_back(following_);
   if (Place* const place = place_of(sent)) put_back(*place);
   if (!first_) first_ = std::exchange(following_, nullptr);
@@ -705,7 +705,7 @@ void Maps::taken(const Place& sent, const uplink::Answered& answered) {
   queue_.carried(queues::Sender::of(map), sent->packed.body.size());
   if (queues::next_piece(sent->waiting)) {
     counts_.forwarded(traffic_of(map), 0, sent->packed.body.size(), answered.status, loop_.wall_now());
-    return queue_again(sent);
+    return return_to_queue(sent);
   }
   leaves(sent);
   const std::size_t updates = sent->waiting.updates.size();
@@ -811,7 +811,7 @@ void Maps::split(const Place& place) {
 
 void Maps::again(const Place& sent) {
   ahead_.failed(sent->went_ahead || channel_.busy());
-  queue_again(sent);
+  return_to_queue(sent);
 }
 
 /// Parts of a merged or stitched map are tried separately.

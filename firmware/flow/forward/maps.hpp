@@ -158,7 +158,7 @@ class Maps {
   std::vector<const Prepared*> prepared_of(const Traffic& traffic) const;
   std::optional<queues::Replaced> absorb(const queues::QueuedMap& back);
   void leaves(const Place& sent);
-  void queue_again(const Place& sent);
+  void return_to_queue(const Place& sent);
   void put_back(Place& prepared);
   void pack_again();
 

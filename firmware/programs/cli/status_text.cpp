@@ -238,7 +238,7 @@ std::string endpoints_table(const RunView& view, bool colour) {
   return table.empty() ? "" : "\nCommand Post\n" + table.written(colour);
 }
 
-/// With the mode of clouds, and what was not sent or is not seen.
+/// The kind, the mode of clouds, and counts of messages that were left out or are invisible.
 std::string kind_of(const api::ActivityRow& row) {
   std::string kind = row.kind;
   if (!row.clouds.empty()) kind += ", " + row.clouds;

@@ -168,7 +168,7 @@ class AddressConflictsTest : public NetworkChangeTest {
   /// Each interface with its address.
   std::vector<std::string> conflicts() const {
     std::vector<std::string> all;
-    for (const alarms::AddressConflict& each : change.fact().taken)
+    for (const facts::AddressConflict& each : change.fact().taken)
       all.push_back((each.is_team ? "team " : "command post ") + each.interface + " " + each.address);
     return all;
   }

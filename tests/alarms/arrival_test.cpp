@@ -2,12 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include "alarms/alike.hpp"
+
 namespace adit::alarms {
 namespace {
 
 struct ArrivalCase {
   const char* what;
-  Stream stream;
+  ActivityRow row;
   double turn = 0;
   bool silent = false;
   Arrival arrival;
@@ -15,69 +17,59 @@ struct ArrivalCase {
 };
 
 const ArrivalCase kArrivalCases[] = {
-    {"nothing waits", {.forwarded = 3, .last_status = 200}, 0, false, Arrival::UpToDate, Level::Good},
+    {"nothing waits", {.age = 3, .last_status = 200}, 0, false, Arrival::UpToDate, Level::Good},
     {"something waits for its turn",
-     {.behind = 9, .forwarded = 9, .last_status = 200},
+     {.behind = 9, .age = 9, .last_status = 200},
      0,
      false,
      Arrival::Arriving,
      Level::Good},
-    {"it waits longer",
-     {.behind = 11, .forwarded = 11, .last_status = 200},
-     0,
-     false,
-     Arrival::Late,
-     Level::Wait},
+    {"it waits longer", {.behind = 11, .age = 11, .last_status = 200}, 0, false, Arrival::Late, Level::Wait},
     {"as long as many explain",
-     {.behind = 25, .forwarded = 25, .last_status = 200},
+     {.behind = 25, .age = 25, .last_status = 200},
      20,
      false,
      Arrival::Arriving,
      Level::Good},
     {"and longer than they do",
-     {.behind = 31, .forwarded = 31, .last_status = 200},
+     {.behind = 31, .age = 31, .last_status = 200},
      20,
      false,
      Arrival::Late,
      Level::Wait},
-    {"for good",
-     {.behind = 91, .forwarded = 99, .last_status = 200},
-     0,
-     false,
-     Arrival::NotArriving,
-     Level::Bad},
+    {"for good", {.behind = 91, .age = 99, .last_status = 200}, 0, false, Arrival::NotArriving, Level::Bad},
     {"the last try failed",
-     {.behind = 3, .forwarded = 9, .failed = true},
+     {.behind = 3, .age = 9, .last_sentence = "timed out"},
      0,
      false,
      Arrival::Failing,
      Level::Wait},
     {"and those before it",
-     {.behind = 11, .forwarded = 20, .failed = true},
+     {.behind = 11, .age = 20, .last_sentence = "timed out"},
      0,
      false,
      Arrival::NotArriving,
      Level::Bad},
     {"429",
-     {.behind = 3, .forwarded = 9, .last_status = 429, .failed = true},
+     {.behind = 3, .age = 9, .last_status = 429, .last_sentence = "timed out"},
      0,
      false,
      Arrival::Throttled,
      Level::Wait},
     {"refused for good",
-     {.forwarded = 9, .last_status = 422, .failed = true},
+     {.age = 9, .last_status = 422, .last_sentence = "timed out"},
      0,
      false,
      Arrival::Refused,
      Level::Bad},
     {"the first waits", {.behind = 1}, 0, false, Arrival::NotYet, Level::Wait},
-    {"nothing new", {.forwarded = 61, .last_status = 200}, 0, false, Arrival::Quiet, Level::Quiet},
-    {"its robot is silent", {.forwarded = 61, .last_status = 200}, 0, true, Arrival::Silent, Level::Bad},
+    {"nothing new", {.age = 61, .last_status = 200}, 0, false, Arrival::Quiet, Level::Quiet},
+    {"its robot is silent", {.age = 61, .last_status = 200}, 0, true, Arrival::Silent, Level::Bad},
 };
 
 TEST(Arrival, HasOneWordAndOneLevelForEachCase) {
   for (const ArrivalCase& each : kArrivalCases) {
-    const Arrival arrival = arrival_of(each.stream, each.turn, each.silent);
+    const Arrival arrival = arrival_of(each.row, each.turn, each.silent);
     EXPECT_EQ(name_of(arrival), name_of(each.arrival)) << each.what;
     EXPECT_EQ(level_of(arrival), each.level) << each.what;
   }

@@ -12,104 +12,107 @@ namespace adit::alarms {
 namespace {
 
 /// Two robots. One has a placeholder as its name.
-Facts named() {
-  Facts facts = well(1);
-  for (Endpoint& endpoint : facts.endpoints) endpoint.address = "ADDRESS";
-  facts.robots["NAME"] = {.gap = 1, .quiet = 1};
-  facts.streams.push_back({.kind = "grid", .robot = "NAME", .forwarded = 1.0, .last_status = 200});
-  return facts;
+Snapshot named() {
+  Snapshot snapshot = well(1);
+  for (EndpointRow& endpoint : snapshot.traffic.endpoints) endpoint.address = "ADDRESS";
+  snapshot.traffic.habits["NAME"] = {.gap = 1, .quiet = 1};
+  snapshot.traffic.activities.push_back({.kind = "grid", .robot = "NAME", .age = 1.0, .last_status = 200});
+  return snapshot;
 }
 
-void both_have(Facts& facts, EndpointTrouble trouble) {
-  for (Endpoint& endpoint : facts.endpoints) {
-    endpoint.trouble = trouble;
-    endpoint.said = trouble == EndpointTrouble::Failing ? "500" : "no route to host";
+void both_have(Snapshot& snapshot, EndpointFault trouble) {
+  for (EndpointRow& endpoint : snapshot.traffic.endpoints) {
+    endpoint.fault = trouble;
+    endpoint.said = trouble == EndpointFault::Failing ? "500" : "no route to host";
   }
 }
 
-void robots_and_queue(std::vector<Facts>& days) {
+void robots_and_queue(std::vector<Snapshot>& days) {
   days.push_back(named());
-  days.back().robots["NAME"].silent = true;
-  days.back().streams.back().behind = 100;
-  days.back().streams.back().no_room = 1;
-  days.back().unknown_robots = {"NAME"};
-  days.back().known_robots = {"uav1"};
-  days.back().crowds = {{CrowdFact::Is::NoRoom, "ADDRESS"},
-                        {CrowdFact::Is::WrongToken, "ADDRESS"},
-                        {CrowdFact::Is::Unauthenticated, "ADDRESS"}};
-  days.back().shut_out = true;
+  days.back().traffic.habits["NAME"].silent = true;
+  days.back().traffic.activities.back().behind = 100;
+  days.back().traffic.activities.back().last_no_room = kNow - 1;
+  days.back().clients.unknown_robots = {"NAME"};
+  days.back().clients.known_robots = {"uav1"};
+  days.back().clients.crowds = {{Crowd::Kind::NoRoom, "ADDRESS"},
+                                {Crowd::Kind::WrongToken, "ADDRESS"},
+                                {Crowd::Kind::Unauthenticated, "ADDRESS"}};
+  days.back().clients.shut_out = true;
   days.push_back(well(6));
-  for (auto& [name, robot] : days.back().robots) robot.silent = true;
-  for (Stream& stream : days.back().streams) stream.behind = 100;
+  for (auto& [name, robot] : days.back().traffic.habits) robot.silent = true;
+  for (ActivityRow& stream : days.back().traffic.activities) stream.behind = 100;
   days.push_back(named());
-  days.back().queued = days.back().queue_room;
+  days.back().traffic.queued = days.back().traffic.queue_room;
   days.push_back(named());
-  days.back().queue_grows = true;
-  days.back().queued = 60u << 20;
+  days.back().traffic.queue_grows = true;
+  days.back().traffic.queued = 60u << 20;
 }
 
-void reports(std::vector<Facts>& days) {
+void reports(std::vector<Snapshot>& days) {
   days.push_back(named());
-  days.back().reports = {
-      {.number = 7, .is = ReportFact::Is::Held, .note = "close to report 5"},
-      {.number = 7, .is = ReportFact::Is::InDoubt, .note = "the status cannot tell"},
-      {.number = 7, .is = ReportFact::Is::Lost, .of_run = false, .note = "a row is damaged"}};
-  days.back().reports_left = 5;
-  days.back().reports_elsewhere["ADDRESS"] = 2;
-  days.back().run_unreliable = "somebody else reports with this token";
-  days.back().run_renamed = "run 2, was 1";
-  days.back().messages_rejected = 3;
-  days.back().newest_rejected_why = "NAME's cloud: too large";
+  days.back().reports.rows = {
+      {.number = 7, .position = {}, .state = "in_doubt", .note = "a row is damaged", .run = 0},
+      {.number = 7, .state = "in_doubt", .note = "the status cannot tell"},
+      {.number = 7, .state = "held", .note = "close to report 5"}};
+  days.back().reports.left = 5;
+  days.back().reports.elsewhere["ADDRESS"] = 2;
+  days.back().reports.run_unreliable = "somebody else reports with this token";
+  days.back().reports.run_renamed = "run 2, was 1";
+  for (std::uint64_t number = 1; number <= 3; ++number) {
+    days.back().reports.rejected.push_back(
+        {.number = number, .kind = "cloud", .robot = "NAME", .status = 413, .why = "too large"});
+  }
   days.push_back(named());
-  days.back().reports_left = 0;
+  days.back().reports.left = 0;
 }
 
-void the_box(std::vector<Facts>& days) {
+void the_box(std::vector<Snapshot>& days) {
   days.push_back(named());
-  Facts& facts = days.back();
-  facts.ledger_refusal = facts.disk.map = facts.disk.state = facts.disk.run = "no space";
-  facts.ledger_damage = "its reports were recovered";
-  facts.other_ledger = "ledger.sqlite";
-  facts.put_aside = "aditd ended 3 times";
-  facts.disk.free = 500u << 10;
-  facts.disk.life = 10;
-  facts.disk.wear_unknown = "life_time: Input/output error";
-  facts.time_set = false;
-  facts.stamps_ahead = 3 * 86400;
-  facts.ntp_trouble = "ADDRESS does not answer";
-  facts.change_trouble = "port 8000 is in use";
-  facts.settings_trouble = facts.board_trouble = "an error in it";
-  facts.lights_trouble = "no such device";
-  facts.notices = {{"card", "what happened"}};
-  facts.update = {.on_trial = true, .version = "1.2.0", .stray = "the last one did not come up"};
+  Snapshot& snapshot = days.back();
+  snapshot.box.ledger_refusal = snapshot.box.disk.map = snapshot.box.disk.state = snapshot.box.disk.run =
+      "no space";
+  snapshot.box.ledger_damage = "its reports were recovered";
+  snapshot.box.other_ledger = "ledger.sqlite";
+  snapshot.box.put_aside = "aditd ended 3 times";
+  snapshot.box.disk.free = 500u << 10;
+  snapshot.box.disk.life = 10;
+  snapshot.box.disk.wear_unknown = "life_time: Input/output error";
+  snapshot.box.time_set = false;
+  snapshot.box.stamps_ahead = 3 * 86400;
+  snapshot.box.ntp_trouble = "ADDRESS does not answer";
+  snapshot.box.change_trouble = "port 8000 is in use";
+  snapshot.box.settings_trouble = snapshot.box.board_trouble = "an error in it";
+  snapshot.box.lights_trouble = "no such device";
+  snapshot.box.notices = {{"card", "what happened"}};
+  snapshot.box.update = {.on_trial = true, .version = "1.2.0", .stray = "the last one did not come up"};
   days.push_back(named());
-  days.back().stamps_damage = "their file is damaged";
+  days.back().box.stamps_damage = "their file is damaged";
   days.push_back(named());
-  days.back().standby = "its spare takes over";
+  days.back().box.standby = "its spare takes over";
 }
 
-void the_network(std::vector<Facts>& days) {
+void the_network(std::vector<Snapshot>& days) {
   days.push_back(named());
-  NetworkFact& network = days.back().network;
+  facts::Network& network = days.back().network;
   network.confirm_within = 88;
   network.page = "http://ADDRESS";
   network.no_address = true;
   network.taken = {{true, "team0", "ADDRESS", "another machine"}};
   days.push_back(named());
-  for (Endpoint& endpoint : days.back().endpoints) endpoint.trouble = EndpointTrouble::Unreachable;
+  for (EndpointRow& endpoint : days.back().traffic.endpoints) endpoint.fault = EndpointFault::Unreachable;
   days.back().network.exchanged = {"ADDRESS", "team0", "darpa0"};
   for (const std::optional<bool> carrier : {std::optional(false), std::optional<bool>()}) {
     days.push_back(named());
-    for (Cable& cable : days.back().cables) cable.carrier = carrier;
+    for (facts::LinkRow& link : days.back().traffic.links) link.carrier = carrier;
   }
 }
 
 /// Each headline once, with its text for each side.
 std::vector<Condition> all() {
-  std::vector<Facts> days;
-  for (const auto trouble : {EndpointTrouble::NoToken, EndpointTrouble::Unreachable, EndpointTrouble::Foreign,
-                             EndpointTrouble::Refusing, EndpointTrouble::Silent, EndpointTrouble::Failing,
-                             EndpointTrouble::Throttling}) {
+  std::vector<Snapshot> days;
+  for (const auto trouble :
+       {EndpointFault::NoToken, EndpointFault::Unreachable, EndpointFault::Foreign, EndpointFault::Refusing,
+        EndpointFault::Silent, EndpointFault::Failing, EndpointFault::Throttling}) {
     days.push_back(named());
     both_have(days.back(), trouble);
   }
@@ -118,7 +121,7 @@ std::vector<Condition> all() {
   reports(days);
   robots_and_queue(days);
   std::vector<Condition> found;
-  for (const Facts& day : days) {
+  for (const Snapshot& day : days) {
     for (Condition& each : conditions_of(day)) {
       if (std::ranges::find(found, each.headline, &Condition::headline) == found.end())
         found.push_back(std::move(each));

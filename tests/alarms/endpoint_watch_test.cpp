@@ -5,7 +5,7 @@
 namespace adit::alarms {
 namespace {
 
-using enum EndpointTrouble;
+using enum EndpointFault;
 
 /// One or two connections of an endpoint, checked each second.
 class EndpointWatchTest : public testing::Test {
@@ -29,7 +29,7 @@ class EndpointWatchTest : public testing::Test {
       lasts(1);
     }
   }
-  EndpointTrouble trouble() const { return watch_.endpoint(now_).trouble; }
+  EndpointFault fault() const { return watch_.endpoint(now_).fault; }
 
   EndpointWatch watch_;
   std::vector<ConnectionSample> seen_;
@@ -38,19 +38,19 @@ class EndpointWatchTest : public testing::Test {
 
 TEST_F(EndpointWatchTest, AnsweringEndpointHasNoTrouble) {
   answers(200, 20);
-  EXPECT_EQ(trouble(), None);
+  EXPECT_EQ(fault(), None);
 }
 
 TEST_F(EndpointWatchTest, EndpointWithoutAnswersIsSilent) {
   answers(200, 3);
   seen_[0].busy = true;
   lasts(14);
-  EXPECT_EQ(trouble(), None);
+  EXPECT_EQ(fault(), None);
   lasts(2);
-  EXPECT_EQ(trouble(), Silent);
+  EXPECT_EQ(fault(), Silent);
   EXPECT_EQ(watch_.endpoint(now_).since, 1004);
   answers(200, 1);
-  EXPECT_EQ(trouble(), None);
+  EXPECT_EQ(fault(), None);
 }
 
 TEST_F(EndpointWatchTest, TellsHowLongTheEndpointHasRecovered) {
@@ -74,16 +74,16 @@ TEST_F(EndpointWatchTest, EndpointStaysSilentWhileRequestsTimeOut) {
     seen_[0].busy = true;
     seen_[0].sent += 300;
     lasts(9);
-    EXPECT_EQ(trouble(), i > 0 ? Silent : None) << "a retry is not an answer";
+    EXPECT_EQ(fault(), i > 0 ? Silent : None) << "a retry is not an answer";
     seen_[0].busy = false;
     ++seen_[0].ended;
     seen_[0].status = 0;
     seen_[0].said = "no answer within 10000 ms";
     lasts(1);
   }
-  EXPECT_EQ(trouble(), Silent);
+  EXPECT_EQ(fault(), Silent);
   answers(200, 1);
-  EXPECT_EQ(trouble(), None);
+  EXPECT_EQ(fault(), None);
 }
 
 TEST_F(EndpointWatchTest, EndpointIsNotSilentDuringAnUpload) {
@@ -92,23 +92,23 @@ TEST_F(EndpointWatchTest, EndpointIsNotSilentDuringAnUpload) {
     seen_[0].sent += 10'000;
     lasts(1);
   }
-  EXPECT_EQ(trouble(), None) << "a large map on a slow link";
+  EXPECT_EQ(fault(), None) << "a large map on a slow link";
   lasts(17);
-  EXPECT_EQ(trouble(), Silent);
+  EXPECT_EQ(fault(), Silent);
 }
 
 TEST_F(EndpointWatchTest, EndpointWithoutConnectionIsUnreachable) {
   seen_[0].connected = false;
   seen_[0].said = "connecting to 10.100.1.200:8000: Connection refused";
   lasts(2);
-  EXPECT_EQ(trouble(), None);
+  EXPECT_EQ(fault(), None);
   lasts(2);
-  EXPECT_EQ(trouble(), Unreachable);
+  EXPECT_EQ(fault(), Unreachable);
   EXPECT_EQ(watch_.endpoint(now_).said, seen_[0].said);
   seen_[0].connected = true;
   seen_[0].said = "";
   lasts(1);
-  EXPECT_EQ(trouble(), None);
+  EXPECT_EQ(fault(), None);
 }
 
 TEST_F(EndpointWatchTest, EndpointThatClosesAfterErrorsIsFailing) {
@@ -117,69 +117,69 @@ TEST_F(EndpointWatchTest, EndpointThatClosesAfterErrorsIsFailing) {
     seen_[0].connected = false;
     lasts(3);
   }
-  EXPECT_EQ(trouble(), Failing) << "each connection succeeds";
+  EXPECT_EQ(fault(), Failing) << "each connection succeeds";
 }
 
 TEST_F(EndpointWatchTest, IdleConnectionIsNoTrouble) {
   seen_[0].connected = false;
   lasts(60);
-  EXPECT_EQ(trouble(), None) << "no message was queued";
+  EXPECT_EQ(fault(), None) << "no message was queued";
 }
 
 TEST_F(EndpointWatchTest, DistinguishesRefusingAndForeignEndpoints) {
   answers(401, 1);
-  EXPECT_EQ(trouble(), Refusing);
+  EXPECT_EQ(fault(), Refusing);
   answers(403, 1);
-  EXPECT_EQ(trouble(), Refusing);
+  EXPECT_EQ(fault(), Refusing);
   seen_[0].foreign = true;
   answers(200, 1);
-  EXPECT_EQ(trouble(), Foreign);
+  EXPECT_EQ(fault(), Foreign);
   seen_[0].foreign = false;
   answers(200, 1);
-  EXPECT_EQ(trouble(), None);
+  EXPECT_EQ(fault(), None);
 }
 
 TEST_F(EndpointWatchTest, EndpointWithOnlyErrorAnswersIsFailing) {
   answers(500, 7);
-  EXPECT_EQ(trouble(), Failing);
+  EXPECT_EQ(fault(), Failing);
   EXPECT_EQ(watch_.endpoint(now_).said, "it answered 500");
   answers(200, 1);
-  EXPECT_EQ(trouble(), None);
+  EXPECT_EQ(fault(), None);
 }
 
 TEST_F(EndpointWatchTest, EndpointThatRejectsMessagesIsNotFailing) {
   answers(422, 20);
-  EXPECT_EQ(trouble(), None) << "a rejected message is not the endpoint's fault";
+  EXPECT_EQ(fault(), None) << "a rejected message is not the endpoint's fault";
 }
 
 TEST_F(EndpointWatchTest, SeveralThrottledAnswersAreTrouble) {
   answers(429, 2);
-  EXPECT_EQ(trouble(), None) << "an occasional 429 is part of learning the rate";
+  EXPECT_EQ(fault(), None) << "an occasional 429 is part of learning the rate";
   answers(429, 1);
-  EXPECT_EQ(trouble(), Throttling);
+  EXPECT_EQ(fault(), Throttling);
   answers(200, 31);
-  EXPECT_EQ(trouble(), None);
+  EXPECT_EQ(fault(), None);
 }
 
 TEST_F(EndpointWatchTest, ForgetsTheFormerEndpoint) {
   answers(500, 20);
   watch_.forget();
   lasts(1);
-  EXPECT_EQ(trouble(), None);
+  EXPECT_EQ(fault(), None);
 }
 
 TEST_F(EndpointWatchTest, OneRejectedRobotIsNoTroubleOfTheToken) {
   watch_ = EndpointWatch(true);
   lasts(1);
   answers(403, 1);
-  EXPECT_EQ(trouble(), Refusing) << "no message was accepted yet";
+  EXPECT_EQ(fault(), Refusing) << "no message was accepted yet";
   for (int i = 0; i < 10; ++i) {
     answers(200, 1);
     answers(403, 4);
-    EXPECT_EQ(trouble(), None) << "others are accepted";
+    EXPECT_EQ(fault(), None) << "others are accepted";
   }
   answers(401, 2);
-  EXPECT_EQ(trouble(), Refusing) << "no message is accepted any more";
+  EXPECT_EQ(fault(), Refusing) << "no message is accepted any more";
 }
 
 class TwoConnections : public EndpointWatchTest {
@@ -192,9 +192,9 @@ TEST_F(TwoConnections, OneFailingConnectionIsNoTroubleOfTheEndpoint) {
     answers(500, 1, 0);
     answers(200, 1, 1);
   }
-  EXPECT_EQ(trouble(), None) << "states are accepted";
+  EXPECT_EQ(fault(), None) << "states are accepted";
   answers(500, 20, 0);
-  EXPECT_EQ(trouble(), Failing) << "no other message was accepted for long";
+  EXPECT_EQ(fault(), Failing) << "no other message was accepted for long";
 }
 
 TEST_F(TwoConnections, BothFailingConnectionsAreTroubleOfTheEndpoint) {
@@ -202,7 +202,7 @@ TEST_F(TwoConnections, BothFailingConnectionsAreTroubleOfTheEndpoint) {
     answers(500, 1, 0);
     answers(500, 1, 1);
   }
-  EXPECT_EQ(trouble(), Failing);
+  EXPECT_EQ(fault(), Failing);
 }
 
 }  // namespace

@@ -1,11 +1,18 @@
 #include "alarms/verdict.hpp"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include "alarms/alike.hpp"
+#include "alarms/board.hpp"
+#include "icd/sentence.hpp"
 
 namespace adit::alarms {
 namespace {
+
+Verdict verdict_of(Snapshot snapshot) {
+  add_words(snapshot.traffic, {});
+  return alarms::verdict_of(snapshot.traffic);
+}
 
 TEST(Verdict, TellsTheAgeOfArrivingMaps) {
   const Verdict verdict = verdict_of(well(20));
@@ -13,63 +20,64 @@ TEST(Verdict, TellsTheAgeOfArrivingMaps) {
 }
 
 TEST(Verdict, IgnoresMapsThatAreNoLongerSent) {
-  Facts facts = well(2);
-  facts.streams.push_back({.kind = "cloud", .robot = "uav1", .forwarded = 600.0, .last_status = 200});
-  EXPECT_EQ(verdict_of(facts).why, "2 robots, oldest 4 s");
-  facts.streams.push_back({.kind = "cloud", .robot = "uav2", .forwarded = 9.0, .last_status = 200});
-  EXPECT_EQ(verdict_of(facts).why, "2 robots, oldest 9 s") << "the oldest of each robot's maps";
+  Snapshot snapshot = well(2);
+  snapshot.traffic.activities.push_back({.kind = "cloud", .robot = "uav1", .age = 600.0, .last_status = 200});
+  EXPECT_EQ(verdict_of(snapshot).why, "2 robots, oldest 4 s");
+  snapshot.traffic.activities.push_back({.kind = "cloud", .robot = "uav2", .age = 9.0, .last_status = 200});
+  EXPECT_EQ(verdict_of(snapshot).why, "2 robots, oldest 9 s") << "the oldest of each robot's maps";
 }
 
 TEST(Verdict, NamesASilentRobot) {
-  Facts facts = well(20);
-  facts.robots["uav5"].silent = true;
-  EXPECT_EQ(verdict_of(facts), (Verdict{Level::Wait, "19 of 20 arrive", "not uav5; oldest other 22 s"}));
+  Snapshot snapshot = well(20);
+  snapshot.traffic.habits["uav5"].silent = true;
+  EXPECT_EQ(verdict_of(snapshot), (Verdict{Level::Wait, "19 of 20 arrive", "not uav5; oldest other 22 s"}));
 }
 
 TEST(Verdict, NamesARobotSilentSinceARestart) {
-  Facts facts = well(3);
-  facts.robots["uav9"] = {.quiet = 40, .silent = true};
-  EXPECT_EQ(verdict_of(facts), (Verdict{Level::Wait, "3 of 4 arrive", "not uav9; oldest other 5 s"}));
-  facts.streams.push_back({.kind = "state", .robot = "uav9", .forwarded = 50.0, .last_status = 200});
-  EXPECT_EQ(verdict_of(facts).what, "Every map arrives") << "the robot sends no maps";
+  Snapshot snapshot = well(3);
+  snapshot.traffic.habits["uav9"] = {.quiet = 40, .silent = true};
+  EXPECT_EQ(verdict_of(snapshot), (Verdict{Level::Wait, "3 of 4 arrive", "not uav9; oldest other 5 s"}));
+  snapshot.traffic.activities.push_back({.kind = "state", .robot = "uav9", .age = 50.0, .last_status = 200});
+  EXPECT_EQ(verdict_of(snapshot).what, "Every map arrives") << "the robot sends no maps";
 }
 
 TEST(Verdict, NamesAtMostThreeRobots) {
-  Facts facts = well(6);
-  for (auto& [name, robot] : facts.robots) robot.silent = name != "uav6";
-  EXPECT_EQ(verdict_of(facts),
+  Snapshot snapshot = well(6);
+  for (auto& [name, robot] : snapshot.traffic.habits) robot.silent = name != "uav6";
+  EXPECT_EQ(verdict_of(snapshot),
             (Verdict{Level::Wait, "1 of 6 arrive", "not uav1, uav2, uav3 and 2 more; the other 8 s"}));
-  facts.robots["uav6"].silent = true;
-  EXPECT_EQ(verdict_of(facts).what, "No map arrives");
-  EXPECT_EQ(verdict_of(facts).level, Level::Bad);
+  snapshot.traffic.habits["uav6"].silent = true;
+  EXPECT_EQ(verdict_of(snapshot).what, "No map arrives");
+  EXPECT_EQ(verdict_of(snapshot).level, Level::Bad);
 }
 
 TEST(Verdict, ShowsTheAgeThatDecidesItsLevel) {
-  Facts facts = well(3);
-  facts.streams[0].forwarded = 540;  // it paused, and its newest map is in flight
-  facts.streams[0].behind = 2;
-  EXPECT_EQ(verdict_of(facts), (Verdict{Level::Good, "Every map arrives", "3 robots, oldest 5 s"}));
+  Snapshot snapshot = well(3);
+  snapshot.traffic.activities[0].age = 540;  // it paused, and its newest map is in flight
+  snapshot.traffic.activities[0].behind = 2;
+  EXPECT_EQ(verdict_of(snapshot), (Verdict{Level::Good, "Every map arrives", "3 robots, oldest 5 s"}));
 }
 
 TEST(Verdict, TellsThatMapsAreLate) {
-  Facts facts = well(3);
-  facts.streams[0].behind = 11;
-  EXPECT_EQ(verdict_of(facts), (Verdict{Level::Wait, "Maps are late", "uav1"}));
+  Snapshot snapshot = well(3);
+  snapshot.traffic.activities[0].behind = 11;
+  EXPECT_EQ(verdict_of(snapshot), (Verdict{Level::Wait, "Maps are late", "uav1"}));
 }
 
 TEST(Verdict, TellsThatNoMapArrivesDuringAnOutage) {
-  Facts facts = well(20);
-  facts.endpoints[1].trouble = EndpointTrouble::Silent;
-  facts.endpoints[1].since = kNow - 72;
-  EXPECT_EQ(verdict_of(facts), (Verdict{Level::Bad, "No map arrives", "for 1:12; the box keeps all maps"}));
-  facts.endpoints[1].trouble = EndpointTrouble::Throttling;
-  EXPECT_EQ(verdict_of(facts).level, Level::Good) << "the endpoint accepts the maps";
+  Snapshot snapshot = well(20);
+  snapshot.traffic.endpoints[1].fault = EndpointFault::Silent;
+  snapshot.traffic.endpoints[1].since = kNow - 72;
+  EXPECT_EQ(verdict_of(snapshot),
+            (Verdict{Level::Bad, "No map arrives", "for 1:12; the box keeps all maps"}));
+  snapshot.traffic.endpoints[1].fault = EndpointFault::Throttling;
+  EXPECT_EQ(verdict_of(snapshot).level, Level::Good) << "the endpoint accepts the maps";
 }
 
 TEST(Verdict, HasNoDurationIfTheTokenIsMissing) {
-  Facts facts = well(3);
-  facts.endpoints[1].trouble = EndpointTrouble::NoToken;
-  EXPECT_EQ(verdict_of(facts),
+  Snapshot snapshot = well(3);
+  snapshot.traffic.endpoints[1].fault = EndpointFault::NoToken;
+  EXPECT_EQ(verdict_of(snapshot),
             (Verdict{Level::Bad, "No map arrives", "the mapping token is missing; the box keeps all maps"}));
 }
 
@@ -79,9 +87,9 @@ TEST(Verdict, IsEmptyWithoutMaps) {
 }
 
 TEST(Verdict, TellsTheTimeSinceTheLastNewMap) {
-  Facts facts = well(2);
-  for (Stream& stream : facts.streams) stream.forwarded = *stream.forwarded + 600;
-  EXPECT_EQ(verdict_of(facts), (Verdict{Level::Quiet, "Every map arrived", "no new map for 10 min"}));
+  Snapshot snapshot = well(2);
+  for (ActivityRow& stream : snapshot.traffic.activities) stream.age = *stream.age + 600;
+  EXPECT_EQ(verdict_of(snapshot), (Verdict{Level::Quiet, "Every map arrived", "no new map for 10 min"}));
 }
 
 TEST(Verdict, OmitsTheCountOfOneRobot) {
@@ -89,26 +97,27 @@ TEST(Verdict, OmitsTheCountOfOneRobot) {
 }
 
 TEST(Verdict, DoesNotCountTheMergedMapAsARobot) {
-  Facts facts = well(2);
-  facts.streams.push_back({.kind = "grid", .robot = "", .forwarded = 9.0, .last_status = 200});
-  EXPECT_EQ(verdict_of(facts).why, "2 robots and the merged map, oldest 9 s");
-  facts.streams.erase(facts.streams.begin(), facts.streams.end() - 1);
-  EXPECT_EQ(verdict_of(facts).why, "the merged map, 9 s");
+  Snapshot snapshot = well(2);
+  snapshot.traffic.activities.push_back({.kind = "grid", .robot = "", .age = 9.0, .last_status = 200});
+  EXPECT_EQ(verdict_of(snapshot).why, "2 robots and the merged map, oldest 9 s");
+  snapshot.traffic.activities.erase(snapshot.traffic.activities.begin(),
+                                    snapshot.traffic.activities.end() - 1);
+  EXPECT_EQ(verdict_of(snapshot).why, "the merged map, 9 s");
 }
 
 /// uav1's grid, with all other streams good.
 class StandingTest : public testing::Test {
  protected:
-  Standing standing() const { return standing_of(facts_.streams.front(), facts_); }
+  Standing standing() const { return standing_of(snapshot_.traffic.activities.front(), snapshot_.traffic); }
   void expect(Arrival arrival, Level level) const {
     EXPECT_EQ(standing().arrival, arrival);
     EXPECT_EQ(standing().level, level);
   }
 
-  Facts facts_ = well(1);
-  Stream& stream_ = facts_.streams.front();
-  Robot& robot_ = facts_.robots.begin()->second;
-  EndpointTrouble& mapping_ = facts_.endpoints[1].trouble;
+  Snapshot snapshot_ = well(1);
+  ActivityRow& stream_ = snapshot_.traffic.activities.front();
+  RobotHabit& robot_ = snapshot_.traffic.habits.begin()->second;
+  EndpointFault& mapping_ = snapshot_.traffic.endpoints[1].fault;
 };
 
 TEST_F(StandingTest, IsThatOfTheStreamWithoutOtherFaults) {
@@ -118,57 +127,145 @@ TEST_F(StandingTest, IsThatOfTheStreamWithoutOtherFaults) {
 }
 
 TEST_F(StandingTest, BlamesNoRobotWhileMappingIsDown) {
-  for (const EndpointTrouble trouble :
-       {EndpointTrouble::NoToken, EndpointTrouble::Unreachable, EndpointTrouble::Foreign,
-        EndpointTrouble::Refusing, EndpointTrouble::Silent, EndpointTrouble::Failing}) {
+  for (const EndpointFault trouble :
+       {EndpointFault::NoToken, EndpointFault::Unreachable, EndpointFault::Foreign, EndpointFault::Refusing,
+        EndpointFault::Silent, EndpointFault::Failing}) {
     mapping_ = trouble;
-    stream_ = {.kind = "grid", .robot = stream_.robot, .behind = 200, .forwarded = 200};
+    stream_ = {.kind = "grid", .robot = stream_.robot, .behind = 200, .age = 200};
     expect(Arrival::NotArriving, Level::Quiet);
-    stream_ = {.kind = "grid", .robot = stream_.robot, .behind = 3, .forwarded = 9, .failed = true};
+    stream_ = {.kind = "grid", .robot = stream_.robot, .behind = 3, .age = 9, .last_sentence = "timed out"};
     expect(Arrival::NotArriving, Level::Quiet);
-    stream_ = {.kind = "grid", .robot = stream_.robot, .forwarded = 9, .last_status = 401};
+    stream_ = {.kind = "grid", .robot = stream_.robot, .age = 9, .last_status = 401};
     expect(Arrival::NotArriving, Level::Quiet);
-    stream_ = {.kind = "grid", .robot = stream_.robot, .behind = 3, .forwarded = 9, .last_status = 200};
+    stream_ = {.kind = "grid", .robot = stream_.robot, .behind = 3, .age = 9, .last_status = 200};
     expect(Arrival::NotArriving, Level::Quiet);
-    stream_ = {.kind = "grid", .robot = stream_.robot, .forwarded = 3, .last_status = 200};
+    stream_ = {.kind = "grid", .robot = stream_.robot, .age = 3, .last_status = 200};
     robot_.silent = true;
     expect(Arrival::UpToDate, Level::Good);
   }
 }
 
 TEST_F(StandingTest, BlamesNoRobotJustAfterAnOutage) {
-  facts_.turn = 20;
-  facts_.endpoints[1].well_for = 29;
-  stream_ = {.kind = "grid", .robot = stream_.robot, .behind = 200, .forwarded = 200, .failed = true};
+  snapshot_.traffic.turn = 20;
+  snapshot_.traffic.endpoints[1].well_for = 29;
+  stream_ = {.kind = "grid", .robot = stream_.robot, .behind = 200, .age = 200, .last_sentence = "timed out"};
   expect(Arrival::Late, Level::Wait);
-  stream_ = {.kind = "grid", .robot = stream_.robot, .behind = 60, .forwarded = 60, .last_status = 401};
+  stream_ = {.kind = "grid", .robot = stream_.robot, .behind = 60, .age = 60, .last_status = 401};
   expect(Arrival::Late, Level::Wait);
   stream_.last_status = 422;
   expect(Arrival::Refused, Level::Bad);
-  stream_ = {.kind = "grid", .robot = stream_.robot, .forwarded = 1, .last_status = 200};
+  stream_ = {.kind = "grid", .robot = stream_.robot, .age = 1, .last_status = 200};
   expect(Arrival::UpToDate, Level::Good);
   robot_.silent = true;
   expect(Arrival::Silent, Level::Bad);
   robot_.silent = false;
-  facts_.endpoints[1].well_for = 31;
-  stream_ = {.kind = "grid", .robot = stream_.robot, .behind = 200, .forwarded = 200, .failed = true};
+  snapshot_.traffic.endpoints[1].well_for = 31;
+  stream_ = {.kind = "grid", .robot = stream_.robot, .behind = 200, .age = 200, .last_sentence = "timed out"};
   expect(Arrival::NotArriving, Level::Bad);
 }
 
 TEST_F(StandingTest, BlamesTheRobotDuringScoringOutageOrThrottling) {
   stream_.behind = 200;
-  facts_.endpoints[0].trouble = EndpointTrouble::Unreachable;
+  snapshot_.traffic.endpoints[0].fault = EndpointFault::Unreachable;
   expect(Arrival::NotArriving, Level::Bad);
-  mapping_ = EndpointTrouble::Throttling;
+  mapping_ = EndpointFault::Throttling;
   expect(Arrival::NotArriving, Level::Bad);
 }
 
 TEST_F(StandingTest, BlamesNoRobotForTheTeamCable) {
   robot_.silent = true;
-  facts_.cables = {{.is_team = true, .interface = "team0", .carrier = false}};
+  snapshot_.traffic.links = {{"team", "team0", false}};
   expect(Arrival::UpToDate, Level::Good);
-  facts_.cables.front().carrier = true;
+  snapshot_.traffic.links.front().carrier = true;
   expect(Arrival::Silent, Level::Bad);
+}
+
+ActivityRow of(const char* kind, std::optional<double> age, int status = 200,
+               std::optional<double> behind = {}) {
+  return {.kind = kind, .robot = "r", .behind = behind, .age = age, .last_status = status};
+}
+
+const struct {
+  const char* what;
+  std::vector<ActivityRow> rows;
+  const char* standing;
+  bool silent = false;
+  EndpointFault mapping = EndpointFault::None;
+} kStandings[] = {
+    {"worst kind, oldest map",
+     {of("grid", 3), of("cloud", 40, 200, 33), of("state", 99)},
+     "wait, 33 s behind, map 40 s"},
+    {"first of two as bad", {of("grid", 3, 422), of("cloud", 4)}, "bad, refused, silent, map 4 s", true},
+    {"a quiet map beside another", {of("grid", 600), of("cloud", 4)}, "good, up to date, map 4 s"},
+    {"two quiet maps", {of("grid", 600), of("cloud", 99), of("state", 70)}, "quiet, quiet, map 1 min"},
+    {"a map never delivered", {of("grid", {}), of("cloud", 4)}, "wait, waiting, map never"},
+    {"no map", {of("state", 4)}, "good, up to date, 4 s"},
+    {"nothing heard: as old as its last pose", {}, "bad, silent, silent, 34 s", true},
+    {"nothing heard while the endpoint is down", {}, "", true, EndpointFault::Silent},
+};
+
+TEST(Words, ShowTheStandingOfARobot) {
+  for (const auto& each : kStandings) {
+    facts::Traffic traffic{.now = 1000,
+                           .endpoints = {{.name = "mapping", .fault = each.mapping}},
+                           .activities = each.rows,
+                           .habits = {{"r", {.silent = each.silent}}},
+                           .robots = {{.name = "r", .at = 966}}};
+    traffic.activities.push_back({.kind = "grid", .age = 4});
+    add_words(traffic, {});
+    std::string standing;
+    for (const auto& [name, level, word, silent, has_map, age] : traffic.standings)
+      standing +=
+          icd::sentence(facts::kLevelWords[static_cast<std::size_t>(level)], ", ", word,
+                        silent ? ", silent, " : ", ", has_map ? "map " : "", age ? age_text(*age) : "never");
+    EXPECT_EQ(standing, each.standing) << each.what;
+  }
+}
+
+TEST(Words, ShowTheAgeOfAPoseNotOfItsDelivery) {
+  facts::Traffic traffic{
+      .now = 1000,
+      .activities = {{.kind = "grid", .robot = "r", .age = 20}, {.kind = "state", .robot = "r", .age = 94}},
+      .robots = {{.name = "r", .at = 999}, {.name = "later", .at = 1010}, {.name = "before"}}};
+  add_words(traffic, {});
+  EXPECT_EQ(traffic.robots[0].age, 94) << "the message was queued for long";
+  EXPECT_EQ(traffic.robots[1].age, 0) << "an age is never negative";
+  EXPECT_EQ(traffic.robots[2].age, std::nullopt) << "the time is from before the boot";
+}
+
+std::string word_of(const EndpointRow& row, const Snapshot& snapshot = {}) {
+  facts::Traffic traffic{.endpoints = {row}};
+  add_words(traffic, Board().shown(conditions_of(snapshot), 0));
+  const auto level = static_cast<std::size_t>(traffic.endpoints[0].level);
+  return icd::sentence(facts::kLevelWords[level], " ", traffic.endpoints[0].word);
+}
+
+TEST(Words, ShowTheStandingOfAnEndpoint) {
+  using enum EndpointFault;
+  EndpointRow row{.name = "mapping"};
+  EXPECT_EQ(word_of(row), "wait not connected");
+  row.connected = true, row.trouble = "t";
+  EXPECT_EQ(word_of(row), "wait retrying");
+  row.last_status = 422;
+  EXPECT_EQ(word_of(row), "wait status 422");
+  row.trouble = "", row.last_status = 200, row.connected = false;
+  const auto with_fault = [](const char* name, EndpointFault fault) {
+    return Snapshot{.traffic = {.endpoints = {{.name = name, .fault = fault}}}};
+  };
+  std::vector<std::string> all;
+  for (const auto fault : {NoToken, Unreachable, Foreign, Refusing, Silent, Failing, Throttling})
+    all.push_back(word_of(row, with_fault("mapping", fault)));
+  EXPECT_THAT(all, testing::ElementsAre("bad no token", "bad unreachable", "bad wrong host", "bad refused",
+                                        "bad silent", "bad failing", "wait slow down"));
+  EXPECT_EQ(word_of(row, with_fault("scoring", Silent)), "good connected");
+  row.connected = true, row.last_status = 0;
+  const auto without_link = [](const char* side) {
+    return Snapshot{.traffic = {.links = {{side, "eth0", false}}}};
+  };
+  EXPECT_EQ(word_of(row, without_link("team")), "good connected");
+  EXPECT_EQ(word_of(row, without_link("command_post")), "bad cable out");
+  EXPECT_EQ(word_of(row, {.network = {.no_address = true}}), "bad no address");
+  EXPECT_EQ(word_of(row, {.network = {.exchanged = facts::SwappedAddress{}}}), "bad cables exchanged");
 }
 
 }  // namespace

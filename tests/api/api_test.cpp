@@ -192,7 +192,7 @@ TEST_F(PageTest, RedactsTokensInPatches) {
   const auto page = responder->streaming;
   for (const std::string typed : {"scoring-1", "rust871}backdoor"}) {
     api.let_in({token()}, icd::Redaction({token(typed)}));
-    source.now.robots.insert(source.now.robots.begin(), RobotRow{})->name = typed;
+    source.now.robots.insert(source.now.robots.begin(), facts::RobotRow{})->name = typed;
     source.now.verdict.why = "not " + typed;
     source.now.alarms.emplace_back().id = "robot_silent:" + typed;
     const std::size_t before = page->sent.size();

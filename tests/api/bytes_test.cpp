@@ -11,8 +11,8 @@
 namespace adit::api {
 namespace {
 
-ReportRow report() {
-  ReportRow row;
+facts::ReportRow report() {
+  facts::ReportRow row;
   row.number = 7;
   row.type = "Rope";
   row.position = icd::Point{.x = 1, .y = -2.5, .z = 0};
@@ -49,13 +49,13 @@ RunView view() {
                      .answer_ms = 3.5,
                      .throttled = 1,
                      .foreign = 2,
-                     .level = alarms::Level::Bad,
+                     .level = facts::Level::Bad,
                      .word = "w"},
                     {.name = "mapping", .address = "b:1"}};
   view.robots = {{.name = "r", .position = {1, 2, 3}, .heading = 0.5, .at = 990, .age = 19}};
   view.reports = {report(), {}};
   view.near_metres = 5;
-  ActivityRow activity;
+  facts::ActivityRow activity;
   activity.kind = "grid", activity.robot = "r", activity.accepted = 1, activity.forwarded = 2;
   activity.replaced = 3, activity.merged = 4;
   activity.throttled = 5, activity.failed = 6, activity.refused_upstream = 7, activity.queued = 8;
@@ -65,10 +65,10 @@ RunView view() {
   activity.last_status = 12, activity.last_sentence = "said", activity.clouds = "parts",
   activity.precision = "1mm", activity.no_valid_point = 20;
   activity.invisible = 21;
-  activity.arrival = alarms::Arrival::Late, activity.level = alarms::Level::Wait;
+  activity.arrival = facts::Arrival::Late, activity.level = facts::Level::Wait;
   activity.word = "17 s behind";
   view.activities = {activity};
-  view.standings = {{.name = "r", .level = alarms::Level::Wait, .word = "w", .has_map = true, .age = 22}};
+  view.standings = {{.name = "r", .level = facts::Level::Wait, .word = "w", .has_map = true, .age = 22}};
   view.colours = {{"r", 2}};
   view.refusals = {
       {.at = 1, .uri = "/u", .sender = "s", .status = 422, .sentence = "no", .parts = 2, .setting = "r.m"}};
@@ -86,7 +86,7 @@ RunView view() {
   view.identify_until = 1001;
   view.budget_mbit = 100, view.sent_mbit = 1.5, view.queued_bytes = 6;
   view.map_version = 1'793'000'123'456, view.marker_version = 4;
-  view.verdict = {alarms::Level::Bad, "w", "y"};
+  view.verdict = {facts::Level::Bad, "w", "y"};
   view.alarms = {{.id = "i:s",
                   .severity = alarms::Severity::Ask,
                   .side = alarms::Side::CommandPost,
@@ -146,7 +146,7 @@ TEST(Bytes, OfARun) {
 
 TEST(Bytes, OfReports) {
   EXPECT_EQ(codec::to_json(std::vector{report()}), std::string("[") + kReport + "]");
-  EXPECT_EQ(codec::to_json(std::vector<ReportRow>()), "[]");
+  EXPECT_EQ(codec::to_json(std::vector<facts::ReportRow>()), "[]");
   EXPECT_EQ(
       codec::to_json(ReportDetail{
           .row = report(), .history = {{.at = 1, .state = "queued", .note = "n"}}, .answer = "{}"}),

@@ -20,16 +20,16 @@
 namespace adit::api {
 
 struct FakeSource final : Source {
-  RunView view() const override {
+  RunView view() override {
     ++asked;
     return now;
   }
-  std::vector<ReportRow> all() const {
-    std::vector<ReportRow> rows;
+  std::vector<facts::ReportRow> all() const {
+    std::vector<facts::ReportRow> rows;
     for (const auto& [number, detail] : details) rows.push_back(detail.row);
     return rows;
   }
-  std::vector<ReportRow> reports(std::int64_t after, std::size_t most) const override {
+  std::vector<facts::ReportRow> reports(std::int64_t after, std::size_t most) const override {
     return rows_after(all(), after, most);
   }
   ReportCounts report_counts() const override { return counts_of(all()); }
@@ -55,7 +55,7 @@ struct FakeSource final : Source {
   std::vector<Track> robot_tracks;
   mutable std::uint64_t since_version = 0;
   mutable Time since_time = 0;
-  mutable int asked = 0;
+  int asked = 0;
 };
 
 /// Returns canned results and records the calls.

@@ -29,14 +29,14 @@ RunView team(int robots, int reports) {
     view.robots.push_back(
         {.name = name, .position = {.x = 1.5 * i, .y = 0, .z = 0}, .heading = 0.25, .at = view.now});
     for (const char* kind : {"grid", "cloud", "state"}) {
-      ActivityRow& row = view.activities.emplace_back();
+      facts::ActivityRow& row = view.activities.emplace_back();
       row.kind = kind;
       row.robot = name;
       row.last_accepted = view.now;
     }
   }
   for (int i = reports; i > 0; --i) {
-    ReportRow& row = view.reports.emplace_back();
+    facts::ReportRow& row = view.reports.emplace_back();
     row.number = i;
     row.type = "Rope";
     row.position->x = 10.25 * i;
@@ -50,20 +50,20 @@ RunView team(int robots, int reports) {
 void change_some(RunView& view, std::mt19937_64& random) {
   view.now += 0.25;
   const auto any = [&random](auto& rows) -> auto& { return rows[random() % rows.size()]; };
-  RobotRow& robot = any(view.robots);
+  facts::RobotRow& robot = any(view.robots);
   robot.position.x += 0.125;
-  ActivityRow& activity = any(view.activities);
+  facts::ActivityRow& activity = any(view.activities);
   ++activity.accepted;
   activity.behind_since = random() % 2 == 0 ? std::optional(view.now) : std::nullopt;
   any(view.reports).state = "settled";
   if (random() % 3 == 0) {
-    ReportRow report = view.reports.front();
+    facts::ReportRow report = view.reports.front();
     ++report.number;
     view.reports.insert(view.reports.begin(), report);
     view.reports.pop_back();
   }
   if (random() % 5 == 0) std::swap(view.activities.front(), view.activities.back());
-  if (random() % 5 == 0) view.refusals.insert(view.refusals.begin(), RefusalRow{})->at = view.now;
+  if (random() % 5 == 0) view.refusals.insert(view.refusals.begin(), facts::RefusalRow{})->at = view.now;
   if (random() % 7 == 0) view.refusals.clear();
   if (random() % 4 == 0) view.alarms.emplace_back().id = "robot_silent:ugv" + std::to_string(random() % 4);
   if (random() % 6 == 0) view.alarms.clear();
@@ -217,7 +217,7 @@ TEST_F(LiveTest, SendsOnePoseInFewBytes) {
   source.now = team(20, 1000);
   const auto page = open();
   EXPECT_GT(page->sent[0].size(), 250'000);
-  RobotRow& robot = source.now.robots[7];
+  facts::RobotRow& robot = source.now.robots[7];
   robot.position = {.x = 81.123456789, .y = -1203.987654321, .z = 0.125};
   robot.heading = 3.0123456;
   robot.at = source.now.now = 1'793'000'124.123456;
@@ -253,7 +253,7 @@ TEST_F(LiveTest, SendsAgesInWholeSeconds) {
 TEST_F(LiveTest, SendsOneReportInFewBytes) {
   source.now = team(20, 1000);
   const auto page = open();
-  ReportRow report = source.now.reports.front();
+  facts::ReportRow report = source.now.reports.front();
   report.number = 1001;
   report.state = "queued";
   source.now.reports.insert(source.now.reports.begin(), report);
@@ -276,8 +276,8 @@ TEST_F(LiveTest, SendsNoTimesThatDifferBelowTheirPrecision) {
   source.now.reports[3].position->x = 0.123456789;
   const auto page = open();
   EXPECT_THAT(page->sent[0], HasSubstr("0.123456789")) << "a report's identity must be exact";
-  for (ReportRow& report : source.now.reports) report.changed += 2e-7;
-  for (RobotRow& robot : source.now.robots) *robot.at += 2e-7;
+  for (facts::ReportRow& report : source.now.reports) report.changed += 2e-7;
+  for (facts::RobotRow& robot : source.now.robots) *robot.at += 2e-7;
   live.changed();
   pass(milliseconds{300});
   EXPECT_THAT(page->sent, SizeIs(1));

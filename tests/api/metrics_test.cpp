@@ -38,7 +38,7 @@ TEST(Metrics, ShowTheValuesOfTheView) {
                          .trouble = "",
                          .answer_ms = 12.5,
                          .throttled = 3}};
-  ActivityRow clouds;
+  facts::ActivityRow clouds;
   clouds.kind = "cloud";
   clouds.robot = "ugv1";
   clouds.accepted = 9;

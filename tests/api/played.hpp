@@ -12,15 +12,16 @@
 namespace adit::api {
 
 /// The rows of `all` numbered above `after`, oldest first, as a Source returns them.
-inline std::vector<ReportRow> rows_after(std::vector<ReportRow> all, std::int64_t after, std::size_t most) {
-  std::erase_if(all, [after](const ReportRow& row) { return row.number <= after; });
+inline std::vector<facts::ReportRow> rows_after(std::vector<facts::ReportRow> all, std::int64_t after,
+                                                std::size_t most) {
+  std::erase_if(all, [after](const facts::ReportRow& row) { return row.number <= after; });
   all.resize(std::min(all.size(), most));
   return all;
 }
 
-inline ReportCounts counts_of(const std::vector<ReportRow>& rows) {
+inline ReportCounts counts_of(const std::vector<facts::ReportRow>& rows) {
   ReportCounts counts;
-  for (const ReportRow& row : rows) {
+  for (const facts::ReportRow& row : rows) {
     const auto state = dispatch::state_named(row.state);
     if (state) ++counts.in.at(static_cast<std::size_t>(*state));
     counts.asking += row.asking ? 1 : 0;
@@ -32,7 +33,7 @@ inline ReportCounts counts_of(const std::vector<ReportRow>& rows) {
 class Played {
  public:
   std::expected<std::int64_t, std::string> decide(const RunView& view, std::int64_t number, Action action) {
-    const auto found = std::ranges::find(view.reports, number, &ReportRow::number);
+    const auto found = std::ranges::find(view.reports, number, &facts::ReportRow::number);
     if (found == view.reports.end()) return std::unexpected("there is no such report");
     if (found->state == "rejected") return std::unexpected("the step could not be written down; try again");
     if (action == Action::Resubmit) return add(view, found->type, found->position.value_or(icd::Point{}));
@@ -47,7 +48,7 @@ class Played {
                                                   bool resubmit) {
     if (report.position.x == 666)
       return std::unexpected("1000 reports are queued already; this report was not accepted");
-    for (const ReportRow& row : view.reports) {
+    for (const facts::ReportRow& row : view.reports) {
       if (row.type == report.type && row.position == report.position && !resubmit) return row.number;
     }
     return add(view, report.type, report.position);
@@ -60,14 +61,14 @@ class Played {
   }
 
   std::expected<void, std::string> rejected(const RunView& view, std::uint64_t number) {
-    const auto found = std::ranges::find(view.rejected, number, &RejectedRow::number);
+    const auto found = std::ranges::find(view.rejected, number, &facts::RejectedRow::number);
     if (found == view.rejected.end()) return std::unexpected("nothing of that number is rejected");
     decided_messages_.insert(number);
     return {};
   }
 
   std::int64_t begin_run(const RunView& view) {
-    for (const ReportRow& row : view.reports) {
+    for (const facts::ReportRow& row : view.reports) {
       if (row.state == "queued") states_[row.number] = "held";
     }
     ++runs_;
@@ -85,19 +86,19 @@ class Played {
     for (alarms::Alarm& alarm : view.alarms) alarm.acknowledged |= acknowledged_.contains(alarm.id);
     view.run_number += runs_;
     std::erase_if(view.rejected,
-                  [this](const RejectedRow& row) { return decided_messages_.contains(row.number); });
-    for (ReportRow& row : view.reports) {
+                  [this](const facts::RejectedRow& row) { return decided_messages_.contains(row.number); });
+    for (facts::ReportRow& row : view.reports) {
       if (const auto state = states_.find(row.number); state != states_.end()) {
         row.state = state->second;
         row.changed = view.now;
       }
     }
-    for (const ReportRow& row : added_) view.reports.insert(view.reports.begin(), row);
+    for (const facts::ReportRow& row : added_) view.reports.insert(view.reports.begin(), row);
   }
 
  private:
   std::int64_t add(const RunView& view, const std::string& type, const icd::Point& position) {
-    ReportRow row;
+    facts::ReportRow row;
     row.number = (view.reports.empty() ? 0 : view.reports.front().number) + 1;
     row.type = type;
     row.position = position;
@@ -112,8 +113,8 @@ class Played {
   std::set<std::uint64_t> decided_messages_;
   std::set<std::string> acknowledged_;
   std::map<std::int64_t, std::string> states_;
-  std::int64_t runs_ = 0;         // declared by the operator
-  std::vector<ReportRow> added_;  // oldest first
+  std::int64_t runs_ = 0;                // declared by the operator
+  std::vector<facts::ReportRow> added_;  // oldest first
 };
 
 }  // namespace adit::api

@@ -7,9 +7,9 @@
 namespace adit::api {
 namespace {
 
-std::string csv(const std::vector<ReportRow>& rows) {
+std::string csv(const std::vector<facts::ReportRow>& rows) {
   std::string text = csv_header();
-  for (const ReportRow& row : rows) text += csv_line(row);
+  for (const facts::ReportRow& row : rows) text += csv_line(row);
   return text;
 }
 
@@ -19,7 +19,7 @@ constexpr const char* kHeader =
     "number,run,type,x,y,z,sender,received,changed,state,asking,reconciled,same_as,status,report_status,"
     "score_change,note,robot\r\n";
 
-ReportRow row() {
+facts::ReportRow row() {
   return {.number = 7,
           .type = "Survivor",
           .position = icd::Point{85.75, -4.5, 0.25},
@@ -35,7 +35,7 @@ ReportRow row() {
 }
 
 std::string note_cell(std::string note) {
-  ReportRow noted;
+  facts::ReportRow noted;
   noted.note = std::move(note);
   const std::string text = csv({noted});
   const std::string before = std::string(kHeader) +
@@ -54,13 +54,13 @@ TEST(ReportsCsv, HasAHeaderAndALineForEachReport) {
 }
 
 TEST(ReportsCsv, HasNoPositionForALostReport) {
-  ReportRow lost = row();
+  facts::ReportRow lost = row();
   lost.position.reset();
   EXPECT_THAT(csv({lost}), HasSubstr("7,1,Survivor,,,,10.0.0.5,"));
 }
 
 TEST(ReportsCsv, ShowsReconciledAnswersZeroPointsAndRepeats) {
-  ReportRow settled = row();
+  facts::ReportRow settled = row();
   settled.state = "settled";
   settled.score_change = 0;
   settled.reconciled = true;

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <string>
 
-#include "api/verdicts.hpp"
+#include "alarms/verdict.hpp"
 
 namespace adit::api {
 namespace {
@@ -20,8 +20,8 @@ RunView empty(Time now) {
   return view;
 }
 
-ActivityRow traffic(std::string kind, std::string robot, Time now, double since, std::uint64_t forwarded,
-                    std::size_t bytes) {
+facts::ActivityRow traffic(std::string kind, std::string robot, Time now, double since,
+                           std::uint64_t forwarded, std::size_t bytes) {
   return {.kind = std::move(kind),
           .robot = std::move(robot),
           .accepted = forwarded * 3 + 2,
@@ -41,8 +41,8 @@ ActivityRow traffic(std::string kind, std::string robot, Time now, double since,
           .precision = {}};
 }
 
-ReportRow report(std::int64_t number, std::string type, Time received, std::string state, int status,
-                 std::optional<std::int64_t> change) {
+facts::ReportRow report(std::int64_t number, std::string type, Time received, std::string state, int status,
+                        std::optional<std::int64_t> change) {
   return {.number = number,
           .type = std::move(type),
           .position = icd::Point{12.25 * static_cast<double>(number), -4.5, 0.25},
@@ -122,7 +122,7 @@ RunView trouble(Time now, double elapsed) {
   view.sent_mbit = 0;
   view.queued_bytes = 214'000'000;
   for (const std::size_t stuck : {1u, 2u}) {
-    ActivityRow& row = view.activities[stuck];
+    facts::ActivityRow& row = view.activities[stuck];
     row.queued = 12;
     row.behind_since = began - 110;
     row.failed = 9;
@@ -177,7 +177,7 @@ RunView reports(Time now, double elapsed) {
                   report(20, "Backpack", now - 110, "withdrawn", 0, {}),
                   report(19, "Survivor", now - 120, "rejected", 422, {}),
                   report(18, "Survivor", now - 900, "answered", 201, 1)};
-  for (ReportRow& row : view.reports) row.run = row.number == 18 ? 1 : 2;
+  for (facts::ReportRow& row : view.reports) row.run = row.number == 18 ? 1 : 2;
   view.reports[4].position = {306.25, -2.5, 0.25};  // near report 25, of the same type
   view.reports[4].type = "Gas";
   view.reports[2].asking = true;
@@ -201,7 +201,7 @@ RunView hostile(Time now, double elapsed) {
   view.version = script;
   view.run = icd::RunStatus{-999'999'999, 1e12, -1, script + endless};
   view.run_clock->seconds = 1e12;
-  for (ActivityRow& row : view.activities) row.robot = row.kind == "markers" ? "" : script + row.robot;
+  for (facts::ActivityRow& row : view.activities) row.robot = row.kind == "markers" ? "" : script + row.robot;
   view.activities[0].last_sentence = endless;
   view.activities[1].last_sentence = "\xff\xfe \u202e" + script;
   view.activities[1].kind = "__proto__";
@@ -238,9 +238,15 @@ std::optional<RunView> scene(std::string_view name, Time now, double elapsed) {
   for (const auto& each : kScenes) {
     if (each.name != name) continue;
     RunView view = each.made(now, elapsed);
-    alarms::Facts facts{.now = now};
-    facts.streams = streams_of(view.activities, now);
-    add_verdicts(view, facts);
+    facts::Traffic traffic{
+        .now = now, .endpoints = view.endpoints, .activities = view.activities, .robots = view.robots};
+    for (facts::ActivityRow& row : traffic.activities) facts::set_ages(row, now);
+    alarms::add_words(traffic, view.alarms);
+    view.verdict = alarms::verdict_of(traffic);
+    view.endpoints = std::move(traffic.endpoints);
+    view.activities = std::move(traffic.activities);
+    view.robots = std::move(traffic.robots);
+    view.standings = std::move(traffic.standings);
     return view;
   }
   return {};

@@ -45,7 +45,7 @@ TEST(Status, ReadsEachMemberOfTheApi) {
   view.alarms = {
       {.id = "report_in_doubt:1", .severity = alarms::Severity::Ask, .what = "Report 1 is in doubt"}};
   view.alarms_over = {{.id = "robot_silent:r1", .was = "r1 was silent", .since = 1, .until = 2}};
-  view.verdict = {alarms::Level::Good, "Every map arrives", "1 robot, 2 s"};
+  view.verdict = {facts::Level::Good, "Every map arrives", "1 robot, 2 s"};
   view.activities[0].queued = 2;
   view.activities[0].last_sentence = "Cloud updates too frequent. Reduce to <1Hz.";
   const Outcome outcome = asked(codec::to_json(view), {"status"});

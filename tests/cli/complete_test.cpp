@@ -14,12 +14,12 @@ class Completion : public testing::Test {
  protected:
   static Server::Answers answers() {
     api::RunView view = sample_view();
-    std::vector<api::ReportRow> reports(3, view.reports.front());
+    std::vector<facts::ReportRow> reports(3, view.reports.front());
     for (std::size_t i = 0; i < reports.size(); ++i) reports[i].number = static_cast<std::int64_t>(i) + 3;
     reports[1].state = "in_doubt";
     reports[2].state = "held";
     reports[2].type = "Cell\nPhone";
-    api::RejectedRow cloud, state;
+    facts::RejectedRow cloud, state;
     cloud.number = 8;
     cloud.kind = "cloud";
     cloud.robot = "r2";

@@ -11,8 +11,8 @@ namespace {
 
 using testing::HasSubstr;
 
-api::ReportRow report(std::int64_t number, std::int64_t run, const std::string& state) {
-  api::ReportRow row = sample_view().reports[0];
+facts::ReportRow report(std::int64_t number, std::int64_t run, const std::string& state) {
+  facts::ReportRow row = sample_view().reports[0];
   row.number = number;
   row.run = run;
   row.state = state;
@@ -20,17 +20,17 @@ api::ReportRow report(std::int64_t number, std::int64_t run, const std::string& 
 }
 
 /// Two runs; the second one is the current one.
-std::vector<api::ReportRow> two_runs() {
+std::vector<facts::ReportRow> two_runs() {
   return {report(1, 1, "answered"), report(2, 1, "held"), report(3, 2, "settled"), report(4, 2, "queued")};
 }
 
-std::string csv_of(const std::vector<api::ReportRow>& rows) {
+std::string csv_of(const std::vector<facts::ReportRow>& rows) {
   std::string csv = api::csv_header();
-  for (const api::ReportRow& row : rows) csv += api::csv_line(row);
+  for (const facts::ReportRow& row : rows) csv += api::csv_line(row);
   return csv;
 }
 
-Outcome asked(const std::vector<api::ReportRow>& rows, std::vector<std::string_view> words) {
+Outcome asked(const std::vector<facts::ReportRow>& rows, std::vector<std::string_view> words) {
   api::RunView view = sample_view();
   view.run_number = 2;
   const api::ReportDetail detail{rows.back(), {{1000, "queued", "posted"}}, "{}"};
@@ -67,13 +67,13 @@ TEST(Reports, ListTheNewest) {
   EXPECT_EQ(asked(rows, {"reports", "--run", "all", "--last", "9"}).out,
             asked(rows, {"reports", "--run", "all"}).out);
   EXPECT_EQ(asked(rows, {"reports", "--last", "1", "--json"}).out,
-            codec::to_json(std::vector<api::ReportRow>{rows[3]}) + "\n");
+            codec::to_json(std::vector<facts::ReportRow>{rows[3]}) + "\n");
 }
 
 TEST(Reports, AreAListForScripts) {
   const auto rows = two_runs();
   EXPECT_EQ(asked(rows, {"reports", "--json"}).out,
-            codec::to_json(std::vector<api::ReportRow>{rows[3], rows[2], rows[1]}) + "\n");
+            codec::to_json(std::vector<facts::ReportRow>{rows[3], rows[2], rows[1]}) + "\n");
 }
 
 TEST(Reports, NeedAttentionIfOneAwaitsTheOperator) {
@@ -81,11 +81,11 @@ TEST(Reports, NeedAttentionIfOneAwaitsTheOperator) {
       << "also a report of another run";
   EXPECT_EQ(asked({report(4, 2, "in_doubt")}, {"reports"}).exit, Exit::Attention);
   EXPECT_EQ(asked({report(4, 2, "in_doubt")}, {"reports", "show", "4"}).exit, Exit::Attention);
-  api::ReportRow asking = report(4, 2, "in_doubt");
+  facts::ReportRow asking = report(4, 2, "in_doubt");
   asking.asking = true;
   EXPECT_EQ(asked({asking}, {"reports"}).exit, Exit::Fine);
   EXPECT_EQ(asked({report(4, 2, "answered")}, {"reports"}).exit, Exit::Fine);
-  api::ReportRow undoable = report(4, 2, "held");
+  facts::ReportRow undoable = report(4, 2, "held");
   EXPECT_EQ(asked({undoable}, {"reports"}).exit, Exit::Attention);
   undoable.sends_at = 1010;
   EXPECT_EQ(asked({undoable}, {"reports"}).exit, Exit::Fine);

@@ -10,14 +10,14 @@ namespace {
 
 using testing::HasSubstr;
 
-api::ReportRow in_state(const std::string& state) {
-  api::ReportRow report = sample_view().reports[0];
+facts::ReportRow in_state(const std::string& state) {
+  facts::ReportRow report = sample_view().reports[0];
   report.state = state;
   return report;
 }
 
 TEST(ReportsText, HasARowForEachReport) {
-  api::ReportRow doubtful = in_state("in_doubt");
+  facts::ReportRow doubtful = in_state("in_doubt");
   doubtful.number = 14;
   doubtful.run = 2;
   doubtful.type = "Cell Phone";
@@ -38,7 +38,7 @@ TEST(ReportsText, HasARowForEachReport) {
 }
 
 TEST(ReportsText, HasNoPositionForALostReport) {
-  api::ReportRow lost = in_state("in_doubt");
+  facts::ReportRow lost = in_state("in_doubt");
   lost.position = {};
   lost.position.reset();
   EXPECT_THAT(reports_text({lost}, {}, 1000, false), HasSubstr("lost  lost  lost"));
@@ -57,7 +57,7 @@ TEST(ReportsText, TellsThatThereAreNone) {
 }
 
 TEST(ReportsText, EscapesTerminalSequences) {
-  api::ReportRow report = in_state("\x1b[2J");
+  facts::ReportRow report = in_state("\x1b[2J");
   report.type = report.sender = report.note = "\x1b[2J\n";
   EXPECT_EQ(reports_text({report}, {}, 1000, false).find('\x1b'), std::string::npos);
   EXPECT_EQ(report_text({report, {{1000, "\x1b[2J", "\x1b[2J"}}, "\x1b[2J"}, false).find('\x1b'),
@@ -65,7 +65,7 @@ TEST(ReportsText, EscapesTerminalSequences) {
 }
 
 TEST(StateText, NamesTheAwaitedDecision) {
-  api::ReportRow doubt = in_state("in_doubt");
+  facts::ReportRow doubt = in_state("in_doubt");
   EXPECT_EQ(life_of(doubt), "in doubt");
   EXPECT_TRUE(needs_the_operator(doubt));
   doubt.asking = true;
@@ -73,7 +73,7 @@ TEST(StateText, NamesTheAwaitedDecision) {
   EXPECT_FALSE(needs_the_operator(doubt));
   EXPECT_EQ(life_of(in_state("held")), "held");
   EXPECT_TRUE(needs_the_operator(in_state("held")));
-  api::ReportRow undoable = in_state("held");
+  facts::ReportRow undoable = in_state("held");
   undoable.sends_at = 1010;
   EXPECT_EQ(life_of(undoable), "held, to be sent");
   EXPECT_FALSE(needs_the_operator(undoable));
@@ -87,7 +87,7 @@ TEST(StateText, IsTheWordOfTheState) {
 }
 
 TEST(AnswerText, IsTheAnswerInWords) {
-  api::ReportRow report = in_state("answered");
+  facts::ReportRow report = in_state("answered");
   EXPECT_EQ(said_of(report), "scored");
   report.reconciled = true;
   EXPECT_EQ(said_of(report), "found out, scored");
@@ -99,7 +99,7 @@ TEST(AnswerText, IsTheAnswerInWords) {
 
 TEST(StateText, IsExplainedInTheHelp) {
   for (const auto& row : dispatch::report_life()) {
-    api::ReportRow report = in_state(std::string(dispatch::name_of(row.from)));
+    facts::ReportRow report = in_state(std::string(dispatch::name_of(row.from)));
     EXPECT_THAT(help_of("reports"), HasSubstr("\n  " + life_of(report) + " "));
     report.reconciled = report.asking = true;
     EXPECT_THAT(help_of("reports"), HasSubstr("\n  " + life_of(report) + " "));
@@ -107,7 +107,7 @@ TEST(StateText, IsExplainedInTheHelp) {
 }
 
 TEST(ReportText, ShowsAllOfOneReport) {
-  api::ReportRow report = in_state("settled");
+  facts::ReportRow report = in_state("settled");
   report.received = 1566309785.125;
   report.reconciled = true;
   report.note = "recorded: the count of reports fell by one";

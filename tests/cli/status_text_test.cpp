@@ -53,7 +53,7 @@ TEST(StatusText, BeginsWithTheAlarms) {
        .severity = alarms::Severity::Wait,
        .since = 1000,
        .what = "5 reports are left"}};
-  view.verdict = {alarms::Level::Bad, "1 of 2 arrive", "not r2"};
+  view.verdict = {facts::Level::Bad, "1 of 2 arrive", "not r2"};
   const std::string text = status_text(view, false);
   EXPECT_THAT(text, StartsWith("  x bad   r2 is silent          for 94 s  box: its habit is 2 s (hides 3)\n"
                                "  ? ask   Report 7 is in doubt  for 10 s  Command Post (acknowledged)\n"
@@ -94,7 +94,7 @@ TEST(StatusText, EscapesTerminalSequences) {
   view.activities[0].robot = "\x1b[2J";
   view.activities[0].last_sentence = "\x1b[2J\nRun   99:99";
   view.alarms = {{.what = "\x1b[2J", .why = "\x1b[2J"}};
-  view.verdict = {alarms::Level::Bad, "No map arrives", "\x1b[2J"};
+  view.verdict = {facts::Level::Bad, "No map arrives", "\x1b[2J"};
   view.endpoints[0].trouble = "\x1b[2J";
   view.reports[0].state = "\x1b[2J";
   view.refusals = {{.at = 0, .uri = "\x1b[2J", .sender = "\x1b[2J", .status = 422, .sentence = "\x1b[2J"}};
@@ -111,7 +111,7 @@ TEST(StatusText, ShowsBacklogAndRejectionsOfARobot) {
 }
 
 TEST(StatusText, IsExplainedInTheHelp) {
-  for (const std::string_view word : alarms::kArrivalWords) {
+  for (const std::string_view word : facts::kArrivalWords) {
     const std::string shown(word == "late" ? "behind" : word);
     EXPECT_THAT(help_of("status"), testing::ContainsRegex("  .*" + shown + ".*  "));
   }
@@ -119,7 +119,7 @@ TEST(StatusText, IsExplainedInTheHelp) {
 
 TEST(StatusText, ShowsTheTreatmentOfARobotsClouds) {
   api::RunView view = sample_view();
-  api::ActivityRow& row = view.activities[0];
+  facts::ActivityRow& row = view.activities[0];
   row.kind = "cloud", row.clouds = "parts", row.precision = "exact";
   EXPECT_THAT(status_text(view, false), HasSubstr("  r1     cloud, parts  "));
   row.precision = "8mm";

@@ -26,7 +26,7 @@ inline api::RunView sample_view() {
                      .last_status = 200,
                      .answer_ms = 42.1,
                      .word = "connected"}};
-  api::ReportRow report;
+  facts::ReportRow report;
   report.number = 3;
   report.type = "Survivor";
   report.position = {12.125, -3, 0.5};
@@ -38,7 +38,7 @@ inline api::RunView sample_view() {
   report.report_status = "scored";
   report.score_change = 1;
   view.reports = {report};
-  api::ActivityRow grid;
+  facts::ActivityRow grid;
   grid.kind = "grid";
   grid.robot = "r1";
   grid.accepted = 12;
@@ -49,8 +49,8 @@ inline api::RunView sample_view() {
   grid.bytes_received = 64000;
   grid.bytes_sent = 4000;
   grid.last_status = 200;
-  grid.arrival = alarms::Arrival::UpToDate;
-  grid.level = alarms::Level::Good;
+  grid.arrival = facts::Arrival::UpToDate;
+  grid.level = facts::Level::Good;
   grid.word = "up to date";
   view.activities = {grid};
   return view;

@@ -70,7 +70,7 @@ TEST(Watching, PrintsChangesOfEndpointsAndRobots) {
   now.endpoints[1].trouble = "no route to host";
   now.activities[0].last_status = 500;
   now.activities[0].last_sentence = "it failed";
-  now.activities[0].arrival = alarms::Arrival::Failing;
+  now.activities[0].arrival = facts::Arrival::Failing;
   EXPECT_EQ(changed(sample_view(), now),
             "mapping endpoint: unreachable, no route to host\nr1, grid: NOT ARRIVING: it failed\n");
   EXPECT_EQ(changed(now, later()), "mapping endpoint: connected\nr1, grid: arrives\n");
@@ -78,7 +78,7 @@ TEST(Watching, PrintsChangesOfEndpointsAndRobots) {
 
 TEST(Watching, PrintsNothingForARobotLateInItsTurn) {
   api::RunView now = later();
-  now.activities[0].arrival = alarms::Arrival::Late;
+  now.activities[0].arrival = facts::Arrival::Late;
   EXPECT_THAT(changed(sample_view(), now), IsEmpty());
 }
 

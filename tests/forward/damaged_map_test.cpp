@@ -38,9 +38,9 @@ class DamagedMap : public MapsToManualEndpoint {
     bytes << "damaged";
   }
   void restore() { maps_->restore(spool_.read()); }
-  api::ActivityRow row() const {
+  facts::ActivityRow row() const {
     const auto found = counts_.rows().find({Kind::Grid, "first"});
-    return found == counts_.rows().end() ? api::ActivityRow{} : found->second;
+    return found == counts_.rows().end() ? facts::ActivityRow{} : found->second;
   }
   static constexpr std::uint64_t kOne = MapStore::kFirstNumber + 1, kOther = MapStore::kFirstNumber + 2;
 };

@@ -64,8 +64,8 @@ TEST(DeliveredScene, DropsTheRobotThatWasSilentLongest) {
   const auto robots = all.robots();
   EXPECT_THAT(robots, SizeIs(DeliveredScene::kMostRobots));
   EXPECT_THAT(all.tracks().since(0), SizeIs(DeliveredScene::kMostRobots));
-  EXPECT_EQ(std::ranges::count(robots, "ours", &api::RobotRow::name), 1);
-  EXPECT_EQ(std::ranges::count(robots, "r0", &api::RobotRow::name), 0);
+  EXPECT_EQ(std::ranges::count(robots, "ours", &facts::RobotRow::name), 1);
+  EXPECT_EQ(std::ranges::count(robots, "r0", &facts::RobotRow::name), 0);
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ class FlowTest : public testing::Test {
   }
   std::vector<std::uint64_t> waiting() const {
     std::vector<std::uint64_t> waiting;
-    for (const api::ActivityRow& row : flow_->activities()) waiting.push_back(row.queued);
+    for (const facts::ActivityRow& row : flow_->activities()) waiting.push_back(row.queued);
     return waiting;
   }
 
@@ -115,7 +115,7 @@ TEST_F(FlowTest, ShowsSinceWhenTheCommandPostIsBehind) {
   ASSERT_TRUE(take_map());
   ASSERT_TRUE(flow_->take(spool::state(), sender_));
   ASSERT_TRUE(take_markers());
-  for (const api::ActivityRow& row : flow_->activities()) {
+  for (const facts::ActivityRow& row : flow_->activities()) {
     ASSERT_TRUE(row.behind_since) << row.kind;
     EXPECT_GE(*row.behind_since, before - 0.001) << row.kind;
     EXPECT_LE(*row.behind_since, loop_.wall_now() + 0.001) << row.kind;

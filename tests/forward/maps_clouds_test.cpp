@@ -23,7 +23,7 @@ class QueuedClouds : public testing::Test, protected MapsParts {
   bool becomes(std::size_t count) {
     return loop::turn_until(loop_, [&] { return maps_.waiting(kClouds) == count; });
   }
-  const api::ActivityRow& row() const { return counts_.rows().at(kClouds); }
+  const facts::ActivityRow& row() const { return counts_.rows().at(kClouds); }
 
   const Traffic kClouds{Kind::Cloud, "r1"};
   Maps maps_ = maps_with(std::nullopt);

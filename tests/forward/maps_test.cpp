@@ -149,7 +149,7 @@ class OvertakenGrid : public MapsTest {
     EXPECT_TRUE(loop::turn_until_idle(loop_, writer_));
     return spool::Spool(folder_.path()).read();
   }
-  const api::ActivityRow& row() const { return counts_.rows().at({Kind::Grid, "r1"}); }
+  const facts::ActivityRow& row() const { return counts_.rows().at({Kind::Grid, "r1"}); }
 };
 
 TEST_F(OvertakenGrid, IsQueuedOutsideOfTheNewerOne) {

@@ -40,7 +40,7 @@ class RejectedStoreTest : public testing::Test {
     rejected_->restore();
   }
   /// What a process would find after a kill at this time.
-  std::vector<api::RejectedRow> found_after_a_kill() {
+  std::vector<facts::RejectedRow> found_after_a_kill() {
     loop::Writer writer(loop_);
     RejectedStore other(loop_, writer, folder_.path());
     other.restore();

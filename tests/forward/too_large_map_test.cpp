@@ -144,7 +144,7 @@ class TooLargeMap : public testing::Test, protected MapsParts {
     for (int i = 0; i < count; ++i) all.push_back(cloud_of(kPoints));
     return all;
   }
-  const api::ActivityRow& row() const { return counts_.rows().at({Kind::Cloud, "r1"}); }
+  const facts::ActivityRow& row() const { return counts_.rows().at({Kind::Cloud, "r1"}); }
   bool becomes(std::size_t waiting) {
     return loop::turn_until(loop_, [&] { return maps_.waiting({Kind::Cloud, "r1"}) == waiting; });
   }

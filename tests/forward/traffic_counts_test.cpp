@@ -18,7 +18,8 @@ TEST(TrafficCounts, CountsTheMapsOfEachRobot) {
   counts.not_taken({Kind::Grid, "r1"}, DeliveryFailure::Throttled, 429, "too frequent");
 
   ASSERT_EQ(counts.rows().size(), 2u);
-  const api::ActivityRow &grid = counts.rows().at({Kind::Grid, "r1"}), &cloud = counts.rows().at(kCloudOfR1);
+  const facts::ActivityRow &grid = counts.rows().at({Kind::Grid, "r1"}),
+                           &cloud = counts.rows().at(kCloudOfR1);
   EXPECT_EQ(grid.kind, "grid");
   EXPECT_EQ(grid.throttled, 1u);
   EXPECT_EQ(grid.last_sentence, "too frequent");

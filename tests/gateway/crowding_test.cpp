@@ -15,7 +15,7 @@ using testing::IsEmpty;
 constexpr loop::Instant kFirst{100h};
 
 auto of(const char* address) {
-  return Field(&alarms::CrowdFact::address, address);
+  return Field(&facts::Crowd::address, address);
 }
 
 TEST(Crowding, IsEmptyAtFirst) {
@@ -40,7 +40,7 @@ TEST(Crowding, ReportsWrongTokens) {
   Crowding crowding;
   for (int i = 0; i < 1786; ++i) crowding.ended(Ended::WrongToken, "10.0.0.7", kFirst);
   EXPECT_THAT(crowding.crowds(kFirst),
-              ElementsAre(Field(&alarms::CrowdFact::is, alarms::CrowdFact::Is::WrongToken)));
+              ElementsAre(Field(&facts::Crowd::kind, facts::Crowd::Kind::WrongToken)));
   const auto lines = crowding.to_log(kFirst);
   ASSERT_EQ(lines.size(), 1u);
   EXPECT_EQ(lines.front().times, 1786u);

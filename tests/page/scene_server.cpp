@@ -34,7 +34,8 @@ class Stage final : public Source, public Operator, public Caretaker {
     draw_scene(map_, began_);
   }
 
-  RunView view() const override {
+  RunView view() override { return played(); }
+  RunView played() const {
     const Time now = loop_.wall_now();
     RunView view = *scene(name_, now, now - began_);
     view.map_version = map().version();
@@ -47,34 +48,34 @@ class Stage final : public Source, public Operator, public Caretaker {
     return view;
   }
 
-  std::vector<ReportRow> reports(std::int64_t after, std::size_t most) const override {
-    auto rows = view().reports;
+  std::vector<facts::ReportRow> reports(std::int64_t after, std::size_t most) const override {
+    auto rows = played().reports;
     return rows_after({rows.rbegin(), rows.rend()}, after, most);
   }
-  ReportCounts report_counts() const override { return counts_of(view().reports); }
+  ReportCounts report_counts() const override { return counts_of(played().reports); }
   std::optional<ReportDetail> report(std::int64_t number) const override {
-    const auto rows = view().reports;
-    const auto row = std::ranges::find(rows, number, &ReportRow::number);
+    const auto rows = played().reports;
+    const auto row = std::ranges::find(rows, number, &facts::ReportRow::number);
     if (row == rows.end()) return {};
     return ReportDetail{*row, {{row->received, "received", ""}, {row->changed, row->state, row->note}}, {}};
   }
   std::expected<std::int64_t, std::string> decide(std::int64_t number, Action action) override {
-    return played_.decide(view(), number, action);
+    return played_.decide(played(), number, action);
   }
   std::expected<std::int64_t, std::string> report(const icd::ArtifactReport& report, bool resubmit) override {
-    return played_.report(view(), report, resubmit);
+    return played_.report(played(), report, resubmit);
   }
   std::expected<std::int64_t, std::string> correct(std::int64_t number,
                                                    const icd::ArtifactReport& to) override {
-    return played_.correct(view(), number, to);
+    return played_.correct(played(), number, to);
   }
   std::expected<void, std::string> rejected(std::uint64_t number, RejectedAction) override {
-    return played_.rejected(view(), number);
+    return played_.rejected(played(), number);
   }
   std::expected<void, std::string> acknowledge(const std::string& id) override {
-    return played_.acknowledge(view(), id);
+    return played_.acknowledge(played(), id);
   }
-  std::int64_t begin_run() override { return played_.begin_run(view()); }
+  std::int64_t begin_run() override { return played_.begin_run(played()); }
   icd::Checked<std::string> begin_ledger() override { return "ledger.damaged-1"; }
   Time identify(double seconds) override {
     identify_until_ = loop_.wall_now() + seconds;

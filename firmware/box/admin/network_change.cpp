@@ -225,18 +225,17 @@ icd::Checked<void> NetworkChange::say(network::Decision::What what, const networ
 }
 
 /// The interface's first conflict.
-std::optional<alarms::AddressConflict> NetworkChange::taken(const std::string& interface,
-                                                            bool is_team) const {
+std::optional<facts::AddressConflict> NetworkChange::taken(const std::string& interface, bool is_team) const {
   for (const network::AddressConflict& each : taken_.addresses) {
     if (each.interface != interface || loop_.now() >= each.seen + network::kTakenFor) continue;
-    return alarms::AddressConflict{
+    return facts::AddressConflict{
         .is_team = is_team, .interface = interface, .address = each.address, .mac = each.mac};
   }
   return std::nullopt;
 }
 
 /// The first one that is an endpoint of the settings or its gateway.
-std::optional<alarms::SwappedAddress> NetworkChange::exchanged() const {
+std::optional<facts::SwappedAddress> NetworkChange::exchanged() const {
   const auto scoring = next_hop(settings_.command_post.scoring),
              mapping = next_hop(settings_.command_post.mapping);
   std::string trouble;
@@ -248,7 +247,7 @@ std::optional<alarms::SwappedAddress> NetworkChange::exchanged() const {
     if (loop_.now() >= each.seen + network::kTakenFor) continue;
     if (each.interface != settings_.team.interface || (each.address != scoring && each.address != mapping))
       continue;
-    return alarms::SwappedAddress{
+    return facts::SwappedAddress{
         .address = each.address, .found_on = each.interface, .sought_on = settings_.command_post.interface};
   }
   return std::nullopt;
@@ -258,8 +257,8 @@ std::string NetworkChange::page_at(const network::Numbers& numbers) const {
   return network::page_at(numbers, settings_.team.listen, host::local_name());
 }
 
-alarms::NetworkFact NetworkChange::fact() const {
-  alarms::NetworkFact fact;
+facts::Network NetworkChange::fact() const {
+  facts::Network fact;
   read_taken();
   const auto waits = pending();
   const auto kept = this->kept();

@@ -3,8 +3,8 @@
 #include <optional>
 #include <string>
 
-#include "alarms/facts.hpp"
 #include "api/network.hpp"
+#include "facts/snapshot.hpp"
 #include "host/root_program.hpp"
 #include "loop/loop.hpp"
 #include "network/messages.hpp"
@@ -42,15 +42,15 @@ class NetworkChange final : public api::Network {
   std::expected<std::string, std::string> next_hop(const settings::Address& endpoint) const;
 
   /// Input of the alarm rules.
-  alarms::NetworkFact fact() const;
+  facts::Network fact() const;
 
  private:
   /// Reads the watch's file if the last reading is old. If the file cannot be read, the last known addresses
   /// stay for network::kTakenFor.
   void read_taken() const;
   void lead_to_endpoints();
-  std::optional<alarms::SwappedAddress> exchanged() const;
-  std::optional<alarms::AddressConflict> taken(const std::string& interface, bool is_team) const;
+  std::optional<facts::SwappedAddress> exchanged() const;
+  std::optional<facts::AddressConflict> taken(const std::string& interface, bool is_team) const;
   /// Why changes are impossible here, or "".
   std::string hindrance() const;
   std::string page_at(const network::Numbers& numbers) const;

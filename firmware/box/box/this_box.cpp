@@ -68,8 +68,8 @@ void Links::look() {
   if (back) back_();
 }
 
-std::vector<api::LinkRow> Links::rows() const {
-  std::vector<api::LinkRow> rows;
+std::vector<facts::LinkRow> Links::rows() const {
+  std::vector<facts::LinkRow> rows;
   for (const Link& link : links_) {
     if (!link.interface.empty())
       rows.push_back({.side = link.side, .interface = link.interface, .carrier = link.carrier});

@@ -34,7 +34,7 @@ class Links {
   void look_at(const settings::Settings& settings);
 
   /// The team's, then the Command Post's, without unnamed interfaces.
-  std::vector<api::LinkRow> rows() const;
+  std::vector<facts::LinkRow> rows() const;
 
  private:
   struct Link {

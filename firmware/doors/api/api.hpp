@@ -21,7 +21,7 @@ namespace adit::api {
 
 /// The gateway's parts that the API uses.
 struct Served {
-  const Source& source;
+  Source& source;
   Operator& decisions;
   Caretaker& caretaker;
   Keys& keys;

@@ -25,7 +25,7 @@ struct LogFilter;
 class BoxRoutes {
  public:
   /// All must outlive this object, and the work of `box`.
-  BoxRoutes(const Source& source, const ReportLists& lists, Box& box, Entrance& entrance,
+  BoxRoutes(Source& source, const ReportLists& lists, Box& box, Entrance& entrance,
             const SharedRedaction& redaction, loop::Loop& loop)
       : source_(source), lists_(lists), box_(box), entrance_(entrance), redaction_(redaction), loop_(loop) {}
 
@@ -41,7 +41,7 @@ class BoxRoutes {
   std::string metrics_text() const;
   std::string log_lines(const LogFilter& filter) const;
 
-  const Source& source_;
+  Source& source_;
   const ReportLists& lists_;
   Box& box_;
   Entrance& entrance_;

@@ -19,6 +19,7 @@
 #include "api/settings_rows.cpp"
 #include "api/spare_rows.cpp"
 #include "api/updates.cpp"
+#include "facts/rows.cpp"
 #include "network/numbers_rows.cpp"
 #include "update/messages.cpp"
 // NOLINTEND(bugprone-suspicious-include)

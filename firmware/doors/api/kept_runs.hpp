@@ -53,7 +53,7 @@ struct History {
 /// A stored run and its last state.
 struct RunRow {
   std::string key = "";  // its number, with a suffix if two runs share it
-  std::int64_t run = 0;  // as in ReportRow
+  std::int64_t run = 0;  // as in facts::ReportRow
   std::string id = "", course = "", post = "", team = "";
   Time began = 0, last = 0;
   std::optional<double> stamp = {};  // `last` by the stamp clock

@@ -221,7 +221,7 @@ intake::Answer printed(std::string html) {
 
 }  // namespace
 
-KeptRunsRoutes::KeptRunsRoutes(loop::Loop& loop, KeptRuns& runs, const Source& source)
+KeptRunsRoutes::KeptRunsRoutes(loop::Loop& loop, KeptRuns& runs, Source& source)
     : loop_(loop), runs_(runs), source_(source), forget_(loop.timer([this] { held_.reset(); })) {}
 
 icd::Checked<RunRow> KeptRunsRoutes::row_of(const std::string& key) const {
@@ -298,7 +298,7 @@ void KeptRunsRoutes::report(const Call& call) {
 
 void KeptRunsRoutes::gather(const std::shared_ptr<Gathering>& gathering) {
   const auto rows = source_.reports(gathering->last, kDetailsInATurn);
-  for (const ReportRow& row : rows) {
+  for (const facts::ReportRow& row : rows) {
     gathering->last = row.number;
     if (row.run != gathering->run) continue;
     if (auto detail = source_.report(row.number)) gathering->reports.push_back(std::move(*detail));

@@ -21,7 +21,7 @@ namespace adit::api {
 class MapRoutes {
  public:
   /// All must outlive this object.
-  MapRoutes(const Source& source, FinerMap& finer, CoveredMap& covered)
+  MapRoutes(Source& source, FinerMap& finer, CoveredMap& covered)
       : source_(source), finer_(finer), covered_(covered) {}
 
   icd::Checked<MapView> layers(const intake::RequestHead& head) const;
@@ -31,7 +31,7 @@ class MapRoutes {
   icd::Checked<Tracks> tracks(const intake::RequestHead& head) const;
 
  private:
-  const Source& source_;
+  Source& source_;
   FinerMap& finer_;
   CoveredMap& covered_;
 };
@@ -44,7 +44,7 @@ class KeptRunsRoutes {
   static constexpr std::size_t kMostWaiting = 64;  // requests queued while a run is read
 
   /// All must outlive this object.
-  KeptRunsRoutes(loop::Loop& loop, KeptRuns& runs, const Source& source);
+  KeptRunsRoutes(loop::Loop& loop, KeptRuns& runs, Source& source);
 
   /// The plots of the present run.
   icd::Checked<History> history(const intake::RequestHead& head) const;
@@ -74,7 +74,7 @@ class KeptRunsRoutes {
 
   loop::Loop& loop_;
   KeptRuns& runs_;
-  const Source& source_;
+  Source& source_;
   loop::Source forget_;
   std::shared_ptr<const KeptRun> held_;
   std::map<std::string, std::vector<Waiting>> waiting_;

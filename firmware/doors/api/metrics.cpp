@@ -5,7 +5,6 @@
 #include <cmath>
 #include <functional>
 
-#include "api/verdicts.hpp"
 #include "dispatch/report.hpp"
 #include "icd/sentence.hpp"
 
@@ -120,18 +119,23 @@ void write_reports(Exposition& out, const ReportCounts& reports) {
 
 void write_endpoints(Exposition& out, const RunView& view) {
   const auto add = [&](std::string_view name, std::string_view help, auto value) {
-    const auto labels_of = [](const EndpointRow& row) { return std::array{Label{"endpoint", row.name}}; };
+    const auto labels_of = [](const facts::EndpointRow& row) {
+      return std::array{Label{"endpoint", row.name}};
+    };
     add_rows(out, name, help, view.endpoints, labels_of, value);
   };
   add("adit_endpoint_up", "1 if there is a connection to the Command Post's endpoint, else 0.",
-      &EndpointRow::connected);
+      &facts::EndpointRow::connected);
   add("adit_endpoint_answer_seconds", "Duration of the endpoint's last answer.",
-      [](const EndpointRow& row) { return row.answer_ms.transform([](double ms) { return ms / 1000; }); });
+      [](const facts::EndpointRow& row) {
+        return row.answer_ms.transform([](double ms) { return ms / 1000; });
+      });
   add("adit_endpoint_last_status", "HTTP status of the answer to the last request; 0 if there was no answer.",
-      &EndpointRow::last_status);
-  add("adit_endpoint_throttled_total", "Answers of the endpoint with status 429.", &EndpointRow::throttled);
+      &facts::EndpointRow::last_status);
+  add("adit_endpoint_throttled_total", "Answers of the endpoint with status 429.",
+      &facts::EndpointRow::throttled);
   add("adit_endpoint_foreign_total", "Answers that are not from a Command Post: pages of HTML, redirects.",
-      &EndpointRow::foreign);
+      &facts::EndpointRow::foreign);
 }
 
 void write_link(Exposition& out, const Measured& measured) {
@@ -143,59 +147,63 @@ void write_link(Exposition& out, const Measured& measured) {
           view.budget_mbit * kBytesPerMbit);
   out.add("adit_queue_bytes", "Bytes of queued maps.", view.queued_bytes);
   out.add("adit_rejected_messages", "Rejected messages that no newer message has replaced.",
-          std::ranges::count(view.rejected, false, &RejectedRow::replaced));
+          std::ranges::count(view.rejected, false, &facts::RejectedRow::replaced));
   out.add("adit_rejected_messages_dropped_total", "Rejected messages deleted to make room for newer ones.",
           measured.usage.rejected_dropped);
 }
 
 void write_updates(Exposition& out, const RunView& view) {
   const auto add = [&](std::string_view name, std::string_view help, auto value) {
-    const auto labels_of = [](const ActivityRow& row) {
+    const auto labels_of = [](const facts::ActivityRow& row) {
       return std::array{Label{"kind", row.kind}, Label{"robot", row.robot}};
     };
     add_rows(out, name, help, view.activities, labels_of, value);
   };
-  const auto accepted_age = [&view](const ActivityRow& row) {
-    return row.last_accepted.transform([&](Time at) { return seconds_since(at, view.now); });
+  const auto accepted_age = [&view](const facts::ActivityRow& row) {
+    return row.last_accepted.transform([&](Time at) { return facts::seconds_since(at, view.now); });
   };
-  add("adit_updates_accepted_total", "Updates accepted from the team.", &ActivityRow::accepted);
-  add("adit_updates_forwarded_total", "Updates delivered to the Command Post.", &ActivityRow::forwarded);
+  add("adit_updates_accepted_total", "Updates accepted from the team.", &facts::ActivityRow::accepted);
+  add("adit_updates_forwarded_total", "Updates delivered to the Command Post.",
+      &facts::ActivityRow::forwarded);
   add("adit_updates_replaced_total", "Updates not sent because a newer update contains all of them.",
-      &ActivityRow::replaced);
-  add("adit_updates_merged_total", "Updates merged into others.", &ActivityRow::merged);
-  add("adit_updates_throttled_total", "Answers of 429, each followed by a retry.", &ActivityRow::throttled);
+      &facts::ActivityRow::replaced);
+  add("adit_updates_merged_total", "Updates merged into others.", &facts::ActivityRow::merged);
+  add("adit_updates_throttled_total", "Answers of 429, each followed by a retry.",
+      &facts::ActivityRow::throttled);
   add("adit_updates_failed_total", "Tries without an answer, each followed by a retry.",
-      &ActivityRow::failed);
+      &facts::ActivityRow::failed);
   add("adit_updates_refused_total", "Updates that the Command Post rejected.",
-      &ActivityRow::refused_upstream);
-  add("adit_updates_no_room_total", "Updates rejected because the queue is full.", &ActivityRow::no_room);
+      &facts::ActivityRow::refused_upstream);
+  add("adit_updates_no_room_total", "Updates rejected because the queue is full.",
+      &facts::ActivityRow::no_room);
   add("adit_updates_behind_seconds",
       "Time since the oldest undelivered update was accepted; 0 if all are delivered.",
-      [](const ActivityRow& row) { return row.behind.value_or(0); });
+      [](const facts::ActivityRow& row) { return row.behind.value_or(0); });
   out.begin("adit_updates_arrive", "Whether updates reach the Command Post, in the page's word; always 1.");
-  for (const ActivityRow& row : view.activities)
+  for (const facts::ActivityRow& row : view.activities)
     out.sample({{"kind", row.kind}, {"robot", row.robot}, {"arrival", name_of(row.arrival)}}, 1);
   out.begin("adit_clouds_whole",
             "1 if the robot's newest cloud replaces its queued ones, 0 if each is delivered.");
-  for (const ActivityRow& row : view.activities) {
+  for (const facts::ActivityRow& row : view.activities) {
     if (!row.clouds.empty()) out.sample({{"robot", row.robot}}, row.clouds == "whole");
   }
   out.begin("adit_clouds_rounded_metres",
             "Step to which the coordinates of the last delivered cloud were rounded; 0 if exact.");
-  for (const ActivityRow& row : view.activities) {
+  for (const facts::ActivityRow& row : view.activities) {
     if (row.precision.empty()) continue;
     out.sample({{"robot", row.robot}}, row.precision == "1mm" ? 0.001 : row.precision == "8mm" ? 0.008 : 0);
   }
   out.begin("adit_clouds_no_valid_point_total",
             "Clouds accepted but not sent because all of their points are NaN or infinite.");
-  for (const ActivityRow& row : view.activities) {
+  for (const facts::ActivityRow& row : view.activities) {
     if (row.kind == "cloud") out.sample({{"robot", row.robot}}, row.no_valid_point);
   }
-  add("adit_updates_queued", "Queued updates.", &ActivityRow::queued);
+  add("adit_updates_queued", "Queued updates.", &facts::ActivityRow::queued);
   add("adit_updates_accepted_age_seconds", "Time since the last update was accepted.", accepted_age);
-  add("adit_updates_forwarded_age_seconds", "Age of the last delivered update.", &ActivityRow::age);
-  add("adit_updates_received_bytes", "Size of the last accepted update.", &ActivityRow::bytes_received);
-  add("adit_updates_sent_bytes", "Size of the last delivered update.", &ActivityRow::bytes_sent);
+  add("adit_updates_forwarded_age_seconds", "Age of the last delivered update.", &facts::ActivityRow::age);
+  add("adit_updates_received_bytes", "Size of the last accepted update.",
+      &facts::ActivityRow::bytes_received);
+  add("adit_updates_sent_bytes", "Size of the last delivered update.", &facts::ActivityRow::bytes_sent);
 }
 
 void write_refused(Exposition& out, const Usage& usage) {

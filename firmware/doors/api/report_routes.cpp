@@ -34,7 +34,7 @@ struct ReportLists::Listing {
 
 ListForm json_list() {
   return {.begin = "[",
-          .row = [](const ReportRow& row) { return codec::to_json(row); },
+          .row = [](const facts::ReportRow& row) { return codec::to_json(row); },
           .between = ",",
           .end = "]"};
 }
@@ -46,7 +46,7 @@ void ReportLists::write(ListForm form, std::optional<std::int64_t> run,
 
 void ReportLists::go_on(const std::shared_ptr<Listing>& listing) const {
   const auto rows = source_.reports(listing->last, kInATurn);
-  for (const ReportRow& row : rows) {
+  for (const facts::ReportRow& row : rows) {
     listing->last = row.number;
     if (listing->run && row.run != *listing->run) continue;
     if (!std::exchange(listing->is_empty, false)) listing->text += listing->form.between;

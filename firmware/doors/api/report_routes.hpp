@@ -17,7 +17,7 @@ namespace adit::api {
 /// Format of a list of reports.
 struct ListForm {
   std::string begin;
-  std::string (*row)(const ReportRow& row);
+  std::string (*row)(const facts::ReportRow& row);
   std::string_view between, end;
 };
 
@@ -28,7 +28,7 @@ ListForm json_list();
 class ReportLists {
  public:
   /// Both must outlive this object, and this object must outlive the loop's turns.
-  ReportLists(loop::Loop& loop, const Source& source) : loop_(loop), source_(source) {}
+  ReportLists(loop::Loop& loop, Source& source) : loop_(loop), source_(source) {}
 
   /// Writes all reports of `run`, or of all runs, oldest first, and passes them to `done`, at once if there
   /// are few. Long lists are written in several turns of the loop, so that the loop can serve its sockets;
@@ -41,14 +41,14 @@ class ReportLists {
   void go_on(const std::shared_ptr<Listing>& listing) const;
 
   loop::Loop& loop_;
-  const Source& source_;
+  Source& source_;
 };
 
 /// Reports, and the operator's actions on them: README.md.
 class ReportRoutes {
  public:
   /// All must outlive this object.
-  ReportRoutes(const ReportLists& lists, const Source& source, Operator& decisions)
+  ReportRoutes(const ReportLists& lists, Source& source, Operator& decisions)
       : lists_(lists), source_(source), operator_(decisions) {}
 
   void list(const Call& call) const;
@@ -67,7 +67,7 @@ class ReportRoutes {
   icd::Checked<intake::Answer> decide(std::int64_t number, Action action);
 
   const ReportLists& lists_;
-  const Source& source_;
+  Source& source_;
   Operator& operator_;
 };
 

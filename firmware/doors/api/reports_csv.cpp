@@ -64,7 +64,7 @@ std::string cell(const codec::Value& value, codec::Cell form) {
 /// The members with a column, in column order.
 std::vector<const codec::Member*> columns() {
   std::vector<const codec::Member*> all;
-  for (const codec::Member& member : ReportRow::kRow.members) {
+  for (const codec::Member& member : facts::ReportRow::kRow.members) {
     if (member.cell != codec::Cell::None) all.push_back(&member);
   }
   std::ranges::sort(all, {}, &codec::Member::column);
@@ -97,7 +97,7 @@ std::string csv_header() {
   return line([](const codec::Member&, const codec::Member& inner) { return inner.name; });
 }
 
-std::string csv_line(const ReportRow& row) {
+std::string csv_line(const facts::ReportRow& row) {
   return line(std::get<codec::Value::Object>(codec::json(row).is));
 }
 

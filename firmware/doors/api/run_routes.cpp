@@ -38,19 +38,19 @@ std::chrono::milliseconds spacing_of(const std::optional<codec::Value>& patch) {
 
 }  // namespace
 
-Live::Live(loop::Loop& loop, const Source& source)
+Live::Live(loop::Loop& loop, Source& source)
     : loop_(loop), source_(source), timer_(loop.timer([this] { send_to_all(false); })) {}
 
-RunView Live::look() const {
+RunView Live::look() {
   RunView view = source_.view();
   codec::change_numbers(RunView::kRow, &view, rounded);
   // Ages change all the time. Whole seconds keep events small.
   const auto whole_seconds = [](std::optional<double>& age) {
     if (age) *age = std::floor(*age);
   };
-  for (ActivityRow& row : view.activities) whole_seconds(row.behind), whole_seconds(row.age);
-  for (RobotRow& robot : view.robots) whole_seconds(robot.age);
-  for (StandingRow& robot : view.standings) whole_seconds(robot.age);
+  for (facts::ActivityRow& row : view.activities) whole_seconds(row.behind), whole_seconds(row.age);
+  for (facts::RobotRow& robot : view.robots) whole_seconds(robot.age);
+  for (facts::StandingRow& robot : view.standings) whole_seconds(robot.age);
   return view;
 }
 

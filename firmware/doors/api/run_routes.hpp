@@ -30,7 +30,7 @@ class Live {
   /// Most queued bytes for a page, beside two whole views: one in transfer and the next.
   static constexpr std::size_t kMostPatches = 64 * 1024;
 
-  Live(loop::Loop& loop, const Source& source);
+  Live(loop::Loop& loop, Source& source);
 
   /// Answers with a stream of events, or 503 beyond kMostPages. The stream ends once `may_stay` returns
   /// false.
@@ -43,7 +43,7 @@ class Live {
     std::function<bool()> may_stay;
   };
 
-  RunView look() const;
+  RunView look();
   void begin();
   void send_to_all(bool in_any_case);
   /// The state of the pages as an event.
@@ -52,7 +52,7 @@ class Live {
   void drop_the_gone(std::string_view event);
 
   loop::Loop& loop_;
-  const Source& source_;
+  Source& source_;
   std::vector<OpenPage> pages_;
   RunView told_;                // the pages' state
   std::string whole_;           // that state as text; "": not computed
@@ -68,7 +68,7 @@ class RunRoutes {
   static constexpr double kLeast = 1, kMost = 60;  // seconds of flashing lights
 
   /// All must outlive this object.
-  RunRoutes(const Source& source, Operator& decisions, Caretaker& caretaker, Live& live, Entrance& entrance)
+  RunRoutes(Source& source, Operator& decisions, Caretaker& caretaker, Live& live, Entrance& entrance)
       : source_(source), operator_(decisions), caretaker_(caretaker), live_(live), entrance_(entrance) {}
 
   RunView run() const { return source_.view(); }
@@ -89,7 +89,7 @@ class RunRoutes {
  private:
   intake::Answer rejected(std::uint64_t number, RejectedAction action);
 
-  const Source& source_;
+  Source& source_;
   Operator& operator_;
   Caretaker& caretaker_;
   Live& live_;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "codec/row.hpp"
+#include "facts/rows.hpp"
 #include "icd/geometry.hpp"
 #include "icd/mapping.hpp"
 
@@ -47,8 +48,7 @@ DrawnMarker drawn(const icd::Marker& marker);
 /// Direction of the robot's x axis seen from above, in radians about z.
 double heading_of(const icd::Quaternion& orientation);
 
-/// Seconds since 1970 by the gateway's clock.
-using Time = double;
+using facts::Time;
 
 /// A marker as last delivered.
 struct MarkerRow {

@@ -22,7 +22,7 @@ constexpr Member kTestStep[] = {
 };
 
 constexpr Member kTestedEndpoint[] = {
-    member<&TestedEndpoint::name>("name").one_of(kEndpoints),
+    member<&TestedEndpoint::name>("name").one_of(facts::kEndpoints),
     member<&TestedEndpoint::address>("address"),
     member<&TestedEndpoint::steps>("steps"),
 };

@@ -21,9 +21,10 @@ namespace adit::api {
 class Source {
  public:
   virtual ~Source() = default;
-  virtual RunView view() const = 0;
+  /// The present state. Not const: it records the alarms that it shows.
+  virtual RunView view() = 0;
   /// Reports of all runs with a number above `after`, oldest first, at most `most`.
-  virtual std::vector<ReportRow> reports(std::int64_t after, std::size_t most) const = 0;
+  virtual std::vector<facts::ReportRow> reports(std::int64_t after, std::size_t most) const = 0;
   virtual ReportCounts report_counts() const = 0;  // of all runs
   virtual std::optional<ReportDetail> report(std::int64_t number) const = 0;
   virtual const picture::Mosaic& map() const = 0;

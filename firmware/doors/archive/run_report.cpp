@@ -117,7 +117,7 @@ std::string reports_table(const std::vector<api::ReportDetail>& reports, api::Ti
   const std::string day = icd::utc(began).substr(0, std::string_view("2026-11-23 ").size());
   std::string rows;
   for (const api::ReportDetail& report : reports) {
-    const api::ReportRow& row = report.row;
+    const facts::ReportRow& row = report.row;
     rows += "<tr>" + cell(std::to_string(row.number), true) + cell(row.type) + cell(row.robot) +
             cell(place(row.position)) +
             cell(row.asking ? row.state + ", Adit asks for the status" : row.state) +
@@ -572,7 +572,7 @@ std::string drawn_map(const api::KeptRun& run, const std::vector<api::ReportDeta
   }
   for (const Sign& sign : signs) {
     marks += drawn(sign);
-    const api::ReportRow& row = sign.reports.front()->row;
+    const facts::ReportRow& row = sign.reports.front()->row;
     const std::string number = std::to_string(row.number);
     if (sign.reports.size() == 1)
       names += label(labels, sign.x, sign.y, kReport, {number + " " + row.type, number});

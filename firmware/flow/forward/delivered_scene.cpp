@@ -197,8 +197,8 @@ void DeliveredScene::go_on_from(std::vector<api::Track> earlier) {
   tracks_.go_on_from(earlier);
 }
 
-std::vector<api::RobotRow> DeliveredScene::robots() const {
-  std::vector<api::RobotRow> rows;
+std::vector<facts::RobotRow> DeliveredScene::robots() const {
+  std::vector<facts::RobotRow> rows;
   rows.reserve(robots_.size());
   for (const auto& [name, row] : robots_) rows.push_back(row);
   return rows;

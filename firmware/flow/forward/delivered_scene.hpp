@@ -120,7 +120,7 @@ class DeliveredScene {
   void go_on_from(std::vector<api::Track> earlier);
 
   /// Last poses, by name.
-  std::vector<api::RobotRow> robots() const;
+  std::vector<facts::RobotRow> robots() const;
   /// Last pose of each robot in this run before a restart.
   const std::map<std::string, api::Time>& before() const { return before_; }
   const MarkerScene& markers() const { return markers_; }
@@ -129,7 +129,7 @@ class DeliveredScene {
  private:
   void forget_the_oldest();
 
-  std::map<std::string, api::RobotRow> robots_;
+  std::map<std::string, facts::RobotRow> robots_;
   std::map<std::string, api::Time> before_;
   MarkerScene markers_;
   Tracks tracks_;

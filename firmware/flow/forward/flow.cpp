@@ -7,7 +7,6 @@
 #include <set>
 #include <utility>
 
-#include "api/verdicts.hpp"
 #include "forward/channel.hpp"
 #include "host/log.hpp"
 #include "host/random.hpp"
@@ -218,13 +217,14 @@ api::Time wall_time_of(const loop::Loop& loop, loop::Instant since) {
 
 }  // namespace
 
-std::vector<api::ActivityRow> Flow::activities() const {
-  std::vector<api::ActivityRow> rows;
+std::vector<facts::ActivityRow> Flow::activities() const {
+  std::vector<facts::ActivityRow> rows;
   for (const auto& [traffic, counted] : counts_.rows()) {
-    api::ActivityRow& row = rows.emplace_back(counted);
+    facts::ActivityRow& row = rows.emplace_back(counted);
     row.queued = is_map(traffic.kind) ? maps_.waiting(traffic) : telemetry_.waiting(traffic.kind);
     const auto since = is_map(traffic.kind) ? maps_.waits_since(traffic) : telemetry_.waits_since(traffic);
     if (since) row.behind_since = wall_time_of(loop_, *since);
+    facts::set_ages(row, loop_.wall_now());
   }
   return rows;
 }
@@ -424,11 +424,10 @@ namespace {
 
 archive::Sample sample_of(const Flow& flow, double now) {
   std::map<std::string, double> ages;
-  for (const auto& [traffic, row] : flow.counts().rows()) {
-    const auto age = api::age_of(row, now);
-    if (!is_map(traffic.kind) || !age) continue;
-    const auto [its, is_new] = ages.emplace(traffic.robot, *age);
-    its->second = std::min(its->second, *age);
+  for (const facts::ActivityRow& row : flow.activities()) {
+    if (!row.is_map() || !row.age) continue;
+    const auto [its, is_new] = ages.emplace(row.robot, *row.age);
+    its->second = std::min(its->second, *row.age);
   }
   const Channel& mapping = flow.maps().channel().last().heard() > flow.telemetry().channel().last().heard()
                                ? flow.maps().channel()
@@ -447,7 +446,7 @@ archive::Sample sample_of(const Flow& flow, double now) {
 api::RunRow facts_of(const Flow& flow, const std::string& course) {
   const dispatch::Run& run = flow.reports().run();
   std::set<std::string> robots;
-  for (const api::RobotRow& robot : flow.delivered().robots()) robots.insert(robot.name);
+  for (const facts::RobotRow& robot : flow.delivered().robots()) robots.insert(robot.name);
   for (const auto& [traffic, row] : flow.counts().rows()) robots.insert(traffic.robot);
   robots.erase("");
   api::RunRow facts{.run = run.number,

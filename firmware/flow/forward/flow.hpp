@@ -237,7 +237,7 @@ class Flow final : public intake::Desk, public api::Operator {
   archive::Archive& archive() { return archive_; }
   const archive::Archive& archive() const { return archive_; }
   /// The record's rows with the queued messages.
-  std::vector<api::ActivityRow> activities() const;
+  std::vector<facts::ActivityRow> activities() const;
   /// Why states and markers cannot be stored, or "".
   const std::string& journal_trouble() const { return journal_.trouble(); }
   std::uint64_t sent_bytes() const;

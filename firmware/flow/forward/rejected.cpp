@@ -293,8 +293,8 @@ std::string RejectedStore::put_aside() const {
   return all;
 }
 
-std::vector<api::RejectedRow> RejectedStore::rows() const {
-  std::vector<api::RejectedRow> rows;
+std::vector<facts::RejectedRow> RejectedStore::rows() const {
+  std::vector<facts::RejectedRow> rows;
   for (const queues::RejectedMessage& item : items_.items()) {
     if (leaving_.contains(item.number)) continue;
     rows.push_back({.number = item.number,

@@ -62,7 +62,7 @@ class RejectedStore {
   bool sent_again(std::uint64_t number, bool kept);
   std::expected<void, std::string> discard(std::uint64_t number);
 
-  std::vector<api::RejectedRow> rows() const;
+  std::vector<facts::RejectedRow> rows() const;
 
  private:
   std::string path(std::uint64_t number, const char* ending) const;

@@ -10,18 +10,18 @@ Traffic traffic_of(const icd::MapUpdate& update) {
   return {update.is_grid() ? Kind::Grid : Kind::Cloud, icd::text_of(update.name)};
 }
 
-api::ActivityRow& TrafficCounts::row(const Traffic& traffic) {
+facts::ActivityRow& TrafficCounts::row(const Traffic& traffic) {
   const auto known = rows_.find(traffic);
   if (known != rows_.end()) return known->second;
   const bool full = rows_.size() >= kMostRows;
-  api::ActivityRow& made = rows_[full ? Traffic{traffic.kind, "(others)"} : traffic];
+  facts::ActivityRow& made = rows_[full ? Traffic{traffic.kind, "(others)"} : traffic];
   made.kind = kKindWords[static_cast<std::size_t>(traffic.kind)];
   made.robot = full ? "(others)" : traffic.robot;
   return made;
 }
 
 void TrafficCounts::accepted(const Traffic& traffic, std::size_t bytes, api::Time now) {
-  api::ActivityRow& activity = row(traffic);
+  facts::ActivityRow& activity = row(traffic);
   ++activity.accepted;
   activity.last_accepted = now;
   activity.bytes_received = bytes;
@@ -29,13 +29,13 @@ void TrafficCounts::accepted(const Traffic& traffic, std::size_t bytes, api::Tim
 }
 
 void TrafficCounts::restore(const Traffic& traffic, api::Time accepted, api::Time forwarded) {
-  api::ActivityRow& activity = row(traffic);
+  facts::ActivityRow& activity = row(traffic);
   activity.last_accepted = std::max(accepted, activity.last_accepted.value_or(accepted));
   if (!std::isnan(forwarded)) activity.last_forwarded = forwarded;
 }
 
 void TrafficCounts::no_room(const Traffic& traffic, api::Time now) {
-  api::ActivityRow& activity = row(traffic);
+  facts::ActivityRow& activity = row(traffic);
   ++activity.no_room;
   activity.last_no_room = now;
   changed_();
@@ -67,7 +67,7 @@ void TrafficCounts::clouds_are(const Traffic& traffic, queues::Clouds clouds) {
 
 void TrafficCounts::forwarded(const Traffic& traffic, std::size_t updates, std::size_t bytes, int status,
                               api::Time now) {
-  api::ActivityRow& activity = row(traffic);
+  facts::ActivityRow& activity = row(traffic);
   ++activity.forwarded;
   ++delivered_;
   if (traffic.kind == Kind::Cloud && updates > 1) activity.merged += updates - 1;
@@ -80,7 +80,7 @@ void TrafficCounts::forwarded(const Traffic& traffic, std::size_t updates, std::
 
 void TrafficCounts::not_taken(const Traffic& traffic, DeliveryFailure how, int status,
                               const std::string& sentence) {
-  api::ActivityRow& activity = row(traffic);
+  facts::ActivityRow& activity = row(traffic);
   if (how == DeliveryFailure::Throttled) ++activity.throttled;
   if (how == DeliveryFailure::Failed) ++activity.failed;
   if (how == DeliveryFailure::Refused) ++activity.refused_upstream;
@@ -111,7 +111,7 @@ void TrafficCounts::move(double seconds) {
       if (*time) **time += seconds;
     }
   }
-  for (api::RefusalRow& refusal : refusals_) refusal.at += seconds;
+  for (facts::RefusalRow& refusal : refusals_) refusal.at += seconds;
   changed_();
 }
 

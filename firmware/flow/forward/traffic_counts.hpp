@@ -86,20 +86,20 @@ class TrafficCounts {
   std::uint64_t delivered_count() const { return delivered_; }
 
   /// Rows without `queued` and `behind_since`, which the queues have.
-  const std::map<Traffic, api::ActivityRow>& rows() const { return rows_; }
+  const std::map<Traffic, facts::ActivityRow>& rows() const { return rows_; }
   /// Counts of rejected messages by URI and status.
   std::vector<api::RefusedCount> refused_counts() const;
   /// Newest first.
-  std::vector<api::RefusalRow> refusals() const { return {refusals_.begin(), refusals_.end()}; }
+  std::vector<facts::RefusalRow> refusals() const { return {refusals_.begin(), refusals_.end()}; }
   void changed() const { changed_(); }
 
  private:
-  api::ActivityRow& row(const Traffic& traffic);
+  facts::ActivityRow& row(const Traffic& traffic);
 
   std::function<void()> changed_;
   std::uint64_t delivered_ = 0;
-  std::map<Traffic, api::ActivityRow> rows_;
-  std::deque<api::RefusalRow> refusals_;
+  std::map<Traffic, facts::ActivityRow> rows_;
+  std::deque<facts::RefusalRow> refusals_;
   std::map<std::pair<icd::Uri, icd::Status>, api::RefusedCount> refused_;  // counts only
 };
 

@@ -54,11 +54,11 @@ Result<Outcome> listed(const Call& call, const char* target,
 }  // namespace
 
 Result<Outcome> complete_reports(const Call& call) {
-  using Reports = std::vector<api::ReportRow>;
+  using Reports = std::vector<facts::ReportRow>;
   const std::string word = call.options.argument();
   return listed<Reports>(call, "/adit/reports", [&word](const Reports& reports) {
     std::vector<Candidate> all;
-    for (const api::ReportRow& report : reports) {
+    for (const facts::ReportRow& report : reports) {
       if (word.empty() || word == "show" || std::ranges::count(verbs_for(report), word) > 0)
         all.push_back({std::to_string(report.number), report.type + ", " + life_of(report)});
     }
@@ -70,7 +70,7 @@ Result<Outcome> complete_rejected(const Call& call) {
   return listed<api::RunView>(call, "/adit/run", [](const api::RunView& view) {
     std::vector<Candidate> all;
     all.reserve(view.rejected.size());
-    for (const api::RejectedRow& row : view.rejected)
+    for (const facts::RejectedRow& row : view.rejected)
       all.push_back({std::to_string(row.number), row.kind + (row.robot.empty() ? "" : " of " + row.robot)});
     return all;
   });

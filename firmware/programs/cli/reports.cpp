@@ -41,7 +41,7 @@ Result<Outcome> begin_ledger(const Call& call) {
 namespace {
 
 /// Default: reports of the present run, and unfinished ones of other runs.
-bool is_listed(const api::ReportRow& report, const Options& options, std::int64_t present) {
+bool is_listed(const facts::ReportRow& report, const Options& options, std::int64_t present) {
   if (options.all_runs) return true;
   return options.run ? report.run == *options.run : report.run == present || !is_finished(report);
 }
@@ -51,12 +51,12 @@ bool is_listed(const api::ReportRow& report, const Options& options, std::int64_
 Result<Outcome> list_reports(const Call& call) {
   const Options& options = call.options;
   const auto run = ADIT_TRY(fetch<api::RunView>(call.adit, "/adit/run"));
-  auto told = ADIT_TRY(fetch<std::vector<api::ReportRow>>(call.adit, "/adit/reports"));
+  auto told = ADIT_TRY(fetch<std::vector<facts::ReportRow>>(call.adit, "/adit/reports"));
 
-  std::vector<api::ReportRow>& rows = told.row;
+  std::vector<facts::ReportRow>& rows = told.row;
   const Exit exit = std::ranges::any_of(rows, needs_the_operator) ? Exit::Attention : Exit::Fine;
   const std::size_t others = std::erase_if(
-      rows, [&](const api::ReportRow& row) { return !is_listed(row, options, run.row.run_number); });
+      rows, [&](const facts::ReportRow& row) { return !is_listed(row, options, run.row.run_number); });
   std::ranges::reverse(rows);  // newest first
   const auto all = static_cast<std::int64_t>(rows.size()), shown = std::min(all, options.last.value_or(all));
   rows.resize(static_cast<std::size_t>(shown));
@@ -84,7 +84,7 @@ std::string place_of(const icd::Point& point) {
 }
 
 std::string facts_of(const api::ReportDetail& detail, bool colour) {
-  const api::ReportRow& report = detail.row;
+  const facts::ReportRow& report = detail.row;
   Facts facts;
   facts.add("report", std::to_string(report.number), Tone::Strong);
   facts.add("type", report.type, Tone::Strong);
@@ -158,7 +158,7 @@ constexpr std::uint64_t kMostNumber = INT64_MAX;
 
 /// Asks the operator for confirmation if the report is in doubt.
 Result<void> confirm_sending(const Call& call, const std::string& target, std::int64_t number) {
-  const api::ReportRow report = ADIT_TRY(fetch<api::ReportDetail>(call.adit, target)).row.row;
+  const facts::ReportRow report = ADIT_TRY(fetch<api::ReportDetail>(call.adit, target)).row.row;
   if (dispatch::state_named(report.state) != dispatch::ReportState::InDoubt) return {};
   return confirm(call.options, call.console,
                  icd::sentence("report ", number, " (", report.type,
@@ -198,7 +198,7 @@ Result<Outcome> correct_report(const Call& call) {
     return failed("the report's number: " + *wrong);
   const std::string target = icd::sentence("/adit/reports/", number);
   const auto now = ADIT_TRY(fetch<api::ReportDetail>(call.adit, target));
-  const api::ReportRow& report = now.row.row;
+  const facts::ReportRow& report = now.row.row;
   std::map<std::string, codec::Value> body{{"type", {report.type}}};
   for (const auto& [name, axis] : kAxes) {
     if (report.position) body[name] = {(*report.position).*axis};
@@ -245,7 +245,7 @@ namespace {
 
 std::string rejected_text(const api::RunView& view, bool colour) {
   if (view.rejected.empty()) return "0 rejected messages\n";
-  using Row = api::RejectedRow;
+  using Row = facts::RejectedRow;
   const auto answer = [](const Row& row) {
     return Cell(answer_of(row.status, row.why), row.replaced ? Tone::Faint : Tone::Bad);
   };
@@ -265,7 +265,7 @@ std::string rejected_text(const api::RunView& view, bool colour) {
 Result<Outcome> list_rejected(const Call& call) {
   const api::RunView view = ADIT_TRY(fetch<api::RunView>(call.adit, "/adit/run")).row;
   const bool waits =
-      std::ranges::any_of(view.rejected, [](const api::RejectedRow& row) { return !row.replaced; });
+      std::ranges::any_of(view.rejected, [](const facts::RejectedRow& row) { return !row.replaced; });
   return printed(call, codec::to_json(view.rejected), rejected_text(view, call.console.colour),
                  waits ? Exit::Attention : Exit::Fine);
 }

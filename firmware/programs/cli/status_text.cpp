@@ -32,30 +32,30 @@ std::string not_listed(const OmittedReports& rest) {
                  " reports of other runs are not listed: adit reports --run all\n");
 }
 
-std::function<Cell(const api::ReportRow&)> coordinate(double icd::Point::* axis) {
-  return [axis](const api::ReportRow& report) {
+std::function<Cell(const facts::ReportRow&)> coordinate(double icd::Point::* axis) {
+  return [axis](const facts::ReportRow& report) {
     return report.position ? decimal((*report.position).*axis, 2) : "lost";
   };
 }
 
 /// A state unknown to this adit is shown as in doubt.
-ReportState state_of(const api::ReportRow& report) {
+ReportState state_of(const facts::ReportRow& report) {
   return dispatch::state_named(report.state).value_or(ReportState::InDoubt);
 }
 
 }  // namespace
 
-bool needs_the_operator(const api::ReportRow& report) {
+bool needs_the_operator(const facts::ReportRow& report) {
   const ReportState state = state_of(report);
   return (state == ReportState::Held && !report.sends_at) ||
          (state == ReportState::InDoubt && !report.asking);
 }
 
-bool is_finished(const api::ReportRow& report) {
+bool is_finished(const facts::ReportRow& report) {
   return dispatch::is_final(state_of(report));
 }
 
-std::vector<std::string_view> verbs_for(const api::ReportRow& report) {
+std::vector<std::string_view> verbs_for(const facts::ReportRow& report) {
   using dispatch::ReportEvent;
   const auto state = dispatch::state_named(report.state);
   if (!state) return {};
@@ -72,7 +72,7 @@ std::vector<std::string_view> verbs_for(const api::ReportRow& report) {
   return verbs;
 }
 
-std::string life_of(const api::ReportRow& report) {
+std::string life_of(const facts::ReportRow& report) {
   const auto state = dispatch::state_named(report.state);
   if (!state) return report.state;
   std::string life(dispatch::shown_name_of(*state));
@@ -80,7 +80,7 @@ std::string life_of(const api::ReportRow& report) {
   return report.asking && *state == ReportState::InDoubt ? life + ", asking" : life;
 }
 
-Tone tone_of(const api::ReportRow& report) {
+Tone tone_of(const facts::ReportRow& report) {
   if (needs_the_operator(report)) return Tone::Bad;
   switch (state_of(report)) {
     case ReportState::Rejected:
@@ -96,25 +96,25 @@ Tone tone_of(const api::ReportRow& report) {
   }
 }
 
-std::string said_of(const api::ReportRow& report) {
+std::string said_of(const facts::ReportRow& report) {
   const bool is_error = report.status >= 300 && !report.reconciled;
   return icd::listed(std::array{std::string(report.reconciled ? "found out" : ""),
                                 is_error ? "error " + std::to_string(report.status) : "",
                                 report.report_status});
 }
 
-std::string gained_by(const api::ReportRow& report) {
+std::string gained_by(const facts::ReportRow& report) {
   if (!report.score_change) return "";
   std::string text = *report.score_change > 0 ? "+" : "";
   return text.append(std::to_string(*report.score_change));
 }
 
-std::string reports_text(const std::vector<api::ReportRow>& reports, const OmittedReports& rest,
+std::string reports_text(const std::vector<facts::ReportRow>& reports, const OmittedReports& rest,
                          api::Time now, bool colour) {
   if (reports.empty())
     return (rest.of_other_runs == 0 ? "No reports so far.\n" : "No reports in this run so far.\n") +
            not_listed(rest);
-  using Row = api::ReportRow;
+  using Row = facts::ReportRow;
   const std::vector<ColumnOf<Row>> columns = {
       {"no.", [](const Row& row) { return std::to_string(row.number); }, kRight},
       {"run", [](const Row& row) { return std::to_string(row.run); }, kRight},
@@ -205,7 +205,7 @@ std::string link_line(const RunView& view) {
 std::string reports_line(const RunView& view, bool colour) {
   std::map<std::string, int> states;
   std::set<std::string> urgent;
-  for (const api::ReportRow& report : view.reports) {
+  for (const facts::ReportRow& report : view.reports) {
     const std::string state = life_of(report);
     ++states[state];
     if (needs_the_operator(report)) urgent.insert(state);
@@ -218,7 +218,7 @@ std::string reports_line(const RunView& view, bool colour) {
   return text + '\n';
 }
 
-std::string last_answer(const api::EndpointRow& endpoint) {
+std::string last_answer(const facts::EndpointRow& endpoint) {
   if (endpoint.last_status == 0) return "";
   std::string text = "last answer: " + answer_of(endpoint.last_status, "");
   if (endpoint.answer_ms)
@@ -228,7 +228,7 @@ std::string last_answer(const api::EndpointRow& endpoint) {
 
 std::string endpoints_table(const RunView& view, bool colour) {
   Table table({{}, {}, {}, {}, {}});
-  for (const api::EndpointRow& endpoint : view.endpoints) {
+  for (const facts::EndpointRow& endpoint : view.endpoints) {
     table.add({{endpoint.name, Tone::Strong},
                {endpoint.address},
                {endpoint.word, tone_of_level(endpoint.level)},
@@ -239,7 +239,7 @@ std::string endpoints_table(const RunView& view, bool colour) {
 }
 
 /// The kind, the mode of clouds, and counts of messages that were left out or are invisible.
-std::string kind_of(const api::ActivityRow& row) {
+std::string kind_of(const facts::ActivityRow& row) {
   std::string kind = row.kind;
   if (!row.clouds.empty()) kind += ", " + row.clouds;
   if (!row.precision.empty() && row.precision != "exact") kind += ", to " + row.precision;
@@ -249,12 +249,12 @@ std::string kind_of(const api::ActivityRow& row) {
 }
 
 std::string activities_table(const RunView& view, bool colour) {
-  using Row = api::ActivityRow;
+  using Row = facts::ActivityRow;
   const auto no_room = [](const Row& row) {
     return Cell(row.no_room == 0 ? "" : std::to_string(row.no_room), Tone::Warning);
   };
   const auto answer = [](const Row& row) {
-    const Tone tone = row.level == alarms::Level::Bad ? Tone::Bad : Tone::Plain;
+    const Tone tone = row.level == facts::Level::Bad ? Tone::Bad : Tone::Plain;
     return Cell(answer_of(row.last_status, row.last_sentence), tone);
   };
   const std::vector<ColumnOf<Row>> columns = {
@@ -278,7 +278,7 @@ std::string refusals_table(const RunView& view, bool colour) {
   static constexpr std::size_t kShown = 5;
   Table table({{}, {}, {}, {}, {}});
   for (std::size_t i = 0; i < view.refusals.size() && i < kShown; ++i) {
-    const api::RefusalRow& refusal = view.refusals[i];
+    const facts::RefusalRow& refusal = view.refusals[i];
     table.add({{duration(view.now - refusal.at) + " ago", Tone::Faint},
                {refusal.sender},
                {refusal.uri},
@@ -290,7 +290,7 @@ std::string refusals_table(const RunView& view, bool colour) {
 
 }  // namespace
 
-Tone tone_of_level(alarms::Level level) {
+Tone tone_of_level(facts::Level level) {
   constexpr Tone kTones[] = {Tone::Faint, Tone::Good, Tone::Warning, Tone::Bad};
   return kTones[static_cast<std::size_t>(level)];
 }
@@ -359,8 +359,8 @@ void run(const api::RunView& before, const api::RunView& now, Lines& lines) {
 }
 
 void reports(const api::RunView& before, const api::RunView& now, Lines& lines) {
-  for (const api::ReportRow& report : now.reports) {
-    const auto was = std::ranges::find(before.reports, report.number, &api::ReportRow::number);
+  for (const facts::ReportRow& report : now.reports) {
+    const auto was = std::ranges::find(before.reports, report.number, &facts::ReportRow::number);
     const std::string life = life_of(report);
     if (was != before.reports.end() && life_of(*was) == life) continue;
     const std::string why = report.note.empty() ? "" : " (" + report.note + ")";
@@ -370,13 +370,13 @@ void reports(const api::RunView& before, const api::RunView& now, Lines& lines) 
   }
 }
 
-std::string state_of(const api::EndpointRow& endpoint) {
+std::string state_of(const facts::EndpointRow& endpoint) {
   return endpoint.trouble.empty() ? endpoint.word : endpoint.word + ", " + endpoint.trouble;
 }
 
 void endpoints(const api::RunView& before, const api::RunView& now, Lines& lines) {
-  for (const api::EndpointRow& endpoint : now.endpoints) {
-    const auto was = std::ranges::find(before.endpoints, endpoint.name, &api::EndpointRow::name);
+  for (const facts::EndpointRow& endpoint : now.endpoints) {
+    const auto was = std::ranges::find(before.endpoints, endpoint.name, &facts::EndpointRow::name);
     if (was != before.endpoints.end() && state_of(*was) == state_of(endpoint)) continue;
     lines.add(endpoint.name + " endpoint: " + state_of(endpoint), tone_of_level(endpoint.level));
   }
@@ -384,19 +384,19 @@ void endpoints(const api::RunView& before, const api::RunView& now, Lines& lines
 
 constexpr std::string_view kArrives = "arrives", kNotArriving = "NOT ARRIVING";
 
-/// In the order of alarms::Arrival. Late is shown as arriving, because robots that share the link are late in
+/// In the order of facts::Arrival. Late is shown as arriving, because robots that share the link are late in
 /// turn.
 constexpr std::string_view kTold[] = {"none sent yet", kArrives,     kArrives,     kArrives, kNotArriving,
                                       kNotArriving,    kNotArriving, kNotArriving, kArrives, "silent"};
-static_assert(std::size(kTold) == std::size(alarms::kArrivalWords));
+static_assert(std::size(kTold) == std::size(facts::kArrivalWords));
 
-std::string_view told_of(const api::ActivityRow& row) {
+std::string_view told_of(const facts::ActivityRow& row) {
   return kTold[static_cast<std::size_t>(row.arrival)];
 }
 
 void arrivals(const api::RunView& before, const api::RunView& now, Lines& lines) {
-  for (const api::ActivityRow& row : now.activities) {
-    const auto was = std::ranges::find_if(before.activities, [&row](const api::ActivityRow& each) {
+  for (const facts::ActivityRow& row : now.activities) {
+    const auto was = std::ranges::find_if(before.activities, [&row](const facts::ActivityRow& each) {
       return each.robot == row.robot && each.kind == row.kind;
     });
     const std::string_view told = told_of(row);

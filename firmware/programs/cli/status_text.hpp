@@ -11,20 +11,20 @@
 namespace adit::cli {
 
 /// Whether the report stays in its state until the operator decides.
-bool needs_the_operator(const api::ReportRow& report);
+bool needs_the_operator(const facts::ReportRow& report);
 /// Whether the report is in a final state.
-bool is_finished(const api::ReportRow& report);
+bool is_finished(const facts::ReportRow& report);
 
 /// The report's state for people: "held", "in doubt", "in doubt, asking", "held, to be sent".
-std::string life_of(const api::ReportRow& report);
-Tone tone_of(const api::ReportRow& report);
+std::string life_of(const facts::ReportRow& report);
+Tone tone_of(const facts::ReportRow& report);
 /// The Command Post's answer in words: "scored", "found out, scored", "error 422", or "".
-std::string said_of(const api::ReportRow& report);
+std::string said_of(const facts::ReportRow& report);
 /// "+1", "0", or "" if unknown.
-std::string gained_by(const api::ReportRow& report);
+std::string gained_by(const facts::ReportRow& report);
 
 /// The subcommands of `adit reports` that apply to the report's state.
-std::vector<std::string_view> verbs_for(const api::ReportRow& report);
+std::vector<std::string_view> verbs_for(const facts::ReportRow& report);
 
 /// Reports that `adit reports` leaves out.
 struct OmittedReports {
@@ -33,13 +33,13 @@ struct OmittedReports {
 };
 
 /// The output of `adit reports`.
-std::string reports_text(const std::vector<api::ReportRow>& reports, const OmittedReports& rest,
+std::string reports_text(const std::vector<facts::ReportRow>& reports, const OmittedReports& rest,
                          api::Time now, bool colour);
 
 /// The output of `adit reports show`.
 std::string report_text(const api::ReportDetail& detail, bool colour);
 
-Tone tone_of_level(alarms::Level level);
+Tone tone_of_level(facts::Level level);
 
 /// The output of `adit status`.
 std::string status_text(const api::RunView& view, bool colour);

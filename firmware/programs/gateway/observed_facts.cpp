@@ -15,15 +15,15 @@ void Crowding::ended(intake::Ended why, const std::string& address, loop::Instan
     ++kind.by_address[address];
 }
 
-std::vector<alarms::CrowdFact> Crowding::crowds(loop::Instant now) const {
-  using Is = alarms::CrowdFact::Is;
-  std::vector<alarms::CrowdFact> crowds;
+std::vector<facts::Crowd> Crowding::crowds(loop::Instant now) const {
+  using enum facts::Crowd::Kind;
+  std::vector<facts::Crowd> crowds;
   for (const intake::Ended why : kTold) {
     if (at(why).count == 0 || now - at(why).last >= kRecent) continue;
-    const Is is = why == intake::Ended::NoRoom       ? Is::NoRoom
-                  : why == intake::Ended::WrongToken ? Is::WrongToken
-                                                     : Is::Unauthenticated;
-    crowds.push_back({is, most_of(why)});
+    const auto kind = why == intake::Ended::NoRoom       ? NoRoom
+                      : why == intake::Ended::WrongToken ? WrongToken
+                                                         : Unauthenticated;
+    crowds.push_back({kind, most_of(why)});
   }
   return crowds;
 }
@@ -71,12 +71,23 @@ alarms::ConnectionSample seen(const forward::Channel& channel) {
           .said = channel.trouble()};
 }
 
-alarms::Endpoint named(const char* name, const settings::Address& address, const forward::Channel& channel,
-                       alarms::Endpoint endpoint) {
-  if (!channel.has_token()) endpoint = {.trouble = alarms::EndpointTrouble::NoToken};
-  endpoint.name = name;
-  endpoint.address = forward::address_text(address);
-  return endpoint;
+/// `row`, with its texts, counts and last answer. `latest`: of the channels, the last that was answered.
+facts::EndpointRow shown(const char* name, const settings::Address& address,
+                         std::initializer_list<const forward::Channel*> channels,
+                         const forward::Channel& latest, facts::EndpointRow row) {
+  if (!latest.has_token()) row = {.fault = facts::EndpointFault::NoToken};
+  row.name = name;
+  row.address = forward::address_text(address);
+  for (const forward::Channel* channel : channels) {
+    row.connected |= channel->connected();
+    if (row.trouble.empty()) row.trouble = channel->trouble();
+    row.throttled += channel->last().throttled();
+    row.foreign += channel->last().foreign();
+  }
+  if (row.trouble.empty() && row.fault == facts::EndpointFault::Silent) row.trouble = "no answer";
+  row.last_status = latest.last().status();
+  row.answer_ms = latest.last().answer_ms();
+  return row;
 }
 
 /// One robot's activities.
@@ -86,10 +97,10 @@ struct OfRobot {
 };
 
 /// `now`: stamp clock; `time`: the activities' time of day.
-std::map<std::string, OfRobot> of_robots(const std::vector<api::ActivityRow>& activities, double now,
+std::map<std::string, OfRobot> of_robots(const std::vector<facts::ActivityRow>& activities, double now,
                                          api::Time time) {
   std::map<std::string, OfRobot> all;
-  for (const api::ActivityRow& row : activities) {
+  for (const facts::ActivityRow& row : activities) {
     const auto kind = std::ranges::find(forward::kHeardKinds, row.kind);
     if (kind == std::end(forward::kHeardKinds)) continue;
     OfRobot& its = all[row.robot];
@@ -118,11 +129,11 @@ void ObservedFacts::carry_on(const forward::Flow& flow, double now) {
   }
 }
 
-void ObservedFacts::look(forward::Flow& flow, const settings::Settings& settings,
-                         const std::vector<api::ActivityRow>& activities, double now, api::Time time) {
+void ObservedFacts::look(forward::Flow& flow, const settings::Settings& settings, double now,
+                         facts::Time time) {
   scoring_.look({seen(flow.scoring().channel())}, now);
   mapping_.look({seen(flow.maps().channel()), seen(flow.telemetry().channel())}, now);
-  for (auto& [robot, its] : of_robots(activities, now, time)) {
+  for (auto& [robot, its] : of_robots(flow.activities(), now, time)) {
     habits_.heard(robot, its.accepted, its.heard.last);
     const std::uint64_t told = its.accepted + its.forwarded;
     if (std::exchange(told_[robot], told) == told) continue;
@@ -139,14 +150,24 @@ void ObservedFacts::look(forward::Flow& flow, const settings::Settings& settings
   growth_.look(flow.maps().queued_bytes(), settings.queues.map_bytes, now);
 }
 
-std::vector<alarms::Endpoint> ObservedFacts::endpoints(const forward::Flow& flow,
-                                                       const settings::CommandPost& command_post,
-                                                       double now) const {
-  return {named("scoring", command_post.scoring, flow.scoring().channel(), scoring_.endpoint(now)),
-          named("mapping", command_post.mapping, flow.maps().channel(), mapping_.endpoint(now))};
+std::vector<facts::EndpointRow> ObservedFacts::endpoints(const forward::Flow& flow,
+                                                         const settings::CommandPost& command_post,
+                                                         double now, facts::Time time) const {
+  const forward::Channel& scoring = flow.scoring().channel();
+  const forward::Channel& maps = flow.maps().channel();
+  const forward::Channel& telemetry = flow.telemetry().channel();
+  const forward::Channel& latest = maps.last().heard() > telemetry.last().heard() ? maps : telemetry;
+  std::vector rows{
+      shown("scoring", command_post.scoring, {&scoring}, scoring, scoring_.endpoint(now)),
+      shown("mapping", command_post.mapping, {&maps, &telemetry}, latest, mapping_.endpoint(now))};
+  for (facts::EndpointRow& row : rows) {
+    if (row.since != 0) row.since += time - now;  // 0: unknown
+  }
+  return rows;
 }
 
-std::map<std::string, alarms::Robot> ObservedFacts::robots(const settings::Alarms& rules, double now) const {
+std::map<std::string, facts::RobotHabit> ObservedFacts::habits(const settings::Alarms& rules,
+                                                               double now) const {
   const double least = std::chrono::duration<double>(rules.silent_for).count();
   return habits_.robots({.least = least, .times = rules.silent_times}, now);
 }

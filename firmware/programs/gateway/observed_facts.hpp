@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "alarms/facts.hpp"
 #include "alarms/habits.hpp"
+#include "facts/snapshot.hpp"
 #include "forward/flow.hpp"
 #include "intake/server.hpp"
 #include "loop/loop.hpp"
@@ -30,7 +30,7 @@ class Crowding {
   void ended(intake::Ended why, const std::string& address, loop::Instant now);
   std::uint64_t count(intake::Ended why) const { return at(why).count; }
   /// Of the last kRecent.
-  std::vector<alarms::CrowdFact> crowds(loop::Instant now) const;
+  std::vector<facts::Crowd> crowds(loop::Instant now) const;
   /// Lines that are due.
   std::vector<Line> to_log(loop::Instant now);
 
@@ -54,18 +54,18 @@ class Crowding {
 class ObservedFacts {
  public:
   /// Call once a second. `time`: time of day.
-  void look(forward::Flow& flow, const settings::Settings& settings,
-            const std::vector<api::ActivityRow>& activities, double now, api::Time time);
+  void look(forward::Flow& flow, const settings::Settings& settings, double now, facts::Time time);
   /// Call after the flow's start and before any answer: takes the robots from before.
   void carry_on(const forward::Flow& flow, double now);
   /// The endpoint or its token has changed.
   void forget_scoring() { scoring_.forget(); }
   void forget_mapping() { mapping_.forget(); }
 
-  /// Scoring, then mapping.
-  std::vector<alarms::Endpoint> endpoints(const forward::Flow& flow,
-                                          const settings::CommandPost& command_post, double now) const;
-  std::map<std::string, alarms::Robot> robots(const settings::Alarms& rules, double now) const;
+  /// Scoring, then mapping. `time`: time of day.
+  std::vector<facts::EndpointRow> endpoints(const forward::Flow& flow,
+                                            const settings::CommandPost& command_post, double now,
+                                            facts::Time time) const;
+  std::map<std::string, facts::RobotHabit> habits(const settings::Alarms& rules, double now) const;
   bool queue_grows(double now) const { return growth_.grows(now); }
 
  private:

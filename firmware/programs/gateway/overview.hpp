@@ -17,11 +17,11 @@
 #include "admin/takeover.hpp"
 #include "admin/updates.hpp"
 #include "alarms/board.hpp"
-#include "alarms/facts.hpp"
 #include "api/box.hpp"
 #include "api/source.hpp"
 #include "box/lights.hpp"
 #include "box/this_box.hpp"
+#include "facts/snapshot.hpp"
 #include "forward/flow.hpp"
 #include "gateway/listeners.hpp"
 #include "gateway/observed_facts.hpp"
@@ -81,7 +81,8 @@ class Roster {
   std::map<std::string, loop::Instant> unknown_;  // last messages
 };
 
-/// The state of the whole box: the view for pages, and the alarms with the facts behind them.
+/// The state of the whole box. A snapshot is taken once a second and at each reading. Its alarms are found
+/// once, and the view, the lights and systemd's line show it.
 class Overview final : public api::Source {
  public:
   /// The observed parts of the gateway. All outlive the overview.
@@ -105,10 +106,10 @@ class Overview final : public api::Source {
 
   /// Call after the flow's start and before any answer.
   void carry_on();
-  /// Reads the notices, finds the alarms, logs rejected connections. Call once a second.
+  /// Call once a second. Also reads the notices, logs rejected connections, and stores acknowledgements.
   void look();
   std::expected<void, std::string> acknowledge(const std::string& id);
-  /// Shows the state as of the last second, and logs the end of set-up.
+  /// Shows the last snapshot, and logs the end of set-up.
   void show_on(box::Lights& lights) const;
   /// A robot's message was accepted.
   void posted(const std::string& robot);
@@ -119,17 +120,13 @@ class Overview final : public api::Source {
   /// The time of day was set ahead by `seconds`.
   void wall_was_set(double seconds) { board_.move(seconds); }
 
-  /// Scoring, then mapping.
-  std::vector<api::EndpointRow> endpoints() const;
-  /// As of the last second.
-  std::vector<alarms::Alarm> alarms() const { return board_.shown(conditions_, looked_at_); }
   /// A line for systemd.
   std::string status_line() const;
   /// Adds the counts of the flow and of the team's connections.
   void add_to(api::Usage& usage) const;
 
-  api::RunView view() const override;
-  std::vector<api::ReportRow> reports(std::int64_t after, std::size_t most) const override;
+  api::RunView view() override;
+  std::vector<facts::ReportRow> reports(std::int64_t after, std::size_t most) const override;
   api::ReportCounts report_counts() const override { return counts_of(rooms_.flow.reports()); }
   std::optional<api::ReportDetail> report(std::int64_t number) const override;
   const picture::Mosaic& map() const override { return rooms_.flow.picture(); }
@@ -142,18 +139,21 @@ class Overview final : public api::Source {
 
  private:
   void log_crowding();
-  alarms::Facts facts(const std::vector<api::ActivityRow>& activities) const;
-  void add_flow(alarms::Facts& facts) const;
-  void add_reports(alarms::Facts& facts) const;
-  void add_box(alarms::Facts& facts) const;
+  /// Takes a snapshot, and computes view_ and conditions_ from it.
+  void take_snapshot();
+  api::RunView view_of(facts::Snapshot snapshot) const;
+  facts::Traffic traffic() const;
+  facts::Clients clients() const;
+  facts::Reports reports() const;
+  facts::Box box() const;
 
   const Rooms rooms_;
   Roster roster_;
   Crowding crowding_;
   ObservedFacts observed_;
   alarms::Board board_;
-  std::vector<alarms::Condition> conditions_;  // as of looked_at_
-  double looked_at_ = 0;                       // alarms::Facts::now
+  api::RunView view_;                          // the last snapshot
+  std::vector<alarms::Condition> conditions_;  // its alarms
   admin::AcknowledgedFile acknowledged_;
   mutable ReadAnswers answers_;                 // of the view's reports
   std::map<std::string, std::string> notices_;  // box/this_box.hpp

@@ -22,25 +22,25 @@ const std::optional<icd::ReportReply>& ReadAnswers::of(const dispatch::Report& r
   return known.reply;
 }
 
-api::ReportRow row_of(const dispatch::Reports& reports, const dispatch::Report& report,
-                      ReadAnswers& answers) {
-  api::ReportRow row{.number = report.number,
-                     .type = report.report.type,
-                     .position = report.is_lost() ? std::nullopt : std::optional(report.report.position),
-                     .sender = report.sender,
-                     .robot = icd::text_of(report.report.robot),
-                     .received = report.received,
-                     .changed = report.changed,
-                     .state = std::string(dispatch::name_of(report.state)),
-                     .status = report.status,
-                     .report_status = "",
-                     .score_change = std::nullopt,
-                     .note = report.note,
-                     .run = report.run,
-                     .asking = reports.is_asking(report),
-                     .sends_at = reports.sends_at(report),
-                     .reconciled = report.reconciled,
-                     .same_as = report.same_as};
+facts::ReportRow row_of(const dispatch::Reports& reports, const dispatch::Report& report,
+                        ReadAnswers& answers) {
+  facts::ReportRow row{.number = report.number,
+                       .type = report.report.type,
+                       .position = report.is_lost() ? std::nullopt : std::optional(report.report.position),
+                       .sender = report.sender,
+                       .robot = icd::text_of(report.report.robot),
+                       .received = report.received,
+                       .changed = report.changed,
+                       .state = std::string(dispatch::name_of(report.state)),
+                       .status = report.status,
+                       .report_status = "",
+                       .score_change = std::nullopt,
+                       .note = report.note,
+                       .run = report.run,
+                       .asking = reports.is_asking(report),
+                       .sends_at = reports.sends_at(report),
+                       .reconciled = report.reconciled,
+                       .same_as = report.same_as};
   const bool is_recorded = report.state == dispatch::ReportState::Answered ||
                            (report.state == dispatch::ReportState::Settled && report.reconciled);
   const auto& reply = answers.of(report);
@@ -51,9 +51,9 @@ api::ReportRow row_of(const dispatch::Reports& reports, const dispatch::Report& 
   return row;
 }
 
-std::vector<api::ReportRow> rows_after(const dispatch::Reports& reports, std::int64_t after,
-                                       std::size_t most) {
-  std::vector<api::ReportRow> rows;
+std::vector<facts::ReportRow> rows_after(const dispatch::Reports& reports, std::int64_t after,
+                                         std::size_t most) {
+  std::vector<facts::ReportRow> rows;
   ReadAnswers answers;
   const auto& all = reports.book().all();
   for (auto next = all.upper_bound(after); next != all.end() && rows.size() < most; ++next) {
@@ -75,20 +75,18 @@ api::ReportCounts counts_of(const dispatch::Reports& reports) {
 
 std::vector<const dispatch::Report*> latest_of(const dispatch::ReportBook& book, std::size_t most) {
   std::vector<const dispatch::Report*> chosen;
-  for (const std::int64_t number : book.open() | std::views::reverse | std::views::take(most)) {
-    chosen.push_back(&book.at(number));
-  }
+  for (const std::int64_t number : book.open()) chosen.push_back(&book.at(number));
   for (const auto& [number, report] : book.all() | std::views::reverse) {
-    if (chosen.size() == most) break;
+    if (chosen.size() >= most) break;
     if (dispatch::is_final(report.state)) chosen.push_back(&report);
   }
   std::ranges::sort(chosen, std::greater(), &dispatch::Report::number);
   return chosen;
 }
 
-std::vector<api::ReportRow> latest_rows(const dispatch::Reports& reports, std::size_t most,
-                                        ReadAnswers& answers) {
-  std::vector<api::ReportRow> rows;
+std::vector<facts::ReportRow> latest_rows(const dispatch::Reports& reports, std::size_t most,
+                                          ReadAnswers& answers) {
+  std::vector<facts::ReportRow> rows;
   for (const dispatch::Report* const report : latest_of(reports.book(), most)) {
     rows.push_back(row_of(reports, *report, answers));
   }
@@ -101,7 +99,7 @@ double time_of_day(double at, const loop::Loop& loop) {
   return at < machine_began ? at : at + (loop.wall_now() - stamp);
 }
 
-void tell_time_of_day(api::ReportRow& row, const loop::Loop& loop) {
+void tell_time_of_day(facts::ReportRow& row, const loop::Loop& loop) {
   row.received = time_of_day(row.received, loop);
   row.changed = time_of_day(row.changed, loop);
   if (row.sends_at) row.sends_at = time_of_day(*row.sends_at, loop);

@@ -31,19 +31,20 @@ class ReadAnswers {
 };
 
 /// For the page and `adit reports`.
-api::ReportRow row_of(const dispatch::Reports& reports, const dispatch::Report& report, ReadAnswers& answers);
+facts::ReportRow row_of(const dispatch::Reports& reports, const dispatch::Report& report,
+                        ReadAnswers& answers);
 /// Reports above number `after`, oldest first.
-std::vector<api::ReportRow> rows_after(const dispatch::Reports& reports, std::int64_t after,
-                                       std::size_t most);
+std::vector<facts::ReportRow> rows_after(const dispatch::Reports& reports, std::int64_t after,
+                                         std::size_t most);
 api::ReportCounts counts_of(const dispatch::Reports& reports);
-/// Unfinished reports and the newest others, newest first.
+/// All unfinished reports, and the newest others if that makes no more than `most`; newest first.
 std::vector<const dispatch::Report*> latest_of(const dispatch::ReportBook& book, std::size_t most);
-std::vector<api::ReportRow> latest_rows(const dispatch::Reports& reports, std::size_t most,
-                                        ReadAnswers& answers);
+std::vector<facts::ReportRow> latest_rows(const dispatch::Reports& reports, std::size_t most,
+                                          ReadAnswers& answers);
 
 /// The present time of day of a stamp in the ledger. Stamps of earlier boots stay as written.
 double time_of_day(double at, const loop::Loop& loop);
-void tell_time_of_day(api::ReportRow& row, const loop::Loop& loop);
+void tell_time_of_day(facts::ReportRow& row, const loop::Loop& loop);
 
 /// nullopt: no such report.
 std::optional<api::ReportDetail> detail_of(const dispatch::Reports& reports, const ledger::Ledger& ledger,

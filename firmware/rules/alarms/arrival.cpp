@@ -6,18 +6,21 @@
 
 namespace adit::alarms {
 
-Arrival arrival_of(const Stream& stream, double turn, bool silent) {
-  const double behind = stream.behind.value_or(0), late = kLateAfter + turn;
-  const bool throttled = stream.last_status == icd::kTooManyRequests;
-  if (stream.last_status >= 400 && stream.last_status < 500 && !throttled) return Arrival::Refused;
+using facts::Arrival;
+using facts::Level;
+
+Arrival arrival_of(const facts::ActivityRow& row, double turn, bool silent) {
+  const double behind = row.behind.value_or(0), late = kLateAfter + turn;
+  const bool throttled = row.last_status == icd::kTooManyRequests;
+  if (row.last_status >= 400 && row.last_status < 500 && !throttled) return Arrival::Refused;
   if (behind > std::max(kStuckAfter, 3 * late)) return Arrival::NotArriving;
   if (throttled) return Arrival::Throttled;
-  if (stream.failed) return behind > kFailingAfter ? Arrival::NotArriving : Arrival::Failing;
+  if (!row.last_sentence.empty()) return behind > kFailingAfter ? Arrival::NotArriving : Arrival::Failing;
   if (silent) return Arrival::Silent;
   if (behind > late) return Arrival::Late;
-  if (!stream.forwarded) return Arrival::NotYet;
-  if (stream.behind) return Arrival::Arriving;
-  return *stream.forwarded > kQuietAfter ? Arrival::Quiet : Arrival::UpToDate;
+  if (!row.age) return Arrival::NotYet;
+  if (row.behind) return Arrival::Arriving;
+  return *row.age > kQuietAfter ? Arrival::Quiet : Arrival::UpToDate;
 }
 
 Level level_of(Arrival arrival) {

@@ -1,43 +1,11 @@
 #pragma once
 
-#include <cstdint>
 #include <optional>
-#include <string>
-#include <string_view>
 
 #include "codec/row.hpp"
+#include "facts/rows.hpp"
 
 namespace adit::alarms {
-
-/// A state for display, by shape and colour.
-enum class Level : std::uint8_t { Quiet, Good, Wait, Bad };
-inline constexpr std::string_view kLevelWords[] = {"quiet", "good", "wait", "bad"};
-constexpr auto& words_of(Level /*of*/) {
-  return kLevelWords;
-}
-
-/// Whether a robot's messages of one kind reach the Command Post.
-enum class Arrival : std::uint8_t {
-  NotYet,       // the first message has not come
-  UpToDate,     // the queue is empty
-  Arriving,     // queued, for a normal time
-  Late,         // queued for longer than the turns of others explain
-  Throttled,    // the Command Post answered 429
-  Failing,      // the last attempt failed
-  NotArriving,  // failing for long
-  Refused,      // the Command Post rejected the last message
-  Quiet,        // no new message for a while
-  Silent,       // the robot has stopped sending, against its habit
-};
-inline constexpr std::string_view kArrivalWords[] = {"waiting",   "up to date", "arriving",     "late",
-                                                     "throttled", "failing",    "not arriving", "refused",
-                                                     "quiet",     "silent"};
-constexpr auto& words_of(Arrival /*of*/) {
-  return kArrivalWords;
-}
-constexpr std::string_view name_of(Arrival arrival) {
-  return kArrivalWords[static_cast<std::size_t>(arrival)];
-}
 
 /// Time limits of all faces, in seconds.
 inline constexpr double kLateAfter = 10;       // in addition to one turn of all senders
@@ -47,21 +15,9 @@ inline constexpr double kStuckAfter = 90;      // any late stream becomes "not a
 inline constexpr double kQuietAfter = 60;      // since the last new message was forwarded
 inline constexpr double kStatusOldAfter = 15;  // age at which a status of the run is old
 
-/// Traffic of one kind from one robot, or merged (no name).
-struct Stream {
-  std::string kind = {};                 // "grid", "cloud", "state", "markers"
-  std::string robot = {};                // "" for the merged map
-  std::optional<double> behind = {};     // seconds that the oldest message has been queued; nullopt: none is
-  std::optional<double> forwarded = {};  // age in seconds of the newest delivered data
-  std::optional<double> no_room = {};    // seconds since a message was rejected because the queue was full
-  int last_status = 0;
-  bool failed = false;  // the last attempt failed with a sentence
-  bool is_map() const { return kind == "grid" || kind == "cloud"; }
-};
-
-/// `turn`: seconds in which each queued map has its turn. `silent`: of the stream's robot.
-Arrival arrival_of(const Stream& stream, double turn, bool silent);
-Level level_of(Arrival arrival);
+/// `turn`: seconds in which each queued map has its turn. `silent`: of the row's robot.
+facts::Arrival arrival_of(const facts::ActivityRow& row, double turn, bool silent);
+facts::Level level_of(facts::Arrival arrival);
 
 /// The run's clock as all faces show it.
 struct ShownClock {

@@ -9,13 +9,14 @@
 namespace adit::alarms {
 namespace {
 
+using facts::Traffic;
 using icd::sentence;
 
 const Action kOpenSetUp{"Open set-up", "/setup"};
 const Action kOpenNetwork{"Open set-up", "/setup#network"};
 const Action kOpenSystem{"Open system", "/system"};
 
-void find_pending_change(const NetworkFact& network, Found& found) {
+void find_pending_change(const facts::Network& network, Found& found) {
   if (!network.confirm_within) return;
   const auto left = static_cast<std::int64_t>(std::ceil(*network.confirm_within));
   found.push_back({.id = "network_change",
@@ -31,18 +32,18 @@ std::string side_of(bool is_team) {
   return is_team ? "team" : "command_post";
 }
 
-void find_cables(const Facts& facts, Found& found) {
-  for (const Cable& cable : facts.cables) {
-    if (cable.carrier.value_or(false)) continue;
-    const std::string side = side_of(cable.is_team);
-    const std::string whose = cable.is_team ? "Team" : "Command Post";
+void find_cables(const Traffic& traffic, Found& found) {
+  for (const facts::LinkRow& link : traffic.links) {
+    if (link.carrier.value_or(false)) continue;
+    const std::string side = link.side;
+    const std::string whose = link.is_team() ? "Team" : "Command Post";
     Condition condition{.id = "cable_out:" + side, .side = Side::Network, .subject = side};
-    if (cable.carrier) {
+    if (link.carrier) {
       condition.headline = {whose + " cable", "unplugged"};
-      condition.why = cable.interface + " has no link";
+      condition.why = link.interface + " has no link";
     } else {
-      condition.headline = {"Interface " + cable.interface, "missing"};
-      condition.why = "set-up names it for the " + std::string(cable.is_team ? "team" : "Command Post");
+      condition.headline = {"Interface " + link.interface, "missing"};
+      condition.why = "set-up names it for the " + std::string(link.is_team() ? "team" : "Command Post");
       condition.action = kOpenSetUp;
     }
     found.push_back(std::move(condition));
@@ -50,14 +51,15 @@ void find_cables(const Facts& facts, Found& found) {
 }
 
 /// Whether packets from the endpoint arrive, by the state of its connections.
-bool is_heard(const Endpoint& endpoint) {
-  return endpoint.trouble != EndpointTrouble::NoToken && endpoint.trouble != EndpointTrouble::Unreachable &&
-         endpoint.trouble != EndpointTrouble::Silent;
+bool is_heard(const facts::EndpointRow& endpoint) {
+  return endpoint.fault != facts::EndpointFault::NoToken &&
+         endpoint.fault != facts::EndpointFault::Unreachable &&
+         endpoint.fault != facts::EndpointFault::Silent;
 }
 
-void find_exchanged_cables(const Facts& facts, Found& found) {
-  const auto& exchanged = facts.network.exchanged;
-  if (!exchanged || std::ranges::any_of(facts.endpoints, is_heard)) return;
+void find_exchanged_cables(const facts::Network& network, const Traffic& traffic, Found& found) {
+  const auto& exchanged = network.exchanged;
+  if (!exchanged || std::ranges::any_of(traffic.endpoints, is_heard)) return;
   found.push_back({.id = "cables_exchanged",
                    .side = Side::Network,
                    .headline = {"The two cables", "exchanged", true},
@@ -65,8 +67,7 @@ void find_exchanged_cables(const Facts& facts, Found& found) {
                                    exchanged->sought_on)});
 }
 
-void find_addresses(const Facts& facts, Found& found) {
-  const NetworkFact& network = facts.network;
+void find_addresses(const facts::Network& network, Found& found) {
   if (network.no_address) {
     found.push_back({.id = "no_address",
                      .side = Side::Box,
@@ -74,7 +75,7 @@ void find_addresses(const Facts& facts, Found& found) {
                      .why = "set an address in the Command Post's subnet",
                      .action = kOpenNetwork});
   }
-  for (const AddressConflict& taken : network.taken) {
+  for (const facts::AddressConflict& taken : network.taken) {
     const std::string side = side_of(taken.is_team);
     found.push_back({.id = "address_taken:" + side,
                      .side = Side::Network,
@@ -93,7 +94,7 @@ void add(Found& found, const std::string& trouble, Condition condition) {
   found.push_back(std::move(condition));
 }
 
-void find_wear(const Disk& disk, Found& found) {
+void find_wear(const facts::Disk& disk, Found& found) {
   if (disk.life >= kWornLife || disk.spares >= kWornSpares) {
     found.push_back({.id = "disk_health",
                      .severity = Severity::Ask,
@@ -108,56 +109,56 @@ void find_wear(const Disk& disk, Found& found) {
       {.id = "disk_health", .severity = Severity::Wait, .headline = {"The disk's health", "unknown"}});
 }
 
-void find_disk_troubles(const Facts& facts, Found& found) {
-  add(found, facts.ledger_refusal,
+void find_disk_troubles(const facts::Box& box, Found& found) {
+  add(found, box.ledger_refusal,
       {.id = "ledger_unwritable",
        .headline = {"Reports", "not accepted", true},
-       .why = facts.ledger_is_closed ? "the box cannot read the ledger; wait, or run adit ledger new: "
-                                     : "the box cannot write the ledger: ",
+       .why = box.ledger_is_closed ? "the box cannot read the ledger; wait, or run adit ledger new: "
+                                   : "the box cannot write the ledger: ",
        .action = kOpenSystem});
-  add(found, facts.ledger_damage,
+  add(found, box.ledger_damage,
       {.id = "ledger_damaged", .severity = Severity::Ask, .headline = {"The ledger", "damaged"}});
-  add(found, facts.other_ledger,
+  add(found, box.other_ledger,
       {.id = "other_ledger", .severity = Severity::Ask, .headline = {"An earlier ledger", "not read"}});
-  add(found, facts.put_aside,
+  add(found, box.put_aside,
       {.id = "queue_put_aside",
        .severity = Severity::Ask,
        .headline = {"Queued messages", "put aside", true}});
-  add(found, facts.disk.map, {.id = "map_not_kept", .headline = {"The last map", "not accepted"}});
-  add(found, facts.disk.state,
+  add(found, box.disk.map, {.id = "map_not_kept", .headline = {"The last map", "not accepted"}});
+  add(found, box.disk.state,
       {.id = "state_not_kept",
        .headline = {"States and markers", "rejected", true},
        .why = "the box cannot store them: "});
-  add(found, facts.disk.run,
+  add(found, box.disk.run,
       {.id = "run_not_kept",
        .headline = {"The run's map", "not stored"},
        .why = "a restart would lose it: "});
-  if (facts.disk.free && *facts.disk.free < kLeastFree) {
+  if (box.disk.free && *box.disk.free < kLeastFree) {
     found.push_back({.id = "disk_full",
                      .side = Side::Box,
                      .headline = {"The disk", "nearly full"},
-                     .why = sentence(*facts.disk.free / 1000, " kB are free for reports"),
+                     .why = sentence(*box.disk.free / 1000, " kB are free for reports"),
                      .action = kOpenSystem});
   }
-  find_wear(facts.disk, found);
+  find_wear(box.disk, found);
 }
 
-void find_stamp_troubles(const Facts& facts, Found& found) {
+void find_stamp_troubles(const facts::Box& box, Found& found) {
   constexpr double kDay = 86400;
-  if (facts.stamps_ahead > 0) {
+  if (box.stamps_ahead > 0) {
     found.push_back({.id = "stamps",
                      .severity = Severity::Ask,
                      .side = Side::Box,
                      .headline = {"Time stamps", "ahead", true},
-                     .why = sentence("by ", std::floor(facts.stamps_ahead / kDay),
+                     .why = sentence("by ", std::floor(box.stamps_ahead / kDay),
                                      " days; a factory reset sets them back")});
   } else {
-    add(found, facts.stamps_damage,
+    add(found, box.stamps_damage,
         {.id = "stamps", .severity = Severity::Ask, .headline = {"The last time stamps", "lost", true}});
   }
 }
 
-void find_update_troubles(const UpdateFact& update, Found& found) {
+void find_update_troubles(const facts::Update& update, Found& found) {
   if (update.on_trial) {
     found.push_back({.id = "update_on_trial",
                      .severity = Severity::Wait,
@@ -176,21 +177,21 @@ void find_update_troubles(const UpdateFact& update, Found& found) {
 
 }  // namespace
 
-void find_network_troubles(const Facts& facts, Found& found) {
-  find_pending_change(facts.network, found);
-  find_cables(facts, found);
-  find_exchanged_cables(facts, found);
-  find_addresses(facts, found);
+void find_network_troubles(const facts::Network& network, const Traffic& traffic, Found& found) {
+  find_pending_change(network, found);
+  find_cables(traffic, found);
+  find_exchanged_cables(network, traffic, found);
+  find_addresses(network, found);
 }
 
-void find_box_troubles(const Facts& facts, Found& found) {
-  add(found, facts.standby,
+void find_box_troubles(const facts::Box& box, Found& found) {
+  add(found, box.standby,
       {.id = "standby",
        .headline = {"This box", "on standby"},
        .why = "it accepts and sends no data: ",
        .action = {"Open system", "/system#spare"}});
-  find_disk_troubles(facts, found);
-  if (!facts.time_set.value_or(true)) {
+  find_disk_troubles(box, found);
+  if (!box.time_set.value_or(true)) {
     found.push_back({.id = "time_not_set",
                      .severity = Severity::Wait,
                      .side = Side::Box,
@@ -198,23 +199,23 @@ void find_box_troubles(const Facts& facts, Found& found) {
                      .why = "log in to the page, or run adit clock set",
                      .action = kOpenSystem});
   }
-  find_stamp_troubles(facts, found);
-  add(found, facts.ntp_trouble,
+  find_stamp_troubles(box, found);
+  add(found, box.ntp_trouble,
       {.id = "ntp", .severity = Severity::Wait, .headline = {"NTP", "not working"}, .action = kOpenSetUp});
-  add(found, facts.change_trouble,
+  add(found, box.change_trouble,
       {.id = "settings_not_changed", .headline = {"The last change", "not used"}, .action = kOpenSetUp});
-  add(found, facts.settings_trouble,
+  add(found, box.settings_trouble,
       {.id = "settings_not_used",
        .headline = {"The saved settings", "not used", true},
        .action = kOpenSetUp});
-  add(found, facts.board_trouble, {.id = "board_not_used", .headline = {"The board file", "not used"}});
-  add(found, facts.lights_trouble,
+  add(found, box.board_trouble, {.id = "board_not_used", .headline = {"The board file", "not used"}});
+  add(found, box.lights_trouble,
       {.id = "lights_not_set",
        .headline = {"The lights", "unreliable", true},
        .why = "the box cannot set them: "});
-  for (const auto& [name, why] : facts.notices)
+  for (const auto& [name, why] : box.notices)
     add(found, why, {.id = "notice:" + name, .subject = name, .headline = {"The box", "not healthy"}});
-  find_update_troubles(facts.update, found);
+  find_update_troubles(box.update, found);
 }
 
 }  // namespace adit::alarms

@@ -69,13 +69,13 @@ void hide_consequences(Found& found) {
 
 }  // namespace
 
-std::vector<Condition> conditions_of(const Facts& facts) {
+std::vector<Condition> conditions_of(const facts::Snapshot& snapshot) {
   Found found;
-  find_network_troubles(facts, found);
-  find_post_troubles(facts, found);
-  find_report_troubles(facts, found);
-  find_robot_troubles(facts, found);
-  find_box_troubles(facts, found);
+  find_network_troubles(snapshot.network, snapshot.traffic, found);
+  find_post_troubles(snapshot.traffic, found);
+  find_report_troubles(snapshot.reports, found);
+  find_robot_troubles(snapshot.traffic, snapshot.clients, found);
+  find_box_troubles(snapshot.box, found);
   hide_consequences(found);
   return found;
 }

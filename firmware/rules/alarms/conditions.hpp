@@ -3,21 +3,21 @@
 #include <vector>
 
 #include "alarms/alarm.hpp"
-#include "alarms/facts.hpp"
+#include "facts/snapshot.hpp"
 
 namespace adit::alarms {
 
 /// All conditions, for page, lights, `adit` and metrics. A condition that follows from a larger cause is
 /// counted in that cause's `hides` and is not listed. Order: bad, ask, wait.
-std::vector<Condition> conditions_of(const Facts& facts);
+std::vector<Condition> conditions_of(const facts::Snapshot& snapshot);
 
 /// Its parts, one for each side of the box.
 using Found = std::vector<Condition>;
-void find_post_troubles(const Facts& facts, Found& found);
-void find_network_troubles(const Facts& facts, Found& found);
-void find_robot_troubles(const Facts& facts, Found& found);
-void find_report_troubles(const Facts& facts, Found& found);
-void find_box_troubles(const Facts& facts, Found& found);
+void find_post_troubles(const facts::Traffic& traffic, Found& found);
+void find_network_troubles(const facts::Network& network, const facts::Traffic& traffic, Found& found);
+void find_robot_troubles(const facts::Traffic& traffic, const facts::Clients& clients, Found& found);
+void find_report_troubles(const facts::Reports& reports, Found& found);
+void find_box_troubles(const facts::Box& box, Found& found);
 
 /// Reports left at which the alarm starts.
 inline constexpr std::int64_t kFewReports = 5;

@@ -6,6 +6,10 @@
 #include "icd/status.hpp"
 
 namespace adit::alarms {
+
+using facts::EndpointFault;
+using facts::EndpointRow;
+
 namespace {
 
 constexpr double kNew = 0.25;  // weight of the last gap
@@ -75,8 +79,8 @@ std::optional<Habit> Habits::of(const std::string& robot) const {
   return known == known_.end() ? std::nullopt : std::optional(known->second.habit);
 }
 
-std::map<std::string, Robot> Habits::robots(const Rules& rules, double now) const {
-  std::map<std::string, Robot> robots;
+std::map<std::string, facts::RobotHabit> Habits::robots(const Rules& rules, double now) const {
+  std::map<std::string, facts::RobotHabit> robots;
   for (const auto& [name, known] : known_) {
     const auto& [messages, gap, last] = known.habit;
     const double quiet = now - last;
@@ -136,7 +140,7 @@ void EndpointWatch::look(const std::vector<ConnectionSample>& seen, double now) 
     }
   }
   for (std::size_t i = 0; i < seen.size(); ++i) look(ways_[i], seen[i], now);
-  const bool was_stopped = std::exchange(is_stopped_, endpoint(now).trouble < EndpointTrouble::Throttling);
+  const bool was_stopped = std::exchange(is_stopped_, endpoint(now).fault < EndpointFault::Throttling);
   if (was_stopped && !is_stopped_) well_since_ = now;
 }
 
@@ -154,38 +158,38 @@ bool EndpointWatch::is_well_elsewhere(const ConnectionState& way, double since, 
   });
 }
 
-Endpoint EndpointWatch::trouble_of(const ConnectionState& way, double now) const {
+EndpointRow EndpointWatch::trouble_of(const ConnectionState& way, double now) const {
   const ConnectionSample& seen = way.seen;
   const auto lasts = [&](const std::optional<double>& since, double seconds) {
     return since && now - *since >= seconds && !is_well_elsewhere(way, *since, now);
   };
   if (lasts(way.without, kUnreachableAfter))
-    return {.trouble = EndpointTrouble::Unreachable, .since = *way.without, .said = seen.said};
+    return {.fault = EndpointFault::Unreachable, .since = *way.without, .said = seen.said};
   const bool was_well = std::ranges::any_of(ways_, [](const auto& each) { return each.well.has_value(); });
   const bool may_be_a_robot = has_robots_ && was_well && !seen.foreign;
   if (lasts(way.barred, may_be_a_robot ? kFailingAfter : 0)) {
-    return {.trouble = seen.foreign ? EndpointTrouble::Foreign : EndpointTrouble::Refusing,
+    return {.fault = seen.foreign ? EndpointFault::Foreign : EndpointFault::Refusing,
             .since = *way.barred,
             .said = seen.said};
   }
-  if (lasts(way.waits, kSilentAfter)) return {.trouble = EndpointTrouble::Silent, .since = *way.waits};
+  if (lasts(way.waits, kSilentAfter)) return {.fault = EndpointFault::Silent, .since = *way.waits};
   if (lasts(way.failing, kFailingAfter))
-    return {.trouble = EndpointTrouble::Failing, .since = *way.failing, .said = seen.said};
+    return {.fault = EndpointFault::Failing, .since = *way.failing, .said = seen.said};
   return {};
 }
 
-Endpoint EndpointWatch::throttling(double now) const {
+EndpointRow EndpointWatch::throttling(double now) const {
   if (throttled_.size() < kThrottled || now - throttled_.front() > kThrottledWithin) return {};
-  return {.trouble = EndpointTrouble::Throttling, .since = throttled_.front()};
+  return {.fault = EndpointFault::Throttling, .since = throttled_.front()};
 }
 
-Endpoint EndpointWatch::endpoint(double now) const {
-  Endpoint worst = throttling(now);
+EndpointRow EndpointWatch::endpoint(double now) const {
+  EndpointRow worst = throttling(now);
   for (const ConnectionState& way : ways_) {
-    const Endpoint trouble = trouble_of(way, now);
-    if (trouble.trouble < worst.trouble) worst = trouble;
+    const EndpointRow other = trouble_of(way, now);
+    if (other.fault < worst.fault) worst = other;
   }
-  if (well_since_ && worst.trouble >= EndpointTrouble::Throttling) worst.well_for = now - *well_since_;
+  if (well_since_ && worst.fault >= EndpointFault::Throttling) worst.well_for = now - *well_since_;
   return worst;
 }
 

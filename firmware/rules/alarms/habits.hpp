@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "alarms/facts.hpp"
+#include "facts/snapshot.hpp"
 
 namespace adit::alarms {
 
@@ -62,7 +62,7 @@ class Habits {
   std::optional<Habit> of(const std::string& robot) const;
 
   /// The robots that have a habit and are not switched off.
-  std::map<std::string, Robot> robots(const Rules& rules, double now) const;
+  std::map<std::string, facts::RobotHabit> robots(const Rules& rules, double now) const;
 
  private:
   struct Known {
@@ -108,8 +108,8 @@ class EndpointWatch {
   void look(const std::vector<ConnectionSample>& seen, double now);
   /// Call if the endpoint's address or token has changed.
   void forget();
-  /// The trouble; the caller sets Endpoint::name and address.
-  Endpoint endpoint(double now) const;
+  /// The fault, as the members `fault`, `since`, `said` and `well_for`, in monotonic seconds.
+  facts::EndpointRow endpoint(double now) const;
 
  private:
   struct ConnectionState {
@@ -122,8 +122,8 @@ class EndpointWatch {
   };
   void look(ConnectionState& way, const ConnectionSample& seen, double now);
   bool is_well_elsewhere(const ConnectionState& way, double since, double now) const;
-  Endpoint trouble_of(const ConnectionState& way, double now) const;
-  Endpoint throttling(double now) const;
+  facts::EndpointRow trouble_of(const ConnectionState& way, double now) const;
+  facts::EndpointRow throttling(double now) const;
 
   bool has_robots_;
   std::vector<ConnectionState> ways_;

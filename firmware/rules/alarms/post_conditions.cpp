@@ -10,6 +10,8 @@
 namespace adit::alarms {
 namespace {
 
+using facts::EndpointFault;
+using facts::EndpointRow;
 using icd::sentence;
 
 const Action kSetUp{"Open set-up", "/setup"};
@@ -17,13 +19,13 @@ const Action kTest{"Open test", "/setup#test"};
 
 /// The same trouble of one endpoint or of both.
 struct Trouble {
-  EndpointTrouble is = EndpointTrouble::None;
+  EndpointFault is = EndpointFault::None;
   double since = 0;
-  std::vector<const Endpoint*> endpoints = {};
+  std::vector<const EndpointRow*> endpoints = {};
   std::string only_robot = {};  // only_robot_in()
 
   bool both() const { return endpoints.size() > 1; }
-  const Endpoint& first() const { return *endpoints.front(); }
+  const EndpointRow& first() const { return *endpoints.front(); }
   /// "Command Post" or "Mapping"
   std::string who() const { return both() ? "Command Post" : capital(first().name); }
   /// "10.100.1.200:8000"
@@ -34,7 +36,7 @@ struct Trouble {
 
 Condition of_trouble(const Trouble& trouble, std::string name) {
   return {.id = std::move(name),
-          .severity = trouble.is == EndpointTrouble::Throttling ? Severity::Wait : Severity::Bad,
+          .severity = trouble.is == EndpointFault::Throttling ? Severity::Wait : Severity::Bad,
           .side = Side::CommandPost,
           .subject = trouble.both() ? "" : trouble.first().name,
           .since = trouble.since,
@@ -42,9 +44,9 @@ Condition of_trouble(const Trouble& trouble, std::string name) {
           .degree = trouble.endpoints.size()};
 }
 
-void find_missing_tokens(const Facts& facts, Found& found) {
-  for (const Endpoint& endpoint : facts.endpoints) {
-    if (endpoint.trouble != EndpointTrouble::NoToken) continue;
+void find_missing_tokens(const facts::Traffic& traffic, Found& found) {
+  for (const EndpointRow& endpoint : traffic.endpoints) {
+    if (endpoint.fault != EndpointFault::NoToken) continue;
     const bool scoring = endpoint.name == "scoring";
     found.push_back({.id = "no_token:" + endpoint.name,
                      .side = Side::Box,
@@ -95,38 +97,38 @@ void say_throttling(const Trouble& trouble, Condition& condition) {
 }
 
 constexpr struct {
-  EndpointTrouble is;
+  EndpointFault is;
   const char* id;
   void (*say)(const Trouble&, Condition&);
 } kTroubles[] = {
-    {EndpointTrouble::Unreachable, "command_post_unreachable", say_unreachable},
-    {EndpointTrouble::Foreign, "command_post_foreign", say_foreign},
-    {EndpointTrouble::Refusing, "command_post_refusing", say_refusing},
-    {EndpointTrouble::Silent, "command_post_silent", say_silent},
-    {EndpointTrouble::Failing, "command_post_failing", say_failing},
-    {EndpointTrouble::Throttling, "command_post_throttling", say_throttling},
+    {EndpointFault::Unreachable, "command_post_unreachable", say_unreachable},
+    {EndpointFault::Foreign, "command_post_foreign", say_foreign},
+    {EndpointFault::Refusing, "command_post_refusing", say_refusing},
+    {EndpointFault::Silent, "command_post_silent", say_silent},
+    {EndpointFault::Failing, "command_post_failing", say_failing},
+    {EndpointFault::Throttling, "command_post_throttling", say_throttling},
 };
 
 /// "": none or several have sent data.
-std::string only_robot_in(const Facts& facts) {
+std::string only_robot_in(const facts::Traffic& traffic) {
   std::string only;
-  for (const Stream& stream : facts.streams) {
-    if (stream.robot.empty() || stream.robot == only) continue;
+  for (const facts::ActivityRow& row : traffic.activities) {
+    if (row.robot.empty() || row.robot == only) continue;
     if (!only.empty()) return "";
-    only = stream.robot;
+    only = row.robot;
   }
   return only;
 }
 
 }  // namespace
 
-void find_post_troubles(const Facts& facts, Found& found) {
-  find_missing_tokens(facts, found);
-  const std::string only_robot = only_robot_in(facts);
+void find_post_troubles(const facts::Traffic& traffic, Found& found) {
+  find_missing_tokens(traffic, found);
+  const std::string only_robot = only_robot_in(traffic);
   for (const auto& row : kTroubles) {
     Trouble trouble{.is = row.is, .only_robot = only_robot};
-    for (const Endpoint& endpoint : facts.endpoints) {
-      if (endpoint.trouble != row.is) continue;
+    for (const EndpointRow& endpoint : traffic.endpoints) {
+      if (endpoint.fault != row.is) continue;
       trouble.since = trouble.endpoints.empty() ? endpoint.since : std::min(trouble.since, endpoint.since);
       trouble.endpoints.push_back(&endpoint);
     }

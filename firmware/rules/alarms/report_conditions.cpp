@@ -1,63 +1,71 @@
 // Decisions of the operator: reports, and messages that the Command Post rejected.
 #include <array>
+#include <optional>
+#include <ranges>
 
 #include "alarms/conditions.hpp"
+#include "dispatch/report.hpp"
 #include "icd/sentence.hpp"
 
 namespace adit::alarms {
 namespace {
 
+using facts::ReportRow;
 using icd::sentence;
-using Is = ReportFact::Is;
 
 constexpr const char* kCallDone = "; mark it as done";
 constexpr const char* kUntilDone = "; until you mark it as done, new reports of this run are held";
 
+/// How a report needs the operator.
+enum class Need : std::uint8_t { Held, InDoubt, Lost };
 constexpr struct {
-  Is is;
   const char *id, *state;
-} kStates[] = {
-    {Is::Held, "report_held", "held"},
-    {Is::InDoubt, "report_in_doubt", "in doubt"},
-    {Is::Lost, "report_lost", "lost"},
+} kNeeds[] = {
+    {"report_held", "held"},
+    {"report_in_doubt", "in doubt"},
+    {"report_lost", "lost"},
 };
 
-std::string why(const ReportFact& report) {
-  if (report.is == Is::Lost) return report.note + (report.of_run ? kUntilDone : kCallDone);
-  return report.note;
+std::optional<Need> need_of(const ReportRow& row) {
+  if (row.sends_at) return std::nullopt;
+  if (row.state == dispatch::name_of(dispatch::ReportState::Held)) return Need::Held;
+  if (row.state != dispatch::name_of(dispatch::ReportState::InDoubt)) return std::nullopt;
+  return row.position ? Need::InDoubt : Need::Lost;
 }
 
-void find_undecided(const Facts& facts, Found& found) {
-  std::array<std::uint64_t, std::size(kStates)> count{};
-  for (const ReportFact& report : facts.reports) {
-    const auto at = static_cast<std::size_t>(report.is);
-    if (++count.at(at) > kOneByOne) continue;
-    const std::string number = std::to_string(report.number);
-    found.push_back({.id = sentence(kStates[at].id, ":", number),
-                     .severity = report.asking ? Severity::Wait : Severity::Ask,
-                     .side = report.is == Is::InDoubt ? Side::CommandPost : Side::Box,
+void find_undecided(const facts::Reports& reports, Found& found) {
+  std::array<std::uint64_t, std::size(kNeeds)> count{};
+  for (const ReportRow& row : reports.rows | std::views::reverse) {
+    const auto need = need_of(row);
+    if (!need || ++count.at(static_cast<std::size_t>(*need)) > kOneByOne) continue;
+    const auto& [id, state] = kNeeds[static_cast<std::size_t>(*need)];
+    const std::string number = std::to_string(row.number);
+    const char* const until = row.run == reports.run ? kUntilDone : kCallDone;
+    found.push_back({.id = sentence(id, ":", number),
+                     .severity = row.asking ? Severity::Wait : Severity::Ask,
+                     .side = *need == Need::InDoubt ? Side::CommandPost : Side::Box,
                      .subject = number,
-                     .since = report.since,
-                     .headline = {"Report " + number, kStates[at].state},
-                     .why = why(report),
-                     .action = {report.asking ? "Show report" : "Decide", "/#report=" + number}});
+                     .since = row.changed,
+                     .headline = {"Report " + number, state},
+                     .why = row.note + (*need == Need::Lost ? until : ""),
+                     .action = {row.asking ? "Show report" : "Decide", "/#report=" + number}});
   }
-  for (std::size_t at = 0; at < std::size(kStates); ++at) {
+  for (std::size_t at = 0; at < std::size(kNeeds); ++at) {
     if (count.at(at) <= kOneByOne) continue;
     const std::uint64_t more = count.at(at) - kOneByOne;
-    found.push_back({.id = sentence(kStates[at].id, ":more"),
+    found.push_back({.id = sentence(kNeeds[at].id, ":more"),
                      .severity = Severity::Ask,
                      .side = Side::Box,
                      .subject = "more",
-                     .headline = {sentence(more, " more reports"), kStates[at].state, true},
+                     .headline = {sentence(more, " more reports"), kNeeds[at].state, true},
                      .action = {"Show reports", "/#reports"},
                      .degree = more});
   }
 }
 
-void find_few_left(const Facts& facts, Found& found) {
-  if (!facts.reports_left || *facts.reports_left > kFewReports) return;
-  const std::int64_t left = std::max<std::int64_t>(*facts.reports_left, 0);
+void find_few_left(const facts::Reports& reports, Found& found) {
+  if (!reports.left || *reports.left > kFewReports) return;
+  const std::int64_t left = std::max<std::int64_t>(*reports.left, 0);
   found.push_back({.id = "reports_left",
                    .severity = left == 0 ? Severity::Bad : Severity::Wait,
                    .side = Side::CommandPost,
@@ -69,8 +77,8 @@ void find_few_left(const Facts& facts, Found& found) {
                    .degree = static_cast<std::uint64_t>(kFewReports - left)});
 }
 
-void find_elsewhere(const Facts& facts, Found& found) {
-  for (const auto& [post, count] : facts.reports_elsewhere) {
+void find_elsewhere(const facts::Reports& reports, Found& found) {
+  for (const auto& [post, count] : reports.elsewhere) {
     found.push_back({.id = "reports_elsewhere:" + post,
                      .severity = Severity::Ask,
                      .side = Side::Box,
@@ -83,38 +91,47 @@ void find_elsewhere(const Facts& facts, Found& found) {
   }
 }
 
+void find_rejected(const std::vector<facts::RejectedRow>& rows, Found& found) {
+  std::size_t count = 0;
+  const facts::RejectedRow* newest = nullptr;
+  for (const facts::RejectedRow& row : rows) {
+    if (row.replaced || row.status == 0) continue;
+    ++count;
+    if (newest == nullptr || row.number >= newest->number) newest = &row;
+  }
+  if (newest == nullptr) return;
+  found.push_back(
+      {.id = "messages_rejected",
+       .severity = Severity::Ask,
+       .side = Side::CommandPost,
+       .headline = {sentence(count, count == 1 ? " message" : " messages"), "rejected", count != 1},
+       .why = sentence("the Command Post did not accept ", count == 1 ? "it: " : "them; the newest: ",
+                       newest->robot.empty() ? "" : newest->robot + "'s ", newest->kind, ": ", newest->why),
+       .action = {"Show", "/#rejected"},
+       .degree = newest->number});  // rises even if an older message made room
+}
+
 }  // namespace
 
-void find_report_troubles(const Facts& facts, Found& found) {
-  find_undecided(facts, found);
-  find_few_left(facts, found);
-  find_elsewhere(facts, found);
-  if (!facts.run_unreliable.empty()) {
+void find_report_troubles(const facts::Reports& reports, Found& found) {
+  find_undecided(reports, found);
+  find_few_left(reports, found);
+  find_elsewhere(reports, found);
+  if (!reports.run_unreliable.empty()) {
     found.push_back({.id = "run_unreliable",
                      .severity = Severity::Ask,
                      .side = Side::CommandPost,
                      .headline = {"The count of reports", "uncertain"},
-                     .why = facts.run_unreliable});
+                     .why = reports.run_unreliable});
   }
-  if (!facts.run_renamed.empty()) {
+  if (!reports.run_renamed.empty()) {
     found.push_back({.id = "run_renamed",
                      .severity = Severity::Ask,
                      .side = Side::CommandPost,
                      .headline = {"The name of the run", "uncertain"},
-                     .why = facts.run_renamed});
+                     .why = reports.run_renamed});
   }
-  if (facts.messages_rejected > 0) {
-    const bool one = facts.messages_rejected == 1;
-    found.push_back(
-        {.id = "messages_rejected",
-         .severity = Severity::Ask,
-         .side = Side::CommandPost,
-         .headline = {sentence(facts.messages_rejected, one ? " message" : " messages"), "rejected", !one},
-         .why = sentence("the Command Post did not accept ",
-                         one ? "it: " : "them; the newest: ", facts.newest_rejected_why),
-         .action = {"Show", "/#rejected"},
-         .degree = facts.newest_rejected});  // rises even if an older message made room
-  }
+  find_rejected(reports.rejected, found);
 }
 
 }  // namespace adit::alarms

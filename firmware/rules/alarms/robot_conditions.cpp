@@ -11,6 +11,8 @@
 namespace adit::alarms {
 namespace {
 
+using facts::ActivityRow;
+using facts::Traffic;
 using icd::sentence;
 
 constexpr std::size_t kMegabyte = 1'000'000;
@@ -31,20 +33,20 @@ void put_in_place_of(Found& found, std::size_t count, Condition larger) {
   found.push_back(std::move(larger));
 }
 
-void find_silent(const Facts& facts, Found& found) {
+void find_silent(const Traffic& traffic, Found& found) {
   std::size_t count = 0;
-  for (const auto& [name, robot] : facts.robots) {
-    if (!robot.silent) continue;
+  for (const auto& [name, habit] : traffic.habits) {
+    if (!habit.silent) continue;
     ++count;
     found.push_back({.id = "robot_silent:" + name,
                      .side = Side::Robot,
                      .subject = name,
-                     .since = facts.now - robot.quiet,
+                     .since = traffic.now - habit.quiet,
                      .headline = {name, "silent"},
-                     .why = sentence("it usually sends a message every ", age_text(std::max(robot.gap, 1.0))),
+                     .why = sentence("it usually sends a message every ", age_text(std::max(habit.gap, 1.0))),
                      .action = show(name)});
   }
-  if (count < 2 || count < facts.robots.size()) return;
+  if (count < 2 || count < traffic.habits.size()) return;
   put_in_place_of(found, count,
                   {.id = "robots_silent",
                    .side = Side::Robot,
@@ -54,35 +56,35 @@ void find_silent(const Facts& facts, Found& found) {
 
 /// The robot's map that is furthest behind, and more than `least` seconds, without the endpoint's own
 /// trouble; or null.
-const Stream* longest_behind(const Facts& facts, const std::string& robot, double least) {
-  const Stream* longest = nullptr;
-  for (const Stream& stream : facts.streams) {
-    const double its = waited(stream, facts).value_or(0);
-    if (!stream.is_map() || stream.robot != robot || its <= least) continue;
+const ActivityRow* longest_behind(const Traffic& traffic, const std::string& robot, double least) {
+  const ActivityRow* longest = nullptr;
+  for (const ActivityRow& row : traffic.activities) {
+    const double its = waited(row, traffic).value_or(0);
+    if (!row.is_map() || row.robot != robot || its <= least) continue;
     least = its;
-    longest = &stream;
+    longest = &row;
   }
   return longest;
 }
 
-void find_behind(const Facts& facts, Found& found) {
-  const double told = 2 * (kLateAfter + facts.turn), stuck = std::max(kStuckAfter, 1.5 * told);
+void find_behind(const Traffic& traffic, Found& found) {
+  const double told = 2 * (kLateAfter + traffic.turn), stuck = std::max(kStuckAfter, 1.5 * told);
   std::vector<std::string> names;
-  for (const Stream& stream : facts.streams) {
-    if (stream.is_map()) names.push_back(stream.robot);
+  for (const ActivityRow& row : traffic.activities) {
+    if (row.is_map()) names.push_back(row.robot);
   }
   std::ranges::sort(names);
   names.erase(std::ranges::unique(names).begin(), names.end());
   std::size_t count = 0;
   for (const std::string& name : names) {
-    const Stream* const longest = longest_behind(facts, name, told);
+    const ActivityRow* const longest = longest_behind(traffic, name, told);
     if (longest == nullptr) continue;
     ++count;
     found.push_back({.id = "map_behind:" + name,
-                     .severity = *waited(*longest, facts) > stuck ? Severity::Bad : Severity::Wait,
+                     .severity = *waited(*longest, traffic) > stuck ? Severity::Bad : Severity::Wait,
                      .side = Side::CommandPost,
                      .subject = name,
-                     .since = facts.now - *longest->behind,
+                     .since = traffic.now - *longest->behind,
                      .headline = {name.empty() ? "The merged map" : name + "'s map", "behind"},
                      .why = sentence("its newest ", longest->kind, " has not reached the Command Post",
                                      longest->last_status == static_cast<int>(icd::Status::ContentTooLarge)
@@ -101,41 +103,41 @@ void find_behind(const Facts& facts, Found& found) {
                    .why = "the robots send more than the box can forward"});
 }
 
-void find_full_queue(const Facts& facts, Found& found) {
+void find_full_queue(const Traffic& traffic, Found& found) {
   std::string names;
   std::size_t count = 0;
-  for (const Stream& stream : facts.streams) {
-    if (!stream.no_room || *stream.no_room > kNoRoomRecent) continue;
+  for (const ActivityRow& row : traffic.activities) {
+    if (!row.last_no_room || facts::seconds_since(*row.last_no_room, traffic.now) > kNoRoomRecent) continue;
     if (++count > kNamed) continue;
     names += names.empty() ? "" : ", ";
-    if (stream.kind != "markers") names += (stream.robot.empty() ? "merged" : stream.robot) + " ";
-    names += stream.kind;
+    if (row.kind != "markers") names += (row.robot.empty() ? "merged" : row.robot) + " ";
+    names += row.kind;
   }
   if (count > kNamed) names += sentence(" and ", count - kNamed, " more");
-  const std::string full = sentence("the limit is ", facts.queue_room / kMegabyte, " MB");
+  const std::string full = sentence("the limit is ", traffic.queue_room / kMegabyte, " MB");
   if (count > 0) {
     found.push_back({.id = "queue_full",
                      .side = Side::Network,
                      .headline = {"The queue", "full"},
                      .why = "the box rejects messages until the queue has room: " + names});
-  } else if (static_cast<double>(facts.queued) > kNearlyFull * static_cast<double>(facts.queue_room)) {
+  } else if (static_cast<double>(traffic.queued) > kNearlyFull * static_cast<double>(traffic.queue_room)) {
     found.push_back({.id = "queue_nearly_full",
                      .severity = Severity::Bad,
                      .side = Side::Network,
                      .headline = {"The map queue", "nearly full"},
                      .why = full});
-  } else if (facts.queue_grows) {
+  } else if (traffic.queue_grows) {
     found.push_back({.id = "queue_growing",
                      .severity = Severity::Wait,
                      .side = Side::Network,
                      .headline = {"The map queue", "growing"},
-                     .why = sentence(facts.queued / kMegabyte, " MB are queued")});
+                     .why = sentence(traffic.queued / kMegabyte, " MB are queued")});
   }
 }
 
-void find_unknown(const Facts& facts, Found& found) {
-  const std::string known = icd::listed(facts.known_robots);
-  for (const std::string& name : facts.unknown_robots) {
+void find_unknown(const facts::Clients& clients, Found& found) {
+  const std::string known = icd::listed(clients.known_robots);
+  for (const std::string& name : clients.unknown_robots) {
     found.push_back({.id = "robot_unknown:" + name,
                      .severity = Severity::Ask,
                      .side = Side::Robot,
@@ -146,16 +148,16 @@ void find_unknown(const Facts& facts, Found& found) {
   }
 }
 
-void find_crowds(const Facts& facts, Found& found) {
-  for (const CrowdFact& crowd : facts.crowds) {
+void find_crowds(const facts::Clients& clients, Found& found) {
+  for (const facts::Crowd& crowd : clients.crowds) {
     const std::string most = "most of them from " + crowd.address;
-    if (crowd.is == CrowdFact::Is::NoRoom) {
+    if (crowd.kind == facts::Crowd::Kind::NoRoom) {
       found.push_back({.id = "clients_refused",
                        .side = Side::Robot,
                        .headline = {"Clients", "rejected", true},
                        .why = "too many requests at once, " + most,
                        .action = {"Open set-up", "/setup?setting=team.connections#all"}});
-    } else if (crowd.is == CrowdFact::Is::WrongToken) {
+    } else if (crowd.kind == facts::Crowd::Kind::WrongToken) {
       found.push_back({.id = "wrong_tokens",
                        .severity = Severity::Ask,
                        .side = Side::Robot,
@@ -170,7 +172,7 @@ void find_crowds(const Facts& facts, Found& found) {
                        .why = most});
     }
   }
-  if (!facts.shut_out) return;
+  if (!clients.shut_out) return;
   found.push_back({.id = "no_token:team",
                    .side = Side::Box,
                    .subject = "team",
@@ -181,12 +183,12 @@ void find_crowds(const Facts& facts, Found& found) {
 
 }  // namespace
 
-void find_robot_troubles(const Facts& facts, Found& found) {
-  find_silent(facts, found);
-  find_behind(facts, found);
-  find_full_queue(facts, found);
-  find_unknown(facts, found);
-  find_crowds(facts, found);
+void find_robot_troubles(const Traffic& traffic, const facts::Clients& clients, Found& found) {
+  find_silent(traffic, found);
+  find_behind(traffic, found);
+  find_full_queue(traffic, found);
+  find_unknown(clients, found);
+  find_crowds(clients, found);
 }
 
 }  // namespace adit::alarms

@@ -107,7 +107,7 @@ const ConditionCase kConditionCases[] = {
      [](Snapshot& snapshot) { report(snapshot, "held"); }},
     {"report_in_doubt:7", Ask, Side::CommandPost, "Report 7 is in doubt", "",
      [](Snapshot& snapshot) { report(snapshot, "in_doubt"); }},
-    {"report_lost:7", Ask, Side::Box, "Report 7 is lost", "mark it as done",
+    {"report_lost:7", Ask, Side::Box, "Report 7 is lost", "settle it",
      [](Snapshot& snapshot) {
        report(snapshot, "in_doubt");
        snapshot.reports.rows[0].position.reset();

@@ -141,8 +141,8 @@ class Client {
   /// may still read.
   bool hung_up() const { return hung_up_; }
 
-  /// Keeps libmicrohttpd from reading until the next request's head is whole and valid. Call this
-  /// in its callbacks only at the end of a request whose connection stays. Reads on in a chunked body.
+  /// Keeps libmicrohttpd from reading until the next request's head is whole and valid. Call this in its
+  /// callbacks only at the end of a request whose connection stays. Reads on in a chunked body.
   void hold_back();
   Gate& gate() { return gate_; }
   void request_begun(std::shared_ptr<Request> request);

@@ -26,8 +26,8 @@ class TokenGuesses {
  public:
   static constexpr int kFree = 10;
   static constexpr std::chrono::seconds kEach{1};
-  static constexpr std::size_t kMostAddresses =
-      256;  // above it, an address is removed, if possible one without a right token
+  /// Beyond it, an address is removed, if possible one without a right token.
+  static constexpr std::size_t kMostAddresses = 256;
 
   enum class Looked : std::uint8_t { Right, Wrong, NotLookedAt };
   struct Verdict {

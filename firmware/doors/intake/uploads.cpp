@@ -136,8 +136,8 @@ class Decoding {
     return fed;
   }
 
-  static constexpr std::size_t kGrowth =
-      1032;  // the most bytes that deflate makes of one byte (RFC 1951 3.2.5: 258 by 2 bits)
+  /// The most bytes that deflate makes of one byte (RFC 1951 3.2.5: 258 by 2 bits).
+  static constexpr std::size_t kGrowth = 1032;
 
   /// The most inflated bytes of a body in one job, because gzipped cells may never reach kStored.
   static constexpr std::size_t kMostOfBody = 8 * MapUpload::kStored;

@@ -13,8 +13,8 @@ struct GpioRequest {
   std::string about;     // the line in an error: "line H (health) of chip gpiochip0"
   std::string consumer;  // as gpioinfo(1) shows it
   bool active_low = false;
-  bool is_output =
-      false;  // inactive at first. An input reports both edges, and is pulled to inactive if the chip can
+  /// Inactive at first. An input reports both edges, and is pulled to inactive if the chip can.
+  bool is_output = false;
 };
 
 /// A requested line, released when it is destroyed. A function that fails sets errno and returns -1.

@@ -30,8 +30,8 @@ struct Found {
 std::expected<Found, std::string> find(const GpioRequest& wanted) {
   errno = 0;
   if (wanted.chip.empty()) {
-    gpiod_line* const line =
-        gpiod_line_find(wanted.line.c_str());  // opens the chip, which the caller then owns
+    // Opens the chip, which the caller then owns.
+    gpiod_line* const line = gpiod_line_find(wanted.line.c_str());
     if (line == nullptr) return trouble(wanted.about, gpio_error());
     return Found{Chip(gpiod_line_get_chip(line)), line};
   }

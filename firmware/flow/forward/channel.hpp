@@ -81,9 +81,8 @@ struct EndpointAccess {
 ///
 /// After a redirect to the same path with a slash, later paths end with a slash, until the endpoint does not
 /// know such a path or redirects to the path without it. A redirect of a report counts for reports alone, and
-/// only a 307 or 308. If a status is a web page, the next request for it
-/// has the other form of the path, as a trial: some servers want a slash and do not redirect. The channel
-/// repeats no request.
+/// only a 307 or 308. If a status is a web page, the next request for it has the other form of the path, as a
+/// trial: some servers want a slash and do not redirect. The channel repeats no request.
 class Channel {
  public:
   /// `name`: "scoring" or "mapping". `turn_came`: call claim_turn() again.

@@ -124,8 +124,8 @@ class Maps {
   bool is_heard_from() const;
   void pump() noexcept;
 
-  // Arrival: a map for which there is room is queued once it is stored. A worker then finds queued
-  // clouds that newer ones contain.
+  // Arrival: a map for which there is room is queued once it is stored. A worker then finds queued clouds
+  // that newer ones contain.
   void take(const std::shared_ptr<Arrived>& map);
   bool has_room_for(const icd::MapUpdate& update, bool replaces) const;
   bool is_told(const icd::MapUpdate& update);

@@ -27,8 +27,8 @@ std::optional<Value> patch(const T& before, const T& now) {
   return patch(T::kRow, &before, &now);
 }
 
-/// Applies a patch to the value before it. std::nullopt: not a patch of that value. Both may come
-/// from any peer; the result's size is limited.
+/// Applies a patch to the value before it. std::nullopt: not a patch of that value. Both may come from any
+/// peer; the result's size is limited.
 std::optional<Value> apply_patch(Value before, const Value& patch);
 
 }  // namespace adit::codec

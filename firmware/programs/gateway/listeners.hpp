@@ -84,8 +84,8 @@ class Listeners {
             std::function<void(intake::Ended why, const std::string& address)> ended)
       : loop_(loop), sockets_(sockets), handler_(handler), guesses_(guesses), ended_(std::move(ended)) {}
 
-  /// Serves these. An error names the address. Sockets in the way may be closed then: call again
-  /// with the old settings.
+  /// Serves these. An error names the address. Sockets in the way may be closed then: call again with the old
+  /// settings.
   std::expected<void, std::string> serve(const settings::Team& team);
   /// How long clients of a closed socket are served.
   void let_go_within(loop::Duration longest) { longest_ = longest; }

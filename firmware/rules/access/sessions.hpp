@@ -39,8 +39,8 @@ struct Caller {
 class Sessions {
  public:
   static constexpr std::chrono::hours kIdle{12}, kLongest{7 * 24};
-  static constexpr std::size_t kMost =
-      64;  // beyond it, begin() ends the viewer idle for longest, or an operator if there is no viewer
+  /// Beyond it, begin() ends the viewer idle for longest, or an operator if there is no viewer.
+  static constexpr std::size_t kMost = 64;
   static constexpr std::size_t kLongestAgent = 160;  // the browser's name starts at 80 to 110
 
   /// `changed`, if given, is called after each login and when a session is ended; not when one expires.

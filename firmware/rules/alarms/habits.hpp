@@ -92,16 +92,16 @@ struct ConnectionSample {
 class EndpointWatch {
  public:
   static constexpr double kUnreachableAfter = 3;  // seconds
-  static constexpr double kSilentAfter =
-      15;  // seconds from the last byte sent of the first unanswered request
+  /// Seconds from the last byte sent of the first unanswered request.
+  static constexpr double kSilentAfter = 15;
   static constexpr double kFailingAfter = 5;
-  static constexpr double kStillWell =
-      15;  // seconds for which a good answer on another connection vouches for the endpoint
+  /// Seconds for which a good answer on another connection vouches for the endpoint.
+  static constexpr double kStillWell = 15;
   static constexpr double kThrottledWithin = 30;
   static constexpr std::size_t kThrottled = 3;  // answers of 429 within kThrottledWithin
 
-  /// `has_robots`: a 401 or 403 may concern one robot, so if messages were accepted before, it
-  /// counts as trouble after kFailingAfter.
+  /// `has_robots`: a 401 or 403 may concern one robot, so if messages were accepted before, it counts as
+  /// trouble after kFailingAfter.
   explicit EndpointWatch(bool has_robots = false) : has_robots_(has_robots) {}
 
   /// Call each second with the same connections in the same order. `now`: monotonic seconds.

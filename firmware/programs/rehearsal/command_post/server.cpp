@@ -26,8 +26,8 @@ namespace {
 
 namespace asio = boost::asio;
 namespace http = boost::beast::http;
-using Parser =
-    http::request_parser<http::dynamic_body>;  // takes no memory for a length that is only announced
+/// Takes no memory for a length that is only announced.
+using Parser = http::request_parser<http::dynamic_body>;
 using asio::ip::tcp;
 using boost::system::error_code;
 using Milliseconds = std::chrono::milliseconds;

@@ -22,8 +22,8 @@ class ClocksTest : public testing::Test {
     journal_.reset();
     journal_.emplace(loop_, folder_.path() + "/journal");
     journal::Carried carried = journal_->read();
-    clocks_.emplace(loop_, *journal_, folder_.path(), newest_);
-    clocks_->carry_on(carried, boot);
+    clocks_.emplace(loop_, *journal_, folder_.path());
+    clocks_->carry_on(carried, boot, newest_);
   }
   double now() const { return loop_.stamp_now(); }
   /// Stamp of a robot's pose.

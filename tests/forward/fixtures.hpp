@@ -43,7 +43,7 @@ struct MapsParts : FlowParts {
 };
 
 struct ScoringParts : FlowParts {
-  Clocks clocks_{loop_, journal_, folder_.path(), 0};
+  Clocks clocks_{loop_, journal_, folder_.path()};
   ledger::Ledger ledger_ = std::move(*ledger::Ledger::open(folder_.path()));
 };
 

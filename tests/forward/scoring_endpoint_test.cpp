@@ -75,7 +75,7 @@ class ScoringEndpoint : public testing::Test, protected ScoringParts {
     settings_.command_post.scoring = here_.address();
     journal_.begin({.boot = "b", .at = loop_.now(), .stamp = loop_.stamp_now()});
     scoring_.emplace(loop_, servers_, ledger_, settings_, token_, counts_, random_, journal_, clocks_);
-    scoring_->start();
+    scoring_->start(ledger_.runs());
     EXPECT_TRUE(eventually([this] { return scoring_->run().has_value(); }));
   }
 

@@ -47,7 +47,7 @@ class ScoringTest : public testing::Test, protected ScoringParts {
     journal_.begin({.boot = "b", .at = loop_.now(), .stamp = loop_.stamp_now()});
     scoring_.emplace(loop_, servers_, ledger_, settings_, icd::BearerToken::parse("a-token"), counts_,
                      random_, journal_, clocks_);
-    scoring_->start();
+    scoring_->start(ledger_.runs());
   }
   bool eventually(const std::function<bool()>& done) {
     return loop::turn_until(loop_, [&] {

@@ -53,12 +53,12 @@ void StampFloor::forget() {
 // Dispatch subtracts the step of a boot from a silence.
 static_assert(StampFloor::kAhead <= dispatch::kClockAhead);
 
-void Clocks::carry_on(journal::Carried& carried, const std::string& boot) {
+void Clocks::carry_on(journal::Carried& carried, const std::string& boot, double newest) {
   const StampFloor::Kept kept = kept_.value_or(StampFloor::Kept());
   carried.machine_is(boot);
   const auto& clock = carried.clock();
   boot_ = clock || kept_ ? boot : "unknown";  // without the bound the clock is not carried on
-  ran_before_ = clock || !kept_ || kept.floor > 0 || newest_ > 0;
+  ran_before_ = clock || !kept_ || kept.floor > 0 || newest > 0;
   lead_ = kept.lead;
   if (clock) {
     senders_ = carried.senders();
@@ -66,7 +66,7 @@ void Clocks::carry_on(journal::Carried& carried, const std::string& boot) {
     clock_step_ = {.to = clock->step_to, .by = clock->step_by};
     off_ = {.seconds = clock->off, .since = clock->off_since};
   } else {
-    begin_start(kept);
+    begin_start(kept, newest);
   }
   if (kept.least > loop_.stamp_now()) {
     loop_.set_stamp(kept.least);
@@ -96,8 +96,8 @@ bool Clocks::is_far_beyond(double floor, const StampFloor::Kept& kept) const {
 
 /// A boot may set both clocks back. The file corrects them, or else the ledger. Time off comes from the time
 /// of day, which may have been set long after the stamps began.
-void Clocks::begin_start(const StampFloor::Kept& kept) {
-  const double proven = newest_ > kept.overruled ? newest_ : 0, floor = std::max(kept.floor, proven);
+void Clocks::begin_start(const StampFloor::Kept& kept, double newest) {
+  const double proven = newest > kept.overruled ? newest : 0, floor = std::max(kept.floor, proven);
   // A start uses stamps from the bound on before it stores the next one.
   if (kept_ && floor > kept.floor + (kept.floor > 0 ? StampFloor::kAhead : 0))
     damage_ = kept.floor > 0 ? "their file is older than the ledger" : "their file is missing or damaged";

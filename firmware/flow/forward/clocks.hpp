@@ -47,8 +47,8 @@ class StampFloor {
 
   explicit StampFloor(const std::string& state_folder) : file_(state_folder + '/' + kFile) {}
 
-  /// Logs a damaged copy and uses the other one. All values are 0 without a good copy. An error: the
-  /// file is unreadable, and must not be written.
+  /// Logs a damaged copy and uses the other one. All values are 0 without a good copy. An error: the file is
+  /// unreadable, and must not be written.
   std::expected<Kept, std::string> read() const;
 
   /// The values to write now, if due. `now`: stamp clock; `wall`: time of day.
@@ -90,9 +90,9 @@ namespace adit::forward {
 /// (promise 5), whatever the time of day does.
 class Clocks {
  public:
-  /// `loop` and `journal` outlive this. `newest`: the newest stamp in the ledger; 0: none.
-  Clocks(loop::Loop& loop, journal::Journal& journal, const std::string& state_folder, double newest)
-      : loop_(loop), journal_(journal), floor_(state_folder), kept_(floor_.read()), newest_(newest) {}
+  /// `loop` and `journal` outlive this.
+  Clocks(loop::Loop& loop, journal::Journal& journal, const std::string& state_folder)
+      : loop_(loop), journal_(journal), floor_(state_folder), kept_(floor_.read()) {}
 
   /// Why the bound of stamps is unreadable, or "". Then send no stamps. The file is left for the next
   /// process.
@@ -104,7 +104,8 @@ class Clocks {
   /// Seconds by which stamps are ahead of that time; 0: not more than StampFloor::kMostAhead, or not told.
   double lead() const { return is_told_ && *lead_ > StampFloor::kMostAhead ? *lead_ : 0; }
   /// Continues the clocks of the previous process and begins the journal. `boot`: the boot id.
-  void carry_on(journal::Carried& carried, const std::string& boot);
+  /// `newest`: the newest stamp in the ledger; 0: none.
+  void carry_on(journal::Carried& carried, const std::string& boot, double newest);
 
   /// The stamp clock's step at this boot. The Command Post must confirm the time off, because the box's clock
   /// may be wrong by a year.
@@ -134,7 +135,7 @@ class Clocks {
     double seconds = 0, since = 0;
   };
   static constexpr double kSeason = clock::kRobotsMost;  // seconds that a box may be stored
-  void begin_start(const StampFloor::Kept& kept);
+  void begin_start(const StampFloor::Kept& kept, double newest);
   bool is_far_beyond(double floor, const StampFloor::Kept& kept) const;
   journal::Clock now() const;
   void keep() { journal_.senders(senders_.changed()); }
@@ -143,10 +144,9 @@ class Clocks {
   journal::Journal& journal_;
   StampFloor floor_;
   const std::expected<StampFloor::Kept, std::string> kept_;  // from the previous process
-  const double newest_;
+  std::string damage_;
   std::optional<double> lead_;  // StampFloor::Kept::lead
   bool is_told_ = false;        // in this process
-  std::string damage_;
   queues::StampShift senders_;
   dispatch::ClockStep clock_step_;
   Off off_;

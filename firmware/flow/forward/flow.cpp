@@ -253,9 +253,9 @@ std::uint64_t seed() {
 }
 
 /// The newest time in the runs, by the stamp clock; 0: no run.
-double newest_in(const ledger::Ledger& ledger) {
+double newest_in(const std::vector<dispatch::Run>& runs) {
   double newest = 0;
-  for (const dispatch::Run& run : ledger.runs()) newest = std::max({newest, run.began, run.heard});
+  for (const dispatch::Run& run : runs) newest = std::max({newest, run.began, run.heard});
   return newest;
 }
 
@@ -286,7 +286,7 @@ Flow::Flow(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& s
       writer_(loop),
       workers_(loop, 0),
       journal_(loop, folders.runtime + kJournal),
-      clocks_(loop, journal_, folders.state, newest_in(ledger)),
+      clocks_(loop, journal_, folders.state),
       rejected_(loop, writer_, folders.runtime + kRejected),
       counts_([this] { changed(); }),
       servers_(loop),
@@ -317,8 +317,9 @@ std::string Flow::put_aside() const {
 }
 
 void Flow::start() {
-  carry_on();
-  scoring_.start();
+  std::vector<dispatch::Run> runs = ledger_.runs();
+  carry_on(newest_in(runs));
+  scoring_.start(std::move(runs));
   telemetry_.start();
   has_started_ = true;
   picture_the_run();
@@ -332,10 +333,10 @@ void Flow::stand_by(const std::string& why) {
 }
 
 /// Rates and stamps go on without a gap.
-void Flow::carry_on() {
+void Flow::carry_on(double newest) {
   journal::Carried carried = journal_.read();
   const bool is_first = !carried.clock();
-  clocks_.carry_on(carried, host::boot());
+  clocks_.carry_on(carried, host::boot(), newest);
   scoring_.carry_on(carried);
   maps_.carry_on(carried, clocks_.ran_before());
   telemetry_.carry_on(carried);

@@ -252,7 +252,7 @@ class Flow final : public intake::Desk, public api::Operator {
   UriPace& pace_of(icd::Uri uri) {
     return uri == icd::Uri::Status ? scoring_.status_pace() : telemetry_.state_pace();
   }
-  void carry_on();
+  void carry_on(double newest);
   void restore(bool is_first);
   void take(icd::MapUpdate update, const intake::Sender& sender, std::shared_ptr<spool::MapFile> file,
             std::function<void(icd::Checked<void>)> done);

@@ -123,10 +123,10 @@ Scoring::Scoring(loop::Loop& loop, uplink::Servers& servers, ledger::Ledger& led
       wake_(loop.timer([this] { pump(); })),
       deadline_(loop.timer([this] { deadline_came(); })) {}
 
-void Scoring::start() {
+void Scoring::start(std::vector<dispatch::Run> runs) {
   reports_->clock_stepped(clocks_.clock_step());
   // On standby without the address, so that no run begins.
-  reports_->open(ledger_.reports(), ledger_.runs(), time(), stopping_ ? "" : channel_.address());
+  reports_->open(ledger_.reports(), std::move(runs), time(), stopping_ ? "" : channel_.address());
   if (stopping_) return;
   channel_.keep_warm();
   ask_soon();

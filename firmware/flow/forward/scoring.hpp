@@ -8,10 +8,12 @@
 #include <random>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "alarms/arrival.hpp"
 #include "api/source.hpp"
 #include "dispatch/reports.hpp"
+#include "dispatch/runs.hpp"
 #include "dispatch/verdicts.hpp"
 #include "forward/channel.hpp"
 #include "forward/clocks.hpp"
@@ -130,8 +132,8 @@ class Scoring {
   void endpoint_changed(std::optional<icd::BearerToken> token);
   /// Call before start(): opens no connection and sends no request.
   void stand_by() { stopping_ = true; }
-  /// Starts from the ledger, and connects.
-  void start();
+  /// Starts from the ledger, which has these `runs`, and connects.
+  void start(std::vector<dispatch::Run> runs);
 
   void take(const icd::ArtifactReport& report, const intake::Sender& sender,
             std::shared_ptr<intake::Responder> responder);

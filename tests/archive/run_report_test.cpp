@@ -66,9 +66,9 @@ TEST(RunReport, DrawsChosenColoursAndDistinctLines) {
   std::vector<std::string> lines;
   for (std::sregex_iterator at(drawn.begin(), drawn.end(), line), end; at != end; ++at)
     lines.push_back((*at)[1].str() + " " + (*at)[2].str());
-  // r1 has the second colour, because the first one is r3's.
-  EXPECT_THAT(lines, testing::ElementsAre("#025447 2.4 1.2", "#6b56a3 0.7 0.9", "#9e4930 1 0",
-                                          "#6b56a3 2.7 0.9 0.7 0.9"));
+  // r1 has the second colour, because the first one is r3's. tests/page/robot_colour.test.js reads this case.
+  EXPECT_THAT(lines, testing::ElementsAre("#025447 2.4 1.2", "#6b56a3 0.6 0.9", "#9e4930 none",
+                                          "#6b56a3 2.7 0.9 0.6 0.9"));
 }
 
 TEST(RunReport, DrawsFortyRobotsDifferently) {

@@ -44,11 +44,6 @@ test("a robot keeps its colour as others join, and has the same on each page, in
   assert.ok(!chooseColours([{ name: "r9", colour: 1 }]), "the same colours again are not a change");
 });
 
-test("robots with the same chosen colour have different patterns, and the others have unchosen colours", () => {
-  const chosen = new Map([["r2", 2], ["r4", 2], ["r3", 0]]);  // as in tests/archive/run_report_test.cpp
-  assert.deepEqual([...robotLooks(["r1", "r2", "r3", "r4"], chosen).values()].map(({ colour, pattern }) => [colour, pattern]), [[1, 1], [2, 2], [0, 0], [2, 3]]);
-});
-
 test("the settings name as many colours as there are", () => {
   const source = `${readFileSync(new URL("../../firmware/rules/settings/settings.hpp", import.meta.url))}`;
   const [words] = /kColourWords\[\] = \{[^}]+\}/.exec(source);
@@ -70,10 +65,22 @@ test("no robot has the hue of an alarm level", () => {
   }
 });
 
-test("the run's report has the colours of the light page", () => {
+const lightHex = (place) => `#${robotRgb(place, "light").map((part) => part.toString(16).padStart(2, "0")).join("")}`;
+const onPaper = (pattern) => dashesOf(pattern).map((length) => String(Number((0.3 * length).toFixed(1)))).join(" ") || "none";
+
+test("the run's report has the colours of the light page, and its patterns in 0.3 mm", () => {
   const source = `${readFileSync(new URL("../../firmware/doors/archive/run_report.cpp", import.meta.url))}`;
-  const hex = (place) => `#${robotRgb(place, "light").map((part) => part.toString(16).padStart(2, "0")).join("")}`;
-  assert.deepEqual(source.match(/#[0-9a-f]{6}/g), [...Array(40).keys()].map(hex));
+  assert.deepEqual(source.match(/#[0-9a-f]{6}/g), [...Array(40).keys()].map(lightHex));
+  const [, dashes] = /kDashes\[\] = \{([^}]+)\}/.exec(source);
+  assert.deepEqual([...dashes.matchAll(/"([^"]+)"/g)].map(([, each]) => each), [0, 1, 2, 3].map(onPaper));
+});
+
+test("robots with the same chosen colour have different patterns, and the others have unchosen colours, as in the run's report", () => {
+  const source = `${readFileSync(new URL("../archive/run_report_test.cpp", import.meta.url))}`;
+  const [, robots, colours, lines] = /DrawsChosenColours[^]*?: \{("r1"[^}]+)\}[^]*?kept\.colours = \{([^;]+)\};[^]*?ElementsAre\(([^)]+)\)/.exec(source);
+  const chosen = new Map([...colours.matchAll(/"(\w+)", (\d+)/g)].map(([, name, colour]) => [name, colour - 1]));
+  const looks = robotLooks(robots.match(/\w+/g), chosen);
+  assert.deepEqual(lines.match(/#[^"]+/g), [...looks.values()].map(({ colour, pattern }) => `${lightHex(colour)} ${onPaper(pattern)}`));
 });
 
 test("at night only lightness and pattern differ", () => {

@@ -50,7 +50,7 @@ std::string number(const std::optional<std::int64_t>& value) {
   return value ? std::to_string(*value) : "";
 }
 
-/// As in `words.js`.
+/// "+5", "0", "" if unknown.
 std::string signed_change(const std::optional<std::int64_t>& change) {
   if (!change) return "";
   return *change > 0 ? '+' + std::to_string(*change) : std::to_string(*change);
@@ -245,15 +245,15 @@ using picture::kSide;
 /// Most bytes of images in a report. Further tiles are left out, and the report says so.
 constexpr std::size_t kMostBytes = std::size_t{4} << 20;
 constexpr std::size_t kMostTiles = 120;
-/// The page's in its light theme (site/files/robot_colour.js).
+/// The page's in its light theme (site/files/robot_colour.js). tests/page/robot_colour.test.js compares them.
 constexpr const char* kColours[] = {
     "#9e4930", "#025447", "#6b56a3", "#733200", "#007672", "#593279", "#7e620d", "#005259",
     "#844d90", "#524801", "#0d7287", "#6c2962", "#666c05", "#054f69", "#954674", "#395105",
     "#0d6ca5", "#782445", "#3c7630", "#144687", "#9d4b26", "#06534c", "#7254a0", "#6c3805",
     "#117476", "#5e3074", "#79640e", "#01515c", "#894b8a", "#4d4a05", "#07718d", "#6f285c",
     "#5d6f04", "#004e71", "#99456c", "#2d5402", "#2569a8", "#79243d", "#02785e", "#244387"};
-/// Lengths of lines and gaps in millimetres, as patterns of these colours.
-constexpr const char* kDashes[] = {"1 0", "2.4 1.2", "0.7 0.9", "2.7 0.9 0.7 0.9"};
+/// Lengths of lines and gaps in millimetres, as patterns of these colours: the page's, of 0.3 mm a unit.
+constexpr const char* kDashes[] = {"none", "2.4 1.2", "0.6 0.9", "2.7 0.9 0.6 0.9"};
 /// In millimetres: of the map's frame and around it, of text, and of signs.
 constexpr double kWidth = 180, kLeft = 12, kTop = 2, kRight = 3, kBottom = 10;
 constexpr double kLeastHeight = 50, kMostHeight = 150, kFont = 2.8, kRobot = 1.3, kReport = 1.2, kGroup = 2.4;

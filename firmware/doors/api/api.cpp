@@ -43,7 +43,7 @@ Api::Api(loop::Loop& loop, const Served& served, std::vector<icd::BearerToken> t
       maps_(served.source, served.finer, served.covered),
       lists_(loop, served.source),
       reports_(lists_, served.source, served.decisions),
-      box_(served.source, lists_, served.box, entrance_, *redaction_, loop),
+      box_(served.source, lists_, served.box, served.keys, *redaction_, loop),
       kept_(loop, served.runs, served.source),
       handlers_(&pages_, &sessions_, &run_, &maps_, &reports_, &box_, &kept_, &served.clock, &served.network,
                 &served.test, &served.setup, &served.spare, &served.updates) {}

@@ -76,7 +76,7 @@ std::string BoxRoutes::metrics_text() const {
                     .reports = source_.report_counts(),
                     .usage = box_.usage(),
                     .about = box_.about()};
-  for (const access::Session& session : entrance_.sessions().all(loop_.now())) {
+  for (const access::Session& session : keys_.sessions().all(loop_.now())) {
     ++(session.role == access::Role::Operator ? measured.operators : measured.viewers);
   }
   return write_metrics(measured);

@@ -7,7 +7,7 @@
 
 #include "api/answers.hpp"
 #include "api/box.hpp"
-#include "api/entrance.hpp"
+#include "api/keys.hpp"
 #include "api/network.hpp"
 #include "api/report_routes.hpp"
 #include "api/route.hpp"
@@ -25,9 +25,9 @@ struct LogFilter;
 class BoxRoutes {
  public:
   /// All must outlive this object, and the work of `box`.
-  BoxRoutes(Source& source, const ReportLists& lists, Box& box, Entrance& entrance,
-            const SharedRedaction& redaction, loop::Loop& loop)
-      : source_(source), lists_(lists), box_(box), entrance_(entrance), redaction_(redaction), loop_(loop) {}
+  BoxRoutes(Source& source, const ReportLists& lists, Box& box, Keys& keys, const SharedRedaction& redaction,
+            loop::Loop& loop)
+      : source_(source), lists_(lists), box_(box), keys_(keys), redaction_(redaction), loop_(loop) {}
 
   intake::Answer metrics() const;
   icd::Checked<LogPage> log(const intake::RequestHead& head) const;
@@ -44,7 +44,7 @@ class BoxRoutes {
   Source& source_;
   const ReportLists& lists_;
   Box& box_;
-  Entrance& entrance_;
+  Keys& keys_;
   const SharedRedaction& redaction_;  // for the bundle; Api redacts other answers
   loop::Loop& loop_;
 };

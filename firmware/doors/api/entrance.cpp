@@ -26,7 +26,7 @@ icd::Checked<Asker> Entrance::admit(const intake::RequestHead& head, RouteAccess
   if (who == RouteAccess::Open) return Asker{};
   const auto request = request_of(head);
   const auto role = who == RouteAccess::Viewer ? access::Role::Viewer : access::Role::Operator;
-  const auto visitor = access::admit(request, role, tokens_, sessions(), loop_.now());
+  const auto visitor = access::admit(request, role, tokens_, keys_.sessions(), loop_.now());
   if (visitor) return Asker{.admitted = true, .session = session_of(*visitor)};
   const bool for_anybody = who == RouteAccess::OwnPage || (who == RouteAccess::OperatorOrSetUp &&
                                                            (keys_.first_start() || keys_.set_up_open()));
@@ -37,7 +37,7 @@ icd::Checked<Asker> Entrance::admit(const intake::RequestHead& head, RouteAccess
 }
 
 std::optional<access::Visitor> Entrance::who(const intake::RequestHead& head) {
-  return access::who(request_of(head), tokens_, sessions(), loop_.now());
+  return access::who(request_of(head), tokens_, keys_.sessions(), loop_.now());
 }
 
 intake::Credentials Entrance::shown(const intake::RequestHead& head) {
@@ -55,7 +55,7 @@ const access::Device* Entrance::device(const intake::RequestHead& head) {
 
 std::function<bool()> Entrance::may_stay(const Asker& asker) {
   if (asker.session == 0) return [] { return true; };
-  return [this, number = asker.session] { return sessions().still(number, loop_.now()); };
+  return [this, number = asker.session] { return keys_.sessions().still(number, loop_.now()); };
 }
 
 intake::Answer turned_away(const icd::Refusal& why) {

@@ -34,8 +34,6 @@ class Entrance {
   /// Whether the client may still receive a long answer. This object must outlive the result.
   std::function<bool()> may_stay(const Asker& asker);
 
-  access::Sessions& sessions() { return keys_.sessions(); }
-
  private:
   loop::Loop& loop_;
   Keys& keys_;

@@ -69,7 +69,7 @@ intake::Answer SessionRoutes::sessions(const Call& call) {
     return loop_.wall_now() - std::chrono::duration<double>(now - at).count();
   };
   std::vector<SessionRow> rows;
-  for (const access::Session& each : entrance_.sessions().all(now)) {
+  for (const access::Session& each : keys_.sessions().all(now)) {
     rows.push_back({.number = each.number,
                     .role = each.role,
                     .address = each.address,
@@ -133,8 +133,8 @@ void SessionRoutes::log_in(const Call& call) {
 }
 
 intake::Answer SessionRoutes::logged_in(Role role, const Poster& poster) {
-  entrance_.sessions().end(poster.asker.session);  // a login ends the browser's earlier session
-  const access::Session& session = entrance_.sessions().begin(
+  keys_.sessions().end(poster.asker.session);  // a login ends the browser's earlier session
+  const access::Session& session = keys_.sessions().begin(
       keys_.draw(), keys_.draw(), role, {poster.guesser.address, poster.agent}, loop_.now());
   auto answer = object({{"role", json(std::string(name_of(role)))}, {"csrf", json(session.csrf.reveal())}});
   answer.headers.push_back(session_cookie(session.id.reveal(), access::Sessions::kLongest));
@@ -152,14 +152,14 @@ std::optional<Role> SessionRoutes::known_as(const Poster& poster) {
 }
 
 intake::Answer SessionRoutes::log_out(const Call& call) {
-  entrance_.sessions().end(call.asker.session);
+  keys_.sessions().end(call.asker.session);
   auto answer = object({{"role", {}}});
   answer.headers.push_back(session_cookie("", std::chrono::seconds(0)));
   return answer;
 }
 
 intake::Answer SessionRoutes::end(std::uint64_t number) {
-  if (entrance_.sessions().end(number)) return object({{"session", json(number)}});
+  if (keys_.sessions().end(number)) return object({{"session", json(number)}});
   return refusal(icd::Status::NotFound, icd::sentence("there is no session ", number));
 }
 
@@ -226,7 +226,7 @@ void SessionRoutes::reset(const Call& call) {
 void SessionRoutes::set(const Change& change, const Poster& poster) {
   keys_.set(change.role, change.password, [this, role = change.role, poster](const icd::Checked<void>& kept) {
     if (!kept) return poster.responder->answer(refused(kept.error()));
-    entrance_.sessions().end_all(role, poster.asker.session);
+    keys_.sessions().end_all(role, poster.asker.session);
     keys_.devices().end_all(role, poster.guesser.device);
     poster.responder->answer(object({{"role", json(std::string(name_of(role)))}}));
   });

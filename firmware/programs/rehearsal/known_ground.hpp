@@ -68,9 +68,9 @@ class KnownPlaces {
   static constexpr double kEdge = 0.1;  // metres
   static constexpr std::size_t kMostBlocks = 1u << 20;
 
-  /// Points of `step` bytes, little-endian, which are away from `origin`; `fields` tell where x, y and z are.
-  /// How a cloud is turned is not looked at, for adit-robots turns none. Others than float32 (ICD 6.3.2) are
-  /// passed over, and so is what is further away than 50 km or comes after kMostBlocks blocks.
+  /// Points of `step` bytes, little-endian, relative to `origin`; `fields` has the places of x, y and z.
+  /// Ignores the cloud's orientation, because adit-robots turns no cloud. Ignores points of other types than
+  /// float32 (ICD 6.3.2), points farther away than 50 km, and points after kMostBlocks blocks.
   template <class Fields>
   void add(const Fields& fields, std::size_t step, std::span<const std::uint8_t> points,
            const std::array<double, 3>& origin = {}) {

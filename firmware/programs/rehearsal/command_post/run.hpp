@@ -26,8 +26,7 @@ struct RunPlan {
   std::int64_t reports = 45;  // the allotment
 };
 
-/// What is different in a new run; what is not said stays, but for the run's id, which counts up where the
-/// plan has it so.
+/// The changes of a new run. Values that are not given stay. An id counts up if the plan says so.
 struct NewRun {
   std::optional<std::string> id;
   std::optional<std::string> team;

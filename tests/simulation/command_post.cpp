@@ -117,9 +117,11 @@ CommandPost::CommandPost(World& world, const Faults& faults, double trouble_for,
       early_(world.random(numbered("early answers", place))),
       repeating_(world.random(numbered("repeated answers", place))),
       pausing_(world.random(numbered("pauses", place))),
+      failing_(world.random(numbered("failing maps", place))),
       gzips_(world.random(numbered("gzipped answers", place)).chance(0.15)),
       answers_early_(early_.chance(0.125) ? early_.between(0.05, 0.3) : 0),
       repeats_(repeating_.chance(0.125) ? repeating_.between(0.1, 0.4) : 0),
+      fails_maps_(failing_.chance(0.125) ? failing_.between(0.3, 0.8) : 0),
       has_one_limit_(world.random(numbered("one limit", place)).chance(0.125)),
       is_serial_(world.random(numbered("serial", place)).chance(0.2)),
       scoreboard_(world, faults_, random_, place),
@@ -404,7 +406,8 @@ bool CommandPost::loses_late_answer(const HttpMessage& request, Link& link) {
 
 void CommandPost::answer(const HttpMessage& request, Link& link) {
   if (loses_late_answer(request, link)) return;
-  const Fault fault = calm_ ? Fault::End : faults_.of_request();
+  const bool fails = request.path() == kMap && failing_.chance(fails_maps_);
+  const Fault fault = calm_ ? Fault::End : fails ? Fault::Error : faults_.of_request();
   const bool befalls = fault == Fault::Unwanted         ? request.path() == kMap || request.path() == kState
                        : fault == Fault::TakenThrottled ? is_mapping(request)
                                                         : true;

@@ -83,10 +83,11 @@ class CommandPost final : public Host {
 
   World& world_;
   Faults faults_;
-  Random random_, early_, repeating_, pausing_;
+  Random random_, early_, repeating_, pausing_, failing_;
   const bool gzips_;                    // its answers, though Adit asks for none
   double answers_early_;                // probability per piece of a request
   double repeats_;                      // probability per report
+  double fails_maps_;                   // probability of a 500 per map
   std::size_t largest_ = SIZE_MAX;      // bytes of a map that a proxy before it lets through
   bool is_below_single_ = false;        // also if one posted map alone is larger, until calm()
   bool resets_large_ = false;           // in place of an answer, until calm()

@@ -6,8 +6,14 @@
 
 namespace adit::icd {
 
-/// The five functions of the Command Post (ICD 5 and 6).
-enum class Uri : std::uint8_t { Status, ArtifactReports, MapUpdate, StateUpdate, MarkersUpdate };
+/// The five functions of the Command Post (ICD 5 and 6). The numbers are in files and must not change.
+enum class Uri : std::uint8_t {
+  Status = 0,
+  ArtifactReports = 1,
+  MapUpdate = 2,
+  StateUpdate = 3,
+  MarkersUpdate = 4,
+};
 
 inline constexpr Uri kUris[] = {Uri::Status, Uri::ArtifactReports, Uri::MapUpdate, Uri::StateUpdate,
                                 Uri::MarkersUpdate};

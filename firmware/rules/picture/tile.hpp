@@ -37,7 +37,8 @@ inline constexpr double kWorldMetres = 8192;
 inline constexpr int kWorldPixels = 32768;
 inline constexpr int kWorldTiles = kWorldPixels / kSide;
 
-enum class Kind : std::uint8_t { Grid, Cloud };
+/// The numbers are in files and must not change.
+enum class Kind : std::uint8_t { Grid = 0, Cloud = 1 };
 
 /// One robot's maps of one kind; "" is the merged map.
 struct Layer {

@@ -17,6 +17,8 @@ namespace adit::forward {
 namespace {
 
 using dispatch::MappingVerdict;
+using queues::MapEvent;
+using queues::MapState;
 
 /// A map after whose packing processes ended. Alone, because a fault counts against all maps in one message.
 queues::PackingRule rule_after(const spool::Spool::Ends& ends) {
@@ -444,6 +446,7 @@ void Maps::prepare(bool follows) {
 }
 
 void Maps::pack(const Place& prepared) {
+  step(prepared, MapEvent::Chosen);
   icd::Header& header = prepared->waiting.map.header();
   header.stamp = pace_.next_stamp(header.stamp.value_or(loop_.stamp_now()));
   pace_.keep_stamp(*header.stamp);
@@ -478,60 +481,28 @@ void Maps::pack(const Place& prepared) {
   is_packing_ = true;
 }
 
-/// Null if it returned to the queue meanwhile.
-Maps::Place* Maps::place_of(const Place& prepared) {
-  if (prepared == first_) return &first_;
-  return prepared == following_ ? &following_ : nullptr;
-}
-
-/// Records the damaged maps as failed and renames their files. The other parts are queued again, each alone.
-void Maps::is_damaged(Place& place) {
-  const auto it = place;
-  queues::QueuedMap rest = it->waiting;
-  std::vector<std::uint64_t> gone;
-  for (const MapStore::Damaged& each : it->damaged) gone.push_back(each.number);
-  const auto is_gone = [&](std::uint64_t number) { return std::ranges::find(gone, number) != gone.end(); };
-  std::erase_if(rest.parts, [&](const queues::QueuedMap& part) { return is_gone(part.updates.back()); });
-  std::erase_if(rest.updates, is_gone);
-  store_.set_aside(it->damaged);
-  if (!rest.parts.empty()) queue_.put_back_apart(std::move(rest));
-  place.reset();  // the damaged maps are not retried
-  for (const MapStore::Damaged& each : it->damaged) {
-    counts_.not_taken(traffic_of(it->waiting.map), DeliveryFailure::Failed, 0,
-                      "its stored copy is damaged: " + each.why);
-  }
-  store_.forget(gone);
-}
-
-/// Parts that cannot be stitched return to the queue, each alone.
 void Maps::work_done(const Place& prepared) {
   if (prepared->damaged.empty()) {
     const Packed& packed = prepared->packed;
     slot_.worker_took(prepared->packing_took, packed.expected);
     slot_.packed(packed.points_size, packed.full_size, packed.precision);
   }
-  Place* const place = place_of(prepared);
-  if (place == nullptr) return;
-  if (!prepared->damaged.empty()) return is_damaged(*place);
-  if (prepared->packed.has_no_valid_point) return skip_piece(*place);
-  if (prepared->packed.drawn) queue_.canvases().lay(prepared->waiting.map.name, *prepared->packed.drawn);
-  prepared->packed.drawn.reset();
-  if (!prepared->packed.body.empty()) {
-    if (prepared->packed.stitched.raw_size > 0)
-      prepared->waiting.map.data = std::move(prepared->packed.stitched);
-    return;
+  if (prepared->state != MapState::Packing) return;  // recalled
+  if (!prepared->damaged.empty()) return step(prepared, MapEvent::Damaged);
+  queues::QueuedMap& waiting = prepared->waiting;
+  if (prepared->packed.has_no_valid_point) {
+    if (queues::next_piece(waiting)) return step(prepared, MapEvent::SkippedPiece);
+    counts_.replaced(traffic_of(waiting.map), waiting.updates.size());
+    return step(prepared, MapEvent::SkippedLast);
   }
-  host::log(host::Level::Warning, "cannot join grids: their data is damaged");
-  queue_.put_back_apart(prepared->waiting);
-  place->reset();
-}
-
-/// It has no valid point.
-void Maps::skip_piece(Place& place) {
-  const auto piece = std::exchange(place, nullptr);
-  if (queues::next_piece(piece->waiting)) return store_.forget(queue_.put_back(std::move(piece->waiting)));
-  counts_.replaced(traffic_of(piece->waiting.map), piece->waiting.updates.size());
-  store_.forget(piece->waiting.updates);
+  if (prepared->packed.drawn) queue_.canvases().lay(waiting.map.name, *prepared->packed.drawn);
+  prepared->packed.drawn.reset();
+  if (prepared->packed.body.empty()) {
+    host::log(host::Level::Warning, "cannot join grids: their data is damaged");
+    return step(prepared, MapEvent::NotStitched);
+  }
+  if (prepared->packed.stitched.raw_size > 0) waiting.map.data = std::move(prepared->packed.stitched);
+  step(prepared, MapEvent::Packed);
 }
 
 void Maps::work_failed(const Place& prepared) {
@@ -539,37 +510,80 @@ void Maps::work_failed(const Place& prepared) {
   packing_.end();
   store_.work_ends(false, {});
   prepared->packed = {};
-  if (Place* const place = place_of(prepared)) {
+  if (prepared->state == MapState::Packing) {
     counts_.not_taken(traffic_of(prepared->waiting.map), DeliveryFailure::Failed, 0,
                       "it could not be compressed");
-    put_back(*place);
+    step(prepared, MapEvent::NotPacked);
   }
   pace_.failed(loop_.now());
   wake_.call_at(pace_.ready());
 }
 
-void Maps::leaves(const Place& sent) {
-  if (sent == following_) return following_.reset();
-  if (sent == first_) first_ = std::exchange(following_, nullptr);
-}
-
-void Maps::return_to_queue(const Place& sent) {
-  if (sent == first_) put_back(following_);
-  if (Place* const place = place_of(sent)) put_back(*place);
-  if (!first_) first_ = std::exchange(following_, nullptr);
+/// A map that returns to the queue goes ahead of its follower, which returns first.
+void Maps::step(Place map, MapEvent event) {
+  using enum queues::MapAction;
+  const queues::MapTransition& row = queues::transition(map->state, event);
+  map->state = row.to;
+  if (row.action == Nothing) return;
+  if (row.to == MapState::Queued && map == first_) recall(following_);
+  if (map == first_) {
+    first_ = std::exchange(following_, nullptr);
+  } else {
+    following_.reset();
+  }
+  switch (row.action) {
+    case Nothing:
+    case Reject:  // give_up() has done it
+      return;
+    case PutBack:  // a copy: a worker may read it
+      return store_.forget(queue_.put_back(map->waiting));
+    case PutBackApart:
+      return queue_.put_back_apart(map->waiting);
+    case PutBackSmaller:
+      return put_back_smaller(*map);
+    case Forget:
+      return store_.forget(map->waiting.updates);
+    case SetAside:
+      return set_aside(*map);
+  }
 }
 
 /// Except one in flight.
-void Maps::put_back(Place& prepared) {
-  if (!prepared || prepared->is_under_way) return;
-  const auto replaced = queue_.put_back(prepared->waiting);
-  prepared.reset();
-  store_.forget(replaced);
+void Maps::recall(const Place& map) {
+  if (map && map->state != MapState::InFlight) step(map, MapEvent::Recalled);
+}
+
+/// A single cloud or grid goes on in pieces within the limit.
+void Maps::put_back_smaller(Prepared& map) {
+  if (!map.waiting.parts.empty()) return queue_.put_back_halves(map.waiting);
+  const std::size_t size = map.packed.body.size();
+  std::size_t pieces = 2;
+  while (!slot_.fits(size / pieces)) ++pieces;
+  queues::shrink(map.waiting, pieces);
+  store_.forget(queue_.put_back(map.waiting));
+}
+
+/// Records the damaged maps as failed and renames their files. The other parts are queued again, each alone.
+void Maps::set_aside(const Prepared& map) {
+  queues::QueuedMap rest = map.waiting;
+  std::vector<std::uint64_t> gone;
+  gone.reserve(map.damaged.size());
+  for (const MapStore::Damaged& each : map.damaged) gone.push_back(each.number);
+  const auto is_gone = [&](std::uint64_t number) { return std::ranges::find(gone, number) != gone.end(); };
+  std::erase_if(rest.parts, [&](const queues::QueuedMap& part) { return is_gone(part.updates.back()); });
+  std::erase_if(rest.updates, is_gone);
+  store_.set_aside(map.damaged);
+  if (!rest.parts.empty()) queue_.put_back_apart(std::move(rest));
+  for (const MapStore::Damaged& each : map.damaged) {
+    counts_.not_taken(traffic_of(map.waiting.map), DeliveryFailure::Failed, 0,
+                      "its stored copy is damaged: " + each.why);
+  }
+  store_.forget(gone);
 }
 
 void Maps::pack_again() {
-  put_back(following_);
-  put_back(first_);
+  recall(following_);
+  recall(first_);
   queue_.restart_pieces();
   for (const Place& place : {first_, following_}) {
     if (place && std::exchange(place->waiting.piece, {}).size > 0) place->begins_again = true;
@@ -593,10 +607,9 @@ void Maps::go_on() {
   const loop::Instant now = loop_.now();
   const bool follows = channel_.busy();
   const Place& next = follows ? following_ : first_;
-  if (next && next->is_under_way) return;
-  if (next && next->packed.body.empty()) return pack(next);
+  if (next && next->state == MapState::InFlight) return;
   if (next && must_split(*next)) {
-    split(next);
+    step(next, MapEvent::TooLarge);
     return go_on();
   }
   if (next && follows) return go_ahead(now);
@@ -656,7 +669,7 @@ bool Maps::may_go_ahead(loop::Instant now) const {
   const Prepared& first = *first_;
   const queues::Pipelining::Before before{
       .map = first.waiting, .arrived = first.arrived.value_or(now), .went_ahead = first.went_ahead};
-  return first.is_under_way && !channel_.is_serial() && pace_.may_go_ahead(now) &&
+  return first.state == MapState::InFlight && !channel_.is_serial() && pace_.may_go_ahead(now) &&
          ahead_.may_go(following_->waiting, before, now);
 }
 
@@ -668,14 +681,13 @@ void Maps::send(const Place& prepared) {
       icd::Uri::MapUpdate, codec::kCbor, prepared->packed.body,
       [this, prepared](const uplink::Outcome& outcome) { answered(prepared, outcome); },
       prepared->last_byte_not_before);
-  prepared->is_under_way = true;
+  step(prepared, MapEvent::Sent);
   prepared->went_ahead = ahead;
   prepared->arrived.reset();
   wake_.call_at(loop_.now());  // for the following map
 }
 
 void Maps::answered(const Place& sent, const uplink::Outcome& outcome) {
-  sent->is_under_way = false;
   classify(sent, outcome);
   pump();
 }
@@ -705,14 +717,13 @@ void Maps::taken(const Place& sent, const uplink::Answered& answered) {
   queue_.carried(queues::Sender::of(map), sent->packed.body.size());
   if (queues::next_piece(sent->waiting)) {
     counts_.forwarded(traffic_of(map), 0, sent->packed.body.size(), answered.status, loop_.wall_now());
-    return return_to_queue(sent);
+    return step(sent, MapEvent::AcceptedPiece);
   }
-  leaves(sent);
   const std::size_t updates = sent->waiting.updates.size();
   if (sent->waiting.again) map.header().stamp = sent->waiting.again;
   // First: the writer works in order.
   for (const icd::MapUpdate* const said : queues::said_by(sent->waiting)) rejected_.taken(*said);
-  store_.forget(sent->waiting.updates);
+  step(sent, MapEvent::Accepted);
   counts_.forwarded(traffic_of(map), updates, sent->packed.body.size(), answered.status, loop_.wall_now());
   if (!map.is_grid()) counts_.rounded_to(traffic_of(map), sent->packed.precision);
   taken_(std::move(map));
@@ -790,28 +801,12 @@ void Maps::send_smaller(const Place& sent, std::size_t bytes, int status, const 
                     sentence + "; it is sent in smaller messages");
   slot_.on_too_large(std::min(bytes, sent->packed.body.size()));
   ahead_.failed(false);
-  split(sent);
-}
-
-/// A single cloud or grid goes on in pieces within the limit.
-void Maps::split(const Place& place) {
-  queues::QueuedMap& waiting = place->waiting;
-  if (place == first_) put_back(following_);
-  if (!waiting.parts.empty()) {
-    queue_.put_back_halves(waiting);
-  } else {
-    const std::size_t size = place->packed.body.size();
-    std::size_t pieces = 2;
-    while (!slot_.fits(size / pieces)) ++pieces;
-    queues::shrink(waiting, pieces);
-    store_.forget(queue_.put_back(waiting));
-  }
-  leaves(place);
+  step(sent, MapEvent::TooLarge);
 }
 
 void Maps::again(const Place& sent) {
   ahead_.failed(sent->went_ahead || channel_.busy());
-  return_to_queue(sent);
+  step(sent, MapEvent::Failed);
 }
 
 /// Parts of a merged or stitched map are tried separately.
@@ -820,14 +815,10 @@ void Maps::give_up(const Place& sent, int status, const std::string& sentence) {
   queues::QueuedMap& waiting = sent->waiting;
   counts_.not_taken(traffic_of(waiting.map), DeliveryFailure::Refused, status, sentence);
   if (waiting.again) waiting.map.header().stamp = waiting.again;
-  if (waiting.parts.empty()) {
-    rejected_.add(waiting.map, status, sentence, waiting.map.data.bytes.size(),
-                  {.let_go = [this, numbers = waiting.updates] { store_.forget(numbers); }}, waiting.bounds);
-    return leaves(sent);
-  }
-  if (sent == first_) put_back(following_);
-  queue_.put_back_apart(waiting);
-  leaves(sent);
+  if (!waiting.parts.empty()) return step(sent, MapEvent::RejectedParts);
+  rejected_.add(waiting.map, status, sentence, waiting.map.data.bytes.size(),
+                {.let_go = [this, numbers = waiting.updates] { store_.forget(numbers); }}, waiting.bounds);
+  step(sent, MapEvent::Rejected);
 }
 
 /// False if maps go to another Command Post, whose statuses Adit does not read.

@@ -110,10 +110,11 @@ class Maps {
   /// A map that was taken from the queue.
   struct Prepared {
     queues::QueuedMap waiting;
-    Packed packed{};                           // empty body: not packed, or nothing to send
+    queues::MapState state = queues::MapState::Queued;
+    Packed packed{};                           // empty body: nothing to send
     std::vector<MapStore::Damaged> damaged{};  // cannot be sent
     loop::Duration packing_took{0};            // by the worker
-    bool is_under_way = false, went_ahead = false;
+    bool went_ahead = false;
     bool begins_again = false;  // a piece, in flight when the Command Post may have lost those before it
     loop::Instant last_byte_not_before{};
     std::optional<loop::Instant> arrived{};  // estimate
@@ -152,14 +153,12 @@ class Maps {
   void pack(const Place& prepared);
   void work_done(const Place& prepared);
   void work_failed(const Place& prepared);
-  void is_damaged(Place& place);
-  void skip_piece(Place& place);
-  Place* place_of(const Place& prepared);
+  void step(Place map, queues::MapEvent event);
+  void recall(const Place& map);
+  void put_back_smaller(Prepared& map);
+  void set_aside(const Prepared& map);
   std::vector<const Prepared*> prepared_of(const Traffic& traffic) const;
   std::optional<queues::Replaced> absorb(const queues::QueuedMap& back);
-  void leaves(const Place& sent);
-  void return_to_queue(const Place& sent);
-  void put_back(Place& prepared);
   void pack_again();
 
   // Sending, and the answers.
@@ -177,7 +176,6 @@ class Maps {
   bool must_split(const Prepared& prepared) const;
   bool is_cut_by_size(Prepared& sent);
   void send_smaller(const Place& sent, std::size_t bytes, int status, const std::string& sentence);
-  void split(const Place& place);
   void again(const Place& sent);
   void give_up(const Place& sent, int status, const std::string& sentence);
 

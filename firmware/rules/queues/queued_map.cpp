@@ -12,6 +12,33 @@
 namespace adit::queues {
 namespace {
 
+using Action = MapAction;
+using Event = MapEvent;
+using State = MapState;
+
+constexpr MapTransition kLife[] = {
+    {State::Queued, Event::Chosen, State::Packing, Action::Nothing},
+
+    {State::Packing, Event::Packed, State::Packed, Action::Nothing},
+    {State::Packing, Event::Recalled, State::Queued, Action::PutBack},
+    {State::Packing, Event::NotPacked, State::Queued, Action::PutBack},
+    {State::Packing, Event::NotStitched, State::Queued, Action::PutBackApart},
+    {State::Packing, Event::SkippedPiece, State::Queued, Action::PutBack},
+    {State::Packing, Event::SkippedLast, State::Empty, Action::Forget},
+    {State::Packing, Event::Damaged, State::Damaged, Action::SetAside},
+
+    {State::Packed, Event::Sent, State::InFlight, Action::Nothing},
+    {State::Packed, Event::Recalled, State::Queued, Action::PutBack},
+    {State::Packed, Event::TooLarge, State::Queued, Action::PutBackSmaller},
+
+    {State::InFlight, Event::Accepted, State::Delivered, Action::Forget},
+    {State::InFlight, Event::AcceptedPiece, State::Queued, Action::PutBack},
+    {State::InFlight, Event::Failed, State::Queued, Action::PutBack},
+    {State::InFlight, Event::TooLarge, State::Queued, Action::PutBackSmaller},
+    {State::InFlight, Event::RejectedParts, State::Queued, Action::PutBackApart},
+    {State::InFlight, Event::Rejected, State::Rejected, Action::Reject},
+};
+
 /// The bytes of a point, or of a row of cells.
 std::size_t step_of(const QueuedMap& map) {
   if (const auto* cloud = std::get_if<icd::PointCloud2>(&map.map.msg)) return cloud->point_step;
@@ -39,6 +66,17 @@ const icd::PointCloud2* loose_cloud_in(const icd::MapUpdate& map) {
 }
 
 }  // namespace
+
+std::span<const MapTransition> map_life() {
+  return kLife;
+}
+
+const MapTransition& transition(MapState state, MapEvent event) {
+  const auto* const row = std::ranges::find_if(
+      kLife, [&](const MapTransition& each) { return each.from == state && each.event == event; });
+  icd::require(row != std::end(kLife));
+  return *row;
+}
 
 bool Cuts::check(std::size_t now_at, std::uint64_t now_delivered) {
   const std::size_t apart = std::max(at, now_at) - std::min(at, now_at);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -91,6 +92,59 @@ struct QueuedMap {
   /// maps that were never rejected, and identifies it.
   std::optional<icd::Stamp> again{};
 };
+
+/// States of an accepted map.
+enum class MapState : std::uint8_t {
+  Queued,
+  Packing,
+  Packed,    // ready to be sent
+  InFlight,  // sent, not yet answered
+  Delivered,
+  Rejected,
+  Damaged,  // its file cannot be read any more
+  Empty,    // it has no valid point
+};
+
+enum class MapEvent : std::uint8_t {
+  Chosen,
+  Packed,
+  NotPacked,     // the worker failed
+  NotStitched,   // its parts do not fit together
+  Damaged,       // the data in its file, or in that of a part
+  SkippedPiece,  // no valid point in this piece; another piece follows
+  SkippedLast,   // the same; no piece follows
+  Recalled,      // the map before it failed, or the Command Post or the run is another one
+  TooLarge,      // for one message
+  Sent,
+  AcceptedPiece,  // 2xx; another piece follows
+  Accepted,       // 2xx
+  Failed,         // to be retried, or pieces before it may be lost
+  RejectedParts,  // a merged or stitched map
+  Rejected,
+};
+
+/// The effect of a step on the queue and on the stored map.
+enum class MapAction : std::uint8_t {
+  Nothing,
+  PutBack,         // it is queued again
+  PutBackApart,    // its parts are, each by itself
+  PutBackSmaller,  // its halves are, or it is with smaller pieces
+  Forget,          // delete its file
+  Reject,          // the rejected messages get it, then its file is deleted
+  SetAside,        // rename its file; its other parts are queued again
+};
+
+struct MapTransition {
+  MapState from;
+  MapEvent event;
+  MapState to;
+  MapAction action;
+};
+
+/// All transitions.
+std::span<const MapTransition> map_life();
+/// Requires that the event can happen in that state.
+const MapTransition& transition(MapState state, MapEvent event);
 
 /// The maps that are delivered if `taken` is accepted: the map itself, or the parts of a map with gaps,
 /// because a gap has no news.

@@ -38,6 +38,17 @@ TEST_F(PreparedMap, ReturnsToTheQueueWithTheFirst) {
   EXPECT_EQ(post_.received().size(), 3u);
 }
 
+TEST_F(PreparedMap, ReturnsToTheQueueIfTheRunChangesWhileItIsPacked) {
+  take(grid_of("first", 10));
+  ASSERT_TRUE(loop::turn_until(loop_, [&] { return maps_->packing(); }));
+  maps_->change_run(dispatch::NextMap::MayBeTheSame);
+  EXPECT_GT(maps_->queued_bytes(), 0u);
+  post_.answer("200 OK");
+  EXPECT_TRUE(receives({"first"}));
+  EXPECT_TRUE(loop::turn_until(loop_, [&] { return maps_->waiting({Kind::Grid, "first"}) == 0; }));
+  EXPECT_EQ(post_.received().size(), 1u);
+}
+
 TEST_F(PreparedMap, IsSentIfTheFirstIsRejected) {
   send_one_and_pack_one();
   post_.answer("422 No");

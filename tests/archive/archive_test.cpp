@@ -9,6 +9,7 @@
 #include "archive/a_run.hpp"
 #include "host/folder.hpp"
 #include "loop/turn_until.hpp"
+#include "project_files.hpp"
 
 namespace adit::archive {
 namespace {
@@ -66,6 +67,48 @@ TEST_F(ArchiveTest, RestoresPictureTracksAndPlotsAfterARestart) {
   EXPECT_THAT(plots.sent_mbit, testing::ElementsAre(1.5));
   ASSERT_EQ(plots.attention.size(), 1U);
   EXPECT_EQ(plots.attention[0].sentence, "no token");
+}
+
+/// Commit 937b95d6 wrote the files of the run.
+TEST_F(ArchiveTest, ReadsARunOfAnEarlierVersion) {
+  fs::create_directory(folder / "runs");
+  fs::copy(project_file("tests/archive/earlier"), folder / "runs/3");
+  live(run.head);
+  run.easel.draw(picture::grid_at(0, 0, 2, 0.25, {0, 100, 100, 0}));
+  ASSERT_EQ(picture.layers().size(), 1U);
+  const picture::LayerView layer = picture.layers()[0], drawn = run.easel.mosaic.layers()[0];
+  EXPECT_EQ(layer.layer, drawn.layer);
+  EXPECT_EQ(layer.bounds, drawn.bounds);
+  ASSERT_EQ(layer.tiles.size(), drawn.tiles.size());
+  for (const picture::TileView& tile : layer.tiles) {
+    picture::Packer packer;
+    picture::Pixels is, was;
+    packer.unpack(*picture.tile(layer.layer, tile.at, {}).tile, is);
+    packer.unpack(*run.easel.mosaic.tile(layer.layer, tile.at, {}).tile, was);
+    EXPECT_EQ(is, was) << "level " << tile.at.level;
+  }
+  ASSERT_EQ(tracks.size(), 1U);
+  EXPECT_EQ(tracks[0].robot, "ugv1");
+  ASSERT_EQ(tracks[0].poses.size(), 1U);
+  const api::TrackPose& pose = tracks[0].poses[0];
+  EXPECT_EQ(std::tie(pose.at, pose.position, pose.heading), std::tuple(1001, icd::Point{1, 2, 3}, 0.5));
+
+  const api::History plots = archive->history(0);
+  EXPECT_THAT(plots.at, testing::ElementsAre(1011));
+  EXPECT_THAT(plots.sent_mbit, testing::ElementsAre(1.5));
+  EXPECT_THAT(plots.queued_bytes, testing::ElementsAre(7));
+  EXPECT_THAT(plots.scoring_ms, testing::ElementsAre(12));
+  EXPECT_THAT(plots.mapping_ms, testing::ElementsAre(std::nullopt));
+  ASSERT_EQ(plots.robots.size(), 1U);
+  EXPECT_EQ(plots.robots[0].robot, "ugv1");
+  EXPECT_THAT(plots.robots[0].ages, testing::ElementsAre(4));
+  ASSERT_EQ(plots.attention.size(), 1U);
+  EXPECT_EQ(plots.attention[0].sentence, "no token");
+
+  const auto facts = RunsFolder(folder.path()).facts_of("3").value();
+  ASSERT_TRUE(facts);
+  EXPECT_EQ(std::tie(facts->run, facts->course, facts->began, facts->last, facts->score),
+            std::tuple(3, "alpha", 990, 1011, 5));
 }
 
 TEST_F(ArchiveTest, RestoresEarlierTimesAfterARestart) {

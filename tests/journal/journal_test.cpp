@@ -4,6 +4,7 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 
+#include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -12,6 +13,7 @@
 
 #include "journal/left_in.hpp"
 #include "loop/turn_until.hpp"
+#include "project_files.hpp"
 
 namespace adit::journal {
 namespace {
@@ -78,6 +80,60 @@ TEST_F(JournalTest, RestoresUndeliveredMessages) {
     EXPECT_EQ(left().markers(), one_marker(2));
     (void)life();
   }
+}
+
+/// Commit 937b95d6 wrote the journal.
+TEST(JournalFiles, OfAnEarlierVersionAreRead) {
+  using namespace std::chrono_literals;
+  const Carried carried = left_in(project_file("tests/journal/earlier"));
+  ASSERT_TRUE(carried.clock());
+  const auto& [boot, at, stamp, step_to, step_by, off, off_since] = *carried.clock();
+  EXPECT_EQ(std::tie(boot, at, stamp), std::tuple("b", pace::Instant(1000s), 1e9));
+  EXPECT_EQ(std::tie(step_to, step_by, off, off_since), std::tuple(2, 3, 4, 5));
+
+  std::vector<queues::PostedPose> poses;
+  for (const auto& [name, robot] : carried.robots()) poses.push_back(robot.posted);
+  const icd::Pose pose{.position = {1.5, -2, 1e-300}, .orientation = {0, 0, 0.6, 0.8}};
+  EXPECT_THAT(poses,
+              testing::ElementsAre(queues::PostedPose{*icd::RobotName::parse("r1"), pose, 12.25, "10.0.0.5"},
+                                   queues::PostedPose{*icd::RobotName::parse("r2"), {}, {}, ""}));
+  icd::Marker marker;
+  marker.header.stamp = 6;
+  marker.ns = "a";
+  marker.id = -1;
+  marker.type = 8;
+  marker.pose = {.position = {1, 2, 3}, .orientation = {0.5, 0.5, 0.5, 0.5}};
+  marker.scale = {1, 2, 3};
+  marker.color = {0.1, 0.2, 0.3, 0.4};
+  marker.lifetime = 7;
+  marker.text = "text";
+  marker.frame_locked = marker.mesh_use_embedded_materials = true;
+  marker.points = {{1, 2, 3}, {4, 5, 6}};
+  marker.colors = {{0.5, 0.25, 0.75, 1}};
+  marker.mesh_resource = "package://a/b.stl";
+  marker.expires = 13;
+  EXPECT_THAT(carried.markers().markers, testing::ElementsAre(marker));
+
+  const auto senders = carried.senders().clocks();
+  ASSERT_EQ(senders.size(), 1U);
+  EXPECT_EQ(senders[0].first, (queues::Stamper{"10.0.0.5", icd::Uri::MapUpdate, "r1"}));
+  const auto& [theirs, ours, latest] = senders[0].second;
+  EXPECT_EQ(std::tie(theirs, ours, latest), std::tuple(100, 200, 300));
+  const pace::Learned learned{.earliest = {pace::Instant(1001s), {}},
+                              .spacing = 2s,
+                              .under_way = true,
+                              .from_answers = true,
+                              .single = {}};
+  EXPECT_THAT(carried.paces(), testing::ElementsAre(testing::Pair(icd::Uri::MapUpdate, learned)));
+  EXPECT_THAT(carried.stamps(), testing::ElementsAre(testing::Pair(icd::Uri::StateUpdate, 1e9 + 1)));
+  EXPECT_THAT(carried.grids(),
+              testing::Optional(testing::ElementsAre(testing::Pair("g", queues::Extent{1, 2, 3, 4}))));
+  ASSERT_EQ(carried.heard().size(), 1U);
+  const Heard& heard = carried.heard().at("r1");
+  EXPECT_EQ(std::tie(heard.messages, heard.gap, heard.last), std::tuple(9U, 0.5, 40));
+  EXPECT_EQ(std::tie(heard.kinds[0].accepted, heard.kinds[0].forwarded), std::tuple(1, 2));
+  EXPECT_TRUE(std::isnan(heard.kinds[1].accepted) && std::isnan(heard.kinds[1].forwarded));
+  EXPECT_EQ(std::tie(heard.kinds[2].accepted, heard.kinds[2].forwarded), std::tuple(3, 4));
 }
 
 TEST_F(JournalTest, IsPrivate) {

@@ -4,10 +4,12 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <filesystem>
 #include <limits>
 
 #include "ledger/book.hpp"
 #include "ledger/state.hpp"
+#include "project_files.hpp"
 #include "store/frame.hpp"
 
 namespace adit::ledger {
@@ -90,6 +92,26 @@ TEST(LedgerRecord, HasTheseBytes) {
             "000100000000000000000000000000e03f010000000000000001000000000000000000000000000a4000000000000000"
             "00010000000000000000000000000000000100000000000000000000000000000018000000000000006561636820616e"
             "7377657220616e6f74686572206e616d65");
+}
+
+/// Commit 937b95d6 wrote these files: a snapshot, and a log without the zeros behind its last record.
+TEST(LedgerRecord, IsReadFromFilesOfAnEarlierVersion) {
+  const State state;
+  std::filesystem::copy(project_file("tests/ledger/earlier"), state.ledger());
+  for (const auto& [name, bytes] : files_in(state.ledger())) {
+    if (name.starts_with("log-"))
+      std::filesystem::resize_file(state.ledger() + '/' + name, Ledger::kKeeping.file_bytes);
+  }
+  const Ledger ledger = open_or_fail(state.path());
+  EXPECT_EQ(ledger.damage(), "");
+  Report answered = full_report(), doubt = in_state(backpack(3), ReportState::InDoubt);
+  answered.run = doubt.run = 2;
+  doubt.note = "no answer";
+  EXPECT_THAT(ledger.reports(), ElementsAre(backpack(1), answered, doubt));
+  EXPECT_THAT(ledger.history(2),
+              ElementsAre(Step{10, "queued", ""}, Step{11, "sending", ""}, Step{12.5, "answered", "scored"}));
+  EXPECT_THAT(ledger.runs(),
+              ElementsAre(dispatch::Run{.number = 1, .began = 5, .post = "10.100.1.200:8000"}, full_run()));
 }
 
 TEST(LedgerRecord, ReadsBackEachMember) {

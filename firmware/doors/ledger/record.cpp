@@ -8,12 +8,55 @@
 
 namespace adit {
 
+namespace ledger {
+
+/// The member at a path of pointers to members, and its name for people.
+template <auto first, auto... rest>
+struct Named {
+  const char* name;
+
+  auto& operator()(auto& of) const { return ((of.*first).*....*rest); }
+};
+
+}  // namespace ledger
+
+// The members of reports and runs. Append new ones: earlier versions preserve them.
+
 template <>
-inline constexpr auto store::kMembers<dispatch::Clock> =
-    std::tuple(&dispatch::Clock::shows, &dispatch::Clock::runs);
+inline constexpr auto store::kMembers<dispatch::Report> = [] {
+  using dispatch::Report, icd::ArtifactReport, ledger::Named;
+  return std::tuple(Named<&Report::number>{"number"}, Named<&Report::report, &ArtifactReport::type>{"type"},
+                    Named<&Report::report, &ArtifactReport::position, &icd::Point::x>{"x"},
+                    Named<&Report::report, &ArtifactReport::position, &icd::Point::y>{"y"},
+                    Named<&Report::report, &ArtifactReport::position, &icd::Point::z>{"z"},
+                    Named<&Report::report, &ArtifactReport::robot>{"robot"}, Named<&Report::sender>{"sender"},
+                    Named<&Report::received>{"received"}, Named<&Report::changed>{"changed"},
+                    Named<&Report::state>{"state"}, Named<&Report::note>{"note"}, Named<&Report::run>{"run"},
+                    Named<&Report::asked>{"asked"}, Named<&Report::same_as>{"same_as"},
+                    Named<&Report::tries>{"tries"}, Named<&Report::sending>{"sending"},
+                    Named<&Report::sent>{"sent"}, Named<&Report::before>{"before"},
+                    Named<&Report::status>{"status"}, Named<&Report::content_type>{"content_type"},
+                    Named<&Report::answer>{"answer"}, Named<&Report::reconciled>{"reconciled"},
+                    Named<&Report::beside>{"beside"}, Named<&Report::counted>{"counted"},
+                    Named<&Report::uncertain>{"uncertain"});
+}();
+template <>
+inline constexpr auto store::kMembers<dispatch::Run> = [] {
+  using dispatch::Run, ledger::Named;
+  return std::tuple(Named<&Run::number>{"number"}, Named<&Run::id>{"id"}, Named<&Run::began>{"began"},
+                    Named<&Run::why>{"why"}, Named<&Run::last>{"last"}, Named<&Run::heard>{"heard"},
+                    Named<&Run::post>{"post"}, Named<&Run::unreliable>{"unreliable"},
+                    Named<&Run::turn>{"turn"}, Named<&Run::may_be>{"may_be"},
+                    Named<&Run::status_clock>{"status_clock"}, Named<&Run::answer_clock>{"answer_clock"},
+                    Named<&Run::signs>{"signs"}, Named<&Run::name_trouble>{"name_trouble"});
+}();
+template <>
+inline constexpr auto store::kMembers<dispatch::Clock> = std::tuple(
+    ledger::Named<&dispatch::Clock::shows>{"shows"}, ledger::Named<&dispatch::Clock::runs>{"runs"});
 template <>
 inline constexpr auto store::kMembers<dispatch::Signs> = std::tuple(
-    &dispatch::Signs::count, &dispatch::Signs::clock, &dispatch::Signs::score, &dispatch::Signs::name);
+    ledger::Named<&dispatch::Signs::count>{"count"}, ledger::Named<&dispatch::Signs::clock>{"clock"},
+    ledger::Named<&dispatch::Signs::score>{"score"}, ledger::Named<&dispatch::Signs::name>{"name"});
 template <>
 inline constexpr auto store::kMembers<icd::RunStatus> =
     std::tuple(&icd::RunStatus::score, &icd::RunStatus::run_clock, &icd::RunStatus::remaining_reports,
@@ -40,7 +83,6 @@ class Put : public store::Writer {
   using store::Writer::operator();
   void operator()(ReportState state) { (*this)(dispatch::name_of(state)); }
   void operator()(const std::optional<icd::RobotName>& robot) { (*this)(icd::text_of(robot)); }
-  void operator()(const char* /*name*/, const auto& value) { store::walk(*this, value); }
 };
 
 class Take : public store::Reader {
@@ -56,7 +98,6 @@ class Take : public store::Reader {
   void operator()(std::optional<icd::RobotName>& robot) {
     robot = icd::RobotName::parse(read<std::string_view>());
   }
-  void operator()(const char* /*name*/, auto& value) { store::walk(*this, value); }
 
   /// The word of a state unknown to this version, or "".
   std::string_view unknown_state() const { return unknown_; }
@@ -65,95 +106,30 @@ class Take : public store::Reader {
   std::string_view unknown_;
 };
 
-class Show {
- public:
-  void operator()(const char* name, const auto& value) { members_.emplace_back(name, codec::json(value)); }
-  void operator()(const char* name, ReportState state) {
-    (*this)(name, std::string(dispatch::name_of(state)));
-  }
-  void operator()(const char* name, const std::optional<icd::RobotName>& robot) {
-    (*this)(name, icd::text_of(robot));
-  }
-  void operator()(const char* name, const std::optional<dispatch::Clock>& clock) {
-    Show shown;
-    if (clock) shown("shows", clock->shows), shown("runs", clock->runs);
-    (*this)(name, clock ? shown.finish() : codec::Value());
-  }
-  void operator()(const char* name, const dispatch::Signs& signs) {
-    Show shown;
-    shown("count", signs.count), shown("clock", signs.clock);
-    shown("score", signs.score), shown("name", signs.name);
-    (*this)(name, shown.finish());
-  }
-  codec::Value finish() { return {std::move(members_)}; }
-
- private:
-  codec::Value::Object members_;
-};
-
-// The members in record order, with names for people. Append new ones: earlier versions preserve them.
-
-void members(auto& each, auto& report)
-  requires std::same_as<std::remove_const_t<std::remove_reference_t<decltype(report)>>, Report>
-{
-  each("number", report.number);
-  each("type", report.report.type);
-  each("x", report.report.position.x);
-  each("y", report.report.position.y);
-  each("z", report.report.position.z);
-  each("robot", report.report.robot);
-  each("sender", report.sender);
-  each("received", report.received);
-  each("changed", report.changed);
-  each("state", report.state);
-  each("note", report.note);
-  each("run", report.run);
-  each("asked", report.asked);
-  each("same_as", report.same_as);
-  each("tries", report.tries);
-  each("sending", report.sending);
-  each("sent", report.sent);
-  each("before", report.before);
-  each("status", report.status);
-  each("content_type", report.content_type);
-  each("answer", report.answer);
-  each("reconciled", report.reconciled);
-  each("beside", report.beside);
-  each("counted", report.counted);
-  each("uncertain", report.uncertain);
-}
-
-void members(auto& each, auto& run)
-  requires std::same_as<std::remove_const_t<std::remove_reference_t<decltype(run)>>, Run>
-{
-  each("number", run.number);
-  each("id", run.id);
-  each("began", run.began);
-  each("why", run.why);
-  each("last", run.last);
-  each("heard", run.heard);
-  each("post", run.post);
-  each("unreliable", run.unreliable);
-  each("turn", run.turn);
-  each("may_be", run.may_be);
-  each("status_clock", run.status_clock);
-  each("answer_clock", run.answer_clock);
-  each("signs", run.signs);
-  each("name_trouble", run.name_trouble);
-}
-
+/// A value of a record for people.
 template <class Of>
-std::string put(const Of& what, std::string_view more) {
-  Put put;
-  members(put, what);
-  return put.finish().append(more);
+codec::Value show(const Of& of) {
+  if constexpr (std::same_as<Of, ReportState>) {
+    return {std::string(dispatch::name_of(of))};
+  } else if constexpr (std::same_as<Of, std::optional<icd::RobotName>>) {
+    return {icd::text_of(of)};
+  } else if constexpr (std::same_as<Of, std::optional<dispatch::Clock>>) {
+    return of ? show(*of) : codec::Value();
+  } else if constexpr (requires { codec::KindOf<Of>::write(of); }) {
+    return codec::json(of);
+  } else {
+    codec::Value::Object members;
+    const auto add = [&](const auto& member) { members.emplace_back(member.name, show(member(of))); };
+    std::apply([&](const auto&... each) { (add(each), ...); }, store::kMembers<Of>);
+    return {std::move(members)};
+  }
 }
 
 template <class Of>
 std::optional<Of> take(std::string_view record) {
   Take take(record);
   Of what;
-  members(take, what);
+  store::walk(take, what);
   if (!take.ok() || what.number < 1) return std::nullopt;
   if constexpr (std::same_as<Of, Report>) {
     if (!take.unknown_state().empty()) {  // without `before`, only the operator may decide on it
@@ -167,28 +143,21 @@ std::optional<Of> take(std::string_view record) {
 }
 
 template <class Of>
-codec::Value show(const Of& what) {
-  Show show;
-  members(show, what);
-  return show.finish();
-}
-
-template <class Of>
 std::string_view left_behind(std::string_view record) {
   Take take(record);
   Of what;
-  members(take, what);
+  store::walk(take, what);
   return take.left();
 }
 
 }  // namespace
 
 std::string encoded(const Report& report, std::string_view more) {
-  return put(report, more);
+  return store::bytes_of<Put>(report).append(more);
 }
 
 std::string encoded(const Run& run, std::string_view more) {
-  return put(run, more);
+  return store::bytes_of<Put>(run).append(more);
 }
 
 std::optional<Report> report_in(std::string_view record) {

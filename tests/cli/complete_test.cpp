@@ -67,8 +67,8 @@ TEST_F(Completion, ListsRejectedMessagesCoursesAndRuns) {
 
 TEST(CompletionOfKeys, SendsNoRequest) {
   const Outcome lines = run(std::vector<std::string_view>{"complete", "keys"});
-  const auto keys = api::key_rows();
-  const auto review = std::ranges::find(keys, "reports.review", &api::KeyRow::path);
+  const auto keys = settings::keys();
+  const auto review = std::ranges::find(keys, "reports.review", &settings::Key::path);
   const std::string meaning = review->meaning.substr(0, review->meaning.find_first_of(".:;"));
   EXPECT_THAT(lines.out, HasSubstr("reports.review\t" + meaning + "\n"));
   EXPECT_THAT(lines.out, HasSubstr("robots[].alias\t"));

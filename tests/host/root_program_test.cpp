@@ -32,7 +32,7 @@ struct Status {
   static const codec::Row kRow;
 };
 constexpr codec::Member kRequestMembers[] = {
-    codec::member<&Request::nonce>("nonce").as(codec::kNonce),
+    codec::member<&Request::nonce>("nonce").matching(codec::kNonce),
     codec::member<&Request::what>("what"),
 };
 constexpr codec::Member kStatusMembers[] = {codec::member<&Status::nonce>("nonce")};

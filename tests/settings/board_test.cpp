@@ -62,8 +62,8 @@ struct BoardCase {
 const BoardCase kBoardCases[] = {
     {"", "not JSON: "},
     {"[]", "expected an object, got an array"},
-    {R"({"title": "T"})", "name: missing"},
-    {R"({"name": "n"})", "title: missing"},
+    {R"({"title": "T"})", "name: missing; expected 1 to 32 small letters, digits, hyphens and underscores"},
+    {R"({"name": "n"})", "title: missing; expected 1 to 80 printable ASCII characters"},
     {R"({"name": "", "title": "T"})",
      "name: expected 1 to 32 small letters, digits, hyphens and underscores, got \"\""},
     {R"({"name": "../x", "title": "T"})",
@@ -99,7 +99,7 @@ TEST(Board, ReportsAllFaultsAtOnce) {
                           "panel.blink: no such key (keys here: chip, health, scoring, mapping, attention, "
                           "active_low, button, button_active_low)",
                           "name: expected 1 to 32 small letters, digits, hyphens and underscores, got \"A\"",
-                          "title: missing"));
+                          "title: missing; expected 1 to 80 printable ASCII characters"));
 }
 
 TEST(Board, FilesInTheSourceAreValid) {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "settings/keys.hpp"
+#include "settings/sample.hpp"
 #include "settings/settings.hpp"
 
 namespace adit::settings {

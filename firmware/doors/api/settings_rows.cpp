@@ -2,8 +2,6 @@
 
 #include <utility>
 
-#include "settings/keys.hpp"
-
 namespace adit::api {
 namespace {
 
@@ -108,35 +106,12 @@ constexpr Member kCheck[] = {
     member<&CheckView::changes>(""),
 };
 
-KeyRow row_of(const settings::Key& key, const settings::Settings& defaults) {
-  KeyRow row{.path = std::string(key.path),
-             .meaning = std::string(key.meaning),
-             .kind = std::string(settings::name_of(key.kind)),
-             .required = key.required,
-             .default_value = key.required ? Value{} : settings::value_of(key.kind, defaults),
-             .range = settings::range_of(key.kind)};
-  const settings::Kind& kind = key.kind;
-  if (!kind.words.empty()) row.words.emplace(kind.words.begin(), kind.words.end());
-  if (kind.least < kind.most) {
-    row.least = bound_of(kind, kind.least);
-    row.most = bound_of(kind, kind.most);
-  }
-  return row;
-}
-
 }  // namespace
 
-constexpr Row KeyRow::kRow = {"", kKey};
+constexpr Row kKeyRow = {"", kKey};
 constexpr Row SetupView::kRow = {"Setup", kSetup};
 constexpr Row ChangesView::kRow = {"Changes", kChanged};
 constexpr Row CheckView::kRow = {"Checked", kCheck};
-
-std::vector<KeyRow> key_rows() {
-  const settings::Settings defaults = settings::with_an_item_of_each();
-  std::vector<KeyRow> rows;
-  for (const settings::Key& key : settings::keys()) rows.push_back(row_of(key, defaults));
-  return rows;
-}
 
 SetupView setup_view(const Setup& setup) {
   SetupView view{.settings = settings::value_of(setup.settings()),
@@ -148,7 +123,7 @@ SetupView setup_view(const Setup& setup) {
   for (const TokenRow& token : view.tokens) {
     if (!token.warning.empty()) view.odd_tokens.push_back({token.name, token.warning});
   }
-  view.keys = key_rows();
+  view.keys = settings::keys();
   return view;
 }
 

@@ -1,26 +1,28 @@
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "api/setup.hpp"
 #include "codec/row.hpp"
+#include "settings/keys.hpp"
 #include "settings/written.hpp"
 
 namespace adit::api {
 
-/// Data about one settings key, for a form.
-struct KeyRow {
-  std::string path, meaning, kind;
-  bool required = false;
-  codec::Value default_value;
-  std::string range;
-  std::optional<std::vector<std::string>> words = std::nullopt;  // of a choice
-  codec::Value least = {}, most = {};                            // of a number
+using KeyRow = settings::Key;
+extern const codec::Row kKeyRow;
 
-  static const codec::Row kRow;
-};
+}  // namespace adit::api
+
+namespace adit::codec {
+
+template <>
+struct KindOf<api::KeyRow> : KindOfRow<api::KeyRow, api::kKeyRow> {};
+
+}  // namespace adit::codec
+
+namespace adit::api {
 
 /// The settings and tokens in use, and the data for their form.
 struct SetupView {
@@ -50,9 +52,6 @@ struct CheckView {
 
   static const codec::Row kRow;
 };
-
-/// All keys, in table order.
-std::vector<KeyRow> key_rows();
 
 SetupView setup_view(const Setup& setup);
 

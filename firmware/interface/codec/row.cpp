@@ -27,11 +27,11 @@ const Row* row_of(const Schema& schema) {
   return schema.items != nullptr ? schema.items->row : schema.row;
 }
 
-std::string in_turn(std::span<const std::string_view> words) {
+std::string in_turn(std::span<const std::string_view> words, std::string_view quote) {
   std::string text;
   for (std::size_t i = 0; i < words.size(); ++i) {
     if (i > 0) text += i + 1 == words.size() ? " or " : ", ";
-    text += words[i];
+    text.append(quote).append(words[i]).append(quote);
   }
   return text;
 }
@@ -80,6 +80,7 @@ void change_numbers(const Row& row, void* in, double (*changed)(double)) {
 namespace {
 
 using Whole = std::numeric_limits<std::int64_t>;
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
 constexpr std::string_view kFormatMember = "format";
 constexpr std::int64_t kFormat = 1;
@@ -100,12 +101,17 @@ void check_member(const Member& member, const Field& field) {
   if (field.is_absent()) return;  // its kind decides whether it may be absent
   if (!member.words.empty() && std::ranges::find(member.words, field.text()) == member.words.end())
     return field.refuse("expected ", in_turn(member.words));
-  if (member.least || member.most)
-    field.whole(member.least.value_or(Whole::min()), member.most.value_or(Whole::max()));
-  check_value(*member.kind->schema, field);
+  if (member.form != nullptr && !member.form->fits(field.text()))
+    return field.refuse("expected ", member.form->range);
+  const Schema& schema = *member.kind->schema;
+  if (schema.type == "number") field.number(member.least.value_or(-kNoLimit), member.most.value_or(kNoLimit));
+  if (schema.type == "integer")
+    field.whole(member.least ? static_cast<std::int64_t>(*member.least) : Whole::min(),
+                member.most ? static_cast<std::int64_t>(*member.most) : Whole::max());
+  check_value(schema, field);
 }
 
-/// Checks names, words and bounds, which the members' kinds do not. `besides`: an additional member.
+/// Checks names, words, forms and bounds, which the members' kinds do not. `besides`: an additional member.
 void check_row(const Row& row, const Field& field, std::string_view besides) {
   if (!field.is<Value::Object>()) return field.refuse_kind("an object");
   for (const auto& [name, value] : std::get<Value::Object>(field.value()->is)) {
@@ -120,6 +126,11 @@ void check_row(const Row& row, const Field& field, std::string_view besides) {
 }
 
 }  // namespace
+
+void read_member(const Member& member, const Field& field, void* into) {
+  check_member(member, field);
+  member.kind->read(field, member.in(into));
+}
 
 std::string write_row_file(const Row& row, const void* from) {
   Value value = write_row(row, from);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <chrono>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -68,6 +69,7 @@ const Row* row_of(const Schema& schema);
 struct Kind {
   using Same = bool (*)(const void* one, const void* other);
   using ToRows = Rows (*)(void* value);
+  using Add = void* (*)(void* value);
 
   Value (*write)(const void* value);
   /// Refuses another value and leaves a harmless one.
@@ -77,10 +79,18 @@ struct Kind {
   Same same = nullptr;
   /// The row, if present, or the rows of a list; null: not rows.
   ToRows rows = nullptr;
+  /// Adds a row to a list, or creates an optional row, and returns it; null: neither.
+  Add add = nullptr;
 };
 
 /// Form in CSV: none, plain, ISO 8601, or empty if 0.
 enum class Cell : std::uint8_t { None, Plain, Time, NotZero };
+
+/// A rule for texts.
+struct Form {
+  bool (*fits)(std::string_view text);
+  std::string_view range;  // "an IPv4 address"
+};
 
 /// One member of a row.
 struct Member {
@@ -89,10 +99,11 @@ struct Member {
   const Kind* kind;
   void* (*in)(void* row);
   std::span<const std::string_view> words = {};  // possible values of a text; empty: any
-  std::optional<std::int64_t> least = {}, most = {};
+  const Form* form = nullptr;                    // of a text; null: any
+  std::optional<double> least = {}, most = {};   // of a number, or of the number of a list's items
   Cell cell = Cell::None;
   int column = 0;         // in CSV, from 1
-  bool is_needed = true;  // false: left out if null
+  bool is_needed = true;  // false: may be missing; left out if null
   bool is_exact = false;  // its numbers are identifiers and never rounded
 
   /// A copy with one property changed; before its callers, for clang.
@@ -107,15 +118,20 @@ struct Member {
   constexpr Member one_of(std::span<const std::string_view> all) const { return with(&Member::words, all); }
   constexpr Member if_any() const { return with(&Member::is_needed, false); }
   constexpr Member exact() const { return with(&Member::is_exact, true); }
-  constexpr Member from(std::int64_t bound) const { return with(&Member::least, std::optional(bound)); }
-  constexpr Member to(std::int64_t bound) const { return with(&Member::most, std::optional(bound)); }
-  constexpr Member csv(int place, Cell form = Cell::Plain) const {
-    return with(&Member::cell, form).with(&Member::column, place);
+  constexpr Member matching(const Form& one) const { return with(&Member::form, &one); }
+  constexpr Member from(double bound) const { return with(&Member::least, std::optional(bound)); }
+  constexpr Member to(double bound) const { return with(&Member::most, std::optional(bound)); }
+  constexpr Member within(double lowest, double highest) const { return from(lowest).to(highest); }
+  constexpr Member csv(int place, Cell cell_form = Cell::Plain) const {
+    return with(&Member::cell, cell_form).with(&Member::column, place);
   }
 };
 
 Value write_row(const Row& row, const void* from);
 void read_row(const Row& row, const Field& field, void* into);
+/// Reads a member of the row `into`. Refuses a value that is not among its words, or not within its form or
+/// bounds.
+void read_member(const Member& member, const Field& field, void* into);
 /// Changes all reals in the row and its rows, except those of exact members.
 void change_numbers(const Row& row, void* in, double (*changed)(double));
 
@@ -147,16 +163,26 @@ constexpr Kind::ToRows rows_as() {
   }
 }
 
-/// A Kind from a class with KindOf's members; `same` and `rows` are optional.
+template <class T, class As>
+constexpr Kind::Add adder_of() {
+  if constexpr (requires(T& value) { As::add(value); }) {
+    return [](void* value) -> void* { return &As::add(*static_cast<T*>(value)); };
+  } else {
+    return nullptr;
+  }
+}
+
+/// A Kind from a class with KindOf's members; `same`, `rows` and `add` are optional.
 template <class T, class As>
 inline constexpr Kind kind_as = {
     .write = [](const void* value) -> Value { return As::write(*static_cast<const T*>(value)); },
     .read = [](const Field& field, void* value) { As::read(field, *static_cast<T*>(value)); },
     .schema = &As::schema,
     .same = same_as<T, As>(),
-    .rows = rows_as<T, As>()};
+    .rows = rows_as<T, As>(),
+    .add = adder_of<T, As>()};
 template <class T>
-inline constexpr Kind kind_of = kind_as<T, KindOf<T>>;
+inline constexpr const Kind& kind_of = kind_as<T, KindOf<T>>;
 
 /// For types that are written alike exactly if they are equal.
 struct Equal {
@@ -175,6 +201,15 @@ struct KindOf<bool> : Equal {
   static Value write(bool value) { return {value}; }
   static void read(const Field& field, bool& value) { value = field.truth(); }
   static constexpr Schema schema = {.type = "boolean"};
+};
+
+/// The number of its periods.
+template <class Count, class Period>
+struct KindOf<std::chrono::duration<Count, Period>> : Equal {
+  using Time = std::chrono::duration<Count, Period>;
+  static Value write(Time time) { return {std::int64_t{time.count()}}; }
+  static void read(const Field& field, Time& time) { time = Time(field.whole<Count>()); }
+  static constexpr Schema schema = {.type = "integer"};
 };
 
 /// Any value.
@@ -226,22 +261,25 @@ template <class T>
   requires requires { T::kRow; }
 struct KindOf<T> : KindOfRow<T, T::kRow> {};
 
-/// "a, b or c", for a sentence.
-std::string in_turn(std::span<const std::string_view> words);
+/// "a, b or c", for a sentence. `quote`: around each word.
+std::string in_turn(std::span<const std::string_view> words, std::string_view quote = "");
 
-/// An enum whose namespace has words_of(Enum): an array of its words, in order from 0.
-template <class Enum>
-  requires requires(Enum value) { words_of(value); }
-struct KindOf<Enum> : Equal {
-  static constexpr auto& kWords = words_of(Enum{});
-  static Value write(Enum value) { return {std::string(kWords[static_cast<std::size_t>(value)])}; }
-  static void read(const Field& field, Enum& value) {
+/// A number or enum that is written as one of these words, in order from 0.
+template <class Index, const auto& kWords>
+struct KindOfWord : Equal {
+  static Value write(Index value) { return {std::string(kWords[static_cast<std::size_t>(value)])}; }
+  static void read(const Field& field, Index& value) {
     const auto* const word = std::find(std::begin(kWords), std::end(kWords), field.text());
     if (word == std::end(kWords)) return field.refuse("expected ", in_turn(kWords));
-    value = static_cast<Enum>(word - std::begin(kWords));
+    value = static_cast<Index>(word - std::begin(kWords));
   }
   static constexpr Schema schema = {.type = "string"};
 };
+
+/// An enum whose namespace has words_of(Enum): an array of its words.
+template <class Enum>
+  requires requires(Enum value) { words_of(value); }
+struct KindOf<Enum> : KindOfWord<Enum, words_of(Enum{})> {};
 
 /// For types that are never read.
 struct WriteOnly {
@@ -265,6 +303,11 @@ struct KindOf<std::optional<T>> {
     requires IsRow<T>
   {
     return value ? KindOf<T>::rows_at(&*value, 1) : Rows{};
+  }
+  static T& add(std::optional<T>& value)
+    requires IsRow<T>
+  {
+    return value.emplace();
   }
   static constexpr Schema schema = KindOf<T>::schema.nullable();
 };
@@ -294,6 +337,11 @@ struct KindOf<std::vector<T>> {
   {
     return KindOf<T>::rows_at(all.data(), all.size());
   }
+  static T& add(std::vector<T>& all)
+    requires IsRow<T>
+  {
+    return all.emplace_back();
+  }
   static constexpr Schema schema = {.type = "array", .items = &KindOf<T>::schema};
 };
 
@@ -308,14 +356,23 @@ inline constexpr Kind kTextOrNull = {
                void* value) { *static_cast<std::string*>(value) = field.is_absent() ? "" : field.text(); },
     .schema = &kTextOrNullSchema};
 
-/// The member at a path of pointers to members, which starts in the row.
+template <auto... at, class In, class T>
+auto type_at(T In::*) -> std::remove_cvref_t<decltype((std::declval<In&>().*....*at))>;
+/// The type of the member at a path of pointers to members.
 template <auto first, auto... rest>
-constexpr Member member(std::string_view name, std::string_view meaning = "") {
+using TypeAt = decltype(type_at<first, rest...>(first));
+
+/// The member at a path of pointers to members, which starts in the row. `As` has KindOf's members.
+template <class As, auto first, auto... rest>
+constexpr Member member_of_kind(std::string_view name, std::string_view meaning = "") {
   return [=]<class In, class T>(T In::* /*first*/) {
-    using Last = std::remove_cvref_t<decltype(((std::declval<In&>().*first).*....*rest))>;
-    return Member{name, meaning, &kind_of<Last>,
+    return Member{name, meaning, &kind_as<TypeAt<first, rest...>, As>,
                   [](void* row) -> void* { return &((static_cast<In*>(row)->*first).*....*rest); }};
   }(first);
+}
+template <auto first, auto... rest>
+constexpr Member member(std::string_view name, std::string_view meaning = "") {
+  return member_of_kind<KindOf<TypeAt<first, rest...>>, first, rest...>(name, meaning);
 }
 
 /// A member computed from the whole row.

@@ -79,6 +79,11 @@ class Schemas {
     } while (number > 0);
     begin(name, {&digits[first], digits.size() - first});
   }
+  static constexpr std::int64_t whole(double bound) {
+    const auto number = static_cast<std::int64_t>(bound);
+    if (static_cast<double>(number) != bound) throw std::invalid_argument("not written here");
+    return number;
+  }
   constexpr void add_text(std::string_view text) {
     const char* const letters = text.data();
     const std::size_t size = text.size();
@@ -153,7 +158,7 @@ class Schemas {
   constexpr void add_member(const Member& member) {
     Schema schema = *member.kind->schema;
     schema.or_null = schema.or_null && member.is_needed;
-    if (member.least) schema.least = member.least;
+    if (member.least) schema.least = whole(*member.least);
     add_schema(schema);
     if (!member.words.empty()) {
       begin("enum", "[");
@@ -163,7 +168,7 @@ class Schemas {
       }
       add(schema.or_null ? ",null]" : "]");
     }
-    if (member.most) add("maximum", *member.most);
+    if (member.most) add("maximum", whole(*member.most));
     add_meaning(member.meaning);
   }
 

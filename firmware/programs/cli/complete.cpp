@@ -98,7 +98,7 @@ Result<Outcome> complete_runs(const Call& call) {
 
 /// Prints each key with the beginning of its meaning.
 Result<Outcome> complete_keys(const Options& options, const Console& /*console*/) {
-  const auto rows = api::key_rows();
+  const auto rows = settings::keys();
   std::vector<Candidate> all;
   all.reserve(rows.size());
   for (const api::KeyRow& key : rows)

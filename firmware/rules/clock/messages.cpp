@@ -21,23 +21,23 @@ namespace {
 constexpr double kOldest = 60;  // seconds
 
 constexpr codec::Member kClockRequest[] = {
-    codec::member<&Request::nonce>("nonce").as(codec::kNonce),
+    codec::member<&Request::nonce>("nonce").matching(codec::kNonce),
     codec::member<&Request::source>("source"),
     codec::member<&Request::time>("time"),
     codec::member<&Request::at>("at"),
     codec::member<&Request::boot>("boot"),
-    codec::member<&Request::server>("server").as(network::kAddressOrNone),
+    codec::member<&Request::server>("server").matching(network::kAddressOrNone),
 };
-/// Whether the text is a subnet in the form of settings::written(), or "".
-bool is_subnet_or_none(std::string_view text) {
-  const auto parsed = settings::parse_subnet(text);
-  return text.empty() || (parsed && settings::written(*parsed) == text);
-}
-constexpr char kExpectedSubnet[] = "expected a subnet, or none";
+/// A subnet in the form of settings::written(), or "".
+constexpr codec::Form kSubnetOrNone{[](std::string_view text) {
+                                      const auto parsed = settings::parse_subnet(text);
+                                      return text.empty() || (parsed && settings::written(*parsed) == text);
+                                    },
+                                    "a subnet, or none"};
 
 constexpr codec::Member kNtp[] = {
-    codec::member<&Ntp::server>("server").as(network::kAddressOrNone),
-    codec::member<&Ntp::clients>("clients").as(codec::kCheckedText<is_subnet_or_none, kExpectedSubnet>),
+    codec::member<&Ntp::server>("server").matching(network::kAddressOrNone),
+    codec::member<&Ntp::clients>("clients").matching(kSubnetOrNone),
 };
 constexpr codec::Member kClockStatus[] = {
     codec::member<&Status::boot>("boot"),       codec::member<&Status::nonce>("nonce"),

@@ -45,16 +45,8 @@ using codec::member;
 using codec::Member;
 using codec::Row;
 
-constexpr char kExpectedAddress[] = "expected an IPv4 address";
-constexpr char kExpectedAddressOrNone[] = "expected an IPv4 address, or none";
-constexpr char kExpectedMac[] = "expected a MAC address";
-
-bool is_address(std::string_view text) {
-  return settings::ipv4_of(text).has_value();
-}
-bool is_address_or_none(std::string_view text) {
-  return text.empty() || is_address(text);
-}
+constexpr codec::Form kAddress{[](std::string_view text) { return settings::ipv4_of(text).has_value(); },
+                               "an IPv4 address"};
 
 bool is_mac(std::string_view text) {
   constexpr std::size_t kLength = 17;
@@ -65,6 +57,8 @@ bool is_mac(std::string_view text) {
   }
   return true;
 }
+constexpr codec::Form kMac{is_mac, "a MAC address"};
+
 void read_taken(const Field& list, void* addresses) {
   if (list.size() > kMostTaken) return list.refuse("expected at most ", kMostTaken);
   codec::kind_of<std::vector<AddressConflict>>.read(list, addresses);
@@ -108,22 +102,22 @@ constexpr Member confirm_within() {
 }
 
 constexpr Member kWantedMembers[] = {
-    member<&Wanted::nonce>("nonce").as(codec::kNonce),
+    member<&Wanted::nonce>("nonce").matching(codec::kNonce),
     confirm_within<&Wanted::confirm_within>(),
     member<&Wanted::numbers>("numbers"),
 };
 constexpr Member kWordMembers[] = {
-    member<&Decision::nonce>("nonce").as(codec::kNonce),
+    member<&Decision::nonce>("nonce").matching(codec::kNonce),
     member<&Decision::what>("word"),
 };
 constexpr Member kProbeMembers[] = {
-    member<&Probe::nonce>("nonce").as(codec::kNonce),
-    member<&Probe::sought>("sought").as(kAddressOrNone),
+    member<&Probe::nonce>("nonce").matching(codec::kNonce),
+    member<&Probe::sought>("sought").matching(kAddressOrNone),
 };
 constexpr Member kEndpointsMembers[] = {member<&Endpoints::addresses>("endpoints").as(kAddresses)};
-constexpr Member kForgetMembers[] = {member<&Forget::nonce>("nonce").as(codec::kNonce)};
+constexpr Member kForgetMembers[] = {member<&Forget::nonce>("nonce").matching(codec::kNonce)};
 constexpr Member kPendingMembers[] = {
-    member<&Pending::nonce>("nonce").as(codec::kNonce),
+    member<&Pending::nonce>("nonce").matching(codec::kNonce),
     member<&Pending::until>("until_ms").from(0),
     confirm_within<&Pending::confirm_within>(),
     member<&Pending::wanted>("wanted"),
@@ -140,7 +134,7 @@ constexpr Member kStatusMembers[] = {
     member<&Status::trouble>("trouble"),
 };
 constexpr Member kProbedMembers[] = {
-    member<&Probed::nonce>("nonce").as(codec::kNonce),
+    member<&Probed::nonce>("nonce").matching(codec::kNonce),
     member<&Probed::address>("address"),
     member<&Probed::claimant>("claimant"),
     member<&Probed::own>("own"),
@@ -151,8 +145,8 @@ constexpr Member kProbedMembers[] = {
 
 constexpr Member kTakenAddressMembers[] = {
     member<&AddressConflict::interface>("interface"),
-    member<&AddressConflict::address>("address").as(codec::kCheckedText<is_address, kExpectedAddress>),
-    member<&AddressConflict::mac>("mac").as(codec::kCheckedText<is_mac, kExpectedMac>),
+    member<&AddressConflict::address>("address").matching(kAddress),
+    member<&AddressConflict::mac>("mac").matching(kMac),
     member<&AddressConflict::seen>("seen_ms").from(0),
 };
 constexpr Member kTakenMembers[] = {
@@ -170,7 +164,8 @@ constexpr Row Kept::kRow = {"", kKeptMembers};
 
 }  // namespace
 
-constexpr codec::Kind kAddressOrNone = codec::kCheckedText<is_address_or_none, kExpectedAddressOrNone>;
+constexpr codec::Form kAddressOrNone{
+    [](std::string_view text) { return text.empty() || kAddress.fits(text); }, "an IPv4 address, or none"};
 
 constexpr Row Wanted::kRow = {"", kWantedMembers};
 constexpr Row Decision::kRow = {"", kWordMembers};

@@ -31,8 +31,8 @@ inline constexpr const char* kTakenFile = "taken.json";
 
 inline constexpr std::chrono::milliseconds kLeastWithin{1000}, kMostWithin{600000};
 
-/// The kind of a text that is an IPv4 address or "".
-extern const codec::Kind kAddressOrNone;
+/// An IPv4 address or "".
+extern const codec::Form kAddressOrNone;
 
 struct Wanted {
   std::string nonce;

@@ -15,6 +15,8 @@ struct Board {
   std::string name;            // "qemu-virt"
   std::string title;           // for people
   std::optional<Panel> panel;  // nullopt: the settings' panel applies
+
+  static const codec::Row kRow;
 };
 
 /// Parses board.json of an image. Returns all errors at once, as for the settings; an unknown key is an

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <utility>
 #include <vector>
 
@@ -11,11 +12,14 @@
 #include "icd/sentence.hpp"
 #include "icd/suggestion.hpp"
 #include "icd/text.hpp"
+#include "settings/keys.hpp"
 #include "settings/subnet.hpp"
 
 namespace adit::settings {
 namespace {
 
+using codec::Member;
+using codec::Row;
 using codec::Value;
 
 /// A member's name in a path: as it is if a plain word, else as a JSON string.
@@ -23,10 +27,9 @@ std::string shown_name(const std::string& name) {
   return is_word(name, 48) ? name : shown(Value{name});
 }
 
-/// "a list of 1 to 16 items"
-std::string range_of(const List& list) {
-  return list.least == 0 ? icd::sentence("a list of at most ", list.most, " items")
-                         : icd::sentence("a list of ", list.least, " to ", list.most, " items");
+std::string digits(double number) {
+  char text[400];  // the longest double in fixed notation has 309 digits before its point
+  return {text, std::to_chars(text, text + sizeof text, number, std::chars_format::fixed).ptr};
 }
 
 /// "team.listen"
@@ -42,80 +45,92 @@ std::expected<Value, std::vector<Error>> read_json(std::string_view json) {
   return *std::move(root);
 }
 
-void Reader::read_object(const Value& value, const std::string& pattern, const std::string& path) {
+void Reader::read_object(const Value& value, const Row& row, void* into, const std::string& path) {
   const auto* members = std::get_if<Value::Object>(&value.is);
   if (members == nullptr) {
     errors.push_back({path, "expected an object, got " + shown(value)});
     return;
   }
-  const auto children = children_of(pattern.empty() ? "" : pattern + ".");
   std::vector<std::string_view> seen;
-  for (const auto& [name, member] : *members) {
-    const auto child = std::ranges::find(children, name, &Child::name);
-    if (pattern == "robots[]" && name == "voxel_metres") {  // of earlier versions; 0 was the default
-      if (shown(member) != "0") settings.without_effect.push_back(joined(path, name));
-    } else if (child == children.end()) {
-      tell_unknown(name, children, path);
-    } else if (std::ranges::find(seen, child->name) != seen.end()) {
+  for (const auto& [name, given] : *members) {
+    const auto member = std::ranges::find(row.members, name, &Member::name);
+    if (&row == &Robot::kRow && name == "voxel_metres") {  // of earlier versions; 0 was the default
+      if (shown(given) != "0") without_effect.push_back(joined(path, name));
+    } else if (member == row.members.end()) {
+      tell_unknown(name, row, path);
+    } else if (std::ranges::find(seen, name) != seen.end()) {
       errors.push_back({joined(path, name), "given twice"});
     } else {
-      seen.push_back(child->name);
-      read_child(*child, member, joined(pattern, name), joined(path, name));
+      seen.push_back(member->name);
+      read_member(given, *member, into, joined(path, name));
     }
   }
-  for (const Child& child : children) {
-    if (std::ranges::find(seen, child.name) == seen.end()) {
-      tell_missing(child, joined(pattern, child.name), joined(path, child.name));
-    }
+  for (const Member& member : row.members) {
+    if (std::ranges::find(seen, member.name) == seen.end())
+      tell_missing(member, into, joined(path, member.name));
   }
 }
 
-void Reader::read_child(const Child& child, const Value& value, const std::string& pattern,
-                        const std::string& path) {
-  if (child.list) {
-    read_list(value, pattern, path);
-  } else if (child.key == nullptr) {
-    read_object(value, pattern, path);
-  } else if (const auto done = put(child.key->kind, value, settings); !done) {
-    errors.push_back({path, done.error()});
-  }
+void Reader::read_member(const Value& value, const Member& member, void* into, const std::string& path) {
+  const codec::Schema& schema = *member.kind->schema;
+  void* const at = member.in(into);
+  if (schema.items != nullptr) return read_list(value, member, at, path);
+  if (schema.row != nullptr)
+    return read_object(value, *schema.row, member.kind->add == nullptr ? at : member.kind->add(at), path);
+  codec::Reading reading;
+  const codec::Field field(value, reading);
+  codec::read_member(member, field, into);
+  const bool is_flag = schema.type == "boolean", is_number = schema.type == "number";
+  if (!reading.refused() && (!is_flag || field.is<bool>())) return;  // 0 and 1 are no flags here
+  const std::string_view before = is_number                    ? "a number from "
+                                  : member.least < member.most ? "a whole number from "
+                                                               : "";
+  errors.push_back({path, icd::sentence("expected ", before, range_of(member), ", got ", shown(value))});
 }
 
-void Reader::read_list(const Value& value, const std::string& pattern, const std::string& path) {
-  const List& list = list_at(pattern);
+void Reader::read_list(const Value& value, const Member& member, void* list, const std::string& path) {
   const auto* items = std::get_if<Value::Array>(&value.is);
-  if (items == nullptr || items->size() < list.least || items->size() > list.most) {
+  const double size = items == nullptr ? -1 : static_cast<double>(items->size());
+  if (!(*member.least <= size && size <= *member.most)) {
     const std::string got = items == nullptr ? shown(value) : std::to_string(items->size());
-    errors.push_back({path, icd::sentence("expected ", range_of(list), ", got ", got)});
+    errors.push_back({path, icd::sentence("expected ", range_of(member), ", got ", got)});
     return;
   }
   for (std::size_t i = 0; i < items->size(); ++i) {
-    list.resize(settings, i + 1);
-    read_object((*items)[i], pattern + "[]", icd::sentence(path, "[", i, "]"));
+    read_object((*items)[i], *row_of(*member.kind->schema), member.kind->add(list),
+                icd::sentence(path, "[", i, "]"));
   }
 }
 
-void Reader::tell_unknown(const std::string& name, const std::vector<Child>& children,
-                          const std::string& path) {
+void Reader::tell_unknown(const std::string& name, const Row& row, const std::string& path) {
   if (passes_unknown) return passed_over.push_back(joined(path, shown_name(name)));
   std::vector<std::string_view> known;
-  known.reserve(children.size());
-  for (const Child& child : children) known.push_back(child.name);
+  known.reserve(row.members.size());
+  for (const Member& member : row.members) known.push_back(member.name);
   errors.push_back(
       {joined(path, shown_name(name)), icd::sentence("no such key", icd::did_you_mean(name, known),
                                                      " (keys here: ", icd::listed(known), ")")});
 }
 
 /// Names each required key at once, so that the user can write all of them.
-void Reader::tell_missing(const Child& child, const std::string& pattern, const std::string& path) {
-  if (child.list) {
-    if (list_at(pattern).least > 0)
-      errors.push_back({path, "missing; expected " + range_of(list_at(pattern))});
-  } else if (child.key == nullptr) {
-    read_object(Value{Value::Object{}}, pattern, path);
-  } else if (child.key->required) {
-    errors.push_back({path, "missing; expected " + range_of(child.key->kind)});
+void Reader::tell_missing(const Member& member, void* into, const std::string& path) {
+  if (!member.is_needed) return;
+  if (member.kind->schema->row != nullptr) {
+    read_object(Value{Value::Object{}}, *member.kind->schema->row, member.in(into), path);
+  } else {
+    errors.push_back({path, "missing; expected " + range_of(member)});
   }
+}
+
+std::string range_of(const Member& member) {
+  const codec::Schema& schema = *member.kind->schema;
+  if (member.form != nullptr) return std::string(member.form->range);
+  if (schema.type == "boolean") return "true or false";
+  if (!member.words.empty()) return codec::in_turn(member.words, "\"");
+  const std::string least = digits(*member.least), most = digits(*member.most);
+  if (schema.items == nullptr) return least == most ? least : icd::sentence(least, " to ", most);
+  return *member.least == 0 ? icd::sentence("a list of at most ", most, " items")
+                            : icd::sentence("a list of ", least, " to ", most, " items");
 }
 
 namespace {

@@ -23,13 +23,15 @@ bool only_the_version(const std::vector<Error>& errors, const Value& root) {
 }
 
 std::expected<Settings, std::vector<Error>> read(Reader& reader, const Value& root) {
-  reader.read_object(root, "", "");
+  Settings settings;
+  reader.read_object(root, Settings::kRow, &settings, "");
   if (only_the_version(reader.errors, root)) {
     std::erase_if(reader.errors, [](const Error& error) { return error.path != "version"; });
   }
-  if (reader.errors.empty()) reader.errors = contradictions(reader.settings);
+  if (reader.errors.empty()) reader.errors = contradictions(settings);
   if (!reader.errors.empty()) return std::unexpected(std::move(reader.errors));
-  return std::move(reader.settings);
+  settings.without_effect = std::move(reader.without_effect);
+  return settings;
 }
 
 }  // namespace
@@ -87,12 +89,12 @@ std::string sentence_of(const std::vector<Error>& errors) {
 
 namespace {
 
-struct Row {
+struct RestartRow {
   std::string_view begins;  // beginning of a setting's path
   Restarts restarts;
 };
 
-constexpr Row kRows[] = {
+constexpr RestartRow kRows[] = {
     {"team.listen", {.listeners = true}},
     {"team.interface", {.listeners = true}},
     {"team.connections", {.listeners = true}},  // and team.connections_per_address

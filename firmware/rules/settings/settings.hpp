@@ -15,13 +15,20 @@
 #include "icd/rules.hpp"
 #include "queues/clouds.hpp"
 
+namespace adit::codec {
+struct Row;
+}
+
 namespace adit::settings {
+
+// Meaning and bounds of each member: the rows in keys.cpp.
 
 /// An IPv4 or IPv6 address in its text form, and a port from 1 to 65535 (0 in team.listen: any free port).
 struct Address {
   std::string address;
   std::uint16_t port = 0;
   friend bool operator==(const Address&, const Address&) = default;
+  static const codec::Row kRow;
 };
 
 /// Requests per second, each from 0.001 to 1000.
@@ -99,6 +106,7 @@ struct Panel {
   }
   bool is_simulated() const { return !has_lights() && button.empty(); }
   friend bool operator==(const Panel&, const Panel&) = default;
+  static const codec::Row kRow;
 };
 
 /// A robot's colours on the pages and in the run's report. Word n is the colour of the robot whose first pose
@@ -114,12 +122,14 @@ struct Robot {
   queues::Clouds clouds = queues::Clouds::Auto;
   queues::Precision precision = queues::Precision::Exact;  // for its clouds
   std::uint8_t colour = 0;  // index of kColourWords; 0: by the order of the first poses
+  static const codec::Row kRow;
 };
 
 /// One of an event's Command Posts, selected by name.
 struct Course {
   std::string name;
   Address scoring, mapping;
+  static const codec::Row kRow;
 };
 
 /// NTP on the team's network: room clock.
@@ -149,6 +159,7 @@ struct Settings {
   icd::Rules rules;
   Panel panel;
   std::vector<std::string> without_effect;  // paths of an earlier version's keys; never written
+  static const codec::Row kRow;
 };
 
 struct Error {

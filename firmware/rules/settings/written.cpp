@@ -4,39 +4,14 @@
 #include <cstdint>
 
 #include "codec/json.hpp"
+#include "codec/row.hpp"
 #include "icd/sentence.hpp"
 #include "icd/text.hpp"
-#include "settings/keys.hpp"
 
 namespace adit::settings {
 namespace {
 
 using codec::Value;
-
-/// The object whose keys begin with `prefix`.
-Value object_at(const std::string& prefix, const Settings& settings);
-
-Value list_value(const std::string& path, const Settings& settings) {
-  const List& list = list_at(path);
-  Value::Array items(list.size(settings));
-  Settings left = settings;  // a key's kind refers to the last item
-  for (std::size_t last = items.size(); last > 0; list.resize(left, --last))
-    items[last - 1] = object_at(path + "[].", left);
-  return {std::move(items)};
-}
-
-Value value_of(const Child& child, const std::string& path, const Settings& settings) {
-  if (child.list) return list_value(path, settings);
-  return child.key != nullptr ? value_of(child.key->kind, settings) : object_at(path + ".", settings);
-}
-
-Value object_at(const std::string& prefix, const Settings& settings) {
-  Value::Object members;
-  for (const Child& child : children_of(prefix)) {
-    members.emplace_back(child.name, value_of(child, prefix + std::string(child.name), settings));
-  }
-  return {std::move(members)};
-}
 
 bool is_nested(const Value& value) {
   return std::holds_alternative<Value::Object>(value.is) || std::holds_alternative<Value::Array>(value.is);
@@ -113,7 +88,7 @@ Leaves leaves_of(const Settings& settings) {
 }  // namespace
 
 Value value_of(const Settings& settings) {
-  return object_at("", settings);
+  return codec::json(settings);
 }
 
 std::string file_of(const Settings& settings) {

@@ -92,12 +92,12 @@ namespace {
 using codec::member;
 
 /// A name that cannot leave its directory.
-constexpr char kExpectedName[] = "expected the name of an export";
+constexpr codec::Form kName{is_file_name, "the name of an export"};
 
 constexpr codec::Member kRequestMembers[] = {
-    member<&StickRequest::nonce>("nonce").as(codec::kNonce),
+    member<&StickRequest::nonce>("nonce").matching(codec::kNonce),
     member<&StickRequest::what>("what"),
-    member<&StickRequest::name>("name").as(codec::kCheckedText<is_file_name, kExpectedName>),
+    member<&StickRequest::name>("name").matching(kName),
 };
 constexpr codec::Member kStatusMembers[] = {
     member<&StickStatus::nonce>("nonce"),         member<&StickStatus::refusal>("refusal"),

@@ -77,7 +77,7 @@ using codec::Member;
 using codec::Row;
 
 constexpr Member kRequestMembers[] = {
-    member<&Request::nonce>("nonce").as(codec::kNonce),
+    member<&Request::nonce>("nonce").matching(codec::kNonce),
     member<&Request::what>("what"),
     member<&Request::again>("again"),
 };

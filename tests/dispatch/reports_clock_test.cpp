@@ -50,6 +50,7 @@ class ClockSetBack : public testing::Test {
       scene_.wait(1);
       scene_.hear(19, 0);
     }
+    scene_.wait(3);
     scene_.hear(19, 0, 3);
   }
   Scene scene_;

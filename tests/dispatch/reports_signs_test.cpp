@@ -384,6 +384,27 @@ TEST_F(AnotherNameAlone, HoldsARepeatIfNoEarlierStatusIsKnown) {
   EXPECT_EQ(scene_.state(3), Held);
 }
 
+/// A referee sets the clock of a run, and the server gives each answer another name.
+using ClockAndName = RunOne;
+
+TEST_F(ClockAndName, HoldARepeatIfTheNameCameFirst) {
+  scene_.record(2, "2");
+  expect_held_repeat(3);
+  pass(1, 18, 1, 50);
+  EXPECT_EQ(scene_.state(3), Held);
+  EXPECT_EQ(scene_.send_next(), 0);
+}
+
+TEST_F(ClockAndName, HoldARepeatIfTheClockCameFirst) {
+  pass(1, 19, 1, 50);
+  expect_held_repeat(2);
+  scene_.record(3, "2");
+  EXPECT_EQ(scene_.state(2), Held);
+  EXPECT_EQ(scene_.send_next(), 0);
+  scene_.record(4, "2");
+  EXPECT_EQ(scene_.state(2), Held) << "the name stays";
+}
+
 TEST_F(AnotherNameAlone, EndsWithTheFirstNameBeforeAStatus) {
   scene_.record(2, "2");
   scene_.record(3, "1");

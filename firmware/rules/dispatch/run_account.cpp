@@ -191,6 +191,10 @@ Signs RunAccount::signs_against(const Run& earlier) const {
   return signs;
 }
 
+bool RunAccount::may_have_begun_since(const Run& earlier) const {
+  return !run().last || can_be_young(run().last->run_clock, between(earlier.heard, run().heard));
+}
+
 /// By stamps, less the step and the possible lead after a boot.
 double RunAccount::unheard(const Run& run, Time time) const {
   return std::max(0.0, clock_step_.between(run.heard, time.stamp) - kClockAhead);

@@ -91,6 +91,8 @@ class RunAccount {
   /// The step that is subtracted from the run's silence.
   void clock_stepped(const ClockStep& step) { clock_step_ = step; }
   double between(double from, double until) const { return clock_step_.between(from, until); }
+  /// A run that began after the last status of `earlier` may show the last clock of the present run.
+  bool may_have_begun_since(const Run& earlier) const;
   /// `latest`: Runs::open().
   void open(std::vector<Run> all, std::int64_t latest, const std::string& post);
 

@@ -251,6 +251,8 @@ void RunChanges::meet(const icd::ReportReply& reply, Time time) {
   const Run* const before = account_.maybe_present([](const Run& run) { return !run.id.empty(); });
   if (before == nullptr) return claim(name, time);
   if (before->id != name) {
+    // A referee set the clock of a run that gets another name with each answer.
+    if (account_.signs_against(*before).is_clock_alone() && !account_.may_have_begun_since(*before)) return;
     account_.is_not(before->number);
     return claim(name, time);
   }

@@ -26,11 +26,6 @@ std::string clock_of_another(const std::optional<Clock>& clock, double shows, do
   return "";
 }
 
-/// A run that began up to `ago` seconds ago may show this clock.
-bool can_be_young(double shows, double ago) {
-  return shows <= ago + kClockJitter;
-}
-
 /// Before a run starts, the Command Post may set its counts to any value.
 bool has_started(const Run& run) {
   return run.last->run_clock > 0 || (run.answer_clock && run.answer_clock->shows > 0);
@@ -55,6 +50,10 @@ bool are_certainly_different(const Run& before, const Run& now) {
 }
 
 }  // namespace
+
+bool can_be_young(double shows, double ago) {
+  return shows <= ago + kClockJitter;
+}
 
 bool are_other_teams(const std::string& one, const std::string& other) {
   return !one.empty() && !other.empty() && one != other;
@@ -107,11 +106,13 @@ bool is_grant(const Run& run, const icd::RunStatus& status, const Silence& silen
 }
 
 NameCheck check_name(const Run& before, const icd::RunStatus& status, const Silence& silence) {
-  if (another_run(before, status, silence)) return NameCheck::Confirmed;
+  const bool is_young =
+      can_be_young(status.run_clock, silence.since_status.value_or(silence.at_least + kClockAhead));
+  if (const auto another = another_run(before, status, silence)) {
+    return another->signs.is_clock_alone() && !is_young ? NameCheck::Unknown : NameCheck::Confirmed;
+  }
   if (before.status_clock && before.status_clock->runs) {
-    if (!can_be_young(status.run_clock, silence.since_status.value_or(silence.at_least + kClockAhead))) {
-      return NameCheck::Contradicted;
-    }
+    if (!is_young) return NameCheck::Contradicted;
     return silence.since_status ? NameCheck::Confirmed : NameCheck::Unknown;
   }
   // A clock that stands says nothing. In another run, the count would hardly continue to fall.

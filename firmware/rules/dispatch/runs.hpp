@@ -34,6 +34,7 @@ struct Signs {
   bool is_any() const { return count || clock || score || name; }
   /// Even the same name does not contradict them, because some servers give all runs one name.
   bool agree() const { return count + clock + score >= 2; }
+  bool is_clock_alone() const { return clock && !count && !score; }
   Signs& operator|=(const Signs& more) {
     count |= more.count, clock |= more.clock, score |= more.score, name |= more.name;
     return *this;
@@ -101,6 +102,10 @@ bool goes_on(const Run& run, const icd::RunStatus& status, const Silence& silenc
 
 /// True if the status shows more reports left in a run that certainly goes on: somebody granted them.
 bool is_grant(const Run& run, const icd::RunStatus& status, const Silence& silence);
+
+/// A run that began up to `ago` seconds ago may show this clock. A clock that goes back to a later value was
+/// set by a referee.
+bool can_be_young(double shows, double ago);
 
 /// What the first status after another name shows of that name. `before`: the earlier run, with a last
 /// status.

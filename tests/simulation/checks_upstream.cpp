@@ -334,7 +334,7 @@ void others_go_on(const Evidence& evidence, Broken& broken) {
     }
     if (event.kind == Kind::Replied) is_read = true;
     if (event.kind != Kind::Fault || event.who != kUnregistered) continue;
-    is_rejected = true;
+    if (std::exchange(is_rejected, true)) continue;  // of the process before, and read late
     if (++in_a_row == 1) {
       news.clear();
       for (const auto& [who, serial] : accepted) {

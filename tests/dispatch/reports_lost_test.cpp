@@ -71,6 +71,19 @@ TEST_F(LostReport, HoldsNoReportOfAnotherRun) {
   EXPECT_THAT(scene_.undecided(), ElementsAre(HasSubstr(kNote))) << "still open";
 }
 
+/// The records that are left may be older than a change of the settings.
+TEST_F(LostReport, HoldsNewReportsForAnotherCommandPost) {
+  scene_.restart(kThere);
+  scene_.repeat_status(2, 15, 0);
+  scene_.post(2);
+  EXPECT_EQ(scene_.state(3), Held);
+  EXPECT_THAT(scene_.report(3).note, HasSubstr(kNote));
+  ASSERT_TRUE(scene_.reports().settle(2, scene_.time()));
+  scene_.repeat_status(1, 15, 0);
+  scene_.post(4);
+  EXPECT_EQ(scene_.state(4), Sending);
+}
+
 /// Reports that were lost after the last word of their run may be of the next one.
 TEST_F(LostReport, HoldsNewReportsOfARunThatTheFirstStatusShows) {
   scene_.output().ledger[2].sent = scene_.reports().run().heard;

@@ -133,10 +133,23 @@ Hold ReportReview::maybe_repeat(const Report& report) const {
   return {};
 }
 
+/// Reports that the present run may have got before the ledger lost them. The settings may have named another
+/// Command Post since the records that are left, so its runs may have got them, too. Null: none.
+const Report* ReportReview::maybe_lost_here() const {
+  const Run& run = account_.run();
+  for (const std::int64_t number : book_.open()) {
+    const Report& report = book_.at(number);
+    if (report.state != ReportState::InDoubt || !report.is_lost()) continue;
+    const Run* const its = account_.runs().find(report.run);
+    if (its == nullptr || its->post != run.post || run.number <= report.run) return &report;
+  }
+  return nullptr;
+}
+
 Hold ReportReview::reason_to_hold(const Report& report) const {
   if (report.asked) return {};
-  for (const Report* const doubt : book_.doubts(account_.run().number)) {
-    if (doubt->is_lost()) return {icd::sentence("", doubt->note, "; this may be the same report")};
+  if (const Report* const lost = maybe_lost_here()) {
+    return {icd::sentence("", lost->note, "; this may be the same report")};
   }
   if (Hold hold = maybe_repeat(report); hold.same_as != 0) return hold;
   for (const Report* const other : same_in_run(report.report)) {

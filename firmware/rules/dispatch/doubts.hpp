@@ -79,6 +79,7 @@ class ReportReview {
   };
 
   Hold maybe_repeat(const Report& report) const;
+  const Report* maybe_lost_here() const;
   const Report* sent_elsewhere(const Report& report, const std::function<bool(const Run&)>& counts) const;
 
   const ReportRules& rules_;

@@ -209,22 +209,23 @@ void Flow::picture_the_run() {
 
 namespace {
 
-/// Rounded, because each view reads two clocks.
-api::Time wall_time_of(const loop::Loop& loop, loop::Instant since) {
-  const api::Time at = loop.wall_now() - std::chrono::duration<double>(loop.now() - since).count();
+/// `wall` is now. Rounded, because each view reads two clocks.
+api::Time wall_time_of(const loop::Loop& loop, loop::Instant since, api::Time wall) {
+  const api::Time at = wall - std::chrono::duration<double>(loop.now() - since).count();
   return std::round(at * 1000) / 1000;
 }
 
 }  // namespace
 
 std::vector<facts::ActivityRow> Flow::activities() const {
+  const api::Time now = loop_.wall_now();
   std::vector<facts::ActivityRow> rows;
   for (const auto& [traffic, counted] : counts_.rows()) {
     facts::ActivityRow& row = rows.emplace_back(counted);
     row.queued = is_map(traffic.kind) ? maps_.waiting(traffic) : telemetry_.waiting(traffic.kind);
     const auto since = is_map(traffic.kind) ? maps_.waits_since(traffic) : telemetry_.waits_since(traffic);
-    if (since) row.behind_since = wall_time_of(loop_, *since);
-    facts::set_ages(row, loop_.wall_now());
+    if (since) row.behind_since = wall_time_of(loop_, *since, now);
+    facts::set_ages(row, now);
   }
   return rows;
 }

@@ -129,11 +129,11 @@ void ObservedFacts::carry_on(const forward::Flow& flow, double now) {
   }
 }
 
-void ObservedFacts::look(forward::Flow& flow, const settings::Settings& settings, double now,
-                         facts::Time time) {
+void ObservedFacts::look(forward::Flow& flow, const settings::Settings& settings,
+                         const std::vector<facts::ActivityRow>& activities, double now, facts::Time time) {
   scoring_.look({seen(flow.scoring().channel())}, now);
   mapping_.look({seen(flow.maps().channel()), seen(flow.telemetry().channel())}, now);
-  for (auto& [robot, its] : of_robots(flow.activities(), now, time)) {
+  for (auto& [robot, its] : of_robots(activities, now, time)) {
     habits_.heard(robot, its.accepted, its.heard.last);
     const std::uint64_t told = its.accepted + its.forwarded;
     if (std::exchange(told_[robot], told) == told) continue;

@@ -54,7 +54,8 @@ class Crowding {
 class ObservedFacts {
  public:
   /// Call once a second. `time`: time of day.
-  void look(forward::Flow& flow, const settings::Settings& settings, double now, facts::Time time);
+  void look(forward::Flow& flow, const settings::Settings& settings,
+            const std::vector<facts::ActivityRow>& activities, double now, facts::Time time);
   /// Call after the flow's start and before any answer: takes the robots from before.
   void carry_on(const forward::Flow& flow, double now);
   /// The endpoint or its token has changed.

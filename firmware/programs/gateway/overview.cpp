@@ -74,8 +74,9 @@ void Overview::carry_on() {
 
 void Overview::look() {
   notices_ = box::read_notices(rooms_.parts.options.notices);
-  observed_.look(rooms_.flow, rooms_.settings, rooms_.loop.stamp_now(), rooms_.loop.wall_now());
-  take_snapshot();
+  auto activities = rooms_.flow.activities();
+  observed_.look(rooms_.flow, rooms_.settings, activities, rooms_.loop.stamp_now(), rooms_.loop.wall_now());
+  take_snapshot(std::move(activities));
   // At a stop conditions end that are not cleared.
   if (!rooms_.flow.is_ending()) acknowledged_.keep(board_.acknowledged());
   std::vector<std::string> headlines;
@@ -87,7 +88,7 @@ void Overview::look() {
 }
 
 std::expected<void, std::string> Overview::acknowledge(const std::string& id) {
-  take_snapshot();
+  take_snapshot(rooms_.flow.activities());
   auto done = board_.acknowledge(id, view_.now);
   view_.alarms = board_.shown(conditions_, view_.now);
   acknowledged_.keep(board_.acknowledged());
@@ -143,12 +144,12 @@ void Overview::log_crowding() {
 }
 
 api::RunView Overview::view() {
-  take_snapshot();
+  take_snapshot(rooms_.flow.activities());
   return view_;
 }
 
-void Overview::take_snapshot() {
-  facts::Snapshot snapshot{.traffic = traffic(),
+void Overview::take_snapshot(std::vector<facts::ActivityRow> activities) {
+  facts::Snapshot snapshot{.traffic = traffic(std::move(activities)),
                            .clients = clients(),
                            .reports = reports(),
                            .network = rooms_.network.fact(),
@@ -245,13 +246,13 @@ void Overview::add_to(api::Usage& usage) const {
   usage.refused = rooms_.flow.counts().refused_counts();
 }
 
-facts::Traffic Overview::traffic() const {
+facts::Traffic Overview::traffic(std::vector<facts::ActivityRow> activities) const {
   const double now = rooms_.loop.wall_now(), steady = rooms_.loop.stamp_now();
   facts::Traffic traffic{
       .now = now,
       .endpoints = observed_.endpoints(rooms_.flow, rooms_.settings.command_post, steady, now),
       .links = rooms_.links.rows(),
-      .activities = rooms_.flow.activities(),
+      .activities = std::move(activities),
       .habits = observed_.habits(rooms_.settings.alarms, steady),
       .robots = rooms_.flow.delivered().robots(),
       .queued = rooms_.flow.maps().queued_bytes(),

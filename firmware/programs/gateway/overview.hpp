@@ -139,10 +139,10 @@ class Overview final : public api::Source {
 
  private:
   void log_crowding();
-  /// Takes a snapshot, and computes view_ and conditions_ from it.
-  void take_snapshot();
+  /// Takes a snapshot, and computes view_ and conditions_ from it. `activities`: the present ones.
+  void take_snapshot(std::vector<facts::ActivityRow> activities);
   api::RunView view_of(facts::Snapshot snapshot) const;
-  facts::Traffic traffic() const;
+  facts::Traffic traffic(std::vector<facts::ActivityRow> activities) const;
   facts::Clients clients() const;
   facts::Reports reports() const;
   facts::Box box() const;

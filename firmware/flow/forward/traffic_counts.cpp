@@ -15,7 +15,7 @@ facts::ActivityRow& TrafficCounts::row(const Traffic& traffic) {
   if (known != rows_.end()) return known->second;
   const bool full = rows_.size() >= kMostRows;
   facts::ActivityRow& made = rows_[full ? Traffic{traffic.kind, "(others)"} : traffic];
-  made.kind = kKindWords[static_cast<std::size_t>(traffic.kind)];
+  made.kind = facts::kKinds[static_cast<std::size_t>(traffic.kind)];
   made.robot = full ? "(others)" : traffic.robot;
   return made;
 }

@@ -22,15 +22,14 @@
 
 namespace adit::forward {
 
+/// In the order of facts::kKinds.
 enum class Kind : std::uint8_t { Grid, Cloud, State, Markers };
 
 /// Throttled and Failed messages are retried.
 enum class DeliveryFailure : std::uint8_t { Throttled, Failed, Refused };
 
-/// Each Kind in the API's words.
-inline constexpr std::string_view kKindWords[] = {"grid", "cloud", "state", "markers"};
 /// The kinds whose times survive a restart.
-inline constexpr auto kHeardKinds = std::span(kKindWords).first<3>();
+inline constexpr auto kHeardKinds = std::span(facts::kKinds).first<3>();
 
 /// The time of day of a stamp, at most now. NaN for NaN.
 inline api::Time time_of(const loop::Loop& loop, icd::Stamp stamp) {

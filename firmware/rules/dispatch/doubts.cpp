@@ -133,13 +133,13 @@ Hold ReportReview::maybe_repeat(const Report& report) const {
   return {};
 }
 
-/// Reports that the present run may have got before the ledger lost them. The settings may have named another
-/// Command Post since the records that are left, so its runs may have got them, too. Null: none.
+/// A report that the present run may have got before the ledger lost it, or null. The settings may have
+/// changed after the last record, so that any other Command Post may have it.
 const Report* ReportReview::maybe_lost_here() const {
   const Run& run = account_.run();
-  for (const std::int64_t number : book_.open()) {
+  for (const std::int64_t number : book_.in_doubt()) {
     const Report& report = book_.at(number);
-    if (report.state != ReportState::InDoubt || !report.is_lost()) continue;
+    if (!report.is_lost()) continue;
     const Run* const its = account_.runs().find(report.run);
     if (its == nullptr || its->post != run.post || run.number <= report.run) return &report;
   }

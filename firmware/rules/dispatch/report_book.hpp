@@ -73,6 +73,8 @@ class ReportBook {
   /// Unfinished, oldest first.
   const std::set<std::int64_t>& open() const { return open_; }
   std::size_t count(ReportState state) const { return counts_.at(static_cast<std::size_t>(state)); }
+  /// In doubt, oldest first.
+  const std::set<std::int64_t>& in_doubt() const { return in_doubt_; }
   /// In doubt in `run`, in the order of sending.
   std::vector<const Report*> doubts(std::int64_t run) const;
 

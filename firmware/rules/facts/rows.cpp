@@ -12,7 +12,6 @@ using codec::member;
 using codec::Member;
 
 constexpr std::string_view kWhen = "seconds since 1970";
-constexpr std::string_view kKinds[] = {"grid", "cloud", "state", "markers"};
 constexpr std::string_view kClouds[] = {"", "whole", "parts"};
 constexpr std::string_view kPrecisions[] = {"", "exact", "1mm", "8mm"};
 constexpr std::string_view kSides[] = {"team", "command_post"};

@@ -70,6 +70,9 @@ struct ReportRow {
   static const codec::Row kRow;
 };
 
+/// The API's names of the kinds of messages.
+inline constexpr std::string_view kKinds[] = {"grid", "cloud", "state", "markers"};
+
 /// Traffic of one kind from one robot, or merged (no name).
 struct ActivityRow {
   std::string kind = {}, robot = {};

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "intake/upload.hpp"
+#include "intake/uploads.hpp"
 
 namespace adit::intake {
 namespace {

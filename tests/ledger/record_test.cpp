@@ -1,5 +1,4 @@
 // Records and the book that they add up to.
-#include "ledger/record.hpp"
 
 #include <gmock/gmock.h>
 

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "pace/at.hpp"
-#include "pace/budget.hpp"
 #include "pace/hertz.hpp"
 #include "pace/rate_limit.hpp"
 

@@ -1,7 +1,5 @@
 // A second request is sent before the answer to the first, even to a server that serves one connection at a
 // time, like this peer.
-#include "uplink/connections.hpp"
-
 #include <gtest/gtest.h>
 
 #include <mutex>
@@ -9,6 +7,7 @@
 #include <vector>
 
 #include "asking.hpp"
+#include "uplink/connection.hpp"
 
 namespace adit::uplink {
 namespace {

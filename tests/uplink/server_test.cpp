@@ -1,6 +1,4 @@
 // Servers that serve one connection at a time, like this peer, and others.
-#include "uplink/server.hpp"
-
 #include <gmock/gmock.h>
 
 #include <mutex>
@@ -8,6 +6,7 @@
 #include <vector>
 
 #include "asking.hpp"
+#include "uplink/connection.hpp"
 
 namespace adit::uplink {
 namespace {

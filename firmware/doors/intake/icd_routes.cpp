@@ -8,8 +8,8 @@
 #include "codec/body_decoder.hpp"
 #include "icd/sentence.hpp"
 #include "icd/text.hpp"
-#include "intake/uploads.hpp"
-#include "intake/visit.hpp"
+#include "intake/answer.hpp"
+#include "intake/head.hpp"
 
 namespace adit::intake {
 namespace {
@@ -84,7 +84,50 @@ icd::Refusal stops() {
   return {icd::Status::ServiceUnavailable, "aditd is stopping; this message was not accepted, send it again"};
 }
 
+constexpr std::string_view kHeadersOfClients = "authorization, content-type, content-encoding";
+constexpr std::size_t kLongestHeaderList = 512;
+
+class CorsResponder final : public PassingResponder {
+ public:
+  using PassingResponder::PassingResponder;
+  void answer(Answer answer) override {
+    answer.headers.push_back({"Access-Control-Allow-Origin", "*"});
+    inner().answer(std::move(answer));
+  }
+};
+
+/// Field names (RFC 9110 5.6.2 tokens) with commas and blanks between them.
+bool is_token_list(std::string_view text) {
+  return !text.empty() && text.size() <= kLongestHeaderList && std::ranges::all_of(text, [](char letter) {
+    return is_token_letter(letter) || letter == ',' || kBlanks.contains(letter);
+  });
+}
+
+/// HEAD goes with GET (RFC 9110 9.3.2).
+bool is_allowed(icd::Uri uri, std::string_view method) {
+  return method == icd::method_of(uri) || (method == "HEAD" && icd::method_of(uri) == "GET");
+}
+
+/// "GET, HEAD, OPTIONS"
+std::string allowed_methods(icd::Uri uri) {
+  return icd::sentence(icd::method_of(uri), is_allowed(uri, "HEAD") ? ", HEAD" : "", ", OPTIONS");
+}
+
+/// The answer to a CORS preflight (Fetch, CORS protocol): the methods of `uri` and the requested headers.
+Answer preflight_answer(icd::Uri uri, std::string_view asked_headers) {
+  const std::string_view headers = is_token_list(asked_headers) ? asked_headers : kHeadersOfClients;
+  return {.status = icd::Status::NoContent,
+          .body = {},
+          .headers = {{"Access-Control-Allow-Methods", allowed_methods(uri)},
+                      {"Access-Control-Allow-Headers", std::string(headers)},
+                      {"Access-Control-Max-Age", "86400"}}};
+}
+
 }  // namespace
+
+std::shared_ptr<Responder> with_cors(std::shared_ptr<Responder> responder) {
+  return std::make_shared<CorsResponder>(std::move(responder));
+}
 
 IcdRoutes::IcdRoutes(IcdOptions options, Desk& desk, loop::Workers& workers, Handler& other)
     : options_(std::move(options)),

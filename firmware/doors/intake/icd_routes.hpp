@@ -12,13 +12,13 @@
 #include "icd/rules.hpp"
 #include "intake/desk.hpp"
 #include "intake/server.hpp"
-#include "intake/upload.hpp"
+#include "intake/uploads.hpp"
 #include "loop/workers.hpp"
 
 namespace adit::intake {
 
-class UploadBudget;
-struct Visit;
+/// Passes answers on and adds only Access-Control-Allow-Origin.
+std::shared_ptr<Responder> with_cors(std::shared_ptr<Responder> responder);
 
 /// Settings of the team's side of the ICD.
 struct IcdOptions {

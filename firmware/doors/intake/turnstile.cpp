@@ -7,7 +7,6 @@
 #include "icd/bearer_token.hpp"
 #include "intake/answer.hpp"
 #include "intake/icd_routes.hpp"
-#include "intake/visit.hpp"
 
 namespace adit::intake {
 

@@ -14,10 +14,38 @@
 #include "icd/require.hpp"
 #include "icd/sentence.hpp"
 #include "icd/try.hpp"
+#include "intake/answer.hpp"
+#include "intake/head.hpp"
+#include "intake/icd_routes.hpp"
 #include "intake/type_hint.hpp"
 #include "loop/guard.hpp"
 
 namespace adit::intake {
+
+Sender Visit::sender_at_end() const {
+  Sender whole = sender;
+  whole.ended = ++uploads->last;
+  for (const Upload* other : uploads->under_way) {
+    const bool is_other = other->is_like(*this) && other->began() != sender.began;
+    if (is_other && (whole.overlaps == 0 || other->began() < whole.overlaps)) whole.overlaps = other->began();
+  }
+  return whole;
+}
+
+void Visit::refuse(const icd::Refusal& refusal, std::vector<Header> headers) const {
+  Answer answer = error_answer(refusal.status, refusal.sentence);
+  answer.headers = std::move(headers);
+  responder->answer(std::move(answer));
+  desk.refused(uri, sender, refusal);
+}
+
+void Visit::answer(const icd::Checked<void>& taken) const {
+  if (!taken) {
+    refuse(taken.error());
+  } else {
+    responder->answer({.body = "null", .headers = {}});
+  }
+}
 
 bool SmallUpload::on_body(std::span<const std::uint8_t> piece) {
   visit_.sender.bytes += piece.size();

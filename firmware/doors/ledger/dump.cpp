@@ -6,8 +6,8 @@
 #include "codec/row.hpp"
 #include "icd/sentence.hpp"
 #include "icd/try.hpp"
+#include "ledger/book.hpp"
 #include "ledger/ledger.hpp"
-#include "ledger/record.hpp"
 #include "store/contents.hpp"
 #include "store/directory.hpp"
 

@@ -12,7 +12,6 @@
 
 #include "icd/sentence.hpp"
 #include "icd/try.hpp"
-#include "ledger/book.hpp"
 #include "loop/file_descriptor.hpp"
 #include "loop/loop.hpp"
 #include "store/directory.hpp"

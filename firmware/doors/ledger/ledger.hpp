@@ -12,7 +12,7 @@
 #include "dispatch/output.hpp"
 #include "dispatch/report.hpp"
 #include "dispatch/runs.hpp"
-#include "ledger/record.hpp"
+#include "ledger/book.hpp"
 #include "store/contents.hpp"
 #include "store/directory.hpp"
 #include "store/frame.hpp"

@@ -3,10 +3,13 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
+#include <vector>
 
 #include "icd/bearer_token.hpp"
 #include "icd/chunked_bytes.hpp"
@@ -136,6 +139,148 @@ class Connection {
   class Impl;
   explicit Connection(std::shared_ptr<Impl> impl);
   std::shared_ptr<Impl> impl_;
+};
+
+/// The server at one address and port, and the connections to it. A serial server serves one connection at a
+/// time: until that one is closed, it reads no other, although the kernel accepts them.
+///
+/// If a request on a new connection gets no answer for kSilence, the idle connections are closed. If it is
+/// answered within kSilence after that, an idle connection may have blocked it; within kAtOnce if that
+/// connection never had an answer, because a server that closes each connection is read only once. The second
+/// such answer in a row shows a serial server. A server that answers one connection while an older one stays
+/// open is not serial, so the count begins again.
+///
+/// A serial server gets one connection at a time, for one request. A sender composes its request when its
+/// turn comes: a report first, otherwise the sender that was served longest ago. A slow server may look like
+/// a serial one, so several connections are tried again every kTryAgain.
+class Server : public std::enable_shared_from_this<Server> {
+ public:
+  static constexpr std::chrono::seconds kSilence{1};
+  static constexpr std::chrono::milliseconds kAtOnce{200};
+  static constexpr std::chrono::minutes kTryAgain{5};
+
+  /// Of a sender.
+  struct Turn {
+    std::function<void()> came;  // claim() again
+    bool is_claimed = false;
+    bool goes_first = false;
+    loop::Instant last{};  // when it came
+  };
+
+  explicit Server(loop::Loop& loop);
+  bool is_serial() const { return is_serial_; }
+  /// False: a serial server has a connection.
+  bool is_free() const;
+
+  void add(Turn& turn) { turns_.push_back(&turn); }
+  void remove(Turn& turn);
+  /// True: send now. False: `came` will be called. `goes_first`: before turns that do not.
+  bool claim(Turn& turn, bool goes_first);
+
+ private:
+  friend class Connection;
+  using Member = Connection::Impl;
+
+  void add(Member& one) { connections_.push_back(&one); }
+  void remove(Member& one);
+
+  /// True if connections may be open without a request.
+  bool keeps_warm() const { return !is_serial_ && loop_.now() >= cleared_until_; }
+  /// A request on a new connection has had no answer for kSilence.
+  void on_silence();
+  /// `can_stay`: by HTTP. Returns true if the connection stays open.
+  bool on_answer(Member& one, bool can_stay);
+  void on_close();
+
+  void close_idle();
+  void suspect(const Member& closed);
+  void begin_serial();
+  void wake();
+  Turn* next_turn() const;
+
+  loop::Loop& loop_;
+  std::vector<Member*> connections_;
+  std::vector<Turn*> turns_;
+  bool is_serial_ = false;
+  int helped_ = 0;             // requests in a row that were answered after idle connections were closed
+  loop::Instant helped_at_{};  // when the last one was answered
+  loop::Instant cleared_until_{}, try_again_at_{};
+  loop::Source wake_;
+};
+
+/// Each server that has connections.
+class Servers {
+ public:
+  explicit Servers(loop::Loop& loop) : loop_(loop) {}
+  std::shared_ptr<Server> at(const Endpoint& endpoint);
+
+ private:
+  loop::Loop& loop_;
+  std::map<std::pair<std::string, std::uint16_t>, std::weak_ptr<Server>> servers_;
+};
+
+/// A connection to the Command Post, and sometimes a second one. A request on the second one goes ahead: it
+/// is sent when the earlier request has arrived, and before its answer.
+///
+/// Some servers serve one connection at a time, so there are two connections no longer than necessary. The
+/// second one is made for a request (get_ready()). When a request ends, its connection is closed if the other
+/// one is busy; otherwise the other one is closed. Such a server then reads the other connection, and its
+/// silence counts only from then on (Request::goes_ahead).
+class Connections {
+ public:
+  /// `turn_came`: as Server::Turn::came.
+  Connections(loop::Loop& loop, Endpoint endpoint, icd::BearerToken token, std::shared_ptr<Server> server,
+              std::function<void()> turn_came);
+  ~Connections() { server_->remove(turn_); }
+  Connections(const Connections&) = delete;
+  Connections& operator=(const Connections&) = delete;
+
+  void keep_warm() { first_.keep_warm(); }
+  void hurry();
+
+  /// Requires !busy() or is_ready(). `done`: as in Connection::send().
+  void send(Request request, std::function<void(Outcome)> done);
+  bool busy() const { return first_.busy() || (second_ && second_->busy()); }
+
+  /// Connection::give_up() of the last request, if a request is in flight.
+  void give_up() {
+    if (busy()) latest_->give_up();
+  }
+
+  /// Opens a connection for the next request if one request is in flight. Tries once for each request.
+  void get_ready();
+  /// True if one request is in flight and a connection for the next one is open.
+  bool is_ready() const;
+  /// When the only request in flight left; nullopt until all of it has arrived.
+  std::optional<Sent> has_arrived() const;
+
+  /// The server gets one connection at a time, and no request ahead.
+  bool is_serial() const { return server_->is_serial(); }
+  /// Server::is_free()
+  bool is_free() const { return server_->is_free(); }
+  /// Server::claim(). Call before each send().
+  bool claim_turn(bool goes_first) { return server_->claim(turn_, goes_first); }
+  /// True also between two requests to a serial server.
+  bool connected() const {
+    return first_.connected() || (second_ && second_->connected()) || (is_serial() && trouble().empty());
+  }
+  /// As in Connection, for the connection of the last request.
+  const std::string& trouble() const { return latest_->trouble(); }
+  std::size_t sent_bytes() const { return latest_->sent_bytes(); }
+  std::uint64_t delivers() const { return first_.delivers(); }
+
+ private:
+  const Connection* the_busy_one() const;
+  Connection* other_than(const Connection& one);
+  Connection& one_for_the_next();
+  void ended(Connection& one);
+
+  const std::shared_ptr<Server> server_;
+  Server::Turn turn_;
+  Connection first_;
+  std::unique_ptr<Connection> second_;  // null until it is needed
+  Connection* latest_ = &first_;        // the connection of the last request
+  bool has_tried_ = false;              // get_ready() has tried since the last request
 };
 
 }  // namespace adit::uplink

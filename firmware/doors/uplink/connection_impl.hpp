@@ -16,7 +16,6 @@
 #include "pace/delivery.hpp"
 #include "uplink/connection.hpp"
 #include "uplink/exchange.hpp"
-#include "uplink/server.hpp"
 
 namespace adit::uplink {
 

@@ -12,7 +12,6 @@
 #include "loop/loop.hpp"
 #include "settings/settings.hpp"
 #include "uplink/connection.hpp"
-#include "uplink/connections.hpp"
 
 namespace adit::forward {
 

@@ -10,7 +10,7 @@
 #include "host/log.hpp"
 #include "icd/sentence.hpp"
 #include "loop/guard.hpp"
-#include "pace/budget.hpp"
+#include "pace/delivery.hpp"
 #include "pack/has_all_points.hpp"
 
 namespace adit::forward {

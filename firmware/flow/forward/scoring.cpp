@@ -8,7 +8,6 @@
 #include "codec/read.hpp"
 #include "codec/write.hpp"
 #include "dispatch/runs.hpp"
-#include "dispatch/turn.hpp"
 #include "dispatch/verdicts.hpp"
 #include "forward/channel.hpp"
 #include "host/log.hpp"
@@ -246,13 +245,13 @@ void Scoring::pump() noexcept {
   if (!is_free(requests, now)) return;
   const bool is_first = is_status_first(now);
   const std::size_t report = is_first ? 1 : 0, status = is_first ? 0 : 1;
-  std::array<dispatch::Candidate, 2> candidates;
+  std::array<pace::Candidate, 2> candidates;
   if (requests.report) candidates[report] = {now, pace_.report_ready()};
   const loop::Instant status_at =
       status_clients_.empty() && !is_first ? std::min(ask_at_, requests.status.value_or(ask_at_)) : now;
   if (status_at != loop::Instant::max())
     candidates[status] = {now, std::max(status_ready(requests), status_at)};
-  dispatch::Turn turn = dispatch::in_order(candidates, now);
+  pace::Turn turn = pace::in_order(candidates, now);
   if (is_paused) turn.wake = std::min(turn.wake.value_or(reports_paused_until_), reports_paused_until_);
   if (turn.wake) wake_.call_at(*turn.wake);
   if (!turn.candidate || !channel_.claim_turn(/*goes_first=*/turn.candidate == report)) return;

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "codec/write.hpp"
-#include "dispatch/turn.hpp"
 #include "dispatch/verdicts.hpp"
 #include "icd/sentence.hpp"
 
@@ -195,10 +194,10 @@ void Telemetry::send_next() {
   }
   const auto state = states_.next();
   const std::array candidates = {
-      state ? dispatch::Candidate{state->accepted, std::max(state->ready, states_.pace().ready())}
-            : dispatch::Candidate{},
-      dispatch::Candidate{markers_.oldest_to_send(), markers_.pace().ready()}};
-  const dispatch::Turn turn = dispatch::oldest_first(candidates, loop_.now());
+      state ? pace::Candidate{state->accepted, std::max(state->ready, states_.pace().ready())}
+            : pace::Candidate{},
+      pace::Candidate{markers_.oldest_to_send(), markers_.pace().ready()}};
+  const pace::Turn turn = pace::oldest_first(candidates, loop_.now());
   if (turn.wake) wake_.call_at(*turn.wake);
   if (!turn.candidate || !channel_.claim_turn()) return;
   if (turn.candidate == 1) return send_markers();

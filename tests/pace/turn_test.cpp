@@ -1,10 +1,10 @@
-#include "dispatch/turn.hpp"
-
 #include <gtest/gtest.h>
 
 #include <array>
 
-namespace adit::dispatch {
+#include "pace/rate_limit.hpp"
+
+namespace adit::pace {
 namespace {
 
 using std::chrono::milliseconds;
@@ -49,4 +49,4 @@ TEST(Turn, FollowsTheOrderIfAllMaySend) {
 }
 
 }  // namespace
-}  // namespace adit::dispatch
+}  // namespace adit::pace

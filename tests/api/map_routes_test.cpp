@@ -98,6 +98,38 @@ TEST_F(MapRoutesTest, ServesEachListedTile) {
   }
 }
 
+TEST_F(MapRoutesTest, ServesSeveralTilesInOneAnswer) {
+  const json layer = json::parse(get_file("/adit/map").body)["layers"][0];
+  std::string places = "0/9999/9999", images;
+  for (const json& tile : layer["tiles"]) {
+    const std::string place = tile["level"].dump() + "/" + tile["x"].dump() + "/" + tile["y"].dump();
+    places += "," + place;
+    images += get_file("/adit/map/grid/-/" + place + ".png?from=0a0b0c&to=F0E0D0").body;
+  }
+  const std::string path = "/adit/map/grid/-/tiles?from=0a0b0c&to=F0E0D0&tiles=" + places;
+  const auto answer = get_file(path);
+  ASSERT_EQ(answer.status, icd::Status::Ok) << answer.body;
+  const std::size_t end = answer.body.find('\n');
+  EXPECT_EQ(answer.body.substr(end + 1), images);
+  const json heads = json::parse(answer.body.substr(0, end))["tiles"];
+  ASSERT_EQ(heads.size(), layer["tiles"].size() + 1);
+  EXPECT_EQ(heads[0], (json{{"place", "0/9999/9999"}, {"bytes", 0}, {"since", nullptr}, {"until", nullptr}}));
+  EXPECT_EQ(heads[1]["since"], layer["tiles"][0]["stamp"]);
+  const auto before = get_file(path + "&at=1000");
+  EXPECT_EQ(before.body.find('\n') + 1, before.body.size()) << "before anything was drawn";
+}
+
+TEST_F(MapRoutesTest, RefusesWrongListsOfTiles) {
+  std::string most = "0/0/0";
+  for (int i = 1; i < 64; ++i) most += ",0/" + std::to_string(i) + "/0";
+  EXPECT_EQ(get_file("/adit/map/grid/-/tiles?tiles=" + most).status, icd::Status::Ok);
+  for (const std::string& tiles : {std::string(), most + ",0/64/0", std::string("0/0"),
+                                   std::string("0/0/0/0"), std::string("a/0/0"), std::string("-1/0/0")}) {
+    EXPECT_EQ(get_file("/adit/map/grid/-/tiles?tiles=" + tiles).status, icd::Status::BadRequest) << tiles;
+  }
+  EXPECT_EQ(get_file("/adit/map/shape/-/tiles?tiles=0/0/0").status, icd::Status::NotFound);
+}
+
 TEST_F(MapRoutesTest, ListsOnlyTilesChangedSince) {
   const auto before = source.mosaic.version();
   const json same = json::parse(get_file("/adit/map?since=" + std::to_string(before)).body);

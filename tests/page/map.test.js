@@ -7,7 +7,7 @@ import { serve } from "./stage.js";
 import { hears, settled, toTab, watch } from "./watch.js";
 
 const asked = (page, part) => page.requests.filter((url) => url.includes(part)).length;
-const tiles = (page) => asked(page, ".png");
+const tiles = (page) => page.requests.filter((url) => url.includes("/tiles?")).flatMap((url) => new URL(url).searchParams.get("tiles").split(",")).length;
 /** Whether more pixels have about this colour than the rims of letters have. */
 const shows = (page, [red, green, blue, most]) =>
   page.$eval(canvas, (node, [red, green, blue, most]) => {

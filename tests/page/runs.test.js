@@ -38,7 +38,7 @@ test("lists runs, shows an earlier run's map at its times, and deletes it after 
   await earlier.getByRole("button", { name: /^View/ }).click();
   await page.locator("#look h2", { hasText: "Opening Run 1 …" }).waitFor();
   letGo();
-  await until(() => page.requests.some((url) => /\/adit\/runs\/1\/map\/grid\/ugv1\/.*\.png/.test(url)), "the run's tiles");
+  await until(() => page.requests.some((url) => /\/adit\/runs\/1\/map\/grid\/ugv1\/tiles\?/.test(url)), "the run's tiles");
   assert.deepEqual(await page.locator("#look .follow option").allTextContents(), ["Follow …", "ugv1"]);
   const slider = page.locator("#look input[type=range]");
   assert.equal(await slider.getAttribute("aria-valuetext"), "the end");

@@ -11,6 +11,7 @@
 #include "api/map_json.hpp"
 #include "api/route.hpp"
 #include "icd/sentence.hpp"
+#include "icd/text.hpp"
 #include "icd/try.hpp"
 #include "picture/palette.hpp"
 
@@ -58,14 +59,47 @@ Tracks thinned(std::vector<Track> tracks) {
 
 constexpr std::string_view kMerged = "-";  // stands for the robot "", which a path cannot name
 
-/// A request for a tile: place, colours, and the client's cached state.
-struct TileAsked {
+/// A layer, its time and its colours.
+struct LayerAsked {
   picture::Layer layer;
-  picture::TileIndex at;
   std::optional<double> stamp, low, high;
   std::optional<picture::Colour> from, to;  // for free or lowest, and for occupied or highest
-  std::string has;                          // If-None-Match
 };
+
+/// A request for a tile: place, colours, and the client's cached state.
+struct TileAsked {
+  LayerAsked in;
+  picture::TileIndex at;
+  std::string has;  // If-None-Match
+};
+
+/// A request for several tiles of a layer.
+struct TilesAsked {
+  static constexpr std::size_t kMost = 64;
+
+  LayerAsked in;
+  std::vector<picture::TileIndex> at;
+};
+
+/// One of several tiles in an answer.
+struct TileHead {
+  std::string place = {};
+  std::size_t bytes = 0;
+  std::optional<double> since = {}, until = {};
+  static const codec::Row kRow;
+};
+
+struct TilesHead {
+  std::vector<TileHead> tiles = {};
+  static const codec::Row kRow;
+};
+
+constexpr codec::Member kTileHead[] = {
+    codec::member<&TileHead::place>("place"), codec::member<&TileHead::bytes>("bytes"),
+    codec::member<&TileHead::since>("since"), codec::member<&TileHead::until>("until")};
+constexpr codec::Row TileHead::kRow = {"", kTileHead};
+constexpr codec::Member kTilesHead[] = {codec::member<&TilesHead::tiles>("tiles")};
+constexpr codec::Row TilesHead::kRow = {"", kTilesHead};
 
 /// A colour of six hexadecimal digits.
 std::optional<picture::Colour> colour_in(std::string_view text) {
@@ -75,7 +109,7 @@ std::optional<picture::Colour> colour_in(std::string_view text) {
   return picture::Colour{part(16), part(8), part(0)};
 }
 
-std::string coloured(const picture::Packed& tile, const TileAsked& asked) {
+std::string coloured(const picture::Packed& tile, const LayerAsked& asked) {
   const bool is_coloured = asked.from && asked.to;
   if (asked.layer.kind == picture::Kind::Grid) {
     return is_coloured ? picture::write_png(tile, picture::grid_palette(*asked.from, *asked.to))
@@ -102,7 +136,7 @@ intake::Answer image_of(const picture::Packed& tile, const TileAsked& asked, std
   if (asked.has.contains(etag)) {
     answer.status = kNotModified;
   } else {
-    answer.body = coloured(tile, asked);
+    answer.body = coloured(tile, asked.in);
   }
   return answer;
 }
@@ -120,14 +154,10 @@ icd::Checked<Time> time_asked(const intake::RequestHead& head) {
   return since.value_or(0);
 }
 
-/// `parts`: kind, robot, level, x and y from the path.
-icd::Checked<TileAsked> tile_asked(const intake::RequestHead& head, std::span<const std::string> parts) {
+/// `parts`: kind and robot from the path.
+icd::Checked<LayerAsked> layer_asked(const intake::RequestHead& head, std::span<const std::string> parts) {
   if (parts[0] != "grid" && parts[0] != "cloud") return std::unexpected(nothing_at(head.path()));
-  const auto level = icd::number_in<int>(parts[2]), x = icd::number_in<int>(parts[3]),
-             y = icd::number_in<int>(parts[4]);
-  if (!level || !x || !y) return std::unexpected(nothing_at(head.path()));
   const auto at = ADIT_TRY(asked_number(head, "at", "at: expected seconds since 1970"));
-  if (at && *level < 0) return icd::refuse(Status::BadRequest, "at: finer levels exist only for now");
   const auto low = ADIT_TRY(asked_number(head, "low", "low and high: expected metres"));
   const auto high = ADIT_TRY(asked_number(head, "high", "low and high: expected metres"));
   const std::string_view from_text = head.query("from"), to_text = head.query("to");
@@ -136,20 +166,59 @@ icd::Checked<TileAsked> tile_asked(const intake::RequestHead& head, std::span<co
     return icd::refuse(Status::BadRequest,
                        "from and to: expected both or neither, each with six hexadecimal digits, as in "
                        "2266ee");
-  return TileAsked{.layer = {.robot = parts[1] == kMerged ? "" : parts[1],
-                             .kind = parts[0] == "grid" ? picture::Kind::Grid : picture::Kind::Cloud},
-                   .at = {*level, *x, *y},
-                   .stamp = at,
-                   .low = low,
-                   .high = high,
-                   .from = from,
-                   .to = to,
-                   .has = std::string(head.header("If-None-Match"))};
+  return LayerAsked{.layer = {.robot = parts[1] == kMerged ? "" : parts[1],
+                              .kind = parts[0] == "grid" ? picture::Kind::Grid : picture::Kind::Cloud},
+                    .stamp = at,
+                    .low = low,
+                    .high = high,
+                    .from = from,
+                    .to = to};
+}
+
+std::vector<std::string> split(std::string_view text, char separator) {
+  std::vector<std::string> parts;
+  while (!text.empty()) parts.emplace_back(icd::cut(text, separator));
+  return parts;
+}
+
+/// `parts`: level, x and y.
+std::optional<picture::TileIndex> place_in(std::span<const std::string> parts) {
+  if (parts.size() != 3) return std::nullopt;
+  const auto level = icd::number_in<int>(parts[0]), x = icd::number_in<int>(parts[1]),
+             y = icd::number_in<int>(parts[2]);
+  if (!level || !x || !y) return std::nullopt;
+  return picture::TileIndex{*level, *x, *y};
+}
+
+/// `parts`: kind, robot, level, x and y from the path.
+icd::Checked<TileAsked> tile_asked(const intake::RequestHead& head, std::span<const std::string> parts) {
+  auto in = ADIT_TRY(layer_asked(head, parts.first(2)));
+  const auto at = place_in(parts.subspan(2));
+  if (!at) return std::unexpected(nothing_at(head.path()));
+  if (in.stamp && at->level < 0)
+    return icd::refuse(Status::BadRequest, "at: finer levels exist only for now");
+  return TileAsked{.in = std::move(in), .at = *at, .has = std::string(head.header("If-None-Match"))};
+}
+
+/// `parts`: kind and robot from the path.
+icd::Checked<TilesAsked> tiles_asked(const intake::RequestHead& head, std::span<const std::string> parts) {
+  TilesAsked asked{.in = ADIT_TRY(layer_asked(head, parts.first(2))), .at = {}};
+  const auto places = split(head.query("tiles"), ',');
+  bool is_valid = !places.empty() && places.size() <= TilesAsked::kMost;
+  for (const std::string& place : places) {
+    const auto at = place_in(split(place, '/'));
+    is_valid = is_valid && at && at->level >= 0;
+    if (is_valid) asked.at.push_back(*at);
+  }
+  if (is_valid) return asked;
+  return icd::refuse(Status::BadRequest,
+                     icd::sentence("tiles: expected 1 to ", TilesAsked::kMost,
+                                   " places with commas between them, as in 0/3/-2,0/4/-2"));
 }
 
 /// The PNG, or the reason for its absence.
 intake::Answer tile_of(const picture::Mosaic& map, const TileAsked& asked) {
-  const auto shown = map.tile(asked.layer, asked.at, asked.stamp);
+  const auto shown = map.tile(asked.in.layer, asked.at, asked.in.stamp);
   if (shown.tile == nullptr) return nothing_drawn();
   // An earlier state never changes; the newest must be revalidated.
   intake::Answer answer = image_of(*shown.tile, asked, shown.newest ? "no-cache" : "max-age=3600");
@@ -157,6 +226,21 @@ intake::Answer tile_of(const picture::Mosaic& map, const TileAsked& asked) {
   answer.headers.push_back({"Adit-Since", icd::number_text(shown.stamp)});
   if (shown.until) answer.headers.push_back({"Adit-Until", icd::number_text(*shown.until)});
   return guarded(std::move(answer));
+}
+
+/// A line with the head of each tile in JSON, then their PNGs.
+intake::Answer tiles_of(const picture::Mosaic& map, const TilesAsked& asked) {
+  TilesHead head;
+  std::string images;
+  for (const picture::TileIndex& at : asked.at) {
+    TileHead& tile = head.tiles.emplace_back(icd::sentence(at.level, "/", at.x, "/", at.y));
+    const auto shown = map.tile(asked.in.layer, at, asked.in.stamp);
+    if (shown.tile == nullptr) continue;
+    const std::string image = coloured(*shown.tile, asked.in);
+    tile = {.place = tile.place, .bytes = image.size(), .since = shown.stamp, .until = shown.until};
+    images += image;
+  }
+  return fresh("application/octet-stream", codec::to_json(head) + '\n' + images);
 }
 
 /// The same for a drawn tile of a finer level. Null: 204, because the client cannot know which tiles exist.
@@ -191,10 +275,15 @@ void MapRoutes::tile(const Call& call) const {
   if (!asked) return call.responder->answer(refused(asked.error()));
   if (asked->at.level >= 0 || !picture::is_in_world(asked->at))
     return call.responder->answer(tile_of(source_.map(), *asked));
-  finer_.tile(asked->layer, asked->at,
+  finer_.tile(asked->in.layer, asked->at,
               [responder = call.responder, asked = *asked](const icd::Checked<picture::Tile>& tile) {
                 responder->answer(tile ? finer_tile(*tile, asked) : refused(tile.error()));
               });
+}
+
+void MapRoutes::tiles(const Call& call) const {
+  const auto asked = tiles_asked(call.head, call.parameters);
+  call.responder->answer(asked ? tiles_of(source_.map(), *asked) : refused(asked.error()));
 }
 
 void MapRoutes::covered(const Call& call) const {
@@ -272,6 +361,12 @@ void KeptRunsRoutes::tile(const Call& call) {
   const auto asked = tile_asked(call.head, std::span(call.parameters).subspan(1));
   if (!asked) return call.responder->answer(refused(asked.error()));
   with_run(call, [asked = *asked](const KeptRun& run) { return tile_of(run.picture, asked); });
+}
+
+void KeptRunsRoutes::tiles(const Call& call) {
+  const auto asked = tiles_asked(call.head, std::span(call.parameters).subspan(1));
+  if (!asked) return call.responder->answer(refused(asked.error()));
+  with_run(call, [asked = *asked](const KeptRun& run) { return tiles_of(run.picture, asked); });
 }
 
 void KeptRunsRoutes::tracks(const Call& call) {

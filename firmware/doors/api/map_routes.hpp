@@ -26,6 +26,7 @@ class MapRoutes {
 
   icd::Checked<MapView> layers(const intake::RequestHead& head) const;
   void tile(const Call& call) const;
+  void tiles(const Call& call) const;
   void covered(const Call& call) const;
   icd::Checked<MarkerChanges> markers(const intake::RequestHead& head) const;
   icd::Checked<Tracks> tracks(const intake::RequestHead& head) const;
@@ -53,6 +54,7 @@ class KeptRunsRoutes {
   icd::Checked<RunRow> one(const Call& call) const { return row_of(call.parameters.front()); }
   void layers(const Call& call);
   void tile(const Call& call);
+  void tiles(const Call& call);
   void tracks(const Call& call);
   void plots(const Call& call);
   /// The report for printing, as HTML.

@@ -142,6 +142,9 @@ export class MapOfRun {
     this.redraw();
   }
 
+  /** How far it is with images of the maps that are being fetched: Tiles.progress(). */
+  progress = () => this.#scene.tiles.progress();
+
   measure(isOn) {
     if (isOn === this.#ruler.isOn) return;
     this.#ruler.set(isOn);

@@ -2,15 +2,23 @@
 // when it is looked at and its version changed (README.md: GET /adit/map).
 import { fetchSoon } from "./session.js";
 
-const AT_ONCE = 4, FINER_AT_ONCE = 2, MAX_IMAGES = 500; // a finer tile may have to be drawn first
+const AT_ONCE = 4, FINER_AT_ONCE = 2, MAX_IMAGES = 1000; // a finer tile may have to be drawn first
+const MAX_TOGETHER = 64; // tiles of one layer in a request
 const NONE = [204, 404]; // nothing is known there, of what may be asked for; of anything else
 
 const overlap = (a, b) => a.left < b.right && b.left < a.right && a.bottom < b.top && b.bottom < a.top;
 
-/** Tells of a time and colours whether a tile's answer is what it was then, too: it says from when to when it was so. */
-function spanOf({ headers }, name) {
-  const from = Number(headers.get("Adit-Since") ?? Infinity), until = Number(headers.get("Adit-Until") ?? NaN);
-  return (at, colours) => at >= from && at < until && name.endsWith(colours);
+/** Tells of a time and colours whether a tile is what it was then, too: `since` and `until` say from when to when it was so. */
+const spanOf = ({ since, until }, name) => (at, colours) => since !== null && until !== null && at >= since && at < until && name.endsWith(colours);
+
+/** The tiles in an answer, each with its head and its image: a line of JSON, then the images one after the other. */
+function* tilesOf(bytes) {
+  const end = bytes.indexOf(10);
+  let from = end + 1;
+  for (const head of JSON.parse(new TextDecoder().decode(bytes.subarray(0, end))).tiles) {
+    yield { head, image: head.bytes ? new Blob([bytes.subarray(from, from + head.bytes)], { type: "image/png" }) : null };
+    from += head.bytes;
+  }
 }
 
 export class Tiles {
@@ -27,7 +35,9 @@ export class Tiles {
   #version = 0;
   #images = new Map(); // "grid/r1/0/1/2" to {name, image}: what was asked for, and what was last fetched
   #queue = [];
-  #loading = 0;
+  #wave = { began: 0, done: 0 }; // since the queue was last empty
+  #loading = 0; // requests
+  #awaited = 0; // tiles of these
   #loadingFiner = 0;
   #changed;
   #base;
@@ -145,35 +155,41 @@ export class Tiles {
     return all;
   }
 
+  /** How far it is with the images that were asked for together: {done, all, seconds}; null if none is missing. */
+  progress() {
+    const missing = this.#queue.length + this.#awaited, { began, done } = this.#wave;
+    return missing ? { done, all: done + missing, seconds: (performance.now() - began) / 1000 } : null;
+  }
+
   /** The tile's image as it was `at` that time (null: now), or the last one there is while it is being fetched. */
   image(layer, place, at) {
     const tile = layer.tiles.get(place);
     if (!tile || (at === null ? tile.blank : at < tile.first)) return null;
-    const isNewest = at === null || (at >= tile.stamp && !tile.blank);
-    const path = this.#pathOf(layer.kind, layer.robot, place), colours = this.#coloursOf(layer);
-    const name = `${path}?${isNewest ? `v=${tile.version}` : `at=${at}`}${colours}`;
-    const entry = this.#entryOf(path, place);
-    if (entry.name !== name && !(at !== null && entry.isAsOf?.(at, colours))) this.#request(entry, name);
+    const isNewest = at === null || (at >= tile.stamp && !tile.blank), colours = this.#coloursOf(layer);
+    const of = `${this.#pathOf(layer.kind, layer.robot, "tiles")}?${isNewest ? "" : `at=${at}`}${colours}`;
+    const name = `${place} ${isNewest ? tile.version : ""} ${of}`;
+    const entry = this.#entryOf(this.#pathOf(layer.kind, layer.robot, place), place);
+    if (entry.name !== name && !(at !== null && entry.isAsOf?.(at, colours))) this.#request(entry, name, of, !layer.robot);
     return entry.image;
   }
 
   /** The same of a finer level; `asks`: it is fetched where it is not there. */
   finerImage(layer, place, asks) {
-    const path = this.#pathOf(layer.kind, layer.robot, place), colours = this.#coloursOf(layer);
+    const path = `${this.#pathOf(layer.kind, layer.robot, place)}.png`, colours = this.#coloursOf(layer);
     if (!asks) return this.#images.get(path)?.image ?? null;
     const entry = this.#entryOf(path, place);
     entry.isFiner = true;
     if (entry.isOld || entry.version === undefined) Object.assign(entry, { version: layer.finer.version, isOld: false });
     if (entry.colours !== colours) Object.assign(entry, { colours, etag: "" });
     const name = `${path}?v=${entry.version}${colours}`;
-    if (entry.name !== name) this.#request(entry, name);
+    if (entry.name !== name) this.#request(entry, name, "", false);
     return entry.image;
   }
 
   /** In metres. */
   metresOf = (level) => (level < 0 ? this.finerMetresPerPixel[-1 - level] : this.metresPerPixel[level]) * this.side;
 
-  #pathOf = (kind, robot, place) => `${this.#base}/map/${kind}/${robot || "-"}/${place}${place && ".png"}`;
+  #pathOf = (kind, robot, place) => `${this.#base}/map/${kind}/${robot || "-"}/${place}`;
 
   #entryOf(path, place) {
     let entry = this.#images.get(path);
@@ -182,44 +198,76 @@ export class Tiles {
     return entry;
   }
 
-  #request(entry, name) {
+  /** `of`: what tiles of one request have in common; "": it needs one of its own. `isFirst`: before those that are not. */
+  #request(entry, name, of, isFirst) {
     entry.name = name;
+    if (!this.progress()) this.#wave = { began: performance.now(), done: 0 };
     this.#queue = this.#queue.filter((other) => other.entry !== entry);
-    this.#queue.push({ entry, name });
-    this.#load();
+    this.#queue.push({ entry, name, of, isFirst });
+    queueMicrotask(() => this.#load()); // when all that is seen has been asked for
   }
 
-  #nextRequest() {
-    if (this.#loading >= AT_ONCE) return null;
+  /** The requests that are next: one for a finer tile, or those for tiles of one layer. */
+  #nextRequests() {
+    if (this.#loading >= AT_ONCE) return [];
     const mayFiner = this.#loadingFiner < FINER_AT_ONCE && this.#loading < AT_ONCE - 1;
-    const next = this.#queue.findIndex(({ entry }) => !entry.isFiner || mayFiner);
-    return next < 0 ? null : this.#queue.splice(next, 1)[0];
+    const may = ({ entry }) => !entry.isFiner || mayFiner;
+    const next = this.#queue.find((each) => each.isFirst && may(each)) ?? this.#queue.find(may);
+    const together = next?.of ? this.#queue.filter(({ of }) => of === next.of).slice(0, MAX_TOGETHER) : [next].filter(Boolean);
+    this.#queue = this.#queue.filter((each) => !together.includes(each));
+    return together;
   }
 
   async #load() {
-    const next = this.#nextRequest();
-    if (!next) return;
-    const { entry, name } = next;
+    for (let next = this.#nextRequests(); next.length; next = this.#nextRequests()) this.#fetch(next);
+  }
+
+  async #fetch(requests) {
+    const { isFiner } = requests[0].entry;
     ++this.#loading;
-    if (entry.isFiner) ++this.#loadingFiner;
+    this.#awaited += requests.length;
+    if (isFiner) ++this.#loadingFiner;
     try {
-      const answer = await fetchSoon(name, entry.etag ? { headers: { "If-None-Match": entry.etag } } : {});
-      const image = answer.status === 200 ? await createImageBitmap(await answer.blob()) : null;
-      if (entry.isFiner && answer.status === 503) entry.name = ""; // asked for again when it is next drawn
-      if (entry.name !== name || !(image || NONE.includes(answer.status))) return;
-      entry.image = image;
-      if (entry.isFiner) entry.etag = answer.headers.get("ETag") ?? "";
-      entry.isAsOf = spanOf(answer, name);
-      this.#pieces.set(entry.place, this.#areaOf(entry.place));
-      this.#changed();
+      await (isFiner ? this.#fetchFiner(requests[0]) : this.#fetchTogether(requests));
     } catch {
-      if (entry.name === name) entry.name = ""; // asked for again when it is next drawn
+      for (const { entry, name } of requests) if (entry.name === name) entry.name = ""; // asked for again when it is next drawn
     } finally {
       --this.#loading;
-      if (entry.isFiner) --this.#loadingFiner;
+      this.#awaited -= requests.length;
+      this.#wave.done += requests.length;
+      if (isFiner) --this.#loadingFiner;
+      this.#changed();
       this.#evict();
       this.#load();
     }
+  }
+
+  async #fetchTogether(requests) {
+    const places = requests.map(({ entry }) => entry.place);
+    const answer = await fetchSoon(`${requests[0].of}&tiles=${places.join()}`);
+    if (!answer.ok) throw new Error(`the box answered ${answer.status}`);
+    const byPlace = new Map(requests.map((request) => [request.entry.place, request]));
+    const bytes = new Uint8Array(await answer.arrayBuffer());
+    await Promise.all([...tilesOf(bytes)].map(async ({ head, image }) => {
+      const { entry, name } = byPlace.get(head.place), drawn = image && (await createImageBitmap(image));
+      if (entry.name !== name) return;
+      entry.isAsOf = spanOf(head, name);
+      this.#show(entry, drawn);
+    }));
+  }
+
+  async #fetchFiner({ entry, name }) {
+    const answer = await fetchSoon(name, entry.etag ? { headers: { "If-None-Match": entry.etag } } : {});
+    const image = answer.status === 200 ? await createImageBitmap(await answer.blob()) : null;
+    if (answer.status === 503) entry.name = ""; // asked for again when it is next drawn
+    if (entry.name !== name || !(image || NONE.includes(answer.status))) return;
+    entry.etag = answer.headers.get("ETag") ?? "";
+    this.#show(entry, image);
+  }
+
+  #show(entry, image) {
+    entry.image = image;
+    this.#pieces.set(entry.place, this.#areaOf(entry.place));
   }
 
   #areaOf(place) {

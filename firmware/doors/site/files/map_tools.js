@@ -3,6 +3,8 @@ import { attribute, mark, list, make, say } from "./dom.js";
 import { drawn } from "./icons.js";
 import { clip } from "./words.js";
 
+const LONG = 1, LOOK = 500; // seconds without a word; ms
+
 let section = null, map = null;
 
 export function offerTools(panel, shown) {
@@ -21,6 +23,7 @@ export function offerTools(panel, shown) {
     map.measure(false);
   });
   map.onTool = show;
+  setInterval(showProgress, LOOK);
 }
 const choice = () => section.querySelector(".follow select");
 
@@ -31,6 +34,11 @@ function show() {
   say(section.querySelector(".measured"), words);
   const followed = map.followed() ?? "";
   if (choice().value !== followed) choice().value = followed;
+}
+
+function showProgress() {
+  const progress = map.progress();
+  say(section.querySelector(".loads"), progress && progress.seconds > LONG ? `Map loads, ${progress.done} of ${progress.all}` : "");
 }
 
 /** Which robots there are to follow. Nothing changes in the list while it is open. */

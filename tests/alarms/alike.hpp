@@ -50,9 +50,13 @@ inline Snapshot well(std::size_t robots = 2) {
   for (std::size_t i = 1; i <= robots; ++i) {
     const std::string name = "uav" + std::to_string(i);
     snapshot.traffic.habits[name] = {.gap = 1, .quiet = 1};
+    snapshot.traffic.activities.push_back({.kind = "grid",
+                                           .robot = name,
+                                           .last_forwarded = kNow,
+                                           .heard = 2.0 + static_cast<double>(i),
+                                           .last_status = 200});
     snapshot.traffic.activities.push_back(
-        {.kind = "grid", .robot = name, .age = 2.0 + static_cast<double>(i), .last_status = 200});
-    snapshot.traffic.activities.push_back({.kind = "state", .robot = name, .age = 1.0, .last_status = 200});
+        {.kind = "state", .robot = name, .last_forwarded = kNow, .heard = 1.0, .last_status = 200});
   }
   return snapshot;
 }

@@ -5,6 +5,7 @@
 
 #include "alarms/alarm.hpp"
 #include "alarms/alike.hpp"
+#include "icd/sentence.hpp"
 
 namespace adit::alarms {
 namespace {
@@ -67,6 +68,18 @@ TEST(Board, RemembersTheLastEndedAlarms) {
   }
   EXPECT_EQ(board.over().size(), Board::kMostOver);
   EXPECT_EQ(board.over().front().until, 299) << "the newest first";
+}
+
+TEST(Board, RemembersAnAlarmAtItsWorst) {
+  Board board;
+  for (const std::uint64_t count : {7u, 20u, 7u}) {
+    board.take({{.id = "robots_silent",
+                 .headline = {icd::sentence(count, " robots"), "silent", true},
+                 .degree = count}},
+               100);
+  }
+  board.take({}, 111);
+  EXPECT_EQ(board.over().front().was, "20 robots were silent");
 }
 
 TEST(Board, AcknowledgedAlarmStaysQuietWhileUnchanged) {

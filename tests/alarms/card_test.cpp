@@ -16,7 +16,8 @@ Snapshot named() {
   Snapshot snapshot = well(1);
   for (EndpointRow& endpoint : snapshot.traffic.endpoints) endpoint.address = "ADDRESS";
   snapshot.traffic.habits["NAME"] = {.gap = 1, .quiet = 1};
-  snapshot.traffic.activities.push_back({.kind = "grid", .robot = "NAME", .age = 1.0, .last_status = 200});
+  snapshot.traffic.activities.push_back(
+      {.kind = "grid", .robot = "NAME", .last_forwarded = kNow, .heard = 1.0, .last_status = 200});
   return snapshot;
 }
 
@@ -30,7 +31,7 @@ void both_have(Snapshot& snapshot, EndpointFault trouble) {
 void robots_and_queue(std::vector<Snapshot>& days) {
   days.push_back(named());
   days.back().traffic.habits["NAME"].silent = true;
-  days.back().traffic.activities.back().behind = 100;
+  days.back().traffic.activities.back().age = 100;
   days.back().traffic.activities.back().last_no_room = kNow - 1;
   days.back().clients.unknown_robots = {"NAME"};
   days.back().clients.known_robots = {"uav1"};
@@ -40,7 +41,7 @@ void robots_and_queue(std::vector<Snapshot>& days) {
   days.back().clients.shut_out = true;
   days.push_back(well(6));
   for (auto& [name, robot] : days.back().traffic.habits) robot.silent = true;
-  for (ActivityRow& stream : days.back().traffic.activities) stream.behind = 100;
+  for (ActivityRow& stream : days.back().traffic.activities) stream.age = 100;
   days.push_back(named());
   days.back().traffic.queued = days.back().traffic.queue_room;
   days.push_back(named());

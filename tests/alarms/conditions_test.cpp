@@ -83,9 +83,9 @@ const ConditionCase kConditionCases[] = {
     {"robot_silent:uav2", Bad, Side::Robot, "uav2 is silent", "a message every 2 s",
      [](Snapshot& snapshot) { snapshot.traffic.habits["uav2"] = {.gap = 2, .quiet = 94, .silent = true}; }},
     {"map_behind:uav1", Wait, Side::CommandPost, "uav1's map is behind", "grid",
-     [](Snapshot& snapshot) { snapshot.traffic.activities[0].behind = 21; }},
+     [](Snapshot& snapshot) { snapshot.traffic.activities[0].age = 21; }},
     {"map_behind:uav1", Bad, Side::CommandPost, "uav1's map is behind", "grid",
-     [](Snapshot& snapshot) { snapshot.traffic.activities[0].behind = 91; }},
+     [](Snapshot& snapshot) { snapshot.traffic.activities[0].age = 91; }},
     {"queue_growing", Wait, Side::Network, "The map queue is growing", "0 MB are queued",
      [](Snapshot& snapshot) { snapshot.traffic.queue_grows = true; }},
     {"queue_nearly_full", Bad, Side::Network, "The map queue is nearly full", "104 MB",
@@ -245,7 +245,7 @@ TEST(Conditions, HaveHeadlinesOfAtMostSevenWords) {
 Snapshot busy() {
   Snapshot snapshot = well(20);
   for (ActivityRow& stream : snapshot.traffic.activities) {
-    if (stream.is_map()) stream.behind = 100;
+    if (stream.is_map()) stream.age = 100;
   }
   for (std::int64_t number : {1, 2})
     add_report(snapshot, {.number = number, .state = "in_doubt", .asking = true});
@@ -319,7 +319,7 @@ TEST(Causes, DoNotHideDecisionsOfTheOperator) {
 TEST(Causes, ThrottlingHidesNothing) {
   Snapshot snapshot = well();
   down(snapshot, EndpointFault::Throttling, 1);
-  snapshot.traffic.activities[0].behind = 30;
+  snapshot.traffic.activities[0].age = 30;
   EXPECT_THAT(ids_of(conditions_of(snapshot)), ElementsAre("command_post_throttling", "map_behind:uav1"));
 }
 
@@ -341,7 +341,17 @@ TEST(Robots, AllSilentAreOneCondition) {
   EXPECT_EQ(found[0].hides, 20u);
   EXPECT_EQ(found[0].since, kNow - 60);
   snapshot.traffic.habits["uav5"].silent = false;
-  EXPECT_EQ(conditions_of(snapshot).size(), 19u);
+  EXPECT_EQ(conditions_of(snapshot)[0].headline.now(), "19 robots are silent");
+  for (int i = 6; i <= 20; ++i) snapshot.traffic.habits.erase("uav" + std::to_string(i));
+  const auto last = conditions_of(snapshot);
+  EXPECT_EQ(last[0].headline.now(), "4 robots are silent")
+      << "those that have just returned have no habit yet";
+  snapshot.traffic.habits["uav4"].silent = false;
+  EXPECT_THAT(ids_of(conditions_of(snapshot)),
+              ElementsAre("robot_silent:uav1", "robot_silent:uav2", "robot_silent:uav3"));
+  snapshot.traffic.habits.erase("uav3"), snapshot.traffic.habits.erase("uav4"),
+      snapshot.traffic.habits.erase("uav5");
+  EXPECT_EQ(conditions_of(snapshot).size(), 2u) << "two are not all, although no other has a habit";
 }
 
 TEST(Robots, AreNotBlamedWhileTheTeamCableIsOut) {
@@ -354,7 +364,7 @@ TEST(Robots, AreNotBlamedWhileTheTeamCableIsOut) {
 TEST(Maps, OfManyRobotsBehindAreOneCondition) {
   Snapshot snapshot = well(6);
   for (ActivityRow& stream : snapshot.traffic.activities) {
-    if (stream.is_map()) stream.behind = 30;
+    if (stream.is_map()) stream.age = 30;
   }
   const auto found = conditions_of(snapshot);
   ASSERT_THAT(ids_of(found), ElementsAre("maps_behind"));
@@ -365,14 +375,14 @@ TEST(Maps, AreNotBehindWhileTakingTurns) {
   Snapshot snapshot = well(6);
   snapshot.traffic.turn = 20;
   for (ActivityRow& stream : snapshot.traffic.activities) {
-    if (stream.is_map()) stream.behind = 30;
+    if (stream.is_map()) stream.age = 30;
   }
   EXPECT_THAT(conditions_of(snapshot), IsEmpty());
 }
 
 TEST(Maps, AreNotBehindJustAfterAnOutage) {
   Snapshot snapshot = well(1);
-  snapshot.traffic.activities[0].behind = 300;
+  snapshot.traffic.activities[0].age = 300;
   snapshot.traffic.endpoints[1].well_for = 20;
   EXPECT_THAT(conditions_of(snapshot), IsEmpty()) << "the robot has its turn now";
   snapshot.traffic.endpoints[1].well_for = 21;

@@ -46,6 +46,7 @@ TEST_F(EndpointWatchTest, EndpointWithoutAnswersIsSilent) {
   seen_[0].busy = true;
   lasts(14);
   EXPECT_EQ(fault(), None);
+  EXPECT_EQ(watch_.endpoint(now_).waits, 14);
   lasts(2);
   EXPECT_EQ(fault(), Silent);
   EXPECT_EQ(watch_.endpoint(now_).since, 1004);
@@ -55,7 +56,7 @@ TEST_F(EndpointWatchTest, EndpointWithoutAnswersIsSilent) {
 
 TEST_F(EndpointWatchTest, TellsHowLongTheEndpointHasRecovered) {
   answers(200, 3);
-  EXPECT_EQ(watch_.endpoint(now_).well_for, std::nullopt) << "it always accepted all messages";
+  EXPECT_EQ(watch_.endpoint(now_).well_for, 4) << "since the start: restored messages count from then on";
   answers(500, 8);
   EXPECT_EQ(watch_.endpoint(now_).well_for, std::nullopt);
   answers(200, 1);

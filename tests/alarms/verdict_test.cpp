@@ -14,54 +14,96 @@ Verdict verdict_of(Snapshot snapshot) {
   return alarms::verdict_of(snapshot.traffic);
 }
 
-TEST(Verdict, TellsTheAgeOfArrivingMaps) {
-  const Verdict verdict = verdict_of(well(20));
-  EXPECT_EQ(verdict, (Verdict{Level::Good, "Every map arrives", "20 robots, oldest 22 s"}));
+/// well(), where the Command Post lacks a map of each robot.
+Snapshot busy(std::size_t robots) {
+  Snapshot snapshot = well(robots);
+  double age = 1.05;
+  for (ActivityRow& row : snapshot.traffic.activities) {
+    if (row.is_map()) row.age = age += 0.4;
+  }
+  return snapshot;
 }
 
-TEST(Verdict, IgnoresMapsThatAreNoLongerSent) {
-  Snapshot snapshot = well(2);
-  snapshot.traffic.activities.push_back({.kind = "cloud", .robot = "uav1", .age = 600.0, .last_status = 200});
-  EXPECT_EQ(verdict_of(snapshot).why, "2 robots, oldest 4 s");
-  snapshot.traffic.activities.push_back({.kind = "cloud", .robot = "uav2", .age = 9.0, .last_status = 200});
-  EXPECT_EQ(verdict_of(snapshot).why, "2 robots, oldest 9 s") << "the oldest of each robot's maps";
+void fall_silent(Snapshot& snapshot, const std::string& robot) {
+  snapshot.traffic.habits[robot] = {.gap = 1, .quiet = 120, .silent = true};
+  for (ActivityRow& row : snapshot.traffic.activities) {
+    if (row.robot == robot) row.age = std::nullopt, row.heard = 120;
+  }
+}
+
+ActivityRow merged(std::optional<double> age, double heard) {
+  return {.kind = "grid", .last_forwarded = kNow, .age = age, .heard = heard, .last_status = 200};
+}
+
+TEST(Verdict, TellsTheAgeOfTheOldestUndeliveredMap) {
+  EXPECT_EQ(verdict_of(busy(20)), (Verdict{Level::Good, "Every map arrives", "20 robots, oldest 9 s"}));
+  EXPECT_EQ(verdict_of(well(20)), (Verdict{Level::Good, "Every map arrives", "20 robots, up to date"}));
+}
+
+TEST(Verdict, NamesQuietRobots) {
+  Snapshot snapshot = busy(2);
+  ActivityRow quiet{
+      .kind = "cloud", .robot = "uav1", .last_forwarded = kNow, .heard = 600, .last_status = 200};
+  snapshot.traffic.activities.push_back(quiet);
+  EXPECT_EQ(verdict_of(snapshot).why, "2 robots, oldest 1 s") << "the robot's other map is not quiet";
+  quiet.robot = "uav3";
+  snapshot.traffic.activities.push_back(quiet);
+  EXPECT_EQ(verdict_of(snapshot),
+            (Verdict{Level::Good, "Every map arrives", "2 robots, oldest 1 s; uav3 quiet"}));
+}
+
+TEST(Verdict, NamesRobotsWithoutAMap) {
+  Snapshot snapshot = busy(2);
+  snapshot.traffic.activities.push_back(
+      {.kind = "state", .robot = "uav9", .last_forwarded = kNow, .heard = 1});
+  EXPECT_EQ(verdict_of(snapshot).why, "2 robots, oldest 1 s; no map from uav9");
 }
 
 TEST(Verdict, NamesASilentRobot) {
-  Snapshot snapshot = well(20);
-  snapshot.traffic.habits["uav5"].silent = true;
-  EXPECT_EQ(verdict_of(snapshot), (Verdict{Level::Wait, "19 of 20 arrive", "not uav5; oldest other 22 s"}));
+  Snapshot snapshot = busy(20);
+  fall_silent(snapshot, "uav5");
+  EXPECT_EQ(verdict_of(snapshot), (Verdict{Level::Wait, "19 of 20 arrive", "uav5 silent; oldest other 9 s"}));
+}
+
+TEST(Verdict, CountsNoQuietMapAsArriving) {
+  Snapshot snapshot = busy(1);
+  snapshot.traffic.activities.push_back(merged({}, 109));
+  fall_silent(snapshot, "uav1");
+  EXPECT_EQ(verdict_of(snapshot),
+            (Verdict{Level::Bad, "No map arrives", "uav1 silent; the merged map quiet"}));
 }
 
 TEST(Verdict, NamesARobotSilentSinceARestart) {
-  Snapshot snapshot = well(3);
+  Snapshot snapshot = busy(3);
   snapshot.traffic.habits["uav9"] = {.quiet = 40, .silent = true};
-  EXPECT_EQ(verdict_of(snapshot), (Verdict{Level::Wait, "3 of 4 arrive", "not uav9; oldest other 5 s"}));
-  snapshot.traffic.activities.push_back({.kind = "state", .robot = "uav9", .age = 50.0, .last_status = 200});
+  EXPECT_EQ(verdict_of(snapshot), (Verdict{Level::Wait, "3 of 4 arrive", "uav9 silent; oldest other 2 s"}));
+  snapshot.traffic.activities.push_back(
+      {.kind = "state", .robot = "uav9", .last_forwarded = kNow, .heard = 50});
   EXPECT_EQ(verdict_of(snapshot).what, "Every map arrives") << "the robot sends no maps";
 }
 
 TEST(Verdict, NamesAtMostThreeRobots) {
-  Snapshot snapshot = well(6);
-  for (auto& [name, robot] : snapshot.traffic.habits) robot.silent = name != "uav6";
+  Snapshot snapshot = busy(6);
+  for (const char* name : {"uav1", "uav2", "uav3", "uav4", "uav5"}) fall_silent(snapshot, name);
   EXPECT_EQ(verdict_of(snapshot),
-            (Verdict{Level::Wait, "1 of 6 arrive", "not uav1, uav2, uav3 and 2 more; the other 8 s"}));
-  snapshot.traffic.habits["uav6"].silent = true;
-  EXPECT_EQ(verdict_of(snapshot).what, "No map arrives");
-  EXPECT_EQ(verdict_of(snapshot).level, Level::Bad);
+            (Verdict{Level::Wait, "1 of 6 arrive", "uav1, uav2, uav3 and 2 more silent; the other 3 s"}));
+  fall_silent(snapshot, "uav6");
+  EXPECT_EQ(verdict_of(snapshot),
+            (Verdict{Level::Bad, "No map arrives", "uav1, uav2, uav3 and 3 more silent"}));
 }
 
-TEST(Verdict, ShowsTheAgeThatDecidesItsLevel) {
-  Snapshot snapshot = well(3);
-  snapshot.traffic.activities[0].age = 540;  // it paused, and its newest map is in flight
-  snapshot.traffic.activities[0].behind = 2;
-  EXPECT_EQ(verdict_of(snapshot), (Verdict{Level::Good, "Every map arrives", "3 robots, oldest 5 s"}));
+TEST(Verdict, NamesFailingMapsApartFromSilentRobots) {
+  Snapshot snapshot = busy(3);
+  snapshot.traffic.activities[0].last_status = 422;
+  fall_silent(snapshot, "uav2");
+  EXPECT_EQ(verdict_of(snapshot),
+            (Verdict{Level::Wait, "1 of 3 arrive", "not uav1; uav2 silent; the other 2 s"}));
 }
 
 TEST(Verdict, TellsThatMapsAreLate) {
-  Snapshot snapshot = well(3);
-  snapshot.traffic.activities[0].behind = 11;
-  EXPECT_EQ(verdict_of(snapshot), (Verdict{Level::Wait, "Maps are late", "uav1"}));
+  Snapshot snapshot = busy(3);
+  snapshot.traffic.activities[0].age = 11;
+  EXPECT_EQ(verdict_of(snapshot), (Verdict{Level::Wait, "Maps are late", "uav1, 11 s behind"}));
 }
 
 TEST(Verdict, TellsThatNoMapArrivesDuringAnOutage) {
@@ -88,20 +130,19 @@ TEST(Verdict, IsEmptyWithoutMaps) {
 
 TEST(Verdict, TellsTheTimeSinceTheLastNewMap) {
   Snapshot snapshot = well(2);
-  for (ActivityRow& stream : snapshot.traffic.activities) stream.age = *stream.age + 600;
+  for (ActivityRow& row : snapshot.traffic.activities) row.heard = *row.heard + 600;
   EXPECT_EQ(verdict_of(snapshot), (Verdict{Level::Quiet, "Every map arrived", "no new map for 10 min"}));
 }
 
 TEST(Verdict, OmitsTheCountOfOneRobot) {
-  EXPECT_EQ(verdict_of(well(1)), (Verdict{Level::Good, "Every map arrives", "1 robot, 3 s"}));
+  EXPECT_EQ(verdict_of(busy(1)), (Verdict{Level::Good, "Every map arrives", "1 robot, 1 s"}));
 }
 
 TEST(Verdict, DoesNotCountTheMergedMapAsARobot) {
-  Snapshot snapshot = well(2);
-  snapshot.traffic.activities.push_back({.kind = "grid", .robot = "", .age = 9.0, .last_status = 200});
+  Snapshot snapshot = busy(2);
+  snapshot.traffic.activities.push_back(merged(9, 1));
   EXPECT_EQ(verdict_of(snapshot).why, "2 robots and the merged map, oldest 9 s");
-  snapshot.traffic.activities.erase(snapshot.traffic.activities.begin(),
-                                    snapshot.traffic.activities.end() - 1);
+  snapshot.traffic.activities = {merged(9, 1)};
   EXPECT_EQ(verdict_of(snapshot).why, "the merged map, 9 s");
 }
 
@@ -131,15 +172,27 @@ TEST_F(StandingTest, BlamesNoRobotWhileMappingIsDown) {
        {EndpointFault::NoToken, EndpointFault::Unreachable, EndpointFault::Foreign, EndpointFault::Refusing,
         EndpointFault::Silent, EndpointFault::Failing}) {
     mapping_ = trouble;
-    stream_ = {.kind = "grid", .robot = stream_.robot, .behind = 200, .age = 200};
+    stream_ = {.kind = "grid", .robot = stream_.robot, .last_forwarded = kNow, .age = 200, .heard = 200};
     expect(Arrival::NotArriving, Level::Quiet);
-    stream_ = {.kind = "grid", .robot = stream_.robot, .behind = 3, .age = 9, .last_sentence = "timed out"};
+    stream_ = {.kind = "grid",
+               .robot = stream_.robot,
+               .last_forwarded = kNow,
+               .age = 3,
+               .heard = 9,
+               .last_sentence = "timed out"};
     expect(Arrival::NotArriving, Level::Quiet);
-    stream_ = {.kind = "grid", .robot = stream_.robot, .age = 9, .last_status = 401};
+    stream_ = {
+        .kind = "grid", .robot = stream_.robot, .last_forwarded = kNow, .heard = 9, .last_status = 401};
     expect(Arrival::NotArriving, Level::Quiet);
-    stream_ = {.kind = "grid", .robot = stream_.robot, .behind = 3, .age = 9, .last_status = 200};
+    stream_ = {.kind = "grid",
+               .robot = stream_.robot,
+               .last_forwarded = kNow,
+               .age = 3,
+               .heard = 9,
+               .last_status = 200};
     expect(Arrival::NotArriving, Level::Quiet);
-    stream_ = {.kind = "grid", .robot = stream_.robot, .age = 3, .last_status = 200};
+    stream_ = {
+        .kind = "grid", .robot = stream_.robot, .last_forwarded = kNow, .heard = 3, .last_status = 200};
     robot_.silent = true;
     expect(Arrival::UpToDate, Level::Good);
   }
@@ -148,24 +201,39 @@ TEST_F(StandingTest, BlamesNoRobotWhileMappingIsDown) {
 TEST_F(StandingTest, BlamesNoRobotJustAfterAnOutage) {
   snapshot_.traffic.turn = 20;
   snapshot_.traffic.endpoints[1].well_for = 29;
-  stream_ = {.kind = "grid", .robot = stream_.robot, .behind = 200, .age = 200, .last_sentence = "timed out"};
+  stream_ = {.kind = "grid",
+             .robot = stream_.robot,
+             .last_forwarded = kNow,
+             .age = 200,
+             .heard = 200,
+             .last_sentence = "timed out"};
   expect(Arrival::Late, Level::Wait);
-  stream_ = {.kind = "grid", .robot = stream_.robot, .behind = 60, .age = 60, .last_status = 401};
+  stream_ = {.kind = "grid",
+             .robot = stream_.robot,
+             .last_forwarded = kNow,
+             .age = 60,
+             .heard = 60,
+             .last_status = 401};
   expect(Arrival::Late, Level::Wait);
   stream_.last_status = 422;
   expect(Arrival::Refused, Level::Bad);
-  stream_ = {.kind = "grid", .robot = stream_.robot, .age = 1, .last_status = 200};
+  stream_ = {.kind = "grid", .robot = stream_.robot, .last_forwarded = kNow, .heard = 1, .last_status = 200};
   expect(Arrival::UpToDate, Level::Good);
   robot_.silent = true;
   expect(Arrival::Silent, Level::Bad);
   robot_.silent = false;
   snapshot_.traffic.endpoints[1].well_for = 31;
-  stream_ = {.kind = "grid", .robot = stream_.robot, .behind = 200, .age = 200, .last_sentence = "timed out"};
+  stream_ = {.kind = "grid",
+             .robot = stream_.robot,
+             .last_forwarded = kNow,
+             .age = 200,
+             .heard = 200,
+             .last_sentence = "timed out"};
   expect(Arrival::NotArriving, Level::Bad);
 }
 
 TEST_F(StandingTest, BlamesTheRobotDuringScoringOutageOrThrottling) {
-  stream_.behind = 200;
+  stream_.age = 200;
   snapshot_.traffic.endpoints[0].fault = EndpointFault::Unreachable;
   expect(Arrival::NotArriving, Level::Bad);
   mapping_ = EndpointFault::Throttling;
@@ -180,9 +248,16 @@ TEST_F(StandingTest, BlamesNoRobotForTheTeamCable) {
   expect(Arrival::Silent, Level::Bad);
 }
 
-ActivityRow of(const char* kind, std::optional<double> age, int status = 200,
-               std::optional<double> behind = {}) {
-  return {.kind = kind, .robot = "r", .behind = behind, .age = age, .last_status = status};
+/// `heard` nullopt: never delivered.
+ActivityRow of(const char* kind, std::optional<double> heard, int status = 200,
+               std::optional<double> age = {}) {
+  const auto forwarded = heard.transform([](double seconds) { return 1000 - seconds; });
+  return {.kind = kind,
+          .robot = "r",
+          .last_forwarded = forwarded,
+          .age = age,
+          .heard = heard,
+          .last_status = status};
 }
 
 const struct {
@@ -193,31 +268,41 @@ const struct {
   EndpointFault mapping = EndpointFault::None;
 } kStandings[] = {
     {"worst kind, oldest map",
-     {of("grid", 3), of("cloud", 40, 200, 33), of("state", 99)},
-     "wait, 33 s behind, map 40 s"},
-    {"first of two as bad", {of("grid", 3, 422), of("cloud", 4)}, "bad, refused, silent, map 4 s", true},
-    {"a quiet map beside another", {of("grid", 600), of("cloud", 4)}, "good, up to date, map 4 s"},
-    {"two quiet maps", {of("grid", 600), of("cloud", 99), of("state", 70)}, "quiet, quiet, map 1 min"},
-    {"a map never delivered", {of("grid", {}), of("cloud", 4)}, "wait, waiting, map never"},
-    {"no map", {of("state", 4)}, "good, up to date, 4 s"},
-    {"nothing heard: as old as its last pose", {}, "bad, silent, silent, 34 s", true},
+     {of("grid", 3), of("cloud", 4, 200, 33), of("state", 99, 200, 40)},
+     "wait, 33 s behind, map 33 s, heard 3 s"},
+    {"first of two as bad",
+     {of("grid", 3, 422), of("cloud", 4)},
+     "bad, refused, silent, map -, heard 3 s",
+     true},
+    {"a quiet map beside another",
+     {of("grid", 600), of("cloud", 4, 200, 2)},
+     "good, arriving, map 2 s, heard 4 s"},
+    {"two quiet maps",
+     {of("grid", 600), of("cloud", 99), of("state", 70)},
+     "quiet, quiet, map -, heard 1 min"},
+    {"a map never delivered", {of("grid", {}), of("cloud", 4)}, "wait, waiting, map -, heard 4 s"},
+    {"no map", {of("state", 4, 200, 1)}, "good, arriving, 1 s, heard 4 s"},
+    {"nothing heard since the start", {}, "bad, silent, silent, -, heard 34 s", true},
     {"nothing heard while the endpoint is down", {}, "", true, EndpointFault::Silent},
 };
+
+std::string written(std::optional<double> seconds) {
+  return seconds ? age_text(*seconds) : "-";
+}
 
 TEST(Words, ShowTheStandingOfARobot) {
   for (const auto& each : kStandings) {
     facts::Traffic traffic{.now = 1000,
                            .endpoints = {{.name = "mapping", .fault = each.mapping}},
                            .activities = each.rows,
-                           .habits = {{"r", {.silent = each.silent}}},
-                           .robots = {{.name = "r", .at = 966}}};
-    traffic.activities.push_back({.kind = "grid", .age = 4});
+                           .habits = {{"r", {.quiet = 34, .silent = each.silent}}}};
+    traffic.activities.push_back({.kind = "grid", .last_forwarded = 996, .heard = 4});
     add_words(traffic, {});
     std::string standing;
-    for (const auto& [name, level, word, silent, has_map, age] : traffic.standings)
-      standing +=
-          icd::sentence(facts::kLevelWords[static_cast<std::size_t>(level)], ", ", word,
-                        silent ? ", silent, " : ", ", has_map ? "map " : "", age ? age_text(*age) : "never");
+    for (const auto& [name, level, word, silent, has_map, age, heard] : traffic.standings)
+      standing += icd::sentence(facts::kLevelWords[static_cast<std::size_t>(level)], ", ", word,
+                                silent ? ", silent, " : ", ", has_map ? "map " : "", written(age), ", heard ",
+                                written(heard));
     EXPECT_EQ(standing, each.standing) << each.what;
   }
 }
@@ -225,12 +310,16 @@ TEST(Words, ShowTheStandingOfARobot) {
 TEST(Words, ShowTheAgeOfAPoseNotOfItsDelivery) {
   facts::Traffic traffic{
       .now = 1000,
-      .activities = {{.kind = "grid", .robot = "r", .age = 20}, {.kind = "state", .robot = "r", .age = 94}},
+      .activities = {{.kind = "grid", .robot = "r", .last_accepted = 980, .last_forwarded = 990},
+                     {.kind = "state", .robot = "r", .last_accepted = 906, .last_forwarded = 999}},
       .robots = {{.name = "r", .at = 999}, {.name = "later", .at = 1010}, {.name = "before"}}};
   add_words(traffic, {});
   EXPECT_EQ(traffic.robots[0].age, 94) << "the message was queued for long";
   EXPECT_EQ(traffic.robots[1].age, 0) << "an age is never negative";
   EXPECT_EQ(traffic.robots[2].age, std::nullopt) << "the time is from before the boot";
+  traffic.activities[1].last_accepted = 999.5;
+  add_words(traffic, {});
+  EXPECT_EQ(traffic.robots[0].age, 1) << "a newer one is queued";
 }
 
 std::string word_of(const EndpointRow& row, const Snapshot& snapshot = {}) {
@@ -252,6 +341,9 @@ TEST(Words, ShowTheStandingOfAnEndpoint) {
   const auto with_fault = [](const char* name, EndpointFault fault) {
     return Snapshot{.traffic = {.endpoints = {{.name = name, .fault = fault}}}};
   };
+  row.waits = 4;
+  EXPECT_EQ(word_of(row), "wait no answer yet");
+  row.waits = 0;
   std::vector<std::string> all;
   for (const auto fault : {NoToken, Unreachable, Foreign, Refusing, Silent, Failing, Throttling})
     all.push_back(word_of(row, with_fault("mapping", fault)));

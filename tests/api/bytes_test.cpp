@@ -47,6 +47,7 @@ RunView view() {
                      .trouble = "t",
                      .last_status = 201,
                      .answer_ms = 3.5,
+                     .answered = 4,
                      .throttled = 1,
                      .foreign = 2,
                      .level = facts::Level::Bad,
@@ -60,7 +61,7 @@ RunView view() {
   activity.replaced = 3, activity.merged = 4;
   activity.throttled = 5, activity.failed = 6, activity.refused_upstream = 7, activity.queued = 8;
   activity.no_room = 13, activity.behind_since = 14, activity.last_no_room = 15;
-  activity.behind = 17, activity.age = 18;
+  activity.age = 17, activity.heard = 18;
   activity.last_accepted = 9, activity.bytes_received = 10, activity.bytes_sent = 11;
   activity.last_status = 12, activity.last_sentence = "said", activity.clouds = "parts",
   activity.precision = "1mm", activity.no_valid_point = 20;
@@ -68,7 +69,8 @@ RunView view() {
   activity.arrival = facts::Arrival::Late, activity.level = facts::Level::Wait;
   activity.word = "17 s behind";
   view.activities = {activity};
-  view.standings = {{.name = "r", .level = facts::Level::Wait, .word = "w", .has_map = true, .age = 22}};
+  view.standings = {
+      {.name = "r", .level = facts::Level::Wait, .word = "w", .has_map = true, .age = 22, .heard = 23}};
   view.colours = {{"r", 2}};
   view.refusals = {
       {.at = 1, .uri = "/u", .sender = "s", .status = 422, .sentence = "no", .parts = 2, .setting = "r.m"}};
@@ -114,8 +116,8 @@ TEST(Bytes, OfARun) {
       R"("current_team":"cave"},"run_clock":{"seconds":756.0,"age":1.5,"runs":true,)"
       R"("old":false},"run_number":2,"run_id":"beta","run_seconds":3600,)"
       R"("endpoints":[{"name":"scoring","address":"a:1","connected":true,"trouble":"t",)"
-      R"("last_status":201,"answer_ms":3.5,"throttled":1,"foreign":2,"level":"bad","word":"w"},{"name":"mapping",)"
-      R"("address":"b:1","connected":false,"trouble":"","last_status":0,"answer_ms":null,)"
+      R"("last_status":201,"answer_ms":3.5,"answered":4.0,"throttled":1,"foreign":2,"level":"bad","word":"w"},{"name":"mapping",)"
+      R"("address":"b:1","connected":false,"trouble":"","last_status":0,"answer_ms":null,"answered":null,)"
       R"("throttled":0,"foreign":0,"level":"quiet","word":""}],"robots":[{"name":"r","position":{"x":1.0,"y":2.0,"z":3.0},)"
       R"("heading":0.5,"at":990.0,"age":19.0}],"reports":[{"number":7,"type":"Rope","position":{"x":1.0,)"
       R"("y":-2.5,"z":0.0},"sender":"10.0.0.7","robot":"spot1","received":940.0,"changed":941.25,)"
@@ -126,11 +128,11 @@ TEST(Bytes, OfARun) {
       R"("asking":false,"reconciled":false,"same_as":0,"sends_at":null}],"near_metres":5.0,)"
       R"("activities":[{"kind":"grid","robot":"r","accepted":1,"forwarded":2,"replaced":3,)"
       R"("merged":4,"throttled":5,"failed":6,"refused_upstream":7,"no_room":13,"queued":8,)"
-      R"("behind_since":14.0,"behind":17.0,"last_accepted":9.0,"last_forwarded":null,"age":18.0,"last_no_room":15.0,"bytes_received":10,"bytes_sent":11,"last_status":12,)"
+      R"("behind_since":14.0,"age":17.0,"last_accepted":9.0,"last_forwarded":null,"heard":18.0,"last_no_room":15.0,"bytes_received":10,"bytes_sent":11,"last_status":12,)"
       R"("last_sentence":"said","clouds":"parts","precision":"1mm","no_valid_point":20,)"
       R"("invisible":21,)"
       R"("arrival":"late","level":"wait","word":"17 s behind"}],"standings":[{"name":"r","level":"wait",)"
-      R"("word":"w","silent":false,"has_map":true,"age":22.0}],"colours":[{"name":"r","colour":2}],"refusals":[{"at":1.0,"uri":"/u","sender":"s","status":422,)"
+      R"("word":"w","silent":false,"has_map":true,"age":22.0,"heard":23.0}],"colours":[{"name":"r","colour":2}],"refusals":[{"at":1.0,"uri":"/u","sender":"s","status":422,)"
       R"("sentence":"no","parts":2,"setting":"r.m"}],"rejected":[{"number":1,"kind":"grid","robot":"r","at":2.0,)"
       R"("status":400,"why":"w","bytes":3,"replaced":true}],"lights":[{"name":"health",)"
       R"("pattern":"on"}],"links":[{"side":"team","interface":"team0","carrier":true},)"

@@ -234,11 +234,10 @@ TEST_F(LiveTest, SendsOnePoseInFewBytes) {
 TEST_F(LiveTest, SendsAgesInWholeSeconds) {
   source.now = team(20, 0);
   std::optional<double>& standing = source.now.standings.emplace_back().age;
-  source.now.activities[0].age = source.now.activities[1].behind = source.now.robots[2].age = standing = 7.2;
+  source.now.activities[0].age = source.now.activities[1].heard = source.now.robots[2].age = standing = 7.2;
   const auto page = open();
   for (const double age : {7.9, 8.1}) {
-    source.now.activities[0].age = source.now.activities[1].behind = source.now.robots[2].age = standing =
-        age;
+    source.now.activities[0].age = source.now.activities[1].heard = source.now.robots[2].age = standing = age;
     change();
     pass(milliseconds{300});
   }
@@ -247,7 +246,7 @@ TEST_F(LiveTest, SendsAgesInWholeSeconds) {
   EXPECT_THAT(page->sent[2], HasSubstr(R"("rows":{"2":{"age":8.0}})"));
   EXPECT_THAT(
       page->sent[2],
-      HasSubstr(R"("rows":{"0":{"age":8.0},"1":{"behind":8.0}}},"standings":{"rows":{"0":{"age":8.0}})"));
+      HasSubstr(R"("rows":{"0":{"age":8.0},"1":{"heard":8.0}}},"standings":{"rows":{"0":{"age":8.0}})"));
 }
 
 TEST_F(LiveTest, SendsOneReportInFewBytes) {

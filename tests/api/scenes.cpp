@@ -27,12 +27,12 @@ facts::ActivityRow traffic(std::string kind, std::string robot, Time now, double
           .accepted = forwarded * 3 + 2,
           .forwarded = forwarded,
           .replaced = forwarded * 2,
-          .behind_since = {},
+          .behind_since = since < 10 ? std::optional(now - since) : std::nullopt,
           .last_accepted = now - since - 0.2,
           .last_forwarded = now - since,
           .last_no_room = {},
-          .behind = {},
           .age = {},
+          .heard = {},
           .bytes_received = bytes * 4,
           .bytes_sent = bytes,
           .last_status = 200,
@@ -78,8 +78,8 @@ RunView calm(Time now, double elapsed) {
   view.run_clock = {.seconds = 754 + elapsed, .age = elapsed - heard, .runs = true};
   view.endpoints[0].connected = view.endpoints[1].connected = true;
   view.endpoints[0].last_status = view.endpoints[1].last_status = 200;
-  view.endpoints[0].answer_ms = 3.4;
-  view.endpoints[1].answer_ms = 41;
+  view.endpoints[0].answer_ms = 3.4, view.endpoints[0].answered = 1;
+  view.endpoints[1].answer_ms = 41, view.endpoints[1].answered = 0;
   view.lights = {{"health", "on"}, {"scoring", "on"}, {"mapping", "on"}, {"attention", "off"}};
   view.sent_mbit = 8 + 6 * std::sin(elapsed / 3) + 2 * std::sin(elapsed * 1.7);
   view.queued_bytes = 1'480'000;

@@ -19,7 +19,7 @@ test("every metric of the dashboard exists in a real scrape, with the dashboard'
   await play(ask);
   const metrics = await until(async () => {
     const text = await scrape(ask);
-    return /^adit_run_score /m.test(text) && /^adit_updates_forwarded_age_seconds\{kind="grid"/m.test(text) && text;
+    return /^adit_run_score /m.test(text) && /^adit_updates_heard_seconds\{kind="grid"/m.test(text) && text;
   }, "a run that is known");
   assert.ok(expressions.length > 25);
   const names = new Set(expressions.flatMap((expression) => expression.match(/adit_\w+/g)));

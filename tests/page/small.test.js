@@ -50,7 +50,7 @@ for (const [width, height] of PHONES) {
 }
 
 test("cuts neither the verdict nor its reason", async (t) => {
-  const prepare = (page) => retell(page, () => (view) => ({ ...view, verdict: { level: "wait", what: "17 of 20 arrive", why: "not spot3, uav5, ugv12 and 2 more; oldest other 22 s" } }));
+  const prepare = (page) => retell(page, () => (view) => ({ ...view, verdict: { level: "wait", what: "17 of 20 arrive", why: "not spot3, spot4; uav5, uav6, ugv12 and 2 more silent; oldest other 22 s" } }));
   const { page } = await watch(t, "calm", { viewport: { width: 390, height: 844 }, prepare });
   await page.locator("#arriving", { hasText: "17 of 20" }).waitFor();
   const cut = await page.$$eval("#arriving strong, #arriving .reason", (parts) =>

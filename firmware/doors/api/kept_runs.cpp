@@ -9,7 +9,9 @@ using codec::Row;
 
 constexpr Member kMapAges[] = {
     member<&MapAges::robot>("robot", "empty for merged maps"),
-    member<&MapAges::ages>("ages", "seconds; null if the Command Post has no map"),
+    member<&MapAges::ages>("ages",
+                           "of the oldest undelivered map, in seconds; 0 if all are delivered; null if no "
+                           "map came for a minute"),
 };
 
 constexpr Member kAttentionStep[] = {

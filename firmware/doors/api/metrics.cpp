@@ -159,9 +159,6 @@ void write_updates(Exposition& out, const RunView& view) {
     };
     add_rows(out, name, help, view.activities, labels_of, value);
   };
-  const auto accepted_age = [&view](const facts::ActivityRow& row) {
-    return row.last_accepted.transform([&](Time at) { return facts::seconds_since(at, view.now); });
-  };
   add("adit_updates_accepted_total", "Updates accepted from the team.", &facts::ActivityRow::accepted);
   add("adit_updates_forwarded_total", "Updates delivered to the Command Post.",
       &facts::ActivityRow::forwarded);
@@ -176,9 +173,9 @@ void write_updates(Exposition& out, const RunView& view) {
       &facts::ActivityRow::refused_upstream);
   add("adit_updates_no_room_total", "Updates rejected because the queue is full.",
       &facts::ActivityRow::no_room);
-  add("adit_updates_behind_seconds",
+  add("adit_updates_age_seconds",
       "Time since the oldest undelivered update was accepted; 0 if all are delivered.",
-      [](const facts::ActivityRow& row) { return row.behind.value_or(0); });
+      [](const facts::ActivityRow& row) { return row.age.value_or(0); });
   out.begin("adit_updates_arrive", "Whether updates reach the Command Post, in the page's word; always 1.");
   for (const facts::ActivityRow& row : view.activities)
     out.sample({{"kind", row.kind}, {"robot", row.robot}, {"arrival", name_of(row.arrival)}}, 1);
@@ -199,8 +196,7 @@ void write_updates(Exposition& out, const RunView& view) {
     if (row.kind == "cloud") out.sample({{"robot", row.robot}}, row.no_valid_point);
   }
   add("adit_updates_queued", "Queued updates.", &facts::ActivityRow::queued);
-  add("adit_updates_accepted_age_seconds", "Time since the last update was accepted.", accepted_age);
-  add("adit_updates_forwarded_age_seconds", "Age of the last delivered update.", &facts::ActivityRow::age);
+  add("adit_updates_heard_seconds", "Time since the last update was accepted.", &facts::ActivityRow::heard);
   add("adit_updates_received_bytes", "Size of the last accepted update.",
       &facts::ActivityRow::bytes_received);
   add("adit_updates_sent_bytes", "Size of the last delivered update.", &facts::ActivityRow::bytes_sent);

@@ -48,9 +48,10 @@ RunView Live::look() {
   const auto whole_seconds = [](std::optional<double>& age) {
     if (age) *age = std::floor(*age);
   };
-  for (facts::ActivityRow& row : view.activities) whole_seconds(row.behind), whole_seconds(row.age);
+  for (facts::EndpointRow& row : view.endpoints) whole_seconds(row.answered);
+  for (facts::ActivityRow& row : view.activities) whole_seconds(row.age), whole_seconds(row.heard);
   for (facts::RobotRow& robot : view.robots) whole_seconds(robot.age);
-  for (facts::StandingRow& robot : view.standings) whole_seconds(robot.age);
+  for (facts::StandingRow& robot : view.standings) whole_seconds(robot.age), whole_seconds(robot.heard);
   return view;
 }
 

@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "alarms/arrival.hpp"
 #include "forward/channel.hpp"
 #include "host/log.hpp"
 #include "host/random.hpp"
@@ -427,9 +428,10 @@ namespace {
 archive::Sample sample_of(const Flow& flow, double now) {
   std::map<std::string, double> ages;
   for (const facts::ActivityRow& row : flow.activities()) {
-    if (!row.is_map() || !row.age) continue;
-    const auto [its, is_new] = ages.emplace(row.robot, *row.age);
-    its->second = std::min(its->second, *row.age);
+    const bool is_quiet = !row.age && row.heard.value_or(0) > alarms::kQuietAfter;
+    if (!row.is_map() || is_quiet) continue;
+    double& age = ages[row.robot];
+    age = std::max(age, row.age.value_or(0));
   }
   const Channel& mapping = flow.maps().channel().last().heard() > flow.telemetry().channel().last().heard()
                                ? flow.maps().channel()

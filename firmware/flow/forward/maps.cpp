@@ -322,7 +322,9 @@ void Maps::restore(spool::Spool::KeptMap kept) {
     store_.forget(queue_.put_back(waiting_again(number, std::move(update), kept.bounds, kept.ends)));
   } else {
     tell_clouds(update);
-    queue_.restore(number, std::move(update), loop_.now(), kept.bounds, rule_after(kept.ends));
+    const auto waited = std::chrono::duration_cast<loop::Duration>(
+        std::chrono::duration<double>(std::max(loop_.stamp_now() - stamp, 0.0)));
+    queue_.restore(number, std::move(update), loop_.now() - waited, kept.bounds, rule_after(kept.ends));
   }
   compare();
   pump();

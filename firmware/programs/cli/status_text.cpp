@@ -218,11 +218,14 @@ std::string reports_line(const RunView& view, bool colour) {
   return text + '\n';
 }
 
+constexpr double kFreshFor = 10;  // seconds for which an answer is not called old
+
 std::string last_answer(const facts::EndpointRow& endpoint) {
   if (endpoint.last_status == 0) return "";
   std::string text = "last answer: " + answer_of(endpoint.last_status, "");
   if (endpoint.answer_ms)
     text += " in " + decimal(*endpoint.answer_ms, *endpoint.answer_ms < 10 ? 1 : 0) + " ms";
+  if (endpoint.answered.value_or(0) > kFreshFor) text += ", " + duration(*endpoint.answered) + " ago";
   return text;
 }
 
@@ -265,9 +268,10 @@ std::string activities_table(const RunView& view, bool colour) {
       {"sent", [](const Row& row) { return std::to_string(row.forwarded); }, kRight},
       {"queued", [](const Row& row) { return std::to_string(row.queued); }, kRight},
       {"no room", no_room, kRight},
-      {"age", [](const Row& row) { return row.age ? duration(*row.age) : "never"; }, kRight},
+      {"age", [](const Row& row) { return row.age ? duration(*row.age) : ""; }, kRight},
+      {"heard", [](const Row& row) { return row.heard ? duration(*row.heard) + " ago" : "never"; }, kRight},
       // of the last sent map; the last accepted map may be another
-      {"size", [](const Row& row) { return row.age ? size(row.bytes_sent) : ""; }, kRight},
+      {"size", [](const Row& row) { return row.last_forwarded ? size(row.bytes_sent) : ""; }, kRight},
       {"last answer", answer}};
   return view.activities.empty()
              ? ""

@@ -10,17 +10,17 @@ using facts::Arrival;
 using facts::Level;
 
 Arrival arrival_of(const facts::ActivityRow& row, double turn, bool silent) {
-  const double behind = row.behind.value_or(0), late = kLateAfter + turn;
+  const double age = row.age.value_or(0), late = kLateAfter + turn;
   const bool throttled = row.last_status == icd::kTooManyRequests;
   if (row.last_status >= 400 && row.last_status < 500 && !throttled) return Arrival::Refused;
-  if (behind > std::max(kStuckAfter, 3 * late)) return Arrival::NotArriving;
+  if (age > std::max(kStuckAfter, 3 * late)) return Arrival::NotArriving;
   if (throttled) return Arrival::Throttled;
-  if (!row.last_sentence.empty()) return behind > kFailingAfter ? Arrival::NotArriving : Arrival::Failing;
+  if (!row.last_sentence.empty()) return age > kFailingAfter ? Arrival::NotArriving : Arrival::Failing;
   if (silent) return Arrival::Silent;
-  if (behind > late) return Arrival::Late;
-  if (!row.age) return Arrival::NotYet;
-  if (row.behind) return Arrival::Arriving;
-  return *row.age > kQuietAfter ? Arrival::Quiet : Arrival::UpToDate;
+  if (age > late) return Arrival::Late;
+  if (!row.last_forwarded) return Arrival::NotYet;
+  if (row.age) return Arrival::Arriving;
+  return row.heard.value_or(0) > kQuietAfter ? Arrival::Quiet : Arrival::UpToDate;
 }
 
 Level level_of(Arrival arrival) {

@@ -12,7 +12,7 @@ inline constexpr double kLateAfter = 10;       // in addition to one turn of all
 inline constexpr double kFailingAfter = 10;    // failing then becomes "not arriving"
 inline constexpr double kStuckAfter = 90;      // any late stream becomes "not arriving", or after three times
                                                // the late limit
-inline constexpr double kQuietAfter = 60;      // since the last new message was forwarded
+inline constexpr double kQuietAfter = 60;      // since the last message was accepted, if all are delivered
 inline constexpr double kStatusOldAfter = 15;  // age at which a status of the run is old
 
 /// `turn`: seconds in which each queued map has its turn. `silent`: of the row's robot.

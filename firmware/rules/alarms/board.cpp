@@ -50,7 +50,7 @@ bool Board::is_worse(const Condition& condition, const Known& known) {
 }
 
 EndedAlarm Board::over(const Known& known, double now) {
-  const Condition& condition = known.condition;
+  const Condition& condition = known.worst;
   return {.id = condition.id,
           .severity = condition.severity,
           .side = condition.side,
@@ -80,6 +80,10 @@ void Board::take(const std::vector<Condition>& conditions, double now) {
       known.since = condition.since > 0 ? condition.since : now;
     if (known.acknowledged && is_worse(condition, known)) known.acknowledged = false;
     known.condition = condition;
+    const bool is_better =
+        condition.severity > known.worst.severity ||
+        (condition.severity == known.worst.severity && condition.degree < known.worst.degree);
+    if (came || !is_better) known.worst = condition;
     if (known.acknowledged && condition.degree < known.seen.degree) see(known, known.seen.at);
   }
   for (auto each = known_.begin(); each != known_.end();) {

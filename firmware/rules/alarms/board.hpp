@@ -61,7 +61,7 @@ class Board {
 
  private:
   struct Known {
-    Condition condition;
+    Condition condition, worst;  // now; at its worst, for the history
     double since = 0;
     bool acknowledged = false;
     Acknowledged seen = {};  // the alarm when it was acknowledged

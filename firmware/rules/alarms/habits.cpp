@@ -185,10 +185,14 @@ EndpointRow EndpointWatch::throttling(double now) const {
 
 EndpointRow EndpointWatch::endpoint(double now) const {
   EndpointRow worst = throttling(now);
+  double longest = 0;
   for (const ConnectionState& way : ways_) {
     const EndpointRow other = trouble_of(way, now);
+    const double waits = way.waits && !is_well_elsewhere(way, *way.waits, now) ? now - *way.waits : 0;
     if (other.fault < worst.fault) worst = other;
+    longest = std::max(longest, waits);
   }
+  worst.waits = longest;
   if (well_since_ && worst.fault >= EndpointFault::Throttling) worst.well_for = now - *well_since_;
   return worst;
 }

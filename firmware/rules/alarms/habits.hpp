@@ -127,7 +127,7 @@ class EndpointWatch {
 
   bool has_robots_;
   std::vector<ConnectionState> ways_;
-  bool is_stopped_ = false;           // at the last look
+  bool is_stopped_ = true;  // at the last look; at a start, restored messages count as late, not as failed
   std::optional<double> well_since_;  // end of the last stop
   std::deque<double> throttled_;      // times of the last kThrottled answers of 429
 };

@@ -1,7 +1,9 @@
 // Conditions of the robots, their maps, and the clients.
 #include <algorithm>
+#include <set>
 
 #include "alarms/alarm.hpp"
+#include "alarms/arrival.hpp"
 #include "alarms/conditions.hpp"
 #include "alarms/verdict.hpp"
 #include "icd/sentence.hpp"
@@ -16,9 +18,9 @@ using facts::Traffic;
 using icd::sentence;
 
 constexpr std::size_t kMegabyte = 1'000'000;
-constexpr double kNoRoomRecent = 60;    // seconds that a rejection for want of room is reported
-constexpr std::size_t kNamed = 3;       // robots named in a sentence
-constexpr std::size_t kManyBehind = 4;  // robots that share one condition
+constexpr double kNoRoomRecent = 60;  // seconds that a rejection for want of room is reported
+constexpr std::size_t kNamed = 3;     // robots named in a sentence
+constexpr std::size_t kMany = 4;      // robots that share one condition
 
 Action show(const std::string& robot) {
   return {"Show robot", "/#robot=" + robot};
@@ -31,6 +33,16 @@ void put_in_place_of(Found& found, std::size_t count, Condition larger) {
   larger.hides = larger.degree = count;
   found.erase(those, found.end());
   found.push_back(std::move(larger));
+}
+
+/// Robots that have a habit, or were heard within the last minute.
+std::size_t count_of_robots(const Traffic& traffic) {
+  std::set<std::string> names;
+  for (const auto& [name, habit] : traffic.habits) names.insert(name);
+  for (const ActivityRow& row : traffic.activities) {
+    if (!row.robot.empty() && row.heard && *row.heard <= kQuietAfter) names.insert(row.robot);
+  }
+  return names.size();
 }
 
 void find_silent(const Traffic& traffic, Found& found) {
@@ -46,11 +58,12 @@ void find_silent(const Traffic& traffic, Found& found) {
                      .why = sentence("it usually sends a message every ", age_text(std::max(habit.gap, 1.0))),
                      .action = show(name)});
   }
-  if (count < 2 || count < traffic.habits.size()) return;
+  const bool are_all = count == count_of_robots(traffic);
+  if (count < 2 || (!are_all && count < kMany)) return;
   put_in_place_of(found, count,
                   {.id = "robots_silent",
                    .side = Side::Robot,
-                   .headline = {sentence("All ", count, " robots"), "silent", true},
+                   .headline = {sentence(are_all ? "All " : "", count, " robots"), "silent", true},
                    .why = "check the team's network and the base station"});
 }
 
@@ -84,7 +97,7 @@ void find_behind(const Traffic& traffic, Found& found) {
                      .severity = *waited(*longest, traffic) > stuck ? Severity::Bad : Severity::Wait,
                      .side = Side::CommandPost,
                      .subject = name,
-                     .since = traffic.now - *longest->behind,
+                     .since = traffic.now - *longest->age,
                      .headline = {name.empty() ? "The merged map" : name + "'s map", "behind"},
                      .why = sentence("its newest ", longest->kind, " has not reached the Command Post",
                                      longest->last_status == static_cast<int>(icd::Status::ContentTooLarge)
@@ -92,7 +105,7 @@ void find_behind(const Traffic& traffic, Found& found) {
                                          : ""),
                      .action = name.empty() ? Action{} : show(name)});
   }
-  if (count < kManyBehind) return;
+  if (count < kMany) return;
   const bool bad = std::ranges::any_of(found.end() - static_cast<std::ptrdiff_t>(count), found.end(),
                                        [](const Condition& each) { return each.severity == Severity::Bad; });
   put_in_place_of(found, count,

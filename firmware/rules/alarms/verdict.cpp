@@ -36,7 +36,7 @@ const EndpointRow* stopped(const Traffic& traffic) {
 bool is_catching_up(const ActivityRow& row, const Traffic& traffic) {
   const EndpointRow* const endpoint = mapping(traffic);
   return endpoint != nullptr && endpoint->well_for && *endpoint->well_for < kLateAfter + traffic.turn &&
-         (row.behind || !row.last_sentence.empty() || icd::concerns_all_messages(row.last_status));
+         (row.age || !row.last_sentence.empty() || icd::concerns_all_messages(row.last_status));
 }
 
 /// Whether the robot has stopped sending by its own fault.
@@ -64,27 +64,70 @@ constexpr codec::Member kVerdict[] = {
     codec::member<&Verdict::why>("why", "which do not, and how old the others are; may be empty"),
 };
 
+/// std::nullopt only if both are.
+std::optional<double> least(std::optional<double> one, std::optional<double> other) {
+  return one && other ? std::min(one, other) : std::max(one, other);
+}
+
 /// The maps of one robot.
 struct Maps {
   Level level = Level::Quiet;
-  // Seconds: age or delay of the oldest map that is not quiet, and age of the newest map.
-  std::optional<double> oldest = {}, newest = {};
+  bool is_silent = false;
+  std::optional<double> age = {}, heard = {};  // of the oldest undelivered map; of the newest map
 };
 
-std::map<std::string, Maps> maps_of(const Traffic& traffic) {
-  std::map<std::string, Maps> all;
+/// By robot; "": the merged map.
+using AllMaps = std::map<std::string, Maps>;
+
+AllMaps maps_of(const Traffic& traffic) {
+  AllMaps all;
   for (const ActivityRow& row : traffic.activities) {
     if (!row.is_map()) continue;
     Maps& maps = all[row.robot];
     maps.level = std::max(maps.level, row.level);
-    if (!row.age) continue;
-    maps.newest = std::min(*row.age, maps.newest.value_or(*row.age));
-    if (row.level == Level::Quiet) continue;
-    const double age = std::min(*row.age, row.behind.value_or(*row.age));
-    maps.oldest = std::max(age, maps.oldest.value_or(0));
+    maps.is_silent |= row.arrival == Arrival::Silent;
+    maps.age = std::max(maps.age, row.age);
+    maps.heard = least(maps.heard, row.heard);
   }
-  for (const std::string& name : unheard(traffic)) all[name].level = Level::Bad;
+  for (const std::string& name : unheard(traffic)) all[name] = {.level = Level::Bad, .is_silent = true};
   return all;
+}
+
+/// How the maps of several robots arrive.
+struct Group {
+  std::vector<std::string> names = {};
+  std::optional<double> oldest = {};
+
+  void add(const std::string& name, const Maps& maps) {
+    names.push_back(name);
+    oldest = std::max(oldest, maps.age);
+  }
+  bool empty() const { return names.empty(); }
+};
+
+struct Groups {
+  Group failing, silent, late, arriving, quiet;
+};
+
+Groups groups_of(const AllMaps& all) {
+  Groups groups;
+  for (const auto& [name, maps] : all) {
+    Group& group = maps.level == Level::Bad    ? (maps.is_silent ? groups.silent : groups.failing)
+                   : maps.level == Level::Wait ? groups.late
+                   : maps.level == Level::Good ? groups.arriving
+                                               : groups.quiet;
+    group.add(name, maps);
+  }
+  return groups;
+}
+
+/// Robots that send other messages, but no map.
+std::vector<std::string> without_map(const Traffic& traffic, const AllMaps& all) {
+  std::vector<std::string> names;
+  for (const StandingRow& robot : traffic.standings) {
+    if (!all.contains(robot.name)) names.push_back(robot.name);
+  }
+  return names;
 }
 
 std::string names_of(const std::vector<std::string>& names) {
@@ -97,46 +140,47 @@ std::string names_of(const std::vector<std::string>& names) {
   return names.size() > kMostNames ? sentence(text, " and ", names.size() - kMostNames, " more") : text;
 }
 
+/// Appends a part of a sentence, unless `names` is empty.
+void append(std::string& why, std::string_view before, const std::vector<std::string>& names,
+            std::string_view after) {
+  if (!names.empty()) why += sentence(why.empty() ? "" : "; ", before, names_of(names), after);
+}
+
 /// "20 robots and the merged map, oldest 22 s".
-std::string all_arrive(const std::map<std::string, Maps>& all, double oldest) {
-  const bool is_merged = all.contains("");
-  const std::size_t robots = all.size() - (is_merged ? 1 : 0);
+std::string all_arrive(const Group& arriving) {
+  const bool is_merged = arriving.names.front().empty();  // the first by name
+  const std::size_t robots = arriving.names.size() - (is_merged ? 1 : 0);
   std::string who;
   if (robots > 0) who = sentence(robots, robots == 1 ? " robot" : " robots");
   if (is_merged) who += robots > 0 ? " and the merged map" : "the merged map";
-  return sentence(who, all.size() == 1 ? ", " : ", oldest ", age_text(oldest));
+  if (arriving.oldest.value_or(0) < 1) return who + ", up to date";
+  return sentence(who, arriving.names.size() == 1 ? ", " : ", oldest ", age_text(*arriving.oldest));
 }
 
-std::vector<std::string> names_at(const std::map<std::string, Maps>& all, Level level) {
-  std::vector<std::string> names;
-  for (const auto& [name, maps] : all) {
-    if (maps.level == level) names.push_back(name);
-  }
-  return names;
-}
-
-Verdict partly(const std::map<std::string, Maps>& all, std::optional<double> oldest) {
-  const std::vector<std::string> lacking = names_at(all, Level::Bad);
-  const std::size_t arrive = all.size() - lacking.size();
-  std::string why = "not " + names_of(lacking);
+/// Some maps fail, or their robots are silent.
+Verdict partly(const Groups& groups, std::size_t all) {
+  std::string why;
+  append(why, "not ", groups.failing.names, "");
+  append(why, "", groups.silent.names, " silent");
+  append(why, "", groups.quiet.names, " quiet");
+  const std::size_t arrive = groups.arriving.names.size() + groups.late.names.size();
   if (arrive == 0) return {Level::Bad, "No map arrives", std::move(why)};
-  if (oldest) why += sentence(arrive == 1 ? "; the other " : "; oldest other ", age_text(*oldest));
-  return {Level::Wait, sentence(arrive, " of ", all.size(), " arrive"), std::move(why)};
+  if (const auto oldest = std::max(groups.arriving.oldest, groups.late.oldest))
+    why += sentence(arrive == 1 ? "; the other " : "; oldest other ", age_text(*oldest));
+  return {Level::Wait, sentence(arrive, " of ", all, " arrive"), std::move(why)};
 }
 
 /// `rows`: of the robot, in the order of kinds.
-StandingRow standing_row(const std::string& name, std::vector<const ActivityRow*> rows) {
-  const auto is_pose = [](const ActivityRow* row) { return row->kind == "state"; };
-  const auto is_quiet = [](const ActivityRow* row) { return row->level == Level::Quiet; };
+StandingRow standing_row(const std::string& name, const std::vector<const ActivityRow*>& rows) {
   const ActivityRow& worst = **std::ranges::max_element(rows, {}, &ActivityRow::level);
-  const bool silent = std::ranges::count(rows, Arrival::Silent, &ActivityRow::arrival) > 0;
-  const bool has_map = !std::ranges::all_of(rows, is_pose);
-  if (has_map) std::erase_if(rows, is_pose);
-  const bool are_quiet = std::ranges::all_of(rows, is_quiet);
-  if (!are_quiet) std::erase_if(rows, is_quiet);
-  const auto [newest, oldest] = std::ranges::minmax(rows, {}, &ActivityRow::age);
-  const auto age = newest->age && !are_quiet ? oldest->age : newest->age;
-  return {name, worst.level, worst.word, silent, has_map, age};
+  StandingRow standing{.name = name, .level = worst.level, .word = worst.word};
+  standing.has_map = std::ranges::any_of(rows, &ActivityRow::is_map);
+  for (const ActivityRow* row : rows) {
+    standing.silent |= row->arrival == Arrival::Silent;
+    standing.heard = least(standing.heard, row->heard);
+    if (row->is_map() || !standing.has_map) standing.age = std::max(standing.age, row->age);
+  }
+  return standing;
 }
 
 void add_standings(Traffic& traffic) {
@@ -146,11 +190,18 @@ void add_standings(Traffic& traffic) {
   for (const auto& [name, rows] : all) traffic.standings.push_back(standing_row(name, rows));
   if (stopped(traffic) != nullptr) return;
   for (const std::string& name : unheard(traffic)) {
-    const auto pose = std::ranges::find(traffic.robots, name, &facts::RobotRow::name);
-    const auto age = pose == traffic.robots.end() ? std::nullopt : pose->age;
-    traffic.standings.push_back({name, Level::Bad, "silent", true, false, age});
+    traffic.standings.push_back({.name = name,
+                                 .level = Level::Bad,
+                                 .word = "silent",
+                                 .silent = true,
+                                 .heard = traffic.habits.at(name).quiet});
   }
   std::ranges::sort(traffic.standings, {}, &StandingRow::name);
+}
+
+/// When the pose at the Command Post was posted. The latest one may be queued or rejected.
+facts::Time posted_at(const ActivityRow& row) {
+  return std::min(*row.last_forwarded, row.last_accepted.value_or(*row.last_forwarded));
 }
 
 /// Words for an endpoint, by alarm name.
@@ -166,11 +217,15 @@ constexpr std::pair<std::string_view, std::string_view> kFaultWords[] = {
     {"command_post_failing", "failing"},
     {"command_post_throttling", "slow down"}};
 
+constexpr double kSlowAfter = 3;  // seconds of a request without progress
+
 /// Trouble without an alarm may pass: some servers close the connection after each answer.
 void add_word(EndpointRow& row, const std::vector<Alarm>& alarms) {
-  const bool is_well = row.trouble.empty() && (row.connected || row.last_status > 0);
+  const bool is_slow = row.waits > kSlowAfter;
+  const bool is_well = !is_slow && row.trouble.empty() && (row.connected || row.last_status > 0);
   row.level = is_well ? Level::Good : Level::Wait;
   row.word = is_well                  ? "connected"
+             : is_slow                ? "no answer yet"
              : row.last_status >= 400 ? sentence("status ", row.last_status)
              : row.connected          ? "retrying"
                                       : "not connected";
@@ -188,15 +243,15 @@ void add_word(EndpointRow& row, const std::vector<Alarm>& alarms) {
 
 std::optional<double> waited(const ActivityRow& row, const Traffic& traffic) {
   const EndpointRow* const endpoint = mapping(traffic);
-  if (!row.behind || endpoint == nullptr || !endpoint->well_for) return row.behind;
-  return std::min(*row.behind, *endpoint->well_for);
+  if (!row.age || endpoint == nullptr || !endpoint->well_for) return row.age;
+  return std::min(*row.age, *endpoint->well_for);
 }
 
 Standing standing_of(const ActivityRow& row, const Traffic& traffic) {
   const bool is_stopped = stopped(traffic) != nullptr;
   const Arrival arrival = arrival_of(row, traffic.turn, !is_stopped && is_silent(row.robot, traffic));
   const Level level = level_of(arrival);
-  const bool is_kept_back = is_stopped && (row.behind || !row.last_sentence.empty() || level == Level::Bad);
+  const bool is_kept_back = is_stopped && (row.age || !row.last_sentence.empty() || level == Level::Bad);
   if (is_kept_back) return {Arrival::NotArriving, Level::Quiet};
   const bool is_of_before = arrival == Arrival::NotArriving || arrival == Arrival::Failing ||
                             (arrival == Arrival::Refused && icd::concerns_all_messages(row.last_status));
@@ -209,14 +264,14 @@ void add_words(Traffic& traffic, const std::vector<Alarm>& alarms) {
     const auto [arrival, level] = standing_of(row, traffic);
     row.arrival = arrival;
     row.level = level;
-    const bool is_late = arrival == Arrival::Late && row.behind;
-    row.word = is_late ? age_text(*row.behind) + " behind" : std::string(name_of(arrival));
+    const bool is_late = arrival == Arrival::Late && row.age;
+    row.word = is_late ? age_text(*row.age) + " behind" : std::string(name_of(arrival));
   }
   for (facts::RobotRow& robot : traffic.robots) {
     const auto its = std::ranges::find_if(traffic.activities, [&robot](const ActivityRow& row) {
       return row.kind == "state" && row.robot == robot.name;
     });
-    if (its != traffic.activities.end() && its->age) robot.at = traffic.now - *its->age;
+    if (its != traffic.activities.end() && its->last_forwarded) robot.at = posted_at(*its);
     if (robot.at) robot.age = facts::seconds_since(*robot.at, traffic.now);
   }
   for (EndpointRow& row : traffic.endpoints) add_word(row, alarms);
@@ -234,19 +289,25 @@ Verdict verdict_of(const Traffic& traffic) {
     return {Level::Bad, "No map arrives", why + "; the box keeps all maps"};
   }
   if (all.empty()) return {Level::Quiet, "No map yet", "no robot has sent one since the box started"};
-  Level worst = Level::Quiet;
-  std::optional<double> oldest, newest;
-  for (const auto& [name, maps] : all) {
-    worst = std::max(worst, maps.level);
-    if (maps.level == Level::Bad || !maps.newest) continue;
-    oldest = std::max(maps.oldest.value_or(0), oldest.value_or(0));
-    newest = std::min(*maps.newest, newest.value_or(*maps.newest));
+  const Groups groups = groups_of(all);
+  if (!groups.failing.empty() || !groups.silent.empty()) return partly(groups, all.size());
+  if (!groups.late.empty()) {
+    std::string why = names_of(groups.late.names);
+    if (groups.late.oldest) why += ", " + age_text(*groups.late.oldest) + " behind";
+    return {Level::Wait, "Maps are late", std::move(why)};
   }
-  if (worst == Level::Bad) return partly(all, oldest);
-  if (worst == Level::Wait) return {Level::Wait, "Maps are late", names_of(names_at(all, Level::Wait))};
-  if (worst == Level::Quiet)
-    return {Level::Quiet, "Every map arrived", "no new map for " + age_text(newest.value_or(0))};
-  return {Level::Good, "Every map arrives", all_arrive(all, oldest.value_or(0))};
+  std::string why;
+  if (groups.arriving.empty()) {
+    std::optional<double> heard;
+    for (const auto& [name, maps] : all) heard = least(heard, maps.heard);
+    why = "no new map for " + age_text(heard.value_or(0));
+  } else {
+    why = all_arrive(groups.arriving);
+    append(why, "", groups.quiet.names, " quiet");
+  }
+  append(why, "no map from ", without_map(traffic, all), "");
+  return groups.arriving.empty() ? Verdict{Level::Quiet, "Every map arrived", std::move(why)}
+                                 : Verdict{Level::Good, "Every map arrives", std::move(why)};
 }
 
 }  // namespace adit::alarms

@@ -60,10 +60,10 @@ constexpr Member kActivity[] = {
     member<&ActivityRow::behind_since>(
         "behind_since",
         "when the oldest undelivered update was accepted, in seconds since 1970; null if all are delivered"),
-    member<&ActivityRow::behind>("behind", "seconds since behind_since; null if all are delivered"),
+    member<&ActivityRow::age>("age", "seconds since behind_since; null if all are delivered"),
     member<&ActivityRow::last_accepted>("last_accepted", kWhen),
     member<&ActivityRow::last_forwarded>("last_forwarded", kWhen),
-    member<&ActivityRow::age>("age", "seconds since the newest delivered data was posted, or null"),
+    member<&ActivityRow::heard>("heard", "seconds since last_accepted, or null"),
     member<&ActivityRow::last_no_room>("last_no_room", kWhen),
     member<&ActivityRow::bytes_received>("bytes_received", "size of the last accepted update"),
     member<&ActivityRow::bytes_sent>("bytes_sent", "size of the last delivered update"),
@@ -92,8 +92,11 @@ constexpr Member kStanding[] = {
     member<&StandingRow::word>("word", "of that activity"),
     member<&StandingRow::silent>("silent", "whether the robot is silent for longer than usual"),
     member<&StandingRow::has_map>("has_map", "whether the robot sends maps"),
-    member<&StandingRow::age>("age",
-                              "of its oldest map that is not quiet, or else of its newest map or pose"),
+    member<&StandingRow::age>(
+        "age",
+        "seconds since the oldest undelivered update of its maps, or else of its poses, "
+        "was accepted; null if all are delivered"),
+    member<&StandingRow::heard>("heard", "seconds since its last message was accepted, or null"),
 };
 
 constexpr Member kRefusal[] = {
@@ -117,7 +120,8 @@ constexpr Member kEndpoint[] = {
     member<&EndpointRow::trouble>("trouble"),
     member<&EndpointRow::last_status>("last_status",
                                       "status of the answer to the last try; 0 if there was no answer"),
-    member<&EndpointRow::answer_ms>("answer_ms"),
+    member<&EndpointRow::answer_ms>("answer_ms", "from the first byte of a request until its last answer"),
+    member<&EndpointRow::answered>("answered", "seconds since that answer; null if there was none"),
     member<&EndpointRow::throttled>("throttled", "number of answers of 429"),
     member<&EndpointRow::foreign>(
         "foreign", "number of answers that are not from a Command Post: pages of HTML, redirects"),
@@ -179,9 +183,8 @@ void set_ages(ActivityRow& row, Time now) {
   const auto since = [now](const std::optional<Time>& at) {
     return at ? std::optional(seconds_since(*at, now)) : std::nullopt;
   };
-  row.behind = since(row.behind_since);
-  row.age = since(row.last_forwarded);
-  if (row.age && row.last_accepted) row.age = std::max(*row.age, seconds_since(*row.last_accepted, now));
+  row.age = since(row.behind_since);
+  row.heard = since(row.last_accepted);
 }
 
 }  // namespace adit::facts

@@ -79,7 +79,7 @@ struct ActivityRow {
   std::uint64_t accepted = 0, forwarded = 0, replaced = 0, merged = 0, throttled = 0, failed = 0,
                 refused_upstream = 0, no_room = 0, queued = 0;
   std::optional<Time> behind_since = {}, last_accepted = {}, last_forwarded = {}, last_no_room = {};
-  std::optional<double> behind = {}, age = {};  // from set_ages()
+  std::optional<double> age = {}, heard = {};  // from set_ages()
   std::uint64_t bytes_received = 0, bytes_sent = 0;
   int last_status = 0;
   std::string last_sentence = {};
@@ -93,8 +93,7 @@ struct ActivityRow {
   static const codec::Row kRow;
 };
 
-/// Sets the ages at `now`. The latest accepted update may be rejected or unsendable, so the age is that of
-/// the earlier of last_accepted and last_forwarded.
+/// Sets age and heard at `now`.
 void set_ages(ActivityRow& row, Time now);
 
 /// A robot's state by its data.
@@ -103,7 +102,7 @@ struct StandingRow {
   Level level = Level::Quiet;
   std::string word = {};
   bool silent = false, has_map = false;
-  std::optional<double> age = {};
+  std::optional<double> age = {}, heard = {};
 
   static const codec::Row kRow;
 };
@@ -140,7 +139,7 @@ struct EndpointRow {
   bool connected = false;
   std::string trouble = {};
   int last_status = 0;
-  std::optional<double> answer_ms = {};
+  std::optional<double> answer_ms = {}, answered = {};
   std::uint64_t throttled = 0, foreign = 0;
   Level level = Level::Quiet;
   std::string word = {};  // from alarms::add_words()
@@ -148,6 +147,7 @@ struct EndpointRow {
   // For the alarms alone:
   EndpointFault fault = EndpointFault::None;
   Time since = 0;                       // start of the fault
+  double waits = 0;                     // seconds since a request made any progress; 0: none is waiting
   std::string said = {};                // detail of the fault from the connection or the Command Post
   std::optional<double> well_for = {};  // seconds since the endpoint accepts again; nullopt: it has not been
                                         // stopped

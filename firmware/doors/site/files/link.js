@@ -1,7 +1,7 @@
 // The link over the last ten minutes: rate, queue, what was throttled, and each endpoint's delay.
-import { list, make, say } from "./dom.js";
+import { list, make, mark, say } from "./dom.js";
 import { Plot } from "./plot.js";
-import { bytes, mbit, ms } from "./words.js";
+import { answeredWords, bytes, mbit, ms } from "./words.js";
 
 const SVG = "http://www.w3.org/2000/svg";
 const plots = document.getElementById("plots");
@@ -38,6 +38,7 @@ function quantities(view, lost) {
       label: `${row.name === "scoring" ? "Scoring" : "Mapping"} answers in`,
       value: known(row.connected ? row.answer_ms : null),
       text: ms(row.connected ? row.answer_ms : null),
+      old: answeredWords(row),
       least: 1,
       unit: ms,
     })),
@@ -102,7 +103,9 @@ export function sampleLink(view, time, lost) {
     plot.draw();
     const [now, unit] = node.children[1].children;
     say(now, quantity.value == null ? "–" : quantity.text);
-    say(unit, quantity.of ? ` ${quantity.of}` : "");
+    const isOld = quantity.value != null && Boolean(quantity.old);
+    mark(node, "old", String(isOld));
+    say(unit, isOld ? ` ${quantity.old}` : quantity.of ? ` ${quantity.of}` : "");
     say(node.children[3], `peak ${quantity.unit(plot.most())}`);
   });
 }

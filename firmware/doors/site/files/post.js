@@ -1,6 +1,6 @@
 // The Command Post: its two endpoints, and how much of the link is in use.
 import { attribute, badge, list, make, mark, say } from "./dom.js";
-import { clip, mbit, ms } from "./words.js";
+import { answeredWords, clip, mbit, ms } from "./words.js";
 
 const at = (id) => document.getElementById(id);
 
@@ -14,7 +14,7 @@ function updateEndpoint(node, row, lost) {
   mark(node, "level", level);
   say(name, row.name);
   badge(badged, level, word);
-  say(answer, row.last_status ? `${row.last_status} in ${ms(row.answer_ms)}` : "no answer");
+  say(answer, row.last_status ? [`${row.last_status} in ${ms(row.answer_ms)}`, answeredWords(row)].filter(Boolean).join(", ") : "no answer");
   say(address, clip(row.address, 60));
   say(trouble, clip(row.trouble));
 }

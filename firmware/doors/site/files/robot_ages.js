@@ -17,10 +17,10 @@ export function sampleAges(robots, time) {
   last = step;
   paths.clear();
   for (const name of values.keys()) if (!robots.some((robot) => robot.name === name)) values.delete(name);
-  for (const { name, age } of robots) {
+  for (const { name, level, silent, age } of robots) {
     const its = values.get(name) ?? [];
     if (its.length) for (let i = 0; i < missed; ++i) its.push(null);
-    its.push(age);
+    its.push(age ?? (silent || level === "quiet" ? null : 0));
     values.set(name, its.slice(-SPAN));
   }
 }
@@ -42,9 +42,6 @@ export function fillAges({ at, robots }, time) {
 
 /** A step without a sample of its own, between two that have one, is as the one before. */
 const gapless = (ages) => ages.map((age, i) => age ?? (i > 0 && i + 1 < ages.length ? ages[i - 1] : null));
-
-/** The highest of the last minute. */
-export const worstAge = (name) => Math.max(0, ...(values.get(name) ?? []).slice(-60 / EVERY));
 
 /** A path of 0 to SPAN by 0 to 20, now at the right; as high as LEAST seconds, or more where it was more. */
 export function pathOf(name) {

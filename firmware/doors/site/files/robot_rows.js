@@ -1,9 +1,9 @@
 // Robots as rows, worst first. Nothing moves under a pointer or the focus: what changes in the order waits until it is left.
 import { attribute, badge, list, make, mark, say, set } from "./dom.js";
-import { BOX, pathOf, worstAge } from "./robot_ages.js";
+import { BOX, pathOf } from "./robot_ages.js";
 import { tint } from "./robot_colour.js";
-import { mapAge } from "./robot_state.js";
-import { clip } from "./words.js";
+import { figureOf, figureWords } from "./robot_state.js";
+import { ago, clip } from "./words.js";
 
 const SVG = "http://www.w3.org/2000/svg";
 const RANK = { bad: 0, wait: 1 };
@@ -11,7 +11,7 @@ const PATIENCE = 5; // s: ages alone change the order no more often
 
 const rank = ({ level }) => RANK[level] ?? 2;
 /** By which rows are sorted, and which they show: seconds. */
-const ageOf = (robot) => (rank(robot) < 2 ? robot.age ?? Infinity : Math.max(robot.age ?? 0, worstAge(robot.name)));
+const sortedBy = (robot) => figureOf(robot) ?? Infinity;
 
 function createRow({ name }) {
   const spark = document.createElementNS(SVG, "svg");
@@ -23,22 +23,20 @@ function createRow({ name }) {
 }
 
 /** "grid 6 s", or what is wrong with it. */
-const kindWords = ({ kind, level, word, age }) => `${kind} ${level === "good" || level === "quiet" ? mapAge(age) : word}`;
+const kindWords = (kind) => `${kind.kind} ${kind.level === "good" ? figureWords(kind) : kind.word}`;
 
-function words({ silent, kinds, covered }, isFull) {
-  const shown = isFull ? kinds : kinds.filter(({ kind, level }) => kind !== "pose" || level === "bad" || level === "wait");
+function words({ silent, kinds, covered, heard }, isFull) {
+  const told = kinds.filter(({ word }) => !silent || word !== "silent");
+  const shown = isFull ? told : told.filter(({ kind, level }) => kind !== "pose" || level === "bad" || level === "wait");
   const isAllOne = !isFull && !silent && shown.length > 1 && shown.every(({ level, word }) => level === "bad" && word === shown[0].word);
   if (isAllOne) return shown[0].word; // "not arriving", of grid and cloud: there may be room for no more
   const texts = shown.map((kind) => (isFull && kind.details ? `${kindWords(kind)}, ${kind.details}` : kindWords(kind)));
-  return [...(silent ? ["silent"] : []), ...texts, ...(isFull && covered ? [covered] : [])].join(" · ");
+  const last = isFull && !silent && heard !== null ? [`heard ${ago(heard)}`] : [];
+  return [...(silent ? ["silent"] : []), ...texts, ...last, ...(isFull && covered ? [covered] : [])].join(" · ");
 }
 
-/** Of its map, or if it is silent of its data; a silent robot that was not heard since a start of the box has none that is known. */
-function ageWords(robot) {
-  const { has_map, silent, kinds, age } = robot, isUnheard = kinds.length === 0;
-  if (age === null && (silent || isUnheard)) return "unknown";
-  return has_map || silent || isUnheard ? mapAge(age === null ? null : ageOf(robot)) : "no map";
-}
+/** Of its map, or if it is silent since its last message. */
+const ageWords = (robot) => (robot.has_map || robot.silent ? figureWords(robot) : "no map");
 
 function updateRow(row, robot, isFull) {
   const [, , kinds, spark, age] = row.children;
@@ -71,7 +69,7 @@ export class RobotRows {
     const place = new Map(this.#order.map((name, i) => [name, i]));
     const asBefore = (a, b) => (place.get(a.name) ?? Infinity) - (place.get(b.name) ?? Infinity) || 0;
     const byName = (a, b) => a.name.localeCompare(b.name, "en", { numeric: true });
-    const byWorst = (a, b) => rank(a) - rank(b) || Math.floor(ageOf(b)) - Math.floor(ageOf(a)) || byName(a, b);
+    const byWorst = (a, b) => rank(a) - rank(b) || Math.floor(sortedBy(b)) - Math.floor(sortedBy(a)) || byName(a, b);
     const ranks = robots.map((robot) => robot.name + rank(robot)).sort().join();
     const isDue = ranks !== this.#ranks || Math.abs(now - this.#ordered) >= PATIENCE;
     if (this.#isHeld() || !isDue) return [...robots].sort((a, b) => asBefore(a, b) || byName(a, b));

@@ -2,8 +2,18 @@
 import { kindOf } from "./arriving.js";
 import { age, bytes, clock } from "./words.js";
 
-/** How old a map is: "9 s", "1:34", "1:05 h". */
-export const mapAge = (seconds) => (seconds === null ? "never" : seconds >= 60 && seconds < 3600 ? clock(seconds) : age(seconds));
+/** How old a map is: "now", "9 s", "1:34", "1:05 h". */
+export const mapAge = (seconds) => (seconds >= 60 && seconds < 3600 ? clock(seconds) : age(seconds));
+
+/** The one figure of a robot or a kind: its age; if all is delivered, for how long it has been quiet; if it is silent, for how long. null: unknown. */
+export const figureOf = ({ level, word, silent, age, heard }) =>
+  (silent || word === "silent" ? heard : age ?? (level === "quiet" ? heard : word === "waiting" ? null : 0));
+
+/** That figure, or why there is none. */
+export function figureWords(state) {
+  const figure = figureOf(state);
+  return figure === null ? (state.word === "waiting" ? "never" : "unknown") : mapAge(figure);
+}
 
 /** All that was counted, for who wants to know. */
 function counts(row) {
@@ -27,8 +37,9 @@ function details(row) {
 
 
 /** As it is `since` seconds after the box said so; `lost`: the box does not answer, so nothing is known. */
-const shown = ({ level, word, age }, since, lost) => ({
-  ...(lost ? { level: "quiet", word: "unknown" } : { level, word }), age: age === null ? null : age + since,
+const shown = ({ level, word, age, heard }, since, lost) => ({
+  ...(lost ? { level: "quiet", word: "unknown" } : { level, word }),
+  age: age === null ? null : age + since, heard: heard === null ? null : heard + since,
 });
 
 /** {robots: the view's standings, each with the kinds of its data; shared: the merged map and the markers}. */

@@ -5,7 +5,7 @@ import { area, coveredIn } from "./covered.js";
 import { sampleAges } from "./robot_ages.js";
 import { lookOf } from "./robot_colour.js";
 import { RobotRows } from "./robot_rows.js";
-import { mapAge, robotsOf } from "./robot_state.js";
+import { figureWords, robotsOf } from "./robot_state.js";
 import { showVerdict } from "./verdict.js";
 import { clip } from "./words.js";
 
@@ -22,7 +22,7 @@ function showShared(all) {
     mark(node, "level", state.level);
     say(node.firstChild, SHARED[state.kind] ?? state.kind);
     const isWell = state.level === "good" || state.level === "quiet";
-    badge(node.lastChild, state.level, isWell ? state.text ?? mapAge(state.age) : state.word);
+    badge(node.lastChild, state.level, isWell ? state.text ?? figureWords(state) : state.word);
     set(node, { title: state.title });
   });
 }

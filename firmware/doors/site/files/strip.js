@@ -1,6 +1,6 @@
 // The strip's right side: how fast each address of the Command Post answers, and whether the box does.
 import { list, make, mark, say } from "./dom.js";
-import { clip, ms } from "./words.js";
+import { clip, isOldAnswer, ms } from "./words.js";
 
 const ends = document.querySelector(".strip .ends");
 
@@ -10,7 +10,7 @@ export function showEnds(view, lost) {
     const { level, word } = lost ? { level: "quiet", word: "–" } : row;
     mark(node, "level", level);
     say(node.firstChild, clip(row.name, 12));
-    say(node.lastChild, level === "good" && row.answer_ms !== null ? ms(row.answer_ms) : word);
+    say(node.lastChild, level === "good" && row.answer_ms !== null && !isOldAnswer(row) ? ms(row.answer_ms) : word);
   });
 }
 

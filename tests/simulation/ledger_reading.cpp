@@ -105,13 +105,10 @@ std::map<std::string, std::string> files_in(const std::string& directory) {
 
 bool lacks_records(const std::string& copy, const std::string& directory) {
   const auto older = files_in(copy), newer = files_in(directory);
-  const store::SecondReading before = store::read_again(older), after = store::read_again(newer);
-  return std::ranges::any_of(newer,
-                             [&](const auto& file) {
-                               return file.first.starts_with("log-") && !older.contains(file.first);
-                             }) ||
-         std::ranges::any_of(after.records,
-                             [&](const auto& record) { return !before.records.contains(record.first); });
+  return store::read_again(older).last < store::read_again(newer).last ||
+         std::ranges::any_of(
+             newer,
+             [&](const auto& file) { return file.first.starts_with("log-") && !older.contains(file.first); });
 }
 
 LedgerReading read_ledger(const std::string& directory) {

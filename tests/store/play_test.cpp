@@ -109,7 +109,8 @@ class Play {
     }
     const Found found = found_in(*contents);
     if (!found.gaps.empty()) trouble_ = "a gap at " + found.gaps.front();
-    if (found.bodies != again.bodies() || !again.missing.empty()) trouble_ = "the second reader disagrees";
+    if (found.bodies != again.bodies() || !again.missing.empty() || contents->last != again.last)
+      trouble_ = "the second reader disagrees";
     if (!book_.is_explained(found.bodies)) trouble_ = explain(found.bodies);
     if (!trouble_.empty()) return;
 

@@ -108,6 +108,7 @@ SecondReading read_again(const std::map<std::string, std::string>& files) {
   std::uint64_t end = durable + 1;
   while (read.records.contains(end)) ++end;
   read.records.erase(read.records.lower_bound(end), read.records.end());
+  read.last = end - 1;
   return read;
 }
 

@@ -15,6 +15,7 @@ struct SecondReading {
   std::vector<std::string> snapshot;             // bodies of the newest complete one
   std::map<std::uint64_t, std::string> records;  // by sequence number
   std::set<std::uint64_t> missing;
+  std::uint64_t last = 0;  // sequence number of the last record, also of one that is only in the snapshot
   /// All bodies, in order.
   std::vector<std::string> bodies() const;
 };

@@ -250,10 +250,27 @@ bool can_be_counted(const Evidence& evidence) {
   return clocks.size() > 1;
 }
 
+/// Whether the course was switched before a process had time to decide about the lost answer. Adit asks for
+/// the status of the Command Post that the settings name.
+bool is_switched_early(const std::vector<Event>& events) {
+  constexpr double kToDecide = 20;  // seconds
+  bool is_lost = false;
+  double began = 0;  // asking
+  for (const Event& event : events) {
+    const bool loses = event.kind == Kind::Fault && event.who == kLate;
+    is_lost = is_lost || loses;
+    if (loses || event.kind == Kind::Begins) began = event.at;
+    const bool is_switch = event.kind == Kind::Saved && event.what == kCourse;
+    if (is_lost && is_switch && event.at < began + kToDecide) return true;
+  }
+  return false;
+}
+
 void decided(const Evidence& evidence, Broken& broken) {
   const bool is_lost = std::ranges::any_of(
       evidence.events, [](const Event& event) { return event.kind == Kind::Fault && event.who == kLate; });
   if (!is_lost || !can_be_counted(evidence) || std::ranges::any_of(evidence.events, ends_proof)) return;
+  if (is_switched_early(evidence.events)) return;
   for (const dispatch::Report& report : evidence.reports) {
     if (serial_of(report) != LateReporter::kSerial || report.state != ReportState::InDoubt) continue;
     broken.push_back(icd::sentence("Decided: report ", serial_of(report),

@@ -216,6 +216,20 @@ TEST(ClosedLedger, RejectsReportsAndForgetsNothing) {
   EXPECT_EQ(ledger.known().log, 3u);
 }
 
+/// A power cut may follow, which empties the memory. Then an older copy of the ledger would be believed.
+TEST(ClosedLedger, KnowsWhatMemoryKnows) {
+  const State state;
+  const std::string memory = state.path() + "/known";
+  Known last;
+  {
+    auto ledger = open_or_fail(state.path(), {}, memory);
+    ASSERT_TRUE(write(ledger, backpack(1)));
+    last = ledger.known();
+  }
+  EXPECT_EQ(Ledger::closed("", {}, memory).known(), last);
+  EXPECT_EQ(Ledger::closed("", {.reports = 20}, memory).known().reports, 20);
+}
+
 TEST(ClosedLedger, IsReplacedByANewOneThatContinuesItsNumbers) {
   const State state;
   {

@@ -251,8 +251,8 @@ Result<Ledger> Ledger::open(const std::string& state, const Known& stored, const
   return Ledger(std::move(impl));
 }
 
-Ledger Ledger::closed(std::string why, const Known& known) {
-  return Ledger(std::make_unique<Impl>(std::move(why), known));
+Ledger Ledger::closed(std::string why, const Known& known, const std::string& memory) {
+  return Ledger(std::make_unique<Impl>(std::move(why), latest_of(known, KnownFile(memory).content())));
 }
 
 bool Ledger::can_be_read(const std::string& state) {

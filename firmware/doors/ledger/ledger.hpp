@@ -49,8 +49,9 @@ class Ledger {
   /// "": none.
   static Result<Ledger> open(const std::string& state, const Known& known = {},
                              const std::string& memory = "");
-  /// A ledger that cannot be read, for `why`. It has no reports and rejects new ones.
-  static Ledger closed(std::string why, const Known& known);
+  /// A ledger that cannot be read, for `why`. It has no reports and rejects new ones. known() has the latest
+  /// of `known` and of the file `memory`, as in open().
+  static Ledger closed(std::string why, const Known& known, const std::string& memory = "");
   /// Whether open() would succeed. Blocks on the disk; any thread.
   static bool can_be_read(const std::string& state);
   /// Renames an unreadable ledger, so that the next open() creates a new one. Returns the new name.

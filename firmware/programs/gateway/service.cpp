@@ -64,10 +64,10 @@ ledger::Result<ledger::Ledger> open_ledger(const Options& options) {
   using enum ledger::Error::Cause;
   const auto kept = forward::StampFloor(options.state).read();  // an error puts the box on standby
   const ledger::Known known = kept ? kept->ledger : ledger::Known();
-  auto opened =
-      ledger::Ledger::open(options.state, known, runtime_folder(options) + '/' + ledger::Ledger::kMemory);
+  const std::string memory = runtime_folder(options) + '/' + ledger::Ledger::kMemory;
+  auto opened = ledger::Ledger::open(options.state, known, memory);
   if (!opened && opened.error().cause != InUse && opened.error().cause != Newer)
-    return ledger::Ledger::closed(opened.error().what, known);
+    return ledger::Ledger::closed(opened.error().what, known, memory);
   if (opened && !opened->damage().empty()) host::log(host::Level::Error, opened->damage());
   if (opened && !opened->warning().empty())
     host::log(host::Level::Warning, "an older copy of the ledger would not be found",

@@ -69,6 +69,19 @@ TEST_F(ClocksTest, KeepAnUnreadableStampFloor) {
   EXPECT_GE(now(), floor);
 }
 
+TEST(StampFloor, RemembersWhatIsKnownOfTheLedger) {
+  const host::Folder folder;
+  StampFloor floor(folder.path());
+  floor.write({.floor = 50, .wall = 40, .least = 30, .ledger = {.reports = 2, .log = 3, .last = 9}});
+  floor.remember({.reports = 4, .log = 1, .last = 12});
+  EXPECT_EQ(floor.read(),
+            (StampFloor::Kept{
+                .floor = 50, .wall = 40, .least = 30, .ledger = {.reports = 4, .log = 3, .last = 12}}));
+  folder.put(StampFloor::kFile, "half");
+  floor.remember({.reports = 4});
+  EXPECT_TRUE(floor.read()->is_damaged) << "the next start tells it";
+}
+
 TEST_F(ClocksTest, KeepStampsAtAnyTimeOfDayAfterARestart) {
   for (const double set : {-kFar, kFar}) {
     restart();

@@ -64,13 +64,13 @@ class KnownFile {
   std::string trouble_;
 };
 
+}  // namespace
+
 Known latest_of(const Known& one, const Known& other) {
   return {.reports = std::max(one.reports, other.reports),
           .log = std::max(one.log, other.log),
           .last = std::max(one.last, other.last)};
 }
-
-}  // namespace
 
 class Ledger::Impl {
  public:

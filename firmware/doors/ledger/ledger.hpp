@@ -30,6 +30,7 @@ struct Known {
 
   friend bool operator==(const Known&, const Known&) = default;
 };
+Known latest_of(const Known& one, const Known& other);
 
 /// All artifact reports with all their steps, and all runs, in a log on disk (store/README.md; records:
 /// README.md). A successful write is on disk; a failed one has no effect.

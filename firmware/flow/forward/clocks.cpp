@@ -43,6 +43,13 @@ void StampFloor::write(const Kept& kept) {
             {{"why", written.error()}});
 }
 
+void StampFloor::remember(const ledger::Known& ledger) {
+  auto kept = read();
+  if (!kept || kept->is_damaged) return;
+  const ledger::Known latest = ledger::latest_of(kept->ledger, ledger);
+  if (std::exchange(kept->ledger, latest) != latest) write(*kept);
+}
+
 void StampFloor::forget() {
   const auto kept = read();
   if (!kept || kept->lead.value_or(0) <= kMostAhead) return;

@@ -192,11 +192,14 @@ bool Gateway::has_read_all() const {
 
 void Gateway::await_files() {
   if (has_read_all()) return;
-  const auto all_can_be_read = [has_ledger = !parts_.ledger.is_closed(),
+  const auto all_can_be_read = [has_ledger = !parts_.ledger.is_closed(), known = parts_.ledger.known(),
                                 has_messages = flow_.has_read_messages(), folder = parts_.options.state,
                                 runtime = parts_.runtime_folder, &store = parts_.store] {
-    return (has_ledger || ledger::Ledger::can_be_read(folder)) && store.can_be_read() &&
-           can_be_read(folder) && (has_messages || forward::Flow::can_be_read(runtime));
+    const bool can = (has_ledger || ledger::Ledger::can_be_read(folder)) && store.can_be_read() &&
+                     can_be_read(folder) && (has_messages || forward::Flow::can_be_read(runtime));
+    // Before the restart, because a power cut in it would take what only memory knows.
+    if (can) forward::StampFloor(folder).remember(known);
+    return can;
   };
   file_return_.emplace(loop_, disk_writer_, all_can_be_read, parts_.file_rest, [this] { files_are_back(); });
 }

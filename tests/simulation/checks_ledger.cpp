@@ -15,6 +15,7 @@ namespace {
 /// begins with a write.
 constexpr double kOnDisk = 12, kFirst = 3;
 constexpr const char* kTellsDamage = "The ledger was damaged (";
+constexpr const char* kFilesAreBack = "all files can be read again";
 
 bool says(const Event& event, const char* words) {
   return event.kind == Kind::Said && event.text.contains(words);
@@ -42,6 +43,8 @@ class KeptNumber {
   /// Steps up to this time are in that number.
   double in_memory(double ended) const { return has_memory_ ? ended : on_disk_; }
   double on_disk() const { return on_disk_; }
+  /// Whether the disk has the number that memory has: a process has read it, and could write the disk.
+  bool is_stored() const { return is_stored_; }
 
   void add(const Event& event) {
     if (is_up_ && !disk_.within(kOnDisk, event.at) && began_ + kFirst <= event.at)
@@ -51,14 +54,17 @@ class KeptNumber {
     // Otherwise it may not read the files, or not write them.
     if (event.kind == Kind::Begins) is_up_ = !disk_.within(0, event.at);
     if (event.kind == Kind::Stops || event.kind == Kind::Dies || event.kind == Kind::Ended) is_up_ = false;
-    if (event.kind == Kind::Told && event.what == "READY" && is_up_) has_memory_ = true;
+    const bool is_ready = event.kind == Kind::Told && event.what == "READY";
+    if (is_ready && is_up_) has_memory_ = true;
+    if (event.kind == Kind::PutBack) is_stored_ = false;
+    if (((is_ready && is_up_) || says(event, kFilesAreBack)) && !disk_.within(0, event.at)) is_stored_ = true;
     if (event.kind == Kind::PowerCut || (event.kind == Kind::Fault && event.who == "RuntimeFull"))
       has_memory_ = false;
   }
 
  private:
   DiskFaultsSeen disk_;
-  bool is_up_ = false, has_memory_ = false;
+  bool is_up_ = false, has_memory_ = false, is_stored_ = false;
   double began_ = 0, on_disk_ = -1e9;
 };
 
@@ -159,8 +165,9 @@ OlderCopies::OlderCopies(const std::vector<Event>& events) {
                       .at = event.at,
                       .known_until = kept.in_memory(ended),
                       .on_disk = kept.on_disk()});
-    // A kill has torn the file in memory.
-    if (!all_.empty() && says(event, "an older copy of the ledger would not be found"))
+    const bool is_lost = event.kind == Kind::PowerCut && !kept.is_stored();
+    // Or a kill has torn the file in memory.
+    if (!all_.empty() && (is_lost || says(event, "an older copy of the ledger would not be found")))
       all_.back().known_until = std::min(all_.back().known_until, all_.back().on_disk);
     kept.add(event);
   }

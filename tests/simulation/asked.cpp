@@ -58,7 +58,13 @@ void OpenReports::add(const Event& event) {
     if (event.kind == Kind::Invoke) posted_[event.request] = event.serial;
     const auto posted = posted_.find(event.request);
     const bool is_whole = event.kind == Kind::Whole && posted != posted_.end();
-    if (is_whole && known_.insert(posted->second).second) open_.insert(posted->second);
+    if (is_whole && known_.insert(posted->second).second) {
+      open_.insert(posted->second);
+    } else if (is_whole && is_switched_ && open_.insert(posted->second).second) {
+      repeated_.insert(posted->second);
+    }
+    const bool is_told = event.what == kReports && event.kind == Kind::Answered && event.status / 100 == 2;
+    if (is_told && repeated_.erase(event.serial) > 0) open_.erase(event.serial);
   }
   // If one report is in doubt and an identical report is queued, a withdrawal withdraws the queued one.
   const bool is_over = event.what == kSettle || (event.what == kWithdraw && !in_doubt());
@@ -91,6 +97,7 @@ void OpenReports::add(const Event& event) {
     sent_[event.request] = event.serial;
     // The same report is sent again to another course, although the first course answered it.
     open_.insert(event.serial);
+    repeated_.erase(event.serial);
     doubts_.insert(event.serial);
     doubts_.erase(kUnknown);
   }

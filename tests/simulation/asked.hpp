@@ -47,8 +47,9 @@ class OpenReports {
   std::map<std::uint64_t, std::int64_t> posted_,
       sent_;  // serials, by the client's request and the connection
   std::set<std::int64_t> known_, open_, recorded_, doubts_;  // serials
-  std::map<std::int64_t, double> answered_;                  // serials that were answered, and when
-  bool is_odd_ = false;                                      // the answer in flight is not the report's own
+  std::set<std::int64_t> repeated_;          // open after a switch of the course, and not sent since
+  std::map<std::int64_t, double> answered_;  // serials that were answered, and when
+  bool is_odd_ = false;                      // the answer in flight is not the report's own
   bool is_switched_ = false;  // the course was switched, so a report in doubt may be at the other course
 };
 

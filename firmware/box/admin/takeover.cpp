@@ -4,7 +4,6 @@
 #include <cerrno>
 #include <cmath>
 #include <compare>
-#include <filesystem>
 
 #include "admin/kept_file.hpp"
 #include "codec/row.hpp"
@@ -69,8 +68,6 @@ std::string SpareFile::hindrance(const spare::About& about) const {
 }
 
 namespace {
-
-namespace fs = std::filesystem;
 
 /// Seconds by which this box's stamps (`stamp` now) are ahead of the first box's. `wall`: this box's time of
 /// day. The time since the first box's standby comes from both times of day. If they cannot be compared, it

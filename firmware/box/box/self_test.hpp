@@ -10,7 +10,6 @@
 
 #include "admin/network_change.hpp"
 #include "api/self_test.hpp"
-#include "dispatch/verdicts.hpp"
 #include "host/service.hpp"
 #include "icd/bearer_token.hpp"
 #include "icd/uri.hpp"

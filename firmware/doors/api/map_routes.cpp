@@ -1,7 +1,6 @@
 #include "api/map_routes.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <span>
 #include <string_view>

@@ -7,7 +7,6 @@
 #include <string_view>
 #include <vector>
 
-#include "api/answers.hpp"
 #include "api/entrance.hpp"
 #include "api/source.hpp"
 #include "intake/server.hpp"

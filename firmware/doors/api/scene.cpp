@@ -161,7 +161,6 @@ DrawnMarker drawn(const icd::Marker& marker) {
 
 namespace {
 
-using codec::Field;
 using codec::Kind;
 using codec::Member;
 using codec::member;

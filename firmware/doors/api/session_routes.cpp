@@ -9,7 +9,6 @@
 #include "api/route.hpp"
 #include "api/session_rows.hpp"
 #include "codec/field.hpp"
-#include "codec/json.hpp"
 #include "codec/row.hpp"
 #include "icd/sentence.hpp"
 

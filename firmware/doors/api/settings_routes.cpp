@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <utility>
 
 #include "api/answers.hpp"
 #include "api/route.hpp"

@@ -5,7 +5,6 @@
 namespace adit::api {
 namespace {
 
-using codec::json;
 using codec::Kind;
 using codec::member;
 using codec::Member;

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <utility>
 
 #include "icd/in_html.hpp"
 #include "icd/require.hpp"

@@ -15,7 +15,6 @@
 #include "host/files.hpp"
 #include "host/log.hpp"
 #include "host/service.hpp"
-#include "icd/require.hpp"
 #include "icd/text.hpp"
 #include "icd/try.hpp"
 #include "loop/regular_file.hpp"

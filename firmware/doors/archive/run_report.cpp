@@ -240,8 +240,6 @@ std::string run_report(const api::KeptRun& run, const std::vector<api::ReportDet
 
 namespace {
 
-using picture::kSide;
-
 /// Most bytes of images in a report. Further tiles are left out, and the report says so.
 constexpr std::size_t kMostBytes = std::size_t{4} << 20;
 constexpr std::size_t kMostTiles = 120;

@@ -10,7 +10,6 @@
 #include <bit>
 #include <cerrno>
 #include <cstdint>
-#include <cstring>
 #include <memory>
 #include <sstream>
 #include <system_error>

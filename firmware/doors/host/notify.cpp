@@ -1,7 +1,6 @@
 #include <systemd/sd-daemon.h>
 
 #include "host/log.hpp"
-#include "host/log_line.hpp"
 #include "host/service.hpp"
 
 namespace adit::host {

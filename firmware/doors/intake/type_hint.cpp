@@ -1,7 +1,6 @@
 #include "intake/type_hint.hpp"
 
 #include <algorithm>
-#include <optional>
 
 #include "icd/scoring.hpp"
 #include "icd/sentence.hpp"

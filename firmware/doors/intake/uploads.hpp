@@ -10,7 +10,6 @@
 #include <set>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "codec/body_decoder.hpp"
 #include "icd/rules.hpp"

@@ -1,7 +1,5 @@
 // The JSON splitter's numbers, and the map's data, which it splits off.
-#include <algorithm>
 #include <charconv>
-#include <cmath>
 
 #include "codec/json_splitter.hpp"
 #include "codec/splitter.hpp"

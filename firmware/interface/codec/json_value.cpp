@@ -10,7 +10,6 @@
 #include "codec/json_number.hpp"
 #include "codec/json_splitter.hpp"
 #include "codec/splitter.hpp"
-#include "icd/require.hpp"
 
 namespace adit::codec {
 namespace {

@@ -7,7 +7,6 @@
 #include <string_view>
 
 #include "codec/value.hpp"
-#include "icd/status.hpp"
 
 namespace adit::codec {
 

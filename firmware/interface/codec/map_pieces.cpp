@@ -1,7 +1,6 @@
 #include "codec/map_pieces.hpp"
 
 #include <algorithm>
-#include <utility>
 
 #include "icd/try.hpp"
 

@@ -9,7 +9,6 @@
 #include <string_view>
 #include <tuple>
 #include <type_traits>
-#include <vector>
 
 #include "codec/cbor.hpp"
 #include "codec/field.hpp"

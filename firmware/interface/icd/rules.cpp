@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <string>
 
 #include "icd/require.hpp"
 #include "icd/sentence.hpp"

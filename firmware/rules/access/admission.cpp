@@ -1,7 +1,5 @@
 #include "access/admission.hpp"
 
-#include <string>
-
 #include "access/whence.hpp"
 #include "icd/sentence.hpp"
 #include "icd/try.hpp"

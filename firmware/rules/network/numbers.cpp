@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "codec/json.hpp"
 #include "icd/sentence.hpp"
 #include "icd/text.hpp"
 #include "settings/keys.hpp"

@@ -34,9 +34,9 @@ class KeeperTest : public testing::Test {
   std::string socket() const { return (folder_ / "socket").string(); }
   void begin() {
     auto listening = listening_at(socket());
-    ASSERT_TRUE(listening.has_value());
+    ASSERT_TRUE(listening);
     keeper_.emplace(
-        loop_, std::move(*listening), settings::Panel{},
+        loop_, std::move(listening), settings::Panel{},
         Keeper::World{.open =
                           [this](const settings::Panel&) {
                             return Held{std::make_unique<WatchedLines>(seen_),

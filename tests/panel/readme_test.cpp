@@ -8,14 +8,14 @@ namespace adit::panel {
 namespace {
 
 std::string table_of_states() {
-  std::string text = "| state | health | scoring | mapping | attention | priority | what it says |\n";
-  text += "| --- | --- | --- | --- | --- | --- | --- |\n";
+  std::string text = "| state | health | scoring | mapping | attention | what it says |\n";
+  text += "| --- | --- | --- | --- | --- | --- |\n";
   for (const StateRow& row : state_table()) {
     text.append("| ").append(row.name).append(" |");
     for (const auto& pattern : row.patterns) {
       text.append(" ").append(pattern ? name_of(*pattern) : "").append(pattern ? " |" : "|");
     }
-    text.append(" ").append(std::to_string(row.priority)).append(" | ").append(row.meaning).append(" |\n");
+    text.append(" ").append(row.meaning).append(" |\n");
   }
   return text;
 }

@@ -106,7 +106,7 @@ void Keeper::accept() {
   auto caller = accepted_at(listening_);
   if (!caller) return;
   if (client_) lose();
-  client_ = Client{.socket = std::move(*caller), .owns_press = !pressed_.value_or(false)};
+  client_ = Client{.socket = std::move(caller), .owns_press = !pressed_.value_or(false)};
   client_->messages = loop_.watch(client_->socket.get(), EPOLLIN, [this](std::uint32_t) { hear(); });
   watched_.came(loop_.now());
   show();

@@ -12,12 +12,12 @@
 
 namespace adit::panel {
 
-/// Non-blocking packet sockets in the file system (SOCK_SEQPACKET). An error is errno's value.
-std::expected<loop::FileDescriptor, int> connected_to(const std::string& path);
+/// Non-blocking packet sockets in the file system (SOCK_SEQPACKET). Empty, with errno, after an error.
+loop::FileDescriptor connected_to(const std::string& path);
 /// For this user only. Replaces a file at `path`.
-std::expected<loop::FileDescriptor, int> listening_at(const std::string& path);
+loop::FileDescriptor listening_at(const std::string& path);
 /// The next connection. EAGAIN: there is none.
-std::expected<loop::FileDescriptor, int> accepted_at(const loop::FileDescriptor& listening);
+loop::FileDescriptor accepted_at(const loop::FileDescriptor& listening);
 
 /// Messages between aditd and adit-panel: one packet each, as text, at most this many bytes.
 inline constexpr std::size_t kLongestMessage = 1024;

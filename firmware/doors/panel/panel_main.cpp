@@ -2,8 +2,10 @@
 /// so aditd cannot show its own fault.
 #include <systemd/sd-daemon.h>
 
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <system_error>
 
 #include "command_line/read.hpp"
 #include "loop/regular_file.hpp"
@@ -82,8 +84,8 @@ std::expected<loop::FileDescriptor, std::string> listening(const std::string& so
   }
   if (socket.empty()) return std::unexpected("--socket is missing, and systemd gave no socket");
   auto made = panel::listening_at(socket);
-  if (made) return std::move(*made);
-  return std::unexpected(socket + ": " + std::system_category().message(made.error()));
+  if (!made) return std::unexpected(socket + ": " + std::system_category().message(errno));
+  return made;
 }
 
 int run(const panel::PanelOptions& options) {

@@ -35,7 +35,7 @@ class Connection {
   }
 
   std::expected<void, std::string> tell(const std::string& message) {
-    if ((fd_ || connect()) && put(message)) {
+    if ((fd_ || greet(connected_to(socket_))) && put(message)) {
       unheard_since_.reset();
       return {};
     }
@@ -82,18 +82,10 @@ class Connection {
   }
   void take(const LightsState& said) { trouble_ = said.trouble; }
 
-  bool connect() {
-    auto fd = connected_to(socket_);
-    if (!fd) {
-      errno = fd.error();
-      return false;
-    }
-    return greet(std::move(*fd));
-  }
-
+  /// False with errno, also if `fd` is empty.
   bool greet(loop::FileDescriptor fd) {
     epoll_event wanted{.events = EPOLLIN, .data = {}};
-    if (epoll_ctl(epoll_.get(), EPOLL_CTL_ADD, fd.get(), &wanted) != 0) return false;
+    if (!fd || epoll_ctl(epoll_.get(), EPOLL_CTL_ADD, fd.get(), &wanted) != 0) return false;
     fd_ = std::move(fd);
     return put(greeting_);
   }
@@ -153,8 +145,7 @@ class RemoteButton final : public ButtonLine {
 }  // namespace
 
 loop::FileDescriptor announce(const std::string& socket) {
-  auto fd = connected_to(socket);
-  return fd ? std::move(*fd) : loop::FileDescriptor();
+  return connected_to(socket);
 }
 
 std::expected<Held, std::string> remote(const std::string& socket, const settings::Panel& settings,

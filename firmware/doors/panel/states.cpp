@@ -31,99 +31,76 @@ std::vector<Step> address_digits(std::string_view address) {
 
 namespace {
 
-constexpr std::optional<Pattern> kLeft;  // leaves the light to states of lower priority
+constexpr std::optional<Pattern> kLeft;  // leaves the light to later states
 constexpr auto kOff = Pattern::Off, kOn = Pattern::On, kSlow = Pattern::Slow, kFast = Pattern::Fast,
                kTwice = Pattern::Twice, kFlash = Pattern::Flash, kWink = Pattern::Wink, kRush = Pattern::Rush,
                kDigits = Pattern::Digits;
 
-// The last action at the box comes first, then worse before better. Open set-up precedes an operator's
-// pending action: the person who opened set-up must see how long it stays open, and the page shows the
-// action.
+// The first asserted state is shown. The last action at the box comes first, then worse before better. Open
+// set-up precedes an operator's pending action: the person who opened set-up must see how long it stays open,
+// and the page shows the action.
 constexpr StateRow kTable[] = {
     {State::Fault,
      "fault",
-     170,
      {kSlow, kOff, kOff, kOff},
      "Adit has died or hangs; systemd restarts it, or you have to: `journalctl -u adit`"},
     {State::ResetWarning,
      "reset warning",
-     160,
      {kRush, kRush, kRush, kRush},
      "the button is held: release it, or a factory reset follows"},
     {State::ButtonHeld,
      "button held",
-     150,
      {kOn, kOn, kOn, kOn},
      "the button is held: release it now for the address and set-up"},
-    {State::Identify, "identify", 140, {kTwice, kTwice, kTwice, kTwice}, "identifies this box"},
-    {State::Address,
-     "address",
-     130,
-     {kOff, kOff, kOff, kDigits},
-     "shows the box's address on the team's side"},
+    {State::Identify, "identify", {kTwice, kTwice, kTwice, kTwice}, "identifies this box"},
+    {State::Address, "address", {kOff, kOff, kOff, kDigits}, "shows the box's address on the team's side"},
     {State::UpdateRunning,
      "update running",
-     120,
      {kWink, kLeft, kLeft, kLeft},
      "installs an update: leave the power on"},
     {State::CommandPostUnplugged,
      "Command Post unplugged",
-     110,
      {kLeft, kFlash, kFlash, kLeft},
      "no link on the Command Post's network: is the cable in?"},
     {State::TeamUnplugged,
      "team unplugged",
-     100,
      {kFlash, kLeft, kLeft, kLeft},
      "no link on the team's network: is the cable in?"},
     {State::NotServing,
      "not serving",
-     90,
      {kFast, kLeft, kLeft, kLeft},
      "Adit does not listen on the team's side, or cannot store reports: `adit status`"},
     {State::ScoringFailing,
      "scoring failing",
-     80,
      {kLeft, kFast, kLeft, kLeft},
      "the last request to scoring failed, was rejected, or has no answer"},
     {State::MappingFailing,
      "mapping failing",
-     70,
      {kLeft, kLeft, kFast, kLeft},
      "the last update failed, was rejected, or has no answer"},
     {State::SetUpOpen,
      "set-up open",
-     60,
      {kLeft, kLeft, kLeft, kSlow},
      "a new password can be set without the old one for ten minutes"},
     {State::NeedsOperator,
      "needs operator",
-     50,
      {kLeft, kLeft, kLeft, kFast},
      "the operator must act, as the page says: a report in doubt, a rejected token"},
     {State::Acknowledged,
      "acknowledged",
-     45,
      {kLeft, kLeft, kLeft, kOn},
      "the operator has acknowledged an alarm that is still active"},
-    {State::ReportWaiting,
-     "report waiting",
-     40,
-     {kLeft, kSlow, kLeft, kLeft},
-     "a report waits for its answer"},
+    {State::ReportWaiting, "report waiting", {kLeft, kSlow, kLeft, kLeft}, "a report waits for its answer"},
     {State::Serving,
      "serving",
-     30,
      {kOn, kLeft, kLeft, kLeft},
      "Adit listens on the team's side and can store reports"},
     {State::ScoringConnected,
      "scoring connected",
-     20,
      {kLeft, kOn, kLeft, kLeft},
      "connected to the scoring endpoint, no report waits"},
     {State::MappingConnected,
      "mapping connected",
-     10,
      {kLeft, kLeft, kOn, kLeft},
      "connected to the mapping endpoint"},
 };
@@ -133,11 +110,10 @@ static_assert(std::size(kTable) == kStates);
 constexpr bool is_in_order() {
   for (std::size_t i = 0; i < kStates; ++i) {
     if (static_cast<std::size_t>(kTable[i].state) != i) return false;
-    if (i > 0 && kTable[i].priority >= kTable[i - 1].priority) return false;
   }
   return true;
 }
-static_assert(is_in_order(), "shown() looks at the highest priority first");
+static_assert(is_in_order());
 
 }  // namespace
 

@@ -17,7 +17,7 @@ namespace adit::panel {
 std::vector<Step> address_digits(std::string_view address);
 
 /// The panel's states. Each is asserted and cleared by itself. If several states concern a light, it shows
-/// the one with the highest priority.
+/// the first of them here.
 enum class State : std::uint8_t {
   Fault,
   ResetWarning,
@@ -43,11 +43,10 @@ enum class State : std::uint8_t {
 struct StateRow {
   State state;
   std::string_view name;                                        // "reset warning"
-  int priority;                                                 // the higher one is shown on a light
   std::array<std::optional<Pattern>, kLights.size()> patterns;  // by Light; nullopt: does not concern it
   std::string_view meaning;
 };
-/// In the order of State and by priority, highest first.
+/// In the order of State.
 std::span<const StateRow> state_table();
 inline constexpr std::size_t kStates = static_cast<std::size_t>(State::MappingConnected) + 1;
 
@@ -57,7 +56,7 @@ class States {
   /// True if this changed the state.
   bool set(State state, bool asserted);
   bool has(State state) const { return asserted_[static_cast<std::size_t>(state)]; }
-  /// For each light, the pattern of the asserted state with the highest priority that concerns it, or dark.
+  /// For each light, the pattern of the first asserted state that concerns it, or dark.
   Lights shown() const;
 
  private:

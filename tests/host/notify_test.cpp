@@ -8,8 +8,7 @@
 #include <cstring>
 
 #include "host/folder.hpp"
-#include "host/inherited.hpp"
-#include "host/service.hpp"
+#include "host/systemd.hpp"
 
 namespace adit::host {
 namespace {

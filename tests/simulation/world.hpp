@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "host/inherited.hpp"
+#include "host/systemd.hpp"
 #include "loop/loop.hpp"
 #include "simulation/descriptors.hpp"
 #include "simulation/disk.hpp"

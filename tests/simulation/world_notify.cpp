@@ -1,9 +1,8 @@
-// Implements systemd notifications (host/service.hpp) and host/inherited.hpp in the simulated world.
+// Implements host/systemd.hpp in the simulated world.
 #include <cstdlib>
 #include <utility>
 
-#include "host/inherited.hpp"
-#include "host/service.hpp"
+#include "host/systemd.hpp"
 #include "simulation/world.hpp"
 
 namespace adit::host {

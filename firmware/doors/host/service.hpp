@@ -1,6 +1,5 @@
 #pragma once
 
-#include <chrono>
 #include <expected>
 #include <functional>
 #include <map>
@@ -13,19 +12,6 @@
 #include "icd/bearer_token.hpp"
 
 namespace adit::host {
-
-/// sd_notify(3): report readiness, stopping, and the status text ("STATUS="). Without effect outside systemd.
-void notify_ready(const std::string& status);
-void notify_status(const std::string& status);
-void notify_stopping();
-/// Announces a new start of the process (inherited.hpp). systemd allows it the time of any start until
-/// notify_ready().
-void notify_starting_again();
-void notify_alive();                                      // WATCHDOG=1
-inline constexpr std::chrono::seconds kLongestStart{60};  // services/adit.service: TimeoutStartSec=
-
-/// systemd's watchdog interval (WatchdogSec=), or std::nullopt without a watchdog.
-std::optional<std::chrono::microseconds> watchdog_within();
 
 /// False only if the file or directory is known to be absent. An error gives true.
 bool may_exist(const std::string& path);

@@ -8,7 +8,7 @@
 #include "applier/options.hpp"
 #include "command_line/read.hpp"
 #include "host/log.hpp"
-#include "host/service.hpp"
+#include "host/systemd.hpp"
 #include "loop/loop.hpp"
 #include "loop/watchdog.hpp"
 

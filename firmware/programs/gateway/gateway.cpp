@@ -13,6 +13,7 @@
 #include "host/interfaces.hpp"
 #include "host/link_changes.hpp"
 #include "host/log.hpp"
+#include "host/systemd.hpp"
 #include "icd/sentence.hpp"
 #include "icd/try.hpp"
 #include "panel/states.hpp"

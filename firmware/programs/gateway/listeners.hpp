@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "host/inherited.hpp"
+#include "host/systemd.hpp"
 #include "intake/listen_socket.hpp"
 #include "intake/server.hpp"
 #include "intake/turnstile.hpp"

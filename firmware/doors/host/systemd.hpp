@@ -1,13 +1,28 @@
 #pragma once
 
+#include <chrono>
 #include <expected>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "loop/file_descriptor.hpp"
 
 namespace adit::host {
+
+/// sd_notify(3): report readiness, stopping, and the status text ("STATUS="). Without effect outside systemd.
+void notify_ready(const std::string& status);
+void notify_status(const std::string& status);
+void notify_stopping();
+/// Announces a new start of the process (start_again()). systemd allows it the time of any start until
+/// notify_ready().
+void notify_starting_again();
+void notify_alive();                                      // WATCHDOG=1
+inline constexpr std::chrono::seconds kLongestStart{60};  // services/adit.service: TimeoutStartSec=
+
+/// systemd's watchdog interval (WatchdogSec=), or std::nullopt without a watchdog.
+std::optional<std::chrono::microseconds> watchdog_within();
 
 /// A descriptor from systemd: a unit's socket, or one stored by the service.
 struct Inherited {

@@ -65,10 +65,6 @@ constexpr Span kUnseen[] = {{0x80, 0x9f},     {0xad, 0xad},      {0x61c, 0x61c},
                             {0x200b, 0x200f}, {0x2028, 0x202e},  {0x2060, 0x206f}, {0xfeff, 0xfeff},
                             {0xfff9, 0xffff}, {0xe0000, 0xeffff}};
 
-std::size_t length_by(std::uint8_t first) {
-  return first < 0x80 ? 1 : first < 0xe0 ? 2 : first < 0xf0 ? 3 : 4;
-}
-
 /// The code of a UTF-8 character of several bytes.
 char32_t decoded(std::string_view character) {
   const auto first = static_cast<std::uint8_t>(character[0]);
@@ -80,9 +76,8 @@ char32_t decoded(std::string_view character) {
 /// Length of the first character in bytes. 0: invisible, or not UTF-8.
 std::size_t visible(std::string_view text) {
   const auto first = static_cast<std::uint8_t>(text[0]);
-  const std::string_view character = text.substr(0, length_by(first));
-  if (first < 0x80) return first >= 0x20 && first != 0x7f ? 1 : 0;
-  if (character.size() < length_by(first) || !codec::is_utf8(character)) return 0;
+  const std::string_view character = text.substr(0, codec::character_size(text));
+  if (character.size() <= 1) return first >= 0x20 && first < 0x7f ? 1 : 0;
   const bool unseen = std::ranges::any_of(kUnseen, [code = decoded(character)](const Span& span) {
     return code >= span.first && code <= span.last;
   });

@@ -32,15 +32,12 @@ std::expected<UntrustedFolder, std::string> UntrustedFolder::open(const std::str
 
 std::expected<std::optional<std::string>, UntrustedFolder::Untaken> UntrustedFolder::take(
     const std::string& name) {
-  const loop::FileDescriptor fd = open_file(folder_, name, O_RDONLY);
-  const int error = errno;
-  if (!fd && error == ENOENT) return std::nullopt;
+  auto text = read(name);
+  if (text && !*text) return std::nullopt;
   if (auto gone = remove(name); !gone)
     return std::unexpected(Untaken{.why = std::move(gone.error()), .stays = true});
-  if (!fd) return std::unexpected(Untaken{.why = trouble(name, error)});
-  auto text = loop::read_all(fd, kLargest);
-  if (!text) return std::unexpected(Untaken{.why = trouble(name, text.error())});
-  return std::move(*text);
+  if (!text) return std::unexpected(Untaken{.why = std::move(text.error())});
+  return *std::move(text);
 }
 
 std::expected<void, std::string> UntrustedFolder::remove(const std::string& name) {

@@ -2,10 +2,10 @@
 #include <gmock/gmock.h>
 
 #include "api/box.hpp"
+#include "api/keys.hpp"
 #include "api/map_json.hpp"
 #include "api/map_scene.hpp"
 #include "api/run_view.hpp"
-#include "api/session_rows.hpp"
 #include "api/settings_rows.hpp"
 
 namespace adit::api {

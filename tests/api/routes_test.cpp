@@ -1,4 +1,4 @@
-#include "api/routes.hpp"
+#include "api/route.hpp"
 
 #include <gmock/gmock.h>
 

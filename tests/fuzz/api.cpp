@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "api/on_page.hpp"
-#include "api/routes.hpp"
+#include "api/route.hpp"
 #include "codec/json.hpp"
 #include "codec/utf8.hpp"
 #include "target.hpp"

@@ -5,7 +5,6 @@
 
 #include "api/answers.hpp"
 #include "api/route.hpp"
-#include "api/routes.hpp"
 #include "codec/body_decoder.hpp"
 #include "icd/sentence.hpp"
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -8,9 +9,31 @@
 #include "access/accounts.hpp"
 #include "access/role.hpp"
 #include "access/sessions.hpp"
+#include "api/scene.hpp"
+#include "codec/row.hpp"
 #include "icd/status.hpp"
 
 namespace adit::api {
+
+/// A logged-in user.
+struct SessionRow {
+  std::uint64_t number = 0;
+  access::Role role = access::Role::Viewer;
+  std::string address, agent;
+  Time made = 0, seen = 0;
+  bool own = false;
+
+  static const codec::Row kRow;
+};
+
+/// The first question of a page.
+struct SessionView {
+  std::optional<access::Role> role;  // nullopt: not logged in
+  std::string csrf;                  // "": none
+  bool first_start = false, set_up_open = false;
+
+  static const codec::Row kRow;
+};
 
 /// The box's part in logins: passwords, sessions and random bytes. Call on the loop. Functions that hash,
 /// which takes tens of milliseconds, answer later on the loop.

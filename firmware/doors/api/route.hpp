@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <tuple>
@@ -88,6 +89,20 @@ struct Route {
   Body body;
   Handle handle;
 };
+
+/// The table of all routes. README.md describes them, /adit/openapi.json describes them for programs. The
+/// page's files are not in it and are open to all.
+std::span<const Route> routes();
+
+/// A request's place in the table.
+struct Match {
+  const Route* route = nullptr;             // null: no such path or method
+  std::vector<std::string> parameters;      // of the path, in order
+  std::string allowed;                      // methods of the path (RFC 9110 10.2.1): "GET, HEAD"; "": no such
+                                            // path
+  RouteAccess who = RouteAccess::Operator;  // clients that may use it, or learn that there is no route
+};
+Match match(const intake::RequestHead& head);
 
 /// A number in the query, if present. `expected`: the sentence of the refusal if it is not a finite number.
 inline icd::Checked<std::optional<double>> asked_number(const intake::RequestHead& head,

@@ -1,4 +1,4 @@
-#include "api/routes.hpp"
+#include "api/route.hpp"
 
 #include <concepts>
 #include <functional>
@@ -13,7 +13,6 @@
 #include "api/map_routes.hpp"
 #include "api/page_routes.hpp"
 #include "api/report_routes.hpp"
-#include "api/route.hpp"
 #include "api/run_routes.hpp"
 #include "api/self_test.hpp"
 #include "api/session_routes.hpp"

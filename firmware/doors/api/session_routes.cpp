@@ -7,7 +7,6 @@
 #include "access/password.hpp"
 #include "api/answers.hpp"
 #include "api/route.hpp"
-#include "api/session_rows.hpp"
 #include "codec/field.hpp"
 #include "codec/row.hpp"
 #include "icd/sentence.hpp"

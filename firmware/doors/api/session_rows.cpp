@@ -1,4 +1,4 @@
-#include "api/session_rows.hpp"
+#include "api/keys.hpp"
 
 namespace adit::codec {
 

@@ -1,11 +1,12 @@
-#include "box/open_panel.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+
+#include "box/lights.hpp"
+#include "box/this_box.hpp"
 
 namespace adit::box {
 namespace {

@@ -7,8 +7,20 @@
 #include <utility>
 
 #include "host/log.hpp"
+#include "panel/remote.hpp"
 
 namespace adit::box {
+
+panel::Held open_panel(const settings::Panel& settings, const PanelPlace& place,
+                       loop::FileDescriptor announced) {
+  if (!place.socket.empty()) {
+    auto held = panel::remote(place.socket, settings, std::move(announced));
+    if (held) return std::move(*held);
+    host::log(host::Level::Error, "cannot use adit-panel: the panel is simulated", {{"why", held.error()}});
+  }
+  return panel::hold(settings, "aditd", place.folder + "/panel",
+                     [](const std::string& sentence) { host::log(host::Level::Error, sentence); });
+}
 
 Lights::Lights(loop::Loop& loop, std::unique_ptr<panel::Lines> lines)
     : loop_(loop), began_(loop.now()), digits_began_(began_), tick_(loop.timer([this] { paint(); })) {

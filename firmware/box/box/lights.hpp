@@ -7,13 +7,26 @@
 #include <string>
 #include <vector>
 
+#include "loop/file_descriptor.hpp"
 #include "loop/loop.hpp"
 #include "panel/button.hpp"
+#include "panel/held.hpp"
 #include "panel/lines.hpp"
 #include "panel/painter.hpp"
 #include "panel/states.hpp"
+#include "settings/settings.hpp"
 
 namespace adit::box {
+
+/// The panel's place, if not the lines in the settings.
+struct PanelPlace {
+  std::string socket;  // adit-panel's socket; "": not used
+  std::string folder;  // of a simulated panel
+};
+/// adit-panel's panel, or one that this process holds. The simulated panel is the file `panel` in the folder.
+/// `announced`: panel::announce(), or empty.
+panel::Held open_panel(const settings::Panel& settings, const PanelPlace& place,
+                       loop::FileDescriptor announced = {});
 
 /// Shows states on the panel. The loop times patterns and repetitions (panel::Painter).
 class Lights {

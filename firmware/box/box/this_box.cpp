@@ -83,6 +83,18 @@ constexpr std::size_t kMostNotices = 8, kLongestNotice = 500;
 
 }  // namespace
 
+KnownBoard read_board(const std::string& file) {
+  if (file.empty() || !host::may_exist(file)) return {};
+  const auto text = host::read_file(file);
+  auto board =
+      text ? settings::parse_board(*text) : std::unexpected(std::vector<settings::Error>{{"", text.error()}});
+  if (board) return {std::move(*board), ""};
+  std::string trouble =
+      "cannot read the board's description: " + file + ": " + settings::sentence_of(board.error());
+  host::log(host::Level::Error, trouble);
+  return {{}, std::move(trouble)};
+}
+
 std::map<std::string, std::string> read_notices(const std::string& folder) {
   std::map<std::string, std::string> notices;
   const auto names = host::names_in(folder);

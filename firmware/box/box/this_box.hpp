@@ -49,6 +49,14 @@ class Links {
   loop::Source told_;
 };
 
+/// Contents of the board's file.
+struct KnownBoard {
+  settings::Board board;  // empty without a file
+  std::string trouble;    // why the file is ignored, or ""
+};
+/// `file` may be "" or absent.
+KnownBoard read_board(const std::string& file);
+
 /// Sentences of root's programs for the operator, one per file in `folder`, by file name. Empty if the
 /// directory is absent. A sentence replaces what cannot be read.
 std::map<std::string, std::string> read_notices(const std::string& folder);

@@ -4,7 +4,6 @@
 #include <cerrno>
 #include <utility>
 
-#include "box/open_panel.hpp"
 #include "box/self_test.hpp"
 #include "box/version.hpp"
 #include "dispatch/reports.hpp"

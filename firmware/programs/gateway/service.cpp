@@ -6,7 +6,8 @@
 #include <optional>
 #include <utility>
 
-#include "box/open_panel.hpp"
+#include "box/lights.hpp"
+#include "box/this_box.hpp"
 #include "forward/clocks.hpp"
 #include "host/disk.hpp"
 #include "host/files.hpp"

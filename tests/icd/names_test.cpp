@@ -5,7 +5,6 @@
 #include <string>
 
 #include "icd/bearer_token.hpp"
-#include "icd/in_html.hpp"
 #include "icd/mapping.hpp"
 #include "icd/robot_name.hpp"
 #include "icd/scoring.hpp"

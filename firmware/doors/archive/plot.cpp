@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <cstdio>
 
-#include "icd/in_html.hpp"
 #include "icd/require.hpp"
 #include "icd/sentence.hpp"
 #include "icd/text.hpp"

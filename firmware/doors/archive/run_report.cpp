@@ -10,7 +10,6 @@
 
 #include "archive/plot.hpp"
 #include "codec/base64.hpp"
-#include "icd/in_html.hpp"
 #include "icd/sentence.hpp"
 #include "picture/covered.hpp"
 #include "picture/palette.hpp"

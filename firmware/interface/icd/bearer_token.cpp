@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "icd/in_html.hpp"
+#include "icd/sentence.hpp"
 #include "icd/text.hpp"
 
 namespace adit::icd {

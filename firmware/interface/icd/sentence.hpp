@@ -18,6 +18,10 @@ std::string real_text(double number);
 /// A sender's text for a sentence: in quotation marks, on one line, cut after 40 bytes.
 std::string in_quotes(std::string_view text);
 
+/// Escapes a text for HTML, also for an attribute in double quotes. A newline or tab becomes a blank, another
+/// control character U+FFFD.
+std::string in_html(std::string_view text);
+
 inline void append_part(std::string& sentence, std::string_view part) {
   sentence += part;
 }

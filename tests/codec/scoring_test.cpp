@@ -19,10 +19,7 @@ using test::json;
 icd::Checked<ReadReport> read_with_name(const std::string& body, const icd::Rules& rules = {}) {
   const auto document = decode({}, Split::Nothing, body);
   if (!document) return std::unexpected(document.error());
-  const auto hint = [](std::string_view type) -> std::string {
-    return type.starts_with("Cell") ? "; did you mean Cell Phone?" : "";
-  };
-  return read_artifact_report(*document, rules, hint);
+  return read_artifact_report(*document, rules);
 }
 
 icd::Checked<icd::ArtifactReport> read_report(const std::string& body, const icd::Rules& rules = {}) {
@@ -59,7 +56,7 @@ TEST(ReadArtifactReport, RejectsAForbiddenReport) {
       {"5.2", [](json& m) { m["type"] = "test"; },
        kTheTen + "\"test\" (the setting rules.forward_unknown_types accepts others)"},
       {"5.2", [](json& m) { m["type"] = ""; }, kTheTen + "\"\""},
-      {"5.2", [](json& m) { m["type"] = "Rope\n"; }, kTheTen + "\"Rope?\""},
+      {"5.2", [](json& m) { m["type"] = "Rope\n"; }, kTheTen + "\"Rope?\"; did you mean Rope?"},
       {"5.2", [](json& m) { m["type"] = "Cellphone"; }, kTheTen + "\"Cellphone\"; did you mean Cell Phone?"},
       {"5.2", [](json& m) { m["type"] = "Cell\nPhone"; },
        kTheTen + "\"Cell?Phone\"; did you mean Cell Phone?"},

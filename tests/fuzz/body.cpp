@@ -6,7 +6,6 @@
 #include "codec/read.hpp"
 #include "codec/write.hpp"
 #include "icd/rules.hpp"
-#include "intake/type_hint.hpp"
 #include "target.hpp"
 
 namespace adit::fuzz {
@@ -122,7 +121,7 @@ std::string written_markers(const icd::MarkersUpdate& markers) {
 }
 
 icd::Checked<icd::ArtifactReport> read_report(const codec::Document& document, const icd::Rules& rules) {
-  auto read = codec::read_artifact_report(document, rules, intake::type_hint);
+  auto read = codec::read_artifact_report(document, rules);
   if (!read) return std::unexpected(std::move(read.error()));
   return std::move(read->report);
 }

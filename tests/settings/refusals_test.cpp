@@ -29,8 +29,7 @@ std::string_view setting_of_name(std::string name) {
 std::string_view setting_of_type(std::string_view type) {
   const auto document = codec::decode({}, codec::Split::Nothing,
                                       icd::sentence(R"({"x":1,"y":2,"z":3,"type":")", type, R"("})"));
-  const auto hint = [](std::string_view) { return std::string(); };
-  const auto read = codec::read_artifact_report(*document, {}, hint);
+  const auto read = codec::read_artifact_report(*document, {});
   return read ? "" : read.error().setting;
 }
 

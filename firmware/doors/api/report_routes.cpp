@@ -13,7 +13,6 @@
 #include "codec/row.hpp"
 #include "icd/sentence.hpp"
 #include "icd/try.hpp"
-#include "intake/type_hint.hpp"
 
 namespace adit::api {
 namespace {
@@ -72,7 +71,7 @@ std::unexpected<icd::Refusal> no_such(std::int64_t number) {
 template <class Take>
 icd::Checked<intake::Answer> accept(const std::string& body, Take take) {
   const auto document = ADIT_TRY(codec::decode({}, codec::Split::Nothing, body));
-  const auto read = ADIT_TRY(codec::read_artifact_report(document, {}, intake::type_hint));
+  const auto read = ADIT_TRY(codec::read_artifact_report(document, {}));
   codec::Reading reading;
   const codec::Field root(document.root, reading);
   const codec::Field resubmit = root.member("resubmit");

@@ -14,9 +14,6 @@
 #include "icd/sentence.hpp"
 #include "icd/try.hpp"
 #include "intake/answer.hpp"
-#include "intake/head.hpp"
-#include "intake/icd_routes.hpp"
-#include "intake/type_hint.hpp"
 #include "loop/guard.hpp"
 
 namespace adit::intake {
@@ -91,7 +88,7 @@ void SmallUpload::take_state(const codec::Document& document) {
 }
 
 void SmallUpload::take_report(const codec::Document& document) {
-  const auto read = codec::read_artifact_report(document, rules_, type_hint);
+  const auto read = codec::read_artifact_report(document, rules_);
   if (!read) return visit_.refuse(read.error());
   if (!read->left_out.empty()) visit_.desk.left_out(visit_.uri, visit_.sender, read->left_out);
   visit_.desk.take(read->report, visit_.sender, visit_.responder);

@@ -67,15 +67,12 @@ icd::Checked<CheckedParts<icd::MarkersUpdate>> read_markers_parts(const Document
 icd::Checked<icd::StateUpdate> read_state_update(const Document& document, const icd::Rules& rules);
 /// ICD 6.6. For actions 2 and 3, type, pose, scale and color may be absent.
 icd::Checked<icd::MarkersUpdate> read_markers_update(const Document& document, const icd::Rules& rules);
-/// The suggestion for a type like one of the ten ("; did you mean Rope?"), or "".
-using TypeHint = std::string (*)(std::string_view type);
 struct ReadReport {
   icd::ArtifactReport report;
   std::string left_out;  // why its `name` was left out, or ""
 };
 /// ICD 5.2. An invalid `name` is left out and does not refuse the report.
-icd::Checked<ReadReport> read_artifact_report(const Document& document, const icd::Rules& rules,
-                                              TypeHint hint);
+icd::Checked<ReadReport> read_artifact_report(const Document& document, const icd::Rules& rules);
 
 /// The Command Post's answer, or why it cannot be read.
 std::expected<icd::RunStatus, std::string> read_run_status(std::string_view json);

@@ -5,6 +5,7 @@
 #include "codec/json.hpp"
 #include "codec/members.hpp"
 #include "codec/read.hpp"
+#include "icd/suggestion.hpp"
 #include "icd/try.hpp"
 
 namespace adit::codec {
@@ -18,13 +19,14 @@ bool is_forwardable(std::string_view type) {
   return !type.empty() && type.size() <= kLongestUnknownType && std::ranges::all_of(type, printable);
 }
 
-std::string_view read_type(const Field& field, const icd::Rules& rules, TypeHint hint) {
+std::string_view read_type(const Field& field, const icd::Rules& rules) {
   const std::string_view type = field.text();
   if (!icd::artifact_type(type).empty()) return type;
   if (!rules.forward_unknown_types) {
     std::string ten;
     for (const auto known : icd::kArtifactTypes) ten += icd::sentence(known, ", ");
-    std::string cure = hint(type);  // else names the setting, which would waste a report on a misspelt type
+    // Names the setting only if there is no hint, because it would waste a report on a misspelt type.
+    std::string cure = icd::type_hint(type);
     const bool is_curable = cure.empty() && is_forwardable(type);
     if (is_curable) cure = " (the setting rules.forward_unknown_types accepts others)";
     field.refuse_by_setting(is_curable ? "rules.forward_unknown_types" : "", "expected one of ", ten, "got ",
@@ -98,13 +100,12 @@ icd::ReportReply reply_of(const Field& body) {
 
 }  // namespace
 
-icd::Checked<ReadReport> read_artifact_report(const Document& document, const icd::Rules& rules,
-                                              TypeHint hint) {
+icd::Checked<ReadReport> read_artifact_report(const Document& document, const icd::Rules& rules) {
   Reading reading;
   ReadReport read;
   const Field body(document.root, reading);
   read_members(body, read.report.position, rules);
-  read.report.type = read_type(body.member("type"), rules, hint);
+  read.report.type = read_type(body.member("type"), rules);
   auto robot = read_robot(document, rules);
   if (robot) {
     read.report.robot = *std::move(robot);

@@ -4,6 +4,10 @@
 #include <numeric>
 #include <vector>
 
+#include "icd/scoring.hpp"
+#include "icd/sentence.hpp"
+#include "icd/text.hpp"
+
 namespace adit::icd {
 namespace {
 
@@ -29,6 +33,20 @@ bool one_begins_the_other(std::string_view a, std::string_view b) {
   return a.starts_with(b) || b.starts_with(a);
 }
 
+/// The letters of `text` in lower case.
+std::string letters_of(std::string_view text) {
+  std::string letters;
+  for (const char each : text) {
+    if (const char letter = lower(each); letter >= 'a' && letter <= 'z') letters += letter;
+  }
+  return letters;
+}
+
+bool is_part(std::string_view one, std::string_view other) {
+  constexpr std::size_t kTelling = 3;  // letters
+  return std::min(one.size(), other.size()) >= kTelling && (one.contains(other) || other.contains(one));
+}
+
 }  // namespace
 
 std::optional<std::string_view> nearest(std::string_view word, std::span<const std::string_view> known,
@@ -49,7 +67,17 @@ std::optional<std::string_view> nearest(std::string_view word, std::span<const s
 
 std::string did_you_mean(std::string_view word, std::span<const std::string_view> known) {
   const auto meant = nearest(word, known);
-  return meant ? std::string("; did you mean ").append(*meant).append("?") : "";
+  return meant ? sentence("; did you mean ", *meant, "?") : "";
+}
+
+std::string type_hint(std::string_view type) {
+  const std::string word = letters_of(type);
+  for (const std::string_view known : kArtifactTypes) {
+    const std::string letters = letters_of(known);
+    const std::string_view only[] = {letters};
+    if (is_part(word, letters) || nearest(word, only, 0)) return sentence("; did you mean ", known, "?");
+  }
+  return "";
 }
 
 }  // namespace adit::icd

@@ -15,4 +15,8 @@ std::optional<std::string_view> nearest(std::string_view word, std::span<const s
 /// "; did you mean status?", or "" where none of `known` is near.
 std::string did_you_mean(std::string_view word, std::span<const std::string_view> known);
 
+/// "; did you mean Cell Phone?" if `type` resembles one of the ICD's ten types, otherwise "". Compares
+/// letters only, in any case: one text is a part of the other, or they differ by a few letters.
+std::string type_hint(std::string_view type);
+
 }  // namespace adit::icd

@@ -1,10 +1,9 @@
-#include "intake/type_hint.hpp"
-
 #include <gtest/gtest.h>
 
 #include "icd/scoring.hpp"
+#include "icd/suggestion.hpp"
 
-namespace adit::intake {
+namespace adit::icd {
 namespace {
 
 TEST(TypeHint, SuggestsASimilarType) {
@@ -26,7 +25,7 @@ TEST(TypeHint, SuggestsASimilarType) {
               {"vant", "Vent"}};
   for (const auto& [type, meant] : rows)
     EXPECT_EQ(type_hint(type), "; did you mean " + std::string(meant) + "?") << type;
-  for (const std::string_view known : icd::kArtifactTypes)
+  for (const std::string_view known : kArtifactTypes)
     EXPECT_EQ(type_hint(known), "; did you mean " + std::string(known) + "?");
 }
 
@@ -37,4 +36,4 @@ TEST(TypeHint, IsEmptyIfNoTypeIsSimilar) {
 }
 
 }  // namespace
-}  // namespace adit::intake
+}  // namespace adit::icd

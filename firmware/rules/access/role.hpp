@@ -22,8 +22,16 @@ using Duration = std::chrono::nanoseconds;
 enum class Role : std::uint8_t { Viewer, Operator };
 
 /// "viewer", "operator"
-std::string_view name_of(Role role);
-std::optional<Role> role_named(std::string_view name);
+constexpr std::string_view name_of(Role role) {
+  return role == Role::Operator ? "operator" : "viewer";
+}
+
+constexpr std::optional<Role> role_named(std::string_view name) {
+  for (const Role role : {Role::Viewer, Role::Operator}) {
+    if (name == name_of(role)) return role;
+  }
+  return std::nullopt;
+}
 
 /// Parses a JSON object with this "version" and returns the result of `read`. An error says what is wrong and
 /// contains no secret.

@@ -5,15 +5,6 @@
 
 namespace adit::codec {
 
-template <>
-struct KindOf<std::chrono::milliseconds> {
-  static Value write(std::chrono::milliseconds time) { return {std::int64_t{time.count()}}; }
-  static void read(const Field& field, std::chrono::milliseconds& time) {
-    time = std::chrono::milliseconds(field.whole<std::int64_t>());
-  }
-  static constexpr Schema schema = {.type = "integer"};
-};
-
 /// Milliseconds of CLOCK_MONOTONIC.
 template <>
 struct KindOf<network::Instant> {

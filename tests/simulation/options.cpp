@@ -19,7 +19,6 @@ command_line::Program command_line_of(Options& options) {
   options.seed = std::random_device{}();
   return {
       .name = "adit_simulation",
-      .usage = "",
       .about = "Plays the whole gateway in a simulated world.",
       .rows =
           {{"--seed", "N", "the first seed; a fresh one without it", number<0UL, UINT64_MAX>(options.seed)},

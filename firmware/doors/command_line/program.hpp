@@ -43,10 +43,10 @@ struct Row {
 /// A program's command line. If an option is repeated, the last value counts, but a list gets all values.
 struct Program {
   std::string name;
-  std::string usage;  // the words after the name, without options
+  std::string usage = "";  // the words after the name, without options
   std::string about;  // its purpose, one paragraph per line; a line that begins with a blank is not wrapped
   std::vector<Row> rows;
-  std::string ending;  // further information, formatted like `about`
+  std::string ending = "";  // further information, formatted like `about`
   Empty empty = Empty::Refused;
   std::vector<std::string>* given = nullptr;  // gets the words of the options that were given; may be null
   Take word = {};  // stores each word that matches no row; null: such words are errors

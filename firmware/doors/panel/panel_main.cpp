@@ -27,7 +27,6 @@ struct PanelOptions {
 command_line::Program panel_command_line_of(PanelOptions& options) {
   return {
       .name = "adit-panel",
-      .usage = "",
       .about = "Hold the panel's lights and button for aditd. If aditd dies or hangs, show the fault.",
       .rows = {{"--board", "FILE",
                 "the board's description (board.json); if it names a panel, that panel is used instead of "

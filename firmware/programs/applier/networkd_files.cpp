@@ -46,14 +46,10 @@ std::expected<void, std::string> Reload::run() {
 std::array<NetworkdFiles::Place, 2> NetworkdFiles::places() const {
   return {{{.interface = options_.team,
             .tried = options_.networkd + '/' + network::kTriedTeam,
-            .kept = options_.networkd + '/' + network::kKeptTeam,
-            .text = "",
-            .addresses = {}},
+            .kept = options_.networkd + '/' + network::kKeptTeam},
            {.interface = options_.command_post,
             .tried = options_.networkd + '/' + network::kTriedCommandPost,
-            .kept = options_.networkd + '/' + network::kKeptCommandPost,
-            .text = "",
-            .addresses = {}}}};
+            .kept = options_.networkd + '/' + network::kKeptCommandPost}}};
 }
 
 std::array<NetworkdFiles::Place, 2> NetworkdFiles::places(const network::Numbers& numbers) const {

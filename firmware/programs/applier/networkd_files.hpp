@@ -68,8 +68,9 @@ class NetworkdFiles final : public network::NumbersSetter {
  private:
   /// One interface's two files, and their wanted text.
   struct Place {
-    std::string interface, tried, kept, text;
-    std::vector<std::uint32_t> addresses;
+    std::string interface, tried, kept;
+    std::string text = "";
+    std::vector<std::uint32_t> addresses = {};
   };
   std::array<Place, 2> places(const network::Numbers& numbers) const;
   std::array<Place, 2> places() const;

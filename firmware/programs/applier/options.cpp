@@ -21,7 +21,6 @@ bool is_interface(std::string_view name) {
 command_line::Program command_line_of(Options& options) {
   return {
       .name = "adit-network",
-      .usage = "",
       .about =
           "Change the addresses of Adit's two network interfaces by systemd-networkd, on aditd's requests. "
           "Take a change back unless it is confirmed in time. End when no change is pending.",
@@ -92,11 +91,9 @@ command_line::Program command_line_of(UpdateOptions& options) {
 command_line::Program command_line_of(ClockOptions& options) {
   return {
       .name = "adit-clock",
-      .usage = "",
       .about =
           "Set the time of day on aditd's requests, and write which source set it last. If requested, run "
-          "chronyd for NTP on the team's "
-          "network. End when there are no more requests.",
+          "chronyd for NTP on the team's network. End when there are no more requests.",
       .rows = {{"--wanted", "DIR", "directory of aditd's requests", &options.wanted},
                {"--status", "DIR", "directory of the answers", &options.status},
                {"--chip", "DIR", "the kernel's directory of a battery-backed clock", &options.chip},
@@ -112,7 +109,6 @@ command_line::Program command_line_of(ClockOptions& options) {
 command_line::Program command_line_of(SpareOptions& options) {
   return {
       .name = "adit-spare",
-      .usage = "",
       .about =
           "Write the export for a spare box to the USB stick in the box, and read exports from it, on "
           "aditd's requests. Write which exports are on the stick. End when there are no more requests.",
@@ -131,7 +127,6 @@ command_line::Program command_line_of(SpareOptions& options) {
 command_line::Program command_line_of(ImportOptions& options) {
   return {
       .name = "adit-import",
-      .usage = "",
       .about =
           "Accept the settings, addresses and tokens on Adit's boot partition, if all of them are correct. "
           "Write the outcome to taken.txt beside them. Run it before aditd.",

@@ -252,7 +252,6 @@ command_line::Program command_line_of(Options& options) {
                {"--json", "", "print JSON, for scripts", &options.json},
                {"--version", "", "print the version", &options.version},
                {"--help", "", "print this help", &options.help}},
-      .ending = "",
   };
 }
 

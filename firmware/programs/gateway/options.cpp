@@ -6,7 +6,6 @@ command_line::Program command_line_of(Options& options) {
   using command_line::Wanted;
   return {
       .name = "aditd",
-      .usage = "",
       .about = "Adit's gateway between a robot team and the Command Post.",
       .rows = {{"--settings", "FILE",
                 "read the settings (JSON, version 1) from FILE, unless the state directory holds saved ones; "

@@ -18,35 +18,6 @@
 namespace adit::applier {
 namespace {
 
-/// The work of adit-spare: copies exports to and from the stick, one after the other, on aditd's request, and
-/// reports the status.
-class SpareKeeper {
- public:
-  /// `options` must outlive this object.
-  explicit SpareKeeper(const SpareOptions& options)
-      : options_(options), sticks_(options), file_(options.status + '/' + host::kStatusFile) {}
-
-  /// Answers all requests, then returns. Error: its own directory is unusable, or a request cannot be
-  /// removed. Requests from before the boot are dropped, because their senders have seen them fail.
-  std::expected<void, std::string> work();
-
- private:
-  void answer(const spare::StickRequest& request, host::UntrustedFolder& folder);
-  /// "", or why it failed.
-  std::string write(const std::string& name, const std::expected<std::string, std::string>& bytes);
-  std::string write_to(const spare::Medium& medium, const std::string& name, const std::string& bytes);
-  std::string check(const spare::Medium& medium, const std::string& name, const std::string& bytes);
-  std::string take(const std::string& name);
-  void doing(const char* what);
-  void look();
-  bool tell();
-
-  const SpareOptions& options_;
-  Sticks sticks_;
-  spare::StickStatus status_;
-  host::StatusFile file_;
-};
-
 using host::Level;
 using Mode = Sticks::Mode;
 
@@ -60,104 +31,121 @@ std::expected<std::string, std::string> take_export(host::UntrustedFolder& folde
   return bytes;
 }
 
-std::expected<void, std::string> SpareKeeper::work() {
-  const auto before = file_.told<spare::StickStatus>();
-  status_ = before.value_or(spare::StickStatus{});
-  if (!status_.doing.empty()) status_.refusal = "the last action was interrupted: try again";
-  status_.doing.clear();
-  sticks_.settle();
-  look();
-  if (!tell()) return std::unexpected("cannot write the status");
-  return host::answer_requests<spare::StickRequest>(
-      {options_.wanted, spare::kStickRequestFile, spare::kForStickFile}, !before,
-      [this](const spare::StickRequest& request, host::UntrustedFolder& folder) { answer(request, folder); });
-}
+/// The work of adit-spare: copies exports to and from the stick, one after the other, on aditd's request, and
+/// reports the status.
+class SpareKeeper {
+ public:
+  /// `options` must outlive this object.
+  explicit SpareKeeper(const SpareOptions& options)
+      : options_(options), sticks_(options), file_(options.status + '/' + host::kStatusFile) {}
 
-void SpareKeeper::answer(const spare::StickRequest& request, host::UntrustedFolder& folder) {
-  status_.nonce = request.nonce;
-  status_.refusal.clear();
-  status_.written.clear();
-  status_.refusal = request.what == spare::StickRequest::What::Write
-                        ? write(request.name, take_export(folder))
-                        : take(request.name);
-  status_.doing.clear();
-  if (!status_.refusal.empty()) host::log(Level::Warning, "request rejected", {{"why", status_.refusal}});
-  look();  // the stick may have changed
-  tell();
-}
-
-std::string SpareKeeper::write(const std::string& name,
-                               const std::expected<std::string, std::string>& bytes) {
-  if (!bytes) return bytes.error();
-  const auto media = sticks_.media();
-  if (!media) return media.error();
-  const auto medium = spare::medium_for(*media, bytes->size());
-  if (!medium) return medium.error();
-  doing("writing");
-  std::string why = write_to(*medium, name, *bytes);
-  // Unmounts after an error as well, because the stick may be pulled out.
-  const auto done = sticks_.remount(medium->name, Mode::ReadOnly);
-  if (!sticks_.is_in(medium->name))
-    return "the stick was removed before the export was complete: insert it again";
-  if (!why.empty()) return why;
-  if (!done) return done.error();
-  doing("checking");
-  why = check(*medium, name, *bytes);
-  if (why.empty()) {
-    status_.written = name;
-    host::log(Level::Notice, "export written to a stick", {{"name", name}, {"stick", medium->name}});
+  /// Answers all requests, then returns. Error: its own directory is unusable, or a request cannot be
+  /// removed. Requests from before the boot are dropped, because their senders have seen them fail.
+  std::expected<void, std::string> work() {
+    const auto before = file_.told<spare::StickStatus>();
+    status_ = before.value_or(spare::StickStatus{});
+    if (!status_.doing.empty()) status_.refusal = "the last action was interrupted: try again";
+    status_.doing.clear();
+    sticks_.settle();
+    look();
+    if (!tell()) return std::unexpected("cannot write the status");
+    return host::answer_requests<spare::StickRequest>(
+        {options_.wanted, spare::kStickRequestFile, spare::kForStickFile}, !before,
+        [this](const spare::StickRequest& request, host::UntrustedFolder& folder) {
+          answer(request, folder);
+        });
   }
-  return why;
-}
 
-std::string SpareKeeper::write_to(const spare::Medium& medium, const std::string& name,
-                                  const std::string& bytes) {
-  if (const auto writable = sticks_.remount(medium.name, Mode::Writable); !writable) return writable.error();
-  const auto written = write_export(sticks_.folder(medium.name), name, bytes);
-  return written ? "" : written.error();
-}
-
-/// Compares with the stick's content. After the unmount the kernel's memory holds none of the file, so the
-/// bytes come from the stick.
-std::string SpareKeeper::check(const spare::Medium& medium, const std::string& name,
-                               const std::string& bytes) {
-  const auto kept = read_export(sticks_.folder(medium.name), name);
-  if (kept && *kept == bytes) return "";
-  if (!sticks_.is_in(medium.name)) return "the stick was removed before the export was checked: export again";
-  return "the export on the stick differs from the written bytes: use another stick";
-}
-
-std::string SpareKeeper::take(const std::string& name) {
-  doing("reading");
-  const auto folder = sticks_.folder_with(name);
-  if (!folder) return folder.error();
-  const auto bytes = read_export(*folder, name);
-  if (!bytes) return bytes.error();
-  if (std::string why = spare::not_an_export(*bytes); !why.empty()) return why;
-  const auto kept = host::write_file(options_.status + '/' + spare::kFromStickFile, *bytes, host::kForAll);
-  return kept ? "" : kept.error();
-}
-
-void SpareKeeper::doing(const char* what) {
-  status_.doing = what;
-  tell();
-}
-
-void SpareKeeper::look() {
-  const auto media = sticks_.media();
-  if (!media) {
-    status_.hindrance = status_.unreadable = media.error();
-    status_.exports.clear();
-    return;
+ private:
+  void answer(const spare::StickRequest& request, host::UntrustedFolder& folder) {
+    status_.nonce = request.nonce;
+    status_.refusal.clear();
+    status_.written.clear();
+    status_.refusal = request.what == spare::StickRequest::What::Write
+                          ? write(request.name, take_export(folder))
+                          : take(request.name);
+    status_.doing.clear();
+    if (!status_.refusal.empty()) host::log(Level::Warning, "request rejected", {{"why", status_.refusal}});
+    look();  // the stick may have changed
+    tell();
   }
-  const auto medium = spare::medium_for(*media, 0);
-  status_.hindrance = medium ? "" : medium.error();
-  status_.exports = sticks_.exports(*media, status_.unreadable);
-}
 
-bool SpareKeeper::tell() {
-  return file_.tell(status_).has_value();
-}
+  /// "", or why it failed.
+  std::string write(const std::string& name, const std::expected<std::string, std::string>& bytes) {
+    if (!bytes) return bytes.error();
+    const auto media = sticks_.media();
+    if (!media) return media.error();
+    const auto medium = spare::medium_for(*media, bytes->size());
+    if (!medium) return medium.error();
+    doing("writing");
+    std::string why = write_to(*medium, name, *bytes);
+    // Unmounts after an error as well, because the stick may be pulled out.
+    const auto done = sticks_.remount(medium->name, Mode::ReadOnly);
+    if (!sticks_.is_in(medium->name))
+      return "the stick was removed before the export was complete: insert it again";
+    if (!why.empty()) return why;
+    if (!done) return done.error();
+    doing("checking");
+    why = check(*medium, name, *bytes);
+    if (why.empty()) {
+      status_.written = name;
+      host::log(Level::Notice, "export written to a stick", {{"name", name}, {"stick", medium->name}});
+    }
+    return why;
+  }
+
+  std::string write_to(const spare::Medium& medium, const std::string& name, const std::string& bytes) {
+    if (const auto writable = sticks_.remount(medium.name, Mode::Writable); !writable)
+      return writable.error();
+    const auto written = write_export(sticks_.folder(medium.name), name, bytes);
+    return written ? "" : written.error();
+  }
+
+  /// Compares with the stick's content. After the unmount the kernel's memory holds none of the file, so the
+  /// bytes come from the stick.
+  std::string check(const spare::Medium& medium, const std::string& name, const std::string& bytes) {
+    const auto kept = read_export(sticks_.folder(medium.name), name);
+    if (kept && *kept == bytes) return "";
+    if (!sticks_.is_in(medium.name))
+      return "the stick was removed before the export was checked: export again";
+    return "the export on the stick differs from the written bytes: use another stick";
+  }
+
+  std::string take(const std::string& name) {
+    doing("reading");
+    const auto folder = sticks_.folder_with(name);
+    if (!folder) return folder.error();
+    const auto bytes = read_export(*folder, name);
+    if (!bytes) return bytes.error();
+    if (std::string why = spare::not_an_export(*bytes); !why.empty()) return why;
+    const auto kept = host::write_file(options_.status + '/' + spare::kFromStickFile, *bytes, host::kForAll);
+    return kept ? "" : kept.error();
+  }
+
+  void doing(const char* what) {
+    status_.doing = what;
+    tell();
+  }
+
+  void look() {
+    const auto media = sticks_.media();
+    if (!media) {
+      status_.hindrance = status_.unreadable = media.error();
+      status_.exports.clear();
+      return;
+    }
+    const auto medium = spare::medium_for(*media, 0);
+    status_.hindrance = medium ? "" : medium.error();
+    status_.exports = sticks_.exports(*media, status_.unreadable);
+  }
+
+  bool tell() { return file_.tell(status_).has_value(); }
+
+  const SpareOptions& options_;
+  Sticks sticks_;
+  spare::StickStatus status_;
+  host::StatusFile file_;
+};
 
 }  // namespace
 }  // namespace adit::applier

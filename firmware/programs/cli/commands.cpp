@@ -167,8 +167,7 @@ constexpr CommandRow kCommands[] = {
     {"rejected", "list maps, states and markers that the Command Post rejected", kRejectedForms,
      "A message is listed if the Command Post rejected it (400, 413, 422), or failed at it repeatedly (500) "
      "while others were delivered. Adit also lists maps that it put aside, because three faults ended it "
-     "while "
-     "it packed them. Adit keeps the newest 100.",
+     "while it packed them. Adit keeps the newest 100.",
      "no message needs a decision, or the action succeeded",
      "a message is listed that no newer one has replaced, or the action was rejected", ""},
     {"run", "show the present run, or begin a new one", kRunForms,
@@ -212,9 +211,8 @@ constexpr CommandRow kCommands[] = {
      "  sudo adit network confirm --at 192.168.8.11"},
     {"clock", "show or set the box's time of day", kClockForms,
      "After boot a box without a battery continues from the last time that it knew, until the Command Post's "
-     "answers, "
-     "robots' stamps, the page or `adit clock set` set it. While the NTP server of clock.ntp_server answers, "
-     "only that server sets it.",
+     "answers, robots' stamps, the page or `adit clock set` set it. While the NTP server of clock.ntp_server "
+     "answers, only that server sets it.",
      "the time is set, or is being set", "the time is not set, or setting it failed",
      "  adit clock\n"
      "  adit clock set --at 10.0.0.1 --token-file team.token"},
@@ -247,8 +245,7 @@ constexpr CommandRow kCommands[] = {
      "  adit spare export --stick --at 10.0.0.1 --token-file team.token"},
     {"ledger", "print the ledger's records, or begin another ledger", kLedgerForms,
      "The ledger has all reports and runs, each step of them as a record. A record that is missing is "
-     "printed "
-     "as {\"gap\": ...}.",
+     "printed as {\"gap\": ...}.",
      "the command succeeded",
      "a record is missing or damaged, or the ledger can be read, so that Adit begins no other",
      "  sudo adit ledger dump | jq -c '.reports[]?'\n"

@@ -35,37 +35,39 @@ class SignalPoll {
   enum class Woken : std::uint8_t { ByTime, ByChange, ToEnd };
 
   /// `keys`: q or the end of standard input also ends the wait.
-  explicit SignalPoll(bool keys);
-  ~SignalPoll();
+  explicit SignalPoll(bool keys) : keys_(keys) {
+    sigset_t signals;
+    sigemptyset(&signals);
+    for (const int signal : {SIGINT, SIGQUIT, SIGTERM, SIGHUP, SIGWINCH}) sigaddset(&signals, signal);
+    pthread_sigmask(SIG_BLOCK, &signals, &before_);
+    signals_ = loop::FileDescriptor(signalfd(-1, &signals, SFD_CLOEXEC | SFD_NONBLOCK));
+  }
+  ~SignalPoll() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
   SignalPoll(const SignalPoll&) = delete;
   SignalPoll& operator=(const SignalPoll&) = delete;
 
   /// ByTime: the time is over, or `fd` (unless -1) is readable. ByChange: the screen's size has changed.
-  Woken wait(std::chrono::milliseconds longest, int fd);
+  Woken wait(std::chrono::milliseconds longest, int fd) {
+    std::array<pollfd, 3> ends{
+        {{signals_.get(), POLLIN, 0}, {keys_ ? STDIN_FILENO : -1, POLLIN, 0}, {fd, POLLIN, 0}}};
+    if (poll(ends.data(), ends.size(), static_cast<int>(longest.count())) <= 0) return Woken::ByTime;
+    signalfd_siginfo signal{};
+    if (read(signals_.get(), &signal, sizeof signal) == sizeof signal)
+      return signal.ssi_signo == SIGWINCH ? Woken::ByChange : Woken::ToEnd;
+    if (ends[1].revents == 0) return Woken::ByTime;
+    return ends_by_key() ? Woken::ToEnd : Woken::ByChange;
+  }
 
  private:
-  bool ends_by_key() const;
+  static bool ends_by_key() {
+    std::array<char, 64> keys{};
+    const ssize_t size = ::read(STDIN_FILENO, keys.data(), keys.size());
+    return size <= 0 || std::string_view(keys.data(), static_cast<std::size_t>(size)).contains('q');
+  }
 
   bool keys_;
   sigset_t before_{};
   loop::FileDescriptor signals_;
-};
-
-/// A terminal's alternate screen, without cursor and echo. The destructor restores the earlier screen.
-class Screen {
- public:
-  /// `print` writes to the terminal.
-  explicit Screen(std::function<void(const std::string&)> print);
-  ~Screen();
-  Screen(const Screen&) = delete;
-  Screen& operator=(const Screen&) = delete;
-
-  /// Shows as much as fits.
-  void show(std::string_view text) const;
-
- private:
-  std::function<void(const std::string&)> print_;
-  std::optional<termios> before_;  // of standard input; nullopt: not a terminal
 };
 
 // xterm's sequences, known to the Linux console and present terminals.
@@ -84,60 +86,42 @@ std::pair<std::size_t, std::size_t> size_of_terminal() {
                : std::pair{kUsualRows, kUsualColumns};
 }
 
-SignalPoll::SignalPoll(bool keys) : keys_(keys) {
-  sigset_t signals;
-  sigemptyset(&signals);
-  for (const int signal : {SIGINT, SIGQUIT, SIGTERM, SIGHUP, SIGWINCH}) sigaddset(&signals, signal);
-  pthread_sigmask(SIG_BLOCK, &signals, &before_);
-  signals_ = loop::FileDescriptor(signalfd(-1, &signals, SFD_CLOEXEC | SFD_NONBLOCK));
-}
-
-SignalPoll::~SignalPoll() {
-  pthread_sigmask(SIG_SETMASK, &before_, nullptr);
-}
-
-SignalPoll::Woken SignalPoll::wait(std::chrono::milliseconds longest, int fd) {
-  std::array<pollfd, 3> ends{
-      {{signals_.get(), POLLIN, 0}, {keys_ ? STDIN_FILENO : -1, POLLIN, 0}, {fd, POLLIN, 0}}};
-  if (poll(ends.data(), ends.size(), static_cast<int>(longest.count())) <= 0) return Woken::ByTime;
-  signalfd_siginfo signal{};
-  if (read(signals_.get(), &signal, sizeof signal) == sizeof signal)
-    return signal.ssi_signo == SIGWINCH ? Woken::ByChange : Woken::ToEnd;
-  if (ends[1].revents == 0) return Woken::ByTime;
-  return ends_by_key() ? Woken::ToEnd : Woken::ByChange;
-}
-
-bool SignalPoll::ends_by_key() const {
-  std::array<char, 64> keys{};
-  const ssize_t size = ::read(STDIN_FILENO, keys.data(), keys.size());
-  return size <= 0 || std::string_view(keys.data(), static_cast<std::size_t>(size)).contains('q');
-}
-
-Screen::Screen(std::function<void(const std::string&)> print) : print_(std::move(print)) {
-  termios now{};
-  if (tcgetattr(STDIN_FILENO, &now) == 0) {
-    before_ = now;
-    now.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
-    now.c_cc[VSUSP] = _POSIX_VDISABLE;  // a stopped program would leave the terminal in this mode
-    tcsetattr(STDIN_FILENO, TCSANOW, &now);
+/// A terminal's alternate screen, without cursor and echo. The destructor restores the earlier screen.
+class Screen {
+ public:
+  /// `print` writes to the terminal.
+  explicit Screen(std::function<void(const std::string&)> print) : print_(std::move(print)) {
+    termios now{};
+    if (tcgetattr(STDIN_FILENO, &now) == 0) {
+      before_ = now;
+      now.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
+      now.c_cc[VSUSP] = _POSIX_VDISABLE;  // a stopped program would leave the terminal in this mode
+      tcsetattr(STDIN_FILENO, TCSANOW, &now);
+    }
+    print_(kEnter);
   }
-  print_(kEnter);
-}
-
-Screen::~Screen() {
-  print_(kLeave);
-  if (before_) tcsetattr(STDIN_FILENO, TCSANOW, &*before_);
-}
-
-void Screen::show(std::string_view text) const {
-  const auto [rows, columns] = size_of_terminal();
-  std::string drawn = kHome;
-  for (const char c : fitted(text, rows, columns)) {
-    if (c == '\n') drawn += kClearLine;
-    drawn += c;
+  ~Screen() {
+    print_(kLeave);
+    if (before_) tcsetattr(STDIN_FILENO, TCSANOW, &*before_);
   }
-  print_(drawn.append(kClearLine).append(kClearRest));
-}
+  Screen(const Screen&) = delete;
+  Screen& operator=(const Screen&) = delete;
+
+  /// Shows as much as fits.
+  void show(std::string_view text) const {
+    const auto [rows, columns] = size_of_terminal();
+    std::string drawn = kHome;
+    for (const char c : fitted(text, rows, columns)) {
+      if (c == '\n') drawn += kClearLine;
+      drawn += c;
+    }
+    print_(drawn.append(kClearLine).append(kClearRest));
+  }
+
+ private:
+  std::function<void(const std::string&)> print_;
+  std::optional<termios> before_;  // of standard input; nullopt: not a terminal
+};
 
 using Clock = Follower::Clock;
 

@@ -31,25 +31,23 @@ constexpr int kReads = 4;
 /// Connections that gave way and that libmicrohttpd has not ended yet. It accepts at most eleven at once.
 constexpr unsigned kOnTheirWayOut = 32;
 
-}  // namespace
-
-class Server::Impl final : public Engine {
+class MhdServer final : public Server, public Engine {
  public:
-  Impl(loop::Loop& loop, Listen listen, Handler& handler)
+  MhdServer(loop::Loop& loop, Listen listen, Handler& handler)
       : loop_(loop),
         listen_(std::move(listen)),
         shares_(Shares::of(listen_.connections, listen_.connections_per_address)),
         turnstile_(loop, handler, listen_.guesses == nullptr ? own_guesses_ : *listen_.guesses, listen_.late,
                    [this](const std::string& address) { tell(Ended::WrongToken, address); }) {}
-  Impl(const Impl&) = delete;
-  Impl& operator=(const Impl&) = delete;
-  ~Impl() override;
+  MhdServer(const MhdServer&) = delete;
+  MhdServer& operator=(const MhdServer&) = delete;
+  ~MhdServer() override;
 
   std::expected<void, std::string> start(loop::FileDescriptor given);
-  void stop_listening();
-  std::uint16_t port() const { return port_; }
-  std::size_t connections() const { return clients_.size(); }
-  std::size_t unauthenticated() const;
+  void stop_listening() override;
+  std::uint16_t port() const override { return port_; }
+  std::size_t connections() const override { return clients_.size(); }
+  std::size_t unauthenticated() const override;
 
   loop::Instant now() const override { return loop_.now(); }
   const Listen& listen() const override { return listen_; }
@@ -97,21 +95,21 @@ class Server::Impl final : public Engine {
   std::shared_ptr<void> accepts_;
   loop::Instant look_due_ = loop::Instant::max();
   loop::Source readable_, deadline_timer_;
-  const std::shared_ptr<Impl*> alive_ = std::make_shared<Impl*>(this);  // for posted tasks
+  const std::shared_ptr<MhdServer*> alive_ = std::make_shared<MhdServer*>(this);  // for posted tasks
 };
 
-std::expected<void, std::string> Server::Impl::start(loop::FileDescriptor given) {
+std::expected<void, std::string> MhdServer::start(loop::FileDescriptor given) {
   auto socket = ADIT_TRY(given ? std::expected<loop::FileDescriptor, std::string>(std::move(given))
                                : open_listen_socket(listen_));
   port_ = port_of(socket.get());
   daemon_ = MHD_start_daemon(
-      MHD_USE_EPOLL | MHD_ALLOW_SUSPEND_RESUME | MHD_USE_ERROR_LOG, 0, nullptr, nullptr, &Impl::request_came,
-      this, MHD_OPTION_EXTERNAL_LOGGER, &Impl::say_nothing, nullptr, MHD_OPTION_LISTEN_SOCKET, socket.get(),
-      MHD_OPTION_CONNECTION_LIMIT, shares_.unauthenticated + shares_.known + kOnTheirWayOut,
-      MHD_OPTION_CONNECTION_TIMEOUT, 0u, MHD_OPTION_CONNECTION_MEMORY_LIMIT, kConnectionMemory,
-      MHD_OPTION_NOTIFY_CONNECTION, &Impl::connection_changed, this, MHD_OPTION_NOTIFY_COMPLETED,
-      &Impl::request_completed, this, MHD_OPTION_UNESCAPE_CALLBACK, &Impl::leave_escaped, nullptr,
-      MHD_OPTION_END);
+      MHD_USE_EPOLL | MHD_ALLOW_SUSPEND_RESUME | MHD_USE_ERROR_LOG, 0, nullptr, nullptr,
+      &MhdServer::request_came, this, MHD_OPTION_EXTERNAL_LOGGER, &MhdServer::say_nothing, nullptr,
+      MHD_OPTION_LISTEN_SOCKET, socket.get(), MHD_OPTION_CONNECTION_LIMIT,
+      shares_.unauthenticated + shares_.known + kOnTheirWayOut, MHD_OPTION_CONNECTION_TIMEOUT, 0u,
+      MHD_OPTION_CONNECTION_MEMORY_LIMIT, kConnectionMemory, MHD_OPTION_NOTIFY_CONNECTION,
+      &MhdServer::connection_changed, this, MHD_OPTION_NOTIFY_COMPLETED, &MhdServer::request_completed, this,
+      MHD_OPTION_UNESCAPE_CALLBACK, &MhdServer::leave_escaped, nullptr, MHD_OPTION_END);
   if (daemon_ == nullptr) return std::unexpected("the HTTP server did not start");
   accepts_ = accept_instead(socket.get(), [this](int fd, const sockaddr* peer, unsigned size) {
     MHD_add_connection(daemon_, fd, peer, size);
@@ -128,7 +126,7 @@ std::expected<void, std::string> Server::Impl::start(loop::FileDescriptor given)
   return {};
 }
 
-Server::Impl::~Impl() {
+MhdServer::~MhdServer() {
   if (daemon_ == nullptr) return;
   stopping_ = true;
   readable_ = {};
@@ -139,14 +137,14 @@ Server::Impl::~Impl() {
 
 /// Closes the socket without shutdown(), because shutdown() of libmicrohttpd would also stop copies of the
 /// socket.
-void Server::Impl::stop_listening() {
+void MhdServer::stop_listening() {
   if (!std::exchange(listening_, false)) return;
   accepts_.reset();
   const MHD_socket socket = MHD_quiesce_daemon(daemon_);
   if (socket != MHD_INVALID_SOCKET) ::close(socket);
 }
 
-void Server::Impl::run_soon() {
+void MhdServer::run_soon() {
   if (stopping_ || std::exchange(run_is_due_, true)) return;
   // A timer would be late by the accuracy of the loop's timers.
   loop_.post([weak = std::weak_ptr(alive_)] {
@@ -154,7 +152,7 @@ void Server::Impl::run_soon() {
   });
 }
 
-void Server::Impl::run() {
+void MhdServer::run() {
   run_is_due_ = false;
   bool has_more = true;
   for (int left = kReads; has_more && left > 0; --left) {
@@ -168,19 +166,19 @@ void Server::Impl::run() {
 }
 
 /// For connections that libmicrohttpd has added or answered. It has not read from them since.
-void Server::Impl::hold_back() {
+void MhdServer::hold_back() {
   for (const std::uint64_t number : std::exchange(to_hold_back_, {})) {
     if (const auto found = clients_.find(number); found != clients_.end()) found->second->hold_back();
   }
 }
 
-void Server::Impl::look_at(loop::Instant when) {
+void MhdServer::look_at(loop::Instant when) {
   if (stopping_ || when >= look_due_) return;
   look_due_ = when;
   deadline_timer_.call_at(when);
 }
 
-void Server::Impl::look_at_deadlines() {
+void MhdServer::look_at_deadlines() {
   look_due_ = loop::Instant::max();
   const loop::Instant now = loop_.now();
   for (const auto& [number, client] : clients_) {
@@ -191,7 +189,7 @@ void Server::Impl::look_at_deadlines() {
   if (next != loop::Instant::max()) look_at(next);
 }
 
-void Server::Impl::connected(MHD_Connection* connection, void** client_cls) {
+void MhdServer::connected(MHD_Connection* connection, void** client_cls) {
   // libmicrohttpd 1 overwrites the answer at the next question.
   const sockaddr* const address =
       MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CLIENT_ADDRESS)->client_addr;
@@ -204,16 +202,16 @@ void Server::Impl::connected(MHD_Connection* connection, void** client_cls) {
   hold_back_soon(known->number());
 }
 
-void Server::Impl::tell(Ended why, const std::string& address) {
+void MhdServer::tell(Ended why, const std::string& address) {
   if (listen_.ended) listen_.ended(why, address);
 }
 
-std::size_t Server::Impl::unauthenticated() const {
+std::size_t MhdServer::unauthenticated() const {
   return static_cast<std::size_t>(std::ranges::count_if(
       clients_, [](const auto& each) { return !each.second->deadline().is_authenticated(); }));
 }
 
-std::vector<Held> Server::Impl::held_but(const Client* one) const {
+std::vector<Held> MhdServer::held_but(const Client* one) const {
   std::vector<Held> all;
   for (const auto& [number, client] : clients_) {
     if (client.get() == one) continue;
@@ -222,19 +220,19 @@ std::vector<Held> Server::Impl::held_but(const Client* one) const {
   return all;
 }
 
-void Server::Impl::close_unauthenticated() {
+void MhdServer::close_unauthenticated() {
   if (unauthenticated() <= shares_.unauthenticated) return;
   while (const auto number = unauthenticated_to_close(held_but(nullptr), shares_))
     clients_.at(*number)->give_way();
 }
 
-bool Server::Impl::make_room_for(Client& client) {
+bool MhdServer::make_room_for(Client& client) {
   const Room room = room_for(client.peer(), held_but(&client), shares_);
   if (room.gives_way) clients_.at(*room.gives_way)->give_way();
   return room.is_there;
 }
 
-void Server::Impl::begin_request(Client& client) {
+void MhdServer::begin_request(Client& client) {
   std::string head = client.gate().take_head_text();
   const HeadParts parts = parts_of(head);
   auto request = std::make_shared<Request>(client, parts.method);
@@ -254,19 +252,15 @@ void Server::Impl::begin_request(Client& client) {
   }
 }
 
-namespace {
-
 Client* client_of(MHD_Connection* connection) {
   const auto* info = MHD_get_connection_info(connection, MHD_CONNECTION_INFO_SOCKET_CONTEXT);
   return info == nullptr ? nullptr : static_cast<Client*>(info->socket_context);
 }
 
-}  // namespace
-
-MHD_Result Server::Impl::request_came(void* cls, MHD_Connection* connection, const char*, const char*,
-                                      const char*, const char* upload, std::size_t* upload_size,
-                                      void** request_cls) {
-  auto& server = *static_cast<Impl*>(cls);
+MHD_Result MhdServer::request_came(void* cls, MHD_Connection* connection, const char*, const char*,
+                                   const char*, const char* upload, std::size_t* upload_size,
+                                   void** request_cls) {
+  auto& server = *static_cast<MhdServer*>(cls);
   Client* client = client_of(connection);
   if (client == nullptr || server.stopping_) return MHD_NO;
   const std::string_view piece(upload, std::exchange(*upload_size, 0));
@@ -274,7 +268,7 @@ MHD_Result Server::Impl::request_came(void* cls, MHD_Connection* connection, con
   return next == Next::Close ? MHD_NO : MHD_YES;
 }
 
-Next Server::Impl::hear(Client& client, std::string_view upload, void** request_cls) {
+Next MhdServer::hear(Client& client, std::string_view upload, void** request_cls) {
   if (*request_cls == nullptr) {
     if (!client.gate().let_in()) return Next::Close;
     *request_cls = &client;
@@ -285,8 +279,8 @@ Next Server::Impl::hear(Client& client, std::string_view upload, void** request_
   return client.request()->body({reinterpret_cast<const std::uint8_t*>(upload.data()), upload.size()});
 }
 
-void Server::Impl::request_completed(void*, MHD_Connection* connection, void** request_cls,
-                                     MHD_RequestTerminationCode why) {
+void MhdServer::request_completed(void*, MHD_Connection* connection, void** request_cls,
+                                  MHD_RequestTerminationCode why) {
   Client* client = client_of(connection);
   if (*request_cls == nullptr || client == nullptr || !client->request()) return;
   *request_cls = nullptr;
@@ -296,9 +290,9 @@ void Server::Impl::request_completed(void*, MHD_Connection* connection, void** r
   loop::guarded("the end of a request", [&] { request->completed(); });
 }
 
-void Server::Impl::connection_changed(void* cls, MHD_Connection* connection, void** client_cls,
-                                      MHD_ConnectionNotificationCode what) {
-  auto& server = *static_cast<Impl*>(cls);
+void MhdServer::connection_changed(void* cls, MHD_Connection* connection, void** client_cls,
+                                   MHD_ConnectionNotificationCode what) {
+  auto& server = *static_cast<MhdServer*>(cls);
   if (what == MHD_CONNECTION_NOTIFY_STARTED) {
     loop::guarded("a connection of the team", [&] { server.connected(connection, client_cls); });
   } else if (auto* client = static_cast<Client*>(std::exchange(*client_cls, nullptr)); client != nullptr) {
@@ -311,32 +305,18 @@ void Server::Impl::connection_changed(void* cls, MHD_Connection* connection, voi
   }
 }
 
-std::size_t Server::Impl::leave_escaped(void*, MHD_Connection*, char* text) {
+std::size_t MhdServer::leave_escaped(void*, MHD_Connection*, char* text) {
   return std::char_traits<char>::length(text);
 }
 
-Server::Server(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
-Server::~Server() = default;
+}  // namespace
 
 std::expected<std::unique_ptr<Server>, std::string> Server::start(loop::Loop& loop, const Listen& listen,
                                                                   Handler& handler,
                                                                   loop::FileDescriptor socket) {
-  auto impl = std::make_unique<Impl>(loop, listen, handler);
-  ADIT_TRY(impl->start(std::move(socket)));
-  return std::unique_ptr<Server>(new Server(std::move(impl)));
-}
-
-std::uint16_t Server::port() const {
-  return impl_->port();
-}
-std::size_t Server::connections() const {
-  return impl_->connections();
-}
-std::size_t Server::unauthenticated() const {
-  return impl_->unauthenticated();
-}
-void Server::stop_listening() {
-  impl_->stop_listening();
+  auto server = std::make_unique<MhdServer>(loop, listen, handler);
+  ADIT_TRY(server->start(std::move(socket)));
+  return server;
 }
 
 }  // namespace adit::intake

@@ -159,22 +159,18 @@ class Server {
   static std::expected<std::unique_ptr<Server>, std::string> start(loop::Loop& loop, const Listen& listen,
                                                                    Handler& handler,
                                                                    loop::FileDescriptor socket = {});
-  ~Server();
+  Server() = default;
+  virtual ~Server() = default;
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
 
-  std::uint16_t port() const;
-  std::size_t connections() const;
+  virtual std::uint16_t port() const = 0;
+  virtual std::size_t connections() const = 0;
   /// Connections that have shown no token.
-  std::size_t unauthenticated() const;
+  virtual std::size_t unauthenticated() const = 0;
   /// Accepts no new connections; requests in flight continue. A copy of the socket still listens, and clients
   /// that connect wait for its owner.
-  void stop_listening();
-
- private:
-  class Impl;
-  explicit Server(std::unique_ptr<Impl> impl);
-  std::unique_ptr<Impl> impl_;
+  virtual void stop_listening() = 0;
 };
 
 }  // namespace adit::intake

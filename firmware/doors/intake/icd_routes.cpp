@@ -8,6 +8,7 @@
 #include "codec/body_decoder.hpp"
 #include "icd/sentence.hpp"
 #include "icd/text.hpp"
+#include "icd/try.hpp"
 #include "intake/answer.hpp"
 #include "intake/head.hpp"
 
@@ -159,10 +160,9 @@ bool IcdRoutes::is_free(const RequestHead& head) const {
 icd::Checked<void> IcdRoutes::check_entry(const RequestHead& head) const {
   if (is_free(head) || has_token(head)) return {};
   if (!options_.asks_token) return check_origin(head, options_.origins);
-  return std::unexpected(
-      icd::Refusal{icd::Status::Unauthorized, options_.tokens.empty()
-                                                  ? "Authorization: no token is set on this box yet"
-                                                  : "Authorization: expected Bearer and the team's token"});
+  return icd::refuse(icd::Status::Unauthorized, options_.tokens.empty()
+                                                    ? "Authorization: no token is set on this box yet"
+                                                    : "Authorization: expected Bearer and the team's token");
 }
 
 std::size_t IcdRoutes::most_bytes(icd::Uri uri) const {
@@ -202,51 +202,40 @@ std::unique_ptr<BodySink> IcdRoutes::open(const RequestHead& head, std::shared_p
   if (*uri == icd::Uri::Status) {
     return std::make_unique<StatusVisit>(std::move(visit));
   }
-  return take_in(std::move(visit), head, std::move(flow));
+  auto sink = take_in(visit, head, std::move(flow));
+  if (sink) return *std::move(sink);
+  visit.refuse(sink.error());
+  return nullptr;
 }
 
-std::unique_ptr<BodySink> IcdRoutes::take_in(Visit visit, const RequestHead& head,
-                                             std::shared_ptr<Flow> flow) {
-  if (stopping_ && visit.uri != icd::Uri::ArtifactReports) {
-    visit.refuse(stops());
-    return nullptr;
-  }
-  if (head.content_length() == 0 && head.header("Content-Length").empty()) {  // RFC 9110 15.5.12
-    visit.refuse({icd::Status::LengthRequired, "Content-Length: missing, and no body came in chunks"});
-    return nullptr;
-  }
-  const auto kind = kind_of(visit.uri, head);
-  if (!kind) {
-    visit.refuse(kind.error());
-    return nullptr;
-  }
-  if (visit.uri == icd::Uri::ArtifactReports) {
-    const auto resubmits = resubmits_of(head);
-    if (!resubmits) {
-      visit.refuse(resubmits.error());
-      return nullptr;
-    }
-    visit.sender.resubmits = *resubmits;
+icd::Checked<std::unique_ptr<BodySink>> IcdRoutes::take_in(Visit& visit, const RequestHead& head,
+                                                           std::shared_ptr<Flow> flow) {
+  const bool is_report = visit.uri == icd::Uri::ArtifactReports;
+  if (stopping_ && !is_report) return std::unexpected(stops());
+  const auto length = head.content_length();
+  if (length == 0 && head.header("Content-Length").empty())  // RFC 9110 15.5.12
+    return icd::refuse(icd::Status::LengthRequired, "Content-Length: missing, and no body came in chunks");
+  const auto kind = ADIT_TRY(kind_of(visit.uri, head));
+  if (is_report) {
+    const bool resubmits = ADIT_TRY(resubmits_of(head));
+    visit.sender.resubmits = resubmits;
   }
   const std::size_t most = most_bytes(visit.uri);
-  if (const auto length = head.content_length(); length && *length > most) {
-    visit.refuse({icd::Status::ContentTooLarge,
-                  icd::sentence("Content-Length: expected at most ", most, ", got ", *length)});
-    return nullptr;
-  }
+  if (length && *length > most)
+    return icd::refuse(icd::Status::ContentTooLarge, "Content-Length: expected at most ", most, ", got ",
+                       *length);
   switch (visit.uri) {
     case icd::Uri::MapUpdate:
       return std::make_unique<MapUpload>(
           visit,
           MapUploadOptions{
-              .kind = *kind, .rules = options_.rules, .most_bytes = most, .without_room = without_room_},
+              .kind = kind, .rules = options_.rules, .most_bytes = most, .without_room = without_room_},
           std::move(flow), workers_, maps_);
     case icd::Uri::MarkersUpdate:
-      return std::make_unique<MarkersUpload>(visit, *kind, options_.rules, workers_, markers_,
-                                             large_markers_);
+      return std::make_unique<MarkersUpload>(visit, kind, options_.rules, workers_, markers_, large_markers_);
     case icd::Uri::ArtifactReports:
     case icd::Uri::StateUpdate:
-      return std::make_unique<SmallUpload>(std::move(visit), *kind, options_.rules, small_);
+      return std::make_unique<SmallUpload>(visit, kind, options_.rules, small_);
     case icd::Uri::Status:
       break;  // has no body
   }

@@ -63,7 +63,9 @@ class IcdRoutes final : public Handler {
   bool has_token(const RequestHead& head) const;
   /// 401 or 403 if the request needs a right token and has none.
   icd::Checked<void> check_entry(const RequestHead& head) const;
-  std::unique_ptr<BodySink> take_in(Visit visit, const RequestHead& head, std::shared_ptr<Flow> flow);
+  /// Accepts a message that has a body. The refusal is the sender's answer.
+  icd::Checked<std::unique_ptr<BodySink>> take_in(Visit& visit, const RequestHead& head,
+                                                  std::shared_ptr<Flow> flow);
   /// The most bytes of a body sent to `uri`.
   std::size_t most_bytes(icd::Uri uri) const;
 

@@ -411,8 +411,7 @@ SelfTest::SelfTest(loop::Loop& loop, const settings::Settings& settings,
       timer_(loop.timer([this] { probing_.until ? wait_for_probe() : next(); })) {}
 
 icd::Checked<void> SelfTest::begin_test(const api::Candidate& candidate) {
-  if (view_.running)
-    return std::unexpected(icd::Refusal{icd::Status::Conflict, "a test is running: see GET /adit/test"});
+  if (view_.running) return icd::conflict("a test is running: see GET /adit/test");
   auto tried = ADIT_TRY(tried_of_(candidate));
   tried_ = std::move(tried);
   view_ = {.number = view_.number + 1,

@@ -73,7 +73,7 @@ api::RunRow with_times(const api::RunRow& row, const api::RunRow& present) {
 }
 
 std::unexpected<icd::Refusal> unread(const std::string& why) {
-  return std::unexpected(icd::Refusal{icd::Status::ServiceUnavailable, "cannot read the stored run: " + why});
+  return icd::refuse(icd::Status::ServiceUnavailable, "cannot read the stored run: ", why);
 }
 
 /// Blocks on the disk.

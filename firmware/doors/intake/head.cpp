@@ -79,8 +79,7 @@ int hex_digit(char letter) {
 }
 
 bool is_text(std::string_view bytes) {
-  codec::Utf8Checker checker;
-  return bytes.find('\0') == std::string_view::npos && !checker.feed(bytes) && checker.complete();
+  return !bytes.contains('\0') && codec::is_utf8(bytes);
 }
 
 enum class Plus { Stays, IsSpace };

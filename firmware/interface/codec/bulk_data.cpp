@@ -26,8 +26,7 @@ icd::Checked<void> BulkData::appear() {
 
 icd::Checked<void> BulkData::fits(std::uint64_t bytes) const {
   if (bytes <= most_ - came_) return {};
-  return std::unexpected(icd::Refusal{icd::Status::ContentTooLarge,
-                                      icd::sentence("msg.data: larger than the limit of ", most_, " bytes")});
+  return icd::refuse(icd::Status::ContentTooLarge, "msg.data: larger than the limit of ", most_, " bytes");
 }
 
 icd::Checked<void> BulkData::append(std::span<const std::uint8_t> bytes) {

@@ -57,7 +57,7 @@ icd::Checked<void> ContentDecoder::finish() {
 icd::Checked<void> ContentDecoder::begin(int window_bits) {
   auto stream = std::make_unique<z_stream>();
   if (inflateInit2(stream.get(), window_bits) != Z_OK) {
-    return std::unexpected(icd::Refusal{icd::Status::InternalServerError, "no memory to inflate the body"});
+    return icd::refuse(icd::Status::InternalServerError, "no memory to inflate the body");
   }
   stream_.reset(stream.release());
   return {};
@@ -85,7 +85,7 @@ icd::Checked<void> ContentDecoder::inflate(std::string_view bytes) {
     if (ended_) continue;
     if (result == Z_NEED_DICT) return std::unexpected(bad("it needs a dictionary"));
     if (result == Z_MEM_ERROR) {
-      return std::unexpected(icd::Refusal{icd::Status::InternalServerError, "no memory to inflate the body"});
+      return icd::refuse(icd::Status::InternalServerError, "no memory to inflate the body");
     }
     if (result != Z_OK && result != Z_BUF_ERROR) {
       return std::unexpected(bad(stream_->msg != nullptr ? stream_->msg : "damaged data"));
@@ -97,9 +97,9 @@ icd::Checked<void> ContentDecoder::inflate(std::string_view bytes) {
 icd::Checked<void> ContentDecoder::give(std::string_view bytes) {
   if (bytes.empty()) return {};
   if (bytes.size() > most_ - given_) {
-    return std::unexpected(icd::Refusal{
-        icd::Status::ContentTooLarge,
-        coding_ == ContentCoding::Identity ? "the body is too large" : "the inflated body is too large"});
+    return icd::refuse(icd::Status::ContentTooLarge, coding_ == ContentCoding::Identity
+                                                         ? "the body is too large"
+                                                         : "the inflated body is too large");
   }
   given_ += bytes.size();
   return sink_(bytes);

@@ -70,47 +70,28 @@ std::string_view other_format(Format said, std::string_view begin) {
 
 }  // namespace
 
-class BodyDecoder::Impl {
- public:
+struct BodyDecoder::Impl {
   Impl(BodyKind kind, Split split, const Limits& limits)
-      : format_(kind.format),
-        data_(limits.data_bytes),
-        splitter_(splitter_for(kind.format, split, limits, data_)),
-        content_(kind.coding, most_inflated(split, limits), [this](std::string_view bytes) {
-          begin_ += bytes.substr(0, kTelling - begin_.size());
-          return named(splitter_->feed(bytes));
+      : format(kind.format),
+        data(limits.data_bytes),
+        splitter(splitter_for(kind.format, split, limits, data)),
+        content(kind.coding, most_inflated(split, limits), [this](std::string_view bytes) {
+          begin += bytes.substr(0, kTelling - begin.size());
+          return named(splitter->feed(bytes));
         }) {}
 
-  icd::Checked<void> feed(std::string_view chunk) {
-    if (!spent_) return spent_;
-    spent_ = content_.feed(chunk);
-    return spent_;
-  }
-
-  BulkData& data() { return data_; }
-  std::size_t size() const { return content_.given(); }
-
-  icd::Checked<Document> finish() {
-    if (!spent_) return std::unexpected(spent_.error());
-    ADIT_TRY(content_.finish());
-    auto root = ADIT_TRY(named(splitter_->finish()));
-    auto data = ADIT_TRY(data_.take());
-    return Document{std::move(root), std::move(data), data_.form(), data_.pressed()};
-  }
-
- private:
   template <class T>
   icd::Checked<T> named(icd::Checked<T> checked) const {
-    if (!checked) checked.error().sentence += other_format(format_, begin_);
+    if (!checked) checked.error().sentence += other_format(format, begin);
     return checked;
   }
 
-  Format format_;
-  std::string begin_;  // beginning of the document
-  BulkData data_;
-  std::unique_ptr<Splitter> splitter_;
-  ContentDecoder content_;
-  icd::Checked<void> spent_;  // the first refusal
+  Format format;
+  std::string begin;  // beginning of the document
+  BulkData data;
+  std::unique_ptr<Splitter> splitter;
+  ContentDecoder content;
+  icd::Checked<void> spent;  // the first refusal
 };
 
 BodyDecoder::BodyDecoder(BodyKind kind, Split split, const Limits& limits)
@@ -120,23 +101,29 @@ BodyDecoder::BodyDecoder(BodyDecoder&&) noexcept = default;
 BodyDecoder& BodyDecoder::operator=(BodyDecoder&&) noexcept = default;
 
 icd::Checked<void> BodyDecoder::feed(std::span<const std::uint8_t> chunk) {
-  return impl_->feed({reinterpret_cast<const char*>(chunk.data()), chunk.size()});
+  if (impl_->spent)
+    impl_->spent = impl_->content.feed({reinterpret_cast<const char*>(chunk.data()), chunk.size()});
+  return impl_->spent;
 }
 
 std::size_t BodyDecoder::size() const {
-  return impl_->size();
+  return impl_->content.given();
 }
 
 std::size_t BodyDecoder::data_held() const {
-  return impl_->data().held();
+  return impl_->data.held();
 }
 
 icd::ChunkedBytes BodyDecoder::take_data() {
-  return impl_->data().take_some();
+  return impl_->data.take_some();
 }
 
 icd::Checked<Document> BodyDecoder::finish() {
-  return impl_->finish();
+  if (!impl_->spent) return std::unexpected(impl_->spent.error());
+  ADIT_TRY(impl_->content.finish());
+  auto root = ADIT_TRY(impl_->named(impl_->splitter->finish()));
+  auto data = ADIT_TRY(impl_->data.take());
+  return Document{std::move(root), std::move(data), impl_->data.form(), impl_->data.pressed()};
 }
 
 icd::Checked<Document> decode(BodyKind kind, Split split, std::string_view body, const Limits& limits) {

@@ -89,7 +89,7 @@ class BodyDecoder {
   icd::Checked<Document> finish();
 
  private:
-  class Impl;
+  struct Impl;
   std::unique_ptr<Impl> impl_;
 };
 

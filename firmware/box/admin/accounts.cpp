@@ -100,10 +100,6 @@ std::optional<icd::BearerToken> Accounts::kept_code() {
   return icd::BearerToken::parse(code);
 }
 
-bool Accounts::is_code(std::string_view presented) const {
-  return first_start() && code_ && code_->matches(presented);
-}
-
 void Accounts::check(std::string password, std::string address,
                      std::function<void(std::optional<Role>)> done) {
   auto role = std::make_shared<std::optional<Role>>();

@@ -33,7 +33,9 @@ class Accounts final : public api::Keys {
   /// Why a file cannot be read, as a sentence; or "". The next process reads it again.
   const std::string& unread() const override { return unread_; }
   bool first_start() const override { return !accounts_.operator_ && unread_.empty(); }
-  bool is_code(std::string_view presented) const override;
+  bool is_code(std::string_view presented) const override {
+    return first_start() && code_ && code_->matches(presented);
+  }
   bool set_up_open() const override { return set_up_left().has_value(); }
   void check(std::string password, std::string address,
              std::function<void(std::optional<access::Role>)> done) override;

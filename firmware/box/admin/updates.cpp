@@ -268,10 +268,6 @@ icd::Checked<void> Updates::install_from_stick(bool again) {
   return ask(update::Request::What::Stick, again);
 }
 
-icd::Checked<void> Updates::restart(bool anyway) {
-  return ask_for_restart(update::Request::What::Restart, anyway);
-}
-
 icd::Checked<void> Updates::go_back(bool anyway) {
   ADIT_TRY(check_stray());
   return ask_for_restart(update::Request::What::Back, anyway);

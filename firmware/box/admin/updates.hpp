@@ -61,7 +61,9 @@ class Updates final : public api::Updates {
   icd::Checked<std::unique_ptr<api::Upload>> receive(std::uint64_t size, bool again,
                                                      std::function<void()> resume) override;
   icd::Checked<void> install_from_stick(bool again) override;
-  icd::Checked<void> restart(bool anyway) override;
+  icd::Checked<void> restart(bool anyway) override {
+    return ask_for_restart(update::Request::What::Restart, anyway);
+  }
   icd::Checked<void> go_back(bool anyway) override;
   icd::Checked<void> stay() override;
 

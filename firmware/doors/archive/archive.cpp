@@ -223,7 +223,7 @@ constexpr double kNoneRests = std::numeric_limits<double>::infinity();
 
 void Archive::tick(const Seen& seen) {
   if (begun_) return;
-  sample(seen);
+  if (samples_.wants(seen.now)) samples_.add(queue_.add(seen.sample()));
   note(seen);
   if (writing_ > 0 || loop_.now() < next_write_) return;
   if (present_.folder) {
@@ -257,10 +257,6 @@ void Archive::note(const Seen& seen) {
   present_.row.key = present_.key;
   present_.row.last = seen.now;
   present_.row.stamp = seen.stamp;
-}
-
-void Archive::sample(const Seen& seen) {
-  if (samples_.wants(seen.now)) samples_.add(queue_.add(seen.sample()));
 }
 
 /// False: no data was due.

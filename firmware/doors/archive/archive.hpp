@@ -121,7 +121,6 @@ class Archive final : public api::KeptRuns {
   void has_folder(const Opening& opening);
   /// Retries if the run has no directory.
   void make_folder();
-  void sample(const Seen& seen);
   void note(const Seen& seen);
   bool write(const Seen& seen, std::size_t most, double tiles_of);
   void written(const Write& write);

@@ -92,8 +92,4 @@ bool UntrustedFolder::wipe(const std::string& name) {
   return unlinkat(folder_.get(), name.c_str(), 0) == 0 && fsync(folder_.get()) == 0 && blank;
 }
 
-std::string UntrustedFolder::path_by_descriptor() const {
-  return "/proc/self/fd/" + std::to_string(folder_.get());
-}
-
 }  // namespace adit::host

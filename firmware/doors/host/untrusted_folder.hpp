@@ -45,7 +45,7 @@ class UntrustedFolder {
   bool wipe(const std::string& name);
 
   /// A path for inotify(7) that always means this directory.
-  std::string path_by_descriptor() const;
+  std::string path_by_descriptor() const { return "/proc/self/fd/" + std::to_string(folder_.get()); }
 
  private:
   explicit UntrustedFolder(loop::FileDescriptor folder) : folder_(std::move(folder)) {}

@@ -46,10 +46,6 @@ void Deadline::expect_body() {
   if (authenticated_ && !ended_) expect_rate();
 }
 
-void Deadline::body_came(std::size_t bytes) {
-  if (rate_) rate_->moved(bytes);
-}
-
 void Deadline::expect_steady_reading(std::uint64_t taken) {
   expect_nothing();
   taken_before_ = taken;
@@ -259,10 +255,6 @@ Next Client::fail() {
   Next next = Next::Close;
   if (request_) loop::guarded("the answer to a failed request", [&] { next = request_->failed(); });
   return next;
-}
-
-void Client::enter(Phase phase) {
-  stage_ = {.phase = phase, .since = engine_.now()};
 }
 
 void Client::request_begun(std::shared_ptr<Request> request) {

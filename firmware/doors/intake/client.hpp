@@ -83,7 +83,9 @@ class Deadline {
   /// Listen::unauthenticated_within, an authenticated one within Listen::rate_over, or at the least rate.
   void expect_head();
   void expect_body();
-  void body_came(std::size_t bytes);
+  void body_came(std::size_t bytes) {
+    if (rate_) rate_->moved(bytes);
+  }
   /// The client must read its answer at the least rate. `taken`: of Gate::traffic() before the answer.
   void expect_steady_reading(std::uint64_t taken);
   void expect_nothing();
@@ -179,7 +181,7 @@ class Client {
 
  private:
   Held::Doing doing() const;
-  void enter(Phase phase);
+  void enter(Phase phase) { stage_ = {.phase = phase, .since = engine_.now()}; }
   void await_head();
   /// RFC 9112 9.3. Also false if the answer is uncertain: a Connection field other than keep-alive, or
   /// HTTP/1.0.

@@ -53,7 +53,9 @@ class MhdServer final : public Server, public Engine {
   const Listen& listen() const override { return listen_; }
   void run_soon() override;
   void look_at(loop::Instant when) override;
-  void tell(Ended why, const std::string& address) override;
+  void tell(Ended why, const std::string& address) override {
+    if (listen_.ended) listen_.ended(why, address);
+  }
   void hold_back_soon(std::uint64_t number) override { to_hold_back_.push_back(number); }
   void begin_request(Client& client) override;
 
@@ -66,7 +68,9 @@ class MhdServer final : public Server, public Engine {
   static void connection_changed(void* cls, MHD_Connection* connection, void** client_cls,
                                  MHD_ConnectionNotificationCode what);
   /// parse_target() decodes targets, so libmicrohttpd must not.
-  static std::size_t leave_escaped(void* cls, MHD_Connection* connection, char* text);
+  static std::size_t leave_escaped(void*, MHD_Connection*, char* text) {
+    return std::char_traits<char>::length(text);
+  }
   static void say_nothing(void*, const char*, va_list) {}
 
   Next hear(Client& client, std::string_view upload, void** request_cls);
@@ -202,10 +206,6 @@ void MhdServer::connected(MHD_Connection* connection, void** client_cls) {
   hold_back_soon(known->number());
 }
 
-void MhdServer::tell(Ended why, const std::string& address) {
-  if (listen_.ended) listen_.ended(why, address);
-}
-
 std::size_t MhdServer::unauthenticated() const {
   return static_cast<std::size_t>(std::ranges::count_if(
       clients_, [](const auto& each) { return !each.second->deadline().is_authenticated(); }));
@@ -303,10 +303,6 @@ void MhdServer::connection_changed(void* cls, MHD_Connection* connection, void**
       server.run_soon();  // libmicrohttpd checks only then if there is room for another connection
     });
   }
-}
-
-std::size_t MhdServer::leave_escaped(void*, MHD_Connection*, char* text) {
-  return std::char_traits<char>::length(text);
 }
 
 }  // namespace

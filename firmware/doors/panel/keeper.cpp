@@ -44,10 +44,6 @@ void Watched::lights(const Lit& lit, Instant now) {
   lit_ = lit;
 }
 
-void Watched::ends(Instant now) {
-  enter(Phase::Ended, now);
-}
-
 void Watched::gone(Instant now) {
   if (phase_ == Phase::Ended || phase_ == Phase::Dead) return;
   enter(Phase::Dead, fault_since(now).value_or(now));

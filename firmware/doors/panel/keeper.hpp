@@ -32,7 +32,7 @@ class Watched {
   /// It connected, sent its lights, announced its end, or lost its connection.
   void came(Instant now);
   void lights(const Lit& lit, Instant now);
-  void ends(Instant now);
+  void ends(Instant now) { enter(Phase::Ended, now); }
   void gone(Instant now);
 
   /// The present lights, and when to ask again at the latest.

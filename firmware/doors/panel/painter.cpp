@@ -10,10 +10,6 @@ void Painter::take(std::unique_ptr<Lines> lines) {
   trouble_.clear();
 }
 
-void Painter::show(const Lit& lit, Instant now) {
-  if (tried_ != lit || now >= due_) set(lit, now);
-}
-
 void Painter::set(const Lit& lit, Instant now) {
   if (!lines_) return;
   tried_ = lit;
@@ -25,10 +21,6 @@ void Painter::set(const Lit& lit, Instant now) {
   } else if (now - well_since_ >= kMended) {
     trouble_.clear();
   }
-}
-
-std::optional<Instant> Painter::next() const {
-  return lines_ ? std::optional(due_) : std::nullopt;
 }
 
 }  // namespace adit::panel

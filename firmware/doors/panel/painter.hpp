@@ -25,11 +25,13 @@ class Painter {
   const Lines* lines() const { return lines_.get(); }
 
   /// Sets the lights if they have changed or setting is due.
-  void show(const Lit& lit, Instant now);
+  void show(const Lit& lit, Instant now) {
+    if (tried_ != lit || now >= due_) set(lit, now);
+  }
   /// Sets the lights in any case.
   void set(const Lit& lit, Instant now);
   /// When show() is due if the lights do not change; nullopt: there are no lines.
-  std::optional<Instant> next() const;
+  std::optional<Instant> next() const { return lines_ ? std::optional(due_) : std::nullopt; }
 
   /// True if these lines have not been set yet.
   bool is_blank() const { return !tried_; }

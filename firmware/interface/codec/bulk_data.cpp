@@ -78,14 +78,6 @@ icd::Refusal BulkData::bad_element(std::string_view got) const {
                         got.substr(0, kLongest), got.size() > kLongest ? "..." : "")};
 }
 
-icd::Checked<void> BulkData::flush() {
-  return append(std::span(elements_).first(std::exchange(waiting_, 0)));
-}
-
-icd::ChunkedBytes BulkData::take_some() {
-  return press_ ? press_->take_some() : std::move(bytes_);
-}
-
 icd::Checked<icd::ChunkedBytes> BulkData::take() {
   ADIT_TRY(flush());
   return press_ ? press_->finish() : std::move(bytes_);

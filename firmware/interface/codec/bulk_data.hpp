@@ -67,14 +67,14 @@ class BulkData {
   /// Bytes that take_some() would return.
   std::size_t held() const { return press_ ? press_->held() : bytes_.size(); }
   /// Data since the last take_some(), except the last few array elements.
-  icd::ChunkedBytes take_some();
+  icd::ChunkedBytes take_some() { return press_ ? press_->take_some() : std::move(bytes_); }
   /// The rest. Call once, at the end.
   icd::Checked<icd::ChunkedBytes> take();
   /// Set if take_some() and take() return compressed cells.
   std::optional<PressedCells> pressed() const;
 
  private:
-  icd::Checked<void> flush();
+  icd::Checked<void> flush() { return append(std::span(elements_).first(std::exchange(waiting_, 0))); }
 
   std::size_t most_;
   bool appeared_ = false;

@@ -441,8 +441,4 @@ void Updater::tell_of(update::LastUpdate last_update) {
   status_.last = std::move(last_update);
 }
 
-bool Updater::tell() {
-  return file_.tell(status_).has_value();
-}
-
 }  // namespace adit::applier

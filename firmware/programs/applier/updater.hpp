@@ -91,7 +91,7 @@ class Updater {
   std::string go_back();
   std::string stay();
   void tell_of(update::LastUpdate last_update);
-  bool tell();
+  bool tell() { return file_.tell(status_).has_value(); }
 
   const UpdateOptions& options_;
   Rauc rauc_;

@@ -205,10 +205,6 @@ void Listeners::tick() {
   });
 }
 
-void Listeners::stop() {
-  for (const Serving& each : serving_) each.server->stop_listening();
-}
-
 std::size_t Listeners::sum(std::size_t (intake::Server::*count)() const) const {
   std::size_t sum = 0;
   for (const Serving& each : serving_) sum += (*each.server.*count)();

@@ -92,7 +92,9 @@ class Listeners {
   /// Ends unused servers. Call now and then.
   void tick();
   /// Accepts no new connections.
-  void stop();
+  void stop() {
+    for (const Serving& each : serving_) each.server->stop_listening();
+  }
 
   bool serves() const { return !serving_.empty(); }
   std::size_t connections() const { return sum(&intake::Server::connections); }

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <utility>
 
 #include "codec/body_decoder.hpp"
 #include "codec/gzip.hpp"

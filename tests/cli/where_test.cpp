@@ -1,4 +1,4 @@
-#include "cli/where.hpp"
+#include "cli/ask.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -5,7 +5,6 @@
 
 #include "cli/handlers.hpp"
 #include "cli/table.hpp"
-#include "cli/where.hpp"
 #include "codec/json.hpp"
 #include "host/interfaces.hpp"
 #include "host/log.hpp"

@@ -2,7 +2,6 @@
 
 #include <utility>
 
-#include "cli/where.hpp"
 #include "codec/json.hpp"
 #include "codec/patch.hpp"
 #include "icd/text.hpp"

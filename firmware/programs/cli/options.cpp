@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "cli/ask.hpp"
 #include "cli/commands.hpp"
-#include "cli/where.hpp"
 #include "codec/row.hpp"
 #include "command_line/read.hpp"
 #include "host/service.hpp"

@@ -6,7 +6,6 @@
 #include "api/settings_rows.hpp"
 #include "cli/handlers.hpp"
 #include "cli/table.hpp"
-#include "cli/where.hpp"
 #include "codec/json.hpp"
 #include "host/log.hpp"
 #include "host/service.hpp"

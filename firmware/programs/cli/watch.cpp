@@ -21,7 +21,6 @@
 #include "cli/handlers.hpp"
 #include "cli/status_text.hpp"
 #include "cli/table.hpp"
-#include "cli/where.hpp"
 #include "codec/json.hpp"
 #include "host/log.hpp"
 #include "loop/file_descriptor.hpp"

@@ -1,5 +1,3 @@
-#include "api/route.hpp"
-
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include <set>
 
 #include "api/on_page.hpp"
+#include "api/route.hpp"
 
 namespace adit::api {
 namespace {

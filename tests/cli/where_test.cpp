@@ -1,7 +1,7 @@
-#include "cli/ask.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "cli/ask.hpp"
 
 namespace adit::cli {
 namespace {

@@ -1,5 +1,3 @@
-#include "api/route.hpp"
-
 #include <concepts>
 #include <functional>
 #include <optional>
@@ -13,6 +11,7 @@
 #include "api/map_routes.hpp"
 #include "api/page_routes.hpp"
 #include "api/report_routes.hpp"
+#include "api/route.hpp"
 #include "api/run_routes.hpp"
 #include "api/self_test.hpp"
 #include "api/session_routes.hpp"

@@ -2,12 +2,10 @@
 
 #include <optional>
 
-#include "rehearsal/command_post/artifacts.hpp"
+#include "rehearsal/command_post/document.hpp"
+#include "rehearsal/command_post/endpoint.hpp"
 #include "rehearsal/command_post/fields.hpp"
-#include "rehearsal/command_post/gate.hpp"
-#include "rehearsal/command_post/geometry.hpp"
-#include "rehearsal/command_post/json.hpp"
-#include "rehearsal/command_post/mapping.hpp"
+#include "rehearsal/command_post/messages.hpp"
 
 namespace adit::simulation {
 namespace {

@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include "rehearsal/robots/client.hpp"
-#include "rehearsal/robots/http.hpp"
 
 namespace adit::robots {
 namespace {

@@ -1,4 +1,4 @@
-#include "rehearsal/robots/http.hpp"
+#include "rehearsal/robots/client.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/socket.h>

@@ -10,7 +10,7 @@
 #include <thread>
 #include <utility>
 
-#include "rehearsal/robots/http.hpp"
+#include "rehearsal/robots/client.hpp"
 
 namespace adit::robots {
 

@@ -11,10 +11,10 @@
 #include <utility>
 #include <vector>
 
+#include "rehearsal/agreed.hpp"
+#include "rehearsal/command_post/document.hpp"
 #include "rehearsal/command_post/fields.hpp"
-#include "rehearsal/command_post/json.hpp"
 #include "rehearsal/command_post/messages.hpp"
-#include "rehearsal/known_ground.hpp"
 
 namespace adit::rehearsal {
 

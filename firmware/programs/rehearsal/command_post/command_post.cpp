@@ -8,11 +8,9 @@
 #include <set>
 #include <string>
 
-#include "rehearsal/command_post/gate.hpp"
-#include "rehearsal/command_post/json.hpp"
-#include "rehearsal/command_post/mapping.hpp"
-#include "rehearsal/command_post/misbehave.hpp"
-#include "rehearsal/command_post/scoring.hpp"
+#include "rehearsal/command_post/document.hpp"
+#include "rehearsal/command_post/endpoint.hpp"
+#include "rehearsal/command_post/fault.hpp"
 
 namespace adit::rehearsal {
 namespace {

@@ -3,8 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <string>
 
 namespace adit::rehearsal {
+namespace {
+
+constexpr auto kTypes = std::to_array<std::string_view>({
+#include "icd/artifact_types.inc"
+});
+
+}  // namespace
+
 std::string Field::path_of(std::string_view name) const {
   return path_.empty() ? std::string(name) : path_ + "." + std::string(name);
 }
@@ -103,6 +112,12 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(space) - first + 1);
 }
 
+bool is_artifact_type(std::string_view type) {
+  return std::ranges::any_of(kTypes, [lower_case = lower(std::string(type))](std::string_view known) {
+    return lower(std::string(known)) == lower_case;
+  });
+}
+
 bool is_word_character(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
 }
@@ -116,6 +131,58 @@ std::string tame(std::string_view text) {
 
 bool is_robot_name(std::string_view name) {
   return !name.empty() && name.size() <= 10 && std::ranges::all_of(name, is_word_character);
+}
+
+namespace {
+
+std::optional<Quaternion> read_quaternion(const Field& quaternion) {
+  const auto x = quaternion.number("x"), y = quaternion.number("y"), z = quaternion.number("z"),
+             w = quaternion.number("w");
+  if (!x || !y || !z || !w) return std::nullopt;
+  constexpr double kNoise = 2e-6;  // of float32, and of printed digits
+  const double length = std::hypot(std::hypot(*x, *y, *z), *w);
+  if (!(std::abs(length - 1) <= kNoise)) {
+    quaternion.breaks("expected a quaternion of length 1, got one of length " + std::to_string(length),
+                      Measured::Takes);
+  }
+  return Quaternion{*x, *y, *z, *w};
+}
+
+}  // namespace
+
+std::optional<Point> read_point(const Field& point) {
+  const auto x = point.number("x"), y = point.number("y"), z = point.number("z");
+  if (!x || !y || !z) return std::nullopt;
+  return Point{*x, *y, *z};
+}
+
+std::optional<Pose> read_pose(const Field& pose) {
+  const auto position = pose.member("position");
+  const auto orientation = pose.member("orientation");
+  if (!position || !orientation) return std::nullopt;
+  const auto point = read_point(*position);
+  const auto quaternion = read_quaternion(*orientation);
+  if (!point || !quaternion) return std::nullopt;
+  return Pose{*point, *quaternion};
+}
+
+void read_header(const Field& message, std::vector<Stamp>& stamps) {
+  const auto header = message.optional_member("header");
+  if (!header || !header->is_object()) return;
+  if (const auto frame_id = header->optional_member("frame_id")) {
+    const auto text = frame_id->text();
+    // The measured server writes "darpa" over any other, saying nothing.
+    if (text && *text != "darpa") frame_id->breaks("expected \"darpa\" (ICD 6.1)", Measured::Takes);
+  }
+  if (const auto stamp = header->optional_member("stamp")) {
+    const auto seconds = stamp->number();
+    if (!seconds) return;
+    if (*seconds < 0) {
+      stamp->breaks("expected seconds from 0");
+    } else {
+      stamps.push_back({*seconds, stamp->path()});
+    }
+  }
 }
 
 }  // namespace adit::rehearsal

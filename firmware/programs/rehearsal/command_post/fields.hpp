@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "rehearsal/command_post/json.hpp"
+#include "rehearsal/command_post/document.hpp"
 
 namespace adit::rehearsal {
 
@@ -148,5 +148,36 @@ std::string tame(std::string_view text);
 
 /// Whether `name` is one that a robot may have: 1 to 10 letters, digits and underscores (ICD 2).
 bool is_robot_name(std::string_view name);
+
+/// Whether it is one of the types of the final event, in any letter case (ICD 5.2).
+bool is_artifact_type(std::string_view type);
+
+struct Point {
+  double x = 0, y = 0, z = 0;
+};
+
+struct Quaternion {
+  double x = 0, y = 0, z = 0, w = 1;
+};
+
+struct Pose {
+  Point position;
+  Quaternion orientation;
+};
+
+/// A stamp and where it stands, so that the order of stamps can be checked (ICD 6.2).
+struct Stamp {
+  double seconds = 0;
+  std::string path;
+};
+
+std::optional<Point> read_point(const Field& point);
+
+/// `pose` holds "position" and "orientation". A quaternion that is not of length 1 is no rotation, though the
+/// measured server takes it.
+std::optional<Pose> read_pose(const Field& pose);
+
+/// The optional "header" of `message` (ICD 6.1, 6.2): frame_id must be "darpa"; a stamp is added to `stamps`.
+void read_header(const Field& message, std::vector<Stamp>& stamps);
 
 }  // namespace adit::rehearsal

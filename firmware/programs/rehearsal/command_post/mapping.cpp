@@ -1,14 +1,11 @@
-#include "rehearsal/command_post/mapping.hpp"
-
 #include <algorithm>
 #include <expected>
 #include <map>
 #include <mutex>
 #include <utility>
 
-#include "rehearsal/command_post/base64.hpp"
-#include "rehearsal/command_post/gate.hpp"
-#include "rehearsal/command_post/json.hpp"
+#include "rehearsal/command_post/document.hpp"
+#include "rehearsal/command_post/endpoint.hpp"
 
 namespace adit::rehearsal {
 namespace {

@@ -3,12 +3,282 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
 #include <cstdint>
+#include <cstring>
+#include <string_view>
+#include <utility>
 
-#include "rehearsal/command_post/gate.hpp"
-#include "rehearsal/command_post/mapping.hpp"
+#include "rehearsal/agreed.hpp"
+#include "rehearsal/command_post/document.hpp"
+#include "rehearsal/command_post/endpoint.hpp"
 
 namespace adit::rehearsal {
+
+namespace {
+
+constexpr std::int64_t kFloat32 = 7;
+constexpr std::int64_t kFloat64 = 8;
+
+/// ICD 6.3.1, `info` and the header of msg.
+std::optional<Grid> read_grid(const Field& msg) {
+  const auto info = msg.member("info");
+  if (!info) return std::nullopt;
+  const auto metres = info->number("resolution");
+  const auto columns = info->integer("width", 1, UINT32_MAX);
+  const auto rows = info->integer("height", 1, UINT32_MAX);
+  const auto origin = info->member("origin");
+  const auto pose = origin ? read_pose(*origin) : std::nullopt;
+  if (!metres || !columns || !rows || !pose) return std::nullopt;
+  if (*metres <= 0) info->member("resolution")->breaks("expected more than 0", Measured::Takes);
+  return Grid{*metres, static_cast<std::uint32_t>(*columns), static_cast<std::uint32_t>(*rows), *pose};
+}
+
+std::optional<CloudField> read_cloud_field(const Field& field) {
+  const auto name = field.text("name");
+  const auto offset = field.integer("offset", 0, UINT32_MAX);
+  const auto datatype = field.integer("datatype", 1, kFloat64);
+  const auto count = field.integer("count", 1, UINT32_MAX);
+  if (!name || !offset || !datatype || !count) return std::nullopt;
+  return CloudField{*name, static_cast<std::uint32_t>(*offset), static_cast<std::uint32_t>(*datatype),
+                    static_cast<std::uint32_t>(*count)};
+}
+
+/// A field that ends past the point kills the measured server. The rehearsal goes on.
+bool check_ends(const Cloud& cloud, const Field& fields) {
+  for (std::size_t i = 0; i < cloud.fields.size(); ++i) {
+    const CloudField& field = cloud.fields[i];
+    const std::uint64_t end = field.offset + std::uint64_t{field.count} * size_of_datatype(field.datatype);
+    if (end <= cloud.point_step) continue;
+    fields.findings().breaks(fields.path() + "[" + std::to_string(i) + "]: ends at byte " +
+                                 std::to_string(end) + " of a point of " + std::to_string(cloud.point_step),
+                             Measured::Refuses);
+    return false;
+  }
+  return true;
+}
+
+/// x, y and z, each there once, all float32 or all float64.
+bool check_axes(const Cloud& cloud, const Field& fields) {
+  std::int64_t common = 0;
+  for (const char* const axis : {"x", "y", "z"}) {
+    const auto named = [axis](const CloudField& field) { return field.name == axis; };
+    const auto found = std::ranges::find_if(cloud.fields, named);
+    if (found == cloud.fields.end()) {
+      fields.breaks("expected x, y and z, found no " + std::string(axis));
+      return false;
+    }
+    if (std::ranges::count_if(cloud.fields, named) > 1) {
+      fields.breaks("more than one field " + std::string(axis), Measured::Takes);
+    }
+    if (found->count != 1) fields.breaks("expected count 1 of " + std::string(axis), Measured::Takes);
+    if ((found->datatype != kFloat32 && found->datatype != kFloat64) ||
+        (common != 0 && found->datatype != common)) {
+      fields.breaks("expected x, y and z all of datatype 7 or all of 8");
+      return false;
+    }
+    common = found->datatype;
+  }
+  return true;
+}
+
+/// ICD 6.3.2, all but the data.
+std::optional<Cloud> read_cloud(const Field& msg) {
+  Cloud cloud;
+  if (const auto origin = msg.optional_member("origin")) {
+    cloud.origin = read_pose(*origin);
+    if (!cloud.origin) return std::nullopt;
+  }
+  if (const auto bigendian = msg.optional_member("is_bigendian")) {
+    const auto truth = bigendian->boolean();
+    if (!truth) return std::nullopt;
+    cloud.is_bigendian = *truth;
+  }
+  const auto step = msg.member("point_step");
+  const auto fields = msg.member("fields");
+  if (!step || !fields) return std::nullopt;
+  const auto bytes = step->integer(0, UINT32_MAX);
+  const auto elements = fields->elements();
+  if (!bytes || !elements) return std::nullopt;
+  for (const Field& element : *elements) {
+    auto field = read_cloud_field(element);
+    if (!field) return std::nullopt;
+    cloud.fields.push_back(std::move(*field));
+  }
+  if (*bytes == 0) return step->breaks("expected at least 1, got 0", Measured::Dies);
+  cloud.point_step = static_cast<std::uint32_t>(*bytes);
+  if (!check_ends(cloud, *fields) || !check_axes(cloud, *fields)) return std::nullopt;
+  return cloud;
+}
+
+/// The ICD has no rows (6.3.2): a Command Post reads what stands between them as points.
+void check_rows(const Field& msg, const Cloud& cloud) {
+  const auto width = msg.optional_member("width"), row_step = msg.optional_member("row_step");
+  if (!width || !row_step || !width->value().is_number_integer()) return;
+  const auto expected = width->value().get<std::uint64_t>() * cloud.point_step;
+  if (row_step->value() == Json(expected)) return;
+  row_step->breaks(
+      "expected width * point_step = " + std::to_string(expected) + ", got " + line_of(row_step->value()),
+      Measured::Takes);
+}
+
+double coordinate(const char* bytes, std::size_t size, bool bigendian) {
+  std::array<char, sizeof(double)> value{};
+  std::copy_n(bytes, size, value.begin());
+  if (bigendian) std::reverse(value.begin(), value.begin() + static_cast<std::ptrdiff_t>(size));
+  if (size == sizeof(double)) return std::bit_cast<double>(value);
+  float single = 0;
+  std::memcpy(&single, value.data(), sizeof single);
+  return single;
+}
+
+/// ICD 6.3.2: clouds are dense.
+void check_points(const Cloud& cloud, const std::string& data, const Field& msg) {
+  if (data.contains(kRowPadding)) {
+    msg.findings().breaks("msg.data: the padding between a robot's rows arrived as points", Measured::Takes);
+  }
+  for (std::size_t at = 0; at + cloud.point_step <= data.size(); at += cloud.point_step) {
+    for (const CloudField& field : cloud.fields) {
+      if (field.name != "x" && field.name != "y" && field.name != "z") continue;
+      const std::size_t size = size_of_datatype(field.datatype);
+      if (std::isfinite(coordinate(data.data() + at + field.offset, size, cloud.is_bigendian))) continue;
+      return msg.findings().breaks("msg.data: point " + std::to_string(at / cloud.point_step) +
+                                       " has no finite " + field.name + " (ICD 6.3.2)",
+                                   Measured::Takes);
+    }
+  }
+}
+
+/// ICD 6.3 (a) and (b): base64 in JSON, a byte string in CBOR.
+std::optional<std::string> read_bytes(const Field& data, Format format) {
+  if (format == Format::CborBytes) {
+    if (!data.value().is_binary()) return data.breaks("expected a byte string (ICD 6.3 b)");
+    const auto& binary = data.value().get_binary();
+    return std::string(binary.begin(), binary.end());
+  }
+  if (!data.value().is_string()) return data.breaks("expected a base64 string (ICD 6.3 a)");
+  auto bytes = base64_decoded(data.value().get_ref<const std::string&>());
+  if (!bytes) return data.breaks("expected padded base64 (RFC 4648) without white space");
+  return bytes;
+}
+
+std::optional<std::string> inflated(const Field& data, std::string_view bytes, std::size_t most) {
+  auto whole = gunzip(bytes, most);
+  if (whole) return std::move(*whole);
+  if (whole.error() == InflateFault::TooLarge)
+    return data.breaks("inflates to more than " + std::to_string(most) + " bytes");
+  if (whole.error() == InflateFault::Followed)
+    return data.breaks("bytes after the end of the one gzip member", Measured::Hangs);
+  return data.breaks("expected a complete gzip member (RFC 1952)");
+}
+
+/// `data` and `compression`; `most`: how many bytes it may inflate to.
+std::optional<std::string> read_data(const Field& msg, Format format, std::size_t most) {
+  std::string compression = "none";
+  if (const auto field = msg.optional_member("compression")) {
+    const auto text = field->text();
+    if (!text) return std::nullopt;
+    if (*text != "none" && *text != "gzip") return field->breaks("expected \"none\" or \"gzip\" (ICD 6.3)");
+    compression = *text;
+  }
+  const auto data = msg.member("data");
+  auto bytes = data ? read_bytes(*data, format) : std::nullopt;
+  if (!bytes || compression == "none") return bytes;
+  return inflated(*data, *bytes, most);
+}
+
+/// ICD 6.3.1: one byte for each cell, each 0 to 100 or 255.
+bool check_cells(const Grid& grid, const std::string& cells, const Field& msg) {
+  const std::uint64_t expected = std::uint64_t{grid.width} * grid.height;
+  if (cells.size() != expected) {
+    msg.findings().breaks("msg.data: expected " + std::to_string(grid.width) + " x " +
+                          std::to_string(grid.height) + " = " + std::to_string(expected) + " bytes, got " +
+                          std::to_string(cells.size()));
+    return false;
+  }
+  const auto wrong = std::ranges::find_if(cells, [](char c) {
+    const auto cell = static_cast<unsigned char>(c);
+    return cell > 100 && cell < 255;
+  });
+  if (wrong != cells.end()) {
+    msg.findings().breaks("msg.data[" + std::to_string(wrong - cells.begin()) +
+                              "]: expected 0 to 100 or 255, got " +
+                              std::to_string(static_cast<unsigned char>(*wrong)),
+                          Measured::Takes);
+  }
+  return true;
+}
+
+std::optional<std::string> read_name(const Field& body) {
+  const auto name = body.optional_member("name");
+  if (!name) {
+    body.findings().displeases("Missing field 'name'");
+    return "";
+  }
+  auto text = name->text();
+  if (text && !text->empty() && !is_robot_name(*text)) {
+    name->breaks("expected 1 to 10 letters, digits and underscores (ICD 2)", Measured::Takes);
+  }
+  return text;
+}
+
+std::optional<MapMessage> read_grid_message(const Field& msg, Format format, MapMessage message) {
+  const auto grid = read_grid(msg);
+  if (!grid) return std::nullopt;
+  const std::uint64_t cells = std::uint64_t{grid->width} * grid->height;
+  if (cells > kMostMapBytes) {
+    msg.findings().breaks("msg.info: more than " + std::to_string(kMostMapBytes) + " cells");
+    return std::nullopt;
+  }
+  auto data = read_data(msg, format, cells);
+  if (!data || !check_cells(*grid, *data, msg)) return std::nullopt;
+  message.msg = *grid;
+  message.data = std::move(*data);
+  return message;
+}
+
+std::optional<MapMessage> read_cloud_message(const Field& msg, Format format, MapMessage message) {
+  auto cloud = read_cloud(msg);
+  if (!cloud) return std::nullopt;
+  auto data = read_data(msg, format, kMostMapBytes);
+  if (!data) return std::nullopt;
+  if (data->size() % cloud->point_step != 0) {
+    msg.findings().breaks("msg.data: " + std::to_string(data->size()) +
+                              " bytes are not a multiple of point_step " + std::to_string(cloud->point_step),
+                          Measured::Takes);
+  }
+  check_rows(msg, *cloud);
+  check_points(*cloud, *data, msg);
+  message.msg = std::move(*cloud);
+  message.data = std::move(*data);
+  return message;
+}
+
+}  // namespace
+
+std::uint32_t size_of_datatype(std::uint32_t datatype) {
+  constexpr std::array<std::uint32_t, 9> sizes = {0, 1, 1, 2, 2, 4, 4, 4, 8};
+  return sizes.at(datatype);
+}
+
+std::optional<MapMessage> read_map(const Json& document, Format format, Findings& findings) {
+  const Field body(document, "", findings);
+  const auto type = body.member("type");
+  const auto kind = type ? type->text() : std::nullopt;
+  const auto msg = body.member("msg");
+  if (!kind || !msg || !msg->is_object()) return std::nullopt;
+  MapMessage message;
+  auto name = read_name(body);
+  if (!name) return std::nullopt;
+  message.name = std::move(*name);
+  read_header(*msg, message.stamps);
+  if (*kind == "OccupancyGrid") return read_grid_message(*msg, format, std::move(message));
+  if (*kind == "PointCloud2") return read_cloud_message(*msg, format, std::move(message));
+  return type->breaks("expected \"OccupancyGrid\" or \"PointCloud2\" (ICD 6.4)");
+}
+
 namespace {
 
 /// zlib's counter is 32 bits wide; no map's data is larger (kMostMapBytes).

@@ -6,8 +6,8 @@
 #include <variant>
 #include <vector>
 
-#include "rehearsal/command_post/geometry.hpp"
-#include "rehearsal/command_post/json.hpp"
+#include "rehearsal/command_post/document.hpp"
+#include "rehearsal/command_post/fields.hpp"
 
 namespace adit::rehearsal {
 
@@ -58,5 +58,25 @@ struct MarkerChange {
 /// Reads a document and writes down all that the ICD or the measured server minds. Nothing where so much
 /// is wrong that there is no message; a message that is there may still have decisive findings.
 std::optional<MapMessage> read_map(const Json& document, Format format, Findings& findings);
+
+struct Judgement;  // endpoint.hpp
+
+/// A part of a message that was taken, as it is counted.
+struct Accepted {
+  std::string kind;   // "grid", "cloud", "pose", "marker", "report"
+  std::string robot;  // a map's or a pose's name, a marker's ns; may be ""
+};
+
+/// A body for one of the mapping URIs, read.
+struct MappingMessage {
+  std::vector<Stamp> stamps;
+  std::vector<Accepted> parts;
+  std::optional<MapMessage> map;
+  std::vector<MarkerChange> markers;
+};
+
+/// Reads the body of `judgement.uri` and writes down what is found. Leaves the document in judgement.message,
+/// a map's data in it described, not kept. Nothing where there is no message.
+std::optional<MappingMessage> read_mapping(const std::string& body, Format format, Judgement& judgement);
 
 }  // namespace adit::rehearsal

@@ -8,8 +8,8 @@
 #include <tuple>
 #include <vector>
 
-#include "rehearsal/command_post/gate.hpp"
-#include "rehearsal/command_post/json.hpp"
+#include "rehearsal/command_post/document.hpp"
+#include "rehearsal/command_post/endpoint.hpp"
 #include "rehearsal/command_post/messages.hpp"
 #include "rehearsal/command_post/run.hpp"
 

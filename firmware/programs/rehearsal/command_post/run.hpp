@@ -2,17 +2,33 @@
 
 #include <chrono>
 #include <cstdint>
+#include <expected>
 #include <map>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <tuple>
 #include <vector>
 
-#include "rehearsal/command_post/artifacts.hpp"
+#include "rehearsal/command_post/fields.hpp"
 #include "rehearsal/command_post/http.hpp"
 
 namespace adit::rehearsal {
+
+struct Artifact {
+  std::string type;
+  Point position;
+  bool claimed = false;  // by a report that scored
+};
+
+/// A CSV of true artifacts: the header line "type,x,y,z", then one artifact a line, in metres. An error names
+/// the line.
+std::expected<std::vector<Artifact>, std::string> read_artifacts(const std::string& path);
+
+/// Claims the nearest artifact of that type (in any letter case) which no report has claimed, if it is within
+/// 5 m. Gives whether there was one.
+bool claim(std::vector<Artifact>& artifacts, std::string_view type, const Point& position);
 
 /// What the public test server's clocks always show, whatever the time: /api/status and answers to reports.
 inline constexpr double kMeasuredStatusClock = 25.98;

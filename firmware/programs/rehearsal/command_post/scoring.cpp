@@ -1,10 +1,8 @@
-#include "rehearsal/command_post/scoring.hpp"
-
 #include <chrono>
 
+#include "rehearsal/command_post/document.hpp"
+#include "rehearsal/command_post/endpoint.hpp"
 #include "rehearsal/command_post/fields.hpp"
-#include "rehearsal/command_post/gate.hpp"
-#include "rehearsal/command_post/json.hpp"
 
 namespace adit::rehearsal {
 namespace {

@@ -8,8 +8,8 @@
 #include <optional>
 #include <string>
 
-#include "rehearsal/command_post/gate.hpp"
-#include "rehearsal/command_post/json.hpp"
+#include "rehearsal/command_post/document.hpp"
+#include "rehearsal/command_post/endpoint.hpp"
 
 namespace adit::rehearsal {
 

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "rehearsal/known_ground.hpp"
+#include "rehearsal/agreed.hpp"
 #include "rehearsal/robots/cave.hpp"
 #include "rehearsal/robots/messages.hpp"
 #include "rehearsal/robots/robot.hpp"

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "rehearsal/row_padding.hpp"
+#include "rehearsal/agreed.hpp"
 
 namespace adit::robots {
 

@@ -7,10 +7,9 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
-
-#include "rehearsal/robots/http.hpp"
 
 namespace adit::robots {
 
@@ -171,6 +170,13 @@ std::vector<std::uint8_t> gzip(std::span<const std::uint8_t> bytes);
 
 /// RFC 4648 section 4, padded.
 std::string base64(std::span<const std::uint8_t> bytes);
+
+struct HttpRequest {
+  std::string method;
+  std::string target;
+  std::vector<std::pair<std::string, std::string>> fields;  // beside Host and Content-Length
+  std::string body;
+};
 
 /// Gives one robot's messages the bytes that clients of its style send. Independent of Adit's codec.
 class Encoder {

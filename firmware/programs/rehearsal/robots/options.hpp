@@ -8,7 +8,7 @@
 #include <string>
 
 #include "command_line/read.hpp"
-#include "rehearsal/robots/http.hpp"
+#include "rehearsal/robots/client.hpp"
 #include "rehearsal/robots/map_maker.hpp"
 #include "rehearsal/robots/messages.hpp"
 

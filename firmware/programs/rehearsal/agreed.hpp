@@ -13,7 +13,14 @@
 #include <tuple>
 #include <unordered_map>
 
+// What the two programs of this folder agree on, so that the Command Post can tell how much of what the
+// robots posted has come.
+
 namespace adit {
+
+/// What adit-robots puts between the rows of organised clouds, again and again. Read as a point of float32 it
+/// is finite, and in no cave: the Command Post knows it where it comes.
+inline constexpr std::string_view kRowPadding = "PADDINGOFROW";
 
 /// The cells of grids that are known, each counted once however often it came: of what a robot posted, and of
 /// what the Command Post has. Cells of another size are others. Both programs of this folder measure by it.

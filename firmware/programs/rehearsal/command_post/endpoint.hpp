@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <span>
@@ -8,10 +9,11 @@
 #include <string_view>
 #include <vector>
 
+#include "rehearsal/command_post/document.hpp"
 #include "rehearsal/command_post/fields.hpp"
 #include "rehearsal/command_post/http.hpp"
-#include "rehearsal/command_post/json.hpp"
 #include "rehearsal/command_post/messages.hpp"
+#include "rehearsal/command_post/run.hpp"
 
 namespace adit::rehearsal {
 
@@ -58,12 +60,6 @@ struct Function {
 inline constexpr Function kScoringFunctions[] = {{"GET", kStatusUri}, {"POST", kReportsUri}};
 inline constexpr Function kMappingFunctions[] = {
     {"POST", kMapUri}, {"POST", kStateUri}, {"POST", kMarkersUri}};
-
-/// A part of a message that was taken, as it is counted.
-struct Accepted {
-  std::string kind;   // "grid", "cloud", "pose", "marker", "report"
-  std::string robot;  // a map's or a pose's name, a marker's ns; may be ""
-};
 
 /// An endpoint's decision about one request, and its findings.
 struct Judgement {
@@ -133,5 +129,26 @@ Outcome refused(int status, std::string_view sentence);
 inline Outcome refused(const Finding& finding) {
   return refused(finding.status, finding.sentence);
 }
+
+/// The scoring endpoint of the ICD's section 5, to the letter. At most `hz` requests a second for each URI,
+/// or for both together (`one_limit`).
+std::unique_ptr<Endpoint> strict_scoring(std::string token, double hz, bool one_limit, Run& run);
+
+/// The public test server for scoring, as measured: see each rule in its source.
+std::unique_ptr<Endpoint> measured_scoring(std::string token, double hz, Run& run);
+
+/// The body of an answer to POST /api/artifact_reports (ICD 5.2). x, y, z and type are given back as they
+/// came; `authority`: the address and port in its url.
+OrderedJson report_body(const Run::Ruling& ruling, const Json& sent, const std::string& authority);
+
+/// Where no address is known, or as the measured server has it.
+inline constexpr const char* kNoAuthority = "<ipaddress>:<port>";
+
+/// The mapping endpoint of the ICD's section 6, to the letter. At most `hz` requests a second for each URI.
+std::unique_ptr<Endpoint> strict_mapping(std::string token, double hz, Counted counted);
+
+/// The public test server for mapping, as measured: see each rule in its source. At most `hz` clouds a
+/// second, of all robots together.
+std::unique_ptr<Endpoint> measured_mapping(std::string token, double hz, Counted counted);
 
 }  // namespace adit::rehearsal

@@ -1,4 +1,4 @@
-#include "rehearsal/command_post/gate.hpp"
+#include "rehearsal/command_post/endpoint.hpp"
 
 #include <algorithm>
 

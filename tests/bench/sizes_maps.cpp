@@ -28,7 +28,7 @@ SizedMap map_of(const std::string& name, robots::Grid loaded) {
 
 SizedMap map_of(const std::string& name, const robots::Cloud& loaded) {
   icd::PointCloud2 cloud;
-  for (const robots::CloudField& field : loaded.fields) {
+  for (const CloudField& field : loaded.fields) {
     cloud.fields.push_back(
         {field.name, field.offset, static_cast<icd::Datatype>(field.datatype), field.count});
   }

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <map>
 #include <span>
+#include <string>
 #include <string_view>
 #include <tuple>
 #include <unordered_map>
@@ -18,16 +19,62 @@
 
 namespace adit {
 
+/// The ICD's artifact types (5.2).
+inline constexpr auto kArtifactTypes = std::to_array<std::string_view>({
+#include "icd/artifact_types.inc"
+});
+
+/// Metres, in the "darpa" frame.
+struct Vector3 {
+  double x = 0, y = 0, z = 0;
+  friend bool operator==(const Vector3&, const Vector3&) = default;
+};
+
+struct Rotation {
+  double x = 0, y = 0, z = 0, w = 1;
+  friend bool operator==(const Rotation&, const Rotation&) = default;
+};
+
+struct Placement {
+  Vector3 position;
+  Rotation orientation;
+  friend bool operator==(const Placement&, const Placement&) = default;
+};
+
+inline constexpr std::uint8_t kUnknown = 255;  // a cell (ICD 6.3.1)
+
+/// ICD 6.3.2. `datatype` is the ICD's number: 1 to 8.
+struct CloudField {
+  std::string name;
+  std::uint32_t offset = 0;
+  int datatype = 0;
+  std::uint32_t count = 1;
+  friend bool operator==(const CloudField&, const CloudField&) = default;
+};
+
+inline constexpr int kFloat32 = 7;
+inline constexpr int kFloat64 = 8;
+
+/// Bytes of one value of the ICD's datatype 1 to 8.
+inline std::uint32_t size_of_datatype(int datatype) {
+  constexpr std::array<std::uint32_t, 9> kBytes = {0, 1, 1, 2, 2, 4, 4, 4, 8};
+  return kBytes.at(static_cast<std::size_t>(datatype));
+}
+
 /// What adit-robots puts between the rows of organised clouds, again and again. Read as a point of float32 it
 /// is finite, and in no cave: the Command Post knows it where it comes.
 inline constexpr std::string_view kRowPadding = "PADDINGOFROW";
+
+/// A grid's date: these five cells (13, 87, 42, 61, 99; no values of the cave's), and digits, the highest
+/// first, of the milliseconds since 1970 modulo kDateBase ^ kDateDigits (121 days).
+inline constexpr std::string_view kDateFollows = "\x0d\x57\x2a\x3d\x63";
+inline constexpr std::size_t kDateDigits = 5;
+inline constexpr std::int64_t kDateBase = 101;
 
 /// The cells of grids that are known, each counted once however often it came: of what a robot posted, and of
 /// what the Command Post has. Cells of another size are others. Both programs of this folder measure by it.
 class KnownCells {
  public:
-  static constexpr std::uint8_t kUnknown = 255;  // ICD 6.3.1
-
   /// A grid's cells, row by row from the lower left at (`left`, `bottom`), in metres as `resolution`; `width`
   /// is at least 1.
   void add(double resolution, double left, double bottom, std::size_t width,
@@ -94,7 +141,6 @@ class KnownPlaces {
   std::size_t count() const { return count_; }
 
  private:
-  static constexpr int kFloat32 = 7;
   static constexpr double kMost = 500'000;  // places to either side
   static constexpr unsigned kBits = 18;     // of the number of a block of 4 x 4 x 4 places, on one axis
 

@@ -56,7 +56,7 @@ TEST_F(Programs, UnansweredTeamStopsAtOnceAndTellsSo) {
       while (recv(connection, &byte, 1, 0) == 1) continue;  // until the client goes
     });
     Program program(
-        robots({"--post", "http://127.0.0.1:" + std::to_string(silent.endpoint().port), "--quiet"}));
+        robots({"--post", "http://127.0.0.1:" + std::to_string(silent.address().port), "--quiet"}));
     ASSERT_EQ(arrived.get_future().wait_for(20s), std::future_status::ready);
     const Clock::time_point start = Clock::now();
     program.signal(SIGTERM);

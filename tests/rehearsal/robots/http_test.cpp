@@ -37,7 +37,7 @@ TEST(Connection, SendsTheRequestAndReadsTheReply) {
     head = read_head(connection);
     answer(connection, kNull);
   });
-  Connection connection(server.endpoint(), {});
+  Connection connection(server.address(), {});
   const auto reply = connection.exchange(kRequest, 20s);
   ASSERT_TRUE(reply) << reply.error();
   EXPECT_EQ(reply->status, 200);
@@ -53,7 +53,7 @@ TEST(Connection, IsKeptBetweenRequests) {
     ++connections;
     while (!read_head(connection).empty()) answer(connection, kNull);
   });
-  Connection connection(server.endpoint(), {});
+  Connection connection(server.address(), {});
   for (int i = 0; i < 5; ++i) ASSERT_TRUE(connection.exchange(kRequest, 20s));
   EXPECT_EQ(connections, 1);
 }
@@ -64,7 +64,7 @@ TEST(Connection, ReconnectsIfTheServerClosedDespiteKeepAlive) {
     read_head(connection);
     answer(connection, kNull);
   });
-  Connection connection(server.endpoint(), {});
+  Connection connection(server.address(), {});
   for (int i = 0; i < 5; ++i) {
     const auto reply = connection.exchange(kRequest, 20s);
     ASSERT_TRUE(reply) << reply.error();
@@ -78,7 +78,7 @@ TEST(Connection, DoesNotResendARequestToBeSentOnce) {
     answer(connection, kNull);
     if (!read_head(connection).empty()) ++requests;  // and closes without an answer
   });
-  Connection connection(server.endpoint(), {});
+  Connection connection(server.address(), {});
   ASSERT_TRUE(connection.exchange(kRequest, 20s));
   EXPECT_FALSE(connection.exchange(kRequest, 20s, /*send_once=*/true));
   EXPECT_EQ(requests, 2);
@@ -89,7 +89,7 @@ TEST(Connection, GivesUpAtTheDeadline) {
     read_head(connection);
     read_head(connection);  // until the client goes
   });
-  Connection connection(server.endpoint(), {});
+  Connection connection(server.address(), {});
   const auto reply = connection.exchange(kRequest, 200ms);
   ASSERT_FALSE(reply);
   EXPECT_EQ(reply.error(), "no answer within 200 ms");
@@ -101,7 +101,7 @@ TEST(Connection, StopsAtOnceWhenAsked) {
     read_head(connection);
   });
   std::stop_source stop;
-  Connection connection(server.endpoint(), stop.get_token());
+  Connection connection(server.address(), stop.get_token());
   const std::jthread stopper([&] {
     std::this_thread::sleep_for(100ms);
     stop.request_stop();
@@ -118,13 +118,13 @@ TEST(Connection, TellsWhyThereIsNoAnswer) {
     read_head(connection);
     answer(connection, "SSH-2.0-OpenSSH\r\n\r\n");
   });
-  EXPECT_FALSE(Connection(garbage.endpoint(), {}).exchange(kRequest, 20s));
+  EXPECT_FALSE(Connection(garbage.address(), {}).exchange(kRequest, 20s));
   const Server large([](int connection) {
     read_head(connection);
     answer(connection, "HTTP/1.1 200 OK\r\nContent-Length: 999999999\r\n\r\n");
   });
-  EXPECT_FALSE(Connection(large.endpoint(), {}).exchange(kRequest, 20s));
-  const auto nobody = Connection({.address = "127.0.0.1", .port = 1}, {}).exchange(kRequest, 20s);
+  EXPECT_FALSE(Connection(large.address(), {}).exchange(kRequest, 20s));
+  const auto nobody = Connection({.host = "127.0.0.1", .port = 1}, {}).exchange(kRequest, 20s);
   ASSERT_FALSE(nobody);
   EXPECT_EQ(nobody.error(), "Connection refused");
 }

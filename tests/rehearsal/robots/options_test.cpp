@@ -17,7 +17,7 @@ TEST(Options, AcceptTheContractsCommandLine) {
   const auto options = parsed({"--post", "http://127.0.0.1:8080", "--secrets", "/tmp", "--robots", "5",
                                "--style", "ros", "--maps", "/maps", "--for", "30"});
   ASSERT_TRUE(options) << options.error();
-  EXPECT_EQ(options->post.address, "127.0.0.1");
+  EXPECT_EQ(options->post.host, "127.0.0.1");
   EXPECT_EQ(options->post.port, 8080);
   EXPECT_EQ(options->scoring.port, 8080) << "one address for all";
   EXPECT_EQ(options->robots, 5u);
@@ -28,7 +28,7 @@ TEST(Options, AcceptTheContractsCommandLine) {
 TEST(Options, DefaultToThreeRobotsOfMixedStyle) {
   const auto options = parsed({"--post", "http://[::1]:80/", "--secrets", "/tmp"});
   ASSERT_TRUE(options) << options.error();
-  EXPECT_EQ(options->post.address, "::1");
+  EXPECT_EQ(options->post.host, "::1");
   EXPECT_EQ(options->robots, 3u);
   EXPECT_EQ(options->style.of(1).name, "cbor-body-gzip");
   EXPECT_FALSE(options->run_for);
@@ -86,14 +86,14 @@ TEST(TeamToken, IsTheOnlyLineOfItsFile) {
                                                 {"two words", false}};
   for (const auto& [text, good] : cases) {
     std::ofstream(folder / "team.token") << text << std::flush;
-    const auto token = read_team_token(folder);
+    const auto token = read_token(folder / "team.token");
     EXPECT_EQ(token.has_value(), good) << text;
     if (good) {
       EXPECT_EQ(*token, "flux230{showroom");
     }
   }
   std::filesystem::remove_all(folder);
-  EXPECT_FALSE(read_team_token(folder));
+  EXPECT_FALSE(read_token(folder / "team.token"));
 }
 
 }  // namespace

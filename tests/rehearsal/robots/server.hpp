@@ -43,7 +43,7 @@ class Server {
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
 
-  Endpoint endpoint() const { return {.address = "127.0.0.1", .port = port_}; }
+  Address address() const { return {.host = "127.0.0.1", .port = port_}; }
 
  private:
   int listener_;

@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdio>
 #include <limits>
 #include <numbers>
-#include <string_view>
 #include <utility>
 
 namespace adit::robots {
@@ -174,11 +172,7 @@ Hollow carve(const Lattice& lattice, const std::vector<Chamber>& chambers, Rando
 
 constexpr Lattice kLattice{.resolution = 0.2, .left = -6, .bottom = -32, .width = 480, .height = 320};
 
-/// The ICD's artifact types (5.2).
-constexpr auto kTypes = std::to_array<std::string_view>({
-#include "icd/artifact_types.inc"
-});
-constexpr std::size_t kArtifacts = 2 * kTypes.size();
+constexpr std::size_t kArtifacts = 2 * kArtifactTypes.size();
 
 /// The floor blends the chambers' heights by their distance; the ceiling is high in chambers and low
 /// between them.
@@ -239,7 +233,7 @@ void Cave::place_artifacts(Random& random) {
     }
   }
   constexpr double kNear = 5.5;  // metres: the first is found at once, so that the shortest run reports
-  const std::size_t first_type = random.below(kTypes.size());
+  const std::size_t first_type = random.below(kArtifactTypes.size());
   for (int attempt = 0; attempt < 200'000 && artifacts_.size() < kArtifacts; ++attempt) {
     const Vector3& place = places[random.below(places.size())];
     if (artifacts_.empty() && (std::hypot(place.x, place.y) > kNear || !in_sight({}, place))) continue;
@@ -247,7 +241,8 @@ void Cave::place_artifacts(Random& random) {
       return std::hypot(place.x - other.position.x, place.y - other.position.y) >= kApart;
     });
     if (!apart) continue;
-    artifacts_.push_back({std::string(kTypes[(first_type + artifacts_.size()) % kTypes.size()]), place});
+    artifacts_.push_back(
+        {std::string(kArtifactTypes[(first_type + artifacts_.size()) % kArtifactTypes.size()]), place});
   }
 }
 

@@ -78,7 +78,6 @@ class Raster {
   const Lattice& lattice() const { return lattice_; }
   T& operator[](Cell cell) { return values_[lattice_.index(cell)]; }
   const T& operator[](Cell cell) const { return values_[lattice_.index(cell)]; }
-  const std::vector<T>& values() const { return values_; }
 
  private:
   Lattice lattice_;

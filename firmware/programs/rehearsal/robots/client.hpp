@@ -1,6 +1,10 @@
 #pragma once
 
 #include <array>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/http.hpp>
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
@@ -8,7 +12,6 @@
 #include <expected>
 #include <functional>
 #include <map>
-#include <memory>
 #include <mutex>
 #include <optional>
 #include <set>
@@ -16,20 +19,15 @@
 #include <string>
 #include <string_view>
 #include <utility>
-#include <vector>
 
+#include "rehearsal/common.hpp"
 #include "rehearsal/robots/messages.hpp"
 
 namespace adit::robots {
 
-/// Where to post: http://ADDR:PORT.
-struct Endpoint {
-  std::string address;  // numeric, or "localhost"
-  std::uint16_t port = 0;
-};
-
+/// Where to post: "http://ADDR:PORT", or "localhost" as the address.
 /// Or a sentence that says what is wrong with `url`.
-std::expected<Endpoint, std::string> parse_url(std::string_view url);
+std::expected<Address, std::string> parse_url(std::string_view url);
 
 struct HttpReply {
   int status = 0;
@@ -41,10 +39,7 @@ struct HttpReply {
 /// request ends at its deadline, or within 50 ms of `stop`.
 class Connection {
  public:
-  Connection(Endpoint endpoint, std::stop_token stop);
-  ~Connection();
-  Connection(const Connection&) = delete;
-  Connection& operator=(const Connection&) = delete;
+  Connection(Address server, std::stop_token stop) : server_(std::move(server)), stop_(std::move(stop)) {}
 
   /// The reply, whatever its status; or why there is none. A request that a kept connection swallowed is
   /// sent once more on a fresh one, unless `send_once`.
@@ -52,8 +47,20 @@ class Connection {
                                                  bool send_once = false);
 
  private:
-  struct Wire;
-  std::unique_ptr<Wire> wire_;
+  using Body = boost::beast::http::string_body;
+
+  template <class Start>
+  boost::system::error_code await(Start start);
+  void close();
+  boost::system::error_code transfer(boost::beast::http::request<Body>& message,
+                                     boost::beast::http::response_parser<Body>& parser);
+
+  const Address server_;
+  const std::stop_token stop_;
+  boost::asio::io_context context_{1};
+  boost::asio::ip::tcp::socket socket_{context_};
+  boost::beast::flat_buffer buffer_;
+  std::chrono::steady_clock::time_point deadline_;
 };
 
 /// What a client shows its operator of a refusal: the JSON string or {"detail": ...} that the server sent,
@@ -107,8 +114,8 @@ class Tally {
 
 /// Where a team's messages go, and with which token.
 struct Post {
-  Endpoint mapping;
-  Endpoint scoring;  // the same as `mapping` unless a Command Post is spoken to without a gateway
+  Address mapping;
+  Address scoring;  // the same as `mapping` unless a Command Post is spoken to without a gateway
   std::string token;
 };
 
@@ -129,7 +136,7 @@ class Client {
   Encoder encoder_;
   const Style& style_;
   Tally& tally_;
-  Endpoint scoring_;
+  Address scoring_;
   std::stop_token stop_;
   Connection mapping_;
 };

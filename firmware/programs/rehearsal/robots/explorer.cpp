@@ -4,7 +4,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
-#include <utility>
 
 namespace adit::robots {
 namespace {
@@ -14,139 +13,6 @@ constexpr double kCommsEvery = 12;   // metres
 constexpr int kPathNodes = 60;       // that stand at a time
 constexpr double kCandidateFor = 8;  // seconds
 constexpr std::size_t kWayPoints = 400;
-
-}  // namespace
-
-void MarkerScene::change(Marker marker) {
-  const std::pair key{marker.ns, marker.id};
-  if (marker.action == Marker::Delete) {
-    standing_.erase(key);
-  } else {
-    standing_[key] = marker;
-  }
-  changes_.push_back(std::move(marker));
-}
-
-/// A trajectory, as the ICD names them (2.2), and where it ends the robot's own shape.
-void MarkerScene::draw_way(const Vector3& position) {
-  way_.push_back(position);
-  if (way_.size() > kWayPoints) way_.erase(way_.begin());
-  change({.ns = robot_ + "/way",
-          .type = Marker::LineStrip,
-          .size = 0.05,
-          .color = {.r = 0, .g = 1, .b = 0},
-          .points = way_});
-  change({.ns = robot_ + "/shape",
-          .type = Marker::Mesh,
-          .position = position,
-          .size = 1,
-          .color = {.r = 0.8, .g = 0.8, .b = 0.8},
-          .mesh_resource = "package://rehearsal/meshes/robot.dae"});
-}
-
-void MarkerScene::pass(const Vector3& position, double walked, double seconds) {
-  const std::string path = robot_ + "/path";
-  if (walked >= path_nodes_ * kPathEvery) {
-    draw_way(position);
-    change({.ns = path,
-            .id = path_nodes_++,
-            .position = position,
-            .size = 0.2,
-            .color = {.r = 0, .g = 0.75, .b = 1}});
-  }
-  if (path_nodes_ - oldest_node_ > kPathNodes) {
-    Marker oldest = standing_.at({path, oldest_node_++});
-    oldest.action = Marker::Delete;
-    change(std::move(oldest));
-  }
-  if (walked >= comm_nodes_ * kCommsEvery) {
-    change({.ns = robot_ + "/comms",
-            .id = comm_nodes_++,
-            .type = Marker::Cube,
-            .position = position,
-            .size = 0.4,
-            .color = {.r = 1, .g = 0.5, .b = 0}});
-  }
-  while (!candidates_until_.empty() && candidates_until_.begin()->second <= seconds) {
-    Marker settled = standing_.at({robot_ + "/artifact", candidates_until_.begin()->first});
-    settled.action = Marker::Delete;
-    change(std::move(settled));
-    candidates_until_.erase(candidates_until_.begin());
-  }
-}
-
-void MarkerScene::candidate(const std::string& type, const Vector3& position, double seconds) {
-  candidates_until_[candidates_] = seconds + kCandidateFor;
-  change({.ns = robot_ + "/artifact",
-          .id = candidates_++,
-          .type = Marker::Text,
-          .position = position,
-          .size = 0.6,
-          .color = {.r = 1, .g = 0.25, .b = 0.25},
-          .lifetime = 600,
-          .text = type + "?"});
-}
-
-std::vector<Marker> MarkerScene::standing() const {
-  std::vector<Marker> all;
-  all.reserve(standing_.size());
-  for (const auto& [key, marker] : standing_) all.push_back(marker);
-  return all;
-}
-
-std::vector<Marker> MarkerScene::take_changes() {
-  if (++calls_ % 10 == 0) {
-    for (const auto& [key, marker] : standing_) changes_.push_back(marker);
-  }
-  return std::exchange(changes_, {});
-}
-
-void Posted::note(const std::string& robot, Kind kind, const Amount& amount) {
-  const std::scoped_lock lock(mutex_);
-  amounts_[{robot, kind}] = amount;
-}
-
-void Posted::note(const std::string& robot, const std::vector<Marker>& standing) {
-  const std::scoped_lock lock(mutex_);
-  standing_[robot] = standing;
-}
-
-std::string Posted::json() const {
-  const std::scoped_lock lock(mutex_);
-  auto all = nlohmann::json::array();
-  for (const auto& [source, posted] : amounts_) {
-    all.push_back({{"robot", source.first},
-                   {"kind", name_of(source.second)},
-                   {"amount", posted.amount},
-                   {"places", posted.places},
-                   {"newest", posted.newest.time_since_epoch().count()}});
-  }
-  for (const auto& [robot, markers] : standing_) {
-    auto standing = nlohmann::json::array();
-    for (const Marker& marker : markers)
-      standing.push_back({{"ns", marker.ns}, {"id", marker.id}, {"x", marker.position.x}});
-    all.push_back({{"robot", robot}, {"kind", "markers"}, {"standing", std::move(standing)}});
-  }
-  return all.dump();
-}
-
-std::string arrivals_of(const Posted& posted, const Endpoint& control) {
-  constexpr std::chrono::seconds kLongest{5};
-  const auto reply = Connection(control, {})
-                         .exchange({.method = "POST",
-                                    .target = "/posted",
-                                    .fields = {{"Content-Type", "application/json"}},
-                                    .body = posted.json()},
-                                   kLongest);
-  if (!reply) return "--control: " + reply.error() + "\n";
-  const auto answer = nlohmann::json::parse(reply->body, nullptr, false);
-  if (reply->status != 200 || !answer.is_object() || !answer.contains("table") ||
-      !answer["table"].is_string())
-    return "--control: the server is not a control port of adit-rehearsal\n";
-  return answer["table"];
-}
-
-namespace {
 
 using namespace std::chrono_literals;
 using std::chrono::milliseconds;
@@ -180,6 +46,128 @@ double clock_of(std::size_t index, Random& random) {
 
 }  // namespace
 
+void MarkerScene::change(Marker marker) {
+  standing_[{marker.ns, marker.id}] = marker;
+  changes_.push_back(std::move(marker));
+}
+
+void MarkerScene::remove(const std::string& ns, int id) {
+  auto gone = standing_.extract({ns, id});
+  gone.mapped().action = Marker::Delete;
+  changes_.push_back(std::move(gone.mapped()));
+}
+
+/// A trajectory, as the ICD names them (2.2), and where it ends the robot's own shape.
+void MarkerScene::draw_way(const Vector3& position) {
+  way_.push_back(position);
+  if (way_.size() > kWayPoints) way_.erase(way_.begin());
+  change({.ns = robot_ + "/way",
+          .type = Marker::LineStrip,
+          .size = 0.05,
+          .color = {.r = 0, .g = 1, .b = 0},
+          .points = way_});
+  change({.ns = robot_ + "/shape",
+          .type = Marker::Mesh,
+          .position = position,
+          .size = 1,
+          .color = {.r = 0.8, .g = 0.8, .b = 0.8},
+          .mesh_resource = "package://rehearsal/meshes/robot.dae"});
+}
+
+void MarkerScene::pass(const Vector3& position, double walked, double seconds) {
+  const std::string path = robot_ + "/path";
+  if (walked >= path_nodes_ * kPathEvery) {
+    draw_way(position);
+    change({.ns = path,
+            .id = path_nodes_++,
+            .position = position,
+            .size = 0.2,
+            .color = {.r = 0, .g = 0.75, .b = 1}});
+  }
+  if (path_nodes_ - oldest_node_ > kPathNodes) remove(path, oldest_node_++);
+  if (walked >= comm_nodes_ * kCommsEvery) {
+    change({.ns = robot_ + "/comms",
+            .id = comm_nodes_++,
+            .type = Marker::Cube,
+            .position = position,
+            .size = 0.4,
+            .color = {.r = 1, .g = 0.5, .b = 0}});
+  }
+  while (!candidates_until_.empty() && candidates_until_.begin()->second <= seconds) {
+    remove(robot_ + "/artifact", candidates_until_.begin()->first);
+    candidates_until_.erase(candidates_until_.begin());
+  }
+}
+
+void MarkerScene::candidate(const std::string& type, const Vector3& position, double seconds) {
+  candidates_until_[candidates_] = seconds + kCandidateFor;
+  change({.ns = robot_ + "/artifact",
+          .id = candidates_++,
+          .type = Marker::Text,
+          .position = position,
+          .size = 0.6,
+          .color = {.r = 1, .g = 0.25, .b = 0.25},
+          .lifetime = 600,
+          .text = type + "?"});
+}
+
+std::vector<Marker> MarkerScene::standing() const {
+  std::vector<Marker> all;
+  all.reserve(standing_.size());
+  for (const auto& [key, marker] : standing_) all.push_back(marker);
+  return all;
+}
+
+std::vector<Marker> MarkerScene::take_changes() {
+  if (++calls_ % 10 == 0) std::ranges::move(standing(), std::back_inserter(changes_));
+  return std::exchange(changes_, {});
+}
+
+void Posted::note(const std::string& robot, Kind kind, const Amount& amount) {
+  const std::scoped_lock lock(mutex_);
+  amounts_[{robot, kind}] = amount;
+}
+
+void Posted::note(const std::string& robot, const std::vector<Marker>& standing) {
+  const std::scoped_lock lock(mutex_);
+  standing_[robot] = standing;
+}
+
+std::string Posted::json() const {
+  const std::scoped_lock lock(mutex_);
+  auto all = nlohmann::json::array();
+  for (const auto& [source, posted] : amounts_) {
+    all.push_back({{"robot", source.first},
+                   {"kind", name_of(source.second)},
+                   {"amount", posted.amount},
+                   {"places", posted.places},
+                   {"newest", posted.newest.time_since_epoch().count()}});
+  }
+  for (const auto& [robot, markers] : standing_) {
+    auto standing = nlohmann::json::array();
+    for (const Marker& marker : markers)
+      standing.push_back({{"ns", marker.ns}, {"id", marker.id}, {"x", marker.position.x}});
+    all.push_back({{"robot", robot}, {"kind", "markers"}, {"standing", std::move(standing)}});
+  }
+  return all.dump();
+}
+
+std::string arrivals_of(const Posted& posted, const Address& control) {
+  constexpr std::chrono::seconds kLongest{5};
+  const auto reply = Connection(control, {})
+                         .exchange({.method = "POST",
+                                    .target = "/posted",
+                                    .fields = {{"Content-Type", "application/json"}},
+                                    .body = posted.json()},
+                                   kLongest);
+  if (!reply) return "--control: " + reply.error() + "\n";
+  const auto answer = nlohmann::json::parse(reply->body, nullptr, false);
+  if (reply->status != 200 || !answer.is_object() || !answer.contains("table") ||
+      !answer["table"].is_string())
+    return "--control: the server is not a control port of adit-rehearsal\n";
+  return answer["table"];
+}
+
 Explorer::Explorer(const Cave& cave, std::uint64_t seed, std::size_t index, std::string name,
                    const Style& style, const MapOffer& offer, Client& client, OperatorDesk& desk,
                    Posted& posted)
@@ -193,7 +181,6 @@ Explorer::Explorer(const Cave& cave, std::uint64_t seed, std::size_t index, std:
       random_(seed * 7'919 + index),
       robot_(cave, seed, index),
       scene_(name_),
-      offer_(offer),
       maps_(offer, seed * 104'729 + index),
       clock_at_start_(clock_of(index, random_)),
       start_(Clock::now()) {}
@@ -248,8 +235,8 @@ void Explorer::report_sightings(double seconds) {
 
 void Explorer::work(double metres_per_second, const std::stop_token& finish) {
   Every state(index_ % 2 == 0 ? kTick : 2 * kTick, start_);
-  Every grid(offer_.grid_every, start_ + 50ms);
-  Every cloud(offer_.cloud_every, start_ + 150ms);
+  Every grid(maps_.offer().grid_every, start_ + 50ms);
+  Every cloud(maps_.offer().cloud_every, start_ + 150ms);
   Every markers(2000ms, start_ + 250ms);
   Clock::time_point before = start_;
   while (!finish.stop_requested()) {

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "rehearsal/robots/client.hpp"
-#include "rehearsal/robots/map_maker.hpp"
 #include "rehearsal/robots/messages.hpp"
 #include "rehearsal/robots/robot.hpp"
 
@@ -32,6 +31,7 @@ class MarkerScene {
 
  private:
   void change(Marker marker);
+  void remove(const std::string& ns, int id);
   void draw_way(const Vector3& position);
 
   std::string robot_;
@@ -66,7 +66,7 @@ class Posted {
 
 /// Tells the rehearsal Command Post's control port the posted amounts. Returns its table of ages and shares,
 /// or a line with the reason why there is no table.
-std::string arrivals_of(const Posted& posted, const Endpoint& control);
+std::string arrivals_of(const Posted& posted, const Address& control);
 
 /// A robot and the software on it: walks, and posts what it knows at the rates of the field. Poses 5 or 10
 /// times a second, markers every 2 s, and the maps of its offer.
@@ -97,7 +97,6 @@ class Explorer {
   Random random_;
   Robot robot_;
   MarkerScene scene_;
-  MapOffer offer_;
   MapMaker maps_;
   double clock_at_start_;  // what this robot's own clock says, which is nobody else's
   Clock::time_point start_;

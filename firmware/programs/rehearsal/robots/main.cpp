@@ -1,10 +1,11 @@
+// adit-robots: a simulated team.
+
 #include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <csignal>
-#include <cstdint>
 #include <cstdio>
 #include <ctime>
 #include <exception>
@@ -12,6 +13,7 @@
 #include <filesystem>
 #include <fstream>
 #include <mutex>
+#include <span>
 #include <stop_token>
 #include <string>
 #include <thread>
@@ -19,6 +21,9 @@
 #include <vector>
 
 #include "command_line/read.hpp"
+#include "icd/sentence.hpp"
+#include "icd/try.hpp"
+#include "rehearsal/common.hpp"
 #include "rehearsal/robots/cave.hpp"
 #include "rehearsal/robots/client.hpp"
 #include "rehearsal/robots/explorer.hpp"
@@ -28,54 +33,137 @@
 namespace adit::robots {
 namespace {
 
+using Clock = std::chrono::steady_clock;
+using Paths = std::vector<std::filesystem::path>;
+
 /// Standard output, shared by the team's threads: lines that stay, and on a terminal one live line below
 /// them.
 class Console {
  public:
-  explicit Console(bool quiet);
+  explicit Console(bool quiet) : quiet_(quiet) {}
 
   bool is_terminal() const { return terminal_; }
+
   /// A line that stays.
-  void say(const std::string& line);
+  void say(const std::string& line) {
+    if (quiet_) return;
+    const std::scoped_lock lock(mutex_);
+    print(live_.empty() ? line + "\n" : kClearLine + line + "\n" + live_);
+  }
+
   /// The live line on a terminal, else a line that stays.
-  void live(const std::string& line);
+  void live(const std::string& line) {
+    if (quiet_) return;
+    const std::scoped_lock lock(mutex_);
+    print(terminal_ ? kClearLine + line : line + "\n");
+    if (terminal_) live_ = line;
+  }
+
   /// Also where quiet.
-  void finish(const std::string& text);
+  void finish(const std::string& text) {
+    const std::scoped_lock lock(mutex_);
+    print((live_.empty() ? "" : kClearLine) + text);
+    live_.clear();
+  }
 
  private:
+  static constexpr const char* kClearLine = "\r\033[K";
+
   const bool quiet_;
-  const bool terminal_;
+  const bool terminal_ = isatty(STDOUT_FILENO) == 1;
   std::mutex mutex_;  // guards all below, and stdout
   std::string live_;
 };
+
+/// Posts one map file, and again after a 429 or without an answer. Then waits as long as a client that keeps
+/// to one map a second. Returns a line about the answer, or the fault of the file.
+std::expected<std::string, std::string> replay_file(const std::filesystem::path& file, Client& client,
+                                                    const std::stop_token& finish) {
+  constexpr std::chrono::milliseconds kBetween{1100};
+  LoadedMap map = ADIT_TRY(load_map(file));
+  const std::chrono::duration<double> now = std::chrono::system_clock::now().time_since_epoch();
+  std::visit([&](auto& loaded) { loaded.stamp = now.count(); }, map);
+  const Message message = std::visit([](auto& loaded) -> Message { return std::move(loaded); }, map);
+  while (!finish.stop_requested()) {
+    const auto reply = client.send(message);
+    pause_until(Clock::now() + kBetween, finish);
+    if (reply && reply->status != 429)
+      return icd::sentence("replay posts ", file.string(), ": ", reply->status);
+  }
+  return "replay did not post " + file.string();
+}
 
 /// The team at work: a thread for each robot, one for the operator, one that replays map files.
 class Team {
  public:
   /// All but `token` and `maps` outlive the team. `maps`: files that the robot `replay` posts.
-  Team(const Options& options, const std::string& token, std::vector<std::filesystem::path> maps,
-       const Cave& cave, Tally& tally, Posted& posted, Console& console);
-  ~Team();
+  Team(const Options& options, const std::string& token, Paths maps, const Cave& cave, Tally& tally,
+       Posted& posted, Console& console)
+      : options_(options),
+        post_{.mapping = options.post, .scoring = options.scoring, .token = token},
+        maps_(std::move(maps)),
+        cave_(cave),
+        tally_(tally),
+        posted_(posted),
+        console_(console),
+        desk_(post_, options.style.of(0), tally, [&console](const std::string& line) { console.say(line); }) {
+    for (std::size_t index = 0; index < options.robots; ++index) run([this, index] { explore(index); });
+    if (options.robots > 0) run([this] { desk_.work(finish_.get_token(), abort_.get_token()); });
+    run([this] { replay(); });
+  }
+  ~Team() { stop(std::chrono::milliseconds(0)); }
   Team(const Team&) = delete;
   Team& operator=(const Team&) = delete;
-
-  void start();
 
   /// Whether every map file has been posted.
   bool replay_done() const { return replay_done_; }
 
   /// Ends the run: answers on their way are waited for up to `grace`, then given up.
-  void stop(std::chrono::milliseconds grace);
+  void stop(std::chrono::milliseconds grace) {
+    finish_.request_stop();
+    const auto until = Clock::now() + grace;
+    while (working_ > 0 && Clock::now() < until) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    abort_.request_stop();
+    threads_.clear();  // joins
+  }
 
  private:
   template <class Work>
-  void run(Work work);
-  void explore(std::size_t index);
-  void replay();
+  void run(Work work) {
+    ++working_;
+    threads_.emplace_back([this, work = std::move(work)] {
+      try {
+        work();
+      } catch (const std::exception& error) {  // memory, or a socket that cannot even be made
+        tally_.failed(error.what());
+      }
+      --working_;
+    });
+  }
+
+  void explore(std::size_t index) {
+    constexpr double kMetresPerSecond = 2;
+    const std::string name = icd::sentence("r", index + 1);
+    const Style& style = options_.style.of(index);
+    Client client(post_, name, style, tally_, abort_.get_token());
+    Explorer explorer(cave_, options_.seed, index, name, style, options_.offers.of(index), client, desk_,
+                      posted_);
+    explorer.work(kMetresPerSecond * options_.speed, finish_.get_token());
+  }
+
+  void replay() {
+    for (std::size_t i = 0; i < maps_.size(); ++i) {
+      Client client(post_, "replay", options_.style.of(i), tally_, abort_.get_token());
+      const auto said = replay_file(maps_[i], client, finish_.get_token());
+      if (!said) tally_.failed(said.error());
+      console_.say(said ? *said : said.error());
+    }
+    replay_done_ = !finish_.stop_requested();
+  }
 
   const Options& options_;
   const Post post_;
-  const std::vector<std::filesystem::path> maps_;
+  const Paths maps_;
   const Cave& cave_;
   Tally& tally_;
   Posted& posted_;
@@ -86,131 +174,6 @@ class Team {
   std::atomic<bool> replay_done_ = false;
   std::vector<std::jthread> threads_;
 };
-
-/// Posts one map file, and again after a 429 or without an answer. Then waits as long as a client that keeps
-/// to one map a second. Returns a line about the answer, or the fault of the file.
-std::expected<std::string, std::string> replay_file(const std::filesystem::path& file, Client& client,
-                                                    const std::stop_token& finish) {
-  constexpr std::chrono::milliseconds kBetween{1100};
-  auto map = load_map(file);
-  if (!map) return std::unexpected(map.error());
-  const std::chrono::duration<double> now = std::chrono::system_clock::now().time_since_epoch();
-  const Message message = std::visit(
-      [&](auto& loaded) -> Message {
-        loaded.stamp = now.count();
-        return std::move(loaded);
-      },
-      *map);
-  while (!finish.stop_requested()) {
-    const auto reply = client.send(message);
-    pause_until(std::chrono::steady_clock::now() + kBetween, finish);
-    if (reply && reply->status != 429) {
-      return "replay posts " + file.string() + ": " + std::to_string(reply->status);
-    }
-  }
-  return "replay did not post " + file.string();
-}
-
-constexpr double kMetresPerSecond = 2;
-constexpr const char* kClearLine = "\r\033[K";
-
-void print(const std::string& text) {
-  (void)std::fwrite(text.data(), 1, text.size(), stdout);
-  (void)std::fflush(stdout);
-}
-
-Console::Console(bool quiet) : quiet_(quiet), terminal_(isatty(STDOUT_FILENO) == 1) {}
-
-void Console::say(const std::string& line) {
-  if (quiet_) return;
-  const std::scoped_lock lock(mutex_);
-  print(live_.empty() ? line + "\n" : kClearLine + line + "\n" + live_);
-}
-
-void Console::live(const std::string& line) {
-  if (quiet_) return;
-  const std::scoped_lock lock(mutex_);
-  if (terminal_) {
-    live_ = line;
-    print(kClearLine + line);
-  } else {
-    print(line + "\n");
-  }
-}
-
-void Console::finish(const std::string& text) {
-  const std::scoped_lock lock(mutex_);
-  print((live_.empty() ? "" : kClearLine) + text);
-  live_.clear();
-}
-
-Team::Team(const Options& options, const std::string& token, std::vector<std::filesystem::path> maps,
-           const Cave& cave, Tally& tally, Posted& posted, Console& console)
-    : options_(options),
-      post_{.mapping = options.post, .scoring = options.scoring, .token = token},
-      maps_(std::move(maps)),
-      cave_(cave),
-      tally_(tally),
-      posted_(posted),
-      console_(console),
-      desk_(post_, options.style.of(0), tally, [&console](const std::string& line) { console.say(line); }) {}
-
-Team::~Team() {
-  stop(std::chrono::milliseconds(0));
-}
-
-template <class Work>
-void Team::run(Work work) {
-  ++working_;
-  threads_.emplace_back([this, work = std::move(work)] {
-    try {
-      work();
-    } catch (const std::exception& error) {  // memory, or a socket that cannot even be made
-      tally_.failed(error.what());
-    }
-    --working_;
-  });
-}
-
-void Team::start() {
-  for (std::size_t index = 0; index < options_.robots; ++index) run([this, index] { explore(index); });
-  if (options_.robots > 0) run([this] { desk_.work(finish_.get_token(), abort_.get_token()); });
-  run([this] { replay(); });
-}
-
-void Team::explore(std::size_t index) {
-  const std::string name = std::string("r").append(std::to_string(index + 1));
-  const Style& style = options_.style.of(index);
-  Client client(post_, name, style, tally_, abort_.get_token());
-  Explorer explorer(cave_, options_.seed, index, name, style, options_.offers.of(index), client, desk_,
-                    posted_);
-  explorer.work(kMetresPerSecond * options_.speed, finish_.get_token());
-}
-
-void Team::replay() {
-  for (std::size_t i = 0; i < maps_.size(); ++i) {
-    Client client(post_, "replay", options_.style.of(i), tally_, abort_.get_token());
-    if (auto said = replay_file(maps_[i], client, finish_.get_token()); said) {
-      console_.say(*said);
-    } else {
-      tally_.failed(said.error());
-      console_.say(said.error());
-    }
-  }
-  replay_done_ = !finish_.stop_requested();
-}
-
-void Team::stop(std::chrono::milliseconds grace) {
-  finish_.request_stop();
-  const auto until = std::chrono::steady_clock::now() + grace;
-  while (working_ > 0 && std::chrono::steady_clock::now() < until) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
-  abort_.request_stop();
-  threads_.clear();  // joins
-}
-
-using Clock = std::chrono::steady_clock;
 
 constexpr int kGood = 0, kNotAllPosted = 1, kWrongUsage = 2;
 
@@ -225,22 +188,13 @@ bool write_truth(const Cave& cave, const std::filesystem::path& file) {
   return stream.good();
 }
 
-/// SIGINT and SIGTERM, taken in the main thread alone. To be called before any other thread begins.
-sigset_t block_signals() {
-  sigset_t signals;
-  (void)sigemptyset(&signals);
-  for (const int signal : {SIGINT, SIGTERM}) (void)sigaddset(&signals, signal);
-  (void)pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-  return signals;
-}
-
 /// Waits up to 100 ms for one of them.
 bool has_come(const sigset_t& signals) {
   constexpr timespec kWait{.tv_sec = 0, .tv_nsec = 100'000'000};
   return sigtimedwait(&signals, nullptr, &kWait) > 0;
 }
 
-std::vector<Kind> kinds_to_post(const Options& options, const std::vector<std::filesystem::path>& maps) {
+std::vector<Kind> kinds_to_post(const Options& options, const Paths& maps) {
   std::vector<Kind> kinds;
   if (options.robots == 0) {
     for (const auto& map : maps) kinds.push_back(map.extension() == ".pgm" ? Kind::Grid : Kind::Cloud);
@@ -270,17 +224,17 @@ std::chrono::milliseconds watch(const Options& options, const std::vector<Kind>&
     if (now >= next_line) {
       next_line += every;
       const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(now - start).count();
-      console.live(std::to_string(seconds) + " s: " + tally.line());
+      console.live(icd::sentence(seconds, " s: ", tally.line()));
     }
   }
   return std::chrono::milliseconds{0};
 }
 
 int run(const Options& options, const Cave& cave) {
-  const sigset_t signals = block_signals();
-  auto token = read_team_token(options.secrets);
+  const sigset_t signals = block_signals({SIGINT, SIGTERM});
+  const auto token = read_token(std::filesystem::path(options.secrets) / "team.token");
   if (!token) return complain(token.error());
-  std::vector<std::filesystem::path> maps;
+  Paths maps;
   if (!options.maps.empty()) {
     auto found = find_maps(options.maps);
     if (!found) return complain("--maps: " + found.error());
@@ -292,12 +246,11 @@ int run(const Options& options, const Cave& cave) {
   Posted posted;
   Console console(options.quiet);
   Team team(options, *token, maps, cave, tally, posted, console);
-  team.start();
   team.stop(watch(options, kinds, team, tally, console, signals));
   console.finish(tally.summary());
   if (options.control) console.finish(arrivals_of(posted, *options.control));
   for (const Kind kind : kinds) {
-    if (tally.accepted_of(kind) == 0) console.finish("no " + std::string(name_of(kind)) + " was accepted\n");
+    if (tally.accepted_of(kind) == 0) console.finish(icd::sentence("no ", name_of(kind), " was accepted\n"));
   }
   return tally.clean() && all_posted(kinds, tally) ? kGood : kNotAllPosted;
 }
@@ -313,7 +266,6 @@ int main_of(std::span<const char* const> arguments) {
 }
 
 }  // namespace
-
 }  // namespace adit::robots
 
 int main(int argc, char** argv) {

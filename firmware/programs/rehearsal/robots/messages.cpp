@@ -3,14 +3,11 @@
 #include <sodium/utils.h>
 #include <zlib.h>
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <new>
 #include <nlohmann/json.hpp>
-#include <utility>
-
-#include "rehearsal/agreed.hpp"
 
 namespace adit::robots {
 
@@ -18,16 +15,9 @@ Rotation rotation_of(double yaw) {
   return {.x = 0, .y = 0, .z = std::sin(yaw / 2), .w = std::cos(yaw / 2)};
 }
 
-std::uint32_t bytes_of(int datatype) {
-  constexpr std::array<std::uint32_t, 9> kBytes = {0, 1, 1, 2, 2, 4, 4, 4, 8};
-  return kBytes.at(static_cast<std::size_t>(datatype));
-}
-
 Kind kind_of(const Message& message) {
   return static_cast<Kind>(message.index());  // the variant's order is the enumeration's
 }
-static_assert(
-    std::is_same_v<std::variant_alternative_t<static_cast<std::size_t>(Kind::Grid), Message>, Grid>);
 static_assert(
     std::is_same_v<std::variant_alternative_t<static_cast<std::size_t>(Kind::Status), Message>, StatusQuery>);
 
@@ -38,11 +28,10 @@ std::string_view name_of(Kind kind) {
 }
 
 std::expected<TeamStyle, std::string> TeamStyle::parse(std::string_view name) {
-  if (name == "mixed") return TeamStyle();
-  for (std::size_t i = 0; i < kStyles.size(); ++i) {
-    if (kStyles[i].name == name) return TeamStyle(i);
-  }
-  return std::unexpected("unknown style '" + std::string(name) + "'");
+  if (name == "mixed") return TeamStyle{};
+  const auto* const style = std::ranges::find(kStyles, name, &Style::name);
+  if (style == kStyles.end()) return std::unexpected("unknown style '" + std::string(name) + "'");
+  return TeamStyle{.styles = {style, 1}};
 }
 
 std::vector<std::uint8_t> gzip(std::span<const std::uint8_t> bytes) {
@@ -157,12 +146,6 @@ class Body {
 
   Json vector(const Vector3& v) const { return {{"x", number(v.x)}, {"y", number(v.y)}, {"z", number(v.z)}}; }
 
-  Json vectors(const std::vector<Vector3>& all) const {
-    Json array = Json::array();
-    for (const Vector3& one : all) array.push_back(vector(one));
-    return array;
-  }
-
   Json placement(const Placement& placement) const {
     Rotation q = placement.orientation;
     if (style_.ros) q = {2 * q.x, 2 * q.y, 2 * q.z, 2 * q.w};  // as of a client that does not normalise
@@ -234,18 +217,16 @@ class Body {
                    {"a", number(marker.color.a)}}},
                  {"lifetime", marker.lifetime},
                  {"text", marker.text}};
-    if (!marker.points.empty()) json["points"] = vectors(marker.points);
-    if (!marker.mesh_resource.empty()) {
+    for (const Vector3& point : marker.points) json["points"].push_back(vector(point));
+    if (style_.ros || !marker.mesh_resource.empty()) {
       json["mesh_resource"] = marker.mesh_resource;
-      json["mesh_use_embedded_materials"] = true;
+      json["mesh_use_embedded_materials"] = !marker.mesh_resource.empty();
     }
     if (style_.ros) {
       json["lifetime"] = ros_time(marker.lifetime);
       json["frame_locked"] = false;
-      json["points"] = vectors(marker.points);
+      if (marker.points.empty()) json["points"] = Json::array();
       json["colors"] = Json::array();
-      json["mesh_resource"] = marker.mesh_resource;
-      json["mesh_use_embedded_materials"] = !marker.mesh_resource.empty();
     }
     return json;
   }

@@ -11,63 +11,31 @@
 #include <variant>
 #include <vector>
 
+#include "rehearsal/agreed.hpp"
+
 namespace adit::robots {
 
 // The messages of a robot, before a client style gives them bytes. They are not those of the icd room, so
 // that the simulated team cannot share a mistake with the gateway.
 
-/// Metres, in the "darpa" frame.
-struct Vector3 {
-  double x = 0, y = 0, z = 0;
-  friend bool operator==(const Vector3&, const Vector3&) = default;
-};
-
-struct Rotation {
-  double x = 0, y = 0, z = 0, w = 1;
-  friend bool operator==(const Rotation&, const Rotation&) = default;
-};
-
 /// The rotation by `yaw` radians about z.
 Rotation rotation_of(double yaw);
-
-struct Placement {
-  Vector3 position;
-  Rotation orientation;
-  friend bool operator==(const Placement&, const Placement&) = default;
-};
-
-inline constexpr std::uint8_t kUnknown = 255;
 
 /// ICD 6.3.1: cells 0 to 100 or kUnknown, row by row from the lower left.
 struct Grid {
   double stamp = 0;
   double resolution = 0;
   std::uint32_t width = 0, height = 0;
-  Placement origin;
-  std::vector<std::uint8_t> cells;
+  Placement origin = {};
+  std::vector<std::uint8_t> cells = {};
 };
-
-/// ICD 6.3.2. `datatype` is the ICD's number: 1 to 8.
-struct CloudField {
-  std::string name;
-  std::uint32_t offset = 0;
-  int datatype = 0;
-  std::uint32_t count = 1;
-  friend bool operator==(const CloudField&, const CloudField&) = default;
-};
-
-inline constexpr int kFloat32 = 7;
-inline constexpr int kFloat64 = 8;
-
-/// Bytes of one value of the ICD's datatype 1 to 8.
-std::uint32_t bytes_of(int datatype);
 
 struct Cloud {
   double stamp = 0;
-  std::optional<Placement> origin;
-  std::vector<CloudField> fields;
+  std::optional<Placement> origin = {};
+  std::vector<CloudField> fields = {};
   std::uint32_t point_step = 0;
-  std::vector<std::uint8_t> data;  // little endian
+  std::vector<std::uint8_t> data = {};  // little endian
 };
 
 /// One robot's pose: ICD 6.5 with a single entry, as teams send it.
@@ -151,18 +119,12 @@ inline constexpr std::array kStyles = {
 };
 
 /// What a team speaks: one style, or all in turn (`mixed`).
-class TeamStyle {
- public:
-  /// Mixed.
-  TeamStyle() = default;
+struct TeamStyle {
+  std::span<const Style> styles = kStyles;
 
   static std::expected<TeamStyle, std::string> parse(std::string_view name);
 
-  const Style& of(std::size_t robot) const { return kStyles[one_.value_or(robot % kStyles.size())]; }
-
- private:
-  explicit TeamStyle(std::size_t one) : one_(one) {}
-  std::optional<std::size_t> one_;  // index in kStyles
+  const Style& of(std::size_t robot) const { return styles[robot % styles.size()]; }
 };
 
 /// One gzip member (RFC 1952).

@@ -1,29 +1,11 @@
 #include "rehearsal/robots/options.hpp"
 
-#include <algorithm>
-
 #include "command_line/program.hpp"
-#include "rehearsal/robots/maps/map_file.hpp"
 
 namespace adit::robots {
 namespace {
 
 using command_line::number;
-using command_line::take;
-using command_line::Wrong;
-
-template <auto Parse, class Into>
-Wrong take_parsed(Into& into, const std::string& text) {
-  auto parsed = Parse(text);
-  if (!parsed) return parsed.error();
-  into = *std::move(parsed);
-  return std::nullopt;
-}
-
-template <auto Parse, class Into>
-command_line::Take parsed(Into& into) {
-  return take<take_parsed<Parse, Into>>(into);
-}
 
 std::expected<Options, std::string> complete(Options options) {
   if (options.help || options.version) return options;
@@ -50,32 +32,32 @@ command_line::Program command_line_of(Options& options) {
           "Simulated team of robots that explores a generated cave and posts the messages of real teams.",
       .rows =
           {{"--post", "URL", "address to post to: Adit, as http://ADDR:PORT",
-            parsed<parse_url>(options.post)},
+            parsed_value<parse_url>(options.post)},
            {"--scoring", "URL", "another address for reports and status, to use a Command Post without Adit",
-            parsed<parse_url>(options.scoring)},
+            parsed_value<parse_url>(options.scoring)},
            {"--control", "URL",
             "control port of adit-rehearsal: send it the amounts posted, and print the age of the maps at "
             "arrival",
-            parsed<parse_url>(options.control)},
+            parsed_value<parse_url>(options.control)},
            {"--secrets", "DIR", "directory of the team's token: team.token", &options.secrets},
            {"--robots", "N", "number of robots, 0 to 50 (3)", number<0, 50>(options.robots)},
            {"--style", "STYLE",
             "cbor, cbor-plain, cbor-body-gzip, json-base64, json-array, ros, browser or mixed: format of the "
             "messages; mixed: one format after the other, robot by robot (mixed)",
-            parsed<TeamStyle::parse>(options.style)},
+            parsed_value<TeamStyle::parse>(options.style)},
            {"--grids", "FORMS",
             "whole, drifting (whole, with an origin that is off by millimetres), rolling (10 m around the "
             "robot), tiles, none: form of the grids; of several, separated by commas, each robot takes the "
             "next "
             "(whole)",
-            parsed<parse_grid_forms>(options.offers.grids)},
+            parsed_value<parse_grid_forms>(options.offers.grids)},
            {"--grid-hz", "HZ", "grids per second from each robot (1)",
             number<0.01, kMostHz>(options.offers.grid_hz)},
            {"--grid-mb", "MB", "size in MB of a grid of the whole cave, reached with smaller cells (0.15)",
             number<0.0, kMostMegabytes>(options.offers.grid_mb)},
            {"--clouds", "FORMS",
             "differential, whole, none: form of the clouds; several as for --grids (differential)",
-            parsed<parse_cloud_forms>(options.offers.clouds)},
+            parsed_value<parse_cloud_forms>(options.offers.clouds)},
            {"--cloud-hz", "HZ", "clouds per second from each robot (1, 2 and 0.5 in turn)",
             number<0.01, kMostHz>(options.offers.cloud_hz)},
            {"--cloud-mb", "MB",
@@ -106,17 +88,6 @@ command_line::Program command_line_of(Options& options) {
 std::expected<Options, std::string> parse_options(std::span<const char* const> arguments) {
   auto options = command_line::read(command_line_of, arguments);
   return options ? complete(*std::move(options)) : options;
-}
-
-std::expected<std::string, std::string> read_team_token(const std::filesystem::path& secrets) {
-  const std::filesystem::path file = secrets / "team.token";
-  auto token = read_file(file);
-  if (!token) return std::unexpected(file.string() + ": " + token.error());
-  while (!token->empty() && (token->back() == '\n' || token->back() == '\r')) token->pop_back();
-  const bool visible = std::ranges::all_of(*token, [](char c) { return c > ' ' && c <= '~'; });
-  if (token->empty() || !visible)
-    return std::unexpected(file.string() + ": expected one line of visible characters");
-  return token;
 }
 
 }  // namespace adit::robots

@@ -3,22 +3,21 @@
 #include <chrono>
 #include <cstdint>
 #include <expected>
-#include <filesystem>
 #include <optional>
 #include <string>
 
 #include "command_line/read.hpp"
-#include "rehearsal/robots/client.hpp"
-#include "rehearsal/robots/map_maker.hpp"
+#include "rehearsal/common.hpp"
 #include "rehearsal/robots/messages.hpp"
+#include "rehearsal/robots/robot.hpp"
 
 namespace adit::robots {
 
 /// The command line of adit-robots.
 struct Options {
-  Endpoint post;
-  Endpoint scoring;  // the same as `post` unless it is given
-  std::optional<Endpoint> control;
+  Address post;
+  Address scoring;  // the same as `post` unless it is given
+  std::optional<Address> control;
   std::string secrets;
   std::size_t robots = 3;
   TeamStyle style;
@@ -35,8 +34,5 @@ struct Options {
 
 /// Or a sentence that names the argument.
 [[gnu::cold]] std::expected<Options, std::string> parse_options(std::span<const char* const> arguments);
-
-/// What DIR/team.token holds, without the line's end.
-std::expected<std::string, std::string> read_team_token(const std::filesystem::path& secrets);
 
 }  // namespace adit::robots

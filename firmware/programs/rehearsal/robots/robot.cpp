@@ -1,6 +1,5 @@
 #include "rehearsal/robots/robot.hpp"
 
-#include <algorithm>
 #include <array>
 #include <bit>
 #include <cassert>
@@ -10,7 +9,11 @@
 #include <numbers>
 #include <utility>
 
+#include "icd/sentence.hpp"
+#include "icd/text.hpp"
+
 namespace adit::robots {
+
 namespace {
 
 constexpr double kRange = 12;  // metres
@@ -27,6 +30,101 @@ std::uint8_t surer(std::uint8_t value, bool rock) {
   return static_cast<std::uint8_t>(std::clamp(before + (rock ? step : -step), 0, 100));
 }
 
+constexpr std::array<Cell, 8> kSteps = {Cell{1, 0}, Cell{0, 1},  Cell{-1, 0},  Cell{0, -1},
+                                        Cell{1, 1}, Cell{-1, 1}, Cell{-1, -1}, Cell{1, -1}};
+
+/// Breadth first: the cells in order of their distance, and from where each was reached.
+struct Reach {
+  std::vector<Cell> cells;
+  Raster<int> steps;    // from the start; -1 where not reached
+  Raster<int> reached;  // index in kSteps of the step that led there
+};
+
+Reach reach_from(const RobotMap& map, Cell start) {
+  Reach reach{.cells = {start}, .steps = {map.lattice(), -1}, .reached = {map.lattice(), 0}};
+  reach.steps[start] = 0;
+  for (std::size_t next = 0; next < reach.cells.size(); ++next) {
+    const Cell cell = reach.cells[next];
+    // Rock that was seen later may surround the robot; then it leaves over any free cell.
+    const bool squeezed = !is_walkable(map, cell);
+    for (std::size_t step = 0; step < kSteps.size(); ++step) {
+      const Cell beside{cell.x + kSteps[step].x, cell.y + kSteps[step].y};
+      if (!map.lattice().contains(beside) || reach.steps[beside] >= 0) continue;
+      if (!is_walkable(map, beside) && !(squeezed && map.is_free(beside))) continue;
+      reach.steps[beside] = reach.steps[cell] + 1;
+      reach.reached[beside] = static_cast<int>(step);
+      reach.cells.push_back(beside);
+    }
+  }
+  return reach;
+}
+
+/// Metres to walk, and up to kDetour more for a place that lies the wrong way.
+double cost(const Lattice& lattice, Cell start, Cell goal, int steps, double heading) {
+  constexpr double kDetour = 12;
+  const double direction = std::atan2(goal.y - start.y, goal.x - start.x);
+  return steps * lattice.resolution + kDetour * (1 - std::cos(direction - heading)) / 2;
+}
+
+constexpr int kUint32 = 6;  // ICD 6.3.2
+
+using Seconds = std::chrono::duration<double>;
+
+constexpr double kMegabyte = 1e6;
+constexpr std::array<double, 3> kCloudEvery = {1, 0.5, 2};  // seconds, of one robot after the other
+
+constexpr std::array<std::pair<std::string_view, GridForm>, 5> kGridForms = {
+    {{"whole", GridForm::Whole},
+     {"drifting", GridForm::Drifting},
+     {"rolling", GridForm::Rolling},
+     {"tiles", GridForm::Tiles},
+     {"none", GridForm::None}}};
+constexpr std::array<std::pair<std::string_view, CloudForm>, 3> kCloudForms = {
+    {{"differential", CloudForm::Differential}, {"whole", CloudForm::Whole}, {"none", CloudForm::None}}};
+
+template <class Form, std::size_t N>
+std::expected<std::vector<Form>, std::string> parse_forms(
+    std::string_view text, const std::array<std::pair<std::string_view, Form>, N>& names) {
+  std::vector<Form> forms;
+  for (std::string_view rest = text; forms.empty() || !rest.empty();) {
+    const auto* const known =
+        std::ranges::find(names, icd::cut(rest, ','), &std::pair<std::string_view, Form>::first);
+    if (known == names.end()) {
+      const std::string all = icd::listed(names, &std::pair<std::string_view, Form>::first);
+      return std::unexpected(icd::sentence("expected ", all, ", got '", text, "'"));
+    }
+    forms.push_back(known->second);
+  }
+  return forms;
+}
+
+constexpr std::size_t kNewPoints = 50;  // at least, in each whole cloud: so that each is news
+
+/// So many cells to each side of one that a grid of the whole cave has about `bytes`.
+std::uint32_t finer_by(const Lattice& lattice, std::size_t bytes) {
+  const double ratio = static_cast<double>(bytes) / static_cast<double>(lattice.size());
+  return static_cast<std::uint32_t>(std::max(1.0, std::round(std::sqrt(ratio))));
+}
+
+/// The same grid with `times` x `times` cells for each.
+Grid finer(const Grid& grid, std::uint32_t times) {
+  Grid fine = grid;
+  fine.resolution = grid.resolution / times;
+  fine.width = grid.width * times;
+  fine.height = grid.height * times;
+  fine.cells.resize(std::size_t{fine.width} * fine.height);
+  for (std::size_t y = 0; y < fine.height; ++y) {
+    const std::uint8_t* const row = &grid.cells[y / times * grid.width];
+    for (std::size_t x = 0; x < fine.width; ++x) fine.cells[y * fine.width + x] = row[x / times];
+  }
+  return fine;
+}
+
+/// How many cells are as long as so many metres.
+int cells_of(double metres, const Lattice& lattice) {
+  return static_cast<int>(std::lround(metres / lattice.resolution));
+}
+
 }  // namespace
 
 RobotMap::RobotMap(const Lattice& lattice)
@@ -38,9 +136,8 @@ void RobotMap::include(Cell cell) {
 }
 
 void RobotMap::see_point(double x, double y, double z, double intensity, Random& random) {
-  points_.push_back(static_cast<float>(x + random.noise(kPointNoise)));
-  points_.push_back(static_cast<float>(y + random.noise(kPointNoise)));
-  points_.push_back(static_cast<float>(z + random.noise(kPointNoise)));
+  for (const double metres : {x, y, z})
+    points_.push_back(static_cast<float>(metres + random.noise(kPointNoise)));
   points_.push_back(static_cast<float>(intensity));
 }
 
@@ -127,55 +224,11 @@ Cloud RobotMap::take_new_points(double stamp) {
   return cloud;
 }
 
-namespace {
-
-constexpr std::array<Cell, 8> kSteps = {Cell{1, 0}, Cell{0, 1},  Cell{-1, 0},  Cell{0, -1},
-                                        Cell{1, 1}, Cell{-1, 1}, Cell{-1, -1}, Cell{1, -1}};
-
-/// Breadth first: the cells in order of their distance, and from where each was reached.
-struct Reach {
-  std::vector<Cell> cells;
-  Raster<int> steps;    // from the start; -1 where not reached
-  Raster<int> reached;  // index in kSteps of the step that led there
-};
-
-Reach reach_from(const RobotMap& map, Cell start) {
-  Reach reach{.cells = {start}, .steps = {map.lattice(), -1}, .reached = {map.lattice(), 0}};
-  reach.steps[start] = 0;
-  for (std::size_t next = 0; next < reach.cells.size(); ++next) {
-    const Cell cell = reach.cells[next];
-    // Rock that was seen later may surround the robot; then it leaves over any free cell.
-    const bool squeezed = !is_walkable(map, cell);
-    for (std::size_t step = 0; step < kSteps.size(); ++step) {
-      const Cell beside{cell.x + kSteps[step].x, cell.y + kSteps[step].y};
-      if (!map.lattice().contains(beside) || reach.steps[beside] >= 0) continue;
-      if (!is_walkable(map, beside) && !(squeezed && map.is_free(beside))) continue;
-      reach.steps[beside] = reach.steps[cell] + 1;
-      reach.reached[beside] = static_cast<int>(step);
-      reach.cells.push_back(beside);
-    }
-  }
-  return reach;
-}
-
-/// Metres to walk, and up to kDetour more for a place that lies the wrong way.
-double cost(const Lattice& lattice, Cell start, Cell goal, int steps, double heading) {
-  constexpr double kDetour = 12;
-  const double direction = std::atan2(goal.y - start.y, goal.x - start.x);
-  return steps * lattice.resolution + kDetour * (1 - std::cos(direction - heading)) / 2;
-}
-
-}  // namespace
-
 bool is_walkable(const RobotMap& map, Cell cell) {
-  if (!map.is_free(cell)) return false;
-  for (int dy = -1; dy <= 1; ++dy) {
-    for (int dx = -1; dx <= 1; ++dx) {
-      const Cell beside{cell.x + dx, cell.y + dy};
-      if (!map.lattice().contains(beside) || map.is_rock(beside)) return false;
-    }
-  }
-  return true;
+  return map.is_free(cell) && std::ranges::none_of(kSteps, [&](Cell step) {
+           const Cell beside{cell.x + step.x, cell.y + step.y};
+           return !map.lattice().contains(beside) || map.is_rock(beside);
+         });
 }
 
 bool is_frontier(const RobotMap& map, Cell cell) {
@@ -272,6 +325,114 @@ void Robot::notice() {
 
 std::vector<std::size_t> Robot::take_sightings() {
   return std::exchange(sightings_, {});
+}
+
+void date(Grid& grid, Moment posted) {
+  if (grid.width < kDateFollows.size() + kDateDigits) return;
+  auto cell = std::ranges::copy(kDateFollows, grid.cells.begin()).out + kDateDigits;
+  std::int64_t rest = posted.time_since_epoch().count();
+  for (std::size_t i = 0; i < kDateDigits; ++i, rest /= kDateBase)
+    *--cell = static_cast<std::uint8_t>(rest % kDateBase);
+}
+
+void date(Cloud& cloud, Moment posted) {
+  const std::uint32_t before = cloud.point_step;
+  const auto date = static_cast<std::uint32_t>(posted.time_since_epoch().count());
+  cloud.fields.push_back({"posted_ms", before, kUint32, 1});
+  cloud.point_step += sizeof date;
+  std::vector<std::uint8_t> dated(cloud.data.size() / before * cloud.point_step);
+  for (std::size_t from = 0, to = 0; to < dated.size(); from += before, to += cloud.point_step) {
+    std::memcpy(&dated[to], &cloud.data[from], before);
+    std::memcpy(&dated[to + before], &date, sizeof date);
+  }
+  cloud.data = std::move(dated);
+}
+
+MapOffer MapOffers::of(std::size_t robot) const {
+  return {.grids = grids[robot % grids.size()],
+          .clouds = clouds[robot % clouds.size()],
+          .grid_every = Seconds(1 / grid_hz.value_or(1)),
+          .cloud_every = Seconds(cloud_hz ? 1 / *cloud_hz : kCloudEvery[robot % kCloudEvery.size()]),
+          .grid_bytes = static_cast<std::size_t>(grid_mb * kMegabyte),
+          .cloud_bytes = static_cast<std::size_t>(cloud_mb * kMegabyte)};
+}
+
+std::expected<std::vector<GridForm>, std::string> parse_grid_forms(std::string_view text) {
+  return parse_forms(text, kGridForms);
+}
+
+std::expected<std::vector<CloudForm>, std::string> parse_cloud_forms(std::string_view text) {
+  return parse_forms(text, kCloudForms);
+}
+
+Grid MapMaker::window(const RobotMap& map, const Vector3& here, double stamp) const {
+  const int side = cells_of(kWindow, map.lattice());
+  const Cell at = map.lattice().cell_at(here.x, here.y), low{at.x - side / 2, at.y - side / 2};
+  return map.part(low, {low.x + side - 1, low.y + side - 1}, stamp);
+}
+
+Grid MapMaker::next_tile(const RobotMap& map, double stamp) {
+  const int side = cells_of(kTile, map.lattice());
+  const Cell first{map.low().x / side, map.low().y / side}, last{map.high().x / side, map.high().y / side};
+  const int columns = last.x - first.x + 1, rows = last.y - first.y + 1;
+  const int turn = tile_++ % (columns * rows);
+  const Cell low{(first.x + turn % columns) * side, (first.y + turn / columns) * side};
+  return map.part(low, {low.x + side - 1, low.y + side - 1}, stamp);
+}
+
+/// Each of the next frames is another one of eight.
+void MapMaker::move_frame(Grid& grid) {
+  const int frame = frame_++;
+  const auto part = [frame](int bit) { return (frame & bit) == 0 ? 0.0 : 1.0; };
+  grid.origin.position.x += kDrift * part(1);
+  grid.origin.position.y += kDrift * part(2);
+  grid.origin.position.z += kRise * part(4);
+  grid.origin.orientation = rotation_of(kYaw * part(1));
+}
+
+std::optional<Grid> MapMaker::grid(const RobotMap& map, const Vector3& here, const MapTime& time) {
+  if (offer_.grids == GridForm::None) return std::nullopt;
+  Grid grid = offer_.grids == GridForm::Rolling ? window(map, here, time.stamp)
+              : offer_.grids == GridForm::Tiles ? next_tile(map, time.stamp)
+                                                : map.grid(time.stamp);
+  if (const std::uint32_t times = finer_by(map.lattice(), offer_.grid_bytes); times > 1)
+    grid = finer(grid, times);
+  if (offer_.grids == GridForm::Drifting) move_frame(grid);
+  date(grid, time.posted);
+  cells_.add(grid.resolution, grid.origin.position.x, grid.origin.position.y, grid.width, grid.cells);
+  return grid;
+}
+
+/// Adds points about the robot, as a denser lidar would measure them, until there are so many bytes.
+void MapMaker::fill(Cloud& cloud, std::size_t bytes, const Vector3& here) {
+  constexpr double range = 12, height = 3;  // metres
+  while (cloud.data.size() < bytes) {
+    const double angle = random_.between(0, 2 * std::numbers::pi), far = random_.between(1, range);
+    const std::array<float, 4> point = {static_cast<float>(here.x + far * std::cos(angle)),
+                                        static_cast<float>(here.y + far * std::sin(angle)),
+                                        static_cast<float>(here.z + random_.between(0, height)),
+                                        static_cast<float>(random_.below(100))};
+    const std::size_t at = cloud.data.size();
+    cloud.data.resize(at + sizeof point);
+    std::memcpy(&cloud.data[at], point.data(), sizeof point);
+  }
+}
+
+std::optional<Cloud> MapMaker::cloud(RobotMap& map, const Vector3& here, const MapTime& time) {
+  if (offer_.clouds == CloudForm::None) return std::nullopt;
+  Cloud news = map.take_new_points(time.stamp);
+  const bool whole = offer_.clouds == CloudForm::Whole;
+  const std::size_t wanted = offer_.cloud_bytes / (news.point_step + sizeof(std::uint32_t)) * news.point_step;
+  const bool is_first = all_.data.empty();
+  fill(news, whole && !is_first ? kNewPoints * news.point_step : wanted, here);
+  if (news.data.empty()) return std::nullopt;
+  date(news, time.posted);
+  points_ += news.data.size() / news.point_step;
+  places_.add(news.fields, news.point_step, news.data);
+  if (!whole) return news;
+  news.data.insert(news.data.begin(), all_.data.begin(), all_.data.end());
+  all_ = std::move(news);
+  return all_;
 }
 
 }  // namespace adit::robots

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <expected>
 #include <filesystem>
 #include <string>
@@ -11,9 +10,6 @@
 #include "rehearsal/robots/messages.hpp"
 
 namespace adit::robots {
-
-/// A file's whole text, up to 256 MiB.
-std::expected<std::string, std::string> read_file(const std::filesystem::path& file);
 
 /// A Point Cloud Library file, version 0.7, `DATA ascii` or `DATA binary`. Its VIEWPOINT becomes the cloud's
 /// origin, as pcl_viewer takes it, unless it is the identity. Points that are NaN are left out.

@@ -41,9 +41,8 @@ std::vector<std::string> values_of(const Fields& fields, std::size_t step, const
     std::string values;
     for (const auto& field : fields) {
       if (std::ranges::find(but, field.name) != but.end()) continue;
-      const auto datatype = static_cast<std::uint32_t>(field.datatype);
-      values +=
-          data.substr(at + field.offset, std::size_t{rehearsal::size_of_datatype(datatype)} * field.count);
+      const std::size_t size = size_of_datatype(static_cast<int>(field.datatype));
+      values += data.substr(at + field.offset, size * field.count);
     }
     points.push_back(std::move(values));
   }

@@ -47,7 +47,7 @@ icd::MapUpdate numbered(const icd::PointCloud2& form, const Places& places) {
 }
 
 /// The point in "darpa" as a float32 receiver computes it: the quaternion's matrix as in Eigen.
-std::array<float, 3> in_float32(const rehearsal::Pose& origin, const std::array<float, 3>& p) {
+std::array<float, 3> in_float32(const Placement& origin, const std::array<float, 3>& p) {
   const auto narrow = [](double value) { return static_cast<float>(value); };
   const float x = narrow(origin.orientation.x), y = narrow(origin.orientation.y),
               z = narrow(origin.orientation.z), w = narrow(origin.orientation.w);
@@ -68,7 +68,7 @@ std::optional<double> largest_error(const icd::MapUpdate& map, double unit) {
   const auto& before = std::get<icd::PointCloud2>(map.msg);
   const ReadBack after = read_back(pack(map, {.unit = unit}));
   const icd::Placement placed{before.origin.value_or(icd::Pose{})};
-  const rehearsal::Pose origin = after.cloud.origin.value_or(rehearsal::Pose{});
+  const Placement origin = after.cloud.origin.value_or(Placement{});
   if (after.cloud.fields.front().datatype != 7 ||
       (before.origin && origin.position.x == before.origin->position.x) || !after.cloud.origin)
     return std::nullopt;

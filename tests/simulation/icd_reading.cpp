@@ -4,7 +4,6 @@
 
 #include "rehearsal/command_post/document.hpp"
 #include "rehearsal/command_post/endpoint.hpp"
-#include "rehearsal/command_post/fields.hpp"
 #include "rehearsal/command_post/messages.hpp"
 
 namespace adit::simulation {
@@ -35,11 +34,9 @@ void classify_report(const std::string& body, Findings& findings) {
   if (document->repeated) findings.breaks("'" + *document->repeated + "' is given twice");
   const rehearsal::Field report(document->value, "", findings);
   rehearsal::read_point(report);
-  const auto type = report.member("type");
-  const auto text = type ? type->text() : std::nullopt;
+  const auto text = report.text("type");
   if (text && !rehearsal::is_artifact_type(*text)) findings.breaks("type: none of the ten");
-  const auto name = report.optional_member("name");
-  const auto robot = name ? name->text() : std::nullopt;
+  const auto robot = report.optional_member("name").and_then(&rehearsal::Field::to_text);
   if (robot && !rehearsal::is_robot_name(*robot)) findings.breaks("name: no robot's");
 }
 

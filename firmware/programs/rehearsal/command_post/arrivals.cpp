@@ -10,18 +10,17 @@
 #include <set>
 #include <span>
 #include <string_view>
-#include <utility>
-#include <vector>
+
+#include "icd/sentence.hpp"
+#include "rehearsal/common.hpp"
 
 namespace adit::rehearsal {
 namespace {
 
 using Milliseconds = std::chrono::milliseconds;
 
-constexpr std::string_view kDateFollows = "\x0d\x57\x2a\x3d\x63";  // cells of 13, 87, 42, 61, 99
-constexpr std::size_t kDigits = 5;
-constexpr std::int64_t kBase = 101, kModulus = kBase * kBase * kBase * kBase * kBase;
-constexpr std::uint32_t kUint32 = 6;  // ICD 6.3.2
+constexpr std::int64_t kModulus = kDateBase * kDateBase * kDateBase * kDateBase * kDateBase;
+constexpr int kUint32 = 6;  // ICD 6.3.2
 
 /// When a map's data was posted, as adit-robots writes it into its maps (README.md, 'How old').
 struct Dates {
@@ -43,10 +42,10 @@ std::optional<Dates> dates_of_grid(std::string_view cells, Moment now) {
   std::optional<Dates> dates;
   for (std::size_t at = cells.find(kDateFollows); at != std::string_view::npos;
        at = cells.find(kDateFollows, at + 1)) {
-    const std::string_view digits = cells.substr(at + kDateFollows.size(), kDigits);
-    if (digits.size() < kDigits) break;
+    const std::string_view digits = cells.substr(at + kDateFollows.size(), kDateDigits);
+    if (digits.size() < kDateDigits) break;
     std::int64_t value = 0;
-    for (const char digit : digits) value = value * kBase + static_cast<unsigned char>(digit);
+    for (const char digit : digits) value = value * kDateBase + static_cast<unsigned char>(digit);
     const Moment posted = nearest(value, kModulus, now);
     if (!dates || posted > dates->newest) dates = {.newest = posted, .points = {}};
   }
@@ -95,101 +94,11 @@ constexpr int kDelete = 2, kDeleteAll = 3;
 constexpr std::size_t kMostMarkers = 100'000, kMostRobots = 1000, kMostDifferences = 20;
 constexpr double kSamePlace = 1e-3;  // metres: some robots post float32
 
-}  // namespace
-
-void MarkerDisplay::show(const std::vector<MarkerChange>& changes, Findings& findings) {
-  if (changes.empty()) return;
-  const std::lock_guard lock(mutex_);
-  for (const MarkerChange& change : changes) {
-    const Key key{change.ns, change.id};
-    if (change.action == kDeleteAll) standing_.clear();
-    if (change.action == kDelete) standing_.erase(key);
-    if (change.action == 0 && (standing_.size() < kMostMarkers || standing_.contains(key)))
-      standing_[key] = change.x;
-  }
-  for (std::size_t id = changes.size(); id < before_; ++id) {
-    if (standing_.erase({"", static_cast<std::int64_t>(id)}) == 0) continue;
-    findings.tells("markers: the organiser's display deletes id " + std::to_string(id) +
-                   " of an empty ns because this message has fewer markers than the previous one");
-  }
-  before_ = changes.size();
-}
-
-std::expected<void, std::string> MarkerDisplay::told(const Json& posted) {
-  Findings findings;
-  const auto all = Field(posted, "", findings).elements();
-  const std::lock_guard lock(mutex_);
-  for (const Field& one : all.value_or(std::vector<Field>{})) {
-    const auto standing = one.optional_member("standing");
-    if (!standing) continue;
-    const auto name = one.text("robot");
-    const auto markers = standing->elements();
-    if (!name || !markers || (posted_.size() >= kMostRobots && !posted_.contains(*name))) break;
-    Places places;
-    for (const Field& marker : *markers) {
-      const auto ns = marker.text("ns");
-      const auto id = marker.integer("id", INT32_MIN, INT32_MAX);
-      const auto x = marker.number("x");
-      if (ns && id && x && places.size() < kMostMarkers) places[{*ns, *id}] = *x;
-    }
-    posted_[*name] = std::move(places);
-  }
-  if (findings.all().empty()) return {};
-  return std::unexpected(findings.all().front().sentence);
-}
-
-/// Between what stands and what should.
-std::vector<std::string> MarkerDisplay::differences() const {
-  std::vector<std::string> all;
-  std::set<std::string> told;  // namespaces of which some robot has told
-  Places should;
-  for (const auto& [robot, places] : posted_) {
-    for (const auto& [key, x] : places) told.insert(key.first);
-    should.insert(places.begin(), places.end());
-  }
-  const auto text = [](const Key& key) {
-    return "marker " + std::to_string(key.second) + " of " + key.first;
-  };
-  for (const auto& [key, x] : should) {
-    const auto found = standing_.find(key);
-    if (found == standing_.end()) {
-      all.push_back(text(key) + " is missing");
-    } else if (std::abs(found->second - x) > kSamePlace) {
-      all.push_back(text(key) + " is at x " + std::to_string(found->second) + ", not " + std::to_string(x));
-    }
-  }
-  for (const auto& [key, x] : standing_) {
-    if (told.contains(key.first) && !should.contains(key)) all.push_back(text(key) + " was deleted");
-  }
-  return all;
-}
-
-OrderedJson MarkerDisplay::json() const {
-  const std::lock_guard lock(mutex_);
-  std::size_t should = 0;
-  for (const auto& [robot, places] : posted_) should += places.size();
-  std::vector<std::string> first = differences();
-  const std::size_t count = first.size();
-  first.resize(std::min(count, kMostDifferences));
-  return {
-      {"here", standing_.size()}, {"posted", should}, {"difference_count", count}, {"differences", first}};
-}
-
-std::string MarkerDisplay::text() const {
-  const OrderedJson all = json();
-  if (all["posted"] == 0) return "";
-  std::string lines = "markers: " + all["here"].dump() + " displayed, the robots have " +
-                      all["posted"].dump() + "; " + all["difference_count"].dump() + " differ\n";
-  for (const OrderedJson& sentence : all["differences"]) lines += "  " + sentence.dump() + "\n";
-  return lines;
-}
-
-namespace {
-
 constexpr std::size_t kMostSources = 200;
 constexpr std::size_t kMostDates = 100'000;  // of one robot's points
 constexpr Milliseconds kTick{10};            // by which ages are told apart
 constexpr Milliseconds kOldest{3'600'000};
+constexpr std::size_t kColumn = 8;  // characters
 
 double share_of(std::uint64_t part, std::uint64_t all) {
   return all == 0 ? 1 : static_cast<double>(part) / static_cast<double>(all);
@@ -205,12 +114,6 @@ std::string written(const OrderedJson& value, int digits) {
   std::array<char, 32> text{};
   (void)std::snprintf(text.data(), text.size(), "%.*f", digits, value.get<double>());
   return text.data();
-}
-
-/// Aligned right in its column.
-std::string right(const std::string& text) {
-  constexpr std::size_t width = 8;
-  return std::string(width - std::min(width, text.size()), ' ') + text;
 }
 
 std::string percent(const OrderedJson& share) {
@@ -257,32 +160,94 @@ void Arrivals::note(const MapMessage& map, Moment now) {
   }
   const std::span data(reinterpret_cast<const std::uint8_t*>(map.data.data()), map.data.size());
   if (const auto* const cloud = std::get_if<Cloud>(&map.msg)) {
-    const Point from = cloud->origin.value_or(Pose{}).position;
+    const Vector3 from = cloud->origin.value_or(Placement{}).position;
     return here->places.add(cloud->fields, cloud->point_step, data, {from.x, from.y, from.z});
   }
-  const Point& corner = grid->origin.position;
+  const Vector3& corner = grid->origin.position;
   here->cells.add(grid->resolution, corner.x, corner.y, grid->width, data);
+}
+
+void Arrivals::note(const std::vector<MarkerChange>& changes, Findings& findings) {
+  if (changes.empty()) return;
+  const std::lock_guard lock(mutex_);
+  for (const MarkerChange& change : changes) {
+    const Key key{change.ns, change.id};
+    if (change.action == kDeleteAll) standing_.clear();
+    if (change.action == kDelete) standing_.erase(key);
+    if (change.action == 0 && (standing_.size() < kMostMarkers || standing_.contains(key)))
+      standing_[key] = change.x;
+  }
+  for (std::size_t id = changes.size(); id < before_; ++id) {
+    if (standing_.erase({"", static_cast<std::int64_t>(id)}) == 0) continue;
+    findings.tells(
+        icd::sentence("markers: the organiser's display deletes id ", id,
+                      " of an empty ns because this message has fewer markers than the previous one"));
+  }
+  before_ = changes.size();
+}
+
+bool Arrivals::told_maps(const Field& row) {
+  const auto robot = row.text("robot"), kind = row.text("kind");
+  const auto amount = row.integer("amount", 0, INT64_MAX), newest = row.integer("newest", 0, INT64_MAX);
+  const auto told_places = row.optional_member("places");
+  const auto places = told_places ? told_places->integer(0, INT64_MAX) : 0;
+  if (!robot || !kind || !amount || !newest || !places) return false;
+  if (Arrived* const here = arrived(*robot, *kind)) {
+    here->posted = {.amount = static_cast<std::uint64_t>(*amount),
+                    .places = static_cast<std::uint64_t>(*places),
+                    .newest = Moment(Milliseconds(*newest))};
+  }
+  return true;
+}
+
+bool Arrivals::told_markers(const Field& row, const Field& standing) {
+  const auto robot = row.text("robot");
+  const auto markers = standing.elements();
+  if (!robot || !markers || (should_.size() >= kMostRobots && !should_.contains(*robot))) return false;
+  Places& places = should_[*robot] = {};
+  for (const Field& marker : *markers) {
+    const auto ns = marker.text("ns");
+    const auto id = marker.integer("id", INT32_MIN, INT32_MAX);
+    const auto x = marker.number("x");
+    if (ns && id && x && places.size() < kMostMarkers) places[{*ns, *id}] = *x;
+  }
+  return true;
 }
 
 std::expected<void, std::string> Arrivals::told(const Json& posted) {
   Findings findings;
-  const auto all = Field(posted, "", findings).elements();
+  const auto rows = Field(posted, "", findings).elements().value_or(std::vector<Field>{});
   const std::lock_guard lock(mutex_);
-  for (const Field& one : all.value_or(std::vector<Field>{})) {
-    if (one.optional_member("standing")) continue;  // markers: of MarkerDisplay
-    const auto robot = one.text("robot"), kind = one.text("kind");
-    const auto amount = one.integer("amount", 0, INT64_MAX), newest = one.integer("newest", 0, INT64_MAX);
-    const auto told_places = one.optional_member("places");
-    const auto places = told_places ? told_places->integer(0, INT64_MAX) : 0;
-    if (!robot || !kind || !amount || !newest || !places) break;
-    if (Arrived* const here = arrived(*robot, *kind)) {
-      here->posted = {.amount = static_cast<std::uint64_t>(*amount),
-                      .places = static_cast<std::uint64_t>(*places),
-                      .newest = Moment(Milliseconds(*newest))};
-    }
+  for (const Field& row : rows) {
+    const auto standing = row.optional_member("standing");
+    if (!(standing ? told_markers(row, *standing) : told_maps(row))) break;
   }
   if (findings.all().empty()) return {};
   return std::unexpected(findings.all().front().sentence);
+}
+
+/// Between what stands and what should.
+std::vector<std::string> Arrivals::differences() const {
+  std::vector<std::string> all;
+  std::set<std::string> told;  // namespaces of which some robot has told
+  Places should;
+  for (const auto& [robot, places] : should_) {
+    for (const auto& [key, x] : places) told.insert(key.first);
+    should.insert(places.begin(), places.end());
+  }
+  const auto text = [](const Key& key) { return icd::sentence("marker ", key.second, " of ", key.first); };
+  for (const auto& [key, x] : should) {
+    const auto found = standing_.find(key);
+    if (found == standing_.end()) {
+      all.push_back(text(key) + " is missing");
+    } else if (std::abs(found->second - x) > kSamePlace) {
+      all.push_back(text(key) + " is at x " + std::to_string(found->second) + ", not " + std::to_string(x));
+    }
+  }
+  for (const auto& [key, x] : standing_) {
+    if (told.contains(key.first) && !should.contains(key)) all.push_back(text(key) + " was deleted");
+  }
+  return all;
 }
 
 OrderedJson Arrivals::row(const Source& source, const Arrived& arrived) {
@@ -306,14 +271,24 @@ OrderedJson Arrivals::json() const {
   const std::lock_guard lock(mutex_);
   OrderedJson rows = OrderedJson::array();
   for (const auto& [source, arrived] : arrived_) rows.push_back(row(source, arrived));
-  return rows;
+  std::size_t should = 0;
+  for (const auto& [robot, places] : should_) should += places.size();
+  std::vector<std::string> first = differences();
+  const std::size_t count = first.size();
+  first.resize(std::min(count, kMostDifferences));
+  const OrderedJson markers = {
+      {"here", standing_.size()}, {"posted", should}, {"difference_count", count}, {"differences", first}};
+  return {{"maps", rows}, {"markers", markers}};
 }
 
 std::string Arrivals::table() const {
-  const OrderedJson rows = json();
-  if (rows.empty()) return "";
-  std::string text = "age of maps at their arrival, in seconds; share of the posted maps that arrived\n";
-  text += "  robot      kind    maps      p50     p99    most  behind    here  places\n";
+  const OrderedJson all = json(), &rows = all["maps"], &markers = all["markers"];
+  std::string text;
+  if (!rows.empty()) {
+    text =
+        "age of maps at their arrival, in seconds; share of the posted maps that arrived\n"
+        "  robot      kind    maps      p50     p99    most  behind    here  places\n";
+  }
   for (const OrderedJson& row : rows) {
     const std::string robot = row["robot"];
     std::array<char, 64> line{};
@@ -322,9 +297,15 @@ std::string Arrivals::table() const {
                         row["kind"].get_ref<const std::string&>().c_str(),
                         static_cast<unsigned long long>(row["maps"].get<std::uint64_t>()));
     text += line.data();
-    for (const char* const age : {"p50", "p99", "most", "behind"}) text += right(written(row[age], 2));
-    text += right(percent(row["share"])) + right(percent(row["places"])) + "\n";
+    for (const char* const age : {"p50", "p99", "most", "behind"})
+      text += aligned_right(written(row[age], 2), kColumn);
+    for (const char* const share : {"share", "places"}) text += aligned_right(percent(row[share]), kColumn);
+    text += "\n";
   }
+  if (markers["posted"] == 0) return text;
+  text += icd::sentence("markers: ", markers["here"].dump(), " displayed, the robots have ",
+                        markers["posted"].dump(), "; ", markers["difference_count"].dump(), " differ\n");
+  for (const OrderedJson& sentence : markers["differences"]) text += "  " + sentence.dump() + "\n";
   return text;
 }
 

@@ -13,7 +13,6 @@
 
 #include "rehearsal/agreed.hpp"
 #include "rehearsal/command_post/document.hpp"
-#include "rehearsal/command_post/fields.hpp"
 #include "rehearsal/command_post/messages.hpp"
 
 namespace adit::rehearsal {
@@ -21,53 +20,30 @@ namespace adit::rehearsal {
 /// By the machine's clock.
 using Moment = std::chrono::sys_time<std::chrono::milliseconds>;
 
-/// The organiser's display of markers, as measured: after a message with fewer markers than the one before,
-/// its server deletes the markers with an empty `ns` whose ids are the numbers that are missing. What stands
-/// is compared with what the robots posted. Bounded. Safe for use by several threads.
-class MarkerDisplay {
- public:
-  /// Of a message that was taken. Writes down each marker that the server deletes by itself and that stands.
-  void show(const std::vector<MarkerChange>& changes, Findings& findings);
-
-  /// What adit-robots says that should stand, of each robot:
-  /// [{"robot": "r1", "kind": "markers", "standing": [{"ns": "r1/path", "id": 3, "x": METRES}]}]. Rows of
-  /// other kinds are skipped. The error is a sentence that names the field.
-  std::expected<void, std::string> told(const Json& posted);
-
-  /// How many stand, how many should, and sentences about the first that differ.
-  OrderedJson json() const;
-  /// The same as lines; "" if no robot told anything.
-  std::string text() const;
-
- private:
-  using Key = std::pair<std::string, std::int64_t>;  // ns, id
-  using Places = std::map<Key, double>;              // x of each, metres
-
-  std::vector<std::string> differences() const;
-
-  mutable std::mutex mutex_;  // guards all below
-  Places standing_;
-  std::size_t before_ = 0;                // markers of the message before
-  std::map<std::string, Places> posted_;  // by robot
-};
-
-/// How old the maps were when they came, and how much of what was posted is here: of each robot and kind.
-/// Bounded. Safe for use by several threads.
+/// How old the maps were when they came, and how much of what was posted is here, of each robot and kind; and
+/// the markers that stand, compared with what the robots posted. Bounded. Safe for use by several threads.
 class Arrivals {
  public:
   /// A map was taken, whose last byte had come at `now`.
   void note(const MapMessage& map, Moment now);
 
+  /// Markers were taken. The organiser's display, as measured: after a message with fewer markers than the
+  /// one before, its server deletes the markers with an empty `ns` whose ids are the numbers that are
+  /// missing. Writes down each that it deletes so and that stands.
+  void note(const std::vector<MarkerChange>& changes, Findings& findings);
+
   /// What adit-robots posted so far: [{"robot": "r1", "kind": "cloud", "amount": 1200, "places": 300,
   /// "newest": MS}], cells or points, places that have points (of grids none need be told), and the newest
-  /// date in milliseconds since 1970. Rows of markers are skipped. The error is a sentence that names the
-  /// field.
+  /// date in milliseconds since 1970; and what should stand, of each robot:
+  /// {"robot": "r1", "kind": "markers", "standing": [{"ns": "r1/path", "id": 3, "x": METRES}]}. The error is
+  /// a sentence that names the field.
   std::expected<void, std::string> told(const Json& posted);
 
-  /// An object for each robot and kind; ages in seconds. See README.md, 'How old'.
+  /// "maps", an object for each robot and kind, ages in seconds (README.md, 'How old'); and "markers": how
+  /// many stand, how many should, and sentences about the first that differ.
   OrderedJson json() const;
 
-  /// The same as a table; "" where no map told a date.
+  /// The same as tables; "" where no map told a date and no robot anything.
   std::string table() const;
 
  private:
@@ -88,12 +64,20 @@ class Arrivals {
     double age(double share) const;  // seconds; that so many of the maps do not exceed
   };
   using Source = std::pair<std::string, std::string>;  // robot, kind
+  using Key = std::pair<std::string, std::int64_t>;    // ns, id
+  using Places = std::map<Key, double>;                // x of each, metres
 
   Arrived* arrived(const std::string& robot, const std::string& kind);
+  bool told_maps(const Field& row);
+  bool told_markers(const Field& row, const Field& standing);
+  std::vector<std::string> differences() const;
   static OrderedJson row(const Source& source, const Arrived& arrived);
 
   mutable std::mutex mutex_;  // guards all below
   std::map<Source, Arrived> arrived_;
+  Places standing_;
+  std::size_t before_ = 0;                // markers of the message before
+  std::map<std::string, Places> should_;  // by robot
 };
 
 }  // namespace adit::rehearsal

@@ -3,14 +3,11 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
-#include <expected>
-#include <optional>
 #include <set>
-#include <string>
 
-#include "rehearsal/command_post/document.hpp"
-#include "rehearsal/command_post/endpoint.hpp"
-#include "rehearsal/command_post/fault.hpp"
+#include "icd/sentence.hpp"
+#include "icd/status.hpp"
+#include "rehearsal/common.hpp"
 
 namespace adit::rehearsal {
 namespace {
@@ -81,11 +78,9 @@ Judgement turned_away(const Request& request, std::optional<Aim> aim, Outcome ou
 
 /// `then` decides, after `delay`.
 Outcome later(Fault::Seconds delay, std::function<Outcome()> then) {
-  Outcome outcome;
-  outcome.kind = Outcome::Kind::Later;
-  outcome.delay = std::chrono::duration_cast<std::chrono::milliseconds>(delay);
-  outcome.then = std::move(then);
-  return outcome;
+  return {.kind = Outcome::Kind::Later,
+          .delay = std::chrono::duration_cast<std::chrono::milliseconds>(delay),
+          .then = std::move(then)};
 }
 
 /// A judge never falls, whatever it reads: memory that runs out is answered, too.
@@ -98,6 +93,58 @@ Judgement judge_safely(Endpoint& endpoint, const Request& request) {
     judgement.outcome = last_answer(refused(500, "The request could not be handled"));
     return judgement;
   }
+}
+
+/// The JSON of a body; std::nullopt if it is empty.
+std::expected<std::optional<Json>, std::string> body_of(const Request& request) {
+  if (request.body.empty()) return std::nullopt;
+  auto document = read_document(request.body, Format::JsonText);
+  if (!document) return std::unexpected("the body is not JSON: " + document.error());
+  if (document->repeated) return std::unexpected("'" + *document->repeated + "' is given twice");
+  return std::move(document->value);
+}
+
+Outcome change_state(Run& run, Run::Change wanted) {
+  const auto now = Clock::now();
+  const bool done = run.change(wanted, now);
+  const std::string state = run.standing(now).state;
+  if (!done) return refused(409, "the run is: " + state);
+  return answered(200, OrderedJson{{"state", state}});
+}
+
+std::expected<NewRun, std::string> read_new_run(const Json& wanted) {
+  if (!wanted.is_object()) return std::unexpected(R"(expected an object, as in {"run": "2"})");
+  NewRun run;
+  for (const auto& [name, value] : wanted.items()) {
+    auto* const text = name == "run" ? &run.id : name == "team" ? &run.team : nullptr;
+    if (text != nullptr) {
+      if (!value.is_string() || value == "") return std::unexpected(name + ": expected a text");
+      *text = value.get<std::string>();
+    } else if (name != "started") {
+      return std::unexpected("no such member: '" + name.substr(0, 80) + "'; there are run, team, started");
+    } else if (!value.is_boolean()) {
+      return std::unexpected("started: expected true or false");
+    } else {
+      run.started = value.get<bool>();
+    }
+  }
+  return run;
+}
+
+Outcome begin_new_run(Run& run, const std::optional<Json>& sent) {
+  const auto wanted = sent ? read_new_run(*sent) : NewRun{};
+  if (!wanted) return refused(422, wanted.error());
+  const auto now = Clock::now();
+  run.begin_again(*wanted, now);
+  const Run::Standing standing = run.standing(now);
+  return answered(200,
+                  OrderedJson{{"state", standing.state}, {"run", standing.run}, {"team", standing.team}});
+}
+
+bool is_report(const Json& sent) {
+  Findings findings;
+  const Field report(sent, "", findings);
+  return read_point(report) && report.text("type");
 }
 
 }  // namespace
@@ -131,7 +178,7 @@ bool CommandPost::redirects(const Request& request) const {
 /// ICD 6.4 and 6.5: a name is one of the robots' that are registered. A state says each of them once.
 void CommandPost::note_names(Judgement& judgement) const {
   std::set<std::string> posed;
-  for (const Accepted& part : judgement.accepted) {
+  for (const Accepted& part : judgement.accepted.parts) {
     const bool is_robot = part.kind != "marker" && part.kind != "report" && !part.robot.empty();
     if (is_robot && !options_.roster.empty() &&
         std::ranges::find(options_.roster, part.robot) == options_.roster.end()) {
@@ -159,17 +206,12 @@ void CommandPost::note_order(const Request& request, const Fault& fault, Judgeme
 Outcome CommandPost::last_answer_to(Aim aim) {
   const std::lock_guard lock(answers_mutex_);
   const auto& before = answers_[static_cast<std::size_t>(aim)];
-  Outcome outcome;
-  outcome.after = After::Close;
-  outcome.kind = before ? Outcome::Kind::Answered : Outcome::Kind::Breaks;
-  if (before) outcome.answer = *before;
-  return outcome;
+  if (!before) return {.kind = Outcome::Kind::Breaks, .after = After::Close};
+  return {.answer = *before, .after = After::Close};
 }
 
 void CommandPost::note_answer(Aim aim, const Outcome& outcome) {
-  constexpr int ok = 200, after_ok = 300;
-  const int status = outcome.kind == Outcome::Kind::Answered ? outcome.answer.status : 0;
-  if (status < ok || status >= after_ok) return;
+  if (outcome.kind != Outcome::Kind::Answered || !icd::is_success(outcome.answer.status)) return;
   const std::lock_guard lock(answers_mutex_);
   answers_[static_cast<std::size_t>(aim)] = outcome.answer;
 }
@@ -193,7 +235,7 @@ Judgement CommandPost::judge(Side& side, std::optional<Aim> aim, const Fault& fa
   const bool judged = !aim || records(fault);
   Judgement judgement = judged ? judge_safely(*side.endpoint, request) : unjudged(*aim, request);
   note_names(judgement);
-  display_.show(judgement.markers, judgement.findings);
+  arrivals_.note(judgement.accepted.markers, judgement.findings);
   if (!judged) judgement.outcome = last_answer_to(*aim);
   if (judged && aim) note_answer(*aim, judgement.outcome);
   note_order(request, fault, judgement);
@@ -210,8 +252,8 @@ Outcome CommandPost::decide(Side& side, std::optional<Aim> aim, const Fault& fau
   const std::uint64_t number = ++number_;
   if (transcript_) transcript_->request(number, side.name, request, judgement);
   record_.note(number, judgement);
-  if (judgement.map)
-    arrivals_.note(*judgement.map, std::chrono::floor<std::chrono::milliseconds>(request.ended));
+  if (judgement.accepted.map)
+    arrivals_.note(*judgement.accepted.map, std::chrono::floor<std::chrono::milliseconds>(request.ended));
   if (judgement.report) keep(std::move(*judgement.report), kByClient, number);
   if (scoring_lock) scoring_lock.unlock();
   if (options_.verbose) show(number, request, judgement);
@@ -225,8 +267,7 @@ Outcome CommandPost::decide(Side& side, std::optional<Aim> aim, const Fault& fau
 OrderedJson CommandPost::record() const {
   const std::lock_guard lock(scoring_mutex_);
   OrderedJson record = record_.json(run_.standing(Clock::now()));
-  record["maps"] = arrivals_.json();
-  record["markers"] = display_.json();
+  record.update(arrivals_.json());
   return record;
 }
 
@@ -241,7 +282,7 @@ OrderedJson CommandPost::other_sender(const std::optional<Json>& sent) {
   constexpr double far = 100'000;  // metres: no artifact is there, and no two of its reports are alike
   const Json report =
       sent ? *sent : Json{{"x", far}, {"y", far + ++by_others_}, {"z", 0.0}, {"type", "Rope"}};
-  const Point position{report["x"].get<double>(), report["y"].get<double>(), report["z"].get<double>()};
+  const Vector3 position{report["x"].get<double>(), report["y"].get<double>(), report["z"].get<double>()};
   const std::lock_guard lock(scoring_mutex_);
   const Run::Ruling ruling = run_.submit(report["type"].get<std::string>(), position, Clock::now());
   OrderedJson body = report_body(ruling, report, kNoAuthority);
@@ -251,82 +292,22 @@ OrderedJson CommandPost::other_sender(const std::optional<Json>& sent) {
 
 void CommandPost::show(std::uint64_t number, const Request& request, const Judgement& judgement) const {
   const Outcome& outcome = judgement.outcome;
-  const std::string status =
-      outcome.kind == Outcome::Kind::Answered ? std::to_string(outcome.answer.status) : "no answer";
-  const std::string parts = judgement.accepted.empty() ? ""
-                                                       : " " + judgement.accepted.front().kind + " " +
-                                                             judgement.accepted.front().robot;
+  const bool answers = outcome.kind == Outcome::Kind::Answered;
+  const std::string status = answers ? std::to_string(outcome.answer.status) : "no answer";
+  const auto& parts = judgement.accepted.parts;
+  const std::string first =
+      parts.empty() ? "" : icd::sentence(" ", parts.front().kind, " ", parts.front().robot);
   // As JSON, so that nothing from the wire steers the terminal.
-  const std::string what = line_of(Json(request.method + " " + request.target.substr(0, 200) + parts));
+  const std::string what = line_of(Json(request.method + " " + request.target.substr(0, 200) + first));
   std::string more = judgement.fault.empty() ? "" : " [" + judgement.fault + "]";
-  for (const std::string& sentence : judgement.findings.violations())
-    more.append(" ").append(line_of(Json(sentence)));
-  std::printf("%6llu %s: %s%s\n", static_cast<unsigned long long>(number), what.c_str(), status.c_str(),
-              more.c_str());
-  (void)std::fflush(stdout);
+  for (const std::string& sentence : judgement.findings.violations()) more += " " + line_of(Json(sentence));
+  print(icd::sentence(aligned_right(std::to_string(number), 6), " ", what, ": ", status, more, "\n"));
 }
-
-namespace {
-
-/// The JSON of a body; std::nullopt if it is empty.
-std::expected<std::optional<Json>, std::string> body_of(const Request& request) {
-  if (request.body.empty()) return std::nullopt;
-  auto document = read_document(request.body, Format::JsonText);
-  if (!document) return std::unexpected("the body is not JSON: " + document.error());
-  if (document->repeated) return std::unexpected("'" + *document->repeated + "' is given twice");
-  return std::move(document->value);
-}
-
-Outcome change_state(Run& run, Run::Change wanted) {
-  const auto now = Clock::now();
-  const bool done = run.change(wanted, now);
-  const std::string state = run.standing(now).state;
-  if (!done) return refused(409, "the run is: " + state);
-  return answered(200, OrderedJson{{"state", state}});
-}
-
-std::expected<NewRun, std::string> read_new_run(const Json& wanted) {
-  if (!wanted.is_object()) return std::unexpected(R"(expected an object, as in {"run": "2"})");
-  NewRun run;
-  for (const auto& [name, value] : wanted.items()) {
-    const bool text = value.is_string() && !value.get_ref<const std::string&>().empty();
-    if ((name == "run" || name == "team") && !text) return std::unexpected(name + ": expected a text");
-    if (name == "run") {
-      run.id = value.get<std::string>();
-    } else if (name == "team") {
-      run.team = value.get<std::string>();
-    } else if (name != "started") {
-      return std::unexpected("no such member: '" + name.substr(0, 80) + "'; there are run, team, started");
-    } else if (!value.is_boolean()) {
-      return std::unexpected("started: expected true or false");
-    } else {
-      run.started = value.get<bool>();
-    }
-  }
-  return run;
-}
-
-Outcome begin_new_run(Run& run, const std::optional<Json>& sent) {
-  const auto wanted = sent ? read_new_run(*sent) : NewRun{};
-  if (!wanted) return refused(422, wanted.error());
-  const auto now = Clock::now();
-  run.begin_again(*wanted, now);
-  const Run::Standing standing = run.standing(now);
-  return answered(200,
-                  OrderedJson{{"state", standing.state}, {"run", standing.run}, {"team", standing.team}});
-}
-
-bool is_report(const Json& sent) {
-  Findings findings;
-  const Field report(sent, "", findings);
-  return read_point(report) && report.text("type");
-}
-
-}  // namespace
 
 Outcome CommandPost::show_arrivals() const {
-  return answered(
-      200, OrderedJson{{"maps", arrivals_.json()}, {"markers", display_.json()}, {"table", compared()}});
+  OrderedJson arrivals = arrivals_.json();
+  arrivals["table"] = arrivals_.table();
+  return answered(200, arrivals);
 }
 
 Outcome CommandPost::control(const Request& request) {
@@ -338,8 +319,7 @@ Outcome CommandPost::control(const Request& request) {
   if (wanted == "GET /record") return answered(200, record());
   if (wanted == "GET /arrivals") return show_arrivals();
   if (wanted == "POST /posted") {
-    Told told = arrivals_.told(sent.value_or(Json()));
-    if (told) told = display_.told(sent.value_or(Json()));
+    const Told told = arrivals_.told(sent.value_or(Json()));
     return told ? show_arrivals() : refused(422, told.error());
   }
   if (wanted == "GET /faults") return answered(200, faults_.left());
@@ -356,8 +336,7 @@ Outcome CommandPost::control(const Request& request) {
     return refused(422, R"(expected a report, as in {"x": 1, "y": 2, "z": 3, "type": "Drill"})");
   }
   if (wanted == "POST /new-run") return begin_new_run(run_, sent);
-  if (wanted == "POST /grant")
-    return answered(200, OrderedJson{{"remaining_reports", run_.grant(Clock::now())}});
+  if (wanted == "POST /grant") return answered(200, OrderedJson{{"remaining_reports", run_.grant()}});
   if (wanted == "POST /rename") return answered(200, OrderedJson{{"run", run_.rename()}});
   if (wanted == "POST /start") return change_state(run_, Run::Change::Start);
   if (wanted == "POST /stop") return change_state(run_, Run::Change::Stop);

@@ -3,7 +3,6 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
-#include <expected>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -11,13 +10,12 @@
 #include <vector>
 
 #include "rehearsal/command_post/arrivals.hpp"
+#include "rehearsal/command_post/document.hpp"
 #include "rehearsal/command_post/endpoint.hpp"
 #include "rehearsal/command_post/fault.hpp"
-#include "rehearsal/command_post/fields.hpp"
 #include "rehearsal/command_post/record.hpp"
 #include "rehearsal/command_post/run.hpp"
 #include "rehearsal/command_post/server.hpp"
-#include "rehearsal/command_post/transcript.hpp"
 
 namespace adit::rehearsal {
 
@@ -29,7 +27,7 @@ struct Options {
   std::string secrets;
   std::string artifacts;   // "": none
   std::string transcript;  // "": none
-  std::uint64_t transcript_bytes = 2'000'000'000;
+  std::uint64_t transcript_megabytes = 2000;
   Manner manner = Manner::Strict;
   bool slash = false;           // each path has to end with one
   bool serial = false;          // each endpoint serves one connection at a time
@@ -68,11 +66,11 @@ class CommandPost {
   Outcome mapping(const Request& request);
 
   /// The control port (README.md, 'The control port'). POST /posted, of adit-robots, is described at
-  /// Arrivals::told and MarkerDisplay::told.
+  /// Arrivals::told.
   Outcome control(const Request& request);
 
   Faults& faults() { return faults_; }
-  std::string summary() const { return record_.summary(run_.standing(Clock::now())) + compared(); }
+  std::string summary() const { return record_.summary(run_.standing(Clock::now())) + arrivals_.table(); }
   std::string killed_by() const { return record_.killed_by(); }
 
  private:
@@ -95,9 +93,6 @@ class CommandPost {
   /// Another sender on the same token submits a report; if `sent` holds nothing, one that no artifact is
   /// near. `sent`: numbers x, y, z and a text type. Gives the report as it was recorded.
   OrderedJson other_sender(const std::optional<Json>& sent);
-  /// Tables that compare the received maps and markers with the posted ones; "" if the robots told no
-  /// amounts.
-  std::string compared() const { return arrivals_.table() + display_.text(); }
   Outcome show_arrivals() const;
   OrderedJson record() const;
   void keep(OrderedJson report, const char* by, const OrderedJson& request);
@@ -108,7 +103,6 @@ class CommandPost {
   Record record_;
   Faults faults_;
   Arrivals arrivals_;
-  MarkerDisplay display_;
   Side scoring_;
   Side mapping_;
   std::unique_ptr<Transcript> transcript_;

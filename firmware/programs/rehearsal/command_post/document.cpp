@@ -3,11 +3,10 @@
 #include <sodium/utils.h>
 #include <zlib.h>
 
-#include <array>
-#include <charconv>
-#include <cstddef>
+#include <algorithm>
+#include <cmath>
+#include <functional>
 #include <utility>
-#include <vector>
 
 namespace adit::rehearsal {
 
@@ -23,15 +22,15 @@ class Builder : public nlohmann::json_sax<Json> {
  public:
   explicit Builder(bool check_utf8) : check_utf8_(check_utf8) {}
 
-  bool null() override { return put(nullptr) != nullptr; }
-  bool boolean(bool value) override { return put(value) != nullptr; }
-  bool number_integer(number_integer_t value) override { return put(value) != nullptr; }
-  bool number_unsigned(number_unsigned_t value) override { return put(value) != nullptr; }
-  bool number_float(number_float_t value, const string_t& /*text*/) override { return put(value) != nullptr; }
-  bool string(string_t& value) override { return utf8(value) && put(std::move(value)) != nullptr; }
-  bool binary(binary_t& value) override { return put(Json::binary(std::move(value))) != nullptr; }
-  bool start_object(std::size_t /*size*/) override { return open(Json::object()); }
-  bool start_array(std::size_t /*size*/) override { return open(Json::array()); }
+  bool null() override { return put(nullptr); }
+  bool boolean(bool value) override { return put(value); }
+  bool number_integer(number_integer_t value) override { return put(value); }
+  bool number_unsigned(number_unsigned_t value) override { return put(value); }
+  bool number_float(number_float_t value, const string_t& /*text*/) override { return put(value); }
+  bool string(string_t& value) override { return utf8(value) && put(std::move(value)); }
+  bool binary(binary_t& value) override { return put(Json::binary(std::move(value))); }
+  bool start_object(std::size_t /*size*/) override { return put(Json::object(), true); }
+  bool start_array(std::size_t /*size*/) override { return put(Json::array(), true); }
   bool end_object() override { return close(); }
   bool end_array() override { return close(); }
 
@@ -70,30 +69,17 @@ class Builder : public nlohmann::json_sax<Json> {
     }
   }
 
-  Json* put(Json value) {
-    if (++values_ > kMostValues) {
-      fail("more than 4000000 values");
-      return nullptr;
+  bool put(Json value, bool opens = false) {
+    if (++values_ > kMostValues) return fail("more than 4000000 values");
+    if (opens && open_.size() == kDeepest) return fail("nested deeper than 64");
+    Json* place = &document.value;
+    if (!open_.empty()) {
+      Json& parent = *open_.back();
+      place = parent.is_array() ? &parent.emplace_back() : &parent[key_];
     }
-    if (open_.empty()) {
-      document.value = std::move(value);
-      return &document.value;
-    }
-    Json& parent = *open_.back();
-    if (parent.is_array()) {
-      parent.push_back(std::move(value));
-      return &parent.back();
-    }
-    Json& member = parent[key_];
-    member = std::move(value);
-    return &member;
-  }
-
-  bool open(Json container) {
-    if (open_.size() == kDeepest) return fail("nested deeper than 64");
-    Json* const place = put(std::move(container));
-    if (place != nullptr) open_.push_back(place);  // stays put: its parent does not grow while it is open
-    return place != nullptr;
+    *place = std::move(value);
+    if (opens) open_.push_back(place);  // stays put: its parent does not grow while it is open
+    return true;
   }
 
   bool close() {
@@ -106,43 +92,6 @@ class Builder : public nlohmann::json_sax<Json> {
   std::string key_;
   std::size_t values_ = 0;
 };
-
-}  // namespace
-
-std::string text_of(double number) {
-  std::array<char, 32> digits;
-  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr;
-  return {digits.data(), end};
-}
-
-std::expected<Document, std::string> read_document(std::string_view body, Format format) {
-  if (format == Format::JsonText && body.starts_with("\xef\xbb\xbf")) {
-    return std::unexpected("a byte order mark before the document (RFC 8259 8.1)");
-  }
-  // To nlohmann's reader a NUL is the end of the document; to RFC 8259 it stands nowhere in one.
-  if (format == Format::JsonText && body.find('\0') != std::string_view::npos) {
-    return std::unexpected("a NUL byte");
-  }
-  Builder builder(format == Format::CborBytes);
-  const auto input = format == Format::CborBytes ? Json::input_format_t::cbor : Json::input_format_t::json;
-  if (!Json::sax_parse(body.begin(), body.end(), &builder, input, true)) {
-    return std::unexpected(builder.reason.empty() ? "not well-formed" : builder.reason);
-  }
-  return std::move(builder.document);
-}
-
-std::optional<std::string> base64_decoded(std::string_view text) {
-  std::string bytes(text.size() / 4 * 3, '\0');
-  std::size_t size = 0;
-  const int wrong =
-      sodium_base642bin(reinterpret_cast<unsigned char*>(bytes.data()), bytes.size(), text.data(),
-                        text.size(), nullptr, &size, nullptr, sodium_base64_VARIANT_ORIGINAL);
-  if (wrong != 0) return std::nullopt;
-  bytes.resize(size);
-  return bytes;
-}
-
-namespace {
 
 constexpr int kGzip = 15 + 16;
 constexpr int kZlib = 15;
@@ -173,7 +122,47 @@ std::expected<std::string, InflateFault> inflate_one(std::string_view bytes, int
   return out;
 }
 
+std::optional<Rotation> read_quaternion(const Field& quaternion) {
+  const auto x = quaternion.number("x"), y = quaternion.number("y"), z = quaternion.number("z"),
+             w = quaternion.number("w");
+  if (!x || !y || !z || !w) return std::nullopt;
+  constexpr double kNoise = 2e-6;  // of float32, and of printed digits
+  const double length = std::hypot(std::hypot(*x, *y, *z), *w);
+  if (!(std::abs(length - 1) <= kNoise)) {
+    quaternion.breaks("expected a quaternion of length 1, got one of length " + std::to_string(length),
+                      Measured::Takes);
+  }
+  return Rotation{*x, *y, *z, *w};
+}
+
 }  // namespace
+
+std::expected<Document, std::string> read_document(std::string_view body, Format format) {
+  if (format == Format::JsonText && body.starts_with("\xef\xbb\xbf")) {
+    return std::unexpected("a byte order mark before the document (RFC 8259 8.1)");
+  }
+  // To nlohmann's reader a NUL is the end of the document; to RFC 8259 it stands nowhere in one.
+  if (format == Format::JsonText && body.find('\0') != std::string_view::npos) {
+    return std::unexpected("a NUL byte");
+  }
+  Builder builder(format == Format::CborBytes);
+  const auto input = format == Format::CborBytes ? Json::input_format_t::cbor : Json::input_format_t::json;
+  if (!Json::sax_parse(body.begin(), body.end(), &builder, input, true)) {
+    return std::unexpected(builder.reason.empty() ? "not well-formed" : builder.reason);
+  }
+  return std::move(builder.document);
+}
+
+std::optional<std::string> base64_decoded(std::string_view text) {
+  std::string bytes(text.size() / 4 * 3, '\0');
+  std::size_t size = 0;
+  const int wrong =
+      sodium_base642bin(reinterpret_cast<unsigned char*>(bytes.data()), bytes.size(), text.data(),
+                        text.size(), nullptr, &size, nullptr, sodium_base64_VARIANT_ORIGINAL);
+  if (wrong != 0) return std::nullopt;
+  bytes.resize(size);
+  return bytes;
+}
 
 std::expected<std::string, InflateFault> gunzip(std::string_view bytes, std::size_t most) {
   return inflate_one(bytes, kGzip, most);
@@ -182,6 +171,146 @@ std::expected<std::string, InflateFault> gunzip(std::string_view bytes, std::siz
 std::expected<std::string, InflateFault> inflate_body(std::string_view bytes, std::size_t most) {
   auto inflated = inflate_one(bytes, kZlib, most);
   return inflated ? inflated : inflate_one(bytes, kBare, most);
+}
+
+std::string Field::path_of(std::string_view name) const {
+  return path_.empty() ? std::string(name) : path_ + "." + std::string(name);
+}
+
+std::nullopt_t Field::breaks(std::string_view what, Measured measured) const {
+  const std::string where = path_.empty() ? "the body" : path_;
+  findings_->breaks(where + ": " + std::string(what), measured);
+  return std::nullopt;
+}
+
+std::nullopt_t Field::expected(std::string_view what) const {
+  const std::string got =
+      value_->is_number() ? line_of(*value_) : std::string("a value of type ") + value_->type_name();
+  return breaks("expected " + std::string(what) + ", got " + got);
+}
+
+std::optional<Field> Field::optional_member(const char* name) const {
+  if (!value_->is_object()) return std::nullopt;
+  const auto found = value_->find(name);
+  if (found == value_->end()) return std::nullopt;
+  return Field(*found, path_of(name), *findings_);
+}
+
+std::optional<Field> Field::member(const char* name, Measured measured) const {
+  if (!is_object()) return std::nullopt;
+  auto found = optional_member(name);
+  if (!found) findings_->breaks("Missing field '" + path_of(name) + "'", measured);
+  return found;
+}
+
+std::optional<std::vector<Field>> Field::elements() const {
+  if (!value_->is_array()) return expected("an array");
+  std::vector<Field> all;
+  all.reserve(value_->size());
+  for (const Json& element : *value_) {
+    all.emplace_back(element, path_ + "[" + std::to_string(all.size()) + "]", *findings_);
+  }
+  return all;
+}
+
+bool Field::is_object() const {
+  if (!value_->is_object()) expected("an object");
+  return value_->is_object();
+}
+
+std::optional<double> Field::to_number() const {
+  if (!value_->is_number()) return expected("a number");
+  const auto number = value_->get<double>();
+  if (!std::isfinite(number)) return breaks("expected a finite number");  // CBOR can say so, JSON cannot
+  return number;
+}
+
+std::optional<std::int64_t> Field::integer(std::int64_t least, std::int64_t most) const {
+  const bool fits = value_->is_number_integer() &&
+                    !(value_->is_number_unsigned() && value_->get<std::uint64_t>() > INT64_MAX);
+  const std::int64_t integer = fits ? value_->get<std::int64_t>() : 0;
+  if (fits && integer >= least && integer <= most) return integer;
+  return expected("an integer from " + std::to_string(least) + " to " + std::to_string(most));
+}
+
+std::optional<bool> Field::boolean() const {
+  if (!value_->is_boolean()) return expected("a boolean");
+  return value_->get<bool>();
+}
+
+std::optional<std::string> Field::to_text() const {
+  if (!value_->is_string()) return expected("a text string");
+  return value_->get<std::string>();
+}
+
+std::optional<double> Field::number(const char* name) const {
+  return member(name).and_then(&Field::to_number);
+}
+
+std::optional<std::int64_t> Field::integer(const char* name, std::int64_t least, std::int64_t most) const {
+  const auto field = member(name);
+  return field ? field->integer(least, most) : std::nullopt;
+}
+
+std::optional<std::string> Field::text(const char* name) const {
+  return member(name).and_then(&Field::to_text);
+}
+
+std::string lower(std::string text) {
+  std::ranges::transform(text, text.begin(),
+                         [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  return text;
+}
+
+bool is_artifact_type(std::string_view type) {
+  return std::ranges::any_of(kArtifactTypes, [lower_case = lower(std::string(type))](std::string_view known) {
+    return lower(std::string(known)) == lower_case;
+  });
+}
+
+bool is_word_character(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+}
+
+std::string tame(std::string_view text) {
+  constexpr std::size_t longest = 32;
+  std::string tamed(text.substr(0, longest));
+  std::ranges::replace_if(tamed, std::not_fn(is_word_character), '_');
+  return tamed;
+}
+
+bool is_robot_name(std::string_view name) {
+  return !name.empty() && name.size() <= 10 && std::ranges::all_of(name, is_word_character);
+}
+
+std::optional<Vector3> read_point(const Field& point) {
+  const auto x = point.number("x"), y = point.number("y"), z = point.number("z");
+  if (!x || !y || !z) return std::nullopt;
+  return Vector3{*x, *y, *z};
+}
+
+std::optional<Placement> read_pose(const Field& pose) {
+  const auto position = pose.member("position"), orientation = pose.member("orientation");
+  if (!position || !orientation) return std::nullopt;
+  const auto point = read_point(*position);
+  const auto quaternion = read_quaternion(*orientation);
+  if (!point || !quaternion) return std::nullopt;
+  return Placement{*point, *quaternion};
+}
+
+void read_header(const Field& message, std::vector<Stamp>& stamps) {
+  const auto header = message.optional_member("header");
+  if (!header || !header->is_object()) return;
+  if (const auto frame_id = header->optional_member("frame_id")) {
+    const auto text = frame_id->to_text();
+    // The measured server writes "darpa" over any other, saying nothing.
+    if (text && *text != "darpa") frame_id->breaks("expected \"darpa\" (ICD 6.1)", Measured::Takes);
+  }
+  if (const auto stamp = header->optional_member("stamp")) {
+    const auto seconds = stamp->to_number();
+    if (seconds && *seconds < 0) stamp->breaks("expected seconds from 0");
+    if (seconds && *seconds >= 0) stamps.push_back({*seconds, stamp->path()});
+  }
 }
 
 }  // namespace adit::rehearsal

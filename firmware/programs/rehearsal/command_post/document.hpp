@@ -1,5 +1,6 @@
 #pragma once
 
+#include <charconv>
 #include <cstddef>
 #include <cstdint>
 #include <expected>
@@ -7,6 +8,9 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
+
+#include "rehearsal/agreed.hpp"
 
 namespace adit::rehearsal {
 
@@ -21,9 +25,6 @@ template <class AnyJson>
 std::string line_of(const AnyJson& value) {
   return value.dump(-1, ' ', false, AnyJson::error_handler_t::replace);
 }
-
-/// The fewest digits that give the same double back.
-std::string text_of(double number);
 
 /// A well-formed body, and its faults.
 struct Document {
@@ -51,5 +52,157 @@ std::expected<std::string, InflateFault> gunzip(std::string_view bytes, std::siz
 
 /// A body under Content-Encoding: deflate, which clients send as zlib (RFC 1950) or bare (RFC 1951).
 std::expected<std::string, InflateFault> inflate_body(std::string_view bytes, std::size_t most);
+
+/// Which Command Post is played: the ICD's, to the letter, or the measured test servers.
+enum class Manner { Strict, AsMeasured };
+
+/// What the measured mapping server does about something that a strict one refuses.
+enum class Measured { Takes, Refuses, Dies, Hangs };
+
+/// One thing found in a message: a row of the table 'what the ICD says, what the server does'.
+struct Finding {
+  std::string sentence;    // names the field by its path
+  int status = 422;        // of the refusal, in either manner
+  bool breaks_icd = true;  // else only the measured server minds
+  Measured measured = Measured::Refuses;
+  bool strict_refuses = true;  // if it breaks the ICD
+};
+
+/// Whether a Command Post of that manner refuses a message for it.
+inline bool decides(const Finding& finding, Manner manner) {
+  return manner == Manner::Strict ? finding.breaks_icd && finding.strict_refuses
+                                  : finding.measured != Measured::Takes;
+}
+
+/// The findings in one message, in the order of reading. Only the first kMost are kept.
+class Findings {
+ public:
+  static constexpr std::size_t kMost = 20;
+  static constexpr std::size_t kLongest = 400;
+
+  /// The ICD forbids it.
+  void breaks(std::string sentence, Measured measured = Measured::Refuses, int status = 422) {
+    add({std::move(sentence), status, true, measured});
+  }
+  /// The ICD forbids it, and either manner takes the message all the same.
+  void tells(std::string sentence) { add({std::move(sentence), 422, true, Measured::Takes, false}); }
+  /// The ICD allows it, the measured server does not.
+  void displeases(std::string sentence) { add({std::move(sentence), 422, false, Measured::Refuses}); }
+
+  const std::vector<Finding>& all() const { return all_; }
+
+  /// The first that a Command Post of that manner does not take; null: it takes the message.
+  const Finding* decisive(Manner manner) const {
+    for (const Finding& finding : all_) {
+      if (decides(finding, manner)) return &finding;
+    }
+    return nullptr;
+  }
+
+  /// The sentences of those that break the ICD.
+  std::vector<std::string> violations() const {
+    std::vector<std::string> sentences;
+    for (const Finding& finding : all_) {
+      if (finding.breaks_icd) sentences.push_back(finding.sentence);
+    }
+    return sentences;
+  }
+
+ private:
+  void add(Finding finding) {
+    if (finding.sentence.size() > kLongest) finding.sentence.resize(kLongest);  // it may quote the sender
+    const auto is_first = [&](Manner manner) {
+      return decides(finding, manner) && decisive(manner) == nullptr;
+    };
+    // A finding that decides must not be lost behind many that do not.
+    if (all_.size() < kMost || is_first(Manner::Strict) || is_first(Manner::AsMeasured)) {
+      all_.push_back(std::move(finding));
+    }
+  }
+  std::vector<Finding> all_;
+};
+
+/// A value somewhere in a document: it knows its path ("msg.info.width") and writes down what is wrong with
+/// it. Whatever gives nothing has written down why. Valid as long as the document and the findings are.
+class Field {
+ public:
+  Field(const Json& value, std::string path, Findings& findings)
+      : value_(&value), path_(std::move(path)), findings_(&findings) {}
+
+  /// A member that must be there; `measured`: what the measured server does where it is not.
+  std::optional<Field> member(const char* name, Measured measured = Measured::Refuses) const;
+  /// A member that need not be there; writes nothing down.
+  std::optional<Field> optional_member(const char* name) const;
+  /// The elements of an array; nothing where this is none.
+  std::optional<std::vector<Field>> elements() const;
+
+  bool is_object() const;                   // else writes that down
+  std::optional<double> to_number() const;  // finite
+  std::optional<std::int64_t> integer(std::int64_t least, std::int64_t most) const;
+  std::optional<bool> boolean() const;
+  std::optional<std::string> to_text() const;
+
+  // The value of a member that must be there.
+  std::optional<double> number(const char* name) const;
+  std::optional<std::int64_t> integer(const char* name, std::int64_t least, std::int64_t most) const;
+  std::optional<std::string> text(const char* name) const;
+
+  const Json& value() const { return *value_; }
+  const std::string& path() const { return path_; }
+  Findings& findings() const { return *findings_; }
+
+  /// Writes down "<path>: <what>". The result is empty, so that a reader can return it.
+  std::nullopt_t breaks(std::string_view what, Measured measured = Measured::Refuses) const;
+
+ private:
+  std::string path_of(std::string_view name) const;
+  /// Writes down "<path>: expected <what>, got <a number, or the type>".
+  std::nullopt_t expected(std::string_view what) const;
+
+  const Json* value_;
+  std::string path_;
+  Findings* findings_;
+};
+
+/// All of `text` as a number from `low` to `high`, and nothing else.
+template <class Number>
+std::optional<Number> number_of(std::string_view text, Number low, Number high) {
+  Number number{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  if (!(number >= low && number <= high)) return std::nullopt;  // not a number is neither
+  return number;
+}
+
+/// ASCII in lower case.
+std::string lower(std::string text);
+
+/// A letter, a digit or an underscore, of ASCII.
+bool is_word_character(char c);
+
+/// `text` with all but letters, digits and underscores made underscores, at most 32 characters: safe as part
+/// of a file's name and as a word of a PCD header.
+std::string tame(std::string_view text);
+
+/// Whether `name` is one that a robot may have: 1 to 10 letters, digits and underscores (ICD 2).
+bool is_robot_name(std::string_view name);
+
+/// Whether it is one of the types of the final event, in any letter case (ICD 5.2).
+bool is_artifact_type(std::string_view type);
+
+/// A stamp and where it stands, so that the order of stamps can be checked (ICD 6.2).
+struct Stamp {
+  double seconds = 0;
+  std::string path;
+};
+
+std::optional<Vector3> read_point(const Field& point);
+
+/// `pose` holds "position" and "orientation". A quaternion that is not of length 1 is no rotation, though the
+/// measured server takes it.
+std::optional<Placement> read_pose(const Field& pose);
+
+/// The optional "header" of `message` (ICD 6.1, 6.2): frame_id must be "darpa"; a stamp is added to `stamps`.
+void read_header(const Field& message, std::vector<Stamp>& stamps);
 
 }  // namespace adit::rehearsal

@@ -2,7 +2,18 @@
 
 #include <algorithm>
 
+#include "icd/sentence.hpp"
+
 namespace adit::rehearsal {
+
+std::string_view path_of(std::string_view target) {
+  constexpr std::string_view scheme = "http://";
+  if (target.starts_with(scheme)) {
+    const auto slash = target.find('/', scheme.size());
+    target = slash == std::string_view::npos ? "/" : target.substr(slash);
+  }
+  return target.substr(0, target.find('?'));
+}
 
 bool RateLimit::too_soon(const Request& request) {
   const std::lock_guard lock(mutex_);
@@ -48,6 +59,16 @@ void check_entry(const Request& request, std::span<const Function> functions, co
   }
 }
 
+bool admit(const Request& request, std::span<const Function> functions, const std::string& token,
+           RateLimit* limit, Judgement& judgement) {
+  check_entry(request, functions, token, judgement.findings);
+  const Finding* const finding = judgement.findings.decisive(Manner::Strict);
+  if (finding == nullptr || finding->status != 404) judgement.uri = request.path;
+  if (finding == nullptr && !limit->too_soon(request)) return true;
+  judgement.outcome = finding != nullptr ? refused(*finding) : refused(429, kTooManyRequests);
+  return false;
+}
+
 void check_content(const Request& request, bool cbor_too, Findings& findings) {
   if (request.content_encoding) {
     findings.breaks("Content-Encoding: the ICD has none for a whole body", Measured::Takes);
@@ -55,8 +76,8 @@ void check_content(const Request& request, bool cbor_too, Findings& findings) {
   const bool known =
       request.content_type == "application/json" || (cbor_too && request.content_type == "application/cbor");
   if (!known) {
-    findings.breaks(std::string("Content-Type: expected application/json") +
-                    (cbor_too ? " or application/cbor" : "") + ", without parameters");
+    findings.breaks(icd::sentence("Content-Type: expected application/json",
+                                  cbor_too ? " or application/cbor" : "", ", without parameters"));
   }
 }
 
@@ -70,12 +91,10 @@ Outcome detailed(int status, std::string_view detail) {
 }
 
 Outcome page(int status, std::string_view title) {
-  Outcome outcome;
-  outcome.answer.status = status;
-  outcome.answer.content_type = "text/html";
-  outcome.answer.body = "<!doctype html>\n<html lang=\"en\"><head><title>" + std::string(title) +
-                        "</title></head><body><h1>" + std::string(title) + "</h1></body></html>\n";
-  return outcome;
+  return {.answer = {.status = status,
+                     .body = icd::sentence("<!doctype html>\n<html lang=\"en\"><head><title>", title,
+                                           "</title></head><body><h1>", title, "</h1></body></html>\n"),
+                     .content_type = "text/html"}};
 }
 
 bool lacks_slash(const Request& request) {

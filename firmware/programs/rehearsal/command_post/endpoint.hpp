@@ -1,21 +1,83 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "rehearsal/command_post/document.hpp"
-#include "rehearsal/command_post/fields.hpp"
-#include "rehearsal/command_post/http.hpp"
 #include "rehearsal/command_post/messages.hpp"
 #include "rehearsal/command_post/run.hpp"
 
 namespace adit::rehearsal {
+
+/// Why what came in is no whole HTTP request. `status` 0: whoever sent it is gone and gets no answer.
+struct HttpFault {
+  int status = 400;
+  std::string sentence;
+};
+
+/// A request as it was read from a connection. Where `fault` is set, the rest holds what was understood.
+struct Request {
+  std::string method;
+  std::string target;
+  std::string path;  // of the target, without the slash that this Command Post insists on
+  std::optional<std::string> authorization;  // never written anywhere
+  std::optional<std::string> content_type;
+  std::optional<std::string> content_encoding;
+  std::optional<std::string> origin;
+  std::string head_fault;  // what RFC 9110 or 9112 forbids of its fields; "": nothing
+  bool expects_continue = false;
+  bool keep_alive = true;
+  std::string body;
+  std::string local_address;                    // "127.0.0.1:8000", where it was sent to
+  Clock::time_point at;                         // when its header had arrived
+  Clock::time_point whole;                      // when its last byte had
+  std::chrono::system_clock::time_point ended;  // the same, by the machine's clock
+  std::optional<HttpFault> fault;
+};
+
+struct Answer {
+  int status = 200;
+  std::string body = {};
+  std::string content_type = "application/json";  // "": no such header
+  std::vector<std::pair<std::string, std::string>> headers = {};
+};
+
+/// What becomes of the connection once the answer, if any, is written.
+enum class After {
+  KeepOpen,
+  Close,                    // saying so (Connection: close)
+  CloseThoughPromisingNot,  // as the measured mapping server does after a 4xx
+  Reset,                    // with a RST, and what was not yet sent is lost
+};
+
+/// What is done about a request, decided before any byte of it is written.
+struct Outcome {
+  enum class Kind {
+    Answered,
+    Hangs,   // no answer, ever; the connection stays open
+    Dies,    // no answer; the endpoint stops listening and drops all its connections
+    Breaks,  // `bytes` in place of an answer, and the connection ends
+    Later,   // nothing for `delay`; then `then` decides, whether the client is still there or not
+  };
+  Kind kind = Kind::Answered;
+  Answer answer = {};
+  After after = After::KeepOpen;
+  std::string bytes = {};
+  std::chrono::milliseconds delay{0};
+  std::function<Outcome()> then = {};  // called while the request still is
+};
+
+/// The path of a target in origin form or absolute form (RFC 7230 5.3), without its query.
+std::string_view path_of(std::string_view target);
 
 /// Between which moments of one request and the next a rate limit measures.
 enum class Counted : std::uint8_t {
@@ -67,10 +129,8 @@ struct Judgement {
   std::string uri;  // one of the ICD's five, or ""
   Findings findings;
   std::optional<Json> message;        // as it came
-  std::optional<MapMessage> map;      // where one was taken
   std::optional<OrderedJson> report;  // the answer to a recorded report
-  std::vector<Accepted> accepted;
-  std::vector<MarkerChange> markers;  // that were taken
+  MappingMessage accepted;            // what was taken of it; of a report its part
   std::string fault;                  // the rehearsed fault; "": none
 };
 
@@ -84,10 +144,7 @@ class Endpoint {
 /// An answer whose body is this JSON.
 template <class AnyJson>
 Outcome answered(int status, const AnyJson& body) {
-  Outcome outcome;
-  outcome.answer.status = status;
-  outcome.answer.body = line_of(body);
-  return outcome;
+  return {.answer = {.status = status, .body = line_of(body)}};
 }
 
 /// Whether a request has the method and the path of one of the functions.
@@ -97,6 +154,10 @@ bool names_one_of(const Request& request, std::span<const Function> functions);
 /// right (401), that no field is missing or given twice (400). The findings hold at most one, which decides.
 void check_entry(const Request& request, std::span<const Function> functions, const std::string& token,
                  Findings& findings);
+
+/// The same, and the rate `limit` of its URI. Gives whether the body is to be judged, else the outcome.
+bool admit(const Request& request, std::span<const Function> functions, const std::string& token,
+           RateLimit* limit, Judgement& judgement);
 
 /// That the body is in a format that the ICD has for this endpoint, and not compressed as a whole.
 void check_content(const Request& request, bool cbor_too, Findings& findings);

@@ -1,15 +1,27 @@
 #include "rehearsal/command_post/fault.hpp"
 
 #include <algorithm>
-#include <array>
 #include <functional>
 
-#include "rehearsal/command_post/document.hpp"
-#include "rehearsal/command_post/endpoint.hpp"
-#include "rehearsal/command_post/fields.hpp"
-#include "rehearsal/command_post/run.hpp"
+#include "icd/sentence.hpp"
+#include "icd/text.hpp"
+#include "icd/try.hpp"
+#include "rehearsal/command_post/server.hpp"
 
 namespace adit::rehearsal {
+
+/// A request whose answer is to be spoiled.
+struct Spoilt {
+  Aim aim;
+  Manner manner;
+  Outcome outcome;  // as it was judged; if it was not, the last good answer to its aim
+};
+
+struct Effect {
+  std::string_view word;
+  bool records;  // the request is judged
+  Outcome (*outcome_of)(const Spoilt& spoilt);
+};
 
 namespace {
 
@@ -48,11 +60,7 @@ Outcome refusal(int status, const Spoilt& spoilt) {
 
 /// These bytes and no more; then the connection ends.
 Outcome broken(std::string bytes, After after = After::Close) {
-  Outcome outcome;
-  outcome.kind = Outcome::Kind::Breaks;
-  outcome.bytes = std::move(bytes);
-  outcome.after = after;
-  return outcome;
+  return {.kind = Outcome::Kind::Breaks, .after = after, .bytes = std::move(bytes)};
 }
 
 Outcome half(const Spoilt& spoilt) {
@@ -110,10 +118,170 @@ void misstate(Answer& answer, const char* member, const std::function<void(Order
   answer.body = line_of(body);
 }
 
+using icd::sentence;
+
+/// A word as it was given: its name, and what stands behind the first '='.
+struct Word {
+  std::string_view name;
+  std::optional<std::string_view> argument;
+};
+
+Word word_of(std::string_view text) {
+  const auto equals = text.find('=');
+  if (equals == std::string_view::npos) return {text, std::nullopt};
+  return {text.substr(0, equals), text.substr(equals + 1)};
+}
+
+std::string quoted(std::string_view text) {
+  constexpr std::size_t longest = 80;
+  return sentence("'", text.substr(0, longest), "'");
+}
+
+template <class... Parts>
+std::unexpected<std::string> wrong(const Parts&... parts) {
+  return std::unexpected(sentence(parts...));
+}
+
+/// Puts the argument, as it was read, in its place, once. `example`: for the sentence about one that is none.
+template <class Place>
+Told put(const Word& word, const Place& read, std::string_view what, std::string_view example, Place& place) {
+  if (!read) {
+    return wrong(word.name, ": expected ", what, ", as in ", word.name, "=", example, ", got ",
+                 quoted(word.argument.value_or("")));
+  }
+  if (place) return wrong(quoted(word.name), " is given twice");
+  place = read;
+  return {};
+}
+
+Told put_seconds(const Word& word, std::optional<Fault::Seconds>& place) {
+  const auto seconds = number_of<double>(word.argument.value_or(""), 0, 3600).transform([](double number) {
+    return Fault::Seconds(number);
+  });
+  return put(word, seconds, "seconds from 0 to 3600", "2.5", place);
+}
+
+/// The sign has to be there: it is an offset, not what is to be shown.
+std::optional<std::int64_t> offset_in(std::string_view text) {
+  constexpr std::int64_t most = 1'000'000;
+  if (!text.starts_with('+') && !text.starts_with('-')) return std::nullopt;
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
+  return number_of(text, -most, most);
+}
+
+Told put_effect(const Word& word, const Effect& effect, Fault& fault) {
+  if (fault.effect != nullptr) {
+    return wrong(quoted(word.name), " cannot happen to a request together with ", quoted(fault.effect->word));
+  }
+  fault.effect = &effect;
+  if (!word.argument) return {};
+  if (word.name != "429") return wrong(quoted(word.name), " takes no '='");
+  std::optional<int> times;
+  ADIT_TRY(put(word, number_of(*word.argument, 1, 10'000), "how many requests, from 1 to 10000", "3", times));
+  fault.times = *times;
+  return {};
+}
+
+Told put_word(const Word& word, Fault& fault) {
+  constexpr std::size_t longest_name = 100;
+  const std::string_view value = word.argument.value_or("");
+  if (word.name == "record-after") return put_seconds(word, fault.record_after);
+  if (word.name == "answer-after") return put_seconds(word, fault.answer_after);
+  if (word.name == "for") return put_seconds(word, fault.lasts);
+  if (word.name == "remaining")
+    return put(word, offset_in(value), "an offset with its sign", "+2", fault.remaining);
+  if (word.name == "robot") {
+    const bool is_name = !value.empty() && value.size() <= longest_name;
+    const auto name = is_name ? std::optional<std::string>(value) : std::nullopt;
+    return put(word, name, "a robot's name", "ugv1", fault.robot);
+  }
+  if (word.name == "retry-after") {
+    return put(word, number_of(value, 0, 2'000'000'000), "whole seconds from 0 to 2000000000", "2",
+               fault.retry_after);
+  }
+  if (word.name == "other-sender") {
+    if (word.argument) return wrong("'other-sender' takes no '='");
+    fault.other_sender = true;
+    return {};
+  }
+  const auto* const effect = std::ranges::find(kEffects, word.name, &Effect::word);
+  if (effect != kEffects.end()) return put_effect(word, *effect, fault);
+  return wrong("no such fault: ", quoted(word.name), "; there are ok, ", icd::listed(kEffects, &Effect::word),
+               ", answer-after, record-after, remaining, other-sender, retry-after, for, robot");
+}
+
+/// Reads "record-then-drop", "429=3,retry-after=2", "ok": words with a comma between them. An error is a
+/// sentence that names the word.
+std::expected<Fault, std::string> read_fault(std::string_view words) {
+  Fault fault;
+  if (words == kOk) return fault;
+  for (bool more = true; more;) {
+    more = words.contains(',');
+    ADIT_TRY(put_word(word_of(icd::cut(words, ',')), fault));
+  }
+  return fault;
+}
+
+constexpr const char *kClock = "clock", *kConstant = "constant", *kRunning = "running";
+
+bool is_aim(std::string_view name) {
+  return name == kClock || std::ranges::find(kAims, name) != kAims.end();
+}
+
+std::unexpected<std::string> no_such_aim(std::string_view name) {
+  return wrong("no such aim: ", quoted(name), "; there are reports, status, mapping, clock");
+}
+
+/// Whether the fault may happen to the request of that body: one of its robot, or of any.
+bool is_of(const Fault& fault, std::string_view body) {
+  return !fault.robot || body.contains(*fault.robot);
+}
+
+/// Reads the words of a fault of that aim, or of the clock. The error begins with `place`.
+Told read_words(std::string_view aim, std::string_view words, const std::string& place, Orders& orders) {
+  if (aim == kClock) {
+    if (words != kConstant && words != kRunning)
+      return wrong(place, ": expected constant or running, got ", quoted(words));
+    orders.clocks_stand = words == kConstant;
+    return {};
+  }
+  const auto fault = read_fault(words);
+  if (!fault) return wrong(place, ": ", fault.error());
+  orders.aimed.emplace_back(static_cast<Aim>(std::ranges::find(kAims, aim) - kAims.begin()), *fault);
+  return {};
+}
+
+/// "reports:record-then-drop", "clock:constant".
+std::expected<Orders, std::string> read_order(std::string_view text) {
+  if (!text.contains(':'))
+    return wrong("expected an aim and a fault, as in reports:record-then-drop, got '", text, "'");
+  const std::string aim(icd::cut(text, ':'));
+  if (!is_aim(aim)) return no_such_aim(aim);
+  Orders orders;
+  ADIT_TRY(read_words(aim, text, aim, orders));
+  return orders;
+}
+
+/// {"reports": ["record-then-drop", "ok"], "clock": ["constant"]}.
+std::expected<Orders, std::string> read_orders(const Json& told) {
+  if (!told.is_object()) return wrong(R"(expected an object, as in {"reports": ["drop"]})");
+  Orders orders;
+  for (const auto& [aim, list] : told.items()) {
+    if (!is_aim(aim)) return no_such_aim(aim);
+    if (!list.is_array()) return wrong(aim, ": expected an array of faults");
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      const std::string place = sentence(aim, "[", i, "]");
+      if (!list[i].is_string()) return wrong(place, R"(: expected a text, as in "drop")");
+      ADIT_TRY(read_words(aim, list[i].get_ref<const std::string&>(), place, orders));
+    }
+  }
+  return orders;
+}
+
 }  // namespace
 
-std::span<const Effect> known_effects() {
-  return kEffects;
+bool records(const Fault& fault) {
+  return fault.effect == nullptr || fault.effect->records;
 }
 
 void spoil(const Fault& fault, Aim aim, Manner manner, Judgement& judgement) {
@@ -134,255 +302,60 @@ void spoil(const Fault& fault, Aim aim, Manner manner, Judgement& judgement) {
   }
 }
 
-namespace {
-
-constexpr int kMostTimes = 10'000;
-constexpr int kMostOffset = 1'000'000;
-constexpr int kMostSeconds = 3600;
-constexpr int kMostRetryAfter = 2'000'000'000;
-constexpr std::size_t kLongestName = 100;
-
-/// A word as it was given: its name, and what stands behind the first '='.
-struct Word {
-  std::string_view name;
-  std::optional<std::string_view> argument;
-};
-
-Word word_of(std::string_view text) {
-  const auto equals = text.find('=');
-  if (equals == std::string_view::npos) return {text, std::nullopt};
-  return {text.substr(0, equals), text.substr(equals + 1)};
-}
-
-std::string quoted(std::string_view text) {
-  constexpr std::size_t longest = 80;
-  std::string sentence = "'";
-  return sentence.append(text.substr(0, longest)).append("'");
-}
-
-std::unexpected<std::string> wanted(const Word& word, std::string_view what) {
-  return std::unexpected(std::string(word.name)
-                             .append(": expected ")
-                             .append(what)
-                             .append(", got ")
-                             .append(quoted(word.argument.value_or(""))));
-}
-
-template <class Value>
-Told set_once(std::optional<Value>& place, Value value, const Word& word) {
-  if (place) return std::unexpected(quoted(word.name) + " is given twice");
-  place = value;
-  return {};
-}
-
-Told take_seconds(const Word& word, std::optional<Fault::Seconds>& place) {
-  const auto seconds = number_of<double>(word.argument.value_or(""), 0, kMostSeconds);
-  if (!seconds) return wanted(word, "seconds from 0 to 3600, as in " + std::string(word.name) + "=2.5");
-  return set_once(place, Fault::Seconds(*seconds), word);
-}
-
-/// The sign has to be there: it is an offset, not what is to be shown.
-Told take_remaining(const Word& word, Fault& fault) {
-  std::string_view text = word.argument.value_or("");
-  const bool sign = text.starts_with('+') || text.starts_with('-');
-  if (text.starts_with('+')) text.remove_prefix(text.starts_with("+-") ? 0 : 1);
-  const auto offset = number_of<std::int64_t>(text, -kMostOffset, kMostOffset);
-  if (!sign || !offset) return wanted(word, "an offset with its sign, as in remaining=+2");
-  return set_once(fault.remaining, *offset, word);
-}
-
-Told take_effect(const Word& word, const Effect& effect, Fault& fault) {
-  if (fault.effect != nullptr) {
-    return std::unexpected(quoted(word.name) + " cannot happen to a request together with " +
-                           quoted(fault.effect->word));
-  }
-  fault.effect = &effect;
-  if (!word.argument) return {};
-  if (word.name != "429") return std::unexpected(quoted(word.name) + " takes no '='");
-  const auto times = number_of<int>(*word.argument, 1, kMostTimes);
-  if (!times) return wanted(word, "how many requests, from 1 to 10000, as in 429=3");
-  fault.times = *times;
-  return {};
-}
-
-Told take(const Word& word, Fault& fault) {
-  const std::string_view value = word.argument.value_or("");
-  if (word.name == "record-after") return take_seconds(word, fault.record_after);
-  if (word.name == "answer-after") return take_seconds(word, fault.answer_after);
-  if (word.name == "for") return take_seconds(word, fault.lasts);
-  if (word.name == "remaining") return take_remaining(word, fault);
-  if (word.name == "robot") {
-    if (value.empty() || value.size() > kLongestName) return wanted(word, "a robot's name, as in robot=ugv1");
-    fault.robot = value;
-    return {};
-  }
-  if (word.name == "retry-after") {
-    const auto seconds = number_of<int>(value, 0, kMostRetryAfter);
-    if (!seconds) return wanted(word, "whole seconds from 0 to 2000000000, as in retry-after=2");
-    return set_once(fault.retry_after, *seconds, word);
-  }
-  if (word.name == "other-sender") {
-    if (word.argument) return std::unexpected("'other-sender' takes no '='");
-    fault.other_sender = true;
-    return {};
-  }
-  const auto effects = known_effects();
-  const auto found = std::ranges::find(effects, word.name, &Effect::word);
-  if (found != effects.end()) return take_effect(word, *found, fault);
-  std::string sentence = "no such fault: " + quoted(word.name) + "; there are ok";
-  for (const Effect& effect : effects) sentence.append(", ").append(effect.word);
-  return std::unexpected(sentence +
-                         ", answer-after, record-after, remaining, other-sender, retry-after, for, robot");
-}
-
-}  // namespace
-
-std::expected<Fault, std::string> read_fault(std::string_view words) {
-  Fault fault;
-  if (words == kOk) return fault;
-  while (true) {
-    const auto comma = words.find(',');
-    if (const auto taken = take(word_of(words.substr(0, comma)), fault); !taken) {
-      return std::unexpected(taken.error());
-    }
-    if (comma == std::string_view::npos) return fault;
-    words.remove_prefix(comma + 1);
-  }
-}
-
 std::string words_of(const Fault& fault) {
   std::string words;
-  const auto add = [&words](std::string_view word) -> std::string& {
-    if (!words.empty()) words += ',';
-    return words.append(word);
+  const auto add = [&words](const auto&... parts) {
+    words.append(words.empty() ? "" : ",").append(sentence(parts...));
   };
   if (fault.other_sender) add("other-sender");
-  if (fault.remaining) {
-    add(*fault.remaining < 0 ? "remaining=" : "remaining=+") += std::to_string(*fault.remaining);
-  }
+  if (fault.remaining) add(*fault.remaining < 0 ? "remaining=" : "remaining=+", *fault.remaining);
   if (fault.clock_stands) add("clock:constant");
-  if (fault.record_after) add("record-after=") += text_of(fault.record_after->count());
-  if (fault.answer_after) add("answer-after=") += text_of(fault.answer_after->count());
+  if (fault.record_after) add("record-after=", fault.record_after->count());
+  if (fault.answer_after) add("answer-after=", fault.answer_after->count());
   if (fault.effect != nullptr) add(fault.effect->word);
-  if (fault.times > 1) words.append("=").append(std::to_string(fault.times));
-  if (fault.lasts) add("for=") += text_of(fault.lasts->count());
-  if (!fault.robot.empty()) add("robot=") += fault.robot;
-  if (fault.retry_after) add("retry-after=") += std::to_string(*fault.retry_after);
+  if (fault.times > 1) words.append(sentence("=", fault.times));
+  if (fault.lasts) add("for=", fault.lasts->count());
+  if (fault.robot) add("robot=", *fault.robot);
+  if (fault.retry_after) add("retry-after=", *fault.retry_after);
   return words.empty() ? std::string(kOk) : words;
 }
-
-namespace {
-
-constexpr const char* kClock = "clock";
-constexpr const char* kConstant = "constant";
-constexpr const char* kRunning = "running";
-constexpr const char* kTooMany = "at most 10000 faults can be queued";
-
-std::optional<Aim> aim_named(std::string_view name) {
-  const auto* const found = std::ranges::find(kAims, name);
-  if (found == kAims.end()) return std::nullopt;
-  return static_cast<Aim>(found - kAims.begin());
-}
-
-std::string no_such_aim(std::string_view name) {
-  return "no such aim: " + quoted(name) + "; there are reports, status, mapping, clock";
-}
-
-/// Whether the fault may happen to the request of that body: one of its robot, or of any.
-bool is_of(const Fault& fault, std::string_view body) {
-  return fault.robot.empty() || body.find(fault.robot) != std::string_view::npos;
-}
-
-/// Reads the words of a fault of that aim, or of the clock. The error begins with `place`.
-Told read_words(std::string_view aim, std::string_view words, const std::string& place, Orders& orders) {
-  if (aim == kClock) {
-    if (words != kConstant && words != kRunning)
-      return std::unexpected(place + ": expected constant or running, got " + quoted(words));
-    orders.clocks_stand = words == kConstant;
-    return {};
-  }
-  const auto fault = read_fault(words);
-  if (!fault) return std::unexpected(place + ": " + fault.error());
-  orders.aimed.emplace_back(*aim_named(aim), *fault);
-  return {};
-}
-
-/// "reports:record-then-drop", "clock:constant".
-std::expected<Orders, std::string> read_order(std::string_view text) {
-  const auto colon = text.find(':');
-  if (colon == std::string_view::npos) {
-    return std::unexpected("expected an aim and a fault, as in reports:record-then-drop, got '" +
-                           std::string(text) + "'");
-  }
-  const std::string aim(text.substr(0, colon));
-  if (!aim_named(aim) && aim != kClock) return std::unexpected(no_such_aim(aim));
-  Orders orders;
-  if (const auto read = read_words(aim, text.substr(colon + 1), aim, orders); !read)
-    return std::unexpected(read.error());
-  return orders;
-}
-
-/// {"reports": ["record-then-drop", "ok"], "clock": ["constant"]}.
-std::expected<Orders, std::string> read_orders(const Json& told) {
-  if (!told.is_object()) return std::unexpected(R"(expected an object, as in {"reports": ["drop"]})");
-  Orders orders;
-  for (const auto& [aim, list] : told.items()) {
-    if (!aim_named(aim) && aim != kClock) return std::unexpected(no_such_aim(aim));
-    if (!list.is_array()) return std::unexpected(aim + ": expected an array of faults");
-    for (std::size_t i = 0; i < list.size(); ++i) {
-      const std::string place = aim + "[" + std::to_string(i) + "]";
-      if (!list[i].is_string()) return std::unexpected(place + R"(: expected a text, as in "drop")");
-      const auto read = read_words(aim, list[i].get_ref<const std::string&>(), place, orders);
-      if (!read) return std::unexpected(read.error());
-    }
-  }
-  return orders;
-}
-
-}  // namespace
 
 Told Faults::obey(const Orders& orders) {
   const std::lock_guard lock(mutex_);
   std::size_t waiting = orders.aimed.size();
   for (const auto& queue : queues_) waiting += queue.size();
-  if (waiting > kMost) return std::unexpected(kTooMany);
+  if (waiting > kMost) return wrong("at most 10000 faults can be queued");
   for (const auto& [aim, fault] : orders.aimed) queue(aim).push_back(fault);
   clocks_stand_ = orders.clocks_stand.value_or(clocks_stand_);
   return {};
 }
 
 Told Faults::tell(std::string_view aim_and_fault) {
-  const auto orders = read_order(aim_and_fault);
-  return orders ? obey(*orders) : std::unexpected(orders.error());
-}
-
-Told Faults::tell_rate(std::string_view aim_fault_and_rate) {
-  const auto equals = aim_fault_and_rate.rfind('=');
-  const std::string_view text = equals == std::string_view::npos ? "" : aim_fault_and_rate.substr(equals + 1);
-  const auto rate = number_of<double>(text, 0, 1);
-  if (!rate) {
-    return std::unexpected(
-        "expected a rate from 0 to 1 at the end, as in reports:record-then-drop=0.1, got '" +
-        std::string(aim_fault_and_rate) + "'");
-  }
-  const auto orders = read_order(aim_fault_and_rate.substr(0, equals));
-  if (!orders) return std::unexpected(orders.error());
-  if (orders->aimed.empty()) return std::unexpected(no_such_aim(kClock));
-  const auto& [aim, fault] = orders->aimed.front();
-  const std::lock_guard lock(mutex_);
-  double sum = *rate;
-  for (const Rate& other : rates_) sum += other.aim == aim ? other.rate : 0;
-  if (sum > 1) {
-    return std::unexpected(std::string(kAims[static_cast<std::size_t>(aim)]) +
-                           ": the rates come to more than 1");
-  }
-  rates_.push_back({aim, fault, *rate});
-  return {};
+  const Orders orders = ADIT_TRY(read_order(aim_and_fault));
+  return obey(orders);
 }
 
 Told Faults::tell_all(const Json& told) {
-  const auto orders = read_orders(told);
-  return orders ? obey(*orders) : std::unexpected(orders.error());
+  const Orders orders = ADIT_TRY(read_orders(told));
+  return obey(orders);
+}
+
+Told Faults::tell_rate(std::string_view aim_fault_and_rate) {
+  const std::size_t equals = aim_fault_and_rate.rfind('=');
+  const auto rate = number_of<double>(aim_fault_and_rate.substr(equals + 1), 0, 1);  // npos + 1 is 0
+  if (!rate) {
+    return wrong("expected a rate from 0 to 1 at the end, as in reports:record-then-drop=0.1, got '",
+                 aim_fault_and_rate, "'");
+  }
+  const Orders orders = ADIT_TRY(read_order(aim_fault_and_rate.substr(0, equals)));
+  if (orders.aimed.empty()) return no_such_aim(kClock);
+  const auto& [aim, fault] = orders.aimed.front();
+  const std::lock_guard lock(mutex_);
+  double sum = *rate;
+  for (const Rate& other : rates_) sum += other.aim == aim ? other.rate : 0;
+  if (sum > 1) return wrong(kAims[static_cast<std::size_t>(aim)], ": the rates come to more than 1");
+  rates_.push_back({aim, fault, *rate});
+  return {};
 }
 
 void Faults::clear() {

@@ -9,7 +9,6 @@
 #include <mutex>
 #include <optional>
 #include <random>
-#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -17,20 +16,21 @@
 
 #include "rehearsal/command_post/document.hpp"
 #include "rehearsal/command_post/endpoint.hpp"
-#include "rehearsal/command_post/http.hpp"
+#include "rehearsal/command_post/run.hpp"
 
 namespace adit::rehearsal {
 
-struct Effect;  // misbehave.hpp
+/// What a fault does to an answer (README.md, 'Rehearse with a bad Command Post').
+struct Effect;
 
 /// A fault of one request's answer, on purpose: at most one effect, and additions that go with any.
 struct Fault {
   using Seconds = std::chrono::duration<double>;
 
-  const Effect* effect = nullptr;  // null: none
-  int times = 1;                   // that many requests, one after the other (429=COUNT)
-  std::optional<Seconds> lasts;    // from its first request on, all those of its aim
-  std::string robot;               // of whose messages alone; "": of all
+  const Effect* effect = nullptr;    // null: none
+  int times = 1;                     // that many requests, one after the other (429=COUNT)
+  std::optional<Seconds> lasts;      // from its first request on, all those of its aim
+  std::optional<std::string> robot;  // of whose messages alone; absent: of all
   bool other_sender = false;
   std::optional<std::int64_t> remaining;  // added to remaining_reports, from then on
   std::optional<Seconds> record_after;
@@ -38,10 +38,6 @@ struct Fault {
   std::optional<int> retry_after;  // seconds, in a header of the answer
   bool clock_stands = false;       // run_clock is what the measured server always says
 };
-
-/// Reads "record-then-drop", "429=3,retry-after=2", "ok": words with a comma between them. An error is a
-/// sentence that names the word.
-std::expected<Fault, std::string> read_fault(std::string_view words);
 
 /// The words again, in one order; kOk if there is nothing wrong.
 std::string words_of(const Fault& fault);
@@ -113,26 +109,8 @@ class Faults {
   std::mt19937_64 chance_;
 };
 
-/// A request whose answer is to be spoiled.
-struct Spoilt {
-  Aim aim;
-  Manner manner;
-  Outcome outcome;  // as it was judged; if it was not, the last good answer to its aim
-};
-
-/// A wrong answer to a request (README.md, 'Rehearse with a bad Command Post').
-struct Effect {
-  std::string_view word;
-  bool records;  // the request is judged
-  Outcome (*outcome_of)(const Spoilt& spoilt);
-};
-
-std::span<const Effect> known_effects();
-
 /// Whether the request is judged at all.
-inline bool records(const Fault& fault) {
-  return fault.effect == nullptr || fault.effect->records;
-}
+bool records(const Fault& fault);
 
 /// Puts the fault between a decided outcome and the connection. The outcome of a request that was judged
 /// stays if it is no answer.

@@ -1,26 +1,28 @@
+// adit-rehearsal: a Command Post to rehearse against.
+
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <map>
+#include <functional>
 #include <memory>
-#include <sstream>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "command_line/program.hpp"
 #include "command_line/read.hpp"
+#include "icd/sentence.hpp"
+#include "icd/text.hpp"
+#include "icd/try.hpp"
 #include "rehearsal/command_post/command_post.hpp"
-#include "rehearsal/command_post/fields.hpp"
+#include "rehearsal/command_post/document.hpp"
 #include "rehearsal/command_post/server.hpp"
+#include "rehearsal/common.hpp"
 
 namespace adit::rehearsal {
 namespace {
@@ -32,44 +34,28 @@ using command_line::Wrong;
 
 constexpr double kMost = 1e9;
 
-/// Into an Address, or an optional one.
-template <class Into>
-Wrong take_address(Into& into, const std::string& text) {
-  const auto colon = text.rfind(':');
-  Address address{.host = text.substr(0, colon)};
-  if (address.host.starts_with('[') && address.host.ends_with(']'))
-    address.host = address.host.substr(1, address.host.size() - 2);
-  if (colon == std::string::npos || address.host.empty()) return "expected ADDR:PORT, got '" + text + "'";
-  std::uint64_t port = 0;
-  auto wrong = command_line::read_number(text.substr(colon + 1), 0, UINT16_MAX, port);
-  address.port = static_cast<std::uint16_t>(port);
-  if (!wrong) into = std::move(address);
-  return wrong;
+std::expected<Address, std::string> listening_address(const std::string& text) {
+  auto address = read_address(text, 0);
+  if (!address)
+    return std::unexpected(icd::sentence("expected ADDR:PORT, got '", text, "': ", address.error()));
+  return address;
 }
 
-Wrong take_megabytes(std::uint64_t& bytes, const std::string& text) {
-  auto wrong = command_line::read_number(text, 0, UINT32_MAX, bytes);
-  bytes *= 1'000'000;
-  return wrong;
+std::expected<Counted, std::string> counted_of(const std::string& text) {
+  if (text == "starts") return Counted::Starts;
+  if (text == "last-bytes") return Counted::LastBytes;
+  if (text == "answers") return Counted::Answers;
+  return std::unexpected("expected starts, last-bytes or answers, got '" + text + "'");
 }
 
-Wrong take_counted(std::optional<Counted>& counted, const std::string& text) {
-  static const std::map<std::string, Counted> kWords = {
-      {"starts", Counted::Starts}, {"last-bytes", Counted::LastBytes}, {"answers", Counted::Answers}};
-  const auto found = kWords.find(text);
-  if (found == kWords.end()) return "expected starts, last-bytes or answers, got '" + text + "'";
-  counted = found->second;
-  return std::nullopt;
-}
-
-Wrong take_roster(std::vector<std::string>& roster, const std::string& text) {
-  std::istringstream names(text);
-  for (std::string name; std::getline(names, name, ',');) {
-    if (!is_robot_name(name))
-      return "expected names of 1 to 10 letters, digits and underscores, got '" + name + "'";
-    roster.push_back(name);
+std::expected<std::vector<std::string>, std::string> roster_of(const std::string& text) {
+  std::vector<std::string> roster;
+  for (std::string_view rest = text; !rest.empty();) {
+    const std::string& name = roster.emplace_back(icd::cut(rest, ','));
+    if (is_robot_name(name)) continue;
+    return std::unexpected("expected names of 1 to 10 letters, digits and underscores, got '" + name + "'");
   }
-  return std::nullopt;
+  return roster;
 }
 
 /// The ICD's section 5 can be read so that its rate is of all API requests together.
@@ -98,16 +84,16 @@ Wrong take_as_measured(Options& options, const std::string&) {
       .about = "Simulated Command Post for rehearsals.",
       .rows =
           {{"--scoring", "ADDR:PORT", "address of the scoring endpoint (port 0: any free port)",
-            take<take_address<Address>>(options.scoring), Wanted::Always},
+            parsed_value<listening_address>(options.scoring), Wanted::Always},
            {"--mapping", "ADDR:PORT", "address of the mapping endpoint",
-            take<take_address<Address>>(options.mapping), Wanted::Always},
+            parsed_value<listening_address>(options.mapping), Wanted::Always},
            {"--secrets", "DIR", "directory of the tokens: scoring.token and mapping.token", &options.secrets,
             Wanted::Always},
            {"--artifacts", "CSV", "true artifacts that reports are scored against: type,x,y,z",
             &options.artifacts},
            {"--transcript", "DIR", "record every request in this directory", &options.transcript},
            {"--transcript-mb", "N", "save no more map pictures when the transcript has N MB (2000)",
-            take<take_megabytes>(options.transcript_bytes)},
+            number<0UL, UINT32_MAX>(options.transcript_megabytes)},
            {"--as-measured", "", "behave like the public test servers instead of the ICD",
             take<take_as_measured>(options)},
            {"--slash", "", "redirect a path without a trailing slash to the path with one", &options.slash},
@@ -127,12 +113,12 @@ Wrong take_as_measured(Options& options, const std::string&) {
            {"--counts", "WHAT",
             "starts, last-bytes or answers: where --rate measures the interval between two maps, states or "
             "markers messages",
-            take<take_counted>(options.counted)},
+            parsed_value<counted_of>(options.counted)},
            {"--link", "MBIT",
             "limit the data received at both endpoints together to MBIT Mbit/s (0: no limit)",
             number<0.0, kMost>(options.link)},
            {"--roster", "NAME,...", "names of the registered robots; any other name is a violation",
-            take<take_roster>(options.roster)},
+            parsed_value<roster_of>(options.roster)},
            {"--not-started", "", "start the run only on POST /start at the control port",
             &options.not_started},
            {"--fault", "AIM:FAULT", "apply FAULT to the next request of AIM; may be given several times",
@@ -144,7 +130,7 @@ Wrong take_as_measured(Options& options, const std::string&) {
            {"--control", "ADDR:PORT",
             "address of the control port: POST /start /stop /resume /end /new-run /grant /rename "
             "/other-sender /posted, GET /record /arrivals, GET, POST and DELETE /faults",
-            take<take_address<std::optional<Address>>>(options.control)},
+            parsed_value<listening_address>(options.control)},
            {"--verbose", "", "print a line for each request even if stdout is not a terminal",
             &options.verbose},
            {"--version", "", "print the version", &options.version},
@@ -171,29 +157,6 @@ Wrong take_as_measured(Options& options, const std::string&) {
   };
 }
 
-std::expected<std::string, std::string> read_token(const std::string& path) {
-  std::ifstream file(path);
-  if (!file) return std::unexpected(path + ": cannot be read");
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
-  std::string token(trimmed(text));
-  const bool visible = std::ranges::all_of(token, [](char c) { return c > 0x20 && c < 0x7f; });
-  if (token.empty() || !visible)
-    return std::unexpected(path + ": expected one token of visible ASCII characters");
-  return token;
-}
-
-/// `scoring.token` and `mapping.token` in `folder`; white space around a token is cut. An error names the
-/// file, never its content.
-std::expected<Secrets, std::string> read_secrets(const std::string& folder) {
-  auto scoring = read_token(folder + "/scoring.token");
-  if (!scoring) return std::unexpected(scoring.error());
-  auto mapping = read_token(folder + "/mapping.token");
-  if (!mapping) return std::unexpected(mapping.error());
-  return Secrets{std::move(*scoring), std::move(*mapping)};
-}
-
-// adit-rehearsal: a Command Post to rehearse against.
-
 constexpr int kWrongUse = 2;
 constexpr std::size_t kMostSmallBody = std::size_t{1} << 20;  // of scoring and control
 constexpr int kKilled = 3;  // the mapping server as measured died of a message
@@ -214,48 +177,30 @@ Told tell_faults(const Options& options, Faults& faults) {
 }
 
 std::expected<std::unique_ptr<CommandPost>, std::string> build(const Options& options) {
-  const auto secrets = read_secrets(options.secrets);
-  if (!secrets) return std::unexpected(secrets.error());
+  const std::filesystem::path folder = options.secrets;
+  const std::string scoring = ADIT_TRY(read_token(folder / "scoring.token"));
+  const std::string mapping = ADIT_TRY(read_token(folder / "mapping.token"));
   std::vector<Artifact> artifacts;
-  if (!options.artifacts.empty()) {
-    auto read = read_artifacts(options.artifacts);
-    if (!read) return std::unexpected(read.error());
-    artifacts = std::move(*read);
-  }
+  if (!options.artifacts.empty()) artifacts = ADIT_TRY(read_artifacts(options.artifacts));
   std::unique_ptr<Transcript> transcript;
-  if (!options.transcript.empty()) {
-    auto opened = Transcript::open(options.transcript, options.transcript_bytes);
-    if (!opened) return std::unexpected(opened.error());
-    transcript = std::move(*opened);
-  }
-  auto post = std::make_unique<CommandPost>(options, *secrets, std::move(artifacts), std::move(transcript));
-  if (auto told = tell_faults(options, post->faults()); !told) return std::unexpected(told.error());
+  if (!options.transcript.empty())
+    transcript = ADIT_TRY(Transcript::open(options.transcript, options.transcript_megabytes * 1'000'000));
+  auto post = std::make_unique<CommandPost>(options, Secrets{scoring, mapping}, std::move(artifacts),
+                                            std::move(transcript));
+  ADIT_TRY(tell_faults(options, post->faults()));
   return post;
-}
-
-/// The signals that main waits for; blocked before the first thread starts.
-sigset_t awaited_signals() {
-  sigset_t signals;
-  sigemptyset(&signals);
-  for (const int signal : {SIGINT, SIGTERM, SIGUSR1}) sigaddset(&signals, signal);
-  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-  return signals;
-}
-
-void print(const std::string& text) {
-  std::fputs(text.c_str(), stdout);
-  (void)std::fflush(stdout);
 }
 
 using Servers = std::vector<std::pair<const char*, std::unique_ptr<Server>>>;  // with their names
 
 std::expected<Servers, std::string> listen(const Options& options, CommandPost& post) {
   Servers servers;
-  std::string wrong;
-  const auto add = [&](const char* name, const Address& address, const WireManner& manner, Decide decide) {
+  const auto add = [&](const char* name, const Address& address, const WireManner& manner,
+                       Decide decide) -> Told {
     auto server = Server::listen(address, manner, std::move(decide));
-    if (server) servers.emplace_back(name, std::move(*server));
-    if (!server && wrong.empty()) wrong = std::string(name) + ": " + server.error();
+    if (!server) return std::unexpected(icd::sentence(name, ": ", server.error()));
+    servers.emplace_back(name, *std::move(server));
+    return {};
   };
   const WireManner mapping{.answers_expect = options.manner == Manner::Strict,
                            .slash = options.slash,
@@ -264,13 +209,12 @@ std::expected<Servers, std::string> listen(const Options& options, CommandPost& 
   WireManner scoring = mapping;
   scoring.answers_expect = true;
   scoring.most_body = kMostSmallBody;
-  add("scoring", options.scoring, scoring, [&post](const Request& request) { return post.scoring(request); });
-  add("mapping", options.mapping, mapping, [&post](const Request& request) { return post.mapping(request); });
+  ADIT_TRY(add("scoring", options.scoring, scoring, std::bind_front(&CommandPost::scoring, &post)));
+  ADIT_TRY(add("mapping", options.mapping, mapping, std::bind_front(&CommandPost::mapping, &post)));
   if (options.control) {
-    add("control", *options.control, {.most_body = kMostSmallBody},
-        [&post](const Request& request) { return post.control(request); });
+    ADIT_TRY(add("control", *options.control, {.most_body = kMostSmallBody},
+                 std::bind_front(&CommandPost::control, &post)));
   }
-  if (!wrong.empty()) return std::unexpected(wrong);
   return servers;
 }
 
@@ -291,7 +235,7 @@ bool stop_all(const Servers& servers) {
 }
 
 int run(const Options& options) {
-  const sigset_t signals = awaited_signals();
+  const sigset_t signals = block_signals({SIGINT, SIGTERM, SIGUSR1});
   auto post = build(options);
   if (!post) return complain(post.error());
   const auto servers = listen(options, **post);
@@ -319,7 +263,6 @@ int demo(char** arguments) {
 }
 
 }  // namespace
-
 }  // namespace adit::rehearsal
 
 int main(int count, char** arguments) {

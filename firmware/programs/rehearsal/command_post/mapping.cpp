@@ -10,6 +10,10 @@
 namespace adit::rehearsal {
 namespace {
 
+Format format_of(const Request& request) {
+  return request.content_type == "application/cbor" ? Format::CborBytes : Format::JsonText;
+}
+
 /// Said where a message could not be read and no finding tells why.
 constexpr const char* kUnreadable = "The message could not be read";
 
@@ -50,42 +54,26 @@ class StrictMapping : public Endpoint {
 
   Judgement judge(const Request& request) override {
     Judgement judgement;
-    check_entry(request, kMappingFunctions, token_, judgement.findings);
-    const Finding* const finding = judgement.findings.decisive(Manner::Strict);
-    if (finding == nullptr || finding->status != 404) judgement.uri = request.path;
-    if (finding != nullptr) {
-      judgement.outcome = refused(*finding);
-    } else if (limits_.at(judgement.uri).too_soon(request)) {
-      judgement.outcome = refused(429, kTooManyRequests);
-    } else {
-      judge_body(request, judgement);
-      limits_.at(judgement.uri).count(request);  // its answer follows
-    }
+    const auto found = limits_.find(request.path);
+    RateLimit* const limit = found == limits_.end() ? nullptr : &found->second;
+    if (!admit(request, kMappingFunctions, token_, limit, judgement)) return judgement;
+    judge_body(request, judgement);
+    limit->count(request);  // its answer follows
     return judgement;
   }
 
  private:
   void judge_body(const Request& request, Judgement& judgement) {
     Findings& findings = judgement.findings;
+    const auto decisive = [&findings] { return findings.decisive(Manner::Strict); };
     check_content(request, true, findings);
     std::optional<MappingMessage> message;
-    if (findings.decisive(Manner::Strict) == nullptr) {
-      const Format format = request.content_type == "application/cbor" ? Format::CborBytes : Format::JsonText;
-      message = read_mapping(request.body, format, judgement);
-    }
-    if (message && findings.decisive(Manner::Strict) == nullptr) {
-      stamps_.check(judgement.uri, message->stamps, false, findings);
-    }
-    if (const Finding* const finding = findings.decisive(Manner::Strict)) {
-      judgement.outcome = refused(*finding);
-    } else if (message) {
-      judgement.outcome = answered(200, Json(nullptr));
-      judgement.accepted = std::move(message->parts);
-      judgement.markers = std::move(message->markers);
-      judgement.map = std::move(message->map);
-    } else {
-      judgement.outcome = refused(422, kUnreadable);
-    }
+    if (decisive() == nullptr) message = read_mapping(request.body, format_of(request), judgement);
+    if (message && decisive() == nullptr) stamps_.check(judgement.uri, message->stamps, false, findings);
+    judgement.outcome = decisive() != nullptr ? refused(*decisive())
+                        : message             ? answered(200, Json(nullptr))
+                                              : refused(422, kUnreadable);
+    if (message && decisive() == nullptr) judgement.accepted = *std::move(message);
   }
 
   const std::string token_;
@@ -102,10 +90,7 @@ Outcome closing(Outcome outcome) {
 
 /// An unknown URI or a method other than POST: 501 without a body.
 Outcome not_implemented() {
-  Outcome outcome;
-  outcome.answer.status = 501;
-  outcome.answer.content_type = "";
-  return outcome;
+  return {.answer = {.status = 501, .content_type = ""}};
 }
 
 /// It takes bodies that are compressed as a whole.
@@ -157,8 +142,7 @@ class MeasuredMapping : public Endpoint {
       judgement.outcome = closing(refused(400, "The body is not what Content-Encoding says"));
       return;
     }
-    const Format format = request.content_type == "application/cbor" ? Format::CborBytes : Format::JsonText;
-    auto message = read_mapping(*body, format, judgement);
+    auto message = read_mapping(*body, format_of(request), judgement);
     if (const Finding* const finding = findings.decisive(Manner::AsMeasured)) {
       judgement.outcome = outcome_of(*finding);
       return;
@@ -174,9 +158,7 @@ class MeasuredMapping : public Endpoint {
       if (cloud_limit_.too_soon(request)) judgement.outcome = closing(refused(429, kTooManyClouds));
       cloud_limit_.count(request);
     }
-    judgement.accepted = std::move(message->parts);
-    judgement.markers = std::move(message->markers);
-    judgement.map = std::move(message->map);
+    judgement.accepted = *std::move(message);
   }
 
   const std::string token_;

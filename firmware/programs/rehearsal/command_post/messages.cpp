@@ -6,21 +6,19 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <cstdint>
 #include <cstring>
 #include <string_view>
 #include <utility>
 
+#include "icd/sentence.hpp"
 #include "rehearsal/agreed.hpp"
-#include "rehearsal/command_post/document.hpp"
 #include "rehearsal/command_post/endpoint.hpp"
 
 namespace adit::rehearsal {
 
 namespace {
 
-constexpr std::int64_t kFloat32 = 7;
-constexpr std::int64_t kFloat64 = 8;
+using icd::sentence;
 
 /// ICD 6.3.1, `info` and the header of msg.
 std::optional<Grid> read_grid(const Field& msg) {
@@ -29,8 +27,7 @@ std::optional<Grid> read_grid(const Field& msg) {
   const auto metres = info->number("resolution");
   const auto columns = info->integer("width", 1, UINT32_MAX);
   const auto rows = info->integer("height", 1, UINT32_MAX);
-  const auto origin = info->member("origin");
-  const auto pose = origin ? read_pose(*origin) : std::nullopt;
+  const auto pose = info->member("origin").and_then(read_pose);
   if (!metres || !columns || !rows || !pose) return std::nullopt;
   if (*metres <= 0) info->member("resolution")->breaks("expected more than 0", Measured::Takes);
   return Grid{*metres, static_cast<std::uint32_t>(*columns), static_cast<std::uint32_t>(*rows), *pose};
@@ -42,7 +39,7 @@ std::optional<CloudField> read_cloud_field(const Field& field) {
   const auto datatype = field.integer("datatype", 1, kFloat64);
   const auto count = field.integer("count", 1, UINT32_MAX);
   if (!name || !offset || !datatype || !count) return std::nullopt;
-  return CloudField{*name, static_cast<std::uint32_t>(*offset), static_cast<std::uint32_t>(*datatype),
+  return CloudField{*name, static_cast<std::uint32_t>(*offset), static_cast<int>(*datatype),
                     static_cast<std::uint32_t>(*count)};
 }
 
@@ -52,9 +49,8 @@ bool check_ends(const Cloud& cloud, const Field& fields) {
     const CloudField& field = cloud.fields[i];
     const std::uint64_t end = field.offset + std::uint64_t{field.count} * size_of_datatype(field.datatype);
     if (end <= cloud.point_step) continue;
-    fields.findings().breaks(fields.path() + "[" + std::to_string(i) + "]: ends at byte " +
-                                 std::to_string(end) + " of a point of " + std::to_string(cloud.point_step),
-                             Measured::Refuses);
+    fields.findings().breaks(
+        sentence(fields.path(), "[", i, "]: ends at byte ", end, " of a point of ", cloud.point_step));
     return false;
   }
   return true;
@@ -62,7 +58,7 @@ bool check_ends(const Cloud& cloud, const Field& fields) {
 
 /// x, y and z, each there once, all float32 or all float64.
 bool check_axes(const Cloud& cloud, const Field& fields) {
-  std::int64_t common = 0;
+  int common = 0;
   for (const char* const axis : {"x", "y", "z"}) {
     const auto named = [axis](const CloudField& field) { return field.name == axis; };
     const auto found = std::ranges::find_if(cloud.fields, named);
@@ -96,8 +92,7 @@ std::optional<Cloud> read_cloud(const Field& msg) {
     if (!truth) return std::nullopt;
     cloud.is_bigendian = *truth;
   }
-  const auto step = msg.member("point_step");
-  const auto fields = msg.member("fields");
+  const auto step = msg.member("point_step"), fields = msg.member("fields");
   if (!step || !fields) return std::nullopt;
   const auto bytes = step->integer(0, UINT32_MAX);
   const auto elements = fields->elements();
@@ -119,9 +114,8 @@ void check_rows(const Field& msg, const Cloud& cloud) {
   if (!width || !row_step || !width->value().is_number_integer()) return;
   const auto expected = width->value().get<std::uint64_t>() * cloud.point_step;
   if (row_step->value() == Json(expected)) return;
-  row_step->breaks(
-      "expected width * point_step = " + std::to_string(expected) + ", got " + line_of(row_step->value()),
-      Measured::Takes);
+  row_step->breaks(sentence("expected width * point_step = ", expected, ", got ", line_of(row_step->value())),
+                   Measured::Takes);
 }
 
 double coordinate(const char* bytes, std::size_t size, bool bigendian) {
@@ -144,9 +138,9 @@ void check_points(const Cloud& cloud, const std::string& data, const Field& msg)
       if (field.name != "x" && field.name != "y" && field.name != "z") continue;
       const std::size_t size = size_of_datatype(field.datatype);
       if (std::isfinite(coordinate(data.data() + at + field.offset, size, cloud.is_bigendian))) continue;
-      return msg.findings().breaks("msg.data: point " + std::to_string(at / cloud.point_step) +
-                                       " has no finite " + field.name + " (ICD 6.3.2)",
-                                   Measured::Takes);
+      return msg.findings().breaks(
+          sentence("msg.data: point ", at / cloud.point_step, " has no finite ", field.name, " (ICD 6.3.2)"),
+          Measured::Takes);
     }
   }
 }
@@ -168,7 +162,7 @@ std::optional<std::string> inflated(const Field& data, std::string_view bytes, s
   auto whole = gunzip(bytes, most);
   if (whole) return std::move(*whole);
   if (whole.error() == InflateFault::TooLarge)
-    return data.breaks("inflates to more than " + std::to_string(most) + " bytes");
+    return data.breaks(sentence("inflates to more than ", most, " bytes"));
   if (whole.error() == InflateFault::Followed)
     return data.breaks("bytes after the end of the one gzip member", Measured::Hangs);
   return data.breaks("expected a complete gzip member (RFC 1952)");
@@ -178,7 +172,7 @@ std::optional<std::string> inflated(const Field& data, std::string_view bytes, s
 std::optional<std::string> read_data(const Field& msg, Format format, std::size_t most) {
   std::string compression = "none";
   if (const auto field = msg.optional_member("compression")) {
-    const auto text = field->text();
+    const auto text = field->to_text();
     if (!text) return std::nullopt;
     if (*text != "none" && *text != "gzip") return field->breaks("expected \"none\" or \"gzip\" (ICD 6.3)");
     compression = *text;
@@ -193,9 +187,8 @@ std::optional<std::string> read_data(const Field& msg, Format format, std::size_
 bool check_cells(const Grid& grid, const std::string& cells, const Field& msg) {
   const std::uint64_t expected = std::uint64_t{grid.width} * grid.height;
   if (cells.size() != expected) {
-    msg.findings().breaks("msg.data: expected " + std::to_string(grid.width) + " x " +
-                          std::to_string(grid.height) + " = " + std::to_string(expected) + " bytes, got " +
-                          std::to_string(cells.size()));
+    msg.findings().breaks(sentence("msg.data: expected ", grid.width, " x ", grid.height, " = ", expected,
+                                   " bytes, got ", cells.size()));
     return false;
   }
   const auto wrong = std::ranges::find_if(cells, [](char c) {
@@ -203,9 +196,8 @@ bool check_cells(const Grid& grid, const std::string& cells, const Field& msg) {
     return cell > 100 && cell < 255;
   });
   if (wrong != cells.end()) {
-    msg.findings().breaks("msg.data[" + std::to_string(wrong - cells.begin()) +
-                              "]: expected 0 to 100 or 255, got " +
-                              std::to_string(static_cast<unsigned char>(*wrong)),
+    msg.findings().breaks(sentence("msg.data[", wrong - cells.begin(), "]: expected 0 to 100 or 255, got ",
+                                   static_cast<unsigned char>(*wrong)),
                           Measured::Takes);
   }
   return true;
@@ -217,7 +209,7 @@ std::optional<std::string> read_name(const Field& body) {
     body.findings().displeases("Missing field 'name'");
     return "";
   }
-  auto text = name->text();
+  auto text = name->to_text();
   if (text && !text->empty() && !is_robot_name(*text)) {
     name->breaks("expected 1 to 10 letters, digits and underscores (ICD 2)", Measured::Takes);
   }
@@ -229,7 +221,7 @@ std::optional<MapMessage> read_grid_message(const Field& msg, Format format, Map
   if (!grid) return std::nullopt;
   const std::uint64_t cells = std::uint64_t{grid->width} * grid->height;
   if (cells > kMostMapBytes) {
-    msg.findings().breaks("msg.info: more than " + std::to_string(kMostMapBytes) + " cells");
+    msg.findings().breaks(sentence("msg.info: more than ", kMostMapBytes, " cells"));
     return std::nullopt;
   }
   auto data = read_data(msg, format, cells);
@@ -245,9 +237,9 @@ std::optional<MapMessage> read_cloud_message(const Field& msg, Format format, Ma
   auto data = read_data(msg, format, kMostMapBytes);
   if (!data) return std::nullopt;
   if (data->size() % cloud->point_step != 0) {
-    msg.findings().breaks("msg.data: " + std::to_string(data->size()) +
-                              " bytes are not a multiple of point_step " + std::to_string(cloud->point_step),
-                          Measured::Takes);
+    msg.findings().breaks(
+        sentence("msg.data: ", data->size(), " bytes are not a multiple of point_step ", cloud->point_step),
+        Measured::Takes);
   }
   check_rows(msg, *cloud);
   check_points(*cloud, *data, msg);
@@ -256,31 +248,6 @@ std::optional<MapMessage> read_cloud_message(const Field& msg, Format format, Ma
   return message;
 }
 
-}  // namespace
-
-std::uint32_t size_of_datatype(std::uint32_t datatype) {
-  constexpr std::array<std::uint32_t, 9> sizes = {0, 1, 1, 2, 2, 4, 4, 4, 8};
-  return sizes.at(datatype);
-}
-
-std::optional<MapMessage> read_map(const Json& document, Format format, Findings& findings) {
-  const Field body(document, "", findings);
-  const auto type = body.member("type");
-  const auto kind = type ? type->text() : std::nullopt;
-  const auto msg = body.member("msg");
-  if (!kind || !msg || !msg->is_object()) return std::nullopt;
-  MapMessage message;
-  auto name = read_name(body);
-  if (!name) return std::nullopt;
-  message.name = std::move(*name);
-  read_header(*msg, message.stamps);
-  if (*kind == "OccupancyGrid") return read_grid_message(*msg, format, std::move(message));
-  if (*kind == "PointCloud2") return read_cloud_message(*msg, format, std::move(message));
-  return type->breaks("expected \"OccupancyGrid\" or \"PointCloud2\" (ICD 6.4)");
-}
-
-namespace {
-
 /// zlib's counter is 32 bits wide; no map's data is larger (kMostMapBytes).
 unsigned long crc_of(const std::string& data) {
   return crc32(0, reinterpret_cast<const Bytef*>(data.data()), static_cast<uInt>(data.size()));
@@ -288,23 +255,19 @@ unsigned long crc_of(const std::string& data) {
 
 /// Puts what `data` is in the place of what it holds.
 void describe_data(Json& document, const std::optional<MapMessage>& map) {
-  if (!document.is_object()) return;
-  const auto msg = document.find("msg");
-  if (msg == document.end() || !msg->is_object() || !msg->contains("data")) return;
-  Json& data = (*msg)["data"];
-  if (map) {
-    data = {{"bytes", map->data.size()}, {"crc32", crc_of(map->data)}};
-  } else {
-    data = {{"unread", data.type_name()}};
-  }
+  if (!document.is_object() || !document.contains("msg")) return;
+  Json& msg = document["msg"];
+  if (!msg.is_object() || !msg.contains("data")) return;
+  Json& data = msg["data"];
+  data = map ? Json{{"bytes", map->data.size()}, {"crc32", crc_of(map->data)}}
+             : Json{{"unread", data.type_name()}};
 }
 
 std::optional<MappingMessage> read_named_map(Json& document, Format format, Findings& findings) {
   auto map = read_map(document, format, findings);
   describe_data(document, map);
   if (!map) return std::nullopt;
-  MappingMessage message;
-  message.stamps = map->stamps;
+  MappingMessage message{.stamps = map->stamps};
   message.parts.push_back({std::holds_alternative<Grid>(map->msg) ? "grid" : "cloud", map->name});
   message.map = std::move(map);
   return message;
@@ -346,7 +309,7 @@ std::optional<MarkerChange> read_identity(const Field& marker) {
   if (!ns) marker.findings().displeases("Missing field '" + marker.path() + ".ns'");
   if (!id) marker.findings().displeases("Missing field '" + marker.path() + ".id'");
   const auto number = id ? id->integer(INT32_MIN, INT32_MAX) : 0;
-  const auto text = ns ? ns->text() : std::string();
+  const auto text = ns ? ns->to_text() : std::string();
   if (!number || !text) return std::nullopt;
   return MarkerChange{.ns = *text, .id = *number};
 }
@@ -379,7 +342,7 @@ void check_geometry(const Field& marker, std::int64_t type) {
     }
   }
   if (const auto colors = marker.optional_member("colors")) check_colors(*colors, count, type);
-  if (const auto mesh = marker.optional_member("mesh_resource")) mesh->text();
+  if (const auto mesh = marker.optional_member("mesh_resource")) mesh->to_text();
   for (const char* const name : {"frame_locked", "mesh_use_embedded_materials"}) {
     if (const auto flag = marker.optional_member(name)) flag->boolean();
   }
@@ -390,7 +353,7 @@ void check_looks(const Field& marker) {
   if (const auto scale = marker.member("scale", Measured::Takes)) read_point(*scale);
   if (const auto color = marker.member("color", Measured::Takes)) read_color(*color);
   if (const auto lifetime = marker.optional_member("lifetime")) check_lifetime(*lifetime);
-  if (const auto text = marker.optional_member("text")) text->text();
+  if (const auto text = marker.optional_member("text")) text->to_text();
 }
 
 /// Alpha 0: "the object will appear invisible" (ICD 6.6), unless its points or its mesh have colors of their
@@ -428,8 +391,7 @@ bool read_marker(const Field& marker, MappingMessage& message) {
   auto change = read_identity(marker);
   const auto shape = marker.integer("type", 0, kLastType);
   const auto kind = marker.integer("action", 0, 3);
-  const auto pose = marker.member("pose");
-  const auto place = pose ? read_pose(*pose) : std::nullopt;
+  const auto place = marker.member("pose").and_then(read_pose);
   if (!change || !shape || !kind || !place) return false;
   if (*kind == 1) marker.member("action")->breaks("expected 0, 2 or 3 (ICD 6.6)", Measured::Takes);
   check_looks(marker);
@@ -447,8 +409,7 @@ bool read_marker(const Field& marker, MappingMessage& message) {
 
 std::optional<MappingMessage> read_markers(const Json& document, Findings& findings) {
   const Field body(document, "", findings);
-  const auto markers = body.member("markers");
-  const auto elements = markers ? markers->elements() : std::nullopt;
+  const auto elements = body.member("markers").and_then(&Field::elements);
   if (!elements) return std::nullopt;
   MappingMessage message;
   for (const Field& marker : *elements) {
@@ -463,8 +424,7 @@ std::optional<MappingMessage> read_state(const Json& document, Findings& finding
   MappingMessage message;
   if (!body.optional_member("header")) findings.displeases("Missing field 'header'");
   read_header(body, message.stamps);
-  const auto poses = body.member("poses");
-  const auto elements = poses ? poses->elements() : std::nullopt;
+  const auto elements = body.member("poses").and_then(&Field::elements);
   if (!elements) return std::nullopt;
   for (const Field& pose : *elements) {
     const auto name = pose.text("name");
@@ -480,6 +440,22 @@ std::optional<MappingMessage> read_state(const Json& document, Findings& finding
 }
 
 }  // namespace
+
+std::optional<MapMessage> read_map(const Json& document, Format format, Findings& findings) {
+  const Field body(document, "", findings);
+  const auto type = body.member("type");
+  const auto kind = type.and_then(&Field::to_text);
+  const auto msg = body.member("msg");
+  if (!kind || !msg || !msg->is_object()) return std::nullopt;
+  MapMessage message;
+  auto name = read_name(body);
+  if (!name) return std::nullopt;
+  message.name = std::move(*name);
+  read_header(*msg, message.stamps);
+  if (*kind == "OccupancyGrid") return read_grid_message(*msg, format, std::move(message));
+  if (*kind == "PointCloud2") return read_cloud_message(*msg, format, std::move(message));
+  return type->breaks("expected \"OccupancyGrid\" or \"PointCloud2\" (ICD 6.4)");
+}
 
 std::optional<MappingMessage> read_mapping(const std::string& body, Format format, Judgement& judgement) {
   Findings& findings = judgement.findings;

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "rehearsal/command_post/document.hpp"
-#include "rehearsal/command_post/fields.hpp"
 
 namespace adit::rehearsal {
 
@@ -18,22 +17,12 @@ inline constexpr std::size_t kMostMapBytes = std::size_t{512} << 20;
 struct Grid {
   double resolution = 0;
   std::uint32_t width = 0, height = 0;
-  Pose origin;
+  Placement origin;
 };
-
-struct CloudField {
-  std::string name;
-  std::uint32_t offset = 0;
-  std::uint32_t datatype = 7;
-  std::uint32_t count = 1;
-};
-
-/// Bytes of one value of a PointField datatype (ICD 6.3.2); `datatype` from 1 to 8.
-std::uint32_t size_of_datatype(std::uint32_t datatype);
 
 /// ICD 6.3.2, without its points.
 struct Cloud {
-  std::optional<Pose> origin;
+  std::optional<Placement> origin;
   std::vector<CloudField> fields;
   bool is_bigendian = false;
   std::uint32_t point_step = 0;
@@ -69,10 +58,10 @@ struct Accepted {
 
 /// A body for one of the mapping URIs, read.
 struct MappingMessage {
-  std::vector<Stamp> stamps;
-  std::vector<Accepted> parts;
-  std::optional<MapMessage> map;
-  std::vector<MarkerChange> markers;
+  std::vector<Stamp> stamps = {};
+  std::vector<Accepted> parts = {};
+  std::optional<MapMessage> map = {};
+  std::vector<MarkerChange> markers = {};
 };
 
 /// Reads the body of `judgement.uri` and writes down what is found. Leaves the document in judgement.message,

@@ -1,10 +1,17 @@
 #include "rehearsal/command_post/record.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
 #include <iterator>
 #include <sstream>
 
+#include "icd/sentence.hpp"
+#include "rehearsal/common.hpp"
+
 namespace adit::rehearsal {
+
 namespace {
 
 constexpr std::size_t kMostParts = 1000;
@@ -23,25 +30,149 @@ std::string printable(const std::string& text) {
   return safe;
 }
 
-}  // namespace
-
-void Record::note_part(const std::string& uri, const Accepted& part) {
-  const Part key{uri, part.kind, part.robot.substr(0, kLongest)};
-  const bool room = accepted_.size() < kMostParts || accepted_.contains(key);
-  ++accepted_[room ? key : Part{uri, part.kind, kOthers}];
+char type_letter(int datatype) {
+  if (datatype >= 7) return 'F';
+  return datatype % 2 == 1 ? 'I' : 'U';
 }
+
+/// A point without its gaps.
+std::size_t packed_size(const Cloud& cloud) {
+  std::size_t size = 0;
+  for (const CloudField& field : cloud.fields)
+    size += std::size_t{field.count} * size_of_datatype(field.datatype);
+  return size;
+}
+
+template <class Word>
+void write_words(std::ofstream& file, const char* title, const std::vector<CloudField>& fields, Word word) {
+  file << title;
+  for (const CloudField& field : fields) file << ' ' << word(field);
+  file << '\n';
+}
+
+void write_header(std::ofstream& file, const Cloud& cloud, std::size_t points) {
+  file << "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\n";
+  write_words(file, "FIELDS", cloud.fields, [](const CloudField& field) {
+    const std::string name = tame(field.name);
+    return name.empty() ? "_" : name;
+  });
+  write_words(file, "SIZE", cloud.fields, [](const auto& field) { return size_of_datatype(field.datatype); });
+  write_words(file, "TYPE", cloud.fields, [](const auto& field) { return type_letter(field.datatype); });
+  write_words(file, "COUNT", cloud.fields, [](const auto& field) { return field.count; });
+  const Placement origin = cloud.origin.value_or(Placement{});
+  const auto& [at, turn] = origin;
+  file << icd::sentence("WIDTH ", points, "\nHEIGHT 1\nVIEWPOINT ", at.x, " ", at.y, " ", at.z, " ", turn.w,
+                        " ", turn.x, " ", turn.y, " ", turn.z, "\nPOINTS ", points, "\nDATA binary\n");
+}
+
+/// Writes the `count` values of a field in little-endian order.
+void write_values(std::ofstream& file, const char* value, const CloudField& field, bool bigendian) {
+  const std::size_t size = size_of_datatype(field.datatype);
+  if (!bigendian) {
+    file.write(value, static_cast<std::streamsize>(size * field.count));
+    return;
+  }
+  for (std::uint32_t i = 0; i < field.count; ++i, value += size) {
+    std::reverse_copy(value, value + size, std::ostreambuf_iterator(file));
+  }
+}
+
+/// Writes `stem`.pcd, PCD v0.7, binary: the message's fields without the gaps between them, little-endian,
+/// its origin as the VIEWPOINT. Bytes after the last whole point are left out. Returns false if the disk did
+/// not take it.
+bool write_cloud(const Cloud& cloud, const std::string& data, const std::string& stem) {
+  const std::size_t points = data.size() / cloud.point_step;
+  std::ofstream file(stem + ".pcd", std::ios::binary);
+  write_header(file, cloud, points);
+  for (std::size_t i = 0; i < points && file; ++i) {
+    for (const CloudField& field : cloud.fields)
+      write_values(file, data.data() + i * cloud.point_step + field.offset, field, cloud.is_bigendian);
+  }
+  file.close();
+  return !file.fail();
+}
+
+/// How many bytes the picture of a map will take on the disk, about.
+std::size_t picture_size(const MapMessage& map) {
+  constexpr std::size_t headers = 1024;
+  const auto* const cloud = std::get_if<Cloud>(&map.msg);
+  if (cloud == nullptr) return map.data.size() + headers;
+  const std::size_t header = headers + cloud->fields.size() * 64;
+  return header + map.data.size() / cloud->point_step * packed_size(*cloud);
+}
+
+char grey_of(char cell) {
+  const auto value = static_cast<unsigned char>(cell);
+  if (value == kUnknown) return static_cast<char>(205);
+  if (value > 100) return static_cast<char>(255);  // no value of the ICD's
+  return static_cast<char>(254 - (254 * value + 50) / 100);
+}
+
+double yaw_of(const Rotation& q) {
+  return std::atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z));
+}
+
+/// Writes `stem`.pgm as ROS's map_saver would draw it (254 free to 0 occupied, 205 unknown, the first row at
+/// the bottom; each value from 0 to 100 has its own grey) and `stem`.yaml beside it. False: the disk did not
+/// take it.
+bool write_grid(const Grid& grid, const std::string& cells, const std::string& stem) {
+  std::ofstream picture(stem + ".pgm", std::ios::binary), yaml(stem + ".yaml");
+  picture << "P5\n" << grid.width << ' ' << grid.height << "\n255\n";
+  std::string row(grid.width, '\0');
+  for (std::size_t y = grid.height; y-- > 0;) {
+    std::ranges::transform(std::string_view(cells).substr(y * grid.width, grid.width), row.begin(), grey_of);
+    picture << row;
+  }
+  const Vector3& at = grid.origin.position;
+  yaml << icd::sentence("image: ", stem.substr(stem.rfind('/') + 1), ".pgm\nresolution: ", grid.resolution,
+                        "\norigin: [", at.x, ", ", at.y, ", ", yaw_of(grid.origin.orientation),
+                        "]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n");
+  picture.close();
+  yaml.close();
+  return !picture.fail() && !yaml.fail();
+}
+
+std::uint64_t lines_in(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return static_cast<std::uint64_t>(
+      std::count(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>(), '\n'));
+}
+
+std::string stem_of(std::uint64_t number, const MapMessage& map) {
+  const std::string digits = std::to_string(number);
+  const std::size_t zeros = 6 - std::min<std::size_t>(6, digits.size());
+  return icd::sentence(std::string(zeros, '0'), digits, "-", map.name.empty() ? "merged" : tame(map.name));
+}
+
+/// Replaces long texts and lists of a document by their sizes, so that a line of it can be read.
+void shorten(Json& value) {
+  constexpr std::size_t longest_text = 4096;
+  constexpr std::size_t longest_list = 10'000;
+  if (value.is_binary()) {
+    value = {{"bytes", value.get_binary().size()}};
+  } else if (value.is_string() && value.get_ref<const std::string&>().size() > longest_text) {
+    value = {{"characters", value.get_ref<const std::string&>().size()}};
+  } else if (value.is_structured() && value.size() > longest_list) {
+    value = {{"elements", value.size()}};
+  } else if (value.is_structured()) {
+    for (Json& element : value) shorten(element);
+  }
+}
+
+OrderedJson or_null(bool is_there, const auto& value) {
+  return is_there ? OrderedJson(value) : OrderedJson(nullptr);
+}
+
+}  // namespace
 
 void Record::note(std::uint64_t number, const Judgement& judgement) {
   const std::lock_guard lock(mutex_);
   const bool answered = judgement.outcome.kind == Outcome::Kind::Answered;
   const std::string uri = judgement.uri.empty() ? kOthers : judgement.uri;
   ++requests_[{uri, answered ? judgement.outcome.answer.status : 0}];
-  for (const Accepted& part : judgement.accepted) note_part(uri, part);
-  if (!judgement.fault.empty()) {
-    const std::pair key{uri, judgement.fault};
-    const bool room = faults_.size() < kMostFaults || faults_.contains(key);
-    ++faults_[room ? key : UriAndFault{uri, kOthers}];
-  }
+  for (const auto& [kind, robot] : judgement.accepted.parts)
+    count_bounded(accepted_, {uri, kind, robot.substr(0, kLongest)}, {uri, kind, kOthers}, kMostParts);
+  if (!judgement.fault.empty()) count_bounded(faults_, {uri, judgement.fault}, {uri, kOthers}, kMostFaults);
   for (std::string& sentence : judgement.findings.violations()) {
     ++violation_count_;
     if (violations_.size() < kMostViolations) violations_.push_back({number, uri, std::move(sentence)});
@@ -66,7 +197,8 @@ std::string Record::killed_by() const {
   return killed_by_;
 }
 
-OrderedJson Record::counts() const {
+OrderedJson Record::json(const Run::Standing& standing) const {
+  const std::lock_guard lock(mutex_);
   OrderedJson requests = OrderedJson::array();
   for (const auto& [key, count] : requests_) {
     requests.push_back({{"uri", key.first}, {"status", key.second}, {"count", count}});
@@ -80,32 +212,26 @@ OrderedJson Record::counts() const {
   for (const auto& [key, count] : faults_) {
     faults.push_back({{"uri", key.first}, {"fault", key.second}, {"count", count}});
   }
-  return {{"requests", requests}, {"accepted", accepted}, {"faults", faults}};
-}
-
-OrderedJson Record::json(const Run::Standing& standing) const {
-  const std::lock_guard lock(mutex_);
   OrderedJson first = OrderedJson::array();
   for (const Violation& violation : violations_) {
     first.push_back(
         {{"request", violation.number}, {"uri", violation.uri}, {"sentence", violation.sentence}});
   }
-  OrderedJson killed;
-  if (!killed_by_.empty()) killed = killed_by_;
-  OrderedJson record = {{"manner", manner_ == Manner::Strict ? "strict" : "as measured"},
-                        {"team", standing.team},
-                        {"run", standing.run},
-                        {"state", standing.state},
-                        {"run_clock", standing.clock},
-                        {"score", standing.score},
-                        {"remaining_reports", standing.remaining_reports}};
-  record.update(counts());
-  record.update({{"report_count", report_count_},
-                 {"reports", reports_},
-                 {"violation_count", violation_count_},
-                 {"violations", first},
-                 {"killed_by", killed}});
-  return record;
+  return {{"manner", manner_ == Manner::Strict ? "strict" : "as measured"},
+          {"team", standing.team},
+          {"run", standing.run},
+          {"state", standing.state},
+          {"run_clock", standing.clock},
+          {"score", standing.score},
+          {"remaining_reports", standing.remaining_reports},
+          {"requests", requests},
+          {"accepted", accepted},
+          {"faults", faults},
+          {"report_count", report_count_},
+          {"reports", reports_},
+          {"violation_count", violation_count_},
+          {"violations", first},
+          {"killed_by", killed_by_.empty() ? OrderedJson() : OrderedJson(killed_by_)}};
 }
 
 std::string Record::summary(const Run::Standing& standing) const {
@@ -146,6 +272,88 @@ std::string Record::summary(const Run::Standing& standing) const {
   }
   if (!killed_by_.empty()) out << "killed by " << printable(killed_by_) << "\n";
   return out.str();
+}
+
+std::expected<std::unique_ptr<Transcript>, std::string> Transcript::open(const std::string& folder,
+                                                                         std::uint64_t most) {
+  std::unique_ptr<Transcript> transcript(new Transcript(folder, most));
+  std::error_code error;
+  for (const char* const kind : {"grids", "clouds"}) {
+    std::filesystem::create_directories(std::filesystem::path(folder) / kind, error);
+    if (error) return std::unexpected(folder + "/" + kind + ": " + error.message());
+  }
+  const std::string requests = folder + "/requests.jsonl";
+  transcript->requests_ = lines_in(requests);
+  transcript->requests_file_.open(requests, std::ios::binary | std::ios::app);
+  transcript->reports_file_.open(folder + "/reports.jsonl", std::ios::binary | std::ios::app);
+  if (!transcript->requests_file_ || !transcript->reports_file_) {
+    return std::unexpected(folder + ": cannot be written");
+  }
+  return transcript;
+}
+
+std::optional<std::string> Transcript::picture(std::uint64_t number, const MapMessage& map) {
+  const std::size_t size = picture_size(map);
+  {
+    const std::lock_guard lock(mutex_);
+    if (written_ + size > most_) return std::nullopt;
+    written_ += size;
+  }
+  const auto* const grid = std::get_if<Grid>(&map.msg);
+  const std::string stem = (grid != nullptr ? "grids/" : "clouds/") + stem_of(number, map);
+  const std::string path = folder_ + "/" + stem;
+  const bool good = grid != nullptr ? write_grid(*grid, map.data, path)
+                                    : write_cloud(std::get<Cloud>(map.msg), map.data, path);
+  if (!good) return std::nullopt;
+  return stem + (grid != nullptr ? ".pgm" : ".pcd");
+}
+
+void Transcript::request(std::uint64_t number, const char* endpoint, const Request& request,
+                         Judgement& judgement) {
+  constexpr std::size_t longest_message = std::size_t{1} << 20;
+  OrderedJson message;
+  if (judgement.message) {
+    if (judgement.accepted.map) {
+      const auto file = picture(number, *judgement.accepted.map);
+      (*judgement.message)["msg"]["data"]["file"] = file ? Json(*file) : Json(nullptr);
+    }
+    shorten(*judgement.message);
+    message = *judgement.message;
+    const std::size_t length = line_of(message).size();
+    if (length > longest_message) message = {{"characters", length}};
+  }
+  const Outcome& outcome = judgement.outcome;
+  const bool answered = outcome.kind == Outcome::Kind::Answered && outcome.answer.status != 0;
+  const OrderedJson line = {
+      {"number", number},
+      {"at", std::chrono::duration<double>(request.at - opened_).count()},
+      {"endpoint", endpoint},
+      {"method", request.method},
+      {"uri", request.target},
+      {"content_type", or_null(request.content_type.has_value(), request.content_type.value_or(""))},
+      {"content_encoding",
+       or_null(request.content_encoding.has_value(), request.content_encoding.value_or(""))},
+      {"expect", request.expects_continue},
+      {"authorization", request.authorization.has_value()},
+      {"body_bytes", request.body.size()},
+      {"status", or_null(answered, outcome.answer.status)},
+      {"answer", or_null(answered, outcome.answer.body)},
+      {"message", std::move(message)},
+      {"fault", or_null(request.fault.has_value(), request.fault.value_or(HttpFault{}).sentence)},
+      {"rehearsed_fault", or_null(!judgement.fault.empty(), judgement.fault)},
+      {"violations", judgement.findings.violations()}};
+  append(requests_file_, line);
+}
+
+void Transcript::append(std::ofstream& file, const OrderedJson& line) {
+  const std::string text = line_of(line) + "\n";
+  const std::lock_guard lock(mutex_);
+  written_ += text.size();
+  file << text << std::flush;
+  if (file || complained_) return;
+  complained_ = true;
+  file.clear();
+  std::fprintf(stderr, "adit-rehearsal: %s: cannot write a line; the disk may be full\n", folder_.c_str());
 }
 
 }  // namespace adit::rehearsal

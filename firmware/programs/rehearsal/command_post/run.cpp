@@ -5,9 +5,9 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
-#include <optional>
 
-#include "rehearsal/command_post/fields.hpp"
+#include "icd/sentence.hpp"
+#include "icd/text.hpp"
 
 namespace adit::rehearsal {
 
@@ -15,60 +15,33 @@ namespace {
 
 constexpr double kScoringDistance = 5.0;  // metres, by the competition's rules
 
-bool same_letters(std::string_view a, std::string_view b) {
-  return lower(std::string(a)) == lower(std::string(b));
-}
-
 std::optional<Artifact> artifact_of(std::string_view line) {
-  std::array<std::string_view, 4> cells;
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    const auto comma = line.find(',');
-    if ((comma == std::string_view::npos) != (i + 1 == cells.size())) return std::nullopt;
-    cells[i] = trimmed(line.substr(0, comma));
-    line.remove_prefix(comma == std::string_view::npos ? line.size() : comma + 1);
-  }
-  constexpr double most = std::numeric_limits<double>::max();
-  const auto x = number_of(cells[1], -most, most), y = number_of(cells[2], -most, most),
-             z = number_of(cells[3], -most, most);
-  if (!is_artifact_type(cells[0]) || !x || !y || !z) return std::nullopt;
-  return Artifact{std::string(cells[0]), {*x, *y, *z}};
+  if (std::ranges::count(line, ',') != 3) return std::nullopt;
+  const std::string type(icd::trimmed(icd::cut(line, ',')));
+  const auto metres = [&line] {
+    constexpr double most = std::numeric_limits<double>::max();
+    return number_of(icd::trimmed(icd::cut(line, ',')), -most, most);
+  };
+  const auto x = metres(), y = metres(), z = metres();
+  if (!is_artifact_type(type) || !x || !y || !z) return std::nullopt;
+  return Artifact{type, {*x, *y, *z}};
 }
 
-}  // namespace
-
-std::expected<std::vector<Artifact>, std::string> read_artifacts(const std::string& path) {
-  std::ifstream file(path);
-  std::string line;
-  if (!std::getline(file, line)) return std::unexpected(path + ": cannot be read");
-  if (trimmed(line) != "type,x,y,z") return std::unexpected(path + ":1: expected the header type,x,y,z");
-  std::vector<Artifact> artifacts;
-  for (int number = 2; std::getline(file, line); ++number) {
-    if (trimmed(line).empty()) continue;
-    auto artifact = artifact_of(line);
-    if (!artifact) {
-      return std::unexpected(path + ":" + std::to_string(number) +
-                             ": expected an artifact type and three numbers, as in Cell Phone,1.5,-2,0");
-    }
-    artifacts.push_back(std::move(*artifact));
-  }
-  return artifacts;
-}
-
-bool claim(std::vector<Artifact>& artifacts, std::string_view type, const Point& position) {
+/// Claims the nearest artifact of that type (in any letter case) which no report has claimed, if it is within
+/// 5 m. Gives whether there was one.
+bool claim(std::vector<Artifact>& artifacts, std::string_view type, const Vector3& position) {
   Artifact* nearest = nullptr;
   double least = kScoringDistance;
   for (Artifact& artifact : artifacts) {
     const double distance = std::hypot(artifact.position.x - position.x, artifact.position.y - position.y,
                                        artifact.position.z - position.z);
-    if (artifact.claimed || distance > least || !same_letters(artifact.type, type)) continue;
+    if (artifact.claimed || distance > least || !icd::same_but_for_case(artifact.type, type)) continue;
     nearest = &artifact;
     least = distance;
   }
   if (nearest != nullptr) nearest->claimed = true;
   return nearest != nullptr;
 }
-
-namespace {
 
 /// "1" is followed by "2", "1.5.9" by "1.5.10", "practice" by "practice-2".
 std::string id_after(std::string id) {
@@ -85,6 +58,24 @@ std::string id_after(std::string id) {
 }
 
 }  // namespace
+
+std::expected<std::vector<Artifact>, std::string> read_artifacts(const std::string& path) {
+  std::ifstream file(path);
+  std::string line;
+  if (!std::getline(file, line)) return std::unexpected(path + ": cannot be read");
+  if (icd::trimmed(line) != "type,x,y,z") return std::unexpected(path + ":1: expected the header type,x,y,z");
+  std::vector<Artifact> artifacts;
+  for (int number = 2; std::getline(file, line); ++number) {
+    if (icd::trimmed(line).empty()) continue;
+    auto artifact = artifact_of(line);
+    if (!artifact) {
+      return std::unexpected(icd::sentence(
+          path, ":", number, ": expected an artifact type and three numbers, as in Cell Phone,1.5,-2,0"));
+    }
+    artifacts.push_back(std::move(*artifact));
+  }
+  return artifacts;
+}
 
 Run::State Run::state_at(Clock::time_point now) const {
   if (ended_) return State::Ended;
@@ -132,12 +123,9 @@ std::string Run::rename() {
   return plan_.id = id_after(plan_.id);
 }
 
-std::int64_t Run::grant(Clock::time_point now) {
-  {
-    const std::lock_guard lock(mutex_);
-    ++granted_;
-  }
-  return standing(now).remaining_reports;
+std::int64_t Run::grant() {
+  const std::lock_guard lock(mutex_);
+  return plan_.reports + ++granted_ - used_;
 }
 
 Run::Standing Run::standing(Clock::time_point now) const {
@@ -147,7 +135,7 @@ Run::Standing Run::standing(Clock::time_point now) const {
           clock_at(now), score_,   plan_.reports + granted_ - used_};
 }
 
-Run::Ruling Run::submit(const std::string& type, const std::optional<Point>& position,
+Run::Ruling Run::submit(const std::string& type, const std::optional<Vector3>& position,
                         Clock::time_point now) {
   constexpr std::array<const char*, 4> kStatuses = {"run not started", "scored", "admin stop",
                                                     "time limit exceeded"};

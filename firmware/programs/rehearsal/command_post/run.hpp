@@ -7,18 +7,16 @@
 #include <mutex>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <tuple>
 #include <vector>
 
-#include "rehearsal/command_post/fields.hpp"
-#include "rehearsal/command_post/http.hpp"
+#include "rehearsal/command_post/document.hpp"
 
 namespace adit::rehearsal {
 
 struct Artifact {
   std::string type;
-  Point position;
+  Vector3 position;
   bool claimed = false;  // by a report that scored
 };
 
@@ -26,9 +24,7 @@ struct Artifact {
 /// the line.
 std::expected<std::vector<Artifact>, std::string> read_artifacts(const std::string& path);
 
-/// Claims the nearest artifact of that type (in any letter case) which no report has claimed, if it is within
-/// 5 m. Gives whether there was one.
-bool claim(std::vector<Artifact>& artifacts, std::string_view type, const Point& position);
+using Clock = std::chrono::steady_clock;
 
 /// What the public test server's clocks always show, whatever the time: /api/status and answers to reports.
 inline constexpr double kMeasuredStatusClock = 25.98;
@@ -86,13 +82,13 @@ class Run {
   /// Gives the run the next name; it goes on. Returns the name.
   std::string rename();
   /// One more report is allowed in this run. Returns remaining_reports.
-  std::int64_t grant(Clock::time_point now);
+  std::int64_t grant();
 
   Standing standing(Clock::time_point now) const;
 
   /// Rules on a report, and takes one of the allotment where it is scored. Without a position (the measured
   /// server takes coordinates that are no numbers) it scores nothing.
-  Ruling submit(const std::string& type, const std::optional<Point>& position, Clock::time_point now);
+  Ruling submit(const std::string& type, const std::optional<Vector3>& position, Clock::time_point now);
 
  private:
   enum class State { NotStarted, Running, AdminStop, Ended };

@@ -1,8 +1,9 @@
 #include <chrono>
 
+#include "icd/sentence.hpp"
 #include "rehearsal/command_post/document.hpp"
 #include "rehearsal/command_post/endpoint.hpp"
-#include "rehearsal/command_post/fields.hpp"
+#include "rehearsal/command_post/server.hpp"
 
 namespace adit::rehearsal {
 namespace {
@@ -15,23 +16,18 @@ std::string date_and_time() {
   return utc_text("%Y-%m-%dT%H:%M:%S.", whole) + std::to_string(1'000'000 + micros).substr(1) + "+00:00";
 }
 
-struct Sent {
-  std::string type;
-  Point position;
-};
-
-std::optional<Sent> read_report(const Json& document, Findings& findings) {
+std::optional<Artifact> read_report(const Json& document, Findings& findings) {
   const Field body(document, "", findings);
   const auto position = read_point(body);
   const auto type = body.member("type");
-  const auto text = type ? type->text() : std::nullopt;
+  const auto text = type.and_then(&Field::to_text);
   if (text && !is_artifact_type(*text))
     type->breaks("expected an artifact type of the final event (ICD 5.2)");
   const auto name = body.optional_member("name");
-  const auto robot = name ? name->text() : std::nullopt;
+  const auto robot = name.and_then(&Field::to_text);
   if (robot && !is_robot_name(*robot)) name->breaks("expected a robot's name (ICD 2)", Measured::Takes);
   if (!position || !text) return std::nullopt;
-  return Sent{*text, *position};
+  return Artifact{*text, *position};
 }
 
 /// The body of GET /api/status (ICD 5.1).
@@ -43,31 +39,15 @@ OrderedJson status_body(const Run& run, Clock::time_point now) {
           {"current_team", lower(standing.team)}};
 }
 
-/// Writes down that the report was scored before.
-void tell_repeat(const Run::Ruling& ruling, Findings& findings) {
-  if (ruling.repeats == 0) return;
-  findings.tells("the same report as report " + std::to_string(ruling.repeats) + " of this run");
+/// The answer to a report that the run has ruled on.
+void answer_report(const Run::Ruling& ruling, const Json& sent, const std::string& authority,
+                   Judgement& judgement) {
+  if (ruling.repeats != 0)
+    judgement.findings.tells(icd::sentence("the same report as report ", ruling.repeats, " of this run"));
+  judgement.report = report_body(ruling, sent, authority);
+  judgement.outcome = answered(201, *judgement.report);
+  judgement.accepted.parts.push_back({"report", ""});
 }
-
-}  // namespace
-
-OrderedJson report_body(const Run::Ruling& ruling, const Json& sent, const std::string& authority) {
-  const std::string path = std::string(kReportsUri) + "/" + std::to_string(ruling.id);
-  return {{"url", "http://" + authority + path},
-          {"id", ruling.id},
-          {"x", sent["x"]},
-          {"y", sent["y"]},
-          {"z", sent["z"]},
-          {"type", sent["type"]},
-          {"submitted_datetime", date_and_time()},
-          {"run_clock", ruling.clock},
-          {"team", lower(ruling.team)},
-          {"run", ruling.run},
-          {"report_status", ruling.status},
-          {"score_change", ruling.score_change}};
-}
-
-namespace {
 
 class StrictScoring : public Endpoint {
  public:
@@ -76,14 +56,10 @@ class StrictScoring : public Endpoint {
 
   Judgement judge(const Request& request) override {
     Judgement judgement;
-    check_entry(request, kScoringFunctions, token_, judgement.findings);
-    const Finding* const finding = judgement.findings.decisive(Manner::Strict);
-    if (finding == nullptr || finding->status != 404) judgement.uri = request.path;
-    if (finding != nullptr) {
-      judgement.outcome = refused(*finding);
-    } else if (limit_of(judgement.uri).too_soon(request)) {
-      judgement.outcome = refused(429, kTooManyRequests);
-    } else if (judgement.uri == kStatusUri) {
+    const bool is_status = request.path == kStatusUri;
+    RateLimit* const limit = is_status && !one_limit_ ? &status_limit_ : &report_limit_;
+    if (!admit(request, kScoringFunctions, token_, limit, judgement)) return judgement;
+    if (is_status) {
       judgement.outcome = answered(200, status_body(run_, Clock::now()));
     } else {
       classify_report(request, judgement);
@@ -92,15 +68,11 @@ class StrictScoring : public Endpoint {
   }
 
  private:
-  RateLimit& limit_of(std::string_view uri) {
-    return uri == kStatusUri && !one_limit_ ? status_limit_ : report_limit_;
-  }
-
   void classify_report(const Request& request, Judgement& judgement) {
     Findings& findings = judgement.findings;
     check_content(request, false, findings);
     const auto document = read_document(request.body, Format::JsonText);
-    std::optional<Sent> sent;
+    std::optional<Artifact> sent;
     if (document) {
       judgement.message = document->value;
       if (const auto& repeated = document->repeated) findings.breaks("'" + *repeated + "' is given twice");
@@ -111,12 +83,8 @@ class StrictScoring : public Endpoint {
     if (const Finding* const finding = findings.decisive(Manner::Strict)) {
       judgement.outcome = refused(*finding);
     } else if (sent) {
-      const Run::Ruling ruling = run_.submit(sent->type, sent->position, Clock::now());
-      tell_repeat(ruling, findings);
-      const auto& body =
-          judgement.report.emplace(report_body(ruling, document->value, request.local_address));
-      judgement.outcome = answered(201, body);
-      judgement.accepted.push_back({"report", ""});
+      answer_report(run_.submit(sent->type, sent->position, Clock::now()), document->value,
+                    request.local_address, judgement);
     } else {
       judgement.outcome = refused(422, "The report could not be read");
     }
@@ -130,13 +98,11 @@ class StrictScoring : public Endpoint {
 };
 
 Outcome preflight() {
-  Outcome outcome;
-  outcome.answer.content_type = "text/html; charset=utf-8";
-  outcome.answer.headers = {{"Access-Control-Allow-Headers",
-                             "accept, accept-encoding, authorization, content-type, origin, user-agent"},
-                            {"Access-Control-Allow-Methods", "DELETE, GET, OPTIONS, PATCH, POST, PUT"},
-                            {"Access-Control-Max-Age", "86400"}};
-  return outcome;
+  return {.answer = {.content_type = "text/html; charset=utf-8",
+                     .headers = {{"Access-Control-Allow-Headers",
+                                  "accept, accept-encoding, authorization, content-type, origin, user-agent"},
+                                 {"Access-Control-Allow-Methods", "DELETE, GET, OPTIONS, PATCH, POST, PUT"},
+                                 {"Access-Control-Max-Age", "86400"}}}};
 }
 
 /// `Bearer` in any letter case.
@@ -219,9 +185,9 @@ class MeasuredScoring : public Endpoint {
     }
     // Types that do not exist and coordinates that are no numbers are recorded, and score nothing.
     const auto type = sent["type"].get<std::string>();
-    std::optional<Point> position;
+    std::optional<Vector3> position;
     if (sent["x"].is_number() && sent["y"].is_number() && sent["z"].is_number()) {
-      position = Point{sent["x"].get<double>(), sent["y"].get<double>(), sent["z"].get<double>()};
+      position = Vector3{sent["x"].get<double>(), sent["y"].get<double>(), sent["z"].get<double>()};
     } else {
       judgement.findings.breaks("x, y, z: expected numbers", Measured::Takes);
     }
@@ -231,10 +197,7 @@ class MeasuredScoring : public Endpoint {
     }
     Run::Ruling ruling = run_.submit(type, position, Clock::now());
     ruling.clock = kMeasuredReportClock;
-    tell_repeat(ruling, judgement.findings);
-    judgement.report = report_body(ruling, sent, kNoAuthority);
-    judgement.outcome = answered(201, *judgement.report);
-    judgement.accepted.push_back({"report", ""});
+    answer_report(ruling, sent, kNoAuthority, judgement);
   }
 
   const std::string token_;
@@ -243,6 +206,22 @@ class MeasuredScoring : public Endpoint {
 };
 
 }  // namespace
+
+OrderedJson report_body(const Run::Ruling& ruling, const Json& sent, const std::string& authority) {
+  const std::string path = std::string(kReportsUri) + "/" + std::to_string(ruling.id);
+  return {{"url", "http://" + authority + path},
+          {"id", ruling.id},
+          {"x", sent["x"]},
+          {"y", sent["y"]},
+          {"z", sent["z"]},
+          {"type", sent["type"]},
+          {"submitted_datetime", date_and_time()},
+          {"run_clock", ruling.clock},
+          {"team", lower(ruling.team)},
+          {"run", ruling.run},
+          {"report_status", ruling.status},
+          {"score_change", ruling.score_change}};
+}
 
 std::unique_ptr<Endpoint> strict_scoring(std::string token, double hz, bool one_limit, Run& run) {
   return std::make_unique<StrictScoring>(std::move(token), hz, one_limit, run);

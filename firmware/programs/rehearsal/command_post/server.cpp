@@ -14,12 +14,14 @@
 #include <boost/beast/http/dynamic_body.hpp>
 #include <boost/beast/http/parser.hpp>
 #include <boost/beast/http/read.hpp>
+#include <boost/beast/http/status.hpp>
 #include <cerrno>
 #include <cstdio>
+#include <ctime>
 #include <exception>
 #include <system_error>
 
-#include "rehearsal/command_post/http.hpp"
+#include "icd/sentence.hpp"
 
 namespace adit::rehearsal {
 namespace {
@@ -34,13 +36,13 @@ using Milliseconds = std::chrono::milliseconds;
 
 constexpr std::uint32_t kMostHeader = 16 * 1024;
 constexpr std::size_t kPiece = std::size_t{64} << 10;
-constexpr int kForEver = -1;  // milliseconds
+constexpr Milliseconds kForEver{-1};
 
-/// poll(2), again after a signal. Returns how many are ready, 0 after `patience_ms`.
-int poll_again(std::array<pollfd, 2>& waited, int patience_ms) {
+/// poll(2), again after a signal. Returns how many are ready, 0 after `patience`.
+int poll_again(std::array<pollfd, 2>& waited, Milliseconds patience) {
   int ready = -1;
   do {
-    ready = ::poll(waited.data(), waited.size(), patience_ms);
+    ready = ::poll(waited.data(), waited.size(), static_cast<int>(patience.count()));
   } while (ready < 0 && errno == EINTR);
   return ready;
 }
@@ -123,11 +125,47 @@ class Connection {
   }
 
   /// Until the connection ends. Returns whether a request killed the endpoint.
-  bool serve();
+  bool serve() {
+    while (auto request = read_request()) {
+      Outcome outcome = decide_(*request);
+      while (outcome.kind == Outcome::Kind::Later) {
+        if (wait(0, outcome.delay) == Event::Stopped) return false;
+        outcome = outcome.then();
+      }
+      if (!request->keep_alive && outcome.after == After::KeepOpen) outcome.after = After::Close;
+      const bool answers = outcome.kind == Outcome::Kind::Answered && outcome.answer.status != 0;
+      if (outcome.kind == Outcome::Kind::Dies) return true;
+      if (outcome.kind == Outcome::Kind::Hangs) wait(0, kForEver);
+      if (!answers && outcome.kind != Outcome::Kind::Breaks) return false;
+      if (answers)
+        outcome.bytes = bytes_of(outcome, request->method == "HEAD", std::chrono::system_clock::now());
+      if (!write(outcome.bytes)) return false;
+      if (outcome.after == After::KeepOpen) continue;
+      end(outcome.after);
+      return false;
+    }
+    return false;
+  }
 
   // Beast reads from a connection as from a stream.
   template <class Buffers>
-  std::size_t read_some(const Buffers& buffers, error_code& error);
+  std::size_t read_some(const Buffers& buffers, error_code& error) {
+    const Event event = wait(POLLIN, manner_.patience);
+    if (event != Event::Ready) {
+      error = event == Event::Late ? asio::error::timed_out : asio::error::operation_aborted;
+      return 0;
+    }
+    const asio::mutable_buffer piece = *asio::buffer_sequence_begin(buffers);
+    const ssize_t got = ::recv(socket_.get(), piece.data(), piece.size(), 0);
+    if (got <= 0) {
+      error = asio::error::eof;
+      return 0;
+    }
+    const auto bytes = static_cast<std::size_t>(got);
+    if (manner_.link && wait(0, manner_.link->pass(bytes)) == Event::Stopped)
+      error = asio::error::operation_aborted;
+    return bytes;
+  }
   template <class Buffers>
   std::size_t read_some(const Buffers& buffers) {
     error_code error;
@@ -140,11 +178,66 @@ class Connection {
   enum class Event { Ready, Late, Stopped };
 
   /// Waits for the socket's `events`, or for the stop alone if there are none.
-  Event wait(short events, int patience_ms) const;
+  Event wait(short events, Milliseconds patience) const {
+    const int socket = events != 0 ? socket_.get() : -1;
+    std::array<pollfd, 2> waited = {pollfd{stop_event_, POLLIN, 0}, pollfd{socket, events, 0}};
+    if (poll_again(waited, patience) <= 0) return Event::Late;
+    return waited[0].revents != 0 ? Event::Stopped : Event::Ready;
+  }
+
   /// Nothing if there is no further request: closed, idle for too long, or stopped.
-  std::optional<Request> read_request();
-  bool write(const std::string& bytes) const;
-  void end(After after) const;
+  std::optional<Request> read_request() {
+    Parser parser;
+    parser.header_limit(kMostHeader);
+    parser.body_limit(manner_.most_body);
+    Request request;
+    request.local_address = local_address_of(socket_.get()).text();
+    error_code error;
+    http::read_header(*this, buffer_, parser, error);
+    request.at = Clock::now();
+    if (!error) {
+      take_header(parser, manner_, request);
+      if (request.expects_continue && manner_.answers_expect && !write("HTTP/1.1 100 Continue\r\n\r\n")) {
+        request.fault = HttpFault{0, "The client closed the connection before 100 Continue"};
+        return request;
+      }
+      http::read(*this, buffer_, parser, error);
+    }
+    if (!parser.got_some() || error == asio::error::operation_aborted) return std::nullopt;
+    if (error) request.fault = fault_of(error);
+    request.whole = Clock::now();
+    request.ended = std::chrono::system_clock::now();
+    request.body = boost::beast::buffers_to_string(parser.get().body().data());
+    return request;
+  }
+
+  bool write(std::string_view bytes) const {
+    while (!bytes.empty()) {
+      if (wait(POLLOUT, Milliseconds(10'000)) != Event::Ready) return false;
+      const ssize_t sent = ::send(socket_.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+      if (sent < 0 && (errno == EAGAIN || errno == EINTR)) continue;
+      if (sent <= 0) return false;
+      bytes.remove_prefix(static_cast<std::size_t>(sent));
+    }
+    return true;
+  }
+
+  void end(After after) const {
+    if (after == After::Reset) {  // closing sends a RST, and nothing that is still to be sent
+      const linger at_once{.l_onoff = 1, .l_linger = 0};
+      ::setsockopt(socket_.get(), SOL_SOCKET, SO_LINGER, &at_once, sizeof at_once);
+      return;
+    }
+    // Reads on for a moment after the last answer: closing with bytes unread would send a reset, and the
+    // client might never read its answer.
+    constexpr Milliseconds patience{500};
+    ::shutdown(socket_.get(), SHUT_WR);
+    const auto until = Clock::now() + patience;
+    std::array<char, kPiece> piece;
+    while (Clock::now() < until && wait(POLLIN, patience) == Event::Ready) {
+      if (::recv(socket_.get(), piece.data(), piece.size(), 0) <= 0) return;
+    }
+  }
 
   loop::FileDescriptor socket_;
   const int stop_event_;
@@ -153,113 +246,31 @@ class Connection {
   boost::beast::flat_buffer buffer_;  // received, not yet parsed
 };
 
-Connection::Event Connection::wait(short events, int patience_ms) const {
-  const int socket = events != 0 ? socket_.get() : -1;
-  std::array<pollfd, 2> waited = {pollfd{stop_event_, POLLIN, 0}, pollfd{socket, events, 0}};
-  if (poll_again(waited, patience_ms) <= 0) return Event::Late;
-  return waited[0].revents != 0 ? Event::Stopped : Event::Ready;
-}
-
-template <class Buffers>
-std::size_t Connection::read_some(const Buffers& buffers, error_code& error) {
-  const auto stopped = asio::error::operation_aborted;
-  const Event event = wait(POLLIN, static_cast<int>(Milliseconds(manner_.patience).count()));
-  error = event == Event::Late ? asio::error::timed_out : stopped;
-  if (event != Event::Ready) return 0;
-  const asio::mutable_buffer piece = *asio::buffer_sequence_begin(buffers);
-  const ssize_t got = ::recv(socket_.get(), piece.data(), piece.size(), 0);
-  error = asio::error::eof;
-  if (got <= 0) return 0;
-  error = {};
-  const auto bytes = static_cast<std::size_t>(got);
-  if (manner_.link && wait(0, static_cast<int>(manner_.link->pass(bytes).count())) == Event::Stopped)
-    error = stopped;
-  return bytes;
-}
-
-std::optional<Request> Connection::read_request() {
-  Parser parser;
-  parser.header_limit(kMostHeader);
-  parser.body_limit(manner_.most_body);
-  Request request;
-  request.local_address = local_address_of(socket_.get()).text();
-  error_code error;
-  http::read_header(*this, buffer_, parser, error);
-  request.at = Clock::now();
-  if (!error) {
-    take_header(parser, manner_, request);
-    if (request.expects_continue && manner_.answers_expect && !write("HTTP/1.1 100 Continue\r\n\r\n")) {
-      request.fault = HttpFault{0, "The client closed the connection before 100 Continue"};
-      return request;
-    }
-    http::read(*this, buffer_, parser, error);
-  }
-  if (!parser.got_some() || error == asio::error::operation_aborted) return std::nullopt;
-  if (error) request.fault = fault_of(error);
-  request.whole = Clock::now();
-  request.ended = std::chrono::system_clock::now();
-  request.body = boost::beast::buffers_to_string(parser.get().body().data());
-  return request;
-}
-
-bool Connection::write(const std::string& bytes) const {
-  constexpr int patience_ms = 10'000;
-  std::size_t written = 0;
-  while (written < bytes.size()) {
-    if (wait(POLLOUT, patience_ms) != Event::Ready) return false;
-    const ssize_t sent =
-        ::send(socket_.get(), bytes.data() + written, bytes.size() - written, MSG_NOSIGNAL | MSG_DONTWAIT);
-    if (sent < 0 && (errno == EAGAIN || errno == EINTR)) continue;
-    if (sent <= 0) return false;
-    written += static_cast<std::size_t>(sent);
-  }
-  return true;
-}
-
-void Connection::end(After after) const {
-  if (after == After::Reset) {  // closing sends a RST, and nothing that is still to be sent
-    const linger at_once{.l_onoff = 1, .l_linger = 0};
-    ::setsockopt(socket_.get(), SOL_SOCKET, SO_LINGER, &at_once, sizeof at_once);
-    return;
-  }
-  // Reads on for a moment after the last answer: closing with bytes unread would send a reset, and the client
-  // might never read its answer.
-  constexpr int patience_ms = 500;
-  ::shutdown(socket_.get(), SHUT_WR);
-  const auto until = Clock::now() + Milliseconds(patience_ms);
-  std::array<char, kPiece> piece;
-  while (Clock::now() < until && wait(POLLIN, patience_ms) == Event::Ready) {
-    if (::recv(socket_.get(), piece.data(), piece.size(), 0) <= 0) return;
-  }
-}
-
-bool Connection::serve() {
-  while (auto request = read_request()) {
-    Outcome outcome = decide_(*request);
-    while (outcome.kind == Outcome::Kind::Later) {
-      if (wait(0, static_cast<int>(outcome.delay.count())) == Event::Stopped) return false;
-      outcome = outcome.then();
-    }
-    if (!request->keep_alive && outcome.after == After::KeepOpen) outcome.after = After::Close;
-    const bool answers = outcome.kind == Outcome::Kind::Answered && outcome.answer.status != 0;
-    if (outcome.kind == Outcome::Kind::Dies) return true;
-    if (outcome.kind == Outcome::Kind::Hangs) wait(0, kForEver);
-    if (!answers && outcome.kind != Outcome::Kind::Breaks) return false;
-    if (answers)
-      outcome.bytes = bytes_of(outcome, request->method == "HEAD", std::chrono::system_clock::now());
-    if (!write(outcome.bytes)) return false;
-    if (outcome.after == After::KeepOpen) continue;
-    end(outcome.after);
-    return false;
-  }
-  return false;
-}
-
 void given_up(const char* why) {
   std::fprintf(stderr, "adit-rehearsal: connection aborted: %s\n", why);
 }
 
 }  // namespace
+
+std::string utc_text(const char* format, std::chrono::system_clock::time_point time) {
+  const std::time_t seconds = std::chrono::system_clock::to_time_t(time);
+  std::tm utc{};
+  (void)gmtime_r(&seconds, &utc);
+  std::array<char, 64> text{};
+  return {text.data(), std::strftime(text.data(), text.size(), format, &utc)};
+}
+
+std::string bytes_of(const Outcome& outcome, bool head, std::chrono::system_clock::time_point now) {
+  const Answer& answer = outcome.answer;
+  const auto reason = http::obsolete_reason(http::int_to_status(static_cast<unsigned>(answer.status)));
+  std::string bytes = icd::sentence("HTTP/1.1 ", answer.status, " ", std::string_view(reason),
+                                    "\r\nContent-Length: ", answer.body.size(),
+                                    "\r\nDate: ", utc_text("%a, %d %b %Y %H:%M:%S GMT", now));
+  if (!answer.content_type.empty()) bytes += "\r\nContent-Type: " + answer.content_type;
+  for (const auto& [name, value] : answer.headers) bytes += icd::sentence("\r\n", name, ": ", value);
+  bytes += outcome.after == After::Close ? "\r\nConnection: close" : "\r\nConnection: keep-alive";
+  return bytes.append("\r\n\r\n").append(head ? "" : answer.body);
+}
 
 std::expected<std::unique_ptr<Server>, std::string> Server::listen(const Address& address, WireManner manner,
                                                                    Decide decide) {

@@ -4,7 +4,6 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstddef>
-#include <cstdint>
 #include <expected>
 #include <functional>
 #include <memory>
@@ -13,21 +12,10 @@
 #include <thread>
 
 #include "loop/file_descriptor.hpp"
-#include "rehearsal/command_post/http.hpp"
+#include "rehearsal/command_post/endpoint.hpp"
+#include "rehearsal/common.hpp"
 
 namespace adit::rehearsal {
-
-/// A numeric IPv4 or IPv6 address and a TCP port; port 0: any that is free.
-struct Address {
-  std::string host;
-  std::uint16_t port = 0;
-
-  /// "127.0.0.1:8000", "[::1]:8000".
-  std::string text() const {
-    const bool v6 = host.find(':') != std::string::npos;
-    return (v6 ? "[" + host + "]" : host) + ":" + std::to_string(port);
-  }
-};
 
 /// The link to the Command Post. All connections share its rate in megabits a second: the pieces that they
 /// receive arrive one after the other. Safe for use by several threads.
@@ -50,6 +38,13 @@ class Link {
   const double bits_per_second_;
   Clock::time_point free_;  // when the last received piece has arrived
 };
+
+/// In UTC, by a format of strftime(3). No program here has a locale.
+std::string utc_text(const char* format, std::chrono::system_clock::time_point time);
+
+/// The answer's bytes as they go to the socket; without its body for a HEAD request. Dated, as what has a
+/// clock must do (RFC 9110 6.6.1).
+std::string bytes_of(const Outcome& outcome, bool head, std::chrono::system_clock::time_point now);
 
 /// How an endpoint behaves below its messages.
 struct WireManner {

@@ -1,11 +1,10 @@
-#include "rehearsal/robots/client.hpp"
-
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 
 #include <atomic>
 #include <thread>
 
+#include "rehearsal/robots/client.hpp"
 #include "server.hpp"
 
 namespace adit::robots {

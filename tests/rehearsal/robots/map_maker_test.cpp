@@ -1,9 +1,9 @@
-#include "rehearsal/robots/robot.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cstring>
 #include <optional>
+
+#include "rehearsal/robots/robot.hpp"
 
 namespace adit::robots {
 namespace {

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "codec/map_pieces.hpp"
+#include "codec/gzip.hpp"
 
 namespace adit::codec {
 

@@ -10,7 +10,7 @@
 
 #include "../uplink/peer.hpp"
 #include "codec/body_decoder.hpp"
-#include "codec/map_pieces.hpp"
+#include "codec/gzip.hpp"
 #include "codec/read.hpp"
 #include "forward/flow.hpp"
 #include "host/folder.hpp"

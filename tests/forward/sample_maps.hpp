@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "codec/map_pieces.hpp"
+#include "codec/gzip.hpp"
 #include "icd/mapping.hpp"
 #include "icd/xyz.hpp"
 

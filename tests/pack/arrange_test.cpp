@@ -9,7 +9,7 @@
 #include <random>
 #include <tuple>
 
-#include "codec/map_pieces.hpp"
+#include "codec/gzip.hpp"
 #include "pack/generated.hpp"
 #include "pack/layouts.hpp"
 #include "pack/pack.hpp"

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "codec/gzip.hpp"
-#include "codec/map_pieces.hpp"
 #include "codec/read.hpp"
 #include "codec/write.hpp"
 #include "icd/sentence.hpp"

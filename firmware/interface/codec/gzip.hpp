@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "icd/chunked_bytes.hpp"
+#include "icd/mapping.hpp"
 #include "icd/status.hpp"
 
 namespace adit::codec {
@@ -83,5 +84,9 @@ std::optional<icd::ChunkedBytes> gzip_whole(std::span<const std::uint8_t> bytes,
 /// is invalid, damaged, or of another size. Takes `size` bytes of memory, and a copy of a member in several
 /// chunks.
 std::optional<std::vector<std::uint8_t>> gunzip_whole(const icd::ChunkedBytes& member, std::size_t size);
+
+/// Passes a map's data, inflated if compressed, to `sink` in pieces of at most icd::ChunkedBytes::kChunk. An
+/// error is about the data, or from `sink`.
+icd::Checked<void> for_each_piece(const icd::MapData& data, const Sink& sink);
 
 }  // namespace adit::codec

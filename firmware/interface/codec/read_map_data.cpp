@@ -5,7 +5,6 @@
 #include <span>
 
 #include "codec/gzip.hpp"
-#include "codec/map_pieces.hpp"
 #include "codec/read.hpp"
 #include "icd/require.hpp"
 #include "icd/sentence.hpp"

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "codec/gzip.hpp"
-#include "codec/map_pieces.hpp"
 #include "icd/require.hpp"
 #include "icd/try.hpp"
 

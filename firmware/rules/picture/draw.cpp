@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "codec/map_pieces.hpp"
+#include "codec/gzip.hpp"
 #include "icd/geometry.hpp"
 #include "icd/mapping.hpp"
 #include "icd/require.hpp"

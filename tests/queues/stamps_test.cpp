@@ -105,6 +105,15 @@ TEST(StampShift, IsNotSetBackByABacklog) {
 }
 
 /// Each message may be up to 4 s late. Some wait for others.
+TEST(StampShift, IsNotSetBackByASlowUpload) {
+  StampShift shift;
+  shift.shift(of("R1"), 10'000.0, kNow, {.began = 1, .ended = 2});
+  shift.shift(of("R1"), 10'010.0, kNow + 10, {.began = 4, .ended = 5});
+  shift.shift(of("R1"), 10'003.0, kNow + 11, {.began = 6, .ended = 7});  // of a backlog
+  const Upload slow{.began = 3, .ended = 8};
+  EXPECT_THAT(shift.shift(of("R1"), 10'009.5, kNow + 17, slow), DoubleNear(kNow + 9.5, 1e-6));
+}
+
 TEST(StampShift, RestartsAlthoughMessagesAreLate) {
   std::mt19937_64 random{1};
   std::uniform_real_distribution<double> late{0, 4};
@@ -139,6 +148,19 @@ TEST(StampShift, ConvertsAMessageFromBeforeAStepAsBefore) {
   EXPECT_THAT(shift.shift(of("R1"), 8999.5, kNow + 3, slow), DoubleNear(kNow - 0.5, 1e-6));
   EXPECT_THAT(shift.shift(of("R1"), 501.5, kNow + 4, {.began = 7, .ended = 8}), DoubleNear(kNow + 3.5, 1e-6))
       << "the step stands";
+}
+
+TEST(StampShift, OrdersMessagesThatCameBeforeAStepWasShown) {
+  StampShift shift;
+  shift.shift(of("R1"), 10'000.0, kNow, {.began = 1, .ended = 2});
+  shift.shift(of("R1"), 9001.0, kNow + 1, {.began = 3, .ended = 4});  // set back by 1000 s
+  const icd::Stamp later = shift.shift(of("R1"), 9005.0, kNow + 5, {.began = 6, .ended = 7});
+  const icd::Stamp shown = shift.shift(of("R1"), 9006.5, kNow + 6.5, {.began = 8, .ended = 9});
+  ASSERT_THAT(shown, DoubleNear(kNow + 6.5, 1e-6));
+  const Upload slow{.began = 5, .ended = 10};
+  EXPECT_THAT(shift.shift(of("R1"), 9004.0, kNow + 7, slow), DoubleNear(later - 1, 1e-6));
+  EXPECT_THAT(shift.shift(of("R1"), 9007.0, kNow + 7, {.began = 6, .ended = 11}),
+              DoubleNear(shown + 0.5, 1e-6));
 }
 
 TEST(StampShift, AStepNeverGoesBehindTheLatestStamp) {

@@ -181,13 +181,14 @@ StampShift::Clock* StampShift::find(const Stamper& stamper) {
   return clock == its.clocks.end() ? nullptr : &clock->second;
 }
 
-bool StampShift::is_set_back(Clock& clock, icd::Stamp stamp, double now) {
+bool StampShift::is_set_back(Clock& clock, icd::Stamp stamp, double now, const Upload& upload) {
   if (stamp >= clock.latest) clock.older.reset();
   if (stamp >= clock.latest || stamp < clock.latest - kOldest) return stamp < clock.latest;
   const auto& older = clock.older;
   if (!older || stamp < older->stamp || stamp - older->stamp > now - older->at + kJitter)
-    clock.older = Older{stamp, now};
-  return stamp - clock.older->stamp >= kSteady;
+    clock.older = Older{stamp, now, upload.ended};
+  // A slow upload was stamped long before now.
+  return upload.began >= clock.older->ended && stamp - clock.older->stamp >= kSteady;
 }
 
 icd::Stamp StampShift::shift(Clock*& clock, const Stamper& stamper, std::optional<icd::Stamp> stamp,
@@ -203,10 +204,13 @@ icd::Stamp StampShift::shift(Clock*& clock, const Stamper& stamper, std::optiona
   // The difference comes first, because the sum with a distant stamp would lose fractions of a second.
   icd::Stamp shifted = clock->ours + (*stamp - clock->theirs);
   const icd::Stamp before = clock->before.ours + (*stamp - clock->before.theirs);
-  const bool is_of_before = upload.began < clock->stepped && std::abs(shifted - now) > kJump &&
+  const bool fits_only_before = std::abs(shifted - now) > kJump;
+  // The clock was set back, but no message had shown it yet.
+  const bool is_not_shown_yet = *stamp < clock->theirs && before < shifted;
+  const bool is_of_before = upload.began < clock->stepped && (fits_only_before || is_not_shown_yet) &&
                             before <= clock->before.latest_given() + kJump;
   if (is_of_before) return std::max(before, 0.0);
-  const bool steps = is_set_back(*clock, *stamp, now) || shifted > now + kJump;
+  const bool steps = is_set_back(*clock, *stamp, now, upload) || shifted > now + kJump;
   if (steps) {
     clock->older.reset();
     clock->before = static_cast<const SenderClock&>(*clock);

@@ -131,8 +131,10 @@ struct SenderClock {
 ///   more than kOldest before the latest one.
 /// - Stamps that are less old may be a backlog, posted after newer messages: their stamps jump, or advance
 ///   faster than time. The clock was set back only if they advance by kSteady as time does, and none of the
-///   sender's is as late as its latest one meanwhile. Before that they are converted as before the step.
-/// - A message whose upload began before a step is converted as before it, if its stamp fits only so.
+///   sender's is as late as its latest one meanwhile. Before that they are converted as before the step. An
+///   upload shows no time if it began before that of the first one ended.
+/// - A message whose upload began before a step is converted as before it, if its stamp fits only so. So is
+///   one whose clock was set back and that was stamped before the message that showed it.
 /// - A message without a stamp gets its stamp in the same way.
 /// - An address has at most kMostOfAddress clocks; further robots share one clock for each URI. Beyond
 ///   kMostAddresses, the address that was silent longest is dropped.
@@ -172,6 +174,7 @@ class StampShift {
   struct Older {
     icd::Stamp stamp = 0;
     double at = 0;
+    std::uint64_t ended = 0;  // Upload::ended
   };
   struct Clock : SenderClock {
     std::optional<Older> older = {};  // since then, no stamp was the latest, and none went faster than time
@@ -194,7 +197,7 @@ class StampShift {
   icd::Stamp shift(Clock*& clock, const Stamper& stamper, std::optional<icd::Stamp> stamp, double now,
                    const Upload& upload);
   /// Whether the stamp shows that the clock was set back.
-  static bool is_set_back(Clock& clock, icd::Stamp stamp, double now);
+  static bool is_set_back(Clock& clock, icd::Stamp stamp, double now, const Upload& upload);
 
   std::map<std::string, Address> addresses_;
   std::vector<Stamper> changed_;

@@ -42,6 +42,11 @@ void report(Snapshot& snapshot, const char* state) {
   add_report(snapshot, {.number = 7, .changed = kNow - 5, .state = state, .note = "it may be the same"});
 }
 
+void lose_report(Snapshot& snapshot) {
+  report(snapshot, "in_doubt");
+  snapshot.reports.rows[0].position.reset();
+}
+
 /// Messages that the Command Post rejected, and some that call nobody.
 void reject(Snapshot& snapshot, std::uint64_t count) {
   for (std::uint64_t number = 1; number <= count; ++number) {
@@ -107,10 +112,11 @@ const ConditionCase kConditionCases[] = {
      [](Snapshot& snapshot) { report(snapshot, "held"); }},
     {"report_in_doubt:7", Ask, Side::CommandPost, "Report 7 is in doubt", "",
      [](Snapshot& snapshot) { report(snapshot, "in_doubt"); }},
-    {"report_lost:7", Ask, Side::Box, "Report 7 is lost", "settle it",
+    {"report_lost:7", Ask, Side::Box, "Report 7 is lost", "it may be the same; settle it", lose_report},
+    {"report_lost:7", Ask, Side::Box, "Report 7 is lost", "until you settle it, new reports are held",
      [](Snapshot& snapshot) {
-       report(snapshot, "in_doubt");
-       snapshot.reports.rows[0].position.reset();
+       lose_report(snapshot);
+       snapshot.reports.lost_here = {7};
      }},
     {"reports_left", Wait, Side::CommandPost, "5 reports are left", "",
      [](Snapshot& snapshot) { snapshot.reports.left = 5; }},

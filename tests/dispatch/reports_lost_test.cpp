@@ -15,6 +15,13 @@ constexpr const char* kNote = "report 2 is lost from the ledger: it may have bee
 /// Report 1 is answered; report 2 of the same run is lost.
 class LostReport : public testing::Test {
  protected:
+  /// Numbers of lost reports because of which new reports are held.
+  std::vector<std::int64_t> holding() const {
+    std::vector<std::int64_t> numbers;
+    for (const Report* const lost : scene_.reports().lost_here()) numbers.push_back(lost->number);
+    return numbers;
+  }
+
   LostReport() {
     scene_.post(1);
     scene_.answer(recorded_answer());
@@ -30,6 +37,7 @@ class LostReport : public testing::Test {
 };
 
 TEST_F(LostReport, HoldsNewReportsOfItsRun) {
+  EXPECT_THAT(holding(), ElementsAre(2));
   const ClientId client = scene_.post(2);
   EXPECT_EQ(scene_.state(3), Held);
   EXPECT_THAT(scene_.report(3).note, HasSubstr(kNote));
@@ -58,6 +66,7 @@ TEST_F(LostReport, HoldsNoReportOnceItIsSettled) {
   EXPECT_THAT(scene_.undecided(), ElementsAre(HasSubstr(kNote)));
   ASSERT_TRUE(scene_.reports().settle(2, scene_.time()));
   EXPECT_THAT(scene_.undecided(), ElementsAre());
+  EXPECT_THAT(holding(), ElementsAre());
   scene_.repeat_status(1, 19, 0);
   scene_.post(2);
   EXPECT_EQ(scene_.state(3), Sending);
@@ -69,12 +78,14 @@ TEST_F(LostReport, HoldsNoReportOfAnotherRun) {
   scene_.post(2);
   EXPECT_EQ(scene_.state(3), Sending);
   EXPECT_THAT(scene_.undecided(), ElementsAre(HasSubstr(kNote))) << "still open";
+  EXPECT_THAT(holding(), ElementsAre());
 }
 
 /// The records that are left may be older than a change of the settings.
 TEST_F(LostReport, HoldsNewReportsForAnotherCommandPost) {
   scene_.restart(kThere);
   scene_.repeat_status(2, 15, 0);
+  EXPECT_THAT(holding(), ElementsAre(2));
   scene_.post(2);
   EXPECT_EQ(scene_.state(3), Held);
   EXPECT_THAT(scene_.report(3).note, HasSubstr(kNote));

@@ -274,11 +274,11 @@ facts::Clients Overview::clients() const {
 facts::Reports Overview::reports() const {
   const dispatch::Reports& all = rooms_.flow.reports();
   facts::Reports reports{.rows = latest_rows(all, kMostReportRows, answers_),
-                         .run = all.run().number,
                          .elsewhere = all.waiting_elsewhere(),
                          .run_renamed = all.runs().name_trouble(),
                          .rejected = rooms_.flow.rejected().rows()};
   for (facts::ReportRow& row : reports.rows) tell_time_of_day(row, rooms_.loop);
+  for (const dispatch::Report* const lost : all.lost_here()) reports.lost_here.insert(lost->number);
   if (const auto& run = rooms_.flow.scoring().run()) reports.left = run->remaining_reports;
   if (all.run().unreliable != dispatch::Run::kCountsStand) reports.run_unreliable = all.run().unreliable;
   return reports;

@@ -14,7 +14,7 @@ using facts::ReportRow;
 using icd::sentence;
 
 constexpr const char* kSettle = "; settle it";
-constexpr const char* kUntilSettled = "; until you settle it, new reports of this run are held";
+constexpr const char* kUntilSettled = "; until you settle it, new reports are held";
 
 /// How a report needs the operator.
 enum class Need : std::uint8_t { Held, InDoubt, Lost };
@@ -40,7 +40,7 @@ void find_undecided(const facts::Reports& reports, Found& found) {
     if (!need || ++count.at(static_cast<std::size_t>(*need)) > kOneByOne) continue;
     const auto& [id, state] = kNeeds[static_cast<std::size_t>(*need)];
     const std::string number = std::to_string(row.number);
-    const char* const until = row.run == reports.run ? kUntilSettled : kSettle;
+    const char* const until = reports.lost_here.contains(row.number) ? kUntilSettled : kSettle;
     found.push_back({.id = sentence(id, ":", number),
                      .severity = row.asking ? Severity::Wait : Severity::Ask,
                      .side = *need == Need::InDoubt ? Side::CommandPost : Side::Box,

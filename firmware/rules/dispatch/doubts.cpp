@@ -133,23 +133,23 @@ Hold ReportReview::maybe_repeat(const Report& report) const {
   return {};
 }
 
-/// A report that the present run may have got before the ledger lost it, or null. The settings may have
-/// changed after the last record, so that any other Command Post may have it.
-const Report* ReportReview::maybe_lost_here() const {
+/// The settings may have changed after the last record, so that any other Command Post may have them.
+std::vector<const Report*> ReportReview::lost_here() const {
   const Run& run = account_.run();
+  std::vector<const Report*> lost;
   for (const std::int64_t number : book_.in_doubt()) {
     const Report& report = book_.at(number);
     if (!report.is_lost()) continue;
     const Run* const its = account_.runs().find(report.run);
-    if (its == nullptr || its->post != run.post || run.number <= report.run) return &report;
+    if (its == nullptr || its->post != run.post || run.number <= report.run) lost.push_back(&report);
   }
-  return nullptr;
+  return lost;
 }
 
 Hold ReportReview::reason_to_hold(const Report& report) const {
   if (report.asked) return {};
-  if (const Report* const lost = maybe_lost_here()) {
-    return {icd::sentence("", lost->note, "; this may be the same report")};
+  if (const auto lost = lost_here(); !lost.empty()) {
+    return {icd::sentence("", lost.front()->note, "; this may be the same report")};
   }
   if (Hold hold = maybe_repeat(report); hold.same_as != 0) return hold;
   for (const Report* const other : same_in_run(report.report)) {

@@ -50,6 +50,8 @@ class ReportReview {
   /// The same report, sent to another Command Post, if this one has not answered yet. Otherwise null.
   const Report* sent_to_other_command_post(const Report& report) const;
   Hold reason_to_hold(const Report& report) const;
+  /// Reports in doubt that the present run may have got before the ledger lost them. New reports are held.
+  std::vector<const Report*> lost_here() const;
 
   /// The run is unknown: compare the report before it is sent.
   void compare_later(std::int64_t number) { unchecked_.insert(number); }
@@ -79,7 +81,6 @@ class ReportReview {
   };
 
   Hold maybe_repeat(const Report& report) const;
-  const Report* maybe_lost_here() const;
   const Report* sent_elsewhere(const Report& report, const std::function<bool(const Run&)>& counts) const;
 
   const ReportRules& rules_;

@@ -174,6 +174,8 @@ class Reports {
   /// Numbers of queued reports for other Command Posts than the settings name, by address.
   std::map<std::string, std::size_t> waiting_elsewhere() const;
   const Report* sending() const { return book_.sending(); }
+  /// Lost reports. New reports are held until the operator settles them.
+  std::vector<const Report*> lost_here() const { return review_.lost_here(); }
   /// The status expected now. nullopt: uncertain, or the counts prove no report.
   std::optional<icd::RunStatus> expected(Instant now) const { return account_.expected(now); }
   /// When a held report is sent unless the operator withdraws it, in seconds since 1970. nullopt: the

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -47,8 +48,8 @@ struct Clients {
 
 /// Reports and rejected messages.
 struct Reports {
-  std::vector<ReportRow> rows = {};  // newest first: all open reports, and the newest of the others
-  std::int64_t run = 1;              // the present run
+  std::vector<ReportRow> rows = {};       // newest first: all open reports, and the newest of the others
+  std::set<std::int64_t> lost_here = {};  // numbers; new reports are held until the operator settles these
   std::map<std::string, std::size_t> elsewhere = {};  // by the Command Post they are queued for
   std::optional<std::int64_t> left = {};
   std::string run_unreliable = {};  // why the run's count of reports proves nothing, or ""

@@ -75,6 +75,14 @@ TEST(StatusText, IsCompleteBeforeTheFirstMessage) {
       "Run   no status from the Command Post yet\nLink  0 of 0 Mbit/s   0 B of maps queued\nReports  0\n");
 }
 
+TEST(StatusText, SaysIfItCountsOnlyTheLastReports) {
+  api::RunView view = sample_view();
+  view.reports.assign(api::RunView::kMostReports - 1, view.reports.front());
+  EXPECT_THAT(status_text(view, false), HasSubstr("Reports  199 answered\n"));
+  view.reports.push_back(view.reports.front());
+  EXPECT_THAT(status_text(view, false), HasSubstr("Reports  200 answered (of the last 200)\n"));
+}
+
 TEST(StatusText, ShowsTheLatestRejections) {
   api::RunView view = sample_view();
   view.refusals = {{.at = 998,

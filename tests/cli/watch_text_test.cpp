@@ -64,6 +64,22 @@ TEST(Watching, PrintsChangesOfReports) {
             "report 4 Survivor: held (a near duplicate of report 3)\n");
 }
 
+TEST(Watching, PrintsNothingForAnOlderReportThatFindsRoomInTheList) {
+  api::RunView before = sample_view();
+  const facts::ReportRow held = {.number = 0, .type = "Rope", .changed = before.now - 60, .state = "held"};
+  before.reports.assign(api::RunView::kMostReports, held);
+  auto number = static_cast<std::int64_t>(before.reports.size()) + 1;
+  for (facts::ReportRow& report : before.reports) report.number = number--;
+  api::RunView now = before;
+  now.now += 1;
+  now.reports.erase(now.reports.begin());
+  now.reports.push_back(held);
+  now.reports.back().number = 1;
+  EXPECT_THAT(changed(before, now), IsEmpty());
+  now.reports.back().changed = before.now + 0.5;
+  EXPECT_EQ(changed(before, now), "report 1 Rope: held\n");
+}
+
 TEST(Watching, PrintsChangesOfEndpointsAndRobots) {
   api::RunView now = later();
   now.endpoints[1].word = "unreachable";

@@ -44,7 +44,8 @@ constexpr Member kView[] = {
     member<&RunView::endpoints>("endpoints"),
     member<&RunView::robots>("robots", "by name"),
     member<&RunView::reports>("reports",
-                              "newest first, at most 200: all open reports, and the newest of the others"),
+                              "newest first, at most 200: the newest open reports, then the newest of the "
+                              "others"),
     member<&RunView::near_metres>("near_metres",
                                   "two reports of one type that are this near may be of one artifact"),
     member<&RunView::activities>("activities", "by kind, then by robot"),

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -58,6 +59,8 @@ struct LightRow {
 
 /// The data for the page, `adit status` and tests.
 struct RunView {
+  static constexpr std::size_t kMostReports = 200;  // rows
+
   Time now = 0;
   std::string version;
   std::optional<icd::RunStatus> run;

@@ -215,6 +215,8 @@ std::string reports_line(const RunView& view, bool colour) {
     const std::string words = std::to_string(number) + " " + host::escaped(state);
     text += "  " + painted(words, urgent.contains(state) ? Tone::Bad : Tone::Plain, colour);
   }
+  if (view.reports.size() >= RunView::kMostReports)
+    text += icd::sentence(" (of the last ", RunView::kMostReports, ")");
   return text + '\n';
 }
 
@@ -362,11 +364,18 @@ void run(const api::RunView& before, const api::RunView& now, Lines& lines) {
     lines.add(now.run ? icd::sentence("run ", clock(now.run->run_clock), ": ", told) : "run: " + told);
 }
 
+/// Older reports are listed once others have left the list. That is no change.
+bool was_left_out(const facts::ReportRow& report, const api::RunView& before) {
+  return before.reports.size() >= api::RunView::kMostReports &&
+         report.number < before.reports.front().number && report.changed < before.now;
+}
+
 void reports(const api::RunView& before, const api::RunView& now, Lines& lines) {
   for (const facts::ReportRow& report : now.reports) {
     const auto was = std::ranges::find(before.reports, report.number, &facts::ReportRow::number);
+    const bool is_listed = was != before.reports.end();
     const std::string life = life_of(report);
-    if (was != before.reports.end() && life_of(*was) == life) continue;
+    if (is_listed ? life_of(*was) == life : was_left_out(report, before)) continue;
     const std::string why = report.note.empty() ? "" : " (" + report.note + ")";
     const std::string score = gained_by(report).empty() ? "" : ", score " + gained_by(report);
     lines.add(icd::sentence("report ", report.number, " ", report.type, ": ", life, score, why),

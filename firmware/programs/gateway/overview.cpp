@@ -52,8 +52,6 @@ std::string Roster::sentence(const std::string& name) const {
 
 namespace {
 
-constexpr std::size_t kMostReportRows = 200;
-
 std::vector<api::ColourRow> chosen_colours(const std::vector<settings::Robot>& robots) {
   std::vector<api::ColourRow> rows;
   for (const settings::Robot& robot : robots) {
@@ -168,7 +166,7 @@ api::RunView Overview::view_of(facts::Snapshot snapshot) const {
     return left ? std::optional(now + std::chrono::duration<double>(*left).count()) : std::nullopt;
   };
   auto& reports = snapshot.reports.rows;
-  reports.resize(std::min(reports.size(), kMostReportRows));
+  reports.resize(std::min(reports.size(), api::RunView::kMostReports));
   auto verdict = alarms::verdict_of(traffic);
   api::RunView view{.now = now,
                     .version = box::kVersion,
@@ -273,7 +271,7 @@ facts::Clients Overview::clients() const {
 
 facts::Reports Overview::reports() const {
   const dispatch::Reports& all = rooms_.flow.reports();
-  facts::Reports reports{.rows = latest_rows(all, kMostReportRows, answers_),
+  facts::Reports reports{.rows = latest_rows(all, api::RunView::kMostReports, answers_),
                          .elsewhere = all.waiting_elsewhere(),
                          .run_renamed = all.runs().name_trouble(),
                          .rejected = rooms_.flow.rejected().rows()};

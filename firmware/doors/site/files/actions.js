@@ -1,4 +1,5 @@
 // What the operator may do with a report, and what came of it.
+import { learnChange } from "./all_reports.js";
 import { confirmed } from "./dialog.js";
 import { post, session } from "./session.js";
 
@@ -84,6 +85,7 @@ export async function perform(action, report, remaining, shown) {
   shown();
   try {
     const answer = await post(`/adit/reports/${number}/${action.name}`);
+    await learnChange(number);
     tell(number, action.name === "resubmit" ? `Sent again as report ${answer.report}.` : PAST[action.name]);
   } catch (error) {
     tell(number, error.message, true);

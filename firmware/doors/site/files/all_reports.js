@@ -1,4 +1,4 @@
-// Every report: an event has the newest 200, and those with which something is still to happen. The others are asked for once, and
+// Every report: an event has the newest 200, those with which something is still to happen first. The others are asked for once, and
 // then each that changes.
 import { get } from "./session.js";
 
@@ -35,6 +35,9 @@ async function learnAll() {
 
 /** What became of one that events do not have any more. */
 const learnOne = (number) => get(`/adit/reports/${number}`).then(learn, () => (isWhole = false));
+
+/** Call it after a change of report `number`: events may not have it. */
+export const learnChange = (number) => (newest.has(number) ? undefined : learnOne(number));
 
 function hear(reports) {
   const before = newest;

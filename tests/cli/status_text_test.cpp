@@ -14,18 +14,19 @@ using testing::Not;
 using testing::StartsWith;
 
 TEST(StatusText, ShowsAGoodRunOnOneScreen) {
-  EXPECT_EQ(status_text(sample_view(), false),
-            "Run   12:34   47:25 to go   score 7   18 reports left   team cave_club   (heard 0.4 s ago)\n"
-            "Link  12.3 of 100 Mbit/s   3.4 MB of maps queued\n"
-            "Reports  1 answered\n"
-            "\n"
-            "Command Post\n"
-            "  scoring  10.100.1.200:8000  connected  last answer: accepted in 3.4 ms\n"
-            "  mapping  10.100.1.201:8000  connected  last answer: accepted in 42 ms\n"
-            "\n"
-            "Maps, states and markers\n"
-            "  robot  kind  arriving    accepted  sent  queued  no room    age  size  last answer\n"
-            "  r1     grid  up to date        12    11       0           0.5 s  4 kB  accepted\n");
+  EXPECT_EQ(
+      status_text(sample_view(), false),
+      "Run   12:34   47:25 to go   score 7   18 reports left   team cave_club   (heard 0.4 s ago)\n"
+      "Link  12.3 of 100 Mbit/s   3.4 MB of maps queued\n"
+      "Reports  1 answered\n"
+      "\n"
+      "Command Post\n"
+      "  scoring  10.100.1.200:8000  connected  last answer: accepted in 3.4 ms\n"
+      "  mapping  10.100.1.201:8000  connected  last answer: accepted in 42 ms\n"
+      "\n"
+      "Maps, states and markers\n"
+      "  robot  kind  arriving    accepted  sent  queued  no room    age      heard  size  last answer\n"
+      "  r1     grid  up to date        12    11       0           0.5 s  0.4 s ago  4 kB  accepted\n");
 }
 
 TEST(StatusText, MarksAnEstimateOfTheRunClock) {

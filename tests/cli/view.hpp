@@ -45,7 +45,7 @@ inline api::RunView sample_view() {
   grid.forwarded = 11;
   grid.last_accepted = 999;
   grid.last_forwarded = 999.5;
-  grid.age = 0.5;
+  grid.age = 0.5, grid.heard = 0.4;
   grid.bytes_received = 64000;
   grid.bytes_sent = 4000;
   grid.last_status = 200;

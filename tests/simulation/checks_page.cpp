@@ -82,6 +82,18 @@ class Difference {
   Broken& broken_;
 };
 
+/// A state's age is that of the oldest pose that the Command Post lacks, so no older than the newest that it
+/// has. Without an age it has all.
+void check_undelivered(const PageAccount& account, const Reading& reading, const Json& row, Broken& broken) {
+  const Stream stream = stream_of(kState, row.at("robot").get<std::string>());
+  const double most = account.age(stream, moment_of(reading)).most;
+  const Json& shown = row.at("age").is_null() ? row.at("heard") : row.at("age");
+  if (shown.is_null() || shown.get<double>() <= most + kAgeRounding) return;
+  broken.push_back(icd::sentence("Honest: at ", reading.at, " the page shows an undelivered pose of ",
+                                 stream.who, " of ", shown.get<double>(), " s, but the newest delivered is ",
+                                 most, " s old"));
+}
+
 /// A robot's age is that of the last pose that the robot itself posted.
 void check_ages(const Evidence& evidence, const PageAccount& account, const Reading& reading,
                 Broken& broken) {
@@ -98,7 +110,7 @@ void check_ages(const Evidence& evidence, const PageAccount& account, const Read
   const auto heard = evidence.events.begin() + static_cast<std::ptrdiff_t>(reading.heard);
   if (std::any_of(evidence.events.begin(), heard, is_set)) return;
   for (const Json& row : reading.view.at("activities")) {
-    if (row.at("kind") == "state") judge(row, row.at("robot"));
+    if (row.at("kind") == "state") check_undelivered(account, reading, row, broken);
   }
   for (const Json& row : reading.view.at("robots")) judge(row, row.at("name"));
 }

@@ -84,15 +84,18 @@ test("never shows tokens, and says which exist", async (t) => {
 test("switches to another course by one press, after showing the changes", async (t) => {
   const { box, ask, page } = await ready(t, "setup#courses", { courses: [COURSES[0]] });
   await page.getByRole("button", { name: "Add a course" }).click();
+  await page.locator("[data-list=courses] .item .course", { hasText: /New course\s*not applied yet/ }).waitFor();
   await page.keyboard.type("B");
   for (const [name, value] of [["scoring.address", "127.0.0.1"], ["scoring.port", box.scoring], ["mapping.address", "127.0.0.1"], ["mapping.port", box.mapping]]) {
     await type(page, `courses[1].${name}`, String(value));
   }
   assert.ok(await page.getByRole("button", { name: "Switch to Course A" }).isDisabled(), "typed changes must be saved first");
+  await hears(page, "1 change not yet applied");
   await page.getByRole("button", { name: "Apply changes" }).click();
   await review(page);
   await page.getByRole("button", { name: "Apply", exact: true }).click();
   await hears(page, /Applied\./);
+  await step(page, "Courses").getByText("2 saved").waitFor();
   const own = page.locator("[data-list=courses] .item").nth(1).locator("form.token", { hasText: "Own scoring token" });
   await own.locator("input").fill(TOKENS.scoring);
   await own.getByRole("button", { name: "Set" }).click();

@@ -140,7 +140,7 @@ test("tests a course before a switch, and marks it apart from the Test of the cu
   const course = page.locator("[data-list=courses] .item", { hasText: "Course B" });
   await page.waitForFunction((port) => document.querySelector("[data-path='courses[1].scoring.port'] input")?.value === port, String(box.scoring));
   await course.getByRole("button", { name: "Try Course B" }).click();
-  await tried(page, "course", "All is well. These values are not applied yet");
+  await tried(page, "course", "All is well. This course is not in use yet.");
   assert.equal((await ask("/adit/settings")).said.settings.command_post.course, "");
   await step(page, "Test").click();
   await page.getByRole("button", { name: "Run the test" }).click();

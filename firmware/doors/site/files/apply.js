@@ -202,12 +202,16 @@ function errorLink(error) {
   return make("li", error.field ? item : item.textContent);
 }
 
+/** An item that was added or removed is one change, however many values it has. */
+const countOf = (changes) => new Set(changes.map(({ path, from, to }) => (from === null || to === null ? path.replace(/\].*/, "]") : path))).size;
+
 function described(errors) {
   const { changes, trouble } = findings;
   if (trouble) return `${trouble} Your changes are kept, and checked when it answers.`;
   if (errors.length) return `${errors.length === 1 ? "1 error" : `${errors.length} errors`} to correct before you can apply.`;
   if (findings.errors.length) return "Your changes are not yet applied."; // its errors show once the field is left
-  return `${changes.length === 1 ? "1 change" : `${changes.length} changes`} not yet applied.`;
+  const count = countOf(changes);
+  return `${count === 1 ? "1 change" : `${count} changes`} not yet applied.`;
 }
 
 function show() {

@@ -145,11 +145,12 @@ function createHead() {
   return make("div.course", make("span.name"), make("span.badge"), make("div.acts", tries, button));
 }
 
-function updateHead(node, name) {
+/** `isNew`: of a card whose course has no name yet. */
+function updateHead(node, name, isNew = false) {
   const [title, state, acts] = node.children, [tries, button] = acts.children;
-  const inUse = draft.base.command_post.course === name, isApplied = postOf(draft.base, name) !== undefined;
+  const inUse = !isNew && draft.base.command_post.course === name, isApplied = !isNew && postOf(draft.base, name) !== undefined;
   node.dataset.level = inUse ? "good" : "quiet";
-  say(title, nameOf(name));
+  say(title, isNew ? "New course" : nameOf(name));
   badge(state, node.dataset.level, inUse ? "in use" : isApplied ? "not in use" : "not applied yet");
   button.setAttribute("aria-label", `Switch to ${nameOf(name)}`);
   if (inUse && button === document.activeElement) giveFocus(document.getElementById("courses-title"));
@@ -169,7 +170,7 @@ function showCard(card, name) {
     card.tokens = make("div.tokens");
     card.querySelector(".fields").after(card.tokens);
   }
-  updateHead(card.head, name);
+  updateHead(card.head, name, !name);
   putTokens(card.tokens, ENDPOINTS.map((endpoint) => `course.${name}.${endpoint}`).filter((token) => token in draft.tokens));
 }
 

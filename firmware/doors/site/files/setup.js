@@ -29,7 +29,7 @@ const STATES = {
   tokens: () => (missingTokens({ settings: draft.base, tokens: draft.tokens }).length ? ["bad", "missing"] : ["good", "set"]),
   robots: () => (draft.base.robots.length ? ["good", `${draft.base.robots.length} named`] : ["quiet", "any name"]),
   test: () => ({ good: ["good", "passed"], bad: ["bad", "failed"], "": ["quiet", "not run"] })[result],
-  courses: () => ["quiet", draft.base.command_post.course || "none"],
+  courses: () => ["quiet", draft.base.command_post.course ? `${draft.base.command_post.course} in use` : draft.base.courses.length ? `${draft.base.courses.length} saved` : "none"],
 };
 
 function stateOf(section, errors) {

@@ -65,6 +65,7 @@ const isCurrent = ({ applied, outdated }) => !outdated && (applied || !isOwn() |
 /** Of a result that is not of the settings in use; "" if they are the same. */
 function ofWhat() {
   if (!isOwn()) return "This test began elsewhere, perhaps with other values.";
+  if (own.where === "course") return "This course is not in use yet."; // only a saved one can be tried
   const isInUse = !draft.base.command_post.course && same(own.values, { tag: draft.tag, ...typed(draft.base, () => null) });
   return isInUse ? "" : "These values are not applied yet.";
 }

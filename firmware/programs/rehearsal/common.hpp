@@ -62,7 +62,7 @@ inline std::expected<std::string, std::string> read_token(const std::filesystem:
   std::ifstream file(path);
   if (!file) return std::unexpected(path.string() + ": cannot be read");
   const std::string text{std::istreambuf_iterator<char>(file), {}};
-  const std::string token(icd::trimmed(text));
+  std::string token(icd::trimmed(text));
   const bool is_visible = std::ranges::all_of(token, [](char c) { return c > 0x20 && c < 0x7f; });
   if (!token.empty() && is_visible) return token;
   return std::unexpected(path.string() + ": expected one token of visible ASCII characters");

@@ -108,7 +108,7 @@ class EndpointWatch {
   void look(const std::vector<ConnectionSample>& seen, double now);
   /// Call if the endpoint's address or token has changed.
   void forget();
-  /// The fault, as the members `fault`, `since`, `said` and `well_for`, in monotonic seconds.
+  /// The fault, as the members `fault`, `since`, `said`, `well_for` and `waits`, in monotonic seconds.
   facts::EndpointRow endpoint(double now) const;
 
  private:

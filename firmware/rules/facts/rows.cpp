@@ -121,7 +121,7 @@ constexpr Member kEndpoint[] = {
     member<&EndpointRow::last_status>("last_status",
                                       "status of the answer to the last try; 0 if there was no answer"),
     member<&EndpointRow::answer_ms>("answer_ms", "from the first byte of a request until its last answer"),
-    member<&EndpointRow::answered>("answered", "seconds since that answer; null if there was none"),
+    member<&EndpointRow::answered>("answered", "seconds since that answer; null before the first one"),
     member<&EndpointRow::throttled>("throttled", "number of answers of 429"),
     member<&EndpointRow::foreign>(
         "foreign", "number of answers that are not from a Command Post: pages of HTML, redirects"),

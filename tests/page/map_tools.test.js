@@ -124,7 +124,7 @@ test("colours clouds by height or by robot, and at night all in red", async (t) 
   assert.ok(await page.locator("#map .legend").isVisible());
   await box(page, "Clouds by robot").check();
   const own = robotRgb(3, "dark").map((part) => part.toString(16).padStart(2, "0")).join("");
-  await until(() => clouds().some((url) => url.endsWith(`to=${own}`)), "clouds in the robot's colour");
+  await until(() => clouds().some((url) => url.includes(`to=${own}&`)), "clouds in the robot's colour");
   assert.ok(await page.locator("#map .legend").isHidden());
   await page.locator(".strip .theme").click();  // light theme
   await page.locator(".strip .theme").click();  // night theme

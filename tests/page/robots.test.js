@@ -186,7 +186,7 @@ test("draws each map's age over time, with now at the right", async (t) => {
   const { page } = await watchTwenty(t);
   await page.clock.install();
   await page.clock.runFor(20_000);
-  await page.waitForFunction(() => (document.querySelector('#robots li[data-key="uav5"] path').getAttribute("d").match(/L/g) ?? []).length >= 3);
-  const [x] = (await page.getAttribute('#robots li[data-key="uav5"] path', "d")).match(/[\d.]+(?= [\d.]+$)/);
+  await page.waitForFunction(() => (document.querySelector('#robots li[data-key="uav6"] path').getAttribute("d").match(/L/g) ?? []).length >= 3);
+  const [x] = (await page.getAttribute('#robots li[data-key="uav6"] path', "d")).match(/[\d.]+(?= [\d.]+$)/);
   assert.equal(Number(x), 89, "now is at the right");
 });

@@ -18,6 +18,8 @@ class Alarms(WithAlarms):
         wait_until(lambda: robot.told > 20, "the robot to go on")
         self.assertEqual(self.view(stage)["alarms"], [])
         self.assertEqual(self.status(stage)[1], 0)
+        for endpoint in self.view(stage)["endpoints"]:
+            self.assertLess(endpoint["answered"], 60, endpoint["name"])
 
     def test_the_command_post_is_unreachable(self):
         stage = self.stage()

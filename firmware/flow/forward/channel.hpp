@@ -43,6 +43,8 @@ class LastAnswer {
   int status() const { return status_; }
   /// From the request's first byte until its answer.
   std::optional<double> answer_ms() const { return answer_ms_; }
+  /// Seconds since heard().
+  double age() const { return std::chrono::duration<double>(loop_.now() - heard_).count(); }
   /// True if it came from another machine than a Command Post. foreign() counts such answers.
   bool is_foreign() const { return is_foreign_; }
   std::uint64_t foreign() const { return foreign_; }

@@ -71,11 +71,11 @@ alarms::ConnectionSample seen(const forward::Channel& channel) {
           .said = channel.trouble()};
 }
 
-/// `row`, with its texts, counts and last answer at `now`. `latest`: of the channels, the last that was
+/// `row`, with its texts, counts and last answer. `latest`: of the channels, the last that was
 /// answered.
 facts::EndpointRow shown(const char* name, const settings::Address& address,
                          std::initializer_list<const forward::Channel*> channels,
-                         const forward::Channel& latest, double now, facts::EndpointRow row) {
+                         const forward::Channel& latest, facts::EndpointRow row) {
   if (!latest.has_token()) row = {.fault = facts::EndpointFault::NoToken};
   row.name = name;
   row.address = forward::address_text(address);
@@ -88,8 +88,7 @@ facts::EndpointRow shown(const char* name, const settings::Address& address,
   if (row.trouble.empty() && row.fault == facts::EndpointFault::Silent) row.trouble = "no answer";
   row.last_status = latest.last().status();
   row.answer_ms = latest.last().answer_ms();
-  const std::chrono::duration<double> heard = latest.last().heard().time_since_epoch();
-  if (row.answer_ms) row.answered = std::max(0.0, now - heard.count());
+  if (row.answer_ms) row.answered = latest.last().age();
   return row;
 }
 
@@ -161,8 +160,8 @@ std::vector<facts::EndpointRow> ObservedFacts::endpoints(const forward::Flow& fl
   const forward::Channel& telemetry = flow.telemetry().channel();
   const forward::Channel& latest = maps.last().heard() > telemetry.last().heard() ? maps : telemetry;
   std::vector rows{
-      shown("scoring", command_post.scoring, {&scoring}, scoring, now, scoring_.endpoint(now)),
-      shown("mapping", command_post.mapping, {&maps, &telemetry}, latest, now, mapping_.endpoint(now))};
+      shown("scoring", command_post.scoring, {&scoring}, scoring, scoring_.endpoint(now)),
+      shown("mapping", command_post.mapping, {&maps, &telemetry}, latest, mapping_.endpoint(now))};
   for (facts::EndpointRow& row : rows) {
     if (row.since != 0) row.since += time - now;  // 0: unknown
   }

@@ -33,13 +33,13 @@ function box(t) {
 }
 
 async function asked(t) {
-  const at = box(t), tiles = new Tiles(() => {});
+  const at = box(t), drawn = { times: 0 }, tiles = new Tiles(() => ++drawn.times);
   tiles.setLooks(LOOKS, false);
   await tiles.refresh();
   const see = () => [...tiles.layers.values()].flatMap((layer) => [...layer.tiles.keys()].map((place) => tiles.image(layer, place, null)));
   see();
   await at.turn();
-  return { ...at, tiles, see };
+  return { ...at, drawn, tiles, see };
 }
 
 test("asks once for all tiles of a layer, the merged map first", async (t) => {
@@ -68,12 +68,13 @@ test("tells how many tiles have come", async (t) => {
   assert.equal(tiles.progress().done, 2 * (26 + 8));
 });
 
-test("asks again for what did not come", async (t) => {
-  const { requests, fail, turn, tiles, see } = await asked(t);
+test("asks again for what did not come, when it is next drawn", async (t) => {
+  const { requests, fail, turn, tiles, see, drawn } = await asked(t), before = drawn.times;
   while (tiles.progress()) {
     fail();
     await turn();
   }
+  assert.equal(drawn.times, before, "a failure gives nothing to draw, and so no request at once");
   see();
   await turn();
   assert.ok(requests.length > 42);

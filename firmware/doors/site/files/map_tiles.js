@@ -218,7 +218,7 @@ export class Tiles {
     return together;
   }
 
-  async #load() {
+  #load() {
     for (let next = this.#nextRequests(); next.length; next = this.#nextRequests()) this.#fetch(next);
   }
 
@@ -236,7 +236,6 @@ export class Tiles {
       this.#awaited -= requests.length;
       this.#wave.done += requests.length;
       if (isFiner) --this.#loadingFiner;
-      this.#changed();
       this.#evict();
       this.#load();
     }
@@ -268,6 +267,7 @@ export class Tiles {
   #show(entry, image) {
     entry.image = image;
     this.#pieces.set(entry.place, this.#areaOf(entry.place));
+    this.#changed();
   }
 
   #areaOf(place) {

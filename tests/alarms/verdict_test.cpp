@@ -155,6 +155,18 @@ class StandingTest : public testing::Test {
     EXPECT_EQ(standing().level, level);
   }
 
+  /// The stream with other times and another last answer.
+  ActivityRow stream(std::optional<double> age, double heard, int status = 0,
+                     const char* sentence = "") const {
+    return {.kind = "grid",
+            .robot = stream_.robot,
+            .last_forwarded = kNow,
+            .age = age,
+            .heard = heard,
+            .last_status = status,
+            .last_sentence = sentence};
+  }
+
   Snapshot snapshot_ = well(1);
   ActivityRow& stream_ = snapshot_.traffic.activities.front();
   RobotHabit& robot_ = snapshot_.traffic.habits.begin()->second;
@@ -172,27 +184,15 @@ TEST_F(StandingTest, BlamesNoRobotWhileMappingIsDown) {
        {EndpointFault::NoToken, EndpointFault::Unreachable, EndpointFault::Foreign, EndpointFault::Refusing,
         EndpointFault::Silent, EndpointFault::Failing}) {
     mapping_ = trouble;
-    stream_ = {.kind = "grid", .robot = stream_.robot, .last_forwarded = kNow, .age = 200, .heard = 200};
+    stream_ = stream(200, 200);
     expect(Arrival::NotArriving, Level::Quiet);
-    stream_ = {.kind = "grid",
-               .robot = stream_.robot,
-               .last_forwarded = kNow,
-               .age = 3,
-               .heard = 9,
-               .last_sentence = "timed out"};
+    stream_ = stream(3, 9, 0, "timed out");
     expect(Arrival::NotArriving, Level::Quiet);
-    stream_ = {
-        .kind = "grid", .robot = stream_.robot, .last_forwarded = kNow, .heard = 9, .last_status = 401};
+    stream_ = stream({}, 9, 401);
     expect(Arrival::NotArriving, Level::Quiet);
-    stream_ = {.kind = "grid",
-               .robot = stream_.robot,
-               .last_forwarded = kNow,
-               .age = 3,
-               .heard = 9,
-               .last_status = 200};
+    stream_ = stream(3, 9, 200);
     expect(Arrival::NotArriving, Level::Quiet);
-    stream_ = {
-        .kind = "grid", .robot = stream_.robot, .last_forwarded = kNow, .heard = 3, .last_status = 200};
+    stream_ = stream({}, 3, 200);
     robot_.silent = true;
     expect(Arrival::UpToDate, Level::Good);
   }
@@ -201,34 +201,19 @@ TEST_F(StandingTest, BlamesNoRobotWhileMappingIsDown) {
 TEST_F(StandingTest, BlamesNoRobotJustAfterAnOutage) {
   snapshot_.traffic.turn = 20;
   snapshot_.traffic.endpoints[1].well_for = 29;
-  stream_ = {.kind = "grid",
-             .robot = stream_.robot,
-             .last_forwarded = kNow,
-             .age = 200,
-             .heard = 200,
-             .last_sentence = "timed out"};
+  stream_ = stream(200, 200, 0, "timed out");
   expect(Arrival::Late, Level::Wait);
-  stream_ = {.kind = "grid",
-             .robot = stream_.robot,
-             .last_forwarded = kNow,
-             .age = 60,
-             .heard = 60,
-             .last_status = 401};
+  stream_ = stream(60, 60, 401);
   expect(Arrival::Late, Level::Wait);
   stream_.last_status = 422;
   expect(Arrival::Refused, Level::Bad);
-  stream_ = {.kind = "grid", .robot = stream_.robot, .last_forwarded = kNow, .heard = 1, .last_status = 200};
+  stream_ = stream({}, 1, 200);
   expect(Arrival::UpToDate, Level::Good);
   robot_.silent = true;
   expect(Arrival::Silent, Level::Bad);
   robot_.silent = false;
   snapshot_.traffic.endpoints[1].well_for = 31;
-  stream_ = {.kind = "grid",
-             .robot = stream_.robot,
-             .last_forwarded = kNow,
-             .age = 200,
-             .heard = 200,
-             .last_sentence = "timed out"};
+  stream_ = stream(200, 200, 0, "timed out");
   expect(Arrival::NotArriving, Level::Bad);
 }
 

@@ -236,7 +236,9 @@ intake::Answer tiles_of(const picture::Mosaic& map, const TilesAsked& asked) {
     const auto shown = map.tile(asked.in.layer, at, asked.in.stamp);
     if (shown.tile == nullptr) continue;
     const std::string image = coloured(*shown.tile, asked.in);
-    tile = {.place = tile.place, .bytes = image.size(), .since = shown.stamp, .until = shown.until};
+    tile.bytes = image.size();
+    tile.since = shown.stamp;
+    tile.until = shown.until;
     images += image;
   }
   return fresh("application/octet-stream", codec::to_json(head) + '\n' + images);

@@ -37,7 +37,7 @@ constexpr auto kOff = Pattern::Off, kOn = Pattern::On, kSlow = Pattern::Slow, kF
                kDigits = Pattern::Digits;
 
 // The first asserted state is shown. The last action at the box comes first, then worse before better. Open
-// set-up precedes an operator's pending action: the person who opened set-up must see how long it stays open,
+// set-up precedes an operator's pending action: the person who opened set-up must see its remaining time,
 // and the page shows the action.
 constexpr StateRow kTable[] = {
     {State::Fault,

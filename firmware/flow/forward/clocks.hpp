@@ -57,8 +57,8 @@ class StampFloor {
   void is_due() { last_ = 0; }
   /// May run on a worker, one call at a time, on copies. Logs a failure when its text changes.
   void write(const Kept& kept);
-  /// Stores what is known of the ledger, if a good file has less. For a process that could not read the file
-  /// at its start, on the thread of write().
+  /// Stores these facts about the ledger, if the file is good and has less. For a process that could not read
+  /// the file at its start, on the thread of write().
   void remember(const ledger::Known& ledger);
   /// Removes a bound that is more than kMostAhead beyond the time of day, for the operator: stamps step back
   /// once. Call before Clocks. Logs a failure.

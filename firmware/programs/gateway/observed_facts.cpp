@@ -71,8 +71,7 @@ alarms::ConnectionSample seen(const forward::Channel& channel) {
           .said = channel.trouble()};
 }
 
-/// `row`, with its texts, counts and last answer. `latest`: of the channels, the last that was
-/// answered.
+/// `row`, with its texts, counts and last answer. `latest`: of the channels, the last that was answered.
 facts::EndpointRow shown(const char* name, const settings::Address& address,
                          std::initializer_list<const forward::Channel*> channels,
                          const forward::Channel& latest, facts::EndpointRow row) {

@@ -45,7 +45,7 @@ struct Address {
   }
 };
 
-/// Reads "127.0.0.1:8000" or "[::1]:8000". The host is not checked. The error says what is wrong.
+/// Reads "127.0.0.1:8000" or "[::1]:8000". The host is not checked. The error is a sentence.
 inline std::expected<Address, std::string> read_address(std::string_view text, std::uint16_t least_port) {
   const std::size_t colon = text.rfind(':');
   if (colon == std::string_view::npos) return std::unexpected("no port");

@@ -11,8 +11,8 @@ export function clock(seconds) {
 const FRESH = 10; // seconds
 
 /** An endpoint's last answer: whether its figures are no longer fresh, and since when, "" if they are. */
-export const isOldAnswer = ({ answered }, since = 0) => answered !== null && answered + since > FRESH;
-export const answeredWords = (row, since = 0) => (isOldAnswer(row, since) ? ago(row.answered + since) : "");
+export const isOldAnswer = ({ answered }) => answered !== null && answered > FRESH;
+export const answeredWords = (row) => (isOldAnswer(row) ? ago(row.answered) : "");
 
 /** How long ago: "now", "8 s", "12 min", "2:05 h". */
 export function age(seconds) {

@@ -20,8 +20,8 @@ namespace adit::rehearsal {
 /// By the machine's clock.
 using Moment = std::chrono::sys_time<std::chrono::milliseconds>;
 
-/// How old the maps were when they came, and how much of what was posted is here, of each robot and kind; and
-/// the markers that stand, compared with what the robots posted. Bounded. Safe for use by several threads.
+/// For each robot and kind: the age of the maps at their arrival, and the share of the posted data that is
+/// here; and the displayed markers, compared with the posted ones. Bounded. Safe for use by several threads.
 class Arrivals {
  public:
   /// A map was taken, whose last byte had come at `now`.

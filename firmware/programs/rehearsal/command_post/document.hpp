@@ -14,10 +14,10 @@
 
 namespace adit::rehearsal {
 
-/// What came in.
+/// A received document.
 using Json = nlohmann::json;
 
-/// What goes out: members stay in the order they were written.
+/// A document to send: members stay in the order they were written.
 using OrderedJson = nlohmann::ordered_json;
 
 /// One line of JSON; bytes that are not UTF-8 become U+FFFD, since names from the wire may hold anything.
@@ -38,7 +38,7 @@ enum class Format : std::uint8_t { JsonText, CborBytes };
 /// nothing after it, nested no deeper than 64, at most 4 million values. An error says why it is none.
 std::expected<Document, std::string> read_document(std::string_view body, Format format);
 
-/// RFC 4648 4: the standard alphabet, padded, with no other character in it. Nothing where it is not that.
+/// RFC 4648 4: the standard alphabet, padded, with no other character in it; otherwise std::nullopt.
 std::optional<std::string> base64_decoded(std::string_view text);
 
 enum class InflateFault {

@@ -18,13 +18,13 @@
 
 namespace adit::rehearsal {
 
-/// Why what came in is no whole HTTP request. `status` 0: whoever sent it is gone and gets no answer.
+/// Why the received bytes are not a whole HTTP request. `status` 0: the client is gone and gets no answer.
 struct HttpFault {
   int status = 400;
   std::string sentence;
 };
 
-/// A request as it was read from a connection. Where `fault` is set, the rest holds what was understood.
+/// A request from a connection. If `fault` is set, the other members have the part that could be read.
 struct Request {
   std::string method;
   std::string target;
@@ -56,10 +56,10 @@ enum class After {
   KeepOpen,
   Close,                    // saying so (Connection: close)
   CloseThoughPromisingNot,  // as the measured mapping server does after a 4xx
-  Reset,                    // with a RST, and what was not yet sent is lost
+  Reset,                    // with a RST, and unsent bytes are lost
 };
 
-/// What is done about a request, decided before any byte of it is written.
+/// The reaction to a request, decided before any byte of its answer is written.
 struct Outcome {
   enum class Kind {
     Answered,
@@ -130,7 +130,7 @@ struct Judgement {
   Findings findings;
   std::optional<Json> message;        // as it came
   std::optional<OrderedJson> report;  // the answer to a recorded report
-  MappingMessage accepted;            // what was taken of it; of a report its part
+  MappingMessage accepted;            // its accepted parts; a report is one
   std::string fault;                  // the rehearsed fault; "": none
 };
 
@@ -202,7 +202,7 @@ std::unique_ptr<Endpoint> measured_scoring(std::string token, double hz, Run& ru
 /// came; `authority`: the address and port in its url.
 OrderedJson report_body(const Run::Ruling& ruling, const Json& sent, const std::string& authority);
 
-/// Where no address is known, or as the measured server has it.
+/// If no address is known, or as the measured server shows it.
 inline constexpr const char* kNoAuthority = "<ipaddress>:<port>";
 
 /// The mapping endpoint of the ICD's section 6, to the letter. At most `hz` requests a second for each URI.

@@ -142,7 +142,7 @@ std::unexpected<std::string> wrong(const Parts&... parts) {
   return std::unexpected(sentence(parts...));
 }
 
-/// Puts the argument, as it was read, in its place, once. `example`: for the sentence about one that is none.
+/// Stores the parsed argument in its place, once. `example`: for the sentence about an invalid one.
 template <class Place>
 Told put(const Word& word, const Place& read, std::string_view what, std::string_view example, Place& place) {
   if (!read) {

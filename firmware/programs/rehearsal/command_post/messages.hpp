@@ -64,8 +64,8 @@ struct MappingMessage {
   std::vector<MarkerChange> markers = {};
 };
 
-/// Reads the body of `judgement.uri` and writes down what is found. Leaves the document in judgement.message,
-/// a map's data in it described, not kept. Nothing where there is no message.
+/// Reads the body of `judgement.uri` and writes down its findings. Leaves the document in
+/// judgement.message, with a map's data described, not stored. std::nullopt if there is no message.
 std::optional<MappingMessage> read_mapping(const std::string& body, Format format, Judgement& judgement);
 
 }  // namespace adit::rehearsal

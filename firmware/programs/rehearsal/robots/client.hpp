@@ -26,7 +26,7 @@
 namespace adit::robots {
 
 /// Where to post: "http://ADDR:PORT", or "localhost" as the address.
-/// Or a sentence that says what is wrong with `url`.
+/// The error is a sentence about `url`.
 std::expected<Address, std::string> parse_url(std::string_view url);
 
 struct HttpReply {

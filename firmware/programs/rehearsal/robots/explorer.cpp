@@ -21,7 +21,7 @@ constexpr milliseconds kTick = 100ms;
 constexpr double kReportNoise = 0.05;  // metres
 constexpr double kWrongReports = 0.15;
 
-/// Something that is done every so often; what was missed is not made up for.
+/// A task at regular times. Missed times are not made up for.
 class Every {
  public:
   Every(std::chrono::duration<double> period, std::chrono::steady_clock::time_point first)

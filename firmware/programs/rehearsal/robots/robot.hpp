@@ -159,9 +159,9 @@ class MapMaker {
   /// Of drifting grids: metres by which an origin is off along each axis or not, metres up, radians of yaw.
   static constexpr double kDrift = 0.013, kRise = 0.001, kYaw = 1e-9;
 
-  /// `here`: where the robot is. Nothing where it posts no grids.
+  /// `here`: the robot's place. std::nullopt if it posts no grids.
   std::optional<Grid> grid(const RobotMap& map, const Vector3& here, const MapTime& time);
-  /// Takes the map's new points. Nothing where there are none, or it posts no clouds.
+  /// Takes the map's new points. std::nullopt if there are none, or it posts no clouds.
   std::optional<Cloud> cloud(RobotMap& map, const Vector3& here, const MapTime& time);
 
   const MapOffer& offer() const { return offer_; }

@@ -5,6 +5,7 @@ import { groupReports } from "../../firmware/doors/site/files/map_groups.js";
 import { drawLayers } from "../../firmware/doors/site/files/map_layers.js";
 import { Labels } from "../../firmware/doors/site/files/map_labels.js";
 import { drawGridLabels, drawScaleBar, stepOf, gridLabelBoxes } from "../../firmware/doors/site/files/map_metres.js";
+import { writeMarkers } from "../../firmware/doors/site/files/map_markers.js";
 import { lastSeen } from "../../firmware/doors/site/files/map_robots.js";
 import { filled } from "../../firmware/doors/site/files/map_tracks.js";
 import { MapView } from "../../firmware/doors/site/files/map_view.js";
@@ -14,6 +15,13 @@ const SIZE = 12;
 /** A canvas that only records texts: [left, top, right, bottom, text]. */
 const paper = () => ({
   written: [],
+  leaders: 0,
+  beginPath() {
+    ++this.leaders;
+  },
+  moveTo() {},
+  lineTo() {},
+  stroke() {},
   measureText: (text) => ({ width: text.length * SIZE * 0.6 }),
   strokeText() {},
   fillText(text, left, middle) {
@@ -99,7 +107,34 @@ test("places the first name at the right, the next ones elsewhere, and the fifth
   const found = [..."abcde"].map((letter) => labels.write(letter.repeat(6), 400, 250));
   assert.deepEqual(found, [true, true, true, true, false]);
   assert.ok(paint.written[0][0] > 400 && paint.written[1][2] < 400);
-  assert.ok(labels.write("silent", 400, 250, { isSure: true }));
+});
+
+test("writes the names of twenty silent robots in one place below and above each other, with lines to it", () => {
+  const paint = paper(), labels = new Labels(paint, {}, SIZE, { width: 800, height: 500 });
+  const found = Array.from({ length: 20 }, (_, i) => labels.write(`robot${i} · 2 min`, 400 + i / 4, 250, { rows: 6 }));
+  assert.equal(found.filter(Boolean).length, 20);
+  paint.written.forEach((one, i) => paint.written.slice(i + 1).forEach((other) => assert.ok(!overlap(one, other), `${one} upon ${other}`)));
+  assert.ok(paint.leaders >= 10, `${paint.leaders} lines`);
+});
+
+/** A view of so many pixels per metre. */
+const viewOf = (scale) => Object.assign(new MapView(), { width: 800, height: 500, scale });
+const textsAt = (scale, markers) => {
+  const paint = paper();
+  writeMarkers(new Labels(paint, {}, SIZE, { width: 800, height: 500 }), viewOf(scale), markers);
+  return paint.written.map(([, , , , text]) => text);
+};
+
+test("writes a marker's text from where it is half as high as the page's letters, and a mesh's name near by", (t) => {
+  t.after(() => delete globalThis.document);
+  globalThis.document = /** @type {any} */ ({ documentElement: { dataset: { theme: "dark" } } });
+  const at = (x, more) => ({ position: { x, y: 0, z: 0 }, color: { r: 1, g: 1, b: 1, a: 1 }, scale: { x: 1, y: 1, z: 1 }, text: "", mesh: "", ...more });
+  const markers = [at(0, { type: 9, text: "small", scale: { x: 0, y: 0, z: 0.4 } }), at(5, { type: 9, text: "large", scale: { x: 0, y: 0, z: 4 } }),
+    at(-5, { type: 10, mesh: "robot" })];
+  assert.deepEqual(textsAt(1, markers), []);
+  assert.deepEqual(textsAt(2, markers), ["large"]);
+  assert.deepEqual(textsAt(16, markers), ["small", "large"]);
+  assert.deepEqual(textsAt(20, markers), ["small", "large", "robot"]);
 });
 
 test("draws a line each 1, 2 or 5 metres, times a power of ten, far enough apart to be read", () => {
@@ -113,7 +148,7 @@ test("draws a line each 1, 2 or 5 metres, times a power of ten, far enough apart
 test("writes no name over the scale and the figures at the edges", () => {
   for (const [width, height, scale] of [[374, 230, 3.3], [374, 184, 2.7], [1260, 720, 8], [2900, 1800, 31]]) {
     const view = Object.assign(new MapView(), { width, height, scale, centre: { x: 40, y: -3 } });
-    const edges = { ...paper(), beginPath() {}, moveTo() {}, lineTo() {}, stroke() {} };
+    const edges = paper();
     drawGridLabels(edges, {}, view, SIZE);
     drawScaleBar(edges, {}, view, SIZE);
     const boxes = [...gridLabelBoxes(view, SIZE)];
@@ -161,7 +196,7 @@ test("stands for three reports or more of one place with one sign, of their wors
 
 test("says when a silent robot was last heard", () => {
   const silent = new Set(["ugv1"]);
-  assert.equal(lastSeen({ name: "ugv1", age: 94 }, silent), "ugv1 · last seen 1 min ago");
+  assert.equal(lastSeen({ name: "ugv1", age: 94 }, silent), "ugv1 · 1 min");
   assert.equal(lastSeen({ name: "ugv1", age: null }, silent), "ugv1 · silent", "the last pose is from before a start of the box");
   assert.equal(lastSeen({ name: "ugv2", age: 94 }, silent), "ugv2");
 });

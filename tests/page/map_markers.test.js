@@ -5,25 +5,26 @@ import { until } from "./box.js";
 import { box, canvas } from "./pictures.js";
 import { hears, settled, watch } from "./watch.js";
 
-const INK = { r: 1, g: 0.2, b: 1, a: 1 }, PINK = [255, 51, 255], BLUE = [0, 102, 255], BLUE_HEX = "#0066ffff";
+const INK = { r: 1, g: 0.2, b: 1, a: 1 }, PINK = [255, 51, 255], DIM_PINK = [102, 20, 102], BLUE = [0, 102, 255], BLUE_HEX = "#0066ffff";
 const SIDE = [[0, 0], [20, 0]], ANGLE = [[0, 0], [20, 0], [20, 20]], PAIRS = [[0, 0], [20, 0], [0, 20], [20, 20]];
 
-/** By name: the members of a marker at (0, 0), the places around it that are `inked` (BLUE if `blue`), and those that are `blank`. */
+/** By name: the members of a marker at (0, 0), the places around it that are `inked` (BLUE if `blue`, at 40 % of the
+ *  lightness if `dim`: lines), and those that are `blank`. */
 const KINDS = {
   "an arrow by its pose": { type: 0, heading: Math.PI / 2, scale: [20, 4], inked: [[0, 5], [0, 15]], blank: [[10, 0], [0, -5]] },
   "an arrow by two points": { type: 0, points: [[0, 0], [0, 20]], scale: [1, 4], inked: [[0, 5], [0, 17]], blank: [[10, 10], [0, -5]] },
   "a cube": { type: 1, scale: [16, 8], inked: [[0, 0], [7, 3]], blank: [[0, 8], [11, 0]] },
   "a sphere": { type: 2, scale: [16, 8], inked: [[0, 0], [7, 0]], blank: [[7, 4], [11, 0]] },
   "a cylinder": { type: 3, heading: Math.PI / 2, scale: [16, 8], inked: [[0, 0], [0, 7]], blank: [[7, 0], [0, 11]] },
-  "a strip of lines": { type: 4, points: ANGLE, scale: [1, 0], inked: [[10, 0], [20, 10]], blank: [[10, 10], [10, 20]] },
+  "a strip of lines": { type: 4, points: ANGLE, scale: [1, 0], inked: [], dim: [[10, 0], [20, 10]], blank: [[10, 10], [10, 20]] },
   "a strip of one point": { type: 4, points: [[10, 10]], scale: [1, 0], inked: [[10, 10]], blank: [[0, 0], [20, 10]] },
   "a strip of one point of its own colour": { type: 4, points: [[10, 10]], scale: [1, 0], colors: [BLUE_HEX], inked: [], blue: [[10, 10]], blank: [[0, 0]] },
-  "a list of lines": { type: 5, points: PAIRS, scale: [1, 0], inked: [[10, 0], [10, 20]], blank: [[10, 10], [20, 10]] },
+  "a list of lines": { type: 5, points: PAIRS, scale: [1, 0], inked: [], dim: [[10, 0], [10, 20]], blank: [[10, 10], [20, 10]] },
   "a list of cubes": { type: 6, points: SIDE, scale: [6, 6], inked: [[2, 2], [22, 2]], blank: [[10, 0]] },
   "a list of spheres": { type: 7, points: SIDE, scale: [6, 6], inked: [[0, 0], [20, 0]], blank: [[10, 0]] },
   "points of colours of their own": { type: 8, points: SIDE, scale: [6, 6], colors: [BLUE_HEX, "#ff33ffff"], inked: [[20, 0]], blue: [[0, 0]], blank: [[10, 0]] },
   "a mesh": { type: 10, mesh: "drill", scale: [1, 1], inked: [[0, 0]], blank: [[10, 10]] },
-  "a list of triangles": { type: 11, points: ANGLE, scale: [1, 1], inked: [[10, 0], [20, 10], [10, 10]], blank: [[15, 5]] },
+  "a list of triangles": { type: 11, points: ANGLE, scale: [1, 1], inked: [], dim: [[10, 0], [20, 10], [10, 10]], blank: [[15, 5]] },
 };
 const COLUMNS = 4, STEP = 34, LEFT = 0, TOP = 120;  // metres
 const placeOf = (i) => ({ x: LEFT + (i % COLUMNS) * STEP, y: TOP - Math.floor(i / COLUMNS) * STEP });
@@ -66,9 +67,9 @@ test("draws every kind of marker at its place, in its size and its colours", asy
   const scale = (other.x - one.x) / 140;
   const pixel = ([x, y]) => [Math.round(one.x + (x + 10) * scale), Math.round(one.y - (y - 40) * scale)];
   const wrong = [];
-  for (const [i, [name, { inked, blue = [], blank }]] of kinds.entries()) {
+  for (const [i, [name, { inked, blue = [], dim = [], blank }]] of kinds.entries()) {
     const at = ([x, y]) => pixel([placeOf(i).x + x, placeOf(i).y + y]);
-    for (const [places, colour, is] of [[inked, PINK, true], [blue, BLUE, true], [blank, PINK, false], [blank, BLUE, false]]) {
+    for (const [places, colour, is] of [[inked, PINK, true], [blue, BLUE, true], [dim, DIM_PINK, true], ...[PINK, BLUE, DIM_PINK].map((each) => [blank, each, false])]) {
       for (const place of places) if (Boolean((await find(page, colour, at(place))).count) !== is) wrong.push(`${name} at ${place}: ${is ? "blank" : "inked"}`);
     }
   }
@@ -84,7 +85,7 @@ test("draws the markers once per view, however often a robot moves", async (t) =
       return clearRect.apply(this, words);
     };
     CanvasRenderingContext2D.prototype.stroke = function (...words) {
-      if (this.strokeStyle === "#ff33ff") ++globalThis.drawn.lines;  // the markers' colour
+      if (this.strokeStyle === "#661466") ++globalThis.drawn.lines;  // the markers' colour
       return stroke.apply(this, words);
     };
   });

@@ -38,20 +38,35 @@ export class Labels {
   #isFree = (box) => !this.#taken.some(([a, b, c, d]) => box[0] < c && box[2] > a && box[1] < d && box[3] > b);
 
   /** Right of the place, else left of it, above or below; what is in sight is not cut at the edge. `away`: pixels from the place;
-   *  `isSure`: it is written even upon something else. Gives whether it is written. */
-  write(text, left, top, { colour = this.colours.ink, rim = this.colours.ground, size = this.size, away = size, isSure = false } = {}) {
+   *  `rows`: so many lines farther above and below may it stand if there is no room, with a line to its place. Gives whether it is
+   *  written. */
+  write(text, left, top, { colour = this.colours.ink, rim = this.colours.ground, size = this.size, away = size, rows = 0 } = {}) {
     const { ctx } = this;
     ctx.font = `600 ${size}px system-ui, sans-serif`;
-    const width = widthOf(ctx, text), half = size * 0.6;
-    const centred = left - width / 2;
-    const places = [[left + away, top], [left - away - width, top], [centred, top - away - half], [centred, top + away + half]];
-    const boxes = places.map(([from, middle]) => [from, middle - half, from + width, middle + half]);
-    const whole = boxes.filter((each) => !this.#isCut(each)), box = whole.find(this.#isFree) ?? (isSure && whole[0]);
-    if (!box) return false;
-    const [from, above, to, below] = box;
+    const width = widthOf(ctx, text), half = size * 0.6, centred = left - width / 2;
+    const near = [[left + away, top], [left - away - width, top], [centred, top - away - half], [centred, top + away + half]];
+    const far = Array.from({ length: rows }, (_, row) => [-1, 1].flatMap((side) =>
+      [left + away, left - away - width].map((from) => [from, top + side * (row + 1) * 2 * half]))).flat();
+    const boxes = [...near, ...far].map(([from, middle]) => [from, middle - half, from + width, middle + half]);
+    const chosen = boxes.findIndex((each) => !this.#isCut(each) && this.#isFree(each));
+    if (chosen < 0) return false;
+    const [from, above, to, below] = boxes[chosen];
     this.#taken.push([from - size * GAP, above, to + size * GAP, below]);
+    if (chosen >= near.length) this.#drawLeader([left, top], [from > left ? from : to, above + half], { colour, rim, size });
     this.#paintText(text, from, above + half, { colour, rim, size });
     return true;
+  }
+
+  /** From a place to the name that stands apart from it. */
+  #drawLeader(place, end, { colour, rim, size }) {
+    const { ctx } = this;
+    ctx.beginPath();
+    ctx.moveTo(...place);
+    ctx.lineTo(...end);
+    for (const [width, strokeStyle] of [[size / 4, rim], [size / 12, colour]]) {
+      Object.assign(ctx, { lineWidth: width, strokeStyle });
+      ctx.stroke();
+    }
   }
 
   #isCut(box) {

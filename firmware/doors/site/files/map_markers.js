@@ -10,6 +10,8 @@ const FEW = 1000; // twice as many markers are asked for half as often
 const TEXT = 9, MESH = 10; // of visualization_msgs/Marker
 const MADE_OF_POINTS = [4, 5, 6, 7, 8, 11];
 const LONGEST = 40; // letters
+const WRITTEN_FROM = 1 / 2; // of the page's letters: where a text is smaller from here, it is not written
+const NAMED_FROM = 20; // pixels per metre: from there on meshes are named
 
 /** What of the map a marker may cover, in metres. */
 function boundsOf({ position, points, scale }) {
@@ -91,12 +93,13 @@ export class Markers {
 /** The colour that sets a text off from what is around it; at night nothing is white. */
 const rimOf = ({ r, g, b }) => (0.3 * r + 0.6 * g + 0.1 * b > 0.5 || themeNow() === "red" ? "#000" : "#fff");
 
-/** Their texts, and what meshes are, where reports and robots have left room for them. */
+/** Their texts, and what meshes are, from a zoom on, where reports and robots have left room for them. */
 export function writeMarkers(labels, view, markers) {
   for (const { type, position, color, scale, text, mesh } of markers) {
-    if (type === MESH) labels.write(clip(mesh, LONGEST), ...view.toPixel(position), { colour: labels.colours.soft });
-    if (type !== TEXT) continue;
-    const size = Math.min(48, Math.max(labels.size, scale.z * view.scale));
+    if (type === MESH && view.scale >= NAMED_FROM) labels.write(clip(mesh, LONGEST), ...view.toPixel(position), { colour: labels.colours.soft });
+    const height = scale.z * view.scale;
+    if (type !== TEXT || height < WRITTEN_FROM * labels.size) continue;
+    const size = Math.min(48, Math.max(labels.size, height));
     const colours = color.a ? { colour: css({ ...color, a: 1 }), rim: rimOf(color) } : { colour: labels.colours.soft };
     labels.write(clip(text, LONGEST), ...view.toPixel(position), { ...colours, size });
   }

@@ -1,10 +1,11 @@
 // Robots on the map: each in its colour, and in the shape of its kind.
 import { kindOf, robotColour } from "./robot_colour.js";
-import { ago, clip } from "./words.js";
+import { age as ageWords, clip } from "./words.js";
 
 const STALE = 10; // s without a newer pose
 export const isStale = ({ age }) => age === null || age > STALE; // null: of before a start of the box
 const REACH = 22; // pixels, at least: as a finger needs
+const ROWS = 6; // so many lines farther than others may the name of a robot stand
 
 const ARROW = [[1.5, 0], [-1, 0.95], [-0.5, 0], [-1, -0.95]];
 const NOTCHED = [[1.5, 0], [0.1, 0.75], [0.1, 0.4], [-1, 0.95], [-0.45, 0], [-1, -0.95], [0.1, -0.4], [0.1, -0.75]];
@@ -62,10 +63,10 @@ export function keepOffRobots(labels, view, robots, size) {
   for (const robot of robots) labels.keepOff(view.toPixel(robot.position), size * 0.9);
 }
 
-/** A robot's name; of one in `silent` also when its last pose came. */
+/** A robot's name; of one in `silent` also how long ago its last pose came. */
 export function lastSeen({ name, age }, silent) {
   if (!silent.has(name)) return clip(name, 20);
-  return `${clip(name, 20)} · ${age === null ? "silent" : `last seen ${ago(age)}`}`;
+  return `${clip(name, 20)} · ${age === null ? "silent" : ageWords(age)}`;
 }
 
 /** `late`: the names of those whose map does not come; theirs are written first. */
@@ -77,7 +78,7 @@ export function nameRobots(labels, view, robots, size, late, silent) {
   };
   const isLate = (robot) => Number(late.has(robot.name));
   for (const robot of [...robots].sort((a, b) => isLate(b) - isLate(a))) {
-    labels.write(lastSeen(robot, silent), ...view.toPixel(robot.position), { colour: colourOf(robot), away: size * 1.9, isSure: silent.has(robot.name) });
+    labels.write(lastSeen(robot, silent), ...view.toPixel(robot.position), { colour: colourOf(robot), away: size * 1.9, rows: ROWS });
   }
 }
 

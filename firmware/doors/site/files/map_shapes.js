@@ -1,4 +1,4 @@
-// How markers look from above: each in its size in metres and its colours, but never too small to be seen. What is
+// How markers look from above: each in its size in metres and its colours, lines in less light ones, but never too small to be seen. What is
 // invisible (alpha 0) shows as an outline. Of those that are but dots from here, one stands for all at its place.
 
 import { themeNow } from "./theme_now.js";
@@ -16,10 +16,16 @@ export function css({ r, g, b, a }) {
   return `rgb(${byte(0.35 + 0.65 * light)} ${byte(0.08 + 0.34 * light)} ${byte(0.06 + 0.28 * light)} / ${a})`;
 }
 const HEX_COLOUR = /^#(..)(..)(..)(..)$/;
-const ofHex = (colour) => {
+function ofHex(colour) {
   const [r, g, b, a] = HEX_COLOUR.exec(colour).slice(1).map((part) => parseInt(part, 16) / 255);
-  return css({ r, g, b, a });
-};
+  return { r, g, b, a };
+}
+const LIGHTNESS = 0.4; // of a line's colour: lines are many, and lie over the map
+/** A line's colour: nearer to the ground's. */
+function dimmed({ r, g, b, a }) {
+  const part = themeNow() === "light" ? (value) => 1 - LIGHTNESS * (1 - value) : (value) => LIGHTNESS * value;
+  return css({ r: part(r), g: part(g), b: part(b), a });
+}
 const isSeen = (colour) => !/( 0\)|^#.{6}00)$/.test(colour);
 
 /** A view to draw on; `unit` is in pixels, by the size of the page's letters. */
@@ -32,12 +38,14 @@ class Brush {
   half = (value) => Math.max(MIN_HALF * this.unit, this.metres(value) / 2);
   place = ({ points }, i) => this.view.toPixel({ x: points[2 * i], y: points[2 * i + 1] });
 
-  /** Draws the parts of a marker, those of one colour at a time: `trace(i)` adds a part to the path. */
-  parts({ color, colors }, count, trace, finish) {
-    const own = css(color), isNight = themeNow() === "red";
+  /** Draws the parts of a marker, those of one colour at a time: `trace(i)` adds a part to the path. `look`: of a colour, how it is drawn. */
+  parts({ color, colors }, count, trace, finish, look = css) {
+    const own = look(color), looks = new Map(); // of the colours that points have
     const colourOf = (i) => {
-      if (colors[i] === undefined) return own;
-      return isNight ? ofHex(colors[i]) : colors[i];
+      const its = colors[i];
+      if (its === undefined) return own;
+      if (!looks.has(its)) looks.set(its, look(ofHex(its)));
+      return looks.get(its);
     };
     for (let i = 0; i < count; ) {
       const colour = colourOf(i);
@@ -91,7 +99,7 @@ function dot(brush, place, colour) {
 
 function strip(brush, marker) {
   const { ctx } = brush, count = marker.points.length / 2 - 1;
-  if (!count) return dot(brush, brush.place(marker, 0), marker.colors[0] ? ofHex(marker.colors[0]) : css(marker.color));
+  if (!count) return dot(brush, brush.place(marker, 0), css(marker.colors[0] ? ofHex(marker.colors[0]) : marker.color));
   const finish = brush.line(brush.metres(marker.scale.x));
   let last = brush.place(marker, 0), begun = true;
   brush.parts(marker, count, (i) => {
@@ -103,18 +111,18 @@ function strip(brush, marker) {
   }, (colour) => {
     finish(colour);
     begun = true;
-  });
+  }, dimmed);
 }
 
 const lines = (brush, marker) =>
   brush.parts(marker, marker.points.length / 4, (i) => {
     brush.ctx.moveTo(...brush.place(marker, 2 * i));
     brush.ctx.lineTo(...brush.place(marker, 2 * i + 1));
-  }, brush.line(brush.metres(marker.scale.x)));
+  }, brush.line(brush.metres(marker.scale.x)), dimmed);
 
 const triangles = (brush, marker) =>
   brush.parts(marker, marker.points.length / 6, (i) => brush.polygon([0, 1, 2].map((corner) => brush.place(marker, 3 * i + corner))),
-    brush.line(0));
+    brush.line(0), dimmed);
 
 /** A shape at each point: `turned` where the pose turns it. */
 const atEachPoint = (shape, turned) => (brush, marker) => {

@@ -74,7 +74,7 @@ void the_box(std::vector<Snapshot>& days) {
       "no space";
   snapshot.box.ledger_damage = "its reports were recovered";
   snapshot.box.other_ledger = "ledger.sqlite";
-  snapshot.box.put_aside = "aditd ended 3 times";
+  snapshot.box.put_aside = "the service ended 3 times";
   snapshot.box.disk.free = 500u << 10;
   snapshot.box.disk.life = 10;
   snapshot.box.disk.wear_unknown = "life_time: Input/output error";

@@ -11,6 +11,7 @@ namespace {
 
 using testing::Contains;
 using testing::ElementsAre;
+using testing::EndsWith;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
@@ -112,8 +113,8 @@ const ConditionCase kConditionCases[] = {
      [](Snapshot& snapshot) { report(snapshot, "held"); }},
     {"report_in_doubt:7", Ask, Side::CommandPost, "Report 7 is in doubt", "",
      [](Snapshot& snapshot) { report(snapshot, "in_doubt"); }},
-    {"report_lost:7", Ask, Side::Box, "Report 7 is lost", "it may be the same; settle it", lose_report},
-    {"report_lost:7", Ask, Side::Box, "Report 7 is lost", "until you settle it, new reports are held",
+    {"report_lost:7", Ask, Side::Box, "Report 7 is lost", "Settle it: it may be the same", lose_report},
+    {"report_lost:7", Ask, Side::Box, "Report 7 is lost", "new reports are held until you Settle it",
      [](Snapshot& snapshot) {
        lose_report(snapshot);
        snapshot.reports.lost_here = {7};
@@ -131,8 +132,7 @@ const ConditionCase kConditionCases[] = {
     {"run_renamed", Ask, Side::CommandPost, "The name of the run is uncertain", "calls it run 2",
      [](Snapshot& snapshot) { snapshot.reports.run_renamed = "the Command Post calls it run 2, it was 1"; }},
     {"messages_rejected", Ask, Side::CommandPost, "3 messages are rejected",
-     "did not accept them; the newest: ugv1's cloud: too large (3021 kB)",
-     [](Snapshot& snapshot) { reject(snapshot, 3); }},
+     "the newest: ugv1's cloud: too large (3021 kB)", [](Snapshot& snapshot) { reject(snapshot, 3); }},
     {"standby", Bad, Side::Box, "This box is on standby", "for its spare",
      [](Snapshot& snapshot) { snapshot.box.standby = "put on standby for its spare to take over"; }},
     {"ledger_unwritable", Bad, Side::Box, "Reports are not accepted", "cannot write the ledger: no space",
@@ -146,7 +146,7 @@ const ConditionCase kConditionCases[] = {
     {"other_ledger", Ask, Side::Box, "An earlier ledger is not read", "/var/lib/adit/ledger.sqlite",
      [](Snapshot& snapshot) { snapshot.box.other_ledger = "/var/lib/adit/ledger.sqlite"; }},
     {"queue_put_aside", Ask, Side::Box, "Queued messages are put aside", "3 times",
-     [](Snapshot& snapshot) { snapshot.box.put_aside = "aditd ended 3 times"; }},
+     [](Snapshot& snapshot) { snapshot.box.put_aside = "the service ended 3 times"; }},
     {"map_not_kept", Bad, Side::Box, "The last map is not accepted", "no space",
      [](Snapshot& snapshot) { snapshot.box.disk.map = "no space"; }},
     {"state_not_kept", Bad, Side::Box, "States and markers are rejected", "cannot store them: no space",
@@ -244,6 +244,30 @@ TEST(Conditions, HaveHeadlinesOfAtMostSevenWords) {
     EXPECT_LE(std::ranges::count(what, ' '), 6) << what;
     EXPECT_LE(what.size(), 33u) << what << ": the strip of a small screen cuts a longer one";
     EXPECT_THAT(what, Not(HasSubstr("_"))) << "no field names";
+  }
+}
+
+TEST(Reasons, EndAtTheLastMarkThatFits) {
+  EXPECT_EQ(reason_of("no space"), "no space");
+  EXPECT_EQ(reason_of("the counts do not show which of them was recorded: reports left went from 20 to 18"),
+            "the counts do not show which of them was recorded");
+  EXPECT_EQ(reason_of("the same as report 3, whose run may go on: a new run is not certain (the score fell)"),
+            "the same as report 3, whose run may go on");
+  EXPECT_EQ(reason_of(std::string(70, 'x')), std::string(57, 'x') + "…") << "somebody else's words";
+  EXPECT_EQ(reason_of(std::string(56, 'x') + "ä is cut before the letter"), std::string(56, 'x') + "…");
+  EXPECT_EQ(reason_of("words of a sender that have no mark at all and go on like this").back(), "…"[2]);
+}
+
+/// The operator sees a short reason in words that he knows. The whole reason is in the list.
+TEST(Reasons, AreShortAndNameNoFieldOrProgram) {
+  for (const ConditionCase& each : kConditionCases) {
+    Snapshot snapshot = well();
+    each.make(snapshot);
+    const std::string why = conditions_of(snapshot)[0].why, reason = reason_of(why);
+    EXPECT_LE(reason.size(), 60u) << each.id;
+    EXPECT_THAT(reason, Not(EndsWith("…"))) << each.id << ": " << why;
+    for (const char* word : {"aditd", "remaining_reports", "in_doubt"})
+      EXPECT_THAT(why, Not(HasSubstr(word))) << each.id;
   }
 }
 

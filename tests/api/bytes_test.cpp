@@ -96,6 +96,7 @@ RunView view() {
                   .since = 3,
                   .what = "what",
                   .why = "why",
+                  .details = "why: details",
                   .action = {"word", "/link"},
                   .acknowledged = true,
                   .hides = 4}};
@@ -141,6 +142,7 @@ TEST(Bytes, OfARun) {
       R"("map_version":1793000123456,"marker_version":4,)"
       R"("verdict":{"level":"bad","what":"w","why":"y"},"alarms":[{"id":"i:s","severity":"ask",)"
       R"("side":"command_post","subject":"s","since":3.0,"what":"what","why":"why",)"
+      R"("details":"why: details",)"
       R"("action":{"word":"word","link":"/link"},"acknowledged":true,"hides":4}],)"
       R"("alarms_over":[{"id":"o","severity":"bad","side":"robot","was":"was","since":5.0,)"
       R"("until":6.0}]})");

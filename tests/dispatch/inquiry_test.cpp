@@ -183,14 +183,13 @@ INSTANTIATE_TEST_SUITE_P(Counts, EvidenceTable, testing::ValuesIn(kEvidenceCases
                          [](const auto& one) { return one.param.name; });
 
 TEST(Evidence, ExplainsItselfWithFigures) {
-  EXPECT_EQ(
-      weigh(status(20, 3), 2, 0, {1, 1}, status(19, 4)).why,
-      "remaining_reports went from 20 to 19 and the score went from 3 to 4, 1 of it by reports sent since, "
-      "with 2 reports in doubt");
+  EXPECT_EQ(weigh(status(20, 3), 2, 0, {1, 1}, status(19, 4)).why,
+            "reports left went from 20 to 19 and the score went from 3 to 4, 1 of it by reports sent since, "
+            "with 2 reports in doubt");
   EXPECT_EQ(weigh(status(20, 3), 1, 0, {}, status(20, 3)).why,
-            "remaining_reports stayed 20 and the score stayed 3");
+            "reports left stayed 20 and the score stayed 3");
   EXPECT_THAT(weigh(status(20, 3), 1, 0, {}, status(18, 3)).why,
-              testing::HasSubstr("does another sender report"));
+              testing::HasSubstr("another sender may report"));
 }
 
 TEST(Evidence, NamesOtherDoubtsThatMayExplainIt) {

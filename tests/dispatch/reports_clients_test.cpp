@@ -114,7 +114,7 @@ TEST(StopOfReports, AnswersClientsExceptThoseOfAReportInFlight) {
   const ClientId waiting = scene.post(2);
   scene.reports().dismiss(false);
   EXPECT_EQ(scene.answer_to(waiting).status, 503);
-  EXPECT_THAT(scene.answer_to(waiting).sentence, HasSubstr("aditd is stopping; report 2 is queued"));
+  EXPECT_THAT(scene.answer_to(waiting).sentence, HasSubstr("the box is stopping; report 2 is queued"));
   EXPECT_FALSE(scene.is_answered(under_way));
   scene.answer(recorded_answer());
   EXPECT_EQ(scene.answer_to(under_way).status, 201);

@@ -109,7 +109,7 @@ TEST_F(Correction, HoldsARepeatIfItWasRejected) {
   send(2, answer_of(422));
   scene_.post(1);
   EXPECT_EQ(scene_.state(3), Held);
-  EXPECT_EQ(scene_.report(3).note, "the same as report 1, which the operator corrected as report 2");
+  EXPECT_EQ(scene_.report(3).note, "the same as report 1, corrected as report 2");
 }
 
 TEST_F(Correction, TellsARepeatThatItWasWithdrawn) {

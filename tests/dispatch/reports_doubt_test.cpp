@@ -7,8 +7,10 @@ namespace adit::dispatch {
 namespace {
 
 using enum ReportState;
+using testing::EndsWith;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::StartsWith;
 
 /// A report was lost at 100 s. 20 reports were left, and the score was 0.
 class Doubt : public testing::Test {
@@ -37,7 +39,7 @@ TEST_F(Doubt, IsSettledByTwoStatusesThatCountTheReport) {
   EXPECT_THAT(told.body, HasSubstr(R"("score_change":1)"));
   EXPECT_THAT(told.body, HasSubstr(R"("reconciled":true)"));
   EXPECT_EQ(scene_.report(1).note,
-            "found recorded: remaining_reports went from 20 to 19 and the score went from 0 to 1");
+            "found recorded: reports left went from 20 to 19 and the score went from 0 to 1");
 }
 
 TEST_F(Doubt, GivesARepeatTheReconciledAnswer) {
@@ -63,7 +65,8 @@ TEST_F(Doubt, IsLeftToTheOperatorIfTheCountContradicts) {
   scene_.hear(18, 0);
   EXPECT_EQ(scene_.state(1), InDoubt);
   EXPECT_FALSE(scene_.reports().is_asking(scene_.report(1)));
-  EXPECT_THAT(scene_.report(1).note, HasSubstr("does another sender report with this token?; the operator"));
+  EXPECT_THAT(scene_.report(1).note, StartsWith("another sender may report with this token: "));
+  EXPECT_THAT(scene_.report(1).note, EndsWith("; the operator decides: Send again or Settle"));
   EXPECT_NE(scene_.reports().run().unreliable, "");
   scene_.repeat_status(60, 19, 0);
   EXPECT_EQ(scene_.state(1), InDoubt) << "a later count decides nothing";
@@ -203,7 +206,7 @@ TEST(DoubtsCount, IsLeftToTheOperatorIfNoReportIsLeft) {
   exhausted.lose();
   exhausted.repeat_status(60, 0, 0);
   EXPECT_EQ(exhausted.state(1), InDoubt);
-  EXPECT_THAT(exhausted.report(1).note, HasSubstr("the counts do not show a recorded report"));
+  EXPECT_THAT(exhausted.report(1).note, HasSubstr("so the counts show none"));
   EXPECT_THAT(exhausted.reports().run().unreliable, IsEmpty());
 }
 

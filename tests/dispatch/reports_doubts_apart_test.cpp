@@ -143,7 +143,7 @@ TEST_F(DoubtOfEitherRun, EndsTheProofOfTheRunIfAnotherSenderReports) {
   scene_.post(2);
   scene_.lose();
   repeat(1, 22, 0);
-  EXPECT_THAT(scene_.reports().run().unreliable, HasSubstr("does another sender report"));
+  EXPECT_THAT(scene_.reports().run().unreliable, HasSubstr("another sender may report"));
   scene_.post(3);
   scene_.lose();
   repeat(30, 22, 0);

@@ -227,7 +227,7 @@ TEST(Operator, DecidesDoubtsButNoRejectedReports) {
   scene.lose();
   scene.hear(17, 0);
   EXPECT_THAT(scene.undecided(), ElementsAre(scene.report(2).note));
-  EXPECT_THAT(scene.reports().run().unreliable, HasSubstr("does another sender report"));
+  EXPECT_THAT(scene.reports().run().unreliable, HasSubstr("another sender may report"));
 }
 
 TEST(ResubmitAction, SendsOnceIfPressedTwice) {

@@ -15,7 +15,7 @@ TEST(Restart, PutsAReportInFlightInDoubt) {
   scene.restart();
   EXPECT_EQ(scene.state(1), InDoubt);
   EXPECT_EQ(scene.report(1).tries, 1);
-  EXPECT_EQ(scene.report(1).note, "aditd stopped while it was in flight");
+  EXPECT_EQ(scene.report(1).note, "the box stopped while it was in flight");
   EXPECT_TRUE(scene.reports().is_asking(scene.report(1)));
   scene.repeat_status(2, 19, 1);
   EXPECT_EQ(scene.state(1), Settled);

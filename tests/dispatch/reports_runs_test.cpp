@@ -102,7 +102,7 @@ TEST(DoubtAtANewRun, StaysInItsRunIfOlderThanItsLastStatus) {
   }
   scene.hear(25, 0, 3);
   EXPECT_EQ(scene.report(1).run, 1);
-  EXPECT_THAT(scene.report(1).note, HasSubstr("a new run began before the status showed"));
+  EXPECT_THAT(scene.report(1).note, HasSubstr("a new run began before the counts could tell"));
   scene.post(1);
   EXPECT_EQ(scene.state(2), Held) << "the run of report 1 may go on";
   scene.record(2, "1");

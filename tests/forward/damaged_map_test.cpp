@@ -122,7 +122,7 @@ TEST_F(FaultyMap, IsPutAsideWithItsSenderAndReasonUntilTheOperatorDecides) {
   ASSERT_EQ(rejected_.rows().size(), 1u);
   EXPECT_EQ(rejected_.rows()[0].status, 0);
   EXPECT_EQ(rejected_.put_aside(),
-            "message 1, first's grid: aditd ended 3 times by a fault while it packed this map");
+            "message 1, first's grid: the service ended 3 times by a fault while it packed this map");
   EXPECT_TRUE(loop::turn_until(loop_, [&] { return !fs::exists(file(kOne)); }));
   EXPECT_EQ(row().failed, 1U);
   RejectedStore next(loop_, writer_, rejected_folder_.path());

@@ -58,7 +58,7 @@ test("names each button by its row, and counts messages that no newer one replac
 });
 
 test("shows no status of a map that was put aside", async (t) => {
-  const why = "aditd ended 3 times by a fault while it packed this map";
+  const why = "the service ended 3 times by a fault while it packed this map";
   const page = await withRows(t);
   await become(page, [{ ...ROWS[0], status: 0, why }]);
   await page.locator("#rejected .why").filter({ hasText: why }).waitFor();

@@ -297,6 +297,27 @@ void check_rest(const Evidence& evidence, const Reading& reading, Broken& broken
                                    " reports need the operator, but alarms call him ", called, " times"));
 }
 
+/// What calls the operator names no field and no program, and his reasons are short.
+void check_words(const Reading& reading, Broken& broken) {
+  constexpr std::size_t kShort = 60;  // bytes
+  const auto check = [&](const Json& row, const char* member) {
+    const std::string text = row.at(member);
+    for (const char* const word : {"aditd", "remaining_reports", "in_doubt"}) {
+      if (text.contains(word))
+        broken.push_back(icd::sentence("Honest: at ", reading.at, " the operator reads ", row.dump()));
+    }
+  };
+  for (const Json& alarm : reading.view.at("alarms")) {
+    check(alarm, "why");
+    check(alarm, "details");
+    const std::string id = alarm.at("id"), why = alarm.at("why");
+    const bool are_ours = id.starts_with("report") || id.starts_with("run_");
+    if (why.size() > kShort || (are_ours && why.ends_with("…")))
+      broken.push_back(icd::sentence("Honest: at ", reading.at, " a reason is too long: ", alarm.dump()));
+  }
+  for (const Json& report : reading.view.at("reports")) check(report, "note");
+}
+
 /// Another course was requested just now, so the view's Command Post is unknown.
 bool is_switching(const Evidence& evidence, const Reading& reading) {
   return std::ranges::any_of(evidence.events, [&](const Event& event) {
@@ -321,6 +342,7 @@ void honest(const Evidence& evidence, Broken& broken) {
     check_run(evidence, begun, reading, broken);
     check_ages(evidence, account, reading, broken);
     check_reports(evidence, reading, broken);
+    check_words(reading, broken);
     check_last_answers(evidence, begun, reading, broken);
     check_metrics(evidence, reading, broken);
     if (reading.difference.starts_with("Honest")) broken.push_back(reading.difference);

@@ -42,6 +42,11 @@ class Robot(threading.Thread):
         self.join(30)
 
 
+def reason(alarm):
+    """The whole reason of an alarm."""
+    return alarm["details"] or alarm["why"]
+
+
 class WithAlarms(unittest.TestCase):
     def stage(self, **overrides):
         return began(self.enterContext(Stage(**{**QUICK, **overrides})))
@@ -85,7 +90,7 @@ class WithAlarms(unittest.TestCase):
         written."""
         wanted = {"severity": severity, "side": side}
         alarm = wait_until(lambda: (found := self.alarm(stage, name)) and {**found, **wanted} == found and found, name, within)
-        self.assertIn(why, alarm["why"])
+        self.assertIn(why, reason(alarm))
         self.assertIn(f'adit_alarm{{id="{name}",severity="{severity}",side="{side}"}} 1\n', self.metrics(stage))
         text, status = self.status(stage)
         self.assertIn(alarm["what"], text)

@@ -141,7 +141,7 @@ ELSEWHERE = [
      "too many bytes at once, from this address or in total; send this message again later"),
     ("a map, if too many bytes arrive at once", 429, "too many maps at once; send this map again later"),
     ("markers, if too many bytes arrive at once", 429, "too many markers at once; send these markers again later"),
-    ("any message while aditd stops", 503, "aditd is stopping; this message was not accepted, send it again"),
+    ("any message while aditd stops", 503, "the box is stopping; this message was not accepted, send it again"),
     ("a body that arrives too slowly", 408, "the body of the request took too long"),
     ("a token after many wrong ones", 429,
      "too many wrong tokens from this address; this token was not checked; try again in a second"),

@@ -13,7 +13,7 @@ from unittest import mock
 
 import hosts
 import programs
-from alarming import WithAlarms
+from alarming import WithAlarms, reason
 from filling import Filler
 from networkd import AditNetwork
 from programs import wait_until
@@ -53,7 +53,7 @@ class Facts(WithAlarms):
                 self.write(stage, name, text if isinstance(text, str) else json.dumps(text))
                 found = wait_until(lambda alarm=alarm: self.alarm(stage, alarm), alarm)
                 self.assertEqual(found["severity"], severity)
-                self.assertIn(why, found["why"])
+                self.assertIn(why, reason(found))
                 self.write(stage, name, without if isinstance(without, str) else json.dumps(without))
                 wait_until(lambda alarm=alarm: not self.alarm(stage, alarm), f"the end of {alarm}")
 
@@ -148,7 +148,7 @@ class Facts(WithAlarms):
         number = int(min((runtime / "waiting").glob("map-*.cbor")).stem.removeprefix("map-"))
         (runtime / "waiting" / "at-work").write_text(f"{number} 2 0 1\nx")
         stage.restart_box()
-        self.sees(stage, "queue_put_aside", "ask", "box", "message 1, r1's cloud: aditd ended 3 times by a fault", panel=False)
+        self.sees(stage, "queue_put_aside", "ask", "box", "message 1, r1's cloud: the service ended 3 times by a fault", panel=False)
         self.assertIsNone(self.alarm(stage, "messages_rejected"))
         stage.post.control("DELETE /faults")
         wait_until(lambda: [request["message"]["name"] for request in stage.post.requests("/map/update")

@@ -17,6 +17,7 @@ import requests
 import ledger_files
 import maps
 import messages
+from alarming import reason
 from programs import BIN, Stage, log_in, wait_until
 from reporting import submit
 
@@ -83,7 +84,7 @@ class Clock(unittest.TestCase):
         self.assertGreaterEqual(self.stage.box.ask("GET /adit/run")[1]["now"], first + DAYS)
         second = self.post_state()
         self.assertGreaterEqual(second, first + DAYS + 30, "the highest stamp that may have been given out")
-        alarms = wait_until(lambda: [each["why"] for each in self.stage.box.ask("GET /adit/run")[1]["alarms"] if each["id"] == "stamps"],
+        alarms = wait_until(lambda: [reason(each) for each in self.stage.box.ask("GET /adit/run")[1]["alarms"] if each["id"] == "stamps"],
                             "the alarm, by the Command Post's time")
         self.assertIn("days; a factory reset", alarms[0])
         self.lose_power(first - DAYS)

@@ -18,7 +18,7 @@ class InDoubt(unittest.TestCase):
             insist(stage, another(7), 10, until=lambda answer: answer.status_code == 201)
             time.sleep(patient(1.0))  # longer than it takes to find out what can be found out
             self.assertIn(f"report_in_doubt:{number}", stage.box.alarms())
-            self.assertIn("the operator decides: send it, or settle it", stage.box.reports()[0]["note"])
+            self.assertIn("the operator decides: Send again or Settle", stage.box.reports()[0]["note"])
             self.assertEqual(sendings(stage), 1)
             self.assertEqual(stage.box.judge(number, "settle"), (200, {"report": number}))
             self.assertNotIn(f"report_in_doubt:{number}", stage.box.alarms())

@@ -3,6 +3,7 @@
 import signal
 import unittest
 
+from alarming import reason
 from programs import Stage, wait_until
 from reporting import QUICK, REPORT, another, at_once, began, sendings, submit
 
@@ -47,7 +48,7 @@ class SameReport(unittest.TestCase):
             stage.post.control("POST /rename")
             self.assertEqual(submit(stage, another(1)).status_code, 201)
             wait_until(lambda: "run_renamed" in stage.box.alarms(), "the alarm")
-            why = next(alarm["why"] for alarm in run(stage)["alarms"] if alarm["id"] == "run_renamed")
+            why = next(reason(alarm) for alarm in run(stage)["alarms"] if alarm["id"] == "run_renamed")
             self.assertIn("its count of reports and its clock go on", why)
             again = submit(stage)
             self.assertEqual(again.status_code, 503)

@@ -82,7 +82,8 @@ icd::Checked<void> check_origin(const RequestHead& head, const std::vector<std::
 }
 
 icd::Refusal stops() {
-  return {icd::Status::ServiceUnavailable, "aditd is stopping; this message was not accepted, send it again"};
+  return {icd::Status::ServiceUnavailable,
+          "the box is stopping; this message was not accepted, send it again"};
 }
 
 constexpr std::string_view kHeadersOfClients = "authorization, content-type, content-encoding";

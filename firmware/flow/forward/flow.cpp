@@ -168,7 +168,7 @@ void Flow::refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusa
 }
 
 std::expected<void, std::string> Flow::rejected(std::uint64_t number, api::RejectedAction action) {
-  if (is_ending()) return std::unexpected("aditd is stopping and sends no more messages");
+  if (is_ending()) return std::unexpected("the box is stopping and sends no more messages");
   if (!standby_.empty()) return std::unexpected(standby_);
   if (action == api::RejectedAction::Discard) return rejected_.discard(number);
   auto item = ADIT_TRY(rejected_.to_be_sent(number));

@@ -304,7 +304,7 @@ void Maps::put_aside(spool::Spool::KeptMap kept) {
   const Traffic traffic = traffic_of(kept.map);
   const std::size_t bytes = kept.map.data.bytes.size();
   const std::string why =
-      icd::sentence("aditd ended ", kept.ends.faults, " times by a fault while it packed this map");
+      icd::sentence("the service ended ", kept.ends.faults, " times by a fault while it packed this map");
   counts_.accepted(traffic, bytes, time_of(loop_, kept.map.header().stamp.value_or(loop_.stamp_now())));
   counts_.not_taken(traffic, DeliveryFailure::Failed, 0, why);
   rejected_.add(std::move(kept.map), 0, why, bytes,

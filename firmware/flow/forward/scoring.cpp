@@ -159,8 +159,8 @@ void Scoring::endpoint_turned() {
 void Scoring::take(const icd::ArtifactReport& report, const intake::Sender& sender,
                    std::shared_ptr<intake::Responder> responder) {
   if (stopping_) {
-    responder->answer(intake::error_answer(icd::Status::ServiceUnavailable,
-                                           "aditd is stopping; the report was not accepted, send it again"));
+    responder->answer(intake::error_answer(
+        icd::Status::ServiceUnavailable, "the box is stopping; the report was not accepted, send it again"));
     return;
   }
   take({.report = report, .sender = sender.address, .resubmit = sender.resubmits},
@@ -180,7 +180,7 @@ void Scoring::take(const dispatch::PostedReport& posted, dispatch::ClientId clie
 
 void Scoring::status(std::shared_ptr<intake::Responder> responder) {
   if (stopping_) {
-    responder->answer(intake::error_answer(icd::Status::ServiceUnavailable, "aditd is stopping"));
+    responder->answer(intake::error_answer(icd::Status::ServiceUnavailable, "the box is stopping"));
     return;
   }
   if (!channel_.has_token()) {
@@ -440,7 +440,7 @@ dispatch::Reports::Outcome Scoring::decide(std::int64_t number, api::Action acti
 }
 
 dispatch::Reports::Outcome Scoring::report(const icd::ArtifactReport& report, bool resubmit) {
-  if (stopping_) return std::unexpected("aditd is stopping; the report was not accepted");
+  if (stopping_) return std::unexpected("the box is stopping; the report was not accepted");
   const dispatch::ClientId nobody = output_.add_nobody();
   take({.report = report, .sender = "operator", .resubmit = resubmit, .can_be_undone = true}, nobody);
   if (const auto number = reports_->awaited_by(nobody)) return *number;
@@ -472,7 +472,7 @@ void Scoring::link_is_back() {
 
 bool Scoring::stop() {
   stopping_ = true;
-  status_clients_.answer_all(intake::error_answer(icd::Status::ServiceUnavailable, "aditd is stopping"));
+  status_clients_.answer_all(intake::error_answer(icd::Status::ServiceUnavailable, "the box is stopping"));
   reports_->dismiss(false);
   return reports_->sending() == nullptr;
 }

@@ -149,7 +149,8 @@ constexpr std::string_view kSides[] = {"robot", "box", "network", "Command Post"
 
 std::string why_of(const alarms::Alarm& alarm) {
   std::string text(kSides[static_cast<std::size_t>(alarm.side)]);
-  if (!alarm.why.empty()) text += ": " + alarm.why;
+  const std::string& why = alarm.details.empty() ? alarm.why : alarm.details;
+  if (!why.empty()) text += ": " + why;
   if (alarm.hides > 0) text += " (hides " + std::to_string(alarm.hides) + ")";
   return alarm.acknowledged ? text + " (acknowledged)" : text;
 }

@@ -131,7 +131,7 @@ std::string Service::put_queue_aside() {
     host::log(host::Level::Warning, "cannot read how often aditd ended by a fault",
               {{"why", error.message()}});
   if (error || faults < kMostFaults) return "";
-  std::string why = icd::sentence("aditd ended ", faults,
+  std::string why = icd::sentence("the service ended ", faults,
                                   " times by a fault, soon after its start; queued maps, states and "
                                   "markers were put aside: ");
   for (const char* const directory : {forward::Flow::kJournal, forward::Flow::kWaiting})

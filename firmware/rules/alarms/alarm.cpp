@@ -36,7 +36,8 @@ constexpr Member kAlarm[] = {
     member<&Alarm::subject>("subject", "the robot, endpoint or report that it is about; or empty"),
     member<&Alarm::since>("since", kSeconds),
     member<&Alarm::what>("what", "a headline"),
-    member<&Alarm::why>("why", "a short sentence; may be empty"),
+    member<&Alarm::why>("why", "the reason in at most 60 bytes; may be empty"),
+    member<&Alarm::details>("details", "the whole reason if why is only its beginning, or empty"),
     member<&Alarm::action>("action"),
     member<&Alarm::acknowledged>("acknowledged", "an operator has seen it; no more once it is worse"),
     member<&Alarm::hides>("hides", "how many others follow from it, and are not listed"),
@@ -70,6 +71,21 @@ std::string clock_text(double seconds) {
 std::string capital(std::string text) {
   if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 'a' + 'A');
   return text;
+}
+
+std::string reason_of(const std::string& why) {
+  constexpr std::size_t kMost = 60;
+  constexpr std::string_view kCut = "…";
+  if (why.size() <= kMost) return why;
+  std::size_t end = 0;
+  for (const std::string_view mark : {": ", "; ", ", ", " ("}) {
+    if (const auto at = why.rfind(mark, kMost); at != std::string::npos) end = std::max(end, at);
+  }
+  if (end > 0) return why.substr(0, end);
+  end = why.rfind(' ', kMost - kCut.size());
+  if (end == std::string::npos) end = kMost - kCut.size();
+  while (end > 0 && (why[end] & 0xC0) == 0x80) --end;  // not within a letter
+  return why.substr(0, end).append(kCut);
 }
 
 constexpr codec::Row Action::kRow = {"", kAction};

@@ -47,6 +47,10 @@ struct Action {
   friend bool operator==(const Action&, const Action&) = default;
 };
 
+/// The part of a reason that a hurried person reads: all of it, or up to the last of its marks (": ", "; ",
+/// ", ", " (") within 60 bytes.
+std::string reason_of(const std::string& why);
+
 /// "uav5 is silent", and afterwards "uav5 was silent".
 struct Headline {
   std::string subject = {};  // "uav5"
@@ -66,7 +70,7 @@ struct Condition {
   std::string subject = {};  // part of the id after the colon: a robot, an endpoint, a report's number
   double since = 0;          // seconds since 1970; 0: since first found
   Headline headline = {};    // at most six words
-  std::string why = {};      // short clause in lower case without a full stop, or ""
+  std::string why = {};      // clause in lower case without a full stop, what matters first; or ""
   Action action = {};
   std::uint64_t degree = 0;  // grows with the fault; an acknowledgement covers this degree and lower ones
   std::uint64_t hides = 0;   // number of unlisted conditions that follow from this one
@@ -81,6 +85,7 @@ struct Alarm {
   std::string subject = {};
   double since = 0;  // seconds since 1970
   std::string what = {}, why = {};
+  std::string details = {};  // the whole reason if `why` is only its beginning
   Action action = {};
   bool acknowledged = false;
   std::uint64_t hides = 0;

@@ -158,6 +158,7 @@ std::vector<Alarm> Board::shown(const std::vector<Condition>& conditions, double
     const bool known = found != known_.end();
     double since = condition.since > 0 ? condition.since : now;
     if (known) since = found->second.since;
+    const std::string why = reason_of(condition.why);
     alarms.push_back(
         {.id = condition.id,
          .severity = condition.severity,
@@ -165,7 +166,8 @@ std::vector<Alarm> Board::shown(const std::vector<Condition>& conditions, double
          .subject = condition.subject,
          .since = since,
          .what = condition.headline.now(),
-         .why = condition.why,
+         .why = why,
+         .details = why == condition.why ? "" : condition.why,
          .action = condition.action,
          .acknowledged = known && found->second.acknowledged && !is_worse(condition, found->second),
          .hides = condition.hides});

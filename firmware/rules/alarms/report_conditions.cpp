@@ -13,8 +13,8 @@ namespace {
 using facts::ReportRow;
 using icd::sentence;
 
-constexpr const char* kSettle = "; settle it";
-constexpr const char* kUntilSettled = "; until you settle it, new reports are held";
+constexpr const char* kSettle = "Settle it: ";
+constexpr const char* kUntilSettled = "new reports are held until you Settle it: ";
 
 /// How a report needs the operator.
 enum class Need : std::uint8_t { Held, InDoubt, Lost };
@@ -47,7 +47,7 @@ void find_undecided(const facts::Reports& reports, Found& found) {
                      .subject = number,
                      .since = row.changed,
                      .headline = {"Report " + number, state},
-                     .why = row.note + (*need == Need::Lost ? until : ""),
+                     .why = (*need == Need::Lost ? until : "") + row.note,
                      .action = {row.asking ? "Show report" : "Decide", "/#report=" + number}});
   }
   for (std::size_t at = 0; at < std::size(kNeeds); ++at) {
@@ -105,8 +105,8 @@ void find_rejected(const std::vector<facts::RejectedRow>& rows, Found& found) {
        .severity = Severity::Ask,
        .side = Side::CommandPost,
        .headline = {sentence(count, count == 1 ? " message" : " messages"), "rejected", count != 1},
-       .why = sentence("the Command Post did not accept ", count == 1 ? "it: " : "them; the newest: ",
-                       newest->robot.empty() ? "" : newest->robot + "'s ", newest->kind, ": ", newest->why),
+       .why = sentence(count == 1 ? "" : "the newest: ", newest->robot.empty() ? "" : newest->robot + "'s ",
+                       newest->kind, ": ", newest->why),
        .action = {"Show", "/#rejected"},
        .degree = newest->number});  // rises even if an older message made room
 }

@@ -101,6 +101,8 @@ const Report* ReportReview::sent_to_other_command_post(const Report& report) con
   return sent_elsewhere(report, [this](const Run& its) { return its.post != account_.run().post; });
 }
 
+constexpr const char* kMayGoOn = ", whose run may go on: ";
+
 /// Same as a report that was sent in a run that may be the present one.
 Hold ReportReview::maybe_repeat(const Report& report) const {
   const Run& run = account_.run();
@@ -110,24 +112,22 @@ Hold ReportReview::maybe_repeat(const Report& report) const {
     const Run& its = *account_.runs().find(sent->run);
     const std::string names =
         !its.id.empty() && its.id == run.id ? ", and the Command Post gives both runs the same name" : "";
-    return {icd::sentence("the same as report ", sent->number,
-                          ", and its run may still go on: a new run is not certain (", run.why, names, ")"),
+    return {icd::sentence("the same as report ", sent->number, kMayGoOn, "a new run is not certain (",
+                          run.why, names, ")"),
             sent->number};
   }
   if (const std::string& name_trouble = account_.runs().name_trouble(); !name_trouble.empty()) {
     for (const Report* const other : same_in_run(report.report)) {
       if (other->number == report.number || !was_sent(*other) || effect_of(*other).again) continue;
-      return {
-          icd::sentence("the same as report ", other->number,
-                        ", and the Command Post does not show whether its run goes on (", name_trouble, ")"),
-          other->number};
+      return {icd::sentence("the same as report ", other->number, kMayGoOn, "its name does not tell (",
+                            name_trouble, ")"),
+              other->number};
     }
   }
   for (const Report* const other : book_.same_as(report.report)) {
     if (!account_.is_unclaimed(*other) || effect_of(*other).again) continue;
-    return {icd::sentence("the same as report ", other->number,
-                          ", which was answered when the new run may already have begun (", run.why,
-                          "); the next answer decides"),
+    return {icd::sentence("the same as report ", other->number, ", answered as a new run may have begun (",
+                          run.why, "); the next answer decides"),
             other->number};
   }
   return {};
@@ -154,8 +154,7 @@ Hold ReportReview::reason_to_hold(const Report& report) const {
   if (Hold hold = maybe_repeat(report); hold.same_as != 0) return hold;
   for (const Report* const other : same_in_run(report.report)) {
     if (!other->is_corrected()) continue;
-    return {icd::sentence("the same as report ", other->number, ", which the operator corrected as report ",
-                          other->same_as)};
+    return {icd::sentence("the same as report ", other->number, ", corrected as report ", other->same_as)};
   }
   if (rules_.review == Review::Off) return {};
   for (const auto& [number, other] : book_.all()) {
@@ -175,7 +174,7 @@ Hold ReportReview::reason_to_hold(const Report& report) const {
 Hold ReportReview::hold_for_undo() const {
   if (rules_.undo.count() == 0) return {};
   return {.why = icd::sentence("you can undo it for ", rules_.undo.count(),
-                               " s; then it is sent, unless aditd restarts or a new run begins before"),
+                               " s; then it is sent, unless the box restarts or a new run begins before"),
           .for_undo = true};
 }
 
@@ -267,13 +266,13 @@ namespace {
 /// Empty if the run's status can decide a group that begins with this report.
 std::string undecidable_first(const Report& report, const Run& run, const Run* its) {
   if (its != nullptr && !its->post.empty() && its->post != run.post) {
-    return "it was sent to the Command Post at " + its->post +
-           ", which Adit asks again when the settings name it again";
+    return "it was sent to another Command Post: the one at " + its->post +
+           " is asked when the settings name it again";
   }
-  if (report.run != run.number) return "a new run began before the status showed whether it was recorded";
+  if (report.run != run.number) return "a new run began before the counts could tell";
   if (!run.unreliable.empty()) return run.unreliable;
   if (!report.before && report.sent < run.began) {
-    return "a new run began just after it was sent, so that it may have been recorded in either run";
+    return "a new run began just after it was sent: either run may have recorded it";
   }
   if (!report.before) {
     return report.uncertain.empty() ? "the Command Post's counts before it was sent are not certain"
@@ -294,7 +293,7 @@ SentSince sent_since(const Report& doubt, const ReportBook& book) {
   return since;
 }
 
-constexpr const char* kOperator = "; the operator decides: send it, or settle it";
+constexpr const char* kOperator = "; the operator decides: Send again or Settle";
 
 }  // namespace
 

@@ -299,7 +299,7 @@ class MergedReports {
     next.counted = false;
     next.sending = ++next_sending_;
     next.sent = handover_.stamp;
-    return step(next, ReportState::InDoubt, "it was queued at the first box, which may have sent it since");
+    return step(next, ReportState::InDoubt, "queued at the first box, which may have sent it since");
   }
 
   bool step(Report& report, ReportState state, const std::string& note) const {

@@ -17,7 +17,7 @@ void ReportSender::open(Time time) {
     last_sending_ = std::max(last_sending_, report.sending);
   }
   while (book_.sending() != nullptr) {
-    ended(ReportEvent::Restarted, "aditd stopped while it was in flight", time);
+    ended(ReportEvent::Restarted, "the box stopped while it was in flight", time);
   }
 }
 
@@ -256,7 +256,7 @@ bool Reports::take(const PostedReport& posted, ClientId client, bool may_send, T
   if (posted.can_be_undone && hold.why.empty()) hold = review_.hold_for_undo();
   if (const Report* const other = review_.sent_to_other_command_post(report); other != nullptr) {
     report.note = icd::sentence("the same as report ", other->number,
-                                ", which was sent to another Command Post; queued until the Command Post at ",
+                                ", sent to another Command Post; queued until the Command Post at ",
                                 run().post, " answers");
   }
   return take_new(std::move(report), hold, client, may_send, time);

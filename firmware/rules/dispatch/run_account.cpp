@@ -8,17 +8,20 @@
 namespace adit::dispatch {
 namespace {
 
+// Why counts may not fit the reports.
+const std::string kCorrected = "the counts may have been corrected: ";
+const std::string kOtherSender = "another sender may report with this token: ";
+
 /// "went from 20 to 18", "stayed 20"
 std::string change(std::int64_t before, std::int64_t now) {
   return before == now ? icd::sentence("stayed ", now) : icd::sentence("went from ", before, " to ", now);
 }
 
-/// "remaining_reports went from 20 to 18 and the score stayed 3, with 2 reports in doubt"
+/// "reports left went from 20 to 18 and the score stayed 3, with 2 reports in doubt"
 std::string figures(const icd::RunStatus& before, std::int64_t doubts, std::int64_t beside,
                     const SentSince& since, const icd::RunStatus& now) {
-  std::string text =
-      icd::sentence("remaining_reports ", change(before.remaining_reports, now.remaining_reports),
-                    " and the score ", change(before.score, now.score));
+  std::string text = icd::sentence("reports left ", change(before.remaining_reports, now.remaining_reports),
+                                   " and the score ", change(before.score, now.score));
   if (since.scored > 0) text += icd::sentence(", ", since.scored, " of it by reports sent since");
   if (doubts > 1) text += icd::sentence(", with ", doubts, " reports in doubt");
   if (beside > 0) {
@@ -37,25 +40,18 @@ Evidence weigh(const icd::RunStatus& before, std::int64_t doubts, std::int64_t b
   const std::int64_t points = now.score - before.score - since.points;
   const std::string seen = figures(before, doubts, used > 0 ? beside : 0, since, now);
   if (before.run_clock <= 0 && (used != 0 || points != 0)) {
-    return {Finding::Silent,
-            seen + ": before a run starts, the Command Post may set its counts to any value",
-            {}};
+    return {Finding::Silent, "before a run starts, the counts show no report: " + seen, {}};
   }
   if (used < 0 || used > all || points < 0 || points > used + since.unclear) {
     const bool is_corrected = used < 0 || points < 0;  // no report does that
-    return {Finding::Contradicts,
-            seen + (is_corrected ? ": were the counts corrected?"
-                                 : ": does another sender report with this token?"),
-            {}};
+    return {Finding::Contradicts, (is_corrected ? kCorrected : kOtherSender) + seen, {}};
   }
   // Then the counts do not show a record.
   if (used == 0 && (before.remaining_reports - since.scored <= 0 || now.run_clock <= 0)) {
-    return {Finding::Silent,
-            seen + ": reports are not scored now, so that the counts do not show a recorded report",
-            {}};
+    return {Finding::Silent, "reports are not scored now, so the counts show none: " + seen, {}};
   }
   if (used == 0) return {Finding::NotRecorded, seen, {}};
-  if (used < all) return {Finding::Silent, seen + ": the counts do not show which of them was recorded", {}};
+  if (used < all) return {Finding::Silent, "the counts do not show which of them was recorded: " + seen, {}};
   const bool alike = points == 0 || points == all + since.unclear;
   return {Finding::Recorded, seen, alike ? std::optional<std::int64_t>(points > 0 ? 1 : 0) : std::nullopt};
 }
@@ -368,10 +364,9 @@ void RunAccount::settle(const icd::RunStatus& status, std::int64_t open, Time ti
     if (!fits && !has_moved_) {
       distrust(Run::kCountsStand, time.stamp);
     } else if (!fits) {
-      distrust(icd::sentence("the Command Post counts ", status.remaining_reports, " reports left and score ",
-                             status.score, ", Adit's own reports make it ", remaining, " and ", score,
-                             used < 0 || points < 0 ? ": were the counts corrected?"
-                                                    : ": does another sender report with this token?"),
+      distrust(icd::sentence(used < 0 || points < 0 ? kCorrected : kOtherSender, "the Command Post counts ",
+                             status.remaining_reports, " reports left and score ", status.score,
+                             ", Adit's own reports make it ", remaining, " and ", score),
                time.stamp);
     }
   }

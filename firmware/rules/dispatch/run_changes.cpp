@@ -106,7 +106,7 @@ void WaitingClients::tell(ClientId client, const Report& report) {
       answer.sentence = name + " is in doubt: it may or may not have been recorded" + why + again;
       break;
     case ReportState::Queued:
-      answer.sentence = (stopping_ ? "aditd is stopping; " : "") + name + " is queued" + why + again;
+      answer.sentence = (stopping_ ? "the box is stopping; " : "") + name + " is queued" + why + again;
       break;
     case ReportState::Sending:
       answer.status = icd::Status::GatewayTimeout;
@@ -127,7 +127,7 @@ Report passed_on(Report report, std::int64_t run, Time time) {
   report.changed = time.stamp;
   if (!was_ordered || report.sending == 0) return report;
   report.state = transition(report.state, ReportEvent::Held)->to;
-  report.note = "the operator sent it to another Command Post, which did not answer";
+  report.note = "sent to another Command Post, which did not answer";
   return report;
 }
 

@@ -47,7 +47,7 @@ struct Signs {
 struct Run {
   /// In `unreliable`: no sign of another sender.
   static constexpr const char* kCountsStand =
-      "the Command Post's counts have not changed since the first report, so that they prove no report";
+      "the counts have not changed since the first report: they prove no report";
 
   std::int64_t number = 1;                            // Adit's own number, from 1
   std::string id = "";                                // Command Post's name (ICD 5.2 `run`); "": unknown

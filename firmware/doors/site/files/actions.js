@@ -40,6 +40,13 @@ export function actionsOf(report, isNear = false) {
   return DEEDS[report.state] ?? [];
 }
 
+/** What the buttons of a report in doubt do, in one line; "" if a report needs none. */
+export function hintOf({ state, position }) {
+  if (state !== "in_doubt") return "";
+  const settle = `${SETTLE.label}: it is never sent again.`;
+  return position ? `${AGAIN.label}: it was not recorded. ${settle}` : settle;
+}
+
 let role = null, lost = false; // null: not learned yet
 
 /** Why nothing can be done now, or "". */

@@ -9,7 +9,7 @@ const SIDES = { robot: "Robot", box: "Box", network: "Network", command_post: "C
 export const BOX_LOST = "box_lost";
 
 function reasonOf(alarm) {
-  const why = clip(alarm.why, 160), side = SIDES[alarm.side] ?? "";
+  const why = clip(alarm.why), side = SIDES[alarm.side] ?? "";
   return `${side}${why ? `: ${why}` : ""}${alarm.hides ? ` · hides ${alarm.hides}` : ""}`;
 }
 

@@ -15,7 +15,7 @@ export function fillAlarmList(dialog, alarms, over, time) {
     mark(item.firstChild, "key", alarm.id);
     set(help, { hidden: alarm.id === BOX_LOST });
     attribute(help, "href", `/help#${alarm.id.split(":")[0]}`);
-    fillCard(item.firstChild, alarm, time);
+    fillCard(item.firstChild, { ...alarm, why: alarm.details || alarm.why }, time);
   });
   dialog.querySelector(".before").hidden = over.length === 0;
   list(dialog.querySelector(".over"), over, ({ id, until }) => `${id} ${until}`, () => make("li"), (item, one) => say(item, formerly(one)));

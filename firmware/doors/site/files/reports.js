@@ -1,5 +1,5 @@
 // Artifact reports, newest first: where each is in its life, what the Command Post said, and what can be done.
-import { barred, actionsOf, CORRECT, isBusy, outcomeOf, perform } from "./actions.js";
+import { actionsOf, barred, CORRECT, hintOf, isBusy, outcomeOf, perform } from "./actions.js";
 import { icon } from "./artifact_icons.js";
 import { correct } from "./compose.js";
 import { attribute, badge, list, make, mark, say, set } from "./dom.js";
@@ -52,7 +52,7 @@ function create(report) {
   outcome.setAttribute("role", "status");
   const title = make("div.title", make("span.what"), make("span.where", make("span"), make("span.since")));
   return make("li", make("span.picture", icon(report.type)), title, make("span.badge"), open, make("span.more"),
-    make("div.acts", make("div.near"), make("div.actions")), outcome, make("div.history"));
+    make("div.acts", make("div.near"), make("div.actions"), make("p.hint")), outcome, make("div.history"));
 }
 
 function toggle(number) {
@@ -138,7 +138,7 @@ function update(node, report, view, now) {
   const isMore = opened.has(report.number);
   const [, title, badged, open, rest, acts, outcome, history] = node.children;
   const [what, where] = title.children;
-  const [near, actions] = acts.children;
+  const [near, actions, hint] = acts.children;
   mark(node, "level", level);
   badge(badged, level, clip(word, 40));
   say(what, clip(report.type, 40));
@@ -154,6 +154,7 @@ function update(node, report, view, now) {
   attribute(open, "aria-expanded", String(isMore));
   say(open.lastChild, `Details of report ${report.number}`);
   showActions(actions, report, view, isMore || level === "ask" || Boolean(report.sends_at));
+  say(hint, actions.firstChild ? hintOf(report) : "");
   set(acts, { hidden: !acts.querySelector("button") });
   const came = outcomeOf(report.number);
   say(outcome, came ? clip(came.text) : isBusy(report.number) ? "…" : "");

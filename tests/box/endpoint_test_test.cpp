@@ -72,5 +72,38 @@ TEST(EndpointTest, TriesASlashIfTheStatusIsAWebPage) {
   }
 }
 
+/// The answers of real mapping servers to an unknown path, and of servers that answer all paths alike.
+TEST(EndpointTest, TellsAMappingEndpointByItsAnswerToAnUnknownPath) {
+  constexpr const char *kMissing = "422 Unprocessable Entity", *kUnknown = "404 Not Found";
+  const struct {
+    const char *known, *unknown, *state;
+  } kServers[] = {{kMissing, kUnknown, "good"}, {kMissing, "501 Not Implemented", "good"},
+                  {"200 OK", kUnknown, "good"}, {kMissing, kMissing, "bad"},
+                  {"200 OK", "200 OK", "bad"},  {"204 No Content", "204 No Content", "bad"}};
+  for (const auto& [known, unknown, state] : kServers) {
+    loop::SimulatedTime time;
+    loop::Loop loop;
+    std::vector<std::string> requests;
+    uplink::ListeningPeer peer([&](uplink::Wire& wire) {
+      requests.push_back(wire.read_request());
+      wire.write(uplink::answer(requests.size() == 1 ? known : unknown, ""));
+    });
+    TestTarget tried{.post = {}, .scoring = {}, .mapping = icd::BearerToken::parse("typed")};
+    tried.post.interface = "";
+    tried.post.mapping = {peer.endpoint().address, peer.endpoint().port};
+    const EndpointTest::Turns turns;
+    const settings::CommandPost in_use;
+    std::optional<api::TestStep> step;
+    EndpointTest test(loop, turns, in_use, tried, steps::Asked::Mapping,
+                      [&](api::TestStep each) { step = std::move(each); });
+    test.check_token();
+    ASSERT_TRUE(time.pass_until(loop, [&] { return step.has_value(); }));
+    EXPECT_EQ(step->state, state) << known << ", " << unknown << ": " << step->said;
+    ASSERT_EQ(requests.size(), 2);
+    EXPECT_TRUE(requests[0].starts_with("POST /state/update ")) << requests[0];
+    EXPECT_TRUE(requests[1].starts_with("POST /adit-test ")) << requests[1];
+  }
+}
+
 }  // namespace
 }  // namespace adit::box

@@ -110,6 +110,32 @@ TEST(TokenStep, OfMappingIsGoodIfOnlyTheBodyIsRejected) {
   expect(with_status(Asked::Mapping, 429), "skipped", "too many requests");
 }
 
+TestStep with_statuses(int status, int elsewhere) {
+  uplink::Answered answered;
+  answered.status = elsewhere;
+  return unknown_path(with_status(Asked::Mapping, status), status, answered);
+}
+
+TEST(TokenStep, OfMappingIsBadIfTheServerAcceptsAnyPath) {
+  for (const int status : {200, 400, 415, 422}) {
+    for (const int elsewhere : {401, 404, 405, 500, 501})
+      expect(with_statuses(status, elsewhere), "good", "is accepted");
+    expect(with_statuses(status, status), "bad", "accepts any path");
+    expect(with_statuses(status, 429), "skipped", "none to POST /adit-test");
+  }
+  expect(with_statuses(200, 204), "bad", "accepts any path");
+  EXPECT_THAT(with_statuses(422, 422).advice, HasSubstr("compare the mapping address and port"));
+  expect(unknown_path(with_status(Asked::Mapping, 422), 422, uplink::InDoubt{"the peer was silent"}),
+         "skipped", "none to POST /adit-test");
+}
+
+TEST(TokenStep, TellsAPageFromAnAnswerWithoutABody) {
+  expect(with_status(Asked::Mapping, 200, "<html>"), "bad", "the answer is 200 with a body that is not JSON");
+  expect(with_status(Asked::Mapping, 501, ""), "bad", "the answer is 501 without a body");
+  expect(with_status(Asked::Mapping, 404, R"({"detail": "Not Found"})"), "bad",
+         "the answer is 404: Not Found");
+}
+
 TEST(TokenStep, TellsThatTheEndpointRequiresASlash) {
   const uplink::Answered taken{.status = 200, .content_type = "", .body = kRun, .retry_after = std::nullopt};
   EXPECT_THAT(token(Asked::Scoring, taken, true).said, HasSubstr("slash"));

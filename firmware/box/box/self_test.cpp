@@ -79,7 +79,16 @@ TestStep bad(std::string name, std::string said, std::string advice) {
 }
 
 std::string answered(int status, const std::string& body) {
-  return icd::sentence("the answer is ", status, ": ", dispatch::answer_text(status, body));
+  const std::string answer = icd::sentence("the answer is ", status);
+  switch (dispatch::body_of(body)) {
+    case dispatch::Body::Empty:
+      return answer + " without a body";
+    case dispatch::Body::Other:
+      return answer + " with a body that is not JSON";
+    case dispatch::Body::Json:
+      break;
+  }
+  return icd::sentence(answer, ": ", dispatch::answer_text(status, body));
 }
 
 /// An error about the empty request shows that the token passed.
@@ -90,9 +99,9 @@ bool took_the_token(Asked asked, int status, dispatch::Body body) {
 }
 
 std::string no_endpoint(Asked asked) {
-  return icd::sentence("This is no ", name_of(asked),
-                       " endpoint: compare its address and port with those posted; scoring and mapping may "
-                       "be exchanged.");
+  return icd::sentence("This is no ", name_of(asked), " endpoint: compare the ", name_of(asked),
+                       " address and port with those posted in the Base Station area; scoring and mapping "
+                       "may be exchanged.");
 }
 
 }  // namespace
@@ -215,7 +224,8 @@ TestStep token(Asked asked, const uplink::Outcome& outcome, bool slash) {
     const auto* never = std::get_if<uplink::NeverSent>(&outcome);
     return bad(
         "token", never != nullptr ? never->why : std::get<uplink::InDoubt>(outcome).why,
-        "The server accepts connections but gave no answer: try again, then ask the Command Post's crew.");
+        icd::sentence("The server accepts connections but gave no answer: compare the ", name_of(asked),
+                      " port with the one posted, try again, then ask the Command Post's crew."));
   }
   const int status = answer->status;
   const dispatch::Body body = dispatch::body_of(answer->body);
@@ -231,9 +241,12 @@ TestStep token(Asked asked, const uplink::Outcome& outcome, bool slash) {
     return good("token", icd::sentence("the ", name_of(asked), " token is accepted",
                                        slash ? "; paths end with a slash there" : ""));
   if ((status == 401 || status == 403) && body != dispatch::Body::Other) {
-    return bad("token",
-               icd::sentence("the ", name_of(asked), " token is rejected; ", answered(status, answer->body)),
-               "Enter the token again exactly; scoring and mapping may have different tokens.");
+    return bad(
+        "token",
+        icd::sentence("the ", name_of(asked), " token is rejected; ", answered(status, answer->body)),
+        icd::sentence("Enter the token again exactly; scoring and mapping may have different tokens. If "
+                      "the token is right, compare the ",
+                      name_of(asked), " address and port with those posted."));
   }
   if (status == 429)
     return skipped("token",
@@ -243,6 +256,21 @@ TestStep token(Asked asked, const uplink::Outcome& outcome, bool slash) {
                                           answered(status, answer->body)));
   }
   return bad("token", answered(status, answer->body), no_endpoint(asked));
+}
+
+TestStep unknown_path(TestStep accepted, int status, const uplink::Outcome& outcome) {
+  const auto* answer = std::get_if<uplink::Answered>(&outcome);
+  if (answer == nullptr || answer->status == icd::kTooManyRequests) {
+    return skipped(
+        "token", icd::sentence("the answer to POST /state/update is ", status, ", but there is none to POST ",
+                               kUnknownPath, ", which would show whether this is a mapping endpoint"));
+  }
+  const bool are_both_good = icd::is_success(status) && icd::is_success(answer->status);
+  if (answer->status != status && !are_both_good) return accepted;
+  return bad("token",
+             icd::sentence("the server accepts any path: it answers POST /state/update with ", status,
+                           " and POST ", kUnknownPath, ", which no Command Post has, with ", answer->status),
+             no_endpoint(Asked::Mapping));
 }
 
 TestStep clock(std::optional<std::chrono::sys_seconds> date, double now) {
@@ -327,13 +355,13 @@ void EndpointTest::connected(int error, const std::string& why) {
 }
 
 /// At an endpoint of the run this takes one of the run's turns, so that the run is not throttled.
-void EndpointTest::ask(const char* step, std::function<void(uplink::Outcome)> done) {
-  if (!is_of_the_run()) return send(std::move(done));
+void EndpointTest::ask(const char* step, std::string_view path, std::function<void(uplink::Outcome)> done) {
+  if (!is_of_the_run()) return send(path, std::move(done));
   const auto at = turns_.claim(uri(), loop_.now() + kLongestTurn);
   if (!at) return done_(steps::no_turn(step));
-  when_due_ = [this, done = std::move(done)] {
+  when_due_ = [this, path, done = std::move(done)] {
     turns_.claimed(uri());  // at the time of sending, which may be later
-    send([this, done](uplink::Outcome outcome) {
+    send(path, [this, done](uplink::Outcome outcome) {
       turns_.claimed(uri());
       done(std::move(outcome));
     });
@@ -341,11 +369,11 @@ void EndpointTest::ask(const char* step, std::function<void(uplink::Outcome)> do
   timer_.call_at(*at);
 }
 
-void EndpointTest::send(std::function<void(uplink::Outcome)> done) {
+void EndpointTest::send(std::string_view path, std::function<void(uplink::Outcome)> done) {
   const bool scoring = asked_ == steps::Asked::Scoring;
   connection_ = std::make_unique<uplink::Connection>(loop_, there(), *token());
   connection_->send({.method = std::string(icd::method_of(uri())),
-                     .target = std::string(icd::path_of(uri())) + (wants_slash_ ? "/" : ""),
+                     .target = std::string(path) + (wants_slash_ ? "/" : ""),
                      .content_type = scoring ? "" : std::string(codec::kJson),
                      .body = scoring ? icd::ChunkedBytes() : empty_object(),
                      .answer_within = kAnswerWithin},
@@ -357,7 +385,7 @@ void EndpointTest::send(std::function<void(uplink::Outcome)> done) {
 
 void EndpointTest::check_token() {
   if (!token()) return done_(steps::no_token(asked_));
-  ask("token", [this](const uplink::Outcome& outcome) { token_answered(outcome); });
+  ask("token", icd::path_of(uri()), [this](const uplink::Outcome& outcome) { token_answered(outcome); });
 }
 
 /// Repeats once after a 429, because Adit requests the status too. Follows a redirect to a slash, and tries a
@@ -374,8 +402,22 @@ void EndpointTest::token_answered(const uplink::Outcome& outcome) {
   const bool is_redirected = answer != nullptr && (answer->wants_slash == true || (page_ && !wants_slash_));
   if (is_redirected) wants_slash_ = true;
   const bool is_throttled = answer != nullptr && answer->status == 429 && !std::exchange(asked_again_, true);
-  if (!is_redirected && !is_throttled) return done_(steps::token(asked_, outcome, wants_slash_));
+  if (!is_redirected && !is_throttled) {
+    api::TestStep step = steps::token(asked_, outcome, wants_slash_);
+    if (step.state == "good" && asked_ == steps::Asked::Mapping)
+      return check_unknown_path(std::move(step), answer->status);
+    return done_(std::move(step));
+  }
   when_due_ = [this] { check_token(); };
+  timer_.call_at(loop_.now() + kAskAgain);
+}
+
+void EndpointTest::check_unknown_path(api::TestStep accepted, int status) {
+  when_due_ = [this, accepted = std::move(accepted), status] {
+    ask("token", steps::kUnknownPath, [this, accepted, status](const uplink::Outcome& outcome) {
+      done_(steps::unknown_path(accepted, status, outcome));
+    });
+  };
   timer_.call_at(loop_.now() + kAskAgain);
 }
 
@@ -383,7 +425,7 @@ void EndpointTest::check_clock() {
   if (clocks_.date || asked_ == steps::Asked::Mapping || !token() || !clocks_.run_clock)
     return done_(steps::clock(clocks_.date, clocks_.answered_at));
   when_due_ = [this] {
-    ask("clock", [this](const uplink::Outcome& outcome) {
+    ask("clock", icd::path_of(uri()), [this](const uplink::Outcome& outcome) {
       const auto* answer = std::get_if<uplink::Answered>(&outcome);
       done_(steps::run_clock(clocks_.run_clock, answer != nullptr ? run_clock_in(*answer) : std::nullopt));
     });

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "admin/network_change.hpp"
@@ -61,6 +62,13 @@ TestStep reach(const std::string& at, int error, const std::string& why);
 /// `slash`: the endpoint redirected to a slash at the end of the path.
 TestStep token(Asked asked, const uplink::Outcome& outcome, bool slash = false);
 TestStep no_token(Asked asked);
+
+/// A path that no Command Post has.
+inline constexpr std::string_view kUnknownPath = "/adit-test";
+/// `outcome`: of the mapping endpoint's request to kUnknownPath, after it `accepted` the token with `status`.
+/// A Command Post answers 404 (ICD 4.1) or 501. A server that answers both paths alike is none: bad.
+TestStep unknown_path(TestStep accepted, int status, const uplink::Outcome& outcome);
+
 /// The run uses all requests that the endpoint allows.
 TestStep no_turn(const std::string& name);
 
@@ -77,7 +85,8 @@ inline constexpr std::chrono::seconds kOff{2};
 }  // namespace steps
 
 /// The Test's steps at one endpoint, on its own connections. It requests the run's status, and posts `{}` as
-/// a state, which the mapping endpoint rejects (ICD 5.2) after it has checked the token.
+/// a state, which the mapping endpoint rejects (ICD 6.5) after it has checked the token. It then posts `{}`
+/// to a path that no Command Post has. Nothing is shown or recorded.
 class EndpointTest {
  public:
   static constexpr std::chrono::milliseconds kReachWithin{3000}, kAnswerWithin{5000};
@@ -112,8 +121,9 @@ class EndpointTest {
 
   void connected(int error, const std::string& why);
   void token_answered(const uplink::Outcome& outcome);
-  void ask(const char* step, std::function<void(uplink::Outcome)> done);
-  void send(std::function<void(uplink::Outcome)> done);
+  void check_unknown_path(api::TestStep accepted, int status);
+  void ask(const char* step, std::string_view path, std::function<void(uplink::Outcome)> done);
+  void send(std::string_view path, std::function<void(uplink::Outcome)> done);
 
   icd::Uri uri() const { return asked_ == steps::Asked::Scoring ? icd::Uri::Status : icd::Uri::StateUpdate; }
   const std::optional<icd::BearerToken>& token() const {

@@ -106,6 +106,31 @@ TEST(Verdict, TellsThatMapsAreLate) {
   EXPECT_EQ(verdict_of(snapshot), (Verdict{Level::Wait, "Maps are late", "uav1, 11 s behind"}));
 }
 
+TEST(Verdict, CallsNoFirstMapLate) {
+  Snapshot snapshot = busy(2);
+  const ActivityRow first{.kind = "grid", .robot = "uav9", .age = 1, .heard = 1};
+  snapshot.traffic.activities.push_back(first);
+  EXPECT_EQ(verdict_of(snapshot),
+            (Verdict{Level::Good, "Every map arrives", "2 robots, oldest 1 s; no map yet from uav9"}));
+  snapshot.traffic.activities.back().robot = "uav1";
+  EXPECT_EQ(verdict_of(snapshot).why, "2 robots, oldest 1 s") << "a second kind of map";
+  snapshot.traffic.activities.back() = first;
+  snapshot.traffic.activities[0].age = 11;
+  EXPECT_EQ(verdict_of(snapshot),
+            (Verdict{Level::Wait, "Maps are late", "uav1, 11 s behind; no map yet from uav9"}));
+  fall_silent(snapshot, "uav1");
+  EXPECT_EQ(verdict_of(snapshot),
+            (Verdict{Level::Wait, "1 of 3 arrive", "uav1 silent; no map yet from uav9; the other 1 s"}));
+  snapshot.traffic.activities.back().age = 11;
+  EXPECT_EQ(verdict_of(snapshot).what, "2 of 3 arrive") << "a first map that is late";
+  snapshot = well(0);
+  snapshot.traffic.activities = {first};
+  EXPECT_EQ(verdict_of(snapshot), (Verdict{Level::Wait, "No map yet", "the first one is queued"}));
+  snapshot.traffic.activities.push_back(merged({}, 600));
+  EXPECT_EQ(verdict_of(snapshot),
+            (Verdict{Level::Quiet, "Every map arrived", "no new map for 10 min; no map yet from uav9"}));
+}
+
 TEST(Verdict, TellsThatNoMapArrivesDuringAnOutage) {
   Snapshot snapshot = well(20);
   snapshot.traffic.endpoints[1].fault = EndpointFault::Silent;

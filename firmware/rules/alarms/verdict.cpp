@@ -72,7 +72,7 @@ std::optional<double> least(std::optional<double> one, std::optional<double> oth
 /// The maps of one robot.
 struct Maps {
   Level level = Level::Quiet;
-  bool is_silent = false;
+  bool is_silent = false, is_first = true;     // is_first: none was sent so far, and none is late
   std::optional<double> age = {}, heard = {};  // of the oldest undelivered map; of the newest map
 };
 
@@ -84,7 +84,9 @@ AllMaps maps_of(const Traffic& traffic) {
   for (const ActivityRow& row : traffic.activities) {
     if (!row.is_map()) continue;
     Maps& maps = all[row.robot];
-    maps.level = std::max(maps.level, row.level);
+    const bool is_first = row.arrival == Arrival::NotYet;
+    maps.level = std::max(maps.level, is_first ? Level::Good : row.level);
+    maps.is_first &= is_first;
     maps.is_silent |= row.arrival == Arrival::Silent;
     maps.age = std::max(maps.age, row.age);
     maps.heard = least(maps.heard, row.heard);
@@ -106,7 +108,7 @@ struct Group {
 };
 
 struct Groups {
-  Group failing, silent, late, arriving, quiet;
+  Group failing, silent, late, first, arriving, quiet;
 };
 
 Groups groups_of(const AllMaps& all) {
@@ -114,7 +116,7 @@ Groups groups_of(const AllMaps& all) {
   for (const auto& [name, maps] : all) {
     Group& group = maps.level == Level::Bad    ? (maps.is_silent ? groups.silent : groups.failing)
                    : maps.level == Level::Wait ? groups.late
-                   : maps.level == Level::Good ? groups.arriving
+                   : maps.level == Level::Good ? (maps.is_first ? groups.first : groups.arriving)
                                                : groups.quiet;
     group.add(name, maps);
   }
@@ -162,6 +164,7 @@ Verdict partly(const Groups& groups, std::size_t all) {
   std::string why;
   append(why, "not ", groups.failing.names, "");
   append(why, "", groups.silent.names, " silent");
+  append(why, "no map yet from ", groups.first.names, "");
   append(why, "", groups.quiet.names, " quiet");
   const std::size_t arrive = groups.arriving.names.size() + groups.late.names.size();
   if (arrive == 0) return {Level::Bad, "No map arrives", std::move(why)};
@@ -294,17 +297,20 @@ Verdict verdict_of(const Traffic& traffic) {
   if (!groups.late.empty()) {
     std::string why = names_of(groups.late.names);
     if (groups.late.oldest) why += ", " + age_text(*groups.late.oldest) + " behind";
+    append(why, "no map yet from ", groups.first.names, "");
     return {Level::Wait, "Maps are late", std::move(why)};
   }
+  if (groups.first.names.size() == all.size()) return {Level::Wait, "No map yet", "the first one is queued"};
   std::string why;
   if (groups.arriving.empty()) {
     std::optional<double> heard;
-    for (const auto& [name, maps] : all) heard = least(heard, maps.heard);
+    for (const std::string& name : groups.quiet.names) heard = least(heard, all.at(name).heard);
     why = "no new map for " + age_text(heard.value_or(0));
   } else {
     why = all_arrive(groups.arriving);
     append(why, "", groups.quiet.names, " quiet");
   }
+  append(why, "no map yet from ", groups.first.names, "");
   append(why, "no map from ", without_map(traffic, all), "");
   return groups.arriving.empty() ? Verdict{Level::Quiet, "Every map arrived", std::move(why)}
                                  : Verdict{Level::Good, "Every map arrives", std::move(why)};

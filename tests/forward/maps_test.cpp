@@ -123,6 +123,23 @@ TEST_F(MapsTest, KeepWhatTheyReplacedOverARestart) {
   }
 }
 
+/// The file of a grid does not show how long the grids that it replaced were queued.
+TEST_F(MapsTest, KeepTheAgeOfWhatTheyReplacedOverARestart) {
+  icd::MapUpdate newest = window(0);
+  newest.header().stamp = loop_.stamp_now();
+  EXPECT_EQ(status(take(std::move(newest))), icd::Status::Ok);
+  journal::Heard heard{.robot = "r1"};
+  heard.behind[static_cast<std::size_t>(Kind::Grid)] = loop_.stamp_now() - 30;
+  journal::Carried carried;
+  EXPECT_TRUE(carried.apply(journal::Kind::Heard, store::bytes_of(heard)));
+  Maps next = maps_with(std::nullopt);
+  next.carry_on(carried, /*ran_before=*/true);
+  next.restore(spool::Spool(folder_.path()).read());
+  const auto since = next.waits_since({Kind::Grid, "r1"});
+  ASSERT_TRUE(since);
+  EXPECT_NEAR(std::chrono::duration<double>(loop_.now() - *since).count(), 30, 5);
+}
+
 /// 20 x 20 cells of 0.25 m at `x` metres, each with the number of its column.
 icd::MapUpdate columns(double x, double stamp) {
   icd::MapUpdate map = window(x);

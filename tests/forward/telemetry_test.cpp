@@ -134,6 +134,19 @@ TEST_F(TelemetryTest, KeepsNoDeliveredPoseAcrossARestart) {
   EXPECT_EQ(left().robots().begin()->first.text(), "r2");
 }
 
+TEST_F(TelemetryTest, KeepsTheAgeOfAPoseOverARestart) {
+  auto process = process_without_a_token();
+  ASSERT_TRUE(process->telemetry.take(pose("r1", 1), 10));
+  journal::Heard heard{.robot = "r1"};
+  heard.behind[static_cast<std::size_t>(Kind::State)] = loop_.stamp_now() - 30;
+  process->journal.heard(heard);
+  process.reset();
+  process = process_without_a_token();
+  const auto since = process->telemetry.waits_since({Kind::State, "r1"});
+  ASSERT_TRUE(since);
+  EXPECT_NEAR(std::chrono::duration<double>(loop_.now() - *since).count(), 30, 5);
+}
+
 /// The pose may be of the last run.
 TEST_F(TelemetryTest, SendsARestoredPoseOnce) {
   std::atomic<int> of_r1 = 0, of_r2 = 0;

@@ -232,6 +232,7 @@ TEST(CarriedState, KnowsWhenRobotsWereHeardUntilTheNextBoot) {
   tell(carried, Kind::Heard, store::bytes_of(Heard{.robot = "r1", .messages = 1, .last = 10}));
   Heard newest{.robot = "r1", .messages = 4, .gap = 1.5, .last = 20};
   newest.kinds[2] = {.accepted = 20, .forwarded = 19};
+  newest.behind[2] = 18;
   tell(carried, Kind::Heard, store::bytes_of(newest));
   EXPECT_FALSE(carried.apply(Kind::Heard, store::bytes_of(newest).substr(1)));
   for (const Carried& each : {carried, again(carried)}) {
@@ -241,6 +242,8 @@ TEST(CarriedState, KnowsWhenRobotsWereHeardUntilTheNextBoot) {
     EXPECT_TRUE(std::isnan(heard.kinds[0].accepted));
     EXPECT_EQ(heard.kinds[2].accepted, 20);
     EXPECT_EQ(heard.kinds[2].forwarded, 19);
+    EXPECT_EQ(each.behind("r1", 2), 18);
+    EXPECT_TRUE(std::isnan(each.behind("r1", 0)) && std::isnan(each.behind("r2", 2)));
   }
   carried.machine_is("b2");
   EXPECT_THAT(carried.heard(), IsEmpty());

@@ -165,9 +165,15 @@ bool Carried::read_sent(std::string_view said) {
 
 bool Carried::read_heard(std::string_view said) {
   Heard heard;
-  if (!store::read(said, heard)) return false;
+  const auto of_earlier_version = [said] { return std::string(said) + store::bytes_of(Heard().behind); };
+  if (!store::read(said, heard) && !store::read(of_earlier_version(), heard)) return false;
   heard_[heard.robot] = heard;
   return true;
+}
+
+double Carried::behind(const std::string& robot, std::size_t kind) const {
+  const auto heard = heard_.find(robot);
+  return heard == heard_.end() ? Heard::kNever : heard->second.behind.at(kind);
 }
 
 void Carried::state_is_done() {

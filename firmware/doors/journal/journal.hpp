@@ -63,15 +63,17 @@ struct Clock {
 
 /// When a robot was last heard, by the stamp clock, and how often it sends.
 struct Heard {
+  static constexpr double kNever = std::numeric_limits<double>::quiet_NaN();
   /// For one kind of data; NaN: never.
   struct Times {
-    double accepted = std::numeric_limits<double>::quiet_NaN(),
-           forwarded = std::numeric_limits<double>::quiet_NaN();
+    double accepted = kNever, forwarded = kNever;
   };
   std::string robot;             // "": merged maps
   std::uint64_t messages = 0;    // alarms::Habit
   double gap = 0, last = 0;      // as `messages`
   std::array<Times, 3> kinds{};  // grid, cloud, state
+  /// By kind: when its oldest undelivered message was accepted; NaN: all were delivered.
+  std::array<double, 3> behind{kNever, kNever, kNever};
 };
 
 /// State that a process hands to the next: the sum of a journal's records.
@@ -104,6 +106,8 @@ class Carried {
   const std::map<icd::RobotName, Robot>& robots() const { return robots_; }
   /// By robot. Empty after a boot.
   const std::map<std::string, Heard>& heard() const { return heard_; }
+  /// Heard::behind of a robot and kind; NaN also for an unknown robot.
+  double behind(const std::string& robot, std::size_t kind) const;
   /// Markers that are not delivered, in order.
   icd::MarkersUpdate markers() const;
 
@@ -153,7 +157,7 @@ inline constexpr auto store::kMembers<journal::Clock> =
 template <>
 inline constexpr auto store::kMembers<journal::Heard> =
     std::tuple(&journal::Heard::robot, &journal::Heard::messages, &journal::Heard::gap, &journal::Heard::last,
-               &journal::Heard::kinds);
+               &journal::Heard::kinds, &journal::Heard::behind);
 template <>
 inline constexpr auto store::kMembers<journal::Heard::Times> =
     std::tuple(&journal::Heard::Times::accepted, &journal::Heard::Times::forwarded);

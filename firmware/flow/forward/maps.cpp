@@ -1,6 +1,7 @@
 #include "forward/maps.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "codec/read.hpp"
@@ -159,6 +160,10 @@ void Maps::carry_on(const journal::Carried& carried, bool ran_before) {
   }
   queue_.canvases().carry_on(std::move(posted));
   pace_.carry_on(carried, loop_.now());
+  for (const auto& [robot, heard] : carried.heard()) {
+    for (const Kind kind : {Kind::Grid, Kind::Cloud})
+      behind_[{kind, robot}] = heard.behind.at(static_cast<std::size_t>(kind));
+  }
 }
 
 /// Journals posted areas, so that later processes know the cells that were never sent. False: not journaled,
@@ -296,6 +301,7 @@ void Maps::restore(spool::Spool::Kept kept) {
   kept.erase(at_fault.begin(), at_fault.end());
   store_.read_trouble();
   for (spool::Spool::KeptMap& each : kept) restore(std::move(each));
+  behind_.clear();
 }
 
 /// Its file stays until the rejected messages have one.
@@ -322,9 +328,10 @@ void Maps::restore(spool::Spool::KeptMap kept) {
     store_.forget(queue_.put_back(waiting_again(number, std::move(update), kept.bounds, kept.ends)));
   } else {
     tell_clouds(update);
-    const auto waited = std::chrono::duration_cast<loop::Duration>(
-        std::chrono::duration<double>(std::max(loop_.stamp_now() - stamp, 0.0)));
-    queue_.restore(number, std::move(update), loop_.now() - waited, kept.bounds, rule_after(kept.ends));
+    // The sender's first map may stand for older ones, which it replaced.
+    const auto behind = behind_.extract(traffic_of(update));
+    const icd::Stamp since = behind ? std::fmin(stamp, behind.mapped()) : stamp;
+    queue_.restore(number, std::move(update), instant_of(loop_, since), kept.bounds, rule_after(kept.ends));
   }
   compare();
   pump();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <random>
@@ -194,6 +195,7 @@ class Maps {
   MapStore store_;
   Slot slot_;
   queues::OvertakenMaps overtaken_;
+  std::map<Traffic, icd::Stamp> behind_;           // journal::Heard::behind, until restore()
   std::vector<std::shared_ptr<Arrived>> waiting_;  // for others that are being stored
   bool are_grids_told_ = true;                     // the journal has the areas of grids
   bool is_comparing_ = false;                      // a worker compares two clouds

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "codec/write.hpp"
@@ -21,7 +22,8 @@ States::States(loop::Loop& loop, const settings::Settings& settings, TrafficCoun
 void States::carry_on(const journal::Carried& carried) {
   pace_.carry_on(carried, loop_.now());
   for (const auto& [name, robot] : carried.robots()) {
-    queue_.add({&robot.posted, 1}, loop_.now());
+    const double behind = carried.behind(name.text(), static_cast<std::size_t>(Kind::State));
+    queue_.add({&robot.posted, 1}, std::isnan(behind) ? loop_.now() : instant_of(loop_, behind));
     counts_.accepted({Kind::State, name.text()}, 0,
                      time_of(loop_, robot.posted.stamp.value_or(loop_.stamp_now())));
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <chrono>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -34,6 +35,12 @@ inline constexpr auto kHeardKinds = std::span(facts::kKinds).first<3>();
 /// The time of day of a stamp, at most now. NaN for NaN.
 inline api::Time time_of(const loop::Loop& loop, icd::Stamp stamp) {
   return loop.wall_now() - std::max(loop.stamp_now() - stamp, 0.0);
+}
+
+/// The instant of a stamp, at most now.
+inline loop::Instant instant_of(const loop::Loop& loop, icd::Stamp stamp) {
+  const std::chrono::duration<double> since(std::max(loop.stamp_now() - stamp, 0.0));
+  return loop.now() - std::chrono::duration_cast<loop::Duration>(since);
 }
 
 /// A robot and a kind of message. `robot` "": merged maps, or markers.

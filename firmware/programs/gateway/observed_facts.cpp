@@ -93,7 +93,7 @@ facts::EndpointRow shown(const char* name, const settings::Address& address,
 
 /// One robot's activities.
 struct OfRobot {
-  std::uint64_t accepted = 0, forwarded = 0;
+  std::uint64_t accepted = 0, ended = 0;  // ended: delivered or rejected
   journal::Heard heard;
 };
 
@@ -106,13 +106,14 @@ std::map<std::string, OfRobot> of_robots(const std::vector<facts::ActivityRow>& 
     if (kind == std::end(forward::kHeardKinds)) continue;
     OfRobot& its = all[row.robot];
     its.accepted += row.accepted;
-    its.forwarded += row.forwarded;
+    its.ended += row.forwarded + row.refused_upstream;
     its.heard.robot = row.robot;
-    auto& [accepted, forwarded] =
-        its.heard.kinds.at(static_cast<std::size_t>(kind - std::begin(forward::kHeardKinds)));
+    const auto index = static_cast<std::size_t>(kind - std::begin(forward::kHeardKinds));
+    auto& [accepted, forwarded] = its.heard.kinds.at(index);
     if (row.last_accepted)
       its.heard.last = std::max(its.heard.last, accepted = now - (time - *row.last_accepted));
     if (row.last_forwarded) forwarded = now - (time - *row.last_forwarded);
+    if (row.behind_since) its.heard.behind.at(index) = now - (time - *row.behind_since);
   }
   return all;
 }
@@ -136,7 +137,7 @@ void ObservedFacts::look(forward::Flow& flow, const settings::Settings& settings
   mapping_.look({seen(flow.maps().channel()), seen(flow.telemetry().channel())}, now);
   for (auto& [robot, its] : of_robots(activities, now, time)) {
     habits_.heard(robot, its.accepted, its.heard.last);
-    const std::uint64_t told = its.accepted + its.forwarded;
+    const std::uint64_t told = its.accepted + its.ended;
     if (std::exchange(told_[robot], told) == told) continue;
     if (const auto habit = habits_.of(robot)) {
       its.heard.messages = static_cast<std::uint64_t>(std::min(habit->messages, alarms::Habits::kMessages));

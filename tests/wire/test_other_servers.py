@@ -157,7 +157,8 @@ class OtherServers(unittest.TestCase):
                 self.assertEqual(step["state"], "good", step)
         for number, options in enumerate([(), ("--as-measured",), ("--slash",)]):
             with self.subTest(options):
-                post = CommandPost(self.stage.network, self.stage.folder, *options, name=f"other{number}", port=9000 + number, control_port=9100 + number)
+                post = CommandPost(self.stage.network, self.stage.folder, *options, name=f"other{number}", port=9000 + number,
+                                   control_port=9100 + number)
                 self.addCleanup(post.stop)
                 step = self.step(9000 + number)
                 self.assertEqual(step["state"], "good", step)

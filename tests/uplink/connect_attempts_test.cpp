@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "uplink/connection_impl.hpp"
+#include "uplink/connection.hpp"
 
 namespace adit::uplink {
 namespace {

@@ -5,8 +5,6 @@
 #include <utility>
 
 #include "icd/require.hpp"
-#include "uplink/connection_impl.hpp"
-#include "uplink/socket.hpp"
 
 namespace adit::uplink {
 
@@ -54,45 +52,48 @@ std::uint64_t LinkPace::delivers() const {
   return delivery_ ? static_cast<std::uint64_t>(delivery_->delivers()) : 0;
 }
 
-void Connection::Impl::keep_warm() {
+void Connection::keep_warm() {
   warm_ = true;
   return_warm();
 }
 
-void Connection::Impl::hurry() {
-  const auto alive = shared_from_this();
+void Connection::hurry() {
   attempts_.hurry();
   if (connected() || (!socket_ && !stays_warm())) return;
-  close();
+  close_socket();
   connect();
 }
 
-void Connection::Impl::open() {
+void Connection::open() {
   if (!socket_) connect();
 }
 
-/// As drop(), if the connection is not closed.
-void Connection::Impl::end() {
+void Connection::close() {
+  icd::require(!busy());
   if (socket_) drop();
 }
 
-void Connection::Impl::connect() {
+bool Connection::stays_warm() const {
+  return warm_ && server_->keeps_warm();
+}
+
+void Connection::connect() {
   attempts_.begins(loop_.now());
   auto fd = begin_connect(endpoint_);
   if (!fd) return connecting_failed(fd.error().why);
   timer_.call_at(loop_.now() + endpoint_.connect_within);
   socket_.emplace(std::move(*fd));
-  socket_->source = loop_.watch(socket_->fd.get(), EPOLLOUT, [this](std::uint32_t) { call(&Impl::ready); });
+  socket_->source = loop_.watch(socket_->fd.get(), EPOLLOUT, [this](std::uint32_t) { ready(); });
 }
 
 /// Connects an idle connection now, or when the pause since the last attempt is over.
-void Connection::Impl::return_warm() {
+void Connection::return_warm() {
   if (!stays_warm() || socket_ || exchange_) return;
   if (attempts_.next() <= loop_.now()) return connect();
   timer_.call_at(attempts_.next());
 }
 
-void Connection::Impl::connecting_ended(int error) {
+void Connection::connecting_ended(int error) {
   if (error != 0) return connecting_failed(std::strerror(error));
   socket_->is_open = true;
   socket_->idle_since = loop_.now();
@@ -103,40 +104,40 @@ void Connection::Impl::connecting_ended(int error) {
   rest();
 }
 
-void Connection::Impl::connecting_failed(const std::string& why) {
+void Connection::connecting_failed(const std::string& why) {
   const loop::Instant next =
       attempts_.failed("connecting to " + authority_of(endpoint_) +
                        (endpoint_.interface.empty() ? "" : " by " + endpoint_.interface) + ": " + why);
-  close();
+  close_socket();
   if (stays_warm()) timer_.call_at(next);
   if (exchange_) deliver(NeverSent{trouble()});
 }
 
 /// Waits for the next request, and closes an idle connection before the peer does.
-void Connection::Impl::rest() {
+void Connection::rest() {
   socket_->source.wait_for(kComing);
   timer_.call_at(loop_.now() + kIdle);
 }
 
 /// The connection was idle for kIdle, the peer closed it, or the peer sent bytes without a request. Closes it
 /// before it connects again, because some servers serve one connection at a time.
-void Connection::Impl::idle_ended() {
-  close();
+void Connection::idle_ended() {
+  close_socket();
   return_warm();
 }
 
-void Connection::Impl::drop() {
-  close();
+void Connection::drop() {
+  close_socket();
   if (stays_warm()) timer_.call_at(std::max(loop_.now(), attempts_.next()));
 }
 
-void Connection::Impl::close() {
+void Connection::close_socket() {
   socket_.reset();
-  if (timer_) timer_.cancel();
+  timer_.cancel();
   server_->on_close();
 }
 
-Connection::Impl::Impl(loop::Loop& loop, Endpoint endpoint, icd::BearerToken token,
+Connection::Connection(loop::Loop& loop, Endpoint endpoint, icd::BearerToken token,
                        std::shared_ptr<Server> server, std::shared_ptr<LinkPace> pace)
     : loop_(loop),
       endpoint_(std::move(endpoint)),
@@ -144,65 +145,60 @@ Connection::Impl::Impl(loop::Loop& loop, Endpoint endpoint, icd::BearerToken tok
       server_(std::move(server)),
       pace_(std::move(pace)) {
   server_->add(*this);
-  silence_ = loop_.timer([this] { call(&Impl::check_silence); });
-  timer_ = loop_.timer([this] { call(&Impl::time_came); });
-  tell_ = loop_.timer([this] { call(&Impl::tell); });
-  look_ = loop_.timer([this] { call(&Impl::look); });
+  silence_ = loop_.timer([this] { check_silence(); });
+  timer_ = loop_.timer([this] { time_came(); });
+  tell_ = loop_.timer([this] { tell(); });
+  look_ = loop_.timer([this] { look(); });
 }
 
-std::shared_ptr<Connection::Impl> Connection::Impl::another() const {
-  return std::make_shared<Impl>(loop_, endpoint_, token_, server_, pace_);
+Connection::Connection(loop::Loop& loop, Endpoint endpoint, icd::BearerToken token,
+                       std::shared_ptr<Server> server)
+    : Connection(loop, endpoint, std::move(token),
+                 server ? std::move(server) : std::make_shared<Server>(loop),
+                 std::make_shared<LinkPace>(endpoint.bytes_per_second)) {}
+
+std::unique_ptr<Connection> Connection::another() const {
+  return std::unique_ptr<Connection>(new Connection(loop_, endpoint_, token_, server_, pace_));
 }
 
-/// Calls a member function and keeps this object alive until it returns.
-void Connection::Impl::call(void (Impl::*part)()) {
-  const auto alive = shared_from_this();
-  (this->*part)();
+Connection::~Connection() {
+  give_up();
+  server_->remove(*this);
 }
 
-void Connection::Impl::send(Request request, std::function<void(Outcome)> done) {
+void Connection::send(Request request, std::function<void(Outcome)> done) {
   icd::require(!busy());
   exchange_ = std::make_unique<Exchange>(endpoint_, token_, std::move(request));
   done_ = std::move(done);
   sent_ = 0;
   wait_ = {.since = loop_.now()};
   within_send_ = true;
-  call(&Impl::begin_sending);
+  begin_sending();
   within_send_ = false;
 }
 
-void Connection::Impl::abandon() {
-  warm_ = false;
-  give_up();
-  timer_ = {};
-  tell_ = {};
-  look_ = {};
-  silence_ = {};
-  server_->remove(*this);
-}
-
-void Connection::Impl::give_up() {
+void Connection::give_up() {
   done_ = nullptr;
   outcome_.reset();
   if (exchange_) sent_ = exchange_->sent();
   exchange_.reset();
-  end();
+  if (socket_) drop();
 }
 
-void Connection::Impl::begin_sending() {
+void Connection::begin_sending() {
   silence_.call_at(loop_.now() + kLookForSilence);
   open();
   if (connected() && exchange_) begin();
 }
 
-void Connection::Impl::ready() {
+void Connection::ready() {
   if (!connected()) return connecting_ended(connect_error(socket_->fd.get()));
   if (!exchange_) return idle_ended();
   if (answer_came()) return;
   if (exchange_->wants_to_write()) write();
 }
 
-void Connection::Impl::time_came() {
+void Connection::time_came() {
   if (!socket_) return return_warm();
   if (!connected()) return connecting_failed("no answer in time");
   if (!exchange_) return idle_ended();
@@ -216,7 +212,7 @@ void Connection::Impl::time_came() {
 }
 
 /// An idle connection cannot block one that the server has answered before.
-void Connection::Impl::check_silence() {
+void Connection::check_silence() {
   if (!exchange_ || wait_.is_silent || (connected() && socket_->is_served)) return;
   loop::Instant silent_at = wait_.since + Server::kSilence;
   if (connected()) {
@@ -230,13 +226,13 @@ void Connection::Impl::check_silence() {
 }
 
 /// Updates the pace while the kernel's buffer is full.
-void Connection::Impl::look() {
+void Connection::look() {
   if (!exchange_ || !connected() || !exchange_->wants_to_write()) return;
   pace_->goes_on(socket_->fd.get(), loop_.now());
   look_.call_at(loop_.now() + LinkPace::kLook);
 }
 
-void Connection::Impl::begin() {
+void Connection::begin() {
   // The peer may have closed a kept connection, or a new one at once. No byte of this request was sent, so
   // NeverSent is true, and a retry on a new connection is safe.
   if (!is_quiet(socket_->fd.get()))
@@ -252,12 +248,12 @@ void Connection::Impl::begin() {
   write();
 }
 
-void Connection::Impl::begin_again() {
-  close();
+void Connection::begin_again() {
+  close_socket();
   connect();
 }
 
-void Connection::Impl::write() {
+void Connection::write() {
   const bool begins = exchange_->sent() == 0;
   if (!begins) pace_->goes_on(socket_->fd.get(), loop_.now());
   const int error = exchange_->write(socket_->fd.get());
@@ -267,7 +263,7 @@ void Connection::Impl::write() {
   if (!answer_came()) socket_->source.wait_for(kComing);
 }
 
-void Connection::Impl::began_to_leave() {
+void Connection::began_to_leave() {
   exchange_->began_to_leave(loop_.now());
   if (!exchange_->wants_to_write()) return;  // too short to measure the link
   pace_->begins(socket_->fd.get(), loop_.now());
@@ -275,7 +271,7 @@ void Connection::Impl::began_to_leave() {
 }
 
 /// Reads. True if that ended the exchange.
-bool Connection::Impl::answer_came() {
+bool Connection::answer_came() {
   switch (exchange_->read(socket_->fd.get())) {
     case Exchange::Answer::Waiting:
       if (exchange_->is_early()) listen_again();
@@ -290,22 +286,22 @@ bool Connection::Impl::answer_came() {
   return false;
 }
 
-void Connection::Impl::is_next() {
+void Connection::is_next() {
   if (!exchange_) return;
   exchange_->is_next(loop_.now());
   if (connected()) listen_again();
 }
 
-std::optional<Sent> Connection::Impl::has_arrived() const {
+std::optional<Sent> Connection::has_arrived() const {
   if (!exchange_ || !connected() || !exchange_->has_arrived(socket_->fd.get())) return {};
   return exchange_->left(transmission(socket_->fd.get()), loop_.now());
 }
 
-void Connection::Impl::listen_again() {
+void Connection::listen_again() {
   timer_.call_at(exchange_->next_listening(loop_.now()));
 }
 
-void Connection::Impl::answered() {
+void Connection::answered() {
   Answered answer = exchange_->take_answer();
   const Transmission seen = transmission(socket_->fd.get());
   answer.sent = exchange_->left(seen, loop_.now());
@@ -323,19 +319,19 @@ void Connection::Impl::answered() {
   deliver(std::move(answer));
 }
 
-void Connection::Impl::in_doubt(InDoubt doubt) {
+void Connection::in_doubt(InDoubt doubt) {
   drop();
   deliver(std::move(doubt));
 }
 
-void Connection::Impl::never_sent(const std::string& reason) {
+void Connection::never_sent(const std::string& reason) {
   std::string why = exchange_->sentence(reason);
   drop();
   deliver(NeverSent{std::move(why)});
 }
 
-/// Ends the exchange. Calls `done` last, because it may send the next request or destroy this object.
-void Connection::Impl::deliver(Outcome outcome) {
+/// Ends the exchange. Calls `done` last, because it may send the next request.
+void Connection::deliver(Outcome outcome) {
   sent_ = exchange_->sent();
   exchange_.reset();
   if (!within_send_) return call_done(std::move(outcome));
@@ -343,73 +339,17 @@ void Connection::Impl::deliver(Outcome outcome) {
   tell_.call_at(loop_.now());
 }
 
-void Connection::Impl::tell() {
+void Connection::tell() {
   if (auto outcome = std::exchange(outcome_, std::nullopt)) call_done(std::move(*outcome));
 }
 
-void Connection::Impl::call_done(Outcome outcome) {
+void Connection::call_done(Outcome outcome) {
   if (const auto done = std::exchange(done_, nullptr)) done(std::move(outcome));
-}
-
-Connection::Connection(loop::Loop& loop, Endpoint endpoint, icd::BearerToken token,
-                       std::shared_ptr<Server> server) {
-  if (!server) server = std::make_shared<Server>(loop);
-  auto pace = std::make_shared<LinkPace>(endpoint.bytes_per_second);
-  impl_ =
-      std::make_shared<Impl>(loop, std::move(endpoint), std::move(token), std::move(server), std::move(pace));
-}
-Connection::Connection(std::shared_ptr<Impl> impl) : impl_(std::move(impl)) {}
-std::unique_ptr<Connection> Connection::another() const {
-  return std::unique_ptr<Connection>(new Connection(impl_->another()));
-}
-Connection::~Connection() {
-  impl_->abandon();
-}
-
-void Connection::keep_warm() {
-  impl_->keep_warm();
-}
-void Connection::hurry() {
-  impl_->hurry();
-}
-void Connection::open() {
-  impl_->open();
-}
-void Connection::close() {
-  icd::require(!busy());
-  impl_->end();
-}
-void Connection::give_up() {
-  impl_->give_up();
-}
-void Connection::is_next() {
-  impl_->is_next();
-}
-std::optional<Sent> Connection::has_arrived() const {
-  return impl_->has_arrived();
-}
-void Connection::send(Request request, std::function<void(Outcome)> done) {
-  impl_->send(std::move(request), std::move(done));
-}
-bool Connection::busy() const {
-  return impl_->busy();
-}
-bool Connection::connected() const {
-  return impl_->connected();
-}
-const std::string& Connection::trouble() const {
-  return impl_->trouble();
-}
-std::size_t Connection::sent_bytes() const {
-  return impl_->sent_bytes();
-}
-std::uint64_t Connection::delivers() const {
-  return impl_->delivers();
 }
 
 Server::Server(loop::Loop& loop) : loop_(loop), wake_(loop.timer([this] { wake(); })) {}
 
-void Server::remove(Member& one) {
+void Server::remove(Connection& one) {
   std::erase(connections_, &one);
 }
 
@@ -419,7 +359,7 @@ void Server::remove(Turn& turn) {
 
 bool Server::is_free() const {
   return !is_serial_ ||
-         std::ranges::none_of(connections_, [](const Member* each) { return each->socket_.has_value(); });
+         std::ranges::none_of(connections_, [](const Connection* each) { return each->socket_.has_value(); });
 }
 
 bool Server::claim(Turn& turn, bool goes_first) {
@@ -454,31 +394,31 @@ void Server::on_silence() {
 }
 
 void Server::close_idle() {
-  for (Member* const each : connections_) {
+  for (Connection* const each : connections_) {
     if (!each->socket_ || each->exchange_) continue;
     suspect(*each);
-    each->close();
+    each->close_socket();
   }
 }
 
 /// The connection ends without a request. It may have blocked the silent ones.
-void Server::suspect(const Member& closed) {
+void Server::suspect(const Connection& closed) {
   if (!closed.connected() || closed.socket_->is_passed) return;
   const loop::Instant answer_by = loop_.now() + (closed.socket_->is_served ? kSilence : kAtOnce);
-  for (Member* const each : connections_) {
+  for (Connection* const each : connections_) {
     if (each->is_silent() && !each->wait_.answer_by) each->wait_.answer_by = answer_by;
   }
 }
 
-bool Server::on_answer(Member& one, bool can_stay) {
+bool Server::on_answer(Connection& one, bool can_stay) {
   const loop::Instant now = loop_.now();
-  for (Member* const each : connections_) {
+  for (Connection* const each : connections_) {
     if (each == &one || !each->connected() || !is_quiet(each->socket_->fd.get())) continue;
     if (each->socket_->idle_since >= one.wait_.since) continue;
     each->socket_->is_passed = true;
     helped_ = 0;
   }
-  const Member::Wait wait = std::exchange(one.wait_, {});
+  const Connection::Wait wait = std::exchange(one.wait_, {});
   const bool is_helped = wait.answer_by && now <= *wait.answer_by && wait.since >= helped_at_;
   if (is_helped) helped_at_ = now;
   if (is_helped && ++helped_ == 2) begin_serial();
@@ -486,7 +426,8 @@ bool Server::on_answer(Member& one, bool can_stay) {
   one.socket_->idle_since = now;
   one.socket_->is_served = true;
   one.socket_->is_passed = false;
-  if (std::ranges::none_of(connections_, [](const Member* each) { return each->is_silent(); })) return true;
+  if (std::ranges::none_of(connections_, [](const Connection* each) { return each->is_silent(); }))
+    return true;
   suspect(one);
   return false;
 }
@@ -510,7 +451,7 @@ void Server::wake() {
   if (is_serial_) {
     wake_.call_at(try_again_at_);
   } else {
-    for (Member* const each : connections_) each->return_warm();
+    for (Connection* const each : connections_) each->return_warm();
   }
   while (is_free()) {
     Turn* const next = next_turn();

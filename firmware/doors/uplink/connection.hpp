@@ -1,5 +1,8 @@
 #pragma once
 
+#include <sys/epoll.h>
+
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -8,78 +11,67 @@
 #include <optional>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "icd/bearer_token.hpp"
-#include "icd/chunked_bytes.hpp"
+#include "loop/file_descriptor.hpp"
 #include "loop/loop.hpp"
+#include "pace/delivery.hpp"
+#include "uplink/exchange.hpp"
+#include "uplink/socket.hpp"
 
 namespace adit::uplink {
 
-/// The address of an endpoint, and the options of a connection to it.
-struct Endpoint {
-  std::string address;  // IPv4 or IPv6, numeric
-  std::uint16_t port = 0;
-  std::string interface;               // SO_BINDTODEVICE; "": not bound
-  std::uint64_t bytes_per_second = 0;  // the highest rate; lower if the link delivers less; 0: not paced
-  std::chrono::milliseconds connect_within{3000};
+/// When to connect next. The pause between two attempts doubles while they fail.
+class ConnectAttempts {
+ public:
+  void begins(loop::Instant now) { began_ = now; }
+  void succeeded() {
+    trouble_.clear();
+    hurry();
+  }
+  /// Returns the time of the next attempt.
+  loop::Instant failed(std::string why) {
+    trouble_ = std::move(why);
+    return began_ + std::exchange(pause_, std::min(pause_ * 2, kLongestPause));
+  }
+  /// The link may be back: the next pause is short.
+  void hurry() { pause_ = kFirstPause; }
+  loop::Instant next() const { return began_ + pause_; }
+  /// Why the last attempt failed, or "".
+  const std::string& trouble() const { return trouble_; }
+
+ private:
+  static constexpr std::chrono::seconds kFirstPause{1}, kLongestPause{5};
+
+  loop::Instant began_;  // the last attempt
+  std::chrono::seconds pause_ = kFirstPause;
+  std::string trouble_;
 };
 
-struct Request {
-  std::string method;        // "GET", "POST"
-  std::string target;        // "/map/update"
-  std::string content_type;  // "" without a body
-  icd::ChunkedBytes body;
-  /// How long the peer's TCP may acknowledge no more bytes of the request, and then how long the whole answer
-  /// may take. A part of an answer does not extend this time.
-  std::chrono::milliseconds answer_within{10000};
-  std::size_t longest_answer = kLongestAnswer;  // bytes of its body; the outcome of a longer one is InDoubt
-  /// The last kHeldBack bytes of the body are not sent before this time. The peer's silence does not count
-  /// until then.
-  loop::Instant last_byte_not_before{};
-  /// The peer has not yet answered another request on another connection, and may not read this one before.
-  /// Its silence does not count until Connection::is_next().
-  bool goes_ahead = false;
+/// Keeps the pace of a connection's socket at the rate that the link delivers.
+class LinkPace {
+ public:
+  /// `most`: bytes per second; 0: not paced.
+  explicit LinkPace(std::uint64_t most) {
+    if (most > 0) delivery_.emplace(static_cast<double>(most));
+  }
 
-  static constexpr std::size_t kLongestAnswer = 64u << 10;
-  static constexpr std::size_t kHeldBack = 1024;
-};
+  /// Call this when the first bytes of a request have just been written to `fd`.
+  void begins(int fd, loop::Instant now);
+  /// Call this before more bytes are written, and every kLook.
+  void goes_on(int fd, loop::Instant now);
+  static constexpr loop::Duration kLook = pace::Delivery::kInterval / 2;
 
-/// When the first and the last byte of a request left, to about 10 ms, rather too late than too early. If
-/// bytes were sent twice or not all were sent, `last` is the time of the answer. If bytes were sent twice, so
-/// is `first`, because the first byte may be one of them.
-struct Sent {
-  loop::Instant first{}, last{};
-};
+  /// Bytes per second that the link delivers, as measured; 0: not paced.
+  std::uint64_t delivers() const;
 
-/// A whole HTTP answer arrived, with any body. If its status is 2xx, the peer's TCP has acknowledged the
-/// whole request.
-struct Answered {
-  int status = 0;
-  std::string content_type;
-  std::string body;
-  std::optional<std::chrono::seconds> retry_after;    // from now, also if the field is a date
-  std::optional<std::chrono::sys_seconds> date = {};  // by the peer's clock
-  std::optional<bool> wants_slash = {};               // redirects_to_slash()
-  Sent sent = {};
-  loop::Instant began = {};  // when the first byte was given to the kernel
+ private:
+  void tell(int fd);
 
-  /// The server redirects to the other form of the path and has not processed the request (RFC 9110 15.4.8,
-  /// 15.4.9).
-  bool is_unprocessed() const { return wants_slash && (status == 307 || status == 308); }
+  std::optional<pace::Delivery> delivery_;
+  std::uint64_t told_ = 0;  // the pace that the socket has
 };
-/// No byte of the request was given to the kernel. A retry is safe.
-struct NeverSent {
-  std::string why;  // "connecting to 10.100.1.200:8000: Connection refused"
-};
-/// Bytes may have left, and no whole answer arrived, or a 2xx arrived and the rest of the request was not
-/// acknowledged. The result of the request is unknown.
-struct InDoubt {
-  std::string why;
-  int too_long_status = 0;  // the status of an answer that was too long; else 0
-};
-using Outcome = std::variant<Answered, NeverSent, InDoubt>;
 
 class Server;
 
@@ -119,26 +111,108 @@ class Connection {
   /// Sends a request. Requires !busy(). `done` is called once, from the loop and never within send(). It may
   /// send the next request and may destroy this connection. The destructor does not call it.
   void send(Request request, std::function<void(Outcome)> done);
-  bool busy() const;
+  bool busy() const { return done_ != nullptr; }
   /// The earlier request on the other connection has ended. From now on the peer's silence counts.
   void is_next();
   /// When the request in flight left; nullopt until the peer's TCP has acknowledged all of it.
   std::optional<Sent> has_arrived() const;
-  bool connected() const;
+  bool connected() const { return socket_ && socket_->is_open; }
   /// Why the last attempt to connect failed, or "".
-  const std::string& trouble() const;
+  const std::string& trouble() const { return attempts_.trouble(); }
 
   /// Bytes of the present or last request, with its head, that the kernel has accepted.
-  std::size_t sent_bytes() const;
+  std::size_t sent_bytes() const { return exchange_ ? exchange_->sent() : sent_; }
   /// Bytes per second that the link delivered during the last requests, at most Endpoint::bytes_per_second; 0
   /// if it is not paced.
-  std::uint64_t delivers() const;
+  std::uint64_t delivers() const { return pace_->delivers(); }
 
  private:
   friend class Server;
-  class Impl;
-  explicit Connection(std::shared_ptr<Impl> impl);
-  std::shared_ptr<Impl> impl_;
+
+  static constexpr std::chrono::milliseconds kLookForSilence{200};
+  static constexpr std::uint32_t kComing = EPOLLIN | EPOLLRDHUP;
+
+  /// A socket that is connecting or open.
+  struct Socket {
+    loop::FileDescriptor fd;
+    loop::Source source = {};  // of fd; destroyed before it
+    bool is_open = false;
+    bool is_fresh = false;         // connected for the request in flight
+    std::uint64_t sent_twice = 0;  // Transmission::sent_twice while it is idle
+    loop::Instant idle_since{};    // when it opened, or the last answer after which it stayed open
+    bool is_served = false;        // it stayed open after an answer
+    bool is_passed = false;        // the server has answered on another connection since
+  };
+
+  /// Of the request in flight.
+  struct Wait {
+    loop::Instant since{};
+    bool is_silent = false;                       // no answer for Server::kSilence on a new connection
+    std::optional<loop::Instant> answer_by = {};  // an answer until then shows that it was blocked
+  };
+
+  Connection(loop::Loop& loop, Endpoint endpoint, icd::BearerToken token, std::shared_ptr<Server> server,
+             std::shared_ptr<LinkPace> pace);
+
+  // `done` may destroy this object. So a function that may call it does so last.
+
+  // Callbacks of the socket and the timers.
+  void ready();
+  void time_came();
+  void look();
+  void check_silence();
+
+  // Connecting and idling.
+  void connect();
+  void connecting_ended(int error);
+  void connecting_failed(const std::string& why);
+  void rest();
+  void idle_ended();
+  void drop();
+  void close_socket();
+  bool stays_warm() const;
+
+  // For the server.
+  bool is_silent() const { return exchange_ && wait_.is_silent; }
+  void return_warm();
+
+  // A request and its answer.
+  void begin_sending();
+  void begin();
+  void begin_again();
+  void write();
+  void began_to_leave();
+  bool answer_came();
+  void listen_again();
+  void answered();
+  void in_doubt(InDoubt doubt);
+  void never_sent(const std::string& reason);
+  void deliver(Outcome outcome);
+  void tell();
+  void call_done(Outcome outcome);
+
+  loop::Loop& loop_;
+  const Endpoint endpoint_;
+  const icd::BearerToken token_;
+
+  std::optional<Socket> socket_;  // none: closed
+  loop::Source timer_;            // the end of a pause, connecting, idling or waiting for the peer
+  bool warm_ = false;
+  ConnectAttempts attempts_;
+
+  std::unique_ptr<Exchange> exchange_;
+  std::function<void(Outcome)> done_;
+  bool within_send_ = false;
+  std::optional<Outcome> outcome_;  // known within send(); delivered after it
+  loop::Source tell_;
+  std::size_t sent_ = 0;
+
+  const std::shared_ptr<Server> server_;
+  Wait wait_;
+  loop::Source silence_;  // while the request may become silent
+
+  const std::shared_ptr<LinkPace> pace_;
+  loop::Source look_;  // while bytes wait to be written
 };
 
 /// The server at one address and port, and the connections to it. A serial server serves one connection at a
@@ -179,27 +253,26 @@ class Server : public std::enable_shared_from_this<Server> {
 
  private:
   friend class Connection;
-  using Member = Connection::Impl;
 
-  void add(Member& one) { connections_.push_back(&one); }
-  void remove(Member& one);
+  void add(Connection& one) { connections_.push_back(&one); }
+  void remove(Connection& one);
 
   /// True if connections may be open without a request.
   bool keeps_warm() const { return !is_serial_ && loop_.now() >= cleared_until_; }
   /// A request on a new connection has had no answer for kSilence.
   void on_silence();
   /// `can_stay`: by HTTP. Returns true if the connection stays open.
-  bool on_answer(Member& one, bool can_stay);
+  bool on_answer(Connection& one, bool can_stay);
   void on_close();
 
   void close_idle();
-  void suspect(const Member& closed);
+  void suspect(const Connection& closed);
   void begin_serial();
   void wake();
   Turn* next_turn() const;
 
   loop::Loop& loop_;
-  std::vector<Member*> connections_;
+  std::vector<Connection*> connections_;
   std::vector<Turn*> turns_;
   bool is_serial_ = false;
   int helped_ = 0;             // requests in a row that were answered after idle connections were closed

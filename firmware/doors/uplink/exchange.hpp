@@ -7,12 +7,69 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <variant>
 
+#include "icd/bearer_token.hpp"
+#include "icd/chunked_bytes.hpp"
 #include "loop/loop.hpp"
-#include "uplink/connection.hpp"
 #include "uplink/socket.hpp"
 
 namespace adit::uplink {
+
+struct Request {
+  std::string method;        // "GET", "POST"
+  std::string target;        // "/map/update"
+  std::string content_type;  // "" without a body
+  icd::ChunkedBytes body;
+  /// How long the peer's TCP may acknowledge no more bytes of the request, and then how long the whole answer
+  /// may take. A part of an answer does not extend this time.
+  std::chrono::milliseconds answer_within{10000};
+  std::size_t longest_answer = kLongestAnswer;  // bytes of its body; the outcome of a longer one is InDoubt
+  /// The last kHeldBack bytes of the body are not sent before this time. The peer's silence does not count
+  /// until then.
+  loop::Instant last_byte_not_before{};
+  /// The peer has not yet answered another request on another connection, and may not read this one before.
+  /// Its silence does not count until Connection::is_next().
+  bool goes_ahead = false;
+
+  static constexpr std::size_t kLongestAnswer = 64u << 10;
+  static constexpr std::size_t kHeldBack = 1024;
+};
+
+/// When the first and the last byte of a request left, to about 10 ms, rather too late than too early. If
+/// bytes were sent twice or not all were sent, `last` is the time of the answer. If bytes were sent twice, so
+/// is `first`, because the first byte may be one of them.
+struct Sent {
+  loop::Instant first{}, last{};
+};
+
+/// A whole HTTP answer arrived, with any body. If its status is 2xx, the peer's TCP has acknowledged the
+/// whole request.
+struct Answered {
+  int status = 0;
+  std::string content_type;
+  std::string body;
+  std::optional<std::chrono::seconds> retry_after;    // from now, also if the field is a date
+  std::optional<std::chrono::sys_seconds> date = {};  // by the peer's clock
+  std::optional<bool> wants_slash = {};               // redirects_to_slash()
+  Sent sent = {};
+  loop::Instant began = {};  // when the first byte was given to the kernel
+
+  /// The server redirects to the other form of the path and has not processed the request (RFC 9110 15.4.8,
+  /// 15.4.9).
+  bool is_unprocessed() const { return wants_slash && (status == 307 || status == 308); }
+};
+/// No byte of the request was given to the kernel. A retry is safe.
+struct NeverSent {
+  std::string why;  // "connecting to 10.100.1.200:8000: Connection refused"
+};
+/// Bytes may have left, and no whole answer arrived, or a 2xx arrived and the rest of the request was not
+/// acknowledged. The result of the request is unknown.
+struct InDoubt {
+  std::string why;
+  int too_long_status = 0;  // the status of an answer that was too long; else 0
+};
+using Outcome = std::variant<Answered, NeverSent, InDoubt>;
 
 /// Parses "Sun, 06 Nov 1994 08:49:37 GMT" (IMF-fixdate, RFC 9110 5.6.7). nullopt if `text` is no such date.
 /// Does not check the name of the day.

@@ -11,9 +11,17 @@
 
 #include "loop/file_descriptor.hpp"
 #include "loop/loop.hpp"
-#include "uplink/connection.hpp"
 
 namespace adit::uplink {
+
+/// The address of an endpoint, and the options of a connection to it.
+struct Endpoint {
+  std::string address;  // IPv4 or IPv6, numeric
+  std::uint16_t port = 0;
+  std::string interface;               // SO_BINDTODEVICE; "": not bound
+  std::uint64_t bytes_per_second = 0;  // the highest rate; lower if the link delivers less; 0: not paced
+  std::chrono::milliseconds connect_within{3000};
+};
 
 /// "10.100.1.200:8000" or "[fd00::1]:8000", for the Host header (RFC 9110 7.2) and messages.
 std::string authority_of(const Endpoint& endpoint);

@@ -8,7 +8,7 @@
 #include "loop/loop.hpp"
 #include "pack/pack.hpp"
 #include "queues/clouds.hpp"
-#include "uplink/connection.hpp"
+#include "uplink/exchange.hpp"
 
 namespace adit::forward {
 

@@ -10,7 +10,7 @@
 #include "journal/journal.hpp"
 #include "pace/rate_limit.hpp"
 #include "settings/settings.hpp"
-#include "uplink/connection.hpp"
+#include "uplink/exchange.hpp"
 
 namespace adit::forward {
 

@@ -11,7 +11,7 @@
 
 #include "loop/simulated_time.hpp"
 #include "panel/messages.hpp"
-#include "panel/remote.hpp"
+#include "panel/held.hpp"
 #include "panel/watched_lines.hpp"
 #include "panel/wire.hpp"
 

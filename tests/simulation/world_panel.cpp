@@ -2,7 +2,7 @@
 #include <optional>
 
 #include "panel/lines.hpp"
-#include "panel/remote.hpp"
+#include "panel/held.hpp"
 #include "simulation/world.hpp"
 
 namespace adit::panel {

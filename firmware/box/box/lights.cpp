@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "host/log.hpp"
-#include "panel/remote.hpp"
+#include "panel/held.hpp"
 
 namespace adit::box {
 

@@ -13,17 +13,9 @@ namespace adit::panel {
 namespace {
 
 const std::string& line_of(const settings::Panel& settings, Light light) {
-  switch (light) {
-    case Light::Health:
-      return settings.health;
-    case Light::Scoring:
-      return settings.scoring;
-    case Light::Mapping:
-      return settings.mapping;
-    case Light::Attention:
-      break;
-  }
-  return settings.attention;
+  using settings::Panel;
+  constexpr std::array kLines = {&Panel::health, &Panel::scoring, &Panel::mapping, &Panel::attention};
+  return settings.*kLines[index_of(light)];
 }
 
 /// "line H (health) of chip gpiochip0"

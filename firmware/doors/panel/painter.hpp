@@ -21,7 +21,11 @@ class Painter {
   static constexpr Milliseconds kMended{5000};
 
   /// Null: no lines. The next show() sets the new lines.
-  void take(std::unique_ptr<Lines> lines);
+  void take(std::unique_ptr<Lines> lines) {
+    lines_ = std::move(lines);
+    tried_.reset();
+    trouble_.clear();
+  }
   const Lines* lines() const { return lines_.get(); }
 
   /// Sets the lights if they have changed or setting is due.
@@ -29,7 +33,18 @@ class Painter {
     if (tried_ != lit || now >= due_) set(lit, now);
   }
   /// Sets the lights in any case.
-  void set(const Lit& lit, Instant now);
+  void set(const Lit& lit, Instant now) {
+    if (!lines_) return;
+    tried_ = lit;
+    const auto done = lines_->set(lit);
+    due_ = now + (done ? kConfirm : kAgain);
+    if (!done) {
+      trouble_ = done.error();
+      well_since_ = due_;  // at the earliest
+    } else if (now - well_since_ >= kMended) {
+      trouble_.clear();
+    }
+  }
   /// When show() is due if the lights do not change; nullopt: there are no lines.
   std::optional<Instant> next() const { return lines_ ? std::optional(due_) : std::nullopt; }
 

@@ -19,6 +19,16 @@ constexpr Step kFlashSteps[] = {{true, 125ms}, {false, 1875ms}};
 constexpr Step kWinkSteps[] = {{true, 1750ms}, {false, 250ms}};
 constexpr Step kRushSteps[] = {{true, 50ms}, {false, 50ms}};
 
+struct PatternRow {
+  std::string_view name;
+  std::span<const Step> steps;
+};
+/// In the order of Pattern.
+constexpr PatternRow kPatternRows[] = {{"off", kOffSteps},     {"on", kOnSteps},       {"slow", kSlowSteps},
+                         {"fast", kFastSteps},   {"twice", kTwiceSteps}, {"flash", kFlashSteps},
+                         {"wink", kWinkSteps},   {"rush", kRushSteps},   {"digits", {}}};
+static_assert(std::size(kPatternRows) == kPatterns.size());
+
 }  // namespace
 
 std::string_view name_of(Light light) {
@@ -28,33 +38,11 @@ std::string_view name_of(Light light) {
 }
 
 std::string_view name_of(Pattern pattern) {
-  static constexpr std::array<std::string_view, kPatterns.size()> kNames = {
-      "off", "on", "slow", "fast", "twice", "flash", "wink", "rush", "digits"};
-  return kNames[static_cast<std::size_t>(pattern)];
+  return kPatternRows[static_cast<std::size_t>(pattern)].name;
 }
 
 std::span<const Step> steps_of(Pattern pattern) {
-  switch (pattern) {
-    case Pattern::Off:
-      return kOffSteps;
-    case Pattern::On:
-      return kOnSteps;
-    case Pattern::Slow:
-      return kSlowSteps;
-    case Pattern::Fast:
-      return kFastSteps;
-    case Pattern::Twice:
-      return kTwiceSteps;
-    case Pattern::Flash:
-      return kFlashSteps;
-    case Pattern::Wink:
-      return kWinkSteps;
-    case Pattern::Rush:
-      return kRushSteps;
-    case Pattern::Digits:
-      break;
-  }
-  return {};
+  return kPatternRows[static_cast<std::size_t>(pattern)].steps;
 }
 
 Milliseconds length_of(std::span<const Step> steps) {

@@ -1,4 +1,4 @@
-#include "panel/remote.hpp"
+#include "panel/held.hpp"
 
 #include <sys/epoll.h>
 #include <sys/socket.h>

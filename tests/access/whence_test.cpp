@@ -1,4 +1,4 @@
-#include "access/whence.hpp"
+#include "access/admission.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 // its body is coded.
 #include <algorithm>
 
-#include "access/whence.hpp"
+#include "access/admission.hpp"
 #include "codec/body_decoder.hpp"
 #include "icd/bearer_token.hpp"
 #include "intake/head.hpp"

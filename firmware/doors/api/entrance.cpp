@@ -1,6 +1,6 @@
 #include "api/entrance.hpp"
 
-#include "access/whence.hpp"
+#include "access/admission.hpp"
 #include "api/answers.hpp"
 #include "icd/try.hpp"
 

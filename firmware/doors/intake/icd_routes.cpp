@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "access/whence.hpp"
+#include "access/admission.hpp"
 #include "codec/body_decoder.hpp"
 #include "icd/sentence.hpp"
 #include "icd/text.hpp"

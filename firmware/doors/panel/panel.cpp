@@ -24,9 +24,9 @@ struct PatternRow {
   std::span<const Step> steps;
 };
 /// In the order of Pattern.
-constexpr PatternRow kPatternRows[] = {{"off", kOffSteps},     {"on", kOnSteps},       {"slow", kSlowSteps},
-                         {"fast", kFastSteps},   {"twice", kTwiceSteps}, {"flash", kFlashSteps},
-                         {"wink", kWinkSteps},   {"rush", kRushSteps},   {"digits", {}}};
+constexpr PatternRow kPatternRows[] = {{"off", kOffSteps},   {"on", kOnSteps},       {"slow", kSlowSteps},
+                                       {"fast", kFastSteps}, {"twice", kTwiceSteps}, {"flash", kFlashSteps},
+                                       {"wink", kWinkSteps}, {"rush", kRushSteps},   {"digits", {}}};
 static_assert(std::size(kPatternRows) == kPatterns.size());
 
 }  // namespace

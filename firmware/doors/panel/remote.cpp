@@ -1,5 +1,3 @@
-#include "panel/held.hpp"
-
 #include <sys/epoll.h>
 #include <sys/socket.h>
 
@@ -11,6 +9,7 @@
 #include <utility>
 
 #include "loop/file_descriptor.hpp"
+#include "panel/held.hpp"
 #include "panel/messages.hpp"
 
 namespace adit::panel {

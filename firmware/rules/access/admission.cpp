@@ -1,19 +1,72 @@
 #include "access/admission.hpp"
 
-#include "access/whence.hpp"
+#include <arpa/inet.h>
+
+#include <algorithm>
+#include <string>
+
 #include "icd/sentence.hpp"
+#include "icd/text.hpp"
 #include "icd/try.hpp"
 
 namespace adit::access {
 namespace {
 
 using icd::refuse;
+using icd::same_but_for_case;
+
+bool is_address(int family, std::string_view text) {
+  unsigned char bytes[sizeof(in6_addr)];
+  return !text.contains('\0') && inet_pton(family, std::string(text).c_str(), bytes) == 1;
+}
+
+/// "adit.local": one label, of letters, digits and hyphens (RFC 6762 3).
+bool is_multicast_name(std::string_view name) {
+  constexpr std::string_view kEnd = ".local";
+  if (name.size() <= kEnd.size() || !same_but_for_case(name.substr(name.size() - kEnd.size()), kEnd))
+    return false;
+  return std::ranges::all_of(name.substr(0, name.size() - kEnd.size()),
+                             [](char letter) { return icd::is_letter_or_digit(letter) || letter == '-'; });
+}
+
+bool is_port(std::string_view text) {
+  return text.empty() ||
+         (text.front() == ':' && text.size() <= 6 && std::ranges::all_of(text.substr(1), icd::is_digit));
+}
 
 bool only_reads(std::string_view method) {
   return method == "GET" || method == "HEAD";
 }
 
 }  // namespace
+
+bool names_this_box(std::string_view host) {
+  if (host.starts_with('[')) {
+    const auto end = host.find(']');
+    return end != std::string_view::npos && is_address(AF_INET6, host.substr(1, end - 1)) &&
+           is_port(host.substr(end + 1));
+  }
+  const std::string_view name = host.substr(0, host.find(':'));
+  if (!is_port(host.substr(name.size()))) return false;
+  return same_but_for_case(name, "localhost") || is_multicast_name(name) || is_address(AF_INET, name);
+}
+
+bool is_same_origin(std::string_view origin, std::string_view host) {
+  for (const std::string_view scheme : {"http://", "https://"}) {
+    if (same_but_for_case(origin.substr(0, scheme.size()), scheme))
+      return same_but_for_case(origin.substr(scheme.size()), host);
+  }
+  return false;
+}
+
+std::string_view cookie_in(std::string_view cookies, std::string_view name) {
+  while (!cookies.empty()) {
+    const std::string_view pair = icd::trimmed(icd::cut(cookies, ';'), " \t");
+    if (pair.starts_with(name) && pair.substr(name.size()).starts_with('='))
+      return pair.substr(name.size() + 1);
+  }
+  return {};
+}
 
 icd::Checked<void> check_whence(const Request& request) {
   if (!names_this_box(request.host)) {

@@ -1,9 +1,13 @@
 #pragma once
 
+#include <algorithm>
 #include <compare>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
+
+#include "icd/text.hpp"
 
 namespace adit::icd {
 
@@ -13,7 +17,12 @@ class RobotName {
   static constexpr std::size_t kLongest = 10;
 
   /// nullopt if `text` is no robot's name.
-  static std::optional<RobotName> parse(std::string_view text);
+  static std::optional<RobotName> parse(std::string_view text) {
+    const auto is_word_letter = [](char letter) { return is_letter_or_digit(letter) || letter == '_'; };
+    if (text.empty() || text.size() > kLongest || !std::ranges::all_of(text, is_word_letter))
+      return std::nullopt;
+    return RobotName(std::string(text));
+  }
 
   const std::string& text() const { return text_; }
   friend auto operator<=>(const RobotName&, const RobotName&) = default;

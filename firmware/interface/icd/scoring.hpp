@@ -8,6 +8,7 @@
 
 #include "icd/geometry.hpp"
 #include "icd/robot_name.hpp"
+#include "icd/text.hpp"
 
 namespace adit::icd {
 
@@ -17,7 +18,12 @@ inline constexpr auto kArtifactTypes = std::to_array<std::string_view>({
 });
 
 /// The ICD's spelling of a type, or "" if it is unknown.
-std::string_view artifact_type(std::string_view text);
+constexpr std::string_view artifact_type(std::string_view text) {
+  for (const std::string_view type : kArtifactTypes) {
+    if (same_but_for_case(type, text)) return type;
+  }
+  return {};
+}
 
 /// The body of POST /api/artifact_reports (ICD 5.2). `type` is as the sender wrote it.
 struct ArtifactReport {

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <iterator>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 namespace adit::icd {
 
@@ -18,13 +20,32 @@ enum class Uri : std::uint8_t {
 inline constexpr Uri kUris[] = {Uri::Status, Uri::ArtifactReports, Uri::MapUpdate, Uri::StateUpdate,
                                 Uri::MarkersUpdate};
 
-/// "/api/status", "/map/update", ... without a trailing slash.
-std::string_view path_of(Uri uri);
+struct Function {
+  std::string_view method, path;
+};
+/// In the order of Uri. No path has a trailing slash.
+inline constexpr Function kFunctions[] = {{"GET", "/api/status"},
+                                          {"POST", "/api/artifact_reports"},
+                                          {"POST", "/map/update"},
+                                          {"POST", "/state/update"},
+                                          {"POST", "/markers/update"}};
+static_assert(std::size(kFunctions) == std::size(kUris));
 
-/// "GET" for Status, "POST" for the others.
-std::string_view method_of(Uri uri);
+constexpr std::string_view path_of(Uri uri) {
+  return kFunctions[std::to_underlying(uri)].path;
+}
+
+constexpr std::string_view method_of(Uri uri) {
+  return kFunctions[std::to_underlying(uri)].method;
+}
 
 /// The function that a request's path names. Trailing slashes are ignored.
-std::optional<Uri> uri_of(std::string_view path);
+constexpr std::optional<Uri> uri_of(std::string_view path) {
+  while (path.ends_with('/')) path.remove_suffix(1);
+  for (const Uri uri : kUris) {
+    if (path == path_of(uri)) return uri;
+  }
+  return std::nullopt;
+}
 
 }  // namespace adit::icd

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "api/finer_map.hpp"
 #include "api/source.hpp"
 
 namespace adit::api {

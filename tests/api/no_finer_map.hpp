@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "api/finer_map.hpp"
+#include "api/source.hpp"
 
 namespace adit::api {
 

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "host/folder.hpp"
-#include "host/link_changes.hpp"
+#include "host/interfaces.hpp"
 #include "host/service.hpp"
 
 namespace adit::host {

@@ -1,5 +1,3 @@
-#include "host/link_changes.hpp"
-
 #include <gtest/gtest.h>
 #include <net/if.h>
 #include <netinet/in.h>
@@ -11,6 +9,8 @@
 #include <unistd.h>
 
 #include <cstring>
+
+#include "host/interfaces.hpp"
 
 namespace adit::host {
 namespace {

@@ -1,6 +1,6 @@
-// Implements host/link_changes.hpp, host/log.hpp, host/process.hpp, host/random.hpp and host/service.hpp's
+// Implements host/interfaces.hpp, host/log.hpp, host/process.hpp, host/random.hpp and host/service.hpp's
 // carrier() in the simulated world.
-#include "host/link_changes.hpp"
+#include "host/interfaces.hpp"
 #include "host/log.hpp"
 #include "host/log_line.hpp"
 #include "host/process.hpp"

@@ -17,7 +17,6 @@
 #include "box/build.hpp"
 #include "box/version.hpp"
 #include "host/interfaces.hpp"
-#include "host/link_changes.hpp"
 #include "host/log.hpp"
 #include "host/process.hpp"
 #include "host/root_program.hpp"

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "api/finer_map.hpp"
 #include "api/kept_runs.hpp"
 #include "api/map_json.hpp"
 #include "api/route.hpp"

@@ -1,5 +1,3 @@
-#include "host/link_changes.hpp"
-
 #include <linux/netlink.h>
 #include <linux/rtnetlink.h>
 #include <sys/socket.h>

@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include "api/finer_map.hpp"
+#include "api/source.hpp"
 #include "icd/grid_bounds.hpp"
 #include "icd/mapping.hpp"
 #include "loop/loop.hpp"

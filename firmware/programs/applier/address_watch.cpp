@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "host/interfaces.hpp"
-#include "host/link_changes.hpp"
 #include "host/log.hpp"
 #include "host/service.hpp"
 #include "icd/try.hpp"

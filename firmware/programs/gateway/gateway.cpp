@@ -10,7 +10,6 @@
 #include "forward/clocks.hpp"
 #include "host/files.hpp"
 #include "host/interfaces.hpp"
-#include "host/link_changes.hpp"
 #include "host/log.hpp"
 #include "host/systemd.hpp"
 #include "icd/sentence.hpp"

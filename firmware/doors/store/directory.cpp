@@ -24,20 +24,9 @@ namespace adit::store {
 namespace {
 
 Error::Cause cause_of(int number) {
-  switch (number) {
-    case ENOSPC:
-    case EDQUOT:
-    case EFBIG:
-      return Error::Cause::Full;
-    case EROFS:
-    case EACCES:
-    case EPERM:
-      return Error::Cause::NoWrite;
-    case EIO:
-      return Error::Cause::Failing;
-    default:
-      return Error::Cause::Other;
-  }
+  if (number == ENOSPC || number == EDQUOT || number == EFBIG) return Error::Cause::Full;
+  if (number == EROFS || number == EACCES || number == EPERM) return Error::Cause::NoWrite;
+  return number == EIO ? Error::Cause::Failing : Error::Cause::Other;
 }
 
 }  // namespace

@@ -75,22 +75,11 @@ dispatch::ReportRules rules_of(const settings::Reports& reports) {
           .undo = reports.undo};
 }
 
-dispatch::Reports::Outcome carry_out(dispatch::Reports& reports, std::int64_t number, api::Action action,
-                                     dispatch::Time time) {
-  switch (action) {
-    case api::Action::Send:
-      return reports.send(number, time);
-    case api::Action::Hold:
-      return reports.hold(number, time);
-    case api::Action::Withdraw:
-      return reports.withdraw(number, time);
-    case api::Action::Settle:
-      return reports.settle(number, time);
-    case api::Action::Resubmit:
-      return reports.resubmit(number, time);
-  }
-  std::unreachable();
-}
+using dispatch::Reports;
+
+/// In the order of api::Action.
+constexpr std::array kDecisions = {&Reports::send, &Reports::hold, &Reports::withdraw, &Reports::settle,
+                                   &Reports::resubmit};
 
 /// Without a recent status.
 intake::Answer no_status(const std::string& why) {
@@ -158,11 +147,9 @@ void Scoring::endpoint_turned() {
 
 void Scoring::take(const icd::ArtifactReport& report, const intake::Sender& sender,
                    std::shared_ptr<intake::Responder> responder) {
-  if (stopping_) {
-    responder->answer(intake::error_answer(
+  if (stopping_)
+    return responder->answer(intake::error_answer(
         icd::Status::ServiceUnavailable, "the box is stopping; the report was not accepted, send it again"));
-    return;
-  }
   take({.report = report, .sender = sender.address, .resubmit = sender.resubmits},
        output_.add(std::move(responder)));
 }
@@ -179,14 +166,9 @@ void Scoring::take(const dispatch::PostedReport& posted, dispatch::ClientId clie
 }
 
 void Scoring::status(std::shared_ptr<intake::Responder> responder) {
-  if (stopping_) {
-    responder->answer(intake::error_answer(icd::Status::ServiceUnavailable, "the box is stopping"));
-    return;
-  }
-  if (!channel_.has_token()) {
-    responder->answer(intake::error_answer(icd::Status::ServiceUnavailable, channel_.trouble()));
-    return;
-  }
+  if (stopping_ || !channel_.has_token())
+    return responder->answer(intake::error_answer(icd::Status::ServiceUnavailable,
+                                                  stopping_ ? "the box is stopping" : channel_.trouble()));
   const loop::Instant now = loop_.now();
   const auto known =
       status_cache_.is_fresh(now) || pace_.has_one_limit() ? status_cache_.answer(now) : std::nullopt;
@@ -433,7 +415,8 @@ intake::Answer Scoring::known_or(intake::Answer failure) const {
 }
 
 dispatch::Reports::Outcome Scoring::decide(std::int64_t number, api::Action action) noexcept {
-  const dispatch::Reports::Outcome outcome = carry_out(*reports_, number, action, time());
+  const auto decide = kDecisions.at(static_cast<std::size_t>(action));
+  const Reports::Outcome outcome = (*reports_.*decide)(number, time());
   counts_.changed();
   pump();
   return outcome;

@@ -1,6 +1,8 @@
 // The CBOR splitter's strings, and the map's data, which it splits off.
 #include <algorithm>
+#include <array>
 #include <limits>
+#include <utility>
 
 #include "codec/cbor.hpp"
 #include "codec/cbor_splitter.hpp"
@@ -12,22 +14,12 @@ namespace adit::codec {
 namespace {
 
 std::string_view element_kind(const CborHead& head) {
-  switch (head.major()) {
-    case Major::Bytes:
-      return "a byte string";
-    case Major::Text:
-      return "a string";
-    case Major::Array:
-      return "an array";
-    case Major::Map:
-      return "an object";
-    case Major::Tag:
-      return "a value under a CBOR tag";
-    default:
-      break;
-  }
+  constexpr std::array<std::string_view, 8> kKinds = {
+      // in the order of Major
+      "a whole number", "a whole number",           "a byte string", "a string", "an array",
+      "an object",      "a value under a CBOR tag", "null"};
   const bool boolean = head.major() == Major::Simple && (head.info() == 20 || head.info() == 21);
-  return boolean ? "true or false" : "null";
+  return boolean ? "true or false" : kKinds[std::to_underlying(head.major())];
 }
 
 std::span<const std::uint8_t> bytes_of(std::string_view run) {

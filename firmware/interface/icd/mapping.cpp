@@ -1,27 +1,17 @@
 #include "icd/mapping.hpp"
 
 #include <algorithm>
+#include <array>
+#include <utility>
 
 #include "icd/require.hpp"
 
 namespace adit::icd {
 
 std::size_t size_of(Datatype datatype) {
-  switch (datatype) {
-    case Datatype::Int8:
-    case Datatype::Uint8:
-      return 1;
-    case Datatype::Int16:
-    case Datatype::Uint16:
-      return 2;
-    case Datatype::Int32:
-    case Datatype::Uint32:
-    case Datatype::Float32:
-      return 4;
-    case Datatype::Float64:
-      return 8;
-  }
-  return 0;
+  constexpr std::array<std::size_t, 9> kBytes = {0, 1, 1, 2, 2, 4, 4, 4, 8};  // by the ICD's number
+  const std::size_t number = std::to_underlying(datatype);
+  return number < kBytes.size() ? kBytes[number] : 0;
 }
 
 const FieldSchema& field_of(const PointCloud2& cloud, std::string_view name) {

@@ -1,9 +1,11 @@
 #include "icd/sentence.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cstdint>
 #include <ctime>
+#include <iterator>
 
 #include "icd/text.hpp"
 
@@ -11,6 +13,13 @@ namespace adit::icd {
 namespace {
 
 constexpr std::size_t kMostQuoted = 40;
+
+struct Escape {
+  char character;
+  std::string_view text;
+};
+constexpr Escape kInHtml[] = {{'&', "&amp;"},  {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"},
+                              {'\'', "&#39;"}, {'\n', " "},   {'\t', " "}};
 
 }  // namespace
 
@@ -40,28 +49,11 @@ std::string in_html(std::string_view text) {
   std::string all;
   all.reserve(text.size());
   for (const char c : text) {
-    switch (c) {
-      case '&':
-        all += "&amp;";
-        break;
-      case '<':
-        all += "&lt;";
-        break;
-      case '>':
-        all += "&gt;";
-        break;
-      case '"':
-        all += "&quot;";
-        break;
-      case '\'':
-        all += "&#39;";
-        break;
-      case '\n':
-      case '\t':
-        all += ' ';
-        break;
-      default:
-        all += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? "\uFFFD" : std::string(1, c);
+    const auto* const escape = std::ranges::find(kInHtml, c, &Escape::character);
+    if (escape != std::end(kInHtml)) {
+      all += escape->text;
+    } else {
+      all += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? "\uFFFD" : std::string(1, c);
     }
   }
   return all;

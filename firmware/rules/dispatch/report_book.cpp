@@ -1,6 +1,7 @@
 #include "dispatch/report_book.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "dispatch/report.hpp"
@@ -11,19 +12,10 @@ namespace {
 /// The Command Post or the network has acted, so a failed write cannot undo it. After a restart the ledger
 /// has the state already.
 bool has_happened(ReportEvent event) {
-  switch (event) {
-    case ReportEvent::Recorded:
-    case ReportEvent::Rejected:
-    case ReportEvent::Throttled:
-    case ReportEvent::Barred:
-    case ReportEvent::Redirected:
-    case ReportEvent::NeverLeft:
-    case ReportEvent::Lost:
-    case ReportEvent::Restarted:
-      return true;
-    default:
-      return false;
-  }
+  using enum ReportEvent;
+  constexpr ReportEvent kHappened[] = {Recorded,   Rejected,  Throttled, Barred,
+                                       Redirected, NeverLeft, Lost,      Restarted};
+  return std::ranges::find(kHappened, event) != std::end(kHappened);
 }
 
 /// After a power cut the run's status would show it.

@@ -73,10 +73,7 @@ void HeadChecker::line(std::string_view so_far, std::string_view line) {
 void HeadChecker::request_line(std::string_view so_far, std::string_view line) {
   request_line_came_ = true;
   const auto first = line.find(' '), last = line.rfind(' ');
-  if (first == std::string_view::npos || first == last) {
-    refuse(kRequestLine);
-    return;
-  }
+  if (first == std::string_view::npos || first == last) return refuse(kRequestLine);
   const std::string_view method = line.substr(0, first);
   const std::string_view asked = line.substr(first + 1, last - first - 1);
   const std::string_view version = line.substr(last + 1);
@@ -108,10 +105,7 @@ void HeadChecker::target(std::string_view so_far, std::string_view method, std::
 
 void HeadChecker::field(std::string_view so_far, std::string_view line) {
   const auto field = parse_field_line(line);
-  if (!field) {
-    refuse(field.error());
-    return;
-  }
+  if (!field) return refuse(field.error());
   count(1);
   if (icd::same_but_for_case(field->name, "Host")) {
     host(so_far, field->value);
@@ -156,10 +150,7 @@ void HeadChecker::host(std::string_view so_far, std::string_view value) {
 
 /// RFC 9110 8.6, RFC 9112 6.3
 void HeadChecker::content_length(std::string_view value) {
-  if (std::exchange(has_length_, true)) {
-    refuse("Content-Length: given twice");
-    return;
-  }
+  if (std::exchange(has_length_, true)) return refuse("Content-Length: given twice");
   const auto length = icd::number_in<std::uint64_t>(value);
   if (!length || *length > static_cast<std::uint64_t>(INT64_MAX))
     return refuse("Content-Length: expected a whole number");

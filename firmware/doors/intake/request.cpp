@@ -44,10 +44,7 @@ std::size_t ChunkReader::take_line(std::string_view bytes) {
 }
 
 void ChunkReader::whole_line() {
-  if (!line_.ends_with('\r')) {
-    refuse("chunked body: each line must end in CRLF");
-    return;
-  }
+  if (!line_.ends_with('\r')) return refuse("chunked body: each line must end in CRLF");
   line_.pop_back();
   if (in_ == In::AfterData) {
     in_ = In::Size;
@@ -343,10 +340,7 @@ Next Request::hand_over() {
 }
 
 void Request::late() {
-  if (stage_ == Stage::Body && answer_) {
-    refuse(*answer_);
-    return;
-  }
+  if (stage_ == Stage::Body && answer_) return refuse(*answer_);
   if (stage_ != Stage::Refusing) client_->engine().tell(Ended::Slow, client_->peer());
   if (stage_ == Stage::Body) {
     refuse(error_answer(icd::Status::RequestTimeout, "the body of the request took too long"));

@@ -94,9 +94,9 @@ constexpr std::size_t kBlock = 16 * 1024;
 
 }  // namespace
 
-bool ReplyStream::append(std::string_view bytes) {
+bool ReplyStream::send(std::string_view bytes) {
   if (client_ == nullptr || client_->hung_up()) return false;
-  if (waiting() + bytes.size() > Stream::kLag) {
+  if (waiting() + bytes.size() > kLag) {
     client_->cut();
     detach();
     return false;
@@ -108,12 +108,12 @@ bool ReplyStream::append(std::string_view bytes) {
   return true;
 }
 
-bool ReplyStream::replace(std::string_view bytes) {
+bool ReplyStream::send_instead(std::string_view bytes) {
   while (pieces_.size() > (read_ > 0 ? 1 : 0)) {
     waiting_ -= pieces_.back().size();
     pieces_.pop_back();
   }
-  return append(bytes);
+  return send(bytes);
 }
 
 void ReplyStream::end() {
@@ -381,7 +381,8 @@ std::shared_ptr<Stream> Request::stream(std::string_view content_type) {
     stream_ = stream;
     answer_came();
   }
-  return std::make_shared<ReplyStreamEnd>(std::move(stream));
+  ReplyStream* const sent = stream.get();
+  return {sent, [held = std::move(stream)](Stream*) { held->end(); }};  // the handler has dropped it
 }
 
 void Request::answer_came() {

@@ -53,16 +53,17 @@ class ChunkReader {
   std::string_view trouble_;
 };
 
-/// The bytes of a Stream that the client has not been sent.
-class ReplyStream {
+/// The bytes of a stream that the client has not been sent. The request holds it, and the handler until it
+/// ends the answer.
+class ReplyStream final : public Stream {
  public:
   void attach(Client& client, std::string_view content_type) {
     client_ = &client;
     content_type_ = content_type;
   }
-  bool append(std::string_view bytes);
-  bool replace(std::string_view bytes);
-  std::size_t waiting() const { return waiting_ - read_; }
+  bool send(std::string_view bytes) override;
+  bool send_instead(std::string_view bytes) override;
+  std::size_t waiting() const override { return waiting_ - read_; }
   /// Ends the answer after the queued bytes.
   void end();
   /// The client is gone.
@@ -80,21 +81,6 @@ class ReplyStream {
   std::size_t waiting_ = 0;         // bytes of pieces_, with those of the first that were read
   std::size_t read_ = 0;            // bytes of the first piece
   bool ended_ = false;
-};
-
-/// The handler's end of a stream. Its destructor ends the answer.
-class ReplyStreamEnd final : public Stream {
- public:
-  explicit ReplyStreamEnd(std::shared_ptr<ReplyStream> stream) : stream_(std::move(stream)) {}
-  ReplyStreamEnd(const ReplyStreamEnd&) = delete;
-  ReplyStreamEnd& operator=(const ReplyStreamEnd&) = delete;
-  ~ReplyStreamEnd() override { stream_->end(); }
-  bool send(std::string_view bytes) override { return stream_->append(bytes); }
-  bool send_instead(std::string_view bytes) override { return stream_->replace(bytes); }
-  std::size_t waiting() const override { return stream_->waiting(); }
-
- private:
-  std::shared_ptr<ReplyStream> stream_;
 };
 
 /// What happens to the connection after a step of the request.

@@ -15,13 +15,14 @@ using testing::StartsWith;
 
 constexpr milliseconds kPatience{20000};
 
-HttpRequest get(const std::string& target) {
-  return {.target = target, .token = *icd::BearerToken::parse("secret")};
+std::expected<HttpReply, NoReply> ask(const settings::Address& address, uplink::Request request,
+                                      milliseconds within = kPatience) {
+  return http_ask(address, *icd::BearerToken::parse("secret"), std::move(request), within);
 }
 
 std::string body_of(const std::string& answer) {
   const Server server(answer);
-  const auto reply = http_ask(server.address(), get("/adit/run"), kPatience);
+  const auto reply = ask(server.address(), get_request("/adit/run"));
   return reply ? reply->body : "error: " + reply.error().sentence;
 }
 
@@ -29,31 +30,32 @@ TEST(HttpClient, GivesTheBody) {
   EXPECT_EQ(body_of(Server::ok("{\"now\": 1}")), "{\"now\": 1}");
 }
 
-std::string request_for(const HttpRequest& request) {
+std::string request_for(uplink::Request request) {
   const Server server(Server::ok("{}"));
-  EXPECT_TRUE(http_ask(server.address(), request, kPatience).has_value());
+  EXPECT_TRUE(ask(server.address(), std::move(request)).has_value());
   return server.request();
 }
 
 TEST(HttpClient, RequestsTheTargetWithItsToken) {
-  const std::string request = request_for(get("/adit/run"));
+  const std::string request = request_for(get_request("/adit/run"));
   EXPECT_THAT(request, StartsWith("GET /adit/run HTTP/1.1\r\nHost: 127.0.0.1:"));
   EXPECT_THAT(request, HasSubstr("\r\nAuthorization: Bearer secret\r\n"));
 }
 
 TEST(HttpClient, PostsABodyOrNone) {
-  HttpRequest post = get("/adit/runs");
-  post.method = HttpRequest::Method::Post;
-  EXPECT_THAT(request_for(post), AllOf(StartsWith("POST /adit/runs HTTP/1.1\r\n"),
-                                       HasSubstr("\r\nContent-Type: application/json\r\n"),
-                                       HasSubstr("\r\nContent-Length: 0\r\n"), EndsWith("\r\n\r\n")));
+  Post post{.target = "/adit/runs", .check = "adit reports"};
+  EXPECT_THAT(
+      request_for(post_request(post)),
+      AllOf(StartsWith("POST /adit/runs HTTP/1.1\r\n"), HasSubstr("\r\nContent-Type: application/json\r\n"),
+            HasSubstr("\r\nContent-Length: 0\r\n"), EndsWith("\r\n\r\n")));
   post.body = "{}";
-  EXPECT_THAT(request_for(post), AllOf(HasSubstr("\r\nContent-Length: 2\r\n"), EndsWith("\r\n\r\n{}")));
+  EXPECT_THAT(request_for(post_request(post)),
+              AllOf(HasSubstr("\r\nContent-Length: 2\r\n"), EndsWith("\r\n\r\n{}")));
 }
 
 TEST(HttpClient, GivesStatusAndBodyOfAnError) {
   const Server server(Server::reply("409 Conflict", "\"no\""));
-  const auto reply = http_ask(server.address(), get("/"), kPatience);
+  const auto reply = ask(server.address(), get_request("/"));
   ASSERT_TRUE(reply.has_value());
   EXPECT_EQ(reply->status, 409u);
   EXPECT_EQ(reply->body, "\"no\"");
@@ -85,7 +87,7 @@ TEST(HttpClient, NamesAnUnreachableAddress) {
   {
     address = Server("").address();
   }
-  const auto reply = http_ask(address, get("/"), kPatience);
+  const auto reply = ask(address, get_request("/"));
   ASSERT_FALSE(reply.has_value());
   EXPECT_FALSE(reply.error().sent);
   EXPECT_EQ(reply.error().sentence,
@@ -95,7 +97,7 @@ TEST(HttpClient, NamesAnUnreachableAddress) {
 TEST(HttpClient, TimesOutOnASilentServer) {
   for (const std::string answer : {"", "HTTP/1.1 200 OK\r\nContent-Length: 9\r\n\r\n{}"}) {
     const Server server(answer, true);
-    const auto reply = http_ask(server.address(), get("/"), milliseconds(400));
+    const auto reply = ask(server.address(), get_request("/"), milliseconds(400));
     ASSERT_FALSE(reply.has_value());
     EXPECT_TRUE(reply.error().sent);
     EXPECT_THAT(reply.error().sentence, HasSubstr("timed out"));

@@ -41,18 +41,6 @@ int wait_for(int fd, short events, Clock::time_point deadline) {
   }
 }
 
-uplink::Request upstream(HttpRequest request) {
-  const bool posts = request.method == HttpRequest::Method::Post;
-  const auto body = std::make_shared<const std::string>(std::move(request.body));
-  uplink::Request asked{.method = posts ? "POST" : "GET",
-                        .target = std::move(request.target),
-                        .content_type = posts ? std::move(request.content_type) : "",
-                        .body = {},
-                        .longest_answer = kLargestBody};
-  asked.body.append(body, {reinterpret_cast<const std::uint8_t*>(body->data()), body->size()});
-  return asked;
-}
-
 /// The whole answer, or an error.
 std::expected<HttpReply, std::string> exchanged(int fd, uplink::Exchange& exchange,
                                                 Clock::time_point deadline) {
@@ -95,28 +83,44 @@ std::string cannot_reach(const settings::Address& address, const std::string& wh
 
 }  // namespace
 
-std::expected<HttpReply, NoReply> http_ask(const settings::Address& address, HttpRequest request,
-                                           std::chrono::milliseconds within) {
+uplink::Request get_request(std::string target) {
+  return {.method = "GET",
+          .target = std::move(target),
+          .content_type = "",
+          .body = {},
+          .longest_answer = kLargestBody};
+}
+
+uplink::Request post_request(Post action) {
+  const auto body = std::make_shared<const std::string>(std::move(action.body));
+  uplink::Request request = get_request(std::move(action.target));
+  request.method = "POST";
+  request.content_type = std::move(action.content_type);
+  request.body.append(body, {reinterpret_cast<const std::uint8_t*>(body->data()), body->size()});
+  return request;
+}
+
+std::expected<HttpReply, NoReply> http_ask(const settings::Address& address, const icd::BearerToken& token,
+                                           uplink::Request request, std::chrono::milliseconds within) {
   const auto deadline = Clock::now() + within;
   const uplink::Endpoint endpoint = endpoint_of(address);
   const auto fd = connected(endpoint, deadline);
   if (!fd) return std::unexpected(NoReply{cannot_reach(address, fd.error()), false});
-  const icd::BearerToken token = request.token;
-  uplink::Exchange exchange(endpoint, token, upstream(std::move(request)));
+  uplink::Exchange exchange(endpoint, token, std::move(request));
   auto reply = exchanged(fd->get(), exchange, deadline);
   if (!reply) return std::unexpected(NoReply{cannot_reach(address, reply.error()), true});
   return std::move(*reply);
 }
 
 std::expected<std::unique_ptr<HttpStream>, std::string> HttpStream::ask(const settings::Address& address,
-                                                                        HttpRequest request,
+                                                                        const icd::BearerToken& token,
+                                                                        uplink::Request request,
                                                                         std::chrono::milliseconds within) {
   const auto deadline = Clock::now() + within;
   const uplink::Endpoint endpoint = endpoint_of(address);
   auto fd = connected(endpoint, deadline);
   if (!fd) return std::unexpected(cannot_reach(address, fd.error()));
-  const icd::BearerToken token = request.token;
-  auto stream = std::make_unique<HttpStream>(*std::move(fd), endpoint, token, upstream(std::move(request)));
+  auto stream = std::make_unique<HttpStream>(*std::move(fd), endpoint, token, std::move(request));
   while (stream->exchange_.wants_to_write()) {
     if (stream->exchange_.write(stream->fd()) != 0) break;  // read() returns the reason
     if (!stream->exchange_.wants_to_write()) break;
@@ -287,19 +291,14 @@ Result<Adit> adit_of(const Options& options) {
 }
 
 Result<std::string> get(const Adit& adit, const std::string& target, std::chrono::milliseconds within) {
-  return body_of(adit, http_ask(adit.address, {.target = target, .token = adit.token.token}, within), "");
+  return body_of(adit, http_ask(adit.address, adit.token.token, get_request(target), within), "");
 }
 
 Result<std::string> post(const Adit& adit, Post action) {
-  return body_of(adit,
-                 http_ask(adit.address,
-                          {.method = HttpRequest::Method::Post,
-                           .target = std::move(action.target),
-                           .token = adit.token.token,
-                           .body = std::move(action.body),
-                           .content_type = std::move(action.content_type)},
-                          action.within),
-                 "; the action may have been done: see " + action.check);
+  const std::string if_sent = "; the action may have been done: see " + action.check;
+  const auto within = action.within;
+  return body_of(adit, http_ask(adit.address, adit.token.token, post_request(std::move(action)), within),
+                 if_sent);
 }
 
 std::string sentence_in(const std::string& body) {

@@ -48,14 +48,19 @@ std::string written(const settings::Address& address);
 std::expected<settings::Address, std::string> reach(const settings::Team& team);
 
 inline constexpr std::size_t kLargestBody = 8u << 20;
+inline constexpr std::chrono::milliseconds kReadPatience{3000};
+/// Longer, because an action is on disk before its answer.
+inline constexpr std::chrono::milliseconds kActionPatience{10000};
 
-struct HttpRequest {
-  enum class Method : std::uint8_t { Get, Post } method = Method::Get;
-  std::string target;  // "/adit/run"
-  icd::BearerToken token;
-  std::string body = "";  // of a POST: JSON or ""
+struct Post {
+  std::string target;     // "/adit/runs"
+  std::string check;      // command that shows whether an action was done, if its answer is lost
+  std::string body = "";  // JSON or ""
+  std::chrono::milliseconds within = kActionPatience;
   std::string content_type = "application/json";
 };
+uplink::Request get_request(std::string target);
+uplink::Request post_request(Post action);
 
 using HttpReply = uplink::Answered;
 
@@ -65,15 +70,16 @@ struct NoReply {
 };
 
 /// One blocking request (RFC 9112) on its own connection, with its whole reply, within `within`.
-std::expected<HttpReply, NoReply> http_ask(const settings::Address& address, HttpRequest request,
-                                           std::chrono::milliseconds within);
+std::expected<HttpReply, NoReply> http_ask(const settings::Address& address, const icd::BearerToken& token,
+                                           uplink::Request request, std::chrono::milliseconds within);
 
 /// A request with an endless answer.
 class HttpStream {
  public:
   /// Sends the request within `within`. An error names the address.
   static std::expected<std::unique_ptr<HttpStream>, std::string> ask(const settings::Address& address,
-                                                                     HttpRequest request,
+                                                                     const icd::BearerToken& token,
+                                                                     uplink::Request request,
                                                                      std::chrono::milliseconds within);
   HttpStream(loop::FileDescriptor fd, const uplink::Endpoint& endpoint, const icd::BearerToken& token,
              uplink::Request request);
@@ -95,10 +101,6 @@ class HttpStream {
   uplink::Exchange exchange_;
   std::optional<Ended> ended_;
 };
-
-inline constexpr std::chrono::milliseconds kReadPatience{3000};
-/// Longer, because an action is on disk before its answer.
-inline constexpr std::chrono::milliseconds kActionPatience{10000};
 
 /// Address and token of the Adit that the options select.
 struct Adit {
@@ -131,13 +133,6 @@ Result<Adit> adit_of(const Options& options);
 Result<std::string> get(const Adit& adit, const std::string& target,
                         std::chrono::milliseconds within = kReadPatience);
 
-struct Post {
-  std::string target;
-  std::string check;      // command that shows whether an action was done, if its answer is lost
-  std::string body = "";  // JSON or ""
-  std::chrono::milliseconds within = kActionPatience;
-  std::string content_type = "application/json";
-};
 /// The body of an action's answer 200.
 Result<std::string> post(const Adit& adit, Post action);
 

@@ -59,8 +59,8 @@ std::optional<Look> Follower::look() {
 
 std::optional<Look> Follower::open() {
   again_ = Clock::now() + kAgain;
-  auto stream = ADIT_TRY(
-      HttpStream::ask(adit_.address, {.target = "/adit/events", .token = adit_.token.token}, kReadPatience));
+  auto stream =
+      ADIT_TRY(HttpStream::ask(adit_.address, adit_.token.token, get_request("/adit/events"), kReadPatience));
   stream_ = std::move(stream);
   events_ = {};
   has_told_ = false;

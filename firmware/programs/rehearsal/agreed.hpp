@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bitset>
+#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -52,6 +53,7 @@ struct CloudField {
   friend bool operator==(const CloudField&, const CloudField&) = default;
 };
 
+inline constexpr int kUint32 = 6;
 inline constexpr int kFloat32 = 7;
 inline constexpr int kFloat64 = 8;
 
@@ -60,6 +62,9 @@ inline std::uint32_t size_of_datatype(int datatype) {
   constexpr std::array<std::uint32_t, 9> kBytes = {0, 1, 1, 2, 2, 4, 4, 4, 8};
   return kBytes.at(static_cast<std::size_t>(datatype));
 }
+
+/// By the machine's clock.
+using Moment = std::chrono::sys_time<std::chrono::milliseconds>;
 
 /// What adit-robots puts between the rows of organised clouds, again and again. Read as a point of float32 it
 /// is finite, and in no cave: the Command Post knows it where it comes.

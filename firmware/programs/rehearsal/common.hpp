@@ -22,6 +22,12 @@
 
 namespace adit {
 
+/// A sentence about what is wrong.
+template <class... Parts>
+std::unexpected<std::string> wrong(const Parts&... parts) {
+  return std::unexpected(icd::sentence(parts...));
+}
+
 /// Stores an option's value as Parse reads it. The error of Parse is a sentence.
 template <auto Parse, class Into>
 command_line::Take parsed_value(Into& into) {
@@ -48,24 +54,23 @@ struct Address {
 /// Reads "127.0.0.1:8000" or "[::1]:8000". The host is not checked. The error is a sentence.
 inline std::expected<Address, std::string> read_address(std::string_view text, std::uint16_t least_port) {
   const std::size_t colon = text.rfind(':');
-  if (colon == std::string_view::npos) return std::unexpected("no port");
+  if (colon == std::string_view::npos) return wrong("no port");
   std::string_view host = text.substr(0, colon);
   if (host.starts_with('[') && host.ends_with(']')) host = host.substr(1, host.size() - 2);
   const auto port = icd::number_in<std::uint16_t>(text.substr(colon + 1));
-  if (!port || *port < least_port)
-    return std::unexpected(icd::sentence("the port is not a number from ", least_port, " to 65535"));
+  if (!port || *port < least_port) return wrong("the port is not a number from ", least_port, " to 65535");
   return Address{std::string(host), *port};
 }
 
 /// The token in a file, without the white space around it. The error names the file, never its content.
 inline std::expected<std::string, std::string> read_token(const std::filesystem::path& path) {
   std::ifstream file(path);
-  if (!file) return std::unexpected(path.string() + ": cannot be read");
+  if (!file) return wrong(path.string(), ": cannot be read");
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   std::string token(icd::trimmed(text));
   const bool is_visible = std::ranges::all_of(token, [](char c) { return c > 0x20 && c < 0x7f; });
   if (!token.empty() && is_visible) return token;
-  return std::unexpected(path.string() + ": expected one token of visible ASCII characters");
+  return wrong(path.string(), ": expected one token of visible ASCII characters");
 }
 
 /// To standard output, at once.

@@ -20,7 +20,6 @@ namespace {
 using Milliseconds = std::chrono::milliseconds;
 
 constexpr std::int64_t kModulus = kDateBase * kDateBase * kDateBase * kDateBase * kDateBase;
-constexpr int kUint32 = 6;  // ICD 6.3.2
 
 /// When a map's data was posted, as adit-robots writes it into its maps (README.md, 'How old').
 struct Dates {

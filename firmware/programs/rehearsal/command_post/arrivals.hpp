@@ -17,9 +17,6 @@
 
 namespace adit::rehearsal {
 
-/// By the machine's clock.
-using Moment = std::chrono::sys_time<std::chrono::milliseconds>;
-
 /// For each robot and kind: the age of the maps at their arrival, and the share of the posted data that is
 /// here; and the displayed markers, compared with the posted ones. Bounded. Safe for use by several threads.
 class Arrivals {

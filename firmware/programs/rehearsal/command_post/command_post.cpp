@@ -12,19 +12,6 @@
 namespace adit::rehearsal {
 namespace {
 
-std::unique_ptr<Endpoint> scoring_of(const Options& options, const Secrets& secrets, Run& run) {
-  if (options.manner == Manner::Strict)
-    return strict_scoring(secrets.scoring, options.rate.value_or(1), options.one_api_limit, run);
-  return measured_scoring(secrets.scoring, options.rate.value_or(0), run);
-}
-
-std::unique_ptr<Endpoint> mapping_of(const Options& options, const Secrets& secrets) {
-  const double hz = options.rate.value_or(1);
-  if (options.manner == Manner::Strict)
-    return strict_mapping(secrets.mapping, hz, options.counted.value_or(Counted::Starts));
-  return measured_mapping(secrets.mapping, hz, options.counted.value_or(Counted::Decoded));
-}
-
 /// After it the connection ends.
 Outcome last_answer(Outcome outcome) {
   outcome.after = After::Close;
@@ -155,8 +142,9 @@ CommandPost::CommandPost(const Options& options, const Secrets& secrets, std::ve
       run_(options.run, std::move(artifacts)),
       record_(options.manner),
       faults_(options.seed),
-      scoring_{scoring_of(options, secrets, run_), "scoring"},
-      mapping_{mapping_of(options, secrets), "mapping"},
+      scoring_{scoring_endpoint(options.manner, secrets.scoring, options.rate, options.one_api_limit, run_),
+               "scoring"},
+      mapping_{mapping_endpoint(options.manner, secrets.mapping, options.rate, options.counted), "mapping"},
       transcript_(std::move(transcript)),
       number_(transcript_ ? transcript_->requests() : 0) {
   if (!options.not_started) run_.change(Run::Change::Start, Clock::now());

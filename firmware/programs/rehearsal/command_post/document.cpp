@@ -122,6 +122,10 @@ std::expected<std::string, InflateFault> inflate_one(std::string_view bytes, int
   return out;
 }
 
+bool is_word_character(char c) {
+  return icd::is_letter_or_digit(c) || c == '_';
+}
+
 std::optional<Rotation> read_quaternion(const Field& quaternion) {
   const auto x = quaternion.number("x"), y = quaternion.number("y"), z = quaternion.number("z"),
              w = quaternion.number("w");
@@ -257,19 +261,13 @@ std::optional<std::string> Field::text(const char* name) const {
 }
 
 std::string lower(std::string text) {
-  std::ranges::transform(text, text.begin(),
-                         [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  std::ranges::transform(text, text.begin(), icd::lower);
   return text;
 }
 
 bool is_artifact_type(std::string_view type) {
-  return std::ranges::any_of(kArtifactTypes, [lower_case = lower(std::string(type))](std::string_view known) {
-    return lower(std::string(known)) == lower_case;
-  });
-}
-
-bool is_word_character(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+  return std::ranges::any_of(kArtifactTypes,
+                             [type](std::string_view known) { return icd::same_but_for_case(known, type); });
 }
 
 std::string tame(std::string_view text) {

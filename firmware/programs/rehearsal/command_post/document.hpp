@@ -1,6 +1,5 @@
 #pragma once
 
-#include <charconv>
 #include <cstddef>
 #include <cstdint>
 #include <expected>
@@ -10,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "icd/text.hpp"
 #include "rehearsal/agreed.hpp"
 
 namespace adit::rehearsal {
@@ -167,18 +167,12 @@ class Field {
 /// All of `text` as a number from `low` to `high`, and nothing else.
 template <class Number>
 std::optional<Number> number_of(std::string_view text, Number low, Number high) {
-  Number number{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  if (!(number >= low && number <= high)) return std::nullopt;  // not a number is neither
-  return number;
+  const auto number = icd::number_in<Number>(text);
+  return number && *number >= low && *number <= high ? number : std::nullopt;  // not a number is neither
 }
 
 /// ASCII in lower case.
 std::string lower(std::string text);
-
-/// A letter, a digit or an underscore, of ASCII.
-bool is_word_character(char c);
 
 /// `text` with all but letters, digits and underscores made underscores, at most 32 characters: safe as part
 /// of a file's name and as a word of a PCD header.

@@ -191,12 +191,11 @@ inline Outcome refused(const Finding& finding) {
   return refused(finding.status, finding.sentence);
 }
 
-/// The scoring endpoint of the ICD's section 5, to the letter. At most `hz` requests a second for each URI,
-/// or for both together (`one_limit`).
-std::unique_ptr<Endpoint> strict_scoring(std::string token, double hz, bool one_limit, Run& run);
-
-/// The public test server for scoring, as measured: see each rule in its source.
-std::unique_ptr<Endpoint> measured_scoring(std::string token, double hz, Run& run);
+/// The scoring endpoint of the ICD's section 5, to the letter, or the public test server as measured: see
+/// each rule in its source. At most `hz` requests a second for each URI, or to the letter for both together
+/// (`one_limit`). Without `hz` 1 to the letter, else no limit.
+std::unique_ptr<Endpoint> scoring_endpoint(Manner manner, std::string token, std::optional<double> hz,
+                                           bool one_limit, Run& run);
 
 /// The body of an answer to POST /api/artifact_reports (ICD 5.2). x, y, z and type are given back as they
 /// came; `authority`: the address and port in its url.
@@ -205,11 +204,9 @@ OrderedJson report_body(const Run::Ruling& ruling, const Json& sent, const std::
 /// If no address is known, or as the measured server shows it.
 inline constexpr const char* kNoAuthority = "<ipaddress>:<port>";
 
-/// The mapping endpoint of the ICD's section 6, to the letter. At most `hz` requests a second for each URI.
-std::unique_ptr<Endpoint> strict_mapping(std::string token, double hz, Counted counted);
-
-/// The public test server for mapping, as measured: see each rule in its source. At most `hz` clouds a
-/// second, of all robots together.
-std::unique_ptr<Endpoint> measured_mapping(std::string token, double hz, Counted counted);
+/// The same for mapping, the ICD's section 6. At most `hz` requests a second for each URI; as measured,
+/// clouds of all robots together. Without `hz` 1. `counted`: absent: by the manner.
+std::unique_ptr<Endpoint> mapping_endpoint(Manner manner, std::string token, std::optional<double> hz,
+                                           std::optional<Counted> counted);
 
 }  // namespace adit::rehearsal

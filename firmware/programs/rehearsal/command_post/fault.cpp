@@ -7,6 +7,7 @@
 #include "icd/text.hpp"
 #include "icd/try.hpp"
 #include "rehearsal/command_post/server.hpp"
+#include "rehearsal/common.hpp"
 
 namespace adit::rehearsal {
 
@@ -135,11 +136,6 @@ Word word_of(std::string_view text) {
 std::string quoted(std::string_view text) {
   constexpr std::size_t longest = 80;
   return sentence("'", text.substr(0, longest), "'");
-}
-
-template <class... Parts>
-std::unexpected<std::string> wrong(const Parts&... parts) {
-  return std::unexpected(sentence(parts...));
 }
 
 /// Stores the parsed argument in its place, once. `example`: for the sentence about an invalid one.

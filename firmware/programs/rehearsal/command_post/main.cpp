@@ -16,7 +16,6 @@
 
 #include "command_line/program.hpp"
 #include "command_line/read.hpp"
-#include "icd/sentence.hpp"
 #include "icd/text.hpp"
 #include "icd/try.hpp"
 #include "rehearsal/command_post/command_post.hpp"
@@ -36,8 +35,7 @@ constexpr double kMost = 1e9;
 
 std::expected<Address, std::string> listening_address(const std::string& text) {
   auto address = read_address(text, 0);
-  if (!address)
-    return std::unexpected(icd::sentence("expected ADDR:PORT, got '", text, "': ", address.error()));
+  if (!address) return wrong("expected ADDR:PORT, got '", text, "': ", address.error());
   return address;
 }
 
@@ -66,9 +64,9 @@ Wrong take_rate(Options& options, const std::string& text) {
     return std::nullopt;
   }
   double rate = 0;
-  auto wrong = command_line::read_number(text, 0.0, kMost, rate);
-  if (!wrong) options.rate = rate;
-  return wrong;
+  auto fault = command_line::read_number(text, 0.0, kMost, rate);
+  if (!fault) options.rate = rate;
+  return fault;
 }
 
 Wrong take_as_measured(Options& options, const std::string&) {
@@ -198,7 +196,7 @@ std::expected<Servers, std::string> listen(const Options& options, CommandPost& 
   const auto add = [&](const char* name, const Address& address, const WireManner& manner,
                        Decide decide) -> Told {
     auto server = Server::listen(address, manner, std::move(decide));
-    if (!server) return std::unexpected(icd::sentence(name, ": ", server.error()));
+    if (!server) return wrong(name, ": ", server.error());
     servers.emplace_back(name, *std::move(server));
     return {};
   };

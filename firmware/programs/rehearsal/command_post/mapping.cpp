@@ -168,12 +168,12 @@ class MeasuredMapping : public Endpoint {
 
 }  // namespace
 
-std::unique_ptr<Endpoint> strict_mapping(std::string token, double hz, Counted counted) {
-  return std::make_unique<StrictMapping>(std::move(token), hz, counted);
-}
-
-std::unique_ptr<Endpoint> measured_mapping(std::string token, double hz, Counted counted) {
-  return std::make_unique<MeasuredMapping>(std::move(token), hz, counted);
+std::unique_ptr<Endpoint> mapping_endpoint(Manner manner, std::string token, std::optional<double> hz,
+                                           std::optional<Counted> counted) {
+  const double most = hz.value_or(1);
+  if (manner == Manner::Strict)
+    return std::make_unique<StrictMapping>(std::move(token), most, counted.value_or(Counted::Starts));
+  return std::make_unique<MeasuredMapping>(std::move(token), most, counted.value_or(Counted::Decoded));
 }
 
 }  // namespace adit::rehearsal

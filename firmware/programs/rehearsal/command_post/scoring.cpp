@@ -223,12 +223,11 @@ OrderedJson report_body(const Run::Ruling& ruling, const Json& sent, const std::
           {"score_change", ruling.score_change}};
 }
 
-std::unique_ptr<Endpoint> strict_scoring(std::string token, double hz, bool one_limit, Run& run) {
-  return std::make_unique<StrictScoring>(std::move(token), hz, one_limit, run);
-}
-
-std::unique_ptr<Endpoint> measured_scoring(std::string token, double hz, Run& run) {
-  return std::make_unique<MeasuredScoring>(std::move(token), hz, run);
+std::unique_ptr<Endpoint> scoring_endpoint(Manner manner, std::string token, std::optional<double> hz,
+                                           bool one_limit, Run& run) {
+  if (manner == Manner::Strict)
+    return std::make_unique<StrictScoring>(std::move(token), hz.value_or(1), one_limit, run);
+  return std::make_unique<MeasuredScoring>(std::move(token), hz.value_or(0), run);
 }
 
 }  // namespace adit::rehearsal

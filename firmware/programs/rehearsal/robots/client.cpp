@@ -73,19 +73,19 @@ constexpr std::chrono::milliseconds kAfter429{1200};  // the Command Post takes 
 }  // namespace
 
 std::expected<Address, std::string> parse_url(std::string_view url) {
-  const auto wrong = [&](std::string_view why) {
-    return std::unexpected(icd::sentence("expected http://ADDR:PORT, got '", url, "': ", why));
+  const auto expected = [url](std::string_view why) {
+    return wrong("expected http://ADDR:PORT, got '", url, "': ", why);
   };
   constexpr std::string_view kScheme = "http://";
-  if (!url.starts_with(kScheme)) return wrong("it does not start with http://");
+  if (!url.starts_with(kScheme)) return expected("it does not start with http://");
   std::string_view rest = url.substr(kScheme.size());
   if (rest.ends_with('/')) rest.remove_suffix(1);
   auto address = read_address(rest, 1);
-  if (!address) return wrong(address.error());
+  if (!address) return expected(address.error());
   if (address->host == "localhost") address->host = "127.0.0.1";
   error_code bad;
   (void)asio::ip::make_address(address->host, bad);
-  if (bad) return wrong("the address is not an IP address");
+  if (bad) return expected("the address is not an IP address");
   return address;
 }
 
@@ -169,9 +169,9 @@ std::string sentence_of(std::string_view body) {
 
 std::expected<std::string, std::string> parse_report_answer(std::string_view body) {
   const Json answer = parse(body);
-  const std::string wrong =
+  const std::string fault =
       wrong_member(answer, {"x", "y", "z", "run_clock", "score_change"}, {"type", "report_status"});
-  if (!wrong.empty()) return std::unexpected(wrong);
+  if (!fault.empty()) return std::unexpected(fault);
   const int change = static_cast<int>(std::clamp(answer["score_change"].get<double>(), -99.0, 99.0));
   return answer["report_status"].get<std::string>() + (change < 0 ? " " : " +") + std::to_string(change);
 }
@@ -179,8 +179,8 @@ std::expected<std::string, std::string> parse_report_answer(std::string_view bod
 std::expected<void, std::string> check_status_answer(std::string_view body) {
   const Json answer = parse(body);
   const char* const clock = answer.contains("run_clock") ? "run_clock" : "clock";  // ICD 5.1 has both
-  const std::string wrong = wrong_member(answer, {"score", "remaining_reports", clock}, {});
-  if (!wrong.empty()) return std::unexpected(wrong);
+  const std::string fault = wrong_member(answer, {"score", "remaining_reports", clock}, {});
+  if (!fault.empty()) return std::unexpected(fault);
   return {};
 }
 

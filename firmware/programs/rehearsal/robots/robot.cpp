@@ -66,8 +66,6 @@ double cost(const Lattice& lattice, Cell start, Cell goal, int steps, double hea
   return steps * lattice.resolution + kDetour * (1 - std::cos(direction - heading)) / 2;
 }
 
-constexpr int kUint32 = 6;  // ICD 6.3.2
-
 using Seconds = std::chrono::duration<double>;
 
 constexpr double kMegabyte = 1e6;

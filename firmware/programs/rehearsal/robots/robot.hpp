@@ -103,8 +103,6 @@ class Robot {
 // Maps hold the time of their posting by the machine's clock, so that a rehearsal Command Post can measure
 // their age at arrival, even if they were merged or stitched on their way (rehearsal/README.md, 'How old').
 
-using Moment = std::chrono::sys_time<std::chrono::milliseconds>;
-
 /// Puts the moment into the first ten cells of the lowest row (kDateFollows). A narrower grid stays.
 void date(Grid& grid, Moment posted);
 

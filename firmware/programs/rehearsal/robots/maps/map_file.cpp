@@ -12,6 +12,7 @@
 #include "icd/sentence.hpp"
 #include "icd/text.hpp"
 #include "icd/try.hpp"
+#include "rehearsal/common.hpp"
 
 namespace adit::robots {
 
@@ -32,11 +33,6 @@ std::expected<std::string, std::string> read_file(const std::filesystem::path& f
 
 using Words = std::vector<std::string_view>;
 using Done = std::expected<void, std::string>;
-
-template <class... Parts>
-std::unexpected<std::string> wrong(const Parts&... parts) {
-  return std::unexpected(icd::sentence(parts...));
-}
 
 constexpr std::string_view kBlanks = " \t\r\n";
 

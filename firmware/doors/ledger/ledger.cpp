@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
-#include <optional>
 #include <system_error>
 #include <utility>
 
@@ -29,41 +28,6 @@ Result<void> write(store::Snapshot& snapshot, const Book& book, const std::atomi
   return snapshot.finish();
 }
 
-/// What a process of this boot knew last, as the only value of a file in memory.
-class KnownFile {
- public:
-  KnownFile() = default;
-  /// `path` "": no file.
-  explicit KnownFile(const std::string& path) {
-    if (path.empty()) return;
-    file_ = loop::FileDescriptor(::open(path.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0600));
-    std::string bytes(kMost, '\0');
-    const auto size = file_ ? ::pread(file_.get(), bytes.data(), bytes.size(), 0) : -1;
-    if (size < 0) trouble_ = icd::sentence(path, ": ", std::generic_category().message(errno));
-    bytes.resize(static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
-    const auto known = store::value_in<Known>(bytes);
-    if (!known && size > 0) trouble_ = path + " is damaged";
-    known_ = known.value_or(Known());
-  }
-  /// The last values in the file; 0: unknown.
-  const Known& content() const { return known_; }
-  /// Why the file could not be opened or read, or "".
-  const std::string& trouble() const { return trouble_; }
-  /// After a failed write the file is empty, so that no older values are believed.
-  void write(const Known& known) {
-    if (!file_ || known == known_) return;
-    known_ = known;
-    if (store::write_all(file_.get(), store::file_of(known, store::kInMemory), 0) != 0)
-      (void)::ftruncate(file_.get(), 0);
-  }
-
- private:
-  static constexpr std::size_t kMost = 4096;
-  loop::FileDescriptor file_;
-  Known known_;
-  std::string trouble_;
-};
-
 }  // namespace
 
 Known latest_of(const Known& one, const Known& other) {
@@ -72,158 +36,35 @@ Known latest_of(const Known& one, const Known& other) {
           .last = std::max(one.last, other.last)};
 }
 
-class Ledger::Impl {
- public:
-  Impl(std::string refusal, const Known& known) : refusal_(std::move(refusal)), known_(known) {}
-  Impl(store::Directory directory, store::Contents contents, Book book, std::string damage, bool is_damaged,
-       const Known& known, KnownFile file)
-      : directory_(std::make_shared<store::Directory>(std::move(directory))),
-        contents_(std::move(contents)),
-        book_(std::move(book)),
-        damage_(std::move(damage)),
-        known_(known),
-        file_(std::move(file)),
-        is_damaged_(is_damaged) {}
-  Impl(const Impl&) = delete;
-  Impl& operator=(const Impl&) = delete;
-  ~Impl() { *enough_ = true; }
+KnownFile::KnownFile(const std::string& path) {
+  if (path.empty()) return;
+  constexpr std::size_t kMost = 4096;
+  file_ = loop::FileDescriptor(::open(path.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0600));
+  std::string bytes(kMost, '\0');
+  const auto size = file_ ? ::pread(file_.get(), bytes.data(), bytes.size(), 0) : -1;
+  if (size < 0) trouble_ = icd::sentence(path, ": ", std::generic_category().message(errno));
+  bytes.resize(static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
+  const auto known = store::value_in<Known>(bytes);
+  if (!known && size > 0) trouble_ = path + " is damaged";
+  known_ = known.value_or(Known());
+}
 
-  Result<void> write(std::span<const dispatch::Report> steps, const dispatch::Run* run,
-                     dispatch::Flush flush) {
-    if (steps.empty() && run == nullptr) return {};
-    const auto record = ADIT_TRY(book_.record(steps, run));
-    const bool has_new = std::ranges::any_of(
-        steps, [this](const dispatch::Report& step) { return !book_.knows(step.number); });
-    return append(record, flush, has_new);
-  }
-
-  Result<void> append(const std::string& record, dispatch::Flush flush, bool has_new) {
-    if (auto ready = has_new ? make_ready(record.size()) : begin(); !ready) return ready;
-    const auto durability = flush == dispatch::Flush::Now ? store::Durability::Now : store::Durability::Soon;
-    constexpr auto kKind = static_cast<std::uint8_t>(Kind::Steps);
-    if (auto appended = log_->append(kKind, record, durability); !appended) return appended;
-    (void)book_.apply(kKind, record);
-    file_.write(known());
-    return {};
-  }
-
-  Result<void> flush() {
-    auto flushed = log_ ? log_->flush() : Result<void>();
-    file_.write(known());
-    return flushed;
-  }
-
-  Known known() const {
-    return {.reports = std::max(known_.reports, book_.highest()),
-            .log = has_begun_ ? log_->number() : known_.log,
-            .last = has_begun_ ? log_->durable() : known_.last};
-  }
-
-  Result<void> make_ready(std::size_t record = 0) {
-    auto ready = begin();
-    if (ready && log_->room() < log_->bytes_of(record) + kForKnown) ready = log_->turn();
-    refusal_ = ready ? "" : ready.error().what;
-    return ready;
-  }
-
-  /// Continues after the records that were read. A damaged ledger begins with a snapshot of the rest.
-  Result<void> begin() {
-    if (has_begun_) return {};
-    if (!directory_) return std::unexpected(Error{.what = refusal_});
-    auto begun = begin_log();
-    refusal_ = begun ? "" : begun.error().what;
-    has_begun_ = begun.has_value();
-    file_.write(known());
-    return begun;
-  }
-
-  std::function<Result<void>()> upkeep() {
-    if (!has_begun_ || is_under_way_) return nullptr;
-    if (log_->number() == snapshot_) {
-      if (spare_ == log_->number()) return nullptr;
-      is_under_way_ = true;
-      next_spare_ = log_->number();
-      return [directory = directory_, enough = enough_] {
-        return store::make_spare(*directory, kKeeping, *enough);
-      };
-    }
-    auto begun = store::Snapshot::begin(*directory_, kKeeping, *log_);
-    is_under_way_ = true;
-    if (!begun) return [error = begun.error()] { return Result<void>(std::unexpected(error)); };
-    next_snapshot_ = log_->number();
-    return [directory = directory_, enough = enough_, book = book_,
-            snapshot = std::make_shared<store::Snapshot>(std::move(*begun))] {
-      return ledger::write(*snapshot, book, *enough);
-    };
-  }
-
-  void upkeep_done(const Result<void>& done) {
-    is_under_way_ = false;
-    if (!done) return;
-    snapshot_ = next_snapshot_;
-    spare_ = next_spare_;
-  }
-
-  std::shared_ptr<store::Directory> directory_;  // null: closed. Workers may hold it longer
-  store::Contents contents_;                     // until log_ continues it
-  std::optional<store::Log> log_;
-  Book book_;
-  std::string damage_, refusal_;
-  Known known_;  // from open()
-  KnownFile file_;
-  bool is_damaged_ = false, is_aside_ = false, has_turned_ = false, has_begun_ = false;
-  bool is_under_way_ = false;                       // upkeep is running
-  std::uint64_t snapshot_ = 0, next_snapshot_ = 0;  // first log after the last snapshot
-  std::uint64_t spare_ = 0, next_spare_ = 0;        // the log with a spare file
-  std::shared_ptr<std::atomic<bool>> enough_ = std::make_shared<std::atomic<bool>>(false);
-
- private:
-  /// After a failure, the next try resumes at the failed step.
-  Result<void> begin_log() {
-    if (!log_) {
-      store::Log log(*directory_, kKeeping);
-      if (auto started = log.start(contents_); !started) return started;
-      log_.emplace(std::move(log));
-      // So a snapshot that a kill interrupted is due again.
-      if (!contents_.logs.empty()) snapshot_ = next_snapshot_ = contents_.logs.front();
-      contents_ = {};
-    }
-    if (is_damaged_) return begin_again();
-    if (log_->number() != 0) return {};
-    auto turned = log_->turn();
-    snapshot_ = next_snapshot_ = log_->number();
-    return turned;
-  }
-
-  Result<void> begin_again() {
-    if (!is_aside_) {
-      if (auto aside = directory_->put_aside(); !aside) return aside;
-      is_aside_ = true;
-    }
-    if (!has_turned_) {
-      if (auto turned = log_->turn(); !turned) return turned;
-      has_turned_ = true;
-    }
-    auto snapshot = ADIT_TRY(store::Snapshot::begin(*directory_, kKeeping, *log_));
-    if (auto written = ledger::write(snapshot, book_, *enough_); !written) return written;
-    snapshot_ = next_snapshot_ = log_->number();
-    is_damaged_ = false;
-    return {};
-  }
-};
-
-Ledger::Ledger(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
-Ledger::Ledger(Ledger&&) noexcept = default;
-Ledger& Ledger::operator=(Ledger&&) noexcept = default;
-Ledger::~Ledger() = default;
+void KnownFile::write(const Known& known) {
+  if (!file_ || known == known_) return;
+  known_ = known;
+  if (store::write_all(file_.get(), store::file_of(known, store::kInMemory), 0) != 0)
+    (void)::ftruncate(file_.get(), 0);
+}
 
 Result<Ledger> Ledger::open(const std::string& state, const Known& stored, const std::string& memory) {
-  auto directory = ADIT_TRY(store::Directory::lock(state + '/' + kDirectory));
-  auto contents = ADIT_TRY(store::Contents::read(directory, kKeeping));
+  Ledger ledger;
+  ledger.directory_ =
+      std::make_shared<store::Directory>(ADIT_TRY(store::Directory::lock(state + '/' + kDirectory)));
+  auto& contents = ledger.contents_ = ADIT_TRY(store::Contents::read(*ledger.directory_, kKeeping));
   auto reading = ADIT_TRY(read(contents));
-  Book& book = reading.book;
-  KnownFile file(memory);
-  const Known known = latest_of(stored, file.content());
+  Book& book = ledger.book_ = std::move(reading.book);
+  const KnownFile& file = ledger.file_ = KnownFile(memory);
+  const Known known = ledger.known_ = latest_of(stored, file.content());
   if ((known.log != 0 && !contents.has(known.log)) || book.highest() < known.reports ||
       contents.last < known.last) {
     reading.gap += icd::sentence(reading.gap.empty() ? "" : ", ", "its last records are not there");
@@ -233,9 +74,9 @@ Result<Ledger> Ledger::open(const std::string& state, const Known& stored, const
   // File names are never reused, even of removed logs.
   contents.number = std::max(contents.number, known.log);
   contents.last = std::max(contents.last, known.last);  // nor are sequence numbers
-  std::string damage;
-  const bool is_damaged = !reading.gap.empty();
-  if (is_damaged) {
+  std::string& damage = ledger.damage_;
+  ledger.is_damaged_ = !reading.gap.empty();
+  if (ledger.is_damaged_) {
     const std::string found = book.salvage(loop::system_now(), known.reports, reading.end_is_lost);
     damage = icd::sentence("The ledger was damaged (", reading.gap, "). Its files are kept in ", state, "/",
                            kDirectory, "/damaged-*; ", found, ".");
@@ -245,14 +86,15 @@ Result<Ledger> Ledger::open(const std::string& state, const Known& stored, const
       damage += (note == contents.notes.front() ? "" : "; ") + note;
     damage += ". No report is missing.";
   }
-  auto impl = std::make_unique<Impl>(std::move(directory), std::move(contents), std::move(book),
-                                     std::move(damage), is_damaged, known, std::move(file));
-  (void)impl->make_ready();  // refusal() has the reason
-  return Ledger(std::move(impl));
+  (void)ledger.make_ready();  // refusal() has the reason
+  return ledger;
 }
 
 Ledger Ledger::closed(std::string why, const Known& known, const std::string& memory) {
-  return Ledger(std::make_unique<Impl>(std::move(why), latest_of(known, KnownFile(memory).content())));
+  Ledger ledger;
+  ledger.refusal_ = std::move(why);
+  ledger.known_ = latest_of(known, KnownFile(memory).content());
+  return ledger;
 }
 
 bool Ledger::can_be_read(const std::string& state) {
@@ -267,30 +109,116 @@ Result<std::string> Ledger::set_aside(const std::string& state) {
 
 Result<void> Ledger::write(std::span<const dispatch::Report> steps, const dispatch::Run* run,
                            dispatch::Flush flush) {
-  return impl_->write(steps, run, flush);
+  if (steps.empty() && run == nullptr) return {};
+  const auto record = ADIT_TRY(book_.record(steps, run));
+  const bool has_new =
+      std::ranges::any_of(steps, [this](const dispatch::Report& step) { return !book_.knows(step.number); });
+  return append(record, flush, has_new);
+}
+
+Result<void> Ledger::append(const std::string& record, dispatch::Flush flush, bool has_new) {
+  if (auto ready = has_new ? make_ready(record.size()) : begin(); !ready) return ready;
+  const auto durability = flush == dispatch::Flush::Now ? store::Durability::Now : store::Durability::Soon;
+  constexpr auto kKind = static_cast<std::uint8_t>(Kind::Steps);
+  if (auto appended = log_->append(kKind, record, durability); !appended) return appended;
+  (void)book_.apply(kKind, record);
+  file_.write(known());
+  return {};
 }
 
 Result<void> Ledger::flush() {
-  return impl_->flush();
+  auto flushed = log_ ? log_->flush() : Result<void>();
+  file_.write(known());
+  return flushed;
 }
 
-Result<void> Ledger::make_ready() {
-  return impl_->make_ready();
+Known Ledger::known() const {
+  return {.reports = std::max(known_.reports, book_.highest()),
+          .log = has_begun_ ? log_->number() : known_.log,
+          .last = has_begun_ ? log_->durable() : known_.last};
 }
 
-std::vector<dispatch::Report> Ledger::reports() const {
-  return impl_->book_.reports();
+Result<void> Ledger::make_ready(std::size_t record) {
+  auto ready = begin();
+  if (ready && log_->room() < log_->bytes_of(record) + kForKnown) ready = log_->turn();
+  refusal_ = ready ? "" : ready.error().what;
+  return ready;
 }
-std::vector<dispatch::Run> Ledger::runs() const {
-  return impl_->book_.runs();
+
+/// Continues after the records that were read. A damaged ledger begins with a snapshot of the rest.
+Result<void> Ledger::begin() {
+  if (has_begun_) return {};
+  if (!directory_) return std::unexpected(Error{.what = refusal_});
+  auto begun = begin_log();
+  refusal_ = begun ? "" : begun.error().what;
+  has_begun_ = begun.has_value();
+  file_.write(known());
+  return begun;
 }
-std::vector<Step> Ledger::history(std::int64_t report) const {
-  return impl_->book_.history(report);
+
+std::function<Result<void>()> Ledger::upkeep() {
+  if (!has_begun_ || is_under_way_) return nullptr;
+  if (log_->number() == snapshot_) {
+    if (spare_ == log_->number()) return nullptr;
+    is_under_way_ = true;
+    next_spare_ = log_->number();
+    return [directory = directory_, enough = enough_.flag] {
+      return store::make_spare(*directory, kKeeping, *enough);
+    };
+  }
+  auto begun = store::Snapshot::begin(*directory_, kKeeping, *log_);
+  is_under_way_ = true;
+  if (!begun) return [error = begun.error()] { return Result<void>(std::unexpected(error)); };
+  next_snapshot_ = log_->number();
+  return [directory = directory_, enough = enough_.flag, book = book_,
+          snapshot = std::make_shared<store::Snapshot>(std::move(*begun))] {
+    return ledger::write(*snapshot, book, *enough);
+  };
+}
+
+void Ledger::upkeep_done(const Result<void>& done) {
+  is_under_way_ = false;
+  if (!done) return;
+  snapshot_ = next_snapshot_;
+  spare_ = next_spare_;
+}
+
+/// After a failure, the next try resumes at the failed step.
+Result<void> Ledger::begin_log() {
+  if (!log_) {
+    store::Log log(*directory_, kKeeping);
+    if (auto started = log.start(contents_); !started) return started;
+    log_ = std::make_unique<store::Log>(std::move(log));
+    // So a snapshot that a kill interrupted is due again.
+    if (!contents_.logs.empty()) snapshot_ = next_snapshot_ = contents_.logs.front();
+    contents_ = {};
+  }
+  if (is_damaged_) return begin_again();
+  if (log_->number() != 0) return {};
+  auto turned = log_->turn();
+  snapshot_ = next_snapshot_ = log_->number();
+  return turned;
+}
+
+Result<void> Ledger::begin_again() {
+  if (!is_aside_) {
+    if (auto aside = directory_->put_aside(); !aside) return aside;
+    is_aside_ = true;
+  }
+  if (!has_turned_) {
+    if (auto turned = log_->turn(); !turned) return turned;
+    has_turned_ = true;
+  }
+  auto snapshot = ADIT_TRY(store::Snapshot::begin(*directory_, kKeeping, *log_));
+  if (auto written = ledger::write(snapshot, book_, *enough_.flag); !written) return written;
+  snapshot_ = next_snapshot_ = log_->number();
+  is_damaged_ = false;
+  return {};
 }
 
 Result<std::string> Ledger::copy() const {
-  if (is_closed()) return std::unexpected(Error{.what = "the ledger cannot be read: " + impl_->refusal_});
-  return impl_->book_.copy();
+  if (is_closed()) return std::unexpected(Error{.what = "the ledger cannot be read: " + refusal_});
+  return book_.copy();
 }
 
 bool Ledger::is_copy(const std::string& copy) {
@@ -301,38 +229,11 @@ Result<void> Ledger::take_over(const std::string& copy, const dispatch::Handover
   Book there;
   if (!there.apply(static_cast<std::uint8_t>(Kind::Steps), copy))
     return std::unexpected(Error{.what = "it is no copy of a ledger"});
-  const Book& here = impl_->book_;
+  const Book& here = book_;
   const dispatch::TakeOver taken =
       dispatch::take_over({here.reports(), here.runs()}, {there.reports(), there.runs()}, handover);
   const auto record = ADIT_TRY(here.record(taken, there));
-  return impl_->append(record, dispatch::Flush::Now, true);
-}
-
-const std::string& Ledger::damage() const {
-  return impl_->damage_;
-}
-const std::string& Ledger::warning() const {
-  return impl_->file_.trouble();
-}
-const std::string& Ledger::refusal() const {
-  return impl_->refusal_;
-}
-bool Ledger::is_closed() const {
-  return impl_->directory_ == nullptr;
-}
-
-Known Ledger::known() const {
-  return impl_->known();
-}
-
-std::function<Result<void>()> Ledger::upkeep() {
-  return impl_->upkeep();
-}
-void Ledger::upkeep_done(const Result<void>& done) {
-  impl_->upkeep_done(done);
-}
-void Ledger::end_upkeep() {
-  *impl_->enough_ = true;
+  return append(record, dispatch::Flush::Now, true);
 }
 
 }  // namespace adit::ledger

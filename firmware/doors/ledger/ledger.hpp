@@ -1,11 +1,13 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <span>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "dispatch/merged_reports.hpp"
@@ -13,9 +15,11 @@
 #include "dispatch/report.hpp"
 #include "dispatch/runs.hpp"
 #include "ledger/book.hpp"
+#include "loop/file_descriptor.hpp"
 #include "store/contents.hpp"
 #include "store/directory.hpp"
 #include "store/frame.hpp"
+#include "store/log.hpp"
 
 namespace adit::ledger {
 
@@ -31,6 +35,42 @@ struct Known {
   friend bool operator==(const Known&, const Known&) = default;
 };
 Known latest_of(const Known& one, const Known& other);
+
+/// What a process of this boot knew last, as the only value of a file in memory.
+class KnownFile {
+ public:
+  KnownFile() = default;
+  /// `path` "": no file.
+  explicit KnownFile(const std::string& path);
+  /// The last values in the file; 0: unknown.
+  const Known& content() const { return known_; }
+  /// Why the file could not be opened or read, or "".
+  const std::string& trouble() const { return trouble_; }
+  /// After a failed write the file is empty, so that no older values are believed.
+  void write(const Known& known);
+
+ private:
+  loop::FileDescriptor file_;
+  Known known_;
+  std::string trouble_;
+};
+
+/// Tells running upkeep to stop, at the latest when it is destroyed.
+class Enough {
+ public:
+  Enough() = default;
+  Enough(Enough&& other) noexcept : flag(std::move(other.flag)) {}
+  Enough& operator=(Enough&& other) noexcept {
+    flag.swap(other.flag);
+    return *this;
+  }
+  ~Enough() { set(); }
+  void set() {
+    if (flag) *flag = true;
+  }
+
+  std::shared_ptr<std::atomic<bool>> flag = std::make_shared<std::atomic<bool>>(false);
+};
 
 /// All artifact reports with all their steps, and all runs, in a log on disk (store/README.md; records:
 /// README.md). A successful write is on disk; a failed one has no effect.
@@ -57,9 +97,6 @@ class Ledger {
   static bool can_be_read(const std::string& state);
   /// Renames an unreadable ledger, so that the next open() creates a new one. Returns the new name.
   static Result<std::string> set_aside(const std::string& state);
-  Ledger(Ledger&&) noexcept;
-  Ledger& operator=(Ledger&&) noexcept;
-  ~Ledger();
 
   /// Writes all steps in order as one record, each with the report's state after it. With Soon they survive
   /// this process, and a power cut after the next write with Now, or flush(). A report's type, position and
@@ -71,12 +108,12 @@ class Ledger {
   /// Syncs writes with Soon.
   Result<void> flush();
   /// Prepares a write. Error: a new report could not be written now.
-  Result<void> make_ready();
+  Result<void> make_ready() { return make_ready(0); }
 
-  std::vector<dispatch::Report> reports() const;  // oldest first
-  std::vector<dispatch::Run> runs() const;        // oldest first
+  std::vector<dispatch::Report> reports() const { return book_.reports(); }  // oldest first
+  std::vector<dispatch::Run> runs() const { return book_.runs(); }           // oldest first
   /// All steps of a report, oldest first.
-  std::vector<Step> history(std::int64_t report) const;
+  std::vector<Step> history(std::int64_t report) const { return book_.history(report); }
 
   /// Reports, steps and runs as bytes for take_over(). Error if the ledger is closed.
   Result<std::string> copy() const;
@@ -87,12 +124,12 @@ class Ledger {
   Result<void> take_over(const std::string& copy, const dispatch::Handover& handover);
 
   /// A sentence about damage found by open(), or "".
-  const std::string& damage() const;
+  const std::string& damage() const { return damage_; }
   /// Why open() could not read the file in memory, so that an older copy may be believed; or "".
-  const std::string& warning() const;
+  const std::string& warning() const { return file_.trouble(); }
   /// Why the last try to accept a new report failed, or "".
-  const std::string& refusal() const;
-  bool is_closed() const;
+  const std::string& refusal() const { return refusal_; }
+  bool is_closed() const { return directory_ == nullptr; }
   /// Facts to store elsewhere, never less than open() was given.
   Known known() const;
 
@@ -101,12 +138,28 @@ class Ledger {
   std::function<Result<void>()> upkeep();
   void upkeep_done(const Result<void>& done);
   /// Makes running work stop early, without effect.
-  void end_upkeep();
+  void end_upkeep() { enough_.set(); }
 
  private:
-  class Impl;
-  explicit Ledger(std::unique_ptr<Impl> impl);
-  std::unique_ptr<Impl> impl_;
+  Ledger() = default;
+  Result<void> append(const std::string& record, dispatch::Flush flush, bool has_new);
+  Result<void> make_ready(std::size_t record);
+  Result<void> begin();
+  Result<void> begin_log();
+  Result<void> begin_again();
+
+  std::shared_ptr<store::Directory> directory_;  // null: closed. Workers may hold it longer
+  store::Contents contents_;                     // until log_ continues it
+  std::unique_ptr<store::Log> log_;
+  Book book_;
+  std::string damage_, refusal_;
+  Known known_;  // from open()
+  KnownFile file_;
+  bool is_damaged_ = false, is_aside_ = false, has_turned_ = false, has_begun_ = false;
+  bool is_under_way_ = false;                       // upkeep is running
+  std::uint64_t snapshot_ = 0, next_snapshot_ = 0;  // first log after the last snapshot
+  std::uint64_t spare_ = 0, next_spare_ = 0;        // the log with a spare file
+  Enough enough_;
 };
 
 }  // namespace adit::ledger

@@ -99,55 +99,22 @@ void Source::cancel() {
 
 class Loop::Impl {
  public:
-  Impl() : wake_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
-    must(wake_ ? 0 : -errno, "eventfd");
-    must(sd_event_new(&event_), "sd_event_new");
-    must(sd_event_add_io(event_, nullptr, wake_.get(), EPOLLIN, &Impl::woken, this), "watching posts");
+  Impl() : wake(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
+    must(wake ? 0 : -errno, "eventfd");
+    must(sd_event_new(&event), "sd_event_new");
+    must(sd_event_add_io(event, nullptr, wake.get(), EPOLLIN, &Impl::woken, this), "watching posts");
   }
-  ~Impl() { sd_event_unref(event_); }
+  ~Impl() { sd_event_unref(event); }
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
 
-  sd_event* event() const { return event_; }
-  double stamp_at(Instant instant) const {
-    return stamp_at_start_ + std::chrono::duration<double>(instant - started_).count();
-  }
-
-  void set_stamp(double stamp, Instant instant) { stamp_at_start_ += stamp - stamp_at(instant); }
-
-  WallClock& wall() { return wall_; }
-
-  void post(std::function<void()>&& task) {
-    bool first = false;
-    {
-      const std::lock_guard lock(mutex_);
-      first = posted_.empty();
-      posted_.push_back(std::move(task));  // moves `task` only after the allocation
-    }
-    if (!first) return;
-    // A task posted from the loop's own thread runs at the end of the turn and needs no system call. A task
-    // that a task posts takes its turn among the sockets.
-    if (std::this_thread::get_id() == thread_ && !running_tasks_) {
-      own_posts_ = true;
-    } else {
-      ::eventfd_write(wake_.get(), 1);  // cannot fail: the counter is far below its maximum
-    }
-  }
-
-  void run() {
-    while (!stopping_) turn(kNever);
-    stopping_ = false;
-  }
-  void stop() { stopping_ = true; }
-
   void turn(std::uint64_t most_usec) {
-    thread_ = std::this_thread::get_id();
-    const int result = sd_event_run(event_, own_posts_ ? 0 : most_usec);
+    thread = std::this_thread::get_id();
+    const int result = sd_event_run(event, own_posts ? 0 : most_usec);
     if (result != -EINTR) must(result, "sd_event_run");
-    if (std::exchange(own_posts_, false)) run_posted();
+    if (std::exchange(own_posts, false)) run_posted();
   }
 
- private:
   static int woken(sd_event_source*, int fd, std::uint32_t, void* userdata) {
     eventfd_t count = 0;
     ::eventfd_read(fd, &count);
@@ -158,28 +125,28 @@ class Loop::Impl {
   void run_posted() noexcept {
     std::vector<std::function<void()>> tasks;
     {
-      const std::lock_guard lock(mutex_);
-      tasks.swap(posted_);
+      const std::lock_guard lock(mutex);
+      tasks.swap(posted);
     }
-    running_tasks_ = true;
+    running_tasks = true;
     for (auto& task : tasks) {
       task();
       task = nullptr;  // frees the task's data before the next task runs
     }
-    running_tasks_ = false;
+    running_tasks = false;
   }
 
-  const Instant started_ = std::chrono::steady_clock::now();
-  double stamp_at_start_ = system_now();
-  WallClock wall_{stamp_at_start_, started_};
-  FileDescriptor wake_;
-  sd_event* event_ = nullptr;
-  std::atomic<std::thread::id> thread_{};  // the loop's thread, once it has run
-  bool stopping_ = false;
-  bool running_tasks_ = false;
-  bool own_posts_ = false;  // the loop's thread posted, and the eventfd was not written
-  std::mutex mutex_;
-  std::vector<std::function<void()>> posted_;
+  const Instant started = std::chrono::steady_clock::now();
+  double stamp_at_start = system_now();
+  WallClock wall{stamp_at_start, started};
+  FileDescriptor wake;
+  sd_event* event = nullptr;
+  std::atomic<std::thread::id> thread{};  // the loop's thread, once it has run
+  bool stopping = false;
+  bool running_tasks = false;
+  bool own_posts = false;  // the loop's thread posted, and the eventfd was not written
+  std::mutex mutex;
+  std::vector<std::function<void()>> posted;
 };
 
 Loop::Loop() : impl_(std::make_unique<Impl>()) {}
@@ -189,33 +156,33 @@ Instant Loop::now() const {
   return std::chrono::steady_clock::now();
 }
 double Loop::stamp_now() const {
-  return impl_->stamp_at(now());
+  return impl_->stamp_at_start + std::chrono::duration<double>(now() - impl_->started).count();
 }
 void Loop::set_stamp(double now) {
-  impl_->set_stamp(now, this->now());
+  impl_->stamp_at_start += now - stamp_now();
 }
 
 double Loop::wall_now() const {
-  return impl_->wall().now(now());
+  return impl_->wall.now(now());
 }
 void Loop::set_wall(double now) {
-  impl_->wall().set(now, this->now());
+  impl_->wall.set(now, this->now());
 }
 double Loop::wall_ahead() const {
-  return impl_->wall().ahead();
+  return impl_->wall.ahead();
 }
 double Loop::look_at_wall(bool system_is_right) {
   const Instant before = now();
   const double system = system_now();
   const Instant after = now();
   // The thread was paused between the two readings; the next second's call decides.
-  return after - before > kReadTogether ? 0 : impl_->wall().look(system, after, system_is_right);
+  return after - before > kReadTogether ? 0 : impl_->wall.look(system, after, system_is_right);
 }
 
 Source Loop::watch(int fd, std::uint32_t events, std::function<void(std::uint32_t)> ready) {
   auto state = std::make_shared<Source::State>();
   state->call = std::move(ready);
-  must(sd_event_add_io(impl_->event(), &state->source, fd, events, &Source::State::ready, state.get()),
+  must(sd_event_add_io(impl_->event, &state->source, fd, events, &Source::State::ready, state.get()),
        "watching a descriptor");
   if (events == 0) must(sd_event_source_set_enabled(state->source, SD_EVENT_OFF), "watching a descriptor");
   return Source(std::move(state));
@@ -224,7 +191,7 @@ Source Loop::watch(int fd, std::uint32_t events, std::function<void(std::uint32_
 Source Loop::timer(std::function<void()> expired) {
   auto state = std::make_shared<Source::State>();
   state->call = [call = std::move(expired)](std::uint32_t) { call(); };
-  must(sd_event_add_time(impl_->event(), &state->source, CLOCK_MONOTONIC, kNever, kAccuracyUsec,
+  must(sd_event_add_time(impl_->event, &state->source, CLOCK_MONOTONIC, kNever, kAccuracyUsec,
                          &Source::State::expired, state.get()),
        "making a timer");
   must(sd_event_source_set_enabled(state->source, SD_EVENT_OFF), "making a timer");
@@ -238,20 +205,34 @@ Source Loop::signal(int number, std::function<void()> came) {
   must(-pthread_sigmask(SIG_BLOCK, &set, nullptr), "blocking a signal");
   auto state = std::make_shared<Source::State>();
   state->call = [call = std::move(came)](std::uint32_t) { call(); };
-  must(sd_event_add_signal(impl_->event(), &state->source, number, &Source::State::came, state.get()),
+  must(sd_event_add_signal(impl_->event, &state->source, number, &Source::State::came, state.get()),
        "watching a signal");
   return Source(std::move(state));
 }
 
 void Loop::post(std::function<void()>&& task) {
-  impl_->post(std::move(task));
+  bool first = false;
+  {
+    const std::lock_guard lock(impl_->mutex);
+    first = impl_->posted.empty();
+    impl_->posted.push_back(std::move(task));  // moves `task` only after the allocation
+  }
+  if (!first) return;
+  // A task posted from the loop's own thread runs at the end of the turn and needs no system call. A task
+  // that a task posts takes its turn among the sockets.
+  if (std::this_thread::get_id() == impl_->thread && !impl_->running_tasks) {
+    impl_->own_posts = true;
+  } else {
+    ::eventfd_write(impl_->wake.get(), 1);  // cannot fail: the counter is far below its maximum
+  }
 }
 
 void Loop::run() {
-  impl_->run();
+  while (!impl_->stopping) impl_->turn(kNever);
+  impl_->stopping = false;
 }
 void Loop::stop() {
-  impl_->stop();
+  impl_->stopping = true;
 }
 
 void Loop::turn(Duration most) {

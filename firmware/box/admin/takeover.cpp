@@ -10,7 +10,6 @@
 #include "forward/clocks.hpp"
 #include "host/files.hpp"
 #include "host/log.hpp"
-#include "icd/sentence.hpp"
 #include "icd/try.hpp"
 #include "ledger/ledger.hpp"
 #include "settings/settings.hpp"

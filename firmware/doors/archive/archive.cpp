@@ -1,7 +1,6 @@
 #include "archive/archive.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <limits>
 #include <utility>
 

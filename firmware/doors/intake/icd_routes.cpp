@@ -9,7 +9,6 @@
 #include "icd/sentence.hpp"
 #include "icd/text.hpp"
 #include "icd/try.hpp"
-#include "intake/answer.hpp"
 #include "intake/head.hpp"
 
 namespace adit::intake {

@@ -10,7 +10,6 @@
 #include "dispatch/runs.hpp"
 #include "dispatch/verdicts.hpp"
 #include "forward/channel.hpp"
-#include "host/log.hpp"
 #include "intake/answer.hpp"
 
 namespace adit::forward {

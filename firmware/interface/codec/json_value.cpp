@@ -4,7 +4,6 @@
 #include <cmath>
 #include <memory>
 #include <utility>
-#include <vector>
 
 #include "codec/body_decoder.hpp"
 #include "codec/json_number.hpp"

@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <limits>
 #include <optional>
-#include <string>
 #include <string_view>
 
 #include "codec/value.hpp"

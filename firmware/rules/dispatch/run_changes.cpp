@@ -1,7 +1,6 @@
 #include "dispatch/run_changes.hpp"
 
 #include <algorithm>
-#include <ranges>
 #include <set>
 #include <utility>
 #include <vector>

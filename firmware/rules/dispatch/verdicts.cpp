@@ -1,7 +1,5 @@
 #include "dispatch/verdicts.hpp"
 
-#include <algorithm>
-
 #include "codec/json.hpp"
 #include "codec/read.hpp"
 #include "dispatch/report.hpp"

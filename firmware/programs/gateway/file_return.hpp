@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <chrono>
 #include <functional>
+#include <memory>
+#include <utility>
 
 #include "loop/loop.hpp"
 #include "loop/workers.hpp"
@@ -17,10 +19,25 @@ class FileReturn {
 
   /// `writer` runs `can_be_read`, which waits for the disk. `loop` and `writer` outlive this.
   FileReturn(loop::Loop& loop, loop::Writer& writer, std::function<bool()> can_be_read,
-             std::chrono::seconds rest, std::function<void()> is_back);
+             std::chrono::seconds rest, std::function<void()> is_back)
+      : loop_(loop),
+        writer_(writer),
+        can_be_read_(std::move(can_be_read)),
+        rest_(rest),
+        is_back_(std::move(is_back)),
+        timer_(loop.timer([this] { look(); })) {
+    timer_.call_at(loop_.now() + rest_);
+  }
 
  private:
-  void look();
+  void look() {
+    const auto can = std::make_shared<bool>(false);
+    writer_.submit([can, can_be_read = can_be_read_] { *can = can_be_read(); },
+                   [this, can] {
+                     if (*can) return is_back_();
+                     timer_.call_at(loop_.now() + rest_);
+                   });
+  }
 
   loop::Loop& loop_;
   loop::Writer& writer_;

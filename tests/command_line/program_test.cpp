@@ -27,9 +27,7 @@ Program program_of(Options& options) {
                     &options.folder},
                    {"--more", "FILE", "another", &options.more},
                    {"--speed", "N", "how fast", number<0.5, 2.0>(options.speed)},
-                   {"quick", "", "at once", &options.quick},
-                   {"--version", "", "print the version", &options.version},
-                   {"--help", "", "print this help", &options.help}},
+                   {"quick", "", "at once", &options.quick}},
           .ending = "Exits 0."};
 }
 

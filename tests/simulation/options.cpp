@@ -32,8 +32,7 @@ command_line::Program command_line_of(Options& options) {
            {"--log", "", "each event", &options.log},
            {"--story", "", "each event without what is of every run", &options.story},
            {"--until", "CHECK", "ends where that check finds something", &options.until},
-           {"--as-it-is", "", "a run that fails is not shrunk", &options.as_it_is},
-           {"--help", "", "print this help", &options.help}},
+           {"--as-it-is", "", "a run that fails is not shrunk", &options.as_it_is}},
       .ending = "Exits 0 where all runs were good, 1 where one was not, 2 on a wrong command line.",
       .empty = command_line::Empty::Taken,
   };

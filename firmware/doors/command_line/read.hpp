@@ -13,12 +13,23 @@ namespace adit::command_line {
 /// thread-safe because of getopt_long(3).
 [[gnu::cold]] Wrong read(const Program& program, std::span<const char* const> arguments);
 
+/// The program of `program_of` for these options, with --version and --help as the last rows.
+template <class Options>
+Program full_program(Program (*program_of)(Options&), Options& options) {
+  Program program = program_of(options);
+  if constexpr (requires { options.version; })
+    program.rows.push_back({"--version", "", "print the version", &options.version});
+  program.rows.push_back({"--help", "", "print this help", &options.help});
+  return program;
+}
+
 /// The options that were read. `program_of` returns the rows for the options object that it gets.
 template <class Options>
 std::expected<Options, std::string> read(Program (*program_of)(Options&),
                                          std::span<const char* const> arguments) {
   Options options;
-  if (auto wrong = read(program_of(options), arguments)) return std::unexpected(*std::move(wrong));
+  if (auto wrong = read(full_program(program_of, options), arguments))
+    return std::unexpected(*std::move(wrong));
   return options;
 }
 
@@ -28,7 +39,7 @@ template <class Options>
 std::optional<int> answer(Program (*program_of)(Options&), const char* version,
                           const std::expected<Options, std::string>& options) {
   Options usual;
-  const Program program = program_of(usual);
+  const Program program = full_program(program_of, usual);
   if (!options) {
     std::fprintf(stderr, "%s: %s\n%s", program.name.c_str(), options.error().c_str(), help(program).c_str());
     return 2;

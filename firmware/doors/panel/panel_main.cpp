@@ -36,9 +36,7 @@ command_line::Program panel_command_line_of(PanelOptions& options) {
                 &options.socket},
                {"--simulated", "FILE",
                 "show the lights in this file while no line is named; the button is the FIFO FILE.button",
-                &options.simulated},
-               {"--version", "", "print the version", &options.version},
-               {"--help", "", "print this help", &options.help}},
+                &options.simulated}},
       .ending =
           "Exit code: 0 after SIGTERM or SIGINT, with all lights dark; 1 if it cannot start; 2 for a wrong "
           "command line.",

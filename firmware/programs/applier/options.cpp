@@ -38,9 +38,7 @@ command_line::Program command_line_of(Options& options) {
                {"--watch", "",
                 "only write to the directory of --status which other machine uses the box's addresses",
                 &options.watch},
-               {"--told", "DIR", "directory from which --watch reads the endpoints", &options.told},
-               {"--version", "", "print the version", &options.version},
-               {"--help", "", "print this help", &options.help}},
+               {"--told", "DIR", "directory from which --watch reads the endpoints", &options.told}},
       .ending =
           "Exit code: 0 if no change is pending; 1 if an error occurred, networkd has not read its files, or "
           "a request cannot be removed or done; 2 for a wrong command line.",
@@ -81,9 +79,7 @@ command_line::Program command_line_of(UpdateOptions& options) {
                {"--hindrance", "FILE", "if this file exists, install no update: it has the reason",
                 &options.hindrance},
                {"--rauc", "CMD", "RAUC", &options.rauc},
-               {"--systemctl", "CMD", "systemd", &options.systemctl},
-               {"--version", "", "print the version", &options.version},
-               {"--help", "", "print this help", &options.help}},
+               {"--systemctl", "CMD", "systemd", &options.systemctl}},
       .ending = "Exit code: 0 on success; 1 if an error occurred; 2 for a wrong command line.",
   };
 }
@@ -99,9 +95,7 @@ command_line::Program command_line_of(ClockOptions& options) {
                {"--chip", "DIR", "the kernel's directory of a battery-backed clock", &options.chip},
                {"--chip-device", "FILE", "that clock's device, to set it", &options.chip_device},
                {"--team", "NAME", "interface for NTP", &options.team},
-               {"--systemctl", "CMD", "systemctl, to start and stop chronyd", &options.systemctl},
-               {"--version", "", "print the version", &options.version},
-               {"--help", "", "print this help", &options.help}},
+               {"--systemctl", "CMD", "systemctl, to start and stop chronyd", &options.systemctl}},
       .ending = "Exit code: 0 on success; 1 if an error occurred; 2 for a wrong command line.",
   };
 }
@@ -117,9 +111,7 @@ command_line::Program command_line_of(SpareOptions& options) {
                {"--sticks", "DIR", "directory in which USB sticks are mounted, read-only", &options.sticks},
                {"--block", "DIR", "the kernel's directory of disks", &options.block},
                {"--devices", "DIR", "directory of the disks' devices", &options.devices},
-               {"--mount", "CMD", "systemd-mount, to mount sticks", &options.mount},
-               {"--version", "", "print the version", &options.version},
-               {"--help", "", "print this help", &options.help}},
+               {"--mount", "CMD", "systemd-mount, to mount sticks", &options.mount}},
       .ending = "Exit code: 0 on success; 1 if an error occurred; 2 for a wrong command line.",
   };
 }
@@ -137,9 +129,7 @@ command_line::Program command_line_of(ImportOptions& options) {
            {"--given", "FILE", "settings in use until others are saved", &options.given},
            {"--memory", "FILE",
             "if this file exists, the state is lost at the next boot, and accepted files stay on the card",
-            &options.in_memory},
-           {"--version", "", "print the version", &options.version},
-           {"--help", "", "print this help", &options.help}},
+            &options.in_memory}},
       .ending =
           "Exit code: 0 if there are no files, or if they are wrong or accepted; 1 if correct files could "
           "not be stored; 2 for a wrong command line.",

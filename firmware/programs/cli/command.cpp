@@ -3,6 +3,7 @@
 
 #include "cli/ask.hpp"
 #include "cli/commands.hpp"
+#include "command_line/read.hpp"
 #include "host/log.hpp"
 #include "icd/sentence.hpp"
 #include "icd/try.hpp"
@@ -115,7 +116,7 @@ std::string see_help(const CommandRow* about) {
 
 std::string help_about(const CommandRow* about) {
   Options options;
-  Program program = command_line_of(options);
+  Program program = command_line::full_program(command_line_of, options);
   std::deque<std::string> sentences;
   if (about == nullptr) {
     explain_all(program);

@@ -249,9 +249,7 @@ command_line::Program command_line_of(Options& options) {
                 "a file with the team's or the scoring token (default: $ADIT_TOKEN_FILE, or as root the "
                 "box's own)",
                 &options.token_file},
-               {"--json", "", "print JSON, for scripts", &options.json},
-               {"--version", "", "print the version", &options.version},
-               {"--help", "", "print this help", &options.help}},
+               {"--json", "", "print JSON, for scripts", &options.json}},
   };
 }
 
@@ -263,7 +261,7 @@ std::expected<Options, WrongLine> parse_options(std::span<const std::string_view
   Options options;
   Words others(options);
   std::vector<std::string> given;
-  auto program = command_line_of(options);
+  auto program = command_line::full_program(command_line_of, options);
   program.given = &given;
   program.word =
       command_line::take<[](Words& all, const std::string& word) { return all.take(word); }>(others);

@@ -43,9 +43,7 @@ command_line::Program command_line_of(Options& options) {
                {"--block", "DIR",
                 "read the health of the state directory's disk from DIR, the kernel's directory of disks by "
                 "number",
-                &options.block},
-               {"--version", "", "print the version", &options.version},
-               {"--help", "", "print this help", &options.help}},
+                &options.block}},
       .ending =
           "Queued messages and sessions survive a restart in $RUNTIME_DIRECTORY, or in the state directory "
           "if that is not set.\nExit status: 0 after SIGTERM or SIGINT, 1 if aditd cannot start (the log "

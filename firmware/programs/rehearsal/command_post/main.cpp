@@ -130,9 +130,7 @@ Wrong take_as_measured(Options& options, const std::string&) {
             "/other-sender /posted, GET /record /arrivals, GET, POST and DELETE /faults",
             parsed_value<listening_address>(options.control)},
            {"--verbose", "", "print a line for each request even if stdout is not a terminal",
-            &options.verbose},
-           {"--version", "", "print the version", &options.version},
-           {"--help", "", "print this help", &options.help}},
+            &options.verbose}},
       .ending =
           "If installed, adit-rehearsal demo starts this program, Adit and robots and prints the address of "
           "the page. See adit-rehearsal demo --help.\n"

@@ -76,9 +76,7 @@ command_line::Program command_line_of(Options& options) {
            {"--truth", "CSV", "write the artifacts of the cave to this file, as type,x,y,z", &options.truth},
            {"--generate-only", "", "write the file of --truth and exit", &options.generate_only},
            {"--speed", "X", "speed of the robots, in units of 2 m/s (1)", number<0.1, 20.0>(options.speed)},
-           {"--quiet", "", "print only the final summary", &options.quiet},
-           {"--version", "", "print the version", &options.version},
-           {"--help", "", "print this help", &options.help}},
+           {"--quiet", "", "print only the final summary", &options.quiet}},
       .ending =
           "Exit code: 0 if at least one message of every kind was accepted and no message was rejected, "
           "except with 429 (too many requests).",

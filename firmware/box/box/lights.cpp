@@ -27,10 +27,6 @@ Lights::Lights(loop::Loop& loop, std::unique_ptr<panel::Lines> lines)
   painter_.take(std::move(lines));
 }
 
-void Lights::let_go() {
-  painter_.take(nullptr);
-}
-
 void Lights::beat() {
   if (painter_.lines() == nullptr || !painter_.lines()->is_watched()) return;
   painter_.set(frame().lit, loop_.now());

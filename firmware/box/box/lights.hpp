@@ -34,7 +34,7 @@ class Lights {
   Lights(loop::Loop& loop, std::unique_ptr<panel::Lines> lines);
 
   /// Releases the lines, before take() with others or the same.
-  void let_go();
+  void let_go() { painter_.take(nullptr); }
   void take(std::unique_ptr<panel::Lines> lines);
 
   /// Call once a second: sets watched lines again, which shows their holder that the loop turns.

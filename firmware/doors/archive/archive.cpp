@@ -20,10 +20,6 @@ StoredRuns::~StoredRuns() {
   *ending_ = true;
 }
 
-std::function<bool()> StoredRuns::enough() const {
-  return [ending = ending_] { return ending->load(); };
-}
-
 void StoredRuns::look() {
   const auto listed = std::make_shared<std::expected<RunsFolder::List, std::string>>();
   writer_.submit([listed, folder = folder_] { *listed = folder.list(); },

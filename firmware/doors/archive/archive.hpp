@@ -38,7 +38,9 @@ class StoredRuns {
   /// The run's size has changed. False: the run is not in list().
   bool resize(const std::string& key, std::uint64_t bytes);
   /// A function that returns true once this object ends.
-  std::function<bool()> enough() const;
+  std::function<bool()> enough() const {
+    return [ending = ending_] { return ending->load(); };
+  }
 
   /// `present`: row of the present run.
   void read(const std::string& key, const api::RunRow& present, api::KeptRuns::ReadDone done);

@@ -165,14 +165,6 @@ void RunRecords::tell(std::string_view bytes, std::uint64_t file) {
   });
 }
 
-void RunRecords::add(const picture::LayerView& view, std::uint64_t /*file*/) {
-  if (tiles_fit_) picture_.take_up(view);
-}
-
-void RunRecords::add(const Wiped& wiped, std::uint64_t /*file*/) {
-  picture_.was_wiped(wiped.stamp);
-}
-
 /// A sample, or a need for attention.
 template <class Line>
 void RunRecords::add(const Line& line, std::uint64_t /*file*/) {

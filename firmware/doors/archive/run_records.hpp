@@ -125,8 +125,10 @@ class RunRecords {
   // `file`: 0 for a line file, else a tile file.
   void add(const Head& head, std::uint64_t file);
   void add(const TileState& state, std::uint64_t file);
-  void add(const picture::LayerView& view, std::uint64_t file);
-  void add(const Wiped& wiped, std::uint64_t file);
+  void add(const picture::LayerView& view, std::uint64_t /*file*/) {
+    if (tiles_fit_) picture_.take_up(view);
+  }
+  void add(const Wiped& wiped, std::uint64_t /*file*/) { picture_.was_wiped(wiped.stamp); }
   void add(const api::Track& track, std::uint64_t file);
   template <class Line>
   void add(const Line& line, std::uint64_t file);

@@ -274,10 +274,6 @@ std::vector<std::pair<std::uint8_t, std::string>> Book::records() const {
   return records;
 }
 
-std::string Book::copy() const {
-  return record_of(reports_, runs_);
-}
-
 std::string Book::record_of(const Reports& reports, const Runs& runs) const {
   Steps all{.highest = highest_, .reports = {}, .runs = {}};
   for (const auto& [number, kept] : reports) {

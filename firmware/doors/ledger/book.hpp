@@ -75,7 +75,7 @@ class Book {
   /// The same content as few records.
   std::vector<std::pair<std::uint8_t, std::string>> records() const;
   /// All reports and runs as the body of one record.
-  std::string copy() const;
+  std::string copy() const { return record_of(reports_, runs_); }
 
   /// The record of these steps. Error: a step would replace another report, or a value is not a number.
   store::Result<std::string> record(std::span<const dispatch::Report> steps, const dispatch::Run* run) const;

@@ -221,10 +221,6 @@ Result<std::string> Ledger::copy() const {
   return book_.copy();
 }
 
-bool Ledger::is_copy(const std::string& copy) {
-  return steps_record_in(copy).has_value();
-}
-
 Result<void> Ledger::take_over(const std::string& copy, const dispatch::Handover& handover) {
   Book there;
   if (!there.apply(static_cast<std::uint8_t>(Kind::Steps), copy))

@@ -118,7 +118,7 @@ class Ledger {
   /// Reports, steps and runs as bytes for take_over(). Error if the ledger is closed.
   Result<std::string> copy() const;
   /// Whether the bytes are from copy().
-  static bool is_copy(const std::string& copy);
+  static bool is_copy(const std::string& copy) { return steps_record_in(copy).has_value(); }
   /// Takes over another box's reports and runs by dispatch::take_over(), with each report's history, as one
   /// record.
   Result<void> take_over(const std::string& copy, const dispatch::Handover& handover);

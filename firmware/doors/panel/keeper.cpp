@@ -145,14 +145,6 @@ void Keeper::take(const LightRequest& message) {
   complained_ = false;
 }
 
-void Keeper::take(const EndRequest&) {
-  watched_.ends(loop_.now());
-}
-
-void Keeper::take(const LinesRequest& message) {
-  if (!knows_board_ && used_ != message.panel) use(message.panel);
-}
-
 /// A line can be opened only once, so the old lines are closed first.
 void Keeper::use(const settings::Panel& panel) {
   edges_ = {};

@@ -78,8 +78,10 @@ class Keeper {
   void hear();
   void take(std::string_view message);
   void take(const LightRequest& message);
-  void take(const EndRequest& message);
-  void take(const LinesRequest& message);
+  void take(const EndRequest& /*message*/) { watched_.ends(loop_.now()); }
+  void take(const LinesRequest& message) {
+    if (!knows_board_ && used_ != message.panel) use(message.panel);
+  }
   void lose();
   void use(const settings::Panel& panel);
   void watch_button();

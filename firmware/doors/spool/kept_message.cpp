@@ -119,10 +119,6 @@ icd::ChunkedBytes data_in(const MappedFile& file, std::size_t size) {
 
 MapFile::MapFile(const std::string& path) : file_(path), error_(file_.append(std::string(kBefore, '\0'))) {}
 
-int MapFile::append(icd::ChunkedBytes& data) {
-  return error_ != 0 ? error_ : file_.append(data);
-}
-
 std::size_t MapFile::stored_bytes() const {
   return file_.size() - std::min(file_.size(), kBefore);
 }

@@ -73,7 +73,7 @@ class MapFile {
   explicit MapFile(const std::string& path);
 
   /// Appends data and frees each chunk once it is written. After an error, `data` holds the rest.
-  int append(icd::ChunkedBytes& data);
+  int append(icd::ChunkedBytes& data) { return error_ != 0 ? error_ : file_.append(data); }
   /// The data that append() has written, mapped from the file. Empty with errno: it cannot be mapped.
   icd::ChunkedBytes stored();
   std::size_t stored_bytes() const;

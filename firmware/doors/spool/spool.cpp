@@ -87,10 +87,6 @@ bool Spool::has_room(std::uint64_t bytes) const {
   return room && *room >= bytes;
 }
 
-std::shared_ptr<MapFile> Spool::begin() {
-  return std::make_shared<MapFile>(folder_ + "/arriving");
-}
-
 icd::Checked<icd::MapUpdate> Spool::keep(std::uint64_t number, icd::MapUpdate map, std::uint64_t spare,
                                          std::shared_ptr<MapFile> begun) {
   if (!unread_.empty()) return not_kept(unread_);

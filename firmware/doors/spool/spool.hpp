@@ -46,7 +46,7 @@ class Spool {
   void leave_to_others(std::uint64_t bytes) { left_to_others_ = bytes; }
 
   /// A file for a map's data as it arrives. Release the last reference in the writer thread.
-  std::shared_ptr<MapFile> begin();
+  std::shared_ptr<MapFile> begin() { return std::make_shared<MapFile>(folder_ + "/arriving"); }
   /// Whether `bytes` more fit.
   bool has_room(std::uint64_t bytes) const;
   /// Stores a map until forget() and returns it with its data mapped from the file. Each chunk is freed once

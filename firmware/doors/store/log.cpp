@@ -130,10 +130,6 @@ Result<void> Log::flush() {
   return {};
 }
 
-Result<void> Log::turn() {
-  return turn_for(0);
-}
-
 /// Starts the next file. The old file is synced, or its records above durable_ are void: the new header says
 /// so, and the accepted ones follow it.
 Result<void> Log::turn_for(std::size_t body) {

@@ -36,7 +36,7 @@ class Log {
   /// Syncs records appended with Soon.
   Result<void> flush();
   /// Starts the next file. A snapshot with its number can then replace all earlier files.
-  Result<void> turn();
+  Result<void> turn() { return turn_for(0); }
 
   std::uint64_t number() const { return file_.name.number; }  // of the present file
   std::uint64_t last() const { return last_; }                // last sequence number

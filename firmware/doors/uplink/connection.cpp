@@ -64,10 +64,6 @@ void Connection::hurry() {
   connect();
 }
 
-void Connection::open() {
-  if (!socket_) connect();
-}
-
 void Connection::close() {
   icd::require(!busy());
   if (socket_) drop();
@@ -297,10 +293,6 @@ std::optional<Sent> Connection::has_arrived() const {
   return exchange_->left(transmission(socket_->fd.get()), loop_.now());
 }
 
-void Connection::listen_again() {
-  timer_.call_at(exchange_->next_listening(loop_.now()));
-}
-
 void Connection::answered() {
   Answered answer = exchange_->take_answer();
   const Transmission seen = transmission(socket_->fd.get());
@@ -348,14 +340,6 @@ void Connection::call_done(Outcome outcome) {
 }
 
 Server::Server(loop::Loop& loop) : loop_(loop), wake_(loop.timer([this] { wake(); })) {}
-
-void Server::remove(Connection& one) {
-  std::erase(connections_, &one);
-}
-
-void Server::remove(Turn& turn) {
-  std::erase(turns_, &turn);
-}
 
 bool Server::is_free() const {
   return !is_serial_ ||
@@ -440,10 +424,6 @@ void Server::begin_serial() {
   on_close();
 }
 
-void Server::on_close() {
-  if (is_serial_) wake_.call_at(loop_.now());
-}
-
 /// Connects warm connections and lets senders send. They may destroy connections and turns.
 void Server::wake() {
   const auto alive = shared_from_this();
@@ -487,10 +467,6 @@ const Connection* Connections::the_busy_one() const {
   const bool is_second = second_ && second_->busy();
   if (first_.busy()) return is_second ? nullptr : &first_;
   return is_second ? second_.get() : nullptr;
-}
-
-Connection* Connections::other_than(const Connection& one) {
-  return &one == &first_ ? second_.get() : &first_;
 }
 
 void Connections::get_ready() {

@@ -101,7 +101,9 @@ class Connection {
   /// Call this when the link may be back: restarts a pending attempt to connect, and skips the pause.
   void hurry();
   /// Connects if the connection is closed.
-  void open();
+  void open() {
+    if (!socket_) connect();
+  }
   /// Closes the connection. Requires !busy().
   void close();
   /// Closes the connection by a reset. `done` of the request in flight is not called, and its answer is not
@@ -183,7 +185,7 @@ class Connection {
   void write();
   void began_to_leave();
   bool answer_came();
-  void listen_again();
+  void listen_again() { timer_.call_at(exchange_->next_listening(loop_.now())); }
   void answered();
   void in_doubt(InDoubt doubt);
   void never_sent(const std::string& reason);
@@ -247,7 +249,7 @@ class Server : public std::enable_shared_from_this<Server> {
   bool is_free() const;
 
   void add(Turn& turn) { turns_.push_back(&turn); }
-  void remove(Turn& turn);
+  void remove(Turn& turn) { std::erase(turns_, &turn); }
   /// True: send now. False: `came` will be called. `goes_first`: before turns that do not.
   bool claim(Turn& turn, bool goes_first);
 
@@ -255,7 +257,7 @@ class Server : public std::enable_shared_from_this<Server> {
   friend class Connection;
 
   void add(Connection& one) { connections_.push_back(&one); }
-  void remove(Connection& one);
+  void remove(Connection& one) { std::erase(connections_, &one); }
 
   /// True if connections may be open without a request.
   bool keeps_warm() const { return !is_serial_ && loop_.now() >= cleared_until_; }
@@ -263,7 +265,9 @@ class Server : public std::enable_shared_from_this<Server> {
   void on_silence();
   /// `can_stay`: by HTTP. Returns true if the connection stays open.
   bool on_answer(Connection& one, bool can_stay);
-  void on_close();
+  void on_close() {
+    if (is_serial_) wake_.call_at(loop_.now());
+  }
 
   void close_idle();
   void suspect(const Connection& closed);
@@ -344,7 +348,7 @@ class Connections {
 
  private:
   const Connection* the_busy_one() const;
-  Connection* other_than(const Connection& one);
+  Connection* other_than(const Connection& one) { return &one == &first_ ? second_.get() : &first_; }
   Connection& one_for_the_next();
   void ended(Connection& one);
 

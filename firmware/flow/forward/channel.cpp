@@ -223,10 +223,6 @@ void Channel::send(icd::Uri uri, std::string_view content_type, icd::ChunkedByte
   under_way_.push_back(under_way);
 }
 
-void Channel::get_ready() {
-  if (!next_ && connection_) connection_->get_ready();
-}
-
 std::optional<uplink::Sent> Channel::has_arrived() const {
   return connection_ ? connection_->has_arrived() : std::nullopt;
 }

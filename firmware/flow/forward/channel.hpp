@@ -112,7 +112,9 @@ class Channel {
   /// Resets the only request in flight. Its `done` is not called.
   void give_way();
   /// Prepares for a request ahead of the answer to the first.
-  void get_ready();
+  void get_ready() {
+    if (!next_ && connection_) connection_->get_ready();
+  }
   /// uplink::Connections::is_serial()
   bool is_serial() const { return connection_ && connection_->is_serial(); }
   /// False: the Command Post serves one connection at a time, and serves one.

@@ -208,10 +208,6 @@ void MapPicture::forwarded(icd::MapUpdate map) {
   wake_.call_at(loop_.now());  // the next map may be packed first
 }
 
-void MapPicture::hold() {
-  held_until_ = loop_.now() + kMostHeld;
-}
-
 void MapPicture::go_on_from(picture::Mosaic earlier) {
   held_until_ = {};
   const auto before = mosaic_.version();

@@ -120,7 +120,7 @@ class MapPicture {
   /// Draws an accepted map, unless a later one covers it.
   void forwarded(icd::MapUpdate map);
   /// Draws no map until go_on_from(), at most for kMostHeld.
-  void hold();
+  void hold() { held_until_ = loop_.now() + kMostHeld; }
   void go_on_from(picture::Mosaic earlier);
   /// Forgets the picture and its queue.
   void begin_run();

@@ -283,10 +283,6 @@ void Maps::accept(Arrived& map) {
   pump();
 }
 
-void Maps::refuse(Arrived& map, icd::Refusal why) {
-  end(map, std::unexpected(std::move(why)));
-}
-
 void Maps::end(Arrived& map, const icd::Checked<void>& outcome) {
   store_.discard(std::exchange(map.file, nullptr));
   overtaken_.end(map.upload);

@@ -136,7 +136,7 @@ class Maps {
   void leave_out(const std::shared_ptr<Arrived>& map, std::span<const icd::GridBounds> newer);
   void store_next_tile(const std::shared_ptr<Arrived>& map);
   void accept(Arrived& map);
-  void refuse(Arrived& map, icd::Refusal why);
+  void refuse(Arrived& map, icd::Refusal why) { end(map, std::unexpected(std::move(why))); }
   void end(Arrived& map, const icd::Checked<void>& outcome);
   void restore(spool::Spool::KeptMap kept);
   void put_aside(spool::Spool::KeptMap kept);

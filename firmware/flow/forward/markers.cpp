@@ -44,10 +44,6 @@ void MarkerArrivals::take(icd::MarkersUpdate update, queues::Upload upload, Done
   if (arrivals_.size() == 1) go(&MarkerArrivals::begin);
 }
 
-void MarkerArrivals::go(Step step) noexcept {
-  if ((this->*step)(arrivals_.front())) end();
-}
-
 MarkerArrivals::Step MarkerArrivals::next_step() const {
   if (!is_in_part()) return &MarkerArrivals::begin;
   return arrivals_.front().records.empty() ? &MarkerArrivals::add_part : &MarkerArrivals::keep;

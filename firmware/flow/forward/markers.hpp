@@ -63,7 +63,9 @@ class MarkerArrivals {
   /// True: the outcome is known.
   using Step = bool (MarkerArrivals::*)(Arrival&);
 
-  void go(Step step) noexcept;
+  void go(Step step) noexcept {
+    if ((this->*step)(arrivals_.front())) end();
+  }
   Step next_step() const;
   bool begin(Arrival& arrival);
   /// The queue has no room for the whole update. True: some of its markers can be accepted.

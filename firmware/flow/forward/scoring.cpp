@@ -51,10 +51,6 @@ void StatusCache::add_report(const dispatch::Effect& effect, double run_clock, l
   body_ = with_figures(body_, *corrected_);
 }
 
-bool StatusCache::is_fresh(loop::Instant now) const {
-  return fresh_ && asked_ && now - *asked_ < kFresh;
-}
-
 std::optional<intake::Answer> StatusCache::answer(loop::Instant now) const {
   if (!asked_ || now - *asked_ > kOldest) return std::nullopt;
   const auto age = std::chrono::floor<std::chrono::seconds>(now - *asked_).count();

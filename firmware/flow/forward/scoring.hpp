@@ -87,7 +87,7 @@ class StatusCache {
 
   const std::optional<icd::RunStatus>& run() const { return run_; }
   std::optional<alarms::ShownClock> run_clock(icd::Stamp now) const { return run_clock_.at(now); }
-  bool is_fresh(loop::Instant now) const;
+  bool is_fresh(loop::Instant now) const { return fresh_ && asked_ && now - *asked_ < kFresh; }
   /// nullopt if older than kOldest.
   std::optional<intake::Answer> answer(loop::Instant now) const;
 

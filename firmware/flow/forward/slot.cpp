@@ -30,10 +30,6 @@ void Slot::packing_took(loop::Duration took) {
   packing_takes_ = std::max(took, packing_takes_ - (packing_takes_ - took) / 8);
 }
 
-loop::Duration Slot::lead() const {
-  return std::min<loop::Duration>(packing_takes_, kLongestLead);
-}
-
 void Slot::packed(std::size_t points, std::size_t bytes, queues::Precision precision) {
   if (points < kTelling) return;
   const double packed_to = static_cast<double>(bytes) / static_cast<double>(points);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -50,7 +51,7 @@ class Slot {
 
   /// How long before its time the next map is to be packed: as the longest of the last few took, for where
   /// one comes too late, the link is idle; at most kLongestLead, for until then newer data takes its place.
-  loop::Duration lead() const;
+  loop::Duration lead() const { return std::min<loop::Duration>(packing_takes_, kLongestLead); }
   /// How long so many bytes take to leave.
   loop::Duration transfer(std::size_t bytes) const;
   /// The conditions that decide the effort for a map, if maps are `spacing` apart. Until a map has shown how

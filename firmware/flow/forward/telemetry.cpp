@@ -93,10 +93,6 @@ void States::passed(const queues::QueuedState& state) {
   for (const icd::NamedPose& pose : state.update.poses) blame_.passed(pose.name.text(), loop_.now());
 }
 
-void States::show(const Sent& state) {
-  delivered_.forwarded(state->news, loop_.wall_now());
-}
-
 void States::put_back(const queues::QueuedState& state) {
   finish(state, false);
   queue_.put_back(state);

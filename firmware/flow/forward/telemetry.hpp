@@ -54,7 +54,7 @@ class States {
 
   void passed(const queues::QueuedState& state);
   /// Passes an accepted message to delivered.
-  void show(const Sent& state);
+  void show(const Sent& state) { delivered_.forwarded(state->news, loop_.wall_now()); }
   /// Journals the answer. `is_done`: the message is not sent again.
   void finish(const queues::QueuedState&, bool is_done) { journal_.state_answered(is_done); }
   void put_back(const queues::QueuedState& state);

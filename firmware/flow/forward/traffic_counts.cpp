@@ -41,10 +41,6 @@ void TrafficCounts::no_room(const Traffic& traffic, api::Time now) {
   changed_();
 }
 
-void TrafficCounts::replaced(const Traffic& traffic, std::size_t updates) {
-  row(traffic).replaced += updates;
-}
-
 void TrafficCounts::no_valid_point(const Traffic& traffic, std::size_t bytes, api::Time now) {
   ++row(traffic).no_valid_point;
   accepted(traffic, bytes, now);

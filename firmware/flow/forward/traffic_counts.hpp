@@ -69,7 +69,7 @@ class TrafficCounts {
   void restore(const Traffic& traffic, api::Time accepted, api::Time forwarded);
   /// A message was rejected because the queue is full.
   void no_room(const Traffic& traffic, api::Time now);
-  void replaced(const Traffic& traffic, std::size_t updates);
+  void replaced(const Traffic& traffic, std::size_t updates) { row(traffic).replaced += updates; }
   /// A cloud without a valid point was accepted. It is not sent.
   void no_valid_point(const Traffic& traffic, std::size_t bytes, api::Time now);
   void invisible(std::size_t markers);

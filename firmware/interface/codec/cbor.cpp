@@ -5,8 +5,6 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <span>
-#include <utility>
 
 #include "icd/require.hpp"
 #include "icd/sentence.hpp"
@@ -104,14 +102,6 @@ void CborWriter::head(Major major, std::uint64_t argument) {
   head(major, 27, argument, 8);
 }
 
-void CborWriter::map(std::size_t members) {
-  head(Major::Map, members);
-}
-
-void CborWriter::array(std::size_t elements) {
-  head(Major::Array, elements);
-}
-
 void CborWriter::text(std::string_view utf8) {
   head(Major::Text, utf8.size());
   if (utf8.size() > latest_.size() - used_) flush();
@@ -129,22 +119,10 @@ void CborWriter::whole(std::int64_t number) {
   }
 }
 
-void CborWriter::real(double number) {
-  head(Major::Simple, 27, std::bit_cast<std::uint64_t>(number), sizeof number);
-}
-
-void CborWriter::truth(bool yes) {
-  head(Major::Simple, yes ? 21 : 20);
-}
-
 void CborWriter::byte_string(const icd::ChunkedBytes& bytes) {
   head(Major::Bytes, bytes.size());
   flush();
   out_.append(bytes);
-}
-
-void CborWriter::flush() {
-  out_.append(std::span(latest_).first(std::exchange(used_, 0)));
 }
 
 icd::ChunkedBytes CborWriter::finish() {

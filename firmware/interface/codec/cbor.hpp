@@ -1,10 +1,13 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "icd/chunked_bytes.hpp"
 
@@ -56,13 +59,13 @@ class CborHead {
 /// as announced.
 class CborWriter {
  public:
-  void map(std::size_t members);
-  void array(std::size_t elements);
+  void map(std::size_t members) { head(Major::Map, members); }
+  void array(std::size_t elements) { head(Major::Array, elements); }
   void text(std::string_view utf8);
   void whole(std::int64_t number);
   /// Always a 64-bit float, so that the reader gets a float.
-  void real(double number);
-  void truth(bool yes);
+  void real(double number) { head(Major::Simple, 27, std::bit_cast<std::uint64_t>(number), sizeof number); }
+  void truth(bool yes) { head(Major::Simple, yes ? 21 : 20); }
   /// A byte string that shares the chunks of `bytes`.
   void byte_string(const icd::ChunkedBytes& bytes);
 
@@ -71,7 +74,7 @@ class CborWriter {
  private:
   void head(Major major, std::uint8_t info, std::uint64_t number, std::size_t size);
   void head(Major major, std::uint64_t argument);
-  void flush();
+  void flush() { out_.append(std::span(latest_).first(std::exchange(used_, 0))); }
 
   icd::ChunkedBytes out_;
   std::array<std::uint8_t, 4096> latest_;  // buffer, because items are small

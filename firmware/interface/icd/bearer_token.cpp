@@ -142,10 +142,6 @@ void Redaction::strike_from_strings(std::string& text) const {
   text = struck.append(text, done);
 }
 
-void Redaction::strike_from_html(std::string& text) const {
-  strike_long_from(text);
-}
-
 void Redaction::strike_long_from(std::string& text) const {
   for (const BearerToken& secret : secrets_) {
     if (secret.reveal().size() >= kShortest) secret.strike_from(text);

@@ -26,10 +26,6 @@ bool can_be_found_out(const Report& report, ReportEvent event) {
 
 }  // namespace
 
-void ReportBook::open(std::vector<Report> all) {
-  for (Report& report : all) put(std::move(report));
-}
-
 void ReportBook::carry_on(const ReportBook& before) {
   for (const auto& [number, report] : before.reports_) put(report);
   unwritten_ = before.unwritten_;
@@ -72,10 +68,6 @@ bool ReportBook::move(std::span<const Step> steps, Time time) {
   if (!write(moved, happened, soon ? Flush::Soon : Flush::Now)) return false;
   for (std::size_t i = 0; follow_ && i < moved.size(); ++i) follow_(moved[i].number, actions[i], time);
   return true;
-}
-
-bool ReportBook::catch_up() {
-  return (unwritten_.empty() && unwritten_runs_.empty()) || write({}, false);
 }
 
 void ReportBook::change(std::span<const Report> steps, const Run& run) {

@@ -35,7 +35,9 @@ class ReportBook {
   explicit ReportBook(Output& output, Follow follow = nullptr)
       : output_(output), follow_(std::move(follow)) {}
 
-  void open(std::vector<Report> all);
+  void open(std::vector<Report> all) {
+    for (Report& report : all) put(std::move(report));
+  }
   /// Takes all reports and the unwritten steps.
   void carry_on(const ReportBook& before);
 
@@ -58,7 +60,7 @@ class ReportBook {
   void change(std::span<const Report> steps, const Run& run);
   void write(const Run& run) { change({}, run); }
   /// Retries failed writes. True: all is on disk.
-  bool catch_up();
+  bool catch_up() { return (unwritten_.empty() && unwritten_runs_.empty()) || write({}, false); }
 
   const Report& at(std::int64_t number) const { return reports_.at(number); }
   const Report* find(std::int64_t number) const;

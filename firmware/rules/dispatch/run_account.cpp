@@ -268,10 +268,6 @@ void RunAccount::merge_into(std::int64_t number, std::span<const Report> steps, 
   written_ = time.stamp;
 }
 
-void RunAccount::is_not(std::int64_t number) {
-  book_.write(runs_.is_not(number));
-}
-
 void RunAccount::add_signs(const Signs& signs) {
   runs_.present().signs |= signs;
   book_.write(run());

@@ -146,7 +146,7 @@ class RunAccount {
   /// gets the latest status and clocks of all of them.
   void merge_into(std::int64_t number, std::span<const Report> steps, Time time);
   /// The present run is not `number`, for certain. It may still be a run between the two.
-  void is_not(std::int64_t number);
+  void is_not(std::int64_t number) { book_.write(runs_.is_not(number)); }
   /// More signs that the present run is not the run that it may be.
   void add_signs(const Signs& signs);
   /// Names prove nothing in the present run. `why`: a sentence.

@@ -87,10 +87,6 @@ SenderQueue::Maps::const_iterator SenderQueue::ready(Instant now) const {
   return first == waiting_.end() || rests(*first) ? waiting_.end() : first;
 }
 
-bool SenderQueue::is_ready(Instant now) const {
-  return ready(now) != waiting_.end();
-}
-
 SenderQueue::Maps::const_iterator SenderQueue::rested_longest() const {
   icd::require(!waiting_.empty());
   if (!waiting_.front().map.is_grid()) return std::ranges::min_element(waiting_, {}, rest_of);
@@ -234,10 +230,6 @@ void SenderQueue::insert(Maps::const_iterator place, std::vector<QueuedMap> part
   for (const QueuedMap& part : parts) bytes += bytes_held(part);
   waiting_.insert(place, std::move_iterator(parts.begin()), std::move_iterator(parts.end()));
   bytes_ += bytes;
-}
-
-void SenderQueue::restart_pieces() {
-  for (QueuedMap& each : waiting_) each.piece = {};
 }
 
 void SenderQueue::inherit(const Trial& trial) {
@@ -437,10 +429,6 @@ void MapQueue::put_back_apart(QueuedMap map) {
 void MapQueue::put_back_halves(QueuedMap map) {
   Waiting& its = joins(Sender::of(map.map));
   its.queue.put_back_halves(std::move(map));
-}
-
-void MapQueue::restart_pieces() {
-  for (auto& [sender, waiting] : senders_) waiting.queue.restart_pieces();
 }
 
 std::optional<Successive> MapQueue::to_compare() const {

@@ -109,7 +109,7 @@ class SenderQueue {
   Replaced add(QueuedMap added);
   void append(QueuedMap added);  // replaces no map
   /// Whether a map may be sent now. A map that rests may not, nor a grid behind a grid that rests.
-  bool is_ready(Instant now) const;
+  bool is_ready(Instant now) const { return ready(now) != waiting_.end(); }
   /// Orders resting maps: whether it goes last, when it failed, and when it was accepted.
   using Rest = std::tuple<bool, Instant, Instant>;
   /// Of the map that has rested longest. Requires a map.
@@ -119,7 +119,9 @@ class SenderQueue {
   Replaced put_back(QueuedMap map);
   void put_back_apart(QueuedMap map);
   void put_back_halves(QueuedMap map);
-  void restart_pieces();
+  void restart_pieces() {
+    for (QueuedMap& each : waiting_) each.piece = {};
+  }
   void inherit(const Trial& trial);  // by the maps that have not failed themselves
   void step_forward();               // clears Trial::steps_behind of all maps
 
@@ -233,7 +235,9 @@ class MapQueue {
   void put_back_halves(QueuedMap map);
 
   /// The Command Post may lack the pieces that were delivered: maps in pieces begin with their first one.
-  void restart_pieces();
+  void restart_pieces() {
+    for (auto& [sender, waiting] : senders_) waiting.queue.restart_pieces();
+  }
 
   /// Two successive clouds that have not been compared yet, or nothing. Call replace() or keep_both() with
   /// the outcome.

@@ -44,10 +44,6 @@ void StateQueue::forget_what_was_taken() {
   std::erase_if(robots_, [](const auto& robot) { return !robot.second.waits(); });
 }
 
-void StateQueue::begin_run() {
-  for (auto& [name, held] : robots_) held.is_of_run = false;
-}
-
 void StateQueue::add_unless_known(const icd::StateUpdate& update, Instant now) {
   for (const icd::NamedPose& named : update.poses) {
     const auto [robot, is_new] = robots_.try_emplace(named.name, Held{{named.name, named.pose}});
@@ -147,10 +143,6 @@ void StateQueue::passed(const QueuedState& state) {
   for (auto& [name, held] : robots_) {
     if (held.trial.strikes == 0) held.join();
   }
-}
-
-void StateQueue::join_all() {
-  for (auto& [name, held] : robots_) held.join();
 }
 
 void StateQueue::give_up(const icd::RobotName& name, Instant now) {

@@ -74,7 +74,9 @@ class StateQueue {
   void forget_what_was_taken();
   /// Another run has begun. Queued poses are sent once, because they were posted before it; accepted poses
   /// are not sent again.
-  void begin_run();
+  void begin_run() {
+    for (auto& [name, held] : robots_) held.is_of_run = false;
+  }
   /// Queues the news of a state again that was not delivered. Newer poses stay.
   void put_back(const QueuedState& state);
   /// The same, and each of its robots goes apart from now on.
@@ -83,7 +85,9 @@ class StateQueue {
   /// too, there was an outage, and all robots that are not at fault go together again.
   void passed(const QueuedState& state);
   /// All robots go together, and none rests.
-  void join_all();
+  void join_all() {
+    for (auto& [name, held] : robots_) held.join();
+  }
   /// Drops a robot's own state. Its next state rests for kRest.
   void give_up(const icd::RobotName& name, Instant now);
   /// Of a state of one robot that take() gave. Null: of several, or the robot was dropped to make room.

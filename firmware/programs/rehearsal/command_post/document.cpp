@@ -247,17 +247,9 @@ std::optional<std::string> Field::to_text() const {
   return value_->get<std::string>();
 }
 
-std::optional<double> Field::number(const char* name) const {
-  return member(name).and_then(&Field::to_number);
-}
-
 std::optional<std::int64_t> Field::integer(const char* name, std::int64_t least, std::int64_t most) const {
   const auto field = member(name);
   return field ? field->integer(least, most) : std::nullopt;
-}
-
-std::optional<std::string> Field::text(const char* name) const {
-  return member(name).and_then(&Field::to_text);
 }
 
 std::string lower(std::string text) {

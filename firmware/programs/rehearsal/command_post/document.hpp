@@ -143,9 +143,9 @@ class Field {
   std::optional<std::string> to_text() const;
 
   // The value of a member that must be there.
-  std::optional<double> number(const char* name) const;
+  std::optional<double> number(const char* name) const { return member(name).and_then(&Field::to_number); }
   std::optional<std::int64_t> integer(const char* name, std::int64_t least, std::int64_t most) const;
-  std::optional<std::string> text(const char* name) const;
+  std::optional<std::string> text(const char* name) const { return member(name).and_then(&Field::to_text); }
 
   const Json& value() const { return *value_; }
   const std::string& path() const { return path_; }

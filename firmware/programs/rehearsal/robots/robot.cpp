@@ -321,10 +321,6 @@ void Robot::notice() {
   }
 }
 
-std::vector<std::size_t> Robot::take_sightings() {
-  return std::exchange(sightings_, {});
-}
-
 void date(Grid& grid, Moment posted) {
   if (grid.width < kDateFollows.size() + kDateDigits) return;
   auto cell = std::ranges::copy(kDateFollows, grid.cells.begin()).out + kDateDigits;

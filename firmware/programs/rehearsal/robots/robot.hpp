@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "rehearsal/agreed.hpp"
@@ -84,7 +85,7 @@ class Robot {
   RobotMap& map() { return map_; }
 
   /// Indices in cave.artifacts() of those seen since the last call, each once in a robot's life.
-  std::vector<std::size_t> take_sightings();
+  std::vector<std::size_t> take_sightings() { return std::exchange(sightings_, {}); }
 
  private:
   void step(double metres);

@@ -121,12 +121,12 @@ TEST(TokenStep, OfMappingIsBadIfTheServerAcceptsAnyPath) {
     for (const int elsewhere : {401, 404, 405, 500, 501})
       expect(with_statuses(status, elsewhere), "good", "is accepted");
     expect(with_statuses(status, status), "bad", "accepts any path");
-    expect(with_statuses(status, 429), "skipped", "none to POST /adit-test");
+    expect(with_statuses(status, 429), "skipped", "POST /adit-test got no answer");
   }
   expect(with_statuses(200, 204), "bad", "accepts any path");
   EXPECT_THAT(with_statuses(422, 422).advice, HasSubstr("compare the mapping address and port"));
   expect(unknown_path(with_status(Asked::Mapping, 422), 422, uplink::InDoubt{"the peer was silent"}),
-         "skipped", "none to POST /adit-test");
+         "skipped", "POST /adit-test got no answer");
 }
 
 TEST(TokenStep, TellsAPageFromAnAnswerWithoutABody) {

@@ -261,9 +261,8 @@ TestStep token(Asked asked, const uplink::Outcome& outcome, bool slash) {
 TestStep unknown_path(TestStep accepted, int status, const uplink::Outcome& outcome) {
   const auto* answer = std::get_if<uplink::Answered>(&outcome);
   if (answer == nullptr || answer->status == icd::kTooManyRequests) {
-    return skipped(
-        "token", icd::sentence("the answer to POST /state/update is ", status, ", but there is none to POST ",
-                               kUnknownPath, ", which would show whether this is a mapping endpoint"));
+    return skipped("token", icd::sentence("POST /state/update got ", status, ", but POST ", kUnknownPath,
+                                          " got no answer that shows whether this is a mapping endpoint"));
   }
   const bool are_both_good = icd::is_success(status) && icd::is_success(answer->status);
   if (answer->status != status && !are_both_good) return accepted;

@@ -89,7 +89,7 @@ test("can be used by keyboard alone", async (t) => {
   const { page } = await come(t);
   await page.locator("#sessions li").first().waitFor();
   const reached = new Set();
-  for (let i = 0; i < 40; ++i) {
+  for (let i = 0; i < 60; ++i) {
     await page.keyboard.press("Tab");
     reached.add(await page.evaluate(() => document.activeElement.closest("section")?.id));
   }

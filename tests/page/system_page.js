@@ -4,8 +4,8 @@ import { visitor } from "./watch.js";
 
 export const OPERATOR = "correct horse", VIEWER = "look, do not touch";
 
-/** The system page after a log-in with `password`, for one test. */
-export async function come(t, password = OPERATOR, { stage, ...options } = {}) {
+/** The system page after a log-in with `password`, for one test; with all cards open, unless `areOpen` is false. */
+export async function come(t, password = OPERATOR, { stage, areOpen = true, ...options } = {}) {
   if (!stage) {
     stage = await serve("calm");
     t.after(() => stage.end());
@@ -16,6 +16,7 @@ export async function come(t, password = OPERATOR, { stage, ...options } = {}) {
   await page.keyboard.press("Enter");
   await page.waitForURL(/\/system$/);
   await page.locator("#link .text", { hasText: "Live" }).waitFor();
+  if (areOpen) await page.$$eval(".card", (cards) => cards.forEach((card) => (card.open = true)));
   return { stage, page };
 }
 

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { come, pressThrice, VIEWER } from "./system_page.js";
 
-const updating = (page) => page.locator("#update");
+const updating = (page) => page.locator("#update .body");
 /** Begins like a bundle: as a squashfs of 40 bytes. */
 const aFile = (text) => ({ name: "adit-a-board-0.2.0.raucb", mimeType: "", buffer: Buffer.from(`hsqs${"\0".repeat(36)}(${"\0".repeat(7)}${text}`, "latin1") });
 

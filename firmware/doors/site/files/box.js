@@ -1,4 +1,5 @@
 // The support bundle, the factory reset, and what the box is made of.
+import { tellCard } from "./card.js";
 import { open } from "./dialog.js";
 import { make } from "./dom.js";
 import { get, getFile, post, sitOutReset } from "./session.js";
@@ -76,8 +77,10 @@ export async function showAbout() {
       ["Board", board?.title],
     ];
     section.querySelector("dl").replaceChildren(...facts.filter(([, value]) => value).map(([name, value]) => fact(name, value)));
+    tellCard(section, [`Adit ${version}`, model].filter(Boolean).map((each) => clip(each, 60)).join(", "));
     section.querySelector("tbody").replaceChildren(...parts.map(part));
   } catch (error) {
     section.querySelector(".trouble").textContent = error.message;
+    tellCard(section, "Not known", "bad");
   }
 }

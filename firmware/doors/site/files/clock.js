@@ -1,4 +1,5 @@
 // The box's time of day: where this browser's is another, the operator is asked once whether it counts.
+import { tellCard } from "./card.js";
 import { confirmed } from "./dialog.js";
 import { say } from "./dom.js";
 import { get, post, session } from "./session.js";
@@ -62,7 +63,10 @@ export function showClock(isOperator) {
     const { source, is_set: isSet, ntp, refusal } = both.box;
     const words = [SOURCES[source ?? (isSet ? "machine" : "none")], ntp, refusal, `the time is ${difference(both.ahead)} this device`];
     say(note, words.filter(Boolean).map((each) => `${each[0].toUpperCase()}${each.slice(1)}.`).join(" "));
-    button.parentElement.hidden = !isOperator || !canSet(both.box);
+    const isOffered = isOperator && canSet(both.box), differs = Math.abs(both.ahead) > MOST;
+    button.parentElement.hidden = !isOffered;
+    const line = differs ? `${difference(both.ahead)} this device` : words[0];
+    tellCard(section, `${line[0].toUpperCase()}${line.slice(1)}`, refusal ? "bad" : differs && isOffered ? "wait" : "quiet");
   };
   const follow = () => show().catch(({ message }) => say(note, message)).then(() => setTimeout(follow, EVERY));
   button.addEventListener("click", () => setClock(both).then(show).catch(({ message }) => say(note, message)));

@@ -1,4 +1,5 @@
 // Who is logged in, and how to end it.
+import { tellCard } from "./card.js";
 import { confirmed } from "./dialog.js";
 import { list, make, say } from "./dom.js";
 import { get, isFault, post, toLogin } from "./session.js";
@@ -45,6 +46,8 @@ async function show() {
   const sessions = await get("/adit/sessions");
   const now = Math.max(...sessions.map(({ seen }) => seen), 0); // the box's clock: who asks is seen now
   list(rows, sessions, ({ number }) => number, create, (node, each) => update(node, each, now));
+  const others = sessions.filter(({ own }) => !own).length;
+  tellCard(section, others === 0 ? "No one else is logged in" : others === 1 ? "1 other is logged in" : `${others} others are logged in`);
 }
 
 async function end(each) {

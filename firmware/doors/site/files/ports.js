@@ -29,6 +29,13 @@ function update(node, port) {
   FACTS.forEach(([, of], at) => say(facts.children[at].lastChild, of(port)));
 }
 
+/** Both in one line, and the worst level. */
+export function portsLine({ ports, pending }) {
+  if (pending) return ["A change is pending", "ask"];
+  const links = ports.map((port) => [SIDES[port.side] ?? port.side, ...linkOf(port)]), bad = links.filter(([, level]) => level === "bad");
+  return bad.length ? [bad.map(([side, , word]) => `${side}: ${word}`).join("; "), "bad"] : [links.length > 1 ? "Both cables in" : "Cable in"];
+}
+
 /** Shows both in a list with the class `ports`. */
 export function showPorts(place, { ports }) {
   if (place.closest("#network")) place.closest("#network").hidden = ports.length === 0; // the settings name none

@@ -1,11 +1,12 @@
 // The spare box: this one standby and is exported, or takes over from another by its export.
+import { tellCard } from "./card.js";
 import { confirmed } from "./dialog.js";
 import { make } from "./dom.js";
 import { get, getFile, oneAtATime, post } from "./session.js";
 import { showStick } from "./spare_stick.js";
 
 const section = document.getElementById("spare");
-const [note, outcome] = section.querySelectorAll(":scope > p"), facts = section.querySelector("dl");
+const [note, outcome] = section.querySelectorAll(".body > p"), facts = section.querySelector("dl");
 const form = section.querySelector("form"), file = section.querySelector("input[type=file]");
 const buttons = Object.fromEntries([...section.querySelectorAll("[data-does]")].map((button) => [button.dataset.does, button]));
 const EVERY = 2000, EVERY_OF_STICK = 300;
@@ -24,6 +25,14 @@ function noteOf({ standby, why, asks_code: asksCode, taken_in: taken, takes_over
   if (asksCode) return "An export was taken in. The box that made it shows the code during its standby.";
   if (standby) return `This box is on standby: ${why}. It accepts and sends no messages until you end the standby.`;
   return AT_WORK;
+}
+
+/** The card's line, and its level. */
+function stateOf({ standby, asks_code: asksCode, taken_in: taken, takes_over: takesOver, stick }) {
+  if (takesOver) return ["Taking over", "wait"];
+  if (taken || asksCode) return ["An export was taken in", "ask"];
+  if (standby) return ["On standby", "wait"];
+  return [stick?.exports.length ? "An export is on the stick" : "Not on standby"];
 }
 
 const whenOf = (seconds) => new Date(seconds * 1000).toLocaleString();
@@ -63,6 +72,7 @@ function show(view) {
   const { standby, code, asks_code: asksCode, taken_in: taken, takes_over: takesOver, stick } = view;
   section.hidden = false;
   note.textContent = noteOf(view);
+  tellCard(section, ...stateOf(view));
   showFacts(factsOf(view));
   const takes = Boolean(taken || asksCode);
   form.hidden = !asksCode || takesOver;

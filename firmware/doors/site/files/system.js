@@ -1,5 +1,6 @@
 // The box itself: its log, who is logged in, passwords, what to send to whoever is to help, and what it is made of.
 import "./presses.js";
+import { followAddress, tellCard } from "./card.js";
 import { offerClock, showClock } from "./clock.js";
 import { badge } from "./dom.js";
 import { followLog } from "./log.js";
@@ -7,7 +8,7 @@ import { offerBundle, offerReset, showAbout } from "./box.js";
 import { watchSessions } from "./logins.js";
 import { offerPasswords } from "./passwords.js";
 import { followNetwork } from "./pending.js";
-import { showPorts } from "./ports.js";
+import { portsLine, showPorts } from "./ports.js";
 import { isFault, session, showWho, toLogin } from "./session.js";
 import { offerSpare } from "./spare.js";
 import { offerUpdate } from "./update.js";
@@ -27,10 +28,16 @@ async function begin() {
   document.getElementById("looks").hidden = operator;
   showWho(document.getElementById("who"));
   followLog(linkIs);
-  followNetwork((network) => network && showPorts(document.querySelector("#network .ports"), network));
+  const ports = document.getElementById("network");
+  followNetwork((network) => {
+    if (!network) return;
+    showPorts(ports.querySelector(".ports"), network);
+    tellCard(ports, ...portsLine(network));
+  });
   showAbout();
   showClock(operator);
   offerUpdate(operator);
+  followAddress();
   if (!operator) return;
   offerClock().catch(() => {}); // the alarm says that the time is not set
   watchSessions();

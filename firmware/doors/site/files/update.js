@@ -1,4 +1,5 @@
 // The box's versions: which runs, an update of it, the way out of a slot that nobody meant, the restart.
+import { tellCard } from "./card.js";
 import { confirmed } from "./dialog.js";
 import { get, oneAtATime, post } from "./session.js";
 
@@ -13,6 +14,8 @@ function showRestart({ managed, why, doing, runs_here: runsHere }, operator) {
   restart.hidden = !operator || !managed;
   restart.disabled = Boolean(doing);
   if (doing === "restarting") restarted.textContent = "The box is restarting.";
+  if (doing === "restarting") tellCard(restartPlace, "The box is restarting", "wait");
+  else tellCard(restartPlace, managed ? "Takes about a minute" : "Not from this page");
 }
 
 /** Asks first, and again where a report is under way: what the box says of it is what is asked. `done`: what is shown then. */
@@ -61,10 +64,23 @@ async function stayIt() {
 
 const STAGES = { installing: "is being installed", interrupted: "was interrupted", installed: "is used after a restart", left: "was left", good: "came up healthy" };
 
+const lastOf = ({ last, trial }) => (last ? `${last.version} ${trial ? "is on trial" : STAGES[last.stage] ?? last.stage}` : "");
+
+/** The card's line, and its level. */
+function stateOf(view, trouble) {
+  const { managed, version, slot, doing, progress, stray, stick, trial, last, newer, runs_here: runsHere } = view;
+  if (stray) return ["An unexpected slot is running", "bad"];
+  if (doing) return [`${doing[0].toUpperCase()}${doing.slice(1)}${progress === null ? "" : `, ${progress} %`}`, "wait"];
+  if (trouble) return ["The update was rejected", "bad"];
+  if (!managed) return [newer ? `apt has ${newer}` : runsHere ? "Not from this page" : "By apt"];
+  const its = lastOf(view) || (stick ? `${stick.version} is on the stick` : "no update");
+  return [`Slot ${slot}, ${version}; ${its}`, trial || last?.stage === "installed" ? "wait" : "quiet"];
+}
+
 export async function offerUpdate(operator) {
   const section = document.getElementById("update"), bar = section.querySelector("progress");
   const [file, install, stick] = section.querySelectorAll(".install > *, input");
-  const [told, outcome] = section.querySelectorAll(":scope > p");
+  const [told, outcome] = section.querySelectorAll(".body > p");
   let timer, trouble = ""; // of the last press, until the next
   function sayOutcome(doing = null, refusal = null) {
     const bad = trouble || refusal;
@@ -72,12 +88,13 @@ export async function offerUpdate(operator) {
     outcome.dataset.bad = !doing && Boolean(bad);
   }
   function show(view) {
-    const { managed, why, version, slot, doing, progress, refusal, trial, last, stick: offer, stick_why: unfit, newer, newer_why: notKnown } = view;
+    const { managed, why, version, slot, doing, progress, refusal, last, stick: offer, stick_why: unfit, newer, newer_why: notKnown } = view;
     const ofApt = newer ? `apt has ${newer}. To install it, run "apt upgrade" on this machine.` : notKnown && `The newer version of apt is not known: ${notKnown}.`;
     section.hidden = !view.runs_here && !ofApt;
-    const end = last && `${last.version} ${trial ? "is on trial" : STAGES[last.stage] ?? last.stage}${last.why && `: ${last.why}`}`;
+    const end = last && `${lastOf(view)}${last.why && `: ${last.why}`}`;
     told.textContent = managed ? [`${version}, slot ${slot}`, end, unfit].filter(Boolean).join(". ") : view.runs_here ? why : ofApt;
     sayOutcome(doing, refusal);
+    tellCard(section, ...stateOf(view, trouble || refusal));
     bar.hidden = !doing;
     if (progress !== null) bar.value = progress;
     for (const node of [file, install, stick]) node.hidden = !operator || !managed || Boolean(doing);

@@ -37,6 +37,25 @@ test("fits 720p, 1080p and 4K, with all text large enough", async (t) => {
   }
 });
 
+test("hides reports without points if its address says so, and says how many", async (t) => {
+  const prepare = (page) => page.addInitScript(() => {
+    globalThis.written = new Set();
+    const { fillText } = CanvasRenderingContext2D.prototype;
+    CanvasRenderingContext2D.prototype.fillText = function (words, ...more) {
+      globalThis.written.add(String(words).trim());
+      return fillText.call(this, words, ...more);
+    };
+  });
+  for (const [path, areShown] of [["display", true], ["display?hide=no-points", false]]) {
+    const { page } = await watch(t, "calm", { path, prepare });
+    await page.locator('#reports [data-key="7"]').waitFor();
+    await page.waitForFunction(() => globalThis.written.has("#7 Survivor"));
+    assert.equal(await page.locator("#reports li", { hasText: "no points" }).count() > 0, areShown);
+    assert.equal((await text(page, "#reports .count")).trim(), areShown ? "7" : "5, 2 without points hidden");
+    assert.equal(await page.evaluate(() => globalThis.written.has("#6 Gas")), areShown, "on the map");
+  }
+});
+
 test("has no axe fault on a phone", async (t) => {
   const { page } = await watch(t, "trouble", { path: "display", bypassCSP: true, viewport: { width: 390, height: 844 } });  // axe is a script
   await axeFindsNothing(page);

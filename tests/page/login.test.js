@@ -102,6 +102,20 @@ test("goes only to pages of this box", async (t) => {
   }
 });
 
+for (const [name, form, ...more] of [["log-in", "#login"], ["first password", "#first", "first-start"]]) {
+  test(`has the theme's button beside the logo, in one line with it, on the page of the ${name}`, async (t) => {
+    const { page } = await come(t, "login.html", more);
+    await page.locator(form).waitFor();
+    for (const width of [320, 390, 1280, 1920]) {
+      await page.setViewportSize({ width, height: 800 });
+      const [logo, button, main] = await page.$$eval("h1 img, button.theme, form:not([hidden])", (nodes) => nodes.map((node) => node.getBoundingClientRect().toJSON()));
+      assert.ok(button.left >= logo.right && Math.abs(button.right - main.right) < 1, `${width}: ${button.left}, ${logo.right}`);
+      assert.ok(Math.abs(button.top + button.bottom - logo.top - logo.bottom) < 2, `${width}: not in one line`);
+      assert.ok(button.bottom <= main.top && main.left >= 8, `${width}`);
+    }
+  });
+}
+
 test("has no axe fault, in the dark and the light theme", async (t) => {
   for (const more of [[], ["first-start"], ["set-up-open"]]) {
     const { page } = await come(t, "login.html", more, { bypassCSP: true });

@@ -35,6 +35,28 @@ async function isInTheMiddle(page) {
   }, "Scout in the middle");
 }
 
+test("cuts no word of its lists", async (t) => {
+  const { page } = await watch(t, "calm");
+  await page.locator(".follow select:enabled").waitFor();
+  for (const [width, height] of [[390, 844], [1280, 720], [1920, 1080]]) {
+    await page.setViewportSize({ width, height });
+    await toTab(page, "Map");
+    const cut = await page.$$eval("#map select, .filter select", (selects) => selects.filter((select) => {
+      if (!select.checkVisibility()) return false;
+      const own = select.getBoundingClientRect().width, whole = select.cloneNode(true);
+      whole.replaceChildren(select.options[select.selectedIndex].cloneNode(true));
+      whole.style.width = "auto";
+      select.after(whole);
+      const needed = whole.getBoundingClientRect().width;
+      whole.remove();
+      return own < needed + 8; // other fonts are wider
+    }).map((select) => select.value));
+    assert.deepEqual(cut, [], `${width}`);
+    const [follow, layers] = await Promise.all([".follow select", ".layers summary"].map((part) => page.locator(part).boundingBox()));
+    assert.ok(layers.x >= follow.x + follow.width + 4, `${width}: they overlap`);
+  }
+});
+
 test("follows a chosen robot until the user moves the map", async (t) => {
   const { page } = await watch(t, "calm", { colorScheme: "dark" });
   await only(page, "Robots");

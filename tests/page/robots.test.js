@@ -94,6 +94,22 @@ for (const [heard, words] of [[94, /^uav9\s+silent\s+1:\d\d$/], [null, /^uav9\s+
   assert.equal((await names(page))[0], "uav9");
 });
 
+test("says once what is true of all kinds of a robot's data, and only what differs beside it", async (t) => {
+  const prepare = (page) => retell(page, () => (view) => {
+    const row = { ...view.activities[0], age: null, heard: 125 }, silent = { level: "bad", word: "silent" }, quiet = { level: "quiet", word: "quiet" };
+    const kinds = (robot, states) => ["grid", "cloud", "state"].map((kind, i) => ({ ...row, robot, kind, ...states[i] }));
+    const activities = [...kinds("all", [silent, silent, silent]), ...kinds("two", [silent, silent, { level: "bad", word: "not arriving" }]), ...kinds("still", [quiet, quiet, quiet])];
+    const standing = { age: null, heard: 125, has_map: true, silent: true, ...silent };
+    return { ...view, activities, standings: [{ ...standing, name: "all" }, { ...standing, name: "two" }, { ...standing, name: "still", silent: false, ...quiet }] };
+  });
+  const { page } = await watch(t, "calm", { prepare, viewport: { width: 390, height: 844 } });
+  await toTab(page, "Robots");
+  await page.waitForSelector('#robots li[data-key="two"]');
+  const line = (name) => page.innerText(`#robots li[data-key="${name}"] .kinds`);
+  assert.deepEqual([await line("all"), await line("two"), await line("still")], ["silent", "silent · pose not arriving", "quiet"]);
+  assert.match(await page.innerText('#robots li[data-key="all"] .age'), /2:0\d/);
+});
+
 test("moves no row under a pointer, and sorts once the pointer has left", async (t) => {
   const { page } = await watchTwenty(t);
   await page.locator("#robots li[data-level=bad]").waitFor();

@@ -229,6 +229,7 @@ function show() {
 
 export function offerApply() {
   const [dropIt, applyIt] = buttons;
+  new ResizeObserver(() => document.documentElement.style.setProperty("--bar", `${place.offsetHeight}px`)).observe(place);
   dropIt.addEventListener("click", () => {
     outcome = "";
     drop();

@@ -14,14 +14,17 @@ import { clip, placeOf, timeOfDay } from "./words.js";
 const calm = ({ verdict }) => ({ id: "calm", severity: verdict.level === "good" ? "good" : "quiet", what: "No alarm" });
 const newFirst = ({ severity, acknowledged }) => 2 * Number(severity === "wait") + Number(acknowledged);
 const MOST_REPORTS = 20; // more than fit any screen
+const HIDES_POINTLESS = new URLSearchParams(location.search).get("hide") === "no-points";
 
 const map = new MapOfRun(document.querySelector("#map canvas"));
+map.setShown("pointless", !HIDES_POINTLESS);
 const reports = document.getElementById("reports");
 
 function showReports(view) {
-  const mine = view.reports.filter((report) => report.run === view.run_number);
-  say(reports.querySelector(".count"), mine.length ? String(mine.length) : "");
-  reports.querySelector(".empty").hidden = mine.length > 0;
+  const all = view.reports.filter((report) => report.run === view.run_number);
+  const mine = HIDES_POINTLESS ? all.filter((report) => report.score_change !== 0) : all, hidden = all.length - mine.length;
+  say(reports.querySelector(".count"), [mine.length || "", hidden && `${hidden} without points hidden`].filter(Boolean).join(", "));
+  reports.querySelector(".empty").hidden = all.length > 0;
   const create = (report) => make("li", icon(report.type), make("span.what"), make("span.badge"), make("span.number"));
   list(reports.querySelector("ol"), mine.slice(0, MOST_REPORTS), (report) => report.number, create, (node, report) => {
     const { level, word } = life(report);

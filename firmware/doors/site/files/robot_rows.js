@@ -28,9 +28,11 @@ const kindWords = (kind) => `${kind.kind} ${kind.level === "good" ? figureWords(
 function words({ silent, kinds, covered, heard }, isFull) {
   const told = kinds.filter(({ word }) => !silent || word !== "silent");
   const shown = isFull ? told : told.filter(({ kind, level }) => kind !== "pose" || level === "bad" || level === "wait");
-  const isAllOne = !isFull && !silent && shown.length > 1 && shown.every(({ level, word }) => level === "bad" && word === shown[0].word);
-  if (isAllOne) return shown[0].word; // "not arriving", of grid and cloud: there may be room for no more
-  const texts = shown.map((kind) => (isFull && kind.details ? `${kindWords(kind)}, ${kind.details}` : kindWords(kind)));
+  const isAllOne = !silent && shown.length > 1 && shown.every(({ level, word }) => level !== "good" && word === shown[0].word);
+  const kindText = (kind) => [isAllOne ? kind.kind : kindWords(kind), isFull && kind.details].filter(Boolean).join(isAllOne ? " " : ", ");
+  const texts = isAllOne // "not arriving" once, for grid and cloud
+    ? [shown[0].word, ...shown.filter(({ details }) => isFull && details).map(kindText)]
+    : shown.map(kindText);
   const last = isFull && !silent && heard !== null ? [`heard ${ago(heard)}`] : [];
   return [...(silent ? ["silent"] : []), ...texts, ...last, ...(isFull && covered ? [covered] : [])].join(" · ");
 }

@@ -51,29 +51,29 @@ test("a rejected message is sent again or discarded, and the focus moves to the 
   const { page, made, post } = await withRefused(t);
   for (const [name, status] of Object.entries(REFUSED)) assert.match(await row(page, name).innerText(), new RegExp(`${status}: .*not to my taste`));
   await counted(page, 4);
-  const [, , third, fourth] = await Promise.all(Object.keys(REFUSED).map((name) => numberOf(page, name)));
+  const [first, second] = await Promise.all(Object.keys(REFUSED).map((name) => numberOf(page, name)));
 
   post.refuses.clear();
-  await press(button(page, "robot_2", "Send again"));
-  await until(() => post.taken.includes("robot_2"), "it to arrive at the Command Post");
-  await row(page, "robot_2").waitFor({ state: "detached" });
+  await press(button(page, "robot_3", "Send again"));
+  await until(() => post.taken.includes("robot_3"), "it to arrive at the Command Post");
+  await row(page, "robot_3").waitFor({ state: "detached" });
   await counted(page, 3);
-  await focusIs(page, `#rejected li[data-key="${third}"] .send`);
+  await focusIs(page, `#rejected li[data-key="${second}"] .send`);  // the newest is the first
   await page.locator("#rejected .said", { hasText: "is queued again" }).waitFor();
 
-  await press(button(page, "robot_3", "Discard"));
-  await row(page, "robot_3").waitFor({ state: "detached" });
+  await press(button(page, "robot_2", "Discard"));
+  await row(page, "robot_2").waitFor({ state: "detached" });
   await counted(page, 2);
-  await focusIs(page, `#rejected li[data-key="${fourth}"] .discard`);
+  await focusIs(page, `#rejected li[data-key="${first}"] .discard`);
 
-  await press(button(page, "robot_4", "Discard"));
-  await row(page, "robot_4").waitFor({ state: "detached" });
-  await focusIs(page, "#rejected li:only-child .discard");
   await press(button(page, "robot_1", "Discard"));
   await row(page, "robot_1").waitFor({ state: "detached" });
+  await focusIs(page, "#rejected li:only-child .discard");
+  await press(button(page, "robot_4", "Discard"));
+  await row(page, "robot_4").waitFor({ state: "detached" });
   await focusIs(page, "#post-title");
   assert.deepEqual(await rejectedOf(made), []);
-  assert.deepEqual(post.taken, ["robot_2"]);
+  assert.deepEqual(post.taken, ["robot_3"]);
   assert.deepEqual(page.complaints, []);
 });
 

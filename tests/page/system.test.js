@@ -48,7 +48,7 @@ test("shows a viewer only permitted parts and no forbidden actions", async (t) =
 test("links all pages", async (t) => {
   const { stage, page } = await come(t);
   const nav = page.getByRole("navigation", { name: /^(All p|P)ages$/ });
-  assert.deepEqual(await nav.getByRole("link").allInnerTexts(), ["Run", "Runs", "Set-up", "System", "Display"]);
+  assert.deepEqual(await nav.getByRole("link").allInnerTexts(), ["Run", "Runs", "Set-up", "System", "Display", "Help"]);
   assert.equal(await nav.getByRole("link", { name: "System" }).getAttribute("aria-current"), "page");
   await nav.getByRole("link", { name: "Run", exact: true }).click();
   await page.waitForSelector("body[data-link=live]");

@@ -14,7 +14,9 @@ export function tellCard(section, words, level = "quiet") {
 /** Opens the card that the page's address names (#passwords), now and later. */
 export function followAddress() {
   const open = () => {
-    const section = document.getElementById(location.hash.slice(1)), card = section?.querySelector(":scope > .card");
+    const section = document.getElementById(location.hash.slice(1));
+    /** @type {HTMLDetailsElement} */
+    const card = section?.querySelector(":scope > .card");
     if (!card) return;
     card.open = true;
     section.scrollIntoView();

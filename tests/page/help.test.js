@@ -67,3 +67,12 @@ test("is whole without scripts, and has no search then", async (t) => {
   assert.equal(await page.locator(".find").isVisible(), false);
   assert.equal(await page.locator(".troubles dl").count(), ALARMS.length);
 });
+
+test("leaves the verdict its room beside the navigation", async (t) => {
+  const { page } = await watch(t, "calm");
+  for (const [width, height] of [[1600, 900], [1800, 900], [1920, 1080]]) {
+    await page.setViewportSize({ width, height });
+    const cut = await page.$$eval("#arriving strong, #arriving .reason", (parts) => parts.filter((part) => part.scrollWidth > part.clientWidth + 1).map((part) => part.textContent));
+    assert.deepEqual(cut, [], `${width}`);
+  }
+});

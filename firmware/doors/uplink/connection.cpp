@@ -158,6 +158,7 @@ std::unique_ptr<Connection> Connection::another() const {
 }
 
 Connection::~Connection() {
+  warm_ = false;  // so that no attempt to connect follows
   give_up();
   server_->remove(*this);
 }

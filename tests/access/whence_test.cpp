@@ -1,6 +1,6 @@
-#include "access/admission.hpp"
-
 #include <gtest/gtest.h>
+
+#include "access/admission.hpp"
 
 namespace adit::access {
 namespace {

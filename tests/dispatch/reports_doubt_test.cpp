@@ -206,7 +206,7 @@ TEST(DoubtsCount, IsLeftToTheOperatorIfNoReportIsLeft) {
   exhausted.lose();
   exhausted.repeat_status(60, 0, 0);
   EXPECT_EQ(exhausted.state(1), InDoubt);
-  EXPECT_THAT(exhausted.report(1).note, HasSubstr("so the counts show none"));
+  EXPECT_THAT(exhausted.report(1).note, HasSubstr("the counts cannot show a report now"));
   EXPECT_THAT(exhausted.reports().run().unreliable, IsEmpty());
 }
 

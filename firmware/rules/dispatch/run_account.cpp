@@ -48,7 +48,7 @@ Evidence weigh(const icd::RunStatus& before, std::int64_t doubts, std::int64_t b
   }
   // Then the counts do not show a record.
   if (used == 0 && (before.remaining_reports - since.scored <= 0 || now.run_clock <= 0)) {
-    return {Finding::Silent, "reports are not scored now, so the counts show none: " + seen, {}};
+    return {Finding::Silent, "the counts cannot show a report now: " + seen, {}};
   }
   if (used == 0) return {Finding::NotRecorded, seen, {}};
   if (used < all) return {Finding::Silent, "the counts do not show which of them was recorded: " + seen, {}};

@@ -112,6 +112,8 @@ class Doubts {
   Doubts(const InquiryPolicy& policy, ReportBook& book, RunAccount& account, const ReportReview& review)
       : policy_(policy), book_(book), account_(account), review_(review) {}
 
+  /// InquiryPolicy::doubt_for
+  std::chrono::milliseconds doubt_for() const { return policy_.doubt_for; }
   /// In doubt in the present run, in the order of sending.
   Reports all() const { return book_.doubts(account_.run().number); }
   /// Call at a start, before begin(). Reports of a box that this one replaces may have come into doubt

@@ -12,7 +12,8 @@
 
 namespace adit::dispatch {
 
-void ReportSender::open(Time time) {
+/// Reports that were in flight at the end of the last process.
+void Reports::doubt_those_in_flight(Time time) {
   for (const auto& [number, report] : book_.all()) {
     last_sending_ = std::max(last_sending_, report.sending);
   }
@@ -23,7 +24,7 @@ void ReportSender::open(Time time) {
 
 /// The report is certainly meant for the present run. If no status comes, a young one or one sent on purpose
 /// may go.
-bool ReportSender::may_go(const Report& report, Instant now) const {
+bool Reports::may_go(const Report& report, Instant now) const {
   if (barred_ || (is_page_ && !ordered_.contains(report.number))) return false;
   if (doubts_.is_pending(now)) return false;
   if (account_.is_fresh(now)) return true;
@@ -31,18 +32,19 @@ bool ReportSender::may_go(const Report& report, Instant now) const {
   return report.asked || clients_.is_young(report, now);
 }
 
-bool ReportSender::may_go_first(const Report& report, Instant now) const {
+/// Whether a report that is posted now may be sent at once.
+bool Reports::may_go_first(const Report& report, Instant now) const {
   return book_.sending() == nullptr && account_.waiting_here().empty() && may_go(report, now);
 }
 
-std::optional<std::int64_t> ReportSender::next(Instant now) const {
+std::optional<std::int64_t> Reports::next(Instant now) const {
   for (const std::int64_t number : account_.waiting_here()) {
     if (may_go(book_.at(number), now)) return number;
   }
   return std::nullopt;
 }
 
-NextRequests ReportSender::next_requests(Time time) const {
+NextRequests Reports::next_requests(Time time) const {
   if (book_.sending() != nullptr) return {};
   NextRequests requests;
   requests.status = doubts_.next_ask(time.now);
@@ -54,7 +56,7 @@ NextRequests ReportSender::next_requests(Time time) const {
 }
 
 /// The comparison that Reports::take() left out because the run was unknown. False: do not send it now.
-bool ReportSender::check(std::int64_t number, Time time) {
+bool Reports::check(std::int64_t number, Time time) {
   const Report report = book_.at(number);
   if (report.run != account_.run().number && !report.asked && !clients_.is_young(report, time.now)) {
     book_.move({number, ReportEvent::Held, "a new run began (" + account_.run().why + ")"}, time);
@@ -83,7 +85,7 @@ bool ReportSender::check(std::int64_t number, Time time) {
   return true;
 }
 
-const Report* ReportSender::choose(Time time) {
+const Report* Reports::choose(Time time) {
   while (const auto number = next(time.now)) {
     if (check(*number, time)) {
       const bool chosen = book_.move(
@@ -95,7 +97,8 @@ const Report* ReportSender::choose(Time time) {
   return nullptr;
 }
 
-void ReportSender::prepare(Report& report, Time time) {
+/// Sets the fields that decide a doubt. Written before the bytes leave, they survive a crash.
+void Reports::prepare(Report& report, Time time) {
   report.run = account_.run().number;
   report.sending = ++last_sending_;
   report.sent = time.stamp;
@@ -109,8 +112,7 @@ void ReportSender::prepare(Report& report, Time time) {
 }
 
 /// For the report in flight. A new run may have begun meanwhile: either may have recorded it.
-void ReportSender::ended(ReportEvent event, const std::string& note, Time time,
-                         const ReportBook::Edit& edit) {
+void Reports::ended(ReportEvent event, const std::string& note, Time time, const ReportBook::Edit& edit) {
   const bool is_lost = event == ReportEvent::Lost || event == ReportEvent::Restarted;
   book_.move({book_.sending()->number, event, note,
               [&](Report& report) {
@@ -124,7 +126,7 @@ void ReportSender::ended(ReportEvent event, const std::string& note, Time time,
              time);
 }
 
-ReportEvent ReportSender::answered(const HttpAnswer& answer, Time time) {
+ReportEvent Reports::answered(const HttpAnswer& answer, Time time) {
   const auto reply = codec::read_report_reply(answer.body);
   const Report* const another = reply ? told_of_another(*reply) : nullptr;
   const ReportEvent event = event_of(answer.status, reply && another == nullptr,
@@ -149,7 +151,7 @@ ReportEvent ReportSender::answered(const HttpAnswer& answer, Time time) {
 
 /// The other sent report in `reply`, or null. Servers and proxies may repeat an answer, which is no evidence
 /// here.
-const Report* ReportSender::told_of_another(const icd::ReportReply& reply) const {
+const Report* Reports::told_of_another(const icd::ReportReply& reply) const {
   if (!reply.report || is_same(*reply.report, book_.sending()->report)) return nullptr;
   for (const Report* const other : book_.same_as(*reply.report)) {
     if (other->number != book_.sending()->number && other->sending != 0) return other;
@@ -157,7 +159,7 @@ const Report* ReportSender::told_of_another(const icd::ReportReply& reply) const
   return nullptr;
 }
 
-void ReportSender::recorded(const ReportBook::Edit& keep, const icd::ReportReply& reply, Time time) {
+void Reports::recorded(const ReportBook::Edit& keep, const icd::ReportReply& reply, Time time) {
   changes_.meet(reply, time);  // the answer decides the run
   const Effect effect = effect_of(reply);
   const bool is_strange = is_about_another(reply, book_.sending()->report);
@@ -184,8 +186,7 @@ Reports::Reports(const ReportRules& rules, Output& output)
       review_(rules_, book_, account_),
       doubts_(rules_.policy, book_, account_, review_),
       clients_(book_, account_, output),
-      changes_(rules_.policy, book_, account_, review_, doubts_, clients_),
-      sender_(book_, account_, review_, doubts_, clients_, changes_) {}
+      changes_(book_, account_, review_, doubts_, clients_) {}
 
 void Reports::open(std::vector<Report> all, std::vector<Run> runs, Time time, const std::string& post) {
   book_.open(std::move(all));
@@ -204,7 +205,7 @@ void Reports::begin(std::vector<Run> runs, Time time, const std::string& post) {
   std::int64_t latest_run = 1;
   for (const auto& [number, report] : book_.all()) latest_run = std::max(latest_run, report.run);
   account_.open(std::move(runs), latest_run, post);
-  sender_.open(time);
+  doubt_those_in_flight(time);
   for (const std::int64_t number : book_.waiting()) review_.compare_later(number);
   doubts_.open();
   doubts_.begin(time.now);
@@ -233,7 +234,7 @@ bool Reports::take(const PostedReport& posted, ClientId client, bool may_send, T
   report.asked = posted.resubmit;
   const bool fresh = is_fresh(time.now);
   const Report* const same = review_.earlier(report);
-  // A finished report's run may have ended unnoticed: ReportSender compares later.
+  // A finished report's run may have ended unnoticed: check() compares later.
   const bool repeats = same != nullptr && (fresh || !is_final(same->state));
   if (repeats && (!report.asked || (same->asked && !is_final(same->state)))) {
     if (is_final(same->state)) {
@@ -265,7 +266,7 @@ bool Reports::take(const PostedReport& posted, ClientId client, bool may_send, T
 bool Reports::take_new(Report report, const Hold& hold, ClientId client, bool may_send, Time time) {
   const bool fresh = is_fresh(time.now);
   // Accepting and choosing in one write flush the disk once.
-  const bool now = may_send && hold.why.empty() && fresh && sender_.may_go_first(report, time.now);
+  const bool now = may_send && hold.why.empty() && fresh && may_go_first(report, time.now);
   const std::int64_t number = add(report, hold, now, time);
   if (number == 0) {
     output_.tell(client, {.sentence = "the report could not be stored and was not accepted; post it again"},
@@ -284,7 +285,7 @@ std::int64_t Reports::add(Report report, const Hold& hold, bool now, Time time,
   if (!hold.why.empty()) events.push_back(ReportEvent::Held);
   if (now) events.push_back(ReportEvent::Chosen);
   const auto edit = [&](Report& chosen) {
-    if (chosen.state == ReportState::Sending) sender_.prepare(chosen, time);
+    if (chosen.state == ReportState::Sending) prepare(chosen, time);
     if (chosen.state == ReportState::Held) chosen.same_as = hold.same_as;
   };
   const std::int64_t number = book_.add(std::move(report), events, hold.why, edit, before);
@@ -314,7 +315,8 @@ std::map<std::string, std::size_t> Reports::waiting_elsewhere() const {
 void Reports::status_heard(const icd::RunStatus& status, Instant asked, Time time) {
   changes_.meet(status, time);
   account_.heard(status, time);
-  sender_.status_heard();
+  barred_ = is_page_ = false;  // the token and the address are right
+  ordered_.clear();
   book_.move(doubts_.hear(status, asked, time), time);
   const std::int64_t open = doubts_.open_count();  // until this status
   doubts_.count(asked, time);
@@ -323,7 +325,7 @@ void Reports::status_heard(const icd::RunStatus& status, Instant asked, Time tim
 
 void Reports::status_failed(NoStatus why, Time time) {
   if (why != NoStatus::NoAnswer) account_.dumb(time.now);
-  sender_.status_failed(why);
+  is_page_ = why == NoStatus::Page;
   doubts_.failed(time);
 }
 
@@ -446,7 +448,7 @@ Reports::Outcome Reports::send(std::int64_t number, Time time) {
                                  }},
                                 time);
   if (!moved) return std::unexpected(kDisk);
-  sender_.order(number);
+  ordered_.insert(number);
   if (decided) doubts_.ask_for_others(time);
   return number;
 }

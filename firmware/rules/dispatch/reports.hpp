@@ -36,62 +36,6 @@ enum class NoStatus : std::uint8_t {
   Other,     // an answer without a usable status, or a doubt
 };
 
-/// Chooses the next report to send, and decides what its answer means.
-class ReportSender {
- public:
-  /// All outlive this.
-  ReportSender(ReportBook& book, RunAccount& account, ReportReview& review, const Doubts& doubts,
-               WaitingClients& clients, RunChanges& changes)
-      : book_(book),
-        account_(account),
-        review_(review),
-        doubts_(doubts),
-        clients_(clients),
-        changes_(changes) {}
-
-  /// Call after ReportBook::open(): puts reports that were in flight at the end of the last process into
-  /// doubt.
-  void open(Time time);
-
-  NextRequests next_requests(Time time) const;
-  /// Reports::choose().
-  const Report* choose(Time time);
-  /// True if a report that is posted now may be sent at once.
-  bool may_go_first(const Report& report, Instant now) const;
-  /// Sets the fields that decide a doubt. Written before the bytes leave, they survive a crash.
-  void prepare(Report& report, Time time);
-
-  ReportEvent answered(const HttpAnswer& answer, Time time);
-  /// Recorded, Rejected and the like come by answered().
-  void ended(ReportEvent event, const std::string& note, Time time, const ReportBook::Edit& edit = nullptr);
-  /// A status arrived: the token and the address are right.
-  void status_heard() {
-    barred_ = is_page_ = false;
-    ordered_.clear();
-  }
-  void status_failed(NoStatus why) { is_page_ = why == NoStatus::Page; }
-  /// The operator sends the report, even to a server whose status is a web page.
-  void order(std::int64_t number) { ordered_.insert(number); }
-
- private:
-  std::optional<std::int64_t> next(Instant now) const;
-  bool may_go(const Report& report, Instant now) const;
-  bool check(std::int64_t number, Time time);
-  const Report* told_of_another(const icd::ReportReply& reply) const;
-  void recorded(const ReportBook::Edit& keep, const icd::ReportReply& reply, Time time);
-
-  ReportBook& book_;
-  RunAccount& account_;
-  ReportReview& review_;
-  const Doubts& doubts_;
-  WaitingClients& clients_;
-  RunChanges& changes_;
-  std::int64_t last_sending_ = 0;  // Report::sending of the last sending
-  bool barred_ = false;            // no report is sent before a status arrives
-  bool is_page_ = false;           // the status is a web page: only ordered_ reports are sent
-  std::set<std::int64_t> ordered_;
-};
-
 struct PostedReport {
   icd::ArtifactReport report;
   std::string sender;     // client's address
@@ -132,13 +76,13 @@ class Reports {
   /// rate limit allows one. True: the report is on disk as sending(); send it.
   bool take(const PostedReport& posted, ClientId client, bool may_send, Time time);
 
-  NextRequests next_requests(Time time) const { return sender_.next_requests(time); }
+  NextRequests next_requests(Time time) const;
   /// The first queued report that may be sent, on disk as sending(). Null: no such report, or the write
   /// failed.
-  const Report* choose(Time time) { return sender_.choose(time); }
-  ReportEvent answered(const HttpAnswer& answer, Time time) { return sender_.answered(answer, time); }
-  void never_left(const std::string& why, Time time) { sender_.ended(ReportEvent::NeverLeft, why, time); }
-  void lost(const std::string& why, Time time) { sender_.ended(ReportEvent::Lost, why, time); }
+  const Report* choose(Time time);
+  ReportEvent answered(const HttpAnswer& answer, Time time);
+  void never_left(const std::string& why, Time time) { ended(ReportEvent::NeverLeft, why, time); }
+  void lost(const std::string& why, Time time) { ended(ReportEvent::Lost, why, time); }
   /// `asked`: time of the request.
   void status_heard(const icd::RunStatus& status, Instant asked, Time time);
   void status_failed(NoStatus why, Time time);
@@ -191,6 +135,15 @@ class Reports {
   bool take_new(Report report, const Hold& hold, ClientId client, bool may_send, Time time);
   std::int64_t add(Report report, const Hold& hold, bool now, Time time, std::span<const Report> before = {});
   bool end_undo(std::int64_t number, const std::string& note, Time time);
+  void doubt_those_in_flight(Time time);
+  std::optional<std::int64_t> next(Instant now) const;
+  bool may_go(const Report& report, Instant now) const;
+  bool may_go_first(const Report& report, Instant now) const;
+  bool check(std::int64_t number, Time time);
+  void prepare(Report& report, Time time);
+  const Report* told_of_another(const icd::ReportReply& reply) const;
+  void recorded(const ReportBook::Edit& keep, const icd::ReportReply& reply, Time time);
+  void ended(ReportEvent event, const std::string& note, Time time, const ReportBook::Edit& edit = nullptr);
 
   ReportRules rules_;
   Output& output_;
@@ -200,7 +153,10 @@ class Reports {
   Doubts doubts_;
   WaitingClients clients_;
   RunChanges changes_;
-  ReportSender sender_;
+  std::int64_t last_sending_ = 0;   // Report::sending of the last sending
+  bool barred_ = false;             // no report is sent before a status arrives
+  bool is_page_ = false;            // the status is a web page: only ordered_ reports are sent
+  std::set<std::int64_t> ordered_;  // the operator sends them, even to a server whose status is a web page
 };
 
 /// A sentence about the unfinished reports, with their counts, for the case that the settings name the

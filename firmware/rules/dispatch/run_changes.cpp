@@ -274,7 +274,7 @@ void RunChanges::meet_name(const std::string& name, const AnotherRun& another, T
 /// Queued reports are held, young ones go on into the new run. Either run may have recorded a doubt that was
 /// sent around the last status, so it enters the new one.
 std::vector<Report> RunChanges::steps_into(std::int64_t next, const std::string& why, Time time) {
-  const std::chrono::duration<double> late = policy_.doubt_for + WaitingClients::kYoung;
+  const std::chrono::duration<double> late = doubts_.doubt_for() + WaitingClients::kYoung;
   const double last_word = account_.run().heard - late.count();
   std::vector<Report> steps;
   const auto step_of = [&](const Report& report, bool enters) {

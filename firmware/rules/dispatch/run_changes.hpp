@@ -65,14 +65,9 @@ class WaitingClients {
 class RunChanges {
  public:
   /// All outlive this.
-  RunChanges(const InquiryPolicy& policy, ReportBook& book, RunAccount& account, ReportReview& review,
-             Doubts& doubts, WaitingClients& clients)
-      : policy_(policy),
-        book_(book),
-        account_(account),
-        review_(review),
-        doubts_(doubts),
-        clients_(clients) {}
+  RunChanges(ReportBook& book, RunAccount& account, ReportReview& review, Doubts& doubts,
+             WaitingClients& clients)
+      : book_(book), account_(account), review_(review), doubts_(doubts), clients_(clients) {}
 
   /// Reports::will_move().
   void will_move(const std::string& post, Time time);
@@ -100,7 +95,6 @@ class RunChanges {
   void keep_held(const std::vector<Report>& steps);
   bool is_held_for_run(const Report& report) const;
 
-  const InquiryPolicy& policy_;
   ReportBook& book_;
   RunAccount& account_;
   ReportReview& review_;

@@ -184,10 +184,9 @@ INSTANTIATE_TEST_SUITE_P(Counts, EvidenceTable, testing::ValuesIn(kEvidenceCases
 
 TEST(Evidence, ExplainsItselfWithFigures) {
   EXPECT_EQ(weigh(status(20, 3), 2, 0, {1, 1}, status(19, 4)).why,
-            "reports left went from 20 to 19 and the score went from 3 to 4, 1 of it by reports sent since, "
+            "reports left went from 20 to 19, the score went from 3 to 4, 1 of it by reports sent since, "
             "with 2 reports in doubt");
-  EXPECT_EQ(weigh(status(20, 3), 1, 0, {}, status(20, 3)).why,
-            "reports left stayed 20 and the score stayed 3");
+  EXPECT_EQ(weigh(status(20, 3), 1, 0, {}, status(20, 3)).why, "reports left stayed 20, the score stayed 3");
   EXPECT_THAT(weigh(status(20, 3), 1, 0, {}, status(18, 3)).why,
               testing::HasSubstr("another sender may report"));
 }

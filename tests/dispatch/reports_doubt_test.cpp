@@ -39,7 +39,7 @@ TEST_F(Doubt, IsSettledByTwoStatusesThatCountTheReport) {
   EXPECT_THAT(told.body, HasSubstr(R"("score_change":1)"));
   EXPECT_THAT(told.body, HasSubstr(R"("reconciled":true)"));
   EXPECT_EQ(scene_.report(1).note,
-            "found recorded: reports left went from 20 to 19 and the score went from 0 to 1");
+            "found recorded: reports left went from 20 to 19, the score went from 0 to 1");
 }
 
 TEST_F(Doubt, GivesARepeatTheReconciledAnswer) {

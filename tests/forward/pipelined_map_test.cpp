@@ -83,9 +83,18 @@ TEST_F(PipelinedMap, IsRetriedIfItFails) {
   EXPECT_EQ(received_since(), (std::vector<std::string>{"first", "second", "second"}));
 }
 
-TEST_F(PipelinedMap, StaysInFlightIfTheFirstIsRejected) {
+/// The Command Post may have checked the second map first, so that the first one's stamp ran backward.
+TEST_F(PipelinedMap, IsNoReasonToLoseTheFirstOne) {
   send_one_ahead();
-  for (const char* answer : {"422 No", "200 OK"}) post_.answer(answer);
+  for (const char* answer : {"422 stamp: runs backward", "200 OK", "200 OK"}) post_.answer(answer);
+  EXPECT_TRUE(are_delivered());
+  EXPECT_EQ(received_since(), (std::vector<std::string>{"first", "second", "first"}));
+  EXPECT_TRUE(rejected_.rows().empty());
+}
+
+TEST_F(PipelinedMap, StaysInFlightIfTheFirstIsRejectedAlsoAlone) {
+  send_one_ahead();
+  for (const char* answer : {"422 No", "200 OK", "422 No"}) post_.answer(answer);
   EXPECT_TRUE(are_delivered());
   EXPECT_EQ(rejected_.rows().size(), 1u);
 }

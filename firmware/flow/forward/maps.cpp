@@ -688,6 +688,7 @@ void Maps::send(const Place& prepared) {
       prepared->last_byte_not_before);
   step(prepared, MapEvent::Sent);
   prepared->went_ahead = ahead;
+  if (ahead) first_->was_followed = true;
   prepared->arrived.reset();
   wake_.call_at(loop_.now());  // for the following map
 }
@@ -747,6 +748,11 @@ void Maps::verdict(const Place& sent, const uplink::Answered& answered) {
       return again(sent);
     case MappingVerdict::Refused:
       pace_.taken(answered.sent, now);
+      if (may_have_been_overtaken(*sent)) {
+        ++sent->waiting.trial.failures;
+        counts_.not_taken(traffic, DeliveryFailure::Failed, answered.status, sentence);
+        return again(sent);
+      }
       return give_up(sent, answered.status, sentence);
     case MappingVerdict::TooLarge:
       pace_.taken(answered.sent, now);
@@ -798,6 +804,12 @@ bool Maps::is_cut_by_size(Prepared& sent) {
   if (size < queues::Cuts::kLeastBody || !queues::can_split(sent.waiting, size)) return false;
   if (sent.went_ahead || channel_.busy()) return false;
   return sent.waiting.cuts.check(channel_.sent_of_it(), counts_.delivered_count());
+}
+
+/// A Command Post that reads slowly checks a small map that followed first: this one's stamp then ran
+/// backward. It is sent once more alone, because a map that failed neither goes ahead nor is followed.
+bool Maps::may_have_been_overtaken(const Prepared& sent) {
+  return sent.was_followed && sent.waiting.trial.failures == 0;
 }
 
 /// A message that ended after so many bytes was too large.

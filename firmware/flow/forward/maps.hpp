@@ -116,6 +116,7 @@ class Maps {
     std::vector<MapStore::Damaged> damaged{};  // cannot be sent
     loop::Duration packing_took{0};            // by the worker
     bool went_ahead = false;
+    bool was_followed = false;  // the next map went ahead of its answer
     bool begins_again = false;  // a piece, in flight when the Command Post may have lost those before it
     loop::Instant last_byte_not_before{};
     std::optional<loop::Instant> arrived{};  // estimate
@@ -176,6 +177,7 @@ class Maps {
   void on_too_large(const Place& sent, const uplink::Answered& answered, const std::string& sentence);
   bool must_split(const Prepared& prepared) const;
   bool is_cut_by_size(Prepared& sent);
+  static bool may_have_been_overtaken(const Prepared& sent);
   void send_smaller(const Place& sent, std::size_t bytes, int status, const std::string& sentence);
   void again(const Place& sent);
   void give_up(const Place& sent, int status, const std::string& sentence);

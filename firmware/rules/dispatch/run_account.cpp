@@ -17,11 +17,11 @@ std::string change(std::int64_t before, std::int64_t now) {
   return before == now ? icd::sentence("stayed ", now) : icd::sentence("went from ", before, " to ", now);
 }
 
-/// "reports left went from 20 to 18 and the score stayed 3, with 2 reports in doubt"
+/// "reports left went from 20 to 18, the score stayed 3, with 2 reports in doubt"
 std::string figures(const icd::RunStatus& before, std::int64_t doubts, std::int64_t beside,
                     const SentSince& since, const icd::RunStatus& now) {
   std::string text = icd::sentence("reports left ", change(before.remaining_reports, now.remaining_reports),
-                                   " and the score ", change(before.score, now.score));
+                                   ", the score ", change(before.score, now.score));
   if (since.scored > 0) text += icd::sentence(", ", since.scored, " of it by reports sent since");
   if (doubts > 1) text += icd::sentence(", with ", doubts, " reports in doubt");
   if (beside > 0) {

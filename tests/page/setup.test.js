@@ -4,7 +4,7 @@ import { existsSync, readFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 import { come, freePort, freshBox, LOOKING, TOKENS, until } from "./fresh_box.js";
-import { complaints, COURSES, field, fill, hears, ready, review, step, type } from "./setup_page.js";
+import { complaints, COURSES, field, fill, hears, openCards, ready, review, step, type } from "./setup_page.js";
 
 /** Runs the Test, and returns each endpoint's steps with their states. */
 async function tried(page) {
@@ -45,6 +45,7 @@ test("tests each endpoint step by step, and says what to do if a step fails", as
 
 test("never shows tokens, and says which exist", async (t) => {
   const { box, ask, page } = await ready(t, "setup#tokens");
+  await openCards(page, "Team’s token");
   const token = page.locator("form.token", { hasText: "Team’s token" });
   await token.getByText("is set").waitFor();
   const input = token.getByLabel("Team’s token", { exact: true });
@@ -117,6 +118,7 @@ test("switches to another course by one press, after showing the changes", async
   await page.getByRole("button", { name: "Switch to No course" }).click();
   await page.locator("#review").getByRole("button", { name: "Cancel" }).click();
   assert.equal((await ask("/adit/settings")).said.settings.command_post.course, "B");
+  await openCards(page, "of Course A");
   await page.getByRole("button", { name: "Remove: Course 1" }).click();
   await page.getByRole("button", { name: "Apply changes" }).click();
   await page.getByRole("button", { name: "Apply", exact: true }).click();
@@ -247,6 +249,7 @@ test("shows a viewer all settings without a way to change them", async (t) => {
   for (const name of ["network", "post", "tokens", "robots", "test", "courses", "all"]) {
     await page.evaluate((name) => (location.hash = name), name);
     await page.locator(`#step-${name}`).waitFor();
+    await openCards(page);
     const usable = await page.$$eval(`#step-${name} :is(input:not([type=search]), select, button:not(.opens))`, (nodes) => nodes.filter((node) => node.checkVisibility() && !node.disabled && !node.readOnly).map((node) => node.outerHTML));
     assert.deepEqual(usable, [], name);
   }

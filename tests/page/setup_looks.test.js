@@ -1,10 +1,10 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { come, freshBox, PASSWORD } from "./fresh_box.js";
-import { complaints, hears, type } from "./setup_page.js";
+import { complaints, hears, openCards, type } from "./setup_page.js";
 import { axeFindsNothing, shoot } from "./watch.js";
 
-const SIZES = [["phone", 390, 844], ["720p", 1280, 720], ["1080p", 1920, 1080], ["4k", 3840, 2160]];
+const SIZES = [["phone", 390, 844], ["720p at 200 %", 640, 360], ["720p", 1280, 720], ["1080p", 1920, 1080], ["4k", 3840, 2160]];
 const STEPS = ["network", "post", "tokens", "robots", "test", "courses", "all", "file"];
 const A = { name: "A", scoring: { address: "10.100.1.200", port: 8000 }, mapping: { address: "10.100.1.201", port: 8000 } };
 const SETTINGS = { robots: [{ name: "ugv1", alias: "husky-1" }], courses: [A] };
@@ -21,6 +21,7 @@ test("fits every screen, in both themes, without axe faults", async (t) => {
   await hears(page, "Live");
   for (const name of STEPS) {
     await turnTo(page, name);
+    await openCards(page);
     if (name === "robots") {
       await type(page, "robots[0].name", "two words");
       await hears(page, "1 error");
@@ -28,7 +29,7 @@ test("fits every screen, in both themes, without axe faults", async (t) => {
     for (const [size, width, height] of SIZES) {
       await page.setViewportSize({ width, height });
       assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), `${name} is wider than the ${size}`);
-      const small = await page.$$eval("main button, main a, nav a, select, main input, #typed button", (nodes) =>
+      const small = await page.$$eval("main button, main summary, main a, nav a, select, main input, #typed button", (nodes) =>
         nodes.filter((node) => node.checkVisibility() && node.getBoundingClientRect().height < (node.type === "checkbox" ? 24 : 44)).map((node) => node.outerHTML));
       assert.deepEqual(small, [], `${name}, ${size}: too small for gloves`);
       const colorScheme = { phone: "dark", "1080p": "light" }[size];

@@ -19,6 +19,17 @@ export async function ready(t, path = "setup", settings = {}) {
   return { box, ask, page };
 }
 
+/** The card with this title in the step that is shown. */
+export const card = (page, title) => page.locator(".card:visible").filter({ has: page.locator("summary h3", { hasText: title }) });
+
+/** Opens each card of the step that is shown, or the one with this title, as a user does. */
+export async function openCards(page, title = "") {
+  for (const each of await card(page, title).all()) if (!(await each.evaluate((node) => node.open))) await each.locator("summary").click();
+}
+
+/** The addresses of the open cards. */
+export const openedCards = (page) => page.$$eval(".card[open]", (cards) => cards.map((each) => each.parentElement.id));
+
 /** The browser's complaints, except that a restarting box was unreachable. */
 export const complaints = (page, ...known) => page.complaints.filter((each) => !["ERR_CONNECTION", "ERR_EMPTY", ...known].some((part) => each.includes(part)));
 

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { come, LOOKING, TOKENS } from "./fresh_box.js";
-import { complaints, COURSES, ready, step } from "./setup_page.js";
+import { complaints, COURSES, openCards, ready, step } from "./setup_page.js";
 
 const tries = (page) => page.getByRole("button", { name: "Try before applying" });
 const outcome = (page, where) => page.locator(`[data-tried=${where}] > .outcome`);
@@ -76,6 +76,7 @@ test("tests a typed token, and neither stores nor shows it", async (t) => {
   const { box, ask, page } = await ready(t, "setup#post");
   for (const [label, port] of [["Scoring port", box.scoring], ["Mapping port", box.mapping]]) await page.getByLabel(label, { exact: true }).fill(String(port));
   await step(page, "Tokens").click();
+  await openCards(page, "Command Post’s tokens");
   await page.getByLabel("Scoring endpoint’s token", { exact: true }).fill("typed-and-wrong");
   await page.getByRole("link", { name: "Try these tokens before you set them" }).click();
   await tries(page).click();

@@ -4,7 +4,7 @@ import { test } from "node:test";
 import { merged } from "../../firmware/doors/site/files/draft.js";
 import { inShort, spoken } from "../../firmware/doors/site/files/names.js";
 import { come, PASSWORD, until } from "./fresh_box.js";
-import { complaints, COURSES, field, hears, ready, review, step, type } from "./setup_page.js";
+import { complaints, COURSES, field, hears, openCards, ready, review, step, type } from "./setup_page.js";
 
 const focusIsAt = (page, path) =>
   page.waitForFunction((path) => document.activeElement.closest("[data-path]")?.dataset.path === path, path);
@@ -82,6 +82,7 @@ test("shows an error at every field, and keeps the input", async (t) => {
     await page.evaluate((at) => (location.hash = at), at);
     const here = page.locator(`#step-${at}`);
     await here.waitFor();
+    await openCards(page);
     for (const button of await here.locator(".opens").all()) await button.click();
     const paths = await here.locator(".field[data-path]:not(form .field)").evaluateAll((all) => all.map((each) => each.dataset.path));
     const ofKind = (path) => WRONG[kinds.get(path.replace(/\[\d\]/g, "[]"))] ?? [];  // a choice and a flag cannot be wrong

@@ -2,7 +2,7 @@
 import { answered } from "./dialog.js";
 import { beginFrom, check, differs, draft, drop, flat, goOnFrom, merged, onDraft, onFindings, refresh, same, findings, keyOf } from "./draft.js";
 import { make, say } from "./dom.js";
-import { blameAll, fieldOf, revealAll } from "./field.js";
+import { blameAll, fieldOf, revealAll, uncover } from "./field.js";
 import { inShort, nameOf, spoken } from "./names.js";
 import { get, post } from "./session.js";
 import { clip } from "./words.js";
@@ -191,7 +191,7 @@ export function goTo({ path }) {
   if (!field) return;
   const step = field.closest("section").id.replace("step-", "#");
   if (location.hash !== step) location.hash = step;
-  field.closest(".rare")?.isOpen(true);
+  uncover(field);
   requestAnimationFrame(() => requestAnimationFrame(() => field.control.focus()));
 }
 

@@ -1,5 +1,5 @@
 // A card: its state in one line of words, and all else behind it, opened on demand. What needs the operator opens by itself.
-import { badge, mark } from "./dom.js";
+import { badge, make, mark } from "./dom.js";
 
 const CALLS = ["wait", "ask", "bad"];
 
@@ -9,6 +9,24 @@ export function tellCard(section, words, level = "quiet") {
   badge(card.querySelector(".state"), level, words);
   mark(card, "level", level);
   if (CALLS.includes(level) && !CALLS.includes(before)) card.open = true;
+}
+
+/** A card with the title `title`, closed. */
+export const makeCard = (title, ...body) =>
+  make("details.card", make("summary", make("h3", title), " ", make("span.state.badge")), make("div.body", ...body));
+
+/** Opens each card around `node`. */
+export function openAround(node) {
+  for (let card = node.closest(".card"); card; card = card.parentElement.closest(".card")) card.open = true;
+}
+
+/** Opens the card of `section` while a search finds something in it. Afterwards it is as before, unless it needs the operator. */
+export function openFound(section, isFound) {
+  const card = section.querySelector(".card"), isOpenedHere = "found" in card.dataset;
+  if (isFound && !card.open) card.dataset.found = "";
+  else if (!isFound) delete card.dataset.found;
+  if (isFound) card.open = true;
+  else if (isOpenedHere && !CALLS.includes(card.dataset.level)) card.open = false;
 }
 
 /** Opens the card that the page's address names (#passwords), now and later. */

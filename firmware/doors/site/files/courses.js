@@ -1,9 +1,10 @@
 // What lets the box in at a Command Post: tokens, which are set and never shown again; and the switch between courses.
 import { applied, insist, reviewed, save } from "./apply.js";
 import { badge, giveFocus, list, make, say } from "./dom.js";
-import { differs, draft, ENDPOINTS, onDraft, refresh, same } from "./draft.js";
-import { blame, labelled, reveal } from "./field.js";
+import { differs, draft, ENDPOINTS, missingTokens, onDraft, refresh, same } from "./draft.js";
+import { blame, labelled, reveal, uncover } from "./field.js";
 import { post } from "./session.js";
+import { addCard, followCard, tellCards } from "./setup_cards.js";
 import { tryCourse } from "./trial.js";
 
 const COMMON = { scoring: "Scoring endpoint’s token", mapping: "Mapping endpoint’s token", team: "Team’s token" };
@@ -32,8 +33,11 @@ async function send(node, name, token) {
     return true;
   } catch (error) {
     blame(field, error.message.replace(/^token: /, ""));
+    uncover(field);
     field.control.focus();
     return false;
+  } finally {
+    tellCards();
   }
 }
 
@@ -69,7 +73,10 @@ function create(name) {
     if (token) send(node, name, token);
     else blame(field, "type a token first");
   };
-  input.addEventListener("input", () => blame(field, /^[!-~]{0,256}$/.test(input.value.trim()) ? "" : WRONG));
+  input.addEventListener("input", () => {
+    blame(field, /^[!-~]{0,256}$/.test(input.value.trim()) ? "" : WRONG);
+    tellCards();
+  });
   return node;
 }
 
@@ -97,11 +104,36 @@ export async function setTyped() {
 
 const putTokens = (place, names) => list(place, names, (name) => name, create, update);
 
-export function showTokens(isReadOnly) {
-  readOnly = isReadOnly;
-  const show = () => putTokens(document.querySelector("#step-tokens .tokens"), Object.keys(draft.tokens).filter((name) => !ofCourse(name)));
+/** The state of a card with tokens, if a token in `place` is typed and not set yet; else null. */
+function typedIn(place) {
+  const isTyped = [...place.querySelectorAll("form.token")].some((node) => node.field.control.value.trim());
+  return isTyped ? ["A typed token is not set yet", "wait"] : null;
+}
+
+function stateOfEndpoints() {
+  const missing = missingTokens({ settings: draft.base, tokens: draft.tokens });
+  if (missing.length) return [missing.length === 1 ? `The ${missing[0]} token is missing` : "Both tokens are missing", "bad"];
+  return [ENDPOINTS.every((name) => draft.tokens[name]) ? "Both tokens are set" : "The course in use has its own"];
+}
+
+const stateOfTeam = () => [draft.tokens.team ? "The token is set" : "Not set: clients use the Command Post’s"];
+
+/** With a warning, if the box has one about the tokens `names`. */
+const warned = ([words, level], names) =>
+  draft.oddTokens.some(({ path }) => names.includes(path)) && level !== "bad" ? [`${words}, with a warning`, "wait"] : [words, level];
+
+function showTokenCard(id, title, names, stateOf) {
+  const tokens = make("div.tokens");
+  addCard(document.querySelector("#step-tokens .cards"), id, title, () => typedIn(tokens) ?? warned(stateOf(), names), tokens);
+  const show = () => putTokens(tokens, names.filter((name) => name in draft.tokens));
   onDraft(show);
   show();
+}
+
+export function showTokens(isReadOnly) {
+  readOnly = isReadOnly;
+  showTokenCard("tokens-post", "Command Post’s tokens", ENDPOINTS, stateOfEndpoints);
+  showTokenCard("tokens-team", COMMON.team, ["team"], stateOfTeam);
 }
 
 const nameOf = (course) => (course ? `Course ${course}` : "No course");
@@ -162,16 +194,36 @@ function updateHead(node, name, isNew = false) {
   tries.onclick = () => tryCourse(name);
 }
 
-/** The card of a course has its fields already (field.js). */
-function showCard(card, name) {
-  if (!card.head) {
-    card.head = createHead();
-    card.querySelector("legend").after(card.head);
-    card.tokens = make("div.tokens");
-    card.querySelector(".fields").after(card.tokens);
+/** Which tokens a course has, and the level if it needs one now. */
+function tokensOf(name) {
+  const [own, missing] = ["own", "missing"].map((which) => ENDPOINTS.filter((endpoint) => tokenOf(name, endpoint) === which));
+  const isNeeded = missing.length && draft.base.command_post.course === name;
+  if (missing.length) return [`no ${missing.join(" and no ")} token`, isNeeded ? "bad" : "quiet"];
+  return [own.length === 0 ? "common tokens" : own.length === 1 ? `own ${own[0]} token` : "own tokens"];
+}
+
+function stateOfCourse(course) {
+  if (!course.name || !same(course, postOf(draft.base, course.name))) return ["Not applied yet", "wait"];
+  const [tokens, level] = tokensOf(course.name);
+  return [[...ENDPOINTS.map((endpoint) => at(course[endpoint])), tokens].join(", "), level];
+}
+
+/** The item of a course has its card with the fields already (field.js). */
+function showCourse(item, course) {
+  const { name } = course;
+  if (!item.head) {
+    item.head = createHead();
+    item.querySelector("legend").after(item.head);
+    item.tokens = make("div.tokens");
+    item.querySelector(".fields").after(item.tokens);
+    item.whose = make("span.spoken");
+    item.querySelector("h3").append(item.whose);
   }
-  updateHead(card.head, name, !name);
-  putTokens(card.tokens, ENDPOINTS.map((endpoint) => `course.${name}.${endpoint}`).filter((token) => token in draft.tokens));
+  item.id = `course-${name}`; // its address
+  say(item.whose, ` of ${name ? nameOf(name) : "the new course"}`);
+  followCard(item, () => typedIn(item) ?? stateOfCourse(course));
+  updateHead(item.head, name, !name);
+  putTokens(item.tokens, ENDPOINTS.map((endpoint) => `course.${name}.${endpoint}`).filter((token) => token in draft.tokens));
 }
 
 export function showCourses() {
@@ -180,7 +232,7 @@ export function showCourses() {
   const show = () => {
     const { course } = draft.base.command_post;
     updateHead(none, "");
-    document.querySelectorAll("[data-list=courses] .item").forEach((card, i) => showCard(card, draft.settings.courses[i].name));
+    document.querySelectorAll("[data-list=courses] .item").forEach((item, i) => showCourse(item, draft.settings.courses[i]));
     overruled.hidden = !course;
     overruled.dataset.level = "wait";
     badge(overruled.firstElementChild, "wait", `Course ${course} is in use and overrides these addresses.`);

@@ -1,9 +1,11 @@
 // One setting as a field: what it means, what is allowed, what is wrong with it.
+import { makeCard, openAround, openFound } from "./card.js";
 import { make, say } from "./dom.js";
 import { draft, keyOf, onDraft, read, same, write } from "./draft.js";
 import { grouped } from "./grouped.js";
 import { label as call, nameOf, partsOf, spoken } from "./names.js";
 import { styleOf } from "./robot_colour.js";
+import { addCard, stateOfGroup } from "./setup_cards.js";
 import { whenThemeChanges } from "./theme_now.js";
 import { numberIn } from "./words.js";
 
@@ -27,11 +29,17 @@ export function labelled(label, control, hint) {
   return Object.assign(field, { label, control, wrong, what: "", isRevealed: false });
 }
 
+/** Opens what the field is behind. */
+export function uncover(field) {
+  field.closest(".rare")?.isOpen(true);
+  openAround(field);
+}
+
 /** Says at a field what is wrong; "": nothing is. An error first shows when the field loses the focus: nobody has finished typing before. */
 export function blame(field, what) {
   field.what = what;
   const isWrong = what !== "" && field.isRevealed;
-  if (isWrong) field.closest(".rare")?.isOpen(true);
+  if (isWrong && !field.control.hasAttribute("aria-invalid")) uncover(field);
   say(field.wrong, isWrong ? `${field.label}: ${spoken(what)}` : "");
   if (isWrong) field.control.setAttribute("aria-invalid", "true");
   else field.control.removeAttribute("aria-invalid");
@@ -134,9 +142,10 @@ function rareFields(fields) {
   return [button, rare];
 }
 
-/** A list of settings at `place`: an item can be added and removed. Fields that `data-rare` names are closed at first. */
+/** A list of settings at `place`: an item can be added and removed. Fields that `data-rare` names are closed at first. With `data-folds`, the
+ *  title of a card, all fields of an item are in its card. */
 export function listOf(place) {
-  const { list: path, item, add, rare = "" } = place.dataset;
+  const { list: path, item, add, rare = "", folds } = place.dataset;
   const start = `${path}[].`;
   const keys = [...draft.keys].filter(([key]) => key.startsWith(start)).map(([key, row]) => [key.slice(start.length), row]);
   const labelOf = (name) => capital(partsOf(name));
@@ -154,11 +163,12 @@ export function listOf(place) {
     remove.addEventListener("click", () => {
       rows.replaceChildren(); // the paths of the rows after it are others now
       write(path, read(path).filter((_, each) => each !== i));
-      (rows.children[i]?.querySelector("input") ?? more).focus();
+      (rows.children[i]?.querySelector("summary, input") ?? more).focus();
     });
     const fields = (of) => of.map(([name]) => setting(`${path}[${i}].${name}`, labelOf(name)));
     const usual = make("div.fields", ...fields(usualKeys)), others = rareKeys.length ? rareFields(fields(rareKeys)) : [];
-    return make("fieldset.item", make("legend", `${item} ${i + 1}`), usual, ...others, ...(readOnly ? [] : [remove]));
+    const inside = [usual, ...others, ...(readOnly ? [] : [remove])];
+    return make("fieldset.item", make("legend", `${item} ${i + 1}`), ...(folds ? [makeCard(folds, ...inside)] : inside));
   };
   const show = () => {
     const count = read(path).length;
@@ -205,13 +215,16 @@ export function showAll() {
   const groups = grouped([...draft.keys.keys()].filter((path) => !ELSEWHERE.test(path)), (path) => path.split(".")[0]);
   for (const [name, paths] of groups) {
     const fields = paths.map((path) => setting(path, nameOf(path)));
-    place.append(make("fieldset", make("legend", nameOf(name)), make("div.fields", ...fields)));
+    addCard(place, `all-${name}`, nameOf(name), () => stateOfGroup(paths), make("div.fields", ...fields));
   }
   search.addEventListener("input", () => {
     const words = search.value.toLowerCase().split(/\s+/);
     const isFound = (text) => words.every((word) => text.includes(word));
     for (const field of place.querySelectorAll(".field")) field.hidden = !isFound(`${field.textContent} ${field.dataset.path}`.toLowerCase());
-    for (const group of place.children) group.hidden = !group.querySelector(".field:not([hidden])");
+    for (const group of place.children) {
+      group.hidden = !group.querySelector(".field:not([hidden])");
+      openFound(group, search.value !== "" && !group.hidden);
+    }
     const found = place.querySelectorAll(".field:not([hidden])").length;
     say(empty, !search.value ? "" : found ? `${found} found.` : "No setting matches.");
   });

@@ -2,6 +2,7 @@
 // any order later.
 import "./presses.js";
 import { apply, goTo, offerApply, offerImport } from "./apply.js";
+import { followAddress } from "./card.js";
 import { setTyped, showCourses, showTokens } from "./courses.js";
 import { badge, list, make, mark, say } from "./dom.js";
 import { checkAsTyped, draft, followSettings, missingTokens, onDraft, onFindings, refresh, findings } from "./draft.js";
@@ -10,6 +11,7 @@ import { offerNetwork, showNetwork } from "./network.js";
 import { followNetwork } from "./pending.js";
 import { showPorts } from "./ports.js";
 import { isFault, session, showWho, toLogin } from "./session.js";
+import { counted, tellCards } from "./setup_cards.js";
 import { offerTest, result } from "./trial.js";
 
 const RETRY = 2000; // ms
@@ -21,7 +23,12 @@ const [back, next] = turn.querySelectorAll("button");
 
 const nameOf = (section) => section.id.replace("step-", "");
 const titleOf = (section) => section.querySelector("h2").textContent;
-const here = () => Math.max(0, sections.findIndex((section) => `#${nameOf(section)}` === location.hash));
+
+/** The step that the address names, or in which it names a card. */
+function here() {
+  const named = document.getElementById(location.hash.slice(1));
+  return Math.max(0, sections.findIndex((section) => `#${nameOf(section)}` === location.hash || section.contains(named)));
+}
 
 /** How far a step is: a level, and its word. */
 const STATES = {
@@ -34,7 +41,7 @@ const STATES = {
 
 function stateOf(section, errors) {
   const wrong = errors.filter(({ field }) => field && section.contains(field)).length;
-  return wrong ? ["bad", wrong === 1 ? "1 error" : `${wrong} errors`] : (STATES[nameOf(section)]?.() ?? ["quiet", ""]);
+  return wrong ? ["bad", counted(wrong, "error")] : (STATES[nameOf(section)]?.() ?? ["quiet", ""]);
 }
 
 function update(node, section, errors) {
@@ -53,6 +60,7 @@ function create(section) {
 
 function show() {
   const errors = blameAll(findings.errors), at = here();
+  tellCards();
   list(place, sections, nameOf, create, (node, section) => update(node, section, errors));
   back.hidden = at === 0;
   next.hidden = at === sections.length - 1;
@@ -125,6 +133,7 @@ async function begin() {
   offerImport();
   document.querySelector(".choose").hidden = isViewer;
   leadThrough();
+  followAddress();
   offerApply();
   const wanted = new URLSearchParams(location.search).get("setting"); // a way from elsewhere: refusals.js
   if (wanted) goTo({ path: wanted });

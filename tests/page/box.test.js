@@ -75,6 +75,7 @@ test("a reset from the page returns the box to its first start and keeps the rep
   await page.locator("#login").getByLabel("Password").fill(OPERATOR);
   await page.keyboard.press("Enter");
   const open = page.locator("#reset").getByRole("button", { name: "Reset the box" }), dialog = page.locator("#wipe");
+  await page.locator("#reset summary").click();
   await open.click();
   await dialog.getByRole("button", { name: "Cancel" }).click();
   await open.click();

@@ -52,7 +52,7 @@ function create(report) {
   outcome.setAttribute("role", "status");
   const title = make("div.title", make("span.what"), make("span.where", make("span"), make("span.since")));
   return make("li", make("span.picture", icon(report.type)), title, make("span.badge"), open, make("span.more"),
-    make("div.acts", make("div.near"), make("div.actions"), make("p.hint")), outcome, make("div.history"));
+    make("div.acts", make("div.near"), make("div.actions")), make("p.hint"), outcome, make("div.history"));
 }
 
 function toggle(number) {
@@ -136,9 +136,9 @@ function showActions(node, report, view, isShown) {
 function update(node, report, view, now) {
   const { level, word } = life(report);
   const isMore = opened.has(report.number);
-  const [, title, badged, open, rest, acts, outcome, history] = node.children;
+  const [, title, badged, open, rest, acts, hint, outcome, history] = node.children;
   const [what, where] = title.children;
-  const [near, actions, hint] = acts.children;
+  const [near, actions] = acts.children;
   mark(node, "level", level);
   badge(badged, level, clip(word, 40));
   say(what, clip(report.type, 40));

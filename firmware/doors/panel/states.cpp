@@ -37,8 +37,8 @@ constexpr auto kOff = Pattern::Off, kOn = Pattern::On, kSlow = Pattern::Slow, kF
                kDigits = Pattern::Digits;
 
 // The first asserted state is shown. The last action at the box comes first, then worse before better. Open
-// set-up precedes an operator's pending action: the person who opened set-up must see its remaining time,
-// and the page shows the action.
+// set-up precedes an operator's pending action, because its remaining time is shown here alone, and the
+// action on the page, too.
 constexpr StateRow kTable[] = {
     {State::Fault,
      "fault",

@@ -72,9 +72,22 @@ dispatch::ReportRules rules_of(const settings::Reports& reports) {
 
 using dispatch::Reports;
 
-/// In the order of api::Action.
-constexpr std::array kDecisions = {&Reports::send, &Reports::hold, &Reports::withdraw, &Reports::settle,
-                                   &Reports::resubmit};
+Reports::Outcome carry_out(Reports& reports, std::int64_t number, api::Action action, dispatch::Time time) {
+  using enum api::Action;
+  switch (action) {
+    case Send:
+      return reports.send(number, time);
+    case Hold:
+      return reports.hold(number, time);
+    case Withdraw:
+      return reports.withdraw(number, time);
+    case Settle:
+      return reports.settle(number, time);
+    case Resubmit:
+      return reports.resubmit(number, time);
+  }
+  std::unreachable();
+}
 
 /// Without a recent status.
 intake::Answer no_status(const std::string& why) {
@@ -410,8 +423,7 @@ intake::Answer Scoring::known_or(intake::Answer failure) const {
 }
 
 dispatch::Reports::Outcome Scoring::decide(std::int64_t number, api::Action action) noexcept {
-  const auto decide = kDecisions.at(static_cast<std::size_t>(action));
-  const Reports::Outcome outcome = (*reports_.*decide)(number, time());
+  const Reports::Outcome outcome = carry_out(*reports_, number, action, time());
   counts_.changed();
   pump();
   return outcome;

@@ -22,7 +22,7 @@
 
 namespace adit {
 
-/// A sentence about what is wrong.
+/// An error of these parts, joined to a sentence.
 template <class... Parts>
 std::unexpected<std::string> wrong(const Parts&... parts) {
   return std::unexpected(icd::sentence(parts...));

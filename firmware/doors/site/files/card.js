@@ -1,4 +1,4 @@
-// A card: its state in one line of words, and all else behind it, opened on demand. What needs the operator opens by itself.
+// A card shows its state in one line of words. The rest opens on demand, and by itself if the operator is needed.
 import { badge, make, mark } from "./dom.js";
 
 const CALLS = ["wait", "ask", "bad"];

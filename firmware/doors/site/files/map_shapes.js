@@ -1,5 +1,5 @@
-// How markers look from above: each in its size in metres and its colours, lines in less light ones, but never too small to be seen. What is
-// invisible (alpha 0) shows as an outline. Of those that are but dots from here, one stands for all at its place.
+// Markers from above, in metres and in their colours, lines in less light ones; none is too small to be seen. An invisible one (alpha 0) is an
+// outline. Of markers that are only dots from here, one stands for all at its place.
 
 import { themeNow } from "./theme_now.js";
 

@@ -32,9 +32,8 @@ TEST(EndpointTest, ComparesADateWithTheTimeOfItsOwnAnswer) {
   tried.post.interface = "";
   tried.post.scoring = {peer.endpoint().address, peer.endpoint().port};
   const EndpointTest::Turns turns;
-  const settings::CommandPost in_use;
   std::optional<api::TestStep> step;
-  EndpointTest test(loop, turns, in_use, tried, steps::Asked::Scoring,
+  EndpointTest test(loop, turns, tried, steps::Asked::Scoring,
                     [&](api::TestStep each) { step = std::move(each); });
 
   test.check_token();
@@ -61,9 +60,8 @@ TEST(EndpointTest, TriesASlashIfTheStatusIsAWebPage) {
     tried.post.interface = "";
     tried.post.scoring = {peer.endpoint().address, peer.endpoint().port};
     const EndpointTest::Turns turns;
-    const settings::CommandPost in_use;
     std::optional<api::TestStep> step;
-    EndpointTest test(loop, turns, in_use, tried, steps::Asked::Scoring,
+    EndpointTest test(loop, turns, tried, steps::Asked::Scoring,
                       [&](api::TestStep each) { step = std::move(each); });
     test.check_token();
     ASSERT_TRUE(time.pass_until(loop, [&] { return step.has_value(); }));
@@ -92,9 +90,8 @@ TEST(EndpointTest, TellsAMappingEndpointByItsAnswerToAnUnknownPath) {
     tried.post.interface = "";
     tried.post.mapping = {peer.endpoint().address, peer.endpoint().port};
     const EndpointTest::Turns turns;
-    const settings::CommandPost in_use;
     std::optional<api::TestStep> step;
-    EndpointTest test(loop, turns, in_use, tried, steps::Asked::Mapping,
+    EndpointTest test(loop, turns, tried, steps::Asked::Mapping,
                       [&](api::TestStep each) { step = std::move(each); });
     test.check_token();
     ASSERT_TRUE(time.pass_until(loop, [&] { return step.has_value(); }));

@@ -210,6 +210,25 @@ std::expected<std::string, std::string> NetworkChange::next_hop(const settings::
   return hop ? settings::ipv4_text(*hop) : "";
 }
 
+std::expected<network::Probe, std::string> NetworkChange::probe(const std::string& interface,
+                                                                const settings::Address& endpoint) const {
+  const auto status = adit_network_.status();
+  if (!status) return std::unexpected(adit_network_.why());
+  if (status->command_post_interface != interface)
+    return std::unexpected("adit-network has " + status->command_post_interface + " instead");
+  const auto hop = ADIT_TRY(next_hop(endpoint));
+  const network::Probe probe{host::draw_nonce(), hop};
+  ADIT_TRY(adit_network_.leave(network::kProbeFile, probe));
+  return probe;
+}
+
+std::expected<std::optional<network::Probed>, std::string> NetworkChange::answer_to(
+    const network::Probe& probe) const {
+  auto read = host::read_row<network::Probed>(adit_network_.directory() + '/' + network::kProbedFile);
+  if (read && *read && (*read)->nonce != probe.nonce) read->reset();
+  return read;
+}
+
 icd::Checked<void> NetworkChange::revert() {
   const auto waits = pending();
   if (!waits) return icd::conflict("there is no change to revert");

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <expected>
 #include <optional>
 #include <string>
 
@@ -40,6 +41,13 @@ class NetworkChange final : public api::Network {
   /// The host to ask for an endpoint on the Command Post's side: the endpoint or its gateway. "": no route.
   /// Error: the box's addresses are not known.
   std::expected<std::string, std::string> next_hop(const settings::Address& endpoint) const;
+
+  /// Asks adit-network who else has the address of `interface`, on the Command Post's side, and at which port
+  /// the next hop to `endpoint` answers. Error: why it cannot ask.
+  std::expected<network::Probe, std::string> probe(const std::string& interface,
+                                                   const settings::Address& endpoint) const;
+  /// The answer to `probe`. nullopt: not yet there. Error: it cannot be read.
+  std::expected<std::optional<network::Probed>, std::string> answer_to(const network::Probe& probe) const;
 
   /// Input of the alarm rules.
   facts::Network fact() const;

@@ -317,12 +317,10 @@ icd::ChunkedBytes empty_object() {
 
 }  // namespace
 
-EndpointTest::EndpointTest(loop::Loop& loop, const Turns& turns, const settings::CommandPost& in_use,
-                           const TestTarget& tried, steps::Asked asked,
+EndpointTest::EndpointTest(loop::Loop& loop, const Turns& turns, const TestTarget& tried, steps::Asked asked,
                            std::function<void(api::TestStep)> done)
     : loop_(loop),
       turns_(turns),
-      in_use_(in_use),
       tried_(tried),
       asked_(asked),
       done_(std::move(done)),
@@ -355,7 +353,7 @@ void EndpointTest::connected(int error, const std::string& why) {
 
 /// At an endpoint of the run this takes one of the run's turns, so that the run is not throttled.
 void EndpointTest::ask(const char* step, std::string_view path, std::function<void(uplink::Outcome)> done) {
-  if (!is_of_the_run()) return send(path, std::move(done));
+  if (!turns_.are_shared || !turns_.are_shared(uri(), address())) return send(path, std::move(done));
   const auto at = turns_.claim(uri(), loop_.now() + kLongestTurn);
   if (!at) return done_(steps::no_turn(step));
   when_due_ = [this, path, done = std::move(done)] {
@@ -440,13 +438,11 @@ constexpr const char* kSteps[] = {"link", "address", "cables", "reach", "token",
 
 SelfTest::SelfTest(loop::Loop& loop, const settings::Settings& settings,
                    std::function<icd::Checked<TestTarget>(const api::Candidate&)> tried, Turns turns,
-                   host::RootProgram<network::Status>& adit_network, const admin::NetworkChange& network,
-                   std::function<void()> changed)
+                   const admin::NetworkChange& network, std::function<void()> changed)
     : loop_(loop),
       settings_(settings),
       tried_of_(std::move(tried)),
       turns_(std::move(turns)),
-      adit_network_(adit_network),
       network_(network),
       changed_(std::move(changed)),
       timer_(loop.timer([this] { probing_.until ? wait_for_probe() : next(); })) {}
@@ -541,29 +537,21 @@ void SelfTest::ask_address() {
     return finish(view_.endpoints.front().steps[1]);
   const std::string& interface = tried_.post.interface;
   const auto own = host::own_address(interface);
-  const auto status = adit_network_.status();
   std::string why;
-  if (!status) {
-    why = adit_network_.why();
-  } else if (status->command_post_interface != interface) {
-    why = "adit-network has " + status->command_post_interface + " instead";
-  }
-  const auto next_hop = network_.next_hop(steps::address_in(tried_.post, kind()));
-  if (!next_hop && why.empty()) why = next_hop.error();
-  if (own && *own && why.empty()) {
-    probing_ = {.probe = {host::draw_nonce(), *next_hop}, .until = loop_.now() + kProbeWithin, .found = {}};
-    const auto asked = adit_network_.leave(network::kProbeFile, probing_.probe);
-    if (asked) return wait_for_probe();
-    why = asked.error();
-    probing_ = {};
+  if (own && *own) {
+    const auto probe = network_.probe(interface, steps::address_in(tried_.post, kind()));
+    if (probe) {
+      probing_ = {.probe = *probe, .until = loop_.now() + kProbeWithin, .found = {}};
+      return wait_for_probe();
+    }
+    why = probe.error();
   }
   finish(steps::address(interface, own, std::nullopt, why));
 }
 
 void SelfTest::wait_for_probe() {
-  const auto read = host::read_row<network::Probed>(adit_network_.directory() + '/' + network::kProbedFile);
+  const auto read = network_.answer_to(probing_.probe);
   probing_.found = read.value_or(std::nullopt);
-  if (probing_.found && probing_.found->nonce != probing_.probe.nonce) probing_.found.reset();
   if (!probing_.found && loop_.now() < *probing_.until) return timer_.call_at(loop_.now() + kProbePoll);
   probing_.until.reset();
   const std::string& interface = tried_.post.interface;
@@ -577,7 +565,7 @@ void SelfTest::look_at_cables() {
 }
 
 void SelfTest::reach() {
-  at_endpoint_.emplace(loop_, turns_, settings_.command_post, tried_, kind(),
+  at_endpoint_.emplace(loop_, turns_, tried_, kind(),
                        [this](api::TestStep step) { finish(std::move(step)); });
   at_endpoint_->reach();
 }

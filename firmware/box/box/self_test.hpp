@@ -97,14 +97,15 @@ class EndpointTest {
 
   /// Turns at the run's endpoints: forward::Flow.
   struct Turns {
+    std::function<bool(icd::Uri uri, const settings::Address& at)> are_shared;  // the run uses this endpoint
     std::function<std::optional<loop::Instant>(icd::Uri uri, loop::Instant latest)> claim;
     std::function<void(icd::Uri uri)> claimed;  // at the request, and at its end
   };
 
-  /// `in_use`: the Command Post of the settings in use. `done` gets the result of each step, within its call
-  /// or later, and must not destroy this object. The references must outlive this object.
-  EndpointTest(loop::Loop& loop, const Turns& turns, const settings::CommandPost& in_use,
-               const TestTarget& tried, steps::Asked asked, std::function<void(api::TestStep)> done);
+  /// `done` gets the result of each step, within its call or later, and must not destroy this object. The
+  /// references must outlive this object.
+  EndpointTest(loop::Loop& loop, const Turns& turns, const TestTarget& tried, steps::Asked asked,
+               std::function<void(api::TestStep)> done);
 
   // The steps. Each begins after the result of the one before.
   void reach();
@@ -130,12 +131,10 @@ class EndpointTest {
     return asked_ == steps::Asked::Scoring ? tried_.scoring : tried_.mapping;
   }
   const settings::Address& address() const { return steps::address_in(tried_.post, asked_); }
-  bool is_of_the_run() const { return address() == steps::address_in(in_use_, asked_); }
   uplink::Endpoint there() const;
 
   loop::Loop& loop_;
   const Turns& turns_;
-  const settings::CommandPost& in_use_;
   const TestTarget& tried_;
   const steps::Asked asked_;
   const std::function<void(api::TestStep)> done_;
@@ -161,8 +160,7 @@ class SelfTest final : public api::SelfTest {
   /// outlive this.
   SelfTest(loop::Loop& loop, const settings::Settings& settings,
            std::function<icd::Checked<TestTarget>(const api::Candidate&)> tried, Turns turns,
-           host::RootProgram<network::Status>& adit_network, const admin::NetworkChange& network,
-           std::function<void()> changed);
+           const admin::NetworkChange& network, std::function<void()> changed);
 
   api::TestView state() const override { return view_; }
   icd::Checked<void> begin_test(const api::Candidate& candidate) override;
@@ -198,7 +196,6 @@ class SelfTest final : public api::SelfTest {
   const Turns turns_;
   TestTarget tried_;  // fixed during a test
   std::vector<steps::Asked> asked_;
-  host::RootProgram<network::Status>& adit_network_;
   const admin::NetworkChange& network_;
   std::function<void()> changed_;
   api::TestView view_;

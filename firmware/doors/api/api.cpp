@@ -42,7 +42,7 @@ Api::Api(loop::Loop& loop, const Served& served, std::vector<icd::BearerToken> t
       maps_(served.source, served.finer, served.covered),
       lists_(loop, served.source),
       reports_(lists_, served.source, served.decisions),
-      box_(served.source, lists_, served.box, served.keys, *redaction_, loop),
+      box_(served.source, lists_, served.box, served.keys, loop),
       kept_(loop, served.runs, served.source),
       handlers_(&pages_, &sessions_, &run_, &maps_, &reports_, &box_, &kept_, &served.clock, &served.network,
                 &served.test, &served.setup, &served.spare, &served.updates) {}
@@ -71,6 +71,7 @@ std::unique_ptr<intake::BodySink> Api::open(const intake::RequestHead& head,
             .flow = std::move(flow),
             .asker = *asker,
             .parameters = std::move(found.parameters),
+            .redaction = *redaction_,
             .body = {}};
   if (route.handle.begin != nullptr) return route.handle.begin(handlers_, call);
   if (route.handle.answer != nullptr && route.body.type.empty()) {

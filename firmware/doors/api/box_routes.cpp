@@ -117,12 +117,14 @@ intake::Answer BoxRoutes::about() const {
 }
 
 void BoxRoutes::bundle(const Call& call) {
-  lists_.write(json_list(), std::nullopt, [this, responder = call.responder](std::string reports) {
-    pack(responder, std::move(reports));
-  });
+  lists_.write(json_list(), std::nullopt,
+               [this, responder = call.responder, redaction = call.redaction](std::string reports) {
+                 pack(responder, redaction, std::move(reports));
+               });
 }
 
-void BoxRoutes::pack(const std::shared_ptr<intake::Responder>& responder, std::string reports) {
+void BoxRoutes::pack(const std::shared_ptr<intake::Responder>& responder, const SharedRedaction& redaction,
+                     std::string reports) {
   const Time now = loop_.wall_now();
   auto files = std::make_shared<std::vector<BundleFile>>();
   files->push_back({"about.json", about_json()});
@@ -133,7 +135,7 @@ void BoxRoutes::pack(const std::shared_ptr<intake::Responder>& responder, std::s
   files->push_back({"metrics.txt", metrics_text()});
   files->push_back({"log.txt", log_lines({})});
   auto packed = std::make_shared<std::string>();
-  const auto write = [files, packed, now, redaction = redaction_] {
+  const auto write = [files, packed, now, redaction] {
     for (auto& [name, body] : *files) {
       redact(*redaction, name.ends_with(".json") ? "application/json" : "text/plain", body);
     }

@@ -23,9 +23,8 @@ struct LogFilter;
 class BoxRoutes {
  public:
   /// All must outlive this object, and the work of `box`.
-  BoxRoutes(Source& source, const ReportLists& lists, Box& box, Keys& keys, const SharedRedaction& redaction,
-            loop::Loop& loop)
-      : source_(source), lists_(lists), box_(box), keys_(keys), redaction_(redaction), loop_(loop) {}
+  BoxRoutes(Source& source, const ReportLists& lists, Box& box, Keys& keys, loop::Loop& loop)
+      : source_(source), lists_(lists), box_(box), keys_(keys), loop_(loop) {}
 
   intake::Answer metrics() const;
   icd::Checked<LogPage> log(const intake::RequestHead& head) const;
@@ -34,7 +33,8 @@ class BoxRoutes {
   void bundle(const Call& call);
 
  private:
-  void pack(const std::shared_ptr<intake::Responder>& responder, std::string reports);
+  void pack(const std::shared_ptr<intake::Responder>& responder, const SharedRedaction& redaction,
+            std::string reports);
   std::string about_json() const;
   std::string metrics_text() const;
   std::string log_lines(const LogFilter& filter) const;
@@ -43,7 +43,6 @@ class BoxRoutes {
   const ReportLists& lists_;
   Box& box_;
   Keys& keys_;
-  const SharedRedaction& redaction_;  // for the bundle; Api redacts other answers
   loop::Loop& loop_;
 };
 

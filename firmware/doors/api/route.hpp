@@ -69,6 +69,7 @@ struct Call {
   std::shared_ptr<intake::Flow> flow;            // for streamed bodies
   Asker asker;
   std::vector<std::string> parameters;  // of the path, in order
+  SharedRedaction redaction;            // is applied to the answer, but not to a file that it packs
   std::string body;
 };
 

@@ -28,13 +28,12 @@ icd::Refusal no_memory() {
 }  // namespace
 
 MarkerArrivals::MarkerArrivals(loop::Loop& loop, loop::Workers& workers, journal::Journal& journal,
-                               queues::MarkerQueue& queue, TrafficCounts& counts, std::function<void()> came)
+                               queues::MarkerQueue& queue, TrafficCounts& counts)
     : loop_(loop),
       workers_(workers),
       journal_(journal),
       queue_(queue),
       counts_(counts),
-      came_(std::move(came)),
       next_turn_(loop.timer([this] { go(next_step()); })) {}
 
 void MarkerArrivals::take(icd::MarkersUpdate update, queues::Upload upload, Done done) {
@@ -59,7 +58,6 @@ void MarkerArrivals::end() {
   arrivals_.pop_front();
   if (!arrivals_.empty()) next_turn_.call_at(loop_.now());
   first.done(std::move(first.outcome));
-  came_();
 }
 
 bool MarkerArrivals::begin(Arrival& arrival) {
@@ -165,14 +163,14 @@ queues::MarkerBounds bounds_of(const settings::Queues& queues) {
 
 Markers::Markers(loop::Loop& loop, loop::Workers& workers, const settings::Settings& settings,
                  TrafficCounts& counts, std::mt19937_64& random, journal::Journal& journal,
-                 DeliveredScene& delivered, std::function<void()> came)
+                 DeliveredScene& delivered)
     : loop_(loop),
       counts_(counts),
       journal_(journal),
       delivered_(delivered),
       pace_(kUri, settings.command_post.rates.markers_hz, random, journal),
       queue_(bounds_of(settings.queues)),
-      arrivals_(loop, workers, journal, queue_, counts, std::move(came)) {}
+      arrivals_(loop, workers, journal, queue_, counts) {}
 
 void Markers::carry_on(const journal::Carried& carried) {
   pace_.carry_on(carried, loop_.now());

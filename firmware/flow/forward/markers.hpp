@@ -37,9 +37,8 @@ class MarkerArrivals {
   static constexpr std::size_t kSmall = 128u << 10;
   static constexpr std::size_t kPart = 500;  // markers per turn
 
-  /// `came` is called after each update.
   MarkerArrivals(loop::Loop& loop, loop::Workers& workers, journal::Journal& journal,
-                 queues::MarkerQueue& queue, TrafficCounts& counts, std::function<void()> came);
+                 queues::MarkerQueue& queue, TrafficCounts& counts);
 
   void take(icd::MarkersUpdate update, queues::Upload upload, Done done);
 
@@ -82,7 +81,6 @@ class MarkerArrivals {
   journal::Journal& journal_;
   queues::MarkerQueue& queue_;
   TrafficCounts& counts_;
-  std::function<void()> came_;
   queues::OvertakenMarkers overtaken_;
   std::deque<Arrival> arrivals_;  // the first is in progress
   loop::Source next_turn_;
@@ -99,10 +97,9 @@ class Markers {
   /// Joint failures before fewer markers are sent in a message, or each robot's state alone.
   static constexpr int kTriesTogether = 3;
 
-  /// `came` is called after each arrival. All outlive this.
+  /// All outlive this.
   Markers(loop::Loop& loop, loop::Workers& workers, const settings::Settings& settings, TrafficCounts& counts,
-          std::mt19937_64& random, journal::Journal& journal, DeliveredScene& delivered,
-          std::function<void()> came);
+          std::mt19937_64& random, journal::Journal& journal, DeliveredScene& delivered);
 
   void carry_on(const journal::Carried& carried);
   void settings_changed(const settings::Settings& settings);

@@ -149,7 +149,7 @@ Telemetry::Telemetry(loop::Loop& loop, uplink::Servers& servers, loop::Workers& 
                [this] { pump(); }),
       wake_(loop.timer([this] { pump(); })),
       states_(loop, settings, counts, random, journal, delivered),
-      markers_(loop, workers, settings, counts, random, journal, delivered, [this] { pump(); }) {}
+      markers_(loop, workers, settings, counts, random, journal, delivered) {}
 
 void Telemetry::carry_on(const journal::Carried& carried) {
   states_.carry_on(carried);

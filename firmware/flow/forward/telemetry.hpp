@@ -112,7 +112,11 @@ class Telemetry {
   icd::Checked<void> take(const std::vector<queues::PostedPose>& poses, std::size_t bytes_received) noexcept;
   /// Stamps are on the stamp clock. 429: the queue is full; 503: it cannot be stored.
   void take(icd::MarkersUpdate update, queues::Upload upload, MarkerArrivals::Done done) {
-    markers_.take(std::move(update), std::move(upload), std::move(done));
+    markers_.take(std::move(update), std::move(upload),
+                  [this, done = std::move(done)](icd::Checked<void> outcome) {
+                    done(std::move(outcome));
+                    pump();
+                  });
   }
 
   /// Another run is on. It gets robots that post in it, and queued news.

@@ -112,9 +112,14 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
           [this](const api::Candidate& candidate) {
             return box::tried_of(candidate, parts_.loaded.settings, parts_.loaded.secrets);
           },
-          {.claim = [this](icd::Uri uri, loop::Instant latest) { return flow_.claim(uri, latest); },
+          {.are_shared =
+               [this](icd::Uri uri, const settings::Address& at) {
+                 const settings::CommandPost& post = settings_.command_post;
+                 return at == (uri == icd::Uri::Status ? post.scoring : post.mapping);
+               },
+           .claim = [this](icd::Uri uri, loop::Instant latest) { return flow_.claim(uri, latest); },
            .claimed = [this](icd::Uri uri) { flow_.claimed(uri); }},
-          adit_network_, network_, [this] { api_.changed(); }),
+          network_, [this] { api_.changed(); }),
       updates_(loop, disk_writer_, parts_.options.state, parts_.options.update,
                [this] { return report_under_way(flow_.reports()); }),
       clock_(loop, parts_.options.state, parts_.options.clock, admin::ClockSetting::kChronyd),

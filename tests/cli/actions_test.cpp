@@ -32,9 +32,9 @@ TEST(Actions, SendRequestsByTheirNames) {
   EXPECT_EQ(run_adit(server, {"reports", "settle", "7"}).out, "report 7 is settled\n");
   EXPECT_EQ(run_adit(server, {"reports", "resubmit", "7"}).out, "report 7 is sent again as report 12\n");
   EXPECT_EQ(run_adit(server, {"reports", "resubmit", "7", "--json"}).out, "{\"report\":12}\n");
-  EXPECT_EQ(run_adit(server, {"run", "new"}).out,
+  EXPECT_EQ(run_adit(server, {"run", "new", "--yes"}).out,
             "run 2 begins; unsent reports of earlier runs are held: see adit reports\n");
-  const Outcome outcome = run_adit(server, {"run", "new", "--json"});
+  const Outcome outcome = run_adit(server, {"run", "new", "--yes", "--json"});
   EXPECT_EQ(outcome.out, "{\"run\":2}\n");
   EXPECT_EQ(outcome.exit, Exit::Fine);
 }
@@ -90,6 +90,42 @@ TEST(Actions, OnRejectedMessagesSendRequests) {
               HasSubstr("expected show, send or discard, got keep"));
 }
 
+/// A repeat of a recorded report would be recorded twice in a new run.
+TEST(Actions, ThatBeginARunSayWhatTheyWouldDoAndAsk) {
+  api::RunView view = sample_view();
+  view.run_number = 9;
+  view.run_id = "cave-2";
+  std::vector<facts::ReportRow> reports(4, view.reports.front());
+  reports[2].state = "queued";
+  reports[3].state = "settled";
+  const Server server({{"GET /adit/run", Server::ok(codec::to_json(view))},
+                       {"GET /adit/reports?run=9", Server::ok(codec::to_json(reports))},
+                       {"POST /adit/runs", Server::ok("{\"run\":10}")}});
+  const Outcome outcome = run_adit(server, {"run", "new"});
+  EXPECT_EQ(outcome.exit, Exit::Attention);
+  EXPECT_EQ(
+      outcome.err,
+      "adit: The Command Post still shows this run (cave-2): run clock 12:34, score 7. Adit notices most "
+      "new runs by itself. This ends run 9 for good: 3 reports are recorded in it, and repeats of them "
+      "would be sent again; 1 unsent report would be held. It was not done; to do it, add --yes\n");
+  EXPECT_EQ(server.posted(), "");
+  std::string asked;
+  EXPECT_EQ(run_adit(server, {"run", "new"}, answering(false, asked)).err, "adit: no run was begun\n");
+  EXPECT_EQ(server.posted(), "");
+  EXPECT_EQ(run_adit(server, {"run", "new"}, answering(true, asked)).exit, Exit::Fine);
+  EXPECT_THAT(asked, testing::EndsWith("Begin a new run?"));
+  EXPECT_NE(server.posted(), "");
+}
+
+TEST(Actions, ComposeAReport) {
+  const Server server({{"POST /adit/reports", Server::reply("200 OK", "{\"report\":4}")}});
+  EXPECT_EQ(run_adit(server, {"reports", "compose", "type=Survivor", "x=1.5", "y=-2", "z=0"}).out,
+            "report 4 is accepted: see adit reports show 4\n");
+  EXPECT_THAT(server.posted(), testing::EndsWith(R"({"type":"Survivor","x":1.5,"y":-2.0,"z":0.0})"));
+  EXPECT_EQ(run_adit(server, {"reports", "compose", "type=Survivor", "x=1.5", "y=-2", "x=0"}).err,
+            "adit: z= is missing\n");
+}
+
 TEST(Actions, MakeTheLightsFlash) {
   const Server server({{"POST /adit/identify", Server::ok("{\"identify_until\":1005.5}")}});
   EXPECT_EQ(run_adit(server, {"identify", "5"}).out, "all lights flash for 5 s\n");
@@ -102,7 +138,7 @@ TEST(Actions, MakeTheLightsFlash) {
 
 TEST(Actions, SendTheTokenOnlyToAdit) {
   const Server server({{"POST /adit/runs", Server::ok("{\"run\":2}")}});
-  run_adit(server, {"run", "new"});
+  run_adit(server, {"run", "new", "--yes"});
   EXPECT_THAT(server.request(), HasSubstr("\r\nAuthorization: Bearer sesame-1\r\n"));
 }
 
@@ -191,7 +227,7 @@ TEST(Actions, AreNotDoneIfAditIsUnreachable) {
   }
   const TokenFile token;
   const Outcome outcome =
-      run(std::vector<std::string_view>{"run", "new", "--at", at, "--token-file", token.path()});
+      run(std::vector<std::string_view>{"run", "new", "--yes", "--at", at, "--token-file", token.path()});
   EXPECT_EQ(outcome.exit, Exit::Unable);
   EXPECT_THAT(outcome.err, Not(HasSubstr("may have been done")));
 }

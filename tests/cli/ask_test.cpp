@@ -111,7 +111,7 @@ TEST(Ask, WithoutATokenExplainsHowToNameOne) {
   EXPECT_EQ(
       outcome.err,
       "adit: cannot read a token in /nothing or /nowhere: set the team's token on the page, run adit as "
-      "root, or name a token file by --token-file FILE\n");
+      "root, name a token file by --token-file FILE, or save the token once by adit login\n");
   EXPECT_EQ(server.request(), "");
 }
 
@@ -170,7 +170,7 @@ TEST(Ask, ReadsAddressAndTokenFromTheEnvironment) {
                 HasSubstr("/none.json"))
         << "a named file has priority";
   }
-  const Variable address("ADIT_AT", "nowhere"), named("ADIT_TOKEN_FILE", "/none");
+  const Variable address("ADIT_AT", "no where"), named("ADIT_TOKEN_FILE", "/none");
   EXPECT_EQ(exit_of({"status", "--at", at, "--token-file", file}), Exit::Fine) << "options have priority";
   EXPECT_THAT(run(std::vector<std::string_view>{"status"}).err,
               HasSubstr("adit: ADIT_AT: expected an address"));

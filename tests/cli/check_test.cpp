@@ -47,9 +47,11 @@ TEST_F(Check, NamesEachErrorByItsPath) {
       outcome.out,
       (folder_ / "settings.json").string() +
           ": 3 errors\n"
-          "  command_post.scoring.adress: no such key; did you mean address? (keys here: address, port)\n"
-          "  command_post.scoring.port: expected a whole number from 1 to 65535, got 99999\n"
-          "  command_post.scoring.address: missing; expected an IPv4 or IPv6 address\n");
+          "  line 2, column 32: command_post.scoring.adress: no such key; did you mean address? (keys here: "
+          "address, port)\n"
+          "  line 2, column 58: command_post.scoring.port: expected a whole number from 1 to 65535, got "
+          "99999\n"
+          "  line 2, column 20: command_post.scoring.address: missing; expected an IPv4 or IPv6 address\n");
 }
 
 TEST_F(Check, SummarizesGoodSettings) {
@@ -71,7 +73,8 @@ TEST_F(Check, GivesScriptsTheSameAsJson) {
   const Outcome wrong = check(R"({"version": 2})", {"--json"});
   EXPECT_EQ(wrong.exit, Exit::Attention);
   EXPECT_EQ(wrong.out,
-            "{\"good\":false,\"errors\":[{\"path\":\"version\",\"what\":\"expected 1, got 2\"}],"
+            "{\"good\":false,\"errors\":[{\"path\":\"version\",\"what\":\"expected 1, got 2\",\"at\":\"line "
+            "1, column 2\"}],"
             "\"warnings\":[]}\n");
   const std::string example = project_file("firmware/rules/settings/example.json");
   const Outcome good = run(std::vector<std::string_view>{"check", example, "--json"});

@@ -76,6 +76,16 @@ TEST(CompletionOfKeys, SendsNoRequest) {
   EXPECT_EQ(json.out, codec::to_json(keys) + "\n");
 }
 
+TEST(CompletionOfKeys, ListsTheValuesOfOne) {
+  const auto listed = [](const char* key) {
+    return run(std::vector<std::string_view>{"complete", "keys", key}).out;
+  };
+  EXPECT_EQ(listed("reports.review"), "off\tthe default\nduplicates\t\nall\t\n");
+  EXPECT_EQ(listed("team.require_token"), "true\tthe default\nfalse\t\n");
+  EXPECT_THAT(listed("reports.near_metres"), testing::StartsWith("5.0\tthe default; allowed: "));
+  EXPECT_THAT(listed("robots[ugv1].clouds"), HasSubstr("auto\t"));
+}
+
 TEST(CompletionOfReports, IsEmptyWithoutAdit) {
   TokenFile token;
   std::string at;

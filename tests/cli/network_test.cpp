@@ -32,6 +32,33 @@ TEST(NetworkCommand, ShowsBothSides) {
   EXPECT_THAT(run_adit(server, {"network", "--json"}).out, HasSubstr("\"managed\":true"));
 }
 
+TEST(NetworkCommand, ChangesTheNamedAddressesOnly) {
+  const Server server(
+      {{"GET /adit/network", view("null", "null")}, {"POST /adit/network", view(kPending, "null")}});
+  const Outcome outcome = run_adit(
+      server, {"network", "set", "team=192.168.8.11/24", "command_post=10.100.1.10/24,10.100.2.10/24"});
+  EXPECT_THAT(outcome.out, HasSubstr("Confirm it at http://192.168.8.11:8000 (adit network confirm)"));
+  EXPECT_THAT(
+      server.posted(),
+      testing::EndsWith(
+          R"({"team":{"mode":"static","address":"192.168.8.11","prefix":24},"command_post":{"addresses":)"
+          R"([{"address":"10.100.1.10","prefix":24},{"address":"10.100.2.10","prefix":24}],"gateway":""}})"));
+  run_adit(server, {"network", "set", "team=dhcp"});
+  EXPECT_THAT(server.posted(), HasSubstr(R"({"team":{"mode":"dhcp"},"command_post":{"addresses":[])"));
+}
+
+TEST(NetworkCommand, NamesAWrongAddress) {
+  const Server server({{"GET /adit/network", view("null", "null")}});
+  const auto error_of = [&server](const char* word) {
+    return run_adit(server, {"network", "set", word}).err;
+  };
+  EXPECT_THAT(error_of("team=192.168.8.11"), HasSubstr("team=: expected an address as 192.168.8.11/24"));
+  EXPECT_THAT(error_of("gateway=here"), HasSubstr("gateway=: expected an IPv4 address"));
+  EXPECT_THAT(error_of("command_post=10.0.0.1"), HasSubstr("command_post=: expected addresses"));
+  EXPECT_THAT(error_of("robots=10.0.0.1"), HasSubstr("expected team=, command_post= or gateway="));
+  EXPECT_EQ(server.posted(), "");
+}
+
 TEST(NetworkCommand, ShowsTheAddressModeOfTheTeamSide) {
   const auto with = [](const char* team) {
     return Server::ok(
@@ -97,7 +124,7 @@ TEST(NetworkCommand, TellsWhyAnActionFails) {
 
 TEST(NetworkCommand, RejectsUnknownWords) {
   EXPECT_THAT(run(std::vector<std::string_view>{"network", "apply"}).err,
-              HasSubstr("expected show, confirm or revert, got apply"));
+              HasSubstr("expected show, set, confirm or revert, got apply"));
   EXPECT_THAT(run(std::vector<std::string_view>{"network", "show", "all"}).err,
               HasSubstr("one word too many: all"));
   EXPECT_THAT(run(std::vector<std::string_view>{"test", "all"}).err, HasSubstr("one word too many: all"));

@@ -123,6 +123,16 @@ TEST_F(SettingsCommand, SetsOneKey) {
   }
 }
 
+TEST_F(SettingsCommand, NamesTheItemOfAListThatIsMissing) {
+  const Server server({{"GET /adit/settings", Server::ok(shown())}});
+  const auto error_of = [&server](const char* key) {
+    return run_adit(server, {"settings", "set", key, "husky"}).err;
+  };
+  EXPECT_EQ(error_of("robots[ugv9].alias"), "adit: robots has no item ugv9: there are ugv1\n");
+  EXPECT_EQ(error_of("team.listen[3].port"), "adit: team.listen has no item 3: there are 0 to 0\n");
+  EXPECT_EQ(error_of("robots[ugv1].alais"), "adit: no such settings key: robots[ugv1].alais\n");
+}
+
 TEST_F(SettingsCommand, NamesEachErrorOfAFileAndAppliesNothing) {
   const Server server(
       {{"GET /adit/settings", Server::ok(shown())},
@@ -133,7 +143,7 @@ TEST_F(SettingsCommand, NamesEachErrorOfAFileAndAppliesNothing) {
   for (const std::string_view verb : {"check", "apply"}) {
     const Outcome outcome = run_adit(server, {"settings", verb, settings_});
     EXPECT_EQ(outcome.exit, Exit::Attention);
-    EXPECT_EQ(outcome.err, "adit: a.b: is wrong\nadit: too\n");
+    EXPECT_EQ(outcome.err, "adit: line 1, column 1: a.b: is wrong\nadit: too\n");
     EXPECT_THAT(server.request(), HasSubstr("POST /adit/settings/check "))
         << "the check was not the last request";
   }
@@ -155,7 +165,7 @@ TEST_F(SettingsCommand, NamesTheFaultOfAnInvalidFile) {
   std::ofstream(settings_, std::ios::trunc) << "{";
   const Outcome outcome = run_adit(server, {"settings", "check", settings_});
   EXPECT_EQ(outcome.exit, Exit::Unable);
-  EXPECT_THAT(outcome.err, HasSubstr(settings_ + ": not JSON: "));
+  EXPECT_THAT(outcome.err, HasSubstr(settings_ + ": line 1, column 2: not JSON: "));
   EXPECT_EQ(server.request(), "");
 }
 

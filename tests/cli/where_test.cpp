@@ -33,6 +33,35 @@ TEST(ParseAddress, RejectsInvalidAddresses) {
   }
 }
 
+TEST(ParseLocation, AcceptsNamesAndUrls) {
+  const std::pair<const char*, Address> kPlaces[] = {
+      {"10.0.0.1", {"10.0.0.1", 8000}},
+      {"adit.local", {"adit.local", 8000}},
+      {"localhost:8080", {"localhost", 8080}},
+      {"http://127.0.0.1:8000", {"127.0.0.1", 8000}},
+      {"http://127.0.0.1:8000/setup#tokens", {"127.0.0.1", 8000}},
+      {"http://adit.local/", {"adit.local", 80}},
+      {"http://10.0.0.1", {"10.0.0.1", 80}},
+      {"http://[fd00::1]/", {"fd00::1", 80}},
+      {"http://[fd00::1]:8000/", {"fd00::1", 8000}},
+  };
+  for (const auto& [text, address] : kPlaces) {
+    const auto found = parse_location(text);
+    ASSERT_TRUE(found.has_value()) << text << ": " << found.error();
+    EXPECT_EQ(*found, address) << text;
+  }
+}
+
+TEST(ParseLocation, RejectsOthers) {
+  for (const std::string text : {"", "adit.local:", "adit.local:0", "adit local", "http://",
+                                 "ftp://adit.local", "10.0.0", "adit.local/setup", "fd00::1"}) {
+    const auto address = parse_location(text);
+    ASSERT_FALSE(address.has_value()) << text;
+    EXPECT_THAT(address.error(), HasSubstr("got '" + text + "'"));
+  }
+  EXPECT_THAT(parse_location("https://adit.local").error(), HasSubstr("http:// instead of https://"));
+}
+
 TEST(ParseAddress, ReadsBackTheSame) {
   for (const Address& address : {Address{"10.0.0.1", 1}, Address{"fd00::1", 8000}}) {
     EXPECT_EQ(parse_address(written(address)).value(), address);

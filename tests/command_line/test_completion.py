@@ -64,6 +64,8 @@ class Offers(unittest.TestCase):
         self.offers("adit settings show reports.n", "reports.near_metres")
         self.offers("adit settings show robots[].al", "robots[].alias")
         self.offers("adit settings set reports.n", "reports.near_metres")
+        self.offers("adit settings set reports.review a", "all")
+        self.offers("adit settings set team.require_token ", "false", "true")
 
     def test_files_and_folders(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -26,14 +26,14 @@ NESTED = """# bash's completion of {name}, from its table of commands and option
 }}
 
 {function}() {{
-  local current=$2 previous=$3 command="" word="" each before="" words=""
+  local current=$2 previous=$3 command="" word="" key="" each before="" words=""
   local -a said=()
   read -ra said <<<"${{COMP_LINE:0:COMP_POINT}}"
   [[ ${{COMP_LINE:0:COMP_POINT}} == *[[:blank:]] ]] || unset "said[-1]"
   [[ $previous == "=" ]] && previous=${{COMP_WORDS[COMP_CWORD - 2]}}
   for each in "${{said[@]:1}}"; do
     if [[ $each != -* && ! $before =~ ^({valued})$ ]]; then
-      if [[ -z $command ]]; then command=$each; elif [[ -z $word ]]; then word=$each; fi
+      if [[ -z $command ]]; then command=$each; elif [[ -z $word ]]; then word=$each; else key=$each; fi
     fi
     before=$each
   done
@@ -70,7 +70,7 @@ def place(program, command, word, options):
     listed = " ".join(row.word for row in options)
     lists = program.lists_at(command, word)
     if lists:
-        quoted = " ".join(f'"{each}"' for each in lists.split())
+        quoted = " ".join(f'"{each}"' for each in lists.split()) + (' ${key:+"$key"}' if program.lists_values_at(command, word) else "")
         return f'words="{listed}"; [[ $current == -* ]] || words=$(_{program.name}_lists {quoted})'
     if program.wants_file(command, word):
         return f'words="{listed}"; [[ $current == -* ]] || {{ {FILE}; return; }}'

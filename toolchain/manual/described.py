@@ -105,8 +105,13 @@ class Program:
         return {
             ("reports", "NUMBER"): f"reports {word}", ("reports", "NUMBER..."): f"reports {word}", ("rejected", "NUMBER..."): "rejected",
             ("course", "NAME"): "courses", ("runs", "KEY"): "runs", ("settings", "[KEY]"): "keys",
-            ("settings", "KEY VALUE"): "keys",
+            ("settings", "KEY VALUE"): "keys", ("alarms", "ID"): "alarms", ("tokens", "NAME"): "tokens",
+            ("tokens", "NAME [FILE]"): "tokens", ("context", "NAME"): "contexts",
         }.get((command, behind), "")
+
+    def lists_values_at(self, command, word):
+        """Whether the values of a key may stand behind it."""
+        return self.name == "adit" and (command, word) == ("settings", "set")
 
     def wants_file(self, command, word):
         if word:

@@ -59,6 +59,8 @@ def word(name, row, when=""):
 def arguments(program, command, each):
     when = f"__{program.name}_at {command} {each}".rstrip()
     lists = program.lists_at(command, each)
+    if program.lists_values_at(command, each):
+        lists += f" (__{program.name}_said)[3]"
     if lists:
         return [f"complete -c {program.name} -n {quoted(when)} -f -a '(__{program.name}_lists {lists})'"]
     return [f"complete -c {program.name} -n {quoted(when)} -F"] if program.wants_file(command, each) else []

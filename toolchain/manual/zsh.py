@@ -85,6 +85,8 @@ def continued(words, indent):
 
 def argument(program, command, word):
     lists = program.lists_at(command, word)
+    if program.lists_values_at(command, word):
+        return f"""'1:word: _{program.name}_lists {lists}' '2:value: _{program.name}_lists {lists} $words[2]'"""
     if lists:
         return f"""'*:word: _{program.name}_lists {lists}'"""
     return "'*:file:_files'" if program.wants_file(command, word) else ""

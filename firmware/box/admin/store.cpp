@@ -97,7 +97,11 @@ std::expected<Store::Loaded, std::string> Store::read(std::string& unread) const
   if (!host::may_exist(file()) && is_there(mark()))
     loaded.trouble = "the saved settings are lost; the initial settings are in use: " + file() + " is gone";
   if (!loaded.saved) {
-    const auto parse = [](std::string_view json) { return settings::parse(json); };
+    const auto parse = [](std::string_view json) {
+      auto settings = settings::parse(json);
+      if (!settings) settings::find_places(json, settings.error());
+      return settings;
+    };
     auto given = ADIT_TRY(read_settings(given_settings_, parse, unread));
     loaded.settings = std::move(given);
   }

@@ -18,11 +18,16 @@ namespace adit::codec {
 
 /// An object with a member for each field.
 template <>
-struct KindOf<api::LogFields> : WriteOnly {
+struct KindOf<api::LogFields> {
   static Value write(const api::LogFields& fields) {
     Value::Object object;
     for (const auto& [name, value] : fields) object.emplace_back(name, Value{value});
     return {std::move(object)};
+  }
+  static void read(const Field& field, api::LogFields& fields) {
+    if (!field.is<Value::Object>()) return field.refuse_kind("an object");
+    for (const auto& [name, value] : std::get<Value::Object>(field.value()->is))
+      fields.emplace_back(name, std::string(field.member(name).text()));
   }
   static constexpr Schema schema = {.type = "object", .more = R"("additionalProperties":{"type":"string"})"};
 };

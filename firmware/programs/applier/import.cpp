@@ -85,7 +85,10 @@ class Reader {
     const auto text = text_of(card_, kCardSettings, kCardSettings);
     if (!text) return;
     auto settings = settings::parse(*text);
-    if (!settings) return refuse(kCardSettings, settings.error());
+    if (!settings) {
+      settings::find_places(*text, settings.error());
+      return refuse(kCardSettings, settings.error());
+    }
     found_.brought.settings = std::move(*settings);
   }
 

@@ -1,6 +1,7 @@
 #include "cli/ask.hpp"
 
 #include <arpa/inet.h>
+#include <netdb.h>
 #include <netinet/in.h>
 #include <poll.h>
 
@@ -10,10 +11,12 @@
 #include <system_error>
 #include <utility>
 
+#include "cli/contexts.hpp"
 #include "codec/json.hpp"
 #include "host/interfaces.hpp"
 #include "host/log.hpp"
 #include "host/service.hpp"
+#include "icd/sentence.hpp"
 #include "icd/text.hpp"
 #include "icd/try.hpp"
 #include "uplink/socket.hpp"
@@ -153,6 +156,7 @@ void HttpStream::look() {
 namespace {
 
 constexpr std::optional<std::uint16_t> kUsualPort = 8000;  // ICD 4, and the example settings
+constexpr std::uint16_t kPortOfUrls = 80;                  // RFC 9110 4.2.1
 
 bool is_ipv6(const std::string& address) {
   return address.find(':') != std::string::npos;
@@ -202,17 +206,71 @@ std::expected<settings::Address, std::string> address_in(const std::string& file
   return reach(settings->team);
 }
 
-std::expected<settings::Address, std::string> address_of(const Options& options) {
+/// The address of the host. IPv4 first, because link-local addresses of IPv6 need an interface.
+std::expected<settings::Address, std::string> resolved(const settings::Address& address) {
+  if (is_numeric(address.address)) return address;
+  std::string why;
+  for (const int family : {AF_INET, AF_INET6}) {
+    addrinfo wanted{};
+    wanted.ai_family = family;
+    wanted.ai_socktype = SOCK_STREAM;
+    addrinfo* found = nullptr;
+    const int error = getaddrinfo(address.address.c_str(), nullptr, &wanted, &found);
+    const std::unique_ptr<addrinfo, decltype(&freeaddrinfo)> all(found, &freeaddrinfo);
+    char text[NI_MAXHOST];
+    if (error == 0 &&
+        getnameinfo(found->ai_addr, found->ai_addrlen, text, sizeof text, nullptr, 0, NI_NUMERICHOST) == 0)
+      return settings::Address{text, address.port};
+    if (why.empty()) why = gai_strerror(error);
+  }
+  return std::unexpected("cannot find the host " + address.address + ": " + why);
+}
+
+/// How the options name Adit.
+struct Named {
+  std::string at = {};      // "": by the settings
+  const char* source = "";  // "--at" or "ADIT_AT", for errors
+  std::optional<Context> context = {};
+};
+
+std::expected<Named, std::string> named_by(const Options& options) {
   const bool file_named = options.settings != kGivenSettings;
   const std::string at = file_named ? options.at : given(options.at, "ADIT_AT");
-  if (!at.empty()) {
-    auto address = parse_address(at);
-    if (!address) return std::unexpected((options.at.empty() ? "ADIT_AT: " : "--at: ") + address.error());
-    return address;
+  if (at.empty() && file_named) return Named{};
+  const auto contexts = ADIT_TRY(load_contexts(contexts_file()));
+  const Context* const context = contexts.find(at.empty() ? contexts.current : at);
+  if (context != nullptr) return Named{.at = context->at, .context = *context};
+  return Named{.at = at, .source = options.at.empty() ? "ADIT_AT: " : "--at: "};
+}
+
+std::expected<settings::Address, std::string> address_of(const Options& options, const Named& named) {
+  if (!named.at.empty()) {
+    const auto address = parse_location(named.at);
+    if (!address) return std::unexpected(named.source + address.error());
+    return resolved(*address);
   }
+  const bool file_named = options.settings != kGivenSettings;
   const bool is_saved = !file_named && host::may_exist(options.saved_settings);
   return is_saved ? address_in(options.saved_settings, "run adit as root, or ")
                   : address_in(options.settings, "");
+}
+
+Result<Token> token_of(const Options& options, const Console& console, const Named& named) {
+  const std::string file = given(options.token_file, "ADIT_TOKEN_FILE"), text = given("", "ADIT_TOKEN");
+  if (file == "-") return Token{ADIT_TRY(read_token(console, "token: ")), "the input"};
+  if (file.empty() && (!text.empty() || named.context)) {
+    auto token = icd::BearerToken::parse(text.empty() ? named.context->token : text);
+    const std::string source = text.empty() ? "context " + named.context->name : "ADIT_TOKEN";
+    if (!token) return failed(source + ": expected a token of 1 to 256 visible ASCII characters");
+    return Token{*std::move(token), source};
+  }
+  const std::vector<std::string> folders = {options.saved_secrets, options.secrets};
+  auto token = find_token(file, folders);
+  if (!token) return failed(token.error());
+  if (*token) return std::move(**token);
+  return failed("cannot read a token in " + options.saved_secrets + " or " + options.secrets +
+                ": set the team's token on the page, run adit as root, name a token file by --token-file "
+                "FILE, or save the token once by adit login");
 }
 
 /// For an answer other than 200.
@@ -257,6 +315,38 @@ std::expected<settings::Address, std::string> parse_address(std::string_view tex
                          std::string(text) + "'");
 }
 
+std::expected<settings::Address, std::string> parse_location(std::string_view text) {
+  constexpr std::string_view kScheme = "http://";
+  if (text.starts_with("https://"))
+    return std::unexpected(
+        icd::sentence("Adit has no TLS: expected http:// instead of https://, got '", text, "'"));
+  std::string_view authority = text;
+  const bool is_url = text.starts_with(kScheme);
+  if (is_url) authority.remove_prefix(kScheme.size());
+  if (is_url) authority = icd::cut(authority, '/');
+  if (auto address = parse_address(authority)) {
+    const bool has_port = authority.find(':', authority.find(']') + 1) != std::string_view::npos &&
+                          (!authority.starts_with('[') || !authority.ends_with(']'));
+    if (is_url && !has_port) address->port = kPortOfUrls;
+    return address;
+  }
+  std::string_view rest = authority;
+  const std::string_view host = icd::cut(rest, ':');
+  const bool has_port = host.size() < authority.size();
+  const auto port = has_port ? icd::number_in<std::uint16_t>(rest) : is_url ? kPortOfUrls : kUsualPort;
+  constexpr std::string_view kOthers = "-._";
+  const bool is_name =
+      !host.empty() && host.size() < 254 &&
+      std::ranges::any_of(
+          host, [](char c) { return icd::is_letter_or_digit(c) && !icd::is_digit(c); }) &&
+      std::ranges::all_of(host, [&](char c) { return icd::is_letter_or_digit(c) || kOthers.contains(c); });
+  if (is_name && port.value_or(0) != 0) return settings::Address{std::string(host), *port};
+  return std::unexpected(
+      "expected an address, a name or a URL, as 10.0.0.1, adit.local:8000 or "
+      "http://10.0.0.1:8000, got '" +
+      std::string(text) + "'");
+}
+
 std::string written(const settings::Address& address) {
   return uplink::authority_of(endpoint_of(address));
 }
@@ -278,16 +368,20 @@ std::unexpected<Failure> failed(std::string sentence, Exit exit) {
   return std::unexpected(Failure{exit, std::move(sentence)});
 }
 
-Result<Adit> adit_of(const Options& options) {
-  const auto address = address_of(options);
+Result<icd::BearerToken> read_token(const Console& console, const std::string& question) {
+  const auto text = console.read_secret(question);
+  if (!text) return failed("no token was given: type it at a terminal, or pipe it into adit");
+  auto token = icd::BearerToken::parse(icd::trimmed(*text));
+  if (!token) return failed("expected a token of 1 to 256 visible ASCII characters");
+  return *std::move(token);
+}
+
+Result<Adit> adit_of(const Options& options, const Console& console) {
+  const auto named = named_by(options);
+  if (!named) return failed(named.error());
+  const auto address = address_of(options, *named);
   if (!address) return failed(address.error());
-  const std::vector<std::string> folders = {options.saved_secrets, options.secrets};
-  auto token = find_token(given(options.token_file, "ADIT_TOKEN_FILE"), folders);
-  if (!token) return failed(token.error());
-  if (*token) return Adit{*address, std::move(**token)};
-  return failed("cannot read a token in " + options.saved_secrets + " or " + options.secrets +
-                ": set the team's token on the page, run adit as root, or name a token file by "
-                "--token-file FILE");
+  return Adit{*address, ADIT_TRY(token_of(options, console, *named))};
 }
 
 Result<std::string> get(const Adit& adit, const std::string& target, std::chrono::milliseconds within) {

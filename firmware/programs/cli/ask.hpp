@@ -37,10 +37,18 @@ struct Console {
   std::function<std::optional<bool>(const std::string&)> ask = [](const std::string&) {
     return std::nullopt;
   };
+  /// A secret: at a terminal typed after the question and not shown, else the next line of standard input.
+  /// std::nullopt: the input has ended.
+  std::function<std::optional<std::string>(const std::string&)> read_secret = [](const std::string&) {
+    return std::nullopt;
+  };
 };
 
 /// "10.0.0.1:8000" or "[fd00::1]:8000". The default port is 8000.
 std::expected<settings::Address, std::string> parse_address(std::string_view text);
+/// The same; also a host's name ("adit.local:8000"), or a URL of a page ("http://adit.local/setup"), whose
+/// default port is 80.
+std::expected<settings::Address, std::string> parse_location(std::string_view text);
 std::string written(const settings::Address& address);
 
 /// The address of an Adit with these settings, from this machine. If it listens at all addresses of
@@ -126,8 +134,12 @@ struct Call {
   const Console& console;
 };
 
-/// If there is no token, the error says how to name one.
-Result<Adit> adit_of(const Options& options);
+/// The address: --at, which may name a context (contexts.hpp); ADIT_AT; the context in use; the settings. The
+/// token: --token-file ("-": Console::read_secret), ADIT_TOKEN_FILE, ADIT_TOKEN, the context's; without a
+/// context, the box's own. If there is none, the error says how to name one.
+Result<Adit> adit_of(const Options& options, const Console& console = {});
+/// A token that is typed or piped. `question`: at a terminal.
+Result<icd::BearerToken> read_token(const Console& console, const std::string& question);
 
 /// The body of an answer 200.
 Result<std::string> get(const Adit& adit, const std::string& target,

@@ -2,6 +2,7 @@
 #include <chrono>
 #include <cmath>
 #include <fstream>
+#include <span>
 
 #include "api/clock.hpp"
 #include "api/network.hpp"
@@ -10,6 +11,7 @@
 #include "cli/table.hpp"
 #include "clock/messages.hpp"
 #include "icd/sentence.hpp"
+#include "icd/text.hpp"
 #include "icd/try.hpp"
 #include "loop/loop.hpp"
 #include "update/messages.hpp"
@@ -61,6 +63,57 @@ std::string text_of(const api::NetworkView& view, bool /*colour*/) {
 Result<Outcome> show_network(const Call& call) {
   return show<api::NetworkView>(call, "/adit/network", text_of,
                                 [](const api::NetworkView& view) { return !view.pending; });
+}
+
+namespace {
+
+/// Reads team=, command_post= and gateway= over the present addresses.
+Result<void> read_numbers(std::span<const std::string> words, network::Numbers& numbers) {
+  for (const std::string& word : words) {
+    std::string_view rest = word;
+    const std::string_view name = icd::cut(rest, '=');
+    const auto wrong = [&](const char* expected) {
+      return failed(icd::sentence(name, "=: expected ", expected, ", got '", rest, "'"));
+    };
+    if (name == "team") {
+      const auto mode = std::ranges::find(network::kModeWords, rest);
+      const auto subnet = settings::parse_subnet(std::string(rest));
+      if (!subnet && mode == std::end(network::kModeWords))
+        return wrong("an address as 192.168.8.11/24, dhcp or link-local");
+      numbers.mode =
+          subnet ? network::Mode::Static : static_cast<network::Mode>(mode - std::begin(network::kModeWords));
+      numbers.team = subnet.value_or(settings::Subnet());
+    } else if (name == "command_post") {
+      numbers.command_post.clear();
+      while (!rest.empty()) {
+        const auto subnet = settings::parse_subnet(std::string(icd::cut(rest, ',')));
+        if (!subnet)
+          return failed("command_post=: expected addresses as 10.100.2.10/24, separated by commas");
+        numbers.command_post.push_back(*subnet);
+      }
+    } else if (name == "gateway") {
+      numbers.gateway = settings::ipv4_of(std::string(rest));
+      if (!rest.empty() && !numbers.gateway) return wrong("an IPv4 address, or no value for no gateway");
+    } else {
+      return failed("'" + word + "': expected team=, command_post= or gateway=");
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<Outcome> change_network(const Call& call) {
+  const auto now = ADIT_TRY(fetch<api::NetworkView>(call.adit, "/adit/network")).row;
+  network::Numbers wanted{.mode = now.mode,
+                          .team = now.team.value_or(settings::Subnet()),
+                          .command_post = now.command_post,
+                          .gateway = now.gateway};
+  ADIT_TRY(read_numbers(call.options.arguments, wanted));
+  const auto changed = ADIT_TRY(told<api::NetworkView>(
+      call.adit,
+      post(call.adit, {.target = "/adit/network", .check = "adit network", .body = codec::to_json(wanted)})));
+  return printed(call, changed.json, text_of(changed.row, call.console.colour));
 }
 
 Result<Outcome> decide_on_network(const Call& call) {

@@ -108,8 +108,9 @@ std::string sentences(const std::string& file, const std::vector<settings::Error
   std::string text = host::escaped(file) + ": " + painted(number, Tone::Bad, colour) + '\n';
   for (const settings::Error& error : errors) {
     const std::string path = host::escaped(error.path);
-    text += "  " + (path.empty() ? "" : painted(path, Tone::Strong, colour) + ": ") +
-            host::escaped(error.what) + '\n';
+    text += "  " + (error.at.empty() ? "" : error.at + ": ") +
+            (path.empty() ? "" : painted(path, Tone::Strong, colour) + ": ") + host::escaped(error.what) +
+            '\n';
   }
   return text;
 }
@@ -118,7 +119,7 @@ std::string as_json(const std::vector<settings::Error>& errors, const std::vecto
   Value::Array list, told;
   for (const std::string& warning : warnings) told.push_back({warning});
   for (const settings::Error& error : errors) {
-    list.push_back({Value::Object{{"path", {error.path}}, {"what", {error.what}}}});
+    list.push_back({Value::Object{{"path", {error.path}}, {"what", {error.what}}, {"at", {error.at}}}});
   }
   return codec::write_json(
              {Value::Object{{"good", {errors.empty()}}, {"errors", {list}}, {"warnings", {told}}}}) +
@@ -132,7 +133,8 @@ Result<Outcome> check(const Options& options, const Console& console) {
   const auto text = host::read_file(file);
   if (!text) return failed(text.error());
   const auto settings = settings::parse(*text);
-  const auto errors = settings ? std::vector<settings::Error>() : settings.error();
+  auto errors = settings ? std::vector<settings::Error>() : settings.error();
+  settings::find_places(*text, errors);
   const auto warnings = settings ? warnings_of(options, *settings) : std::vector<std::string>();
   const Exit exit = settings ? Exit::Fine : Exit::Attention;
   if (options.json) return Outcome{exit, as_json(errors, warnings), ""};

@@ -73,8 +73,10 @@ void explain_all(Program& program) {
       "Environment:\n"
       "  ADIT_AT          used if --at and --settings are not given\n"
       "  ADIT_TOKEN_FILE  used if --token-file is not given\n"
+      "  ADIT_TOKEN       the token itself, used if no file is named\n"
       "  NO_COLOR         if set, print without colour\n"
       "Files:\n"
+      "  ~/.config/adit/contexts.json  addresses and tokens of adit login, for this user alone\n"
       "  /var/lib/adit/settings.json  the saved settings; without them, /etc/adit/settings.json\n"
       "  /var/lib/adit/secrets        team.token or else scoring.token; without them, /etc/adit/secrets");
 }
@@ -103,7 +105,7 @@ void explain(Program& program, const CommandRow& command, std::deque<std::string
 Result<Outcome> outcome_of(const Options& options, const Console& console) {
   const Run& run = options.form->run;
   if (run.alone != nullptr) return run.alone(options, console);
-  const auto adit = ADIT_TRY(adit_of(options));
+  const auto adit = ADIT_TRY(adit_of(options, console));
   return run.asks({adit, options, console});
 }
 

@@ -20,10 +20,21 @@ constexpr Argument kFile{"FILE", "a file", 1, 1, 0};
 constexpr Argument kFileIfAny{"[FILE]", "a file", 0, 1, 0};
 constexpr Argument kDirectory{"[DIRECTORY]", "a directory", 0, 1, 0};
 constexpr Argument kSettingsFile{"[SETTINGS]", "a file", 0, 1, 0};
+constexpr Argument kFields{"FIELD=VALUE...", "a value", 4, 4, 0};
+constexpr Argument kNumbers{"KEY=VALUE...", "an address", 1, 3, 0};
+constexpr Argument kAlarm{"ID", "an alarm's id", 1, 1, 0};
+constexpr Argument kToken{"NAME [FILE]", "a token's name or its file", 1, 2, 0};
+constexpr Argument kTokenName{"NAME", "a token's name", 1, 1, 0};
+constexpr Argument kRole{"[ROLE]", "operator or viewer", 0, 1, 0};
+constexpr Argument kAddress{"ADDRESS", "an address", 1, 1, 0};
+constexpr Argument kContextName{"NAME", "a context's name", 1, 1, 0};
 constexpr Argument kWord{"[WORD]", "a subcommand of `adit reports`", 0, 1, 0};
 
 constexpr Form kStatusForms[] = {{"", status, kNothing, "", "", true}};
 constexpr Form kWatchForms[] = {{"", watch, kNothing, "", "", true}};
+constexpr Form kAlarmForms[] = {
+    {"show", list_alarms, kNothing, "show the alarms, each with its reason and its id (default)", "", true},
+    {"acknowledge", acknowledge, kAlarm, "make an alarm quiet until it gets worse or begins again"}};
 constexpr Form kReportForms[] = {
     {"", list_reports, kNothing, "", "--run --last", true},
     {"show", show_report, kReport, "show one report, its history and the possible actions"},
@@ -37,6 +48,8 @@ constexpr Form kReportForms[] = {
     {"correct", correct_report, kCorrection,
      "send a held report with another type or place, as a new report: type=TYPE, x=X, y=Y, z=Z. It keeps the "
      "other values. The held report is withdrawn"},
+    {"compose", compose_report, kFields,
+     "send a report of your own: type=TYPE, x=X, y=Y, z=Z, in metres. Adit treats it as a robot's"},
     {"settle", decide_on_reports, kReports, "settle a report in doubt without sending it again"},
     {"resubmit", decide_on_reports, kReport,
      "send a finished report again, as a new report with its own number"},
@@ -49,7 +62,7 @@ constexpr Form kRejectedForms[] = {
     {"discard", decide_on_rejected, kRejectedNumber, "delete a message"}};
 constexpr Form kRunForms[] = {
     {"show", show_present_run, kNothing, "show the present run (default)", "", true},
-    {"new", begin_run, kNothing, "declare that a new run begins"}};
+    {"new", begin_run, kNothing, "declare that a new run begins; this cannot be undone", "--yes"}};
 constexpr Form kRunsForms[] = {
     {"", list_runs, kNothing, "", "", true},
     {"show", show_run, kRunKey, "show one run"},
@@ -66,11 +79,33 @@ constexpr Form kSettingsForms[] = {
     {"check", check_settings, kFile, "list the errors in FILE, or the changes that it would make"},
     {"apply", apply_settings, kFile, "replace all settings by FILE and apply them at once"},
     {"export", export_settings, kNothing, "print the settings file for `apply`. It contains no tokens"}};
+constexpr Form kTokenForms[] = {
+    {"show", show_tokens, kNothing, "show which tokens are set (default)", "", true},
+    {"set", set_token, kToken,
+     "save a token and apply it at once; it is in FILE, or you type it, or a program pipes it in"},
+    {"remove", remove_token, kTokenName, "remove a saved token; then the token of the installation is used"}};
+constexpr Form kPasswordForms[] = {
+    {"set", set_password, kRole,
+     "set the password of ROLE (operator, if not given, or viewer). Its sessions end. Type the operator's "
+     "present password first; on a new box the code of its label"},
+    {"remove", remove_password, kNothing, "remove the viewers' password"}};
+constexpr Form kResetForms[] = {{"", reset_box, kNothing, "", "--yes", true}};
+constexpr Form kLogForms[] = {{"", show_log, kNothing, "", "--follow --level --text", true}};
+constexpr Form kBundleForms[] = {{"", fetch_bundle, kFileIfAny, "", "", true}};
+constexpr Form kLoginForms[] = {{"", log_in, kAddress, "", "--token-file --name", true}};
+constexpr Form kContextForms[] = {
+    {"show", show_contexts, kNothing, "list the contexts, and mark the one in use (default)", "", true},
+    {"use", use_context, kContextName, "ask this Adit from now on"},
+    {"remove", remove_context, kContextName, "remove a context and its token"}};
+constexpr Form kVersionForms[] = {{"", show_version, kNothing, "", "", true}};
 constexpr Form kCourseForms[] = {{"", course, kName, "", "", true}};
 constexpr Form kIdentifyForms[] = {{"", identify, kSeconds, "", "", true}};
 constexpr Form kNetworkForms[] = {
     {"show", show_network, kNothing,
      "show the addresses of both ports, and a change to be confirmed (default)", "", true},
+    {"set", change_network, kNumbers,
+     "change addresses: team=ADDRESS/PREFIX (or dhcp, link-local), command_post=ADDRESS/PREFIX,..., "
+     "gateway=ADDRESS. Others stay"},
     {"confirm", decide_on_network, kNothing,
      "keep the change. The box accepts this at its new address only; adit finds that address by "
      "team.interface or --at"},
@@ -110,7 +145,11 @@ constexpr Form kCompleteForms[] = {
     {"rejected", complete_rejected, kNothing, "list the rejected messages"},
     {"courses", complete_courses, kNothing, "list the courses"},
     {"runs", complete_runs, kNothing, "list the kept runs"},
-    {"keys", complete_keys, kNothing, "list the settings keys, without asking Adit", "--at --token-file"}};
+    {"tokens", complete_tokens, kNothing, "list the names of tokens"},
+    {"alarms", complete_alarms, kNothing, "list the alarms"},
+    {"contexts", complete_contexts, kNothing, "list the contexts, without asking Adit", "--at --token-file"},
+    {"keys", complete_keys, kKey, "list the settings keys, or the values of KEY, without asking Adit",
+     "--at --token-file"}};
 constexpr Form kCheckForms[] = {{"", check, kSettingsFile, "", "", true}};
 
 constexpr CommandRow kCommands[] = {
@@ -140,6 +179,12 @@ constexpr CommandRow kCommands[] = {
      "  sudo adit watch\n"
      "  sudo adit watch | tee run.log\n"
      "  sudo adit watch --json | jq --unbuffered '.run.score'"},
+    {"alarms", "show the alarms; acknowledge one", kAlarmForms,
+     "`adit help status` explains the marks. An acknowledged alarm no longer makes `adit status` exit with "
+     "1.",
+     "no alarm is bad or asks, or the alarm is acknowledged", "an alarm is bad or asks, or does not exist",
+     "  sudo adit alarms\n"
+     "  sudo adit alarms acknowledge robot_silent:uav5"},
     {"reports", "list artifact reports; send, hold, withdraw, correct or settle them", kReportForms,
      "Without a subcommand: list the reports of the present run and the unfinished ones of other runs, the "
      "newest first. A report in doubt delays no other report.\n"
@@ -162,6 +207,7 @@ constexpr CommandRow kCommands[] = {
      "  sudo adit reports show 14\n"
      "  sudo adit reports send 15 16\n"
      "  sudo adit reports correct 17 type=Backpack y=-3.5\n"
+     "  sudo adit reports compose type=Survivor x=12.5 y=-3 z=0.4\n"
      "  sudo adit reports export > reports.csv\n"
      "  sudo adit reports --run all --json | jq -r '.[] | [.number, .type, .state] | @tsv'"},
     {"rejected", "list maps, states and markers that the Command Post rejected", kRejectedForms,
@@ -175,7 +221,7 @@ constexpr CommandRow kCommands[] = {
      "back. If only the clock shows it, a report that repeats one of the old run is held until an answer "
      "names the run. Otherwise declare it with `adit run new`. Unsent reports of the old run are then held, "
      "and a report that repeats one of an old run is a new report.",
-     "the command succeeded", "", "  sudo adit run new"},
+     "the command succeeded", "no run was begun", "  sudo adit run new"},
     {"runs", "list the kept runs; show, print or delete one", kRunsForms,
      "Without a subcommand: list the runs whose map, tracks and plots are kept, the latest first. KEY is the "
      "first column.",
@@ -192,6 +238,18 @@ constexpr CommandRow kCommands[] = {
      "  sudo adit settings set reports.review all\n"
      "  sudo adit settings export > box.json\n"
      "  sudo adit settings check box.json && sudo adit settings apply box.json"},
+    {"tokens", "show which tokens are set; set or remove one", kTokenForms,
+     "Names: scoring, mapping, team, and for each course course.NAME.scoring and course.NAME.mapping. A "
+     "token "
+     "is never printed.",
+     "the command succeeded", "the token does not exist, or was rejected",
+     "  sudo adit tokens set mapping\n"
+     "  sudo adit tokens set course.A.scoring a-scoring.token\n"
+     "  pass adit/team | sudo adit tokens set team"},
+    {"password", "set the page's passwords", kPasswordForms,
+     "Passwords are typed, or piped into adit, one on each line: the present one, the new one, the new one "
+     "again.",
+     "the password is set or removed", "it was rejected", "  sudo adit password set viewer"},
     {"course", "list the courses, or switch to another course's Command Post", kCourseForms,
      "Without NAME: list the courses of the settings and mark the one in use. \"\" as NAME switches to the "
      "endpoints of command_post itself.\n"
@@ -202,12 +260,13 @@ constexpr CommandRow kCommands[] = {
     {"identify", "flash the box's lights, to tell it from others", kIdentifyForms,
      "All lights flash together, twice a second, for SECONDS (1 to 60; 10 if not given).", "the lights flash",
      "", "  sudo adit identify 30"},
-    {"network", "show the box's own addresses; confirm or revert a change", kNetworkForms,
-     "The page changes addresses. The box applies the change at once and returns to the old addresses unless "
-     "you confirm within network.confirm_within_ms.",
+    {"network", "show or change the box's own addresses", kNetworkForms,
+     "The box applies a change at once and returns to the old addresses unless you confirm within "
+     "network.confirm_within_ms.",
      "no change is to be confirmed, or the action succeeded",
      "a change is to be confirmed, or the action was rejected",
      "  sudo adit network\n"
+     "  sudo adit network set team=192.168.8.11/24\n"
      "  sudo adit network confirm --at 192.168.8.11"},
     {"clock", "show or set the box's time of day", kClockForms,
      "After boot a box without a battery continues from the last time that it knew, until the Command Post's "
@@ -262,6 +321,34 @@ constexpr CommandRow kCommands[] = {
      "the update was rejected or failed, an unexpected slot runs, a report is queued or being sent, or the\n"
      "     box cannot be updated",
      "  sudo adit update adit-qemu-virt-0.2.0.raucb && sudo adit update --restart"},
+    {"reset", "return the box to its initial state", kResetForms,
+     "Deletes settings, tokens, passwords and sessions, as the button does. The ledger keeps all reports. "
+     "The "
+     "operator's present password is needed.",
+     "the box is reset", "it was not reset", "  sudo adit reset"},
+    {"log", "print the last records of the log", kLogForms,
+     "Prints at most 2000 records, the latest last. With --json: a line for each record.",
+     "the command succeeded", "",
+     "  sudo adit log --level warning\n"
+     "  sudo adit log --follow --text mapping"},
+    {"bundle", "write the support bundle to a file", kBundleForms,
+     "Writes FILE (adit-support.tar.gz if not given): log, settings, reports and state, without tokens and "
+     "passwords.",
+     "the file is written", "", "  sudo adit bundle /tmp/box.tar.gz"},
+    {"login", "save the address and token of an Adit for later commands", kLoginForms,
+     "ADDRESS is an address, a name or a URL of a page. The token is in the file of --token-file, in "
+     "$ADIT_TOKEN, typed, or piped in. adit checks both, saves them in ~/.config/adit/contexts.json, which "
+     "this user alone can read, and asks this Adit from then on.",
+     "the context is saved", "Adit rejects the token",
+     "  adit login adit.local --token-file team.token\n"
+     "  adit login 192.168.8.11 --name spare"},
+    {"context", "list the saved contexts; use or remove one", kContextForms,
+     "`adit login` saves contexts. A context's name is also accepted by --at.", "the command succeeded",
+     "there is no such context",
+     "  adit context use spare\n"
+     "  adit status --at spare"},
+    {"version", "show the versions of adit and of the box", kVersionForms, "", "the command succeeded", "",
+     ""},
     {"check", "list all errors of a settings file", kCheckForms,
      "Read SETTINGS (/etc/adit/settings.json if not given) as aditd does, and name each error by the path of "
      "its key. Summarise correct settings, and warn if a Command Post's token does not have 16 characters or "

@@ -4,6 +4,7 @@
 #include "api/reports_csv.hpp"
 #include "api/run_view.hpp"
 #include "api/settings_rows.hpp"
+#include "cli/contexts.hpp"
 #include "cli/handlers.hpp"
 #include "cli/settings.hpp"
 #include "cli/status_text.hpp"
@@ -23,7 +24,7 @@ struct Candidate {
 bool is_plain(std::string_view word) {
   return !word.empty() && word.find_first_not_of(
                               "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
-                              "0123456789._-[]") == std::string_view::npos;
+                              "0123456789._-[]:") == std::string_view::npos;
 }
 
 std::string lines(const std::vector<Candidate>& all) {
@@ -96,9 +97,70 @@ Result<Outcome> complete_runs(const Call& call) {
   });
 }
 
+namespace {
+
+/// The words of a choice, or the default.
+std::vector<Candidate> values_of(const api::KeyRow& key) {
+  std::vector<Candidate> all;
+  for (const std::string& word : key.words.value_or(std::vector<std::string>())) all.push_back({word, ""});
+  if (key.kind == "flag") all = {{"true", ""}, {"false", ""}};
+  const std::string usual = plain(key.default_value);
+  const auto listed = std::ranges::find(all, usual, &Candidate::word);
+  if (listed != all.end()) {
+    listed->what = "the default";
+  } else {
+    all.push_back({usual, "the default; allowed: " + key.range});
+  }
+  return all;
+}
+
+/// "robots[].alias" of "robots[ugv1].alias".
+std::string pattern_of(const std::string& path) {
+  std::string pattern;
+  bool inside = false;
+  for (const char c : path) {
+    if (c == ']') inside = false;
+    if (!inside) pattern += c;
+    if (c == '[') inside = true;
+  }
+  return pattern;
+}
+
+}  // namespace
+
+Result<Outcome> complete_tokens(const Call& call) {
+  return listed<api::SetupView>(call, "/adit/settings", [](const api::SetupView& setup) {
+    std::vector<Candidate> all;
+    for (const auto& [name, set, warning] : setup.tokens) all.push_back({name, set ? "set" : "not set"});
+    return all;
+  });
+}
+
+Result<Outcome> complete_alarms(const Call& call) {
+  return listed<api::RunView>(call, "/adit/run", [](const api::RunView& view) {
+    std::vector<Candidate> all;
+    for (const alarms::Alarm& alarm : view.alarms) all.push_back({alarm.id, alarms::line_of(alarm)});
+    return all;
+  });
+}
+
+Result<Outcome> complete_contexts(const Options& options, const Console& /*console*/) {
+  const auto contexts = load_contexts(contexts_file());
+  if (!contexts) return failed(contexts.error());
+  std::vector<Candidate> all;
+  for (const Context& each : contexts->all) all.push_back({each.name, each.at});
+  return Outcome{Exit::Fine, options.json ? json_of(all) + '\n' : lines(all), ""};
+}
+
 /// Prints each key with the beginning of its meaning.
 Result<Outcome> complete_keys(const Options& options, const Console& /*console*/) {
   const auto rows = settings::keys();
+  if (const std::string key = options.argument(); !key.empty()) {
+    const auto row = std::ranges::find(rows, pattern_of(key), &api::KeyRow::path);
+    if (row == rows.end()) return failed("no such settings key: " + key);
+    const auto values = values_of(*row);
+    return Outcome{Exit::Fine, options.json ? json_of(values) + '\n' : lines(values), ""};
+  }
   std::vector<Candidate> all;
   all.reserve(rows.size());
   for (const api::KeyRow& key : rows)

@@ -10,11 +10,15 @@ namespace adit::cli {
 Result<Outcome> status(const Call& call);
 Result<Outcome> watch(const Call& call);
 
+Result<Outcome> list_alarms(const Call& call);
+Result<Outcome> acknowledge(const Call& call);
+
 Result<Outcome> list_reports(const Call& call);
 Result<Outcome> show_report(const Call& call);
 /// send, hold, withdraw, settle and resubmit. Asks for confirmation to send a report in doubt.
 Result<Outcome> decide_on_reports(const Call& call);
 Result<Outcome> correct_report(const Call& call);
+Result<Outcome> compose_report(const Call& call);
 Result<Outcome> export_reports(const Call& call);
 
 Result<Outcome> list_rejected(const Call& call);
@@ -36,8 +40,32 @@ Result<Outcome> export_settings(const Call& call);
 /// Lists the courses, or selects one.
 Result<Outcome> course(const Call& call);
 
+/// The names of tokens, and whether they are set.
+Result<Outcome> show_tokens(const Call& call);
+/// Reads the token from a file, a terminal or standard input.
+Result<Outcome> set_token(const Call& call);
+Result<Outcome> remove_token(const Call& call);
+/// Asks for the operator's present password first; on a new box for its code.
+Result<Outcome> set_password(const Call& call);
+/// Of the viewers.
+Result<Outcome> remove_password(const Call& call);
+Result<Outcome> reset_box(const Call& call);
+
+/// Checks address and token, and saves them as a context (contexts.hpp).
+Result<Outcome> log_in(const Options& options, const Console& console);
+Result<Outcome> show_contexts(const Options& options, const Console& console);
+Result<Outcome> use_context(const Options& options, const Console& console);
+Result<Outcome> remove_context(const Options& options, const Console& console);
+
+/// The last records; with --follow also new ones, until a signal ends it.
+Result<Outcome> show_log(const Call& call);
+Result<Outcome> fetch_bundle(const Call& call);
+Result<Outcome> show_version(const Call& call);
+
 Result<Outcome> identify(const Call& call);
 Result<Outcome> show_network(const Call& call);
+/// Changes addresses, until they are confirmed or time is up.
+Result<Outcome> change_network(const Call& call);
 /// confirm and revert. Waits for the outcome.
 Result<Outcome> decide_on_network(const Call& call);
 Result<Outcome> show_clock(const Call& call);
@@ -64,6 +92,10 @@ Result<Outcome> complete_reports(const Call& call);
 Result<Outcome> complete_rejected(const Call& call);
 Result<Outcome> complete_courses(const Call& call);
 Result<Outcome> complete_runs(const Call& call);
+/// The settings keys; of a named one, its possible values.
 Result<Outcome> complete_keys(const Options& options, const Console& console);
+Result<Outcome> complete_tokens(const Call& call);
+Result<Outcome> complete_alarms(const Call& call);
+Result<Outcome> complete_contexts(const Options& options, const Console& console);
 
 }  // namespace adit::cli

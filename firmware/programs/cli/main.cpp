@@ -1,9 +1,11 @@
 #include <langinfo.h>
+#include <termios.h>
 #include <unistd.h>
 
 #include <clocale>
 #include <cstdio>
 #include <cstdlib>
+#include <iostream>
 #include <string_view>
 #include <vector>
 
@@ -39,6 +41,35 @@ std::optional<bool> ask(const std::string& question) {
   return said == "y\n" || said == "Y\n" || said == "yes\n";
 }
 
+/// Hides what is typed until the end of its life.
+class Silence {
+ public:
+  Silence() : is_terminal_(tcgetattr(STDIN_FILENO, &before_) == 0) {
+    termios silent = before_;
+    silent.c_lflag &= ~static_cast<tcflag_t>(ECHO);
+    if (is_terminal_) tcsetattr(STDIN_FILENO, TCSAFLUSH, &silent);
+  }
+  ~Silence() {
+    if (is_terminal_) tcsetattr(STDIN_FILENO, TCSAFLUSH, &before_);
+  }
+  Silence(const Silence&) = delete;
+  Silence& operator=(const Silence&) = delete;
+
+ private:
+  termios before_{};
+  bool is_terminal_;
+};
+
+std::optional<std::string> read_secret(const std::string& question) {
+  const bool asks = is_terminal(STDIN_FILENO) && is_terminal(STDERR_FILENO);
+  if (asks) std::fprintf(stderr, "%s", question.c_str());
+  const Silence silence;
+  std::string line;
+  if (!std::getline(std::cin, line)) return std::nullopt;
+  if (asks) std::fprintf(stderr, "\n");
+  return line;
+}
+
 }  // namespace
 }  // namespace adit::cli
 
@@ -58,7 +89,8 @@ int main(int count, char** arguments) {
       .colour = screen && std::getenv("NO_COLOR") == nullptr,
       .screen = screen,
       .print = [&](const std::string& text) { printed = write_to(stdout, text) && printed; },
-      .ask = ask};
+      .ask = ask,
+      .read_secret = read_secret};
   Outcome outcome{Exit::Unable, "", ""};
   adit::loop::guarded("adit", [&] { outcome = run(words, console); });
   write_to(stderr, outcome.err);

@@ -62,9 +62,12 @@ struct Options {
   bool all_runs = false;
   std::optional<std::int64_t> last;  // most listed reports; nullopt: all
   bool json = false, csv = false;
-  bool yes = false;  // skip the confirmation
-  std::string at;    // "ADDR[:PORT]"; "": from the settings
-  std::string to;    // of runs: the report's file; "": standard output
+  bool yes = false;         // skip the confirmation
+  std::string at;           // "ADDR[:PORT]"; "": from the settings
+  std::string to;           // of runs: the report's file; "": standard output
+  std::string name;         // of login: the context's; "": the address
+  bool follow = false;      // of log
+  std::string level, text;  // of log: only records as bad as `level`, or that contain `text`
   bool restart = false, stick = false, again = false, anyway = false, back = false,
        stay = false;  // of update; stick: also of spare
   std::string code;   // of spare: the export's code

@@ -1,6 +1,6 @@
 #include <algorithm>
 #include <map>
-#include <ranges>
+#include <span>
 
 #include "api/reports_csv.hpp"
 #include "api/run_view.hpp"
@@ -156,6 +156,25 @@ constexpr Axis kAxes[] = {{"x", &icd::Point::x}, {"y", &icd::Point::y}, {"z", &i
 constexpr double kFar = 1e9;  // metres
 constexpr std::uint64_t kMostNumber = INT64_MAX;
 
+using ReportFields = std::map<std::string, codec::Value>;
+
+/// Reads type=TYPE, x=X, y=Y and z=Z.
+Result<void> read_fields(std::span<const std::string> words, ReportFields& fields) {
+  for (const std::string& word : words) {
+    const std::size_t end = word.find('=');
+    const std::string name = word.substr(0, end),
+                      value = end == std::string::npos ? "" : word.substr(end + 1);
+    const bool is_axis = std::ranges::find(kAxes, name, &Axis::name) != std::end(kAxes);
+    if (end == std::string::npos || (name != "type" && !is_axis))
+      return failed("'" + word + "': expected type=, x=, y= or z=");
+    double metres = 0;
+    if (const auto wrong = is_axis ? command_line::read_number(value, -kFar, kFar, metres) : std::nullopt)
+      return failed(name + ": " + *wrong);
+    fields[name] = is_axis ? codec::Value{metres} : codec::Value{value};
+  }
+  return {};
+}
+
 /// Asks the operator for confirmation if the report is in doubt.
 Result<void> confirm_sending(const Call& call, const std::string& target, std::int64_t number) {
   const facts::ReportRow report = ADIT_TRY(fetch<api::ReportDetail>(call.adit, target)).row.row;
@@ -199,22 +218,11 @@ Result<Outcome> correct_report(const Call& call) {
   const std::string target = icd::sentence("/adit/reports/", number);
   const auto now = ADIT_TRY(fetch<api::ReportDetail>(call.adit, target));
   const facts::ReportRow& report = now.row.row;
-  std::map<std::string, codec::Value> body{{"type", {report.type}}};
+  ReportFields body{{"type", {report.type}}};
   for (const auto& [name, axis] : kAxes) {
     if (report.position) body[name] = {(*report.position).*axis};
   }
-  for (const std::string& word : words | std::views::drop(1)) {
-    const std::size_t end = word.find('=');
-    const std::string name = word.substr(0, end),
-                      value = end == std::string::npos ? "" : word.substr(end + 1);
-    const bool is_axis = std::ranges::find(kAxes, name, &Axis::name) != std::end(kAxes);
-    if (end == std::string::npos || (name != "type" && !is_axis))
-      return failed("'" + word + "': expected type=, x=, y= or z=");
-    double metres = 0;
-    if (const auto wrong = is_axis ? command_line::read_number(value, -kFar, kFar, metres) : std::nullopt)
-      return failed(name + ": " + *wrong);
-    body[name] = is_axis ? codec::Value{metres} : codec::Value{value};
-  }
+  ADIT_TRY(read_fields(std::span(words).subspan(1), body));
   const auto answer = ADIT_TRY(told<DecidedReport>(
       call.adit,
       post(call.adit, {.target = target + "/correct",
@@ -224,7 +232,59 @@ Result<Outcome> correct_report(const Call& call) {
                  icd::sentence("report ", number, " is corrected as report ", answer.row.report, "\n"));
 }
 
+Result<Outcome> compose_report(const Call& call) {
+  ReportFields body;
+  ADIT_TRY(read_fields(call.options.arguments, body));
+  for (const char* const name : {"type", "x", "y", "z"}) {
+    if (!body.contains(name)) return failed(std::string(name) + "= is missing");
+  }
+  const auto answer = ADIT_TRY(told<DecidedReport>(
+      call.adit,
+      post(call.adit, {.target = "/adit/reports",
+                       .check = "adit reports",
+                       .body = codec::write_json({codec::Value::Object(body.begin(), body.end())})})));
+  return printed(call, answer.json,
+                 icd::sentence("report ", answer.row.report, " is accepted: see adit reports show ",
+                               answer.row.report, "\n"));
+}
+
+namespace {
+
+/// What a new run would change: it cannot be undone.
+std::string meaning_of_new_run(const api::RunView& view, const std::vector<facts::ReportRow>& reports) {
+  using enum dispatch::ReportState;
+  std::size_t recorded = 0, unsent = 0;
+  for (const facts::ReportRow& report : reports) {
+    const auto state = dispatch::state_named(report.state);
+    if (state == Answered || state == Settled) ++recorded;
+    if (state == Queued || state == Held) ++unsent;
+  }
+  const std::string still =
+      view.run ? icd::sentence("The Command Post still shows this run",
+                               view.run_id.empty() ? "" : " (" + view.run_id + ")", ": run clock ",
+                               clock(view.run->run_clock), ", score ", view.run->score, ". ")
+               : "";
+  return icd::sentence(still, "Adit notices most new runs by itself. This ends run ", view.run_number,
+                       " for good: ", recorded, recorded == 1 ? " report is" : " reports are",
+                       " recorded in it, and repeats of ", recorded == 1 ? "it" : "them",
+                       " would be sent again; ", unsent, unsent == 1 ? " unsent report" : " unsent reports",
+                       " would be held.");
+}
+
+Result<void> confirm_new_run(const Call& call) {
+  if (call.options.yes) return {};
+  const auto view = ADIT_TRY(fetch<api::RunView>(call.adit, "/adit/run")).row;
+  const auto reports = ADIT_TRY(fetch<std::vector<facts::ReportRow>>(
+                                    call.adit, icd::sentence("/adit/reports?run=", view.run_number)))
+                           .row;
+  return confirm(call.options, call.console, meaning_of_new_run(view, reports), "Begin a new run?",
+                 "no run was begun");
+}
+
+}  // namespace
+
 Result<Outcome> begin_run(const Call& call) {
+  ADIT_TRY(confirm_new_run(call));
   const auto answer =
       ADIT_TRY(told<BegunRun>(call.adit, post(call.adit, {.target = "/adit/runs", .check = "adit reports"})));
   return printed(call, answer.json,

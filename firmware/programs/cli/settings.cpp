@@ -149,18 +149,24 @@ std::string text_of(const api::ChangesView& view, bool colour) {
 
 std::string errors_text(const std::vector<settings::Error>& errors) {
   std::string text;
-  for (const settings::Error& error : errors)
-    text += line("adit: ", error.path, error.path.empty() ? "" : ": ", error.what);
+  for (const settings::Error& error : errors) text += line("adit: ", error.sentence());
   return text;
 }
 
-/// The file's JSON; Adit checks its settings.
-Result<Value> read_file(const std::string& file) {
-  const auto text = host::read_file(file);
+/// A settings file; Adit checks its settings.
+struct SettingsFile {
+  std::string text;
+  Value settings;
+};
+
+Result<SettingsFile> read_file(const std::string& file) {
+  auto text = host::read_file(file);
   if (!text) return failed(text.error());
   auto value = codec::parse_json(*text);
-  if (!value) return failed(file + ": not JSON: " + value.error());
-  return *std::move(value);
+  if (value) return SettingsFile{*std::move(text), *std::move(value)};
+  std::vector<settings::Error> errors{{"", "not JSON: " + value.error()}};
+  settings::find_places(*text, errors);
+  return failed(file + ": " + errors.front().sentence());
 }
 
 std::string text_of(const api::SetupView& setup, const settings::Settings& settings, bool colour) {
@@ -207,10 +213,14 @@ Value value_in(const std::string& text, const Value& before) {
 }
 
 /// Checks the settings and applies them to a box with the settings of `now`.
-Result<Outcome> apply(const Call& call, const api::SetupView& now, const Value& settings) {
-  const auto checked = ADIT_TRY(ask_check(call.adit, settings));
-  if (const auto& errors = checked.row.errors; !errors.empty())
+/// `text`: of the file that they are in, or "".
+Result<Outcome> apply(const Call& call, const api::SetupView& now, const Value& settings,
+                      std::string_view text = "") {
+  auto checked = ADIT_TRY(ask_check(call.adit, settings));
+  if (auto& errors = checked.row.errors; !errors.empty()) {
+    if (!text.empty()) settings::find_places(text, errors);
     return Outcome{Exit::Attention, "", errors_text(errors)};
+  }
   const auto done =
       ADIT_TRY(change(call.adit, kSettings, {{"settings", settings}, {"base", {now.tag}}}, kSee));
   return printed(call, done.json, text_of(checked.row.changes, call.console.colour));
@@ -261,9 +271,10 @@ Result<Outcome> show_settings(const Call& call) {
 }
 
 Result<Outcome> check_settings(const Call& call) {
-  const auto settings = ADIT_TRY(read_file(call.options.argument()));
-  const auto checked = ADIT_TRY(ask_check(call.adit, settings));
-  const auto& [errors, changes] = checked.row;
+  const auto file = ADIT_TRY(read_file(call.options.argument()));
+  auto checked = ADIT_TRY(ask_check(call.adit, file.settings));
+  auto& [errors, changes] = checked.row;
+  settings::find_places(file.text, errors);
   if (!errors.empty() && !call.options.json) return Outcome{Exit::Attention, "", errors_text(errors)};
   return printed(call, checked.json, text_of(changes, call.console.colour),
                  errors.empty() ? Exit::Fine : Exit::Attention);
@@ -271,19 +282,42 @@ Result<Outcome> check_settings(const Call& call) {
 
 Result<Outcome> apply_settings(const Call& call) {
   const auto now = ADIT_TRY(fetch<api::SetupView>(call.adit, kSettings));
-  const auto settings = ADIT_TRY(read_file(call.options.argument()));
-  return apply(call, now.row, settings);
+  const auto file = ADIT_TRY(read_file(call.options.argument()));
+  return apply(call, now.row, file.settings, file.text);
 }
+
+namespace {
+
+/// "ugv1, ugv2": the names of a list's items, or "0 to 1".
+std::string items_text(const Value& list) {
+  const auto* const items = std::get_if<Value::Array>(&list.is);
+  if (items == nullptr || items->empty()) return "it is empty";
+  const std::string names = icd::listed(*items, [](const Value& item) { return text_at(item, "name"); });
+  return "there are " + (names.empty() ? icd::sentence("0 to ", items->size() - 1) : names);
+}
+
+/// Names the part of `key` that is wrong: an item of a list, or the key.
+std::unexpected<Failure> no_value_at(const api::SetupView& setup, Value& settings, const std::string& key) {
+  for (std::size_t end = key.find(']'); end != std::string::npos; end = key.find(']', end + 1)) {
+    const std::string item = key.substr(0, end + 1), list = item.substr(0, item.rfind('['));
+    const Value* const all = value_at(settings, list);
+    if (all == nullptr || value_at(settings, item) != nullptr) continue;
+    return failed(icd::sentence(list, " has no item ",
+                                item.substr(list.size() + 1, item.size() - list.size() - 2), ": ",
+                                items_text(*all)));
+  }
+  const auto keys = keys_named(setup, key);
+  return keys ? failed("no such item of a list: " + key) : std::unexpected(keys.error());
+}
+
+}  // namespace
 
 Result<Outcome> set_setting(const Call& call) {
   const std::string key = call.options.argument(0), text = call.options.argument(1);
   const auto now = ADIT_TRY(fetch<api::SetupView>(call.adit, kSettings));
   Value settings = now.row.settings;
   Value* const value = value_at(settings, key);
-  if (value == nullptr) {
-    const auto keys = keys_named(now.row, key);
-    return keys ? failed("no such item of a list: " + key) : std::unexpected(keys.error());
-  }
+  if (value == nullptr) return no_value_at(now.row, settings, key);
   *value = value_in(text, *value);
   return apply(call, now.row, settings);
 }

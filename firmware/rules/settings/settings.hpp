@@ -162,10 +162,17 @@ struct Settings {
 };
 
 struct Error {
-  std::string path;  // "command_post.scoring.port"; "" for the document itself
-  std::string what;  // "expected 1 to 65535, got 99999"
-  std::string sentence() const { return path.empty() ? what : path + ": " + what; }
+  std::string path;     // "command_post.scoring.port"; "" for the document itself
+  std::string what;     // "expected 1 to 65535, got 99999"
+  std::string at = {};  // "line 3, column 15" of the key in a text; "": there is no text
+  std::string sentence() const {
+    return (at.empty() ? "" : at + ": ") + (path.empty() ? "" : path + ": ") + what;
+  }
 };
+
+/// For a file that people edit: sets Error::at, the place in `json` of each error's key, or of the object
+/// that lacks it.
+void find_places(std::string_view json, std::vector<Error>& errors);
 
 /// Returns all errors at once, in the file's order. An unknown key is an error, which lists the known keys.
 std::expected<Settings, std::vector<Error>> parse(std::string_view json);

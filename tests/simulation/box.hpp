@@ -29,7 +29,9 @@ class Box {
   void terminate();
   /// The process dies at a drawn call of the seam, counted from now or from the next start.
   void die(World::How how);
-  /// Copies the ledger's directory as it reads now. The copy replaces the one before.
+  /// Copies the ledger's directory as it reads now. The copy replaces the one before. In one of five runs a
+  /// person does so once or twice, and up to a minute later ends the process and puts the copy back. The rest
+  /// of the state directory and the runtime directory stay.
   void copy_ledger();
   /// The next process after this one starts with the copy in place of the ledger. No effect without a copy.
   void put_ledger_back();

@@ -13,7 +13,7 @@ constexpr const char* kNames[] = {"Open fails", "List fails",   "Read fails", "S
                                   "Map fails",  "Status fails", "Write fails"};
 constexpr double kLongest = 15;                // seconds
 constexpr std::uint64_t kAll = 1'000'000'000;  // calls
-/// Of the runtime directory. Faults do not hit the sessions (README.md, power cut).
+/// Of the runtime directory. Faults do not hit the sessions, which stay valid over a power cut.
 constexpr const char* kQueues[] = {"runtime/journal", "runtime/waiting", "runtime/rejected"};
 
 bool is_in(const std::string& name, bool in_memory) {

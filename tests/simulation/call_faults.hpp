@@ -12,7 +12,8 @@ namespace adit::simulation {
 class World;
 
 /// Calls of libc that fail on the box's files for some time: in the state directory, or on the journal, the
-/// spool and the rejected messages in the runtime directory. One of four runs has up to three such faults.
+/// spool and the rejected messages in the runtime directory. One of four runs has up to three such faults,
+/// which last up to 15 s, also over a restart.
 class CallFaults {
  public:
   enum class Call : std::uint8_t {

@@ -18,7 +18,10 @@ inline constexpr const char *kSend = "send", *kHold = "hold", *kWithdraw = "with
 /// Event::who of the operator.
 inline constexpr const char* kOperator = "operator";
 
-/// An operator who looks at the page every few seconds and decides about reports and rejected messages.
+/// In two of five runs, an operator who looks at the page every few seconds. He holds, sends, withdraws and
+/// corrects reports, decides about those in doubt, reports artifacts, and makes the lights flash. In every
+/// run rejected messages are sent again once the trouble is over. Those requests are never left out, because
+/// checks count on them.
 /// Before he decides about a report in doubt he reads the Command Post's own record.
 class DecidingOperator {
  public:

@@ -9,7 +9,8 @@ namespace adit::simulation {
 
 class World;
 
-/// Faults of the box's disk that last for some time. Most runs have none, the others one kind or two.
+/// Faults of the box's disk, in two of five runs, of one kind or two. Each lasts up to 15 s, from the start
+/// or later.
 class DiskFaults {
  public:
   enum class Kind : std::uint8_t {

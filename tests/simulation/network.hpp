@@ -41,7 +41,8 @@ class Host {
   virtual std::unique_ptr<Peer> connected(const uplink::Endpoint& endpoint, Link& link) = 0;
 };
 
-/// One TCP connection to the Command Post, in memory.
+/// One TCP connection to the Command Post, in memory: latency, windows, pieces of any size. In one of four
+/// runs a map takes most of a second to arrive, so that the next map is sent before its answer.
 class Link : public std::enable_shared_from_this<Link> {
  public:
   /// `number`: identifies the connection in the history (Event::request).

@@ -15,7 +15,8 @@ inline constexpr const char* kSettings = "/adit/settings";
 /// Event::what of Kind::Saved: `review` is "all", or another value. Event::serial: reports.undo_s.
 inline constexpr const char *kReviewAll = "review all", *kReviewElse = "settings";
 
-/// Saves settings by the page's API. The gateway applies them in place.
+/// In a third of the runs, saves settings of several sections by the page's API, up to three times. The
+/// gateway applies them in place.
 class Operator {
  public:
   /// Is logged in from the beginning. `world` and `box` must outlive it.

@@ -25,7 +25,9 @@ inline constexpr const char* kSetBack = "clock set back";
 /// "run 3", as in the history.
 std::string run_name(int place, std::int64_t run);
 
-/// The runs of a Command Post, one after the other. It records every report, including repetitions.
+/// The runs of a Command Post, one after the other. It records every report, including repetitions. In one of
+/// five runs its clock is set back by a minute, or one more report is granted, up to three times. In three of
+/// twenty worlds all runs are named "1", and in one of ten each answer gives the run another name.
 class Scoreboard {
  public:
   /// `place`: index of the Command Post, from 0. All arguments must outlive it.

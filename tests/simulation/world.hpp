@@ -54,7 +54,8 @@ class World {
   double time() const;  // seconds since the run began
   double stamp() const { return kEpoch + time() + clock_ahead_; }
   double clock_ahead() const { return clock_ahead_; }
-  /// Sets the box's clock, as a person does or as a boot does.
+  /// Sets the box's clock, as a person does or as a boot does: in three of ten runs up to three times, by
+  /// seconds or by months.
   void set_clock(double seconds_ahead);
 
   void at(Instant when, std::function<void()> happen);

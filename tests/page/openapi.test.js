@@ -1,6 +1,5 @@
-// Compares the API description that a real aditd serves with that aditd: every path and method in it, and every route in the README.
+// Compares the API description that a real aditd serves with that aditd: every path and method in it.
 import assert from "node:assert/strict";
-import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import Ajv from "ajv/dist/2020.js";
 import { OPERATOR, box, play, until } from "./box.js";
@@ -15,7 +14,6 @@ async function described() {
   return description;
 }
 
-const readme = readFileSync(new URL("../../firmware/doors/api/README.md", import.meta.url), "utf8");
 const api = await described();
 const operations = Object.entries(api.paths).flatMap(([path, methods]) =>
   Object.entries(methods).map(([method, operation]) => ({ path, method: method.toUpperCase(), operation })));
@@ -67,15 +65,6 @@ const bodyOf = ({ operation }) => {
   const content = operation.requestBody?.content;
   return content && (content["application/json"]?.example ?? Buffer.from("no bundle"));
 };
-
-test("describes exactly the routes of the README", () => {
-  const rows = [...readme.matchAll(/^\| (GET|POST) `([^`]+)` \|/gm)].map(([, method, path]) => ({ method, path }));
-  assert.ok(rows.length > 20);
-  const pattern = (path) => new RegExp(`^${path.replaceAll(".", "\\.").replaceAll(/\{\w+\}/g, "[^/]+")}$`);
-  const fits = (row, each) => row.method === each.method && pattern(each.path).test(row.path);
-  assert.deepEqual(rows.filter((row) => !operations.some((each) => fits(row, each))).map(({ method, path }) => `${method} ${path}`), []);
-  assert.deepEqual(operations.filter((each) => !rows.some((row) => fits(row, each))).map(({ method, path }) => `${method} ${path}`), []);
-});
 
 test("describes the answers to a body that is too long or invalid, wherever a body is read", () => {
   const taking = operations.filter(({ operation }) => operation.requestBody);

@@ -16,27 +16,6 @@ std::string text_of(const std::string& file) {
   return project_text("firmware/rules/settings/" + file);
 }
 
-/// The Markdown table of all keys in README.md: key, meaning, range and default. A default of "" also means
-/// that the text may be empty.
-std::string reference() {
-  constexpr std::string_view kOrEmpty = ", or \"\"";
-  std::string table = "| key | meaning | allowed (default) |\n| --- | --- | --- |\n";
-  for (const Key& key : keys()) {
-    const std::string value = key.required ? "required" : "`" + codec::write_json(key.default_value) + "`";
-    std::string range = key.range;
-    if (range.ends_with(kOrEmpty)) range.resize(range.size() - kOrEmpty.size());
-    table.append("| `").append(key.path).append("` | ").append(key.meaning).append(" | ").append(range);
-    table.append(" (").append(value).append(") |\n");
-  }
-  return table;
-}
-
-TEST(SettingsReadme, HasTheTableOfAllKeys) {
-  EXPECT_NE(text_of("README.md").find(reference()), std::string::npos)
-      << "put this table into firmware/rules/settings/README.md:\n"
-      << reference();
-}
-
 TEST(SettingsReadme, ShowsAnExampleThatWorks) {
   const std::string text = text_of("README.md");
   const auto begin = text.find("```json\n") + 8;

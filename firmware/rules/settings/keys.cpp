@@ -258,8 +258,8 @@ constexpr Member kReportsKeys[] = {
                                  "504 with the report's state.")
         .within(100, 600000),
     key<&Reports::doubt_for>("doubt_for_ms",
-                             "How late a Command Post may still record a report that it has read. Only after "
-                             "this time can the run's status show that a report in doubt was not recorded.")
+                             "How long Adit waits after a lost answer before the run's status can show that "
+                             "the report was not recorded.")
         .within(100, 600000),
     key<&Reports::doubt_asks>(
         "doubt_asks",
@@ -315,7 +315,8 @@ constexpr Member kAlarmsKeys[] = {
                              "The shortest time without a message after which a robot is silent.")
         .within(1000, 3600000),
     key<&Alarms::silent_times>("silent_times",
-                               "How many of its usual intervals must also pass before a robot is silent.")
+                               "A robot is silent after this many times its usual interval between messages, "
+                               "and after silent_for_ms.")
         .within(1, 1000),
 };
 

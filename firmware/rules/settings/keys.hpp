@@ -10,7 +10,7 @@
 
 namespace adit::settings {
 
-/// Data about one key of the settings file, for a form, help and README.md.
+/// Data about one key of the settings file, for a form, help and the man page.
 struct Key {
   std::string path;  // "team.listen[].port"; "[]" stands for each item
   std::string meaning, kind;

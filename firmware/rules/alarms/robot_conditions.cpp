@@ -163,7 +163,7 @@ void find_unknown(const facts::Clients& clients, Found& found) {
 
 void find_crowds(const facts::Clients& clients, Found& found) {
   for (const facts::Crowd& crowd : clients.crowds) {
-    const std::string most = "most of them from " + crowd.address;
+    const std::string most = "most from " + crowd.address;
     if (crowd.kind == facts::Crowd::Kind::NoRoom) {
       found.push_back({.id = "clients_refused",
                        .side = Side::Robot,

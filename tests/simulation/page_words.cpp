@@ -12,7 +12,7 @@ using Json = nlohmann::json;
 
 constexpr const char* kLights[] = {"health", "scoring", "mapping", "attention"};
 
-/// The pattern in the table of firmware/doors/panel/README.md, for a box whose cables are plugged in.
+/// The pattern in the table of panel/states.cpp, for a box whose cables are plugged in.
 std::string pattern_of(const std::string& light, const Json& view) {
   if (!view.at("identify_until").is_null()) return "twice";
   const Json& alarms = view.at("alarms");

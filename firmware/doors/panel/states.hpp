@@ -39,7 +39,7 @@ enum class State : std::uint8_t {
   MappingConnected,
 };
 
-/// A row of the table of states, which is also in README.md.
+/// A row of the table of states, which is also on board/card.html.
 struct StateRow {
   State state;
   std::string_view name;                                        // "reset warning"

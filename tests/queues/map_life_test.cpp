@@ -1,11 +1,8 @@
-#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include <set>
-#include <string>
-#include <string_view>
 #include <utility>
 
-#include "project_files.hpp"
 #include "queues/map_queue.hpp"
 
 namespace adit::queues {
@@ -47,93 +44,6 @@ TEST(MapLifeDeathTest, EndsTheProcessAtAnEventThatIsImpossibleInTheState) {
   EXPECT_DEATH(transition(State::InFlight, Event::Recalled), "assertion failed");
   EXPECT_DEATH(transition(State::Queued, Event::Sent), "assertion failed");
   EXPECT_DEATH(transition(State::Delivered, Event::Failed), "assertion failed");
-}
-
-std::string_view words(State state) {
-  switch (state) {
-    case State::Queued:
-      return "queued";
-    case State::Packing:
-      return "packing";
-    case State::Packed:
-      return "packed";
-    case State::InFlight:
-      return "in flight";
-    case State::Delivered:
-      return "delivered";
-    case State::Rejected:
-      return "rejected";
-    case State::Damaged:
-      return "damaged";
-    case State::Empty:
-      return "empty";
-  }
-  return "";
-}
-
-std::string_view words(Event event) {
-  switch (event) {
-    case Event::Chosen:
-      return "its turn";
-    case Event::Packed:
-      return "packed";
-    case Event::NotPacked:
-      return "the worker failed";
-    case Event::NotStitched:
-      return "its parts cannot be stitched";
-    case Event::Damaged:
-      return "its data, or that of a part, is damaged";
-    case Event::SkippedPiece:
-      return "no valid point in this piece; another one follows";
-    case Event::SkippedLast:
-      return "no valid point; no piece follows";
-    case Event::Recalled:
-      return "the map before it failed, or the Command Post or the run is another one";
-    case Event::TooLarge:
-      return "too large for one message";
-    case Event::Sent:
-      return "sent";
-    case Event::AcceptedPiece:
-      return "2xx; another piece follows";
-    case Event::Accepted:
-      return "2xx";
-    case Event::Failed:
-      return "to be retried, or pieces before it may be lost";
-    case Event::RejectedParts:
-      return "rejected, and it has parts";
-    case Event::Rejected:
-      return "rejected";
-  }
-  return "";
-}
-
-std::string_view words(Action action) {
-  switch (action) {
-    case Action::Nothing:
-      return "-";
-    case Action::PutBack:
-      return "queued as the sender's first, unless a newer map replaces it";
-    case Action::PutBackApart:
-      return "each part is queued by itself";
-    case Action::PutBackSmaller:
-      return "its halves are queued, or it is with smaller pieces";
-    case Action::Forget:
-      return "its file is deleted";
-    case Action::Reject:
-      return "the rejected messages store it, then its file is deleted";
-    case Action::SetAside:
-      return "its file is renamed; the other parts are queued by themselves";
-  }
-  return "";
-}
-
-TEST(MapLife, MatchesTheTableOfTheReadme) {
-  std::string table = "| state | event | next state | effect |\n| --- | --- | --- | --- |\n";
-  for (const MapTransition& row : map_life()) {
-    table.append("| ").append(words(row.from)).append(" | ").append(words(row.event)).append(" | ");
-    table.append(words(row.to)).append(" | ").append(words(row.action)).append(" |\n");
-  }
-  EXPECT_THAT(project_text("firmware/flow/forward/README.md"), testing::HasSubstr("\n\n" + table + "\n"));
 }
 
 }  // namespace

@@ -215,7 +215,7 @@ icd::Checked<void> Spare::resume() {
     if (!unread.empty()) return icd::refuse(Status::ServiceUnavailable, unread);
     next.rest.reset();
     if (auto kept = keep(next); !kept) return kept;
-    host::log(host::Level::Notice, "this box was woken up: no spare took over");
+    host::log(host::Level::Notice, "standby ended: no spare took over");
   }
   restart_.call_at(loop_.now());
   return {};

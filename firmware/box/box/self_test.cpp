@@ -157,9 +157,10 @@ TestStep address(const std::string& interface,
                "Both cables of the box are in one network: plug each into its own network.");
   }
   if (!probed->claimant.empty()) {
-    return bad("address", icd::sentence(has, ", but the machine ", probed->claimant, " has the same address"),
-               "Give the box another address on the Command Post's side, or ask its crew which machine has "
-               "this address.");
+    return bad(
+        "address", icd::sentence(has, ", but the machine ", probed->claimant, " has the same address"),
+        "Give the box another address on the Command Post's side, or ask the organiser which machine has "
+        "this address.");
   }
   return good("address", icd::sentence(has, ", without an address conflict"));
 }
@@ -225,7 +226,7 @@ TestStep token(Asked asked, const uplink::Outcome& outcome, bool slash) {
     return bad(
         "token", never != nullptr ? never->why : std::get<uplink::InDoubt>(outcome).why,
         icd::sentence("The server accepts connections but gave no answer: compare the ", name_of(asked),
-                      " port with the one posted, try again, then ask the Command Post's crew."));
+                      " port with the one posted, try again, then ask the organiser."));
   }
   const int status = answer->status;
   const dispatch::Body body = dispatch::body_of(answer->body);

@@ -9,8 +9,8 @@ import { tryCourse } from "./trial.js";
 
 const COMMON = { scoring: "Scoring endpoint’s token", mapping: "Mapping endpoint’s token", team: "Team’s token" };
 const HINTS = {
-  scoring: "From the Command Post’s staff, for reports and the run’s status.",
-  mapping: "From the Command Post’s staff, for maps, states and markers.",
+  scoring: "From the organiser, for reports and the run’s status.",
+  mapping: "From the organiser, for maps, states and markers.",
   team: "For the team’s scripts and stations, if they use their own token.",
 };
 const WRONG = "expected 1 to 256 visible ASCII characters";

@@ -55,7 +55,7 @@ test("asks before an action that costs a report, and does nothing on no", async 
   const { page } = await watch(t, "reports");
   await button(page, "Send again", 25).click();
   const question = page.getByRole("alertdialog");
-  assert.match(await question.textContent(), /report 25, Gas.*recorded twice.*spends a report.*18 reports are left/s);
+  assert.match(await question.textContent(), /report 25, Gas.*recorded twice.*uses up a report.*18 reports are left/s);
   assert.equal(await page.evaluate(() => document.activeElement.textContent), "Cancel");
   await page.keyboard.press("Escape");
   await question.waitFor({ state: "hidden" });
@@ -72,12 +72,12 @@ test("asks before it sends a near duplicate or a withdrawn report", async (t) =>
   const { page } = await watch(t, "reports");
   const question = page.getByRole("alertdialog");
   await button(page, "Send", 24).click();
-  assert.match(await question.textContent(), /report 24, Gas.*close by.*spends a report.*18 reports are left/s);
+  assert.match(await question.textContent(), /report 24, Gas.*close by.*uses up a report.*18 reports are left/s);
   await question.getByRole("button", { name: "Cancel" }).click();
   assert.match(await row(page, 24).innerText(), /held/);
   await row(page, 20).locator(".open").click();
   await button(page, "Send", 20).click();
-  assert.match(await question.textContent(), /report 20.*withdrawn.*spends a report/s);
+  assert.match(await question.textContent(), /report 20.*withdrawn.*uses up a report/s);
   await question.getByRole("button", { name: "Send" }).click();
   await becomes(page, 20, "queued");
 });

@@ -33,7 +33,7 @@ test("composes a report: type, place, a check for near ones, and sends it", asyn
   await fill(page, "Gas", "306", "-3.5", "0.25");
   assert.match(await text(page, "#compose .summary"), /Gas.*at 306\.0, −3\.5, 0\.3 m/);
   assert.equal(await page.locator("#compose .summary svg").count(), 1);
-  assert.match(await text(page, "#compose .notes"), /#25 Gas is 1\.0 m away.*#24 Gas is 1\.0 m away.*Spends 1 of the 18 reports left\./);
+  assert.match(await text(page, "#compose .notes"), /#25 Gas is 1\.0 m away.*#24 Gas is 1\.0 m away.*Uses up 1 of the 18 reports left\./);
   assert.equal(await text(page, "#compose .send"), "Send Gas");
   assert.ok(await page.locator("#compose .again").isHidden());
   await send(page);

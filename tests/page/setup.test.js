@@ -9,7 +9,7 @@ import { complaints, COURSES, field, fill, hears, openCards, ready, review, step
 /** Runs the Test, and returns each endpoint's steps with their states. */
 async function tried(page) {
   await page.getByRole("button", { name: "Run the test" }).click();
-  await page.locator("#step-test .outcome", { hasText: "No report was spent." }).waitFor();
+  await page.locator("#step-test .outcome", { hasText: "No report was used up." }).waitFor();
   return page.$$eval("#step-test .trial", (all) => all.map((each) => [...each.querySelectorAll("ol .badge")].map((badge) => badge.textContent.trim())));
 }
 
@@ -39,7 +39,7 @@ test("tests each endpoint step by step, and says what to do if a step fails", as
   assert.deepEqual([scoring[3], scoring[4], mapping[4]], ["good", "bad", "good"]);
   learn();  // of the other operator's settings, only now: they are those that were tested
   await page.waitForFunction((port) => document.querySelector('[data-path="command_post.scoring.port"] input').value === port, String(box.scoring));
-  assert.match(await page.locator("#step-test .outcome").innerText(), /No report was spent/);
+  assert.match(await page.locator("#step-test .outcome").innerText(), /No report was used up/);
   assert.notEqual(await page.locator(".trial li", { hasText: "The token is accepted" }).first().locator(".advice").innerText(), "");
 });
 

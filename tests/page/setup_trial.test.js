@@ -18,7 +18,7 @@ test("tests addresses as they are typed, before they are saved, and says what to
   const { box, ask, page } = await ready(t, "setup#post");
   await page.getByLabel("Scoring port", { exact: true }).fill(String(box.scoring));
   await tries(page).click();
-  const [scoring, mapping] = await tried(page, "typed", "1 of 12 steps failed. These values are not applied yet. No report was spent.");
+  const [scoring, mapping] = await tried(page, "typed", "1 of 12 steps failed. These values are not applied yet. No report was used up.");
   assert.deepEqual([scoring[3], scoring[4], mapping[3]], ["good", "good", "bad"]);
   assert.match(await page.locator("[data-tried=typed] .trial").last().innerText(), /127\.0\.0\.1:2[\s\S]*no server at that port[\s\S]*Compare the port/);
   await page.getByLabel("Mapping port", { exact: true }).fill(String(box.mapping));
@@ -45,9 +45,9 @@ test("drops a result once its values changed: typed, saved, or saved by another 
   await type("Mapping port", box.mapping);
   assert.equal(await shows("typed", ""), 0);
   await type("Mapping port", 2);
-  assert.equal(await shows("typed", "1 of 12 steps failed. These values are not applied yet. No report was spent."), 2);
+  assert.equal(await shows("typed", "1 of 12 steps failed. These values are not applied yet. No report was used up."), 2);
   await page.reload();  // the typed values stay, but the page does not know whether they were tested
-  assert.equal(await shows("typed", "1 of 12 steps failed. This test began elsewhere, perhaps with other values. No report was spent."), 2);
+  assert.equal(await shows("typed", "1 of 12 steps failed. This test began elsewhere, perhaps with other values. No report was used up."), 2);
 
   await type("Mapping port", box.mapping);
   await tries(page).click();
@@ -58,12 +58,12 @@ test("drops a result once its values changed: typed, saved, or saved by another 
   assert.ok(!(await outcome(page, "typed").innerText()).includes("not applied yet"));
   assert.equal(await shows("typed", changed), 0);
   await tries(page).click();
-  assert.equal(await shows("typed", "All is well. No report was spent."), 2);
+  assert.equal(await shows("typed", "All is well. No report was used up."), 2);
   await page.locator("#typed").waitFor({ state: "hidden" });
 
   await step(page, "Test").click();
   await page.getByRole("button", { name: "Run the test" }).click();
-  await tried(page, "applied", "All is well. No report was spent.");
+  await tried(page, "applied", "All is well. No report was used up.");
   await step(page, "Test").getByText("passed").waitFor();
   const { settings, tag } = (await ask("/adit/settings")).said;
   settings.runs.length_seconds = 1800;
@@ -145,7 +145,7 @@ test("tests a course before a switch, and marks it apart from the Test of the cu
   assert.equal((await ask("/adit/settings")).said.settings.command_post.course, "");
   await step(page, "Test").click();
   await page.getByRole("button", { name: "Run the test" }).click();
-  await tried(page, "applied", "2 of 12 steps failed. No report was spent.");
+  await tried(page, "applied", "2 of 12 steps failed. No report was used up.");
   await step(page, "Test").getByText("failed").waitFor();
 });
 

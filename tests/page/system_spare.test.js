@@ -57,22 +57,22 @@ test("a box in service says why the stick cannot be read", async (t) => {
 test("an export on the stick is offered by its box and time, and asks for its code like an uploaded one", async (t) => {
   const { page, section, waitForText, press } = await spareOf(t);
   const when = await page.evaluate(() => new Date(1.75e12).toLocaleString());
-  await section.getByRole("button", { name: `Take in from the stick: the box at 10.0.0.7, ${when}` }).waitFor();
-  await press("Take in from the stick: zip.adit-spare");
+  await section.getByRole("button", { name: `Import from the stick: the box at 10.0.0.7, ${when}` }).waitFor();
+  await press("Import from the stick: zip.adit-spare");
   await waitForText("The file is not an export from Adit.");
-  await press("Take in from the stick: the box at 10.0.0.7");
-  await waitForText("An export was taken in.");
+  await press("Import from the stick: the box at 10.0.0.7");
+  await waitForText("An export was imported.");
   await section.getByLabel("Code of the export").waitFor();
   assert.equal(await section.getByRole("button", { name: /from the stick|to the stick/ }).count(), 0);
   await axeFindsNothing(page, "an export from a stick");
   await press("Forget the export");
-  await section.getByRole("button", { name: "Take in from the stick: zip.adit-spare" }).waitFor();
+  await section.getByRole("button", { name: "Import from the stick: zip.adit-spare" }).waitFor();
   assert.deepEqual(page.complaints, []);
 });
 
 test("repeated presses count once until the page shows the first one's result", async (t) => {
   const { page, section, waitForText } = await spareOf(t);
-  const count = await pressThrice(page, /\/adit\/spare/, section.getByRole("button", { name: "Take in from the stick: zip.adit-spare" }));
+  const count = await pressThrice(page, /\/adit\/spare/, section.getByRole("button", { name: "Import from the stick: zip.adit-spare" }));
   await waitForText("The file is not an export from Adit.");
   assert.deepEqual(count, { presses: 3, posts: 1 });
   assert.deepEqual(page.complaints, []);

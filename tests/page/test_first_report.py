@@ -68,7 +68,7 @@ class FirstReport(unittest.TestCase):
         page.has("h2", "Robots")
         page.press("Next")
         page.press("Run the test")
-        page.has("#step-test .outcome", "All is well. No report was spent.")
+        page.has("#step-test .outcome", "All is well. No report was used up.")
         page.press("Go to the run")
 
         page.has("body[data-link=live]")

@@ -50,10 +50,10 @@ test("one press puts the box on standby and downloads its export, with which the
   await first.killAditd();
 
   const there = await spareOf(t, spare);
-  await there.press("Take in the export");
+  await there.press("Import the export");
   await there.section.locator(".outcome", { hasText: "Choose the export first" }).waitFor();
   await there.section.locator("input[type=file]").setInputFiles(file);
-  await there.press("Take in the export");
+  await there.press("Import the export");
   await there.section.locator("input[name=code]").fill("1111 2222 3333 4444");
   await there.press("Open");
   await there.section.locator(".outcome", { hasText: "the code is not that of this export" }).waitFor();

@@ -79,7 +79,7 @@ const PAST = { send: "The report will be sent.", hold: "Held until you send it."
 function question(action, report, remaining) {
   const left = remaining === undefined ? "" : ` ${remaining} reports are left.`;
   const title = `${action.label}: report ${report.number}, ${report.type}?`;
-  return { title, text: `${action.costs}. This spends a report.${left}`, word: action.label };
+  return { title, text: `${action.costs}. This uses up a report.${left}`, word: action.label };
 }
 
 /** Does it, asking first where it costs a report. `shown` is called whenever there is something new to show. */

@@ -7,10 +7,10 @@ const named = (report) => `#${report.number} ${clip(report.type, 40)}`;
 const stands = (report, now) => `${life(report).word}, ${ago(now - report.received)}`;
 
 function cost({ run }, isSame) {
-  if (isSame) return { key: "cost", level: "good", text: "The box sends the same report only once. This spends no report." };
-  if (!run) return { key: "cost", level: "wait", text: "Spends a report. The number of reports left is not known." };
+  if (isSame) return { key: "cost", level: "good", text: "The box sends the same report only once. This uses up no report." };
+  if (!run) return { key: "cost", level: "wait", text: "Uses up a report. The number of reports left is not known." };
   if (run.remaining_reports <= 0) return { key: "cost", level: "bad", text: "No report is left, so this report cannot score." };
-  return { key: "cost", level: run.remaining_reports > 5 ? "good" : "wait", text: `Spends 1 of the ${run.remaining_reports} reports left.` };
+  return { key: "cost", level: run.remaining_reports > 5 ? "good" : "wait", text: `Uses up 1 of the ${run.remaining_reports} reports left.` };
 }
 
 function none(view, report) {

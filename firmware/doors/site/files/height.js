@@ -1,4 +1,4 @@
-// The height of a place that was tapped on the map, from the robots' tracks. A report with a wrong height is spent for nothing.
+// The height of a place that was tapped on the map, from the robots' tracks. A report with a wrong height is used up for nothing.
 import { ago, clip, metres } from "./words.js";
 
 /** Metres, horizontally: tracks farther away do not tell the height of a place. */

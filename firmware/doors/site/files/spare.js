@@ -22,7 +22,7 @@ const AT_WORK = "A spare box can take over from this one with all reports. Start
 function noteOf({ standby, why, asks_code: asksCode, taken_in: taken, takes_over: takesOver }) {
   if (takesOver) return "This box is taking over.";
   if (taken) return "Unplug the box that made this export before this box takes over.";
-  if (asksCode) return "An export was taken in. The box that made it shows the code during its standby.";
+  if (asksCode) return "An export was imported. The box that made it shows the code during its standby.";
   if (standby) return `This box is on standby: ${why}. It accepts and sends no messages until you end the standby.`;
   return AT_WORK;
 }
@@ -30,7 +30,7 @@ function noteOf({ standby, why, asks_code: asksCode, taken_in: taken, takes_over
 /** The card's line, and its level. */
 function stateOf({ standby, asks_code: asksCode, taken_in: taken, takes_over: takesOver, stick }) {
   if (takesOver) return ["Taking over", "wait"];
-  if (taken || asksCode) return ["An export was taken in", "ask"];
+  if (taken || asksCode) return ["An export was imported", "ask"];
   if (standby) return ["On standby", "wait"];
   return [stick?.exports.length ? "An export is on the stick" : "Not on standby"];
 }
@@ -169,7 +169,7 @@ const DOES = {
     say("");
   },
   async over() {
-    const text = "If the box that made the export is still plugged in, or was woken up since, a report may be sent twice.";
+    const text = "If the box that made the export is still plugged in, or its standby was ended since, a report may be sent twice.";
     if (!(await sure("Is the first box unplugged?", text, "It is: take over"))) return;
     const { taken_in: taken } = await post("/adit/spare/take-over", { unplugged: true });
     if (taken?.port && taken.port !== Number(location.port || 80)) next = Object.assign(make("a"), { href: location.href, port: taken.port });

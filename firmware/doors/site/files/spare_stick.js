@@ -32,13 +32,13 @@ function offer(exports, take) {
   offers.replaceChildren(...exports.map((each) => {
     const button = make("button");
     button.type = "button";
-    button.textContent = `Take in from the stick: ${nameOf(each)}`;
+    button.textContent = `Import from the stick: ${nameOf(each)}`;
     button.addEventListener("click", () => take(each.name));
     return button;
   }));
 }
 
-/** `takes`: an export was taken in already. */
+/** `takes`: an export was imported already. */
 export function showStick({ stick, standby, code, takes_over: takesOver }, takes, take) {
   place.hidden = !stick || takesOver;
   if (place.hidden) return;

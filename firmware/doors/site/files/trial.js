@@ -74,12 +74,12 @@ function ofWhat() {
 function verdictOf(states) {
   const { running, applied, outdated } = view;
   if (lost && running) return lost;
-  if (running) return `The test is running. ${applied ? "It spends no report." : "The run continues, and no report is spent."}`;
+  if (running) return `The test is running. ${applied ? "It uses up no report." : "The run continues, and no report is used up."}`;
   if (outdated) return "The settings have changed since the last test.";
   const bad = states.filter((state) => state === "bad").length;
   const verdict = bad ? `${bad} of ${states.length} steps failed.` : states.includes("good") ? "All is well." : "";
   if (!verdict || !isCurrent(view)) return "";
-  return [verdict, applied ? "" : ofWhat(), "No report was spent."].filter(Boolean).join(" ");
+  return [verdict, applied ? "" : ofWhat(), "No report was used up."].filter(Boolean).join(" ");
 }
 
 function showAt(place, { text = "", isBad = false, endpoints = [] }) {

@@ -12,7 +12,7 @@ using Seconds = std::chrono::duration<double>;
 constexpr std::size_t kTelling = 64u << 10;
 /// So much at least, so that a link that was slow is found to be fast again.
 constexpr double kLeast = 4.0 * kTelling;
-/// What rounding makes of a cloud's bytes at each precision, as measured (tests/bench/README.md).
+/// What rounding makes of a cloud's bytes at each precision, as measured by tests/bench/sizes.
 constexpr std::array<double, 3> kOfExact{1, 0.65, 0.5};
 constexpr double kSmallest = 0.01;  // that packing is expected to make of a byte
 constexpr std::chrono::milliseconds kHeldBack{20};

@@ -23,7 +23,7 @@ struct Hurry {
 };
 
 /// The time of each effort per byte, and the size of Full's output relative to Quick's. Measured on exact
-/// clouds (tests/bench/README.md).
+/// clouds by tests/bench/sizes.
 inline constexpr double kSecondsPerByte[] = {0, 7e-9, 15e-9};
 inline constexpr double kFullOfQuick = 0.85;
 

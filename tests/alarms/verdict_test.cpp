@@ -82,6 +82,14 @@ TEST(Verdict, NamesARobotSilentSinceARestart) {
   EXPECT_EQ(verdict_of(snapshot).what, "Every map arrives") << "the robot sends no maps";
 }
 
+TEST(Verdict, NamesRobotsByTheirNumbers) {
+  Snapshot snapshot = busy(12);
+  for (const char* name : {"uav10", "uav2"}) fall_silent(snapshot, name);
+  EXPECT_EQ(verdict_of(snapshot).why, "uav2, uav10 silent; oldest other 5 s");
+  add_words(snapshot.traffic, {});
+  EXPECT_EQ(snapshot.traffic.standings[1].name, "uav2");
+}
+
 TEST(Verdict, NamesAtMostThreeRobots) {
   Snapshot snapshot = busy(6);
   for (const char* name : {"uav1", "uav2", "uav3", "uav4", "uav5"}) fall_silent(snapshot, name);

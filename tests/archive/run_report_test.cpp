@@ -97,6 +97,17 @@ TEST(RunReport, IsCompleteForAnEmptyRun) {
   EXPECT_THAT(html, testing::EndsWith("</html>\n"));
 }
 
+TEST(RunReport, WritesTrueMinusSigns) {
+  api::KeptRun kept = hostile_run();
+  kept.facts.score = -5;
+  api::ReportDetail report = hostile_reports().front();
+  report.row.score_change = -1;
+  report.row.position = icd::Point{.x = -1, .y = 2, .z = -3};
+  const std::string html = run_report(kept, {report});
+  for (const char* part : {"<dt>Score</dt><dd>\u22125</dd>", ">\u22121</td>", "\u22121.00, 2.00, \u22123.00"})
+    EXPECT_THAT(html, HasSubstr(part));
+}
+
 api::ReportDetail report_at(std::int64_t number, double x, double y, std::int64_t score = 0) {
   api::ReportDetail report;
   report.row.number = number;

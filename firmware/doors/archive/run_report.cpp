@@ -1,7 +1,5 @@
 #include "archive/run_report.hpp"
 
-#include <string.h>  // strverscmp, of glibc
-
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -10,6 +8,7 @@
 
 #include "archive/plot.hpp"
 #include "codec/base64.hpp"
+#include "icd/natural_order.hpp"
 #include "icd/sentence.hpp"
 #include "picture/covered.hpp"
 #include "picture/palette.hpp"
@@ -45,19 +44,24 @@ std::string fact(const char* name, const std::string& value) {
   return value.empty() ? "" : icd::sentence("<dt>", name, "</dt><dd>", icd::in_html(value), "</dd>\n");
 }
 
+/// `text` of a number with a true minus sign, as on the page.
+std::string with_minus(std::string text) {
+  return text.starts_with('-') ? "\u2212" + text.substr(1) : text;
+}
+
 std::string number(const std::optional<std::int64_t>& value) {
-  return value ? std::to_string(*value) : "";
+  return value ? with_minus(std::to_string(*value)) : "";
 }
 
 /// "+5", "0", "" if unknown.
 std::string signed_change(const std::optional<std::int64_t>& change) {
-  if (!change) return "";
-  return *change > 0 ? '+' + std::to_string(*change) : std::to_string(*change);
+  return (change.value_or(0) > 0 ? "+" : "") + number(change);
 }
 
 std::string place(const std::optional<icd::Point>& at) {
   if (!at) return "unknown";
-  return fixed(at->x, 2) + ", " + fixed(at->y, 2) + ", " + fixed(at->z, 2);
+  return with_minus(fixed(at->x, 2)) + ", " + with_minus(fixed(at->y, 2)) + ", " +
+         with_minus(fixed(at->z, 2));
 }
 
 std::string title_of(const api::RunRow& run) {
@@ -145,16 +149,8 @@ std::string oldest_map(const api::KeptRun& run, const std::string& robot) {
   return oldest ? fixed(*oldest, 0) + " s" : "never there";
 }
 
-/// Numbers in names by their value, as on the page: r2 before r10.
-struct ByNumber {
-  bool operator()(const std::string& one, const std::string& other) const {
-    const int difference = strverscmp(one.c_str(), other.c_str());
-    return difference != 0 ? difference < 0 : one < other;
-  }
-};
-
 std::string robots_table(const api::KeptRun& run, const picture::Covered& covered) {
-  std::map<std::string, double, ByNumber> metres;
+  std::map<std::string, double, icd::NaturalOrder> metres;
   for (const std::string& robot : run.facts.robots) metres[robot] = 0;
   for (const api::Track& track : run.tracks) metres[track.robot] = length_of(track);
   if (metres.empty()) return "<p>No robot sent a message.</p>\n";
@@ -359,12 +355,12 @@ std::string axes(const Sheet& sheet) {
     const std::string at = fixed(sheet.x(x), 2);
     lines += icd::sentence("M", at, " ", fixed(top, 2), "V", fixed(bottom, 2));
     figures += icd::sentence("<text x=\"", at, "\" y=\"", fixed(bottom + 4, 2), "\" text-anchor=\"middle\">",
-                             fixed(x, decimals_of(columns)), "</text>");
+                             with_minus(fixed(x, decimals_of(columns))), "</text>");
   }
   for (const double y : rows) {
     lines += icd::sentence("M", fixed(left, 2), " ", fixed(sheet.y(y), 2), "H", fixed(right, 2));
     figures += icd::sentence("<text x=\"", fixed(left - 1, 2), "\" y=\"", fixed(sheet.y(y) + 1, 2),
-                             "\" text-anchor=\"end\">", fixed(y, decimals_of(rows)), "</text>");
+                             "\" text-anchor=\"end\">", with_minus(fixed(y, decimals_of(rows))), "</text>");
   }
   return icd::sentence("<path class=\"grid\" d=\"", lines, "\"/>", figures, "<text x=\"", fixed(right, 2),
                        "\" y=\"", fixed(bottom + 8, 2),
@@ -524,7 +520,7 @@ std::string legend(const std::vector<api::Track>& tracks, const std::vector<Look
   }
   if (has(picture::Kind::Cloud)) {
     all += colour_swatch(picture::height_ramp().front(),
-                         icd::sentence("cloud: at or below ", picture::kLowest, " m"));
+                         icd::sentence("cloud: at or below ", with_minus(fixed(picture::kLowest, 0)), " m"));
     all += colour_swatch(picture::height_ramp().back(),
                          icd::sentence("cloud: at or above ", picture::kHighest, " m"));
   }

@@ -14,6 +14,7 @@
 #include "api/box.hpp"
 #include "api/run_view.hpp"
 #include "icd/mapping.hpp"
+#include "icd/natural_order.hpp"
 #include "icd/status.hpp"
 #include "icd/uri.hpp"
 #include "intake/desk.hpp"
@@ -46,7 +47,10 @@ inline loop::Instant instant_of(const loop::Loop& loop, icd::Stamp stamp) {
 struct Traffic {
   Kind kind = Kind::Grid;
   std::string robot;
-  friend auto operator<=>(const Traffic&, const Traffic&) = default;
+  friend bool operator==(const Traffic&, const Traffic&) = default;
+  friend bool operator<(const Traffic& one, const Traffic& other) {
+    return one.kind != other.kind ? one.kind < other.kind : icd::NaturalOrder()(one.robot, other.robot);
+  }
 };
 
 inline bool is_map(Kind kind) {

@@ -168,8 +168,7 @@ std::vector<facts::EndpointRow> ObservedFacts::endpoints(const forward::Flow& fl
   return rows;
 }
 
-std::map<std::string, facts::RobotHabit> ObservedFacts::habits(const settings::Alarms& rules,
-                                                               double now) const {
+facts::Habits ObservedFacts::habits(const settings::Alarms& rules, double now) const {
   const double least = std::chrono::duration<double>(rules.silent_for).count();
   return habits_.robots({.least = least, .times = rules.silent_times}, now);
 }

@@ -66,7 +66,7 @@ class ObservedFacts {
   std::vector<facts::EndpointRow> endpoints(const forward::Flow& flow,
                                             const settings::CommandPost& command_post, double now,
                                             facts::Time time) const;
-  std::map<std::string, facts::RobotHabit> habits(const settings::Alarms& rules, double now) const;
+  facts::Habits habits(const settings::Alarms& rules, double now) const;
   bool queue_grows(double now) const { return growth_.grows(now); }
 
  private:

@@ -79,8 +79,8 @@ std::optional<Habit> Habits::of(const std::string& robot) const {
   return known == known_.end() ? std::nullopt : std::optional(known->second.habit);
 }
 
-std::map<std::string, facts::RobotHabit> Habits::robots(const Rules& rules, double now) const {
-  std::map<std::string, facts::RobotHabit> robots;
+facts::Habits Habits::robots(const Rules& rules, double now) const {
+  facts::Habits robots;
   for (const auto& [name, known] : known_) {
     const auto& [messages, gap, last] = known.habit;
     const double quiet = now - last;

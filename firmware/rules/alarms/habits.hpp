@@ -62,7 +62,7 @@ class Habits {
   std::optional<Habit> of(const std::string& robot) const;
 
   /// The robots that have a habit and are not switched off.
-  std::map<std::string, facts::RobotHabit> robots(const Rules& rules, double now) const;
+  facts::Habits robots(const Rules& rules, double now) const;
 
  private:
   struct Known {

@@ -6,6 +6,7 @@
 #include "alarms/arrival.hpp"
 #include "alarms/conditions.hpp"
 #include "alarms/verdict.hpp"
+#include "icd/natural_order.hpp"
 #include "icd/sentence.hpp"
 #include "icd/status.hpp"
 #include "icd/text.hpp"
@@ -86,7 +87,7 @@ void find_behind(const Traffic& traffic, Found& found) {
   for (const ActivityRow& row : traffic.activities) {
     if (row.is_map()) names.push_back(row.robot);
   }
-  std::ranges::sort(names);
+  std::ranges::sort(names, icd::NaturalOrder());
   names.erase(std::ranges::unique(names).begin(), names.end());
   std::size_t count = 0;
   for (const std::string& name : names) {
@@ -176,7 +177,7 @@ void find_crowds(const facts::Clients& clients, Found& found) {
                        .side = Side::Robot,
                        .headline = {"Wrong tokens", "in use", true},
                        .why = most,
-                       .action = {"Open set-up", "/setup#tokens"}});
+                       .action = {"Open set-up", "/setup#tokens-team"}});
     } else {
       found.push_back({.id = "unauthenticated",
                        .severity = Severity::Wait,
@@ -191,7 +192,7 @@ void find_crowds(const facts::Clients& clients, Found& found) {
                    .subject = "team",
                    .headline = {"The team token", "missing"},
                    .why = "the box rejects every robot",
-                   .action = {"Open set-up", "/setup#tokens"}});
+                   .action = {"Open set-up", "/setup#tokens-team"}});
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "alarms/alarm.hpp"
 #include "alarms/arrival.hpp"
+#include "icd/natural_order.hpp"
 #include "icd/sentence.hpp"
 #include "icd/status.hpp"
 
@@ -77,7 +78,7 @@ struct Maps {
 };
 
 /// By robot; "": the merged map.
-using AllMaps = std::map<std::string, Maps>;
+using AllMaps = std::map<std::string, Maps, icd::NaturalOrder>;
 
 AllMaps maps_of(const Traffic& traffic) {
   AllMaps all;
@@ -187,7 +188,7 @@ StandingRow standing_row(const std::string& name, const std::vector<const Activi
 }
 
 void add_standings(Traffic& traffic) {
-  std::map<std::string, std::vector<const ActivityRow*>> all;
+  std::map<std::string, std::vector<const ActivityRow*>, icd::NaturalOrder> all;
   for (const ActivityRow& row : traffic.activities) all[row.robot].push_back(&row);
   all.erase("");
   for (const auto& [name, rows] : all) traffic.standings.push_back(standing_row(name, rows));
@@ -199,7 +200,7 @@ void add_standings(Traffic& traffic) {
                                  .silent = true,
                                  .heard = traffic.habits.at(name).quiet});
   }
-  std::ranges::sort(traffic.standings, {}, &StandingRow::name);
+  std::ranges::sort(traffic.standings, icd::NaturalOrder(), &StandingRow::name);
 }
 
 /// When the pose at the Command Post was posted. The latest one may be queued or rejected.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "facts/rows.hpp"
+#include "icd/natural_order.hpp"
 
 namespace adit::facts {
 
@@ -18,13 +19,15 @@ struct RobotHabit {
   bool silent = false;
 };
 
+using Habits = std::map<std::string, RobotHabit, icd::NaturalOrder>;  // by robot
+
 /// The data between the robots and the Command Post, and the way that they take.
 struct Traffic {
   Time now = 0;  // alarms::Board::move() reports clock steps
   std::vector<EndpointRow> endpoints = {};
   std::vector<LinkRow> links = {};  // the interfaces of the settings
   std::vector<ActivityRow> activities = {};
-  std::map<std::string, RobotHabit> habits = {};  // by robot
+  Habits habits = {};
   std::vector<RobotRow> robots = {};
   std::vector<StandingRow> standings = {};  // from alarms::add_words()
   double turn = 0;                          // seconds in which each queued map has its turn

@@ -209,8 +209,8 @@ function described(errors) {
   const { changes, trouble } = findings;
   if (trouble) return `${trouble} Your changes are kept, and checked when it answers.`;
   if (errors.length) return `${errors.length === 1 ? "1 error" : `${errors.length} errors`} to correct before you can apply.`;
-  if (findings.errors.length) return "Your changes are not yet applied."; // its errors show once the field is left
   const count = countOf(changes);
+  if (findings.errors.length || !count) return "Your changes are not yet applied."; // errors show once the field is left; no count: not checked yet
   return `${count === 1 ? "1 change" : `${count} changes`} not yet applied.`;
 }
 

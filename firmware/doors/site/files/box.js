@@ -23,7 +23,7 @@ export function offerBundle() {
     try {
       const file = await getFile("/adit/bundle");
       save(file);
-      outcome.textContent = `${file.name}, ${bytes(file.blob.size)}`;
+      outcome.textContent = `Downloaded ${file.name}, ${bytes(file.blob.size)}.`;
     } catch (error) {
       outcome.textContent = error.message;
       outcome.dataset.bad = true;

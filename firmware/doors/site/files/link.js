@@ -47,7 +47,7 @@ function quantities(view, lost) {
       label: "Asked to slow down",
       value: known(Math.max(0, sum - before)),
       text: `${sum}`,
-      of: "times",
+      of: sum === 1 ? "time" : "times",
       least: 1,
       unit: (n) => `${n} a second`,
     },

@@ -4,6 +4,7 @@ import { isStale, lastSeen } from "./map_robots.js";
 import { Tiles } from "./map_tiles.js";
 import { Tracks } from "./map_tracks.js";
 import { Steps } from "./steps.js";
+import { byName } from "./words.js";
 
 const INTERVAL = 5000; // ms: maps are asked for no more often
 const MAX_METRES = 8192; // from the origin: what is farther away is not fitted into the view
@@ -91,7 +92,7 @@ export class MapScene {
   isLive = () => this.time === null;
   now = () => this.time ?? this.run?.now ?? 0;
   until = () => this.time ?? Infinity;
-  robotNames = () => [...new Set([...this.tiles.layers.values()].map((layer) => layer.robot))].sort();
+  robotNames = () => [...new Set([...this.tiles.layers.values()].map((layer) => layer.robot))].sort(byName);
   kinds = () => new Set([...this.tiles.layers.values()].map((layer) => layer.kind));
   #isShown = (layer) => this.shown[layer.kind] && !this.hidden.has(layer.robot);
 
@@ -99,7 +100,7 @@ export class MapScene {
   layers() {
     const rank = ({ kind, robot }) => 2 * Number(kind === "cloud") + Number(robot !== "");
     const layers = [...this.tiles.layers.values()].filter(this.#isShown);
-    return layers.sort((a, b) => rank(a) - rank(b) || a.robot.localeCompare(b.robot));
+    return layers.sort((a, b) => rank(a) - rank(b) || byName(a.robot, b.robot));
   }
 
   #robots() {

@@ -1,7 +1,7 @@
 // What stands on the map: zoom, measuring, and which robot is followed.
 import { attribute, mark, list, make, say } from "./dom.js";
 import { drawn } from "./icons.js";
-import { clip } from "./words.js";
+import { byName, clip } from "./words.js";
 
 const LONG = 1, LOOK = 500; // seconds without a word; ms
 
@@ -43,7 +43,7 @@ function showProgress() {
 
 /** Which robots there are to follow. Nothing changes in the list while it is open. */
 export function showTools({ robots }) {
-  const select = choice(), names = robots.map(({ name }) => name).sort((a, b) => a.localeCompare(b, "en", { numeric: true }));
+  const select = choice(), names = robots.map(({ name }) => name).sort(byName);
   if (document.activeElement === select) return;
   select.disabled = names.length === 0;
   const create = (name) => {

@@ -3,7 +3,7 @@ import { attribute, badge, list, make, mark, say, set } from "./dom.js";
 import { BOX, pathOf } from "./robot_ages.js";
 import { tint } from "./robot_colour.js";
 import { figureOf, figureWords } from "./robot_state.js";
-import { ago, clip } from "./words.js";
+import { ago, byName, clip } from "./words.js";
 
 const SVG = "http://www.w3.org/2000/svg";
 const RANK = { bad: 0, wait: 1 };
@@ -70,11 +70,10 @@ export class RobotRows {
   #inOrder(robots, now) {
     const place = new Map(this.#order.map((name, i) => [name, i]));
     const asBefore = (a, b) => (place.get(a.name) ?? Infinity) - (place.get(b.name) ?? Infinity) || 0;
-    const byName = (a, b) => a.name.localeCompare(b.name, "en", { numeric: true });
-    const byWorst = (a, b) => rank(a) - rank(b) || Math.floor(sortedBy(b)) - Math.floor(sortedBy(a)) || byName(a, b);
+    const byWorst = (a, b) => rank(a) - rank(b) || Math.floor(sortedBy(b)) - Math.floor(sortedBy(a)) || byName(a.name, b.name);
     const ranks = robots.map((robot) => robot.name + rank(robot)).sort().join();
     const isDue = ranks !== this.#ranks || Math.abs(now - this.#ordered) >= PATIENCE;
-    if (this.#isHeld() || !isDue) return [...robots].sort((a, b) => asBefore(a, b) || byName(a, b));
+    if (this.#isHeld() || !isDue) return [...robots].sort((a, b) => asBefore(a, b) || byName(a.name, b.name));
     [this.#ranks, this.#ordered] = [ranks, now];
     return [...robots].sort(byWorst);
   }

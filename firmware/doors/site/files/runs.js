@@ -6,7 +6,7 @@ import { grouped } from "./grouped.js";
 import { lookAgain, leave } from "./run_map.js";
 import { followNetwork } from "./pending.js";
 import { get, isFault, post, session, showWho, toLogin } from "./session.js";
-import { bytes, clip, clock } from "./words.js";
+import { byName, bytes, clip, clock } from "./words.js";
 
 const EVERY = 5000; // ms
 
@@ -36,7 +36,7 @@ function updateRun(node, run) {
   say(name, run.is_present ? `${nameOf(run)} (now)` : nameOf(run));
   say(score, run.score === null ? "no score" : `score ${run.score}, ${run.remaining_reports} reports left`);
   say(times, run.began > 0 ? `${when(run.began)}, ${clock(run.last - run.began)}` : `until ${when(run.last)}`);
-  say(what, clip([run.team, run.robots.join(", "), bytes(run.bytes)].filter(Boolean).join(" · "), 200));
+  say(what, clip([run.team, [...run.robots].sort(byName).join(", "), bytes(run.bytes)].filter(Boolean).join(" · "), 200));
   report.href = `${pathOf(run)}/report.html`;
   remove.hidden = !operator || run.is_present;
   for (const each of [look, report, remove]) each.setAttribute("aria-label", `${each.textContent}: ${nameOf(run)}`);

@@ -41,13 +41,16 @@ export function numberIn(text) {
 }
 
 /** A true minus sign is as wide as a plus; past any cave a number keeps to its size. */
-export const metres = (n) => (Math.abs(n) < 1e6 ? n.toFixed(1) : n.toExponential(1)).replace("-", "−");
+export const metres = (n) => (Math.abs(n) < 1e6 ? n.toFixed(1) : n.toExponential(1)).replace(/^-(0\.0$)?/, (_, zero) => zero ?? "−");
 
 /** Where a report's artifact is; one without a position is one that damage took from the ledger. */
 export const placeOf = ({ position }) => (position ? `${metres(position.x)}, ${metres(position.y)}, ${metres(position.z)} m` : "lost from the ledger");
 
 /** "+1", "0", "−1". */
 export const signed = (n) => (n > 0 ? `+${n}` : n < 0 ? `−${-n}` : "0");
+
+/** The order of names: numbers in them by their value, r2 before r10. */
+export const byName = (a, b) => a.localeCompare(b, "en", { numeric: true });
 
 /** Anybody's text, cut where it would push all else off the page. */
 export const clip = (text, most = 240) => (text.length > most ? `${text.slice(0, most)}…` : text);

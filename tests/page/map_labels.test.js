@@ -16,12 +16,15 @@ const SIZE = 12;
 const paper = () => ({
   written: [],
   leaders: 0,
+  under: 0,
   beginPath() {
     ++this.leaders;
   },
   moveTo() {},
   lineTo() {},
-  stroke() {},
+  stroke() {
+    this.under += Number(this.globalCompositeOperation === "destination-over");
+  },
   measureText: (text) => ({ width: text.length * SIZE * 0.6 }),
   strokeText() {},
   fillText(text, left, middle) {
@@ -115,6 +118,8 @@ test("writes the names of twenty silent robots in one place below and above each
   assert.equal(found.filter(Boolean).length, 20);
   paint.written.forEach((one, i) => paint.written.slice(i + 1).forEach((other) => assert.ok(!overlap(one, other), `${one} upon ${other}`)));
   assert.ok(paint.leaders >= 10, `${paint.leaders} lines`);
+  assert.equal(paint.under, 2 * paint.leaders, "line and rim lie under all names");
+  assert.equal(paint.globalCompositeOperation, "source-over");
 });
 
 /** A view of so many pixels per metre. */

@@ -53,6 +53,21 @@ test("cuts no word in the head of its list", async (t) => {
   }
 });
 
+test("cuts no robot's name", async (t) => {
+  const prepare = (page) => retell(page, () => (view) => {
+    const names = Array.from({ length: 20 }, (_, i) => `legged_${101 + i}`);
+    return { ...view, standings: names.map((name, i) => ({ ...view.standings[0], name, has_map: i % 2 === 0 })) };
+  });
+  const { page } = await watch(t, "calm", { prepare });
+  await page.locator("#robots li[data-key=legged_120]", { hasText: "no map" }).waitFor();
+  for (const [width, height] of [[390, 844], [1280, 720], [1600, 900], [1920, 1080], [3840, 2160]]) {
+    await page.setViewportSize({ width, height });
+    const cut = await page.$$eval("#robots :is(.name, .age)", (parts) => parts.filter((part) =>
+      part.scrollWidth > part.clientWidth + 1 || part.getBoundingClientRect().right > part.parentElement.getBoundingClientRect().right + 1).map((part) => part.textContent));
+    assert.deepEqual(cut, [], `${width} x ${height}`);
+  }
+});
+
 test("has the worst first: silent robots are filled and marked in words, late ones have a shape", async (t) => {
   const { page } = await watchTwenty(t, { viewport: LARGE, colorScheme: "dark" });
   await page.locator("#robots li").nth(19).waitFor();

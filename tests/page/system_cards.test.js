@@ -41,6 +41,7 @@ test("has the passwords near the top, and columns of one height", async (t) => {
     const boxes = await page.$$eval(".column, #log, #passwords", (nodes) => nodes.map((node) => node.getBoundingClientRect().toJSON()));
     const [cards, passwords, log] = boxes;
     assert.ok(Math.abs(cards.bottom - log.bottom) < 2, `${cards.bottom} and ${log.bottom} at ${width}`);
+    assert.ok(log.bottom > 0.85 * height && log.bottom < height, `the log ends at ${log.bottom} of ${height}`);
     assert.ok(passwords.bottom < height / 2, `passwords end at ${passwords.bottom} of ${height}`);
     const cut = await page.$$eval(".card > summary, .card .state", (nodes) => nodes.filter((node) => node.scrollWidth > node.clientWidth + 1).map((node) => node.textContent));
     assert.deepEqual(cut, [], `${width}`);

@@ -63,10 +63,12 @@ export class Labels {
     ctx.beginPath();
     ctx.moveTo(...place);
     ctx.lineTo(...end);
-    for (const [width, strokeStyle] of [[size / 4, rim], [size / 12, colour]]) {
+    ctx.globalCompositeOperation = "destination-over"; // it crosses out no other name
+    for (const [width, strokeStyle] of [[size / 12, colour], [size / 4, rim]]) {
       Object.assign(ctx, { lineWidth: width, strokeStyle });
       ctx.stroke();
     }
+    ctx.globalCompositeOperation = "source-over";
   }
 
   #isCut(box) {

@@ -450,8 +450,9 @@ TEST(ReportsToDecide, AreListedUpToALimit) {
 TEST(ReportsToDecide, WaitWhileAditAsks) {
   Snapshot snapshot = well();
   snapshot.reports.rows.push_back(
-      {.number = 3, .state = "in_doubt", .note = "no answer came", .asking = true});
+      {.number = 3, .state = "in_doubt", .note = "POST /api to 10.0.0.1:8000: no answer", .asking = true});
   EXPECT_EQ(conditions_of(snapshot)[0].severity, Severity::Wait);
+  EXPECT_THAT(conditions_of(snapshot)[0].why, HasSubstr("its answer was lost"));
 }
 
 TEST(RejectedMessages, GetWorseByEachNewOneEvenIfFull) {

@@ -26,6 +26,13 @@ constexpr struct {
     {"report_lost", "lost"},
 };
 
+/// In the operator's words. A note begins with the request, and says later why it had no answer.
+std::string why_of(const ReportRow& row, Need need, bool is_lost_here) {
+  if (need == Need::InDoubt && row.asking)
+    return "its answer was lost, and the box asks for the run's status";
+  return (need != Need::Lost ? "" : is_lost_here ? kUntilSettled : kSettle) + row.note;
+}
+
 std::optional<Need> need_of(const ReportRow& row) {
   if (row.sends_at) return std::nullopt;
   if (row.state == dispatch::name_of(dispatch::ReportState::Held)) return Need::Held;
@@ -40,14 +47,13 @@ void find_undecided(const facts::Reports& reports, Found& found) {
     if (!need || ++count.at(static_cast<std::size_t>(*need)) > kOneByOne) continue;
     const auto& [id, state] = kNeeds[static_cast<std::size_t>(*need)];
     const std::string number = std::to_string(row.number);
-    const char* const until = reports.lost_here.contains(row.number) ? kUntilSettled : kSettle;
     found.push_back({.id = sentence(id, ":", number),
                      .severity = row.asking ? Severity::Wait : Severity::Ask,
                      .side = *need == Need::InDoubt ? Side::CommandPost : Side::Box,
                      .subject = number,
                      .since = row.changed,
                      .headline = {"Report " + number, state},
-                     .why = (*need == Need::Lost ? until : "") + row.note,
+                     .why = why_of(row, *need, reports.lost_here.contains(row.number)),
                      .action = {row.asking ? "Show report" : "Decide", "/#report=" + number}});
   }
   for (std::size_t at = 0; at < std::size(kNeeds); ++at) {

@@ -352,7 +352,7 @@ constexpr Route kRoutes[] = {
         "Test"),
     post("/adit/test", Operator, kJson<4096>, by<&SelfTest::begin_test, &read_candidate>(), "Candidate",
          "network",
-         "Start the Test of the endpoints in use or of named ones. It uses up no report, and the run goes on.",
+         "Start the Test of the endpoints in use or of named ones. It uses up no report; the run goes on.",
          "The Test has started.", "Test", "400 409"),
     post("/adit/tokens", Operator, kJson<262144>, by<&settings_routes::set_token>(), "Token", "settings",
          "Save and apply a token, or remove it.",

@@ -25,15 +25,6 @@ TEST(Words, ShowARunClock) {
   EXPECT_EQ(clock(-5), "0:00");
 }
 
-TEST(Words, ShowASizeInItsUnit) {
-  EXPECT_EQ(size(0), "0 B");
-  EXPECT_EQ(size(999), "999 B");
-  EXPECT_EQ(size(64400), "64 kB");
-  EXPECT_EQ(size(999600), "1 MB");
-  EXPECT_EQ(size(3420000), "3.4 MB");
-  EXPECT_EQ(size(std::numeric_limits<std::uint64_t>::max()), "18446744073709.6 MB");
-}
-
 TEST(Words, OmitNeedlessDigits) {
   EXPECT_EQ(decimal(12.5, 2), "12.5");
   EXPECT_EQ(decimal(100, 1), "100");

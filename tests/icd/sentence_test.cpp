@@ -21,6 +21,18 @@ TEST(Sentence, ShowsNumbersInTheFewestDigits) {
   EXPECT_EQ(number_text(-2.2250738585072014e-308), "-2.2250738585072014e-308");
 }
 
+TEST(SizeText, SaysTheTrueSize) {
+  EXPECT_EQ(size_text(0), "0 B");
+  EXPECT_EQ(size_text(999), "999 B");
+  EXPECT_EQ(size_text(1000), "1 kB");
+  EXPECT_EQ(size_text(64'499), "64 kB");
+  EXPECT_EQ(size_text(999'499), "999 kB");
+  EXPECT_EQ(size_text(999'500), "1 MB");
+  EXPECT_EQ(size_text(3'449'999), "3.4 MB");
+  EXPECT_EQ(size_text(268'000'000), "268 MB");
+  EXPECT_EQ(size_text(std::numeric_limits<std::uint64_t>::max()), "18446744073709.6 MB");
+}
+
 TEST(InQuotes, KeepsForeignTextShortAndOnOneLine) {
   EXPECT_EQ(in_quotes("map"), "\"map\"");
   EXPECT_EQ(in_quotes(""), "\"\"");

@@ -201,8 +201,8 @@ void Maps::take(const std::shared_ptr<Arrived>& map) {
     counts_.no_room(traffic_of(update), loop_.wall_now());
     return refuse(*map, {icd::Status::TooManyRequests,
                          icd::sentence("the queue is full: ", queue_.count() + store_.count(), " maps, ",
-                                       (queue_.bytes() + store_.bytes()) / 1000000,
-                                       " MB; this map was not accepted, send it again later")});
+                                       icd::size_text(queue_.bytes() + store_.bytes()),
+                                       "; this map was not accepted, send it again later")});
   }
   if (!is_told(update)) return refuse(*map, not_stored());
   overtaken_.begin(map->upload, !newer.empty());

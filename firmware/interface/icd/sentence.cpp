@@ -34,6 +34,14 @@ std::string real_text(double number) {
   return text.find_first_of(".en") == std::string::npos ? text + ".0" : text;  // n: nan and inf
 }
 
+std::string size_text(std::uint64_t bytes) {
+  constexpr std::uint64_t kKilobyte = 1000, kMegabyte = 1'000'000;
+  if (bytes < kKilobyte) return sentence(bytes, " B");
+  if (bytes < kMegabyte - kKilobyte / 2) return sentence((bytes + kKilobyte / 2) / kKilobyte, " kB");
+  const std::uint64_t tenths = (bytes / (kMegabyte / 20) + 1) / 2;
+  return tenths % 10 == 0 ? sentence(tenths / 10, " MB") : sentence(tenths / 10, ".", tenths % 10, " MB");
+}
+
 std::string in_quotes(std::string_view text) {
   const bool cut = text.size() > kMostQuoted;
   std::string quote = "\"";

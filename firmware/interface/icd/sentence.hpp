@@ -1,6 +1,7 @@
 #pragma once
 
 #include <concepts>
+#include <cstdint>
 #include <expected>
 #include <string>
 #include <string_view>
@@ -14,6 +15,9 @@ std::string number_text(double number);
 
 /// The same with ".0" if there would be neither point nor exponent, so that it never reads as a whole number.
 std::string real_text(double number);
+
+/// "812 B", "64 kB", "3.4 MB"
+std::string size_text(std::uint64_t bytes);
 
 /// A sender's text for a sentence: in quotation marks, on one line, cut after 40 bytes.
 std::string in_quotes(std::string_view text);

@@ -259,7 +259,7 @@ Result<Outcome> follow(const Call& call) {
 
 Result<Outcome> upload(const Call& call) {
   auto bundle = ADIT_TRY(read_bundle(call.options.argument()));
-  if (!call.options.json) call.console.print("sending " + size(bundle.size()) + '\n');
+  if (!call.options.json) call.console.print("sending " + icd::size_text(bundle.size()) + '\n');
   ADIT_TRY(post(call.adit, {.target = call.options.again ? "/adit/update?again=1" : kUpdate,
                             .check = kSeeUpdate,
                             .body = std::move(bundle),

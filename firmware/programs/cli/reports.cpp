@@ -314,7 +314,7 @@ std::string rejected_text(const api::RunView& view, bool colour) {
       {"kind", &Row::kind},
       {"robot", [](const Row& row) { return row.robot.empty() ? "(all)" : row.robot; }},
       {"rejected", [&view](const Row& row) { return duration(view.now - row.at) + " ago"; }, kRight},
-      {"size", [](const Row& row) { return size(row.bytes); }, kRight},
+      {"size", [](const Row& row) { return icd::size_text(row.bytes); }, kRight},
       {"answer", answer},
       {"", [](const Row& row) { return Cell(row.replaced ? "replaced by a newer one" : "", Tone::Faint); }}};
   return table_of(view.rejected, columns, colour);

@@ -38,7 +38,7 @@ std::string text_of(const api::RunList& list, bool colour) {
       {"score", [](const RunRow& run) { return Cell(number_or_none(run.score), Tone::Strong); }, kRight},
       {"reports left", [](const RunRow& run) { return number_or_none(run.remaining_reports); }, kRight},
       {"robots", [](const RunRow& run) { return std::to_string(run.robots.size()); }, kRight},
-      {"size", [](const RunRow& run) { return size(run.bytes); }, kRight},
+      {"size", [](const RunRow& run) { return icd::size_text(run.bytes); }, kRight},
       {"", [](const RunRow& run) { return Cell(run.is_present ? "now" : "", Tone::Good); }}};
   return text + table_of(list.runs, columns, colour);
 }
@@ -55,7 +55,7 @@ std::string text_of(const RunRow& run, bool colour) {
   facts.add("score", number_or_none(run.score), Tone::Strong);
   facts.add("reports left", number_or_none(run.remaining_reports));
   facts.add("robots", icd::listed(run.robots));
-  facts.add("size", size(run.bytes));
+  facts.add("size", icd::size_text(run.bytes));
   return facts.written(colour);
 }
 
@@ -94,7 +94,7 @@ Result<void> confirm_deletion(const Call& call, const std::string& path) {
   const std::string score = run.score ? icd::sentence("score ", *run.score, ", ") : "";
   return confirm(
       call.options, call.console,
-      icd::sentence("run ", run.key, " (", began, score, size(run.bytes),
+      icd::sentence("run ", run.key, " (", began, score, icd::size_text(run.bytes),
                     "): its map, tracks and plots will be deleted for good; its reports stay in the ledger."),
       "Delete it?", "run " + run.key + " was not deleted");
 }

@@ -200,7 +200,7 @@ std::string run_line(const RunView& view, bool colour) {
 
 std::string link_line(const RunView& view) {
   return "Link  " + decimal(view.sent_mbit, 1) + " of " + decimal(view.budget_mbit, 1) + " Mbit/s   " +
-         size(view.queued_bytes) + " of maps queued\n";
+         icd::size_text(view.queued_bytes) + " of maps queued\n";
 }
 
 std::string reports_line(const RunView& view, bool colour) {
@@ -274,7 +274,8 @@ std::string activities_table(const RunView& view, bool colour) {
       {"age", [](const Row& row) { return row.age ? duration(*row.age) : ""; }, kRight},
       {"heard", [](const Row& row) { return row.heard ? duration(*row.heard) + " ago" : "never"; }, kRight},
       // of the last sent map; the last accepted map may be another
-      {"size", [](const Row& row) { return row.last_forwarded ? size(row.bytes_sent) : ""; }, kRight},
+      {"size", [](const Row& row) { return row.last_forwarded ? icd::size_text(row.bytes_sent) : ""; },
+       kRight},
       {"last answer", answer}};
   return view.activities.empty()
              ? ""

@@ -42,13 +42,6 @@ std::string clock(double seconds) {
   return {text, static_cast<std::size_t>(length)};
 }
 
-std::string size(std::uint64_t bytes) {
-  const auto number = static_cast<double>(bytes);
-  if (bytes < 1000) return std::to_string(bytes) + " B";
-  if (number < 999.5e3) return decimal(number / 1e3, 0) + " kB";
-  return decimal(number / 1e6, 1) + " MB";
-}
-
 std::string answer_of(int status, const std::string& sentence) {
   if (status == 0) return sentence;
   const std::string answer = status < 300 ? "accepted" : "error " + std::to_string(status);

@@ -27,8 +27,6 @@ std::string line(const Parts&... parts) {
 std::string duration(double seconds);
 /// Run time: "1:02:03", "12:34"
 std::string clock(double seconds);
-/// "812 B", "64 kB", "3.4 MB"
-std::string size(std::uint64_t bytes);
 /// A Command Post's answer: "accepted", "error 422: its sentence"; "" without an answer.
 std::string answer_of(int status, const std::string& sentence);
 /// At most `digits` decimals, without trailing zeros.

@@ -19,26 +19,26 @@ constexpr Post kPosts[] = {{"/api/artifact_reports", kReportBody},
 
 TEST(IcdRoutes, CheckTheTokenFirst) {
   Team team;
-  const std::string_view wrong[] = {
-      "",
-      "Authorization: \r\n",
-      "Authorization: Bearer\r\n",
-      "Authorization: Bearer wrong\r\n",
-      "Authorization: Bearer flux230{showroo\r\n",
-      "Authorization: Bearer flux230{showroomm\r\n",
-      "Authorization: Bearer FLUX230{SHOWROOM\r\n",
-      "Authorization: flux230{showroom\r\n",
-      "Authorization: Basic flux230{showroom\r\n",
-      "Authorization: Bearer flux230{showroom the-posts-own-token\r\n",
-      "X-Authorization: Bearer flux230{showroom\r\n",
+  const std::pair<std::string_view, std::string> wrong[] = {
+      {"", ", got none"},
+      {"Authorization: \r\n", ", got none"},
+      {"Authorization: Bearer\r\n", ", got no bearer token"},
+      {"Authorization: Bearer wrong\r\n", ""},
+      {"Authorization: Bearer flux230{showroo\r\n", ""},
+      {"Authorization: Bearer flux230{showroomm\r\n", ""},
+      {"Authorization: Bearer FLUX230{SHOWROOM\r\n", ""},
+      {"Authorization: flux230{showroom\r\n", ", got no bearer token"},
+      {"Authorization: Basic flux230{showroom\r\n", ", got Basic"},
+      {"Authorization: Bearer flux230{showroom the-posts-own-token\r\n", ""},
+      {"X-Authorization: Bearer flux230{showroom\r\n", ", got none"},
   };
-  for (const std::string_view header : wrong) {
+  for (const auto& [header, got] : wrong) {
     for (const icd::Uri uri : icd::kUris) {
       for (const std::string_view method : {"GET", "POST", "DELETE"}) {
         const auto reply = team.ask(request(method, icd::path_of(uri), header, "not even JSON"));
         ASSERT_TRUE(reply) << header;
         EXPECT_EQ(reply->status, 401) << header;
-        EXPECT_EQ(reply->body, "\"Authorization: expected Bearer and the team's token\"");
+        EXPECT_EQ(reply->body, "\"Authorization: expected Bearer and the team's token" + got + "\"");
         EXPECT_EQ(reply->header("content-type"), "application/json");
         EXPECT_EQ(reply->header("access-control-allow-origin"), "*");
         EXPECT_FALSE(reply->headers.contains("www-authenticate"));  // ICD 4
@@ -201,6 +201,74 @@ TEST(IcdRoutes, AnswerPreflightsWithoutAToken) {
   }
 }
 
+TEST(IcdRoutes, TellOfMessagesWithoutATokenAndOfNoOtherRequests) {
+  Team team;
+  for (const char* path : {"/map/update", "/api/status"}) team.ask(request("GET", path));
+  team.ask(request("OPTIONS", "/map/update"));
+  team.ask(request("POST", "/elsewhere", {}, "1"));
+  EXPECT_EQ(team.served.ended(Ended::NoToken), 0u);
+  team.ask(request("POST", "/map/update", {}, "1"));
+  team.ask(request("POST", "/map/update", "Authorization: Basic dGVhbTp4\r\n", "1"));
+  EXPECT_EQ(team.served.ended(Ended::NoToken), 2u);
+  EXPECT_EQ(team.served.ended(Ended::WrongToken), 0u);
+  team.ask(request("GET", "/api/status", "Authorization: Bearer wrong\r\n"));
+  EXPECT_EQ(team.served.ended(Ended::WrongToken), 1u);
+}
+
+/// Whether a page of another origin can read the answer and its Retry-After.
+bool is_readable(const std::optional<Reply>& reply) {
+  return reply && reply->header("access-control-allow-origin") == "*" &&
+         reply->header("access-control-expose-headers") == "Age, Retry-After, Adit-Report, Adit-Reconciled";
+}
+
+TEST(IcdRoutes, LetPagesReadWhatAClientMayKnow) {
+  Team team;
+  const auto good = team.ask(authorized("POST", "/state/update", kJsonType, kStateBody));
+  EXPECT_TRUE(is_readable(good) && good->status == 200);
+  const auto nothing = team.ask(request("POST", "/map/updates", kJsonType, "{}"));
+  EXPECT_TRUE(is_readable(nothing) && nothing->status == 404);
+  const auto preflight =
+      team.ask(request("OPTIONS", "/map/updates", "Access-Control-Request-Method: POST\r\n"));
+  EXPECT_TRUE(is_readable(preflight) && preflight->status == 204);
+  const std::string long_field = "X-Long: " + std::string(17'000, 'x') + "\r\n";
+  const auto long_head = team.ask(request("POST", "/map/update?a=b", long_field));
+  EXPECT_TRUE(is_readable(long_head) && long_head->status == 431);
+  const auto bad_chunks = team.ask(
+      authorized("POST", "/map/update", std::string(kJsonType) + "Transfer-Encoding: chunked\r\n") + "x\r\n");
+  EXPECT_TRUE(is_readable(bad_chunks) && bad_chunks->status == 400);
+}
+
+TEST(IcdRoutes, LetNoPageReadTheApi) {
+  Team team;
+  for (const std::string& text :
+       {request("GET", "/adit/nothing"), request("GET", "/adit/x", "Broken\r\n"),
+        request("GET", "/other", "X-Long: " + std::string(17'000, 'x') + "\r\n"),
+        request("OPTIONS", "/adit/run", "Access-Control-Request-Method: GET\r\n")}) {
+    const auto reply = team.ask(text);
+    ASSERT_TRUE(reply);
+    EXPECT_GE(reply->status, 400);
+    EXPECT_FALSE(reply->headers.contains("access-control-allow-origin")) << text;
+  }
+}
+
+/// Whoever makes the answer: a rule of the server.
+TEST(IcdRoutes, SayWhenToRetry) {
+  Team team;
+  for (const auto status : {icd::Status::TooManyRequests, icd::Status::ServiceUnavailable}) {
+    team.served.on_loop([&] { team.desk.full = icd::Refusal{status, "full"}; });
+    for (const auto& [path, body] :
+         {std::pair("/map/update", grid_body(2, 2)), std::pair("/state/update", std::string(kStateBody)),
+          std::pair("/markers/update", std::string(kMarkersBody))}) {
+      const auto reply = team.ask(authorized("POST", path, kJsonType, body));
+      ASSERT_TRUE(reply);
+      EXPECT_EQ(reply->status, std::to_underlying(status)) << path;
+      EXPECT_EQ(reply->header("retry-after"), "1") << path;
+    }
+  }
+  team.served.on_loop([&] { team.front.routes->stop(); });
+  EXPECT_EQ(team.ask(authorized("POST", "/state/update", kJsonType, kStateBody))->header("retry-after"), "1");
+}
+
 TEST(IcdRoutes, EchoNoInvalidHeaderNames) {
   Team team;
   for (const std::string& asked : {std::string("a\"b"), std::string("<script>"), std::string("a:b"),
@@ -220,7 +288,7 @@ TEST(IcdRoutes, PassOtherPathsToTheOtherHandler) {
     ASSERT_TRUE(reply) << path;
     EXPECT_EQ(reply->status, 404) << path;
     EXPECT_TRUE(is_json_string(reply->body)) << path;
-    EXPECT_FALSE(reply->headers.contains("access-control-allow-origin")) << path;
+    EXPECT_TRUE(is_readable(reply)) << path;
   }
 }
 

@@ -84,6 +84,11 @@ RawClient::RawClient(std::uint16_t port, const std::string& source)
                ::connect(fd_.get(), reinterpret_cast<const sockaddr*>(&to), sizeof to) == 0;
 }
 
+void RawClient::delay_small_writes() {
+  const int off = 0;
+  ::setsockopt(fd_.get(), IPPROTO_TCP, TCP_NODELAY, &off, sizeof off);
+}
+
 bool RawClient::send(std::string_view bytes) {
   while (!bytes.empty()) {
     const ssize_t sent = ::send(fd_.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL);

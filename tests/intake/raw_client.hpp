@@ -33,6 +33,8 @@ class RawClient {
   explicit RawClient(std::uint16_t port, const std::string& source = "127.0.0.1");
 
   bool connected() const { return connected_; }
+  /// Sends a small write only when the one before is acknowledged (Nagle's algorithm), as most libraries do.
+  void delay_small_writes();
   /// False if the server has closed or reset the connection.
   bool send(std::string_view bytes);
   /// Returns the bytes sent until the socket accepted none for `patience`.

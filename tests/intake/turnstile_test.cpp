@@ -67,6 +67,23 @@ TEST_F(TurnstileTest, ReadsNoBodyIfItsAnswerIsDelayed) {
   EXPECT_EQ(handler_.body_bytes, 0u);
 }
 
+/// A library that writes all before it reads gets a broken pipe if the server closes earlier.
+TEST_F(TurnstileTest, ReadsAMapToItsEndSoThatItsSenderLearnsWhy) {
+  const std::string map(5'000'000, 'x');
+  for (const char* framing :
+       {"Content-Length: 5000000\r\n\r\n", "Transfer-Encoding: chunked\r\n\r\n4c4b40\r\n"}) {
+    RawClient client(served_.port(), "127.0.1.3");
+    ASSERT_TRUE(client.send("POST /refuse HTTP/1.1\r\nHost: adit.local\r\nAuthorization: Bearer wrong\r\n"));
+    EXPECT_TRUE(client.send(framing + map)) << framing;
+    EXPECT_EQ(status_of(client.reply()), 401) << framing;
+  }
+  RawClient endless(served_.port(), "127.0.1.3");
+  endless.send(
+      "POST /refuse HTTP/1.1\r\nHost: adit.local\r\nAuthorization: Bearer wrong\r\n"
+      "Content-Length: 100000000\r\n\r\n");
+  EXPECT_FALSE(endless.send(std::string(20'000'000, 'x'))) << "at most 8.4 MB are read";
+}
+
 TEST_F(TurnstileTest, KeepsNothingOfDisconnectedClients) {
   for (int i = 0; i < 50; ++i) {
     RawClient client(served_.port(), "127.0.1.1");

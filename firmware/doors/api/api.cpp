@@ -11,9 +11,6 @@
 namespace adit::api {
 namespace {
 
-constexpr std::string_view kGuarded = "/adit/";  // prefix of paths outside the table that are not files of
-                                                 // the page
-
 /// The refusal of a body by its headers, or std::nullopt.
 std::optional<intake::Answer> unfit(const Body& body, const intake::RequestHead& head) {
   if (body.type.empty()) return std::nullopt;
@@ -56,7 +53,7 @@ std::unique_ptr<intake::BodySink> Api::open(const intake::RequestHead& head,
     responder->answer(std::move(answer));
     return nullptr;
   };
-  if (found.allowed.empty() && !found.route && !head.path().starts_with(kGuarded)) {
+  if (found.allowed.empty() && !found.route && !head.path().starts_with(intake::kApiPaths)) {
     return answer_with(pages_.file(head));
   }
   const auto asker = entrance_.admit(head, found.who);

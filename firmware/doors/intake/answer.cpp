@@ -2,6 +2,7 @@
 
 #include <microhttpd.h>
 
+#include <algorithm>
 #include <memory>
 #include <utility>
 
@@ -11,17 +12,29 @@
 namespace adit::intake {
 namespace {
 
-void add_header(MHD_Response* response, const char* name, const std::string& value) {
-  if (is_field_value(value)) MHD_add_response_header(response, name, value.c_str());
-}
-
 void append_field(std::string& text, std::string_view name, std::string_view value) {
-  if (!is_field_value(value)) return;
   text.append(name).append(": ").append(value).append("\r\n");
 }
 
 bool may_have_body(const Answer& answer) {
   return answer.status != icd::Status::NoContent;
+}
+
+bool lacks_retry_after(const Answer& answer) {
+  return (answer.status == icd::Status::TooManyRequests ||
+          answer.status == icd::Status::ServiceUnavailable) &&
+         std::ranges::count(answer.headers, MHD_HTTP_HEADER_RETRY_AFTER, &Header::name) == 0;
+}
+
+/// Calls `add(name, value)` for each valid field of `answer`.
+template <class Add>
+void add_fields(const Answer& answer, const Add& add) {
+  const auto add_valid = [&add](const std::string& name, const std::string& value) {
+    if (is_field_value(value)) add(name.c_str(), value.c_str());
+  };
+  if (may_have_body(answer)) add_valid(MHD_HTTP_HEADER_CONTENT_TYPE, answer.content_type);
+  for (const Header& header : answer.headers) add_valid(header.name, header.value);
+  if (lacks_retry_after(answer)) add_valid(MHD_HTTP_HEADER_RETRY_AFTER, "1");
 }
 
 }  // namespace
@@ -30,10 +43,10 @@ Answer error_answer(icd::Status status, std::string_view sentence) {
   return {.status = status, .body = codec::json_string(sentence), .headers = {}};
 }
 
-Answer retry_answer(icd::Status status, std::string_view sentence) {
-  Answer answer = error_answer(status, sentence);
-  answer.headers.push_back({"Retry-After", "1"});
-  return answer;
+void let_pages_read(Answer& answer) {
+  answer.headers.push_back({"Access-Control-Allow-Origin", "*"});
+  answer.headers.push_back(
+      {"Access-Control-Expose-Headers", "Age, Retry-After, Adit-Report, Adit-Reconciled"});
 }
 
 bool is_field_value(std::string_view text) {
@@ -48,8 +61,9 @@ MHD_Response* make_response(Answer& answer) {
       body.get());
   if (response == nullptr) return nullptr;
   body.release();  // NOLINT(bugprone-unused-return-value): the response owns it now
-  if (may_have_body(answer)) add_header(response, MHD_HTTP_HEADER_CONTENT_TYPE, answer.content_type);
-  for (const Header& header : answer.headers) add_header(response, header.name.c_str(), header.value);
+  add_fields(answer, [response](const char* name, const char* value) {
+    MHD_add_response_header(response, name, value);
+  });
   return response;
 }
 
@@ -58,10 +72,9 @@ std::string last_answer_text(const Answer& answer, bool with_body) {
   std::string text = "HTTP/1.1 " + std::to_string(code) + " " + MHD_get_reason_phrase_for(code) + "\r\n";
   append_field(text, MHD_HTTP_HEADER_CONNECTION, "close");
   if (may_have_body(answer)) {
-    append_field(text, MHD_HTTP_HEADER_CONTENT_TYPE, answer.content_type);
     append_field(text, MHD_HTTP_HEADER_CONTENT_LENGTH, std::to_string(answer.body.size()));
   }
-  for (const Header& header : answer.headers) append_field(text, header.name, header.value);
+  add_fields(answer, [&text](const char* name, const char* value) { append_field(text, name, value); });
   text += "\r\n";
   if (with_body && may_have_body(answer)) text += answer.body;
   return text;

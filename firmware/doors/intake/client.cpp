@@ -151,7 +151,7 @@ void Client::give_way() {
   engine_.tell(stage_.phase == Phase::Idle ? Ended::Idle : Ended::GaveWay, addresses_.peer);
   if (stage_.phase == Phase::Head || (stage_.phase == Phase::Request && request_->is_unanswered())) {
     say_last(last_answer_text(
-        retry_answer(icd::Status::ServiceUnavailable,
+        error_answer(icd::Status::ServiceUnavailable,
                      "too many connections are open; this connection was closed for another; try again"),
         true));
   }
@@ -210,7 +210,8 @@ void Client::look_at_head() {
 
 void Client::refuse_head() {
   const HeadChecker& head = gate_.head();
-  const Answer answer = error_answer(head.refusal().status, head.refusal().sentence);
+  Answer answer = error_answer(head.refusal().status, head.refusal().sentence);
+  if (head.names_icd_uri()) let_pages_read(answer);
   say_last(last_answer_text(answer, !head.is_head_method()));
   enter(Phase::Head);
   deadline_.expect_last_reading();

@@ -115,6 +115,12 @@ bool Gate::is_passed_by(std::uint64_t received) const {
   return traffic().received - waits != requests_end_;
 }
 
+void Gate::acknowledge_head() const {
+  if (framing_.length && traffic().received >= requests_end_) return;
+  const int on = 1;
+  ::setsockopt(fd_, IPPROTO_TCP, TCP_QUICKACK, &on, sizeof on);
+}
+
 bool Gate::read_away() {
   std::array<char, 16 * 1024> bytes;  // NOLINT(cppcoreguidelines-pro-type-member-init): never looked at
   while (thrown_away_ <= kMostThrownAway) {

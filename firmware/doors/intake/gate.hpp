@@ -46,6 +46,9 @@ class Gate {
   /// Also reads the head from the socket, which libmicrohttpd then does not see. False: the head is not
   /// there any more.
   bool let_in_past_libmicrohttpd();
+  /// Call once the head was read from the socket. Acknowledges it at once if its body is still to come: a
+  /// client that sends head and body in two writes waits for that (Nagle's algorithm), for 40 ms by default.
+  void acknowledge_head() const;
   /// Of the last request that was let in.
   const Framing& framing() const { return framing_; }
   std::string take_head_text() { return std::move(head_text_); }

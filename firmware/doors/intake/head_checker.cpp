@@ -6,6 +6,7 @@
 
 #include "icd/sentence.hpp"
 #include "icd/text.hpp"
+#include "icd/uri.hpp"
 #include "intake/head.hpp"
 
 namespace adit::intake {
@@ -84,6 +85,8 @@ void HeadChecker::request_line(std::string_view so_far, std::string_view line) {
   } else {
     is_version_1_0_ = version.ends_with('0');
     is_head_method_ = method == "HEAD";
+    const auto parsed = parse_target(asked);
+    names_icd_uri_ = parsed && icd::uri_of(parsed->path);
     target(so_far, method, asked);
   }
 }

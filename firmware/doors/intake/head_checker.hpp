@@ -39,6 +39,8 @@ class HeadChecker {
   /// For Refused: 400, 431 or 505.
   const icd::Refusal& refusal() const { return refusal_; }
   bool is_head_method() const { return is_head_method_; }
+  /// The request line names a URI of the ICD.
+  bool names_icd_uri() const { return names_icd_uri_; }
 
  private:
   /// A part of the head as an offset, because the bytes may have moved at the next call.
@@ -67,6 +69,7 @@ class HeadChecker {
   bool request_line_came_ = false;
   bool is_version_1_0_ = false;
   bool is_head_method_ = false;
+  bool names_icd_uri_ = false;
   std::optional<Place> authority_;  // of a target in absolute form
   std::optional<Place> host_;
   std::array<std::optional<Place>, 4> single_;  // values of the fields that may occur once

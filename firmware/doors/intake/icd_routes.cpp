@@ -9,6 +9,7 @@
 #include "icd/sentence.hpp"
 #include "icd/text.hpp"
 #include "icd/try.hpp"
+#include "intake/answer.hpp"
 #include "intake/head.hpp"
 
 namespace adit::intake {
@@ -85,17 +86,20 @@ icd::Refusal stops() {
           "the box is stopping; this message was not accepted, send it again"};
 }
 
+/// ", got none" or ", got Basic" for a header without a bearer token; "" for a wrong one. Never shows what
+/// may be a token.
+std::string other_credentials(std::string_view authorization) {
+  if (authorization.empty()) return ", got none";
+  if (!icd::token_in(authorization).empty()) return "";
+  const std::string_view first = authorization.substr(0, authorization.find(' '));
+  for (const std::string_view scheme : {"Basic", "Digest", "Token"}) {
+    if (icd::same_but_for_case(first, scheme)) return icd::sentence(", got ", scheme);
+  }
+  return ", got no bearer token";
+}
+
 constexpr std::string_view kHeadersOfClients = "authorization, content-type, content-encoding";
 constexpr std::size_t kLongestHeaderList = 512;
-
-class CorsResponder final : public PassingResponder {
- public:
-  using PassingResponder::PassingResponder;
-  void answer(Answer answer) override {
-    answer.headers.push_back({"Access-Control-Allow-Origin", "*"});
-    inner().answer(std::move(answer));
-  }
-};
 
 /// Field names (RFC 9110 5.6.2 tokens) with commas and blanks between them.
 bool is_token_list(std::string_view text) {
@@ -114,21 +118,38 @@ std::string allowed_methods(icd::Uri uri) {
   return icd::sentence(icd::method_of(uri), is_allowed(uri, "HEAD") ? ", HEAD" : "", ", OPTIONS");
 }
 
-/// The answer to a CORS preflight (Fetch, CORS protocol): the methods of `uri` and the requested headers.
-Answer preflight_answer(icd::Uri uri, std::string_view asked_headers) {
+/// The answer to a CORS preflight (Fetch, CORS protocol): `methods` and the requested headers.
+Answer preflight_answer(std::string methods, const RequestHead& head) {
+  const std::string_view asked_headers = head.header("Access-Control-Request-Headers");
   const std::string_view headers = is_token_list(asked_headers) ? asked_headers : kHeadersOfClients;
   return {.status = icd::Status::NoContent,
           .body = {},
-          .headers = {{"Access-Control-Allow-Methods", allowed_methods(uri)},
+          .headers = {{"Access-Control-Allow-Methods", std::move(methods)},
                       {"Access-Control-Allow-Headers", std::string(headers)},
                       {"Access-Control-Max-Age", "86400"}}};
 }
 
-}  // namespace
+/// Answers the preflight for a URI that does not exist. Without it a page cannot read the 404.
+class PreflightResponder final : public PassingResponder {
+ public:
+  PreflightResponder(std::shared_ptr<Responder> responder, const RequestHead& head)
+      : PassingResponder(std::move(responder)), preflight_(preflight_answer("GET, POST", head)) {
+    let_pages_read(preflight_);
+  }
+  void answer(Answer answer) override {
+    inner().answer(answer.status == icd::Status::NotFound ? std::move(preflight_) : std::move(answer));
+  }
 
-std::shared_ptr<Responder> with_cors(std::shared_ptr<Responder> responder) {
-  return std::make_shared<CorsResponder>(std::move(responder));
+ private:
+  Answer preflight_;
+};
+
+bool is_preflight_elsewhere(const RequestHead& head) {
+  return head.method() == "OPTIONS" && !head.header("Access-Control-Request-Method").empty() &&
+         !head.path().starts_with(kApiPaths);
 }
+
+}  // namespace
 
 IcdRoutes::IcdRoutes(IcdOptions options, Desk& desk, loop::Workers& workers, Handler& other)
     : options_(std::move(options)),
@@ -160,9 +181,10 @@ bool IcdRoutes::is_free(const RequestHead& head) const {
 icd::Checked<void> IcdRoutes::check_entry(const RequestHead& head) const {
   if (is_free(head) || has_token(head)) return {};
   if (!options_.asks_token) return check_origin(head, options_.origins);
-  return icd::refuse(icd::Status::Unauthorized, options_.tokens.empty()
-                                                    ? "Authorization: no token is set on this box yet"
-                                                    : "Authorization: expected Bearer and the team's token");
+  if (options_.tokens.empty())
+    return icd::refuse(icd::Status::Unauthorized, "Authorization: no token is set on this box yet");
+  return icd::refuse(icd::Status::Unauthorized, "Authorization: expected Bearer and the team's token",
+                     other_credentials(head.header("Authorization")));
 }
 
 std::size_t IcdRoutes::most_bytes(icd::Uri uri) const {
@@ -174,7 +196,11 @@ std::size_t IcdRoutes::most_bytes(icd::Uri uri) const {
 std::unique_ptr<BodySink> IcdRoutes::open(const RequestHead& head, std::shared_ptr<Responder> responder,
                                           std::shared_ptr<Flow> flow) {
   const auto uri = icd::uri_of(head.path());
-  if (!uri) return other_.open(head, std::move(responder), std::move(flow));
+  if (!uri) {
+    if (is_preflight_elsewhere(head))
+      responder = std::make_shared<PreflightResponder>(std::move(responder), head);
+    return other_.open(head, std::move(responder), std::move(flow));
+  }
 
   const auto length = head.content_length();
   Sender sender;
@@ -184,10 +210,10 @@ std::unique_ptr<BodySink> IcdRoutes::open(const RequestHead& head, std::shared_p
   Visit visit{.desk = desk_,
               .uri = *uri,
               .sender = std::move(sender),
-              .responder = with_cors(std::move(responder)),
+              .responder = std::move(responder),
               .uploads = uploads_};
   if (head.method() == "OPTIONS") {
-    visit.responder->answer(preflight_answer(*uri, head.header("Access-Control-Request-Headers")));
+    visit.responder->answer(preflight_answer(allowed_methods(*uri), head));
     return nullptr;
   }
   if (const auto entry = check_entry(head); !entry) {

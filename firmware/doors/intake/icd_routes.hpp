@@ -15,9 +15,6 @@
 
 namespace adit::intake {
 
-/// Passes answers on and adds only Access-Control-Allow-Origin.
-std::shared_ptr<Responder> with_cors(std::shared_ptr<Responder> responder);
-
 /// Settings of the team's side of the ICD.
 struct IcdOptions {
   std::vector<icd::BearerToken> tokens;  // each is valid
@@ -37,8 +34,8 @@ struct IcdOptions {
 /// Even if clients need no token, a web page (whose browser sends an Origin) needs one, unless it is a page
 /// of the box or of IcdOptions::origins. Otherwise each page in a teammate's browser could use up reports.
 ///
-/// Each error is a JSON string. CORS preflights (OPTIONS) get 204 without a token. Each answer of an ICD URI
-/// has Access-Control-Allow-Origin.
+/// Each error is a JSON string. CORS preflights (OPTIONS) get 204 without a token, also for a URI that does
+/// not exist, so that a page can read the 404.
 ///
 /// `desk`, `workers` and `other` must outlive each Server that uses this handler.
 class IcdRoutes final : public Handler {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "icd/text.hpp"
+#include "icd/uri.hpp"
 #include "intake/answer.hpp"
 #include "intake/client.hpp"
 #include "intake/head.hpp"
@@ -154,6 +155,7 @@ MHD_Response* ReplyStream::make_response(const std::shared_ptr<ReplyStream>& str
     MHD_add_response_header(response, MHD_HTTP_HEADER_CONTENT_TYPE, stream->content_type_.c_str());
   }
   MHD_add_response_header(response, MHD_HTTP_HEADER_CACHE_CONTROL, "no-store");
+  MHD_add_response_header(response, "X-Accel-Buffering", "no");  // nginx would keep events back
   return response;
 }
 
@@ -163,10 +165,11 @@ namespace {
 /// kReadAwayWithin, so that the connection can be kept. Otherwise the answer is sent at once, and later bytes
 /// are discarded, because closing a socket with unread bytes resets it, and the client would lose the answer:
 /// most libraries read it only after they have sent everything. From an authenticated client as much as the
-/// largest map is discarded, at the least rate; from an unauthenticated one much less.
+/// largest map is discarded, at the least rate; from an unauthenticated one less, within 5 s, so that a robot
+/// with an old token learns why its map is rejected.
 constexpr std::size_t kReadAway = 64 * 1024;
 constexpr std::chrono::milliseconds kReadAwayWithin(1000);
-constexpr std::size_t kLinger = 256 << 20, kLingerUnauthenticated = 256 << 10;
+constexpr std::size_t kLinger = 256 << 20, kLingerUnauthenticated = 8 << 20;
 
 Answer failure() {
   return error_answer(icd::Status::InternalServerError,
@@ -209,6 +212,7 @@ void Request::open(Handler& handler) {
     turn_away();
   } else {
     client_->deadline().expect_body();
+    client_->gate().acknowledge_head();
     if (chunks_ && icd::same_but_for_case(head_->header("Expect"), "100-continue")) {
       client_->say("HTTP/1.1 100 Continue\r\n\r\n");
     }
@@ -221,7 +225,7 @@ void Request::refuse_head(std::string_view sentence) {
 }
 
 void Request::refuse_for_room(std::string_view sentence) {
-  answer_ = retry_answer(icd::Status::ServiceUnavailable, sentence);
+  answer_ = error_answer(icd::Status::ServiceUnavailable, sentence);
   refuse(*answer_);
 }
 
@@ -305,10 +309,17 @@ void Request::turn_away() {
   }
 }
 
-void Request::refuse(const Answer& answer) {
+void Request::open_to_pages(Answer& answer) const {
+  if (!head_) return;
+  const bool is_nothing = answer.status == icd::Status::NotFound && !head_->path().starts_with(kApiPaths);
+  if (is_nothing || icd::uri_of(head_->path())) let_pages_read(answer);
+}
+
+void Request::refuse(Answer answer) {
+  open_to_pages(answer);
   client_->say_last(last_answer_text(answer, !is_head_));
   stage_ = Stage::Refusing;
-  if (client_->deadline().is_authenticated() && has_body_) {
+  if (has_body_) {
     client_->deadline().expect_body();
   } else {
     client_->deadline().expect_last_reading();
@@ -321,6 +332,7 @@ Next Request::hand_over() {
     turn_away();
     return Next::GoOn;
   }
+  if (!stream_) open_to_pages(*answer_);
   MHD_Response* response = stream_ ? ReplyStream::make_response(stream_) : make_response(*answer_);
   if (response == nullptr) return Next::Close;
   const unsigned status = stream_ ? MHD_HTTP_OK : static_cast<unsigned>(answer_->status);

@@ -145,7 +145,9 @@ class Request final : public Responder, public Flow, public std::enable_shared_f
   void take_chunks(std::span<const std::uint8_t> piece);
   /// Sends an answer that came before the body was whole.
   void turn_away();
-  void refuse(const Answer& answer);
+  void refuse(Answer answer);
+  /// Lets pages read an answer of the ICD's URIs, and that there is no such URI. Not the box's files and API.
+  void open_to_pages(Answer& answer) const;
   Next hand_over();
   void answer_came();
 

@@ -38,7 +38,7 @@ class MhdServer final : public Server, public Engine {
         listen_(std::move(listen)),
         shares_(Shares::of(listen_.connections, listen_.connections_per_address)),
         turnstile_(loop, handler, listen_.guesses == nullptr ? own_guesses_ : *listen_.guesses, listen_.late,
-                   [this](const std::string& address) { tell(Ended::WrongToken, address); }) {}
+                   [this](Ended why, const std::string& address) { tell(why, address); }) {}
   MhdServer(const MhdServer&) = delete;
   MhdServer& operator=(const MhdServer&) = delete;
   ~MhdServer() override;

@@ -26,8 +26,9 @@ enum class Ended : std::uint8_t {
   Idle,        // for another one: it was between requests
   Slow,        // head, body or reading too slow
   WrongToken,  // the token was wrong, or was not checked (TokenGuesses)
+  NoToken,     // a POST to a URI of the ICD without the required token
 };
-inline constexpr std::size_t kEndedKinds = 5;
+inline constexpr std::size_t kEndedKinds = 6;
 
 /// The address and the options of a server.
 struct Listen {
@@ -56,6 +57,9 @@ class RequestHead {
   virtual const std::string& peer() const = 0;                       // "10.0.0.5"
   virtual const std::string& local() const = 0;  // the box's address that the client used: "10.0.0.1"
 };
+
+/// Prefix of the paths of the box's API, which pages of other origins may not read.
+inline constexpr std::string_view kApiPaths = "/adit/";
 
 struct Header {
   std::string name, value;

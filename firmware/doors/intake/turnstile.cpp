@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "icd/bearer_token.hpp"
+#include "icd/uri.hpp"
 #include "intake/answer.hpp"
-#include "intake/icd_routes.hpp"
 
 namespace adit::intake {
 
@@ -89,7 +89,7 @@ class Late final : public BodySink {
 };
 
 Answer not_looked_at() {
-  return retry_answer(
+  return error_answer(
       icd::Status::TooManyRequests,
       "too many wrong tokens from this address; this token was not checked; try again in a second");
 }
@@ -98,15 +98,19 @@ Answer not_looked_at() {
 
 Credentials Turnstile::shown(const RequestHead& head) {
   verdict_ = {};
+  const std::string_view token = icd::token_in(head.header("Authorization"));
   const Credentials shown = handler_.shown(head);
   if (shown == Credentials::Token) {
     verdict_ = guesses_.right(head.peer(), loop_.now());
   } else if (shown == Credentials::WrongToken) {
-    const std::string_view token = icd::token_in(head.header("Authorization"));
     verdict_ = guesses_.wrong(head.peer(), token, loop_.now());
   }
   if (verdict_.looked == Looked::Right) return shown;
-  wrong_(head.peer());
+  if (!token.empty() || !icd::uri_of(head.path())) {
+    refused_(Ended::WrongToken, head.peer());
+  } else if (head.method() == "POST") {
+    refused_(Ended::NoToken, head.peer());
+  }
   return Credentials::WrongToken;
 }
 
@@ -117,7 +121,7 @@ std::unique_ptr<BodySink> Turnstile::open(const RequestHead& head, std::shared_p
   if (verdict_.looked == Looked::Wrong) {
     return std::make_unique<Late>(late, handler_.open(head, late, std::move(flow)));
   }
-  (icd::uri_of(head.path()) ? with_cors(late) : late)->answer(not_looked_at());
+  late->answer(not_looked_at());
   return std::make_unique<Late>(std::move(late), nullptr);
 }
 

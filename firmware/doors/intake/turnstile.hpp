@@ -71,11 +71,13 @@ class TokenGuesses {
 /// unauthenticated connections limits late answers, and no bytes of a body are read meanwhile.
 class Turnstile final : public Handler {
  public:
-  /// `wrong` is called with the address of each request without a right token. The references must outlive
-  /// this object.
+  using Refused = std::function<void(Ended why, const std::string& address)>;
+
+  /// `refused` is called for each request with a wrong token, and for each POST to a URI of the ICD without
+  /// one. Other requests without a token are browsers or monitors. The references must outlive this object.
   Turnstile(loop::Loop& loop, Handler& handler, TokenGuesses& guesses, std::chrono::milliseconds late,
-            std::function<void(const std::string& address)> wrong)
-      : loop_(loop), handler_(handler), guesses_(guesses), late_(late), wrong_(std::move(wrong)) {}
+            Refused refused)
+      : loop_(loop), handler_(handler), guesses_(guesses), late_(late), refused_(std::move(refused)) {}
 
   /// Called once for each request, just before open().
   Credentials shown(const RequestHead& head) override;
@@ -87,7 +89,7 @@ class Turnstile final : public Handler {
   Handler& handler_;
   TokenGuesses& guesses_;
   const std::chrono::milliseconds late_;
-  const std::function<void(const std::string&)> wrong_;
+  const Refused refused_;
   TokenGuesses::Verdict verdict_;  // of the next request to open
 };
 

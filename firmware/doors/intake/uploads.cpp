@@ -50,8 +50,7 @@ bool SmallUpload::on_body(std::span<const std::uint8_t> piece) {
     visit_.refuse(fed.error());
   } else if (!share_.grow_to(std::max(visit_.sender.bytes, decoder_.size()))) {
     visit_.refuse({icd::Status::ServiceUnavailable,
-                   "too many bytes at once, from this address or in total; send this message again later"},
-                  {{"Retry-After", "1"}});
+                   "too many bytes at once, from this address or in total; send this message again later"});
   }
   return true;
 }

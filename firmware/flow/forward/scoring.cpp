@@ -91,7 +91,7 @@ Reports::Outcome carry_out(Reports& reports, std::int64_t number, api::Action ac
 
 /// Without a recent status.
 intake::Answer no_status(const std::string& why) {
-  return intake::retry_answer(icd::Status::ServiceUnavailable, "the status of the run is not known: " + why);
+  return intake::error_answer(icd::Status::ServiceUnavailable, "the status of the run is not known: " + why);
 }
 
 /// If the Command Post answered without a status.

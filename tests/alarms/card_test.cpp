@@ -37,6 +37,7 @@ void robots_and_queue(std::vector<Snapshot>& days) {
   days.back().clients.known_robots = {"uav1"};
   days.back().clients.crowds = {{Crowd::Kind::NoRoom, "ADDRESS"},
                                 {Crowd::Kind::WrongToken, "ADDRESS"},
+                                {Crowd::Kind::NoToken, "ADDRESS"},
                                 {Crowd::Kind::Unauthenticated, "ADDRESS"}};
   days.back().clients.shut_out = true;
   days.push_back(well(6));

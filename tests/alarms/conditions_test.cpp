@@ -107,6 +107,8 @@ const ConditionCase kConditionCases[] = {
      [](Snapshot& snapshot) { snapshot.clients.crowds = {{Crowd::Kind::NoRoom, "10.0.0.9"}}; }},
     {"wrong_tokens", Ask, Side::Robot, "Wrong tokens are in use", "10.0.0.9",
      [](Snapshot& snapshot) { snapshot.clients.crowds = {{Crowd::Kind::WrongToken, "10.0.0.9"}}; }},
+    {"client_token", Wait, Side::Robot, "A client is without a token", "10.0.0.9",
+     [](Snapshot& snapshot) { snapshot.clients.crowds = {{Crowd::Kind::NoToken, "10.0.0.9"}}; }},
     {"unauthenticated", Wait, Side::Robot, "Too many clients are anonymous", "10.0.0.9",
      [](Snapshot& snapshot) { snapshot.clients.crowds = {{Crowd::Kind::Unauthenticated, "10.0.0.9"}}; }},
     {"report_held:7", Ask, Side::Box, "Report 7 is held", "it may be the same",

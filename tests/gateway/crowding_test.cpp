@@ -46,6 +46,15 @@ TEST(Crowding, ReportsWrongTokens) {
   EXPECT_EQ(lines.front().times, 1786u);
 }
 
+TEST(Crowding, TellsAClientWithoutATokenFromAWrongOne) {
+  Crowding crowding;
+  crowding.ended(Ended::NoToken, "10.0.0.7", kFirst);
+  EXPECT_THAT(crowding.crowds(kFirst), ElementsAre(Field(&facts::Crowd::kind, facts::Crowd::Kind::NoToken)));
+  EXPECT_THAT(crowding.crowds(kFirst), ElementsAre(of("10.0.0.7")));
+  EXPECT_EQ(crowding.count(Ended::WrongToken), 0u);
+  ASSERT_EQ(crowding.to_log(kFirst).size(), 1u);
+}
+
 TEST(Crowding, IsLoggedAtOnceAndThenOnceAMinute) {
   Crowding crowding;
   const auto times = [&](loop::Instant now) {

@@ -24,8 +24,9 @@ std::optional<double> metric(const std::string& text, const std::string& name) {
 /// Alarms that begin and end by time alone, without an event.
 bool goes_by_time(std::string_view id) {
   constexpr std::string_view kByTime[] = {
-      "robot_silent", "robots_silent",   "map_behind",    "maps_behind", "queue_",    "clients_refused",
-      "wrong_tokens", "unauthenticated", "robot_unknown", kPostDown,     "disk_full", "reports_left"};
+      "robot_silent",    "robots_silent", "map_behind",   "maps_behind",     "queue_",
+      "clients_refused", "wrong_tokens",  "client_token", "unauthenticated", "robot_unknown",
+      kPostDown,         "disk_full",     "reports_left"};
   return std::ranges::any_of(kByTime, [&](std::string_view begins) { return id.starts_with(begins); });
 }
 

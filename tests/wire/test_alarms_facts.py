@@ -64,7 +64,7 @@ class Facts(WithAlarms):
         self.assertEqual(stage.box.ask("GET /api/status", token="an-old-token")[0], 401)
         wait_until(lambda: self.view(stage)["run"]["run_clock"] > 0, "the run to begin")
         stage.post.control("POST /other-sender")
-        for alarm in ("report_held:1", "robot_unknown:r9", "wrong_tokens", "reports_left", "run_unreliable"):
+        for alarm in ("report_held:1", "robot_unknown:r9", "wrong_tokens", "client_token", "reports_left", "run_unreliable"):
             wait_until(lambda alarm=alarm: self.alarm(stage, alarm), alarm)
         self.assertEqual(stage.box.judge(1, "send")[0], 200)
         wait_until(lambda: not self.alarm(stage, "report_held:1"), "the end of report_held:1")

@@ -22,6 +22,7 @@ std::vector<facts::Crowd> Crowding::crowds(loop::Instant now) const {
     if (at(why).count == 0 || now - at(why).last >= kRecent) continue;
     const auto kind = why == intake::Ended::NoRoom       ? NoRoom
                       : why == intake::Ended::WrongToken ? WrongToken
+                      : why == intake::Ended::NoToken    ? NoToken
                                                          : Unauthenticated;
     crowds.push_back({kind, most_of(why)});
   }
@@ -54,6 +55,9 @@ std::string Crowding::sentence(intake::Ended why) const {
   if (why == intake::Ended::WrongToken) {
     return "requests with wrong tokens, most from " + most +
            ": robots with an old token, or an attacker; right tokens are accepted";
+  }
+  if (why == intake::Ended::NoToken) {
+    return "messages without a token, most from " + most + ": set the team's token in that client";
   }
   return "too many unauthenticated connections, most from " + most + ": the oldest are closed for new ones";
 }

@@ -40,7 +40,8 @@ class Crowding {
     loop::Instant last{}, log_at{};
     std::map<std::string, std::uint64_t> by_address;  // in the present crowd
   };
-  static constexpr std::array kTold{intake::Ended::NoRoom, intake::Ended::GaveWay, intake::Ended::WrongToken};
+  static constexpr std::array kTold{intake::Ended::NoRoom, intake::Ended::GaveWay, intake::Ended::WrongToken,
+                                    intake::Ended::NoToken};
 
   const Kind& at(intake::Ended why) const { return kinds_[static_cast<std::size_t>(why)]; }
   std::string sentence(intake::Ended why) const;

@@ -178,6 +178,12 @@ void find_crowds(const facts::Clients& clients, Found& found) {
                        .headline = {"Wrong tokens", "in use", true},
                        .why = most,
                        .action = {"Open set-up", "/setup#tokens-team"}});
+    } else if (crowd.kind == facts::Crowd::Kind::NoToken) {
+      found.push_back({.id = "client_token",
+                       .severity = Severity::Wait,
+                       .side = Side::Robot,
+                       .headline = {"A client", "without a token"},
+                       .why = "it sends messages from " + crowd.address});
     } else {
       found.push_back({.id = "unauthenticated",
                        .severity = Severity::Wait,

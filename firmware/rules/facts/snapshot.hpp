@@ -37,7 +37,7 @@ struct Traffic {
 
 /// Clients that Adit rejects.
 struct Crowd {
-  enum class Kind : std::uint8_t { NoRoom, WrongToken, Unauthenticated };
+  enum class Kind : std::uint8_t { NoRoom, WrongToken, NoToken, Unauthenticated };
   Kind kind = Kind::NoRoom;
   std::string address = {};  // of most of these clients
 };

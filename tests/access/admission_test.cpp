@@ -15,9 +15,9 @@ class VerdictTest : public testing::Test {
   VerdictTest() {
     const Session viewer = sessions.begin({1}, {2}, Role::Viewer, {"10.0.0.5", ""}, kNow);
     const Session supervisor = sessions.begin({3}, {4}, Role::Operator, {"10.0.0.6", ""}, kNow);
-    viewers_cookie = "theme=dark; adit=" + viewer.id.reveal();
+    viewers_cookie = "theme=dark; adit-8000=" + viewer.id.reveal();
     viewers_csrf = viewer.csrf.reveal();
-    operators_cookie = "adit=" + supervisor.id.reveal();
+    operators_cookie = "adit-8000=" + supervisor.id.reveal();
     operators_csrf = supervisor.csrf.reveal();
   }
   Request get() const {
@@ -49,7 +49,7 @@ TEST_F(VerdictTest, RejectsUnauthenticatedClients) {
   EXPECT_EQ(verdict(get(), Role::Viewer), Status::Unauthorized);
   EXPECT_EQ(verdict(post(), Role::Operator), Status::Unauthorized);
   Request request = get();
-  for (const char* cookie : {"adit=", "adit=0", "adit", "other=1"}) {
+  for (const char* cookie : {"adit-8000=", "adit-8000=0", "adit-8000", "other=1"}) {
     request.cookie = cookie;
     EXPECT_EQ(verdict(request, Role::Viewer), Status::Unauthorized) << cookie;
   }

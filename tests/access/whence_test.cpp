@@ -10,7 +10,8 @@ using namespace std::string_view_literals;
 TEST(RequestHeaders, AcceptsOnlyHostNamesThatDnsCannotForge) {
   for (const char* host :
        {"10.0.0.1", "10.0.0.1:8000", "192.168.7.11:80", "[fd00::1]", "[fd00::1]:8000", "[::1]:1", "localhost",
-        "localhost:8000", "LocalHost", "adit.local", "Adit.Local:8000", "adit12.local", "pc-17.local:8000"}) {
+        "localhost:8000", "LocalHost", "adit.local", "Adit.Local:8000", "adit12.local", "pc-17.local:8000",
+        "adit.local.", "adit.local.:8000"}) {
     EXPECT_TRUE(names_this_box(host)) << host;
   }
   for (const char* host : {"",
@@ -22,7 +23,8 @@ TEST(RequestHeaders, AcceptsOnlyHostNamesThatDnsCannotForge) {
                            ".local",
                            "a.b.local",
                            "adit_1.local",
-                           "adit.local.",
+                           "adit.local..",
+                           "adit..local",
                            "adit.localx",
                            "adit",
                            "localhost.",
@@ -59,6 +61,29 @@ TEST(RequestHeaders, ComparesHostAndPortOfAnOrigin) {
         Case{"file://10.0.0.1", "10.0.0.1", false}, Case{"http://", "", true}}) {
     EXPECT_EQ(is_same_origin(origin, host), same) << origin << ' ' << host;
   }
+}
+
+TEST(RequestHeaders, TellWhichPortsCookieIsMeant) {
+  EXPECT_EQ(cookie_name("adit", "10.0.0.1:8000"), "adit-8000");
+  EXPECT_EQ(cookie_name("adit", "[fd00::1]:8001"), "adit-8001");
+  for (const char* host : {"", "10.0.0.1", "adit.local", "[fd00::1]", "adit.local:", "adit.local:x"})
+    EXPECT_EQ(cookie_name("adit", host), "adit") << host;
+}
+
+TEST(RequestHeaders, NameTheHeaderThatAProxyMustPassOn) {
+  const auto why = [](const char* host, const char* origin) {
+    const auto checked = check_whence(
+        {.method = "GET", .host = host, .origin = origin, .cookie = {}, .authorization = {}, .csrf = {}});
+    return checked ? "" : checked.error().sentence;
+  };
+  const std::string hint =
+      "; a proxy must pass Host on (nginx: proxy_set_header Host $http_host; haproxy: no set-header Host)";
+  EXPECT_EQ(
+      why("127.0.0.1:8000", "http://10.0.0.9"),
+      "Origin: expected a page of this box, got \"http://10.0.0.9\" with Host \"127.0.0.1:8000\"" + hint);
+  EXPECT_EQ(why("adit_upstream", ""),
+            "Host: expected the box's address, localhost or the box's name in .local, got \"adit_upstream\"" +
+                hint);
 }
 
 TEST(RequestHeaders, FindsACookieByItsWholeName) {

@@ -35,13 +35,13 @@ class SessionRoutesTest : public OnPage {
     return request(method, path, std::move(headers), body);
   }
   static Headers of(const Browser& browser) {
-    return {{"Cookie", "adit=" + browser.cookie},
+    return {{"Cookie", "adit-8000=" + browser.cookie},
             {"Adit-CSRF", browser.csrf},
             {"Origin", "http://10.0.0.1:8000"},
             {"Content-Type", "application/json"}};
   }
   intake::Answer get(const std::string& path, const Browser& browser = {}) {
-    return ask("GET", path, {{"Cookie", "adit=" + browser.cookie}});
+    return ask("GET", path, {{"Cookie", "adit-8000=" + browser.cookie}});
   }
   intake::Answer post(const std::string& path, const json& body, const Browser& browser = {}) {
     return ask("POST", path, of(browser), body.dump());
@@ -50,7 +50,8 @@ class SessionRoutesTest : public OnPage {
     const auto answer = post("/adit/login", {{"password", password}});
     EXPECT_EQ(answer.status, Status::Ok);
     const std::string cookie = header(answer, "Set-Cookie");
-    return {cookie.substr(5, cookie.find(';') - 5), json::parse(answer.body)["csrf"]};
+    const std::size_t begin = cookie.find('=') + 1;
+    return {cookie.substr(begin, cookie.find(';') - begin), json::parse(answer.body)["csrf"]};
   }
   json session(const Browser& browser = {}) { return json::parse(get("/adit/session", browser).body); }
 };
@@ -70,17 +71,40 @@ TEST_F(SessionRoutesTest, TellAnyClientItsRole) {
 
 TEST_F(SessionRoutesTest, SetAStrictHttpOnlyCookie) {
   const auto answer = post("/adit/login", {{"password", "correct horse"}});
-  EXPECT_THAT(header(answer, "Set-Cookie"),
-              AllOf(StartsWith("adit="), EndsWith("; HttpOnly; SameSite=Strict; Path=/; Max-Age=604800")));
+  EXPECT_THAT(
+      header(answer, "Set-Cookie"),
+      AllOf(StartsWith("adit-8000="), EndsWith("; HttpOnly; SameSite=Strict; Path=/; Max-Age=604800")));
   EXPECT_EQ(header(answer, "Cache-Control"), "no-store");
   EXPECT_EQ(json::parse(answer.body)["role"], "operator");
+}
+
+/// Browsers send a host's cookies to each of its ports.
+TEST_F(SessionRoutesTest, KeepTheSessionsOfTwoBoxesOnOneHostApart) {
+  const auto at = [](const char* port, const std::string& cookies) {
+    return Headers{{"Host", std::string("adit.local:") + port},
+                   {"Cookie", cookies},
+                   {"Content-Type", "application/json"}};
+  };
+  const std::string body = R"({"password": "correct horse"})";
+  const auto first = ask("POST", "/adit/login", at("8000", ""), body);
+  const auto second = ask("POST", "/adit/login", at("8001", ""), body);
+  const auto cookie_of = [](const intake::Answer& answer) {
+    const std::string set = header(answer, "Set-Cookie");
+    return set.substr(0, set.find(';'));
+  };
+  EXPECT_THAT(cookie_of(first), StartsWith("adit-8000="));
+  EXPECT_THAT(cookie_of(second), StartsWith("adit-8001="));
+  const std::string both = cookie_of(second) + "; " + cookie_of(first);
+  EXPECT_EQ(ask("GET", "/adit/run", at("8000", both)).status, Status::Ok);
+  EXPECT_EQ(ask("GET", "/adit/run", at("8001", both)).status, Status::Ok);
+  EXPECT_EQ(ask("GET", "/adit/run", at("8000", cookie_of(second))).status, Status::Unauthorized);
 }
 
 TEST_F(SessionRoutesTest, EndASessionAtLogout) {
   const Browser mine = log_in("correct horse"), other = log_in("correct horse");
   const auto answer = post("/adit/logout", json::object(), mine);
   EXPECT_EQ(answer.status, Status::Ok);
-  EXPECT_EQ(header(answer, "Set-Cookie"), "adit=; HttpOnly; SameSite=Strict; Path=/; Max-Age=0");
+  EXPECT_EQ(header(answer, "Set-Cookie"), "adit-8000=; HttpOnly; SameSite=Strict; Path=/; Max-Age=0");
   EXPECT_EQ(get("/adit/run", mine).status, Status::Unauthorized);
   EXPECT_EQ(get("/adit/run", other).status, Status::Ok);
 }
@@ -120,7 +144,8 @@ class GuessedAtTest : public SessionRoutesTest {
   std::string device_after_login() {
     const auto answer = try_to("");
     for (const auto& [name, value] : answer.headers) {
-      if (name == "Set-Cookie" && value.starts_with("adit-device=")) return value.substr(0, value.find(';'));
+      if (name == "Set-Cookie" && value.starts_with("adit-device-8000="))
+        return value.substr(0, value.find(';'));
     }
     return "";
   }
@@ -137,7 +162,7 @@ TEST_F(GuessedAtTest, TellUnknownClientsWhenToRetry) {
 
 TEST_F(GuessedAtTest, AdmitAKnownDevice) {
   const std::string device = device_after_login();
-  ASSERT_THAT(device, StartsWith("adit-device="));
+  ASSERT_THAT(device, StartsWith("adit-device-8000="));
   guess_from_everywhere();
   const auto answer = try_to(device);
   EXPECT_EQ(answer.status, Status::Ok);
@@ -148,7 +173,7 @@ TEST_F(GuessedAtTest, AdmitAKnownDevice) {
 TEST_F(GuessedAtTest, ReserveRoomForAKnownDevice) {
   const std::string device = device_after_login();
   EXPECT_EQ(api.shown(FakeHead("POST", "/adit/login", {{"Cookie", device}})), intake::Credentials::Enough);
-  EXPECT_EQ(api.shown(FakeHead("POST", "/adit/login", {{"Cookie", "adit-device=guessed"}})),
+  EXPECT_EQ(api.shown(FakeHead("POST", "/adit/login", {{"Cookie", "adit-device-8000=guessed"}})),
             intake::Credentials::Nothing);
 }
 
@@ -173,8 +198,9 @@ TEST_F(GuessedAtTest, GiveAnOperatorADeviceAfterAViewers) {
   auto answer = post("/adit/login", {{"password", "look, do not touch"}});
   ASSERT_EQ(std::ranges::count(answer.headers, "Set-Cookie", &intake::Header::name), 2);
   const std::string viewers = keys.devices_.all().back().id.reveal();
-  EXPECT_EQ(std::ranges::count(try_to("adit-device=" + viewers).headers, "Set-Cookie", &intake::Header::name),
-            2);
+  EXPECT_EQ(
+      std::ranges::count(try_to("adit-device-8000=" + viewers).headers, "Set-Cookie", &intake::Header::name),
+      2);
   EXPECT_EQ(keys.devices_.all().back().role, access::Role::Operator);
 }
 

@@ -50,7 +50,8 @@ intake::Credentials Entrance::shown(const intake::RequestHead& head) {
 }
 
 const access::Device* Entrance::device(const intake::RequestHead& head) {
-  return keys_.devices().find(access::cookie_in(head.header("Cookie"), access::kDeviceCookie));
+  const std::string name = access::cookie_name(access::kDeviceCookie, head.header("Host"));
+  return keys_.devices().find(access::cookie_in(head.header("Cookie"), name));
 }
 
 std::function<bool()> Entrance::may_stay(const Asker& asker) {

@@ -17,13 +17,15 @@ namespace {
 using access::Role;
 using codec::json;
 
-intake::Header cookie(std::string_view name, const std::string& id, std::chrono::seconds age) {
-  return {"Set-Cookie", std::string(name) + "=" + id +
+/// `host`: the request's Host header.
+intake::Header cookie(std::string_view name, std::string_view host, const std::string& id,
+                      std::chrono::seconds age) {
+  return {"Set-Cookie", access::cookie_name(name, host) + "=" + id +
                             "; HttpOnly; SameSite=Strict; Path=/; Max-Age=" + std::to_string(age.count())};
 }
 
-intake::Header session_cookie(const std::string& id, std::chrono::seconds age) {
-  return cookie(access::kCookie, id, age);
+intake::Header session_cookie(std::string_view host, const std::string& id, std::chrono::seconds age) {
+  return cookie(access::kCookie, host, id, age);
 }
 
 constexpr std::chrono::hours kDeviceKept{400 * 24};  // the longest lifetime that browsers accept (RFC
@@ -85,6 +87,7 @@ SessionRoutes::Poster SessionRoutes::poster_of(const Call& call) {
                       .device = device == nullptr ? 0 : device->number,
                       .at_box = keys_.somebody_at_box()},
           .agent = std::string(call.head.header("User-Agent")),
+          .host = std::string(call.head.header("Host")),
           .asker = call.asker,
           .responder = call.responder};
 }
@@ -135,10 +138,10 @@ intake::Answer SessionRoutes::logged_in(Role role, const Poster& poster) {
   const access::Session& session = keys_.sessions().begin(
       keys_.draw(), keys_.draw(), role, {poster.guesser.address, poster.agent}, loop_.now());
   auto answer = object({{"role", json(std::string(name_of(role)))}, {"csrf", json(session.csrf.reveal())}});
-  answer.headers.push_back(session_cookie(session.id.reveal(), access::Sessions::kLongest));
+  answer.headers.push_back(session_cookie(poster.host, session.id.reveal(), access::Sessions::kLongest));
   if (const auto known = known_as(poster); !known || *known < role) {
     const access::Device& device = keys_.devices().add(keys_.draw(), role);
-    answer.headers.push_back(cookie(access::kDeviceCookie, device.id.reveal(), kDeviceKept));
+    answer.headers.push_back(cookie(access::kDeviceCookie, poster.host, device.id.reveal(), kDeviceKept));
   }
   return answer;
 }
@@ -152,7 +155,7 @@ std::optional<Role> SessionRoutes::known_as(const Poster& poster) {
 intake::Answer SessionRoutes::log_out(const Call& call) {
   keys_.sessions().end(call.asker.session);
   auto answer = object({{"role", {}}});
-  answer.headers.push_back(session_cookie("", std::chrono::seconds(0)));
+  answer.headers.push_back(session_cookie(call.head.header("Host"), "", std::chrono::seconds(0)));
   return answer;
 }
 
@@ -216,7 +219,7 @@ void SessionRoutes::reset(const Call& call) {
       return poster.responder->answer(refused_change(done.error()));
     auto answer =
         object({{"said", {"settings, tokens, passwords and sessions are deleted; the reports are kept"}}});
-    answer.headers.push_back(session_cookie("", std::chrono::seconds(0)));
+    answer.headers.push_back(session_cookie(poster.host, "", std::chrono::seconds(0)));
     poster.responder->answer(std::move(answer));
   });
 }

@@ -34,7 +34,7 @@ class SessionRoutes {
   /// The client, stored while a password is checked.
   struct Poster {
     access::Guesser guesser;
-    std::string agent;
+    std::string agent, host;
     Asker asker;
     std::shared_ptr<intake::Responder> responder;
   };

@@ -20,8 +20,9 @@ bool is_address(int family, std::string_view text) {
   return !text.contains('\0') && inet_pton(family, std::string(text).c_str(), bytes) == 1;
 }
 
-/// "adit.local": one label, of letters, digits and hyphens (RFC 6762 3).
+/// "adit.local" or "adit.local.": one label, of letters, digits and hyphens (RFC 6762 3).
 bool is_multicast_name(std::string_view name) {
+  if (name.ends_with('.')) name.remove_suffix(1);
   constexpr std::string_view kEnd = ".local";
   if (name.size() <= kEnd.size() || !same_but_for_case(name.substr(name.size() - kEnd.size()), kEnd))
     return false;
@@ -33,6 +34,9 @@ bool is_port(std::string_view text) {
   return text.empty() ||
          (text.front() == ':' && text.size() <= 6 && std::ranges::all_of(text.substr(1), icd::is_digit));
 }
+
+constexpr std::string_view kProxyHint =
+    "; a proxy must pass Host on (nginx: proxy_set_header Host $http_host; haproxy: no set-header Host)";
 
 bool only_reads(std::string_view method) {
   return method == "GET" || method == "HEAD";
@@ -59,6 +63,13 @@ bool is_same_origin(std::string_view origin, std::string_view host) {
   return false;
 }
 
+std::string cookie_name(std::string_view name, std::string_view host) {
+  const std::size_t colon = host.rfind(':');
+  const std::string_view port = colon == std::string_view::npos ? "" : host.substr(colon + 1);
+  const bool is_given = !port.empty() && std::ranges::all_of(port, icd::is_digit);  // else of "[fd00::1]"
+  return is_given ? icd::sentence(name, "-", port) : std::string(name);
+}
+
 std::string_view cookie_in(std::string_view cookies, std::string_view name) {
   while (!cookies.empty()) {
     const std::string_view pair = icd::trimmed(icd::cut(cookies, ';'), " \t");
@@ -71,10 +82,12 @@ std::string_view cookie_in(std::string_view cookies, std::string_view name) {
 icd::Checked<void> check_whence(const Request& request) {
   if (!names_this_box(request.host)) {
     return refuse(icd::Status::Forbidden,
-                  "Host: expected the box's address, localhost or the box's name in .local");
+                  "Host: expected the box's address, localhost or the box's name in .local, got ",
+                  icd::in_quotes(request.host), kProxyHint);
   }
   if (!request.origin.empty() && !is_same_origin(request.origin, request.host)) {
-    return refuse(icd::Status::Forbidden, "Origin: expected a page of this box");
+    return refuse(icd::Status::Forbidden, "Origin: expected a page of this box, got ",
+                  icd::in_quotes(request.origin), " with Host ", icd::in_quotes(request.host), kProxyHint);
   }
   return {};
 }
@@ -85,7 +98,8 @@ std::optional<Visitor> who(const Request& request, std::span<const icd::BearerTo
     if (!icd::is_one_of(tokens, icd::token_in(request.authorization))) return std::nullopt;
     return Visitor{Role::Operator, nullptr};
   }
-  const Session* const session = sessions.find(cookie_in(request.cookie, kCookie), now);
+  const std::string name = cookie_name(kCookie, request.host);
+  const Session* const session = sessions.find(cookie_in(request.cookie, name), now);
   return session == nullptr ? std::nullopt : std::optional(Visitor{session->role, session});
 }
 

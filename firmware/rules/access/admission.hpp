@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "access/sessions.hpp"
@@ -13,12 +14,16 @@ namespace adit::access {
 inline constexpr std::string_view kCookie = "adit", kDeviceCookie = "adit-device", kCsrfHeader = "Adit-CSRF";
 
 /// True if a Host header names this box as an IP literal, "localhost" or a name in .local, with any port. A
-/// foreign page cannot use these names for DNS rebinding: .local is resolved on the box's own network only
-/// (RFC 6762 3).
+/// foreign page cannot use these names for DNS rebinding: .local, also rooted ("adit.local."), is resolved on
+/// the box's own network only (RFC 6762 3).
 bool names_this_box(std::string_view host);
 
 /// True if an Origin header (RFC 6454 7) names the requested host.
 bool is_same_origin(std::string_view origin, std::string_view host);
+
+/// The name of this box's cookie: `name`, with the port that the Host header names ("adit-8000"). A browser
+/// sends the cookies of a host to each of its ports, where other boxes may be.
+std::string cookie_name(std::string_view name, std::string_view host);
 
 /// The value of a cookie in a Cookie header (RFC 6265 4.2.1), or "".
 std::string_view cookie_in(std::string_view cookies, std::string_view name);

@@ -164,7 +164,7 @@ TEST_F(SettingsRoutesTest, RejectMalformedBodiesWithTheFieldsName) {
       {"/adit/settings/check", json::object(), "settings: missing"},
       {"/adit/settings/check", {{"settings", json::array()}}, "settings: expected an object"},
       {"/adit/settings/check", json::array(), "expected an object"},
-      {"/adit/tokens", json::object(), "name: missing"},
+      {"/adit/tokens", json::object(), "name, token: missing"},
       {"/adit/tokens", {{"name", "scoring"}}, "token: missing"},
       {"/adit/tokens", {{"name", "scoring"}, {"token", 5}}, "token: expected a string"},
       {"/adit/tokens", {{"name", "scoring"}, {"token", ""}}, "token: expected null or 1 to 256 visible"},

@@ -123,6 +123,22 @@ TEST(CborBody, ReadsTheExamplesOfTheRfc) {
   }
 }
 
+/// As cbor2 writes names with string_referencing=True.
+TEST(CborBody, RejectsReferencesAsNames) {
+  const std::pair<std::string, std::string> cases[] = {
+      {"d90100 82 a1 6478787878 01 a1 d81900 02", "25, a reference to an earlier string"},
+      {"82 a1 6478787878 01 a1 d81d00 02", "29, a reference to an earlier value"}};
+  for (const auto& [hex, tag] : cases) {
+    for (const std::size_t size : {1, 7, 1000000}) {
+      const auto document = decode_hex(hex, size, Split::Nothing);
+      ASSERT_FALSE(document) << hex;
+      EXPECT_EQ(document.error(), (icd::Refusal{icd::Status::UnprocessableEntity,
+                                                "a member's name: expected a string, got CBOR tag " + tag +
+                                                    ": switch references off in the CBOR library"}));
+    }
+  }
+}
+
 TEST(CborBody, KeepsByteStringsAsBytes) {
   const std::vector<std::pair<std::string, std::string>> cases = {{"40", ""},
                                                                   {"4401020304", "\1\2\3\4"},
@@ -304,7 +320,9 @@ const std::vector<std::pair<std::string, std::string>> kBadCbor = {
     {"bf00ff", "2: a key without its value"},
     {"bf000000ff", "4: a key without its value"},
     // Indefinite lengths in items that allow none
-    {"1f", "0: an indefinite length in an item that allows none"},
+    {"1f",
+     "0: an indefinite length in an item that allows none (this looks like gzip; expected "
+     "Content-Encoding: gzip)"},
     {"3f", "0: an indefinite length in an item that allows none"},
     {"df", "0: an indefinite length in an item that allows none"},
     // Text that is not UTF-8 (3.1), also if only a chunk is not (3.2.3)

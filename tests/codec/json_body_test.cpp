@@ -66,6 +66,8 @@ const std::vector<std::pair<std::string, std::string>> kBadJson = {
     {"{\0}\0"s, "1: expected a member's name, got byte 0x00 (this looks like UTF-16; expected UTF-8)"},
     {"\xff\xfe{\0}\0"s, "0: expected a value, got byte 0xff (this looks like UTF-16; expected UTF-8)"},
     {"\xfe\xff\0{\0}"s, "0: expected a value, got byte 0xfe (this looks like UTF-16; expected UTF-8)"},
+    {"\x1f\x8b\x08",
+     "0: expected a value, got byte 0x1f (this looks like gzip; expected Content-Encoding: gzip)"},
     {"\xa1\x61x\x01", "0: expected a value, got byte 0xa1 (this looks like CBOR; Content-Type says JSON)"},
     {"\xbf\xff", "0: expected a value, got byte 0xbf (this looks like CBOR; Content-Type says JSON)"},
     {"\xd9\xd9\xf7\xa0", "0: expected a value, got byte 0xd9 (this looks like CBOR; Content-Type says JSON)"},

@@ -26,6 +26,8 @@ TEST(ReadMapUpdate, RejectsAForbiddenCloud) {
        "msg.origin.orientation: expected a quaternion of length 1, got one too short to have a direction"},
       {"6.3.2", [](json& m) { m["msg"]["origin"]["orientation"] = test::quaternion(kInfinity, 0, 0, 1); },
        "msg.origin.orientation.x: expected a finite number, got inf"},
+      {"6.4", [](json& m) { m = m["msg"]; },
+       "type, msg: missing (found fields: put header, fields, point_step and data into msg)"},
       {"6.3.2", [](json& m) { m["msg"].erase("fields"); }, "msg.fields: missing"},
       {"6.3.2", [](json& m) { m["msg"]["fields"] = json::object(); },
        "msg.fields: expected an array, got an object"},

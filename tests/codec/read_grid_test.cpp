@@ -27,6 +27,10 @@ Bytes members_of(std::initializer_list<Bytes> parts) {
 
 TEST(ReadMapUpdate, RejectsAForbiddenGrid) {
   const IcdRow rows[] = {
+      {"6.4", [](json& m) { m = m["msg"]; },
+       "type, msg: missing (found info: put header, info and data into msg)"},
+      {"6.4", [](json& m) { m["msg"].erase("info"), m["msg"].erase("data"), m["msg"].erase("header"); },
+       "msg.info, msg.data: missing"},
       {"6.3.1", [](json& m) { m["msg"].erase("info"); }, "msg.info: missing"},
       {"6.3.1", [](json& m) { m["msg"]["info"] = 3; }, "msg.info: expected an object, got a whole number"},
       {"6.3.1", [](json& m) { m["msg"]["info"].erase("resolution"); }, "msg.info.resolution: missing"},

@@ -27,6 +27,7 @@ TEST(ReadMapUpdate, RejectsAForbiddenMap) {
       {"6.4", [](json& m) { m["type"] = ""; },
        "type: expected \"OccupancyGrid\" or \"PointCloud2\", got \"\""},
       {"6.4", [](json& m) { m.erase("msg"); }, "msg: missing"},
+      {"6.4", [](json& m) { m.erase("type"), m.erase("msg"); }, "type, msg: missing"},
       {"6.4", [](json& m) { m["msg"] = nullptr; }, "msg: expected an object, got null"},
       {"6.4", [](json& m) { m["msg"] = {1}; }, "msg: expected an object, got an array"},
       {"2, 6.4", [](json& m) { m["name"] = "ABCDEFGHIJK"; },
@@ -58,6 +59,15 @@ TEST(ReadMapUpdate, RejectsAForbiddenMap) {
       {"6.2 and ROS's time", [](json& m) { m["msg"]["header"]["stamp"] = 4294967295.5; }, "accepted"},
       {"6.2 and ROS's time", [](json& m) { m["msg"]["header"]["stamp"] = 4294967296.0; },
        "msg.header.stamp: expected a number from 0 to 4294967295.9999995, got 4294967296"},
+      {"6.2 in other units", [](json& m) { m["msg"]["header"]["stamp"] = 1'700'000'000'123; },
+       "msg.header.stamp: expected a number from 0 to 4294967295.9999995, got 1700000000123 (this looks like "
+       "milliseconds: divide by 1,000)"},
+      {"6.2 in other units", [](json& m) { m["msg"]["header"]["stamp"] = 1'700'000'000'123'456; },
+       "msg.header.stamp: expected a number from 0 to 4294967295.9999995, got 1700000000123456 (this looks "
+       "like microseconds: divide by 1,000,000)"},
+      {"6.2 in other units", [](json& m) { m["msg"]["header"]["stamp"] = 1'700'000'000'123'456'789; },
+       "msg.header.stamp: expected a number from 0 to 4294967295.9999995, got 1700000000123456768 (this "
+       "looks like nanoseconds: divide by 1,000,000,000)"},
       {"6.2", [](json& m) { m["msg"]["header"]["stamp"] = {{"secs", 5}}; },
        "msg.header.stamp.nsecs: missing"},
       {"6.2", [](json& m) { m["msg"]["header"]["stamp"] = {{"secs", -1}, {"nsecs", 0}}; },

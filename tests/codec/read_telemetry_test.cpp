@@ -68,6 +68,16 @@ TEST(ReadStateUpdate, RejectsAForbiddenState) {
        "poses[1].name: expected 1 to 10 letters, digits and underscores, got \"drone 2\" (the setting "
        "robots[].alias can map this name to a valid one)"},
       {"6.5", [](json& m) { m["poses"][0].erase("position"); }, "poses[0].position: missing"},
+      {"6.5 and ROS",
+       [](json& m) {
+         json& pose = m["poses"][0];
+         pose = {{"name", pose["name"]},
+                 {"pose", {{"position", pose["position"]}, {"orientation", pose["orientation"]}}}};
+       },
+       "poses[0].position, poses[0].orientation: missing (found pose: put the pose's position and "
+       "orientation here)"},
+      {"6.5 and ROS", [](json& m) { m = {{"pose", m["poses"][0]}}; },
+       "poses: missing (found pose: expected a list of robots, each with name, position and orientation)"},
       {"6.5", [](json& m) { m["poses"][0]["position"]["y"] = "1"; },
        "poses[0].position.y: expected a number, got a string"},
       {"6.5", [](json& m) { m["poses"][0]["position"]["y"] = kNan; },

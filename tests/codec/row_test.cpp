@@ -82,7 +82,7 @@ TEST(Row, ReadsBackTheSame) {
 }
 
 TEST(Row, RejectsWithTheNameOfTheMember) {
-  EXPECT_EQ(read_back("{}"), "number: missing");
+  EXPECT_EQ(read_back("{}"), "number, colour, z, steps, done: missing");
   EXPECT_EQ(read_back(R"({"number":3,"colour":"red","z":1.5,"note":null,"height":"up"})"),
             "height: expected a number, got a string");
   EXPECT_EQ(read_back(R"({"number":3,"colour":"red","z":1.5,"note":null,"height":1,"steps":[-1]})"),

@@ -36,7 +36,9 @@ std::optional<ContentCoding> coding_of(std::string_view content_encoding) {
 namespace {
 
 std::unique_ptr<Splitter> splitter_for(Format format, Split split, const Limits& limits, BulkData& data) {
-  const Most most{.text = limits.text_bytes, .values = limits.values};
+  const Most most{.text = limits.text_bytes,
+                  .values = limits.values,
+                  .but = split == Split::MapData ? " without msg.data" : ""};
   if (format == Format::Cbor) return std::make_unique<CborSplitter>(split, most, data);
   return std::make_unique<JsonSplitter>(split, most, data);
 }
@@ -58,6 +60,8 @@ std::string_view other_format(Format said, std::string_view begin) {
   if (begin.empty()) return "";
   const auto first = static_cast<std::uint8_t>(begin.front()),
              second = static_cast<std::uint8_t>(begin.back());
+  constexpr std::uint8_t kGzip = 0x1f;  // no JSON and no CBOR begins so
+  if (first == kGzip) return " (this looks like gzip; expected Content-Encoding: gzip)";
   if (said == Format::Cbor) {
     const bool is_object = first == '{' && std::string_view("\"} \t\r\n").contains(static_cast<char>(second));
     return is_object || begin == "\xEF\xBB" ? " (this looks like JSON; Content-Type says CBOR)" : "";

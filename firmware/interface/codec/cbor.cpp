@@ -12,6 +12,8 @@
 namespace adit::codec {
 namespace {
 
+constexpr std::uint64_t kStringReference = 25, kSharedReference = 29;
+
 /// A half-precision number (RFC 8949 appendix D).
 double half(std::uint16_t bits) {
   const int exponent = (bits >> 10) & 0x1F;
@@ -47,7 +49,18 @@ bool is_remark(std::uint64_t tag) {
   return std::ranges::find(kRemarks, tag) != kRemarks.end();
 }
 
+bool is_reference(std::uint64_t tag) {
+  return tag == kStringReference || tag == kSharedReference;
+}
+
 std::string tag_that_changes(std::uint64_t tag) {
+  constexpr std::uint64_t kFirstTyped = 65, kLastTyped = 87;
+  if (is_reference(tag))
+    return icd::sentence("CBOR tag ", tag, ", a reference to an earlier ",
+                         tag == kStringReference ? "string" : "value",
+                         ": switch references off in the CBOR library");
+  if (tag >= kFirstTyped && tag <= kLastTyped)
+    return icd::sentence("CBOR tag ", tag, ", a typed array: send plain numbers, or in msg.data its bytes");
   return icd::sentence("CBOR tag ", tag, ", which changes the meaning of its value");
 }
 

@@ -17,7 +17,10 @@ namespace adit::codec {
 /// keeps its meaning.
 bool is_remark(std::uint64_t tag);
 
-/// Describes another tag for a sentence.
+/// Whether a tag refers to an earlier text or value, so that a member's name may be under it.
+bool is_reference(std::uint64_t tag);
+
+/// Describes a tag that is no remark for a sentence.
 std::string tag_that_changes(std::uint64_t tag);
 
 /// Major types (RFC 8949 3.1).

@@ -113,6 +113,8 @@ icd::Checked<void> CborSplitter::simple() {
 icd::Checked<void> CborSplitter::tag() {
   constexpr std::string_view kInItsPlace = "\xF6";
   const bool changes = !is_remark(head_.argument()) && !leaves_out();
+  if (changes && at_key() && is_reference(head_.argument()))
+    return icd::unprocessable("a member's name: expected a string, got ", tag_that_changes(head_.argument()));
   if (changes && path_.at_data())
     return std::unexpected(bad_data("expected a byte string, got " + tag_that_changes(head_.argument())));
   if (changes) {

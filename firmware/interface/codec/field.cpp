@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "codec/utf8.hpp"
 #include "codec/value.hpp"
@@ -47,12 +48,51 @@ struct TimeNames {
 constexpr TimeNames kTimeNames[] = {{"secs", "nsecs"}, {"sec", "nanosec"}, {"sec", "nsec"}};
 constexpr std::string_view kTimes = "{secs, nsecs}, {sec, nanosec} or {sec, nsec}";
 
+/// A member that clients put in a wrong place, and its likely place beside the missing one.
+struct Misplaced {
+  std::string_view missing, found, advice;
+};
+constexpr Misplaced kMisplaced[] = {
+    {"msg", "info", "put header, info and data into msg"},
+    {"msg", "fields", "put header, fields, point_step and data into msg"},
+    {"position", "pose", "put the pose's position and orientation here"},
+    {"orientation", "pose", "put the pose's position and orientation here"},
+    {"poses", "pose", "expected a list of robots, each with name, position and orientation"},
+    {"x", "position", "put the position's x, y and z here"},
+};
+
+/// The longest list of missing members in a sentence.
+constexpr std::size_t kMostMissing = 8;
+
+/// A hint at a number of another unit; "" if it is none. Seconds of the years 2001 to 2106 are meant.
+std::string unit_hint(double given, double most) {
+  constexpr std::pair<double, std::string_view> kUnits[] = {{1e3, "milliseconds: divide by 1,000"},
+                                                            {1e6, "microseconds: divide by 1,000,000"},
+                                                            {1e9, "nanoseconds: divide by 1,000,000,000"}};
+  constexpr double kLeast = 1e9;
+  for (const auto& [factor, words] : kUnits) {
+    if (given >= kLeast * factor && given <= most * factor)
+      return icd::sentence(" (this looks like ", words, ")");
+  }
+  return "";
+}
+
 std::string limits(double least, double most) {
   if (std::isinf(least)) return "a finite number";
   return icd::sentence("a number from ", least, " to ", most);
 }
 
 }  // namespace
+
+void Reading::miss(const std::string& path, std::string_view hint) {
+  if (refused() && missing_.empty()) return;
+  if (missing_.size() == kMostMissing || std::ranges::find(missing_, path) != missing_.end()) return;
+  missing_.push_back(path);
+  if (hint_.empty()) hint_ = hint;
+  std::string all = missing_.front();
+  for (std::size_t i = 1; i < missing_.size(); ++i) all += ", " + missing_[i];
+  refusal_ = icd::unprocessable(all, ": missing", hint_).error();
+}
 
 const Value::Object* Field::object() const {
   if (is<Value::Object>()) return &std::get<Value::Object>(value_->is);
@@ -166,7 +206,11 @@ bool Field::truth() const {
 }
 
 double Field::seconds(double most) const {
-  if (value_ && number_of(*value_)) return number(0, most);
+  if (const auto given = value_ ? number_of(*value_) : std::nullopt) {
+    const std::string hint = *given > most ? unit_hint(*given, most) : "";
+    if (!hint.empty()) refuse("expected ", limits(0, most), ", got ", *given, hint);
+    return number(0, most);
+  }
   if (!is<Value::Object>()) {
     refuse_kind(icd::sentence("a number, ", kTimes));
     return 0;
@@ -192,8 +236,22 @@ void Field::refuse_kind(std::string_view expected) const {
   if (value_) {
     refuse("expected ", expected, ", got ", value_->kind());
   } else {
-    refuse("missing");
+    miss();
   }
+}
+
+/// Not for a member of a missing object: that is named itself.
+void Field::miss() const {
+  if (parent_ == nullptr) return refuse("missing");
+  if (!parent_->value_) return;
+  std::string hint;
+  const auto* const around = std::get_if<Value::Object>(&parent_->value_->is);
+  for (const auto& [missing, found, advice] : kMisplaced) {
+    if (around == nullptr || missing != name_ || !hint.empty()) continue;
+    if (std::ranges::count(*around, found, &Value::Member::first) > 0)
+      hint = icd::sentence(" (found ", found, ": ", advice, ")");
+  }
+  reading_.miss(path(), hint);
 }
 
 std::string Field::path() const {

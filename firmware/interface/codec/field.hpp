@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "codec/value.hpp"
 #include "icd/sentence.hpp"
@@ -16,13 +17,15 @@
 namespace adit::codec {
 
 /// One pass over a document. Stores the first refusal, so that a reader can follow the ICD's listing and
-/// check once at the end.
+/// check once at the end. If that is a missing member, the refusal names all that are missing.
 class Reading {
  public:
   bool refused() const { return refusal_.has_value(); }
   void refuse(icd::Refusal refusal) {
     if (!refusal_) refusal_ = std::move(refusal);
   }
+  /// 422: the member at `path` is missing. `hint`: its likely place, or "".
+  void miss(const std::string& path, std::string_view hint);
   void keep(icd::Checked<void> checked) {
     if (!checked) refuse(std::move(checked.error()));
   }
@@ -36,6 +39,8 @@ class Reading {
 
  private:
   std::optional<icd::Refusal> refusal_;
+  std::vector<std::string> missing_;  // paths; empty: the refusal is about another fault
+  std::string hint_;
 };
 
 /// A value in a document and its path, or the place of an absent value. Reading a field of another kind
@@ -126,6 +131,8 @@ class Field {
       : own_(std::move(own)), value_(own_.get()), parent_(parent), index_(index), reading_(reading) {}
 
   std::optional<std::string_view> characters() const;
+  /// Refuses an absent value.
+  void miss() const;
   std::int64_t whole_number(std::int64_t least, std::int64_t most) const;
   const Value::Object* object() const;
 

@@ -277,11 +277,13 @@ icd::Checked<icd::MapUpdate> read_structure(const Document& document, const icd:
   const Field body(document.root, reading);
   const Field type = body.member("type");
   const std::string_view kind = type.text();
+  const Field msg = body.member("msg");
   if (kind != "OccupancyGrid" && kind != "PointCloud2") {
     type.refuse("expected \"OccupancyGrid\" or \"PointCloud2\", got ", icd::in_quotes(kind));
+    if (msg.is_absent()) msg.refuse_kind("an object");
+    return reading.outcome(std::move(update));  // the type decides which members msg needs
   }
   update.name = read_map_name(body.member("name"), rules);
-  const Field msg = body.member("msg");
   if (kind == "PointCloud2") {
     update.msg = read_msg<icd::PointCloud2>(msg, rules);
   } else {

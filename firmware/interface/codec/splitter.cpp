@@ -28,15 +28,13 @@ icd::Refusal bad_data(std::string_view why) {
 }
 
 icd::Refusal KeptText::too_large() const {
-  return {
-      icd::Status::ContentTooLarge,
-      icd::sentence("the document without its bulk data is larger than the limit of ", most_.text, " bytes")};
+  return {icd::Status::ContentTooLarge,
+          icd::sentence("the document", most_.but, " is larger than the limit of ", most_.text, " bytes")};
 }
 
 icd::Refusal KeptText::too_many_values() const {
   return {icd::Status::ContentTooLarge,
-          icd::sentence("the document without its bulk data has more than the limit of ", most_.values,
-                        " values")};
+          icd::sentence("the document", most_.but, " has more than the limit of ", most_.values, " values")};
 }
 
 icd::Refusal too_many_outside_lists(std::size_t most) {

@@ -17,6 +17,7 @@ namespace adit::codec {
 struct Most {
   std::size_t text = 0;                                          // bytes
   std::size_t values = std::numeric_limits<std::size_t>::max();  // with pieces of strings, without names
+  std::string_view but = "";                                     // " without msg.data", for a sentence
 };
 
 /// Checks a document on arrival, passes the map's data to a BulkData, and stores the rest for parsing. One

@@ -166,6 +166,16 @@ TEST_F(PageTest, AnswersUnknownPathsWithAJsonString) {
   }
 }
 
+TEST_F(PageTest, SuggestsTheUriThatWasMeant) {
+  for (const auto& [path, meant] :
+       {std::pair("/map/updates", "/map/update"), std::pair("//map/update", "/map/update"),
+        std::pair("/marker/update", "/markers/update"),
+        std::pair("/api/artifact_report", "/api/artifact_reports")}) {
+    EXPECT_EQ(nlohmann::json::parse(get_file(path, "", "POST").body),
+              "there is no resource at \"" + std::string(path) + "\"; did you mean " + meant + "?");
+  }
+}
+
 TEST_F(PageTest, AcceptsOnlyGet) {
   for (const char* path : {"/", "/icon.svg"}) {
     for (const char* method : {"POST", "DELETE", "OPTIONS"}) {

@@ -83,6 +83,25 @@ TEST_F(ReadSecrets, PrefersSavedToGivenTokens) {
               HasSubstr("chmod 600 " + (state_ / "secrets/scoring.token")));
 }
 
+/// As Windows' Notepad and PowerShell write them.
+TEST_F(ReadSecrets, ReadsATokenInUnicode) {
+  using namespace std::string_literals;
+  for (const std::string& text : {"\xEF\xBB\xBFt{}1\r\n"s,
+                                  "\xFF\xFEt\0{\0}\0"
+                                  "1\0\r\0\n\0"s,
+                                  "\xFE\xFF\0t\0{\0}\0"
+                                  "1\0\r\0\n"s}) {
+    folder_.put("scoring.token", text);
+    const auto secrets = read(folder_.path());
+    ASSERT_TRUE(secrets.has_value()) << secrets.error();
+    EXPECT_EQ(secrets->token("scoring")->reveal(), "t{}1");
+  }
+  for (const std::string& text : {"\xFF\xFEt\0{"s, "\xFF\xFEt\0\xE4\x01"s, "\xEF\xBBt"s}) {
+    folder_.put("scoring.token", text);
+    EXPECT_FALSE(read(folder_.path()));
+  }
+}
+
 TEST_F(ReadSecrets, ReplacesNoDamagedSavedToken) {
   state_.put("secrets/mapping.token", "saved-one");
   for (const char* const damaged : {"two words", "", " \n"}) {

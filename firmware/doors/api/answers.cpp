@@ -1,7 +1,9 @@
 #include "api/answers.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
+#include <iterator>
 #include <span>
 #include <string>
 #include <utility>
@@ -9,7 +11,9 @@
 #include "codec/gzip.hpp"
 #include "codec/json.hpp"
 #include "icd/sentence.hpp"
+#include "icd/suggestion.hpp"
 #include "icd/text.hpp"
+#include "icd/uri.hpp"
 #include "intake/answer.hpp"
 
 namespace adit::api {
@@ -118,7 +122,13 @@ intake::Answer refusal(icd::Status status, std::string_view sentence) {
 }
 
 icd::Refusal nothing_at(std::string_view path) {
-  return {icd::Status::NotFound, icd::sentence("there is no resource at ", icd::in_quotes(path))};
+  static constexpr auto kPaths = [] {
+    std::array<std::string_view, std::size(icd::kUris)> paths;
+    std::ranges::transform(icd::kUris, paths.begin(), icd::path_of);
+    return paths;
+  }();
+  return {icd::Status::NotFound,
+          icd::sentence("there is no resource at ", icd::in_quotes(path), icd::did_you_mean(path, kPaths))};
 }
 
 intake::Answer wrong_method(std::string_view allowed) {

@@ -42,7 +42,7 @@ std::expected<Token, Fault> read_one(const std::string& path, Place place) {
   const std::string checked = without_checksum(file->text);
   const std::string_view text = icd::trimmed(checked);
   if (text.empty() && place != Place::Saved) return Token();
-  auto token = icd::BearerToken::parse(text);
+  auto token = icd::BearerToken::parse_file(checked);
   if (!token)
     return std::unexpected(
         Fault{path + ": expected one token of 1 to 256 visible ASCII characters", false, true});

@@ -29,6 +29,14 @@ std::string doubled(std::string_view token, std::string_view letters, char mark)
   return text;
 }
 
+/// ASCII in UTF-16 as bytes; other characters become bytes that no token has. `high`: the place of the high
+/// byte in each pair.
+std::string from_utf_16(std::string_view pairs, std::size_t high) {
+  std::string text;
+  for (; pairs.size() >= 2; pairs.remove_prefix(2)) text += pairs[high] == '\0' ? pairs[1 - high] : '\0';
+  return pairs.empty() ? text : text + '\0';
+}
+
 /// in_quotes() shows the beginning of a long text, followed by "...".
 void strike_cut(std::string& text, std::string_view token) {
   const std::string_view beginning = token.substr(0, kLeast);
@@ -48,6 +56,14 @@ std::optional<BearerToken> BearerToken::parse(std::string_view text) {
   const auto visible = [](char letter) { return letter > 0x20 && letter < 0x7f; };
   if (text.empty() || text.size() > kLongest || !std::ranges::all_of(text, visible)) return std::nullopt;
   return BearerToken(std::string(text));
+}
+
+std::optional<BearerToken> BearerToken::parse_file(std::string_view content) {
+  constexpr std::string_view kUtf8 = "\xEF\xBB\xBF", kLittleEndian = "\xFF\xFE", kBigEndian = "\xFE\xFF";
+  if (content.starts_with(kLittleEndian)) return parse(trimmed(from_utf_16(content.substr(2), 1)));
+  if (content.starts_with(kBigEndian)) return parse(trimmed(from_utf_16(content.substr(2), 0)));
+  if (content.starts_with(kUtf8)) content.remove_prefix(kUtf8.size());
+  return parse(trimmed(content));
 }
 
 bool BearerToken::matches(std::string_view presented) const {

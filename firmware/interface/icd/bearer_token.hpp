@@ -19,6 +19,10 @@ class BearerToken {
   /// nullopt unless `text` is 1 to 256 visible ASCII characters (0x21 to 0x7e).
   static std::optional<BearerToken> parse(std::string_view text);
 
+  /// The token that is a file's content, without the white space around it. ASCII, UTF-8 with a byte order
+  /// mark, or UTF-16 with one, as editors and shells of Windows write it.
+  static std::optional<BearerToken> parse_file(std::string_view content);
+
   /// The token's characters, for the Authorization header only.
   const std::string& reveal() const { return text_; }
 

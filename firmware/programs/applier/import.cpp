@@ -146,7 +146,7 @@ class Reader {
                     icd::sentence("unknown name; expected one of ", icd::listed(known), ", ", kCardCode));
     const auto text = text_of(folder, file, name);
     if (!text) return;
-    auto token = icd::BearerToken::parse(icd::trimmed(*text));
+    auto token = icd::BearerToken::parse_file(*text);
     if (!token) return refuse(name, "expected one token of 1 to 256 visible ASCII characters");
     found_.brought.tokens.emplace(file, std::move(*token));
   }
@@ -154,7 +154,7 @@ class Reader {
   void read_code(const UntrustedFolder& folder, const std::string& name) {
     const auto text = text_of(folder, kCardCode, name);
     if (!text) return;
-    auto code = icd::BearerToken::parse(icd::trimmed(*text));
+    auto code = icd::BearerToken::parse_file(*text);
     if (!code || !access::is_code(code->reveal())) return refuse(name, "expected 8 digits");
     found_.brought.tokens.emplace(kCardCode, std::move(*code));
   }

@@ -17,7 +17,7 @@ namespace adit::cli {
 
 std::expected<Token, std::string> token_in_file(const std::string& file) {
   const auto text = ADIT_TRY(host::read_file(file));
-  auto token = icd::BearerToken::parse(icd::trimmed(text));
+  auto token = icd::BearerToken::parse_file(text);
   if (!token) return std::unexpected(file + ": expected one token of 1 to 256 visible ASCII characters");
   return Token{std::move(*token), file};
 }

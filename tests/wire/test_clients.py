@@ -8,6 +8,7 @@ import signal
 import subprocess
 import time
 import unittest
+import unittest.mock
 
 import hosts
 import programs
@@ -17,7 +18,7 @@ from reporting import QUICK, began
 SHOWN = pathlib.Path(os.environ["ADIT_SOURCE"]) / "firmware/doors/intake/clients"
 CLIENTS = {"Python": ["/usr/bin/python3", "-B", SHOWN / "example.py"], "C++": [programs.BIN / "adit_client_example"]}
 UPDATES = ("map", "state", "markers")
-ANSWERED, REFUSED, NOT_KNOWN = 0, 1, 3  # exit status
+ANSWERED, REFUSED, WRONG_WORDS, NOT_KNOWN = 0, 1, 2, 3  # exit status
 NOT_RECORDED = ("drop", "html-200", "html-302")
 BAD_DAY = ("--rate", "0", "--seed", "5", "--fault-rate", "reports:record-then-drop=0.3", "--fault-rate", "reports:drop=0.2",
            "--fault-rate", "reports:429=0.1", "--fault-rate", "mapping:drop=0.2")
@@ -95,6 +96,23 @@ class Clients(unittest.TestCase):
                     self.assertIn("type: ", said)
                     self.assertEqual(Run(self, stage, name, ["report", "nan", 2, 3, "Drill"]).ended()[0], REFUSED)
             self.assertEqual(stage.post.recorded(), [])
+
+    def test_wrong_words_are_named(self):
+        with Stage(**QUICK) as stage:
+            for name in CLIENTS:
+                for given, why in ((["report", 1, 2, 3], "expected"), (["report", 1, 2, "north", "Drill"], ""),
+                                   (["report", 1, 2, 3, "Cell", "Phone"], "expected"), (["maps"], "expected"), ([], "expected")):
+                    with self.subTest(name, given=given):
+                        status, said = Run(self, stage, name, given).ended()
+                        self.assertEqual(status, WRONG_WORDS, said)
+                        self.assertIn("usage: ", said)
+                        self.assertIn(why, said)
+                        self.assertNotIn("Traceback", said)
+
+    def test_a_proxy_of_the_environment_is_not_asked(self):
+        with Stage(**QUICK) as stage, unittest.mock.patch.dict(os.environ, http_proxy="http://127.0.0.1:9"):
+            for name in CLIENTS:
+                self.assertEqual(Run(self, stage, name, ["state"]).ended(), (ANSWERED, "null\n"), name)
 
     def test_operator_withdraws_a_report(self):
         for name in CLIENTS:

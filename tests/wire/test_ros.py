@@ -8,6 +8,7 @@ import pathlib
 import signal
 import struct
 import sys
+import threading
 import types
 import unittest
 
@@ -20,6 +21,7 @@ SHOWN = pathlib.Path(os.environ["ADIT_SOURCE"]) / "firmware/doors/intake/clients
 sys.path.append(str(SHOWN))
 sys.dont_write_bytecode = True
 from ros_messages import Robot  # noqa: E402
+from ros_node import MOST, Outbox  # noqa: E402
 
 SECONDS, NANOSECONDS = 1700000000, 500_000_000
 CELLS = (0, 100, -1, 50, 0, -1)
@@ -130,18 +132,71 @@ class Frames(unittest.TestCase):
     def test_messages_of_another_frame_are_logged_and_not_sent(self):
         for version in (ros_1, ros_2):
             with self.assertLogs("rosout.adit") as said:
-                self.assertIsNone(ROBOT.map(grid(version, "odom")))
+                self.assertFalse(ROBOT.fits(grid(version, "odom")))
             self.assertIn("expected frame map, got odom", said.output[0])
             with self.assertLogs("rosout.adit"):
                 one_of_two = types.SimpleNamespace(markers=[marker(version, "odom"), marker(version, "/map")])
+                self.assertTrue(ROBOT.keep_fitting(one_of_two))
                 self.assertEqual(len(ROBOT.markers(one_of_two)[1]["markers"]), 1)
+                self.assertFalse(ROBOT.keep_fitting(types.SimpleNamespace(markers=[marker(version, "odom")])))
             deletes = types.SimpleNamespace(markers=[marker(version, "", action=3)])
+            self.assertTrue(ROBOT.keep_fitting(deletes))
             self.assertEqual(ROBOT.markers(deletes)[1]["markers"][0]["action"], 3)
 
     def test_a_stamp_and_a_report(self):
         for version in (ros_1, ros_2):
             self.assertEqual(ROBOT.state(odometry(version))[1]["header"], {"stamp": SECONDS + 0.5, "frame_id": "darpa"})
             self.assertEqual(ROBOT.report(marker(version)), (1.5, -2.0, 0.0, "Backpack"))
+
+
+class Queues(unittest.TestCase):
+    """Messages that come faster than they are sent."""
+
+    def outbox(self, robot_check, most):
+        self.free, self.sent = threading.Semaphore(0), []
+
+        def send(_, content):
+            self.free.acquire()
+            self.sent.append(content["msg"]["header"]["stamp"])
+
+        return Outbox(robot_check, ROBOT.map, send, most)
+
+    def of_turn(self, made, turn):
+        made.header.stamp.secs = turn
+        return made
+
+    def has_sent(self, turns):
+        for _ in turns:
+            self.free.release()
+        wait_until(lambda: len(self.sent) == len(turns), lambda: f"{self.sent}")
+        self.assertEqual([int(stamp) for stamp in self.sent], list(turns))
+
+    def test_each_cloud_is_sent_in_order(self):
+        box = self.outbox(ROBOT.fits, MOST)
+        for turn in range(1, 101):
+            box.put(self.of_turn(cloud(ros_1), turn))
+        self.has_sent(range(1, 101))
+
+    def test_a_dropped_message_is_an_error_in_the_log(self):
+        box = self.outbox(ROBOT.fits, 10)
+        box.put(self.of_turn(cloud(ros_1), 1))
+        wait_until(lambda: not box.waiting, "the first one to be sent")
+        with self.assertLogs("rosout.adit", "ERROR") as said:
+            for turn in range(2, 15):
+                box.put(self.of_turn(cloud(ros_1), turn))
+        self.assertEqual((len(said.output), box.dropped), (3, 3))
+        self.assertIn("dropped the oldest of 10 queued messages (3 in all)", said.output[-1])
+        self.has_sent([1, *range(5, 15)])
+
+    def test_a_grid_of_another_frame_replaces_none(self):
+        box = self.outbox(ROBOT.fits, 1)
+        box.put(self.of_turn(grid(ros_1), 1))
+        wait_until(lambda: not box.waiting, "the first one to be sent")
+        for turn in (2, 3):
+            box.put(self.of_turn(grid(ros_1), turn))
+        with self.assertLogs("rosout.adit"):
+            box.put(self.of_turn(grid(ros_1, "odom"), 4))
+        self.has_sent([1, 3])
 
 
 PUBLISHER = """

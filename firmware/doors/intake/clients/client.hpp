@@ -80,6 +80,7 @@ class Client {
     headers = curl_slist_append(headers, ("Content-Type: " + type).c_str());
     headers = curl_slist_append(headers, "Expect:");  // a bare Command Post never answers Expect
     curl_easy_setopt(curl, CURLOPT_URL, (url_ + uri).c_str());
+    curl_easy_setopt(curl, CURLOPT_PROXY, "");  // not http_proxy
     curl_easy_setopt(curl, CURLOPT_HTTPHEADER, headers);
     curl_easy_setopt(curl, CURLOPT_CONNECTTIMEOUT, 3L);
     curl_easy_setopt(curl, CURLOPT_TIMEOUT, 30L);

@@ -59,8 +59,10 @@ class Client:
         if self.bare:  # it accepts one request a second
             time.sleep(max(0.0, self.turn - time.monotonic()))
         try:  # on a new connection, because a bare Command Post closes old ones without notice
-            answer = requests.request(method, self.url + uri, data=content, headers=self.headers, timeout=(3, 30),
-                                      allow_redirects=False)
+            with requests.Session() as session:
+                session.trust_env = False  # no http_proxy, and no .netrc instead of the token
+                answer = session.request(method, self.url + uri, data=content, headers=self.headers, timeout=(3, 30),
+                                         allow_redirects=False)
             body = answer.json() if answer.ok else answer.text  # a redirection or a 2xx without JSON comes from another machine
             return answer.status_code, body, answer.headers.get("Retry-After", "1")
         except requests.ConnectTimeout:

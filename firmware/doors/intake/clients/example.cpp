@@ -1,11 +1,12 @@
 // ADIT_TOKEN=... example http://10.0.0.1:8000 report 10.5 -3.25 0.4 Backpack (or: status, map, state,
 // markers; with --bare for a Command Post without Adit). Prints the answer. Exit status: 1 if the message was
-// rejected, 3 if a person must decide.
+// rejected, 2 if the words are wrong, 3 if a person must decide.
 //     apt install g++ libcurl4-openssl-dev nlohmann-json3-dev   (JSON for Modern C++, 3.8 or newer)
 //     g++ -std=c++17 example.cpp -o example -lcurl
 #include <cstdint>
 #include <cstdlib>
 #include <iostream>
+#include <stdexcept>
 #include <vector>
 
 #include "client.hpp"
@@ -49,6 +50,8 @@ json asked(Client& client, const std::vector<std::string>& words) {
   if (what == "map") return client.update(what, a_map());
   if (what == "state") return client.update(what, a_state());
   if (what == "markers") return client.update(what, some_markers());
+  if (what != "report" || words.size() != 6)
+    throw std::invalid_argument("expected report X Y Z TYPE, status, map, state or markers");
   return client.report(std::stod(words.at(2)), std::stod(words.at(3)), std::stod(words.at(4)), words.at(5));
 }
 
@@ -57,16 +60,19 @@ json asked(Client& client, const std::vector<std::string>& words) {
 int main(int count, char** given) {
   std::vector<std::string> words(given + 1, given + count);
   const bool bare = !words.empty() && words.back() == "--bare";
+  if (bare) words.pop_back();
   const char* const token = std::getenv("ADIT_TOKEN");
-  if (words.size() < 2) {
-    std::cerr
-        << "usage: ADIT_TOKEN=... example URL report X Y Z TYPE (or: status, map, state, markers) [--bare]\n";
-    return 2;
-  }
   try {
+    if (token == nullptr) throw std::invalid_argument("the variable ADIT_TOKEN is not set");
+    if (words.size() < 2) throw std::invalid_argument("expected a URL, and what to send");
     Client client(words.at(0), token == nullptr ? "" : token, bare);
     std::cout << asked(client, words) << "\n";
     return 0;
+  } catch (const std::logic_error& why) {  // also of a word that is no number
+    std::cerr << why.what()
+              << "\nusage: ADIT_TOKEN=... example URL report X Y Z TYPE (or: status, map, state, markers) "
+                 "[--bare]\n";
+    return 2;
   } catch (const Refused& why) {
     std::cerr << "refused: " << why.what() << "\n";
     return 1;

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """ADIT_TOKEN=... example.py http://10.0.0.1:8000 report 10.5 -3.25 0.4 Backpack (or: status, map, state, markers; with --bare
-for a Command Post without Adit). Prints the answer. Exit status: 1 if the message was rejected, 3 if a person must decide."""
+for a Command Post without Adit). Prints the answer. Exit status: 1 if the message was rejected, 2 if the words are wrong, 3 if a
+person must decide."""
 import base64
 import gzip
 import json
@@ -35,6 +36,9 @@ def some_markers():
     return {"markers": [ball]}
 
 
+UPDATES = {"map": a_map, "state": a_state, "markers": some_markers}
+
+
 def main(url, what, *words, bare=False):
     client = Client(url, os.environ["ADIT_TOKEN"], bare)
     if what == "status":
@@ -42,15 +46,32 @@ def main(url, what, *words, bare=False):
     if what == "report":
         x, y, z = map(float, words[:3])
         return client.report(x, y, z, words[3])
-    return client.update(what, {"map": a_map, "state": a_state, "markers": some_markers}[what]())
+    return client.update(what, UPDATES[what]())
+
+
+def fault_in(words):
+    """A sentence about wrong words or a missing token, or nothing."""
+    if not os.environ.get("ADIT_TOKEN"):
+        return "the variable ADIT_TOKEN is not set"
+    if len(words) < 2 or not words[0].startswith("http"):
+        return "expected a URL that begins with http://, and what to send"
+    if words[1] != "report":
+        return "" if words[1] in ("status", *UPDATES) else f"expected report, status, map, state or markers, got {words[1]}"
+    try:
+        _, _, _, kind = *map(float, words[2:5]), *words[5:]
+    except ValueError:
+        return f"report: expected the numbers X Y Z and one word for the type, got {words[2:]}"
+    return "" if kind else "report: expected a type"
 
 
 if __name__ == "__main__":
-    if len(sys.argv) < 3:
-        print("usage: ADIT_TOKEN=... example.py URL report X Y Z TYPE (or: status, map, state, markers) [--bare]", file=sys.stderr)
+    given = [word for word in sys.argv[1:] if word != "--bare"]
+    if fault := fault_in(given):
+        usage = "usage: ADIT_TOKEN=... example.py URL report X Y Z TYPE (or: status, map, state, markers) [--bare]"
+        print(f"{fault}\n{usage}", file=sys.stderr)
         sys.exit(2)
     try:
-        print(json.dumps(main(*[word for word in sys.argv[1:] if word != "--bare"], bare="--bare" in sys.argv)))
+        print(json.dumps(main(*given, bare="--bare" in sys.argv)))
     except Refused as why:
         sys.exit(f"refused: {why}")
     except Unknown as why:

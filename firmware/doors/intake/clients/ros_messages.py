@@ -22,34 +22,43 @@ def plain(value):
 
 
 class Robot:
-    """The messages of one robot. None if the frame is not `frame`, the Command Post's "darpa"."""
+    """The messages of one robot, in `frame`, the Command Post's "darpa"."""
 
     def __init__(self, name, frame):
         self.name, self.frame = name, frame
 
-    def of_frame(self, message):
+    def fits(self, message):
+        """Whether a message is of the frame. Otherwise logs it."""
         given = message.header.frame_id.lstrip("/")
         deletes = getattr(message, "action", 0) != 0 and not given  # RViz needs no frame to delete
-        if given != self.frame and not deletes:
-            log.error("not sent: expected frame %s, got %s", self.frame, given)
-            return None
+        if given == self.frame or deletes:
+            return True
+        log.error("not sent: expected frame %s, got %s", self.frame, given)
+        return False
+
+    def keep_fitting(self, message):
+        """Removes other markers from a MarkerArray. Whether one is left."""
+        message.markers = [marker for marker in message.markers if self.fits(marker)]
+        return bool(message.markers)
+
+    @staticmethod
+    def in_darpa(message):
         return {**plain(message), "header": {"stamp": plain(message.header.stamp), "frame_id": "darpa"}}
 
     def map(self, message):
-        made, is_grid = self.of_frame(message), hasattr(message, "info")
-        if made and is_grid:
+        made, is_grid = self.in_darpa(message), hasattr(message, "info")
+        if is_grid:
             cells = array.array("b", message.data).tobytes()  # a tuple in ROS 1, an array in ROS 2
             made.update(data=base64.b64encode(gzip.compress(cells, 1)).decode(), compression="gzip")
-        return made and ("map", {"type": "OccupancyGrid" if is_grid else "PointCloud2", "name": self.name, "msg": made})
+        return ("map", {"type": "OccupancyGrid" if is_grid else "PointCloud2", "name": self.name, "msg": made})
 
     def state(self, odometry):
-        made = self.of_frame(odometry)
-        return made and ("state", {"header": made["header"], "poses": [{"name": self.name, **made["pose"]["pose"]}]})
+        made = self.in_darpa(odometry)
+        return ("state", {"header": made["header"], "poses": [{"name": self.name, **made["pose"]["pose"]}]})
 
     def markers(self, message):
-        made = [marker for marker in map(self.of_frame, message.markers) if marker]
-        return ("markers", {"markers": made}) if made else None
+        return ("markers", {"markers": [self.in_darpa(marker) for marker in message.markers]})
 
     def report(self, marker):
-        made = self.of_frame(marker)
-        return made and (*made["pose"]["position"].values(), marker.text)
+        made = self.in_darpa(marker)
+        return (*made["pose"]["position"].values(), marker.text)

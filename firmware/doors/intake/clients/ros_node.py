@@ -10,21 +10,30 @@ import logging
 import os
 import sys
 import threading
-import time
 
 from client import Client
 from ros_messages import Robot, log
 
 
-class Outbox(threading.Thread):
-    """Sends queued messages in order: only the newest of a robot's maps and states (`most` 1), and all others."""
+MOST = 500  # queued messages of a topic
 
-    def __init__(self, make, send, most=None):
+
+class Outbox(threading.Thread):
+    """Sends queued messages in order, as fast as Adit accepts them. `most` 1: only the newest, because it contains the older ones.
+    Otherwise it drops the oldest of more than `most`, with an error in the log."""
+
+    def __init__(self, check, make, send, most):
         super().__init__(daemon=True)
-        self.make, self.send, self.waiting, self.given = make, send, collections.deque(maxlen=most), threading.Semaphore(0)
+        self.check, self.make, self.send, self.dropped = check, make, send, 0
+        self.waiting, self.given = collections.deque(maxlen=most), threading.Semaphore(0)
         self.start()
 
     def put(self, message):
+        if not self.check(message):  # now, so that it does not replace a message that can be sent
+            return
+        if self.waiting.maxlen > 1 and len(self.waiting) == self.waiting.maxlen:
+            self.dropped += 1
+            log.error("%s: dropped the oldest of %d queued messages (%d in all)", self.make.__name__, self.waiting.maxlen, self.dropped)
         self.waiting.append(message)
         self.given.release()
 
@@ -33,24 +42,21 @@ class Outbox(threading.Thread):
             if not self.waiting:  # a newer message replaced it and was sent
                 continue
             try:
-                made = self.make(self.waiting.popleft())
-                if made is not None:
-                    log.info("answered: %s", self.send(*made))
+                log.info("answered: %s", self.send(*self.make(self.waiting.popleft())))
             except Exception as why:  # the next message may be valid
                 log.error("%s: %s", type(why).__name__, why)
-            if self.waiting.maxlen:
-                time.sleep(1)  # the Command Post accepts one a second
 
 
 def outboxes(parameter):
     """For each topic: the package and type of its message, and its outbox."""
     url, name, frame = (parameter(name) or sys.exit(f"adit: the parameter {name} is missing") for name in ("url", "robot", "frame"))
     client, robot = Client(url, os.environ["ADIT_TOKEN"]), Robot(name, frame)
-    return {"map": ("nav_msgs", "OccupancyGrid", Outbox(robot.map, client.update, 1)),
-            "points": ("sensor_msgs", "PointCloud2", Outbox(robot.map, client.update, 1)),
-            "odometry": ("nav_msgs", "Odometry", Outbox(robot.state, client.update, 1)),
-            "markers": ("visualization_msgs", "MarkerArray", Outbox(robot.markers, client.update)),
-            "report": ("visualization_msgs", "Marker", Outbox(robot.report, client.report))}
+    fits = robot.fits
+    return {"map": ("nav_msgs", "OccupancyGrid", Outbox(fits, robot.map, client.update, 1)),
+            "points": ("sensor_msgs", "PointCloud2", Outbox(fits, robot.map, client.update, MOST)),  # each may have other points
+            "odometry": ("nav_msgs", "Odometry", Outbox(fits, robot.state, client.update, 1)),
+            "markers": ("visualization_msgs", "MarkerArray", Outbox(robot.keep_fitting, robot.markers, client.update, MOST)),
+            "report": ("visualization_msgs", "Marker", Outbox(fits, robot.report, client.report, MOST))}
 
 
 def subscribe(parameter, subscriber):
@@ -68,9 +74,9 @@ def ros_2(rclpy):
     logging.basicConfig(level=logging.INFO)
     rclpy.init()
     node = rclpy.create_node("adit")
-    newest = rclpy.qos.qos_profile_sensor_data  # receives from publishers of either reliability
+    from_any = rclpy.qos.QoSProfile(depth=100, reliability=rclpy.qos.ReliabilityPolicy.BEST_EFFORT)  # from publishers of either
     subscribe(lambda name: node.declare_parameter(name, "").value,
-              lambda kind, topic, box: node.create_subscription(kind, topic, box.put, newest if box.waiting.maxlen else 100))
+              lambda kind, topic, box: node.create_subscription(kind, topic, box.put, 100 if topic in ("markers", "report") else from_any))
     rclpy.spin(node)
 
 

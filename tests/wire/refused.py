@@ -1,6 +1,7 @@
 """The tables of firmware/doors/intake/clients/refusals.md: requests, and the status and sentence with which Adit rejects each."""
 
 import copy
+import gzip
 import json
 import re
 
@@ -75,6 +76,7 @@ FIELDS = [
     ("/state/update", STATE, "poses.0.position.x", "1"),
     ("/state/update", STATE, "poses.0.orientation.w", 1e-9),
     ("/state/update", STATE, "header.stamp", "now"),
+    ("/state/update", STATE, "header.stamp", 1800000000000),
     ("/state/update", STATE, "header.frame_id", "map"),
     ("/markers/update", MARKERS, "markers", MISSING),
     ("/markers/update", MARKERS, "markers.0.type", 99),
@@ -96,19 +98,23 @@ FIELDS = [
 SHORT = {**QUICK, "reports__answer_within_ms": 300}
 STATE_BODY = json.dumps(STATE)
 TAGGED = cbor2.dumps({**STATE, "poses": [{**STATE["poses"][0], "position": {"x": cbor2.CBORTag(4, [-1, 15]), "y": 2, "z": 3}}]})
+REFERENCES = cbor2.dumps({"poses": [STATE["poses"][0]] * 2}, string_referencing=True)
 UTF_16 = STATE_BODY.encode("utf-16")
 POSE = STATE["poses"][0]
 TWO_BAD = json.dumps({"poses": [{**POSE, "name": 1}, POSE, {**POSE, "position": {}}]})
 
 # (row title, method, URI, body, additional headers)
 REQUESTS = [
-    ("a wrong or missing token", "POST", "/state/update", STATE_BODY, {"Authorization": "Bearer wrong"}),
+    ("a wrong token", "POST", "/state/update", STATE_BODY, {"Authorization": "Bearer wrong"}),
+    ("no token", "POST", "/state/update", STATE_BODY, {"Authorization": None}),
+    ("`Basic` for `Bearer`", "POST", "/state/update", STATE_BODY, {"Authorization": "Basic dGVhbTp4"}),
     ("a URI that the ICD does not have", "POST", "/map/updates", "{}", {}),
     ("`GET /map/update`", "GET", "/map/update", None, {}),
     ("`Content-Type: text/plain`", "POST", "/state/update", STATE_BODY, {"Content-Type": "text/plain"}),
     ("a report as CBOR", "POST", "/api/artifact_reports", b"\xa0", {"Content-Type": "application/cbor"}),
     ("`Content-Encoding: br`", "POST", "/state/update", STATE_BODY, {"Content-Encoding": "br"}),
     ("`Content-Encoding: gzip` without gzip", "POST", "/state/update", STATE_BODY, {"Content-Encoding": "gzip"}),
+    ("gzip without `Content-Encoding`", "POST", "/state/update", gzip.compress(STATE_BODY.encode()), {}),
     ("half a JSON document", "POST", "/state/update", '{"poses": [', {}),
     ("half a CBOR document", "POST", "/state/update", b"\xa1", {"Content-Type": "application/cbor"}),
     ("`NaN` in JSON", "POST", "/api/artifact_reports", '{"x": NaN}', {}),
@@ -118,6 +124,10 @@ REQUESTS = [
     ("a list around the message", "POST", "/state/update", "[]", {}),
     ("a state of 2 MB", "POST", "/state/update", b" " * 2_000_000, {}),
     ("a CBOR tag that changes the value", "POST", "/state/update", TAGGED, {"Content-Type": "application/cbor"}),
+    ("CBOR with string references", "POST", "/state/update", REFERENCES, {"Content-Type": "application/cbor"}),
+    ("a report without members", "POST", "/api/artifact_reports", "{}", {}),
+    ("a grid without `msg` around it", "POST", "/map/update", json.dumps({**GRID["msg"], "type": "OccupancyGrid"}), {}),
+    ("a pose in a member `pose`, as in ROS", "POST", "/state/update", json.dumps({"poses": [{"name": "r1", "pose": PLACE}]}), {}),
     ("three poses, two of them wrong", "POST", "/state/update", TWO_BAD, {}),
     ("a member twice", "POST", "/api/artifact_reports", '{"x": 1, "y": 2, "z": 3, "type": "Rope", "x": 4}', {}),
     ("`Adit-Resubmit: maybe`", "POST", "/api/artifact_reports", json.dumps(REPORT), {"Adit-Resubmit": "maybe"}),

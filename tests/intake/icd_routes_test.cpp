@@ -20,8 +20,8 @@ constexpr Post kPosts[] = {{"/api/artifact_reports", kReportBody},
 TEST(IcdRoutes, CheckTheTokenFirst) {
   Team team;
   const std::pair<std::string_view, std::string> wrong[] = {
-      {"", ", got none"},
-      {"Authorization: \r\n", ", got none"},
+      {"", ", got no such header"},
+      {"Authorization: \r\n", ", got no such header"},
       {"Authorization: Bearer\r\n", ", got no bearer token"},
       {"Authorization: Bearer wrong\r\n", ""},
       {"Authorization: Bearer flux230{showroo\r\n", ""},
@@ -30,7 +30,7 @@ TEST(IcdRoutes, CheckTheTokenFirst) {
       {"Authorization: flux230{showroom\r\n", ", got no bearer token"},
       {"Authorization: Basic flux230{showroom\r\n", ", got Basic"},
       {"Authorization: Bearer flux230{showroom the-posts-own-token\r\n", ""},
-      {"X-Authorization: Bearer flux230{showroom\r\n", ", got none"},
+      {"X-Authorization: Bearer flux230{showroom\r\n", ", got no such header"},
   };
   for (const auto& [header, got] : wrong) {
     for (const icd::Uri uri : icd::kUris) {

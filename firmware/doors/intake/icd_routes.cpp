@@ -86,10 +86,10 @@ icd::Refusal stops() {
           "the box is stopping; this message was not accepted, send it again"};
 }
 
-/// ", got none" or ", got Basic" for a header without a bearer token; "" for a wrong one. Never shows what
-/// may be a token.
+/// ", got no such header" or ", got Basic" for a header without a bearer token; "" for a wrong one. Never
+/// shows what may be a token.
 std::string other_credentials(std::string_view authorization) {
-  if (authorization.empty()) return ", got none";
+  if (authorization.empty()) return ", got no such header";
   if (!icd::token_in(authorization).empty()) return "";
   const std::string_view first = authorization.substr(0, authorization.find(' '));
   for (const std::string_view scheme : {"Basic", "Digest", "Token"}) {

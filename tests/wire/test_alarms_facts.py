@@ -62,6 +62,7 @@ class Facts(WithAlarms):
         left_unanswered(stage)
         self.robot(stage, "r9")
         self.assertEqual(stage.box.ask("GET /api/status", token="an-old-token")[0], 401)
+        self.assertEqual(stage.box.ask("POST /map/update", body={}, token=None)[0], 401)
         wait_until(lambda: self.view(stage)["run"]["run_clock"] > 0, "the run to begin")
         stage.post.control("POST /other-sender")
         for alarm in ("report_held:1", "robot_unknown:r9", "wrong_tokens", "client_token", "reports_left", "run_unreliable"):

@@ -27,6 +27,10 @@ void write_header(CborWriter& out, const icd::Header& header) {
 }
 
 icd::MarkerAction read_action(const Field& field) {
+  if (field.is_absent()) {
+    field.refuse_kind("a whole number");
+    return icd::MarkerAction::Delete;  // needs no more members, so that only the action is named
+  }
   const auto action = field.whole<std::int64_t>();
   for (const auto known : {icd::MarkerAction::Add, icd::MarkerAction::Delete, icd::MarkerAction::DeleteAll}) {
     if (action == static_cast<std::int64_t>(known)) return known;

@@ -217,7 +217,7 @@ std::expected<network::Probe, std::string> NetworkChange::probe(const std::strin
   if (status->command_post_interface != interface)
     return std::unexpected("adit-network has " + status->command_post_interface + " instead");
   const auto hop = ADIT_TRY(next_hop(endpoint));
-  const network::Probe probe{host::draw_nonce(), hop};
+  network::Probe probe{host::draw_nonce(), hop};
   ADIT_TRY(adit_network_.leave(network::kProbeFile, probe));
   return probe;
 }

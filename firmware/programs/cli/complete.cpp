@@ -131,6 +131,7 @@ std::string pattern_of(const std::string& path) {
 Result<Outcome> complete_tokens(const Call& call) {
   return listed<api::SetupView>(call, "/adit/settings", [](const api::SetupView& setup) {
     std::vector<Candidate> all;
+    all.reserve(setup.tokens.size());
     for (const auto& [name, set, warning] : setup.tokens) all.push_back({name, set ? "set" : "not set"});
     return all;
   });
@@ -139,6 +140,7 @@ Result<Outcome> complete_tokens(const Call& call) {
 Result<Outcome> complete_alarms(const Call& call) {
   return listed<api::RunView>(call, "/adit/run", [](const api::RunView& view) {
     std::vector<Candidate> all;
+    all.reserve(view.alarms.size());
     for (const alarms::Alarm& alarm : view.alarms) all.push_back({alarm.id, alarms::line_of(alarm)});
     return all;
   });

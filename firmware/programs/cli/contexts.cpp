@@ -42,6 +42,7 @@ std::string variable(const char* name) {
 
 std::vector<std::string_view> names_in(const Contexts& contexts) {
   std::vector<std::string_view> names;
+  names.reserve(contexts.all.size());
   for (const Context& each : contexts.all) names.push_back(each.name);
   return names;
 }

@@ -102,7 +102,7 @@ Result<Outcome> fetch_bundle(const Call& call) {
   if (!stream || !(stream << bundle).flush()) return failed(file + ": cannot be written");
   const Value json{Value::Object{{"file", {file}}, {"bytes", {std::uint64_t{bundle.size()}}}}};
   return printed(call, codec::write_json(json),
-                 line("wrote the support bundle to ", file, " (", size(bundle.size()),
+                 line("wrote the support bundle to ", file, " (", icd::size_text(bundle.size()),
                       "; without tokens and passwords)"));
 }
 

@@ -150,6 +150,7 @@ Result<Outcome> complete_contexts(const Options& options, const Console& /*conso
   const auto contexts = load_contexts(contexts_file());
   if (!contexts) return failed(contexts.error());
   std::vector<Candidate> all;
+  all.reserve(contexts->all.size());
   for (const Context& each : contexts->all) all.push_back({each.name, each.at});
   return Outcome{Exit::Fine, options.json ? json_of(all) + '\n' : lines(all), ""};
 }

@@ -118,7 +118,7 @@ TEST(Actions, ThatBeginARunSayWhatTheyWouldDoAndAsk) {
 }
 
 TEST(Actions, ComposeAReport) {
-  const Server server({{"POST /adit/reports", Server::reply("200 OK", "{\"report\":4}")}});
+  const Server server({{"POST /adit/reports", Server::reply("202 Accepted", "{\"report\":4}")}});
   EXPECT_EQ(run_adit(server, {"reports", "compose", "type=Survivor", "x=1.5", "y=-2", "z=0"}).out,
             "report 4 is accepted: see adit reports show 4\n");
   EXPECT_THAT(server.posted(), testing::EndsWith(R"({"type":"Survivor","x":1.5,"y":-2.0,"z":0.0})"));

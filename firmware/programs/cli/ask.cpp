@@ -26,7 +26,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int kOk = 200;
+constexpr int kOk = 200, kAccepted = 202;
 
 std::string reason(int error) {
   return std::system_category().message(error);
@@ -291,7 +291,7 @@ Failure failure_of(const Adit& adit, const HttpReply& reply) {
 Result<std::string> body_of(const Adit& adit, std::expected<HttpReply, NoReply> reply,
                             const std::string& if_sent) {
   if (!reply) return failed(reply.error().sentence + (reply.error().sent ? if_sent : ""));
-  if (reply->status != 200) return std::unexpected(failure_of(adit, *reply));
+  if (reply->status != kOk && reply->status != kAccepted) return std::unexpected(failure_of(adit, *reply));
   return std::move(reply->body);
 }
 

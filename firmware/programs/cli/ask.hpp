@@ -141,11 +141,11 @@ Result<Adit> adit_of(const Options& options, const Console& console = {});
 /// A token that is typed or piped. `question`: at a terminal.
 Result<icd::BearerToken> read_token(const Console& console, const std::string& question);
 
-/// The body of an answer 200.
+/// The body of an answer 200 or 202.
 Result<std::string> get(const Adit& adit, const std::string& target,
                         std::chrono::milliseconds within = kReadPatience);
 
-/// The body of an action's answer 200.
+/// The same of an action.
 Result<std::string> post(const Adit& adit, Post action);
 
 /// The sentence in an error's body (a JSON string), or "".

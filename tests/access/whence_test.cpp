@@ -98,5 +98,13 @@ TEST(RequestHeaders, FindsACookieByItsWholeName) {
   }
 }
 
+TEST(CookiesIn, AreThoseOfTheHostsPortAndThenOfOtherPorts) {
+  const auto values =
+      cookies_in("adit-device=d; adit-80=b; adit=a; adit-8080=c; adit-x=e; aditx=f", "adit", "10.0.0.1:8080");
+  EXPECT_EQ(values, (std::vector<std::string_view>{"c", "b", "a"}));
+  EXPECT_EQ(cookies_in("adit-8000=b", "adit", "10.0.0.1:8080"), (std::vector<std::string_view>{"", "b"}))
+      << "the box has moved to another port";
+}
+
 }  // namespace
 }  // namespace adit::access

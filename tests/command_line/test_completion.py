@@ -33,7 +33,7 @@ class Offers(unittest.TestCase):
         for said in self.offered("adit "):
             self.assertLessEqual(set(program("adit").commands) | {"help"}, set(said))
         self.offers("adit sta", "status")
-        self.offers("adit help re", "rejected", "reports")
+        self.offers("adit help re", "rejected", "reports", "reset")
         self.offers("adit --json wa", "watch")
         self.offers("adit --at 10.0.0.1:8000 wa", "watch")
         self.offers("adit --settings status wa", "watch")

@@ -146,7 +146,7 @@ class ForScripts(Case):
                          ["settings", "show", "reports"], ["settings", "check", file], ["settings", "export"], ["network"],
                          ["test"], ["update"], ["identify", "1"], ["complete", "reports"], ["complete", "keys"],
                          ["complete", "rejected"], ["complete", "courses"], ["course"], ["run"], ["runs"], ["complete", "runs"],
-                         ["run", "new"]):
+                         ["run", "new", "--yes"]):
                 with self.subTest(said):
                     json.loads(adit(stage, *said, "--json").stdout)
             checked = subprocess.run([BIN / "adit", "check", file, "--json"], capture_output=True, text=True)

@@ -50,8 +50,11 @@ intake::Credentials Entrance::shown(const intake::RequestHead& head) {
 }
 
 const access::Device* Entrance::device(const intake::RequestHead& head) {
-  const std::string name = access::cookie_name(access::kDeviceCookie, head.header("Host"));
-  return keys_.devices().find(access::cookie_in(head.header("Cookie"), name));
+  const auto ids = access::cookies_in(head.header("Cookie"), access::kDeviceCookie, head.header("Host"));
+  for (const std::string_view id : ids) {
+    if (const access::Device* const known = keys_.devices().find(id)) return known;
+  }
+  return nullptr;
 }
 
 std::function<bool()> Entrance::may_stay(const Asker& asker) {

@@ -79,6 +79,21 @@ std::string_view cookie_in(std::string_view cookies, std::string_view name) {
   return {};
 }
 
+std::vector<std::string_view> cookies_in(std::string_view cookies, std::string_view name,
+                                         std::string_view host) {
+  std::vector<std::string_view> values{cookie_in(cookies, cookie_name(name, host))};
+  while (!cookies.empty()) {
+    std::string_view value = icd::trimmed(icd::cut(cookies, ';'), " \t");
+    const std::string_view each = icd::cut(value, '=');
+    if (!each.starts_with(name)) continue;
+    const std::string_view port = each.substr(name.size());
+    const bool is_ours =
+        port.empty() || (port.starts_with('-') && std::ranges::all_of(port.substr(1), icd::is_digit));
+    if (is_ours && value != values.front()) values.push_back(value);
+  }
+  return values;
+}
+
 icd::Checked<void> check_whence(const Request& request) {
   if (!names_this_box(request.host)) {
     return refuse(icd::Status::Forbidden,
@@ -98,9 +113,10 @@ std::optional<Visitor> who(const Request& request, std::span<const icd::BearerTo
     if (!icd::is_one_of(tokens, icd::token_in(request.authorization))) return std::nullopt;
     return Visitor{Role::Operator, nullptr};
   }
-  const std::string name = cookie_name(kCookie, request.host);
-  const Session* const session = sessions.find(cookie_in(request.cookie, name), now);
-  return session == nullptr ? std::nullopt : std::optional(Visitor{session->role, session});
+  for (const std::string_view id : cookies_in(request.cookie, kCookie, request.host)) {
+    if (const Session* const session = sessions.find(id, now)) return Visitor{session->role, session};
+  }
+  return std::nullopt;
 }
 
 icd::Checked<Visitor> admit(const Request& request, Role role, std::span<const icd::BearerToken> tokens,

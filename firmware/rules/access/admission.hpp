@@ -4,6 +4,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "access/sessions.hpp"
 #include "icd/bearer_token.hpp"
@@ -27,6 +28,10 @@ std::string cookie_name(std::string_view name, std::string_view host);
 
 /// The value of a cookie in a Cookie header (RFC 6265 4.2.1), or "".
 std::string_view cookie_in(std::string_view cookies, std::string_view name);
+/// The values of the cookies that may be this box's: first the one of cookie_name(), then those of other
+/// ports, because the box may have moved to another port since.
+std::vector<std::string_view> cookies_in(std::string_view cookies, std::string_view name,
+                                         std::string_view host);
 
 /// The headers of a request that show where it comes from. An absent header is "".
 struct Request {

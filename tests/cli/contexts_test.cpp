@@ -73,6 +73,14 @@ TEST_F(ContextsTest, AreListedChosenAndRemoved) {
   EXPECT_THAT(adit({"context", "use", "boks"}).err, HasSubstr("there is no context boks; did you mean box?"));
 }
 
+TEST_F(ContextsTest, ALoginByAContextsNameReplacesItsToken) {
+  adit({"login", server_.at(), "--name", "box"}, "sesame-2");
+  EXPECT_EQ(adit({"login", "box"}, "sesame-6").exit, Exit::Fine);
+  EXPECT_EQ(adit({"context"}).out, "  *  box  " + server_.at() + "\n");
+  EXPECT_EQ(adit({"run"}).exit, Exit::Fine);
+  EXPECT_THAT(server_.request(), HasSubstr("Bearer sesame-6\r\n"));
+}
+
 TEST_F(ContextsTest, AreNotSavedIfAditRejectsTheToken) {
   const Server strict(Server::reply("401 Unauthorized", "\"wrong\""));
   const Outcome outcome = adit({"login", strict.at()}, "sesame-2");

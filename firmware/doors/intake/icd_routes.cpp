@@ -87,7 +87,7 @@ icd::Refusal stops() {
 }
 
 /// ", got no such header" or ", got Basic" for a header without a bearer token; "" for a wrong one. Never
-/// shows what may be a token.
+/// shows a possible token.
 std::string other_credentials(std::string_view authorization) {
   if (authorization.empty()) return ", got no such header";
   if (!icd::token_in(authorization).empty()) return "";

@@ -64,7 +64,7 @@ constexpr Misplaced kMisplaced[] = {
 /// The longest list of missing members in a sentence.
 constexpr std::size_t kMostMissing = 8;
 
-/// A hint at a number of another unit; "" if it is none. Seconds of the years 2001 to 2106 are meant.
+/// A hint that the number has another unit, or "". It expects seconds of the years 2001 to 2106.
 std::string unit_hint(double given, double most) {
   constexpr std::pair<double, std::string_view> kUnits[] = {{1e3, "milliseconds: divide by 1,000"},
                                                             {1e6, "microseconds: divide by 1,000,000"},

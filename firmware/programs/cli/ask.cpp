@@ -7,7 +7,7 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdlib>
+#include <fstream>
 #include <system_error>
 #include <utility>
 
@@ -155,8 +155,7 @@ void HttpStream::look() {
 
 namespace {
 
-constexpr std::optional<std::uint16_t> kUsualPort = 8000;  // ICD 4, and the example settings
-constexpr std::uint16_t kPortOfUrls = 80;                  // RFC 9110 4.2.1
+constexpr std::uint16_t kPortOfUrls = 80;  // RFC 9110 4.2.1
 
 bool is_ipv6(const std::string& address) {
   return address.find(':') != std::string::npos;
@@ -191,9 +190,8 @@ std::expected<std::string, std::string> address_of(const std::string& interface,
 }
 
 /// The option's value, or else the environment variable's, or "".
-std::string given(const std::string& option, const char* variable) {
-  const char* const value = std::getenv(variable);
-  return option.empty() && value != nullptr ? value : option;
+std::string given(const std::string& option, const char* name) {
+  return option.empty() ? variable(name) : option;
 }
 
 std::expected<settings::Address, std::string> address_in(const std::string& file, const std::string& advice) {
@@ -256,7 +254,7 @@ std::expected<settings::Address, std::string> address_of(const Options& options,
 }
 
 Result<Token> token_of(const Options& options, const Console& console, const Named& named) {
-  const std::string file = given(options.token_file, "ADIT_TOKEN_FILE"), text = given("", "ADIT_TOKEN");
+  const std::string file = given(options.token_file, "ADIT_TOKEN_FILE"), text = variable("ADIT_TOKEN");
   if (file == "-") return Token{ADIT_TRY(read_token(console, "token: ")), "the input"};
   if (file.empty() && (!text.empty() || named.context)) {
     auto token = icd::BearerToken::parse(text.empty() ? named.context->token : text);
@@ -301,14 +299,14 @@ std::unexpected<Failure> not_understood(const Adit& adit, const std::string& why
 
 }  // namespace
 
-std::expected<settings::Address, std::string> parse_address(std::string_view text) {
+std::expected<settings::Address, std::string> parse_address(std::string_view text, std::uint16_t usual) {
   const bool has_port = !text.ends_with(']') && text.contains(':');
   const std::size_t colon = has_port ? text.rfind(':') : text.size();
   std::string_view host = text.substr(0, colon);
   const bool bracketed = host.starts_with('[') && host.ends_with(']');
   if (bracketed) host = host.substr(1, host.size() - 2);
   const std::string address(host);
-  const auto port = has_port ? icd::number_in<std::uint16_t>(text.substr(colon + 1)) : kUsualPort;
+  const auto port = has_port ? icd::number_in<std::uint16_t>(text.substr(colon + 1)) : std::optional(usual);
   if (port.value_or(0) != 0 && is_numeric(address) && is_ipv6(address) == bracketed)
     return settings::Address{address, *port};
   return std::unexpected("expected an address, as 10.0.0.1, 10.0.0.1:8000 or [fd00::1]:8000, got '" +
@@ -324,16 +322,12 @@ std::expected<settings::Address, std::string> parse_location(std::string_view te
   const bool is_url = text.starts_with(kScheme);
   if (is_url) authority.remove_prefix(kScheme.size());
   if (is_url) authority = icd::cut(authority, '/');
-  if (auto address = parse_address(authority)) {
-    const bool has_port = authority.find(':', authority.find(']') + 1) != std::string_view::npos &&
-                          (!authority.starts_with('[') || !authority.ends_with(']'));
-    if (is_url && !has_port) address->port = kPortOfUrls;
-    return address;
-  }
+  const std::uint16_t usual = is_url ? kPortOfUrls : kUsualPort;
+  if (const auto address = parse_address(authority, usual)) return address;
   std::string_view rest = authority;
   const std::string_view host = icd::cut(rest, ':');
   const bool has_port = host.size() < authority.size();
-  const auto port = has_port ? icd::number_in<std::uint16_t>(rest) : is_url ? kPortOfUrls : kUsualPort;
+  const auto port = has_port ? icd::number_in<std::uint16_t>(rest) : std::optional(usual);
   constexpr std::string_view kOthers = "-._";
   const bool is_name =
       !host.empty() && host.size() < 254 &&
@@ -445,6 +439,12 @@ Result<void> confirm(const Options& options, const Console& console, const std::
   const auto meant = console.ask(host::escaped(why) + '\n' + question);
   if (!meant) return failed(why + " It was not done; to do it, add --yes", Exit::Attention);
   if (!*meant) return failed(undone, Exit::Attention);
+  return {};
+}
+
+Result<void> write_to(const std::string& file, const std::string& content) {
+  std::ofstream stream(file, std::ios::binary);
+  if (!stream || !(stream << content).flush()) return failed(file + ": cannot be written");
   return {};
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <expected>
 #include <functional>
 #include <memory>
@@ -44,8 +45,11 @@ struct Console {
   };
 };
 
-/// "10.0.0.1:8000" or "[fd00::1]:8000". The default port is 8000.
-std::expected<settings::Address, std::string> parse_address(std::string_view text);
+/// The port of ICD 4 and of the example settings.
+inline constexpr std::uint16_t kUsualPort = 8000;
+/// "10.0.0.1:8000" or "[fd00::1]:8000". `usual`: the port if `text` has none.
+std::expected<settings::Address, std::string> parse_address(std::string_view text,
+                                                            std::uint16_t usual = kUsualPort);
 /// The same; also a host's name ("adit.local:8000"), or a URL of a page ("http://adit.local/setup"), whose
 /// default port is 80.
 std::expected<settings::Address, std::string> parse_location(std::string_view text);
@@ -217,6 +221,9 @@ Outcome act_on_each(const Call& call, const std::function<Result<Outcome>(std::i
 /// if the operator declines.
 Result<void> confirm(const Options& options, const Console& console, const std::string& why,
                      const std::string& question, const std::string& undone = "it was not done");
+
+/// Error: the file cannot be written.
+Result<void> write_to(const std::string& file, const std::string& content);
 
 /// Prints the failure on standard error.
 Outcome unable(const Failure& failure);

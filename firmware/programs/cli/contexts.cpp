@@ -35,11 +35,6 @@ constexpr Member kContexts[] = {
     member<&Contexts::all>("contexts"),
 };
 
-std::string variable(const char* name) {
-  const char* const value = std::getenv(name);
-  return value == nullptr ? "" : value;
-}
-
 std::vector<std::string_view> names_in(const Contexts& contexts) {
   std::vector<std::string_view> names;
   names.reserve(contexts.all.size());
@@ -55,6 +50,11 @@ constexpr codec::Row Contexts::kRow = {"", kContexts};
 const Context* Contexts::find(const std::string& name) const {
   const auto found = std::ranges::find(all, name, &Context::name);
   return found == all.end() ? nullptr : &*found;
+}
+
+std::string variable(const char* name) {
+  const char* const value = std::getenv(name);
+  return value == nullptr ? "" : value;
 }
 
 std::string contexts_file() {
@@ -96,9 +96,8 @@ Result<void> saved(const Contexts& contexts) {
   return {};
 }
 
-Result<Context*> named(Contexts& contexts, const std::string& name) {
-  const auto found = std::ranges::find(contexts.all, name, &Context::name);
-  if (found != contexts.all.end()) return &*found;
+Result<const Context*> named(const Contexts& contexts, const std::string& name) {
+  if (const Context* const found = contexts.find(name)) return found;
   const std::string advice =
       contexts.all.empty() ? "; adit login ADDRESS makes one" : icd::did_you_mean(name, names_in(contexts));
   return failed("there is no context " + name + advice, Exit::Attention);
@@ -123,8 +122,10 @@ std::string json_of(const Contexts& contexts) {
 }  // namespace
 
 Result<Outcome> log_in(const Options& options, const Console& console) {
-  const std::string at = options.argument();
   Contexts contexts = ADIT_TRY(loaded());
+  const Context* const known = contexts.find(options.argument());
+  const std::string at = known == nullptr ? options.argument() : known->at;
+  const std::string usual_name = known == nullptr ? name_for(at) : known->name;
   Options asked = options;
   asked.at = at;
   if (asked.token_file.empty() && variable("ADIT_TOKEN_FILE").empty() && variable("ADIT_TOKEN").empty())
@@ -132,7 +133,7 @@ Result<Outcome> log_in(const Options& options, const Console& console) {
   const Adit adit = ADIT_TRY(adit_of(asked, console));
   const auto about = ADIT_TRY(fetch<api::About>(adit, "/adit/about")).row;
   ADIT_TRY(get(adit, "/adit/sessions"));  // only an operator may
-  const std::string name = options.name.empty() ? name_for(at) : options.name;
+  const std::string name = options.name.empty() ? usual_name : options.name;
   std::erase_if(contexts.all, [&name](const Context& each) { return each.name == name; });
   contexts.all.push_back({name, at, adit.token.token.reveal()});
   contexts.current = name;
@@ -164,8 +165,8 @@ Result<Outcome> use_context(const Options& options, const Console& /*console*/) 
 Result<Outcome> remove_context(const Options& options, const Console& /*console*/) {
   Contexts contexts = ADIT_TRY(loaded());
   const std::string name = options.argument();
-  const Context* const context = ADIT_TRY(named(contexts, name));
-  contexts.all.erase(contexts.all.begin() + (context - contexts.all.data()));
+  if (const auto found = named(contexts, name); !found) return std::unexpected(found.error());
+  std::erase_if(contexts.all, [&name](const Context& each) { return each.name == name; });
   if (contexts.current == name) contexts.current.clear();
   ADIT_TRY(saved(contexts));
   return Outcome{Exit::Fine, line("context ", name, " and its token are removed"), ""};

@@ -28,6 +28,9 @@ struct Contexts {
   const Context* find(const std::string& name) const;
 };
 
+/// The environment variable's value, or "".
+std::string variable(const char* name);
+
 /// "$XDG_CONFIG_HOME/adit/contexts.json", or below ~/.config (XDG Base Directory Specification 0.8); "" if
 /// neither HOME nor XDG_CONFIG_HOME is set.
 std::string contexts_file();

@@ -1,5 +1,5 @@
 #include <algorithm>
-#include <fstream>
+#include <utility>
 
 #include "alarms/board.hpp"
 #include "api/box.hpp"
@@ -82,12 +82,16 @@ std::string alarms_text(const api::RunView& view, bool colour) {
 
 Result<Outcome> show_log(const Call& call) {
   std::uint64_t last = 0;
-  while (true) {
+  std::string trouble;
+  for (bool is_first = true;; is_first = false) {
     const auto page = fetch<api::LogPage>(call.adit, log_target(call.options, last));
-    if (!page && last == 0) return std::unexpected(page.error());
+    if (!page && is_first) return std::unexpected(page.error());
+    const std::string why = page ? "" : page.error().sentence;
+    if (std::exchange(trouble, why) != why && !call.options.json)
+      call.console.print(why.empty() ? "Adit answers again\n" : line(why));
     if (page) {
       call.console.print(records_text(call, page->row));
-      last = page->row.last < last ? 0 : page->row.last;  // aditd was restarted
+      last = page->row.last < last ? 0 : page->row.last;  // less: aditd was restarted
     }
     if (!call.options.follow) return Outcome{};
     std::this_thread::sleep_for(kEvery);
@@ -98,8 +102,7 @@ Result<Outcome> fetch_bundle(const Call& call) {
   const std::string given = call.options.argument();
   const std::string file = given.empty() ? "adit-support.tar.gz" : given;
   const auto bundle = ADIT_TRY(get(call.adit, "/adit/bundle", kPacked));
-  std::ofstream stream(file, std::ios::binary);
-  if (!stream || !(stream << bundle).flush()) return failed(file + ": cannot be written");
+  ADIT_TRY(write_to(file, bundle));
   const Value json{Value::Object{{"file", {file}}, {"bytes", {std::uint64_t{bundle.size()}}}}};
   return printed(call, codec::write_json(json),
                  line("wrote the support bundle to ", file, " (", icd::size_text(bundle.size()),

@@ -41,7 +41,7 @@ std::optional<bool> ask(const std::string& question) {
   return said == "y\n" || said == "Y\n" || said == "yes\n";
 }
 
-/// Hides what is typed until the end of its life.
+/// Hides typed characters while it lives.
 class Silence {
  public:
   Silence() : is_terminal_(tcgetattr(STDIN_FILENO, &before_) == 0) {

@@ -1,5 +1,3 @@
-#include <fstream>
-
 #include "api/kept_runs.hpp"
 #include "api/reports_csv.hpp"
 #include "api/run_view.hpp"
@@ -120,8 +118,7 @@ Result<Outcome> print_run(const Call& call) {
   const auto path = ADIT_TRY(path_of(key));
   const auto html = ADIT_TRY(get(call.adit, path + "/report.html", kPrinted));
   if (to.empty()) return Outcome{Exit::Fine, html, ""};
-  std::ofstream file(to, std::ios::binary);
-  if (!file || !(file << html).flush()) return failed(to + ": cannot be written");
+  ADIT_TRY(write_to(to, html));
   const codec::Value json{
       codec::Value::Object{{"key", {key}}, {"file", {to}}, {"bytes", {std::uint64_t{html.size()}}}}};
   return printed(call, codec::write_json(json), line("wrote the report of run ", key, " to ", to));

@@ -78,7 +78,7 @@ class CommandPost {
   CommandPost(const Options& options, const Secrets& secrets, std::vector<Artifact> artifacts,
               std::unique_ptr<Transcript> transcript);
 
-  /// Each decides what is done about a request to that endpoint and writes it down, before anything is sent.
+  /// Each decides the outcome of a request to that endpoint and records it, before a byte is sent.
   /// The request has to outlive the outcome, which may be decided later.
   Outcome scoring(const Request& request);
   Outcome mapping(const Request& request);
@@ -140,8 +140,8 @@ Outcome last_answer(Outcome outcome) {
   return outcome;
 }
 
-/// What is no HTTP request is refused alike by all. One that its sender broke off, or that came too slowly,
-/// is written down, but breaks no rule of the ICD.
+/// All endpoints refuse bytes that are no HTTP request in the same way. A request that its sender broke off,
+/// or that came too slowly, is recorded, but breaks no rule of the ICD.
 Judgement judge_fault(const HttpFault& fault) {
   constexpr int timeout = 408;
   Judgement judgement;

@@ -454,7 +454,7 @@ double seconds(Milliseconds time) {
   return std::chrono::duration<double>(time).count();
 }
 
-/// "12.3", or "-" where nothing was told.
+/// "12.3", or "-" without a value.
 std::string written(const OrderedJson& value, int digits) {
   if (value.is_null()) return "-";
   std::array<char, 32> text{};

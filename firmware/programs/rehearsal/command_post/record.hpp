@@ -116,7 +116,7 @@ class Arrivals {
   void note(const std::vector<MarkerChange>& changes, Findings& findings);
 
   /// What adit-robots posted so far: [{"robot": "r1", "kind": "cloud", "amount": 1200, "places": 300,
-  /// "newest": MS}], cells or points, places that have points (of grids none need be told), and the newest
+  /// "newest": MS}], cells or points, places that have points (optional for grids), and the newest
   /// date in milliseconds since 1970; and what should stand, of each robot:
   /// {"robot": "r1", "kind": "markers", "standing": [{"ns": "r1/path", "id": 3, "x": METRES}]}. The error is
   /// a sentence that names the field.

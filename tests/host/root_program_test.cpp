@@ -132,7 +132,8 @@ TEST_F(RootProgramTest, IsNotAwaitedBeyondItsTimeout) {
   EXPECT_TRUE(program_.check());
   EXPECT_FALSE(program_.check()) << "only once";
   EXPECT_FALSE(program_.waits() || is_left());
-  EXPECT_EQ(program_.trouble(), "adit-x did not read the request: see journalctl -u adit-x");
+  EXPECT_EQ(program_.trouble(),
+            "adit-x did not read the request: restart the box; on a PC, see journalctl -u adit-x");
   tell(request.nonce);
   program_.check();
   EXPECT_EQ(program_.trouble(), "") << "the answer was late, but it was read";

@@ -114,7 +114,7 @@ class RootProgram {
   std::string trouble() const {
     refresh();
     if (!asked_ || !asked_->is_withdrawn) return "";
-    return name_ + " did not read the request: see journalctl -u " + name_;
+    return name_ + " did not read the request: restart the box; on a PC, see journalctl -u " + name_;
   }
   /// Reads the status. Call each second. If the last request was not read in time, withdraws it and returns
   /// true.

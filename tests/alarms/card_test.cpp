@@ -70,13 +70,14 @@ void reports(std::vector<Snapshot>& days) {
 
 void the_box(std::vector<Snapshot>& days) {
   days.push_back(named());
+  days.back().box.disk.free = 500u << 10;
+  days.push_back(named());
   Snapshot& snapshot = days.back();
   snapshot.box.ledger_refusal = snapshot.box.disk.map = snapshot.box.disk.state = snapshot.box.disk.run =
       "no space";
   snapshot.box.ledger_damage = "its reports were recovered";
   snapshot.box.other_ledger = "ledger.sqlite";
   snapshot.box.put_aside = "the service ended 3 times";
-  snapshot.box.disk.free = 500u << 10;
   snapshot.box.disk.life = 10;
   snapshot.box.disk.wear_unknown = "life_time: Input/output error";
   snapshot.box.time_set = false;

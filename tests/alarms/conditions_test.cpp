@@ -111,12 +111,19 @@ const ConditionCase kConditionCases[] = {
      [](Snapshot& snapshot) { snapshot.clients.crowds = {{Crowd::Kind::NoToken, "10.0.0.9"}}; }},
     {"unauthenticated", Wait, Side::Robot, "Too many clients are anonymous", "10.0.0.9",
      [](Snapshot& snapshot) { snapshot.clients.crowds = {{Crowd::Kind::Unauthenticated, "10.0.0.9"}}; }},
-    {"report_held:7", Ask, Side::Box, "Report 7 is held", "it may be the same",
+    {"report_held:7", Ask, Side::CommandPost, "Report 7 is held", "it may be the same",
      [](Snapshot& snapshot) { report(snapshot, "held"); }},
     {"report_in_doubt:7", Ask, Side::CommandPost, "Report 7 is in doubt", "",
      [](Snapshot& snapshot) { report(snapshot, "in_doubt"); }},
-    {"report_lost:7", Ask, Side::Box, "Report 7 is lost", "Settle it: it may be the same", lose_report},
-    {"report_lost:7", Ask, Side::Box, "Report 7 is lost", "new reports are held until you Settle it",
+    {"report_lost:7", Ask, Side::CommandPost, "Report 7 is lost", "Settle report 7: it may be the same",
+     [](Snapshot& snapshot) {
+       lose_report(snapshot);
+       snapshot.reports.rows.push_back({.number = 6});
+     }},
+    {"report_lost:7", Ask, Side::CommandPost, "Reports are possibly missing",
+     "Settle report 7: it may be the same", lose_report},
+    {"report_lost:7", Ask, Side::CommandPost, "Reports are possibly missing",
+     "new reports are held until you Settle report 7",
      [](Snapshot& snapshot) {
        lose_report(snapshot);
        snapshot.reports.lost_here = {7};
@@ -127,7 +134,7 @@ const ConditionCase kConditionCases[] = {
      [](Snapshot& snapshot) { snapshot.reports.left = 1; }},
     {"reports_left", Bad, Side::CommandPost, "No reports are left", "",
      [](Snapshot& snapshot) { snapshot.reports.left = 0; }},
-    {"reports_elsewhere:10.9.9.9:1", Ask, Side::Box, "2 reports are for another server", "10.9.9.9:1",
+    {"reports_elsewhere:10.9.9.9:1", Ask, Side::CommandPost, "2 reports are for another server", "10.9.9.9:1",
      [](Snapshot& snapshot) { snapshot.reports.elsewhere["10.9.9.9:1"] = 2; }},
     {"run_unreliable", Ask, Side::CommandPost, "The count of reports is uncertain", "somebody else",
      [](Snapshot& snapshot) { snapshot.reports.run_unreliable = "somebody else reports"; }},
@@ -157,6 +164,14 @@ const ConditionCase kConditionCases[] = {
      [](Snapshot& snapshot) { snapshot.box.disk.run = "no space"; }},
     {"disk_full", Bad, Side::Box, "The disk is nearly full", "512 kB",
      [](Snapshot& snapshot) { snapshot.box.disk.free = 500u << 10; }},
+    {"disk_full", Bad, Side::Box, "The disk is full", "no space is left for reports",
+     [](Snapshot& snapshot) { snapshot.box.disk.free = 0; }},
+    {"disk_full", Bad, Side::Box, "The disk is full",
+     "the run's map is not stored, so a restart would lose it: no space",
+     [](Snapshot& snapshot) { snapshot.box.disk.free = 0, snapshot.box.disk.run = "no space"; }},
+    {"ledger_unwritable", Bad, Side::Box, "Reports are not accepted",
+     "the disk is full; the box cannot write the ledger: no space",
+     [](Snapshot& snapshot) { snapshot.box.disk.free = 0, snapshot.box.ledger_refusal = "no space"; }},
     {"disk_health", Ask, Side::Box, "The disk is nearly worn out", "90 % of its life",
      [](Snapshot& snapshot) { snapshot.box.disk.life = 10; }},
     {"disk_health", Ask, Side::Box, "The disk is nearly worn out", "its expected life is over",
@@ -437,6 +452,44 @@ TEST(Queue, NamesThreeRejectedClientsForAMinute) {
     snapshot.traffic.activities.push_back(
         {.kind = "grid", .robot = icd::sentence("g", robot), .last_no_room = kNow - 1});
   EXPECT_THAT(conditions_of(snapshot)[0].why, HasSubstr("r1 cloud, markers, g0 grid and 8 more"));
+}
+
+/// A disk with that much room on which nothing can be written.
+Snapshot scarce(std::uint64_t free) {
+  Snapshot snapshot = well();
+  snapshot.box.disk.free = free;
+  snapshot.box.ledger_refusal = snapshot.box.disk.run = "no space";
+  return snapshot;
+}
+
+TEST(ScarceDisk, IsOneAlarmThatNamesItsConsequences) {
+  const auto found = conditions_of(scarce(200'000));
+  ASSERT_THAT(ids_of(found), ElementsAre("ledger_unwritable"));
+  EXPECT_EQ(found[0].hides, 2u);
+  EXPECT_EQ(
+      found[0].why,
+      "only 200 kB of the disk are free; the box cannot write the ledger: no space; the run's map is not "
+      "stored, so a restart would lose it: no space");
+}
+
+TEST(ScarceDisk, DoesNotHideAFaultThatIsNotOfSpace) {
+  Snapshot snapshot = scarce(0);
+  snapshot.box.ledger_refusal = "I/O error";
+  EXPECT_THAT(conditions_of(snapshot)[0].why, HasSubstr("the box cannot write the ledger: I/O error"));
+  snapshot.box.ledger_is_closed = true;
+  snapshot.box.disk.map = snapshot.box.disk.state = "the memory is full";
+  EXPECT_THAT(ids_of(conditions_of(snapshot)),
+              ElementsAre("ledger_unwritable", "disk_full", "map_not_kept", "state_not_kept"));
+}
+
+TEST(ScarceDisk, GetsWorseByEachConsequence) {
+  Snapshot snapshot = scarce(0);
+  const auto both = conditions_of(snapshot)[0].degree;
+  snapshot.box.disk.run.clear();
+  const auto one = conditions_of(snapshot)[0].degree;
+  EXPECT_GT(both, one);
+  snapshot.box.disk.free = 200'000;
+  EXPECT_GT(one, conditions_of(snapshot)[0].degree);
 }
 
 TEST(ReportsToDecide, AreListedUpToALimit) {

@@ -121,7 +121,7 @@ TEST_F(DamagedLedger, NamesLostReportsIfBothCopiesAreDamaged) {
   std::string bytes = log();
   damage(bytes, 8), damage(bytes, 9);
   put(bytes);
-  expect_said(known_, "report 4 is lost from the ledger; reports from 5 on may be lost");
+  expect_said(known_, "report 4 is lost from the ledger; reports may be missing from number 5 on");
 }
 
 /// One flipped bit in any byte loses no record.
@@ -147,16 +147,17 @@ TEST_F(DamagedLedger, ReportsATruncatedFile) {
                                  10 * kRecord, log().size() - 1}) {
     SCOPED_TRACE(size);
     put(log().substr(0, size));
-    expect_said({}, "may be lost");
+    expect_said({}, "may be missing");
     put(log().substr(0, size));
-    expect_said(known_, "may be lost");
+    expect_said(known_, "may be missing");
   }
 }
 
 TEST_F(DamagedLedger, ReportsAMissingDirectory) {
   std::filesystem::remove_all(state_.ledger());
   expect_said(known_,
-              "0 reports were read; reports 1 to 4 are lost from the ledger; reports from 5 on may be lost");
+              "0 reports were read; reports 1 to 4 are lost from the ledger; reports may be missing from "
+              "number 5 on");
   EXPECT_FALSE(std::filesystem::exists(state_.ledger() + "/damaged-1")) << "there is no file to keep";
   std::filesystem::remove_all(state_.ledger());
   EXPECT_EQ(open_or_fail(state_.path()).damage(), "") << "no damage is known";
@@ -164,7 +165,7 @@ TEST_F(DamagedLedger, ReportsAMissingDirectory) {
 
 TEST_F(DamagedLedger, ReportsAnOldCopyInItsPlace) {
   expect_said({.reports = 6, .log = 1},
-              "reports 5 to 6 are lost from the ledger; reports from 7 on may be lost");
+              "reports 5 to 6 are lost from the ledger; reports may be missing from number 7 on");
   EXPECT_THAT(files_in(state_.ledger() + "/damaged-1"), testing::Contains(testing::Key(file_)));
 }
 
@@ -178,7 +179,7 @@ TEST_F(DamagedLedger, ReportsAnOlderCopyWithoutItsLastSteps) {
     std::string older = log();
     std::fill(older.begin() + static_cast<std::ptrdiff_t>(record * kRecord), older.end(), '\0');
     put(older);
-    expect_said({.last = record}, "may be lost");
+    expect_said({.last = record}, "may be missing");
     put(older);
     const auto ledger = open_or_fail(state_.path(), {}, memory);
     EXPECT_THAT(ledger.damage(),
@@ -214,7 +215,7 @@ TEST_F(DamagedLedger, MayHaveSentReportsAfterTheLastWordOfTheRun) {
 }
 
 TEST_F(DamagedLedger, ReportsAMissingLastFile) {
-  expect_said({.reports = known_.reports, .log = 2}, "reports from 5 on may be lost from the ledger");
+  expect_said({.reports = known_.reports, .log = 2}, "reports may be missing from number 5 on");
 }
 
 TEST_F(DamagedLedger, NamesTheMissingFileOfSeveral) {
@@ -285,7 +286,7 @@ TEST_F(DamagedLedger, ReportsLaterDamage) {
   }
   put_files(state_.ledger(), files);
   const auto ledger = open_or_fail(state_.path());
-  EXPECT_THAT(ledger.damage(), HasSubstr("may be lost"));
+  EXPECT_THAT(ledger.damage(), HasSubstr("may be missing"));
   EXPECT_EQ(find_or_fail(ledger, 1).state, ReportState::Answered);
 }
 

@@ -239,7 +239,7 @@ TEST(LedgerBook, NamesLostReports) {
   }
   EXPECT_EQ(book.salvage(20, 7, true),
             "3 reports were read; report 1 is lost from the ledger; reports 4 to 5 are lost from the ledger; "
-            "report 7 is lost from the ledger; reports from 8 on may be lost from the ledger");
+            "report 7 is lost from the ledger; reports may be missing from number 8 on");
   std::vector<std::int64_t> lost;
   for (const Report& report : book.reports()) {
     if (report.is_lost()) lost.push_back(report.number);

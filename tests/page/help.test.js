@@ -6,7 +6,9 @@ import { serve } from "./stage.js";
 import { axeFindsNothing, openMore, text, visitor, watch } from "./watch.js";
 
 const TROUBLE = readFileSync(new URL("../../firmware/rules/alarms/TROUBLE.md", import.meta.url), "utf8");
-const ALARMS = [...TROUBLE.matchAll(/^\| <a id="(\w+)"><\/a>(\S+) /gm)].map(([, id, sign]) => [id, { "■": "bad", "?": "ask", "○": "wait" }[sign]]);
+const ALARMS = [...TROUBLE.matchAll(/^\| <a id="(\w+)"><\/a>([■?○]) /gm)].map(([, id, sign]) => [id, { "■": "bad", "?": "ask", "○": "wait" }[sign]]);
+
+const FIRST = [...TROUBLE.matchAll(/^\| <a id="(first_\w+)">/gm)].map(([, id]) => id);
 
 async function help(t, options = {}) {
   const stage = await serve("calm");
@@ -28,7 +30,7 @@ test("is linked by the navigation of the run page", async (t) => {
 test("shows the glyph of each alarm, and each glyph's meaning", async (t) => {
   const page = await help(t, { bypassCSP: true });
   assert.ok(ALARMS.length > 30, `${ALARMS.length}`);
-  const levels = await page.$$eval(".troubles dl", (all) => all.map((each) => [each.id, each.querySelector("dt > .glyph").dataset.level]));
+  const levels = await page.$$eval(".troubles dl:has(.glyph)", (all) => all.map((each) => [each.id, each.querySelector("dt > .glyph").dataset.level]));
   assert.deepEqual(levels, ALARMS);
   assert.doesNotMatch(await text(page, ".troubles"), /[■○]| \?/);
   assert.deepEqual(await page.$$eval(".signs .glyph", (all) => all.map(({ dataset }) => dataset.level)), ["good", "wait", "bad", "ask", "quiet"]);
@@ -45,9 +47,17 @@ test("shows the glyph of each alarm, and each glyph's meaning", async (t) => {
   }
 });
 
+test("answers the questions of the first hour before the alarms", async (t) => {
+  const page = await help(t);
+  assert.deepEqual(FIRST, ["first_page", "first_password", "first_start", "first_boot", "first_log"]);
+  assert.deepEqual(await page.$$eval(".troubles dl", (all) => all.slice(0, 5).map(({ id }) => id)), FIRST);
+  await search(page).fill("password forgotten");
+  assert.deepEqual(await shown(page), ["first_password"]);
+});
+
 test("finds entries by their words as one types", async (t) => {
   const page = await help(t), all = await shown(page);
-  assert.equal(all.length, ALARMS.length + 9);
+  assert.equal(all.length, ALARMS.length + FIRST.length + 9);
   await search(page).pressSequentially("doubt settle");
   const found = await shown(page);
   assert.ok(found.includes("report_in_doubt") && found.length < 6, found.join());
@@ -65,7 +75,7 @@ test("is whole without scripts, and has no search then", async (t) => {
   const page = await help(t, { javaScriptEnabled: false });
   await page.locator("#report_in_doubt").waitFor();
   assert.equal(await page.locator(".find").isVisible(), false);
-  assert.equal(await page.locator(".troubles dl").count(), ALARMS.length);
+  assert.equal(await page.locator(".troubles dl").count(), ALARMS.length + FIRST.length);
 });
 
 test("leaves the verdict its room beside the navigation", async (t) => {

@@ -62,7 +62,7 @@ class Disk(unittest.TestCase):
             shutil.rmtree(stage.box.state / "ledger")
             os.remove(stage.box.state / "ledger-on-disk")  # in memory, so it ends with a boot
             stage.restart_box()
-            self.assertIn("may be lost from the ledger", began(stage).box.output())
+            self.assertIn("reports may be missing from number", began(stage).box.output())
             self.assertIn("ledger_damaged", stage.box.alarms())
             self.assertEqual(submit(stage).status_code, 503, "it may be the same as a report that is lost")
             self.assertEqual([(each["number"], each["state"]) for each in stage.box.reports()], [(1000, "in_doubt"), (1001, "held")])

@@ -93,5 +93,5 @@ class Service(unittest.TestCase):
         ledger.mkdir()
         (ledger / "log-00000001.0123456789abcdef").write_bytes(b"no ledger at all" * 100)
         self.start()
-        self.assertIn("Report 1000 is lost: new reports are held until you Settle it", self.heard("READY=1"))
+        self.assertIn("Reports are possibly missing: new reports are held until you Settle report 1000", self.heard("READY=1"))
         self.assertEqual([each.name for each in (ledger / "damaged-1").iterdir()], ["log-00000001.0123456789abcdef"])

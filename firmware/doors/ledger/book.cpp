@@ -433,7 +433,7 @@ std::string Book::salvage(double now, std::int64_t expected, bool end_is_lost) {
   if (next <= highest_) miss(next, highest_);
   if (end_is_lost) {
     next = highest_ + 1;
-    const std::string lost = icd::sentence("reports from ", next, " on may be lost from the ledger");
+    const std::string lost = icd::sentence("reports may be missing from number ", next, " on");
     lose((next / kNumbersKeptFree + 1) * kNumbersKeptFree, lost + ": they may have been sent", now);
     missing += "; " + lost;
   }

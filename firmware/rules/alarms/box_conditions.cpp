@@ -109,13 +109,58 @@ void find_wear(const facts::Disk& disk, Found& found) {
       {.id = "disk_health", .severity = Severity::Wait, .headline = {"The disk's health", "unknown"}});
 }
 
+bool is_scarce(const facts::Disk& disk) {
+  return disk.free && *disk.free < kLeastFree;
+}
+
+/// "" if the disk has room.
+std::string scarcity_of(const facts::Disk& disk) {
+  if (!is_scarce(disk)) return "";
+  const std::uint64_t left = *disk.free / 1000;
+  return left == 0 ? "the disk is full" : sentence("only ", left, " kB of the disk are free");
+}
+
+std::string unkept_run(const facts::Disk& disk) {
+  return disk.run.empty() ? "" : "the run's map is not stored, so a restart would lose it: " + disk.run;
+}
+
+/// One alarm for a scarce disk, which names its consequences. A ledger that cannot be read, and messages in
+/// memory, need other remedies, so they keep their own alarms.
+void find_scarce_disk(const facts::Box& box, Found& found) {
+  const bool is_full = *box.disk.free < 1000;
+  const std::string run = unkept_run(box.disk);
+  Condition condition{.id = "disk_full",
+                      .side = Side::Box,
+                      .headline = {"The disk", is_full ? "full" : "nearly full"},
+                      .why = is_full ? "no space is left for reports"
+                                     : sentence(*box.disk.free / 1000, " kB are free for reports"),
+                      .action = kOpenSystem,
+                      .degree = is_full};
+  if (!box.ledger_refusal.empty() && !box.ledger_is_closed) {
+    condition.id = "ledger_unwritable";
+    condition.headline = {"Reports", "not accepted", true};
+    condition.why = scarcity_of(box.disk) + "; the box cannot write the ledger: " + box.ledger_refusal;
+    condition.hides = 1;
+  }
+  if (!run.empty()) {
+    condition.why += "; " + run;
+    ++condition.hides;
+  }
+  condition.degree += condition.hides;
+  found.push_back(std::move(condition));
+}
+
 void find_disk_troubles(const facts::Box& box, Found& found) {
-  add(found, box.ledger_refusal,
-      {.id = "ledger_unwritable",
-       .headline = {"Reports", "not accepted", true},
-       .why = box.ledger_is_closed ? "the box cannot read the ledger; wait, or run adit ledger new: "
-                                   : "the box cannot write the ledger: ",
-       .action = kOpenSystem});
+  const bool scarce = is_scarce(box.disk);
+  if (!scarce || box.ledger_is_closed) {
+    add(found, box.ledger_refusal,
+        {.id = "ledger_unwritable",
+         .headline = {"Reports", "not accepted", true},
+         .why = box.ledger_is_closed ? "the box cannot read the ledger; wait, or run adit ledger new: "
+                                     : "the box cannot write the ledger: ",
+         .action = kOpenSystem});
+  }
+  if (scarce) find_scarce_disk(box, found);
   add(found, box.ledger_damage,
       {.id = "ledger_damaged", .severity = Severity::Ask, .headline = {"The ledger", "damaged"}});
   add(found, box.other_ledger,
@@ -129,16 +174,11 @@ void find_disk_troubles(const facts::Box& box, Found& found) {
       {.id = "state_not_kept",
        .headline = {"States and markers", "rejected", true},
        .why = "the box cannot store them: "});
-  add(found, box.disk.run,
-      {.id = "run_not_kept",
-       .headline = {"The run's map", "not stored"},
-       .why = "a restart would lose it: "});
-  if (box.disk.free && *box.disk.free < kLeastFree) {
-    found.push_back({.id = "disk_full",
-                     .side = Side::Box,
-                     .headline = {"The disk", "nearly full"},
-                     .why = sentence(*box.disk.free / 1000, " kB are free for reports"),
-                     .action = kOpenSystem});
+  if (!scarce) {
+    add(found, box.disk.run,
+        {.id = "run_not_kept",
+         .headline = {"The run's map", "not stored"},
+         .why = "a restart would lose it: "});
   }
   find_wear(box.disk, found);
 }

@@ -1,4 +1,5 @@
 // Decisions of the operator: reports, and messages that the Command Post rejected.
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <ranges>
@@ -13,9 +14,6 @@ namespace {
 using facts::ReportRow;
 using icd::sentence;
 
-constexpr const char* kSettle = "Settle it: ";
-constexpr const char* kUntilSettled = "new reports are held until you Settle it: ";
-
 /// How a report needs the operator.
 enum class Need : std::uint8_t { Held, InDoubt, Lost };
 constexpr struct {
@@ -26,13 +24,6 @@ constexpr struct {
     {"report_lost", "lost"},
 };
 
-/// In the operator's words. A note begins with the request, and says later why it had no answer.
-std::string why_of(const ReportRow& row, Need need, bool is_lost_here) {
-  if (need == Need::InDoubt && row.asking)
-    return "its answer was lost, and the box asks for the run's status";
-  return (need != Need::Lost ? "" : is_lost_here ? kUntilSettled : kSettle) + row.note;
-}
-
 std::optional<Need> need_of(const ReportRow& row) {
   if (row.sends_at) return std::nullopt;
   if (row.state == dispatch::name_of(dispatch::ReportState::Held)) return Need::Held;
@@ -40,20 +31,40 @@ std::optional<Need> need_of(const ReportRow& row) {
   return row.position ? Need::InDoubt : Need::Lost;
 }
 
+/// Whether the lost report stands for earlier ones also.
+bool stands_for_several(const facts::Reports& reports, const ReportRow& lost) {
+  return lost.number > 1 &&
+         std::ranges::find(reports.rows, lost.number - 1, &ReportRow::number) == reports.rows.end();
+}
+
+Headline headline_of(Need need, const facts::Reports& reports, const ReportRow& row) {
+  if (need == Need::Lost && stands_for_several(reports, row)) return {"Reports", "possibly missing", true};
+  return {sentence("Report ", row.number), kNeeds[static_cast<std::size_t>(need)].state};
+}
+
+/// In the operator's words. A note begins with the request, and says later why it had no answer.
+std::string why_of(Need need, const facts::Reports& reports, const ReportRow& row) {
+  if (need == Need::InDoubt && row.asking)
+    return "its answer was lost, and the box asks for the run's status";
+  if (need != Need::Lost) return row.note;
+  const bool holds = reports.lost_here.contains(row.number);
+  return sentence(holds ? "new reports are held until you " : "", "Settle report ", row.number, ": ",
+                  row.note);
+}
+
 void find_undecided(const facts::Reports& reports, Found& found) {
   std::array<std::uint64_t, std::size(kNeeds)> count{};
   for (const ReportRow& row : reports.rows | std::views::reverse) {
     const auto need = need_of(row);
     if (!need || ++count.at(static_cast<std::size_t>(*need)) > kOneByOne) continue;
-    const auto& [id, state] = kNeeds[static_cast<std::size_t>(*need)];
     const std::string number = std::to_string(row.number);
-    found.push_back({.id = sentence(id, ":", number),
+    found.push_back({.id = sentence(kNeeds[static_cast<std::size_t>(*need)].id, ":", number),
                      .severity = row.asking ? Severity::Wait : Severity::Ask,
-                     .side = *need == Need::InDoubt ? Side::CommandPost : Side::Box,
+                     .side = Side::CommandPost,
                      .subject = number,
                      .since = row.changed,
-                     .headline = {"Report " + number, state},
-                     .why = why_of(row, *need, reports.lost_here.contains(row.number)),
+                     .headline = headline_of(*need, reports, row),
+                     .why = why_of(*need, reports, row),
                      .action = {row.asking ? "Show report" : "Decide", "/#report=" + number}});
   }
   for (std::size_t at = 0; at < std::size(kNeeds); ++at) {
@@ -61,7 +72,7 @@ void find_undecided(const facts::Reports& reports, Found& found) {
     const std::uint64_t more = count.at(at) - kOneByOne;
     found.push_back({.id = sentence(kNeeds[at].id, ":more"),
                      .severity = Severity::Ask,
-                     .side = Side::Box,
+                     .side = Side::CommandPost,
                      .subject = "more",
                      .headline = {sentence(more, " more reports"), kNeeds[at].state, true},
                      .action = {"Show reports", "/#reports"},
@@ -87,7 +98,7 @@ void find_elsewhere(const facts::Reports& reports, Found& found) {
   for (const auto& [post, count] : reports.elsewhere) {
     found.push_back({.id = "reports_elsewhere:" + post,
                      .severity = Severity::Ask,
-                     .side = Side::Box,
+                     .side = Side::CommandPost,
                      .subject = post,
                      .headline = {count == 1 ? "1 report" : sentence(count, " reports"), "for another server",
                                   count != 1},

@@ -1,4 +1,4 @@
-// The alarms on the printable card (board/card.html), with the rules' current texts.
+// What operators read about alarms, TROUBLE.md and the card (board/card.html), with the rules' current texts.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -133,19 +133,6 @@ std::vector<Condition> all() {
   return found;
 }
 
-std::string rows(Side side) {
-  std::string html;
-  for (const Condition& each : all()) {
-    if (each.side != side) continue;
-    html.append("<li class=\"").append(kSeverityWords[static_cast<std::size_t>(each.severity)]);
-    html.append("\"><b>").append(each.headline.now()).append("</b>");
-    if (!each.why.empty()) html.append(": ").append(each.why);
-    if (!each.action.word.empty()) html.append(" <i>").append(each.action.word).append("</i>");
-    html.append("</li>\n");
-  }
-  return html;
-}
-
 /// "no_token" of "no_token:scoring"
 std::string kind_of(const std::string& id) {
   return id.substr(0, id.find(':'));
@@ -161,17 +148,6 @@ std::set<std::string> kinds_with_tests() {
     for (std::string kind; words >> kind;) kinds.insert(kind);
   }
   return kinds;
-}
-
-TEST(AlarmsCard, NamesEachCondition) {
-  const std::string card = project_text("board/card.html");
-  for (std::size_t side = 0; side < std::size(kSideWords); ++side) {
-    const std::string part = rows(static_cast<Side>(side));
-    EXPECT_NE(card.find("<ul class=\"" + std::string(kSideWords[side]) + "\">\n" + part + "</ul>"),
-              std::string::npos)
-        << "put this into board/card.html:\n<ul class=\"" << kSideWords[side] << "\">\n"
-        << part << "</ul>";
-  }
 }
 
 /// The first cell of each kind's row in TROUBLE.md, by its first headline. The anchor is the kind.
@@ -204,7 +180,45 @@ TEST(AlarmsTroubles, HaveARowForEachKind) {
   }
 }
 
-TEST(AlarmsCard, IsComplete) {
+/// The Markdown between two marks as HTML: "**Settle**" as "<b>Settle</b>".
+std::string with_tags(std::string text, std::string_view mark, const std::string& tag) {
+  bool opens = true;
+  for (std::size_t at = 0; (at = text.find(mark, at)) != std::string::npos; opens = !opens) {
+    text.replace(at, mark.size(), (opens ? "<" : "</") + tag + ">");
+  }
+  return text;
+}
+
+/// "<b>HEADLINE</b>: REMEDY" of a row of TROUBLE.md, or "" if no row has the anchor.
+std::string remedy_of(const std::string& troubles, std::string_view anchor) {
+  const std::size_t from = troubles.find("| <a id=\"" + std::string(anchor) + "\"></a>");
+  if (from == std::string::npos) return "";
+  const std::string row = troubles.substr(from, troubles.find(" |\n", from) - from);
+  const std::string headline = row.substr(row.find("**"), row.find("** |") + 2 - row.find("**"));
+  return with_tags(with_tags(headline + ": " + row.substr(row.rfind(" | ") + 3), "**", "b"), "`", "code");
+}
+
+/// A row of the card has sentences of TROUBLE.md that follow each other there.
+TEST(AlarmsCard, GivesTheRemediesOfTheTroubles) {
+  const std::string troubles = project_text("firmware/rules/alarms/TROUBLE.md");
+  std::istringstream card(project_text("board/card.html"));
+  int count = 0;
+  for (std::string line; std::getline(card, line);) {
+    constexpr std::string_view kHead = "<li id=\"", kEnd = "</li>";
+    if (!line.starts_with(kHead)) continue;
+    const std::size_t after = line.find("\">");
+    const std::string full =
+        remedy_of(troubles, std::string_view(line).substr(kHead.size(), after - kHead.size()));
+    const std::string row = line.substr(after + 2, line.size() - kEnd.size() - after - 2);
+    const std::size_t colon = row.find("</b>: ") + 6;
+    EXPECT_EQ(row.substr(0, colon), full.substr(0, colon)) << line;
+    EXPECT_NE(full.find(row.substr(colon)), std::string::npos) << line << "\nbut TROUBLE.md says " << full;
+    ++count;
+  }
+  EXPECT_GE(count, 20) << "the card helps in the field";
+}
+
+TEST(AlarmsTroubles, AreComplete) {
   std::set<std::string> made;
   for (const Condition& each : all()) made.insert(kind_of(each.id));
   EXPECT_GT(made.size(), 35u);

@@ -40,6 +40,13 @@ TEST(Table, EscapesForeignText) {
   EXPECT_EQ(table.written(true), "  \\x1b[2Jr1\\x0a\n");
 }
 
+TEST(Table, NamesAnErrorsStatusOnce) {
+  EXPECT_EQ(answer_of(200, ""), "accepted");
+  EXPECT_EQ(answer_of(422, "x: not a number"), "error 422: x: not a number");
+  EXPECT_EQ(answer_of(500, "the Command Post answered 500"), "the Command Post answered 500");
+  EXPECT_EQ(answer_of(0, "no answer"), "no answer");
+}
+
 TEST(Table, CountsCharactersAndNotBytes) {
   Table table({{}, {}});
   table.add({{"Höhle"}, {"a"}});

@@ -142,7 +142,7 @@ class Observed:
 
 
 SLACK = programs.patient(2)  # seconds
-SEVERITIES = {"bad": "x bad", "ask": "? ask", "wait": "! wait"}
+SEVERITIES = {"bad": "x", "ask": "?", "wait": "!"}
 LEVELS = ("quiet", "good", "wait", "bad")
 
 
@@ -205,9 +205,8 @@ def check_command_line(case, view, text, status):
     case.assertEqual(without_ages(headline), without_ages(f'Maps  {view["verdict"]["what"]}: {view["verdict"]["why"]}'))
     for said, told in zip(re.findall(AGE, headline), re.findall(AGE, view["verdict"]["why"]), strict=True):
         same_age(case, said, sum(seconds_in(told)) / 2, headline)
-    of_alarms = [re.split(r"  +", line.strip()) for line in lines if line.strip().startswith(("x ", "? ", "! "))]
-    case.assertEqual([(severity, what) for severity, what, *_ in of_alarms],
-                     [(SEVERITIES[alarm["severity"]], alarm["what"]) for alarm in view["alarms"]])
+    of_alarms = [match.groups() for match in (re.match(r"  ([x?!]) (.*?) \(\d", line) for line in lines) if match]
+    case.assertEqual(of_alarms, [(SEVERITIES[alarm["severity"]], alarm["what"]) for alarm in view["alarms"]])
     case.assertEqual(status, int(any(alarm["severity"] != "wait" for alarm in view["alarms"])))
     for row in view["activities"]:
         name = row["robot"] or "(all)"

@@ -155,9 +155,9 @@ constexpr Form kCheckForms[] = {{"", check, kSettingsFile, "", "", true}};
 constexpr CommandRow kCommands[] = {
     {"status", "show alarms, run, Command Post, reports and each robot's maps", kStatusForms,
      "Alarms:\n"
-     "  x bad    a fault\n"
-     "  ? ask    the operator must decide\n"
-     "  ! wait   may end by itself\n"
+     "  x   a fault\n"
+     "  ?   the operator must decide\n"
+     "  !   may end by itself\n"
      "Column `arriving`:\n"
      "  waiting                  accepted, but not sent so far\n"
      "  up to date, arriving     delivered, or queued for its turn\n"

@@ -135,35 +135,25 @@ namespace {
 
 using api::RunView;
 
-/// A shape and a word in addition to the colour.
-Cell severity_cell(const alarms::Alarm& alarm) {
+/// "  ? Report 7 is in doubt (10 s): the status cannot tell": the sign is a shape in addition to the colour.
+std::string alarm_line(const alarms::Alarm& alarm, api::Time now, bool colour) {
   constexpr struct {
-    const char* word;
+    char sign;
     Tone tone;
-  } kForms[] = {{"x bad", Tone::Bad}, {"? ask", Tone::Bad}, {"! wait", Tone::Warning}};
+  } kForms[] = {{'x', Tone::Bad}, {'?', Tone::Bad}, {'!', Tone::Warning}};
   const auto& form = kForms[static_cast<std::size_t>(alarm.severity)];
-  return {form.word, alarm.acknowledged ? Tone::Faint : form.tone};
-}
-
-constexpr std::string_view kSides[] = {"robot", "box", "network", "Command Post"};
-
-std::string why_of(const alarms::Alarm& alarm) {
-  std::string text(kSides[static_cast<std::size_t>(alarm.side)]);
+  const std::string what = icd::sentence(std::string_view(&form.sign, 1), " ", alarm.what);
   const std::string& why = alarm.details.empty() ? alarm.why : alarm.details;
-  if (!why.empty()) text += ": " + why;
-  if (alarm.hides > 0) text += " (hides " + std::to_string(alarm.hides) + ")";
-  return alarm.acknowledged ? text + " (acknowledged)" : text;
+  return "  " + painted(host::escaped(what), alarm.acknowledged ? Tone::Faint : form.tone, colour) +
+         icd::sentence(" (", duration(now - alarm.since), alarm.acknowledged ? ", acknowledged" : "",
+                       alarm.hides > 0 ? ", hides " + std::to_string(alarm.hides) : "", ")",
+                       why.empty() ? "" : ": " + host::escaped(why), "\n");
 }
 
-std::string alarms_table(const RunView& view, bool colour) {
-  Table table({{}, {}, {}, {}});
-  for (const alarms::Alarm& alarm : view.alarms) {
-    table.add({severity_cell(alarm),
-               {alarm.what, Tone::Strong},
-               {"for " + duration(view.now - alarm.since)},
-               {why_of(alarm)}});
-  }
-  return table.empty() ? "" : table.written(colour) + '\n';
+std::string alarm_lines(const RunView& view, bool colour) {
+  std::string text;
+  for (const alarms::Alarm& alarm : view.alarms) text += alarm_line(alarm, view.now, colour);
+  return text.empty() ? "" : text + '\n';
 }
 
 std::string verdict_line(const RunView& view, bool colour) {
@@ -304,7 +294,7 @@ Tone tone_of_level(facts::Level level) {
 }
 
 std::string status_text(const RunView& view, bool colour) {
-  return alarms_table(view, colour) + run_line(view, colour) + verdict_line(view, colour) + link_line(view) +
+  return alarm_lines(view, colour) + run_line(view, colour) + verdict_line(view, colour) + link_line(view) +
          reports_line(view, colour) + endpoints_table(view, colour) + activities_table(view, colour) +
          refusals_table(view, colour);
 }

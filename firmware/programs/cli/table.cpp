@@ -43,7 +43,7 @@ std::string clock(double seconds) {
 }
 
 std::string answer_of(int status, const std::string& sentence) {
-  if (status == 0) return sentence;
+  if (status == 0 || sentence.ends_with(std::to_string(status))) return sentence;
   const std::string answer = status < 300 ? "accepted" : "error " + std::to_string(status);
   return sentence.empty() ? answer : answer + ": " + sentence;
 }

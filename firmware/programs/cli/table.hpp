@@ -27,7 +27,8 @@ std::string line(const Parts&... parts) {
 std::string duration(double seconds);
 /// Run time: "1:02:03", "12:34"
 std::string clock(double seconds);
-/// A Command Post's answer: "accepted", "error 422: its sentence"; "" without an answer.
+/// A Command Post's answer: "accepted", "error 422: its sentence", or only a sentence that ends with the
+/// status; "" without an answer.
 std::string answer_of(int status, const std::string& sentence);
 /// At most `digits` decimals, without trailing zeros.
 std::string decimal(double number, int digits);

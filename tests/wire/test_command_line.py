@@ -104,6 +104,17 @@ class InDoubt(Case):
             wait_until(lambda: sendings(stage) == 2, "it to be sent again")
 
 
+class Secrets(Case):
+    def test_a_signal_shows_typed_characters_again(self):
+        with self.stage() as stage:
+            terminal = self.at_a_terminal(stage, "tokens", "set", "scoring")
+            wait_until(lambda: termios.tcgetattr(terminal.theirs) != terminal.before, "typed characters to be hidden")
+            terminal.type("half a tok\x03")
+            self.assertEqual(terminal.end(), -signal.SIGINT)
+            self.assertEqual(termios.tcgetattr(terminal.theirs), terminal.before)
+            self.assertNotIn("half", terminal.seen)
+
+
 class Watching(Case):
     def test_at_a_terminal(self):
         with self.stage() as stage:

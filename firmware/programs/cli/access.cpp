@@ -1,4 +1,3 @@
-#include "api/settings_rows.hpp"
 #include "cli/handlers.hpp"
 #include "cli/table.hpp"
 #include "codec/field.hpp"
@@ -6,11 +5,6 @@
 #include "icd/try.hpp"
 
 namespace adit::cli {
-namespace {
-
-using codec::Value;
-
-constexpr const char* kOperator = "operator";
 
 std::string tokens_text(const std::vector<api::TokenRow>& tokens, bool colour) {
   Table table({{}, {}, {}});
@@ -20,6 +14,12 @@ std::string tokens_text(const std::vector<api::TokenRow>& tokens, bool colour) {
                {warning, Tone::Warning}});
   return table.written(colour);
 }
+
+namespace {
+
+using codec::Value;
+
+constexpr const char* kOperator = "operator";
 
 Result<Outcome> change_token(const Call& call, const Value& token, const std::string& done) {
   return act(

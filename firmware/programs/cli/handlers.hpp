@@ -1,5 +1,6 @@
 #pragma once
 
+#include "api/settings_rows.hpp"
 #include "api/updates.hpp"
 #include "cli/ask.hpp"
 
@@ -40,7 +41,8 @@ Result<Outcome> export_settings(const Call& call);
 /// Lists the courses, or selects one.
 Result<Outcome> course(const Call& call);
 
-/// The names of tokens, and whether they are set.
+/// A table: the names of tokens, whether they are set, and what is odd about them.
+std::string tokens_text(const std::vector<api::TokenRow>& tokens, bool colour);
 Result<Outcome> show_tokens(const Call& call);
 /// Reads the token from a file, a terminal or standard input.
 Result<Outcome> set_token(const Call& call);

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <clocale>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>
@@ -41,22 +42,38 @@ std::optional<bool> ask(const std::string& question) {
   return said == "y\n" || said == "Y\n" || said == "yes\n";
 }
 
-/// Hides typed characters while it lives.
+termios before_silence;
+
+void end_silence() {
+  tcsetattr(STDIN_FILENO, TCSAFLUSH, &before_silence);
+}
+
+void end_by(int signal) {
+  end_silence();
+  std::signal(signal, SIG_DFL);
+  std::raise(signal);
+}
+
+/// Hides typed characters while it lives, and shows them again if a signal ends the program.
 class Silence {
  public:
-  Silence() : is_terminal_(tcgetattr(STDIN_FILENO, &before_) == 0) {
-    termios silent = before_;
+  Silence() : is_terminal_(tcgetattr(STDIN_FILENO, &before_silence) == 0) {
+    if (!is_terminal_) return;
+    for (const int signal : kSignals) std::signal(signal, end_by);
+    termios silent = before_silence;
     silent.c_lflag &= ~static_cast<tcflag_t>(ECHO);
-    if (is_terminal_) tcsetattr(STDIN_FILENO, TCSAFLUSH, &silent);
+    tcsetattr(STDIN_FILENO, TCSAFLUSH, &silent);
   }
   ~Silence() {
-    if (is_terminal_) tcsetattr(STDIN_FILENO, TCSAFLUSH, &before_);
+    if (!is_terminal_) return;
+    end_silence();
+    for (const int signal : kSignals) std::signal(signal, SIG_DFL);
   }
   Silence(const Silence&) = delete;
   Silence& operator=(const Silence&) = delete;
 
  private:
-  termios before_{};
+  static constexpr int kSignals[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT};
   bool is_terminal_;
 };
 

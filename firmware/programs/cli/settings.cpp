@@ -170,13 +170,11 @@ Result<SettingsFile> read_file(const std::string& file) {
 }
 
 std::string text_of(const api::SetupView& setup, const settings::Settings& settings, bool colour) {
-  Table table({{}, {}}), tokens({{}, {}});
+  Table table({{}, {}});
   for (const settings::Change& change : settings::changes({}, settings))
     table.add({{change.path, Tone::Strong}, {plain(change.to)}});
-  for (const auto& [name, set, warning] : setup.tokens)
-    tokens.add({{name, Tone::Strong}, {set ? "set" : "not set", set ? Tone::Good : Tone::Warning}});
   return (setup.saved ? "saved on this box\n" : "as installed\n") + table.written(colour) +
-         "all others have their defaults\n\ntokens\n" + tokens.written(colour);
+         "all others have their defaults\n\ntokens\n" + tokens_text(setup.tokens, colour);
 }
 
 /// Adit's check of settings.

@@ -145,7 +145,7 @@ TEST_F(Check, ReportsAnUnreadableFile) {
 
 TEST_F(Check, EscapesTerminalSequences) {
   const Outcome outcome = check("{\"version\": 1, \"\x1b]0;owned\x07\": 1}");
-  EXPECT_THAT(outcome.out, AllOf(Not(HasSubstr("\x1b")), HasSubstr("not JSON")));
+  EXPECT_THAT(outcome.out, AllOf(Not(HasSubstr("\x1b")), HasSubstr("not well-formed JSON: ")));
 }
 
 }  // namespace

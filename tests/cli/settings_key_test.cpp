@@ -56,6 +56,16 @@ TEST(SettingsKey, OfAListIsShownForEachItem) {
             "  courses[].name  (none)\n  A course.\n  allowed: letters; required\n");
 }
 
+TEST(SettingsKey, OfAnItemIsShownForThatItem) {
+  EXPECT_EQ(text_of_key("robots[r1].alias"),
+            "  robots[r1].alias  husky\n  Its alias.\n  allowed: text; default: (empty)\n");
+  EXPECT_EQ(keys_named(answer(), "robots[1]")->size(), 2);
+  EXPECT_EQ(text_of_key("robots[ugv9].alias"), "robots has no item ugv9: there are r1, r2");
+  EXPECT_EQ(text_of_key("courses[A].name"), "courses has no item A: it is empty");
+  EXPECT_EQ(text_of_key("robots[r1].alas"),
+            "no such settings key: robots[r1].alas; did you mean robots[].alias?");
+}
+
 TEST(SettingsKey, MayBeThePrefixOfSeveral) {
   EXPECT_EQ(keys_named(answer(), "reports")->size(), 2);
   EXPECT_EQ(keys_named(answer(), "robots")->size(), 2);

@@ -165,7 +165,7 @@ TEST_F(SettingsCommand, NamesTheFaultOfAnInvalidFile) {
   std::ofstream(settings_, std::ios::trunc) << "{";
   const Outcome outcome = run_adit(server, {"settings", "check", settings_});
   EXPECT_EQ(outcome.exit, Exit::Unable);
-  EXPECT_THAT(outcome.err, HasSubstr(settings_ + ": line 1, column 2: not JSON: "));
+  EXPECT_THAT(outcome.err, HasSubstr(settings_ + ": line 1, column 2: not well-formed JSON: "));
   EXPECT_EQ(server.request(), "");
 }
 

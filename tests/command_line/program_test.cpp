@@ -113,6 +113,8 @@ TEST(CommandLine, MayHaveEmptyValuesAndFreeWords) {
             std::nullopt);
   EXPECT_EQ(options.folder, "");
   EXPECT_EQ(words, "ab--file");
+  EXPECT_EQ(command_line::read(program, Words{"set", "-1", "--file", "x", "-.5"}), std::nullopt);
+  EXPECT_EQ(words, "ab--fileset-1-.5") << "negative numbers are words";
   EXPECT_EQ(command_line::read(program, Words{"no"}), "not that");
   EXPECT_EQ(command_line::read(program, Words{"--file", ""}), "--file FILE is missing");
 }

@@ -60,7 +60,7 @@ struct BoardCase {
 };
 
 const BoardCase kBoardCases[] = {
-    {"", "not JSON: "},
+    {"", "not well-formed JSON at byte 0: "},
     {"[]", "expected an object, got an array"},
     {R"({"title": "T"})", "name: missing; expected 1 to 32 small letters, digits, hyphens and underscores"},
     {R"({"name": "n"})", "title: missing; expected 1 to 80 printable ASCII characters"},

@@ -211,7 +211,7 @@ TEST(SettingsErrors, WithoutAVersionNameAllFaults) {
 
 TEST(SettingsErrors, OfInvalidJsonNameTheByte) {
   for (const std::string json : {"", "{", "{\"version\": 01}", "{} x", "{\"version\": 1,}"}) {
-    EXPECT_THAT(errors_of(json), ElementsAre(HasSubstr("not JSON: "))) << json;
+    EXPECT_THAT(errors_of(json), ElementsAre(HasSubstr("not well-formed JSON at byte "))) << json;
   }
   EXPECT_THAT(errors_of("[]"), ElementsAre("expected an object, got an array"));
 }

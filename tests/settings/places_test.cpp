@@ -35,8 +35,7 @@ TEST(Places, OfMissingKeysAreThoseOfTheObjectThatLacksThem) {
 }
 
 TEST(Places, OfAFaultOfTheSyntaxIsItsByte) {
-  EXPECT_EQ(place_of("", "{\n  x", "not JSON: not well-formed JSON at byte 4: expected a key"),
-            "line 2, column 3");
+  EXPECT_EQ(place_of("", "{\n  x", "not well-formed JSON at byte 4: expected a key"), "line 2, column 3");
   EXPECT_EQ(place_of("", "{}", "two lights have one line"), "");
 }
 

@@ -44,6 +44,12 @@ std::string unknown(std::string_view word, const Program& program) {
       .append("?");
 }
 
+/// A value, and no option: "-1", "-.5".
+bool is_negative_number(std::string_view word) {
+  word.remove_prefix(word.starts_with('-') ? 1 : word.size());
+  return !word.empty() && std::string_view("0123456789.").contains(word.front());
+}
+
 class Reading {
  public:
   explicit Reading(const Program& program) : program_(program), given_(program.rows.size()) {}
@@ -60,6 +66,11 @@ class Reading {
     opterr = 0;
     while (true) {
       const char* const at = all[static_cast<std::size_t>(std::max(optind, 1))];
+      if (optind > 0 && optind < count && is_negative_number(at)) {
+        ++optind;
+        if (auto wrong = word(at)) return wrong;
+        continue;
+      }
       const int found = getopt_long(count, all.data(), "-:h", options.data(), nullptr);
       if (found == -1) break;
       if (auto wrong = take(found, at)) return wrong;

@@ -68,19 +68,59 @@ std::string allowed_of(const api::KeyRow& key) {
               key.required ? "; required" : "; default: " + plain(key.default_value));
 }
 
+/// "ugv1, ugv2": the names of a list's items, or "0 to 1".
+std::string items_text(const Value& list) {
+  const auto* const items = std::get_if<Value::Array>(&list.is);
+  if (items == nullptr || items->empty()) return "it is empty";
+  const std::string names = icd::listed(*items, [](const Value& item) { return text_at(item, "name"); });
+  return "there are " + (names.empty() ? icd::sentence("0 to ", items->size() - 1) : names);
+}
+
+/// "robots[ugv1].alias" as "robots[].alias"
+std::string without_items(std::string_view path) {
+  std::string key;
+  while (!path.empty()) {
+    const std::size_t open = std::min(path.find('['), path.size() - 1);
+    key += path.substr(0, open + 1);
+    path.remove_prefix(path[open] == '[' ? std::min(path.find(']', open), path.size()) : path.size());
+  }
+  return key;
+}
+
+/// "robots has no item ugv9: there are ugv1, ugv2", or std::nullopt if each list of the path has its item.
+std::optional<std::string> missing_item(Value& settings, const std::string& path) {
+  for (std::size_t end = path.find(']'); end != std::string::npos; end = path.find(']', end + 1)) {
+    const std::string item = path.substr(0, end + 1), list = item.substr(0, item.rfind('['));
+    const Value* const all = value_at(settings, list);
+    if (all == nullptr || value_at(settings, item) != nullptr) continue;
+    return icd::sentence(list, " has no item ", item.substr(list.size() + 1, item.size() - list.size() - 2),
+                         ": ", items_text(*all));
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 Result<std::vector<ShownKey>> keys_named(const api::SetupView& setup, const std::string& name) {
+  Value settings = setup.settings;
+  const std::string pattern = without_items(name);
+  const bool has_item = pattern != name;
+  if (const auto missing = has_item ? missing_item(settings, name) : std::nullopt) return failed(*missing);
   std::vector<ShownKey> found;
   std::vector<std::string_view> known;
   for (const api::KeyRow& key : setup.keys) {
     known.push_back(key.path);
-    if (!begins(key.path, name)) continue;
+    if (!begins(key.path, pattern)) continue;
     found.push_back({key, {}});
-    put_values(setup.settings, key.path, "", found.back().values);
+    if (!has_item) {
+      put_values(settings, key.path, "", found.back().values);
+    } else if (const std::string path = name + key.path.substr(pattern.size());
+               const Value* const value = value_at(settings, path)) {
+      found.back().values.emplace_back(path, *value);
+    }
   }
   if (!found.empty()) return found;
-  return failed("no such settings key: " + name + icd::did_you_mean(name, known));
+  return failed("no such settings key: " + name + icd::did_you_mean(pattern, known));
 }
 
 Value* value_at(Value& settings, std::string_view path) {
@@ -164,7 +204,7 @@ Result<SettingsFile> read_file(const std::string& file) {
   if (!text) return failed(text.error());
   auto value = codec::parse_json(*text);
   if (value) return SettingsFile{*std::move(text), *std::move(value)};
-  std::vector<settings::Error> errors{{"", "not JSON: " + value.error()}};
+  std::vector<settings::Error> errors{{"", value.error()}};
   settings::find_places(*text, errors);
   return failed(file + ": " + errors.front().sentence());
 }
@@ -284,38 +324,15 @@ Result<Outcome> apply_settings(const Call& call) {
   return apply(call, now.row, file.settings, file.text);
 }
 
-namespace {
-
-/// "ugv1, ugv2": the names of a list's items, or "0 to 1".
-std::string items_text(const Value& list) {
-  const auto* const items = std::get_if<Value::Array>(&list.is);
-  if (items == nullptr || items->empty()) return "it is empty";
-  const std::string names = icd::listed(*items, [](const Value& item) { return text_at(item, "name"); });
-  return "there are " + (names.empty() ? icd::sentence("0 to ", items->size() - 1) : names);
-}
-
-/// Names the part of `key` that is wrong: an item of a list, or the key.
-std::unexpected<Failure> no_value_at(const api::SetupView& setup, Value& settings, const std::string& key) {
-  for (std::size_t end = key.find(']'); end != std::string::npos; end = key.find(']', end + 1)) {
-    const std::string item = key.substr(0, end + 1), list = item.substr(0, item.rfind('['));
-    const Value* const all = value_at(settings, list);
-    if (all == nullptr || value_at(settings, item) != nullptr) continue;
-    return failed(icd::sentence(list, " has no item ",
-                                item.substr(list.size() + 1, item.size() - list.size() - 2), ": ",
-                                items_text(*all)));
-  }
-  const auto keys = keys_named(setup, key);
-  return keys ? failed("no such item of a list: " + key) : std::unexpected(keys.error());
-}
-
-}  // namespace
-
 Result<Outcome> set_setting(const Call& call) {
   const std::string key = call.options.argument(0), text = call.options.argument(1);
   const auto now = ADIT_TRY(fetch<api::SetupView>(call.adit, kSettings));
   Value settings = now.row.settings;
   Value* const value = value_at(settings, key);
-  if (value == nullptr) return no_value_at(now.row, settings, key);
+  if (value == nullptr) {
+    ADIT_TRY(keys_named(now.row, key));
+    return failed("no such item of a list: " + key);
+  }
   *value = value_in(text, *value);
   return apply(call, now.row, settings);
 }

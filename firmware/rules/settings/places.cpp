@@ -68,13 +68,16 @@ class Finder {
   std::size_t at_ = 0, found_ = 0;
 };
 
-/// The byte that an error of codec::parse_json() names.
-std::optional<std::size_t> byte_in(std::string_view what) {
-  constexpr std::string_view kBefore = "at byte ";
+/// Takes the byte that an error of codec::parse_json() names out of its sentence.
+std::optional<std::size_t> cut_byte(std::string& what) {
+  constexpr std::string_view kBefore = " at byte ";
   const std::size_t begin = what.find(kBefore);
-  if (begin == std::string_view::npos) return std::nullopt;
-  what.remove_prefix(begin + kBefore.size());
-  return icd::number_in<std::size_t>(what.substr(0, what.find_first_not_of("0123456789")));
+  if (begin == std::string::npos) return std::nullopt;
+  const std::size_t digits = begin + kBefore.size(),
+                    end = std::min(what.find_first_not_of("0123456789", digits), what.size());
+  const auto byte = icd::number_in<std::size_t>(std::string_view(what).substr(digits, end - digits));
+  what.erase(begin, end - begin);
+  return byte;
 }
 
 /// From 1; the column counts characters.
@@ -89,7 +92,7 @@ std::string place_of(std::string_view text, std::size_t byte) {
 
 void find_places(std::string_view json, std::vector<Error>& errors) {
   for (Error& error : errors) {
-    const auto byte = error.path.empty() ? byte_in(error.what) : Finder(json, error.path).find();
+    const auto byte = error.path.empty() ? cut_byte(error.what) : Finder(json, error.path).find();
     if (byte) error.at = place_of(json, *byte);
   }
 }

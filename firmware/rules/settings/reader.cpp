@@ -41,7 +41,7 @@ std::string joined(const std::string& path, std::string_view name) {
 
 std::expected<Value, std::vector<Error>> read_json(std::string_view json) {
   auto root = codec::parse_json(json);
-  if (!root) return std::unexpected(std::vector<Error>{{"", "not JSON: " + root.error()}});
+  if (!root) return std::unexpected(std::vector<Error>{{"", root.error()}});
   return *std::move(root);
 }
 

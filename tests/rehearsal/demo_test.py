@@ -1,16 +1,18 @@
-"""adit-rehearsal demo for a newcomer: in a small window, in a pipe, two at once, with a wrong word. No process of it survives its
-end."""
+"""adit-rehearsal demo for a newcomer: in a small window, in a pipe, two at once, at a port, with a wrong option. No process of it
+survives its end."""
 import fcntl
 import os
 import pty
 import re
 import shlex
 import signal
+import socket
 import struct
 import subprocess
 import tempfile
 import termios
 import unittest
+import urllib.request
 from pathlib import Path
 
 from patience import patient, wait_until
@@ -89,11 +91,12 @@ class Demo(unittest.TestCase):
                 return False
         return True
 
-    def refused(self, *words, folder=None):
+    def refused(self, *words, folder=None, code=1):
+        """The first line of the error."""
         done = subprocess.run([DEMO, "--directory", folder or self.folder, *words], stdin=subprocess.DEVNULL, capture_output=True, text=True,
                               timeout=patient(120), check=False)
-        self.assertNotIn(done.returncode, (0, 130), done.stdout)
-        return done.stderr
+        self.assertEqual(done.returncode, code, done.stderr)
+        return done.stderr.splitlines()[0]
 
     def test_small_window_shows_the_page_and_its_password(self):
         window = self.window(24, 80)
@@ -148,18 +151,33 @@ class Demo(unittest.TestCase):
         self.assertIn("Kept in", script.stdout.read())
         self.assertTrue(self.nothing_runs())
 
-    def test_page_is_at_the_listening_address(self):
-        process = subprocess.Popen([DEMO, "--directory", self.folder, "--listen", "127.0.0.2"], stdin=subprocess.DEVNULL,
+    def test_page_is_at_the_given_address_and_port(self):
+        with socket.create_server(("127.0.0.1", 0)) as other:
+            port = other.getsockname()[1]
+            self.assertEqual(self.refused("--port", str(port)), f"adit-rehearsal demo: port {port} is in use: name another by --port")
+            self.assertFalse(self.folder.exists())
+        process = subprocess.Popen([DEMO, "--directory", self.folder, "--listen", "127.0.0.2", "--port", str(port)], stdin=subprocess.DEVNULL,
                                    stdout=subprocess.PIPE, text=True)
         self.addCleanup(process.stdout.close)
         self.addCleanup(self.end, process)
-        self.assertRegex(next(line for line in process.stdout if line.strip()), r"The page:     http://127\.0\.0\.2:80\d\d/\n")
+        self.assertEqual(next(line for line in process.stdout if line.strip()), f"The page:     http://127.0.0.2:{port}/\n")
+        with urllib.request.urlopen(f"http://127.0.0.2:{port}/", timeout=patient(10)) as page:
+            self.assertEqual(page.status, 200)
 
-    def test_wrong_options_are_named(self):
+    def test_wrong_options_are_named_before_anything_starts(self):
         for words, why in ((("--for", "soon"), "--for wants whole seconds, not 'soon'"), (("--for",), "--for wants a value"),
-                           (("--fast",), "unknown word '--fast'"), (("fast",), "unknown word 'fast'"),
-                           (("--robots", "many"), "--robots"), (("--listen", "here"), "team.listen[0].address: expected an IPv4")):
+                           (("--for", "--port"), "--for wants a value"), (("--fast",), "unknown word '--fast'"),
+                           (("fast",), "unknown word 'fast'"), (("--port", "80"), "--port wants a number from 1024 to 65535, not '80'"),
+                           (("--robots", "many"), "--robots: expected 0 to 50, got 'many'"), (("--robots", "0"), "--robots 0: needs --maps"),
+                           (("--style", "morse"), "--style: unknown style 'morse'"),
+                           (("--maps", "/nowhere"), "--maps: /nowhere: No such file or directory"),
+                           (("--fault-rate", "x"), "--fault-rate: expected a rate from 0 to 1 at the end, as in reports:record-then-drop=0.1, got 'x'"),
+                           (("--listen", "here"), '--listen: expected an IPv4 or IPv6 address, got "here"'),
+                           (("--listen", "203.0.113.7"), "--listen: this machine does not have the address 203.0.113.7")):
             with self.subTest(words):
-                self.assertIn(why, self.refused(*words))
+                self.assertEqual(self.refused(*words, code=2), f"adit-rehearsal demo: {why}")
+                self.assertFalse(self.folder.exists())
+
+    def test_wrong_directory_is_named(self):
         self.assertIn("/proc/demo cannot be written to: name another directory by --directory", self.refused(folder="/proc/demo"))
         self.assertIn("is there, and not a demo's", self.refused(folder=self.folder.parent))

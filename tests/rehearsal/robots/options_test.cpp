@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <initializer_list>
 
 namespace adit::robots {
 namespace {
@@ -13,9 +14,27 @@ std::expected<Options, std::string> parsed(std::vector<const char*> arguments) {
   return parse_options(arguments);
 }
 
+/// A directory with the given files, which are empty.
+class Maps {
+ public:
+  explicit Maps(std::initializer_list<const char*> files) {
+    std::filesystem::create_directories(path_);
+    for (const char* const file : files) std::ofstream(path_ / file) << std::flush;
+  }
+  ~Maps() { std::filesystem::remove_all(path_); }
+  Maps(const Maps&) = delete;
+  Maps& operator=(const Maps&) = delete;
+
+  const char* path() const { return path_.c_str(); }
+
+ private:
+  const std::filesystem::path path_ = testing::TempDir() + "adit_robots_options_" + std::to_string(getpid());
+};
+
 TEST(Options, AcceptTheContractsCommandLine) {
+  const Maps maps{"cave.ply"};
   const auto options = parsed({"--post", "http://127.0.0.1:8080", "--secrets", "/tmp", "--robots", "5",
-                               "--style", "ros", "--maps", "/maps", "--for", "30"});
+                               "--style", "ros", "--maps", maps.path(), "--for", "30"});
   ASSERT_TRUE(options) << options.error();
   EXPECT_EQ(options->post.host, "127.0.0.1");
   EXPECT_EQ(options->post.port, 8080);
@@ -23,6 +42,22 @@ TEST(Options, AcceptTheContractsCommandLine) {
   EXPECT_EQ(options->robots, 5u);
   EXPECT_EQ(options->style.of(3).name, "ros");
   EXPECT_EQ(options->run_for->count(), 30);
+  EXPECT_EQ(options->maps, std::vector{std::filesystem::path(maps.path()) / "cave.ply"});
+}
+
+TEST(Options, AreCheckedBesideHelp) {
+  EXPECT_TRUE(parsed({"--style", "ros", "--help"}));
+  const Maps maps{"readme.txt"};
+  const std::pair<std::vector<const char*>, std::string> cases[] = {
+      {{"--robots", "0", "--help"}, "--robots 0: needs --maps"},
+      {{"--maps", "/nowhere", "--help"}, "--maps: /nowhere: No such file or directory"},
+      {{"--help", "--maps", maps.path()}, std::string("--maps: no .pgm, .pcd or .ply under ") + maps.path()},
+  };
+  for (const auto& [arguments, sentence] : cases) {
+    const auto options = parsed(arguments);
+    ASSERT_FALSE(options) << sentence;
+    EXPECT_EQ(options.error(), sentence);
+  }
 }
 
 TEST(Options, DefaultToThreeRobotsOfMixedStyle) {

@@ -18,6 +18,7 @@
 #include <mutex>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -602,6 +603,14 @@ Told tell_faults(const Options& options, Faults& faults) {
   return {};
 }
 
+/// Also names a wrong fault if help is wanted, so that --help checks a command line.
+std::expected<Options, std::string> parse_options(std::span<const char* const> arguments) {
+  Options options = ADIT_TRY(command_line::read(command_line_of, arguments));
+  Faults faults(options.seed);
+  ADIT_TRY(tell_faults(options, faults));
+  return options;
+}
+
 std::expected<std::unique_ptr<CommandPost>, std::string> build(const Options& options) {
   const std::filesystem::path folder = options.secrets;
   const std::string scoring = ADIT_TRY(read_token(folder / "scoring.token"));
@@ -694,7 +703,7 @@ int demo(char** arguments) {
 int main(int count, char** arguments) {
   using namespace adit::rehearsal;
   if (count > 1 && std::string_view(arguments[1]) == "demo") return demo(arguments + 1);
-  auto options = adit::command_line::read(command_line_of, {arguments + 1, arguments + count});
+  auto options = parse_options({arguments + 1, arguments + count});
   if (const auto exit = adit::command_line::answer(command_line_of, ADIT_VERSION, options)) return *exit;
   options->verbose = options->verbose || ::isatty(STDOUT_FILENO) == 1;
   return run(*options);

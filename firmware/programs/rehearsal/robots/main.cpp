@@ -34,7 +34,6 @@ namespace adit::robots {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-using Paths = std::vector<std::filesystem::path>;
 
 /// Standard output, shared by the team's threads: lines that stay, and on a terminal one live line below
 /// them.
@@ -96,12 +95,11 @@ std::expected<std::string, std::string> replay_file(const std::filesystem::path&
 /// The team at work: a thread for each robot, one for the operator, one that replays map files.
 class Team {
  public:
-  /// All but `token` and `maps` outlive the team. `maps`: files that the robot `replay` posts.
-  Team(const Options& options, const std::string& token, Paths maps, const Cave& cave, Tally& tally,
-       Posted& posted, Console& console)
+  /// All but `token` outlive the team.
+  Team(const Options& options, const std::string& token, const Cave& cave, Tally& tally, Posted& posted,
+       Console& console)
       : options_(options),
         post_{.mapping = options.post, .scoring = options.scoring, .token = token},
-        maps_(std::move(maps)),
         cave_(cave),
         tally_(tally),
         posted_(posted),
@@ -152,9 +150,9 @@ class Team {
   }
 
   void replay() {
-    for (std::size_t i = 0; i < maps_.size(); ++i) {
+    for (std::size_t i = 0; i < options_.maps.size(); ++i) {
       Client client(post_, "replay", options_.style.of(i), tally_, abort_.get_token());
-      const auto said = replay_file(maps_[i], client, finish_.get_token());
+      const auto said = replay_file(options_.maps[i], client, finish_.get_token());
       if (!said) tally_.failed(said.error());
       console_.say(said ? *said : said.error());
     }
@@ -163,7 +161,6 @@ class Team {
 
   const Options& options_;
   const Post post_;
-  const Paths maps_;
   const Cave& cave_;
   Tally& tally_;
   Posted& posted_;
@@ -194,10 +191,11 @@ bool has_come(const sigset_t& signals) {
   return sigtimedwait(&signals, nullptr, &kWait) > 0;
 }
 
-std::vector<Kind> kinds_to_post(const Options& options, const Paths& maps) {
+std::vector<Kind> kinds_to_post(const Options& options) {
   std::vector<Kind> kinds;
   if (options.robots == 0) {
-    for (const auto& map : maps) kinds.push_back(map.extension() == ".pgm" ? Kind::Grid : Kind::Cloud);
+    for (const auto& map : options.maps)
+      kinds.push_back(map.extension() == ".pgm" ? Kind::Grid : Kind::Cloud);
     return kinds;
   }
   kinds = {Kind::State, Kind::Markers, Kind::Report, Kind::Status};
@@ -234,18 +232,11 @@ int run(const Options& options, const Cave& cave) {
   const sigset_t signals = block_signals({SIGINT, SIGTERM});
   const auto token = read_token(std::filesystem::path(options.secrets) / "team.token");
   if (!token) return complain(token.error());
-  Paths maps;
-  if (!options.maps.empty()) {
-    auto found = find_maps(options.maps);
-    if (!found) return complain("--maps: " + found.error());
-    if (found->empty()) return complain("--maps: no .pgm, .pcd or .ply under " + options.maps);
-    maps = *std::move(found);
-  }
-  const std::vector<Kind> kinds = kinds_to_post(options, maps);
+  const std::vector<Kind> kinds = kinds_to_post(options);
   Tally tally;
   Posted posted;
   Console console(options.quiet);
-  Team team(options, *token, maps, cave, tally, posted, console);
+  Team team(options, *token, cave, tally, posted, console);
   team.stop(watch(options, kinds, team, tally, console, signals));
   console.finish(tally.summary());
   if (options.control) console.finish(arrivals_of(posted, *options.control));

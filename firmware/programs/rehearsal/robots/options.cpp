@@ -1,13 +1,22 @@
 #include "rehearsal/robots/options.hpp"
 
 #include "command_line/program.hpp"
+#include "rehearsal/robots/maps/map_file.hpp"
 
 namespace adit::robots {
 namespace {
 
 using command_line::number;
 
+std::expected<std::vector<std::filesystem::path>, std::string> maps_under(const std::string& folder) {
+  auto maps = find_maps(folder);
+  if (maps && maps->empty()) return std::unexpected("no .pgm, .pcd or .ply under " + folder);
+  return maps;
+}
+
+/// Also names what contradicts itself if help is wanted, so that --help checks a command line.
 std::expected<Options, std::string> complete(Options options) {
+  if (options.robots == 0 && options.maps.empty()) return std::unexpected("--robots 0: needs --maps");
   if (options.help || options.version) return options;
   if (options.generate_only) {
     if (options.truth.empty()) return std::unexpected("--generate-only: needs --truth CSV");
@@ -15,7 +24,6 @@ std::expected<Options, std::string> complete(Options options) {
   }
   if (options.post.port == 0) return std::unexpected("--post http://ADDR:PORT: is needed");
   if (options.secrets.empty()) return std::unexpected("--secrets DIR: is needed");
-  if (options.robots == 0 && options.maps.empty()) return std::unexpected("--robots 0: needs --maps");
   if (options.scoring.port == 0) options.scoring = options.post;
   return options;
 }
@@ -65,7 +73,7 @@ command_line::Program command_line_of(Options& options) {
             number<0.0, kMostMegabytes>(options.offers.cloud_mb)},
            {"--maps", "DIR",
             "also post the map files under DIR (.pgm with .yaml, .pcd, .ply), as a robot named replay",
-            &options.maps},
+            parsed_value<maps_under>(options.maps)},
            {"--for", "SECONDS", "stop after this time (default: at SIGINT or SIGTERM)",
             number<0.0, kLongest>(options.run_for)},
            {"--stop-when-posted", "",

@@ -3,8 +3,10 @@
 #include <chrono>
 #include <cstdint>
 #include <expected>
+#include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "command_line/read.hpp"
 #include "rehearsal/common.hpp"
@@ -22,8 +24,8 @@ struct Options {
   std::size_t robots = 3;
   TeamStyle style;
   MapOffers offers;
-  std::string maps;   // "": none
-  std::string truth;  // "": not written
+  std::vector<std::filesystem::path> maps;  // files that the robot `replay` posts
+  std::string truth;                        // "": not written
   std::optional<std::chrono::duration<double>> run_for;
   std::uint64_t seed = 1;
   double speed = 1;

@@ -211,9 +211,9 @@ class SetUp(Scripts):
         for name in "setup", "packages":
             shutil.copy(TOP / "toolchain" / name, self.folder / name)
 
-    def set_up(self, *says):
+    def set_up(self, *says, groups=("sanitizers",)):
         (self.folder / "says").write_text("".join(line + "\n" for line in says))
-        done = self.call(self.folder / "setup", "sanitizers", PATH=f"{self.folder}/bin:/usr/sbin:/usr/bin:/sbin:/bin")
+        done = self.call(self.folder / "setup", *groups, PATH=f"{self.folder}/bin:/usr/sbin:/usr/bin:/sbin:/bin")
         return done, [line.split()[0] for line in (self.folder / "calls").read_text().splitlines()]
 
     def test_it_waits_for_another_apt_and_reports_it_once(self):
@@ -225,6 +225,25 @@ class SetUp(Scripts):
         done, calls = self.set_up("E: Could not resolve the mirror")
         self.assertEqual((done.returncode, calls), (1, ["update"]))
         self.assertIn("Could not resolve", done.stderr)
+
+    def test_a_machine_without_apt_is_told_of_the_container(self):
+        for absent in "dpkg-query", "apt-get":
+            with self.subTest(absent):
+                tools = Path(tempfile.mkdtemp(dir=self.folder))
+                for name in {"bash", "dirname", "dpkg-query", "apt-get"} - {absent}:
+                    (tools / name).symlink_to(shutil.which(name))
+                done = self.call(self.folder / "setup", PATH=str(tools))
+                self.assertEqual((done.returncode, done.stdout, len(done.stderr.splitlines())), (1, "", 1), done.stderr)
+                self.assertRegex(done.stderr, r"^toolchain/setup: .* not Debian 12 or 13: put toolchain/container/run before the command")
+
+    def test_container_has_the_packages_of_both_commands(self):
+        """Their groups; and the step that installs them needs no more files than are copied before it."""
+        dockerfile = (TOP / "toolchain/container/Dockerfile").read_text()
+        copied, place, groups = re.search(r"^COPY ([\w ]+) (/\S+/)\nRUN \2setup ([a-z ]+) &&", dockerfile, re.M).groups()
+        self.assertEqual(set(copied.split()), {"setup", "packages"}, "as in setUp()")
+        self.assertEqual(self.set_up(groups=groups.split())[0].returncode, 0)
+        for script, asks in ("run", r"^toolchain/setup ([a-z ]+)$"), ("test", r"^groups=\(([a-z ]+)\)"):
+            self.assertLessEqual(set(re.search(asks, (TOP / "toolchain" / script).read_text(), re.M)[1].split()), set(groups.split()), script)
 
     def test_sanitizers_are_those_of_the_compiler_in_use(self):
         compiler = re.search(r"CXX_COMPILER clang\+\+-(\d+)", (TOP / "toolchain/cmake/ships.cmake").read_text())

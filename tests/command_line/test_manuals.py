@@ -6,7 +6,7 @@ import shutil
 import subprocess
 import unittest
 
-from manuals import BIN, PROGRAMS, help_of, made, options_in, program
+from manuals import BIN, PROGRAMS, SOURCE, help_of, made, options_in, program
 
 
 def pages():
@@ -54,6 +54,8 @@ class ManPages(unittest.TestCase):
         self.assertIn("adit reports --run all --json | jq -r '.[] | [.number, .type, .state] | @tsv'", adit)
         self.assertIn("ENVIRONMENT ADIT_AT used if", adit)
         self.assertIn("SEE ALSO aditd(8), adit-settings(5)", adit)
+        address = re.search(r'^set\(ADIT_BUGS "(.+)"\)$', (SOURCE / "CMakeLists.txt").read_text(), re.M)[1]
+        self.assertIn(f"BUGS report them at {address}, with the file that adit bundle writes", adit)
 
     def test_each_key_of_the_settings_is_in_their_page(self):
         text = shown(self.page_of("adit-settings"))

@@ -114,7 +114,7 @@ def page(program):
         for each in program.commands.values():
             lines += command(each, common)
         lines += [".SS " + roff(f"{program.name} help [COMMAND]"), "explain a command"]
-    for title in ("Exit status", "Environment", "Files"):
+    for title in ("Exit status", "Environment", "Files", "Bugs"):
         if texts.get(title):
             lines += [f".SH {title.upper()}", *kept(texts[title].splitlines())]
     if texts[""]:

@@ -78,7 +78,11 @@ void explain_all(Program& program) {
       "Files:\n"
       "  ~/.config/adit/contexts.json  addresses and tokens of adit login, for this user alone\n"
       "  /var/lib/adit/settings.json  the saved settings; without them, /etc/adit/settings.json\n"
-      "  /var/lib/adit/secrets        team.token or else scoring.token; without them, /etc/adit/secrets");
+      "  /var/lib/adit/secrets        team.token or else scoring.token; without them, /etc/adit/secrets\n"
+      "Bugs:\n"
+      "  report them at " ADIT_BUGS
+      ",\n"
+      "  with the file that adit bundle writes");
 }
 
 /// `sentences` owns texts that the program's rows refer to.

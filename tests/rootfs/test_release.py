@@ -62,6 +62,9 @@ def main():
     for words, why in (((), "which version?"), (("9.9.9",), f"has version {VERSION}, not 9.9.9"), ((VERSION, "toaster"), "no board 'toaster'")):
         status, said = release("--programs", BUILD, *words)
         assert status != 0 and why in said, said
+    if "(unreleased)" in (TOP / "CHANGELOG.md").read_text():  # with a date it would begin an hour's work
+        status, said = release(VERSION)
+        assert status != 0 and f"CHANGELOG.md gives {VERSION} no date" in said, said
     refuses_who_cannot_sign()
     if "--refusals" in sys.argv:
         return

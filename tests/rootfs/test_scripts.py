@@ -1,5 +1,6 @@
 """Scripts of the recipe and of the box, called with test files and directories: GRUB's environment, two disks, toolchain/image's
 options."""
+import json
 import os
 import re
 import shutil
@@ -244,6 +245,12 @@ class SetUp(Scripts):
         self.assertEqual(self.set_up(groups=groups.split())[0].returncode, 0)
         for script, asks in ("run", r"^toolchain/setup ([a-z ]+)$"), ("test", r"^groups=\(([a-z ]+)\)"):
             self.assertLessEqual(set(re.search(asks, (TOP / "toolchain" / script).read_text(), re.M)[1].split()), set(groups.split()), script)
+
+    def test_editors_build_the_same_container(self):
+        folder = TOP / ".devcontainer"
+        build = json.loads((folder / "devcontainer.json").read_text())["build"]
+        file, context = ((folder / build[name]).resolve().relative_to(TOP) for name in ("dockerfile", "context"))
+        self.assertIn(f" --file {file} {context}\n", (TOP / "toolchain/container/run").read_text())
 
     def test_sanitizers_are_those_of_the_compiler_in_use(self):
         compiler = re.search(r"CXX_COMPILER clang\+\+-(\d+)", (TOP / "toolchain/cmake/ships.cmake").read_text())

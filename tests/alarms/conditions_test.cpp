@@ -101,7 +101,7 @@ const ConditionCase kConditionCases[] = {
     {"robot_unknown:uav9", Ask, Side::Robot, "Robot uav9 is unknown", "only uav1, uav2",
      [](Snapshot& snapshot) {
        snapshot.clients.unknown_robots = {"uav9"};
-       snapshot.clients.known_robots = {"uav1", "uav2"};
+       snapshot.traffic.registered = {"uav1", "uav2"};
      }},
     {"clients_refused", Bad, Side::Robot, "Clients are rejected", "10.0.0.9",
      [](Snapshot& snapshot) { snapshot.clients.crowds = {{Crowd::Kind::NoRoom, "10.0.0.9"}}; }},

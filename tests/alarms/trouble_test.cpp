@@ -34,7 +34,7 @@ void robots_and_queue(std::vector<Snapshot>& days) {
   days.back().traffic.activities.back().age = 100;
   days.back().traffic.activities.back().last_no_room = kNow - 1;
   days.back().clients.unknown_robots = {"NAME"};
-  days.back().clients.known_robots = {"uav1"};
+  days.back().traffic.registered = {"uav1"};
   days.back().clients.crowds = {{Crowd::Kind::NoRoom, "ADDRESS"},
                                 {Crowd::Kind::WrongToken, "ADDRESS"},
                                 {Crowd::Kind::NoToken, "ADDRESS"},

@@ -56,7 +56,34 @@ TEST(Verdict, NamesRobotsWithoutAMap) {
   Snapshot snapshot = busy(2);
   snapshot.traffic.activities.push_back(
       {.kind = "state", .robot = "uav9", .last_forwarded = kNow, .heard = 1});
-  EXPECT_EQ(verdict_of(snapshot).why, "2 robots, oldest 1 s; no map from uav9");
+  EXPECT_EQ(verdict_of(snapshot),
+            (Verdict{Level::Good, "2 of 3 arrive", "2 robots, oldest 1 s; no map from uav9"}));
+  snapshot.traffic.activities[0].age = 11;
+  EXPECT_EQ(verdict_of(snapshot),
+            (Verdict{Level::Wait, "Maps are late", "uav1, 11 s behind; no map from uav9"}));
+  fall_silent(snapshot, "uav1");
+  EXPECT_EQ(verdict_of(snapshot),
+            (Verdict{Level::Wait, "1 of 3 arrive", "uav1 silent; no map from uav9; the other 1 s"}));
+}
+
+TEST(Verdict, NamesRegisteredRobotsThatWereNeverHeard) {
+  Snapshot snapshot = busy(2);
+  snapshot.traffic.registered = {"uav1", "uav2"};
+  EXPECT_EQ(verdict_of(snapshot).what, "Every map arrives");
+  snapshot.traffic.registered = {"uav10", "uav1", "uav9"};
+  EXPECT_EQ(verdict_of(snapshot),
+            (Verdict{Level::Good, "2 of 4 arrive", "2 robots, oldest 1 s; no map from uav9, uav10"}));
+}
+
+TEST(Verdict, IsAboutTheMergedMapIfNoRobotHasAnother) {
+  Snapshot snapshot = well(0);
+  snapshot.traffic.activities = {merged({}, 1)};
+  snapshot.traffic.registered = {"uav1"};
+  EXPECT_EQ(verdict_of(snapshot),
+            (Verdict{Level::Good, "The merged map arrives", "up to date; no map from uav1"}));
+  snapshot.traffic.activities = {merged({}, 600)};
+  EXPECT_EQ(verdict_of(snapshot),
+            (Verdict{Level::Quiet, "The merged map arrived", "no new map for 10 min; no map from uav1"}));
 }
 
 TEST(Verdict, NamesASilentRobot) {
@@ -79,7 +106,8 @@ TEST(Verdict, NamesARobotSilentSinceARestart) {
   EXPECT_EQ(verdict_of(snapshot), (Verdict{Level::Wait, "3 of 4 arrive", "uav9 silent; oldest other 2 s"}));
   snapshot.traffic.activities.push_back(
       {.kind = "state", .robot = "uav9", .last_forwarded = kNow, .heard = 50});
-  EXPECT_EQ(verdict_of(snapshot).what, "Every map arrives") << "the robot sends no maps";
+  EXPECT_EQ(verdict_of(snapshot).what, "3 of 4 arrive") << "the robot sends no maps";
+  EXPECT_EQ(verdict_of(snapshot).level, Level::Good);
 }
 
 TEST(Verdict, NamesRobotsByTheirNumbers) {
@@ -119,7 +147,7 @@ TEST(Verdict, CallsNoFirstMapLate) {
   const ActivityRow first{.kind = "grid", .robot = "uav9", .age = 1, .heard = 1};
   snapshot.traffic.activities.push_back(first);
   EXPECT_EQ(verdict_of(snapshot),
-            (Verdict{Level::Good, "Every map arrives", "2 robots, oldest 1 s; no map yet from uav9"}));
+            (Verdict{Level::Good, "2 of 3 arrive", "2 robots, oldest 1 s; no map yet from uav9"}));
   snapshot.traffic.activities.back().robot = "uav1";
   EXPECT_EQ(verdict_of(snapshot).why, "2 robots, oldest 1 s") << "a second kind of map";
   snapshot.traffic.activities.back() = first;
@@ -136,7 +164,7 @@ TEST(Verdict, CallsNoFirstMapLate) {
   EXPECT_EQ(verdict_of(snapshot), (Verdict{Level::Wait, "No map yet", "the first one is queued"}));
   snapshot.traffic.activities.push_back(merged({}, 600));
   EXPECT_EQ(verdict_of(snapshot),
-            (Verdict{Level::Quiet, "Every map arrived", "no new map for 10 min; no map yet from uav9"}));
+            (Verdict{Level::Quiet, "1 of 2 arrived", "no new map for 10 min; no map yet from uav9"}));
 }
 
 TEST(Verdict, TellsThatNoMapArrivesDuringAnOutage) {
@@ -176,7 +204,7 @@ TEST(Verdict, DoesNotCountTheMergedMapAsARobot) {
   snapshot.traffic.activities.push_back(merged(9, 1));
   EXPECT_EQ(verdict_of(snapshot).why, "2 robots and the merged map, oldest 9 s");
   snapshot.traffic.activities = {merged(9, 1)};
-  EXPECT_EQ(verdict_of(snapshot).why, "the merged map, 9 s");
+  EXPECT_EQ(verdict_of(snapshot), (Verdict{Level::Good, "The merged map arrives", "9 s"}));
 }
 
 /// uav1's grid, with all other streams good.

@@ -32,7 +32,7 @@ state               | merged | r1              | r2         | r3         | merge
 nothing posted      | no     |                 |            |            |              |                         | 0
     quiet No map yet: no robot has sent one since the box started
 nothing posted      | yes    |                 |            |            | well         |                         | 0
-    good Every map arrives: the merged map, up to date
+    good The merged map arrives: up to date
 all fresh           | no     | well            | well       | well       |              |                         | 0
     good Every map arrives: 3 robots, up to date
 all fresh           | yes    | well            | well       | well       | well         |                         | 0
@@ -54,9 +54,9 @@ quiet maps          | no     | well            | well       | well       |      
 quiet maps          | yes    | well            | well       | well       | well         |                         | 0
     good Every map arrives: the merged map, up to date; r1, r2, r3 quiet
 one without a map   | no     | well            | well       | well       |              |                         | 0
-    good Every map arrives: 2 robots, up to date; no map from r3
+    good 2 of 3 arrive: 2 robots, up to date; no map from r3
 one without a map   | yes    | well            | well       | well       | well         |                         | 0
-    good Every map arrives: 2 robots and the merged map, up to date; no map from r3
+    good 3 of 4 arrive: 2 robots and the merged map, up to date; no map from r3
 after a restart     | no     | well            | well       | well       |              |                         | 0
     good Every map arrives: 3 robots, oldest AGE
 after a restart     | yes    | well            | well       | well       | well         |                         | 0

@@ -253,6 +253,7 @@ facts::Traffic Overview::traffic(std::vector<facts::ActivityRow> activities) con
       .activities = std::move(activities),
       .habits = observed_.habits(rooms_.settings.alarms, steady),
       .robots = rooms_.flow.delivered().robots(),
+      .registered = roster_.names(),
       .queued = rooms_.flow.maps().queued_bytes(),
       .queue_room = rooms_.settings.queues.map_bytes,
       .queue_grows = observed_.queue_grows(steady)};
@@ -263,7 +264,6 @@ facts::Traffic Overview::traffic(std::vector<facts::ActivityRow> activities) con
 
 facts::Clients Overview::clients() const {
   return {.unknown_robots = roster_.unknown(rooms_.loop.now()),
-          .known_robots = roster_.names(),
           .crowds = crowding_.crowds(rooms_.loop.now()),
           .shut_out = rooms_.settings.team.require_token && rooms_.parts.store.unread().empty() &&
                       rooms_.parts.loaded.secrets.tokens.empty()};

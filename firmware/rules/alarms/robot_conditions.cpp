@@ -149,8 +149,8 @@ void find_full_queue(const Traffic& traffic, Found& found) {
   }
 }
 
-void find_unknown(const facts::Clients& clients, Found& found) {
-  const std::string known = icd::listed(clients.known_robots);
+void find_unknown(const facts::Clients& clients, const Traffic& traffic, Found& found) {
+  const std::string known = icd::listed(traffic.registered);
   for (const std::string& name : clients.unknown_robots) {
     found.push_back({.id = "robot_unknown:" + name,
                      .severity = Severity::Ask,
@@ -207,7 +207,7 @@ void find_robot_troubles(const Traffic& traffic, const facts::Clients& clients, 
   find_silent(traffic, found);
   find_behind(traffic, found);
   find_full_queue(traffic, found);
-  find_unknown(clients, found);
+  find_unknown(clients, traffic, found);
   find_crowds(clients, found);
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <ranges>
+#include <set>
 
 #include "alarms/alarm.hpp"
 #include "alarms/arrival.hpp"
@@ -124,13 +125,12 @@ Groups groups_of(const AllMaps& all) {
   return groups;
 }
 
-/// Robots that send other messages, but no map.
+/// Robots that send other messages or are registered, but of which no map came.
 std::vector<std::string> without_map(const Traffic& traffic, const AllMaps& all) {
-  std::vector<std::string> names;
-  for (const StandingRow& robot : traffic.standings) {
-    if (!all.contains(robot.name)) names.push_back(robot.name);
-  }
-  return names;
+  std::set<std::string, icd::NaturalOrder> names(traffic.registered.begin(), traffic.registered.end());
+  for (const StandingRow& robot : traffic.standings) names.insert(robot.name);
+  std::erase_if(names, [&all](const std::string& name) { return all.contains(name); });
+  return {names.begin(), names.end()};
 }
 
 std::string names_of(const std::vector<std::string>& names) {
@@ -149,23 +149,39 @@ void append(std::string& why, std::string_view before, const std::vector<std::st
   if (!names.empty()) why += sentence(why.empty() ? "" : "; ", before, names_of(names), after);
 }
 
-/// "20 robots and the merged map, oldest 22 s".
-std::string all_arrive(const Group& arriving) {
+/// "20 robots and the merged map, oldest 22 s". Of the merged map alone: "22 s".
+std::string all_arrive(const Group& arriving, bool is_merged_alone) {
   const bool is_merged = arriving.names.front().empty();  // the first by name
   const std::size_t robots = arriving.names.size() - (is_merged ? 1 : 0);
   std::string who;
   if (robots > 0) who = sentence(robots, robots == 1 ? " robot" : " robots");
   if (is_merged) who += robots > 0 ? " and the merged map" : "the merged map";
-  if (arriving.oldest.value_or(0) < 1) return who + ", up to date";
-  return sentence(who, arriving.names.size() == 1 ? ", " : ", oldest ", age_text(*arriving.oldest));
+  if (is_merged_alone)
+    who.clear();
+  else
+    who += ", ";
+  if (arriving.oldest.value_or(0) < 1) return who + "up to date";
+  return sentence(who, arriving.names.size() == 1 ? "" : "oldest ", age_text(*arriving.oldest));
 }
 
-/// Some maps fail, or their robots are silent.
-Verdict partly(const Groups& groups, std::size_t all) {
+/// "Every map arrives" only if the Command Post has a map of each of the `count` robots.
+Verdict arrives(const Groups& groups, std::size_t count, bool is_merged_alone, std::string why) {
+  const std::size_t there = groups.arriving.names.size() + groups.quiet.names.size();
+  const bool are_quiet = groups.arriving.empty(), are_many = !is_merged_alone && there < count;
+  const std::string who = is_merged_alone ? "The merged map"
+                          : are_many      ? sentence(there, " of ", count)
+                                          : "Every map";
+  const std::string_view verb = are_quiet ? " arrived" : are_many ? " arrive" : " arrives";
+  return {are_quiet ? Level::Quiet : Level::Good, sentence(who, verb), std::move(why)};
+}
+
+/// Some maps fail, or their robots are silent. `missing`: robots without a map.
+Verdict partly(const Groups& groups, std::size_t all, const std::vector<std::string>& missing) {
   std::string why;
   append(why, "not ", groups.failing.names, "");
   append(why, "", groups.silent.names, " silent");
   append(why, "no map yet from ", groups.first.names, "");
+  append(why, "no map from ", missing, "");
   append(why, "", groups.quiet.names, " quiet");
   const std::size_t arrive = groups.arriving.names.size() + groups.late.names.size();
   if (arrive == 0) return {Level::Bad, "No map arrives", std::move(why)};
@@ -294,11 +310,15 @@ Verdict verdict_of(const Traffic& traffic) {
   }
   if (all.empty()) return {Level::Quiet, "No map yet", "no robot has sent one since the box started"};
   const Groups groups = groups_of(all);
-  if (!groups.failing.empty() || !groups.silent.empty()) return partly(groups, all.size());
+  const auto missing = without_map(traffic, all);
+  const std::size_t count = all.size() + missing.size();
+  const bool is_merged_alone = all.size() == 1 && all.contains("");
+  if (!groups.failing.empty() || !groups.silent.empty()) return partly(groups, count, missing);
   if (!groups.late.empty()) {
     std::string why = names_of(groups.late.names);
     if (groups.late.oldest) why += ", " + age_text(*groups.late.oldest) + " behind";
     append(why, "no map yet from ", groups.first.names, "");
+    append(why, "no map from ", missing, "");
     return {Level::Wait, "Maps are late", std::move(why)};
   }
   if (groups.first.names.size() == all.size()) return {Level::Wait, "No map yet", "the first one is queued"};
@@ -308,13 +328,12 @@ Verdict verdict_of(const Traffic& traffic) {
     for (const std::string& name : groups.quiet.names) heard = least(heard, all.at(name).heard);
     why = "no new map for " + age_text(heard.value_or(0));
   } else {
-    why = all_arrive(groups.arriving);
+    why = all_arrive(groups.arriving, is_merged_alone);
     append(why, "", groups.quiet.names, " quiet");
   }
   append(why, "no map yet from ", groups.first.names, "");
-  append(why, "no map from ", without_map(traffic, all), "");
-  return groups.arriving.empty() ? Verdict{Level::Quiet, "Every map arrived", std::move(why)}
-                                 : Verdict{Level::Good, "Every map arrives", std::move(why)};
+  append(why, "no map from ", missing, "");
+  return arrives(groups, count, is_merged_alone, std::move(why));
 }
 
 }  // namespace adit::alarms

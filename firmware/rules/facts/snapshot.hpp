@@ -29,9 +29,10 @@ struct Traffic {
   std::vector<ActivityRow> activities = {};
   Habits habits = {};
   std::vector<RobotRow> robots = {};
-  std::vector<StandingRow> standings = {};  // from alarms::add_words()
-  double turn = 0;                          // seconds in which each queued map has its turn
-  std::size_t queued = 0, queue_room = 0;   // bytes
+  std::vector<StandingRow> standings = {};   // from alarms::add_words()
+  std::vector<std::string> registered = {};  // the robots of the settings
+  double turn = 0;                           // seconds in which each queued map has its turn
+  std::size_t queued = 0, queue_room = 0;    // bytes
   bool queue_grows = false;
 };
 
@@ -44,7 +45,7 @@ struct Crowd {
 
 /// The team's clients.
 struct Clients {
-  std::vector<std::string> unknown_robots = {}, known_robots = {};
+  std::vector<std::string> unknown_robots = {};
   std::vector<Crowd> crowds = {};
   bool shut_out = false;  // a token is required, but none is set
 };

@@ -163,7 +163,7 @@ test("shows the state of each report, and which reports need the operator", asyn
   await page.getByRole("button", { name: "All runs" }).click();
   const rows = await page.$$eval("#reports .rows li", (items) => items.map((item) => [item.dataset.level, item.innerText.replace(/Details of report \d+/, "").replace(/\s+/g, " ").trim()]));
   const expected = [
-    ["ask", /^Gas.*in doubt.*another client reports, too · 2\.0 m from #24.* Send again Settle Send again: it was not recorded\. Settle: it is never sent again\.$/],
+    ["ask", /^Gas.*in doubt.*another client reports, too · 2\.0 m from #24.* Send again Settle Not recorded\? Send again\. Recorded\? Settle: it is never sent again\.$/],
     ["ask", /^Gas.*held.*2 m from it.* Send Correct Withdraw$/],
     ["wait", /^Drill.*queued/],
     ["wait", /^Cube.*sending/],

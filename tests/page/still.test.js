@@ -15,12 +15,14 @@ const elsewhere = (stage, path, body = {}) =>
 test("no row moves under a mouse while another operator acts: new rows wait above, and appear once the mouse has left", async (t) => {
   const { stage, page } = await watch(t, "reports");
   await row(page, 25).locator(".title").hover();
+  assert.match(await row(page, 25).locator(".more").innerText(), /no answer came/);
   const before = (await boxes(page)).map(([key, , top]) => [key, top]);
   assert.equal((await elsewhere(stage, "/25/settle")).status, 200);
   assert.equal((await elsewhere(stage, "", { type: "Rope", x: 1, y: 2, z: 3 })).status, 202);
   await page.getByRole("button", { name: "1 new" }).waitFor();
   await row(page, 25).getByText("settled").waitFor();
   assert.deepEqual((await boxes(page)).map(([key, , top]) => [key, top]), before);
+  assert.doesNotMatch(await row(page, 25).locator(".more").innerText(), /no answer came/);
   for (const button of await row(page, 25).locator(".actions button").all()) assert.ok(await button.isDisabled());
   await page.mouse.move(100, 300);
   await row(page, 29).waitFor();

@@ -91,6 +91,8 @@ test("withdraws a report from the page before it is sent, or sends it now", asyn
   await composed(page, 60);
   await action(page, "Send now", 2).click();
   await made.becomes(2, "answered");
+  await says(page, 2, "points");
+  assert.doesNotMatch(await row(page, 2).innerText(), /will be sent|Accepted/);
   assert.equal(await recorded(made, 50), 0);
   assert.equal(await recorded(made, 60), 1);
   assert.equal((await made.ask("/adit/reports/2/withdraw", {})).status, 409);

@@ -44,7 +44,7 @@ export function actionsOf(report, isNear = false) {
 export function hintOf({ state, position }) {
   if (state !== "in_doubt") return "";
   const settle = `${SETTLE.label}: it is never sent again.`;
-  return position ? `${AGAIN.label}: it was not recorded. ${settle}` : settle;
+  return position ? `Not recorded? ${AGAIN.label}. Recorded? ${settle}` : settle;
 }
 
 let role = null, lost = false; // null: not learned yet
@@ -70,10 +70,15 @@ export const learned = learnRole();
 // What came of the last action at each report: {text, bad}.
 const outcomes = new Map();
 const underWay = new Set();
-export const outcomeOf = (number) => outcomes.get(number);
+/** "" once it is no longer true: the report was sent, and this shows by itself. */
+export function outcomeOf({ number, state }) {
+  const outcome = outcomes.get(number);
+  return [PAST.send, ACCEPTED].includes(outcome?.text) && ["in_doubt", "answered", "rejected"].includes(state) ? undefined : outcome;
+}
 export const isBusy = (number) => underWay.has(number);
 export const tell = (number, text, bad = false) => outcomes.set(number, { text, bad });
 
+export const ACCEPTED = "Accepted.";
 const PAST = { send: "The report will be sent.", hold: "Held until you send it.", withdraw: "Withdrawn.", settle: "Settled." };
 
 function question(action, report, remaining) {

@@ -1,6 +1,6 @@
 // A report composed by hand, in the place of the reports: what, then where, then a look at what is there already, then send.
 // The map stays where it is: a tap on it sets the place, and nothing opens under the finger.
-import { barred, tell } from "./actions.js";
+import { ACCEPTED, barred, tell } from "./actions.js";
 import { icon } from "./artifact_icons.js";
 import { notesOn } from "./check.js";
 import { list, make, mark, say } from "./dom.js";
@@ -158,7 +158,7 @@ async function send() {
   busy = at("send").disabled = true;
   try {
     const answer = old ? await post(`/adit/reports/${old.number}/correct`, { type, x, y, z }) : await post("/adit/reports", { type, x, y, z, resubmit });
-    tell(answer.report, old ? `Corrects report ${old.number}.` : before.has(answer.report) ? "The box has the same report already: this one." : "Accepted.");
+    tell(answer.report, old ? `Corrects report ${old.number}.` : before.has(answer.report) ? "The box has the same report already: this one." : ACCEPTED);
     drop();
     revealSoon(answer.report);
   } catch (error) {

@@ -133,6 +133,14 @@ function showActions(node, report, view, isShown) {
   });
 }
 
+/** If `isStill`, the text keeps its height, so that no button moves below it. */
+function sayAtPlace(node, text, isStill) {
+  if (!isStill) node.style.blockSize = "";
+  else if (!node.firstChild) return;
+  else node.style.blockSize ||= `${node.offsetHeight}px`;
+  say(node, isStill ? text || "\u00a0" : text);
+}
+
 function update(node, report, view, now) {
   const { level, word } = life(report);
   const isMore = opened.has(report.number);
@@ -148,7 +156,8 @@ function update(node, report, view, now) {
   say(where.lastChild, ` · ${ago(now - report.received)}`);
   const isTold = isMore || isOpen(report) || level === "bad" || level === "ask";
   const nearest = isTold ? nearestOf(report, view) : undefined;
-  if (!still.isHeld || own.has(report.number) || !node.dataset.told || report.sends_at) say(rest, isTold ? clip(more(report, nearest, now)) : "");
+  const isStill = still.isHeld && !own.has(report.number) && node.dataset.told && !report.sends_at;
+  sayAtPlace(rest, isTold ? clip(more(report, nearest, now)) : "", isStill);
   mark(node, "told", "true");
   if (!still.isHeld || own.has(report.number) || !near.firstChild) showNear(near, report, isMore || level === "ask" ? nearest : undefined);
   attribute(open, "aria-expanded", String(isMore));
@@ -156,7 +165,7 @@ function update(node, report, view, now) {
   showActions(actions, report, view, isMore || level === "ask" || Boolean(report.sends_at));
   say(hint, actions.firstChild ? hintOf(report) : "");
   set(acts, { hidden: !acts.querySelector("button") });
-  const came = outcomeOf(report.number);
+  const came = outcomeOf(report);
   say(outcome, came ? clip(came.text) : isBusy(report.number) ? "…" : "");
   mark(outcome, "bad", String(Boolean(came?.bad)));
   set(history, { hidden: !isMore });

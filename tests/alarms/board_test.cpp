@@ -52,6 +52,23 @@ TEST(Board, RestartsAnAlarmOfAnotherSeverity) {
   EXPECT_EQ(board.shown({none}, 164)[0].since, 160) << "few were left since 100, none since 160";
 }
 
+TEST(Board, TellsForHowLongAnEndedAlarmWasAtItsWorst) {
+  Board board;
+  Condition doubt{.id = "report_in_doubt:7", .severity = Severity::Ask, .headline = {"Report 7", "in doubt"}};
+  board.take({doubt}, 100);
+  doubt.severity = Severity::Wait;
+  board.take({doubt}, 160);
+  board.take({}, 162);
+  EXPECT_EQ(board.over().front().severity, Severity::Ask);
+  EXPECT_EQ(board.over().front().since, 100) << "the operator was asked since then";
+  doubt.severity = Severity::Wait;
+  board.take({doubt}, 200);
+  doubt.severity = Severity::Ask;
+  board.take({doubt}, 215);
+  board.take({}, 230);
+  EXPECT_EQ(board.over().front().since, 215);
+}
+
 TEST(Board, RemembersTheLastEndedAlarms) {
   Board board;
   board.take({kSilent}, 100);

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
+
 #include "alarms/alike.hpp"
 #include "icd/sentence.hpp"
 
@@ -253,6 +255,19 @@ TEST(Conditions, AreEachFoundAndSayWhatToDo) {
     EXPECT_TRUE(colon == std::string::npos || found[0].subject == found[0].id.substr(colon + 1)) << each.id;
     EXPECT_EQ(found[0].action.word.empty(), found[0].action.link.empty()) << each.id;
   }
+}
+
+TEST(Conditions, LeadToTheFieldsThatMendThem) {
+  std::map<std::string, std::string> links;
+  for (const ConditionCase& each : kConditionCases) {
+    Snapshot snapshot = well();
+    each.make(snapshot);
+    links[each.id] = conditions_of(snapshot).at(0).action.link;
+  }
+  EXPECT_EQ(links.at("no_token:scoring"), "/setup#tokens-post");
+  EXPECT_EQ(links.at("no_token:mapping"), "/setup#tokens-post");
+  EXPECT_EQ(links.at("command_post_refusing"), "/setup#tokens-post");
+  EXPECT_EQ(links.at("command_post_foreign"), "/setup#post");
 }
 
 TEST(Conditions, HaveHeadlinesOfAtMostSevenWords) {

@@ -105,7 +105,7 @@ test("switches to another course by one press, after showing the changes", async
   assert.deepEqual(await review(page), [
     ["Course", "No course", "Course B"],
     ["Scoring address", "127.0.0.1:1", `127.0.0.1:${box.scoring}`], ["Mapping address", "127.0.0.1:2", `127.0.0.1:${box.mapping}`],
-    ["Scoring token", "common", "own"], ["Mapping token", "common", "common"],
+    ["Scoring token", "common", "own of Course B"],
   ]);
   await page.locator("#review").getByText(`reports go to 127.0.0.1:${box.scoring} from then on; no report is queued, in doubt or held now`).waitFor();
   await page.getByRole("button", { name: "Switch", exact: true }).click();

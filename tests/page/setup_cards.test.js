@@ -76,6 +76,9 @@ test("opens the card that the address names, or that has the setting of the addr
   await page.goto(new URL("/setup#tokens-team", page.url()).href);
   await page.getByLabel("Team’s token", { exact: true }).waitFor();
   assert.deepEqual(await openedCards(page), ["tokens-team"]);
+  await page.goto(new URL("/setup#tokens-post", page.url()).href);
+  await page.waitForFunction(() => document.activeElement.closest(".folds")?.id === "tokens-post");
+  assert.deepEqual(await openedCards(page), ["tokens-post", "tokens-team"], "also if both are set, for an alarm of a rejected one");
 });
 
 test("opens the tokens if one is missing, and says which", async (t) => {

@@ -55,7 +55,7 @@ EndedAlarm Board::over(const Known& known, double now) {
           .severity = condition.severity,
           .side = condition.side,
           .was = condition.headline.past(),
-          .since = known.since,
+          .since = known.worst_since,
           .until = now};
 }
 
@@ -78,6 +78,7 @@ void Board::take(const std::vector<Condition>& conditions, double now) {
     Known& known = place->second;
     if (came || condition.severity != known.condition.severity)
       known.since = condition.since > 0 ? condition.since : now;
+    if (came || condition.severity < known.worst.severity) known.worst_since = known.since;
     if (known.acknowledged && is_worse(condition, known)) known.acknowledged = false;
     known.condition = condition;
     const bool is_better =
@@ -133,6 +134,7 @@ std::vector<Acknowledged> Board::acknowledged() const {
 void Board::move(double seconds) {
   for (auto& [id, known] : known_) {
     known.since += seconds;
+    known.worst_since += seconds;
     known.seen.at += seconds;
   }
   for (Acknowledged& before : before_) before.at += seconds;

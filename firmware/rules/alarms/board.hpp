@@ -62,7 +62,7 @@ class Board {
  private:
   struct Known {
     Condition condition, worst;  // now; at its worst, for the history
-    double since = 0;
+    double since = 0, worst_since = 0;
     bool acknowledged = false;
     Acknowledged seen = {};  // the alarm when it was acknowledged
   };

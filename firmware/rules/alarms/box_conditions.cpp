@@ -44,7 +44,7 @@ void find_cables(const Traffic& traffic, Found& found) {
     } else {
       condition.headline = {"Interface " + link.interface, "missing"};
       condition.why = "set-up names it for the " + std::string(link.is_team() ? "team" : "Command Post");
-      condition.action = kOpenSetUp;
+      condition.action = {"Open set-up", sentence("/setup?setting=", side, ".interface#all")};
     }
     found.push_back(std::move(condition));
   }
@@ -241,7 +241,10 @@ void find_box_troubles(const facts::Box& box, Found& found) {
   }
   find_stamp_troubles(box, found);
   add(found, box.ntp_trouble,
-      {.id = "ntp", .severity = Severity::Wait, .headline = {"NTP", "not working"}, .action = kOpenSetUp});
+      {.id = "ntp",
+       .severity = Severity::Wait,
+       .headline = {"NTP", "not working"},
+       .action = {"Open set-up", "/setup?setting=clock.ntp_server#all"}});
   add(found, box.change_trouble,
       {.id = "settings_not_changed", .headline = {"The last change", "not used"}, .action = kOpenSetUp});
   add(found, box.settings_trouble,

@@ -14,7 +14,8 @@ using facts::EndpointFault;
 using facts::EndpointRow;
 using icd::sentence;
 
-const Action kSetUp{"Open set-up", "/setup"};
+const Action kOpenAddresses{"Open set-up", "/setup#post"};
+const Action kOpenTokens{"Open set-up", "/setup#tokens-post"};
 const Action kTest{"Open test", "/setup#test"};
 
 /// The same trouble of one endpoint or of both.
@@ -54,7 +55,7 @@ void find_missing_tokens(const facts::Traffic& traffic, Found& found) {
                      .since = endpoint.since,
                      .headline = {"The " + endpoint.name + " token", "missing"},
                      .why = sentence(scoring ? "reports" : "maps, states and markers", " stay queued"),
-                     .action = kSetUp});
+                     .action = kOpenTokens});
   }
 }
 
@@ -67,7 +68,7 @@ void say_foreign(const Trouble& trouble, Condition& condition) {
   condition.headline = {"The server", "not a Command Post"};
   condition.why = sentence(trouble.where(), trouble.both() ? "" : " (" + trouble.first().name + ")",
                            "; check the address");
-  condition.action = kSetUp;
+  condition.action = kOpenAddresses;
 }
 
 void say_refusing(const Trouble& trouble, Condition& condition) {
@@ -77,7 +78,7 @@ void say_refusing(const Trouble& trouble, Condition& condition) {
   if (!trouble.both() && trouble.first().name == "mapping" && !trouble.only_robot.empty())
     condition.why = sentence("the Command Post answers 401 or 403; is the course right, and does it know ",
                              trouble.only_robot, "?");
-  condition.action = kSetUp;
+  condition.action = kOpenTokens;
 }
 
 void say_silent(const Trouble& trouble, Condition& condition) {

@@ -103,7 +103,7 @@ void find_elsewhere(const facts::Reports& reports, Found& found) {
                      .headline = {count == 1 ? "1 report" : sentence(count, " reports"), "for another server",
                                   count != 1},
                      .why = sentence("queued for ", post, ", which the settings do not name"),
-                     .action = {"Open set-up", "/setup"},
+                     .action = {"Open set-up", "/setup#post"},
                      .degree = count});
   }
 }

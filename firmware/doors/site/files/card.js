@@ -38,6 +38,7 @@ export function followAddress() {
     if (!card) return;
     card.open = true;
     section.scrollIntoView();
+    card.querySelector("summary").focus({ preventScroll: true });
   };
   addEventListener("hashchange", open);
   open();

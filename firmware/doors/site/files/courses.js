@@ -154,7 +154,11 @@ function changesBy(name) {
     const post = postOf(base, course);
     return post ? at(post[endpoint]) : "removed";
   };
-  return [["Course", nameOf(now), nameOf(name)], ...rows("address", addressOf), ...rows("token", tokenOf)];
+  const ownerOf = (course, endpoint) => {
+    const token = tokenOf(course, endpoint);
+    return token === "own" ? `own of ${nameOf(course)}` : token;
+  };
+  return [["Course", nameOf(now), nameOf(name)], ...rows("address", addressOf), ...rows("token", ownerOf)].filter(([, from, to]) => from !== to);
 }
 
 async function switchTo(name) {

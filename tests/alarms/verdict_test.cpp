@@ -56,8 +56,7 @@ TEST(Verdict, NamesRobotsWithoutAMap) {
   Snapshot snapshot = busy(2);
   snapshot.traffic.activities.push_back(
       {.kind = "state", .robot = "uav9", .last_forwarded = kNow, .heard = 1});
-  EXPECT_EQ(verdict_of(snapshot),
-            (Verdict{Level::Good, "2 of 3 arrive", "2 robots, oldest 1 s; no map from uav9"}));
+  EXPECT_EQ(verdict_of(snapshot), (Verdict{Level::Good, "2 of 3 arrive", "oldest 1 s; no map from uav9"}));
   snapshot.traffic.activities[0].age = 11;
   EXPECT_EQ(verdict_of(snapshot),
             (Verdict{Level::Wait, "Maps are late", "uav1, 11 s behind; no map from uav9"}));
@@ -72,7 +71,7 @@ TEST(Verdict, NamesRegisteredRobotsThatWereNeverHeard) {
   EXPECT_EQ(verdict_of(snapshot).what, "Every map arrives");
   snapshot.traffic.registered = {"uav10", "uav1", "uav9"};
   EXPECT_EQ(verdict_of(snapshot),
-            (Verdict{Level::Good, "2 of 4 arrive", "2 robots, oldest 1 s; no map from uav9, uav10"}));
+            (Verdict{Level::Good, "2 of 4 arrive", "oldest 1 s; no map from uav9, uav10"}));
 }
 
 TEST(Verdict, IsAboutTheMergedMapIfNoRobotHasAnother) {
@@ -147,7 +146,7 @@ TEST(Verdict, CallsNoFirstMapLate) {
   const ActivityRow first{.kind = "grid", .robot = "uav9", .age = 1, .heard = 1};
   snapshot.traffic.activities.push_back(first);
   EXPECT_EQ(verdict_of(snapshot),
-            (Verdict{Level::Good, "2 of 3 arrive", "2 robots, oldest 1 s; no map yet from uav9"}));
+            (Verdict{Level::Good, "2 of 3 arrive", "oldest 1 s; no map yet from uav9"}));
   snapshot.traffic.activities.back().robot = "uav1";
   EXPECT_EQ(verdict_of(snapshot).why, "2 robots, oldest 1 s") << "a second kind of map";
   snapshot.traffic.activities.back() = first;
@@ -326,7 +325,10 @@ const struct {
     {"two quiet maps",
      {of("grid", 600), of("cloud", 99), of("state", 70)},
      "quiet, quiet, map -, heard 1 min"},
-    {"a map never delivered", {of("grid", {}), of("cloud", 4)}, "wait, waiting, map -, heard 4 s"},
+    {"a map never delivered", {of("grid", {}), of("state", 4)}, "wait, waiting, map -, heard 4 s"},
+    {"a second kind of map, never delivered",
+     {of("grid", {}, 0, 9), of("cloud", 4)},
+     "good, up to date, map 9 s, heard 4 s"},
     {"no map", {of("state", 4, 200, 1)}, "good, arriving, 1 s, heard 4 s"},
     {"nothing heard since the start", {}, "bad, silent, silent, -, heard 34 s", true},
     {"nothing heard while the endpoint is down", {}, "", true, EndpointFault::Silent},

@@ -18,7 +18,7 @@ test("tests addresses as they are typed, before they are saved, and says what to
   const { box, ask, page } = await ready(t, "setup#post");
   await page.getByLabel("Scoring port", { exact: true }).fill(String(box.scoring));
   await tries(page).click();
-  const [scoring, mapping] = await tried(page, "typed", "1 of 12 steps failed. These values are not applied yet. No report was used up.");
+  const [scoring, mapping] = await tried(page, "typed", "1 of 12 steps failed: mapping connection. These values are not applied yet. No report was used up.");
   assert.deepEqual([scoring[3], scoring[4], mapping[3]], ["good", "good", "bad"]);
   assert.match(await page.locator("[data-tried=typed] .trial").last().innerText(), /127\.0\.0\.1:2[\s\S]*no server at that port[\s\S]*Compare the port/);
   await page.getByLabel("Mapping port", { exact: true }).fill(String(box.mapping));
@@ -41,13 +41,13 @@ test("drops a result once its values changed: typed, saved, or saved by another 
   const changed = "The settings have changed since the last test.";
   await type("Scoring port", box.scoring);
   await tries(page).click();
-  await tried(page, "typed", "1 of 12 steps failed. These values are not applied yet.");
+  await tried(page, "typed", "1 of 12 steps failed: mapping connection. These values are not applied yet.");
   await type("Mapping port", box.mapping);
   assert.equal(await shows("typed", ""), 0);
   await type("Mapping port", 2);
-  assert.equal(await shows("typed", "1 of 12 steps failed. These values are not applied yet. No report was used up."), 2);
+  assert.equal(await shows("typed", "1 of 12 steps failed: mapping connection. These values are not applied yet. No report was used up."), 2);
   await page.reload();  // the typed values stay, but the page does not know whether they were tested
-  assert.equal(await shows("typed", "1 of 12 steps failed. This test began elsewhere, perhaps with other values. No report was used up."), 2);
+  assert.equal(await shows("typed", "1 of 12 steps failed: mapping connection. This test began elsewhere, perhaps with other values. No report was used up."), 2);
 
   await type("Mapping port", box.mapping);
   await tries(page).click();
@@ -145,7 +145,7 @@ test("tests a course before a switch, and marks it apart from the Test of the cu
   assert.equal((await ask("/adit/settings")).said.settings.command_post.course, "");
   await step(page, "Test").click();
   await page.getByRole("button", { name: "Run the test" }).click();
-  await tried(page, "applied", "2 of 12 steps failed. No report was used up.");
+  await tried(page, "applied", "2 of 12 steps failed: scoring connection, mapping connection. No report was used up.");
   await step(page, "Test").getByText("failed").waitFor();
 });
 

@@ -149,30 +149,20 @@ void append(std::string& why, std::string_view before, const std::vector<std::st
   if (!names.empty()) why += sentence(why.empty() ? "" : "; ", before, names_of(names), after);
 }
 
-/// "20 robots and the merged map, oldest 22 s". Of the merged map alone: "22 s".
-std::string all_arrive(const Group& arriving, bool is_merged_alone) {
+/// "20 robots and the merged map, "
+std::string who_arrive(const Group& arriving) {
   const bool is_merged = arriving.names.front().empty();  // the first by name
   const std::size_t robots = arriving.names.size() - (is_merged ? 1 : 0);
   std::string who;
   if (robots > 0) who = sentence(robots, robots == 1 ? " robot" : " robots");
   if (is_merged) who += robots > 0 ? " and the merged map" : "the merged map";
-  if (is_merged_alone)
-    who.clear();
-  else
-    who += ", ";
-  if (arriving.oldest.value_or(0) < 1) return who + "up to date";
-  return sentence(who, arriving.names.size() == 1 ? "" : "oldest ", age_text(*arriving.oldest));
+  return who + ", ";
 }
 
-/// "Every map arrives" only if the Command Post has a map of each of the `count` robots.
-Verdict arrives(const Groups& groups, std::size_t count, bool is_merged_alone, std::string why) {
-  const std::size_t there = groups.arriving.names.size() + groups.quiet.names.size();
-  const bool are_quiet = groups.arriving.empty(), are_many = !is_merged_alone && there < count;
-  const std::string who = is_merged_alone ? "The merged map"
-                          : are_many      ? sentence(there, " of ", count)
-                                          : "Every map";
-  const std::string_view verb = are_quiet ? " arrived" : are_many ? " arrive" : " arrives";
-  return {are_quiet ? Level::Quiet : Level::Good, sentence(who, verb), std::move(why)};
+/// "oldest 22 s"
+std::string age_of(const Group& arriving) {
+  if (arriving.oldest.value_or(0) < 1) return "up to date";
+  return sentence(arriving.names.size() == 1 ? "" : "oldest ", age_text(*arriving.oldest));
 }
 
 /// Some maps fail, or their robots are silent. `missing`: robots without a map.
@@ -192,7 +182,12 @@ Verdict partly(const Groups& groups, std::size_t all, const std::vector<std::str
 
 /// `rows`: of the robot, in the order of kinds.
 StandingRow standing_row(const std::string& name, const std::vector<const ActivityRow*>& rows) {
-  const ActivityRow& worst = **std::ranges::max_element(rows, {}, &ActivityRow::level);
+  const bool has_delivered = std::ranges::any_of(
+      rows, [](const ActivityRow* row) { return row->is_map() && row->arrival != Arrival::NotYet; });
+  const auto weight = [has_delivered](const ActivityRow* row) {  // the first map of a second kind is not late
+    return has_delivered && row->arrival == Arrival::NotYet ? -1 : static_cast<int>(row->level);
+  };
+  const ActivityRow& worst = **std::ranges::max_element(rows, {}, weight);
   StandingRow standing{.name = name, .level = worst.level, .word = worst.word};
   standing.has_map = std::ranges::any_of(rows, &ActivityRow::is_map);
   for (const ActivityRow* row : rows) {
@@ -322,18 +317,24 @@ Verdict verdict_of(const Traffic& traffic) {
     return {Level::Wait, "Maps are late", std::move(why)};
   }
   if (groups.first.names.size() == all.size()) return {Level::Wait, "No map yet", "the first one is queued"};
+  const std::size_t there = groups.arriving.names.size() + groups.quiet.names.size();
+  const bool are_all = there == count && !is_merged_alone, are_quiet = groups.arriving.empty();
   std::string why;
-  if (groups.arriving.empty()) {
+  if (are_quiet) {
     std::optional<double> heard;
     for (const std::string& name : groups.quiet.names) heard = least(heard, all.at(name).heard);
     why = "no new map for " + age_text(heard.value_or(0));
   } else {
-    why = all_arrive(groups.arriving, is_merged_alone);
+    why = (are_all ? who_arrive(groups.arriving) : "") + age_of(groups.arriving);
     append(why, "", groups.quiet.names, " quiet");
   }
   append(why, "no map yet from ", groups.first.names, "");
   append(why, "no map from ", missing, "");
-  return arrives(groups, count, is_merged_alone, std::move(why));
+  const std::string which = are_all           ? "Every map"
+                            : is_merged_alone ? "The merged map"
+                                              : sentence(there, " of ", count);
+  const std::string_view verb = are_quiet ? " arrived" : are_all || is_merged_alone ? " arrives" : " arrive";
+  return {are_quiet ? Level::Quiet : Level::Good, which + std::string(verb), std::move(why)};
 }
 
 }  // namespace adit::alarms

@@ -9,11 +9,11 @@ import { get, post } from "./session.js";
 const EVERY = 500, IDLE = 4000; // ms, while a test runs, and else: another operator may begin one, or save
 const NAMES = {
   link: "Cable and link",
-  address: "No other machine has the box’s address",
-  cables: "Each cable is in its port",
-  reach: "The endpoint answers",
-  token: "The token is accepted",
-  clock: "The clocks agree",
+  address: "The box’s address",
+  cables: "Cables and ports",
+  reach: "Connection",
+  token: "Token",
+  clock: "Clocks",
 };
 const LEVELS = { waiting: "quiet", running: "ask", good: "good", bad: "bad", skipped: "quiet" };
 const places = new Map([...document.querySelectorAll("[data-tried]")].map((place) => [place.dataset.tried, place]));
@@ -76,8 +76,8 @@ function verdictOf(states) {
   if (lost && running) return lost;
   if (running) return `The test is running. ${applied ? "It uses up no report." : "The run continues, and no report is used up."}`;
   if (outdated) return "The settings have changed since the last test.";
-  const bad = states.filter((state) => state === "bad").length;
-  const verdict = bad ? `${bad} of ${states.length} steps failed.` : states.includes("good") ? "All is well." : "";
+  const bad = view.endpoints.flatMap((each) => each.steps.filter(({ state }) => state === "bad").map((step) => `${each.name} ${(NAMES[step.name] ?? step.name).toLowerCase()}`));
+  const verdict = bad.length ? `${bad.length} of ${states.length} steps failed: ${bad.join(", ")}.` : states.includes("good") ? "All is well." : "";
   if (!verdict || !isCurrent(view)) return "";
   return [verdict, applied ? "" : ofWhat(), "No report was used up."].filter(Boolean).join(" ");
 }

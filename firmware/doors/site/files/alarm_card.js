@@ -26,11 +26,9 @@ async function acknowledge(id) {
 /** An alarm with its two buttons; for the strip and for the list. */
 export function alarmCard() {
   const act = make("a.act"), seen = make("button.seen", "Acknowledge");
-  seen.type = "button";
   seen.title = "Acknowledge: silence this alarm until it gets worse";
   const text = make("p.tx", make("strong", make("span.what"), " ", make("span.for")), make("span.why"));
   const node = make("div.alarm", make("span.glyph"), text, make("p.acts", act, seen));
-  node.querySelector(".glyph").setAttribute("aria-hidden", "true");
   seen.addEventListener("click", () => acknowledge(node.dataset.key));
   return node;
 }

@@ -197,7 +197,6 @@ export function goTo({ path }) {
 
 function errorLink(error) {
   const item = make("button", `${nameOf(error.path)}: ${spoken(error.what)}`);
-  item.type = "button";
   item.addEventListener("click", () => goTo(error));
   return make("li", error.field ? item : item.textContent);
 }

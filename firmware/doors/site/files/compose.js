@@ -26,7 +26,6 @@ let height = null; // where z is from, as of heightsAt(); null: typed
 
 const types = TYPES.map((name) => {
   const button = make("button.type", icon(name), make("span", name));
-  button.type = "button";
   button.addEventListener("click", () => choose(name));
   at("types").append(button);
   return { name, button };
@@ -99,7 +98,6 @@ function offerHeights(choices) {
   at("heights").hidden = !choices.length;
   at("heights").replaceChildren(...choices.map((choice) => {
     const button = make("button", heightWords(choice, view.now));
-    button.type = "button";
     button.addEventListener("click", () => {
       setHeight(choice);
       check();

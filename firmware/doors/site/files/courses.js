@@ -52,7 +52,7 @@ function create(name) {
   const field = labelled(labelOf(name), input, HINTS[name] ?? "");
   const state = make("p.state"), outcome = make("p.outcome");
   outcome.setAttribute("role", "status");
-  const [show, remove, set] = ["Show", "Remove", "Set"].map((word) => Object.assign(make("button", word), { type: "button" }));
+  const [show, remove, set] = ["Show", "Remove", "Set"].map((word) => make("button", word));
   set.className = "set main";
   set.type = "submit";
   for (const button of [show, remove, set]) button.setAttribute("aria-label", `${button.textContent}: ${titleOf(name)}`);
@@ -176,7 +176,7 @@ async function switchTo(name) {
 
 /** What a card begins with: whether the course is in use, and the ways to test it and to switch to it. */
 function createHead() {
-  const [tries, button] = ["Try", "Switch"].map((word) => Object.assign(make("button", word), { type: "button" }));
+  const [tries, button] = ["Try", "Switch"].map((word) => make("button", word));
   tries.dataset.tries = "";
   return make("div.course", make("span.name"), make("span.badge"), make("div.acts", tries, button));
 }

@@ -1,12 +1,25 @@
 // The little of the DOM that the page needs. Text is only ever put in as text: names are anybody's.
 
-/** An element with classes ("li.robot.quiet") and children, each a node or a text. */
+/** An element with classes ("li.robot.quiet") and children, each a node or a text. A button submits no form, and a glyph is only seen. */
 export function make(what, ...children) {
   const [tag, ...classes] = what.split(".");
   const node = document.createElement(tag);
+  if (tag === "button") node.type = "button";
+  if (classes[0] === "glyph") node.setAttribute("aria-hidden", "true");
   if (classes.length) node.className = classes.join(" ");
   node.append(...children);
   return node;
+}
+
+/** A picture of the size `box`, with a path for each of `paths`, their attributes. It is only seen: whoever shows it writes words beside it. */
+export function draw(box, looks, ...paths) {
+  const create = (tag, attributes, ...children) => {
+    const node = document.createElementNS("http://www.w3.org/2000/svg", tag);
+    for (const [name, value] of Object.entries(attributes)) node.setAttribute(name, value);
+    node.append(...children);
+    return node;
+  };
+  return create("svg", { viewBox: box, "aria-hidden": "true", ...looks }, ...paths.map((path) => create("path", path)));
 }
 
 /** Sets a text where it differs, so that nothing is read out or laid out again for nothing. */
@@ -30,11 +43,7 @@ export function mark(node, name, value) {
 
 /** A shape and a word for a level, so that colour is never all that tells: see page.css for the shapes. */
 export function badge(node, level, word) {
-  if (!node.firstChild) {
-    const glyph = make("span.glyph");
-    glyph.setAttribute("aria-hidden", "true");
-    node.append(glyph, " ", make("span.text"));
-  }
+  if (!node.firstChild) node.append(make("span.glyph"), " ", make("span.text"));
   mark(node.querySelector(".glyph"), "level", level);
   say(node.querySelector(".text"), word);
   return node;

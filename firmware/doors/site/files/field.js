@@ -126,7 +126,6 @@ const blank = (keys) => {
 /** Opens and closes the rare fields of an item. */
 function rareFields(fields) {
   const rare = make("div.fields.rare", ...fields), button = make("button.opens");
-  button.type = "button";
   rare.isOpen = (isOpen) => {
     rare.hidden = !isOpen;
     button.setAttribute("aria-expanded", String(isOpen));
@@ -153,12 +152,10 @@ export function listOf(place) {
   const titles = make("div.titles", ...usualKeys.map(([name]) => make("span", labelOf(name))));
   titles.setAttribute("aria-hidden", "true"); // each field has its label
   const rows = make("div.items"), more = make("button", add);
-  more.type = "button";
   place.append(titles, rows, make("div.answers", more));
 
   const row = (i) => {
     const remove = make("button.remove", "Remove");
-    remove.type = "button";
     remove.setAttribute("aria-label", `Remove: ${item} ${i + 1}`);
     remove.addEventListener("click", () => {
       rows.replaceChildren(); // the paths of the rows after it are others now

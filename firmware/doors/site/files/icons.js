@@ -1,4 +1,5 @@
 // Small pictures of what is pressed, as lines of 24 x 24 units.
+import { draw } from "./dom.js";
 
 const DRAWN = {
   run: "M4 19V9M10 19V5M16 19v-7M21 19H3",
@@ -13,11 +14,4 @@ const DRAWN = {
 };
 
 /** Its picture as a node, in the colour of the text. */
-export function drawn(name) {
-  const svg = document.createElementNS("http://www.w3.org/2000/svg", "svg");
-  const path = document.createElementNS(svg.namespaceURI, "path");
-  for (const [key, value] of Object.entries({ class: "icon", viewBox: "0 0 24 24", "aria-hidden": "true" })) svg.setAttribute(key, value);
-  path.setAttribute("d", DRAWN[name]);
-  svg.append(path);
-  return svg;
-}
+export const drawn = (name) => draw("0 0 24 24", { class: "icon" }, { d: DRAWN[name] });

@@ -1,9 +1,8 @@
 // The link over the last ten minutes: rate, queue, what was throttled, and each endpoint's delay.
-import { list, make, mark, say } from "./dom.js";
+import { draw, list, make, mark, say } from "./dom.js";
 import { Plot } from "./plot.js";
 import { answeredWords, bytes, mbit, ms } from "./words.js";
 
-const SVG = "http://www.w3.org/2000/svg";
 const plots = document.getElementById("plots");
 const known = new Map(); // a plot by its key
 const counted = new Map(); // an endpoint's throttled, when last sampled
@@ -55,15 +54,7 @@ function quantities(view, lost) {
 }
 
 function create(quantity) {
-  const svg = document.createElementNS(SVG, "svg");
-  svg.setAttribute("viewBox", "0 0 149 32");
-  svg.setAttribute("preserveAspectRatio", "none");
-  svg.setAttribute("aria-hidden", "true");
-  for (const name of ["lost", "area", "line"]) {
-    const path = document.createElementNS(SVG, "path");
-    path.setAttribute("class", name);
-    svg.append(path);
-  }
+  const svg = draw("0 0 149 32", { preserveAspectRatio: "none" }, { class: "lost" }, { class: "area" }, { class: "line" });
   known.set(quantity.key, new Plot(svg, quantity.least));
   return make("li", make("span.label", quantity.label), make("p", make("strong"), make("span.unit")), svg, make("span.note"));
 }

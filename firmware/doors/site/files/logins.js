@@ -27,9 +27,7 @@ function browserOf(agent) {
 }
 
 function create() {
-  const button = make("button");
-  button.type = "button";
-  return make("li", make("span.role"), make("span.from"), make("span.note"), button);
+  return make("li", make("span.role"), make("span.from"), make("span.note"), make("button"));
 }
 
 function update(node, each, now) {

@@ -55,11 +55,8 @@ async function discardAll(rows) {
 }
 
 function create({ number }) {
-  const send = make("button.send"), discard = make("button.discard");
-  say(send, "Send again");
-  say(discard, "Discard");
+  const send = make("button.send", "Send again"), discard = make("button.discard", "Discard");
   for (const button of [send, discard]) button.setAttribute("aria-label", `${button.textContent}: ${number}`);
-  for (const button of [send, discard]) button.type = "button";
   return make("li", make("span.what"), make("span.since"), make("span.why"), send, discard);
 }
 
@@ -89,7 +86,6 @@ function groupsOf(rows) {
 
 function createGroup({ key }) {
   const [open, discard] = [make("button.opens"), make("button.discard", "Discard all")];
-  for (const button of [open, discard]) button.type = "button";
   open.addEventListener("click", () => {
     if (!opened.delete(key)) opened.add(key);
     showSingles(open.parentNode, key);

@@ -45,7 +45,6 @@ rows.parentNode.addEventListener("scroll", ({ target }) => {
 
 function create(report) {
   const open = make("button.open");
-  open.type = "button";
   open.append(make("span.chevron"), make("span.spoken"));
   open.addEventListener("click", () => toggle(report.number));
   const outcome = make("p.outcome");
@@ -98,12 +97,7 @@ function more(report, nearest, now) {
 }
 
 function showNear(node, report, nearest) {
-  const create = () => {
-    const button = make("button", "Show both");
-    button.type = "button";
-    return button;
-  };
-  list(node, nearest ? [nearest] : [], () => "both", create, (button, { other }) => {
+  list(node, nearest ? [nearest] : [], () => "both", () => make("button", "Show both"), (button, { other }) => {
     button.setAttribute("aria-label", `Show both on the map: reports ${report.number} and ${other.number}`);
     button.onclick = () => comparePair(report, other, button);
   });
@@ -113,7 +107,6 @@ function showActions(node, report, view, isShown) {
   const reason = barred();
   const createAction = (action) => {
     const button = make("button", action.label);
-    button.type = "button";
     button.setAttribute("aria-label", `${action.label}: report ${report.number}`);
     return button;
   };

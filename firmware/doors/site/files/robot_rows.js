@@ -1,11 +1,10 @@
 // Robots as rows, worst first. Nothing moves under a pointer or the focus: what changes in the order waits until it is left.
-import { attribute, badge, list, make, mark, say, set } from "./dom.js";
+import { attribute, badge, draw, list, make, mark, say, set } from "./dom.js";
 import { BOX, pathOf } from "./robot_ages.js";
 import { tint } from "./robot_colour.js";
 import { figureOf, figureWords } from "./robot_state.js";
 import { ago, byName, clip } from "./words.js";
 
-const SVG = "http://www.w3.org/2000/svg";
 const RANK = { bad: 0, wait: 1 };
 const PATIENCE = 5; // s: ages alone change the order no more often
 
@@ -14,9 +13,7 @@ const rank = ({ level }) => RANK[level] ?? 2;
 const sortedBy = (robot) => figureOf(robot) ?? Infinity;
 
 function createRow({ name }) {
-  const spark = document.createElementNS(SVG, "svg");
-  for (const [key, value] of Object.entries({ viewBox: BOX, preserveAspectRatio: "none", "aria-hidden": "true" })) spark.setAttribute(key, value);
-  spark.append(document.createElementNS(SVG, "path"));
+  const spark = draw(BOX, { preserveAspectRatio: "none" }, {});
   const row = make("li", make("span.bar"), make("strong.name", clip(name, 40)), " ", make("span.kinds"), " ", spark, make("span.badge.age"));
   tint(row, name);
   return row;

@@ -23,7 +23,6 @@ const nameOf = (run) => `Run ${run.key}`;
 
 function createRun() {
   const look = make("button.look", "View"), remove = make("button.delete", "Delete");
-  look.type = remove.type = "button";
   const report = make("a.report", "Report");
   report.target = "_blank";
   report.rel = "noopener";
@@ -35,7 +34,7 @@ function updateRun(node, run) {
   const [look, report, remove] = does.children;
   say(name, run.is_present ? `${nameOf(run)} (now)` : nameOf(run));
   say(score, run.score === null ? "no score" : `score ${run.score}, ${run.remaining_reports} reports left`);
-  say(times, run.began > 0 ? `${when(run.began)}, ${clock(run.last - run.began)}` : `until ${when(run.last)}`);
+  say(times, run.is_present && !run.began ? "" : run.began > 0 ? `${when(run.began)}, ${clock(run.last - run.began)}` : `until ${when(run.last)}`);
   say(what, clip([run.team, [...run.robots].sort(byName).join(", "), bytes(run.bytes)].filter(Boolean).join(" · "), 200));
   report.href = `${pathOf(run)}/report.html`;
   remove.hidden = !operator || run.is_present;

@@ -30,9 +30,7 @@ function offer(exports, take) {
   if (offers.dataset.key === key) return;
   offers.dataset.key = key;
   offers.replaceChildren(...exports.map((each) => {
-    const button = make("button");
-    button.type = "button";
-    button.textContent = `Import from the stick: ${nameOf(each)}`;
+    const button = make("button", `Import from the stick: ${nameOf(each)}`);
     button.addEventListener("click", () => take(each.name));
     return button;
   }));

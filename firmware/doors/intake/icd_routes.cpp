@@ -37,7 +37,7 @@ class StatusVisit final : public BodySink {
 icd::Checked<codec::BodyKind> kind_of(icd::Uri uri, const RequestHead& head) {
   const std::string_view type = head.header("Content-Type");
   const auto format = codec::format_of(type);
-  const bool scoring = uri == icd::Uri::ArtifactReports;
+  const bool scoring = icd::endpoint_of(uri) == icd::Endpoint::Scoring;
   if (!format || (scoring && *format != codec::Format::Json)) {
     const std::string_view expected = scoring ? "application/json" : "application/json or application/cbor";
     return icd::unprocessable("Content-Type: expected ", expected, ", got ", shown(type));
@@ -188,9 +188,17 @@ icd::Checked<void> IcdRoutes::check_entry(const RequestHead& head) const {
 }
 
 std::size_t IcdRoutes::most_bytes(icd::Uri uri) const {
-  if (uri == icd::Uri::MarkersUpdate) return MarkersUpload::kMost;
-  if (uri != icd::Uri::MapUpdate) return kSmallBody;
-  return options_.rules.map_bytes / 3 * 4 + kSmallBody;  // base64
+  switch (uri) {
+    case icd::Uri::MapUpdate:
+      return options_.rules.map_bytes / 3 * 4 + kSmallBody;  // base64
+    case icd::Uri::MarkersUpdate:
+      return MarkersUpload::kMost;
+    case icd::Uri::Status:
+    case icd::Uri::ArtifactReports:
+    case icd::Uri::StateUpdate:
+      break;
+  }
+  return kSmallBody;
 }
 
 std::unique_ptr<BodySink> IcdRoutes::open(const RequestHead& head, std::shared_ptr<Responder> responder,

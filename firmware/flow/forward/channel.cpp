@@ -47,7 +47,7 @@ bool lacks_status(icd::Uri uri, const uplink::Outcome& outcome) {
 /// A proxy before the mapping endpoint may answer it with a page. A report's answer must be JSON.
 bool is_too_large(icd::Uri uri, const uplink::Outcome& outcome) {
   const auto* answered = std::get_if<uplink::Answered>(&outcome);
-  return uri != icd::Uri::Status && uri != icd::Uri::ArtifactReports && answered != nullptr &&
+  return icd::endpoint_of(uri) == icd::Endpoint::Mapping && answered != nullptr &&
          answered->status == dispatch::kTooLarge;
 }
 

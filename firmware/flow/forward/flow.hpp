@@ -250,7 +250,7 @@ class Flow final : public intake::Desk, public api::Operator {
 
  private:
   UriPace& pace_of(icd::Uri uri) {
-    return uri == icd::Uri::Status ? scoring_.status_pace() : telemetry_.state_pace();
+    return icd::endpoint_of(uri) == icd::Endpoint::Scoring ? scoring_.status_pace() : telemetry_.state_pace();
   }
   void carry_on(double newest);
   void restore(bool is_first);

@@ -20,15 +20,22 @@ enum class Uri : std::uint8_t {
 inline constexpr Uri kUris[] = {Uri::Status, Uri::ArtifactReports, Uri::MapUpdate, Uri::StateUpdate,
                                 Uri::MarkersUpdate};
 
+/// The Command Post's two servers.
+enum class Endpoint : std::uint8_t {
+  Scoring,  // ICD 5: a run and its reports, in JSON
+  Mapping,  // ICD 6: data that newer data may replace, in JSON or CBOR
+};
+
 struct Function {
+  Endpoint endpoint;
   std::string_view method, path;
 };
 /// In the order of Uri. No path has a trailing slash.
-inline constexpr Function kFunctions[] = {{"GET", "/api/status"},
-                                          {"POST", "/api/artifact_reports"},
-                                          {"POST", "/map/update"},
-                                          {"POST", "/state/update"},
-                                          {"POST", "/markers/update"}};
+inline constexpr Function kFunctions[] = {{Endpoint::Scoring, "GET", "/api/status"},
+                                          {Endpoint::Scoring, "POST", "/api/artifact_reports"},
+                                          {Endpoint::Mapping, "POST", "/map/update"},
+                                          {Endpoint::Mapping, "POST", "/state/update"},
+                                          {Endpoint::Mapping, "POST", "/markers/update"}};
 static_assert(std::size(kFunctions) == std::size(kUris));
 
 constexpr std::string_view path_of(Uri uri) {
@@ -37,6 +44,10 @@ constexpr std::string_view path_of(Uri uri) {
 
 constexpr std::string_view method_of(Uri uri) {
   return kFunctions[std::to_underlying(uri)].method;
+}
+
+constexpr Endpoint endpoint_of(Uri uri) {
+  return kFunctions[std::to_underlying(uri)].endpoint;
 }
 
 /// The function that a request's path names. Trailing slashes are ignored.

@@ -115,7 +115,7 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
           {.are_shared =
                [this](icd::Uri uri, const settings::Address& at) {
                  const settings::CommandPost& post = settings_.command_post;
-                 return at == (uri == icd::Uri::Status ? post.scoring : post.mapping);
+                 return at == (icd::endpoint_of(uri) == icd::Endpoint::Scoring ? post.scoring : post.mapping);
                },
            .claim = [this](icd::Uri uri, loop::Instant latest) { return flow_.claim(uri, latest); },
            .claimed = [this](icd::Uri uri) { flow_.claimed(uri); }},

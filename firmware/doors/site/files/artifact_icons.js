@@ -1,5 +1,5 @@
 // What each artifact looks like, drawn in lines on 24 x 24 units: in the page's lists, and on the map's canvas.
-import { draw } from "./dom.js";
+import { drawLines } from "./dom.js";
 
 const DRAWN = {
   "Survivor": "M12 2.8a3.2 3.2 0 1 1 0 6.4 3.2 3.2 0 1 1 0-6.4M5 21.2v-2.4a7 6.4 0 0 1 14 0v2.4",
@@ -19,8 +19,7 @@ const OTHER = "M12 3a9 9 0 1 1 0 18 9 9 0 1 1 0-18M9.4 9.6a2.6 2.6 0 1 1 2.6 2.9
 export const linesOf = (type) => DRAWN[Object.keys(DRAWN).find((name) => name.toLowerCase() === String(type).toLowerCase())] ?? OTHER;
 
 /** Its picture as a node, in the colour of the text; whoever shows it writes the type beside it. Its size is the style's. */
-export const icon = (type) => draw("0 0 24 24", { class: "icon", width: "24", height: "24" },
-  { d: linesOf(type), fill: "none", stroke: "currentColor", "stroke-width": "1.9", "stroke-linecap": "round", "stroke-linejoin": "round" });
+export const icon = (type) => drawLines(linesOf(type));
 
 const paths = new Map();
 /** The same for a canvas: a Path2D of 24 x 24 units, made once. */

@@ -22,6 +22,9 @@ export function draw(box, looks, ...paths) {
   return create("svg", { viewBox: box, "aria-hidden": "true", ...looks }, ...paths.map((path) => create("path", path)));
 }
 
+/** Lines of 24 x 24 units, in the colour of the text. */
+export const drawLines = (d) => draw("0 0 24 24", { class: "icon" }, { d });
+
 /** Sets a text where it differs, so that nothing is read out or laid out again for nothing. */
 export function say(node, text) {
   if (node.textContent !== text) node.textContent = text;

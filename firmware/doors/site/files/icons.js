@@ -1,5 +1,5 @@
 // Small pictures of what is pressed, as lines of 24 x 24 units.
-import { draw } from "./dom.js";
+import { drawLines } from "./dom.js";
 
 const DRAWN = {
   run: "M4 19V9M10 19V5M16 19v-7M21 19H3",
@@ -14,4 +14,4 @@ const DRAWN = {
 };
 
 /** Its picture as a node, in the colour of the text. */
-export const drawn = (name) => draw("0 0 24 24", { class: "icon" }, { d: DRAWN[name] });
+export const drawn = (name) => drawLines(DRAWN[name]);

@@ -71,5 +71,12 @@ TEST(Version, OfTheBoxIsShownBesideItsOwn) {
   EXPECT_THAT(run_adit(server, {"version"}).out, HasSubstr("  box       0.9.1\n  build     9f1c2ab\n"));
 }
 
+TEST(Version, OfTheProgramIsShownIfTheBoxCannotBeAsked) {
+  const Outcome outcome = run_adit(Server(Server::Answers{}), {"version"});
+  EXPECT_THAT(outcome.out, testing::StartsWith("adit "));
+  EXPECT_NE(outcome.err, "");
+  EXPECT_EQ(outcome.exit, Exit::Unable);
+}
+
 }  // namespace
 }  // namespace adit::cli

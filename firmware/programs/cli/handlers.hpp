@@ -62,7 +62,8 @@ Result<Outcome> remove_context(const Options& options, const Console& console);
 /// The last records; with --follow also new ones, until a signal ends it.
 Result<Outcome> show_log(const Call& call);
 Result<Outcome> fetch_bundle(const Call& call);
-Result<Outcome> show_version(const Call& call);
+/// If Adit cannot be asked, only the version of `adit`, with the reason.
+Result<Outcome> show_version(const Options& options, const Console& console);
 
 Result<Outcome> identify(const Call& call);
 Result<Outcome> show_network(const Call& call);

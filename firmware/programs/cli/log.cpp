@@ -124,17 +124,24 @@ Result<Outcome> acknowledge(const Call& call) {
              line("alarm ", id, " is acknowledged: it is quiet until it gets worse or begins again"));
 }
 
-Result<Outcome> show_version(const Call& call) {
-  const auto about = ADIT_TRY(fetch<api::About>(call.adit, "/adit/about"));
+Result<Outcome> show_version(const Options& options, const Console& console) {
+  const auto adit = adit_of(options, console);
+  const auto about = adit ? fetch<api::About>(*adit, "/adit/about") : std::unexpected(adit.error());
+  if (!about) {
+    Outcome outcome = unable(about.error());
+    if (!options.json) outcome.out = line("adit ", ADIT_VERSION);
+    return outcome;
+  }
+  const api::About& box = about->row;
   Facts facts;
   facts.add("adit", ADIT_VERSION, Tone::Strong);
-  facts.add("box", about.row.version, Tone::Strong);
-  facts.add("build", about.row.build);
-  if (about.row.board) facts.add("board", about.row.board->title);
-  facts.add("model", about.row.model);
-  facts.add("kernel", about.row.kernel);
-  facts.add("runs for", duration(about.row.uptime));
-  return printed(call, about.json, facts.written(call.console.colour));
+  facts.add("box", box.version, Tone::Strong);
+  facts.add("build", box.build);
+  if (box.board) facts.add("board", box.board->title);
+  facts.add("model", box.model);
+  facts.add("kernel", box.kernel);
+  facts.add("runs for", duration(box.uptime));
+  return printed({*adit, options, console}, about->json, facts.written(console.colour));
 }
 
 }  // namespace adit::cli

@@ -97,7 +97,7 @@ constexpr Form kContextForms[] = {
     {"show", show_contexts, kNothing, "list the contexts, and mark the one in use (default)", "", true},
     {"use", use_context, kContextName, "ask this Adit from now on"},
     {"remove", remove_context, kContextName, "remove a context and its token"}};
-constexpr Form kVersionForms[] = {{"", show_version, kNothing, "", "", true}};
+constexpr Form kVersionForms[] = {{"", show_version, kNothing, "", "--at --token-file", true}};
 constexpr Form kCourseForms[] = {{"", course, kName, "", "", true}};
 constexpr Form kIdentifyForms[] = {{"", identify, kSeconds, "", "", true}};
 constexpr Form kNetworkForms[] = {

@@ -22,6 +22,7 @@ test("shows the two worst alarms with what to do, in the strip, the title and th
   assert.equal(await cards.count(), 2);
   assert.match(await cards.nth(0).innerText(), /Mapping is unreachable\s+\d+:\d\d.*Command Post: connecting to.*hides 3/s);
   assert.match(await cards.nth(1).innerText(), /Report 8 is in doubt\s+\d+:\d\d/);
+  assert.doesNotMatch(await cards.nth(1).innerText(), /Command Post:/, "the operator decides");
   assert.equal(await cards.nth(0).getByRole("link", { name: "Open test" }).getAttribute("href"), "/setup#test");
   assert.equal(await page.title(), "(3) Mapping is unreachable – Adit");
   assert.equal(await icon(page), "icon_bad.svg");

@@ -8,9 +8,10 @@ const SIDES = { robot: "Robot", box: "Box", network: "Network", command_post: "C
 /** What only the page can tell. */
 export const BOX_LOST = "box_lost";
 
+/** Whose the fault is, and the reason. Of a report: the reason alone, because the operator decides, and no side is at fault. */
 function reasonOf(alarm) {
-  const why = clip(alarm.why), side = SIDES[alarm.side] ?? "";
-  return `${side}${why ? `: ${why}` : ""}${alarm.hides ? ` · hides ${alarm.hides}` : ""}`;
+  const why = clip(alarm.why), side = /^reports?_/.test(alarm.id) && why ? "" : SIDES[alarm.side] ?? "";
+  return [side, why].filter(Boolean).join(": ") + (alarm.hides ? ` · hides ${alarm.hides}` : "");
 }
 
 /** "uav3 was silent for 0:41, ended at 12:31" */

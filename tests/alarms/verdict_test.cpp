@@ -85,6 +85,21 @@ TEST(Verdict, IsAboutTheMergedMapIfNoRobotHasAnother) {
             (Verdict{Level::Quiet, "The merged map arrived", "no new map for 10 min; no map from uav1"}));
 }
 
+TEST(Verdict, CountsRobotsWithoutTheMergedMap) {
+  Snapshot snapshot = busy(3);
+  snapshot.traffic.activities.push_back(merged(1.0, 1));
+  snapshot.traffic.registered = {"uav9"};
+  EXPECT_EQ(verdict_of(snapshot), (Verdict{Level::Good, "3 of 4 arrive", "oldest 2 s; no map from uav9"}));
+  snapshot.traffic.registered = {};
+  snapshot.traffic.activities.back().last_status = 422;
+  EXPECT_EQ(verdict_of(snapshot),
+            (Verdict{Level::Wait, "The merged map does not arrive", "3 robots, oldest 2 s"}));
+  snapshot.traffic.activities.back().last_status = 200;
+  for (const char* name : {"uav1", "uav2", "uav3"}) fall_silent(snapshot, name);
+  EXPECT_EQ(verdict_of(snapshot),
+            (Verdict{Level::Wait, "Only the merged map arrives", "uav1, uav2, uav3 silent; the other 1 s"}));
+}
+
 TEST(Verdict, NamesASilentRobot) {
   Snapshot snapshot = busy(20);
   fall_silent(snapshot, "uav5");
@@ -163,7 +178,7 @@ TEST(Verdict, CallsNoFirstMapLate) {
   EXPECT_EQ(verdict_of(snapshot), (Verdict{Level::Wait, "No map yet", "the first one is queued"}));
   snapshot.traffic.activities.push_back(merged({}, 600));
   EXPECT_EQ(verdict_of(snapshot),
-            (Verdict{Level::Quiet, "1 of 2 arrived", "no new map for 10 min; no map yet from uav9"}));
+            (Verdict{Level::Quiet, "The merged map arrived", "no new map for 10 min; no map yet from uav9"}));
 }
 
 TEST(Verdict, TellsThatNoMapArrivesDuringAnOutage) {
@@ -317,7 +332,7 @@ const struct {
      "wait, 33 s behind, map 33 s, heard 3 s"},
     {"first of two as bad",
      {of("grid", 3, 422), of("cloud", 4)},
-     "bad, refused, silent, map -, heard 3 s",
+     "bad, rejected, silent, map -, heard 3 s",
      true},
     {"a quiet map beside another",
      {of("grid", 600), of("cloud", 4, 200, 2)},
@@ -395,7 +410,7 @@ TEST(Words, ShowTheStandingOfAnEndpoint) {
   std::vector<std::string> all;
   for (const auto fault : {NoToken, Unreachable, Foreign, Refusing, Silent, Failing, Throttling})
     all.push_back(word_of(row, with_fault("mapping", fault)));
-  EXPECT_THAT(all, testing::ElementsAre("bad no token", "bad unreachable", "bad wrong host", "bad refused",
+  EXPECT_THAT(all, testing::ElementsAre("bad no token", "bad unreachable", "bad wrong host", "bad rejected",
                                         "bad silent", "bad failing", "wait slow down"));
   EXPECT_EQ(word_of(row, with_fault("scoring", Silent)), "good connected");
   row.connected = true, row.last_status = 0;

@@ -94,7 +94,7 @@ test("cuts no word in the head of a list, and shows problems first", async (t) =
     const grid = view.activities.find(({ kind, robot }) => kind === "grid" && !robot), markers = view.activities.find(({ kind }) => kind === "markers");
     if (!grid || !markers) return view;
     const late = { level: "wait", word: "1 min behind", age: 95 };
-    const shared = [{ ...grid, ...late }, { ...grid, kind: "cloud", age: 3599 }, { ...markers, level: "bad", word: "refused" }];
+    const shared = [{ ...grid, ...late }, { ...grid, kind: "cloud", age: 3599 }, { ...markers, level: "bad", word: "rejected" }];
     return { ...view, activities: [...view.activities.filter((row) => row.robot), ...shared] };
   });
   for (const told of [undefined, prepare]) {

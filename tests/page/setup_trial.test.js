@@ -82,6 +82,9 @@ test("tests a typed token, and neither stores nor shows it", async (t) => {
   await tries(page).click();
   await tried(page, "typed", "1 of 12 steps failed");
   assert.match(await page.locator("[data-tried=typed] .trial").first().innerText(), /scoring token is rejected/);
+  await page.getByRole("link", { name: "Open the token" }).click();
+  await page.getByLabel("Scoring endpoint’s token", { exact: true }).waitFor();
+  await step(page, "Command Post").click();
   assert.ok(!(await page.locator("#step-post").innerText()).includes("typed-and-wrong"));
   assert.ok(!JSON.stringify([(await ask("/adit/test")).said, (await ask("/adit/log")).said]).includes("typed-and-wrong"));
   assert.deepEqual((await ask("/adit/settings")).said.saved, false);
@@ -147,6 +150,29 @@ test("tests a course before a switch, and marks it apart from the Test of the cu
   await page.getByRole("button", { name: "Run the test" }).click();
   await tried(page, "applied", "2 of 12 steps failed: scoring connection, mapping connection. No report was used up.");
   await step(page, "Test").getByText("failed").waitFor();
+  await page.getByRole("link", { name: "Open the Command Post’s address" }).first().click();
+  await page.locator("#step-post").getByLabel("Scoring address", { exact: true }).waitFor();
+});
+
+test("leads to a course’s own address and token, while it is in use", async (t) => {
+  const { ask, page } = await ready(t, "setup#test", { courses: COURSES });
+  const { settings, tag } = (await ask("/adit/settings")).said;
+  settings.courses[1] = { name: "B", scoring: { address: "127.0.0.1", port: 1 }, mapping: { address: "127.0.0.1", port: 2 } };
+  settings.command_post.course = "B";
+  await ask("/adit/settings", { settings, base: tag });
+  await ask("/adit/tokens", { name: "course.B.mapping", token: "own" });
+  await page.reload();
+  await page.getByRole("button", { name: "Run the test" }).click();
+  await page.getByRole("link", { name: "Open the Command Post’s address" }).first().click();
+  const course = page.locator("[data-list=courses] .item", { hasText: "Course B" });
+  await course.getByLabel("Scoring address", { exact: true }).waitFor();
+  await step(page, "Tokens").click();
+  await openCards(page, "Command Post’s tokens");
+  const own = page.getByRole("link", { name: "Course B has its own token" });
+  assert.equal(await own.count(), 1);
+  await own.click();
+  await course.getByLabel("Own mapping token", { exact: true }).waitFor();
+  assert.deepEqual(complaints(page), []);
 });
 
 test("shows a viewer no tests", async (t) => {

@@ -44,11 +44,11 @@ one late            | yes    | wait AGE behind | well       | well       | wait 
 one silent          | no     | bad silent      | well       | well       |              | bad robot_silent:r1     | 1
     wait 2 of 3 arrive: r1 silent[; oldest other AGE]
 one silent          | yes    | bad silent      | well       | well       | well         | bad robot_silent:r1     | 1
-    wait 3 of 4 arrive: r1 silent[; oldest other AGE]
+    wait 2 of 3 arrive: r1 silent[; oldest other AGE]
 all silent          | no     | bad silent      | bad silent | bad silent |              | bad robots_silent       | 1
     bad No map arrives: r1, r2, r3 silent
 all silent          | yes    | bad silent      | bad silent | bad silent | well         | bad robots_silent       | 1
-    wait 1 of 4 arrive: r1, r2, r3 silent[; the other AGE]
+    wait Only the merged map arrives: r1, r2, r3 silent[; the other AGE]
 quiet maps          | no     | well            | well       | well       |              |                         | 0
     quiet Every map arrived: no new map for AGE
 quiet maps          | yes    | well            | well       | well       | well         |                         | 0
@@ -56,7 +56,7 @@ quiet maps          | yes    | well            | well       | well       | well 
 one without a map   | no     | well            | well       | well       |              |                         | 0
     good 2 of 3 arrive: up to date; no map from r3
 one without a map   | yes    | well            | well       | well       | well         |                         | 0
-    good 3 of 4 arrive: up to date; no map from r3
+    good 2 of 3 arrive: up to date; no map from r3
 after a restart     | no     | well            | well       | well       |              |                         | 0
     good Every map arrives: 3 robots, oldest AGE
 after a restart     | yes    | well            | well       | well       | well         |                         | 0

@@ -163,7 +163,7 @@ constexpr CommandRow kCommands[] = {
      "  up to date, arriving     delivered, or queued for its turn\n"
      "  12 s behind              later than its turn explains\n"
      "  throttled, failing       the last attempt failed; the row says why\n"
-     "  not arriving, refused    attempts have failed for long, or for good\n"
+     "  not arriving, rejected   attempts have failed for long, or for good\n"
      "  quiet                    all delivered, and no new message for a minute\n"
      "  silent                   the robot has stopped posting\n"
      "The size is that of the last message, as sent.",

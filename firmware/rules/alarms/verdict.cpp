@@ -107,6 +107,8 @@ struct Group {
     oldest = std::max(oldest, maps.age);
   }
   bool empty() const { return names.empty(); }
+  bool has_merged() const { return !empty() && names.front().empty(); }  // the first by name
+  std::size_t robots() const { return names.size() - (has_merged() ? 1 : 0); }
 };
 
 struct Groups {
@@ -151,11 +153,10 @@ void append(std::string& why, std::string_view before, const std::vector<std::st
 
 /// "20 robots and the merged map, "
 std::string who_arrive(const Group& arriving) {
-  const bool is_merged = arriving.names.front().empty();  // the first by name
-  const std::size_t robots = arriving.names.size() - (is_merged ? 1 : 0);
+  const std::size_t robots = arriving.robots();
   std::string who;
   if (robots > 0) who = sentence(robots, robots == 1 ? " robot" : " robots");
-  if (is_merged) who += robots > 0 ? " and the merged map" : "the merged map";
+  if (arriving.has_merged()) who += robots > 0 ? " and the merged map" : "the merged map";
   return who + ", ";
 }
 
@@ -165,19 +166,25 @@ std::string age_of(const Group& arriving) {
   return sentence(arriving.names.size() == 1 ? "" : "oldest ", age_text(*arriving.oldest));
 }
 
-/// Some maps fail, or their robots are silent. `missing`: robots without a map.
-Verdict partly(const Groups& groups, std::size_t all, const std::vector<std::string>& missing) {
+/// Some maps fail, or their robots are silent. `robots`: how many there are. `missing`: those without a map.
+Verdict partly(const Groups& groups, std::size_t robots, const std::vector<std::string>& missing) {
   std::string why;
   append(why, "not ", groups.failing.names, "");
   append(why, "", groups.silent.names, " silent");
   append(why, "no map yet from ", groups.first.names, "");
   append(why, "no map from ", missing, "");
   append(why, "", groups.quiet.names, " quiet");
-  const std::size_t arrive = groups.arriving.names.size() + groups.late.names.size();
-  if (arrive == 0) return {Level::Bad, "No map arrives", std::move(why)};
-  if (const auto oldest = std::max(groups.arriving.oldest, groups.late.oldest))
-    why += sentence(arrive == 1 ? "; the other " : "; oldest other ", age_text(*oldest));
-  return {Level::Wait, sentence(arrive, " of ", all, " arrive"), std::move(why)};
+  Group other = groups.arriving;
+  other.names.insert(other.names.end(), groups.late.names.begin(), groups.late.names.end());
+  other.oldest = std::max(other.oldest, groups.late.oldest);
+  std::ranges::sort(other.names);
+  if (other.empty()) return {Level::Bad, "No map arrives", std::move(why)};
+  if (other.robots() == robots)
+    return {Level::Wait, "The merged map does not arrive", who_arrive(other) + age_of(other)};
+  if (other.oldest)
+    why += sentence(other.names.size() == 1 ? "; the other " : "; oldest other ", age_text(*other.oldest));
+  if (other.robots() == 0) return {Level::Wait, "Only the merged map arrives", std::move(why)};
+  return {Level::Wait, sentence(other.robots(), " of ", robots, " arrive"), std::move(why)};
 }
 
 /// `rows`: of the robot, in the order of kinds.
@@ -227,7 +234,7 @@ constexpr std::pair<std::string_view, std::string_view> kFaultWords[] = {
     {"no_address", "no address"},
     {"command_post_unreachable", "unreachable"},
     {"command_post_foreign", "wrong host"},
-    {"command_post_refusing", "refused"},
+    {"command_post_refusing", "rejected"},
     {"command_post_silent", "silent"},
     {"command_post_failing", "failing"},
     {"command_post_throttling", "slow down"}};
@@ -306,9 +313,8 @@ Verdict verdict_of(const Traffic& traffic) {
   if (all.empty()) return {Level::Quiet, "No map yet", "no robot has sent one since the box started"};
   const Groups groups = groups_of(all);
   const auto missing = without_map(traffic, all);
-  const std::size_t count = all.size() + missing.size();
-  const bool is_merged_alone = all.size() == 1 && all.contains("");
-  if (!groups.failing.empty() || !groups.silent.empty()) return partly(groups, count, missing);
+  const std::size_t robots = all.size() + missing.size() - all.count("");
+  if (!groups.failing.empty() || !groups.silent.empty()) return partly(groups, robots, missing);
   if (!groups.late.empty()) {
     std::string why = names_of(groups.late.names);
     if (groups.late.oldest) why += ", " + age_text(*groups.late.oldest) + " behind";
@@ -317,8 +323,10 @@ Verdict verdict_of(const Traffic& traffic) {
     return {Level::Wait, "Maps are late", std::move(why)};
   }
   if (groups.first.names.size() == all.size()) return {Level::Wait, "No map yet", "the first one is queued"};
-  const std::size_t there = groups.arriving.names.size() + groups.quiet.names.size();
-  const bool are_all = there == count && !is_merged_alone, are_quiet = groups.arriving.empty();
+  const std::size_t there = groups.arriving.robots() + groups.quiet.robots();
+  const bool is_merged_alone = there == 0,
+             are_all = groups.first.empty() && missing.empty() && !is_merged_alone;
+  const bool are_quiet = groups.arriving.empty();
   std::string why;
   if (are_quiet) {
     std::optional<double> heard;
@@ -332,7 +340,7 @@ Verdict verdict_of(const Traffic& traffic) {
   append(why, "no map from ", missing, "");
   const std::string which = are_all           ? "Every map"
                             : is_merged_alone ? "The merged map"
-                                              : sentence(there, " of ", count);
+                                              : sentence(there, " of ", robots);
   const std::string_view verb = are_quiet ? " arrived" : are_all || is_merged_alone ? " arrives" : " arrive";
   return {are_quiet ? Level::Quiet : Level::Good, which + std::string(verb), std::move(why)};
 }

@@ -39,7 +39,7 @@ enum class Arrival : std::uint8_t {
   Silent,       // the robot has stopped sending, against its habit
 };
 inline constexpr std::string_view kArrivalWords[] = {"waiting",   "up to date", "arriving",     "late",
-                                                     "throttled", "failing",    "not arriving", "refused",
+                                                     "throttled", "failing",    "not arriving", "rejected",
                                                      "quiet",     "silent"};
 constexpr auto& words_of(Arrival /*of*/) {
   return kArrivalWords;

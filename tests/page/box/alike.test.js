@@ -88,7 +88,7 @@ test("says from the first answer on that one of three robots is silent, over a k
 });
 
 const CASES = [
-  { is: "command_post_refusing", word: "refused", fault: "401,for=600" },
+  { is: "command_post_refusing", word: "rejected", fault: "401,for=600" },
   { is: "command_post_silent", word: "silent", fault: "answer-after=60,for=600" },
   { is: "command_post_unreachable", word: "unreachable" },
 ];

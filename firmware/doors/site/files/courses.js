@@ -85,9 +85,14 @@ function update(node, name) {
   const odd = draft.oddTokens.find(({ path }) => path === name)?.what ?? "";
   const level = set ? (odd ? "wait" : "good") : needed ? "bad" : "quiet";
   node.state.dataset.level = level;
-  if (!node.state.firstChild) node.state.append(make("span.badge"), make("span.odd"));
-  badge(node.state.firstChild, level, set ? "is set" : needed ? "is missing" : "not set");
-  say(node.state.lastChild, odd && ` ${odd}`);
+  if (!node.state.firstChild) node.state.append(make("span.badge"), make("span.odd"), " ", make("a"));
+  const [badged, warning, own] = node.state.children;
+  badge(badged, level, set ? "is set" : needed ? "is missing" : "not set");
+  say(warning, odd && ` ${odd}`);
+  const { course } = draft.base.command_post, isOverruled = needed && draft.tokens[`course.${course}.${name}`];
+  own.hidden = !isOverruled;
+  own.href = `#course-${course}`;
+  say(own, isOverruled ? `Course ${course} has its own token` : "");
   const [show, remove, setIt] = node.buttons;
   show.hidden = setIt.hidden = readOnly;
   remove.hidden = readOnly || !set;

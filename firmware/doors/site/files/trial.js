@@ -31,22 +31,35 @@ let lost = ""; // why the box does not tell of a test
 let isBeginning = false;
 let asked = 0, timer = 0;
 
-function updateStep(node, { name, state, said, advice }) {
-  const [badged, title, sentence, help] = node.children;
+/** The card that has what a failed step is about, and the link's words; [""]: this page has none. */
+function wayTo(step, endpoint) {
+  const course = view.applied ? draft.base.command_post.course : view.course;
+  if (step === "address") return ["#network", "Open the box’s address"];
+  if (step === "reach") return [course ? `#course-${course}` : "#post", "Open the Command Post’s address"];
+  if (step !== "token") return [""];
+  return [draft.tokens[`course.${course}.${endpoint}`] ? `#course-${course}` : "#tokens-post", "Open the token"];
+}
+
+function updateStep(node, { name, state, said, advice }, endpoint) {
+  const [badged, title, sentence, help, way] = node.children;
   node.dataset.level = LEVELS[state] ?? "quiet";
   badge(badged, node.dataset.level, state);
   say(title, NAMES[name] ?? name);
   say(sentence, spoken(said ?? ""));
   say(help, spoken(advice ?? ""));
+  const [address, words] = state === "bad" ? wayTo(name, endpoint) : [""];
+  way.hidden = !address;
+  way.href = address;
+  say(way, words ?? "");
 }
 
-const createStep = () => make("li", ...["badge", "title", "said", "advice"].map((part) => make(`span.${part}`)));
+const createStep = () => make("li", ...["badge", "title", "said", "advice"].map((part) => make(`span.${part}`)), make("a.way"));
 
 function update(node, { name, address, steps }) {
   const [title, where, place] = node.children;
   say(title, name);
   say(where, address);
-  list(place, steps, (step) => step.name, createStep, updateStep);
+  list(place, steps, (step) => step.name, createStep, (item, step) => updateStep(item, step, name));
 }
 
 /** What body() gives now, in the settings that the page began from. */

@@ -69,6 +69,7 @@ TEST_F(ContextsTest, AreListedChosenAndRemoved) {
   adit({"run", "--at", "spare"});
   EXPECT_THAT(server_.request(), HasSubstr("Bearer sesame-3\r\n")) << "--at names a context";
   EXPECT_THAT(adit({"context", "--json"}).out, HasSubstr(R"({"name":"spare","at":")"));
+  EXPECT_THAT(adit({"context", "use", "box", "--json"}).out, HasSubstr(R"("current":true},{"name":"spare")"));
   EXPECT_EQ(adit({"context", "remove", "spare"}).exit, Exit::Fine);
   EXPECT_THAT(adit({"context", "use", "boks"}).err, HasSubstr("there is no context boks; did you mean box?"));
 }

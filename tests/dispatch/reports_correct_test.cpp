@@ -46,6 +46,11 @@ TEST_F(Correction, IsSentInsteadOfTheReport) {
   EXPECT_EQ(scene_.send_next(), 0);
 }
 
+TEST_F(Correction, NamesPlacesToTheMillimetre) {
+  ASSERT_EQ(correct(1, 32.649296743559084), 2);
+  EXPECT_EQ(scene_.report(1).note, "the operator corrected it: report 2, \"Drill\" at 32.649, 0, 0");
+}
+
 TEST_F(Correction, KeepsTheRobot) {
   scene_.post({.report = {.type = "Drill", .position = {9, 0, 0}, .robot = icd::RobotName::parse("spot1")},
                .sender = "10.0.0.7"},

@@ -90,12 +90,6 @@ Result<Contexts> loaded() {
   return *std::move(contexts);
 }
 
-Result<void> saved(const Contexts& contexts) {
-  if (const auto done = save(contexts, contexts_file()); !done)
-    return failed("cannot save the context: " + done.error());
-  return {};
-}
-
 Result<const Context*> named(const Contexts& contexts, const std::string& name) {
   if (const Context* const found = contexts.find(name)) return found;
   const std::string advice =
@@ -119,6 +113,13 @@ std::string json_of(const Contexts& contexts) {
   return codec::write_json({list}) + '\n';
 }
 
+/// Saves them. The output says `done`, or with --json lists all.
+Result<Outcome> saved(const Contexts& contexts, const Options& options, std::string done) {
+  if (const auto written = save(contexts, contexts_file()); !written)
+    return failed("cannot save the context: " + written.error());
+  return Outcome{Exit::Fine, options.json ? json_of(contexts) : std::move(done), ""};
+}
+
 }  // namespace
 
 Result<Outcome> log_in(const Options& options, const Console& console) {
@@ -137,11 +138,9 @@ Result<Outcome> log_in(const Options& options, const Console& console) {
   std::erase_if(contexts.all, [&name](const Context& each) { return each.name == name; });
   contexts.all.push_back({name, at, adit.token.token.reveal()});
   contexts.current = name;
-  ADIT_TRY(saved(contexts));
-  return Outcome{Exit::Fine,
-                 line("logged in to Adit ", about.version, " at ", written(adit.address),
-                      "; later commands ask it (context ", name, ")"),
-                 ""};
+  return saved(contexts, options,
+               line("logged in to Adit ", about.version, " at ", written(adit.address),
+                    "; later commands ask it (context ", name, ")"));
 }
 
 Result<Outcome> show_contexts(const Options& options, const Console& console) {
@@ -158,8 +157,7 @@ Result<Outcome> use_context(const Options& options, const Console& /*console*/) 
   Contexts contexts = ADIT_TRY(loaded());
   const Context* const context = ADIT_TRY(named(contexts, options.argument()));
   contexts.current = context->name;
-  ADIT_TRY(saved(contexts));
-  return Outcome{Exit::Fine, line("commands ask the Adit at ", context->at), ""};
+  return saved(contexts, options, line("commands ask the Adit at ", context->at));
 }
 
 Result<Outcome> remove_context(const Options& options, const Console& /*console*/) {
@@ -168,8 +166,7 @@ Result<Outcome> remove_context(const Options& options, const Console& /*console*
   if (const auto found = named(contexts, name); !found) return std::unexpected(found.error());
   std::erase_if(contexts.all, [&name](const Context& each) { return each.name == name; });
   if (contexts.current == name) contexts.current.clear();
-  ADIT_TRY(saved(contexts));
-  return Outcome{Exit::Fine, line("context ", name, " and its token are removed"), ""};
+  return saved(contexts, options, line("context ", name, " and its token are removed"));
 }
 
 }  // namespace adit::cli

@@ -96,8 +96,10 @@ bool is_near(const icd::ArtifactReport& one, const icd::ArtifactReport& other, d
 }
 
 std::string described(const icd::ArtifactReport& report) {
+  const auto rounded = [](double metres) { return std::round(metres * 1000) / 1000; };
   const icd::Point& at = report.position;
-  return icd::sentence(icd::in_quotes(report.type), " at ", at.x, ", ", at.y, ", ", at.z);
+  return icd::sentence(icd::in_quotes(report.type), " at ", rounded(at.x), ", ", rounded(at.y), ", ",
+                       rounded(at.z));
 }
 
 }  // namespace adit::dispatch

@@ -152,7 +152,7 @@ bool is_near(const icd::ArtifactReport& one, const icd::ArtifactReport& other, d
 /// In metres.
 double distance(const icd::ArtifactReport& one, const icd::ArtifactReport& other);
 
-/// A quoted type and a place: "Drill" at 1, 2.5, 3
+/// A quoted type and a place, to the millimetre: "Drill" at 1, 2.5, 3
 std::string described(const icd::ArtifactReport& report);
 
 }  // namespace adit::dispatch

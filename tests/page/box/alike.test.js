@@ -48,7 +48,7 @@ test("continues the run clock as an estimate, and says so, if the Command Post f
 });
 
 test("says from the first answer on that one of three robots is silent, over a kill of the service and a new run", async (t) => {
-  const made = await box(t, { robots: 2, settings: { alarms: { silent_for_ms: 2000, silent_times: 2 } } });
+  const made = await box(t, { robots: 2, settings: { alarms: { silent_for_ms: 5000, silent_times: 2 } } });
   for (let x = 0; x < 6; ++x) {
     const header = { stamp: Date.now() / 1000, frame_id: "darpa" }, pose = { position: { x, y: 2, z: 0 }, orientation: { x: 0, y: 0, z: 0, w: 1 } };
     const grid = { header, info: { resolution: 0.2, width: 2, height: 2, origin: pose }, data: Buffer.from([0, 100, 0, 100]).toString("base64") };

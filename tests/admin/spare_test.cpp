@@ -92,7 +92,7 @@ class Box {
   loop::Loop loop_;
   loop::Workers workers_{loop_, 1};
   Store store_{given_ / "settings.json", given_.path(), state_.path()};
-  Takeover takeover_{store_, state_.path()};
+  Takeover takeover_{store_, state_.path(), ""};
   std::optional<Spare> spare_;
 };
 

@@ -52,7 +52,8 @@ class TakeoverTest : public testing::Test {
 
   host::Folder given_, state_;
   Store store_{given_ / "settings.json", given_.path(), state_.path()};
-  Takeover takeover_{store_, state_.path()};
+  const std::string memory_ = given_ / "ledger-on-disk";
+  Takeover takeover_{store_, state_.path(), memory_};
   loop::Loop loop_;
 };
 
@@ -89,6 +90,20 @@ TEST_F(TakeoverTest, RecordsTheSizeOfTheOldLedger) {
   const auto kept = forward::StampFloor(state_.path()).read();
   EXPECT_EQ(kept->ledger.reports, 1);
   EXPECT_EQ(kept->ledger.log, 1U);
+}
+
+TEST_F(TakeoverTest, FindsAnOlderCopyOfTheLedger) {
+  const fs::path ledger = state_ / "ledger", older = given_ / "older";
+  for (const std::int64_t number : {1, 2}) {
+    const dispatch::Report report = answered(number);
+    ASSERT_TRUE(ledger::Ledger::open(state_.path(), {}, memory_)->write({&report, 1}));
+    if (number == 1) fs::copy(ledger, older, fs::copy_options::recursive);
+  }
+  fs::remove_all(ledger);
+  fs::rename(older, ledger);
+  ASSERT_TRUE(takeover_.begin(spare::write(content(1))));
+  ASSERT_EQ(takeover_.finish(loop_), true);
+  EXPECT_THAT(reports(), testing::Contains(testing::Property(&dispatch::Report::is_lost, true)));
 }
 
 TEST_F(TakeoverTest, RepeatsAfterAPowerCut) {

@@ -155,8 +155,9 @@ std::expected<void, std::string> Takeover::abandon() {
 std::expected<void, std::string> Takeover::take_ledger(const spare::Content& content,
                                                        const dispatch::Handover& handover,
                                                        const ledger::Known& known) {
-  auto here = ledger::Ledger::open(state_, known);
+  auto here = ledger::Ledger::open(state_, known, memory_);
   if (!here) return std::unexpected("this box's ledger: " + here.error().what);
+  if (!here->damage().empty()) host::log(host::Level::Error, here->damage());
   if (auto taken = here->take_over(content.ledger, handover); !taken)
     return std::unexpected(std::move(taken.error().what));
   return {};

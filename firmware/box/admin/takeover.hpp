@@ -62,8 +62,9 @@ class Takeover {
   /// The export, with the other box's tokens; removed at the end.
   static constexpr const char* kFile = "take-over";
 
-  /// `store` must outlive this object.
-  Takeover(Store& store, std::string state_folder) : store_(store), state_(std::move(state_folder)) {}
+  /// `store` must outlive this object. `memory`: the ledger's file in memory (Ledger::open()).
+  Takeover(Store& store, std::string state_folder, std::string memory)
+      : store_(store), state_(std::move(state_folder)), memory_(std::move(memory)) {}
 
   /// The export's settings. Error: the takeover is impossible. Does not change the box.
   std::expected<settings::Saved, std::string> check(const spare::Content& content) const;
@@ -88,7 +89,7 @@ class Takeover {
   std::expected<void, std::string> note(const spare::About& about);
 
   Store& store_;
-  std::string state_, unread_;
+  std::string state_, memory_, unread_;
 };
 
 }  // namespace adit::admin

@@ -60,12 +60,16 @@ std::expected<void, std::string> make_folder(const std::string& folder) {
   return {};
 }
 
+std::string ledger_memory(const Options& options) {
+  return runtime_folder(options) + '/' + ledger::Ledger::kMemory;
+}
+
 /// If the ledger is unreadable, reports are rejected, and other messages flow.
 ledger::Result<ledger::Ledger> open_ledger(const Options& options) {
   using enum ledger::Error::Cause;
   const auto kept = forward::StampFloor(options.state).read();  // an error puts the box on standby
   const ledger::Known known = kept ? kept->ledger : ledger::Known();
-  const std::string memory = runtime_folder(options) + '/' + ledger::Ledger::kMemory;
+  const std::string memory = ledger_memory(options);
   auto opened = ledger::Ledger::open(options.state, known, memory);
   if (!opened && opened.error().cause != InUse && opened.error().cause != Newer)
     return ledger::Ledger::closed(opened.error().what, known, memory);
@@ -88,7 +92,7 @@ Service::Service(const Options& options, char* const* arguments)
       arguments_(arguments),
       store_(options.settings, options.secrets, options.state),
       reset_(store_, options.state, runtime_folder(options)),
-      takeover_(store_, options.state),
+      takeover_(store_, options.state, ledger_memory(options)),
       trouble_(take_variable(kTrouble)),
       file_rest_(std::strtol(take_variable(kFileRest).c_str(), nullptr, 10)) {
   if (file_rest_ < FileReturn::kRest) file_rest_ = FileReturn::kRest;

@@ -14,7 +14,7 @@ Secret secret(std::uint8_t first) {
 }
 
 std::string id(std::uint8_t first) {
-  return as_token(secret(first)).reveal();
+  return to_token(secret(first)).reveal();
 }
 
 TEST(Devices, AreKnownByTheirIds) {
@@ -92,7 +92,7 @@ TEST(Devices, OfAnOldPasswordAreForgotten) {
 
 TEST(Devices, OfADamagedFileAreRejectedButNotShown) {
   const std::string whole =
-      write_devices({{.number = 1, .role = Role::Operator, .id = as_token(secret(7))}}, kAccounts);
+      write_devices({{.number = 1, .role = Role::Operator, .id = to_token(secret(7))}}, kAccounts);
   for (const std::string& text :
        {std::string(), std::string("[]"), std::string(R"({"version":1,"devices":[]})"),
         std::string(R"({"version":2,"devices":[{"role":"boss","id":"aaaaaaaaaaaaaaaa"}]})"),

@@ -35,7 +35,7 @@ TEST(Secrets, AreWrittenInHexadecimal) {
   Secret secret{};
   secret[0] = 0x0f;
   secret[31] = 0xa0;
-  EXPECT_EQ(as_token(secret).reveal(), "0f" + std::string(60, '0') + "a0");
+  EXPECT_EQ(to_token(secret).reveal(), "0f" + std::string(60, '0') + "a0");
 }
 
 TEST_F(SessionsTest, AreFoundOnlyByTheirId) {

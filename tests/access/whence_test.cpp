@@ -72,7 +72,7 @@ TEST(RequestHeaders, TellWhichPortsCookieIsMeant) {
 
 TEST(RequestHeaders, NameTheHeaderThatAProxyMustPassOn) {
   const auto why = [](const char* host, const char* origin) {
-    const auto checked = check_whence(
+    const auto checked = check_host_and_origin(
         {.method = "GET", .host = host, .origin = origin, .cookie = {}, .authorization = {}, .csrf = {}});
     return checked ? "" : checked.error().sentence;
   };

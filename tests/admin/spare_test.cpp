@@ -56,7 +56,7 @@ class Box {
   spare::StickRequest asked_of_stick() const {
     return *codec::read_file<spare::StickRequest>(*host::read_file(state_ / spare::kStickRequestFile));
   }
-  std::pair<std::string, std::string> for_stick() const {
+  std::pair<std::string, std::string> stick_request_file() const {
     return {asked_of_stick().name, *host::read_file(state_ / spare::kForStickFile)};
   }
   void read_from_stick(const std::string& file) {
@@ -166,9 +166,10 @@ TEST(SpareBox, ExportsToTheStickOnlyOnStandby) {
   ASSERT_TRUE(box.spare().stand_by());
   box.restart();
   ASSERT_TRUE(box.to_stick());
-  EXPECT_THAT(box.for_stick().first,
+  EXPECT_THAT(box.stick_request_file().first,
               testing::MatchesRegex("adit-192\\.168\\.7\\.11-[0-9]{8}T[0-9]{6}Z\\.adit-spare"));
-  const auto content = spare::unseal(box.for_stick().second, *spare::code_in(box.spare().state().code));
+  const auto content =
+      spare::unseal(box.stick_request_file().second, *spare::code_in(box.spare().state().code));
   ASSERT_TRUE(content) << content.error();
   EXPECT_EQ(spare::read(*content)->about.name, "192.168.7.11");
 }
@@ -210,7 +211,7 @@ TEST(SpareBox, HidesExportsOfAnEarlierStandby) {
   ASSERT_TRUE(box.spare().stand_by());
   box.restart();
   ASSERT_TRUE(box.to_stick());
-  const std::string file = box.for_stick().first;
+  const std::string file = box.stick_request_file().first;
   box.write_status({.nonce = box.asked_of_stick().nonce, .written = file});
   box.restart();
   EXPECT_EQ(box.spare().state().stick->written, file);

@@ -201,7 +201,7 @@ TEST_F(PageTest, RedactsTokensInPatches) {
   ASSERT_TRUE(responder->streaming);
   const auto page = responder->streaming;
   for (const std::string typed : {"scoring-1", "rust871}backdoor"}) {
-    api.let_in({token()}, icd::Redaction({token(typed)}));
+    api.set_tokens({token()}, icd::Redaction({token(typed)}));
     source.now.robots.insert(source.now.robots.begin(), facts::RobotRow{})->name = typed;
     source.now.verdict.why = "not " + typed;
     source.now.alarms.emplace_back().id = "robot_silent:" + typed;

@@ -59,7 +59,7 @@ struct FakeSource final : Source {
 };
 
 /// Returns canned results and records the calls.
-struct FakeOperator final : Operator, Caretaker {
+struct FakeOperator final : Operator, GatewayControl {
   std::expected<std::int64_t, std::string> decide(std::int64_t number, Action action) override {
     decided.emplace_back(number, action);
     return outcome ? *outcome : number;

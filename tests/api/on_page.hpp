@@ -33,7 +33,7 @@ struct Doubles {
   Served served() {
     return {.source = source,
             .decisions = decisions,
-            .caretaker = decisions,
+            .gateway_control = decisions,
             .keys = keys,
             .setup = setup,
             .network = network,

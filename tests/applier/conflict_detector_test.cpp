@@ -138,7 +138,7 @@ TEST_F(AddressConflictsTest, AreProbedForANewAddressOnly) {
   EXPECT_EQ(fresh.wake(), std::nullopt);
   fresh.set_own({kAddress}, {kOwn}, now);
   EXPECT_EQ(fresh.wake(), std::nullopt) << "the address was probed already";
-  fresh.ask_again(now);
+  fresh.restart_probing(now);
   EXPECT_THAT(fresh.take_due(now), ElementsAre(kAddress)) << "the cable was plugged in";
 }
 

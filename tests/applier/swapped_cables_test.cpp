@@ -61,7 +61,7 @@ TEST_F(ExchangedCablesTest, AreNotFoundIfItAnswersAtItsOwnPort) {
   pass(std::chrono::minutes(2), false, true);
   EXPECT_THAT(found(), IsEmpty());
   EXPECT_EQ(asked_at_post, 0u) << "no requests on that side without a cause";
-  exchanged.ask_again(now);
+  exchanged.restart_probing(now);
   pass(std::chrono::minutes(2), true, true);
   EXPECT_THAT(found(), IsEmpty()) << "both cables are in one network, or a host answers falsely";
 }
@@ -87,7 +87,7 @@ TEST_F(ExchangedCablesTest, IgnorePacketsOfThisMachine) {
 TEST_F(ExchangedCablesTest, AreSoughtAgainWhenACableComes) {
   pass(std::chrono::minutes(2), false, false);
   EXPECT_EQ(exchanged.wake(), std::nullopt) << "requests must have ended";
-  exchanged.ask_again(now);
+  exchanged.restart_probing(now);
   pass(seconds(10), true, false);
   EXPECT_THAT(found(), ElementsAre(kScoring, kMapping));
 }

@@ -50,7 +50,7 @@ TEST(Lines, BeyondTheWriteLimitStayDue) {
   for (int i = 0; i < 3; ++i) lines.add(std::string(kLargestRecord / 2, 'x'), false);
   EXPECT_EQ(lines.take(at(0)).size(), kLargestRecord / 2 * 2);
   EXPECT_TRUE(lines.is_due(at(1)));
-  lines.keep_below(kLargestRecord / 4);
+  lines.trim_to(kLargestRecord / 4);
   EXPECT_EQ(lines.bytes(), 0U) << "the oldest are dropped";
 }
 

@@ -47,7 +47,7 @@ PackingWay zlib(int level) {
 PackingWay libdeflate(int level) {
   return {"libdeflate " + std::to_string(level), level > 9, false, [level](const icd::MapUpdate& map) {
             const std::vector<std::uint8_t> bytes = map.data.bytes.to_vector();
-            return codec::gzip_whole(bytes, level, 2 * bytes.size() + 1000)->size();
+            return codec::gzip(bytes, level, 2 * bytes.size() + 1000)->size();
           }};
 }
 

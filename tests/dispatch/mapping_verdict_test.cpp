@@ -17,7 +17,7 @@ struct MappingCase {
   int status;
   std::string body;
   Verdict verdict;
-  bool may_be_the_command_post;
+  bool is_plausible_answer;
 };
 void PrintTo(const MappingCase& one, std::ostream* out) {
   *out << one.status << " " << one.body;
@@ -66,7 +66,7 @@ class MappingVerdicts : public testing::TestWithParam<MappingCase> {};
 TEST_P(MappingVerdicts, FollowStatusAndBody) {
   const Body body = body_of(GetParam().body);
   EXPECT_EQ(mapping_verdict(GetParam().status, body), GetParam().verdict);
-  EXPECT_EQ(may_be_the_command_post(GetParam().status, body), GetParam().may_be_the_command_post);
+  EXPECT_EQ(is_plausible_answer(GetParam().status, body), GetParam().is_plausible_answer);
 }
 INSTANTIATE_TEST_SUITE_P(, MappingVerdicts, testing::ValuesIn(kMappingCases));
 

@@ -11,7 +11,7 @@ using testing::EndsWith;
 using testing::HasSubstr;
 
 std::string meaning(const Scene& scene, const std::string& post = kThere) {
-  return meaning_of_other_command_post(scene.reports(), post);
+  return describe_command_post_change(scene.reports(), post);
 }
 
 TEST(ChangeOfCommandPost, AffectsNoFinalReport) {

@@ -40,12 +40,12 @@ icd::ReportReply reply(const std::string& run, double run_clock) {
 }
 
 TEST(RunClock, RunsIfItAdvancedOnce) {
-  const Clock first = seen_again(std::nullopt, 5);
+  const Clock first = update_clock(std::nullopt, 5);
   EXPECT_EQ(first, (Clock{5, false}));
-  EXPECT_EQ(seen_again(first, 5), (Clock{5, false})) << "it stands";
-  EXPECT_EQ(seen_again(first, 3), (Clock{3, false})) << "it went back";
-  EXPECT_EQ(seen_again(first, 6), (Clock{6, true}));
-  EXPECT_EQ(seen_again(Clock{6, true}, 6), (Clock{6, true})) << "it stands in a stop";
+  EXPECT_EQ(update_clock(first, 5), (Clock{5, false})) << "it stands";
+  EXPECT_EQ(update_clock(first, 3), (Clock{3, false})) << "it went back";
+  EXPECT_EQ(update_clock(first, 6), (Clock{6, true}));
+  EXPECT_EQ(update_clock(Clock{6, true}, 6), (Clock{6, true})) << "it stands in a stop";
 }
 
 TEST(RunChange, ShowsByAClockThatGoesBack) {

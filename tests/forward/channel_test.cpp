@@ -100,7 +100,8 @@ TEST_F(ChannelTest, TakesTheTimeOnlyFromTheCommandPost) {
                            {"503 Service Unavailable", R"({"error": "upstream"})", false}}) {
     const auto channel = asked(
         icd::Uri::Status, uplink::answer(each.status, each.body, "Date: Sun, 06 Nov 2033 08:49:37 GMT\r\n"));
-    EXPECT_EQ(channel->last().time_there().has_value(), each.is_its_own) << each.status << ' ' << each.body;
+    EXPECT_EQ(channel->last().command_post_time().has_value(), each.is_its_own)
+        << each.status << ' ' << each.body;
   }
 }
 

@@ -64,7 +64,7 @@ TEST_F(DamagedMap, IsDroppedAfterAManualRetry) {
   keep(kOne, "first", 0);
   damage(kOne);
   auto kept = spool_.read();
-  maps_->send_again(std::move(kept[0].map), [](bool) { return true; });
+  maps_->resend(std::move(kept[0].map), [](bool) { return true; });
   EXPECT_TRUE(loop::turn_until(loop_, [&] { return row().failed == 1; }));
   EXPECT_TRUE(row().last_sentence.starts_with("its stored copy is damaged: ")) << row().last_sentence;
   EXPECT_EQ(maps_->waiting({Kind::Grid, "first"}), 0U);
@@ -128,12 +128,12 @@ TEST_F(FaultyMap, IsPutAsideWithItsSenderAndReasonUntilTheOperatorDecides) {
   RejectedStore next(loop_, writer_, rejected_folder_.path());
   next.restore();
   EXPECT_EQ(next.put_aside(), rejected_.put_aside()) << "in a later process";
-  EXPECT_EQ(next.to_be_sent(1)->faults, 3);
+  EXPECT_EQ(next.begin_resend(1)->faults, 3);
 }
 
 TEST_F(FaultyMap, IsPutAsideAtItsNextFaultIfTheOperatorSendsItAgain) {
   maps_->endpoint_changed(std::nullopt);  // without a token, maps stay queued
-  maps_->send_again(grid_in("first", 0), [](bool) { return true; }, {}, /*faults=*/3);
+  maps_->resend(grid_in("first", 0), [](bool) { return true; }, {}, /*faults=*/3);
   EXPECT_TRUE(loop::turn_until(loop_, [&] { return maps_->waiting({Kind::Grid, "first"}) == 1; }));
   const auto kept = spool::Spool(folder_.path()).read();
   ASSERT_EQ(kept.size(), 1u);

@@ -28,17 +28,17 @@ class FlowTest : public testing::Test {
   void SetUp() override { restart(); }
   void restart() {
     flow_.reset();
-    flow_.emplace(
-        loop_, ledger_, settings_,
-        Tokens{.scoring = {}, .mapping = {}, .all = {*icd::BearerToken::parse("a-secret")}},
-        Flow::Folders{folder_.path(), folder_.path()},
-        Flow::Told{.changed = [] {}, .posted = [this](const std::string& name) { posted_.push_back(name); }});
+    flow_.emplace(loop_, ledger_, settings_,
+                  Tokens{.scoring = {}, .mapping = {}, .all = {*icd::BearerToken::parse("a-secret")}},
+                  Flow::Folders{folder_.path(), folder_.path()},
+                  Flow::Callbacks{.changed = [] {},
+                                  .posted = [this](const std::string& name) { posted_.push_back(name); }});
     flow_->start();
   }
   icd::Checked<void> take_map(icd::MapUpdate map = spool::cloud(3)) {
     std::optional<icd::Checked<void>> said;
-    flow_->map_arrives()->take(std::move(map), sender_,
-                               [&](icd::Checked<void> taken) { said = std::move(taken); });
+    flow_->begin_map()->take(std::move(map), sender_,
+                             [&](icd::Checked<void> taken) { said = std::move(taken); });
     EXPECT_TRUE(loop::turn_until(loop_, [&] { return said.has_value(); }));
     return said.value_or(std::unexpected(icd::Refusal{icd::Status::Ok, "nothing was said"}));
   }

@@ -131,7 +131,7 @@ class MapsAtARunChange : public testing::Test {
     const auto token = icd::BearerToken::parse("a-token");
     flow_.emplace(loop_, ledger_, settings_, Tokens{.scoring = token, .mapping = token, .all = {*token}},
                   Flow::Folders{folder_.path(), folder_.path()},
-                  Flow::Told{.changed = [] {}, .posted = [](const std::string&) {}});
+                  Flow::Callbacks{.changed = [] {}, .posted = [](const std::string&) {}});
     flow_->start();
   }
   const dispatch::Run& run() const { return flow_->reports().run(); }
@@ -148,8 +148,8 @@ class MapsAtARunChange : public testing::Test {
   }
   void take(icd::MapUpdate map) {
     bool is_taken = false;
-    flow_->map_arrives()->take(std::move(map), sender_,
-                               [&](const icd::Checked<void>& said) { is_taken = said.has_value(); });
+    flow_->begin_map()->take(std::move(map), sender_,
+                             [&](const icd::Checked<void>& said) { is_taken = said.has_value(); });
     ASSERT_TRUE(loop::turn_until(loop_, [&] { return is_taken; }));
   }
   bool all_arrive() {

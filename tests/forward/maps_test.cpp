@@ -84,11 +84,11 @@ TEST_F(MapsTest, AreNotAnsweredWhileTheWriterIsBusy) {
              [&](const icd::Checked<void>& taken) { said = taken.has_value(); });
   for (int i = 0; i < 10; ++i) loop_.turn(std::chrono::milliseconds{5});
   EXPECT_FALSE(said);
-  EXPECT_FALSE(maps_.all_kept());
+  EXPECT_FALSE(maps_.has_stored_all());
   EXPECT_EQ(maps_.queued_bytes(), 0u) << "stored before queued";
   let_go.set_value();
   EXPECT_TRUE(loop::turn_until(loop_, [&] { return said; }));
-  EXPECT_TRUE(maps_.all_kept());
+  EXPECT_TRUE(maps_.has_stored_all());
 }
 
 TEST_F(MapsTest, AreDeletedOnceTheNewerOneIsStored) {
@@ -135,7 +135,7 @@ TEST_F(MapsTest, KeepTheAgeOfWhatTheyReplacedOverARestart) {
   Maps next = maps_with(std::nullopt);
   next.carry_on(carried, /*ran_before=*/true);
   next.restore(spool::Spool(folder_.path()).read());
-  const auto since = next.waits_since({Kind::Grid, "r1"});
+  const auto since = next.oldest_acceptance({Kind::Grid, "r1"});
   ASSERT_TRUE(since);
   EXPECT_NEAR(std::chrono::duration<double>(loop_.now() - *since).count(), 30, 5);
 }
@@ -253,7 +253,7 @@ TEST_F(MapsTest, KeepWhatARetriedGridReplaced) {
     return icd::GridBounds::of(std::get<icd::OccupancyGrid>(window(x).msg));
   };
   bool kept = false;
-  maps_.send_again(
+  maps_.resend(
       window(0.1), [&](bool well) { return kept = well; }, icd::joint_bounds(bounds(0.1), bounds(0)));
   ASSERT_TRUE(loop::turn_until(loop_, [&] { return kept; }));
   EXPECT_EQ(status(take(window(0.2))), icd::Status::Ok);
@@ -266,7 +266,7 @@ TEST_F(MapsTest, KeepWhatARetriedGridReplaced) {
 TEST_F(MapsTest, StandForARetriedGridOverARestart) {
   EXPECT_EQ(status(take(window(0))), icd::Status::Ok);
   std::optional<bool> kept;
-  maps_.send_again(window(0.1), [&](bool well) {
+  maps_.resend(window(0.1), [&](bool well) {
     kept = well;
     return true;
   });
@@ -299,19 +299,19 @@ TEST_F(MapsTest, AssumeSentGridsAfterAnyTruncation) {
 TEST_F(MapsTest, ReplaceARetriedGridByANewerCoveringOne) {
   EXPECT_EQ(status(take(grid("r1", 20, 700))), icd::Status::Ok);
   std::optional<bool> kept;
-  maps_.send_again(grid("r1", 10, 500), [&](bool is_kept) {
+  maps_.resend(grid("r1", 10, 500), [&](bool is_kept) {
     kept = is_kept;
     return true;
   });
   EXPECT_EQ(kept, true) << "the newer grid covers it";
   EXPECT_TRUE(has_files(1));
-  EXPECT_TRUE(maps_.all_kept());
+  EXPECT_TRUE(maps_.has_stored_all());
 }
 
 TEST_F(MapsTest, KeepARetriedGridOldestAfterARestart) {
   EXPECT_EQ(status(take(grid("r1", 10, 500))), icd::Status::Ok);
   bool kept = false;
-  maps_.send_again(grid("r1", 20, 700), [&](bool well) { return kept = well; });
+  maps_.resend(grid("r1", 20, 700), [&](bool well) { return kept = well; });
   ASSERT_TRUE(loop::turn_until(loop_, [&] { return kept; }));
   EXPECT_EQ(maps_.waiting({Kind::Grid, "r1"}), 2u);
   Maps next = maps_with(std::nullopt);
@@ -330,7 +330,7 @@ TEST_F(MapsTest, ReplaceARetriedGridByOneInPacking) {
             [&](const icd::Checked<void>& said) { taken = said.has_value(); });
   ASSERT_TRUE(loop::turn_until(loop_, [&] { return taken && maps.packing(); }));
   std::optional<bool> kept;
-  maps.send_again(grid("r1", 10, 500), [&](bool well) {
+  maps.resend(grid("r1", 10, 500), [&](bool well) {
     kept = well;
     return true;
   });
@@ -342,7 +342,7 @@ TEST_F(MapsTest, ReplaceARetriedGridByOneInPacking) {
 
 TEST_F(MapsTest, DropARetriedGridIfItWasReplacedMeanwhile) {
   std::optional<bool> kept;
-  maps_.send_again(grid("r1", 10, 500), [&](bool well) {
+  maps_.resend(grid("r1", 10, 500), [&](bool well) {
     kept = well;
     return false;
   });
@@ -378,15 +378,15 @@ TEST_F(MapsTest, AreCountedIfTheyHaveNoValidPoint) {
 
 TEST_F(MapsTest, WaitSinceTheOldestOfTheirRobotAndKind) {
   const Traffic traffic{Kind::Grid, "r1"};
-  EXPECT_FALSE(maps_.waits_since(traffic)) << "nothing is queued";
+  EXPECT_FALSE(maps_.oldest_acceptance(traffic)) << "nothing is queued";
   ASSERT_TRUE(take(grid("r1", 10, 500)));
-  const auto since = maps_.waits_since(traffic);
+  const auto since = maps_.oldest_acceptance(traffic);
   ASSERT_TRUE(since);
   ASSERT_TRUE(take(grid("r2", 10, 500)));
   ASSERT_TRUE(take(grid("r1", 20, 500)));
-  EXPECT_EQ(maps_.waits_since(traffic), since) << "the oldest counts";
-  EXPECT_GT(*maps_.waits_since({Kind::Grid, "r2"}), *since);
-  EXPECT_FALSE(maps_.waits_since({Kind::Cloud, "r1"}));
+  EXPECT_EQ(maps_.oldest_acceptance(traffic), since) << "the oldest counts";
+  EXPECT_GT(*maps_.oldest_acceptance({Kind::Grid, "r2"}), *since);
+  EXPECT_FALSE(maps_.oldest_acceptance({Kind::Cloud, "r1"}));
 }
 
 TEST_F(MapsTest, AreLimitedInNumberUnlessTheyMerge) {
@@ -405,7 +405,7 @@ TEST_F(MapsTest, AreLimitedInNumberUnlessTheyMerge) {
     });
     loop_.turn(std::chrono::milliseconds{0});
   }
-  EXPECT_TRUE(loop::turn_until(loop_, [&] { return maps_.all_kept(); }, std::chrono::seconds{60}));
+  EXPECT_TRUE(loop::turn_until(loop_, [&] { return maps_.has_stored_all(); }, std::chrono::seconds{60}));
   EXPECT_EQ(taken, Maps::kMostMaps);
   EXPECT_EQ(status(take(cloud_of(true))), icd::Status::TooManyRequests);
   EXPECT_EQ(status(take(cloud_of(false))), icd::Status::Ok) << "merged into the last queued one";
@@ -432,14 +432,14 @@ TEST_F(MapsTest, AreStoredBeforeARetryIsConfirmed) {
   writer_.submit([until = let_go.get_future().share()] { until.wait(); }, [] {});
   std::optional<bool> kept;
   std::size_t files_then = 0;
-  maps_.send_again(grid("r1", 10, 500), [&](bool well) {
+  maps_.resend(grid("r1", 10, 500), [&](bool well) {
     kept = well;
     files_then = files();
     return true;
   });
   for (int i = 0; i < 10; ++i) loop_.turn(std::chrono::milliseconds{5});
   EXPECT_FALSE(kept);
-  EXPECT_FALSE(maps_.all_kept());
+  EXPECT_FALSE(maps_.has_stored_all());
   let_go.set_value();
   EXPECT_TRUE(loop::turn_until(loop_, [&] { return kept.has_value(); }));
   EXPECT_EQ(kept, true);
@@ -453,7 +453,7 @@ TEST_F(MapsTest, StayRejectedIfARetryCannotBeStored) {
     std::ofstream(folder_.path()) << "in the way";
   }
   std::optional<bool> kept;
-  maps_.send_again(grid("r1", 10, 500), [&](bool well) {
+  maps_.resend(grid("r1", 10, 500), [&](bool well) {
     kept = well;
     return true;
   });

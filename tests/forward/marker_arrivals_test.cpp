@@ -133,7 +133,7 @@ TEST_F(MarkerArrivalsTest, AreStoredUpToTheLimitOfAMessage) {
 }
 
 TEST_F(MarkerArrivalsTest, AreRejectedAsAWholeByAFullQueue) {
-  queue_.keep_within({.bytes = 3000 * icd::bytes_of(change(0, "12345"))});
+  queue_.set_bounds({.bytes = 3000 * icd::bytes_of(change(0, "12345"))});
   take(many("12345"));
   icd::MarkersUpdate others = many("12345");
   for (icd::Marker& marker : others.markers) marker.id += 10'000;

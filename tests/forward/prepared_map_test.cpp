@@ -75,7 +75,7 @@ TEST_F(PreparedMap, ReplacesAnOlderGridSentByTheOperator) {
   take(grid_of("second", 20));
   ASSERT_TRUE(loop::turn_until(loop_, [&] { return maps_->queued_bytes() == 0; }));
   std::optional<bool> kept;
-  maps_->send_again(grid_of("second", 10), [&](bool well) {
+  maps_->resend(grid_of("second", 10), [&](bool well) {
     kept = well;
     return true;
   });

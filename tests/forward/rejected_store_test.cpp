@@ -99,7 +99,7 @@ TEST_F(RejectedStoreTest, KeepsMessagesAndReasonsAcrossARestart) {
   }
   EXPECT_EQ(rows[0].kind, "grid");
   EXPECT_EQ(rows[1].robot, "r2");
-  const auto map = rejected_->to_be_sent(1);
+  const auto map = rejected_->begin_resend(1);
   ASSERT_TRUE(map);
   EXPECT_EQ(std::get<icd::MapUpdate>(map->message).data.raw_size, 4);
 }
@@ -118,11 +118,11 @@ TEST_F(RejectedStoreTest, KeepsItsAgesAtAClockStep) {
 TEST_F(RejectedStoreTest, ForgetsRetriedAndDiscardedMessages) {
   add(grid());
   add(state(), 500);
-  EXPECT_TRUE(rejected_->to_be_sent(1));
-  EXPECT_FALSE(rejected_->to_be_sent(1));
+  EXPECT_TRUE(rejected_->begin_resend(1));
+  EXPECT_FALSE(rejected_->begin_resend(1));
   EXPECT_FALSE(rejected_->discard(1));
-  rejected_->sent_again(1, true);
-  EXPECT_FALSE(rejected_->to_be_sent(1));
+  rejected_->finish_resend(1, true);
+  EXPECT_FALSE(rejected_->begin_resend(1));
   EXPECT_TRUE(rejected_->discard(2));
   EXPECT_EQ(rejected_->discard(2).error(), "there is no rejected message 2");
   settle();
@@ -135,7 +135,7 @@ TEST_F(RejectedStoreTest, RetriesNoReplacedMessage) {
   add(grid());
   rejected_->taken(grid(0, 5));
   EXPECT_TRUE(rejected_->rows().front().replaced);
-  const auto sent = rejected_->to_be_sent(1);
+  const auto sent = rejected_->begin_resend(1);
   ASSERT_FALSE(sent);
   EXPECT_NE(sent.error().find("newer"), std::string::npos);
   restart();
@@ -155,13 +155,13 @@ TEST_F(RejectedStoreTest, KeepsWhatAGridReplacedAcrossARestart) {
     settle();
     restart();
   }
-  const auto item = rejected_->to_be_sent(2);
+  const auto item = rejected_->begin_resend(2);
   ASSERT_TRUE(item && item->bounds);
   EXPECT_NEAR(item->bounds->low.x, -0.04, 1e-9);
   EXPECT_NEAR(item->bounds->high.x, 0.24, 1e-9);
   rejected_->taken(grid(0.04));
   EXPECT_TRUE(rejected_->rows().empty()) << "it is being sent";
-  rejected_->sent_again(2, false);
+  rejected_->finish_resend(2, false);
   EXPECT_TRUE(rejected_->rows().front().replaced);
 }
 
@@ -174,11 +174,11 @@ TEST_F(RejectedStoreTest, ConfirmsThatAReplacementIsStored) {
   EXPECT_TRUE(rejected_->taken(grid(), [&] { ++written; }));
   EXPECT_FALSE(rejected_->taken(grid(), [&] { ++written; })) << "replaced before";
   EXPECT_FALSE(found_after_a_kill().front().replaced);
-  EXPECT_FALSE(rejected_->all_kept());
+  EXPECT_FALSE(rejected_->has_stored_all());
   EXPECT_EQ(written, 0);
   let_go();
   settle();
-  EXPECT_TRUE(rejected_->all_kept());
+  EXPECT_TRUE(rejected_->has_stored_all());
   EXPECT_EQ(written, 1);
   EXPECT_TRUE(found_after_a_kill().front().replaced);
 }
@@ -225,12 +225,12 @@ TEST_F(RejectedStoreTest, ReleasesTheOriginOnceTheMessageIsStored) {
   add(grid());
   for (int i = 0; i < 10; ++i) loop_.turn(std::chrono::milliseconds{5});
   EXPECT_EQ(rejected_->rows().size(), 1u) << "listed at once";
-  EXPECT_FALSE(rejected_->all_kept());
+  EXPECT_FALSE(rejected_->has_stored_all());
   EXPECT_EQ(told_.kept + told_.let_go, 0);
   EXPECT_TRUE(found_after_a_kill().empty()) << "the origin still has it";
   let_go();
   settle();
-  EXPECT_TRUE(rejected_->all_kept());
+  EXPECT_TRUE(rejected_->has_stored_all());
   EXPECT_EQ(told_.kept, 1);
   EXPECT_EQ(told_.let_go, 1);
   EXPECT_EQ(found_after_a_kill().size(), 1u);
@@ -246,11 +246,11 @@ TEST_F(RejectedStoreTest, FinishesItsWritesAtAStop) {
 TEST_F(RejectedStoreTest, KeepsARetriedMessageUntilItIsQueued) {
   add(grid());
   settle();
-  ASSERT_TRUE(rejected_->to_be_sent(1));
+  ASSERT_TRUE(rejected_->begin_resend(1));
   EXPECT_TRUE(rejected_->rows().empty()) << "it cannot be sent twice";
   settle();
   EXPECT_EQ(found_after_a_kill().size(), 1u);
-  rejected_->sent_again(1, true);
+  rejected_->finish_resend(1, true);
   settle();
   EXPECT_TRUE(found_after_a_kill().empty());
 }
@@ -258,20 +258,20 @@ TEST_F(RejectedStoreTest, KeepsARetriedMessageUntilItIsQueued) {
 TEST_F(RejectedStoreTest, DetectsAReplacementDuringARetry) {
   add(grid());
   add(state());
-  ASSERT_TRUE(rejected_->to_be_sent(1));
-  ASSERT_TRUE(rejected_->to_be_sent(2));
+  ASSERT_TRUE(rejected_->begin_resend(1));
+  ASSERT_TRUE(rejected_->begin_resend(2));
   rejected_->taken(grid());
-  EXPECT_FALSE(rejected_->sent_again(1, true));
-  EXPECT_TRUE(rejected_->sent_again(2, true));
+  EXPECT_FALSE(rejected_->finish_resend(1, true));
+  EXPECT_TRUE(rejected_->finish_resend(2, true));
 }
 
 TEST_F(RejectedStoreTest, RestoresAMessageIfItsRetryFails) {
   add(grid());
   settle();
-  ASSERT_TRUE(rejected_->to_be_sent(1));
-  rejected_->sent_again(1, false);
+  ASSERT_TRUE(rejected_->begin_resend(1));
+  rejected_->finish_resend(1, false);
   EXPECT_EQ(rejected_->rows().size(), 1u);
-  EXPECT_TRUE(rejected_->to_be_sent(1));
+  EXPECT_TRUE(rejected_->begin_resend(1));
 }
 
 TEST_F(RejectedStoreTest, KeepsTheOriginIfAWriteFails) {
@@ -285,9 +285,9 @@ TEST_F(RejectedStoreTest, KeepsTheOriginIfAWriteFails) {
   EXPECT_EQ(told_.let_go, 0);
   ASSERT_TRUE(rejected_->discard(1));
   EXPECT_EQ(told_.let_go, 1);
-  ASSERT_TRUE(rejected_->to_be_sent(2));
+  ASSERT_TRUE(rejected_->begin_resend(2));
   EXPECT_EQ(told_.let_go, 1);
-  rejected_->sent_again(2, true);
+  rejected_->finish_resend(2, true);
   EXPECT_EQ(told_.let_go, 2);
 }
 
@@ -298,7 +298,7 @@ TEST_F(RejectedStoreTest, StartsWithoutReadingMapData) {
   const auto after = spool::BytesRead::of(folder_.path());
   EXPECT_LT(after.by_calls - before.by_calls, 1'000'000U);
   EXPECT_LT(after.in_mappings, 1'000'000U);
-  const auto map = rejected_->to_be_sent(1);
+  const auto map = rejected_->begin_resend(1);
   ASSERT_TRUE(map);
   EXPECT_EQ(std::get<icd::MapUpdate>(map->message), spool::cloud(1'000'000));
 }

@@ -142,7 +142,7 @@ TEST_F(TelemetryTest, KeepsTheAgeOfAPoseOverARestart) {
   process->journal.heard(heard);
   process.reset();
   process = process_without_a_token();
-  const auto since = process->telemetry.waits_since({Kind::State, "r1"});
+  const auto since = process->telemetry.oldest_acceptance({Kind::State, "r1"});
   ASSERT_TRUE(since);
   EXPECT_NEAR(std::chrono::duration<double>(loop_.now() - *since).count(), 30, 5);
 }
@@ -178,10 +178,10 @@ TEST_F(TelemetryTest, KeepsMessagesUntilReplacementsAreStored) {
   ASSERT_TRUE(process->telemetry.take(pose("r1", 2), 10));
   ASSERT_TRUE(eventually(*process, [&] { return replaced(0); }));
   EXPECT_EQ(left().robots().size(), 1u);
-  EXPECT_FALSE(process->rejected.all_kept());
+  EXPECT_FALSE(process->rejected.has_stored_all());
   ASSERT_TRUE(process->take(icd::MarkersUpdate{{marker("a", "newer")}}));
   held.set_value();
-  ASSERT_TRUE(eventually(*process, [&] { return replaced(1) && process->rejected.all_kept(); }));
+  ASSERT_TRUE(eventually(*process, [&] { return replaced(1) && process->rejected.has_stored_all(); }));
   EXPECT_THAT(left().robots(), IsEmpty());
   EXPECT_THAT(left().markers().markers, IsEmpty());
 }
@@ -189,7 +189,7 @@ TEST_F(TelemetryTest, KeepsMessagesUntilReplacementsAreStored) {
 TEST_F(TelemetryTest, RetriesNoMarkerThatANewerOneReplaces) {
   const auto process = process_without_a_token();
   ASSERT_TRUE(process->take(icd::MarkersUpdate{{marker("a", "newer"), marker("b", "other")}}));
-  EXPECT_TRUE(process->telemetry.send_again(icd::MarkersUpdate{{marker("a", "older")}}));
+  EXPECT_TRUE(process->telemetry.resend(icd::MarkersUpdate{{marker("a", "older")}}));
   EXPECT_THAT(texts(left().markers()), ElementsAre("newer", "other"));
   EXPECT_EQ(process->telemetry.waiting(Kind::Markers), 2u);
 }
@@ -197,7 +197,7 @@ TEST_F(TelemetryTest, RetriesNoMarkerThatANewerOneReplaces) {
 TEST_F(TelemetryTest, RetriesNoMarkerThatWasDeleted) {
   const auto process = process_without_a_token();
   ASSERT_TRUE(process->take(icd::MarkersUpdate{{kWipe}}));
-  EXPECT_TRUE(process->telemetry.send_again(icd::MarkersUpdate{{marker("a", "older")}}));
+  EXPECT_TRUE(process->telemetry.resend(icd::MarkersUpdate{{marker("a", "older")}}));
   EXPECT_THAT(texts(left().markers()), ElementsAre("wipe"));
   EXPECT_EQ(process->telemetry.waiting(Kind::Markers), 1u);
 }
@@ -205,7 +205,7 @@ TEST_F(TelemetryTest, RetriesNoMarkerThatWasDeleted) {
 TEST_F(TelemetryTest, RetriesADeleteAllBeforeNewerMarkers) {
   const auto process = process_without_a_token();
   ASSERT_TRUE(process->take(icd::MarkersUpdate{{marker("", "newer")}}));
-  EXPECT_TRUE(process->telemetry.send_again(icd::MarkersUpdate{{kWipe}}));
+  EXPECT_TRUE(process->telemetry.resend(icd::MarkersUpdate{{kWipe}}));
   EXPECT_THAT(texts(left().markers()), ElementsAre("wipe", "newer"));
   EXPECT_EQ(process->telemetry.waiting(Kind::Markers), 2u);
 }
@@ -213,7 +213,7 @@ TEST_F(TelemetryTest, RetriesADeleteAllBeforeNewerMarkers) {
 TEST_F(TelemetryTest, RetriesAMarkerThatNothingReplaces) {
   const auto process = process_without_a_token();
   ASSERT_TRUE(process->take(icd::MarkersUpdate{{marker("b", "other")}}));
-  EXPECT_TRUE(process->telemetry.send_again(icd::MarkersUpdate{{marker("a", "older")}}));
+  EXPECT_TRUE(process->telemetry.resend(icd::MarkersUpdate{{marker("a", "older")}}));
   EXPECT_THAT(texts(left().markers()), UnorderedElementsAre("older", "other"));
 }
 
@@ -274,14 +274,14 @@ TEST_F(TelemetryTest, IsBehindUntilItIsDelivered) {
   TelemetryStub post(true);
   const auto process = process_with(post.peer);
   const Traffic robot{Kind::State, "r2"}, other{Kind::State, "r9"}, markers{Kind::Markers, ""};
-  EXPECT_FALSE(process->telemetry.waits_since(robot));
+  EXPECT_FALSE(process->telemetry.oldest_acceptance(robot));
   ASSERT_TRUE(process->telemetry.take(pose("r2", 7.5), 10));
   ASSERT_TRUE(process->take(icd::MarkersUpdate{{marker("", "one")}}));
-  EXPECT_TRUE(process->telemetry.waits_since(robot));
-  EXPECT_TRUE(process->telemetry.waits_since(markers));
-  EXPECT_FALSE(process->telemetry.waits_since(other)) << "it posted nothing";
+  EXPECT_TRUE(process->telemetry.oldest_acceptance(robot));
+  EXPECT_TRUE(process->telemetry.oldest_acceptance(markers));
+  EXPECT_FALSE(process->telemetry.oldest_acceptance(other)) << "it posted nothing";
   EXPECT_TRUE(eventually(*process, [&] {
-    return !process->telemetry.waits_since(robot) && !process->telemetry.waits_since(markers);
+    return !process->telemetry.oldest_acceptance(robot) && !process->telemetry.oldest_acceptance(markers);
   }));
   EXPECT_EQ(process->counts.rows().at(robot).forwarded, 1u);
 }
@@ -319,7 +319,7 @@ TEST_P(OneRejectedRobot, FailsAlone) {
   EXPECT_THAT(row("r5").last_sentence, testing::StartsWith("the Command Post answered"));
   EXPECT_GE(row("r1").forwarded, 1u);
   EXPECT_THAT(process->rejected.rows(), IsEmpty());
-  EXPECT_TRUE(process->telemetry.waits_since({Kind::State, "r5"}));
+  EXPECT_TRUE(process->telemetry.oldest_acceptance({Kind::State, "r5"}));
 
   post.rejects = false;
   process->telemetry.endpoint_changed(icd::BearerToken::parse("another-token"));

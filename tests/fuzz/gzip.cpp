@@ -38,7 +38,7 @@ void try_gzip(Input text) {
   if (said) require(*said == *said_of_pieces);
   if (!said) require(said.error().sentence.starts_with("msg.data"));
   const auto at_once =
-      codec::gunzip_whole(cut, said ? said->size() : std::min(codec::claimed_size(cut), kMostInflated));
+      codec::gunzip(cut, said ? said->size() : std::min(codec::claimed_size(cut), kMostInflated));
   if (said && at_once) require(std::ranges::equal(*at_once, bytes_of(*said)));
   // Nothing may follow a member but others.
   if (said) require(!inflated(icd::ChunkedBytes(bytes_of(std::string(text) + "x"))));
@@ -51,7 +51,7 @@ void try_gzip(Input text) {
   }
   const auto whole = bytes_of(text);
   for (const int level : {codec::kFastestLevel, 6, codec::kSmallestLevel}) {
-    const auto member = codec::gzip_whole(whole, level, whole.size());
+    const auto member = codec::gzip(whole, level, whole.size());
     if (member) require(member->size() <= whole.size() && inflated(*member) == std::string(text));
   }
 }

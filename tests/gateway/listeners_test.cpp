@@ -49,7 +49,7 @@ class ListenersTest : public testing::Test {
  protected:
   ListenersTest() {
     team_.listen = {{"127.0.0.1", free_port()}};
-    listeners_.let_go_within(1h);
+    listeners_.set_drain_time(1h);
   }
   /// The port of a socket that was closed again.
   static std::uint16_t free_port() {
@@ -102,7 +102,7 @@ TEST_F(ListenersTest, ClosedSocketServesItsConnectionsForAWhile) {
   ASSERT_TRUE(serve());
   Client client(port());
   EXPECT_EQ(answer_to(client), kAnswered);
-  listeners_.let_go_within(100ms);
+  listeners_.set_drain_time(100ms);
   const std::uint16_t before = port();
   team_.listen = {{"127.0.0.1", free_port()}};
   ASSERT_TRUE(serve());
@@ -116,7 +116,7 @@ TEST_F(ListenersTest, NewLimitsApplyToNewConnections) {
   ASSERT_TRUE(serve());
   Client client(port());
   EXPECT_EQ(answer_to(client), kAnswered);
-  listeners_.let_go_within(0ms);
+  listeners_.set_drain_time(0ms);
   team_.connections_per_address = 1;
   ASSERT_TRUE(serve());
   listeners_.tick();

@@ -71,7 +71,7 @@ TEST(EscapedText, EscapesControlAndDeceptiveCharacters) {
 }
 
 TEST(EscapedText, EscapesAllButAsciiForAnAsciiTerminal) {
-  EXPECT_EQ(in_ascii(escaped("Höhle \\")), R"(H\xc3\xb6hle \\)");
+  EXPECT_EQ(to_ascii(escaped("Höhle \\")), R"(H\xc3\xb6hle \\)");
 }
 
 TEST(JournalEntry, HasEachFieldApart) {

@@ -47,10 +47,10 @@ TEST_F(Notify, SendsTheStateToSystemd) {
   EXPECT_EQ(heard(), "WATCHDOG=1");
   notify_stopping();
   EXPECT_EQ(heard(), "STOPPING=1");
-  notify_starting_again();
+  notify_restarting();
   EXPECT_EQ(heard(), "") << "no watchdog";
   setenv("WATCHDOG_USEC", "10000000", 1);
-  notify_starting_again();
+  notify_restarting();
   EXPECT_EQ(heard(), "WATCHDOG_USEC=60000000");
   notify_ready("serving");
   EXPECT_EQ(heard() + heard(), "READY=1\nSTATUS=servingWATCHDOG_USEC=10000000");

@@ -49,7 +49,7 @@ TEST(BearerToken, IsRedactedInEachEncoding) {
   const auto token = *BearerToken::parse(R"(flux230{"show\room<&)");
   std::string text =
       R"(flux230{"show\room<& flux230{\"show\\room<& flux230{""show\room<& flux230{\\\"show\\\\room<& )" +
-      in_html(token.reveal());
+      escape_html(token.reveal());
   token.strike_from(text);
   EXPECT_EQ(text, "[token] [token] [token] [token] [token]");
 }
@@ -57,7 +57,7 @@ TEST(BearerToken, IsRedactedInEachEncoding) {
 TEST(Redaction, RedactsHtmlTextButNotMarkup) {
   const auto token = *BearerToken::parse("a<b>&'c\"d");
   const Redaction redaction({token, *BearerToken::parse("table")});
-  std::string text = "<table><td>" + in_html("sent " + token.reveal()) + "</td></table>";
+  std::string text = "<table><td>" + escape_html("sent " + token.reveal()) + "</td></table>";
   redaction.strike_from_html(text);
   EXPECT_EQ(text, "<table><td>sent [token]</td></table>");
 }

@@ -37,7 +37,7 @@ class FairShares : public testing::Test {
   /// rejection.
   Reply expect_room(std::string_view path, const std::string& body) {
     for (int i = 0; i < 20; ++i) send_one_more(path, body);
-    EXPECT_TRUE(team.served.eventually([&] { return !team.desk.refusals.empty(); }));
+    EXPECT_TRUE(team.served.eventually([&] { return !team.message_handler.refusals.empty(); }));
     RawClient other(team.served.port(), kOther);
     other.send(request("POST", path, kJsonType, body));
     const auto reply = other.reply();
@@ -76,8 +76,10 @@ TEST(FairTurns, AlternateBetweenAddresses) {
   busy.end();
   for (const auto& client : clients) EXPECT_EQ(client->reply()->status, 200);
   team.served.on_loop([&] {
-    ASSERT_EQ(team.desk.senders.size(), 4u);
-    EXPECT_LT(std::ranges::find(team.desk.senders, kOther, &Sender::address) - team.desk.senders.begin(), 3);
+    ASSERT_EQ(team.message_handler.senders.size(), 4u);
+    EXPECT_LT(std::ranges::find(team.message_handler.senders, kOther, &Sender::address) -
+                  team.message_handler.senders.begin(),
+              3);
   });
 }
 

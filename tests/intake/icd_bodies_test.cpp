@@ -34,11 +34,11 @@ TEST(IcdBodies, MayBeJsonOrCborWithGzip) {
     }
   }
   team.served.on_loop([&] {
-    EXPECT_EQ(team.desk.states.size(), 4u);
-    EXPECT_EQ(team.desk.markers.size(), 4u);
-    EXPECT_EQ(team.desk.states.at(0).poses.at(0).name.text(), "r1");
-    EXPECT_EQ(team.desk.senders.at(0).bytes, kStateBody.size());
-    EXPECT_EQ(team.desk.senders.at(0).address, "127.0.0.1");
+    EXPECT_EQ(team.message_handler.states.size(), 4u);
+    EXPECT_EQ(team.message_handler.markers.size(), 4u);
+    EXPECT_EQ(team.message_handler.states.at(0).poses.at(0).name.text(), "r1");
+    EXPECT_EQ(team.message_handler.senders.at(0).bytes, kStateBody.size());
+    EXPECT_EQ(team.message_handler.senders.at(0).address, "127.0.0.1");
   });
 }
 
@@ -48,13 +48,13 @@ TEST(IcdBodies, OfReportsAreAnsweredByTheDesk) {
                                       std::pair(std::string(kJsonType) + kGzip, gzipped(kReportBody))}) {
     RawClient client(team.served.port());
     client.send(authorized("POST", "/api/artifact_reports", headers, body));
-    ASSERT_TRUE(team.served.eventually([&] { return team.desk.responders.size() == 1; }));
+    ASSERT_TRUE(team.served.eventually([&] { return team.message_handler.responders.size() == 1; }));
     EXPECT_FALSE(client.reply(milliseconds(20)));
     team.served.on_loop([&] {
-      EXPECT_EQ(team.desk.reports.back(), (icd::ArtifactReport{"Backpack", {1.5, -2, 0}}));
-      team.desk.responders[0]->answer(
+      EXPECT_EQ(team.message_handler.reports.back(), (icd::ArtifactReport{"Backpack", {1.5, -2, 0}}));
+      team.message_handler.responders[0]->answer(
           {.status = icd::Status::Created, .body = R"({"id": 1})", .headers = {{"X-Post", "1"}}});
-      team.desk.responders.clear();
+      team.message_handler.responders.clear();
     });
     const auto reply = client.reply();
     ASSERT_TRUE(reply);
@@ -70,12 +70,12 @@ TEST(IcdBodies, OfReportsMayHaveAnInvalidRobotName) {
   RawClient client(team.served.port());
   client.send(authorized("POST", "/api/artifact_reports", kJsonType,
                          R"({"x": 1.5, "y": -2, "z": 0, "type": "Backpack", "name": "no robot"})"));
-  ASSERT_TRUE(team.served.eventually([&] { return team.desk.responders.size() == 1; }));
+  ASSERT_TRUE(team.served.eventually([&] { return team.message_handler.responders.size() == 1; }));
   team.served.on_loop([&] {
-    EXPECT_EQ(team.desk.reports.back(), (icd::ArtifactReport{"Backpack", {1.5, -2, 0}}));
-    ASSERT_EQ(team.desk.left_out_of_reports.size(), 1u);
-    EXPECT_TRUE(team.desk.left_out_of_reports[0].starts_with("name: expected 1 to 10 letters"));
-    team.desk.responders[0]->answer({.body = "null", .headers = {}});
+    EXPECT_EQ(team.message_handler.reports.back(), (icd::ArtifactReport{"Backpack", {1.5, -2, 0}}));
+    ASSERT_EQ(team.message_handler.left_out_of_reports.size(), 1u);
+    EXPECT_TRUE(team.message_handler.left_out_of_reports[0].starts_with("name: expected 1 to 10 letters"));
+    team.message_handler.responders[0]->answer({.body = "null", .headers = {}});
   });
   EXPECT_EQ(client.reply()->status, 200);
 }
@@ -86,10 +86,11 @@ TEST(IcdBodies, AreIgnoredByAStatusRequest) {
   for (const std::string_view body : {"", "ignored"}) {
     for (const std::string_view method : {"GET", "HEAD"}) {
       client.send(authorized(method, "/api/status", {}, body));
-      ASSERT_TRUE(team.served.eventually([&] { return team.desk.responders.size() == 1; })) << method;
+      ASSERT_TRUE(team.served.eventually([&] { return team.message_handler.responders.size() == 1; }))
+          << method;
       team.served.on_loop([&] {
-        team.desk.responders[0]->answer({.body = R"({"score": 1})", .headers = {}});
-        team.desk.responders.clear();
+        team.message_handler.responders[0]->answer({.body = R"({"score": 1})", .headers = {}});
+        team.message_handler.responders.clear();
       });
       const auto reply = client.reply(std::chrono::seconds(10), method == "HEAD");
       ASSERT_TRUE(reply);
@@ -124,9 +125,9 @@ TEST(IcdBodies, AreRejectedWithASentenceIfTheyAreWrong) {
     EXPECT_EQ(reply->header("access-control-allow-origin"), "*");
   }
   team.served.on_loop([&] {
-    EXPECT_EQ(team.desk.refusals.size(), std::size(cases));
-    EXPECT_TRUE(team.desk.states.empty() && team.desk.markers.empty() && team.desk.reports.empty() &&
-                team.desk.maps.empty());
+    EXPECT_EQ(team.message_handler.refusals.size(), std::size(cases));
+    EXPECT_TRUE(team.message_handler.states.empty() && team.message_handler.markers.empty() &&
+                team.message_handler.reports.empty() && team.message_handler.maps.empty());
   });
 }
 
@@ -195,21 +196,22 @@ TEST(IcdBodies, AreAcceptedForTheirGoodParts) {
   markers["markers"].push_back(7);
   EXPECT_EQ(team.ask(authorized("POST", "/markers/update", kJsonType, markers.dump()))->status, 422);
   team.served.on_loop([&] {
-    ASSERT_EQ(team.desk.states.size(), 1u);
-    ASSERT_EQ(team.desk.states[0].poses.size(), 2u);
-    EXPECT_EQ(team.desk.states[0].poses[1].name.text(), "r3");
-    ASSERT_EQ(team.desk.markers.size(), 1u);
-    EXPECT_EQ(team.desk.markers[0].markers.size(), markers["markers"].size() - 1);
-    ASSERT_EQ(team.desk.refusals.size(), 2u);
-    EXPECT_EQ(team.desk.refusals[0].first, icd::Uri::StateUpdate);
-    EXPECT_EQ(team.desk.refusals[0].second.status, icd::Status::UnprocessableEntity);
-    EXPECT_EQ(team.desk.refusals[0].second.sentence, "poses[1].name: missing (the other 2 were accepted)");
+    ASSERT_EQ(team.message_handler.states.size(), 1u);
+    ASSERT_EQ(team.message_handler.states[0].poses.size(), 2u);
+    EXPECT_EQ(team.message_handler.states[0].poses[1].name.text(), "r3");
+    ASSERT_EQ(team.message_handler.markers.size(), 1u);
+    EXPECT_EQ(team.message_handler.markers[0].markers.size(), markers["markers"].size() - 1);
+    ASSERT_EQ(team.message_handler.refusals.size(), 2u);
+    EXPECT_EQ(team.message_handler.refusals[0].first, icd::Uri::StateUpdate);
+    EXPECT_EQ(team.message_handler.refusals[0].second.status, icd::Status::UnprocessableEntity);
+    EXPECT_EQ(team.message_handler.refusals[0].second.sentence,
+              "poses[1].name: missing (the other 2 were accepted)");
   });
 }
 
 TEST(IcdBodies, HaveTheDesksAnswerIfItRejectsGoodParts) {
   Team team;
-  team.served.on_loop([&] { team.desk.full = {icd::Status::TooManyRequests, "full"}; });
+  team.served.on_loop([&] { team.message_handler.full = {icd::Status::TooManyRequests, "full"}; });
   const auto reply = team.ask(authorized("POST", "/state/update", kJsonType, kOneBadPose));
   ASSERT_TRUE(reply);
   EXPECT_EQ(reply->status, 429);
@@ -218,7 +220,8 @@ TEST(IcdBodies, HaveTheDesksAnswerIfItRejectsGoodParts) {
 
 TEST(IcdBodies, AreRejectedByAFullDesk) {
   Team team;
-  team.served.on_loop([&] { team.desk.full = {icd::Status::TooManyRequests, "the queue is full"}; });
+  team.served.on_loop(
+      [&] { team.message_handler.full = {icd::Status::TooManyRequests, "the queue is full"}; });
   for (const auto& [path, body] :
        {std::pair("/state/update", std::string(kStateBody)),
         std::pair("/markers/update", std::string(kMarkersBody)), std::pair("/map/update", grid_body(4, 4))}) {

@@ -45,7 +45,7 @@ TEST(IcdRoutes, CheckTheTokenFirst) {
       }
     }
   }
-  EXPECT_EQ(team.served.on_loop([&] { return team.desk.refusals.size(); }),
+  EXPECT_EQ(team.served.on_loop([&] { return team.message_handler.refusals.size(); }),
             std::size(wrong) * std::size(icd::kUris) * 3);
 }
 
@@ -58,7 +58,7 @@ TEST(IcdRoutes, TellInWhichOrderUploadsBeganAndEnded) {
   ASSERT_TRUE(team.ask(markers));
   slow.send(markers.substr(markers.size() - 1));
   ASSERT_TRUE(slow.reply());
-  const auto senders = team.served.on_loop([&] { return team.desk.senders; });
+  const auto senders = team.served.on_loop([&] { return team.message_handler.senders; });
   ASSERT_EQ(senders.size(), 3u);
   EXPECT_EQ(senders[0].overlaps, 0u) << "the other upload is to another URI";
   EXPECT_EQ(senders[1].overlaps, senders[2].began);
@@ -142,8 +142,8 @@ TEST(IcdRoutes, RequireATokenFromAForeignPage) {
   }
   EXPECT_EQ(status("adit.local:8000", "Origin: http://adit.local:8000\r\n"), taken);
   team.served.on_loop([&] {
-    EXPECT_EQ(team.desk.refusals.front().second.setting, "team.origins") << "another origin";
-    EXPECT_EQ(team.desk.refusals.back().second.setting, "") << "another Host";
+    EXPECT_EQ(team.message_handler.refusals.front().second.setting, "team.origins") << "another origin";
+    EXPECT_EQ(team.message_handler.refusals.back().second.setting, "") << "another Host";
   });
 }
 
@@ -197,7 +197,7 @@ TEST(IcdRoutes, AnswerPreflightsWithoutAToken) {
               uri == icd::Uri::Status ? "GET, HEAD, OPTIONS" : "POST, OPTIONS");
     EXPECT_EQ(reply->header("access-control-allow-headers"), "authorization, x-team");
     EXPECT_FALSE(reply->header("access-control-max-age").empty());
-    EXPECT_TRUE(team.served.on_loop([&] { return team.desk.refusals.empty(); }));
+    EXPECT_TRUE(team.served.on_loop([&] { return team.message_handler.refusals.empty(); }));
   }
 }
 
@@ -255,7 +255,7 @@ TEST(IcdRoutes, LetNoPageReadTheApi) {
 TEST(IcdRoutes, SayWhenToRetry) {
   Team team;
   for (const auto status : {icd::Status::TooManyRequests, icd::Status::ServiceUnavailable}) {
-    team.served.on_loop([&] { team.desk.full = icd::Refusal{status, "full"}; });
+    team.served.on_loop([&] { team.message_handler.full = icd::Refusal{status, "full"}; });
     for (const auto& [path, body] :
          {std::pair("/map/update", grid_body(2, 2)), std::pair("/state/update", std::string(kStateBody)),
           std::pair("/markers/update", std::string(kMarkersBody))}) {

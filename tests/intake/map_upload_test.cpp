@@ -18,13 +18,13 @@ TEST(MapUpload, ReachesTheDeskDecoded) {
   EXPECT_EQ(reply->status, 200) << reply->body;
   EXPECT_EQ(reply->body, "null");
   team.served.on_loop([&] {
-    ASSERT_EQ(team.desk.maps.size(), 1u);
-    const icd::MapUpdate& map = team.desk.maps[0];
+    ASSERT_EQ(team.message_handler.maps.size(), 1u);
+    const icd::MapUpdate& map = team.message_handler.maps[0];
     ASSERT_TRUE(map.is_grid());
     EXPECT_EQ(std::get<icd::OccupancyGrid>(map.msg).width, 640u);
     EXPECT_EQ(map.data.raw_size, 640u * 480u);
     EXPECT_EQ(map.name->text(), "r1");
-    EXPECT_EQ(team.desk.senders.at(0).bytes, grid_body(640, 480).size());
+    EXPECT_EQ(team.message_handler.senders.at(0).bytes, grid_body(640, 480).size());
   });
 }
 
@@ -62,63 +62,64 @@ TEST(MapUpload, IsDroppedIfItsClientDisconnects) {
   }
   EXPECT_EQ(team.ask(authorized("POST", "/map/update", kJsonType, body))->status, 200);
   team.served.on_loop([&] {
-    EXPECT_EQ(team.desk.maps.size(), 1u);
-    EXPECT_TRUE(team.desk.refusals.empty());
+    EXPECT_EQ(team.message_handler.maps.size(), 1u);
+    EXPECT_TRUE(team.message_handler.refusals.empty());
   });
 }
 
 TEST(MapUpload, IsAnsweredOnceTheDeskHasStoredIt) {
   Team team;
-  team.served.on_loop([&] { team.desk.stores_at_once = false; });
+  team.served.on_loop([&] { team.message_handler.stores_at_once = false; });
   const std::string body = grid_body(300, 300);
   RawClient client(team.served.port());
   client.send(map_head(body) + body);
-  ASSERT_TRUE(team.served.eventually([&] { return team.desk.storing.size() == 1; }));
+  ASSERT_TRUE(team.served.eventually([&] { return team.message_handler.storing.size() == 1; }));
   EXPECT_FALSE(client.reply(milliseconds(200)));
-  team.served.on_loop([&] { team.desk.storing.front()(); });
+  team.served.on_loop([&] { team.message_handler.storing.front()(); });
   EXPECT_EQ(client.reply()->status, 200);
 }
 
-/// The desk owns the map then and must answer.
+/// The message handler owns the map then and must answer.
 TEST(MapUpload, IsRejectedIfTheDeskFails) {
   Team team;
   const std::string sent = authorized("POST", "/map/update", kJsonType, grid_body(300, 300));
-  team.served.on_loop([&] { team.desk.fails = true; });
+  team.served.on_loop([&] { team.message_handler.fails = true; });
   const auto reply = team.ask(sent);
   ASSERT_TRUE(reply) << "no answer";
   EXPECT_EQ(reply->status, 503);
-  EXPECT_TRUE(team.served.eventually([&] { return team.desk.arriving == 0; })) << "its file is released";
-  team.served.on_loop([&] { team.desk.fails = false; });
+  EXPECT_TRUE(team.served.eventually([&] { return team.message_handler.arriving == 0; }))
+      << "its file is released";
+  team.served.on_loop([&] { team.message_handler.fails = false; });
   EXPECT_EQ(team.ask(sent)->status, 200);
-  EXPECT_EQ(team.served.on_loop([&] { return team.desk.maps.size(); }), 1u);
+  EXPECT_EQ(team.served.on_loop([&] { return team.message_handler.maps.size(); }), 1u);
 }
 
 TEST(MapUpload, IsStoredIfItsClientDisconnectsMeanwhile) {
   Team team;
-  team.served.on_loop([&] { team.desk.stores_at_once = false; });
+  team.served.on_loop([&] { team.message_handler.stores_at_once = false; });
   const std::string body = grid_body(300, 300);
   {
     RawClient client(team.served.port());
     client.send(map_head(body) + body);
-    ASSERT_TRUE(team.served.eventually([&] { return team.desk.storing.size() == 1; }));
+    ASSERT_TRUE(team.served.eventually([&] { return team.message_handler.storing.size() == 1; }));
     client.reset();
     ASSERT_TRUE(team.served.eventually([&] { return team.served.server().connections() == 0; }));
   }
   team.served.on_loop([&] {
-    team.desk.storing.front()();
-    EXPECT_EQ(team.desk.maps.size(), 1u);
-    EXPECT_TRUE(team.desk.refusals.empty());
-    EXPECT_EQ(team.desk.arriving, 0);
+    team.message_handler.storing.front()();
+    EXPECT_EQ(team.message_handler.maps.size(), 1u);
+    EXPECT_TRUE(team.message_handler.refusals.empty());
+    EXPECT_EQ(team.message_handler.arriving, 0);
   });
 }
 
 TEST(MapUpload, IsRejectedDuringAStopUnlessTheDeskHasIt) {
   Team team;
-  team.served.on_loop([&] { team.desk.stores_at_once = false; });
+  team.served.on_loop([&] { team.message_handler.stores_at_once = false; });
   const std::string body = grid_body(300, 300);
   RawClient kept(team.served.port()), half(team.served.port()), state(team.served.port());
   kept.send(map_head(body) + body);
-  ASSERT_TRUE(team.served.eventually([&] { return team.desk.storing.size() == 1; }));
+  ASSERT_TRUE(team.served.eventually([&] { return team.message_handler.storing.size() == 1; }));
   half.send(map_head(body) + body.substr(0, body.size() / 2));
   state.send(
       authorized("POST", "/state/update",
@@ -134,11 +135,11 @@ TEST(MapUpload, IsRejectedDuringAStopUnlessTheDeskHasIt) {
   EXPECT_EQ(state.reply()->status, 503);
   EXPECT_EQ(team.ask(authorized("POST", "/map/update", kJsonType, body))->status, 503);
   EXPECT_EQ(team.ask(authorized("POST", "/markers/update", kJsonType, kMarkersBody))->status, 503);
-  team.served.on_loop([&] { team.desk.storing.front()(); });
+  team.served.on_loop([&] { team.message_handler.storing.front()(); });
   EXPECT_EQ(kept.reply()->status, 200);
   team.served.on_loop([&] {
-    EXPECT_EQ(team.desk.maps.size(), 1u);
-    EXPECT_TRUE(team.desk.states.empty() && team.desk.markers.empty());
+    EXPECT_EQ(team.message_handler.maps.size(), 1u);
+    EXPECT_TRUE(team.message_handler.states.empty() && team.message_handler.markers.empty());
   });
 }
 
@@ -217,7 +218,7 @@ TEST(MapUpload, IsRejectedIfItInflatesTooFar) {
   const auto other = team.ask(map_head(large) + large);
   ASSERT_TRUE(other);
   EXPECT_EQ(other->status, 413) << other->body;
-  EXPECT_TRUE(team.served.on_loop([&] { return team.desk.maps.empty(); }));
+  EXPECT_TRUE(team.served.on_loop([&] { return team.message_handler.maps.empty(); }));
 }
 
 TEST(MapUpload, EndsWithTheServerInEveryPhase) {
@@ -234,7 +235,7 @@ TEST(MapUpload, EndsWithTheServerInEveryPhase) {
   for (auto& client : clients) EXPECT_TRUE(client->closes());
   busy.end();
   std::this_thread::sleep_for(milliseconds(50));
-  team.served.on_loop([&] { EXPECT_TRUE(team.desk.maps.empty()); });
+  team.served.on_loop([&] { EXPECT_TRUE(team.message_handler.maps.empty()); });
 }
 
 TEST(MapUpload, EndsWithABusyWorker) {
@@ -247,7 +248,7 @@ TEST(MapUpload, EndsWithABusyWorker) {
   team.served.on_loop([&] {
     team.front.workers = nullptr;  // waits for the busy one
     team.served.destroy_server();
-    EXPECT_TRUE(team.desk.maps.empty());
+    EXPECT_TRUE(team.message_handler.maps.empty());
   });
 }
 

@@ -56,7 +56,7 @@ std::string message_of(std::uint32_t points) {
   return put(cbor_of({{"markers", {marker("points")}}}), "points", list_of(points, kPoint));
 }
 
-/// The desk accepts a message with the largest marker.
+/// The message handler accepts a message with the largest marker.
 void expect_accepted(std::string_view headers, const std::string& body, bool colored) {
   Team team;
   const auto reply =
@@ -64,13 +64,13 @@ void expect_accepted(std::string_view headers, const std::string& body, bool col
   ASSERT_TRUE(reply);
   EXPECT_EQ(reply->status, 200) << reply->body;
   team.served.on_loop([&] {
-    ASSERT_EQ(team.desk.markers.size(), 1u);
-    ASSERT_EQ(team.desk.markers[0].markers.size(), 1u);
-    const icd::Marker& taken = team.desk.markers[0].markers[0];
+    ASSERT_EQ(team.message_handler.markers.size(), 1u);
+    ASSERT_EQ(team.message_handler.markers[0].markers.size(), 1u);
+    const icd::Marker& taken = team.message_handler.markers[0].markers[0];
     EXPECT_EQ(taken.points.size(), icd::kMostMarkerPoints);
     EXPECT_EQ(taken.points.at(70).x, kFar);
     EXPECT_EQ(taken.colors.size(), colored ? icd::kMostMarkerPoints : 0);
-    EXPECT_EQ(team.desk.senders.at(0).bytes, body.size());
+    EXPECT_EQ(team.message_handler.senders.at(0).bytes, body.size());
   });
 }
 
@@ -104,7 +104,7 @@ TEST(MarkersUpload, IsRejectedAboveItsLimit) {
       team.ask(authorized("POST", "/markers/update", std::string(kJsonType) + kGzip, gzipped(blanks)));
   ASSERT_TRUE(reply);
   EXPECT_EQ(reply->status, 413) << reply->body;
-  EXPECT_EQ(team.served.on_loop([&] { return team.desk.refusals.size(); }), 2u);
+  EXPECT_EQ(team.served.on_loop([&] { return team.message_handler.refusals.size(); }), 2u);
 }
 
 TEST(MarkersUpload, NeedsAWorkerOnlyIfItIsLarge) {
@@ -116,8 +116,8 @@ TEST(MarkersUpload, NeedsAWorkerOnlyIfItIsLarge) {
   large.send(authorized("POST", "/markers/update", kCborType, bodies[1]));
   EXPECT_EQ(team.ask(authorized("POST", "/markers/update", kJsonType, kMarkersBody))->status, 200);
   team.served.on_loop([&] {
-    ASSERT_EQ(team.desk.markers.size(), 1u);
-    EXPECT_EQ(team.desk.markers[0].markers.size(), 1u);
+    ASSERT_EQ(team.message_handler.markers.size(), 1u);
+    EXPECT_EQ(team.message_handler.markers[0].markers.size(), 1u);
   });
   busy.end();
   EXPECT_EQ(middling.reply()->status, 200);
@@ -134,7 +134,7 @@ TEST(MarkersUpload, IsAcceptedForItsGoodParts) {
   EXPECT_EQ(reply->status, 422);
   EXPECT_EQ(reply->body,
             "\"markers[1]: expected an object, got a whole number (the other 2 were accepted)\"");
-  EXPECT_EQ(team.served.on_loop([&] { return team.desk.markers.at(0).markers.size(); }), 2u);
+  EXPECT_EQ(team.served.on_loop([&] { return team.message_handler.markers.at(0).markers.size(); }), 2u);
 }
 
 TEST(MarkersUpload, IsDroppedAfterADisconnectOrAStop) {
@@ -156,7 +156,7 @@ TEST(MarkersUpload, IsDroppedAfterADisconnectOrAStop) {
   EXPECT_EQ(late.reply()->status, 503);
   busy.end();
   team.served.turn_often();
-  team.served.on_loop([&] { EXPECT_TRUE(team.desk.markers.empty()); });
+  team.served.on_loop([&] { EXPECT_TRUE(team.message_handler.markers.empty()); });
 }
 
 TEST(MarkersUpload, WaitsWhileAnotherIsRead) {
@@ -198,12 +198,12 @@ TEST(MarkersUpload, IsRejectedIfTheBudgetIsUsedUp) {
 TEST(MarkersUpload, IsRejectedIfTheDeskFails) {
   Team team;
   const std::string large = message_of(50'000);
-  team.served.on_loop([&] { team.desk.fails = true; });
+  team.served.on_loop([&] { team.message_handler.fails = true; });
   const auto reply = team.ask(authorized("POST", "/markers/update", kCborType, large));
   ASSERT_TRUE(reply) << "no answer";
   EXPECT_EQ(reply->status, 503);
   ASSERT_TRUE(team.ask(authorized("POST", "/markers/update", kJsonType, kMarkersBody)));
-  team.served.on_loop([&] { team.desk.fails = false; });
+  team.served.on_loop([&] { team.message_handler.fails = false; });
   EXPECT_EQ(team.ask(authorized("POST", "/markers/update", kCborType, large))->status, 200);
 }
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "intake/desk.hpp"
 #include "intake/icd_routes.hpp"
+#include "intake/message_handler.hpp"
 #include "intake/not_found.hpp"
 #include "intake/raw_client.hpp"
 #include "intake/served.hpp"
@@ -19,7 +19,7 @@ inline constexpr std::string_view kToken = "flux230{showroom";
 inline constexpr std::string_view kOtherToken = "the-posts-own-token";
 
 /// Keeps accepted messages. Use its members on the loop's thread.
-class FakeDesk final : public Desk {
+class FakeMessageHandler final : public MessageHandler {
  public:
   std::vector<icd::MapUpdate> maps;
   std::vector<icd::StateUpdate> states;
@@ -40,7 +40,7 @@ class FakeDesk final : public Desk {
   std::size_t room = 1u << 30;  // left for map data
   bool stores_pieces = true;    // otherwise they wait in `storing`
 
-  std::shared_ptr<MapArrival> map_arrives() override { return std::make_shared<Arrival>(*this); }
+  std::shared_ptr<MapArrival> begin_map() override { return std::make_shared<Arrival>(*this); }
   icd::Checked<void> take(icd::StateUpdate update, const Sender& sender) override {
     return keep(states, update, sender);
   }
@@ -70,31 +70,33 @@ class FakeDesk final : public Desk {
   /// Stores map data in memory.
   class Arrival final : public MapArrival {
    public:
-    explicit Arrival(FakeDesk& desk) : desk_(desk) { ++desk_.arriving; }
-    ~Arrival() override { --desk_.arriving; }
+    explicit Arrival(FakeMessageHandler& message_handler) : message_handler_(message_handler) {
+      ++message_handler_.arriving;
+    }
+    ~Arrival() override { --message_handler_.arriving; }
     Arrival(const Arrival&) = delete;
     Arrival& operator=(const Arrival&) = delete;
 
     void store(icd::ChunkedBytes bytes, std::function<void(icd::ChunkedBytes)> done) override {
-      while (!bytes.empty() && bytes.chunks().front()->size() <= desk_.room) {
+      while (!bytes.empty() && bytes.chunks().front()->size() <= message_handler_.room) {
         const auto chunk = bytes.pop_front();
-        desk_.room -= chunk->size();
-        desk_.stored += chunk->size();
+        message_handler_.room -= chunk->size();
+        message_handler_.stored += chunk->size();
         stored_.append(*chunk);
       }
-      if (desk_.stores_pieces) return done(std::move(bytes));
-      desk_.storing.emplace_back([bytes, done = std::move(done)] { done(bytes); });
+      if (message_handler_.stores_pieces) return done(std::move(bytes));
+      message_handler_.storing.emplace_back([bytes, done = std::move(done)] { done(bytes); });
     }
     icd::Checked<icd::ChunkedBytes> stored() override { return stored_; }
     void take(icd::MapUpdate update, const Sender& sender,
               std::function<void(icd::Checked<void>)> done) override {
-      auto kept = desk_.keep(desk_.maps, std::move(update), sender);
-      if (desk_.stores_at_once) return done(std::move(kept));
-      desk_.storing.emplace_back([kept = std::move(kept), done = std::move(done)] { done(kept); });
+      auto kept = message_handler_.keep(message_handler_.maps, std::move(update), sender);
+      if (message_handler_.stores_at_once) return done(std::move(kept));
+      message_handler_.storing.emplace_back([kept = std::move(kept), done = std::move(done)] { done(kept); });
     }
 
    private:
-    FakeDesk& desk_;
+    FakeMessageHandler& message_handler_;
     icd::ChunkedBytes stored_;
   };
 
@@ -108,7 +110,7 @@ class FakeDesk final : public Desk {
   }
 };
 
-/// The routes over a FakeDesk on a loop, with one worker.
+/// The routes over a FakeMessageHandler on a loop, with one worker.
 class Team {
  public:
   explicit Team(IcdOptions options = with_tokens()) : options_(std::move(options)) {}
@@ -169,14 +171,14 @@ class Team {
   NotFound not_found_;
 
  public:
-  FakeDesk desk;
+  FakeMessageHandler message_handler;
   Front front{*this};
   Served served{front, {.address = {}, .interface = {}, .late = std::chrono::milliseconds(0)}};
 
  private:
   const bool ready_ = served.on_loop([this] {
     front.workers = std::make_unique<loop::Workers>(served.loop(), 1);
-    front.routes = std::make_unique<IcdRoutes>(options_, desk, *front.workers, not_found_);
+    front.routes = std::make_unique<IcdRoutes>(options_, message_handler, *front.workers, not_found_);
     return true;
   });
 };

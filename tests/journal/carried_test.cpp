@@ -245,7 +245,7 @@ TEST(CarriedState, KnowsWhenRobotsWereHeardUntilTheNextBoot) {
     EXPECT_EQ(each.behind("r1", 2), 18);
     EXPECT_TRUE(std::isnan(each.behind("r1", 0)) && std::isnan(each.behind("r2", 2)));
   }
-  carried.machine_is("b2");
+  carried.set_boot("b2");
   EXPECT_THAT(carried.heard(), IsEmpty());
 }
 
@@ -255,10 +255,10 @@ TEST(CarriedState, DropsTimesOfAnotherBoot) {
   tell(carried, Kind::Clock,
        store::bytes_of(Clock{.boot = "b1", .at = pace::Instant(seconds(5)), .stamp = 1.5e9}));
   tell(carried, Kind::Pace, store::bytes_of(icd::Uri::MapUpdate, pace::Learned{.spacing = seconds(7)}));
-  carried.machine_is("b1");
+  carried.set_boot("b1");
   EXPECT_TRUE(carried.clock());
   EXPECT_THAT(carried.paces(), SizeIs(1));
-  carried.machine_is("b2");
+  carried.set_boot("b2");
   EXPECT_FALSE(carried.clock());
   EXPECT_THAT(carried.paces(), IsEmpty()) << "the clock of an unknown boot";
 }
@@ -284,7 +284,7 @@ TEST(CarriedState, KnowsPostedGridAreasOnceRecorded) {
   tell(carried, Kind::Grids, store::bytes_of("r1", larger));
   tell(carried, Kind::Grids, store::bytes_of("*", queues::Extent::everywhere()));
   EXPECT_FALSE(carried.apply(Kind::Grids, "torn"));
-  carried.machine_is("another start");
+  carried.set_boot("another start");
   EXPECT_THAT(again(carried).grids(), testing::Optional(testing::ElementsAre(
                                           Pair("*", queues::Extent::everywhere()), Pair("r1", larger))));
 }

@@ -66,14 +66,14 @@ TEST_F(WatchdogTest, IsFedOnlyByTheLoop) {
 
 TEST_F(WatchdogTest, IsFedWhileEveryWorkerAnswers) {
   Workers workers(loop, 3);
-  watchdog.ask_also({&workers});
+  watchdog.watch_workers({&workers});
   EXPECT_TRUE(is_fed(8, {&workers}));
-  watchdog.ask_also({});
+  watchdog.watch_workers({});
 }
 
 TEST_F(WatchdogTest, IsFedWhileWorkersAreBusy) {
   Workers workers(loop, 2);
-  watchdog.ask_also({&workers});
+  watchdog.watch_workers({&workers});
   int done = 0;
   std::function<void()> again = [&] {
     workers.submit(Urgency::OnTheWay, [] { std::this_thread::sleep_for(1ms); }, [&] { ++done, again(); });
@@ -83,43 +83,43 @@ TEST_F(WatchdogTest, IsFedWhileWorkersAreBusy) {
     ASSERT_TRUE(turn_until(loop, [&, before = done] { return done >= before + 8; }));
     EXPECT_EQ(fed_in(1), 1) << round;
   }
-  watchdog.ask_also({});
+  watchdog.watch_workers({});
 }
 
 TEST_F(WatchdogTest, IsFedDuringALongButNotAnEndlessJob) {
   Workers workers(loop, 2);
-  watchdog.ask_also({&workers});
+  watchdog.watch_workers({&workers});
   const auto let_go = hang(workers);
   EXPECT_TRUE(is_fed(kLongestJob - 1, {&workers})) << "a job may take a while";
   EXPECT_EQ(fed_in(4), 0) << "only the other worker answers";
   let_go->set_value();
   EXPECT_TRUE(is_fed(4, {&workers})) << "the worker was only slow";
-  watchdog.ask_also({});
+  watchdog.watch_workers({});
 }
 
 TEST_F(WatchdogTest, StarvesIfAWriterHangs) {
   Workers workers(loop, 2);
   Writer writer(loop);
-  watchdog.ask_also({&workers, &writer});
+  watchdog.watch_workers({&workers, &writer});
   const auto let_go = hang(writer);
   EXPECT_TRUE(is_fed(kLongestJob - 1, {&workers, &writer}));
   EXPECT_EQ(fed_in(4), 0);
   let_go->set_value();
   EXPECT_TRUE(is_fed(4, {&workers, &writer}));
-  watchdog.ask_also({});
+  watchdog.watch_workers({});
 }
 
 TEST_F(WatchdogTest, AsksReplacedWorkers) {
   Workers before(loop, 1);
-  watchdog.ask_also({&before});
+  watchdog.watch_workers({&before});
   const auto let_go = hang(before);
   fed_in(kLongestJob + 1);
   EXPECT_EQ(fed_in(1), 0);
   Workers after(loop, 1);
-  watchdog.ask_also({&after});
+  watchdog.watch_workers({&after});
   EXPECT_TRUE(is_fed(4, {&after}));
   let_go->set_value();
-  watchdog.ask_also({});
+  watchdog.watch_workers({});
 }
 
 TEST_F(WatchdogTest, TellsOfAJobThatTakesTooLong) {

@@ -165,7 +165,7 @@ icd::MapData kept(const Grid& grid) {
 }
 
 icd::MapData kept_by(int level, const Grid& grid) {
-  return {*codec::gzip_whole(grid.cells, level, 2 * grid.cells.size() + 100), icd::Compression::Gzip,
+  return {*codec::gzip(grid.cells, level, 2 * grid.cells.size() + 100), icd::Compression::Gzip,
           grid.cells.size()};
 }
 

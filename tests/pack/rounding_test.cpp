@@ -47,7 +47,7 @@ icd::MapUpdate numbered(const icd::PointCloud2& form, const Places& places) {
 }
 
 /// The point in "darpa" as a float32 receiver computes it: the quaternion's matrix as in Eigen.
-std::array<float, 3> in_float32(const Placement& origin, const std::array<float, 3>& p) {
+std::array<float, 3> to_float32(const Placement& origin, const std::array<float, 3>& p) {
   const auto narrow = [](double value) { return static_cast<float>(value); };
   const float x = narrow(origin.orientation.x), y = narrow(origin.orientation.y),
               z = narrow(origin.orientation.z), w = narrow(origin.orientation.w);
@@ -86,7 +86,7 @@ std::optional<double> largest_error(const icd::MapUpdate& map, double unit) {
     std::memcpy(&number, after.data.data() + i + after.cloud.fields.back().offset, 4);
     EXPECT_FALSE(seen.at(number));
     seen.at(number) = true;
-    const auto got = in_float32(origin, p);
+    const auto got = to_float32(origin, p);
     const auto at = was(std::span{old}.subspan(number * before.point_step, before.point_step));
     const icd::Point is = placed({at[0], at[1], at[2]});
     largest = std::max(largest, std::hypot(got[0] - is.x, got[1] - is.y, got[2] - is.z));

@@ -146,7 +146,7 @@ int serve(std::uint16_t port, const std::string& first, const std::string& more)
   Api page{loop,
            {.source = stage,
             .decisions = stage,
-            .caretaker = stage,
+            .gateway_control = stage,
             .keys = keys,
             .setup = setup,
             .network = network,

@@ -19,7 +19,7 @@ using Points = std::set<std::uint8_t>;
 
 MapQueue queue_of(Clouds clouds) {
   MapQueue queue{kRoom};
-  queue.clouds_are({{*robot("R1"), clouds}});
+  queue.set_cloud_modes({{*robot("R1"), clouds}});
   return queue;
 }
 

@@ -27,7 +27,7 @@ struct Race {
   std::uint64_t number = 0;
   double now = 0;
 
-  Race() { queue.a_slot_carries(kSlot); }
+  Race() { queue.set_slot_bytes(kSlot); }
   void post(icd::MapUpdate map) { queue.add(++number, std::move(map), at(now)); }
   /// Sends the next map, which takes `bytes` of the link. Returns its sender.
   std::string send(std::size_t bytes = 1) {

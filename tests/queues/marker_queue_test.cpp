@@ -371,9 +371,9 @@ INSTANTIATE_TEST_SUITE_P(Courses, MarkerQueueLaws, testing::Range(std::uint64_t{
 TEST(MarkerQueue, AppliesNewLimitsFromThenOn) {
   MarkerQueue queue({.per_message = 2});
   queue.add({{add(1), add(2), add(3), add(4), add(5)}}, at(1));
-  queue.keep_within({.per_message = 3});
+  queue.set_bounds({.per_message = 3});
   EXPECT_THAT(queue.take(0)->update.markers, SizeIs(3));
-  queue.keep_within({.per_message = 1, .bytes = 1});
+  queue.set_bounds({.per_message = 1, .bytes = 1});
   EXPECT_THAT(queue.take(0)->update.markers, SizeIs(1));
   EXPECT_FALSE(queue.has_room_for({{add(6)}}));
 }
@@ -382,7 +382,7 @@ TEST(MarkerQueue, KeepsItsReducedMessageSize) {
   MarkerQueue queue({.per_message = 4});
   queue.add({{add(1), add(2), add(3), add(4)}}, at(1));
   queue.put_back_narrower(*queue.take(0));
-  queue.keep_within({.per_message = 8});
+  queue.set_bounds({.per_message = 8});
   EXPECT_THAT(queue.take(0)->update.markers, SizeIs(2));
 }
 

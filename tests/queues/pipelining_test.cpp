@@ -33,7 +33,7 @@ TEST(Pipelining, AllowedIfTheOrderDoesNotMatter) {
   const QueuedMap merged = queued_map(cloud_update("", {1}));
   const struct {
     const QueuedMap &one, &other;
-    bool in_any_order;
+    bool can_swap;
   } cases[] = {{kGrid, other_grid, true},
                {kGrid, kCloud, true},
                {kCloud, merged, true},
@@ -43,8 +43,8 @@ TEST(Pipelining, AllowedIfTheOrderDoesNotMatter) {
                {whole(kCloud), whole(kCloud), false},
                {whole(kCloud), whole(merged), true}};
   for (const auto& each : cases) {
-    EXPECT_EQ(in_any_order(each.one, each.other), each.in_any_order) << &each - cases;
-    EXPECT_EQ(in_any_order(each.other, each.one), each.in_any_order) << &each - cases;
+    EXPECT_EQ(can_swap(each.one, each.other), each.can_swap) << &each - cases;
+    EXPECT_EQ(can_swap(each.other, each.one), each.can_swap) << &each - cases;
   }
 }
 

@@ -26,7 +26,7 @@ TEST(PrecisionFor, IsTheFinestThatFitsOneMessage) {
 class PrecisionOf : public testing::Test {
  protected:
   PrecisionOf() {
-    queue_.precisions_are({{*robot("R1"), Precision::Auto}, {*robot("R2"), Precision::Millimetre}});
+    queue_.set_precisions({{*robot("R1"), Precision::Auto}, {*robot("R2"), Precision::Millimetre}});
   }
   void add(const char* name, int clouds) {
     for (int i = 0; i < clouds; ++i) queue_.add(++number_, cloud_update(name, {1, 2, 3}), at(i));

@@ -54,26 +54,26 @@ struct PostedGrid {
 
 /// Whether the cells of `inner` are cells of `outer`.
 bool holds(const Extent& outer, const Extent& inner) {
-  const auto lies_within = [cell = outer.cell](int begin, int size, int outer_begin, int outer_size) {
+  const auto is_between = [cell = outer.cell](int begin, int size, int outer_begin, int outer_size) {
     const int from = begin - outer_begin;
     return from >= 0 && from % cell == 0 && from / cell + size <= outer_size;
   };
   return outer.cell == inner.cell && outer.z == inner.z &&
-         lies_within(inner.x, inner.width, outer.x, outer.width) &&
-         lies_within(inner.y, inner.height, outer.y, outer.height);
+         is_between(inner.x, inner.width, outer.x, outer.width) &&
+         is_between(inner.y, inner.height, outer.y, outer.height);
 }
 
 /// ICD 6.3.1: whether a newer `outer` replaces everything in `inner`, on one lattice or on two: no part of
 /// `inner` is outside by more than half a cell.
 bool covers(const Extent& outer, const Extent& inner) {
   const int half = outer.cell / 2;
-  const auto lies_within = [&](int begin, int size, int outer_begin, int outer_size) {
+  const auto is_between = [&](int begin, int size, int outer_begin, int outer_size) {
     return begin >= outer_begin - half &&
            begin + size * inner.cell <= outer_begin + outer_size * outer.cell + half;
   };
   return outer.cell == inner.cell && std::abs(outer.z - inner.z) <= half &&
-         lies_within(inner.x, inner.width, outer.x, outer.width) &&
-         lies_within(inner.y, inner.height, outer.y, outer.height);
+         is_between(inner.x, inner.width, outer.x, outer.width) &&
+         is_between(inner.y, inner.height, outer.y, outer.height);
 }
 
 /// With half a cell more on each side.

@@ -33,7 +33,7 @@ void notify_stopping() {
   tell("STOPPING");
 }
 
-void notify_starting_again() {}
+void notify_restarting() {}
 
 void notify_alive() {
   tell("WATCHDOG");
@@ -49,7 +49,8 @@ std::expected<std::vector<Inherited>, std::string> inherited() {
 void store_descriptor(const std::string&, int) {}
 void forget_descriptor(const std::string&) {}
 
-void start_again(std::vector<Inherited> sockets, char* const*, std::map<std::string, std::string> variables) {
+void restart_process(std::vector<Inherited> sockets, char* const*,
+                     std::map<std::string, std::string> variables) {
   World& world = World::current();
   world.crossing();
   if (world.is_dead()) throw simulation::Killed{};

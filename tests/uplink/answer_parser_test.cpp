@@ -161,8 +161,8 @@ std::string decoded(const std::string& coding, const std::string& body) {
 }
 
 std::string gzipped(const std::string& text) {
-  const auto member = codec::gzip_whole({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()},
-                                        codec::kFastestLevel, 1u << 20);
+  const auto member = codec::gzip({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()},
+                                  codec::kFastestLevel, 1u << 20);
   std::string bytes;
   for (const auto& chunk : member->chunks()) bytes.append(chunk->begin(), chunk->end());
   return bytes;

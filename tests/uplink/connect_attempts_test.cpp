@@ -13,7 +13,7 @@ TEST(ConnectAttempts, PauseDoublesUpToFiveSecondsWhileTheyFail) {
   attempts.begins(now);
   for (const int pause : {1, 2, 4, 5, 5}) EXPECT_EQ(attempts.failed("refused"), now + seconds{pause});
   EXPECT_EQ(attempts.trouble(), "refused");
-  attempts.hurry();
+  attempts.retry_now();
   EXPECT_EQ(attempts.failed("no route"), now + seconds{1});
   EXPECT_EQ(attempts.trouble(), "no route");
   attempts.succeeded();

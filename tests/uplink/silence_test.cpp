@@ -77,7 +77,7 @@ TEST_F(Silence, DoesNotCountUntilTheEarlierRequestHasEnded) {
   ASSERT_TRUE(begin(std::move(request)) && all_arrives());
   EXPECT_FALSE(is_silent_after(kMost));
   EXPECT_FALSE(is_silent_after(kMost));
-  exchange_->is_next(now_ += kMost / 2);
+  exchange_->on_earlier_request_ended(now_ += kMost / 2);
   EXPECT_FALSE(is_silent_after(kMost * 9 / 10));
   EXPECT_TRUE(is_silent_after(kMost / 10));
 }

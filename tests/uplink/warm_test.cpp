@@ -65,9 +65,9 @@ TEST_F(WarmConnection, ReportsTroubleAndConnectsLater) {
 
 TEST_F(WarmConnection, RetriesAtOnceIfTheNetworkMayBeBack) {
   EXPECT_TRUE(is_quick([&](Connection& connection) {
-    connection.hurry();
+    connection.retry_now();
     EXPECT_TRUE(loop::turn_until(loop_, [&] { return connection.connected(); }));
-    connection.hurry();
+    connection.retry_now();
     EXPECT_TRUE(connection.connected()) << "an open connection stays";
   }));
 }

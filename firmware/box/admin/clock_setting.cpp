@@ -105,7 +105,7 @@ icd::Checked<void> ClockSetting::set_clock(double time) {
   if (!status) return icd::conflict(adit_clock_.why());
   if (is_kept_by_ntp())
     return icd::conflict("the NTP server ", ntp_.server, " keeps the time: clock.ntp_server in the settings");
-  if (!clock::to_be_set(status->source, {clock::Source::Operator, time}, loop_.wall_now()))
+  if (!clock::time_to_set(status->source, {clock::Source::Operator, time}, loop_.wall_now()))
     return icd::refuse(icd::Status::UnprocessableEntity,
                        "time: expected seconds since 1970, from 2026 to 2099");
   if (const auto asked = ask(clock::Source::Operator, time); !asked)
@@ -119,7 +119,7 @@ void ClockSetting::offered(const clock::Offer& offer) {
   const bool came_to_nothing = !trouble().empty() || !status->refusal.empty();
   if (came_to_nothing && loop_.now() < asked_at_ + kAskAgain) return;  // set_clock() has no such limit
   const double of_the_system = loop_.wall_now() - loop_.wall_ahead();
-  const auto time = clock::to_be_set(status->trusted(), offer, of_the_system);
+  const auto time = clock::time_to_set(status->trusted(), offer, of_the_system);
   if (!time) return;
   if (const auto asked = ask(offer.source, *time); !asked) not_written_ = asked.error();
 }

@@ -68,7 +68,7 @@ class ClockSetting final : public api::Clock {
 
   /// Call each second. `ntp`: from the settings.
   void every_second(const clock::Ntp& ntp);
-  /// Requests the offered time if to_be_set() accepts it.
+  /// Requests the offered time if time_to_set() accepts it.
   void offered(const clock::Offer& offer);
   /// std::nullopt: adit-clock is starting or does not run here, and the time may be right.
   std::optional<bool> is_set() const;

@@ -23,7 +23,7 @@ using icd::Status;
 constexpr const char* kNotHere = "USB sticks are not available: adit-spare does not run";
 
 /// The action to show until adit-spare reports its own.
-const char* doing_of(spare::StickRequest::What what) {
+const char* pending_action(spare::StickRequest::What what) {
   return what == spare::StickRequest::What::Write ? "writing" : "reading";
 }
 
@@ -53,7 +53,7 @@ std::optional<api::StickRow> SpareStick::view() const {
                     .refusal = refusal_,
                     .written = now && !asked_ ? now->written : "",
                     .exports = {}};
-  if (asked_ && row.doing.empty()) row.doing = doing_of(*asked_);
+  if (asked_ && row.doing.empty()) row.doing = pending_action(*asked_);
   if (!now && !adit_spare_.is_starting()) row.unreadable = adit_spare_.why();
   if (!now) return row;
   for (const std::string& name : now->exports) {
@@ -74,7 +74,7 @@ icd::Checked<void> SpareStick::check_free() const {
 icd::Checked<void> SpareStick::write(const std::string& name, const std::string& file) {
   ADIT_TRY(check_free());
   if (const auto now = view(); now && !now->hindrance.empty()) return icd::conflict(now->hindrance);
-  const auto left = host::write_file(for_stick(), file, host::kOursAlone);
+  const auto left = host::write_file(stick_request_file(), file, host::kOursAlone);
   if (!left) return icd::refuse(Status::ServiceUnavailable, left.error());
   return ask(What::Write, name);
 }
@@ -89,7 +89,7 @@ icd::Checked<void> SpareStick::take(const std::string& name) {
 icd::Checked<void> SpareStick::ask(What what, const std::string& name) {
   const spare::StickRequest request{.nonce = host::draw_nonce(), .what = what, .name = name};
   if (const auto asked = adit_spare_.ask(spare::kStickRequestFile, request); !asked) {
-    unlink(for_stick().c_str());
+    unlink(stick_request_file().c_str());
     return icd::refuse(Status::ServiceUnavailable, "cannot request it from adit-spare: " + asked.error());
   }
   asked_ = what;
@@ -101,7 +101,7 @@ icd::Checked<void> SpareStick::ask(What what, const std::string& name) {
 void SpareStick::look() {
   if (!asked_) return;
   if (adit_spare_.check()) {
-    unlink(for_stick().c_str());
+    unlink(stick_request_file().c_str());
     asked_.reset();
     refusal_ = adit_spare_.trouble();
     return;
@@ -153,7 +153,7 @@ void Spare::ends(const std::optional<icd::RunStatus>& expected) {
   host::log_failure(host::Level::Warning, "cannot store the run's status for the spare", keep(next));
 }
 
-bool Spare::is_of_this_rest(const std::string& file) const {
+bool Spare::is_of_current_standby(const std::string& file) const {
   return file_.rest && spare::named_for(file).at == std::floor(file_.rest->since);
 }
 
@@ -172,7 +172,7 @@ api::SpareView Spare::state() const {
   view.takes_over = takes_over_;
   view.stick = stick_.view();
   // the last export of an earlier standby does not count
-  if (view.stick && !is_of_this_rest(view.stick->written)) view.stick->written.clear();
+  if (view.stick && !is_of_current_standby(view.stick->written)) view.stick->written.clear();
   if (file_.rest) view.since = file_.rest->since;
   if (view.standby && file_.rest) view.code = spare::spoken(file_.rest->code);
   if (!opened_) return view;

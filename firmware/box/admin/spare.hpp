@@ -43,7 +43,7 @@ class SpareStick {
   icd::Checked<void> ask(What what, const std::string& name);
   void look();
   void finish(const spare::StickStatus& status);
-  std::string for_stick() const { return adit_spare_.requests() + '/' + spare::kForStickFile; }
+  std::string stick_request_file() const { return adit_spare_.requests() + '/' + spare::kForStickFile; }
 
   loop::Loop& loop_;
   host::RootProgram<spare::StickStatus> adit_spare_;
@@ -99,7 +99,7 @@ class Spare final : public api::Spare {
   };
 
   icd::Checked<void> keep(const SpareFile& next);
-  bool is_of_this_rest(const std::string& file) const;
+  bool is_of_current_standby(const std::string& file) const;
   /// `file`: the export. `name`: the box's address for the team.
   using Named = std::function<void(icd::Checked<std::string> file, const std::string& name)>;
   void seal(const Named& done);

@@ -160,7 +160,7 @@ constexpr std::string_view kOfVersions =
 constexpr std::size_t kLongestLine = 200;
 
 /// The action to show until adit-update reports its own.
-const char* doing_of(update::Request::What what) {
+const char* pending_action(update::Request::What what) {
   using What = update::Request::What;
   return what == What::Restart || what == What::Back ? "restarting" : "checking";
 }
@@ -180,7 +180,7 @@ icd::Checked<void> check_room(const std::string& folder, std::uint64_t size) {
 
 /// Reads the newer version that apt has, a line that services/pc/newer writes on a PC.
 void read_newer(const std::string& path, api::UpdateView& view) {
-  const auto text = host::read_if_there(path);
+  const auto text = host::read_optional_file(path);
   if (!text) view.newer_why = text.error();
   if (!text || !*text) return;
   const std::string line(std::string_view(**text).substr(0, std::min((*text)->find('\n'), kLongestLine)));
@@ -220,7 +220,7 @@ api::UpdateView Updates::state() const {
     view.status.progress = static_cast<int>(100 * receiving_->received() / expected_);
     view.status.refusal.clear();
   } else if (adit_update_.waits()) {
-    view.status.doing = doing_of(asked_);
+    view.status.doing = pending_action(asked_);
     view.status.refusal.clear();
   }
   return view;

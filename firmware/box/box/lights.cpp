@@ -61,7 +61,7 @@ std::optional<loop::Duration> Lights::left(panel::State state) const {
   return until && now < *until ? std::optional(*until - now) : std::nullopt;
 }
 
-void Lights::clear_what_is_over() {
+void Lights::clear_expired() {
   const loop::Instant now = loop_.now();
   for (const panel::StateRow& row : panel::state_table()) {
     auto& end = until(row.state);
@@ -87,12 +87,12 @@ panel::Frame Lights::frame() const {
 }
 
 void Lights::paint() {
-  clear_what_is_over();
+  clear_expired();
   shown_ = states_.shown();
   const panel::Frame now = frame();
   painter_.show(now.lit, loop_.now());
   log_trouble();
-  wake_for_what_is_next(now);
+  schedule_next_frame(now);
 }
 
 void Lights::log_trouble() {
@@ -104,7 +104,7 @@ void Lights::log_trouble() {
   }
 }
 
-void Lights::wake_for_what_is_next(const panel::Frame& frame) {
+void Lights::schedule_next_frame(const panel::Frame& frame) {
   std::optional<loop::Instant> next = painter_.next();
   const auto no_later_than = [&next](loop::Instant when) { next = std::min(when, next.value_or(when)); };
   // One more millisecond, because durations are rounded down.

@@ -56,11 +56,11 @@ class Lights {
   using Milliseconds = panel::Milliseconds;
   Milliseconds since(loop::Instant then) const;
   std::optional<loop::Instant>& until(panel::State state) { return until_[static_cast<std::size_t>(state)]; }
-  void clear_what_is_over();
+  void clear_expired();
   panel::Frame frame() const;
   void paint();
   void log_trouble();
-  void wake_for_what_is_next(const panel::Frame& frame);
+  void schedule_next_frame(const panel::Frame& frame);
 
   loop::Loop& loop_;
   panel::Painter painter_;

@@ -66,7 +66,7 @@ void pack_if_it_pays(intake::Answer& answer) {
   if (!pays(answer)) return;
   answer.headers.push_back({"Vary", "Accept-Encoding"});
   const std::span bytes(reinterpret_cast<const std::uint8_t*>(answer.body.data()), answer.body.size());
-  const auto member = codec::gzip_whole(bytes, codec::kFastestLevel, bytes.size());
+  const auto member = codec::gzip(bytes, codec::kFastestLevel, bytes.size());
   if (!member) return;  // it would be longer
   answer.body = member->to_string();
   answer.headers.push_back({"Content-Encoding", "gzip"});

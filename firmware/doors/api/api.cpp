@@ -32,10 +32,10 @@ SharedRedaction shared(icd::Redaction redaction) {
 Api::Api(loop::Loop& loop, const Served& served, std::vector<icd::BearerToken> tokens,
          icd::Redaction redaction)
     : redaction_(std::make_shared<SharedRedaction>(shared(std::move(redaction)))),
-      entrance_(loop, served.keys, std::move(tokens)),
+      authenticator_(loop, served.keys, std::move(tokens)),
       live_(loop, served.source),
-      sessions_(loop, entrance_, served.keys, served.setup),
-      run_(served.source, served.decisions, served.caretaker, live_, entrance_),
+      sessions_(loop, authenticator_, served.keys, served.setup),
+      run_(served.source, served.decisions, served.gateway_control, live_, authenticator_),
       maps_(served.source, served.finer, served.covered),
       lists_(loop, served.source),
       reports_(lists_, served.source, served.decisions),
@@ -56,8 +56,8 @@ std::unique_ptr<intake::BodySink> Api::open(const intake::RequestHead& head,
   if (found.allowed.empty() && !found.route && !head.path().starts_with(intake::kApiPaths)) {
     return answer_with(pages_.file(head));
   }
-  const auto asker = entrance_.admit(head, found.who);
-  if (!asker) return answer_with(turned_away(asker.error()));
+  const auto asker = authenticator_.admit(head, found.who);
+  if (!asker) return answer_with(rejection_answer(asker.error()));
   if (!found.route)
     return answer_with(found.allowed.empty() ? refused(nothing_at(head.path()))
                                              : wrong_method(found.allowed));
@@ -82,8 +82,8 @@ std::unique_ptr<intake::BodySink> Api::open(const intake::RequestHead& head,
                                      });
 }
 
-void Api::let_in(std::vector<icd::BearerToken> tokens, icd::Redaction redaction) {
-  entrance_.let_in(std::move(tokens));
+void Api::set_tokens(std::vector<icd::BearerToken> tokens, icd::Redaction redaction) {
+  authenticator_.set_tokens(std::move(tokens));
   *redaction_ = shared(std::move(redaction));
 }
 

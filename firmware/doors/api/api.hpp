@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "api/answers.hpp"
+#include "api/authenticator.hpp"
 #include "api/box_routes.hpp"
-#include "api/entrance.hpp"
 #include "api/map_routes.hpp"
 #include "api/page_routes.hpp"
 #include "api/report_routes.hpp"
@@ -22,7 +22,7 @@ namespace adit::api {
 struct Served {
   Source& source;
   Operator& decisions;
-  Caretaker& caretaker;
+  GatewayControl& gateway_control;
   Keys& keys;
   Setup& setup;
   Network& network;
@@ -48,13 +48,13 @@ class Api final : public intake::Handler {
   Api(loop::Loop& loop, const Served& served, std::vector<icd::BearerToken> tokens,
       icd::Redaction redaction = icd::Redaction());
 
-  intake::Credentials shown(const intake::RequestHead& head) override { return entrance_.shown(head); }
+  intake::Credentials shown(const intake::RequestHead& head) override { return authenticator_.shown(head); }
   std::unique_ptr<intake::BodySink> open(const intake::RequestHead& head,
                                          std::shared_ptr<intake::Responder> asked_by,
                                          std::shared_ptr<intake::Flow> flow) override;
 
   /// Replaces tokens and redaction.
-  void let_in(std::vector<icd::BearerToken> tokens, icd::Redaction redaction);
+  void set_tokens(std::vector<icd::BearerToken> tokens, icd::Redaction redaction);
 
   /// Call after a change of data that the page shows.
   void changed() { live_.changed(); }
@@ -63,7 +63,7 @@ class Api final : public intake::Handler {
   void handle(const Route& route, const Call& call);
 
   const std::shared_ptr<SharedRedaction> redaction_;
-  Entrance entrance_;
+  Authenticator authenticator_;
   Live live_;
   PageRoutes pages_;
   SessionRoutes sessions_;

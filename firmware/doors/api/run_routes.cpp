@@ -122,7 +122,7 @@ void Live::drop_the_gone(std::string_view event) {
 using codec::json;
 
 std::unique_ptr<intake::BodySink> RunRoutes::events(const Call& call) {
-  live_.open(*call.responder, entrance_.may_stay(call.asker));
+  live_.open(*call.responder, authenticator_.may_stay(call.asker));
   return nullptr;
 }
 
@@ -131,7 +131,7 @@ intake::Answer RunRoutes::begin_run() {
 }
 
 intake::Answer RunRoutes::begin_ledger() {
-  const auto kept_as = caretaker_.begin_ledger();
+  const auto kept_as = gateway_control_.begin_ledger();
   return kept_as ? object({{"kept_as", json(*kept_as)}}) : refused(kept_as.error());
 }
 
@@ -142,14 +142,14 @@ intake::Answer RunRoutes::rejected(std::uint64_t number, RejectedAction action) 
 
 icd::Checked<intake::Answer> RunRoutes::acknowledge(const std::string& body) {
   const auto id = ADIT_TRY(read_text(body, "id"));
-  const auto done = caretaker_.acknowledge(id);
+  const auto done = gateway_control_.acknowledge(id);
   return done ? object({{"acknowledged", json(id)}}) : refusal(icd::Status::Conflict, done.error());
 }
 
 icd::Checked<intake::Answer> RunRoutes::identify(const std::string& body) {
   const auto seconds = ADIT_TRY(read_body<double>(
       body, [](const codec::Field& root) { return root.member("seconds").number(kLeast, kMost); }));
-  return object({{"identify_until", json(caretaker_.identify(seconds))}});
+  return object({{"identify_until", json(gateway_control_.identify(seconds))}});
 }
 
 }  // namespace adit::api

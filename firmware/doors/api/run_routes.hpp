@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "api/entrance.hpp"
+#include "api/authenticator.hpp"
 #include "api/source.hpp"
 #include "intake/server.hpp"
 #include "loop/loop.hpp"
@@ -67,8 +67,13 @@ class RunRoutes {
   static constexpr double kLeast = 1, kMost = 60;  // seconds of flashing lights
 
   /// All must outlive this object.
-  RunRoutes(Source& source, Operator& decisions, Caretaker& caretaker, Live& live, Entrance& entrance)
-      : source_(source), operator_(decisions), caretaker_(caretaker), live_(live), entrance_(entrance) {}
+  RunRoutes(Source& source, Operator& decisions, GatewayControl& gateway_control, Live& live,
+            Authenticator& authenticator)
+      : source_(source),
+        operator_(decisions),
+        gateway_control_(gateway_control),
+        live_(live),
+        authenticator_(authenticator) {}
 
   RunView run() const { return source_.view(); }
   std::unique_ptr<intake::BodySink> events(const Call& call);
@@ -90,9 +95,9 @@ class RunRoutes {
 
   Source& source_;
   Operator& operator_;
-  Caretaker& caretaker_;
+  GatewayControl& gateway_control_;
   Live& live_;
-  Entrance& entrance_;
+  Authenticator& authenticator_;
 };
 
 }  // namespace adit::api

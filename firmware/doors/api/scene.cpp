@@ -85,7 +85,7 @@ std::vector<std::size_t> kept_parts(const Marker& marker, std::size_t parts, std
 
 /// Undefined values (a sum of opposite infinities) become 0. Values outside the range of float become its
 /// largest.
-float as_float(double value) {
+float to_float(double value) {
   constexpr double kMost = std::numeric_limits<float>::max();
   return std::isnan(value) ? 0 : static_cast<float>(std::clamp(value, -kMost, kMost));
 }
@@ -103,7 +103,7 @@ class Placing {
 
   FlatPoint operator()(const Point& point) const {
     const Point placed = placement_({point.x * scale_.x, point.y * scale_.y, point.z * scale_.z});
-    return {as_float(placed.x), as_float(placed.y)};
+    return {to_float(placed.x), to_float(placed.y)};
   }
 
  private:
@@ -187,7 +187,7 @@ constexpr Member kGoneMembers[] = {member<&Gone::first>("ns"), member<&Gone::sec
 constexpr Row kGone = {"", kGoneMembers};
 
 /// "#rrggbbaa", because a list may have a thousand colours.
-Value as_hex(const icd::Color& color) {
+Value to_hex(const icd::Color& color) {
   std::string text = "#";
   for (const double part : {color.r, color.g, color.b, color.a}) {
     text += icd::hex(static_cast<std::uint8_t>(std::lround(255 * std::clamp(part, 0.0, 1.0))));
@@ -210,7 +210,7 @@ struct KindOf<std::vector<icd::Color>> : WriteOnly {
   static Value write(const std::vector<icd::Color>& colors) {
     Value::Array array;
     array.reserve(colors.size());
-    for (const icd::Color& color : colors) array.push_back(api::as_hex(color));
+    for (const icd::Color& color : colors) array.push_back(api::to_hex(color));
     return {std::move(array)};
   }
   static constexpr Schema kOne = {.type = "string", .more = R"("pattern":"^#[0-9a-f]{8}$")"};

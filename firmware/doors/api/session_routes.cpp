@@ -55,7 +55,7 @@ std::string text_in(const codec::Field& object, std::string_view name) {
 }  // namespace
 
 intake::Answer SessionRoutes::session(const intake::RequestHead& head) {
-  const auto visitor = entrance_.who(head);
+  const auto visitor = authenticator_.who(head);
   const auto* const session = visitor ? visitor->session : nullptr;
   return fresh(SessionView{.role = visitor ? std::optional(visitor->role) : std::nullopt,
                            .csrf = session != nullptr ? std::string(session->csrf.reveal()) : std::string(),
@@ -82,7 +82,7 @@ intake::Answer SessionRoutes::sessions(const Call& call) {
 }
 
 SessionRoutes::Poster SessionRoutes::poster_of(const Call& call) {
-  const access::Device* const device = entrance_.device(call.head);
+  const access::Device* const device = authenticator_.device(call.head);
   return {.guesser = {.address = call.head.peer(),
                       .device = device == nullptr ? 0 : device->number,
                       .at_box = keys_.somebody_at_box()},
@@ -139,14 +139,14 @@ intake::Answer SessionRoutes::logged_in(Role role, const Poster& poster) {
       keys_.draw(), keys_.draw(), role, {poster.guesser.address, poster.agent}, loop_.now());
   auto answer = object({{"role", json(std::string(name_of(role)))}, {"csrf", json(session.csrf.reveal())}});
   answer.headers.push_back(session_cookie(poster.host, session.id.reveal(), access::Sessions::kLongest));
-  if (const auto known = known_as(poster); !known || *known < role) {
+  if (const auto known = device_role(poster); !known || *known < role) {
     const access::Device& device = keys_.devices().add(keys_.draw(), role);
     answer.headers.push_back(cookie(access::kDeviceCookie, poster.host, device.id.reveal(), kDeviceKept));
   }
   return answer;
 }
 
-std::optional<Role> SessionRoutes::known_as(const Poster& poster) {
+std::optional<Role> SessionRoutes::device_role(const Poster& poster) {
   const auto& devices = keys_.devices().all();
   const auto device = std::ranges::find(devices, poster.guesser.device, &access::Device::number);
   return device == devices.end() ? std::nullopt : std::optional(device->role);
@@ -204,7 +204,7 @@ void SessionRoutes::change_password(const Call& call) {
   }
   if (!poster.asker.admitted) {  // another client was faster, or the password is the viewers'
     return poster.responder->answer(
-        turned_away({icd::Status::Unauthorized, "log in: a password has been set"}));
+        rejection_answer({icd::Status::Unauthorized, "log in: a password has been set"}));
   }
   check(change->current, poster, [this, change = *change, poster](std::optional<Role> role) {
     if (role != Role::Operator) return poster.responder->answer(wrong("the operator's present password"));

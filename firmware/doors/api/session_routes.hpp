@@ -5,7 +5,7 @@
 #include <string>
 
 #include "access/guesses.hpp"
-#include "api/entrance.hpp"
+#include "api/authenticator.hpp"
 #include "api/keys.hpp"
 #include "api/setup.hpp"
 #include "intake/server.hpp"
@@ -19,8 +19,8 @@ class SessionRoutes {
   static constexpr int kMostChecks = 4;  // queued password checks: each needs memory, and one runs at a time
 
   /// All must outlive this object, and pending answers of `keys`.
-  SessionRoutes(loop::Loop& loop, Entrance& entrance, Keys& keys, Setup& setup)
-      : loop_(loop), entrance_(entrance), keys_(keys), setup_(setup) {}
+  SessionRoutes(loop::Loop& loop, Authenticator& authenticator, Keys& keys, Setup& setup)
+      : loop_(loop), authenticator_(authenticator), keys_(keys), setup_(setup) {}
 
   intake::Answer session(const intake::RequestHead& head);
   intake::Answer sessions(const Call& call);
@@ -49,7 +49,7 @@ class SessionRoutes {
   static icd::Checked<Change> read_change(const std::string& body);
   intake::Answer logged_in(access::Role role, const Poster& poster);
   /// The role of the client's known device, if any.
-  std::optional<access::Role> known_as(const Poster& poster);
+  std::optional<access::Role> device_role(const Poster& poster);
   bool is_by_button(const Change& change) const;
   void set(const Change& change, const Poster& poster);
 
@@ -63,7 +63,7 @@ class SessionRoutes {
   bool may_try(const Poster& poster);
 
   loop::Loop& loop_;
-  Entrance& entrance_;
+  Authenticator& authenticator_;
   Keys& keys_;
   Setup& setup_;
   access::Guesses guesses_;

@@ -77,9 +77,9 @@ constexpr Member kKey[] = {
     member<&KeyRow::required>("required"),
     member<&KeyRow::default_value>("default"),
     member<&KeyRow::range>("range", "range of the value in words"),
-    member<&KeyRow::words>("words").if_any(),
-    member<&KeyRow::least>("least").as(kNumber).if_any(),
-    member<&KeyRow::most>("most").as(kNumber).if_any(),
+    member<&KeyRow::words>("words").optional(),
+    member<&KeyRow::least>("least").as(kNumber).optional(),
+    member<&KeyRow::most>("most").as(kNumber).optional(),
 };
 
 constexpr Member kSetup[] = {

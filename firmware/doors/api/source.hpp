@@ -83,9 +83,9 @@ class Operator {
 };
 
 /// Executes the operator's actions on the gateway itself.
-class Caretaker {
+class GatewayControl {
  public:
-  virtual ~Caretaker() = default;
+  virtual ~GatewayControl() = default;
   /// Silences an alarm until it gets worse or ends. An error is a sentence.
   virtual std::expected<void, std::string> acknowledge(const std::string& id) = 0;
   /// Replaces a ledger that cannot be read; the gateway restarts. Returns the new name of the old files.

@@ -103,7 +103,7 @@ std::string line(double x1, double y1, double x2, double y2, const char* kind) {
 
 std::string text(double x, double y, const char* anchor, const std::string& words) {
   return icd::sentence("<text x=\"", fixed(x, 2), "\" y=\"", fixed(y, 2), "\" text-anchor=\"", anchor, "\">",
-                       icd::in_html(words), "</text>");
+                       icd::escape_html(words), "</text>");
 }
 
 /// The axes' scales: to millimetres.
@@ -174,7 +174,7 @@ std::string drawn(const Plot& plot) {
          line(kAround.left, kAround.top, kAround.left, scales.bottom, "axis") +
          text(0, 3, "start", plot.name) + text(scales.right, scales.bottom + 8, "end", "minutes of the run");
   return icd::sentence("<figure style=\"width:", fixed(plot.width, 0), "mm\"><svg role=\"img\" aria-label=\"",
-                       icd::in_html(plot.name), "\" viewBox=\"0 0 ", fixed(plot.width, 0), " ",
+                       icd::escape_html(plot.name), "\" viewBox=\"0 0 ", fixed(plot.width, 0), " ",
                        fixed(plot.height, 0), "\">", all, "<path class=\"curve\" d=\"", path_of(plot, scales),
                        "\"/></svg></figure>\n");
 }

@@ -67,7 +67,7 @@ void Lines::add(std::string record, bool is_news) {
   bytes_ += record.size();
   records_.push_back(std::move(record));
   is_due_ = is_due_ || is_news;
-  keep_below(kMost);
+  trim_to(kMost);
 }
 
 std::string Lines::take(loop::Instant now) {
@@ -89,7 +89,7 @@ void Lines::give_back(std::string records) {
   is_due_ = true;
 }
 
-void Lines::keep_below(std::size_t most) {
+void Lines::trim_to(std::size_t most) {
   while (bytes_ > most) {
     bytes_ -= records_.front().size();
     records_.pop_front();
@@ -190,7 +190,7 @@ bool is_time(double time) {
   return time >= 0 && time < kLatest;
 }
 
-bool lies_within(double from, double to, double most) {
+bool is_between(double from, double to, double most) {
   return -most <= from && from <= to && to <= most;
 }
 
@@ -204,14 +204,14 @@ bool is_good(const Head& head) {
 bool is_good(const TileState& state) {
   const auto& [level, x, y] = state.at;
   constexpr int kMost = picture::kWorldTiles;
-  return is_good(state.layer) && level >= 0 && level < picture::kLevels && lies_within(x, x, kMost) &&
-         lies_within(y, y, kMost) && is_time(state.stamp);
+  return is_good(state.layer) && level >= 0 && level < picture::kLevels && is_between(x, x, kMost) &&
+         is_between(y, y, kMost) && is_time(state.stamp);
 }
 bool is_good(const picture::LayerView& view) {
   const picture::Area area = view.bounds.value_or(picture::Area());
   constexpr double kMost = picture::kWorldMetres;
   return is_good(view.layer) && is_time(view.first) && is_time(view.last) &&
-         lies_within(area.left, area.right, kMost) && lies_within(area.bottom, area.top, kMost);
+         is_between(area.left, area.right, kMost) && is_between(area.bottom, area.top, kMost);
 }
 bool is_good(const Wiped& wiped) {
   return is_time(wiped.stamp);

@@ -47,7 +47,7 @@ class Lines {
   void give_back(std::string records);
   void be_due() { is_due_ = true; }
   bool is_due(loop::Instant now) const { return bytes_ > 0 && (is_due_ || now >= rests_until_); }
-  void keep_below(std::size_t most);
+  void trim_to(std::size_t most);
   std::size_t bytes() const { return bytes_; }
 
  private:

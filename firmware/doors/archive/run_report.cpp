@@ -37,11 +37,11 @@ svg { display: block; width: 100%; font-size: 2.8px } .grid { fill: none; stroke
 )";
 
 std::string cell(const std::string& text, bool is_number = false) {
-  return (is_number ? "<td class=\"n\">" : "<td>") + icd::in_html(text) + "</td>";
+  return (is_number ? "<td class=\"n\">" : "<td>") + icd::escape_html(text) + "</td>";
 }
 
 std::string fact(const char* name, const std::string& value) {
-  return value.empty() ? "" : icd::sentence("<dt>", name, "</dt><dd>", icd::in_html(value), "</dd>\n");
+  return value.empty() ? "" : icd::sentence("<dt>", name, "</dt><dd>", icd::escape_html(value), "</dd>\n");
 }
 
 /// `text` of a number with a true minus sign, as on the page.
@@ -109,8 +109,9 @@ std::string life_of(const api::ReportDetail& report, const std::string& day) {
   for (const api::ReportStep& step : report.history) {
     std::string time = icd::utc(step.at);
     if (time.starts_with(day)) time.erase(0, day.size());
-    steps += icd::sentence(steps.empty() ? "<span>" : "; <span>", time, "</span> ", icd::in_html(step.state),
-                           step.note.empty() ? "" : ": ", icd::in_html(step.note));
+    steps +=
+        icd::sentence(steps.empty() ? "<span>" : "; <span>", time, "</span> ", icd::escape_html(step.state),
+                      step.note.empty() ? "" : ": ", icd::escape_html(step.note));
   }
   return "<td>" + steps + "</td>";
 }
@@ -185,7 +186,7 @@ std::string attention_table(const api::KeptRun& run) {
          "</tbody></table>\n";
 }
 
-std::vector<std::optional<double>> all_known(const std::vector<double>& values) {
+std::vector<std::optional<double>> to_optionals(const std::vector<double>& values) {
   return {values.begin(), values.end()};
 }
 
@@ -199,7 +200,8 @@ std::string plots(const api::KeptRun& run, const Curve& curve, api::Time began) 
   }
   const api::History& history = run.history;
   constexpr double kHalf = 88, kTall = 45;
-  Plot link{.name = "Sent (Mbit/s)", .values = all_known(history.sent_mbit), .width = kHalf, .height = kTall};
+  Plot link{
+      .name = "Sent (Mbit/s)", .values = to_optionals(history.sent_mbit), .width = kHalf, .height = kTall};
   for (const api::Time at : history.at) link.minutes.push_back(minutes(at));
   std::string all = drawn(area) + drawn(link);
   link.name = "Queued maps (MB)";
@@ -218,7 +220,7 @@ std::string plots(const api::KeptRun& run, const Curve& curve, api::Time began) 
 }  // namespace
 
 std::string run_report(const api::KeptRun& run, const std::vector<api::ReportDetail>& reports) {
-  const std::string title = icd::in_html(title_of(run.facts));
+  const std::string title = icd::escape_html(title_of(run.facts));
   picture::CoveredArea area;
   area.update(area.changes(run.picture));
   const picture::Covered covered = area.now();
@@ -387,11 +389,11 @@ std::string polyline(const api::Track& track, const Look& look, const Sheet& she
   for (const api::TrackPose& pose : track.poses)
     points += fixed(sheet.x(pose.position.x), 2) + ',' + fixed(sheet.y(pose.position.y), 2) + ' ';
   return icd::sentence("<polyline ", stroke_of(look), " points=\"", points, "\"><title>",
-                       icd::in_html(track.robot), "</title></polyline>\n");
+                       icd::escape_html(track.robot), "</title></polyline>\n");
 }
 
 /// Without tracks that have no pose.
-std::vector<api::Track> by_first_pose(std::vector<api::Track> tracks) {
+std::vector<api::Track> sort_by_first_pose(std::vector<api::Track> tracks) {
   std::erase_if(tracks, [](const api::Track& track) { return track.poses.empty(); });
   std::ranges::stable_sort(tracks, {}, [](const api::Track& track) { return track.poses.front().at; });
   return tracks;
@@ -460,7 +462,7 @@ std::string drawn(const Sign& sign) {
                       "\" r=\"", fixed(kGroup, 1), "\"/><text class=\"", kind, "\" x=\"", fixed(sign.x, 2),
                       "\" y=\"", fixed(sign.y + 0.8, 2), "\">", sign.reports.size(), "</text>");
   }
-  return icd::sentence("<g><title>", icd::in_html(title), "</title>", shape, "</g>\n");
+  return icd::sentence("<g><title>", icd::escape_html(title), "</title>", shape, "</g>\n");
 }
 
 /// The first of `texts` that has room beside the sign; "" if none has. A line leads to a label farther away.
@@ -484,7 +486,7 @@ std::string label(Labels& labels, double x, double y, double radius, const std::
                                : is_left ? box->right
                                          : (box->left + box->right) / 2,
                                2),
-                         "\" y=\"", fixed(box->bottom - kFont * 0.32, 2), "\">", icd::in_html(text),
+                         "\" y=\"", fixed(box->bottom - kFont * 0.32, 2), "\">", icd::escape_html(text),
                          "</text>\n");
   }
   return "";
@@ -492,7 +494,7 @@ std::string label(Labels& labels, double x, double y, double radius, const std::
 
 std::string swatch(const std::string& drawn, const std::string& meaning) {
   return icd::sentence("<li><svg viewBox=\"0 0 8 4\" aria-hidden=\"true\">", drawn, "</svg> ",
-                       icd::in_html(meaning), "</li>");
+                       icd::escape_html(meaning), "</li>");
 }
 
 std::string colour_swatch(const picture::Colour& colour, const std::string& meaning) {
@@ -544,7 +546,7 @@ std::string drawn_map(const api::KeptRun& run, const std::vector<api::ReportDeta
   const auto area = area_of(run, layers, reports);
   if (!area) return "<p>No map, track or place of a report is stored.</p>\n";
   const Sheet sheet = sheet_of(*area);
-  const auto tracks = by_first_pose(run.tracks);
+  const auto tracks = sort_by_first_pose(run.tracks);
   const auto looks = looks_of(tracks, run.colours);
   const auto signs = signs_of(reports, sheet);
   std::size_t left_out = 0;

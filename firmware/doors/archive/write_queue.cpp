@@ -63,7 +63,7 @@ void WriteQueue::move(double seconds) {
   facts_.clear();
   const Step step{seconds, std::chrono::duration<double>(loop_.now().time_since_epoch()).count()};
   lines_.add(record_of(step), true);
-  lines_.keep_below(kLargestRecord);
+  lines_.trim_to(kLargestRecord);
   steps_ += record_of(step);
 }
 

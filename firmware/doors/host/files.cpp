@@ -133,7 +133,7 @@ void log_use_of_copy(const std::string& path) {
   log(Level::Error, "a saved file is damaged; its copy is used", {{"file", path}});
 }
 
-std::expected<void, std::string> write_over(const std::string& path, const std::string& text) {
+std::expected<void, std::string> overwrite(const std::string& path, const std::string& text) {
   const FileDescriptor fd = loop::open_regular(path, O_WRONLY | O_NOFOLLOW);
   const bool is_written = fd && loop::write_all(fd.get(), text, 0) == 0 &&
                           ftruncate(fd.get(), static_cast<off_t>(text.size())) == 0 && fsync(fd.get()) == 0;

@@ -89,7 +89,7 @@ std::expected<std::optional<Port>, std::string> port_in(const std::string& sys_c
                                                         const std::string& interface) {
   if (!is_interface_name(interface)) return std::nullopt;
   const std::string folder = sys_class_net + "/" + interface;
-  const auto mac = ADIT_TRY(read_if_there(folder + "/address"));
+  const auto mac = ADIT_TRY(read_optional_file(folder + "/address"));
   if (!mac) return std::nullopt;
   Port port{.mac = mac->substr(0, mac->find('\n')), .mbit = {}, .duplex = line_in(folder + "/duplex")};
   if (port.duplex == "unknown") port.duplex.clear();

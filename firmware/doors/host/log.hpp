@@ -67,6 +67,6 @@ std::string line_of(const Record& record);
 /// and blanks stay, other bytes become \xNN, and a backslash is doubled.
 std::string escaped(std::string_view text);
 /// Escapes an escaped text for a terminal without UTF-8: each byte of a character outside ASCII.
-std::string in_ascii(std::string_view text);
+std::string to_ascii(std::string_view text);
 
 }  // namespace adit::host

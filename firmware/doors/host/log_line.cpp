@@ -103,7 +103,7 @@ std::string escaped(std::string_view text) {
   return safe;
 }
 
-std::string in_ascii(std::string_view text) {
+std::string to_ascii(std::string_view text) {
   std::string safe;
   safe.reserve(text.size());
   for (const char c : text) {

@@ -14,7 +14,7 @@ std::string draw_nonce() {
   return random_digits<codec::kNonceDigits / 2>();
 }
 
-std::expected<std::optional<std::string>, std::string> read_if_there(const std::string& path) {
+std::expected<std::optional<std::string>, std::string> read_optional_file(const std::string& path) {
   auto file = slurp(path);
   if (file) return std::move(file->text);
   if (file.error() == ENOENT) return std::nullopt;

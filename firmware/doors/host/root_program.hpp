@@ -26,11 +26,11 @@ inline constexpr const char* kStatusFile = "status.json";
 std::string draw_nonce();
 
 /// A small file's text, or std::nullopt if it does not exist. An error names the file.
-std::expected<std::optional<std::string>, std::string> read_if_there(const std::string& path);
+std::expected<std::optional<std::string>, std::string> read_optional_file(const std::string& path);
 /// The same for a row.
 template <class Row>
 std::expected<std::optional<Row>, std::string> read_row(const std::string& path) {
-  const auto text = ADIT_TRY(read_if_there(path));
+  const auto text = ADIT_TRY(read_optional_file(path));
   if (!text) return std::nullopt;
   auto row = codec::read_file<Row>(*text);
   if (!row) return std::unexpected(path + ": " + row.error());

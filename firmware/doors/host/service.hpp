@@ -60,7 +60,7 @@ auto parse_kept(const std::string& path, Parse parse)
 }
 /// Overwrites an existing file, which needs no space on a full disk. After a crash, each sector of 512 bytes
 /// is the old or the new one.
-std::expected<void, std::string> write_over(const std::string& path, const std::string& text);
+std::expected<void, std::string> overwrite(const std::string& path, const std::string& text);
 /// Removes temporary files that a crash during write_file() left. Call before the first write there.
 void remove_unwritten(const std::string& folder);
 

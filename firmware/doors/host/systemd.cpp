@@ -40,7 +40,7 @@ void notify_stopping() {
   sd_notify(0, "STOPPING=1");
 }
 
-void notify_starting_again() {
+void notify_restarting() {
   if (watchdog_within()) notify_watchdog(kLongestStart);
 }
 
@@ -88,8 +88,8 @@ void must(int result, const char* doing) {
 
 }  // namespace
 
-void start_again(std::vector<Inherited> sockets, char* const* arguments,
-                 std::map<std::string, std::string> variables) {
+void restart_process(std::vector<Inherited> sockets, char* const* arguments,
+                     std::map<std::string, std::string> variables) {
   const int count = static_cast<int>(sockets.size());
   std::string names;
   must(close_range(SD_LISTEN_FDS_START, ~0U, CLOSE_RANGE_CLOEXEC), "closing descriptors");

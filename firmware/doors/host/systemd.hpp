@@ -15,9 +15,9 @@ namespace adit::host {
 void notify_ready(const std::string& status);
 void notify_status(const std::string& status);
 void notify_stopping();
-/// Announces a new start of the process (start_again()). systemd allows it the time of any start until
+/// Announces a new start of the process (restart_process()). systemd allows it the time of any start until
 /// notify_ready().
-void notify_starting_again();
+void notify_restarting();
 void notify_alive();                                      // WATCHDOG=1
 inline constexpr std::chrono::seconds kLongestStart{60};  // services/adit.service: TimeoutStartSec=
 
@@ -43,7 +43,7 @@ void forget_descriptor(const std::string& name);
 /// Replaces the process by a new start of its program (exec); the PID stays. The new start gets `sockets` as
 /// inherited(), descriptors 0 to 2, and the environment with `variables`. Blocked signals stay pending. Other
 /// threads end. If exec fails, the process exits with status 1. `arguments`: main()'s.
-[[noreturn]] void start_again(std::vector<Inherited> sockets, char* const* arguments,
-                              std::map<std::string, std::string> variables);
+[[noreturn]] void restart_process(std::vector<Inherited> sockets, char* const* arguments,
+                                  std::map<std::string, std::string> variables);
 
 }  // namespace adit::host

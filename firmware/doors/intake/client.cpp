@@ -185,7 +185,7 @@ void Client::hold_back() {
 
 void Client::look_at_head() {
   const bool has_ended = deadline_.has_client_ended();
-  if (gate_.has_refused() && (!gate_.read_away() || has_ended)) cut();
+  if (gate_.has_refused() && (!gate_.discard_received() || has_ended)) cut();
   if (!gate_.is_waiting() || !suspended_) return;
   switch (gate_.look(engine_.now(), has_ended)) {
     case Gate::Finding::Whole:
@@ -196,7 +196,7 @@ void Client::look_at_head() {
       refuse_head();
       return;
     case Gate::Finding::Later:
-      look_again_.call_at(gate_.again_at());
+      look_again_.call_at(gate_.next_look_at());
       break;
     case Gate::Finding::Begun:
       if (stage_.phase != Phase::Idle) break;
@@ -219,7 +219,7 @@ void Client::refuse_head() {
 }
 
 bool Client::begin_chunked() {
-  if (!gate_.let_in_past_libmicrohttpd()) return false;
+  if (!gate_.admit_request_and_read_head()) return false;
   const auto begin = [this] {
     engine_.begin_request(*this);
     return Next::GoOn;
@@ -234,8 +234,8 @@ void Client::read_on() {
   std::array<std::uint8_t, kPieceBytes> bytes;  // NOLINT(cppcoreguidelines-pro-type-member-init)
   for (int left = kPiecesAtOnce; reads_ && !suspended_; --left) {
     if (left == 0) {
-      engine_.hold_back_soon(number_);
-      engine_.run_soon();
+      engine_.schedule_hold_back(number_);
+      engine_.schedule_run();
       return;
     }
     Next next = Next::Close;
@@ -264,17 +264,17 @@ void Client::request_begun(std::shared_ptr<Request> request) {
   deadline_.expect_nothing();
 }
 
-void Client::request_over(bool is_answered) {
+void Client::on_request_end(bool is_answered) {
   const bool stays = is_answered && request_->keeps_connection() && client_keeps_connection();
   request_ = nullptr;
   enter(Phase::Idle);
   deadline_.expect_bytes(engine_.listen().idle);
-  gate_.request_over();
+  gate_.on_request_end();
   if (!gate_.is_waiting()) return;
   if (stays) {
     hold_back();  // now, because later libmicrohttpd has added the socket to its epoll set
   } else {
-    engine_.hold_back_soon(number_);  // libmicrohttpd is perhaps about to close it
+    engine_.schedule_hold_back(number_);  // libmicrohttpd is perhaps about to close it
   }
 }
 
@@ -322,11 +322,11 @@ void Client::suspend() {
 void Client::resume() {
   if (!std::exchange(suspended_, false)) return;
   if (reads_) {
-    engine_.hold_back_soon(number_);
+    engine_.schedule_hold_back(number_);
   } else {
     MHD_resume_connection(connection_);
   }
-  engine_.run_soon();
+  engine_.schedule_run();
 }
 
 void Client::say(std::string_view text) {
@@ -336,7 +336,7 @@ void Client::say(std::string_view text) {
 }
 
 void Client::say_last(std::string_view text) {
-  if (stage_.phase != Phase::Request) gate_.read_away();
+  if (stage_.phase != Phase::Request) gate_.discard_received();
   say(text);
   ::shutdown(fd_, SHUT_WR);
 }
@@ -346,7 +346,7 @@ void Client::cut() {
   ::shutdown(fd_, SHUT_RDWR);
   if (std::exchange(reads_, false)) suspended_ = true;
   resume();
-  engine_.run_soon();
+  engine_.schedule_run();
 }
 
 }  // namespace adit::intake

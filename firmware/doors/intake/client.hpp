@@ -29,12 +29,12 @@ class Engine {
   virtual loop::Instant now() const = 0;
   virtual const Listen& listen() const = 0;
   /// Runs libmicrohttpd soon, from the loop. Call this after each change that libmicrohttpd cannot see.
-  virtual void run_soon() = 0;
+  virtual void schedule_run() = 0;
   /// Makes the server check its clients' deadlines at `when` or earlier.
   virtual void look_at(loop::Instant when) = 0;
   virtual void tell(Ended why, const std::string& address) = 0;
   /// Calls hold_back() of the client `number` after libmicrohttpd has run.
-  virtual void hold_back_soon(std::uint64_t number) = 0;
+  virtual void schedule_hold_back(std::uint64_t number) = 0;
   /// The gate has let in a request.
   virtual void begin_request(Client& client) = 0;
 };
@@ -149,7 +149,7 @@ class Client {
   Gate& gate() { return gate_; }
   void request_begun(std::shared_ptr<Request> request);
   /// `is_answered`: the answer was sent completely.
-  void request_over(bool is_answered);
+  void on_request_end(bool is_answered);
   const std::shared_ptr<Request>& request() const { return request_; }
   /// Calls `step`, which goes on with the request. If it throws, the request fails.
   template <class Step>

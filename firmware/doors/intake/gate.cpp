@@ -25,7 +25,7 @@ std::size_t Gate::unread() const {
   return ::ioctl(fd_, FIONREAD, &bytes) == 0 && bytes > 0 ? static_cast<std::size_t>(bytes) : 0;
 }
 
-void Gate::request_over() {
+void Gate::on_request_end() {
   if (stage_ == Stage::Refused) return;
   if (next_ < sound_.size()) {
     stage_ = Stage::Open;
@@ -86,7 +86,7 @@ void Gate::take_sound_heads(std::string_view bytes) {
   }
 }
 
-bool Gate::let_in() {
+bool Gate::admit_request() {
   if (stage_ != Stage::Open) return false;
   stage_ = Stage::Entered;
   Sound& sound = sound_[next_++];
@@ -96,8 +96,8 @@ bool Gate::let_in() {
   return true;
 }
 
-bool Gate::let_in_past_libmicrohttpd() {
-  if (!let_in()) return false;
+bool Gate::admit_request_and_read_head() {
+  if (!admit_request()) return false;
   std::string read(head_text_.size(), '\0');
   return ::recv(fd_, read.data(), read.size(), MSG_DONTWAIT) == static_cast<ssize_t>(read.size());
 }
@@ -121,7 +121,7 @@ void Gate::acknowledge_head() const {
   ::setsockopt(fd_, IPPROTO_TCP, TCP_QUICKACK, &on, sizeof on);
 }
 
-bool Gate::read_away() {
+bool Gate::discard_received() {
   std::array<char, 16 * 1024> bytes;  // NOLINT(cppcoreguidelines-pro-type-member-init): never looked at
   while (thrown_away_ <= kMostThrownAway) {
     const ssize_t size = ::recv(fd_, bytes.data(), bytes.size(), MSG_DONTWAIT);

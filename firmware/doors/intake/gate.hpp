@@ -17,7 +17,7 @@ class Gate {
   enum class Finding : std::uint8_t {
     Nothing,  // no byte of the next request has arrived
     Begun,    // the head is not whole
-    Later,    // the head arrives in small pieces; call look() again at again_at()
+    Later,    // the head arrives in small pieces; call look() again at next_look_at()
     Whole,    // libmicrohttpd may read it
     Refused,  // head().refusal() says why
   };
@@ -26,7 +26,7 @@ class Gate {
 
   /// A request has ended. Waits for the next head, unless that was checked together with the previous one
   /// because the client does not wait for answers.
-  void request_over();
+  void on_request_end();
   /// Bytes have arrived since the last look().
   void bytes_came() { has_new_bytes_ = true; }
   bool has_new_bytes() const { return has_new_bytes_; }
@@ -35,17 +35,17 @@ class Gate {
   bool has_unseen() const;
   /// Checks the bytes in the socket. `at_once`: do not wait for more pieces.
   Finding look(loop::Instant now, bool at_once);
-  loop::Instant again_at() const { return again_at_; }
+  loop::Instant next_look_at() const { return again_at_; }
   /// The present head.
   const HeadChecker& head() const { return head_; }
 
   /// True if the next request to let in has a chunked body. Its head is the first one in the socket.
   bool next_is_chunked() const { return next_ < sound_.size() && !sound_[next_].framing.length; }
   /// A request begins. False: its head was not checked.
-  bool let_in();
+  bool admit_request();
   /// Also reads the head from the socket, which libmicrohttpd then does not see. False: the head is not
   /// there any more.
-  bool let_in_past_libmicrohttpd();
+  bool admit_request_and_read_head();
   /// Call once the head was read from the socket. Acknowledges it at once if its body is still to come: a
   /// client that sends head and body in two writes waits for that (Nagle's algorithm), for 40 ms by default.
   void acknowledge_head() const;
@@ -69,7 +69,7 @@ class Gate {
   bool has_refused() const { return stage_ == Stage::Refused; }
   /// Discards the received bytes, because closing a socket with unread bytes resets it, and the last answer
   /// would be lost. False if there were too many bytes.
-  bool read_away();
+  bool discard_received();
 
  private:
   enum class Stage : std::uint8_t { Waiting, Open, Entered, Refused };

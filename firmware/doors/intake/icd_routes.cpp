@@ -23,14 +23,14 @@ std::string shown(std::string_view text) {
 }
 
 /// GET /api/status. Ignores a body.
-class StatusVisit final : public BodySink {
+class StatusSink final : public BodySink {
  public:
-  explicit StatusVisit(Visit visit) : visit_(std::move(visit)) {}
+  explicit StatusSink(UploadContext context) : context_(std::move(context)) {}
   bool on_body(std::span<const std::uint8_t>) override { return true; }
-  void on_end() override { visit_.desk.status(visit_.sender, visit_.responder); }
+  void on_end() override { context_.message_handler.status(context_.sender, context_.responder); }
 
  private:
-  Visit visit_;
+  UploadContext context_;
 };
 
 /// ICD 4: JSON or CBOR for mapping, JSON only for scoring.
@@ -88,7 +88,7 @@ icd::Refusal stops() {
 
 /// ", got no such header" or ", got Basic" for a header without a bearer token; "" for a wrong one. Never
 /// shows a possible token.
-std::string other_credentials(std::string_view authorization) {
+std::string describe_credentials(std::string_view authorization) {
   if (authorization.empty()) return ", got no such header";
   if (!icd::token_in(authorization).empty()) return "";
   const std::string_view first = authorization.substr(0, authorization.find(' '));
@@ -151,9 +151,10 @@ bool is_preflight_elsewhere(const RequestHead& head) {
 
 }  // namespace
 
-IcdRoutes::IcdRoutes(IcdOptions options, Desk& desk, loop::Workers& workers, Handler& other)
+IcdRoutes::IcdRoutes(IcdOptions options, MessageHandler& message_handler, loop::Workers& workers,
+                     Handler& other)
     : options_(std::move(options)),
-      desk_(desk),
+      message_handler_(message_handler),
       workers_(workers),
       other_(other),
       maps_(std::make_shared<UploadBudget>(options_.upload_bytes)),
@@ -184,7 +185,7 @@ icd::Checked<void> IcdRoutes::check_entry(const RequestHead& head) const {
   if (options_.tokens.empty())
     return icd::refuse(icd::Status::Unauthorized, "Authorization: no token is set on this box yet");
   return icd::refuse(icd::Status::Unauthorized, "Authorization: expected Bearer and the team's token",
-                     other_credentials(head.header("Authorization")));
+                     describe_credentials(head.header("Authorization")));
 }
 
 std::size_t IcdRoutes::most_bytes(icd::Uri uri) const {
@@ -215,61 +216,62 @@ std::unique_ptr<BodySink> IcdRoutes::open(const RequestHead& head, std::shared_p
   sender.address = head.peer();
   sender.began = ++uploads_->last;
   sender.bytes = static_cast<std::size_t>(length.value_or(0));
-  Visit visit{.desk = desk_,
-              .uri = *uri,
-              .sender = std::move(sender),
-              .responder = std::move(responder),
-              .uploads = uploads_};
+  UploadContext context{.message_handler = message_handler_,
+                        .uri = *uri,
+                        .sender = std::move(sender),
+                        .responder = std::move(responder),
+                        .uploads = uploads_};
   if (head.method() == "OPTIONS") {
-    visit.responder->answer(preflight_answer(allowed_methods(*uri), head));
+    context.responder->answer(preflight_answer(allowed_methods(*uri), head));
     return nullptr;
   }
   if (const auto entry = check_entry(head); !entry) {
-    visit.refuse(entry.error());
+    context.refuse(entry.error());
     return nullptr;
   }
   if (!is_allowed(*uri, head.method())) {
-    visit.refuse({icd::Status::MethodNotAllowed, icd::sentence("method: expected ", icd::method_of(*uri))},
-                 {{"Allow", allowed_methods(*uri)}});
+    context.refuse({icd::Status::MethodNotAllowed, icd::sentence("method: expected ", icd::method_of(*uri))},
+                   {{"Allow", allowed_methods(*uri)}});
     return nullptr;
   }
   if (*uri == icd::Uri::Status) {
-    return std::make_unique<StatusVisit>(std::move(visit));
+    return std::make_unique<StatusSink>(std::move(context));
   }
-  auto sink = take_in(visit, head, std::move(flow));
+  auto sink = take_in(context, head, std::move(flow));
   if (sink) return *std::move(sink);
-  visit.refuse(sink.error());
+  context.refuse(sink.error());
   return nullptr;
 }
 
-icd::Checked<std::unique_ptr<BodySink>> IcdRoutes::take_in(Visit& visit, const RequestHead& head,
+icd::Checked<std::unique_ptr<BodySink>> IcdRoutes::take_in(UploadContext& context, const RequestHead& head,
                                                            std::shared_ptr<Flow> flow) {
-  const bool is_report = visit.uri == icd::Uri::ArtifactReports;
+  const bool is_report = context.uri == icd::Uri::ArtifactReports;
   if (stopping_ && !is_report) return std::unexpected(stops());
   const auto length = head.content_length();
   if (length == 0 && head.header("Content-Length").empty())  // RFC 9110 15.5.12
     return icd::refuse(icd::Status::LengthRequired, "Content-Length: missing, and no body came in chunks");
-  const auto kind = ADIT_TRY(kind_of(visit.uri, head));
+  const auto kind = ADIT_TRY(kind_of(context.uri, head));
   if (is_report) {
     const bool resubmits = ADIT_TRY(resubmits_of(head));
-    visit.sender.resubmits = resubmits;
+    context.sender.resubmits = resubmits;
   }
-  const std::size_t most = most_bytes(visit.uri);
+  const std::size_t most = most_bytes(context.uri);
   if (length && *length > most)
     return icd::refuse(icd::Status::ContentTooLarge, "Content-Length: expected at most ", most, ", got ",
                        *length);
-  switch (visit.uri) {
+  switch (context.uri) {
     case icd::Uri::MapUpdate:
       return std::make_unique<MapUpload>(
-          visit,
+          context,
           MapUploadOptions{
               .kind = kind, .rules = options_.rules, .most_bytes = most, .without_room = without_room_},
           std::move(flow), workers_, maps_);
     case icd::Uri::MarkersUpdate:
-      return std::make_unique<MarkersUpload>(visit, kind, options_.rules, workers_, markers_, large_markers_);
+      return std::make_unique<MarkersUpload>(context, kind, options_.rules, workers_, markers_,
+                                             large_markers_);
     case icd::Uri::ArtifactReports:
     case icd::Uri::StateUpdate:
-      return std::make_unique<SmallUpload>(visit, kind, options_.rules, small_);
+      return std::make_unique<SmallUpload>(context, kind, options_.rules, small_);
     case icd::Uri::Status:
       break;  // has no body
   }
@@ -279,7 +281,7 @@ icd::Checked<std::unique_ptr<BodySink>> IcdRoutes::take_in(Visit& visit, const R
 void IcdRoutes::stop() {
   stopping_ = true;
   const std::set<Upload*> all = uploads_->under_way;
-  for (Upload* upload : all) upload->turn_away(stops());
+  for (Upload* upload : all) upload->reject(stops());
 }
 
 }  // namespace adit::intake

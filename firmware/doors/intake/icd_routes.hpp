@@ -8,7 +8,7 @@
 
 #include "icd/bearer_token.hpp"
 #include "icd/rules.hpp"
-#include "intake/desk.hpp"
+#include "intake/message_handler.hpp"
 #include "intake/server.hpp"
 #include "intake/uploads.hpp"
 #include "loop/workers.hpp"
@@ -37,10 +37,10 @@ struct IcdOptions {
 /// Each error is a JSON string. CORS preflights (OPTIONS) get 204 without a token, also for a URI that does
 /// not exist, so that a page can read the 404.
 ///
-/// `desk`, `workers` and `other` must outlive each Server that uses this handler.
+/// `message_handler`, `workers` and `other` must outlive each Server that uses this handler.
 class IcdRoutes final : public Handler {
  public:
-  IcdRoutes(IcdOptions options, Desk& desk, loop::Workers& workers, Handler& other);
+  IcdRoutes(IcdOptions options, MessageHandler& message_handler, loop::Workers& workers, Handler& other);
 
   Credentials shown(const RequestHead& head) override;
   std::unique_ptr<BodySink> open(const RequestHead& head, std::shared_ptr<Responder> responder,
@@ -50,7 +50,7 @@ class IcdRoutes final : public Handler {
   void serve_with(IcdOptions options) { options_ = std::move(options); }
 
   /// Accepts no more messages: clients that are sending one, or send a map, a state or markers later, get
-  /// 503. The desk rejects reports whose body is whole.
+  /// 503. The message handler rejects reports whose body is whole.
   void stop();
 
  private:
@@ -60,13 +60,13 @@ class IcdRoutes final : public Handler {
   /// 401 or 403 if the request needs a right token and has none.
   icd::Checked<void> check_entry(const RequestHead& head) const;
   /// Accepts a message that has a body. The refusal is the sender's answer.
-  icd::Checked<std::unique_ptr<BodySink>> take_in(Visit& visit, const RequestHead& head,
+  icd::Checked<std::unique_ptr<BodySink>> take_in(UploadContext& context, const RequestHead& head,
                                                   std::shared_ptr<Flow> flow);
   /// The most bytes of a body sent to `uri`.
   std::size_t most_bytes(icd::Uri uri) const;
 
   IcdOptions options_;
-  Desk& desk_;
+  MessageHandler& message_handler_;
   loop::Workers& workers_;
   Handler& other_;
   std::shared_ptr<UploadBudget> maps_;

@@ -38,13 +38,13 @@ std::size_t ChunkReader::take_line(std::string_view bytes) {
   } else if (in_ == In::AfterData && !std::string_view("\r").starts_with(line_)) {
     refuse("chunked body: a chunk is longer than its size");
   } else if (end < bytes.size()) {
-    whole_line();
+    end_line();
     line_.clear();
   }
   return std::min(end + 1, bytes.size());
 }
 
-void ChunkReader::whole_line() {
+void ChunkReader::end_line() {
   if (!line_.ends_with('\r')) return refuse("chunked body: each line must end in CRLF");
   line_.pop_back();
   if (in_ == In::AfterData) {
@@ -178,12 +178,12 @@ Answer failure() {
 
 /// The handler's Responder. If the handler drops it without an answer, even by an exception, the request gets
 /// a 500, so that its client does not wait for ever.
-class Owed final : public PassingResponder {
+class AnswerGuard final : public PassingResponder {
  public:
   using PassingResponder::PassingResponder;
-  Owed(const Owed&) = delete;
-  Owed& operator=(const Owed&) = delete;
-  ~Owed() override {
+  AnswerGuard(const AnswerGuard&) = delete;
+  AnswerGuard& operator=(const AnswerGuard&) = delete;
+  ~AnswerGuard() override {
     loop::guarded("the answer to a dropped request", [this] { inner().answer(failure()); });
   }
 
@@ -203,13 +203,13 @@ void Request::begin(std::string text, Target target, const Framing& framing) {
 
 void Request::open(Handler& handler) {
   in_call_ = true;
-  sink_ = handler.open(*head_, std::make_shared<Owed>(shared_from_this()), shared_from_this());
+  sink_ = handler.open(*head_, std::make_shared<AnswerGuard>(shared_from_this()), shared_from_this());
   in_call_ = false;
   stage_ = Stage::Body;
   if (!sink_ && !answered()) answer_ = error_answer(icd::Status::InternalServerError, "no answer");
   if (!has_body_) return;
   if (answered()) {
-    turn_away();
+    send_early_answer();
   } else {
     client_->deadline().expect_body();
     client_->gate().acknowledge_head();
@@ -231,7 +231,7 @@ void Request::refuse_for_room(std::string_view sentence) {
 
 Next Request::body(std::span<const std::uint8_t> piece) {
   if (stage_ == Stage::Refusing) {
-    return throw_away(piece.size());
+    return discard_body(piece.size());
   }
   if (left_) *left_ -= std::min<std::uint64_t>(piece.size(), *left_);
   if (answered()) return Next::GoOn;  // the rest is read and ignored
@@ -247,7 +247,7 @@ bool Request::has_unended_body() const {
   return chunks_ && chunks_->state() == ChunkReader::State::Whole && stage_ == Stage::Body && !answered();
 }
 
-Next Request::throw_away(std::size_t bytes) {
+Next Request::discard_body(std::size_t bytes) {
   if (answered()) sink_.reset();  // frees its data, because discarding may take long
   thrown_away_ += bytes;
   client_->deadline().body_came(bytes);
@@ -272,7 +272,7 @@ void Request::take(std::span<const std::uint8_t> piece) {
   const bool more = sink_->on_body(piece);
   in_call_ = false;
   if (answered()) {
-    turn_away();
+    send_early_answer();
   } else if (more || resumed_) {
     client_->deadline().body_came(piece.size());
   } else {
@@ -298,7 +298,7 @@ Next Request::end() {
   return Next::GoOn;
 }
 
-void Request::turn_away() {
+void Request::send_early_answer() {
   if (stream_) {
     client_->cut();  // a stream in the middle of a body is not supported
   } else if (left_ && *left_ <= kReadAway) {
@@ -329,7 +329,7 @@ void Request::refuse(Answer answer) {
 
 Next Request::hand_over() {
   if (chunks_) {  // libmicrohttpd does not know of the request
-    turn_away();
+    send_early_answer();
     return Next::GoOn;
   }
   if (!stream_) open_to_pages(*answer_);
@@ -383,7 +383,7 @@ void Request::completed() {
 void Request::answer(Answer answer) {
   if (answered() || client_gone()) return;
   answer_ = std::move(answer);
-  answer_came();
+  on_answer();
 }
 
 std::shared_ptr<Stream> Request::stream(std::string_view content_type) {
@@ -391,16 +391,16 @@ std::shared_ptr<Stream> Request::stream(std::string_view content_type) {
   if (!answered() && !client_gone()) {
     stream->attach(*client_, content_type);
     stream_ = stream;
-    answer_came();
+    on_answer();
   }
   ReplyStream* const sent = stream.get();
   return {sent, [held = std::move(stream)](Stream*) { held->end(); }};  // the handler has dropped it
 }
 
-void Request::answer_came() {
+void Request::on_answer() {
   if (in_call_) return;  // the running call handles the answer
   if (stage_ == Stage::Body || chunks_) {
-    turn_away();
+    send_early_answer();
   } else {
     client_->resume();
   }

@@ -40,7 +40,7 @@ class ChunkReader {
 
   std::size_t take_data(std::string_view bytes, std::string& data);
   std::size_t take_line(std::string_view bytes);
-  void whole_line();
+  void end_line();
   void size_line();
   void trailer_line();
   void refuse(std::string_view trouble);
@@ -141,15 +141,15 @@ class Request final : public Responder, public Flow, public std::enable_shared_f
   bool answered() const { return answer_ || stream_; }
   void take(std::span<const std::uint8_t> piece);
   /// Discards a piece of a body that was answered before it was whole.
-  Next throw_away(std::size_t bytes);
+  Next discard_body(std::size_t bytes);
   void take_chunks(std::span<const std::uint8_t> piece);
   /// Sends an answer that came before the body was whole.
-  void turn_away();
+  void send_early_answer();
   void refuse(Answer answer);
   /// Lets pages read an answer of the ICD's URIs, and that there is no such URI. Not the box's files and API.
   void open_to_pages(Answer& answer) const;
   Next hand_over();
-  void answer_came();
+  void on_answer();
 
   Client* client_;  // null once over
   std::optional<Head> head_;

@@ -51,12 +51,12 @@ class MhdServer final : public Server, public Engine {
 
   loop::Instant now() const override { return loop_.now(); }
   const Listen& listen() const override { return listen_; }
-  void run_soon() override;
+  void schedule_run() override;
   void look_at(loop::Instant when) override;
   void tell(Ended why, const std::string& address) override {
     if (listen_.ended) listen_.ended(why, address);
   }
-  void hold_back_soon(std::uint64_t number) override { to_hold_back_.push_back(number); }
+  void schedule_hold_back(std::uint64_t number) override { to_hold_back_.push_back(number); }
   void begin_request(Client& client) override;
 
  private:
@@ -148,7 +148,7 @@ void MhdServer::stop_listening() {
   if (socket != MHD_INVALID_SOCKET) ::close(socket);
 }
 
-void MhdServer::run_soon() {
+void MhdServer::schedule_run() {
   if (stopping_ || std::exchange(run_is_due_, true)) return;
   // A timer would be late by the accuracy of the loop's timers.
   loop_.post([weak = std::weak_ptr(alive_)] {
@@ -165,7 +165,7 @@ void MhdServer::run() {
     MHD_UNSIGNED_LONG_LONG wait_ms = 0;
     has_more = MHD_get_timeout(daemon_, &wait_ms) == MHD_YES && wait_ms == 0;
   }
-  if (has_more) run_soon();
+  if (has_more) schedule_run();
   close_unauthenticated();
 }
 
@@ -203,7 +203,7 @@ void MhdServer::connected(MHD_Connection* connection, void** client_cls) {
   Client* const known = client.get();
   clients_.emplace(known->number(), std::move(client));
   *client_cls = known;
-  hold_back_soon(known->number());
+  schedule_hold_back(known->number());
 }
 
 std::size_t MhdServer::unauthenticated() const {
@@ -270,7 +270,7 @@ MHD_Result MhdServer::request_came(void* cls, MHD_Connection* connection, const 
 
 Next MhdServer::hear(Client& client, std::string_view upload, void** request_cls) {
   if (*request_cls == nullptr) {
-    if (!client.gate().let_in()) return Next::Close;
+    if (!client.gate().admit_request()) return Next::Close;
     *request_cls = &client;
     begin_request(client);
     return Next::GoOn;
@@ -286,7 +286,7 @@ void MhdServer::request_completed(void*, MHD_Connection* connection, void** requ
   *request_cls = nullptr;
   const std::shared_ptr<Request> request = client->request();
   loop::guarded("the end of a request",
-                [&] { client->request_over(why == MHD_REQUEST_TERMINATED_COMPLETED_OK); });
+                [&] { client->on_request_end(why == MHD_REQUEST_TERMINATED_COMPLETED_OK); });
   loop::guarded("the end of a request", [&] { request->completed(); });
 }
 
@@ -300,7 +300,7 @@ void MhdServer::connection_changed(void* cls, MHD_Connection* connection, void**
       // Of a request that libmicrohttpd does not know.
       if (const std::shared_ptr<Request> request = client->request()) request->completed();
       server.clients_.erase(client->number());
-      server.run_soon();  // libmicrohttpd checks only then if there is room for another connection
+      server.schedule_run();  // libmicrohttpd checks only then if there is room for another connection
     });
   }
 }

@@ -18,7 +18,7 @@
 
 namespace adit::intake {
 
-Sender Visit::sender_at_end() const {
+Sender UploadContext::sender_at_end() const {
   Sender whole = sender;
   whole.ended = ++uploads->last;
   for (const Upload* other : uploads->under_way) {
@@ -28,14 +28,14 @@ Sender Visit::sender_at_end() const {
   return whole;
 }
 
-void Visit::refuse(const icd::Refusal& refusal, std::vector<Header> headers) const {
+void UploadContext::refuse(const icd::Refusal& refusal, std::vector<Header> headers) const {
   Answer answer = error_answer(refusal.status, refusal.sentence);
   answer.headers = std::move(headers);
   responder->answer(std::move(answer));
-  desk.refused(uri, sender, refusal);
+  message_handler.refused(uri, sender, refusal);
 }
 
-void Visit::answer(const icd::Checked<void>& taken) const {
+void UploadContext::answer(const icd::Checked<void>& taken) const {
   if (!taken) {
     refuse(taken.error());
   } else {
@@ -44,13 +44,13 @@ void Visit::answer(const icd::Checked<void>& taken) const {
 }
 
 bool SmallUpload::on_body(std::span<const std::uint8_t> piece) {
-  visit_.sender.bytes += piece.size();
+  context_.sender.bytes += piece.size();
   const auto fed = decoder_.feed(piece);
   if (!fed) {
-    visit_.refuse(fed.error());
-  } else if (!share_.grow_to(std::max(visit_.sender.bytes, decoder_.size()))) {
-    visit_.refuse({icd::Status::ServiceUnavailable,
-                   "too many bytes at once, from this address or in total; send this message again later"});
+    context_.refuse(fed.error());
+  } else if (!share_.grow_to(std::max(context_.sender.bytes, decoder_.size()))) {
+    context_.refuse({icd::Status::ServiceUnavailable,
+                     "too many bytes at once, from this address or in total; send this message again later"});
   }
   return true;
 }
@@ -59,14 +59,14 @@ void SmallUpload::on_end() {
   whole_ = true;
   const auto document = decoder_.finish();
   if (!document) {
-    visit_.refuse(document.error());
+    context_.refuse(document.error());
   } else {
     give_to_desk(*document);
   }
 }
 
 void SmallUpload::give_to_desk(const codec::Document& document) {
-  switch (visit_.uri) {
+  switch (context_.uri) {
     case icd::Uri::StateUpdate:
       return take_state(document);
     case icd::Uri::ArtifactReports:
@@ -80,17 +80,18 @@ void SmallUpload::give_to_desk(const codec::Document& document) {
 
 void SmallUpload::take_state(const codec::Document& document) {
   auto read = codec::read_state_parts(document, rules_);
-  if (!read) return visit_.refuse(read.error());
-  auto taken = visit_.desk.take(std::move(read->message), visit_.sender_at_end());
+  if (!read) return context_.refuse(read.error());
+  auto taken = context_.message_handler.take(std::move(read->message), context_.sender_at_end());
   if (taken && read->refused.count > 0) taken = std::unexpected(read->refused.refusal());
-  visit_.answer(taken);
+  context_.answer(taken);
 }
 
 void SmallUpload::take_report(const codec::Document& document) {
   const auto read = codec::read_artifact_report(document, rules_);
-  if (!read) return visit_.refuse(read.error());
-  if (!read->left_out.empty()) visit_.desk.left_out(visit_.uri, visit_.sender, read->left_out);
-  visit_.desk.take(read->report, visit_.sender, visit_.responder);
+  if (!read) return context_.refuse(read.error());
+  if (!read->left_out.empty())
+    context_.message_handler.left_out(context_.uri, context_.sender, read->left_out);
+  context_.message_handler.take(read->report, context_.sender, context_.responder);
 }
 
 namespace {
@@ -177,14 +178,14 @@ class Decoding {
 
 class MapUpload::State final : public Taking, public std::enable_shared_from_this<State> {
  public:
-  State(Visit visit, MapUploadOptions options, std::shared_ptr<Flow> flow, loop::Workers& workers,
+  State(UploadContext context, MapUploadOptions options, std::shared_ptr<Flow> flow, loop::Workers& workers,
         std::shared_ptr<UploadBudget> budget)
-      : Taking(std::move(visit), std::move(budget)),
+      : Taking(std::move(context), std::move(budget)),
         options_(std::move(options)),
-        without_room_(options_.without_room, visit_.sender.address),
+        without_room_(options_.without_room, context_.sender.address),
         flow_(std::move(flow)),
         workers_(workers),
-        arrival_(visit_.desk.map_arrives()),
+        arrival_(context_.message_handler.begin_map()),
         decoding_(std::make_shared<Decoding>(options_.kind, options_.rules)) {}
 
   bool take(std::span<const std::uint8_t> piece) override;
@@ -214,7 +215,7 @@ class MapUpload::State final : public Taking, public std::enable_shared_from_thi
   }
   void failed() {
     at_work_ = false;
-    turn_away(not_held());
+    reject(not_held());
   }
 
   MapUploadOptions options_;
@@ -237,10 +238,10 @@ class MapUpload::State final : public Taking, public std::enable_shared_from_thi
 
 bool MapUpload::State::take(std::span<const std::uint8_t> piece) {
   if (over_) return true;
-  visit_.sender.bytes += piece.size();
-  if (visit_.sender.bytes > options_.most_bytes) {
-    turn_away({icd::Status::ContentTooLarge,
-               icd::sentence("body: expected at most ", options_.most_bytes, " bytes")});
+  context_.sender.bytes += piece.size();
+  if (context_.sender.bytes > options_.most_bytes) {
+    reject({icd::Status::ContentTooLarge,
+            icd::sentence("body: expected at most ", options_.most_bytes, " bytes")});
     return true;
   }
   if (!charge()) return true;
@@ -253,8 +254,8 @@ bool MapUpload::State::take(std::span<const std::uint8_t> piece) {
 
 /// Charges the budget for the body, or for its decoded data if that is larger. False: the map is rejected.
 bool MapUpload::State::charge() {
-  if (share_.grow_to(std::max(visit_.sender.bytes, data_))) return true;
-  turn_away({icd::Status::TooManyRequests, "too many maps at once; send this map again later"});
+  if (share_.grow_to(std::max(context_.sender.bytes, data_))) return true;
+  reject({icd::Status::TooManyRequests, "too many maps at once; send this map again later"});
   return false;
 }
 
@@ -262,7 +263,7 @@ bool MapUpload::State::charge() {
 bool MapUpload::State::is_held() {
   const std::size_t holds = left_.empty() ? 0 : left_.size() + decoding_->data_held();
   if (without_room_.grow_to(holds)) return true;
-  turn_away({icd::Status::ServiceUnavailable, "the queue of maps is full; send this map again later"});
+  reject({icd::Status::ServiceUnavailable, "the queue of maps is full; send this map again later"});
   return false;
 }
 
@@ -270,7 +271,7 @@ bool MapUpload::State::is_held() {
 /// worker does not start for a few bytes.
 bool MapUpload::State::is_worth_it() const {
   if (whole_ || decoding_->has_more()) return true;
-  const bool is_first = pending_bytes_ == visit_.sender.bytes;
+  const bool is_first = pending_bytes_ == context_.sender.bytes;
   return !pending_.empty() && (is_first || pending_bytes_ >= kTogether);
 }
 
@@ -306,9 +307,10 @@ void MapUpload::State::worked() {
 void MapUpload::State::take_result(icd::Checked<icd::MapUpdate> result) {
   const auto arrival = arrival_;
   abandon();
-  if (!result) return visit_.answer(std::unexpected(std::move(result.error())));
-  arrival->take(std::move(*result), visit_.sender_at_end(),
-                [self = shared_from_this()](const icd::Checked<void>& taken) { self->visit_.answer(taken); });
+  if (!result) return context_.answer(std::unexpected(std::move(result.error())));
+  arrival->take(
+      std::move(*result), context_.sender_at_end(),
+      [self = shared_from_this()](const icd::Checked<void>& taken) { self->context_.answer(taken); });
 }
 
 /// Not while the worker runs.
@@ -337,10 +339,10 @@ void MapUpload::State::stored(icd::ChunkedBytes left) {
   if (!loop::guarded("storing a map", [this] { go_on(); })) failed();
 }
 
-MapUpload::MapUpload(const Visit& visit, MapUploadOptions options, std::shared_ptr<Flow> flow,
+MapUpload::MapUpload(const UploadContext& context, MapUploadOptions options, std::shared_ptr<Flow> flow,
                      loop::Workers& workers, std::shared_ptr<UploadBudget> budget)
-    : WorkerUpload(visit,
-                   std::make_shared<State>(visit, options, std::move(flow), workers, std::move(budget))) {}
+    : WorkerUpload(context,
+                   std::make_shared<State>(context, options, std::move(flow), workers, std::move(budget))) {}
 
 namespace {
 
@@ -379,9 +381,9 @@ Parts read_large(codec::BodyKind kind, const icd::Rules& rules, Body& body) {
 
 class MarkersUpload::State final : public Taking, public std::enable_shared_from_this<State> {
  public:
-  State(Visit visit, codec::BodyKind kind, const icd::Rules& rules, loop::Workers& workers,
+  State(UploadContext context, codec::BodyKind kind, const icd::Rules& rules, loop::Workers& workers,
         std::shared_ptr<UploadBudget> budget, const std::shared_ptr<TurnQueue>& turns)
-      : Taking(std::move(visit), std::move(budget)),
+      : Taking(std::move(context), std::move(budget)),
         kind_(kind),
         rules_(rules),
         workers_(workers),
@@ -411,21 +413,22 @@ class MarkersUpload::State final : public Taking, public std::enable_shared_from
   void end_turn() {
     if (const auto turns = turns_.lock()) turns->end();
   }
-  /// Gives the accepted markers to the desk. If the desk accepts them, the answer is about the rejected ones.
+  /// Gives the accepted markers to the message handler. If the message handler accepts them, the answer is
+  /// about the rejected ones.
   void decoded(Parts parts) {
     abandon();
-    if (!parts) return visit_.refuse(parts.error());
-    visit_.desk.take(
-        std::move(parts->message), visit_.sender_at_end(),
+    if (!parts) return context_.refuse(parts.error());
+    context_.message_handler.take(
+        std::move(parts->message), context_.sender_at_end(),
         [self = shared_from_this(), refused = std::move(parts->refused)](icd::Checked<void> taken) {
           if (taken && refused.count > 0) taken = std::unexpected(refused.refusal());
-          self->visit_.answer(taken);
+          self->context_.answer(taken);
         });
   }
   static icd::Refusal not_held() {
     return {icd::Status::ServiceUnavailable, "Adit has no memory for these markers; send them again later"};
   }
-  void failed() { turn_away(not_held()); }
+  void failed() { reject(not_held()); }
 
   codec::BodyKind kind_;
   icd::Rules rules_;
@@ -436,15 +439,14 @@ class MarkersUpload::State final : public Taking, public std::enable_shared_from
 };
 
 void MarkersUpload::State::charge() {
-  if (share_.grow_to(visit_.sender.bytes + (at_once_ ? at_once_->size() : 0))) return;
-  turn_away({icd::Status::TooManyRequests, "too many markers at once; send these markers again later"});
+  if (share_.grow_to(context_.sender.bytes + (at_once_ ? at_once_->size() : 0))) return;
+  reject({icd::Status::TooManyRequests, "too many markers at once; send these markers again later"});
 }
 
 void MarkersUpload::State::keep(std::span<const std::uint8_t> piece) {
-  visit_.sender.bytes += piece.size();
-  if (visit_.sender.bytes > kMost) {
-    return turn_away(
-        {icd::Status::ContentTooLarge, icd::sentence("body: expected at most ", kMost, " bytes")});
+  context_.sender.bytes += piece.size();
+  if (context_.sender.bytes > kMost) {
+    return reject({icd::Status::ContentTooLarge, icd::sentence("body: expected at most ", kMost, " bytes")});
   }
   body_.insert(body_.end(), piece.begin(), piece.end());
   if (at_once_) feed(piece);
@@ -454,7 +456,7 @@ void MarkersUpload::State::keep(std::span<const std::uint8_t> piece) {
 void MarkersUpload::State::feed(std::span<const std::uint8_t> piece) {
   const auto fed = at_once_->feed(piece);
   if (fed) return;
-  if (!is_too_large(fed.error())) return turn_away(fed.error());
+  if (!is_too_large(fed.error())) return reject(fed.error());
   at_once_.reset();
 }
 
@@ -485,7 +487,7 @@ void MarkersUpload::State::small_was_read(std::shared_ptr<Body> body, Parts part
 void MarkersUpload::State::wait_for_turn() {
   const auto turns = turns_.lock();
   if (!turns) return;
-  turns->wait(visit_.sender.address, [self = shared_from_this()] {
+  turns->wait(context_.sender.address, [self = shared_from_this()] {
     if (self->over_) return self->end_turn();
     if (loop::guarded("reading markers", [&] { self->read_large_one(); })) return;
     self->end_turn();
@@ -509,9 +511,10 @@ void MarkersUpload::State::read_large_one() {
       });
 }
 
-MarkersUpload::MarkersUpload(const Visit& visit, codec::BodyKind kind, const icd::Rules& rules,
+MarkersUpload::MarkersUpload(const UploadContext& context, codec::BodyKind kind, const icd::Rules& rules,
                              loop::Workers& workers, std::shared_ptr<UploadBudget> budget,
                              const std::shared_ptr<TurnQueue>& turns)
-    : WorkerUpload(visit, std::make_shared<State>(visit, kind, rules, workers, std::move(budget), turns)) {}
+    : WorkerUpload(context,
+                   std::make_shared<State>(context, kind, rules, workers, std::move(budget), turns)) {}
 
 }  // namespace adit::intake

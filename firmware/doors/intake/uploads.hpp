@@ -14,7 +14,7 @@
 #include "codec/body_decoder.hpp"
 #include "icd/rules.hpp"
 #include "icd/status.hpp"
-#include "intake/desk.hpp"
+#include "intake/message_handler.hpp"
 #include "intake/server.hpp"
 #include "loop/workers.hpp"
 
@@ -29,8 +29,8 @@ struct Uploads {
 };
 
 /// One request to one of the ICD's URIs: its sender, and the responder for the answer.
-struct Visit {
-  Desk& desk;
+struct UploadContext {
+  MessageHandler& message_handler;
   icd::Uri uri;
   Sender sender;
   std::shared_ptr<Responder> responder;
@@ -144,19 +144,24 @@ inline constexpr std::size_t kSmallValues = 100'000;
 /// Receives the body of a message. It can be rejected before the body is whole.
 class Upload : public BodySink {
  public:
-  explicit Upload(const Visit& visit)
-      : uploads_(visit.uploads), uri_(visit.uri), address_(visit.sender.address), began_(visit.sender.began) {
+  explicit Upload(const UploadContext& context)
+      : uploads_(context.uploads),
+        uri_(context.uri),
+        address_(context.sender.address),
+        began_(context.sender.began) {
     uploads_->under_way.insert(this);
   }
   ~Upload() override { uploads_->under_way.erase(this); }
   Upload(const Upload&) = delete;
   Upload& operator=(const Upload&) = delete;
 
-  /// Rejects the message, unless the desk has it and will answer it.
-  virtual void turn_away(const icd::Refusal& refusal) = 0;
+  /// Rejects the message, unless the message handler has it and will answer it.
+  virtual void reject(const icd::Refusal& refusal) = 0;
 
   /// Whether it is of the same address and URI.
-  bool is_like(const Visit& visit) const { return uri_ == visit.uri && address_ == visit.sender.address; }
+  bool is_like(const UploadContext& context) const {
+    return uri_ == context.uri && address_ == context.sender.address;
+  }
   std::uint64_t began() const { return began_; }
 
  private:
@@ -172,9 +177,9 @@ class WorkerUpload : public Upload {
   /// The loop's part. It outlives the upload while a worker runs.
   class Taking {
    public:
-    Taking(Visit visit, std::shared_ptr<UploadBudget> budget)
-        : visit_(std::move(visit)), share_(std::move(budget), visit_.sender.address) {
-      visit_.sender.bytes = 0;
+    Taking(UploadContext context, std::shared_ptr<UploadBudget> budget)
+        : context_(std::move(context)), share_(std::move(budget), context_.sender.address) {
+      context_.sender.bytes = 0;
     }
     virtual ~Taking() = default;
     Taking(const Taking&) = delete;
@@ -187,30 +192,30 @@ class WorkerUpload : public Upload {
       over_ = true;
       let_go();
     }
-    void turn_away(const icd::Refusal& refusal) {
+    void reject(const icd::Refusal& refusal) {
       if (over_) return;
       abandon();
-      visit_.refuse(refusal);
+      context_.refuse(refusal);
     }
 
    protected:
-    /// Rejects the message after the last step has failed, even if the desk has it.
+    /// Rejects the message after the last step has failed, even if the message handler has it.
     void fail(const icd::Refusal& refusal) {
       abandon();
-      visit_.refuse(refusal);
+      context_.refuse(refusal);
     }
 
-    Visit visit_;
+    UploadContext context_;
     UploadShare share_;
-    bool over_ = false;  // answered, the client is gone, or the desk has it
+    bool over_ = false;  // answered, the client is gone, or the message handler has it
 
    private:
     /// Frees the held parts of the body.
     virtual void let_go() = 0;
   };
 
-  WorkerUpload(const Visit& visit, std::shared_ptr<Taking> taking)
-      : Upload(visit), taking_(std::move(taking)) {}
+  WorkerUpload(const UploadContext& context, std::shared_ptr<Taking> taking)
+      : Upload(context), taking_(std::move(taking)) {}
   ~WorkerUpload() override { taking_->abandon(); }
   WorkerUpload(const WorkerUpload&) = delete;
   WorkerUpload& operator=(const WorkerUpload&) = delete;
@@ -218,7 +223,7 @@ class WorkerUpload : public Upload {
   bool on_body(std::span<const std::uint8_t> piece) final { return taking_->take(piece); }
   void on_end() final { taking_->whole(); }
   void on_gone() final { taking_->abandon(); }
-  void turn_away(const icd::Refusal& refusal) final { taking_->turn_away(refusal); }
+  void reject(const icd::Refusal& refusal) final { taking_->reject(refusal); }
 
  private:
   std::shared_ptr<Taking> taking_;
@@ -227,29 +232,30 @@ class WorkerUpload : public Upload {
 /// Receives a state or a report of at most a megabyte. The loop decodes it as it arrives.
 class SmallUpload final : public Upload {
  public:
-  SmallUpload(Visit visit, codec::BodyKind kind, const icd::Rules& rules,
+  SmallUpload(UploadContext context, codec::BodyKind kind, const icd::Rules& rules,
               std::shared_ptr<UploadBudget> budget)
-      : Upload(visit),
-        visit_(std::move(visit)),
-        share_(std::move(budget), visit_.sender.address),
+      : Upload(context),
+        context_(std::move(context)),
+        share_(std::move(budget), context_.sender.address),
         rules_(rules),
         decoder_(kind, codec::Split::Nothing, {.values = kSmallValues}) {
-    visit_.sender.bytes = 0;
+    context_.sender.bytes = 0;
   }
 
   bool on_body(std::span<const std::uint8_t> piece) override;
   void on_end() override;
-  void turn_away(const icd::Refusal& refusal) override {
-    if (!whole_) visit_.refuse(refusal);
+  void reject(const icd::Refusal& refusal) override {
+    if (!whole_) context_.refuse(refusal);
   }
 
  private:
   void give_to_desk(const codec::Document& document);
-  /// Gives the accepted parts to the desk. If the desk accepts them, the answer is about the rejected parts.
+  /// Gives the accepted parts to the message handler. If the message handler accepts them, the answer is
+  /// about the rejected parts.
   void take_state(const codec::Document& document);
   void take_report(const codec::Document& document);
 
-  Visit visit_;
+  UploadContext context_;
   UploadShare share_;
   icd::Rules rules_;
   codec::BodyDecoder decoder_;
@@ -273,8 +279,8 @@ struct MapUploadOptions {
 /// decoded size counts in the budget. If it cannot be stored, it stays in memory until it is checked. All
 /// such maps together have kWithoutRoom; a map that needs more is rejected.
 ///
-/// A whole, checked map goes to the desk, which answers when the map is stored, even if the client has hung
-/// up by then. If the client hangs up earlier, the map is dropped.
+/// A whole, checked map goes to the message handler, which answers when the map is stored, even if the client
+/// has hung up by then. If the client hangs up earlier, the map is dropped.
 class MapUpload final : public WorkerUpload {
  public:
   static constexpr std::size_t kPending = 256 * 1024, kStored = 256 * 1024;
@@ -282,8 +288,8 @@ class MapUpload final : public WorkerUpload {
       64 * 1024;  // the least bytes of a job, except at the beginning and the end
   static constexpr std::size_t kWithoutRoom = 24u << 20;
 
-  MapUpload(const Visit& visit, MapUploadOptions options, std::shared_ptr<Flow> flow, loop::Workers& workers,
-            std::shared_ptr<UploadBudget> budget);
+  MapUpload(const UploadContext& context, MapUploadOptions options, std::shared_ptr<Flow> flow,
+            loop::Workers& workers, std::shared_ptr<UploadBudget> budget);
 
  private:
   class State;
@@ -297,8 +303,8 @@ class MapUpload final : public WorkerUpload {
 /// is decoded at a time. No message is in memory as a tree: each marker and each of its points is parsed
 /// separately.
 ///
-/// A whole, checked update goes to the desk, even if the client has hung up by then. If the client hangs up
-/// earlier, the update is dropped.
+/// A whole, checked update goes to the message handler, even if the client has hung up by then. If the client
+/// hangs up earlier, the update is dropped.
 class MarkersUpload final : public WorkerUpload {
  public:
   /// Enough for each possible marker: one of 100,000 points and as many colors takes 7.9 MB of CBOR.
@@ -306,8 +312,9 @@ class MarkersUpload final : public WorkerUpload {
   /// Such a marker has 900,000 values without their names.
   static constexpr std::size_t kMostValues = 1'000'000;
 
-  MarkersUpload(const Visit& visit, codec::BodyKind kind, const icd::Rules& rules, loop::Workers& workers,
-                std::shared_ptr<UploadBudget> budget, const std::shared_ptr<TurnQueue>& turns);
+  MarkersUpload(const UploadContext& context, codec::BodyKind kind, const icd::Rules& rules,
+                loop::Workers& workers, std::shared_ptr<UploadBudget> budget,
+                const std::shared_ptr<TurnQueue>& turns);
 
  private:
   class State;

@@ -80,12 +80,12 @@ bool Carried::apply(Kind kind, std::string_view said) {
 bool Carried::read_clock(std::string_view said) {
   Clock clock;
   if (!store::read(said, clock)) return false;
-  machine_is(clock.boot);
+  set_boot(clock.boot);
   clock_ = std::move(clock);
   return true;
 }
 
-void Carried::machine_is(const std::string& boot) {
+void Carried::set_boot(const std::string& boot) {
   if (!clock_ || clock_->boot == boot) return;
   clock_.reset();
   paces_.clear();

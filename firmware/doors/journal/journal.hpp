@@ -92,7 +92,7 @@ class Carried {
   void write(const std::function<void(Kind, std::string_view)>& to) const;
 
   /// Sets the present boot. Drops monotonic times of another boot, and stamps derived from them.
-  void machine_is(const std::string& boot);
+  void set_boot(const std::string& boot);
 
   /// std::nullopt: the first process of this boot.
   const std::optional<Clock>& clock() const { return clock_; }

@@ -301,7 +301,7 @@ store::Result<std::string> Book::record(std::span<const Report> steps, const Run
     return std::unexpected(
         Error{.what = "recording run " + std::to_string(run->number) + ": a value is not a number"});
   Runs runs;
-  if (run != nullptr) runs[run->number] = encoded_again(*run);
+  if (run != nullptr) runs[run->number] = encode_with_unknown(*run);
   return record_of(written, runs);
 }
 
@@ -318,11 +318,11 @@ store::Result<std::string> Book::record(const dispatch::TakeOver& taken, const B
     kept.record = encoded(each.report, more_of_report(kept.record));
     if (each.has_stepped) kept.history += step_of(each.report);
   }
-  for (const Run& run : taken.runs) runs[run.number] = encoded_again(run);
+  for (const Run& run : taken.runs) runs[run.number] = encode_with_unknown(run);
   return record_of(reports, runs);
 }
 
-std::string Book::encoded_again(const Run& run) const {
+std::string Book::encode_with_unknown(const Run& run) const {
   const auto known = runs_.find(run.number);
   return encoded(run, known == runs_.end() ? std::string_view() : more_of_run(known->second));
 }

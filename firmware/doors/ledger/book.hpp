@@ -99,7 +99,7 @@ class Book {
   /// One record of these reports and runs.
   std::string record_of(const Reports& reports, const Runs& runs) const;
   /// With members of a later version that the run has here.
-  std::string encoded_again(const dispatch::Run& run) const;
+  std::string encode_with_unknown(const dispatch::Run& run) const;
   double last_word() const;
   void put(const dispatch::Report& report);
   void lose(std::int64_t last, const std::string& note, double now);

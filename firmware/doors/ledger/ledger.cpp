@@ -193,14 +193,14 @@ Result<void> Ledger::begin_log() {
     if (!contents_.logs.empty()) snapshot_ = next_snapshot_ = contents_.logs.front();
     contents_ = {};
   }
-  if (is_damaged_) return begin_again();
+  if (is_damaged_) return begin_after_damage();
   if (log_->number() != 0) return {};
   auto turned = log_->turn();
   snapshot_ = next_snapshot_ = log_->number();
   return turned;
 }
 
-Result<void> Ledger::begin_again() {
+Result<void> Ledger::begin_after_damage() {
   if (!is_aside_) {
     if (auto aside = directory_->put_aside(); !aside) return aside;
     is_aside_ = true;

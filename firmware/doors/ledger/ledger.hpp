@@ -146,7 +146,7 @@ class Ledger {
   Result<void> make_ready(std::size_t record);
   Result<void> begin();
   Result<void> begin_log();
-  Result<void> begin_again();
+  Result<void> begin_after_damage();
 
   std::shared_ptr<store::Directory> directory_;  // null: closed. Workers may hold it longer
   store::Contents contents_;                     // until log_ continues it

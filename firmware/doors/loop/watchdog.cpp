@@ -10,7 +10,7 @@ Watchdog::Watchdog(Loop& loop, Duration within, std::function<void()> feed)
   look();
 }
 
-void Watchdog::ask_also(std::vector<Workers*> workers) {
+void Watchdog::watch_workers(std::vector<Workers*> workers) {
   workers_ = std::move(workers);
   ask();
 }

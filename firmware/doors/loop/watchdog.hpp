@@ -27,7 +27,7 @@ class Watchdog {
   Watchdog& operator=(const Watchdog&) = delete;
 
   /// Sets the workers whose answers are also required. They must outlive this object or its next call.
-  void ask_also(std::vector<Workers*> workers);
+  void watch_workers(std::vector<Workers*> workers);
 
  private:
   void look();

@@ -170,7 +170,7 @@ namespace fs = std::filesystem;
 /// Largest message without its bulk data: larger than any accepted one.
 constexpr std::size_t kMostText = 64u << 20;
 
-icd::Rules as_kept() {
+icd::Rules kept_rules() {
   return {.map_bytes = icd::kMostMapBytes};
 }
 
@@ -218,17 +218,17 @@ bool can_be_read(const std::string& folder) {
 }
 
 icd::Checked<icd::MapUpdate> read_map(const std::string& path) {
-  return MapFile::read(path, as_kept());
+  return MapFile::read(path, kept_rules());
 }
 
 icd::Checked<icd::StateUpdate> read_state(const std::string& path) {
   const auto document = ADIT_TRY(decode(path, codec::Split::Nothing));
-  return codec::read_state_update(document, as_kept());
+  return codec::read_state_update(document, kept_rules());
 }
 
 icd::Checked<icd::MarkersUpdate> read_markers(const std::string& path) {
   const auto document = ADIT_TRY(decode(path, codec::Split::Lists));
-  return codec::read_markers_update(document, as_kept());
+  return codec::read_markers_update(document, kept_rules());
 }
 
 codec::Value to_json(const icd::GridBounds& bounds) {

@@ -57,8 +57,8 @@ void Connection::keep_warm() {
   return_warm();
 }
 
-void Connection::hurry() {
-  attempts_.hurry();
+void Connection::retry_now() {
+  attempts_.retry_now();
   if (connected() || (!socket_ && !stays_warm())) return;
   close_socket();
   connect();
@@ -191,7 +191,7 @@ void Connection::begin_sending() {
 void Connection::ready() {
   if (!connected()) return connecting_ended(connect_error(socket_->fd.get()));
   if (!exchange_) return idle_ended();
-  if (answer_came()) return;
+  if (read_answer()) return;
   if (exchange_->wants_to_write()) write();
 }
 
@@ -199,12 +199,12 @@ void Connection::time_came() {
   if (!socket_) return return_warm();
   if (!connected()) return connecting_failed("no answer in time");
   if (!exchange_) return idle_ended();
-  if (answer_came()) return;
+  if (read_answer()) return;
   exchange_->listen(socket_->fd.get(), loop_.now());
   if (exchange_->is_silent_at(loop_.now()))
     return in_doubt({.why = exchange_->sentence("the peer was silent for too long")});
   const bool has_more = exchange_->release(loop_.now());
-  listen_again();
+  schedule_listening();
   if (has_more) write();
 }
 
@@ -235,17 +235,17 @@ void Connection::begin() {
   if (!is_quiet(socket_->fd.get()))
     return socket_->is_fresh
                ? never_sent("the peer closed the new connection, or sent bytes before the request")
-               : begin_again();
+               : retry_request();
   give_up_after(socket_->fd.get(), exchange_->longest_silence());
   // A request that is given up must not arrive after the next request on another connection, and must not be
   // recorded later.
   reset_on_close(socket_->fd.get(), true);
   exchange_->begin(loop_.now(), socket_->sent_twice);
-  listen_again();
+  schedule_listening();
   write();
 }
 
-void Connection::begin_again() {
+void Connection::retry_request() {
   close_socket();
   connect();
 }
@@ -256,8 +256,8 @@ void Connection::write() {
   const int error = exchange_->write(socket_->fd.get());
   if (begins) began_to_leave();
   if (error == 0) return socket_->source.wait_for(exchange_->wants_to_write() ? kComing | EPOLLOUT : kComing);
-  if (exchange_->sent() == 0) return socket_->is_fresh ? never_sent(std::strerror(error)) : begin_again();
-  if (!answer_came()) socket_->source.wait_for(kComing);
+  if (exchange_->sent() == 0) return socket_->is_fresh ? never_sent(std::strerror(error)) : retry_request();
+  if (!read_answer()) socket_->source.wait_for(kComing);
 }
 
 void Connection::began_to_leave() {
@@ -268,10 +268,10 @@ void Connection::began_to_leave() {
 }
 
 /// Reads. True if that ended the exchange.
-bool Connection::answer_came() {
+bool Connection::read_answer() {
   switch (exchange_->read(socket_->fd.get())) {
     case Exchange::Answer::Waiting:
-      if (exchange_->is_early()) listen_again();
+      if (exchange_->is_early()) schedule_listening();
       return false;
     case Exchange::Answer::Lost:
       in_doubt(exchange_->doubt());
@@ -283,10 +283,10 @@ bool Connection::answer_came() {
   return false;
 }
 
-void Connection::is_next() {
+void Connection::on_earlier_request_ended() {
   if (!exchange_) return;
-  exchange_->is_next(loop_.now());
-  if (connected()) listen_again();
+  exchange_->on_earlier_request_ended(loop_.now());
+  if (connected()) schedule_listening();
 }
 
 std::optional<Sent> Connection::has_arrived() const {
@@ -458,9 +458,9 @@ Connections::Connections(loop::Loop& loop, Endpoint endpoint, icd::BearerToken t
   server_->add(turn_);
 }
 
-void Connections::hurry() {
-  first_.hurry();
-  if (second_) second_->hurry();
+void Connections::retry_now() {
+  first_.retry_now();
+  if (second_) second_->retry_now();
 }
 
 /// Null if no request is in flight, or two.
@@ -510,7 +510,7 @@ void Connections::ended(Connection& one) {
   if (other == nullptr) return;
   if (!other->busy()) return other->close();
   one.close();
-  other->is_next();
+  other->on_earlier_request_ended();
 }
 
 }  // namespace adit::uplink

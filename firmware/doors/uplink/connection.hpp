@@ -28,7 +28,7 @@ class ConnectAttempts {
   void begins(loop::Instant now) { began_ = now; }
   void succeeded() {
     trouble_.clear();
-    hurry();
+    retry_now();
   }
   /// Returns the time of the next attempt.
   loop::Instant failed(std::string why) {
@@ -36,7 +36,7 @@ class ConnectAttempts {
     return began_ + std::exchange(pause_, std::min(pause_ * 2, kLongestPause));
   }
   /// The link may be back: the next pause is short.
-  void hurry() { pause_ = kFirstPause; }
+  void retry_now() { pause_ = kFirstPause; }
   loop::Instant next() const { return began_ + pause_; }
   /// Why the last attempt failed, or "".
   const std::string& trouble() const { return trouble_; }
@@ -99,7 +99,7 @@ class Connection {
   /// Connects now and after each close, so that a request finds an open connection.
   void keep_warm();
   /// Call this when the link may be back: restarts a pending attempt to connect, and skips the pause.
-  void hurry();
+  void retry_now();
   /// Connects if the connection is closed.
   void open() {
     if (!socket_) connect();
@@ -115,7 +115,7 @@ class Connection {
   void send(Request request, std::function<void(Outcome)> done);
   bool busy() const { return done_ != nullptr; }
   /// The earlier request on the other connection has ended. From now on the peer's silence counts.
-  void is_next();
+  void on_earlier_request_ended();
   /// When the request in flight left; nullopt until the peer's TCP has acknowledged all of it.
   std::optional<Sent> has_arrived() const;
   bool connected() const { return socket_ && socket_->is_open; }
@@ -181,11 +181,11 @@ class Connection {
   // A request and its answer.
   void begin_sending();
   void begin();
-  void begin_again();
+  void retry_request();
   void write();
   void began_to_leave();
-  bool answer_came();
-  void listen_again() { timer_.call_at(exchange_->next_listening(loop_.now())); }
+  bool read_answer();
+  void schedule_listening() { timer_.call_at(exchange_->next_listening(loop_.now())); }
   void answered();
   void in_doubt(InDoubt doubt);
   void never_sent(const std::string& reason);
@@ -313,7 +313,7 @@ class Connections {
   Connections& operator=(const Connections&) = delete;
 
   void keep_warm() { first_.keep_warm(); }
-  void hurry();
+  void retry_now();
 
   /// Requires !busy() or is_ready(). `done`: as in Connection::send().
   void send(Request request, std::function<void(Outcome)> done);

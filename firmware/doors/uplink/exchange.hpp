@@ -29,7 +29,7 @@ struct Request {
   /// until then.
   loop::Instant last_byte_not_before{};
   /// The peer has not yet answered another request on another connection, and may not read this one before.
-  /// Its silence does not count until Connection::is_next().
+  /// Its silence does not count until Connection::on_earlier_request_ended().
   bool goes_ahead = false;
 
   static constexpr std::size_t kLongestAnswer = 64u << 10;
@@ -168,7 +168,7 @@ class Exchange {
   loop::Instant silence_start() const { return heard_; }
   bool is_silent_at(loop::Instant now) const { return now >= silent_at(); }
   /// The earlier request has ended (Request::goes_ahead).
-  void is_next(loop::Instant now) {
+  void on_earlier_request_ended(loop::Instant now) {
     request_.goes_ahead = false;
     heard_ = now;
   }

@@ -53,10 +53,10 @@ bool is_too_large(icd::Uri uri, const uplink::Outcome& outcome) {
 
 bool comes_from_another(const uplink::Outcome& outcome, dispatch::Body body) {
   if (const auto* answered = std::get_if<uplink::Answered>(&outcome))
-    return !answered->wants_slash && !dispatch::may_be_the_command_post(answered->status, body);
+    return !answered->wants_slash && !dispatch::is_plausible_answer(answered->status, body);
   const auto* doubt = std::get_if<uplink::InDoubt>(&outcome);
   return doubt != nullptr && doubt->too_long_status != 0 &&
-         !dispatch::may_be_the_command_post(doubt->too_long_status, body);
+         !dispatch::is_plausible_answer(doubt->too_long_status, body);
 }
 
 }  // namespace
@@ -98,7 +98,7 @@ void LastAnswer::forget() {
   trouble_.clear();
 }
 
-std::optional<double> LastAnswer::time_there() const {
+std::optional<double> LastAnswer::command_post_time() const {
   if (!date_) return std::nullopt;
   return *date_ + std::chrono::duration<double>(loop_.now() - dated_).count();
 }
@@ -117,7 +117,7 @@ std::string sentence_of(const uplink::Outcome& outcome) {
   if (answered.wants_slash)
     return icd::sentence("the Command Post answered ", answered.status, ": the path must ",
                          *answered.wants_slash ? "" : "not ", "end with a slash");
-  if (dispatch::may_be_the_command_post(answered.status, dispatch::body_of(answered.body)))
+  if (dispatch::is_plausible_answer(answered.status, dispatch::body_of(answered.body)))
     return dispatch::answer_text(answered.status, answered.body);
   return icd::sentence(
       "the server that answered ", answered.status,

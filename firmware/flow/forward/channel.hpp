@@ -52,7 +52,7 @@ class LastAnswer {
   std::uint64_t throttled() const { return throttled_; }  // answers 429
   loop::Instant heard() const { return heard_; }
   /// The Command Post's time of day now, in seconds since 1970, by the last Date that is certainly its own.
-  std::optional<double> time_there() const;
+  std::optional<double> command_post_time() const;
 
  private:
   loop::Loop& loop_;
@@ -126,9 +126,9 @@ class Channel {
   /// uplink::Connections::has_arrived()
   std::optional<uplink::Sent> has_arrived() const;
   bool connected() const { return connection_ && connection_->connected(); }
-  /// uplink::Connection::hurry()
-  void hurry() {
-    if (connection_) connection_->hurry();
+  /// uplink::Connection::retry_now()
+  void retry_now() {
+    if (connection_) connection_->retry_now();
   }
   void keep_warm() {
     keeps_warm_ = true;
@@ -145,7 +145,7 @@ class Channel {
   /// 0 without a connection.
   std::uint64_t delivers() const { return connection_ ? connection_->delivers() : 0; }
   /// Bytes of the last request that the kernel has accepted.
-  std::size_t sent_of_it() const { return connection_ ? connection_->sent_bytes() : 0; }
+  std::size_t sent_bytes() const { return connection_ ? connection_->sent_bytes() : 0; }
   /// Bytes of all bodies that the kernel has accepted.
   std::uint64_t bytes_sent() const { return finished_bytes_ + (connection_ ? connection_->sent_bytes() : 0); }
 

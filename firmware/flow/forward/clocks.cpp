@@ -34,7 +34,7 @@ std::optional<StampFloor::Kept> StampFloor::due(double now, double wall, const l
 void StampFloor::write(const Kept& kept) {
   const std::string file = store::file_of(kept, store::kOnDisk);
   auto written = host::write_file(file_, file, host::kOursAlone);
-  if (!written && host::write_over(file_, file)) written = {};  // for a full disk
+  if (!written && host::overwrite(file_, file)) written = {};  // for a full disk
   const std::string why = written ? "" : written.error();
   outcome_->has_failed = !written;
   if (std::exchange(outcome_->trouble, why) == why || written) return;
@@ -62,7 +62,7 @@ static_assert(StampFloor::kAhead <= dispatch::kClockAhead);
 
 void Clocks::carry_on(journal::Carried& carried, const std::string& boot, double newest) {
   const StampFloor::Kept kept = kept_.value_or(StampFloor::Kept());
-  carried.machine_is(boot);
+  carried.set_boot(boot);
   const auto& clock = carried.clock();
   boot_ = clock || kept_ ? boot : "unknown";  // without the bound the clock is not carried on
   ran_before_ = clock || !kept_ || kept.floor > 0 || newest > 0;

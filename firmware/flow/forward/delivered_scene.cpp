@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kEarly = 0.1;  // seconds: tolerance for poses once a second
 
-std::vector<api::TrackPose> every_other(const std::vector<api::TrackPose>& poses) {
+std::vector<api::TrackPose> halve_poses(const std::vector<api::TrackPose>& poses) {
   std::vector<api::TrackPose> kept;
   kept.reserve(poses.size());
   for (std::size_t i = 0; i < poses.size(); i += 2) kept.push_back(poses[i]);
@@ -26,7 +26,7 @@ void Tracks::forwarded(const std::string& robot, const api::TrackPose& pose) {
     if (pose.at < last.at + least - kEarly) return;
   }
   if (track.poses.size() == kMostPoses) {
-    track.poses = every_other(track.poses);
+    track.poses = halve_poses(track.poses);
     track.spacing *= 2;
   }
   track.poses.push_back(pose);

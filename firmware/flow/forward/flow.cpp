@@ -97,7 +97,7 @@ queues::Upload upload_of(const intake::Sender& sender) {
 
 }  // namespace
 
-std::shared_ptr<intake::MapArrival> Flow::map_arrives() {
+std::shared_ptr<intake::MapArrival> Flow::begin_map() {
   return maps_.arrives([this](icd::MapUpdate update, const intake::Sender& sender,
                               std::shared_ptr<spool::MapFile> file,
                               std::function<void(icd::Checked<void>)> done) {
@@ -108,7 +108,7 @@ std::shared_ptr<intake::MapArrival> Flow::map_arrives() {
 
 void Flow::take(icd::MapUpdate update, const intake::Sender& sender, std::shared_ptr<spool::MapFile> file,
                 std::function<void(icd::Checked<void>)> done) {
-  if (update.name) told_.posted(update.name->text());
+  if (update.name) callbacks_.posted(update.name->text());
   const queues::Upload upload = upload_of(sender);
   clocks_.stamp(update, upload);
   maps_.take(std::move(update), upload, std::move(file), std::move(done));
@@ -116,7 +116,7 @@ void Flow::take(icd::MapUpdate update, const intake::Sender& sender, std::shared
 
 icd::Checked<void> Flow::take(icd::StateUpdate update, const intake::Sender& sender) {
   if (!standby_.empty()) return icd::refuse(icd::Status::ServiceUnavailable, standby_);
-  for (const icd::NamedPose& pose : update.poses) told_.posted(pose.name.text());
+  for (const icd::NamedPose& pose : update.poses) callbacks_.posted(pose.name.text());
   ADIT_TRY(telemetry_.has_room_for(update));
   return telemetry_.take(clocks_.stamped(update, upload_of(sender)), sender.bytes);
 }
@@ -154,9 +154,9 @@ void Flow::left_out(icd::Uri uri, const intake::Sender& sender, const std::strin
 }
 
 /// gateway::Crowding logs wrong tokens together.
-void Flow::refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusal& told) {
-  icd::Refusal refusal = told;
-  refusal.sentence = tokens_.strike_from(told.sentence);
+void Flow::refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusal& callbacks) {
+  icd::Refusal refusal = callbacks;
+  refusal.sentence = tokens_.strike_from(callbacks.sentence);
   if (refusal.status != icd::Status::Unauthorized) {
     host::log(host::Level::Info, "message rejected",
               {{"uri", std::string(icd::path_of(uri))},
@@ -171,20 +171,20 @@ std::expected<void, std::string> Flow::rejected(std::uint64_t number, api::Rejec
   if (is_ending()) return std::unexpected("the box is stopping and sends no more messages");
   if (!standby_.empty()) return std::unexpected(standby_);
   if (action == api::RejectedAction::Discard) return rejected_.discard(number);
-  auto item = ADIT_TRY(rejected_.to_be_sent(number));
+  auto item = ADIT_TRY(rejected_.begin_resend(number));
   if (auto* const map = std::get_if<icd::MapUpdate>(&item.message)) {
-    maps_.send_again(
-        std::move(*map), [this, number](bool kept) { return rejected_.sent_again(number, kept); },
+    maps_.resend(
+        std::move(*map), [this, number](bool kept) { return rejected_.finish_resend(number, kept); },
         item.bounds, item.faults);
   } else {
-    rejected_.sent_again(number, telemetry_.send_again(item.message));
+    rejected_.finish_resend(number, telemetry_.resend(item.message));
   }
   return {};
 }
 
 void Flow::changed() {
   picture_the_run();
-  told_.changed();
+  callbacks_.changed();
 }
 
 void Flow::picture_the_run() {
@@ -224,7 +224,8 @@ std::vector<facts::ActivityRow> Flow::activities() const {
   for (const auto& [traffic, counted] : counts_.rows()) {
     facts::ActivityRow& row = rows.emplace_back(counted);
     row.queued = is_map(traffic.kind) ? maps_.waiting(traffic) : telemetry_.waiting(traffic.kind);
-    const auto since = is_map(traffic.kind) ? maps_.waits_since(traffic) : telemetry_.waits_since(traffic);
+    const auto since =
+        is_map(traffic.kind) ? maps_.oldest_acceptance(traffic) : telemetry_.oldest_acceptance(traffic);
     if (since) row.behind_since = wall_time_of(loop_, *since, now);
     facts::set_ages(row, now);
   }
@@ -239,7 +240,7 @@ namespace {
 
 /// Bytes of the runtime directory without maps: the journal with its compaction, rejected messages, and other
 /// rooms' files.
-std::uint64_t beside_maps(const settings::Settings& settings) {
+std::uint64_t bytes_without_maps(const settings::Settings& settings) {
   constexpr std::uint64_t kOthers = 8u << 20;
   return 4 * std::uint64_t{settings.queues.marker_bytes} + queues::RejectedMessages::kMostBytes + kOthers;
 }
@@ -276,15 +277,15 @@ void restore_counts(TrafficCounts& counts, const std::map<std::string, journal::
 }  // namespace
 
 Flow::Flow(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& settings, Tokens tokens,
-           const Folders& folders, Told told)
+           const Folders& folders, Callbacks callbacks)
     : loop_(loop),
       ledger_(ledger),
       upkeep_(loop, ledger),
       settings_(settings),
       tokens_(std::move(tokens)),
-      told_(std::move(told)),
+      callbacks_(std::move(callbacks)),
       random_(seed()),
-      spool_(folders.runtime + kWaiting, beside_maps(settings)),
+      spool_(folders.runtime + kWaiting, bytes_without_maps(settings)),
       writer_(loop),
       workers_(loop, 0),
       journal_(loop, folders.runtime + kJournal),
@@ -365,7 +366,7 @@ void Flow::restore(bool is_first) {
 void Flow::settings_changed(const settings::Restarts& restarts, Tokens tokens) {
   tokens_ = std::move(tokens);
   archive_.limit(limits_of(settings_));
-  spool_.leave_to_others(beside_maps(settings_));
+  spool_.leave_to_others(bytes_without_maps(settings_));
   if (restarts.scoring)
     scoring_.endpoint_changed(tokens_.scoring);  // first: no more requests to the old endpoint
   if (restarts.mapping) maps_.endpoint_changed(tokens_.mapping);
@@ -390,7 +391,7 @@ void Flow::tick(loop::Writer& disk) {
 }
 
 KnownTimes Flow::known_times() const {
-  return {.command_post = scoring_.channel().last().time_there(), .robots = clocks_.told_by_robots()};
+  return {.command_post = scoring_.channel().last().command_post_time(), .robots = clocks_.told_by_robots()};
 }
 
 /// Stamps, the ledger and earlier runs keep their times.
@@ -417,7 +418,7 @@ void Flow::drain() {
   }
   drained_.call_at(loop_.now() + Ending::kStep);
   const bool scoring = scoring_.stop(), maps = maps_.stop(), telemetry = telemetry_.stop();
-  const bool kept = maps_.all_kept() && rejected_.all_kept();
+  const bool kept = maps_.has_stored_all() && rejected_.has_stored_all();
   if (!ending_.dismisses(loop_.now(), scoring && maps && telemetry, kept)) return;
   drained_.call_at(loop_.now() + Ending::kFlush);
   scoring_.dismiss();

@@ -24,7 +24,7 @@
 #include "forward/telemetry.hpp"
 #include "forward/traffic_counts.hpp"
 #include "icd/bearer_token.hpp"
-#include "intake/desk.hpp"
+#include "intake/message_handler.hpp"
 #include "journal/journal.hpp"
 #include "ledger/ledger.hpp"
 #include "loop/loop.hpp"
@@ -139,8 +139,9 @@ struct Tokens {
   std::string strike_from(std::string sentence) const;
 };
 
-/// The team's messages from intake (this is its Desk) to uplink, sent by Scoring, Maps and Telemetry.
-class Flow final : public intake::Desk, public api::Operator {
+/// The team's messages from intake (this is its MessageHandler) to uplink, sent by Scoring, Maps and
+/// Telemetry.
+class Flow final : public intake::MessageHandler, public api::Operator {
  public:
   /// Directories of messages, below the runtime directory.
   static constexpr const char *kJournal = "/journal", *kWaiting = "/waiting", *kRejected = "/rejected";
@@ -148,14 +149,14 @@ class Flow final : public intake::Desk, public api::Operator {
     std::string runtime, state;
   };
   /// Callbacks, called on the loop.
-  struct Told {
+  struct Callbacks {
     std::function<void()> changed;                        // the page's contents changed
     std::function<void(const std::string& name)> posted;  // a robot posted
   };
 
   /// `settings`: with the course in use. All references outlive this.
   Flow(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& settings, Tokens tokens,
-       const Folders& folders, Told told);
+       const Folders& folders, Callbacks callbacks);
 
   /// Continues the work of the previous process, and connects.
   void start();
@@ -188,14 +189,14 @@ class Flow final : public intake::Desk, public api::Operator {
   void end(std::function<void()> over);
   bool is_ending() const { return ending_.has_begun(); }
 
-  std::shared_ptr<intake::MapArrival> map_arrives() override;
+  std::shared_ptr<intake::MapArrival> begin_map() override;
   icd::Checked<void> take(icd::StateUpdate update, const intake::Sender& sender) override;
   void take(icd::MarkersUpdate update, const intake::Sender& sender, MarkerArrivals::Done done) override;
   void take(const icd::ArtifactReport& report, const intake::Sender& sender,
             std::shared_ptr<intake::Responder> responder) override;
   void status(const intake::Sender& sender, std::shared_ptr<intake::Responder> responder) override;
   void left_out(icd::Uri uri, const intake::Sender& sender, const std::string& why) override;
-  void refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusal& told) override;
+  void refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusal& callbacks) override;
 
   /// When the operator's test may send one status request or state, as a turn of the run's pace. nullopt: not
   /// before `latest`.
@@ -267,7 +268,7 @@ class Flow final : public intake::Desk, public api::Operator {
   LedgerUpkeep upkeep_;
   const settings::Settings& settings_;
   Tokens tokens_;
-  Told told_;
+  Callbacks callbacks_;
   std::mt19937_64 random_;
   spool::Spool spool_;     // before its writer, whose jobs use it to the end
   loop::Writer writer_;    // of the runtime directory: answers to maps wait for it

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "intake/desk.hpp"
+#include "intake/message_handler.hpp"
 #include "loop/workers.hpp"
 #include "queues/map_queue.hpp"
 #include "spool/spool.hpp"
@@ -91,7 +91,7 @@ class MapStore {
   /// Has the data checked by the next work on the map.
   void must_check(std::uint64_t number) { unchecked_.insert(number); }
   /// The number of the next map that the operator sends again.
-  std::uint64_t next_again() const { return again_numbers_ + 1; }
+  std::uint64_t next_resend_number() const { return again_numbers_ + 1; }
   /// A worker begins to pack `waiting`. Returns its unchecked maps.
   std::vector<std::uint64_t> work_begins(const queues::QueuedMap& waiting);
   /// `are_packed`: the maps are packed, and the data of `checked` is good.

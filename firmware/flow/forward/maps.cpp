@@ -128,10 +128,10 @@ Maps::Maps(loop::Loop& loop, uplink::Servers& servers, loop::Workers& workers, l
 }
 
 void Maps::take_settings() {
-  queue_.a_slot_carries(slot_of(settings_.command_post));
+  queue_.set_slot_bytes(slot_of(settings_.command_post));
   queue_.merge_at_most(settings_.queues.merge_bytes);
-  queue_.clouds_are(settings::by_robot(settings_.robots, &settings::Robot::clouds));
-  queue_.precisions_are(settings::by_robot(settings_.robots, &settings::Robot::precision));
+  queue_.set_cloud_modes(settings::map_by_robot(settings_.robots, &settings::Robot::clouds));
+  queue_.set_precisions(settings::map_by_robot(settings_.robots, &settings::Robot::precision));
 }
 
 void Maps::settings_changed() {
@@ -321,7 +321,7 @@ void Maps::restore(spool::Spool::KeptMap kept) {
   const icd::Stamp stamp = update.header().stamp.value_or(loop_.stamp_now());
   counts_.accepted(traffic_of(update), update.data.bytes.size(), time_of(loop_, stamp));
   if (again) {
-    store_.forget(queue_.put_back(waiting_again(number, std::move(update), kept.bounds, kept.ends)));
+    store_.forget(queue_.put_back(requeued_map(number, std::move(update), kept.bounds, kept.ends)));
   } else {
     tell_clouds(update);
     // The sender's first map may stand for older ones, which it replaced.
@@ -335,13 +335,13 @@ void Maps::restore(spool::Spool::KeptMap kept) {
 
 void Maps::tell_clouds(const icd::MapUpdate& update) {
   const queues::Clouds clouds = queue_.clouds_of(queues::Sender::of(update));
-  if (clouds != queues::Clouds::Auto) counts_.clouds_are(traffic_of(update), clouds);
+  if (clouds != queues::Clouds::Auto) counts_.set_cloud_kind(traffic_of(update), clouds);
 }
 
 /// It must not follow a newer map that contains it.
-void Maps::send_again(icd::MapUpdate update, std::function<bool(bool kept)> done,
-                      const std::optional<icd::GridBounds>& bounds, int faults) {
-  queues::QueuedMap back = waiting_again(store_.next_again(), update, bounds, {.faults = faults});
+void Maps::resend(icd::MapUpdate update, std::function<bool(bool kept)> done,
+                  const std::optional<icd::GridBounds>& bounds, int faults) {
+  queues::QueuedMap back = requeued_map(store_.next_resend_number(), update, bounds, {.faults = faults});
   auto absorbed = queue_.absorb(back);
   if (!absorbed) absorbed = absorb(back);
   if (absorbed) {
@@ -355,13 +355,13 @@ void Maps::send_again(icd::MapUpdate update, std::function<bool(bool kept)> done
       std::move(update), nullptr, 0, /*again=*/true,
       [this, back = std::move(back), faults, done = std::move(done)](MapStore::Stored& stored) {
         if (stored.map && faults > 0) store_.remember(stored.number, {.faults = faults});
-        stored_again(stored, back, done);
+        finish_storing(stored, back, done);
       },
       bounds);
 }
 
-void Maps::stored_again(MapStore::Stored& stored, queues::QueuedMap back,
-                        const std::function<bool(bool kept)>& done) {
+void Maps::finish_storing(MapStore::Stored& stored, queues::QueuedMap back,
+                          const std::function<bool(bool kept)>& done) {
   const bool is_wanted = done(stored.map.has_value());
   if (!stored.map) {
     return host::log(host::Level::Error, "cannot send a rejected map again",
@@ -380,9 +380,9 @@ void Maps::stored_again(MapStore::Stored& stored, queues::QueuedMap back,
   pump();
 }
 
-queues::QueuedMap Maps::waiting_again(std::uint64_t number, icd::MapUpdate update,
-                                      const std::optional<icd::GridBounds>& bounds,
-                                      const spool::Spool::Ends& ends) const {
+queues::QueuedMap Maps::requeued_map(std::uint64_t number, icd::MapUpdate update,
+                                     const std::optional<icd::GridBounds>& bounds,
+                                     const spool::Spool::Ends& ends) const {
   const icd::Stamp stamp = update.header().stamp.value_or(0);
   return {.map = std::move(update),
           .accepted = loop_.now(),
@@ -419,7 +419,7 @@ void Maps::compared(const queues::Successive& two, bool has_all) {
   } else {
     queue_.keep_both(two);
   }
-  counts_.clouds_are(traffic, has_all ? queues::Clouds::Whole : queues::Clouds::Parts);
+  counts_.set_cloud_kind(traffic, has_all ? queues::Clouds::Whole : queues::Clouds::Parts);
   compare();
 }
 
@@ -586,7 +586,7 @@ void Maps::set_aside(const Prepared& map) {
   store_.forget(gone);
 }
 
-void Maps::pack_again() {
+void Maps::repack() {
   recall(following_);
   recall(first_);
   queue_.restart_pieces();
@@ -602,7 +602,7 @@ void Maps::pump() noexcept {
     ahead_ = {};
     slot_.forget_sizes();
     queue_.canvases().lead_to(channel_.address());
-    pack_again();
+    repack();
   }
   if (stopping_ || is_packing_ || !channel_.has_token()) return;
   go_on();
@@ -617,7 +617,7 @@ void Maps::go_on() {
     step(next, MapEvent::TooLarge);
     return go_on();
   }
-  if (next && follows) return go_ahead(now);
+  if (next && follows) return send_ahead(now);
   if (next) {
     if (now < starts()) return wake_.call_at(starts());
     if (channel_.claim_turn()) send(next);
@@ -643,17 +643,17 @@ loop::Instant Maps::begins_to_pack(loop::Instant now) const {
   if (channel_.busy() && !first_->arrived) {
     if (!channel_.connected()) return now + kLookAtConnecting;
     const std::size_t size = first_->packed.body.size();
-    free += slot_.transfer(size - std::min(size, channel_.sent_of_it()));
+    free += slot_.transfer(size - std::min(size, channel_.sent_bytes()));
   }
   const loop::Instant begin = std::max(starts(), free) - slot_.lead();
   return begin <= now ? begin : std::max(begin, now + kLookAtSending);
 }
 
 /// Once the one that is under way has arrived; it is looked for when the next may start, and not before.
-void Maps::go_ahead(loop::Instant now) {
+void Maps::send_ahead(loop::Instant now) {
   if (!may_go_ahead(now)) return;
   Prepared& first = *first_;
-  const std::size_t size = first.packed.body.size(), left = size - std::min(size, channel_.sent_of_it());
+  const std::size_t size = first.packed.body.size(), left = size - std::min(size, channel_.sent_bytes());
   if (!first.arrived && left > 0)
     return wake_.call_at(now + std::max<loop::Duration>(slot_.transfer(left) / 2, kLookAtSending));
   if (now < starts() - kGetReady) return wake_.call_at(starts() - kGetReady);
@@ -803,7 +803,7 @@ bool Maps::is_cut_by_size(Prepared& sent) {
   const std::size_t size = sent.packed.body.size();
   if (size < queues::Cuts::kLeastBody || !queues::can_split(sent.waiting, size)) return false;
   if (sent.went_ahead || channel_.busy()) return false;
-  return sent.waiting.cuts.check(channel_.sent_of_it(), counts_.delivered_count());
+  return sent.waiting.cuts.check(channel_.sent_bytes(), counts_.delivered_count());
 }
 
 /// A Command Post that reads slowly checks a small map that followed first: this one's stamp then ran
@@ -853,7 +853,7 @@ void Maps::heard() {
 }
 
 void Maps::change_run(dispatch::NextMap next) {
-  pack_again();
+  repack();
   queues::Canvases& canvases = queue_.canvases();
   if (next == dispatch::NextMap::Empty && is_heard_from()) return canvases.begin_run();
   if (next == dispatch::NextMap::Earlier) return canvases.take_up_run();
@@ -862,7 +862,7 @@ void Maps::change_run(dispatch::NextMap next) {
 
 void Maps::link_is_back() {
   pace_.link_is_back();
-  channel_.hurry();
+  channel_.retry_now();
   pump();
 }
 
@@ -875,7 +875,7 @@ std::size_t Maps::waiting(const Traffic& traffic) const {
   return queue_.count(sender_of(traffic)) + prepared_of(traffic).size();
 }
 
-std::optional<loop::Instant> Maps::waits_since(const Traffic& traffic) const {
+std::optional<loop::Instant> Maps::oldest_acceptance(const Traffic& traffic) const {
   std::optional<loop::Instant> oldest = queue_.oldest(sender_of(traffic));
   for (const Prepared* prepared : prepared_of(traffic)) {
     oldest = std::min(oldest.value_or(prepared->waiting.accepted), prepared->waiting.accepted);

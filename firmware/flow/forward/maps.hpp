@@ -76,14 +76,14 @@ class Maps {
   /// Queues a rejected map before its sender's other maps. `done` is called with true if it is stored, or if
   /// a queued or sent map contains it. It returns false if such a map was accepted since; then it is not
   /// sent. `bounds`, `faults`: queues::RejectedMessage.
-  void send_again(icd::MapUpdate update, std::function<bool(bool kept)> done,
-                  const std::optional<icd::GridBounds>& bounds = {}, int faults = 0);
+  void resend(icd::MapUpdate update, std::function<bool(bool kept)> done,
+              const std::optional<icd::GridBounds>& bounds = {}, int faults = 0);
 
   /// Stops sending, and compares no more clouds. False while an answer is awaited.
   bool stop();
   void stand_by() { stopping_ = true; }
   /// True if no map is being stored.
-  bool all_kept() const { return overtaken_.empty() && store_.count() == 0; }
+  bool has_stored_all() const { return overtaken_.empty() && store_.count() == 0; }
   /// Why the last map could not be stored, or "".
   const std::string& trouble() const { return store_.trouble(); }
   /// The cable is in again: retries at once.
@@ -94,7 +94,7 @@ class Maps {
   std::size_t queued_bytes() const { return queue_.bytes(); }
   std::size_t waiting(const Traffic& traffic) const;
   /// When the oldest map, queued or in flight, was accepted.
-  std::optional<loop::Instant> waits_since(const Traffic& traffic) const;
+  std::optional<loop::Instant> oldest_acceptance(const Traffic& traffic) const;
 
  private:
   /// A whole map that is not queued yet.
@@ -141,11 +141,11 @@ class Maps {
   void end(Arrived& map, const icd::Checked<void>& outcome);
   void restore(spool::Spool::KeptMap kept);
   void put_aside(spool::Spool::KeptMap kept);
-  void stored_again(MapStore::Stored& stored, queues::QueuedMap back,
-                    const std::function<bool(bool kept)>& done);
-  queues::QueuedMap waiting_again(std::uint64_t number, icd::MapUpdate update,
-                                  const std::optional<icd::GridBounds>& bounds,
-                                  const spool::Spool::Ends& ends) const;
+  void finish_storing(MapStore::Stored& stored, queues::QueuedMap back,
+                      const std::function<bool(bool kept)>& done);
+  queues::QueuedMap requeued_map(std::uint64_t number, icd::MapUpdate update,
+                                 const std::optional<icd::GridBounds>& bounds,
+                                 const spool::Spool::Ends& ends) const;
   void tell_clouds(const icd::MapUpdate& update);
   void compare();
   void compared(const queues::Successive& two, bool has_all);
@@ -161,13 +161,13 @@ class Maps {
   void set_aside(const Prepared& map);
   std::vector<const Prepared*> prepared_of(const Traffic& traffic) const;
   std::optional<queues::Replaced> absorb(const queues::QueuedMap& back);
-  void pack_again();
+  void repack();
 
   // Sending, and the answers.
   void go_on();
   loop::Instant starts() const;
   loop::Instant begins_to_pack(loop::Instant now) const;
-  void go_ahead(loop::Instant now);
+  void send_ahead(loop::Instant now);
   bool may_go_ahead(loop::Instant now) const;
   void send(const Place& prepared);
   void answered(const Place& sent, const uplink::Outcome& outcome);

@@ -181,7 +181,7 @@ void Markers::carry_on(const journal::Carried& carried) {
 }
 
 void Markers::settings_changed(const settings::Settings& settings) {
-  queue_.keep_within(bounds_of(settings.queues));
+  queue_.set_bounds(bounds_of(settings.queues));
   pace_.allow(settings.command_post.rates.markers_hz, loop_.now());
 }
 
@@ -193,7 +193,7 @@ void Markers::endpoint_turned() {
 }
 
 /// In the journal the last one wins, so a deletion of all must precede queued markers.
-bool Markers::send_again(icd::MarkersUpdate markers) {
+bool Markers::resend(icd::MarkersUpdate markers) {
   const auto deletes_all = [](const icd::Marker& marker) {
     return marker.action == icd::MarkerAction::DeleteAll;
   };
@@ -204,7 +204,7 @@ bool Markers::send_again(icd::MarkersUpdate markers) {
   }
   if (arrivals_.is_in_part() || (wipes && !under_way.empty())) return false;
   std::erase_if(markers.markers, [&](const icd::Marker& marker) {
-    return queue_.says_more_than(marker) || under_way.says_more_than(marker);
+    return queue_.supersedes(marker) || under_way.supersedes(marker);
   });
   if (markers.markers.empty()) return true;
   queues::start_lifetimes(markers.markers, loop_.stamp_now());

@@ -107,7 +107,7 @@ class Markers {
   void take(icd::MarkersUpdate update, queues::Upload upload, MarkerArrivals::Done done) {
     arrivals_.take(std::move(update), std::move(upload), std::move(done));
   }
-  bool send_again(icd::MarkersUpdate markers);
+  bool resend(icd::MarkersUpdate markers);
 
   UriPace& pace() { return pace_; }
   std::size_t count() const { return queue_.count(); }

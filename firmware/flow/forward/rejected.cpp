@@ -254,7 +254,7 @@ bool RejectedStore::taken(const queues::Message& message, std::function<void()> 
   return !all.empty();
 }
 
-std::expected<queues::RejectedMessage, std::string> RejectedStore::to_be_sent(std::uint64_t number) {
+std::expected<queues::RejectedMessage, std::string> RejectedStore::begin_resend(std::uint64_t number) {
   const queues::RejectedMessage* const item = items_.find(number);
   if (item == nullptr || leaving_.contains(number)) return std::unexpected(no_such(number));
   if (item->replaced) {
@@ -265,7 +265,7 @@ std::expected<queues::RejectedMessage, std::string> RejectedStore::to_be_sent(st
   return *item;
 }
 
-bool RejectedStore::sent_again(std::uint64_t number, bool kept) {
+bool RejectedStore::finish_resend(std::uint64_t number, bool kept) {
   const queues::RejectedMessage* const item = items_.find(number);
   const bool is_wanted = item == nullptr || !item->replaced;
   if (kept && items_.take(number)) {

@@ -53,13 +53,13 @@ class RejectedStore {
   /// Messages that were removed for newer ones.
   std::uint64_t dropped() const { return dropped_; }
   /// True if the writer has finished.
-  bool all_kept() const { return being_written_ == 0; }
+  bool has_stored_all() const { return being_written_ == 0; }
 
-  /// Takes a message for sending. Call sent_again() next. An error: why it cannot be sent.
-  std::expected<queues::RejectedMessage, std::string> to_be_sent(std::uint64_t number);
+  /// Takes a message for sending. Call finish_resend() next. An error: why it cannot be sent.
+  std::expected<queues::RejectedMessage, std::string> begin_resend(std::uint64_t number);
   /// `kept`: the message is queued and stored elsewhere; otherwise it stays rejected. False: a newer message
   /// that contains it was accepted.
-  bool sent_again(std::uint64_t number, bool kept);
+  bool finish_resend(std::uint64_t number, bool kept);
   std::expected<void, std::string> discard(std::uint64_t number);
 
   std::vector<facts::RejectedRow> rows() const;
@@ -79,7 +79,7 @@ class RejectedStore {
   std::string missing_;
   queues::RejectedMessages items_;
   int being_written_ = 0;
-  std::set<std::uint64_t> leaving_;                           // between to_be_sent() and sent_again()
+  std::set<std::uint64_t> leaving_;                           // between begin_resend() and finish_resend()
   std::map<std::uint64_t, std::function<void()>> in_memory_;  // messages without a file, and their origins
   std::uint64_t dropped_ = 0;
 };

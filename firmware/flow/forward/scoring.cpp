@@ -125,7 +125,7 @@ void Scoring::start(std::vector<dispatch::Run> runs) {
   reports_->open(ledger_.reports(), std::move(runs), time(), stopping_ ? "" : channel_.address());
   if (stopping_) return;
   channel_.keep_warm();
-  ask_soon();
+  schedule_status();
 }
 
 void Scoring::settings_changed() {
@@ -208,12 +208,12 @@ bool Scoring::is_status_first(loop::Instant now) const {
              std::max(now, pace_.report_ready());
 }
 
-void Scoring::ask_soon() {
+void Scoring::schedule_status() {
   ask_at_ = loop_.now();
   pump();
 }
 
-std::string Scoring::why_no_status() const {
+std::string Scoring::status_obstacle() const {
   if (!channel_.trouble().empty()) return channel_.trouble();
   if (!channel_.is_free())
     return "the Command Post serves one connection at a time, and another message is in flight";
@@ -283,7 +283,7 @@ void Scoring::send(const dispatch::Report& report) {
 
 /// First, because judging uses the length of the silence.
 void Scoring::hear_time() {
-  const auto there = channel_.last().time_there();
+  const auto there = channel_.last().command_post_time();
   if (there && clocks_.hear(*there)) reports_->clock_stepped(clocks_.clock_step());
 }
 
@@ -346,7 +346,7 @@ void Scoring::answer_clients(loop::Instant now) {
   if (status_clients_.empty()) return;
   const auto known = status_cache_.answer(loop_.now());
   const loop::Instant longest = !known && asked_status_ ? asked_status_->at + kSlow : now;
-  status_clients_.answer_due(now, longest, known ? *known : no_status(why_no_status()));
+  status_clients_.answer_due(now, longest, known ? *known : no_status(status_obstacle()));
 }
 
 void Scoring::deadline_came() {
@@ -450,14 +450,14 @@ dispatch::Reports::Outcome Scoring::correct(std::int64_t number, const icd::Arti
 std::int64_t Scoring::begin_run() noexcept {
   const std::int64_t number = reports_->declare_new_run(time());
   counts_.changed();
-  ask_soon();
+  schedule_status();
   return number;
 }
 
 void Scoring::link_is_back() {
   pace_.link_is_back();
-  channel_.hurry();
-  ask_soon();  // its state is news
+  channel_.retry_now();
+  schedule_status();  // its state is news
 }
 
 bool Scoring::stop() {

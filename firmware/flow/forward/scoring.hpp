@@ -22,7 +22,7 @@
 #include "forward/uri_pace.hpp"
 #include "icd/mapping.hpp"
 #include "icd/scoring.hpp"
-#include "intake/desk.hpp"
+#include "intake/message_handler.hpp"
 #include "intake/server.hpp"
 #include "ledger/ledger.hpp"
 #include "loop/loop.hpp"
@@ -176,7 +176,7 @@ class Scoring {
   dispatch::Time time() const { return {loop_.now(), loop_.stamp_now()}; }
   void endpoint_turned();
   void take(const dispatch::PostedReport& posted, dispatch::ClientId client) noexcept;
-  void ask_soon();
+  void schedule_status();
   void pump() noexcept;
   bool is_free(const dispatch::NextRequests& requests, loop::Instant now);
   void send(const dispatch::Report& report);
@@ -193,7 +193,7 @@ class Scoring {
   bool may_ask_soon(loop::Instant now) const;
   bool is_status_first(loop::Instant now) const;
   void deadline_came();
-  std::string why_no_status() const;
+  std::string status_obstacle() const;
   intake::Answer known_or(intake::Answer failure) const;
 
   loop::Loop& loop_;

@@ -23,7 +23,7 @@ bool is_to_be_stitched(const queues::QueuedMap& waiting) {
 }
 
 /// nullopt: damaged data.
-std::optional<queues::Ground> drawn_over(const queues::Ground& under, const icd::MapData& data) {
+std::optional<queues::Ground> overlay(const queues::Ground& under, const icd::MapData& data) {
   queues::Drawing drawing(under);
   std::size_t left = static_cast<std::size_t>(under.cells.width * under.cells.height);
   const auto read =
@@ -72,14 +72,14 @@ bool was_rounded(const icd::MapUpdate& before, const icd::MapUpdate& after) {
 }  // namespace
 
 Packed packed(const queues::QueuedMap& waiting, const Packing& packing) {
-  auto whole = whole_of(waiting);
+  auto whole = assemble(waiting);
   if (!whole) return {};
   Packed packed;
   if (waiting.piece.size > 0 && has_no_valid_point(*whole)) {
     packed.has_no_valid_point = true;
     return packed;
   }
-  if (waiting.ground) packed.drawn = drawn_over(*waiting.ground, whole->data);
+  if (waiting.ground) packed.drawn = overlay(*waiting.ground, whole->data);
   if (!whole->is_grid()) packed.points_size = whole->data.raw_size;
   const bool is_as_it_is = waiting.packing == queues::PackingRule::LastAsItIs;
   if (!is_as_it_is && whole->is_grid() && whole->data.compression == icd::Compression::None) {
@@ -111,7 +111,7 @@ Packed packed(const queues::QueuedMap& waiting, const Packing& packing) {
   return packed;
 }
 
-icd::Checked<icd::MapUpdate> whole_of(const queues::QueuedMap& waiting) {
+icd::Checked<icd::MapUpdate> assemble(const queues::QueuedMap& waiting) {
   icd::MapUpdate whole = waiting.map;
   if (waiting.piece.size > 0) whole.data = ADIT_TRY(piece_of(waiting));
   if (whole.is_grid()) whole.msg = queues::rows_of(waiting);

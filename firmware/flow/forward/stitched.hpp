@@ -39,6 +39,6 @@ Packed packed(const queues::QueuedMap& waiting, const Packing& packing = {});
 
 /// The map with its cells, stitched from its parts over the ground if necessary, or with the points or
 /// rows that are sent next. An error describes the fault in the data.
-icd::Checked<icd::MapUpdate> whole_of(const queues::QueuedMap& waiting);
+icd::Checked<icd::MapUpdate> assemble(const queues::QueuedMap& waiting);
 
 }  // namespace adit::forward

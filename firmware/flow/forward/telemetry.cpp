@@ -56,7 +56,7 @@ icd::Checked<void> States::accept(const std::vector<queues::PostedPose>& poses, 
   return {};
 }
 
-bool States::send_again(const icd::StateUpdate& state) {
+bool States::resend(const icd::StateUpdate& state) {
   queue_.add_unless_known(state, loop_.now());  // a newer pose wins
   return journal_.accepted(queue_.unsent()).has_value();
 }
@@ -130,7 +130,7 @@ namespace {
 using dispatch::MappingVerdict;
 
 /// For verdicts other than Taken.
-DeliveryFailure why_not(MappingVerdict verdict) {
+DeliveryFailure failure_of(MappingVerdict verdict) {
   if (verdict == MappingVerdict::Throttled) return DeliveryFailure::Throttled;
   return verdict == MappingVerdict::Refused ? DeliveryFailure::Refused : DeliveryFailure::Failed;
 }
@@ -249,7 +249,7 @@ void Telemetry::classify(Of& of, const typename Of::Sent& sent, std::size_t byte
     if (verdict == MappingVerdict::Taken) {
       counts_.forwarded(traffic, 1, bytes, status, loop_.wall_now());
     } else {
-      counts_.not_taken(traffic, why_not(verdict), status, sentence);
+      counts_.not_taken(traffic, failure_of(verdict), status, sentence);
     }
   }
   switch (verdict) {
@@ -301,10 +301,10 @@ void Telemetry::give_up(Of& of, const typename Of::Sent& sent, int status, const
   rejected_writes_ = true;
 }
 
-bool Telemetry::send_again(const queues::Message& message) {
+bool Telemetry::resend(const queues::Message& message) {
   bool kept = false;
-  if (const auto* state = std::get_if<icd::StateUpdate>(&message)) kept = states_.send_again(*state);
-  if (const auto* markers = std::get_if<icd::MarkersUpdate>(&message)) kept = markers_.send_again(*markers);
+  if (const auto* state = std::get_if<icd::StateUpdate>(&message)) kept = states_.resend(*state);
+  if (const auto* markers = std::get_if<icd::MarkersUpdate>(&message)) kept = markers_.resend(*markers);
   pump();
   return kept;
 }
@@ -312,7 +312,7 @@ bool Telemetry::send_again(const queues::Message& message) {
 void Telemetry::link_is_back() {
   states_.pace().link_is_back();
   markers_.pace().link_is_back();
-  channel_.hurry();
+  channel_.retry_now();
   pump();
 }
 
@@ -326,7 +326,7 @@ std::size_t Telemetry::waiting(Kind kind) const {
   return markers_.count();
 }
 
-std::optional<loop::Instant> Telemetry::waits_since(const Traffic& traffic) const {
+std::optional<loop::Instant> Telemetry::oldest_acceptance(const Traffic& traffic) const {
   if (traffic.kind == Kind::State) return states_.accepted_at(traffic.robot);
   const auto oldest = markers_.oldest();
   if (!markers_.under_way()) return oldest;

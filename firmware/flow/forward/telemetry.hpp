@@ -34,11 +34,11 @@ class States {
   void carry_on(const journal::Carried& carried);
   /// Another Command Post knows no robots yet.
   void endpoint_turned();
-  /// Telemetry::change_run(), has_room_for(), take() and send_again().
+  /// Telemetry::change_run(), has_room_for(), take() and resend().
   void begin_run() { queue_.begin_run(); }
   icd::Checked<void> has_room_for(const icd::StateUpdate& update);
   icd::Checked<void> accept(const std::vector<queues::PostedPose>& poses, std::size_t bytes_received);
-  bool send_again(const icd::StateUpdate& state);
+  bool resend(const icd::StateUpdate& state);
 
   UriPace& pace() { return pace_; }
   bool empty() const { return queue_.empty(); }
@@ -124,7 +124,7 @@ class Telemetry {
 
   /// Queues a rejected message before later ones, without parts that they contain. Not for maps. False: it
   /// stays rejected, because it cannot be stored, it would delete markers in flight, or markers are arriving.
-  bool send_again(const queues::Message& message);
+  bool resend(const queues::Message& message);
 
   /// Stops sending. False while an answer is awaited.
   bool stop();
@@ -133,7 +133,7 @@ class Telemetry {
   const Channel& channel() const { return channel_; }
   std::size_t waiting(Kind kind) const;
   /// When the robot's pose, or the oldest change of a marker, was accepted that is queued or in flight.
-  std::optional<loop::Instant> waits_since(const Traffic& traffic) const;
+  std::optional<loop::Instant> oldest_acceptance(const Traffic& traffic) const;
 
  private:
   void pump() noexcept;

@@ -56,7 +56,7 @@ void TrafficCounts::rounded_to(const Traffic& traffic, queues::Precision precisi
   row(traffic).precision = queues::kPrecisionWords[static_cast<std::size_t>(precision)];
 }
 
-void TrafficCounts::clouds_are(const Traffic& traffic, queues::Clouds clouds) {
+void TrafficCounts::set_cloud_kind(const Traffic& traffic, queues::Clouds clouds) {
   if (traffic.kind == Kind::Cloud)
     row(traffic).clouds = queues::kCloudsWords[static_cast<std::size_t>(clouds)];
 }

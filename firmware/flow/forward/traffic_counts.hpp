@@ -17,7 +17,7 @@
 #include "icd/natural_order.hpp"
 #include "icd/status.hpp"
 #include "icd/uri.hpp"
-#include "intake/desk.hpp"
+#include "intake/message_handler.hpp"
 #include "loop/loop.hpp"
 #include "queues/clouds.hpp"
 
@@ -78,7 +78,7 @@ class TrafficCounts {
   void no_valid_point(const Traffic& traffic, std::size_t bytes, api::Time now);
   void invisible(std::size_t markers);
   /// The detected kind of a robot's clouds.
-  void clouds_are(const Traffic& traffic, queues::Clouds clouds);
+  void set_cloud_kind(const Traffic& traffic, queues::Clouds clouds);
   /// The rounding of the last delivered cloud.
   void rounded_to(const Traffic& traffic, queues::Precision precision);
   /// A message of `bytes` was delivered for `updates` accepted ones.

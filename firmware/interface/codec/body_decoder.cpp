@@ -56,7 +56,7 @@ constexpr std::size_t kTelling = 2;  // bytes
 
 /// A hint for a refusal if the document looks like another format than its headers say. Uses no more bytes
 /// than a splitter has read when it refuses.
-std::string_view other_format(Format said, std::string_view begin) {
+std::string_view detect_format(Format said, std::string_view begin) {
   if (begin.empty()) return "";
   const auto first = static_cast<std::uint8_t>(begin.front()),
              second = static_cast<std::uint8_t>(begin.back());
@@ -86,7 +86,7 @@ struct BodyDecoder::Impl {
 
   template <class T>
   icd::Checked<T> named(icd::Checked<T> checked) const {
-    if (!checked) checked.error().sentence += other_format(format, begin);
+    if (!checked) checked.error().sentence += detect_format(format, begin);
     return checked;
   }
 

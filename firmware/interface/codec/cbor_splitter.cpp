@@ -62,7 +62,7 @@ icd::Checked<void> CborSplitter::check_head() const {
 
 icd::Checked<void> CborSplitter::item() {
   if (head_.is_break()) return end_of_nest();
-  const bool is_key = at_key() && !leaves_out();
+  const bool is_key = is_at_key() && !leaves_out();
   if (is_key) {
     path_.begin_key();
     path_.end_key();  // in case the key is not a string
@@ -70,7 +70,7 @@ icd::Checked<void> CborSplitter::item() {
   Into into = is_key ? Into::Key : Into::Rest;
   if (elements()) {
     if (auto taken = element(); !taken) return taken;
-  } else if (path_.at_data() && head_.major() != Major::Tag && !leaves_out()) {
+  } else if (path_.is_at_data() && head_.major() != Major::Tag && !leaves_out()) {
     if (auto diverted = divert(); !diverted) return diverted;
     into = Into::Data;
   }
@@ -113,9 +113,9 @@ icd::Checked<void> CborSplitter::simple() {
 icd::Checked<void> CborSplitter::tag() {
   constexpr std::string_view kInItsPlace = "\xF6";
   const bool changes = !is_remark(head_.argument()) && !leaves_out();
-  if (changes && at_key() && is_reference(head_.argument()))
+  if (changes && is_at_key() && is_reference(head_.argument()))
     return icd::unprocessable("a member's name: expected a string, got ", tag_that_changes(head_.argument()));
-  if (changes && path_.at_data())
+  if (changes && path_.is_at_data())
     return std::unexpected(bad_data("expected a byte string, got " + tag_that_changes(head_.argument())));
   if (changes) {
     keep(head_.raw());
@@ -181,7 +181,7 @@ const CborSplitter::Nest* CborSplitter::container() const {
   return found == nests_.rend() ? nullptr : &*found;
 }
 
-bool CborSplitter::at_key() const {
+bool CborSplitter::is_at_key() const {
   const Nest* const around = container();
   return around != nullptr && around->kind == Major::Map && around->key_next;
 }

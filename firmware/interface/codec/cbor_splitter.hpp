@@ -68,7 +68,7 @@ class CborSplitter final : public Splitter {
   }
   /// The array or map of the next item; null at the top level.
   const Nest* container() const;
-  bool at_key() const;
+  bool is_at_key() const;
 
   icd::Refusal fault(std::string_view what) const { return fault_at(head_at_, what); }
   static icd::Refusal fault_at(std::size_t at, std::string_view what);

@@ -39,7 +39,7 @@ class DataPath {
     if (depth_ == 2) data_named_ = in_msg_ && name == "data";
   }
 
-  bool at_data() const { return wanted_ && depth_ == 2 && data_named_; }
+  bool is_at_data() const { return wanted_ && depth_ == 2 && data_named_; }
 
   /// A piece of a text value.
   void text(std::string_view piece) {

@@ -26,7 +26,7 @@ constexpr int kRaw = -MAX_WBITS;       // no wrapper
 constexpr int kMemoryLevel = 8;        // zlib's default
 
 /// zlib's pointer is not const, but zlib only reads.
-Bytef* in_zlibs_hands(std::span<const std::uint8_t> bytes) {
+Bytef* to_zlib(std::span<const std::uint8_t> bytes) {
   return const_cast<Bytef*>(bytes.data());
 }
 
@@ -108,7 +108,7 @@ void Gzipper::feed(std::span<const std::uint8_t> bytes) {
   constexpr std::size_t kMostAtOnce = 1U << 30;  // zlib counts in 32 bits
   while (!bytes.empty()) {
     const auto part = bytes.first(std::min(bytes.size(), kMostAtOnce));
-    stream_->zlib.next_in = in_zlibs_hands(part);
+    stream_->zlib.next_in = to_zlib(part);
     stream_->zlib.avail_in = static_cast<uInt>(part.size());
     deflate_with(Z_NO_FLUSH);
     stream_->checksum = libdeflate_crc32(stream_->checksum, part.data(), part.size());
@@ -159,7 +159,7 @@ icd::Checked<Gunzipped> gunzip(icd::ChunkedBytes bytes, std::size_t most, std::s
   std::size_t after = 0;  // bytes after the last whole member
   while (!bytes.empty()) {
     const auto chunk = bytes.pop_front();
-    zlib.next_in = in_zlibs_hands(*chunk);
+    zlib.next_in = to_zlib(*chunk);
     zlib.avail_in = static_cast<uInt>(chunk->size());
     while (zlib.avail_in > 0 || (zlib.avail_out == 0 && !ended)) {
       if (ended) {
@@ -209,8 +209,7 @@ Memory cut_to(Memory memory, std::size_t size) {
 
 }  // namespace
 
-std::optional<icd::ChunkedBytes> gzip_whole(std::span<const std::uint8_t> bytes, int level,
-                                            std::size_t most) {
+std::optional<icd::ChunkedBytes> gzip(std::span<const std::uint8_t> bytes, int level, std::size_t most) {
   icd::require(level >= kFastestLevel && level <= kSmallestLevel);
   const std::unique_ptr<libdeflate_compressor, Freed> compressor(libdeflate_alloc_compressor(level));
   if (!compressor) throw std::bad_alloc();
@@ -226,7 +225,7 @@ std::optional<icd::ChunkedBytes> gzip_whole(std::span<const std::uint8_t> bytes,
   return member;
 }
 
-std::optional<std::vector<std::uint8_t>> gunzip_whole(const icd::ChunkedBytes& member, std::size_t size) {
+std::optional<std::vector<std::uint8_t>> gunzip(const icd::ChunkedBytes& member, std::size_t size) {
   const std::unique_ptr<libdeflate_decompressor, Freed> decompressor(libdeflate_alloc_decompressor());
   if (!decompressor) throw std::bad_alloc();
   std::vector<std::uint8_t> together, bytes(size);

@@ -78,12 +78,12 @@ inline constexpr int kFastestLevel = 1, kSmallestLevel = 12;
 ///
 /// Takes at most `most` bytes for the member, which is not copied, and temporarily 1 MiB at levels up to 9, 9
 /// MiB above. For data in pieces, use Gzipper. CPU time grows with the size of `bytes`.
-std::optional<icd::ChunkedBytes> gzip_whole(std::span<const std::uint8_t> bytes, int level, std::size_t most);
+std::optional<icd::ChunkedBytes> gzip(std::span<const std::uint8_t> bytes, int level, std::size_t most);
 
 /// The `size` bytes of exactly one gzip member, in a tenth of gunzip()'s time for a grid. std::nullopt if it
 /// is invalid, damaged, or of another size. Takes `size` bytes of memory, and a copy of a member in several
 /// chunks.
-std::optional<std::vector<std::uint8_t>> gunzip_whole(const icd::ChunkedBytes& member, std::size_t size);
+std::optional<std::vector<std::uint8_t>> gunzip(const icd::ChunkedBytes& member, std::size_t size);
 
 /// Passes a map's data, inflated if compressed, to `sink` in pieces of at most icd::ChunkedBytes::kChunk. An
 /// error is about the data, or from `sink`.

@@ -224,15 +224,15 @@ icd::Checked<std::size_t> JsonSplitter::structure(std::string_view in) {
 
 icd::Checked<std::size_t> JsonSplitter::separator(char c) {
   if (path_.depth() == 0) return std::unexpected(expected("the end of the document", c));
-  if (c == (in_object() ? '}' : ']')) return close(c);
-  if (c != ',') return std::unexpected(expected(in_object() ? "',' or '}'" : "',' or ']'", c));
+  if (c == (is_in_object() ? '}' : ']')) return close(c);
+  if (c != ',') return std::unexpected(expected(is_in_object() ? "',' or '}'" : "',' or ']'", c));
   keep(",");
-  expect_ = in_object() ? Expect::Key : Expect::Value;
+  expect_ = is_in_object() ? Expect::Key : Expect::Value;
   return 1;
 }
 
 icd::Checked<std::size_t> JsonSplitter::value(char first) {
-  if (path_.at_data() || diverted_ == Diverted::Elements) {
+  if (path_.is_at_data() || diverted_ == Diverted::Elements) {
     ADIT_TRY(divert(first));
   }
   if (diverted_ == Diverted::No && !rest_.count()) return std::unexpected(rest_.too_many_values());

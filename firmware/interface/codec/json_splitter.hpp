@@ -38,7 +38,7 @@ class JsonString {
   /// call.
   std::expected<Piece, Fault> next(std::string_view in);
   /// Whether it is outside escapes and characters, so that plain ASCII stands for itself.
-  bool between_characters() const { return escape_.empty() && utf8_.complete(); }
+  bool is_between_characters() const { return escape_.empty() && utf8_.complete(); }
 
  private:
   std::expected<Piece, Fault> plain(std::string_view in);
@@ -108,7 +108,7 @@ class JsonSplitter final : public Splitter {
   void keep(std::string_view raw) {
     if (diverted_ == Diverted::No) rest_.add(raw);
   }
-  bool in_object() const { return path_.depth() > 0 && objects_[path_.depth() - 1]; }
+  bool is_in_object() const { return path_.depth() > 0 && objects_[path_.depth() - 1]; }
 
   icd::Refusal fault(std::string_view what) const { return fault_at(at_, what); }
   static icd::Refusal fault_at(std::size_t at, std::string_view what);

@@ -39,7 +39,7 @@ icd::Checked<void> JsonSplitter::decode(std::string_view base64) {
 
 /// Decodes up to the string's end without searching for it.
 icd::Checked<std::size_t> JsonSplitter::base64_groups(std::string_view in) {
-  if (!string_.between_characters()) return 0;
+  if (!string_.is_between_characters()) return 0;
   std::array<std::uint8_t, 6144> bytes;  // not cleared, for speed
   std::string_view left = in;
   while (const std::size_t size = base64_.decode_groups(left, bytes)) {

@@ -256,7 +256,7 @@ icd::Compression read_compression(const Field& field, DataForm form) {
   return icd::Compression::Gzip;
 }
 
-void check_data_is_there(const Field& data) {
+void require_data(const Field& data) {
   if (!data.is<Value::SplitOut>()) data.refuse_kind("a base64 string (JSON) or a byte string (CBOR)");
 }
 
@@ -289,7 +289,7 @@ icd::Checked<icd::MapUpdate> read_structure(const Document& document, const icd:
   } else {
     update.msg = read_msg<icd::OccupancyGrid>(msg, rules);
   }
-  check_data_is_there(msg.member("data"));
+  require_data(msg.member("data"));
   compression = read_compression(msg.member("compression"), document.data_form);
   return reading.outcome(std::move(update));
 }

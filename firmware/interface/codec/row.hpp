@@ -116,7 +116,7 @@ struct Member {
 
   constexpr Member as(const Kind& other) const { return with(&Member::kind, &other); }
   constexpr Member one_of(std::span<const std::string_view> all) const { return with(&Member::words, all); }
-  constexpr Member if_any() const { return with(&Member::is_needed, false); }
+  constexpr Member optional() const { return with(&Member::is_needed, false); }
   constexpr Member exact() const { return with(&Member::is_exact, true); }
   constexpr Member matching(const Form& one) const { return with(&Member::form, &one); }
   constexpr Member from(double bound) const { return with(&Member::least, std::optional(bound)); }

@@ -31,7 +31,7 @@ std::string doubled(std::string_view token, std::string_view letters, char mark)
 
 /// ASCII in UTF-16 as bytes; other characters become bytes that no token has. `high`: the place of the high
 /// byte in each pair.
-std::string from_utf_16(std::string_view pairs, std::size_t high) {
+std::string decode_utf_16(std::string_view pairs, std::size_t high) {
   std::string text;
   for (; pairs.size() >= 2; pairs.remove_prefix(2)) text += pairs[high] == '\0' ? pairs[1 - high] : '\0';
   return pairs.empty() ? text : text + '\0';
@@ -60,8 +60,8 @@ std::optional<BearerToken> BearerToken::parse(std::string_view text) {
 
 std::optional<BearerToken> BearerToken::parse_file(std::string_view content) {
   constexpr std::string_view kUtf8 = "\xEF\xBB\xBF", kLittleEndian = "\xFF\xFE", kBigEndian = "\xFE\xFF";
-  if (content.starts_with(kLittleEndian)) return parse(trimmed(from_utf_16(content.substr(2), 1)));
-  if (content.starts_with(kBigEndian)) return parse(trimmed(from_utf_16(content.substr(2), 0)));
+  if (content.starts_with(kLittleEndian)) return parse(trimmed(decode_utf_16(content.substr(2), 1)));
+  if (content.starts_with(kBigEndian)) return parse(trimmed(decode_utf_16(content.substr(2), 0)));
   if (content.starts_with(kUtf8)) content.remove_prefix(kUtf8.size());
   return parse(trimmed(content));
 }
@@ -89,7 +89,7 @@ void BearerToken::strike_from(std::string& text) const {
     strike_whole(text, in_json);
     strike_whole(text, doubled(text_, "\"", '"'));  // CSV
   }
-  if (text_.find_first_of("\"&<>'") != std::string::npos) strike_whole(text, in_html(text_));
+  if (text_.find_first_of("\"&<>'") != std::string::npos) strike_whole(text, escape_html(text_));
   strike_cut(text, text_);
 }
 

@@ -67,7 +67,7 @@ class Redaction {
   void strike_from(std::string& text) const;
   /// For JSON, a stream of it, or Prometheus' text format: replaces secrets in strings that are values.
   void strike_from_strings(std::string& text) const;
-  /// For HTML whose text was written by in_html().
+  /// For HTML whose text was written by escape_html().
   void strike_from_html(std::string& text) const { strike_long_from(text); }
 
  private:

@@ -27,7 +27,7 @@ Checked<void> check_place(const FieldSchema& field, std::size_t index, std::uint
 }
 
 /// The index of the only field with that name.
-Checked<std::size_t> find_once(const std::vector<FieldSchema>& fields, std::string_view name) {
+Checked<std::size_t> find_unique(const std::vector<FieldSchema>& fields, std::string_view name) {
   const auto count = std::ranges::count(fields, name, &FieldSchema::name);
   if (count == 1) {
     return static_cast<std::size_t>(std::ranges::find(fields, name, &FieldSchema::name) - fields.begin());
@@ -41,7 +41,7 @@ Checked<void> check_coordinates(const std::vector<FieldSchema>& fields) {
   static constexpr std::array<std::string_view, 3> kCoordinates = {"x", "y", "z"};
   Datatype datatype{};
   for (const std::string_view name : kCoordinates) {
-    const auto index = ADIT_TRY(find_once(fields, name));
+    const auto index = ADIT_TRY(find_unique(fields, name));
     const FieldSchema& field = fields[index];
     const auto given = static_cast<int>(field.datatype);
     if (field.datatype != Datatype::Float32 && field.datatype != Datatype::Float64) {

@@ -53,7 +53,7 @@ std::string in_quotes(std::string_view text) {
   return quote;
 }
 
-std::string in_html(std::string_view text) {
+std::string escape_html(std::string_view text) {
   std::string all;
   all.reserve(text.size());
   for (const char c : text) {

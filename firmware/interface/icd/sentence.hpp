@@ -24,7 +24,7 @@ std::string in_quotes(std::string_view text);
 
 /// Escapes a text for HTML, also for an attribute in double quotes. A newline or tab becomes a blank, another
 /// control character U+FFFD.
-std::string in_html(std::string_view text);
+std::string escape_html(std::string_view text);
 
 inline void append_part(std::string& sentence, std::string_view part) {
   sentence += part;

@@ -27,7 +27,7 @@ std::size_t distance(std::string_view from, std::string_view to) {
   return row.back();
 }
 
-bool one_begins_the_other(std::string_view a, std::string_view b) {
+bool share_beginning(std::string_view a, std::string_view b) {
   static constexpr std::size_t kTelling = 3;
   if (std::min(a.size(), b.size()) < kTelling) return false;
   return a.starts_with(b) || b.starts_with(a);
@@ -56,7 +56,7 @@ std::optional<std::string_view> nearest(std::string_view word, std::span<const s
   std::optional<std::string_view> best;
   std::size_t least = std::max(few, word.size() / 3) + 1;
   for (const std::string_view candidate : known) {
-    const std::size_t apart = one_begins_the_other(word, candidate) ? 1 : distance(word, candidate);
+    const std::size_t apart = share_beginning(word, candidate) ? 1 : distance(word, candidate);
     if (apart < least && apart < candidate.size()) {
       least = apart;
       best = candidate;

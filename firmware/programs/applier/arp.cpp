@@ -156,7 +156,7 @@ std::expected<ArpSocket, std::string> ArpSocket::open(const std::string& interfa
   return arp;
 }
 
-std::expected<void, std::string> ArpSocket::hear_only(const std::vector<std::uint32_t>& addresses) {
+std::expected<void, std::string> ArpSocket::filter_addresses(const std::vector<std::uint32_t>& addresses) {
   auto program = arp_filter(addresses);
   const sock_fprog set{static_cast<std::uint16_t>(program.size()), program.data()};
   if (setsockopt(socket_.get(), SOL_SOCKET, SO_ATTACH_FILTER, &set, sizeof set) != 0)

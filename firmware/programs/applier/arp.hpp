@@ -53,7 +53,7 @@ class ArpSocket {
   static std::expected<ArpSocket, std::string> open(const std::string& interface);
 
   /// Makes the kernel pass only packets from these addresses and probes for them.
-  std::expected<void, std::string> hear_only(const std::vector<std::uint32_t>& addresses);
+  std::expected<void, std::string> filter_addresses(const std::vector<std::uint32_t>& addresses);
   /// Broadcasts a request for the address.
   std::expected<void, std::string> ask(std::uint32_t address) const;
   /// Length of the next packet, or std::nullopt if there is no more. Does not block. 0: a packet for another
@@ -70,7 +70,8 @@ class ArpSocket {
   Mac own_{};
 };
 
-/// The kernel filter of hear_only() (socket(7), SO_ATTACH_FILTER), for data that begins with the ARP header.
+/// The kernel filter of filter_addresses() (socket(7), SO_ATTACH_FILTER), for data that begins with the ARP
+/// header.
 std::vector<sock_filter> arp_filter(const std::vector<std::uint32_t>& addresses);
 
 /// Another machine's claim to an address.

@@ -31,7 +31,7 @@ void ConflictDetector::set_own(const std::vector<std::uint32_t>& addresses, std:
   own_ = std::move(next);
 }
 
-void ConflictDetector::ask_again(Instant now) {
+void ConflictDetector::restart_probing(Instant now) {
   for (Own& own : own_) {
     own.first_asks = kFirstAsks;
     own.ask_at = now;
@@ -44,8 +44,8 @@ void ConflictDetector::hear(const ArpPacket& packet, Instant now) {
     if (packet.from == own.address) {
       note(own, packet.sender, now);
     } else if (packet.probes(own.address)) {
-      ask_soon(own, now);  // if another machine has the address in spite of our kernel's answer, it answers a
-                           // request
+      schedule_probe(own, now);  // if another machine has the address in spite of our kernel's answer, it
+                                 // answers a request
     }
   }
 }
@@ -56,10 +56,10 @@ void ConflictDetector::note(Own& own, const Mac& by, Instant now) {
     own.taken = Conflict{.address = own.address, .by = by, .since = now};
   own.taken->seen = now;
   if (own.taken->by == by) own.by_seen = now;
-  ask_soon(own, now);
+  schedule_probe(own, now);
 }
 
-void ConflictDetector::ask_soon(Own& own, Instant now) {
+void ConflictDetector::schedule_probe(Own& own, Instant now) {
   const Instant soon = own.asked_at ? std::max(now, *own.asked_at + kBetween) : now;
   own.ask_at = own.ask_at ? std::min(*own.ask_at, soon) : soon;
 }
@@ -74,7 +74,7 @@ std::vector<std::uint32_t> ConflictDetector::take_due(Instant now) {
     own.ask_at.reset();
     if (own.first_asks > 0) --own.first_asks;
     if (own.first_asks > 0) own.ask_at = now + kFirstGaps[kFirstGaps.size() - own.first_asks];
-    if (own.taken) ask_soon(own, now);
+    if (own.taken) schedule_probe(own, now);
   }
   return due;
 }

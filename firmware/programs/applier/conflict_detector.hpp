@@ -41,7 +41,7 @@ class ConflictDetector {
   /// `addresses`: those that no other machine may have. `macs`: of this machine.
   void set_own(const std::vector<std::uint32_t>& addresses, std::vector<Mac> macs, Instant now);
   /// Call when the cable is plugged in: the machine at its end may have an address.
-  void ask_again(Instant now);
+  void restart_probing(Instant now);
   void hear(const ArpPacket& packet, Instant now);
   /// Addresses to ask for now, without duplicates. Ends conflicts not seen for network::kTakenFor.
   std::vector<std::uint32_t> take_due(Instant now);
@@ -59,7 +59,7 @@ class ConflictDetector {
     Instant by_seen{};  // last packet of taken->by
   };
   static void note(Own& own, const Mac& by, Instant now);
-  static void ask_soon(Own& own, Instant now);
+  static void schedule_probe(Own& own, Instant now);
 
   std::vector<Own> own_;
   std::vector<Mac> macs_;
@@ -108,7 +108,7 @@ class SwappedCables {
   /// `addresses`: the Command Post's, outside the team's subnet. `macs`: of this machine.
   void set_sought(const std::vector<std::uint32_t>& addresses, const std::vector<Mac>& macs, Instant now);
   /// Call when the team's cable is plugged in, which may be the wrong one.
-  void ask_again(Instant now) { at_team_.ask_again(now); }
+  void restart_probing(Instant now) { at_team_.restart_probing(now); }
   void hear_at_team(const ArpPacket& packet, Instant now) { at_team_.hear(packet, now); }
   void hear_at_post(const ArpPacket& packet, Instant now);
 

@@ -289,7 +289,7 @@ Done Import::run() {
     return {};
   }
   wipe_taken(*card);
-  const auto now = in_force();
+  const auto now = current_settings();
   if (!now) {
     const std::string why = "cannot read the settings in use: " + now.error();
     (void)tell(*card, "Adit accepted no file, because it " + why + '\n');  // also logged
@@ -318,13 +318,13 @@ Done Import::run() {
   return {};
 }
 
-std::expected<settings::Settings, std::string> Import::in_force() const {
+std::expected<settings::Settings, std::string> Import::current_settings() const {
   std::optional<std::string> text;
   if (host::may_exist(options_.state)) {
     const auto state = ADIT_TRY(UntrustedFolder::open(options_.state));
     text = ADIT_TRY(state.read(settings::kSavedFile));
   }
-  if (!text) text = ADIT_TRY(host::read_if_there(options_.given));
+  if (!text) text = ADIT_TRY(host::read_optional_file(options_.given));
   // As aditd reads it: a later Adit may have written it.
   auto saved = settings::parse_saved(text.value_or(""));
   return saved ? std::move(saved->settings) : settings::Settings{};

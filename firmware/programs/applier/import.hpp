@@ -59,7 +59,7 @@ class Import {
   std::expected<void, std::string> run();
 
  private:
-  std::expected<settings::Settings, std::string> in_force() const;
+  std::expected<settings::Settings, std::string> current_settings() const;
   std::expected<void, std::string> save(const CardContents& brought);
   std::expected<void, std::string> save_tokens(host::UntrustedFolder& state, const CardContents& brought);
   std::expected<void, std::string> save_settings(host::UntrustedFolder& state,

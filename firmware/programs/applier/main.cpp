@@ -161,12 +161,13 @@ void AddressWatch::look(Side& side, const std::vector<settings::Subnet>& own, co
   addresses.insert(addresses.end(), sought.begin(), sought.end());
   if (side.arp) {
     // hear() checks each packet anyway, so a missing filter only costs time.
-    host::log_failure(Level::Warning, "cannot filter ARP: reading all of it", side.arp->hear_only(addresses));
+    host::log_failure(Level::Warning, "cannot filter ARP: reading all of it",
+                      side.arp->filter_addresses(addresses));
   }
   const bool had_carrier = std::exchange(side.carrier, host::carrier(side.interface).value_or(false));
   if (!side.carrier || had_carrier) return;
-  side.takers.ask_again(now);
-  if (&side == &team()) exchanged_.ask_again(now);
+  side.takers.restart_probing(now);
+  if (&side == &team()) exchanged_.restart_probing(now);
 }
 
 void AddressWatch::open(Side& side, unsigned index) {

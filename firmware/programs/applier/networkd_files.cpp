@@ -19,7 +19,7 @@ namespace {
 
 /// "" if the file is absent.
 std::expected<std::string, std::string> text_of(const std::string& path) {
-  auto text = ADIT_TRY(host::read_if_there(path));
+  auto text = ADIT_TRY(host::read_optional_file(path));
   return std::move(text).value_or("");
 }
 
@@ -84,7 +84,7 @@ std::expected<void, std::string> NetworkdFiles::read() {
 }
 
 std::expected<bool, std::string> NetworkdFiles::read_confirmed() {
-  const auto text = ADIT_TRY(host::read_if_there(confirmed_file()));
+  const auto text = ADIT_TRY(host::read_optional_file(confirmed_file()));
   if (!text) return false;
   const auto confirmed = network::read_kept(*text);
   if (confirmed) {
@@ -98,7 +98,7 @@ std::expected<bool, std::string> NetworkdFiles::read_confirmed() {
 /// Uses the factory addresses. If the box came without any, the addresses are set elsewhere and stay.
 void NetworkdFiles::use_factory() {
   kept_.reset();
-  const auto text = host::read_if_there(options_.factory);
+  const auto text = host::read_optional_file(options_.factory);
   if (text && !*text) return;
   const auto factory = text ? network::read_kept(**text) : std::unexpected(text.error());
   if (factory) {
@@ -140,7 +140,7 @@ std::expected<void, std::string> NetworkdFiles::set_aside(const std::string& why
 std::expected<void, std::string> NetworkdFiles::apply(const network::Numbers& numbers) {
   std::vector<Place> changes;
   for (Place& place : places(numbers)) {
-    const auto in_use = ADIT_TRY(in_use_of(place));
+    const auto in_use = ADIT_TRY(current_text(place));
     if (in_use != place.text) changes.push_back(std::move(place));
   }
   for (const Place& place : changes) {
@@ -153,7 +153,7 @@ std::expected<void, std::string> NetworkdFiles::apply(const network::Numbers& nu
   return reload_.run();
 }
 
-std::expected<std::string, std::string> NetworkdFiles::in_use_of(const Place& place) {
+std::expected<std::string, std::string> NetworkdFiles::current_text(const Place& place) {
   auto tried = text_of(place.tried);
   return tried && tried->empty() ? text_of(place.kept) : tried;
 }
@@ -222,7 +222,7 @@ std::expected<void, std::string> NetworkdFiles::lead_to(const network::Endpoints
   }
   const auto& in_use = tried_ ? tried_ : kept_;
   for (const Place& place : in_use ? places(*in_use) : std::array<Place, 2>{}) {
-    const auto used = ADIT_TRY(in_use_of(place));
+    const auto used = ADIT_TRY(current_text(place));
     if (used == place.text) continue;
     if (auto written = put(place.tried, place.text, Then::Reload); !written) return written;
   }

@@ -87,7 +87,7 @@ class NetworkdFiles final : public network::NumbersSetter {
   std::expected<void, std::string> write_kept(const network::Numbers& numbers, Then then);
   std::expected<void, std::string> put(const std::string& file, const std::string& text, Then then);
   /// The text that networkd uses for an interface; "" if there is none.
-  static std::expected<std::string, std::string> in_use_of(const Place& place);
+  static std::expected<std::string, std::string> current_text(const Place& place);
   std::expected<void, std::string> check_unused(const Place& place) const;
   /// Returns whether a file was removed.
   std::expected<bool, std::string> remove_tried(Then then);

@@ -86,7 +86,7 @@ class Rauc {
   /// Starts the running slot next.
   std::expected<void, std::string> start_booted_next() const;
   /// Starts the running slot next, and the other one not before it is written again.
-  std::expected<void, std::string> leave_other() const;
+  std::expected<void, std::string> disable_other_slot() const;
 
  private:
   std::string command_;
@@ -282,7 +282,7 @@ std::expected<void, std::string> Rauc::start_booted_next() const {
 
 /// A slot marked bad leaves the boot loader's order. Otherwise the boot loader would try it three more times
 /// once no slot has tries left.
-std::expected<void, std::string> Rauc::leave_other() const {
+std::expected<void, std::string> Rauc::disable_other_slot() const {
   if (auto first = start_booted_next(); !first) return first;
   return mark(command_, "mark-bad", "other");
 }
@@ -390,7 +390,7 @@ void Updater::find_out() {
   update::LastUpdate last_update = running ? update::settled(kept, status_.running, boot_) : kept;
   if (last_update.stage == Stage::Left && kept.stage != Stage::Left) {
     host::log_failure(Level::Error, "cannot stop the boot loader from starting the failed update again",
-                      rauc_.leave_other());
+                      rauc_.disable_other_slot());
   }
   if (last_update == kept) {
     status_.last = std::move(last_update);
@@ -438,7 +438,7 @@ std::string Updater::install(const std::expected<BundleFile, std::string>& file,
   if (!file) return file.error();
   if (!status_.trouble.empty()) return status_.trouble;
   if (status_.trial) return update::wait_for_trial(status_.running.version);
-  const auto hindrance = host::read_if_there(options_.hindrance);
+  const auto hindrance = host::read_optional_file(options_.hindrance);
   if (!hindrance) return hindrance.error();
   if (*hindrance) return (*hindrance)->substr(0, (*hindrance)->find('\n'));
   status_.doing = "checking";

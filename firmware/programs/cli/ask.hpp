@@ -162,19 +162,19 @@ Result<void> read_into(const Adit& adit, const Result<codec::Value>& answer, con
 
 /// Adit's answer as JSON, and as a row or rows.
 template <class Row>
-struct Told {
+struct Fetched {
   std::string json;
   Row row = {};
 };
 template <class Row>
-Result<Told<Row>> told(const Adit& adit, Result<std::string> json) {
+Result<Fetched<Row>> told(const Adit& adit, Result<std::string> json) {
   if (!json) return std::unexpected(std::move(json.error()));
-  Told<Row> told{*std::move(json)};
+  Fetched<Row> told{*std::move(json)};
   ADIT_TRY(read_into(adit, json_in(adit, told.json), codec::kind_of<Row>, &told.row));
   return told;
 }
 template <class Row>
-Result<Told<Row>> fetch(const Adit& adit, const std::string& target) {
+Result<Fetched<Row>> fetch(const Adit& adit, const std::string& target) {
   return told<Row>(adit, get(adit, target));
 }
 
@@ -186,14 +186,14 @@ struct Waiting {
 };
 /// Fetches the row until `is_over` returns true for it.
 template <class Row, class IsOver>
-Result<Told<Row>> fetch_until(const Adit& adit, const std::string& target, const Waiting& waiting,
-                              IsOver is_over) {
+Result<Fetched<Row>> fetch_until(const Adit& adit, const std::string& target, const Waiting& waiting,
+                                 IsOver is_over) {
   const auto end = std::chrono::steady_clock::now() + waiting.within;
   while (true) {
     auto answer = fetch<Row>(adit, target);
     if (answer ? is_over(answer->row) : !waiting.may_be_away) return answer;
     if (std::chrono::steady_clock::now() >= end)
-      return answer ? Result<Told<Row>>(failed(waiting.late)) : answer;
+      return answer ? Result<Fetched<Row>>(failed(waiting.late)) : answer;
     std::this_thread::sleep_for(waiting.every);
   }
 }

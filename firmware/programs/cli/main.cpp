@@ -99,7 +99,7 @@ int main(int count, char** arguments) {
   const bool utf8 = is_utf8_terminal();
   bool printed = true;
   const auto write_to = [utf8](std::FILE* file, const std::string& text) {
-    const std::string safe = !utf8 && is_terminal(fileno(file)) ? adit::host::in_ascii(text) : text;
+    const std::string safe = !utf8 && is_terminal(fileno(file)) ? adit::host::to_ascii(text) : text;
     return std::fwrite(safe.data(), 1, safe.size(), file) == safe.size() && std::fflush(file) == 0;
   };
   const Console console{

@@ -43,7 +43,7 @@ struct Trial {
   std::optional<settings::Address> scoring, mapping;
   std::string scoring_token, mapping_token;  // files
 
-  bool is_of_what_is_in_use() const {
+  bool is_for_current_settings() const {
     return course.empty() && !scoring && !mapping && scoring_token.empty() && mapping_token.empty();
   }
 };

@@ -218,7 +218,7 @@ std::string text_of(const api::SetupView& setup, const settings::Settings& setti
 }
 
 /// Adit's check of settings.
-Result<Told<api::CheckView>> ask_check(const Adit& adit, const Value& settings) {
+Result<Fetched<api::CheckView>> ask_check(const Adit& adit, const Value& settings) {
   return told<api::CheckView>(
       adit, post(adit, {.target = "/adit/settings/check",
                         .check = kSee,
@@ -227,8 +227,8 @@ Result<Told<api::CheckView>> ask_check(const Adit& adit, const Value& settings) 
 
 /// Posts a change and waits until the box uses it. Error: the box reverted the change, or does not use it in
 /// time.
-Result<Told<api::ChangesView>> change(const Adit& adit, const std::string& target, const Value::Object& body,
-                                      const char* check) {
+Result<Fetched<api::ChangesView>> change(const Adit& adit, const std::string& target,
+                                         const Value::Object& body, const char* check) {
   auto changed = told<api::ChangesView>(
       adit, post(adit, {.target = target, .check = check, .body = codec::write_json({body})}));
   if (!changed || changed->row.changes.empty()) return changed;  // `trouble` may be older

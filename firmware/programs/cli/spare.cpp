@@ -21,7 +21,7 @@ constexpr const char* kSeeSpare = "adit spare";
 constexpr std::chrono::seconds kFileWithin{60};
 
 /// Waits for a busy or restarting box. The stick may be slow, and another request may come first.
-Waiting for_box(std::chrono::seconds within) {
+Waiting box_waiting(std::chrono::seconds within) {
   return {.within = within,
           .every = std::chrono::milliseconds(300),
           .may_be_away = true,
@@ -71,7 +71,7 @@ Result<SpareView> put_on_standby(const Call& call) {
                    "Put it on standby?"));
   ADIT_TRY(post(call.adit, {.target = "/adit/spare/standby", .check = kSeeSpare}));
   auto told = ADIT_TRY(
-      fetch_until<SpareView>(call.adit, kSpare, for_box(std::chrono::seconds(60)),
+      fetch_until<SpareView>(call.adit, kSpare, box_waiting(std::chrono::seconds(60)),
                              [](const SpareView& seen) { return seen.standby && !seen.code.empty(); }));
   return std::move(told.row);
 }
@@ -80,7 +80,7 @@ Result<SpareView> put_on_standby(const Call& call) {
 Result<SpareView> ask_stick(const Adit& adit, const char* target, const std::string& body) {
   ADIT_TRY(post(adit, {.target = target, .check = kSeeSpare, .body = body}));
   auto told = ADIT_TRY(
-      fetch_until<SpareView>(adit, kSpare, for_box(std::chrono::seconds(330)),
+      fetch_until<SpareView>(adit, kSpare, box_waiting(std::chrono::seconds(330)),
                              [](const SpareView& seen) { return !seen.stick || seen.stick->doing.empty(); }));
   const auto& stick = told.row.stick;
   if (!stick) return failed("adit-spare is not running");

@@ -413,7 +413,7 @@ void arrivals(const api::RunView& before, const api::RunView& now, Lines& lines)
 }
 
 /// The end of the colour sequence (ECMA-48, CSI ... m) at `at`, or `at` if there is none.
-std::size_t behind_colour(std::string_view line, std::size_t at) {
+std::size_t colour_end(std::string_view line, std::size_t at) {
   if (!line.substr(at).starts_with("\033[")) return at;
   const std::size_t end = line.find('m', at);
   return end == std::string_view::npos ? line.size() : end + 1;
@@ -423,7 +423,7 @@ std::string cut(std::string_view line, std::size_t columns) {
   std::string text;
   std::size_t shown = 0;
   for (std::size_t at = 0; at < line.size();) {
-    std::size_t end = behind_colour(line, at);
+    std::size_t end = colour_end(line, at);
     if (end == at) {
       if (++shown > columns) return text + "\033[0m";
       do ++end;

@@ -85,7 +85,7 @@ Result<Value> endpoint_to_try(const std::optional<settings::Address>& at, const 
 
 /// The body of POST /adit/test; "": test the settings in use.
 Result<std::string> body_for(const Trial& trial) {
-  if (trial.is_of_what_is_in_use()) return "";
+  if (trial.is_for_current_settings()) return "";
   const auto scoring = ADIT_TRY(endpoint_to_try(trial.scoring, trial.scoring_token));
   const auto mapping = ADIT_TRY(endpoint_to_try(trial.mapping, trial.mapping_token));
   Value::Object body = {{"scoring", scoring}, {"mapping", mapping}};
@@ -97,7 +97,7 @@ Result<std::string> body_for(const Trial& trial) {
 
 Result<Outcome> test(const Call& call) {
   const auto& [adit, options, console] = call;
-  const bool is_of_use = options.trial.is_of_what_is_in_use();
+  const bool is_of_use = options.trial.is_for_current_settings();
   auto body = ADIT_TRY(body_for(options.trial));
   const auto begun = post(adit, {.target = "/adit/test", .check = "adit test", .body = std::move(body)});
   const bool is_joined = !begun && begun.error().status == 409 && is_of_use;

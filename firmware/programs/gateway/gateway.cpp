@@ -101,7 +101,7 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
       setup_(
           parts_.store, parts_.reset, parts_.loaded, parts_.trouble,
           [this](const std::string& post) {
-            return dispatch::meaning_of_other_command_post(flow_.reports(), post);
+            return dispatch::describe_command_post_change(flow_.reports(), post);
           },
           [this] { change_.call_at(loop_.now()); }, [this] { make_way(); }),
       box_(loop, flow_.workers(), parts_.board, settings::file_of(parts_.loaded.settings),
@@ -135,7 +135,7 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
       api_(loop,
            {.source = overview_,
             .decisions = flow_,
-            .caretaker = *this,
+            .gateway_control = *this,
             .keys = accounts_,
             .setup = setup_,
             .network = network_,
@@ -235,7 +235,7 @@ std::expected<void, std::string> Gateway::start() {
 }
 
 std::expected<void, std::string> Gateway::listen(const settings::Team& team) {
-  listeners_.let_go_within(settings_.reports.answer_within + kAnswerLeaves);
+  listeners_.set_drain_time(settings_.reports.answer_within + kAnswerLeaves);
   return listeners_.serve(team);
 }
 
@@ -414,7 +414,7 @@ void Gateway::tell_of_settings(const settings::Restarts& restarts, const forward
   flow_.settings_changed(restarts, tokens);
   overview_.settings_changed(restarts);
   routes_.serve_with(icd_options());
-  api_.let_in(tokens.all, redaction());
+  api_.set_tokens(tokens.all, redaction());
   host::keep_out_of_log(redaction());
   guesses_.forget();
   links_.look_at(settings_);

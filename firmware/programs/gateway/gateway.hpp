@@ -23,7 +23,7 @@ namespace adit::gateway {
 std::string team_address(const settings::Team& team);
 
 /// Adit at work: the flow, the listeners, the page and the box.
-class Gateway final : public api::Caretaker {
+class Gateway final : public api::GatewayControl {
  public:
   Gateway(loop::Loop& loop, Parts parts);
 

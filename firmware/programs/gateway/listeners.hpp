@@ -88,7 +88,7 @@ class Listeners {
   /// settings.
   std::expected<void, std::string> serve(const settings::Team& team);
   /// How long clients of a closed socket are served.
-  void let_go_within(loop::Duration longest) { longest_ = longest; }
+  void set_drain_time(loop::Duration longest) { longest_ = longest; }
   /// Ends unused servers. Call now and then.
   void tick();
   /// Accepts no new connections.

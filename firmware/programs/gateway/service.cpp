@@ -116,10 +116,10 @@ int Service::run(int (*count_faults)(const char* file) noexcept) {
   if (!again) {
     if (!store_.revert()) return fail(again.error());
     host::log(host::Level::Error, "the last change of the settings was reverted", {{"why", again.error()}});
-    start_again("the last change was reverted: " + again.error());
+    restart_process("the last change was reverted: " + again.error());
   }
   host::log(host::Level::Notice, "stopped");
-  if (*again) start_again("");
+  if (*again) restart_process("");
   return 0;
 }
 
@@ -153,9 +153,9 @@ void Service::forget_faults() {
     host::log(host::Level::Warning, "cannot forget earlier faults", {{"why", error.message()}});
 }
 
-void Service::start_again(const std::string& trouble) {
-  host::start_again(sockets_.hand_over(), arguments_,
-                    {{kTrouble, trouble}, {kFileRest, std::to_string(file_rest_.count())}});
+void Service::restart_process(const std::string& trouble) {
+  host::restart_process(sockets_.hand_over(), arguments_,
+                        {{kTrouble, trouble}, {kFileRest, std::to_string(file_rest_.count())}});
 }
 
 /// True: restart. An error: the gateway could not start.
@@ -213,7 +213,7 @@ std::expected<bool, std::string> Service::run(Gateway& gateway, const settings::
   std::optional<loop::Watchdog> watchdog;
   if (const auto within = host::watchdog_within()) {
     watchdog.emplace(loop_, *within, &host::notify_alive);
-    watchdog->ask_also(gateway.threads());
+    watchdog->watch_workers(gateway.threads());
   }
   running_ = &gateway;
   file_rest_ = gateway.awaits_files() ? longer(file_rest_) : FileReturn::kRest;
@@ -221,7 +221,7 @@ std::expected<bool, std::string> Service::run(Gateway& gateway, const settings::
   well.call_at(loop_.now() + kWell);
   loop_.run();
   forget_faults();
-  if (gateway.makes_way()) host::notify_starting_again();
+  if (gateway.makes_way()) host::notify_restarting();
   return gateway.makes_way();
 }
 

@@ -41,7 +41,7 @@ class Service {
   std::string faults_file() const;
   std::string put_queue_aside();
   void forget_faults();
-  [[noreturn]] void start_again(const std::string& trouble);
+  [[noreturn]] void restart_process(const std::string& trouble);
 
   const Options& options_;
   char* const* const arguments_;

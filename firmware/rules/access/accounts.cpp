@@ -90,7 +90,7 @@ const Device& Devices::add(const Secret& id, Role role) {
   if (std::ranges::count_if(devices_, is_of_role) >= static_cast<std::ptrdiff_t>(kMostOfRole)) {
     devices_.erase(std::ranges::find_if(devices_, is_of_role));
   }
-  devices_.push_back({.number = ++last_, .role = role, .id = as_token(id)});
+  devices_.push_back({.number = ++last_, .role = role, .id = to_token(id)});
   if (changed_) changed_();
   return devices_.back();
 }

@@ -94,7 +94,7 @@ std::vector<std::string_view> cookies_in(std::string_view cookies, std::string_v
   return values;
 }
 
-icd::Checked<void> check_whence(const Request& request) {
+icd::Checked<void> check_host_and_origin(const Request& request) {
   if (!names_this_box(request.host)) {
     return refuse(icd::Status::Forbidden,
                   "Host: expected the box's address, localhost or the box's name in .local, got ",
@@ -121,7 +121,7 @@ std::optional<Visitor> who(const Request& request, std::span<const icd::BearerTo
 
 icd::Checked<Visitor> admit(const Request& request, Role role, std::span<const icd::BearerToken> tokens,
                             Sessions& sessions, Instant now) {
-  ADIT_TRY(check_whence(request));
+  ADIT_TRY(check_host_and_origin(request));
   const auto visitor = who(request, tokens, sessions, now);
   if (!visitor) {
     return refuse(icd::Status::Unauthorized, "log in, or send the team's token as Authorization: Bearer");

@@ -46,7 +46,7 @@ struct Visitor {
 
 /// An error (403) if the Host header does not name this box, or if the Origin header names another host.
 /// Applies to all requests, even if they need no role.
-icd::Checked<void> check_whence(const Request& request);
+icd::Checked<void> check_host_and_origin(const Request& request);
 
 /// With an Authorization header: an operator if it contains one of `tokens`, else nullopt. Without one: the
 /// owner of the session whose cookie the request shows, or nullopt.

@@ -78,7 +78,7 @@ std::expected<KeptSessions, std::string> read_sessions(std::string_view json) {
   });
 }
 
-icd::BearerToken as_token(const Secret& secret) {
+icd::BearerToken to_token(const Secret& secret) {
   return *icd::BearerToken::parse(icd::hex(secret));
 }
 
@@ -101,8 +101,8 @@ const Session& Sessions::begin(const Secret& id, const Secret& csrf, Role role, 
   }
   sessions_.push_back({.number = ++last_,
                        .role = role,
-                       .id = as_token(id),
-                       .csrf = as_token(csrf),
+                       .id = to_token(id),
+                       .csrf = to_token(csrf),
                        .made = now,
                        .seen = now,
                        .address = caller.address,

@@ -18,7 +18,7 @@ namespace adit::access {
 using Secret = std::array<std::uint8_t, 32>;
 
 /// As 64 hexadecimal digits.
-icd::BearerToken as_token(const Secret& secret);
+icd::BearerToken to_token(const Secret& secret);
 
 /// A login. The browser shows `id` with each request.
 struct Session {

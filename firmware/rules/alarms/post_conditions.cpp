@@ -35,7 +35,7 @@ struct Trouble {
   }
 };
 
-Condition of_trouble(const Trouble& trouble, std::string name) {
+Condition condition_of(const Trouble& trouble, std::string name) {
   return {.id = std::move(name),
           .severity = trouble.is == EndpointFault::Throttling ? Severity::Wait : Severity::Bad,
           .side = Side::CommandPost,
@@ -134,7 +134,7 @@ void find_post_troubles(const facts::Traffic& traffic, Found& found) {
       trouble.endpoints.push_back(&endpoint);
     }
     if (trouble.endpoints.empty()) continue;
-    Condition condition = of_trouble(trouble, row.id);
+    Condition condition = condition_of(trouble, row.id);
     row.say(trouble, condition);
     found.push_back(std::move(condition));
   }

@@ -70,7 +70,7 @@ void find_silent(const Traffic& traffic, Found& found) {
 
 /// The robot's map that is furthest behind, and more than `least` seconds, without the endpoint's own
 /// trouble; or null.
-const ActivityRow* longest_behind(const Traffic& traffic, const std::string& robot, double least) {
+const ActivityRow* find_most_delayed(const Traffic& traffic, const std::string& robot, double least) {
   const ActivityRow* longest = nullptr;
   for (const ActivityRow& row : traffic.activities) {
     const double its = waited(row, traffic).value_or(0);
@@ -81,7 +81,7 @@ const ActivityRow* longest_behind(const Traffic& traffic, const std::string& rob
   return longest;
 }
 
-void find_behind(const Traffic& traffic, Found& found) {
+void find_late_maps(const Traffic& traffic, Found& found) {
   const double told = 2 * (kLateAfter + traffic.turn), stuck = std::max(kStuckAfter, 1.5 * told);
   std::vector<std::string> names;
   for (const ActivityRow& row : traffic.activities) {
@@ -91,7 +91,7 @@ void find_behind(const Traffic& traffic, Found& found) {
   names.erase(std::ranges::unique(names).begin(), names.end());
   std::size_t count = 0;
   for (const std::string& name : names) {
-    const ActivityRow* const longest = longest_behind(traffic, name, told);
+    const ActivityRow* const longest = find_most_delayed(traffic, name, told);
     if (longest == nullptr) continue;
     ++count;
     found.push_back({.id = "map_behind:" + name,
@@ -205,7 +205,7 @@ void find_crowds(const facts::Clients& clients, Found& found) {
 
 void find_robot_troubles(const Traffic& traffic, const facts::Clients& clients, Found& found) {
   find_silent(traffic, found);
-  find_behind(traffic, found);
+  find_late_maps(traffic, found);
   find_full_queue(traffic, found);
   find_unknown(clients, traffic, found);
   find_crowds(clients, found);

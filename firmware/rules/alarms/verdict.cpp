@@ -152,7 +152,7 @@ void append(std::string& why, std::string_view before, const std::vector<std::st
 }
 
 /// "20 robots and the merged map, "
-std::string who_arrive(const Group& arriving) {
+std::string describe_arriving(const Group& arriving) {
   const std::size_t robots = arriving.robots();
   std::string who;
   if (robots > 0) who = sentence(robots, robots == 1 ? " robot" : " robots");
@@ -180,7 +180,7 @@ Verdict partly(const Groups& groups, std::size_t robots, const std::vector<std::
   std::ranges::sort(other.names);
   if (other.empty()) return {Level::Bad, "No map arrives", std::move(why)};
   if (other.robots() == robots)
-    return {Level::Wait, "The merged map does not arrive", who_arrive(other) + age_of(other)};
+    return {Level::Wait, "The merged map does not arrive", describe_arriving(other) + age_of(other)};
   if (other.oldest)
     why += sentence(other.names.size() == 1 ? "; the other " : "; oldest other ", age_text(*other.oldest));
   if (other.robots() == 0) return {Level::Wait, "Only the merged map arrives", std::move(why)};
@@ -333,7 +333,7 @@ Verdict verdict_of(const Traffic& traffic) {
     for (const std::string& name : groups.quiet.names) heard = least(heard, all.at(name).heard);
     why = "no new map for " + age_text(heard.value_or(0));
   } else {
-    why = (are_all ? who_arrive(groups.arriving) : "") + age_of(groups.arriving);
+    why = (are_all ? describe_arriving(groups.arriving) : "") + age_of(groups.arriving);
     append(why, "", groups.quiet.names, " quiet");
   }
   append(why, "no map yet from ", groups.first.names, "");

@@ -6,7 +6,7 @@
 
 namespace adit::clock {
 
-std::optional<double> to_be_set(Source present, const Offer& offer, double now) {
+std::optional<double> time_to_set(Source present, const Offer& offer, double now) {
   if (!(offer.time >= kEarliest && offer.time < kLatest)) return std::nullopt;
   const bool counts = offer.source > present || offer.source == Source::Operator;
   if (!counts) return std::nullopt;

@@ -39,7 +39,7 @@ struct Offer {
 /// The time to set, or std::nullopt to leave the clock. `present` set the clock last; `now` is its time. A
 /// more trusted source sets it in either direction, and the operator always does. LastKnown and Robots only
 /// advance it, Robots by at most kRobotsMost. The caller checks whether an NTP server keeps the clock.
-std::optional<double> to_be_set(Source present, const Offer& offer, double now);
+std::optional<double> time_to_set(Source present, const Offer& offer, double now);
 
 }  // namespace adit::clock
 

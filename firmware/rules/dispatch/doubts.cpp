@@ -96,7 +96,7 @@ const Report* ReportReview::sent_elsewhere(const Report& report,
   return nullptr;
 }
 
-const Report* ReportReview::sent_to_other_command_post(const Report& report) const {
+const Report* ReportReview::find_at_other_command_post(const Report& report) const {
   if (account_.run().was_heard() || report.asked) return nullptr;
   return sent_elsewhere(report, [this](const Run& its) { return its.post != account_.run().post; });
 }
@@ -182,7 +182,7 @@ void ReportReview::await_undo(std::int64_t number, Time time) {
   undo_[number] = {time.now + rules_.undo, time.stamp + static_cast<double>(rules_.undo.count())};
 }
 
-void ReportReview::undo_over(std::int64_t number) {
+void ReportReview::end_undo(std::int64_t number) {
   undo_.erase(number);
   compare_later(number);
 }

@@ -48,7 +48,7 @@ class ReportReview {
   /// The same report of that run, sent after this one and answered, or null.
   const Report* answered_later(const Report& report) const;
   /// The same report, sent to another Command Post, if this one has not answered yet. Otherwise null.
-  const Report* sent_to_other_command_post(const Report& report) const;
+  const Report* find_at_other_command_post(const Report& report) const;
   Hold reason_to_hold(const Report& report) const;
   /// Reports in doubt that the present run may have got before the ledger lost them. New reports are held.
   std::vector<const Report*> lost_here() const;
@@ -62,7 +62,7 @@ class ReportReview {
   Hold hold_for_undo() const;
   void await_undo(std::int64_t number, Time time);
   bool awaits_undo(std::int64_t number) const { return undo_.contains(number); }
-  void undo_over(std::int64_t number);
+  void end_undo(std::int64_t number);
   /// Reports::sends_at().
   std::optional<double> sends_at(std::int64_t number) const;
   std::optional<Instant> next_undo() const;

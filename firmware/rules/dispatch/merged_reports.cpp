@@ -70,7 +70,7 @@ class MergedRuns {
 
  private:
   bool is_blank() const;
-  std::int64_t run_known_as(const Run& run) const;
+  std::int64_t matching_run(const Run& run) const;
   void take(const Run& run, std::int64_t turn);
   const Run* own_run() const;
   bool has_reports(std::int64_t run) const;
@@ -123,7 +123,7 @@ MergedRuns::MergedRuns(const Books& here, const Books& there, const SameReports&
   for (const auto& [number, run] : here_runs_.all()) turn = std::max(turn, run.place());
   std::vector<const Run*> in_turn;
   for (const auto& [number, run] : there_runs_.all()) {
-    const std::int64_t as = run_known_as(run);
+    const std::int64_t as = matching_run(run);
     is_new_[number] = as == 0;
     if (as == 0 && is_blank()) next = number;
     numbers_[number] = as != 0 ? as : next++;
@@ -150,7 +150,7 @@ bool MergedRuns::is_blank() const {
 }
 
 /// By common reports, or by address and begin. 0: unknown here.
-std::int64_t MergedRuns::run_known_as(const Run& run) const {
+std::int64_t MergedRuns::matching_run(const Run& run) const {
   std::int64_t found = 0;
   for (const auto& [there, here] : same_) {
     const Run* const known = there->run == run.number ? here_runs_.find(here->run) : nullptr;

@@ -19,7 +19,7 @@ bool has_happened(ReportEvent event) {
 }
 
 /// After a power cut the run's status would show it.
-bool can_be_found_out(const Report& report, ReportEvent event) {
+bool can_recover_from_status(const Report& report, ReportEvent event) {
   const bool is_answer = event == ReportEvent::Recorded || event == ReportEvent::Rejected;
   return is_answer && report.before.has_value();
 }
@@ -63,7 +63,7 @@ bool ReportBook::move(std::span<const Step> steps, Time time) {
     report.changed = time.stamp;
     if (step.edit) step.edit(report);
     happened = happened || has_happened(step.event);
-    soon = soon && can_be_found_out(report, step.event);
+    soon = soon && can_recover_from_status(report, step.event);
   }
   if (!write(moved, happened, soon ? Flush::Soon : Flush::Now)) return false;
   for (std::size_t i = 0; follow_ && i < moved.size(); ++i) follow_(moved[i].number, actions[i], time);

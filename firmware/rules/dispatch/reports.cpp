@@ -28,7 +28,7 @@ bool Reports::may_go(const Report& report, Instant now) const {
   if (barred_ || (is_page_ && !ordered_.contains(report.number))) return false;
   if (doubts_.is_pending(now)) return false;
   if (account_.is_fresh(now)) return true;
-  if (!account_.is_dumb(now) || review_.sent_to_other_command_post(report) != nullptr) return false;
+  if (!account_.is_dumb(now) || review_.find_at_other_command_post(report) != nullptr) return false;
   return report.asked || clients_.is_young(report, now);
 }
 
@@ -255,7 +255,7 @@ bool Reports::take(const PostedReport& posted, ClientId client, bool may_send, T
   }
   Hold hold = fresh ? review_.reason_to_hold(report) : Hold{};
   if (posted.can_be_undone && hold.why.empty()) hold = review_.hold_for_undo();
-  if (const Report* const other = review_.sent_to_other_command_post(report); other != nullptr) {
+  if (const Report* const other = review_.find_at_other_command_post(report); other != nullptr) {
     report.note = icd::sentence("the same as report ", other->number,
                                 ", sent to another Command Post; queued until the Command Post at ",
                                 run().post, " answers");
@@ -298,7 +298,7 @@ std::int64_t Reports::add(Report report, const Hold& hold, bool now, Time time,
 /// Queues the report, as if it was posted now. False: the write failed.
 bool Reports::end_undo(std::int64_t number, const std::string& note, Time time) {
   if (!book_.move({number, ReportEvent::UndoOver, note}, time)) return false;
-  review_.undo_over(number);
+  review_.end_undo(number);
   clients_.posted(number, time.now);
   return true;
 }
@@ -378,7 +378,7 @@ std::string counted(const Open& open) {
   return text;
 }
 
-std::string what_is_known_at(const Reports& reports, const std::string& post) {
+std::string describe_known_run(const Reports& reports, const std::string& post) {
   const Run* const known = reports.runs().at_post(post);
   if (known == nullptr) return "";
   const auto count = std::ranges::count_if(
@@ -389,9 +389,9 @@ std::string what_is_known_at(const Reports& reports, const std::string& post) {
 
 }  // namespace
 
-std::string meaning_of_other_command_post(const Reports& reports, const std::string& post) {
+std::string describe_command_post_change(const Reports& reports, const std::string& post) {
   const std::string& here = reports.meant_run().post;
-  std::string text = "reports go to " + post + " from then on" + what_is_known_at(reports, post);
+  std::string text = "reports go to " + post + " from then on" + describe_known_run(reports, post);
   const Open open = open_here(reports);
   if (open.all() == 0) return text + "; no report is queued, in doubt or held now";
   text += "; " + counted(open);

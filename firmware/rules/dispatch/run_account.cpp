@@ -298,7 +298,7 @@ void RunAccount::heard(const icd::RunStatus& status, Time time) {
   // Signs of another run are written at once.
   const bool is_news = !run.last || run.last->remaining_reports != status.remaining_reports ||
                        run.last->current_team != status.current_team;
-  const Clock clock = seen_again(run.status_clock, status.run_clock);
+  const Clock clock = update_clock(run.status_clock, status.run_clock);
   const bool seen_to_run = clock.runs && !(run.status_clock && run.status_clock->runs);
   run.last = status;
   run.status_clock = clock;
@@ -314,7 +314,7 @@ void RunAccount::answered(const icd::ReportReply& reply, Time time) {
   Run& run = runs_.present();
   bool is_news = false;
   if (reply.run_clock > 0) {
-    const Clock clock = seen_again(run.answer_clock, reply.run_clock);
+    const Clock clock = update_clock(run.answer_clock, reply.run_clock);
     is_news = !run.answer_clock || clock.runs != run.answer_clock->runs;
     run.answer_clock = clock;
     run.heard = time.stamp;

@@ -149,7 +149,7 @@ std::string run_in(const std::string& answer) {
   return reply ? reply->run : "";
 }
 
-std::string why_at(const std::string& post, const std::string& before) {
+std::string describe_move(const std::string& post, const std::string& before) {
   return "the Command Post is at " + post + ", it was at " + before;
 }
 
@@ -161,7 +161,7 @@ void RunChanges::will_move(const std::string& post, Time time) {
   if (post != run.post) {
     const Run* const known = account_.runs().at_post(post);
     if (known != nullptr) return account_.will_be(known->number);
-    account_.announce(why_at(post, run.post), post, time);
+    account_.announce(describe_move(post, run.post), post, time);
     return;
   }
   std::vector<Report> steps;
@@ -194,7 +194,7 @@ void RunChanges::change_post(const std::string& post, Time time) {
   if (known != nullptr) {
     account_.take_up(next, steps, time);
   } else {
-    account_.begin({why_at(post, from), {}}, 0, std::nullopt, steps, time);
+    account_.begin({describe_move(post, from), {}}, 0, std::nullopt, steps, time);
   }
   doubts_.begin_run(doubts, time);
 }

@@ -19,7 +19,7 @@ struct Clock {
   friend bool operator==(const Clock&, const Clock&) = default;
 };
 
-inline Clock seen_again(const std::optional<Clock>& seen, double shows) {
+inline Clock update_clock(const std::optional<Clock>& seen, double shows) {
   if (!seen) return {.shows = shows};
   return {.shows = shows, .runs = seen->runs || shows > seen->shows};
 }

@@ -21,7 +21,7 @@ Body body_of(std::string_view body) {
   return codec::parse_json(body) ? Body::Json : Body::Other;
 }
 
-bool may_be_the_command_post(int status, Body body) {
+bool is_plausible_answer(int status, Body body) {
   if (status >= 300 && status < 400) return false;
   return body != Body::Other || status == 404 || status == icd::kTooManyRequests || status >= 500;
 }

@@ -16,7 +16,7 @@ Body body_of(std::string_view body);
 
 /// Whether a Command Post may have sent this answer: JSON, an empty body, or a page with 404, 429 or 5xx.
 /// Redirects and other pages come from other machines, such as a captive portal.
-bool may_be_the_command_post(int status, Body body);
+bool is_plausible_answer(int status, Body body);
 /// 2xx with JSON. An error does not identify the Command Post, because proxies send JSON errors.
 bool is_the_command_post(int status, Body body);
 

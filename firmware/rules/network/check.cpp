@@ -34,7 +34,7 @@ std::vector<Endpoint> endpoints(const Circumstances& around) {
           endpoint("mapping endpoint", around.command_post.mapping)};
 }
 
-std::vector<Endpoint> all_endpoints(const Circumstances& around) {
+std::vector<Endpoint> list_endpoints(const Circumstances& around) {
   auto all = endpoints(around);
   for (const settings::Course& course : around.courses) {
     all.push_back(endpoint("scoring endpoint of course " + course.name, course.scoring));
@@ -127,7 +127,7 @@ std::string overlap_of(const Numbers& wanted, const Circumstances& around) {
     return written(*found);
   const auto own = std::ranges::find_if(wanted.command_post, is_in_the_way);
   if (own != wanted.command_post.end()) return written(*own);
-  for (const auto& [name, address, number] : all_endpoints(around)) {
+  for (const auto& [name, address, number] : list_endpoints(around)) {
     if (number && wanted.team.contains(*number)) return icd::sentence("the ", name, " ", address);
   }
   return "";

@@ -222,7 +222,7 @@ void read_command_post(Members& post, Numbers& numbers, std::vector<Error>& erro
 }
 
 /// The kernel would confuse the two sides.
-void check_both(const Numbers& numbers, std::vector<Error>& errors) {
+void check_sides_differ(const Numbers& numbers, std::vector<Error>& errors) {
   if (numbers.mode != Mode::Static || numbers.team.address == 0) return;
   if (std::ranges::find(numbers.command_post, numbers.team.address, &Subnet::address) !=
       numbers.command_post.end()) {
@@ -242,7 +242,7 @@ std::expected<Numbers, std::vector<Error>> read_numbers(const Value& value) {
     read_team(team, numbers);
     Members post(root.find("command_post"), "command_post", errors);
     read_command_post(post, numbers, errors);
-    check_both(numbers, errors);
+    check_sides_differ(numbers, errors);
     root.finish();
   }
   if (!errors.empty()) return std::unexpected(std::move(errors));

@@ -36,8 +36,8 @@ struct Hosts : codec::KindOf<std::vector<Subnet>> {
 
 constexpr Member kTeamMembers[] = {
     member<&Numbers::mode>("mode").one_of(kModeWords),
-    made_of<Numbers, StaticAddress>("address").if_any(),
-    made_of<Numbers, StaticPrefix>("prefix").if_any(),
+    made_of<Numbers, StaticAddress>("address").optional(),
+    made_of<Numbers, StaticPrefix>("prefix").optional(),
 };
 constexpr Row kTeam = {"TeamNumbers", kTeamMembers, "Has an address only if mode is static."};
 

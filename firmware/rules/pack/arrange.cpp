@@ -126,7 +126,7 @@ std::size_t tried(std::span<const std::uint8_t> points, std::size_t step,
   for (std::size_t i = 0; i < kStretches; ++i) {
     gather(points, step, numbers.subspan(i * part, std::min(part, bytes / kStretches / step + 1)), some);
   }
-  const auto member = codec::gzip_whole(some, kPointsLevel, some.size());
+  const auto member = codec::gzip(some, kPointsLevel, some.size());
   return member ? member->size() : some.size();
 }
 
@@ -151,7 +151,7 @@ void put_block_in_order(const icd::PointCloud2& cloud, const Box& box, std::span
 
 }  // namespace
 
-Arranged in_one_piece(const PointLayout& layout, const icd::MapData& data, std::size_t point_step) {
+Arranged arrange_contiguous(const PointLayout& layout, const icd::MapData& data, std::size_t point_step) {
   const std::size_t step = layout.cloud.point_step;
   Arranged arranged{.cloud = layout.cloud, .points = Bytes(data.bytes.size() / point_step * step)};
   std::span<std::uint8_t> rest{arranged.points};
@@ -246,7 +246,7 @@ std::optional<Shift> shift_of(const icd::PointCloud2& cloud, const Box& box, dou
   return fits ? std::optional(found) : std::nullopt;
 }
 
-icd::PointCloud2 in_float32(icd::PointCloud2 cloud) {
+icd::PointCloud2 to_float32(icd::PointCloud2 cloud) {
   for (icd::FieldSchema& field : cloud.fields) {
     if (is_coordinate(field)) field.datatype = icd::Datatype::Float32;
   }
@@ -279,7 +279,7 @@ void shift_points(Arranged& arranged, const PointLayout& layout, const icd::Plac
 
 bool round_to(double unit, Arranged& arranged) {
   if (arranged.cloud.is_bigendian || arranged.points.empty()) return false;
-  const auto layout = without_padding(in_float32(arranged.cloud));
+  const auto layout = without_padding(to_float32(arranged.cloud));
   const auto shift = shift_of(arranged.cloud, box_of(arranged), unit);
   if (!layout || !shift) return false;
   shift_points(arranged, *layout, shift->placed);

@@ -38,7 +38,7 @@ struct Arranged {
 };
 
 /// Copies the uncompressed points of `data`, each of `point_step` bytes, into `layout`, in their order.
-Arranged in_one_piece(const PointLayout& layout, const icd::MapData& data, std::size_t point_step);
+Arranged arrange_contiguous(const PointLayout& layout, const icd::MapData& data, std::size_t point_step);
 
 /// The box of all its points.
 Box box_of(const Arranged& arranged);

@@ -45,7 +45,7 @@ double tried(const icd::ChunkedBytes& points) {
     append(some, points, points.size() / kStretches * i, size / kStretches);
   }
   if (some.empty()) return 1;
-  const auto member = codec::gzip_whole(some, codec::kFastestLevel, some.size());
+  const auto member = codec::gzip(some, codec::kFastestLevel, some.size());
   return member ? static_cast<double>(member->size()) / static_cast<double>(some.size()) : 1;
 }
 
@@ -56,7 +56,7 @@ bool is_left(const icd::MapData& cells) {
   return cells.raw_size > kMany && cells.bytes.size() <= cells.raw_size / kPerByte;
 }
 
-Effort for_cells(const icd::MapUpdate& grid, const Hurry& hurry) {
+Effort effort_for_grid(const icd::MapUpdate& grid, const Hurry& hurry) {
   if (is_left(grid.data)) return Effort::None;
   const double as_stored = static_cast<double>(grid.data.bytes.size()) / hurry.bytes_per_second;
   const double most = std::min({hurry.longest / 2, 0.5, as_stored});
@@ -94,7 +94,7 @@ Effort effort_for(std::size_t size, double quick_to, const Hurry& hurry) {
 /// If even a cloud that Quick shrinks to nothing is best sent uncompressed, no sample is tried.
 Choice effort_for(const icd::MapUpdate& map, const Hurry& hurry) {
   if (map.data.raw_size > kMostPacked) return {Effort::None};
-  if (map.is_grid()) return {for_cells(map, hurry)};
+  if (map.is_grid()) return {effort_for_grid(map, hurry)};
   const std::size_t size = map.data.bytes.size();
   if (effort_for(size, 0, hurry) == Effort::None) return {Effort::None};
   const double quick_to = tried(map.data.bytes);
@@ -121,13 +121,13 @@ void pack_points(icd::PointCloud2& cloud, icd::MapData& data, const CloudForm& f
   const bool is_full = form.effort == Effort::Full;
   const auto tight = form.is_arranged ? without_padding(cloud) : std::nullopt;
   const PointLayout layout = tight ? *tight : unchanged(cloud);
-  Arranged arranged = in_one_piece(layout, data, cloud.point_step);
+  Arranged arranged = arrange_contiguous(layout, data, cloud.point_step);
   if (tight && is_full && form.unit > 0) round_to(form.unit, arranged);
   if (tight && is_full) put_in_order(arranged);
   const int level = is_full ? kPointsLevel : codec::kFastestLevel;
-  auto member = codec::gzip_whole(arranged.points, level, arranged.points.size() - 1);
+  auto member = codec::gzip(arranged.points, level, arranged.points.size() - 1);
   if (!member && layout.cloud == cloud) return;
-  if (!member) arranged = in_one_piece(layout, data, cloud.point_step);  // exact and in their order
+  if (!member) arranged = arrange_contiguous(layout, data, cloud.point_step);  // exact and in their order
   cloud = std::move(arranged.cloud);
   data.raw_size = arranged.points.size();
   data.compression = member ? icd::Compression::Gzip : icd::Compression::None;
@@ -170,11 +170,11 @@ class FiniteCheck {
 
 std::optional<icd::MapData> pack_cells(icd::MapData data, Effort effort) {
   if (effort == Effort::None || data.compression == icd::Compression::None) return data;
-  const auto cells = codec::gunzip_whole(data.bytes, data.raw_size);
+  const auto cells = codec::gunzip(data.bytes, data.raw_size);
   if (!cells) return std::nullopt;
   const int level = effort == Effort::Full ? kCellsLevel : kQuickCellsLevel;
   const std::size_t smallest = std::min(cells->size(), data.bytes.size());
-  if (auto member = codec::gzip_whole(*cells, level, smallest - 1)) {
+  if (auto member = codec::gzip(*cells, level, smallest - 1)) {
     data.bytes = *std::move(member);
   } else if (smallest == cells->size()) {
     return icd::MapData{icd::ChunkedBytes(*cells), icd::Compression::None, cells->size()};

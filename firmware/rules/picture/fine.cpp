@@ -21,7 +21,7 @@ std::size_t corner_of(const TileIndex& at) {
 }
 
 /// Known cells replace earlier ones; unknown cells leave them.
-void lay_over(const Sheet& sheet, Block& block) {
+void overlay_sheet(const Sheet& sheet, Block& block) {
   for (const Sheet::Part& part : sheet.parts()) {
     std::uint8_t* to = block.data() + corner_of(part.at);
     const std::uint8_t* from = part.pixels->data();
@@ -85,7 +85,7 @@ FineBlock draw_fine(const TileIndex& over, std::span<const std::shared_ptr<const
                  .bottom = over.y * kFineStep,
                  .tiles = kFineStep}};
     (void)draw_grid(grid->grid, grid->data, sheet, between);
-    lay_over(sheet, block);
+    overlay_sheet(sheet, block);
   }
   Packer packer;
   if (under) {

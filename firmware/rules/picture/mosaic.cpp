@@ -9,7 +9,7 @@
 namespace adit::picture {
 namespace {
 
-bool in_one_span(double a, double b, double spacing) {
+bool share_span(double a, double b, double spacing) {
   return std::floor(a / spacing) == std::floor(b / spacing);
 }
 
@@ -23,7 +23,7 @@ std::size_t cost_of(const Version& version) {
 
 void History::add(Version version, double spacing) {
   icd::require(versions_.empty() || version.stamp >= newest().stamp);
-  if (!versions_.empty() && in_one_span(newest().stamp, version.stamp, spacing)) {
+  if (!versions_.empty() && share_span(newest().stamp, version.stamp, spacing)) {
     cost_ -= cost_of(newest());
     versions_.pop_back();
   }

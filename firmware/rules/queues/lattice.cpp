@@ -41,7 +41,7 @@ std::optional<Corner> corner_of(const icd::OccupancyGrid& grid) {
 }
 
 /// Steps as cells; nothing if they are not a whole number of cells.
-std::optional<std::int64_t> whole_cells(std::int64_t steps) {
+std::optional<std::int64_t> to_cells(std::int64_t steps) {
   if (steps % kStepsPerCell != 0) return {};
   return steps / kStepsPerCell;
 }
@@ -58,7 +58,7 @@ std::optional<Cells> cells_in(const icd::OccupancyGrid& of, const icd::Occupancy
   }
   const auto from = corner_of(of), to = corner_of(grid);
   if (!from || !to) return of.origin == grid.origin ? std::optional(cells_at(0, 0, grid)) : std::nullopt;
-  const auto x = whole_cells(to->x - from->x), y = whole_cells(to->y - from->y);
+  const auto x = to_cells(to->x - from->x), y = to_cells(to->y - from->y);
   if (!x || !y || to->z != from->z) return {};
   return cells_at(*x, *y, grid);
 }

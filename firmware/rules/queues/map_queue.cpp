@@ -10,7 +10,7 @@
 
 namespace adit::queues {
 
-bool in_any_order(const QueuedMap& one, const QueuedMap& other) {
+bool can_swap(const QueuedMap& one, const QueuedMap& other) {
   if (Sender::of(one.map) != Sender::of(other.map)) return true;
   return !one.map.is_grid() && !one.is_whole && !other.is_whole;
 }
@@ -20,7 +20,7 @@ bool Pipelining::may_go(const QueuedMap& next, const Before& before, Instant now
   if (taken_ < well_ || now > before.arrived + kLate) return false;
   if (before.went_ahead && !tried_) return false;
   if (before.map.trial.failures > 0 || next.trial.failures > 0) return false;
-  return in_any_order(next, before.map);
+  return can_swap(next, before.map);
 }
 
 void Pipelining::taken(bool ahead) {
@@ -138,7 +138,7 @@ void SenderQueue::merge_followers(QueuedMap& next, std::size_t merge_bytes, std:
 
 /// The indices of the grid at `place` and of those behind it that may be stitched to it. Ends at the first
 /// grid that may not, because a grid that goes ahead of it could overlap it.
-std::vector<std::size_t> SenderQueue::that_follow(std::size_t place) const {
+std::vector<std::size_t> SenderQueue::followers_of(std::size_t place) const {
   const auto& first = std::get<icd::OccupancyGrid>(waiting_[place].map.msg);
   std::vector<std::size_t> places;
   for (std::size_t i = place; i < waiting_.size() && places.size() < kMostStitched; ++i) {
@@ -154,7 +154,7 @@ std::vector<std::size_t> SenderQueue::that_follow(std::size_t place) const {
 void SenderQueue::stitch_followers(QueuedMap& next, std::size_t place, const Canvas* canvas,
                                    std::vector<bool>& leaves) const {
   const auto grid_at = [this](std::size_t i) { return &std::get<icd::OccupancyGrid>(waiting_[i].map.msg); };
-  const auto places = that_follow(place);
+  const auto places = followers_of(place);
   std::vector<Cells> cells;
   cells.reserve(places.size());
   for (const std::size_t i : places) cells.push_back(*cells_in(*grid_at(place), *grid_at(i)));
@@ -187,7 +187,7 @@ void SenderQueue::stitch_followers(QueuedMap& next, std::size_t place, const Can
 }
 
 /// The place of a map that was not delivered.
-SenderQueue::Maps::const_iterator SenderQueue::before_newer(const QueuedMap& back) const {
+SenderQueue::Maps::const_iterator SenderQueue::place_before_newer(const QueuedMap& back) const {
   return std::ranges::find_if(waiting_, [&](const QueuedMap& waiting) { return is_newer(waiting, back); });
 }
 
@@ -196,7 +196,7 @@ Replaced SenderQueue::put_back(QueuedMap map) {
   if (map.has_gaps) {
     // At the next try, newer cells may have been sent between its parts.
     const bool may_join_again = may_join(map);
-    const auto place = before_newer(map);
+    const auto place = place_before_newer(map);
     insert(place, parts_of(std::move(map), may_join_again));
     return {};
   }
@@ -204,7 +204,7 @@ Replaced SenderQueue::put_back(QueuedMap map) {
       std::ranges::find_if(waiting_, [&](const QueuedMap& waiting) { return replaces(waiting, map); });
   if (newer == waiting_.end()) {
     const std::size_t bytes = bytes_held(map);
-    waiting_.insert(before_newer(map), std::move(map));
+    waiting_.insert(place_before_newer(map), std::move(map));
     bytes_ += bytes;
     return {};
   }
@@ -216,12 +216,12 @@ Replaced SenderQueue::put_back(QueuedMap map) {
 }
 
 void SenderQueue::put_back_apart(QueuedMap map) {
-  const auto place = before_newer(map);
+  const auto place = place_before_newer(map);
   insert(place, parts_of(std::move(map), /*may_join_again=*/false));
 }
 
 void SenderQueue::put_back_halves(QueuedMap map) {
-  const auto place = before_newer(map);
+  const auto place = place_before_newer(map);
   insert(place, halves_of(std::move(map)));
 }
 
@@ -381,12 +381,12 @@ std::optional<QueuedMap> MapQueue::take(Instant now) {
   QueuedMap taken = its.queue.take(now, most, canvases_);
   taken.precision = precision;
   its.turn = turns_.served(its.turn);
-  forget_those_that_are_gone();
+  forget_idle_senders();
   for (auto& [sender, waiting] : senders_) waiting.queue.step_forward();
   return taken;
 }
 
-void MapQueue::forget_those_that_are_gone() {
+void MapQueue::forget_idle_senders() {
   std::erase_if(senders_, [&](const auto& each) {
     return each.second.queue.count() == 0 && !turns_.has_to_pay(each.second.turn) &&
            !each.second.trial.failed;

@@ -56,7 +56,7 @@ class Pipelining {
 };
 
 /// Whether a Command Post may accept the two maps in either order.
-bool in_any_order(const QueuedMap& one, const QueuedMap& other);
+bool can_swap(const QueuedMap& one, const QueuedMap& other);
 
 /// When a sender's next message is sent: by round, and within a round by place. The smaller turn goes first.
 struct Turn {
@@ -143,13 +143,13 @@ class SenderQueue {
   using Maps = std::deque<QueuedMap>;
   Maps::const_iterator ready(Instant now) const;
   Maps::const_iterator rested_longest() const;
-  Maps::const_iterator before_newer(const QueuedMap& back) const;
+  Maps::const_iterator place_before_newer(const QueuedMap& back) const;
   /// Each marks in `leaves`, which has the order of waiting_, the maps that go with `next`.
   void merge_followers(QueuedMap& next, std::size_t merge_bytes, std::vector<bool>& leaves) const;
   void stitch_followers(QueuedMap& next, std::size_t place, const Canvas* canvas,
                         std::vector<bool>& leaves) const;
   void insert(Maps::const_iterator place, std::vector<QueuedMap> parts);
-  std::vector<std::size_t> that_follow(std::size_t place) const;
+  std::vector<std::size_t> followers_of(std::size_t place) const;
 
   Maps waiting_;
   std::size_t bytes_ = 0;
@@ -188,15 +188,15 @@ class MapQueue {
 
   void merge_at_most(std::size_t bytes) { merge_bytes_ = bytes; }
   /// The bytes that the link carries between two messages; at least 1.
-  void a_slot_carries(std::size_t bytes) { slot_bytes_ = bytes; }
+  void set_slot_bytes(std::size_t bytes) { slot_bytes_ = bytes; }
 
   /// Applies to clouds that are added from now on. Robots that are not named have Clouds::Auto.
-  void clouds_are(std::map<icd::RobotName, Clouds> clouds) { clouds_ = std::move(clouds); }
+  void set_cloud_modes(std::map<icd::RobotName, Clouds> clouds) { clouds_ = std::move(clouds); }
 
   Clouds clouds_of(const Sender& sender) const;
 
   /// Applies to clouds that are taken from now on. Robots that are not named have Precision::Exact.
-  void precisions_are(std::map<icd::RobotName, Precision> precisions) { precisions_ = std::move(precisions); }
+  void set_precisions(std::map<icd::RobotName, Precision> precisions) { precisions_ = std::move(precisions); }
   /// The bytes of points that fit into one message; take() merges no more. With Precision::Auto, take()
   /// chooses the finest precision at which all queued clouds of the robot fit.
   void a_message_holds(const PointsAt& points) { holds_ = points; }
@@ -276,7 +276,7 @@ class MapQueue {
 
   Senders::iterator next(Instant now);
   Waiting& joins(const Sender& sender);
-  void forget_those_that_are_gone();
+  void forget_idle_senders();
   const SenderQueue* queue_of(const Sender& sender) const;
   QueuedMap waiting(std::uint64_t number, icd::MapUpdate map, Instant now) const;
   Precision precision_of(const Sender& sender, const SenderQueue& queue) const;

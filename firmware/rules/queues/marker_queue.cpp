@@ -233,7 +233,7 @@ void MarkerQueue::end_of_update(MarkerChanges::Place last, Instant now) {
   updates_.join(changes_);
 }
 
-void MarkerQueue::keep_within(MarkerBounds bounds) {
+void MarkerQueue::set_bounds(MarkerBounds bounds) {
   const bool is_narrow = most_now_ < bounds_.per_message;
   bounds_ = bounds;
   if (!is_narrow || most_now_ > bounds.per_message) most_now_ = bounds.per_message;
@@ -283,7 +283,7 @@ void MarkerQueue::put_behind(const QueuedMarkers& markers) {
     may_go_ahead_ = true;
     return put_back(markers);
   }
-  const bool is_needless = changes_.says_more_than(marker);
+  const bool is_needless = changes_.supersedes(marker);
   const auto last = is_needless ? changes_.in_order().rbegin()->first : changes_.apply(marker);
   if (markers.updates > 0) {
     updates_.add(last, markers.updates, markers.accepted);

@@ -54,7 +54,7 @@ class MarkerChanges {
   Size size_with(const std::vector<icd::Marker>& newer) const;
   bool empty() const { return by_place_.empty(); }
   /// Whether a queued change makes an earlier change of that marker needless.
-  bool says_more_than(const icd::Marker& earlier) const {
+  bool supersedes(const icd::Marker& earlier) const {
     return begins_with_delete_all() ||
            (earlier.action != icd::MarkerAction::DeleteAll && places_.contains(earlier));
   }
@@ -161,7 +161,7 @@ class MarkerQueue {
   explicit MarkerQueue(MarkerBounds bounds) : bounds_(bounds), most_now_(bounds.per_message) {}
 
   /// Sets new limits. Queued changes stay.
-  void keep_within(MarkerBounds bounds);
+  void set_bounds(MarkerBounds bounds);
 
   /// Whether the limits allow `update`, so that no sender can fill the memory while the Command Post is away.
   /// A quarter of the bytes is reserved for updates that only replace queued changes: a growing path is
@@ -194,7 +194,7 @@ class MarkerQueue {
   /// find out whether others are accepted. The result at the Command Post is the same.
   void put_behind(const QueuedMarkers& markers);
   /// Whether a queued change makes an earlier change of that marker needless.
-  bool says_more_than(const icd::Marker& earlier) const { return changes_.says_more_than(earlier); }
+  bool supersedes(const icd::Marker& earlier) const { return changes_.supersedes(earlier); }
   /// The last message was accepted: the next one may have twice as many markers.
   void passed() { most_now_ = std::min(bounds_.per_message, most_now_ * 2); }
 

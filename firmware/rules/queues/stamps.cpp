@@ -19,7 +19,7 @@ std::int64_t first_from(double place, double resolution, std::uint32_t size) {
 }
 
 /// The parts of `area` outside of `hole`, which overlaps it.
-void add_around(std::vector<Cells>& parts, const Cells& area, const Cells& hole) {
+void add_parts_outside(std::vector<Cells>& parts, const Cells& area, const Cells& hole) {
   const Cells inner = common(area, hole);
   const Cells around[] = {{area.x, area.y, area.width, inner.y - area.y},
                           {area.x, inner.top(), area.width, area.top() - inner.top()},
@@ -83,7 +83,7 @@ std::vector<Cells> cells_outside(const icd::OccupancyGrid& older, std::span<cons
     std::vector<Cells> rest;
     for (const Cells& area : outside) {
       if (covered.width > 0 && covered.height > 0 && area.overlaps(covered)) {
-        add_around(rest, area, covered);
+        add_parts_outside(rest, area, covered);
       } else {
         rest.push_back(area);
       }

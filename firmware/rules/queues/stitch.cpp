@@ -32,7 +32,7 @@ bool may_fill(const Cells& all, std::span<const Cells> grids, bool with_gaps) {
 }
 
 /// The grids within `all` that overlap no older grid that is left out.
-std::vector<std::size_t> that_may_go(const Cells& all, std::span<const Cells> grids) {
+std::vector<std::size_t> removable_grids(const Cells& all, std::span<const Cells> grids) {
   std::vector<std::size_t> which;
   std::vector<Cells> behind;
   for (std::size_t i = 0; i < grids.size(); ++i) {
@@ -46,7 +46,7 @@ std::vector<std::size_t> that_may_go(const Cells& all, std::span<const Cells> gr
   return which;
 }
 
-std::vector<Cells> of_those(std::span<const Cells> grids, const std::vector<std::size_t>& which) {
+std::vector<Cells> select_cells(std::span<const Cells> grids, const std::vector<std::size_t>& which) {
   std::vector<Cells> cells;
   cells.reserve(which.size());
   for (const std::size_t i : which) cells.push_back(grids[i]);
@@ -55,8 +55,8 @@ std::vector<Cells> of_those(std::span<const Cells> grids, const std::vector<std:
 
 /// The grids that fill `all`; nothing if they cannot.
 std::optional<Stitch> filling(const Cells& all, std::span<const Cells> grids, const Known& known) {
-  auto which = that_may_go(all, grids);
-  const auto those = of_those(grids, which);
+  auto which = removable_grids(all, grids);
+  const auto those = select_cells(grids, which);
   const bool has_gaps = !fill(all, those);
   if (has_gaps && !(known && known(all, those))) return {};
   return Stitch{std::move(which), all, has_gaps};

@@ -28,7 +28,7 @@ constexpr Form kTitle{[](std::string_view text) {
 constexpr codec::Member kBoard[] = {
     member<&Board::name>("name").matching(kName),
     member<&Board::title>("title").matching(kTitle),
-    member<&Board::panel>("panel").if_any(),
+    member<&Board::panel>("panel").optional(),
 };
 
 }  // namespace

@@ -95,14 +95,14 @@ constexpr Form kOrigins{
 /// A key with a default.
 template <auto... at>
 constexpr Member key(std::string_view name, std::string_view meaning) {
-  return member<at...>(name, meaning).if_any();
+  return member<at...>(name, meaning).optional();
 }
 
 /// A key that is one of these words, in order from 0.
 template <auto at, const auto& kWords>
 constexpr Member choice(std::string_view name, std::string_view meaning) {
   using Word = codec::KindOfWord<codec::TypeAt<at>, kWords>;
-  return codec::member_of_kind<Word, at>(name, meaning).if_any().one_of(kWords);
+  return codec::member_of_kind<Word, at>(name, meaning).optional().one_of(kWords);
 }
 
 template <const auto& kKeys>

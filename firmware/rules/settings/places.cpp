@@ -25,13 +25,13 @@ class Finder {
   void skip_space() { at_ = std::min(json_.find_first_not_of(" \t\r\n,:", at_), json_.size()); }
 
   /// True if `path` is the path or leads to it.
-  bool leads_there(std::string_view path) const {
+  bool leads_to(std::string_view path) const {
     if (!path_.starts_with(path)) return false;
     return path.empty() || path_.size() == path.size() || std::string_view(".[").contains(path_[path.size()]);
   }
 
   void read_value(const std::string& path, std::size_t place) {
-    if (leads_there(path)) found_ = place;
+    if (leads_to(path)) found_ = place;
     if (next() == '{') return read_members(path);
     if (next() == '[') return read_items(path);
     if (next() == '"') return void(read_text());

@@ -15,7 +15,7 @@ namespace {
 using codec::Value;
 
 /// If the file has another version, other errors mean little.
-bool only_the_version(const std::vector<Error>& errors, const Value& root) {
+bool is_version_error(const std::vector<Error>& errors, const Value& root) {
   const auto* members = std::get_if<Value::Object>(&root.is);
   const auto is_version = [](const std::string& name) { return name == "version"; };
   return members != nullptr && std::ranges::any_of(*members, is_version, &Value::Member::first) &&
@@ -25,7 +25,7 @@ bool only_the_version(const std::vector<Error>& errors, const Value& root) {
 std::expected<Settings, std::vector<Error>> read(Reader& reader, const Value& root) {
   Settings settings;
   reader.read_object(root, Settings::kRow, &settings, "");
-  if (only_the_version(reader.errors, root)) {
+  if (is_version_error(reader.errors, root)) {
     std::erase_if(reader.errors, [](const Error& error) { return error.path != "version"; });
   }
   if (reader.errors.empty()) reader.errors = contradictions(settings);

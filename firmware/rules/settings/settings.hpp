@@ -194,7 +194,7 @@ icd::RobotName name_of(const Robot& robot);
 
 /// The values of a setting by robot, without defaults.
 template <class Setting>
-std::map<icd::RobotName, Setting> by_robot(const std::vector<Robot>& robots, Setting Robot::* setting) {
+std::map<icd::RobotName, Setting> map_by_robot(const std::vector<Robot>& robots, Setting Robot::* setting) {
   std::map<icd::RobotName, Setting> all;
   for (const Robot& robot : robots) {
     if (robot.*setting != Robot().*setting) all.emplace(name_of(robot), robot.*setting);

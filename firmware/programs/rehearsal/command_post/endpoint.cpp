@@ -15,7 +15,7 @@ std::string_view path_of(std::string_view target) {
   return target.substr(0, target.find('?'));
 }
 
-bool RateLimit::too_soon(const Request& request) {
+bool RateLimit::is_too_soon(const Request& request) {
   const std::lock_guard lock(mutex_);
   const double tolerance = counted_ == Counted::Decoded ? 1 : 0.95;
   const Clock::time_point now = Clock::now();
@@ -64,7 +64,7 @@ bool admit(const Request& request, std::span<const Function> functions, const st
   check_entry(request, functions, token, judgement.findings);
   const Finding* const finding = judgement.findings.decisive(Manner::Strict);
   if (finding == nullptr || finding->status != 404) judgement.uri = request.path;
-  if (finding == nullptr && !limit->too_soon(request)) return true;
+  if (finding == nullptr && !limit->is_too_soon(request)) return true;
   judgement.outcome = finding != nullptr ? refused(*finding) : refused(429, kTooManyRequests);
   return false;
 }

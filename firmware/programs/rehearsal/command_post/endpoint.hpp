@@ -94,7 +94,7 @@ class RateLimit {
   explicit RateLimit(double hz, Counted counted = Counted::Starts) : hz_(hz), counted_(counted) {}
 
   /// Whether the request, which was decoded now, is too many. If it is not, it counts.
-  bool too_soon(const Request& request);
+  bool is_too_soon(const Request& request);
   /// It was judged now, and counts in any case. If it counted before, the later moment holds.
   void count(const Request& request);
 

@@ -74,7 +74,7 @@ constexpr std::size_t kMuch = std::size_t{4} << 20;
 constexpr std::string_view kOkLine = "HTTP/1.1 200 OK\r\n", kJsonType = "Content-Type: application/json\r\n";
 
 /// A 200 of JSON with these bytes behind its first lines, where further header fields may follow.
-Outcome json_then(const std::string& bytes) {
+Outcome json_with_tail(const std::string& bytes) {
   return broken(std::string(kOkLine).append(kJsonType).append(bytes));
 }
 
@@ -97,16 +97,16 @@ constexpr auto kEffects = std::to_array<Effect>({
     {"html-400", false, [](In) { return portal(400); }},
     {"html-422", false, [](In) { return portal(422); }},
     // These would end a client that takes a peer at its word.
-    {"length-huge", true, [](In) { return json_then("Content-Length: 30000000000\r\n\r\n{"); }},
+    {"length-huge", true, [](In) { return json_with_tail("Content-Length: 30000000000\r\n\r\n{"); }},
     {"chunk-huge", true,
      [](In) { return broken(std::string(kOkLine) + "Transfer-Encoding: chunked\r\n\r\n6fc23ac00\r\n{"); }},
     {"header-flood", true,
      [](In) { return broken(std::string(kOkLine) + repeated("X-Flood: 0123456789\r\n", kMuch)); }},
-    {"endless-body", true, [](In) { return json_then("\r\n[" + repeated("0,", kMuch)); }},
+    {"endless-body", true, [](In) { return json_with_tail("\r\n[" + repeated("0,", kMuch)); }},
     {"1xx-flood", true, [](In) { return broken(repeated("HTTP/1.1 100 Continue\r\n\r\n", kMuch)); }},
     {"json-deep", true,
      [](In) {
-       return json_then("Connection: close\r\nContent-Length: 15000\r\n\r\n" + std::string(15'000, '['));
+       return json_with_tail("Connection: close\r\nContent-Length: 15000\r\n\r\n" + std::string(15'000, '['));
      }},
 });
 
@@ -364,7 +364,7 @@ void Faults::clear() {
 }
 
 /// One that is to happen to more than one request waits for the others, as if it had been told just now.
-Fault Faults::at_random(Aim aim, std::string_view body, Clock::time_point now) {
+Fault Faults::random_fault(Aim aim, std::string_view body, Clock::time_point now) {
   constexpr double part = 0x1p-53;  // the upper 53 bits as a number from 0 to 1
   if (std::ranges::find(rates_, aim, &Rate::aim) == rates_.end()) return {};
   double drawn = static_cast<double>(chance_() >> 11) * part;
@@ -404,7 +404,7 @@ std::optional<Fault> Faults::from_queue(Aim aim, std::string_view body, Clock::t
 Fault Faults::next(Aim aim, std::string_view body, Clock::time_point now) {
   const std::lock_guard lock(mutex_);
   const auto waited = from_queue(aim, body, now);
-  Fault fault = waited ? *waited : at_random(aim, body, now);
+  Fault fault = waited ? *waited : random_fault(aim, body, now);
   if (fault.remaining) {
     remaining_offset_ = *fault.remaining;
   } else if (aim == Aim::Status && remaining_offset_ != 0) {

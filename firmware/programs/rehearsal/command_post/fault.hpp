@@ -97,7 +97,7 @@ class Faults {
 
   Told obey(const Orders& orders);
   std::optional<Fault> from_queue(Aim aim, std::string_view body, Clock::time_point now);
-  Fault at_random(Aim aim, std::string_view body, Clock::time_point now);
+  Fault random_fault(Aim aim, std::string_view body, Clock::time_point now);
   std::deque<Fault>& queue(Aim aim) { return queues_[static_cast<std::size_t>(aim)]; }
 
   mutable std::mutex mutex_;

@@ -179,7 +179,7 @@ Judgement unjudged(Aim aim, const Request& request) {
 }
 
 /// Of a request that is answered before anything of it is judged.
-Judgement turned_away(const Request& request, std::optional<Aim> aim, Outcome outcome) {
+Judgement early_judgement(const Request& request, std::optional<Aim> aim, Outcome outcome) {
   Judgement judgement = aim ? unjudged(*aim, request) : Judgement{};
   judgement.uri = request.path;
   judgement.outcome = std::move(outcome);
@@ -245,7 +245,7 @@ Outcome begin_new_run(Run& run, const std::optional<Json>& sent) {
   const auto wanted = sent ? read_new_run(*sent) : NewRun{};
   if (!wanted) return refused(422, wanted.error());
   const auto now = Clock::now();
-  run.begin_again(*wanted, now);
+  run.restart(*wanted, now);
   const Run::Standing standing = run.standing(now);
   return answered(200,
                   OrderedJson{{"state", standing.state}, {"run", standing.run}, {"team", standing.team}});
@@ -338,9 +338,9 @@ Outcome CommandPost::receive(Side& side, std::optional<Aim> aim, const Request& 
 
 Judgement CommandPost::judge(Side& side, std::optional<Aim> aim, const Fault& fault, const Request& request) {
   if (request.fault) return judge_fault(*request.fault);
-  if (redirects(request)) return turned_away(request, aim, redirected(request));
+  if (redirects(request)) return early_judgement(request, aim, redirected(request));
   if (is_too_large(request))  // as nginx does by client_max_body_size
-    return turned_away(request, aim, last_answer(page(413, "Request Entity Too Large")));
+    return early_judgement(request, aim, last_answer(page(413, "Request Entity Too Large")));
   const bool judged = !aim || records(fault);
   Judgement judgement = judged ? judge_safely(*side.endpoint, request) : unjudged(*aim, request);
   note_names(judgement);

@@ -94,7 +94,7 @@ Outcome not_implemented() {
 }
 
 /// It takes bodies that are compressed as a whole.
-std::expected<std::string, InflateFault> whole_body(const Request& request) {
+std::expected<std::string, InflateFault> read_body(const Request& request) {
   constexpr std::size_t most = std::size_t{512} << 20;
   if (request.content_encoding == "gzip") return gunzip(request.body, most);
   if (request.content_encoding == "deflate") return inflate_body(request.body, most);
@@ -137,7 +137,7 @@ class MeasuredMapping : public Endpoint {
       judgement.outcome = closing(refused(422, "Unknown Content-Type"));
       return;
     }
-    const auto body = whole_body(request);
+    const auto body = read_body(request);
     if (!body) {
       judgement.outcome = closing(refused(400, "The body is not what Content-Encoding says"));
       return;
@@ -155,7 +155,7 @@ class MeasuredMapping : public Endpoint {
     judgement.outcome = answered(200, Json(nullptr));
     if (message->map && std::holds_alternative<Cloud>(message->map->msg)) {
       // Too many clouds are answered with 429, and accepted: each counts.
-      if (cloud_limit_.too_soon(request)) judgement.outcome = closing(refused(429, kTooManyClouds));
+      if (cloud_limit_.is_too_soon(request)) judgement.outcome = closing(refused(429, kTooManyClouds));
       cloud_limit_.count(request);
     }
     judgement.accepted = *std::move(message);

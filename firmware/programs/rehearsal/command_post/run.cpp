@@ -104,7 +104,7 @@ bool Run::change(Change change, Clock::time_point now) {
   return true;
 }
 
-void Run::begin_again(const NewRun& wanted, Clock::time_point now) {
+void Run::restart(const NewRun& wanted, Clock::time_point now) {
   const std::lock_guard lock(mutex_);
   if (wanted.id || plan_.renames) plan_.id = wanted.id ? *wanted.id : id_after(plan_.id);
   if (wanted.team) plan_.team = *wanted.team;

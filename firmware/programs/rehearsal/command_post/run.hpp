@@ -77,7 +77,7 @@ class Run {
   bool change(Change change, Clock::time_point now);
 
   /// Whatever became of the last run: the clock and the score at 0, no report used, no artifact found.
-  void begin_again(const NewRun& wanted, Clock::time_point now);
+  void restart(const NewRun& wanted, Clock::time_point now);
 
   /// Gives the run the next name; it goes on. Returns the name.
   std::string rename();

@@ -144,7 +144,7 @@ class MeasuredScoring : public Endpoint {
       judgement.outcome = detailed(
           401, request.authorization ? kInvalidToken : "Authentication credentials were not provided.");
       judgement.outcome.answer.headers.emplace_back("WWW-Authenticate", "Bearer");
-    } else if (limit_.too_soon(request)) {
+    } else if (limit_.is_too_soon(request)) {
       judgement.outcome = detailed(429, kThrottled);
     } else if (request.method != (judgement.uri == kStatusUri ? "GET" : "POST")) {
       judgement.outcome = detailed(405, "Method \"" + request.method + "\" not allowed.");

@@ -353,7 +353,7 @@ void OperatorDesk::report(const Finding& finding, const std::stop_token& finish,
       return tell(finding, "no answer");
     }
     if (reply->status == 429) {
-      pause_until(Clock::now() + kAfter429, finish);
+      sleep_until(Clock::now() + kAfter429, finish);
       continue;
     }
     if (reply->status != 200 && reply->status != 201) {

@@ -142,7 +142,7 @@ class Client {
 };
 
 /// Sleeps until `time`, or less where `stop` is requested.
-inline void pause_until(std::chrono::steady_clock::time_point time, const std::stop_token& stop) {
+inline void sleep_until(std::chrono::steady_clock::time_point time, const std::stop_token& stop) {
   std::mutex mutex;
   std::condition_variable_any never;
   std::unique_lock lock(mutex);

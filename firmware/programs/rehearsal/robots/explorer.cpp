@@ -256,7 +256,7 @@ void Explorer::work(double metres_per_second, const std::stop_token& finish) {
         client_.send(std::move(changed));
       posted_.note(name_, scene_.standing());
     }
-    pause_until(now + kTick, finish);
+    sleep_until(now + kTick, finish);
   }
 }
 

@@ -85,7 +85,7 @@ std::expected<std::string, std::string> replay_file(const std::filesystem::path&
   const Message message = std::visit([](auto& loaded) -> Message { return std::move(loaded); }, map);
   while (!finish.stop_requested()) {
     const auto reply = client.send(message);
-    pause_until(Clock::now() + kBetween, finish);
+    sleep_until(Clock::now() + kBetween, finish);
     if (reply && reply->status != 429)
       return icd::sentence("replay posts ", file.string(), ": ", reply->status);
   }
@@ -204,7 +204,7 @@ std::vector<Kind> kinds_to_post(const Options& options) {
   return kinds;
 }
 
-bool all_posted(const std::vector<Kind>& kinds, const Tally& tally) {
+bool has_posted_all(const std::vector<Kind>& kinds, const Tally& tally) {
   return std::ranges::all_of(kinds, [&](Kind kind) { return tally.accepted_of(kind) > 0; });
 }
 
@@ -218,7 +218,7 @@ std::chrono::milliseconds watch(const Options& options, const std::vector<Kind>&
   while (!has_come(signals)) {
     const Clock::time_point now = Clock::now();
     if (options.run_for && now - start >= *options.run_for) return kGrace;
-    if (options.stop_when_posted && team.replay_done() && all_posted(kinds, tally)) return kGrace;
+    if (options.stop_when_posted && team.replay_done() && has_posted_all(kinds, tally)) return kGrace;
     if (now >= next_line) {
       next_line += every;
       const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(now - start).count();
@@ -243,7 +243,7 @@ int run(const Options& options, const Cave& cave) {
   for (const Kind kind : kinds) {
     if (tally.accepted_of(kind) == 0) console.finish(icd::sentence("no ", name_of(kind), " was accepted\n"));
   }
-  return tally.clean() && all_posted(kinds, tally) ? kGood : kNotAllPosted;
+  return tally.clean() && has_posted_all(kinds, tally) ? kGood : kNotAllPosted;
 }
 
 int main_of(std::span<const char* const> arguments) {

@@ -367,7 +367,7 @@ std::expected<MapYaml, std::string> load_yaml(const fs::path& file) {
 }
 
 /// The YAML of the PGM's own name; else one in its folder whose `image` is the PGM; else the defaults.
-std::expected<MapYaml, std::string> yaml_beside(const fs::path& pgm) {
+std::expected<MapYaml, std::string> find_yaml(const fs::path& pgm) {
   for (const char* ending : {".yaml", ".yml"}) {
     const fs::path file = fs::path(pgm).replace_extension(ending);
     std::error_code error;
@@ -390,7 +390,7 @@ bool is_map(const fs::path& file) {
 std::expected<LoadedMap, std::string> parse(const fs::path& file, std::string_view bytes) {
   if (file.extension() == ".pcd") return parse_pcd(bytes);
   if (file.extension() == ".ply") return parse_ply(bytes);
-  const MapYaml yaml = ADIT_TRY(yaml_beside(file));
+  const MapYaml yaml = ADIT_TRY(find_yaml(file));
   return parse_pgm(bytes, yaml);
 }
 

@@ -42,12 +42,12 @@ class MapArrival {
 };
 
 /// Accepts the team's messages after all checks. Called on the loop.
-class Desk {
+class MessageHandler {
  public:
-  virtual ~Desk() = default;
+  virtual ~MessageHandler() = default;
 
   /// A map begins to arrive.
-  virtual std::shared_ptr<MapArrival> map_arrives() = 0;
+  virtual std::shared_ptr<MapArrival> begin_map() = 0;
   /// Queues the message, or returns the refusal (a queue is full: 429). On success the sender gets 200
   /// `null`.
   virtual icd::Checked<void> take(icd::StateUpdate update, const Sender& sender) = 0;

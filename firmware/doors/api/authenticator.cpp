@@ -1,4 +1,4 @@
-#include "api/entrance.hpp"
+#include "api/authenticator.hpp"
 
 #include "access/admission.hpp"
 #include "api/answers.hpp"
@@ -22,7 +22,7 @@ std::uint64_t session_of(const access::Visitor& visitor) {
 
 }  // namespace
 
-icd::Checked<Asker> Entrance::admit(const intake::RequestHead& head, RouteAccess who) {
+icd::Checked<Asker> Authenticator::admit(const intake::RequestHead& head, RouteAccess who) {
   if (who == RouteAccess::Open) return Asker{};
   const auto request = request_of(head);
   const auto role = who == RouteAccess::Viewer ? access::Role::Viewer : access::Role::Operator;
@@ -31,16 +31,16 @@ icd::Checked<Asker> Entrance::admit(const intake::RequestHead& head, RouteAccess
   const bool for_anybody = who == RouteAccess::OwnPage || (who == RouteAccess::OperatorOrSetUp &&
                                                            (keys_.first_start() || keys_.set_up_open()));
   if (!for_anybody) return std::unexpected(visitor.error());
-  ADIT_TRY(access::check_whence(request));
+  ADIT_TRY(access::check_host_and_origin(request));
   const auto known = this->who(head);
   return Asker{.admitted = false, .session = known ? session_of(*known) : 0};
 }
 
-std::optional<access::Visitor> Entrance::who(const intake::RequestHead& head) {
+std::optional<access::Visitor> Authenticator::who(const intake::RequestHead& head) {
   return access::who(request_of(head), tokens_, keys_.sessions(), loop_.now());
 }
 
-intake::Credentials Entrance::shown(const intake::RequestHead& head) {
+intake::Credentials Authenticator::shown(const intake::RequestHead& head) {
   const auto visitor = who(head);
   if (!head.header("Authorization").empty())
     return visitor ? intake::Credentials::Token : intake::Credentials::WrongToken;
@@ -49,7 +49,7 @@ intake::Credentials Entrance::shown(const intake::RequestHead& head) {
   return device(head) == nullptr ? intake::Credentials::Nothing : intake::Credentials::Enough;
 }
 
-const access::Device* Entrance::device(const intake::RequestHead& head) {
+const access::Device* Authenticator::device(const intake::RequestHead& head) {
   const auto ids = access::cookies_in(head.header("Cookie"), access::kDeviceCookie, head.header("Host"));
   for (const std::string_view id : ids) {
     if (const access::Device* const known = keys_.devices().find(id)) return known;
@@ -57,12 +57,12 @@ const access::Device* Entrance::device(const intake::RequestHead& head) {
   return nullptr;
 }
 
-std::function<bool()> Entrance::may_stay(const Asker& asker) {
+std::function<bool()> Authenticator::may_stay(const Asker& asker) {
   if (asker.session == 0) return [] { return true; };
   return [this, number = asker.session] { return keys_.sessions().still(number, loop_.now()); };
 }
 
-intake::Answer turned_away(const icd::Refusal& why) {
+intake::Answer rejection_answer(const icd::Refusal& why) {
   auto answer = refused(why);
   if (why.status == icd::Status::Unauthorized) answer.headers.push_back({"WWW-Authenticate", "Bearer"});
   return answer;

@@ -15,14 +15,14 @@
 namespace adit::api {
 
 /// Admission to all routes under /adit/: firmware/rules/access/README.md.
-class Entrance {
+class Authenticator {
  public:
   /// `tokens`: each admits a script. `loop` and `keys` must outlive this object.
-  Entrance(loop::Loop& loop, Keys& keys, std::vector<icd::BearerToken> tokens)
+  Authenticator(loop::Loop& loop, Keys& keys, std::vector<icd::BearerToken> tokens)
       : loop_(loop), keys_(keys), tokens_(std::move(tokens)) {}
 
   /// Replaces the tokens.
-  void let_in(std::vector<icd::BearerToken> tokens) { tokens_ = std::move(tokens); }
+  void set_tokens(std::vector<icd::BearerToken> tokens) { tokens_ = std::move(tokens); }
 
   /// Error 401 or 403: the client may not do what `who` may.
   icd::Checked<Asker> admit(const intake::RequestHead& head, RouteAccess who);
@@ -41,6 +41,6 @@ class Entrance {
 };
 
 /// The answer to a rejected client.
-intake::Answer turned_away(const icd::Refusal& refusal);
+intake::Answer rejection_answer(const icd::Refusal& refusal);
 
 }  // namespace adit::api

@@ -13,6 +13,7 @@ class Folders(unittest.TestCase):
             with self.subTest(folder.name):
                 self.assertIn(folder.name, BOARDS)
                 self.assertRegex(folder.name, r"^[A-Za-z0-9_-]+$")
+                self.assertIn(f"\n| [{folder.name}]({folder.name}/README.md) |", (TOP / "board/README.md").read_text())
 
     def test_board_conf_is_complete(self):
         for board in BOARDS:

@@ -63,6 +63,18 @@ TEST(Values, AreReadWhollyOrNotAtAll) {
   EXPECT_FALSE(read(bytes + 'x', other));
 }
 
+TEST(Values, OfAnEarlierVersionLackTheLastMembers) {
+  const std::string bytes = bytes_of(Part{.number = 5, .real = 0.5});
+  const std::size_t first = bytes_of(5).size();
+  for (std::size_t size = 0; size <= bytes.size(); ++size) {
+    Part part{.real = 7};
+    Reader reader(std::string_view(bytes).substr(0, size));
+    read_first_members<1>(reader, part);
+    EXPECT_EQ(reader.ok(), size == first || size == bytes.size()) << size;
+    if (reader.ok()) EXPECT_EQ(part.real, size == first ? 7 : 0.5);
+  }
+}
+
 TEST(Reader, ReturnsNothingAfterTheEnd) {
   const std::string bytes = bytes_of(1u);
   Reader reader(bytes);

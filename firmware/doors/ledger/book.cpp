@@ -22,7 +22,8 @@ struct Named {
 
 }  // namespace ledger
 
-// The members of reports and runs. Append new ones: earlier versions preserve them.
+// The members of reports and runs. Append new ones: earlier versions preserve them, and records of earlier
+// versions lack them.
 
 template <>
 inline constexpr auto store::kMembers<dispatch::Report> = [] {
@@ -127,11 +128,19 @@ codec::Value show(const Of& of) {
   }
 }
 
+/// The number of the members that version 0.1.0 wrote.
+template <class Of>
+constexpr std::size_t kOldestMembers = 0;
+template <>
+constexpr std::size_t kOldestMembers<Report> = 25;
+template <>
+constexpr std::size_t kOldestMembers<Run> = 14;
+
 template <class Of>
 std::optional<Of> take(std::string_view record) {
   Take take(record);
   Of what;
-  store::walk(take, what);
+  store::read_first_members<kOldestMembers<Of>>(take, what);
   if (!take.ok() || what.number < 1) return std::nullopt;
   if constexpr (std::same_as<Of, Report>) {
     if (!take.unknown_state().empty()) {  // without `before`, only the operator may decide on it
@@ -148,7 +157,7 @@ template <class Of>
 std::string_view left_behind(std::string_view record) {
   Take take(record);
   Of what;
-  store::walk(take, what);
+  store::read_first_members<kOldestMembers<Of>>(take, what);
   return take.left();
 }
 

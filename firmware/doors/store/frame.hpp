@@ -124,6 +124,17 @@ class Reader {
   bool ok_ = true;
 };
 
+/// Reads a struct of which an earlier version wrote only the first members, at least `oldest` of them. The
+/// others keep their values.
+template <std::size_t oldest, class Of>
+void read_first_members(auto& take, Of& value) {
+  std::size_t place = 0;
+  const auto read = [&](auto member) {
+    if (place++ < oldest || !take.at_end()) walk(take, std::invoke(member, value));
+  };
+  std::apply([&read](auto... member) { (read(member), ...); }, kMembers<Of>);
+}
+
 /// The bytes of these values in sequence.
 template <class Put = Writer, class... Of>
 std::string bytes_of(const Of&... values) {

@@ -234,9 +234,6 @@ std::unique_ptr<BodySink> IcdRoutes::open(const RequestHead& head, std::shared_p
                    {{"Allow", allowed_methods(*uri)}});
     return nullptr;
   }
-  if (*uri == icd::Uri::Status) {
-    return std::make_unique<StatusSink>(std::move(context));
-  }
   auto sink = take_in(context, head, std::move(flow));
   if (sink) return *std::move(sink);
   context.refuse(sink.error());
@@ -245,6 +242,29 @@ std::unique_ptr<BodySink> IcdRoutes::open(const RequestHead& head, std::shared_p
 
 icd::Checked<std::unique_ptr<BodySink>> IcdRoutes::take_in(UploadContext& context, const RequestHead& head,
                                                            std::shared_ptr<Flow> flow) {
+  codec::BodyKind kind;
+  if (icd::method_of(context.uri) != "GET") kind = ADIT_TRY(read_head(context, head));
+  switch (context.uri) {
+    case icd::Uri::MapUpdate:
+      return std::make_unique<MapUpload>(context,
+                                         MapUploadOptions{.kind = kind,
+                                                          .rules = options_.rules,
+                                                          .most_bytes = most_bytes(context.uri),
+                                                          .without_room = without_room_},
+                                         std::move(flow), workers_, maps_);
+    case icd::Uri::MarkersUpdate:
+      return std::make_unique<MarkersUpload>(context, kind, options_.rules, workers_, markers_,
+                                             large_markers_);
+    case icd::Uri::ArtifactReports:
+    case icd::Uri::StateUpdate:
+      return std::make_unique<SmallUpload>(context, kind, options_.rules, small_);
+    case icd::Uri::Status:
+      return std::make_unique<StatusSink>(context);
+  }
+  return nullptr;
+}
+
+icd::Checked<codec::BodyKind> IcdRoutes::read_head(UploadContext& context, const RequestHead& head) const {
   const bool is_report = context.uri == icd::Uri::ArtifactReports;
   if (stopping_ && !is_report) return std::unexpected(stops());
   const auto length = head.content_length();
@@ -259,23 +279,7 @@ icd::Checked<std::unique_ptr<BodySink>> IcdRoutes::take_in(UploadContext& contex
   if (length && *length > most)
     return icd::refuse(icd::Status::ContentTooLarge, "Content-Length: expected at most ", most, ", got ",
                        *length);
-  switch (context.uri) {
-    case icd::Uri::MapUpdate:
-      return std::make_unique<MapUpload>(
-          context,
-          MapUploadOptions{
-              .kind = kind, .rules = options_.rules, .most_bytes = most, .without_room = without_room_},
-          std::move(flow), workers_, maps_);
-    case icd::Uri::MarkersUpdate:
-      return std::make_unique<MarkersUpload>(context, kind, options_.rules, workers_, markers_,
-                                             large_markers_);
-    case icd::Uri::ArtifactReports:
-    case icd::Uri::StateUpdate:
-      return std::make_unique<SmallUpload>(context, kind, options_.rules, small_);
-    case icd::Uri::Status:
-      break;  // has no body
-  }
-  return nullptr;
+  return kind;
 }
 
 void IcdRoutes::stop() {

@@ -59,9 +59,11 @@ class IcdRoutes final : public Handler {
   bool has_token(const RequestHead& head) const;
   /// 401 or 403 if the request needs a right token and has none.
   icd::Checked<void> check_entry(const RequestHead& head) const;
-  /// Accepts a message that has a body. The refusal is the sender's answer.
+  /// Accepts a request. The refusal is the sender's answer.
   icd::Checked<std::unique_ptr<BodySink>> take_in(UploadContext& context, const RequestHead& head,
                                                   std::shared_ptr<Flow> flow);
+  /// The head of a message with a body: the body's kind, and into `context` whether it is a resubmission.
+  icd::Checked<codec::BodyKind> read_head(UploadContext& context, const RequestHead& head) const;
   /// The most bytes of a body sent to `uri`.
   std::size_t most_bytes(icd::Uri uri) const;
 

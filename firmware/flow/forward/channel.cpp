@@ -40,8 +40,8 @@ dispatch::Body body_of(const uplink::Outcome& outcome) {
 /// A 2xx to GET /api/status must be a run's status (ICD 5.1).
 bool lacks_status(icd::Uri uri, const uplink::Outcome& outcome) {
   const auto* answered = std::get_if<uplink::Answered>(&outcome);
-  return uri == icd::Uri::Status && answered != nullptr && icd::is_success(answered->status) &&
-         !codec::read_run_status(answered->body);
+  return icd::reply_of(uri) == icd::Reply::RunStatus && answered != nullptr &&
+         icd::is_success(answered->status) && !codec::read_run_status(answered->body);
 }
 
 /// A proxy before the mapping endpoint may answer it with a page. A report's answer must be JSON.
@@ -129,7 +129,7 @@ namespace {
 
 /// Bytes. A status is small, a mapping answer is null or a wrong address's text.
 std::size_t longest_answer_to(icd::Uri uri) {
-  return uri == icd::Uri::Status ? 16u << 10 : uplink::Request::kLongestAnswer;
+  return icd::reply_of(uri) == icd::Reply::RunStatus ? 16u << 10 : uplink::Request::kLongestAnswer;
 }
 
 /// A 2xx with a web page, of any length.
@@ -207,8 +207,8 @@ void Channel::send(icd::Uri uri, std::string_view content_type, icd::ChunkedByte
                    bool is_on_trial) {
   icd::require(has_token() && (!busy() || can_go_ahead()));
   finished_bytes_ += connection_->sent_bytes();
-  const bool is_trial = uri == icd::Uri::Status && is_trial_due_;
-  const bool is_report = uri == icd::Uri::ArtifactReports;
+  const bool is_trial = icd::reply_of(uri) == icd::Reply::RunStatus && is_trial_due_;
+  const bool is_report = icd::reply_of(uri) == icd::Reply::Report;
   const bool has_slash = is_report ? reports_want_slash_.value_or(wants_slash_) : wants_slash_ != is_trial;
   const auto under_way = std::make_shared<UnderWay>(loop_.now(), uri, body.size(), has_slash, is_trial,
                                                     is_on_trial, std::move(done));
@@ -243,7 +243,7 @@ void Channel::ended(const std::shared_ptr<UnderWay>& request, uplink::Outcome ou
 }
 
 void Channel::learn_path(const UnderWay& request, const uplink::Outcome& outcome) {
-  const bool is_status = request.uri == icd::Uri::Status;
+  const bool is_status = icd::reply_of(request.uri) == icd::Reply::RunStatus;
   const bool is_page = is_status && is_success_page(outcome);
   if (is_status) is_trial_due_ = is_page && !request.is_trial;
   if (is_page) has_page_ = true;
@@ -256,7 +256,7 @@ void Channel::learn_path(const UnderWay& request, const uplink::Outcome& outcome
   } else {
     // The measured mapping server answers 501 to an unknown path.
     const bool is_unknown = answered->status == 404 || answered->status == 501;
-    if (request.uri == icd::Uri::ArtifactReports) {
+    if (icd::reply_of(request.uri) == icd::Reply::Report) {
       if (is_unknown) reports_want_slash_.reset();
       if (answered->is_unprocessed()) reports_want_slash_ = answered->wants_slash;
     } else if (answered->wants_slash) {

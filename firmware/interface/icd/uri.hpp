@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <iterator>
 #include <optional>
@@ -17,26 +20,40 @@ enum class Uri : std::uint8_t {
   MarkersUpdate = 4,
 };
 
-inline constexpr Uri kUris[] = {Uri::Status, Uri::ArtifactReports, Uri::MapUpdate, Uri::StateUpdate,
-                                Uri::MarkersUpdate};
-
 /// The Command Post's two servers.
 enum class Endpoint : std::uint8_t {
   Scoring,  // ICD 5: a run and its reports, in JSON
   Mapping,  // ICD 6: data that newer data may replace, in JSON or CBOR
 };
 
+/// The body of a 2xx answer.
+enum class Reply : std::uint8_t { RunStatus, Report, Null };
+
 struct Function {
+  Uri uri;
   Endpoint endpoint;
   std::string_view method, path;
+  Reply reply;
 };
 /// In the order of Uri. No path has a trailing slash.
-inline constexpr Function kFunctions[] = {{Endpoint::Scoring, "GET", "/api/status"},
-                                          {Endpoint::Scoring, "POST", "/api/artifact_reports"},
-                                          {Endpoint::Mapping, "POST", "/map/update"},
-                                          {Endpoint::Mapping, "POST", "/state/update"},
-                                          {Endpoint::Mapping, "POST", "/markers/update"}};
-static_assert(std::size(kFunctions) == std::size(kUris));
+inline constexpr Function kFunctions[] = {
+    {Uri::Status, Endpoint::Scoring, "GET", "/api/status", Reply::RunStatus},
+    {Uri::ArtifactReports, Endpoint::Scoring, "POST", "/api/artifact_reports", Reply::Report},
+    {Uri::MapUpdate, Endpoint::Mapping, "POST", "/map/update", Reply::Null},
+    {Uri::StateUpdate, Endpoint::Mapping, "POST", "/state/update", Reply::Null},
+    {Uri::MarkersUpdate, Endpoint::Mapping, "POST", "/markers/update", Reply::Null}};
+
+inline constexpr auto kUris = [] {
+  std::array<Uri, std::size(kFunctions)> uris{};
+  std::ranges::transform(kFunctions, uris.begin(), &Function::uri);
+  return uris;
+}();
+static_assert([] {
+  for (std::size_t i = 0; i < kUris.size(); ++i) {
+    if (std::to_underlying(kUris[i]) != i) return false;
+  }
+  return true;
+}());
 
 constexpr std::string_view path_of(Uri uri) {
   return kFunctions[std::to_underlying(uri)].path;
@@ -48,6 +65,10 @@ constexpr std::string_view method_of(Uri uri) {
 
 constexpr Endpoint endpoint_of(Uri uri) {
   return kFunctions[std::to_underlying(uri)].endpoint;
+}
+
+constexpr Reply reply_of(Uri uri) {
+  return kFunctions[std::to_underlying(uri)].reply;
 }
 
 /// The function that a request's path names. Trailing slashes are ignored.

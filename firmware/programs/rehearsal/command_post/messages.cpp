@@ -7,9 +7,11 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 #include <string_view>
 #include <utility>
 
+#include "icd/require.hpp"
 #include "icd/sentence.hpp"
 #include "rehearsal/agreed.hpp"
 #include "rehearsal/command_post/endpoint.hpp"
@@ -407,7 +409,7 @@ bool read_marker(const Field& marker, MappingMessage& message) {
   return true;
 }
 
-std::optional<MappingMessage> read_markers(const Json& document, Findings& findings) {
+std::optional<MappingMessage> read_markers(Json& document, Format /*format*/, Findings& findings) {
   const Field body(document, "", findings);
   const auto elements = body.member("markers").and_then(&Field::elements);
   if (!elements) return std::nullopt;
@@ -418,7 +420,7 @@ std::optional<MappingMessage> read_markers(const Json& document, Findings& findi
   return message;
 }
 
-std::optional<MappingMessage> read_state(const Json& document, Findings& findings) {
+std::optional<MappingMessage> read_state(Json& document, Format /*format*/, Findings& findings) {
   const Field body(document, "", findings);
   if (!body.is_object()) return std::nullopt;
   MappingMessage message;
@@ -438,6 +440,15 @@ std::optional<MappingMessage> read_state(const Json& document, Findings& finding
   }
   return message;
 }
+
+/// The messages of a URI.
+struct Reader {
+  std::string_view uri;
+  std::optional<MappingMessage> (*read)(Json& document, Format format, Findings& findings);
+};
+constexpr Reader kReaders[] = {
+    {kMapUri, read_named_map}, {kStateUri, read_state}, {kMarkersUri, read_markers}};
+static_assert(std::ranges::equal(kReaders, kMappingFunctions, {}, &Reader::uri, &Function::uri));
 
 }  // namespace
 
@@ -470,8 +481,9 @@ std::optional<MappingMessage> read_mapping(const std::string& body, Format forma
   }
   Json& document = judgement.message.emplace(std::move(read->value));
   if (document.is_object() && document.empty()) return std::nullopt;  // asks if the token is accepted
-  if (judgement.uri == kMapUri) return read_named_map(document, format, findings);
-  return judgement.uri == kStateUri ? read_state(document, findings) : read_markers(document, findings);
+  const auto* const reader = std::ranges::find(kReaders, judgement.uri, &Reader::uri);
+  icd::require(reader != std::end(kReaders));
+  return reader->read(document, format, findings);
 }
 
 }  // namespace adit::rehearsal

@@ -18,13 +18,34 @@ Rotation rotation_of(double yaw) {
 Kind kind_of(const Message& message) {
   return static_cast<Kind>(message.index());  // the variant's order is the enumeration's
 }
+static_assert(std::variant_size_v<Message> == kKinds - 1);  // a preflight is no message
 static_assert(
     std::is_same_v<std::variant_alternative_t<static_cast<std::size_t>(Kind::Status), Message>, StatusQuery>);
 
+namespace {
+
+struct KindRow {
+  std::string_view name;
+  const char* target;
+};
+/// In the order of Kind.
+constexpr KindRow kRows[] = {{"grid", "/map/update"},
+                             {"cloud", "/map/update"},
+                             {"state", "/state/update"},
+                             {"markers", "/markers/update"},
+                             {"report", "/api/artifact_reports"},
+                             {"status", "/api/status"},
+                             {"preflight", "/api/status"}};
+static_assert(std::size(kRows) == kKinds);
+
+const KindRow& row_of(Kind kind) {
+  return kRows[static_cast<std::size_t>(kind)];
+}
+
+}  // namespace
+
 std::string_view name_of(Kind kind) {
-  constexpr std::array<std::string_view, kKinds> kNames = {"grid",   "cloud",  "state",    "markers",
-                                                           "report", "status", "preflight"};
-  return kNames[static_cast<std::size_t>(kind)];
+  return row_of(kind).name;
 }
 
 std::expected<TeamStyle, std::string> TeamStyle::parse(std::string_view name) {
@@ -236,11 +257,6 @@ class Body {
   std::uint32_t seq_;
 };
 
-/// By kind.
-constexpr std::array<const char*, kKinds> kTargets = {
-    "/map/update",           "/map/update", "/state/update", "/markers/update",
-    "/api/artifact_reports", "/api/status", "/api/status"};
-
 }  // namespace
 
 Encoder::Encoder(std::string robot, const Style& style, std::string token)
@@ -248,8 +264,7 @@ Encoder::Encoder(std::string robot, const Style& style, std::string token)
 
 HttpRequest Encoder::encode(const Message& message) {
   const Kind kind = kind_of(message);
-  HttpRequest request{
-      .method = "POST", .target = kTargets.at(static_cast<std::size_t>(kind)), .fields = {}, .body = {}};
+  HttpRequest request{.method = "POST", .target = row_of(kind).target, .fields = {}, .body = {}};
   if (style_.browser) {
     request.target += '/';
     request.fields.emplace_back("Origin", kOrigin);

@@ -84,7 +84,7 @@ using Message = std::variant<Grid, Cloud, State, Markers, Report, StatusQuery>;
 
 /// What the summary counts: the messages, and the questions a browser asks before each of them.
 enum class Kind : std::uint8_t { Grid, Cloud, State, Markers, Report, Status, Preflight };
-inline constexpr std::size_t kKinds = 7;
+inline constexpr std::size_t kKinds = static_cast<std::size_t>(Kind::Preflight) + 1;
 
 Kind kind_of(const Message& message);
 std::string_view name_of(Kind kind);

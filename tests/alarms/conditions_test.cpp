@@ -5,7 +5,7 @@
 
 #include <map>
 
-#include "alarms/alike.hpp"
+#include "alarms/kinds.hpp"
 #include "icd/sentence.hpp"
 
 namespace adit::alarms {
@@ -255,6 +255,12 @@ TEST(Conditions, AreEachFoundAndSayWhatToDo) {
     EXPECT_TRUE(colon == std::string::npos || found[0].subject == found[0].id.substr(colon + 1)) << each.id;
     EXPECT_EQ(found[0].action.word.empty(), found[0].action.link.empty()) << each.id;
   }
+}
+
+TEST(Conditions, HaveACaseForEachKind) {
+  std::set<std::string> made{"robots_silent", "maps_behind"};  // have tests of their own
+  for (const ConditionCase& each : kConditionCases) made.insert(kind_of(each.id));
+  EXPECT_EQ(made, kinds());
 }
 
 TEST(Conditions, LeadToTheFieldsThatMendThem) {

@@ -15,6 +15,7 @@ using enum ReportState;
 using Event = ReportEvent;
 
 constexpr std::array kStates = {Held, Queued, Sending, Answered, Rejected, InDoubt, Settled, Withdrawn};
+static_assert(kStates.size() == std::size(kStateWords));
 
 std::set<Event> events_between(ReportState from, ReportState to) {
   std::set<Event> events;

@@ -1,4 +1,5 @@
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import { waitForText, toTab, watch } from "./watch.js";
 
@@ -12,6 +13,17 @@ async function opened(page, number) {
 }
 const becomes = (page, number, words) =>
   page.waitForFunction(([number, words]) => document.querySelector(`#reports li[data-key="${number}"]`)?.innerText.includes(words), [number, words]);
+
+test("each state of a report has words and a list of actions", () => {
+  const text = (file) => `${readFileSync(new URL(`../../firmware/${file}`, import.meta.url))}`;
+  const states = text("rules/dispatch/report.hpp").match(/kStateWords\[\] = \{([^}]*)\}/)[1].match(/\w+/g);
+  assert.ok(states.length >= 8);
+  const words = text("doors/site/files/arriving.js"), actions = text("doors/site/files/actions.js");
+  for (const state of states) {
+    assert.ok(words.includes(`case "${state}":`), `arriving.js: ${state}`);
+    assert.ok(actions.includes(`\n  ${state}: [`), `actions.js: ${state}`);
+  }
+});
 
 test("offers for each report only the actions that its state allows", async (t) => {
   const { page } = await watch(t, "reports");

@@ -54,14 +54,6 @@ class Cursor {
   std::size_t at_ = 0;
 };
 
-dispatch::ReportState state_of(const std::string& word) {
-  using enum dispatch::ReportState;
-  static const std::map<std::string, dispatch::ReportState> kStates = {
-      {"held", Held},         {"queued", Queued},    {"sending", Sending}, {"answered", Answered},
-      {"rejected", Rejected}, {"in_doubt", InDoubt}, {"settled", Settled}, {"withdrawn", Withdrawn}};
-  return kStates.at(word);
-}
-
 dispatch::Report report_of(Cursor members) {
   dispatch::Report report;
   report.number = members.number();
@@ -73,7 +65,7 @@ dispatch::Report report_of(Cursor members) {
   report.sender = members.text();
   report.received = members.real();
   report.changed = members.real();
-  report.state = state_of(members.text());
+  report.state = dispatch::state_named(members.text()).value();
   report.note = members.text();
   report.run = members.number();
   report.asked = members.number() == 1;

@@ -91,9 +91,13 @@ Tone tone_of(const facts::ReportRow& report) {
       return report.reconciled ? Tone::Good : Tone::Plain;
     case ReportState::Withdrawn:
       return Tone::Plain;
-    default:
-      return Tone::Warning;
+    case ReportState::Held:
+    case ReportState::Queued:
+    case ReportState::Sending:
+    case ReportState::InDoubt:
+      break;
   }
+  return Tone::Warning;
 }
 
 std::string said_of(const facts::ReportRow& report) {

@@ -71,7 +71,19 @@ const ReportTransition* transition(ReportState state, ReportEvent event) {
 }
 
 bool is_final(ReportState state) {
-  return state == Answered || state == Rejected || state == Settled || state == Withdrawn;
+  switch (state) {
+    case Answered:
+    case Rejected:
+    case Settled:
+    case Withdrawn:
+      return true;
+    case Held:
+    case Queued:
+    case Sending:
+    case InDoubt:
+      break;
+  }
+  return false;
 }
 
 std::optional<ReportState> state_named(std::string_view text) {

@@ -1,10 +1,10 @@
 // Every report: an event has the newest 200, those with which something is still to happen first. The others are asked for once, and
 // then each that changes.
+import { isOpen } from "./arriving.js";
 import { get } from "./session.js";
 
 const IN_EVENT = 200;
 const RETRY = 5000, EVERY = 60_000; // ms
-const OPEN = ["held", "queued", "sending", "in_doubt"];
 
 const known = new Map(); // by number
 let last = null, newest = new Set(); // of the last event: its reports, and their numbers
@@ -12,7 +12,6 @@ let all = null; // that the page shows; null: not listed yet
 let isWhole = false; // all are known as they are: each change since was in an event
 let asked = -Infinity;
 
-const isOpen = ({ state }) => OPEN.includes(state);
 const sameClock = (one, other) => Math.abs(one.received - other.received) < 1;
 
 /** What an event has is newer, and so may be what was heard meanwhile, unless the box's clock was set. */

@@ -13,6 +13,9 @@ function gained({ score_change, report_status }) {
 
 const withdrawn = ({ number, same_as }) => (same_as > number ? `corrected as #${same_as}` : same_as ? `same as #${same_as}` : "withdrawn");
 
+/** Whether something is still to happen with a report. */
+export const isOpen = ({ state }) => ["held", "queued", "sending", "in_doubt"].includes(state);
+
 /** Where a report is in its life. */
 export function life(report) {
   switch (report.state) {

@@ -6,7 +6,7 @@ import { attribute, badge, list, make, mark, say, set } from "./dom.js";
 import { isCounted, nearTo } from "./near.js";
 import { comparePair } from "./pair.js";
 import { showHistory } from "./history.js";
-import { life } from "./arriving.js";
+import { isOpen, life } from "./arriving.js";
 import { remembered } from "./remembered.js";
 import { Still } from "./still.js";
 import { closeSide, goTab } from "./side.js";
@@ -19,7 +19,6 @@ const opened = new Set();
 let last = null; // what was shown: {view, now}
 let showsOthers = false; // what is done of other runs: of earlier ones, and of those at other Command Posts
 
-const isOpen = (report) => ["held", "queued", "sending", "in_doubt"].includes(report.state);
 const isOfOther = (report, { run_number }) => report.run !== run_number && !isOpen(report);
 
 const rowOf = (number) => rows.querySelector(`[data-key="${number}"]`);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <regex>
 
 #include "ledger/book.hpp"
 #include "ledger/state.hpp"
@@ -121,6 +122,18 @@ TEST(LedgerRecord, ReadsBackEachMember) {
   for (std::size_t state = 0; state < std::size(dispatch::kStateWords); ++state) {
     const Report report = in_state(full_report(), static_cast<ReportState>(state));
     EXPECT_EQ(report_in(encoded(report)), report);
+  }
+}
+
+TEST(LedgerRecord, IsDescribedForOtherReaders) {
+  const std::string readme = project_text("firmware/doors/ledger/README.md"),
+                    reader = project_text("tests/wire/ledger_files.py");
+  for (const codec::Value& record : {shown(full_report()), shown(full_run())}) {
+    for (const auto& [name, value] : std::get<codec::Value::Object>(record.is)) {
+      EXPECT_THAT(readme, HasSubstr('`' + name + '`'));
+      EXPECT_TRUE(std::regex_search(reader, std::regex(R"([" ])" + name + ":")))
+          << "ledger_files.py: " << name;
+    }
   }
 }
 

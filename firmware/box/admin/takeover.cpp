@@ -37,9 +37,9 @@ constexpr codec::Member kFileMembers[] = {
 
 }  // namespace
 
-constexpr codec::Row Rest::kRow = {"", kRestMembers};
-constexpr codec::Row TakenFrom::kRow = {"", kTakenMembers};
-constexpr codec::Row SpareFile::kRow = {"", kFileMembers};
+constexpr codec::Row Rest::kRow = codec::complete<Rest>({"", kRestMembers});
+constexpr codec::Row TakenFrom::kRow = codec::complete<TakenFrom>({"", kTakenMembers});
+constexpr codec::Row SpareFile::kRow = codec::complete<SpareFile>({"", kFileMembers});
 
 std::expected<SpareFile, std::string> SpareFile::read(const std::string& state_folder) {
   std::string unread;

@@ -389,38 +389,39 @@ constexpr Member kNetworkMembers[] = {
 
 }  // namespace
 
-constexpr Row LogRecord::kRow = {"LogRecord", kRecord};
-constexpr Row LogPage::kRow = {"Log", kPage};
-constexpr Row PartRow::kRow = {"", kPart, "A library of the program."};
-constexpr Row BoardRow::kRow = {"", kBoard};
-constexpr Row About::kRow = {"About", kAbout};
-constexpr Row InterfaceRow::kRow = {"", kInterface};
-constexpr Row RouteRow::kRow = {"", kRoute};
-constexpr Row NetworkState::kRow = {"", kNetwork};
+constexpr Row LogRecord::kRow = codec::complete<LogRecord, 2>({"LogRecord", kRecord});
+constexpr Row LogPage::kRow = codec::complete<LogPage>({"Log", kPage});
+constexpr Row PartRow::kRow = codec::complete<PartRow>({"", kPart, "A library of the program."});
+constexpr Row BoardRow::kRow = codec::complete<BoardRow>({"", kBoard});
+constexpr Row About::kRow = codec::complete<About>({"About", kAbout});
+constexpr Row InterfaceRow::kRow = codec::complete<InterfaceRow>({"", kInterface});
+constexpr Row RouteRow::kRow = codec::complete<RouteRow>({"", kRoute});
+constexpr Row NetworkState::kRow = codec::complete<NetworkState>({"", kNetwork});
 
-constexpr Row SessionRow::kRow = {"Session", kSession};
-constexpr Row SessionView::kRow = {"SessionView", kWhoAsks};
+constexpr Row SessionRow::kRow = codec::complete<SessionRow>({"Session", kSession});
+constexpr Row SessionView::kRow = codec::complete<SessionView>({"SessionView", kWhoAsks});
 
 icd::Checked<Candidate> read_candidate(const std::string& body) {
   if (body.empty()) return Candidate{};
   return read_body<Candidate>(body, candidate_in);
 }
 
-constexpr Row TestStep::kRow = {"", kTestStep};
-constexpr Row TestedEndpoint::kRow = {"", kTestedEndpoint};
-constexpr Row TestView::kRow = {"Test", kTest};
+constexpr Row TestStep::kRow = codec::complete<TestStep>({"", kTestStep});
+constexpr Row TestedEndpoint::kRow = codec::complete<TestedEndpoint>({"", kTestedEndpoint});
+constexpr Row TestView::kRow = codec::complete<TestView>({"Test", kTest});
 
 constexpr Row UpdateView::kRow = {"Update", kUpdate};
 
-constexpr Row ExportRow::kRow = {"SpareExport", kExportMembers};
-constexpr Row StickExportRow::kRow = {"SpareStickExport", kStickExportMembers};
-constexpr Row StickRow::kRow = {"SpareStick", kStickMembers};
-constexpr Row SpareView::kRow = {"Spare", kSpareMembers};
+constexpr Row ExportRow::kRow = codec::complete<ExportRow>({"SpareExport", kExportMembers});
+constexpr Row StickExportRow::kRow =
+    codec::complete<StickExportRow>({"SpareStickExport", kStickExportMembers});
+constexpr Row StickRow::kRow = codec::complete<StickRow>({"SpareStick", kStickMembers});
+constexpr Row SpareView::kRow = codec::complete<SpareView>({"Spare", kSpareMembers});
 
-constexpr Row ClockView::kRow = {"Clock", kClockMembers};
+constexpr Row ClockView::kRow = codec::complete<ClockView>({"Clock", kClockMembers});
 
-constexpr Row PortRow::kRow = {"", kPortMembers};
-constexpr Row PendingNetwork::kRow = {"", kPendingMembers};
+constexpr Row PortRow::kRow = codec::complete<PortRow>({"", kPortMembers});
+constexpr Row PendingNetwork::kRow = codec::complete<PendingNetwork>({"", kPendingMembers});
 constexpr Row NetworkView::kRow = {"Network", kNetworkMembers};
 
 }  // namespace adit::api

@@ -59,10 +59,12 @@ constexpr Member kRunList[] = {
 
 }  // namespace
 
-constexpr Row MapAges::kRow = {"", kMapAges};
-constexpr Row AttentionStep::kRow = {"", kAttentionStep};
-constexpr Row History::kRow = {"History", kHistory, "The plots of a run, one item for each sample."};
-constexpr Row RunRow::kRow = {"KeptRun", kRunRow, "A stored run: its map, tracks and plots."};
-constexpr Row RunList::kRow = {"KeptRuns", kRunList};
+constexpr Row MapAges::kRow = codec::complete<MapAges>({"", kMapAges});
+constexpr Row AttentionStep::kRow = codec::complete<AttentionStep>({"", kAttentionStep});
+constexpr Row History::kRow =
+    codec::complete<History>({"History", kHistory, "The plots of a run, one item for each sample."});
+constexpr Row RunRow::kRow =
+    codec::complete<RunRow>({"KeptRun", kRunRow, "A stored run: its map, tracks and plots."});
+constexpr Row RunList::kRow = codec::complete<RunList>({"KeptRuns", kRunList});
 
 }  // namespace adit::api

@@ -134,11 +134,12 @@ constexpr Member kCovered[] = {
 
 }  // namespace
 
-constexpr Row CoveredRow::kRow = {"", kCoveredRow};
-constexpr Row CoveredView::kRow = {"Covered", kCovered,
-                                   "The area that delivered grids show as known, in squares of 0.25 m."};
-constexpr Row MapColours::kRow = {"", kColours};
-constexpr Row MapView::kRow = {"Map", kMap, "The layers of the picture of the maps."};
+constexpr Row CoveredRow::kRow = codec::complete<CoveredRow>({"", kCoveredRow});
+constexpr Row CoveredView::kRow = codec::complete<CoveredView>(
+    {"Covered", kCovered, "The area that delivered grids show as known, in squares of 0.25 m."});
+constexpr Row MapColours::kRow = codec::complete<MapColours>({"", kColours});
+constexpr Row MapView::kRow =
+    codec::complete<MapView>({"Map", kMap, "The layers of the picture of the maps."});
 
 MapView map_view(const picture::Mosaic& map, std::uint64_t since) {
   const auto grid = picture::grid_palette();

@@ -96,9 +96,9 @@ struct TilesHead {
 constexpr codec::Member kTileHead[] = {
     codec::member<&TileHead::place>("place"), codec::member<&TileHead::bytes>("bytes"),
     codec::member<&TileHead::since>("since"), codec::member<&TileHead::until>("until")};
-constexpr codec::Row TileHead::kRow = {"", kTileHead};
+constexpr codec::Row TileHead::kRow = codec::complete<TileHead>({"", kTileHead});
 constexpr codec::Member kTilesHead[] = {codec::member<&TilesHead::tiles>("tiles")};
-constexpr codec::Row TilesHead::kRow = {"", kTilesHead};
+constexpr codec::Row TilesHead::kRow = codec::complete<TilesHead>({"", kTilesHead});
 
 /// A colour of six hexadecimal digits.
 std::optional<picture::Colour> colour_in(std::string_view text) {

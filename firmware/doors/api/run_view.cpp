@@ -74,10 +74,11 @@ constexpr std::string_view kByName[] = {"name"};
 
 }  // namespace
 
-constexpr codec::Row ReportStep::kRow = {"", kStep};
-constexpr codec::Row ReportDetail::kRow = {"ReportDetail", kDetail};
-constexpr codec::Row ColourRow::kRow = {"RobotColour", kColour, "", kByName};
-constexpr codec::Row LightRow::kRow = {"Light", kLight, "", kByName};
-constexpr codec::Row RunView::kRow = {"RunView", kView, "The present state of the run."};
+constexpr codec::Row ReportStep::kRow = codec::complete<ReportStep>({"", kStep});
+constexpr codec::Row ReportDetail::kRow = codec::complete<ReportDetail>({"ReportDetail", kDetail});
+constexpr codec::Row ColourRow::kRow = codec::complete<ColourRow>({"RobotColour", kColour, "", kByName});
+constexpr codec::Row LightRow::kRow = codec::complete<LightRow>({"Light", kLight, "", kByName});
+constexpr codec::Row RunView::kRow =
+    codec::complete<RunView>({"RunView", kView, "The present state of the run."});
 
 }  // namespace adit::api

@@ -290,9 +290,9 @@ constexpr Member kTracks[] = {member<&Tracks::tracks>("tracks")};
 }  // namespace
 
 constexpr Row MarkerRow::kRow = {"Marker", kMarker};
-constexpr Row MarkerChanges::kRow = {"Markers", kChanges};
-constexpr Row Track::kRow = {"", kTrack};
-constexpr Row Tracks::kRow = {"Tracks", kTracks};
+constexpr Row MarkerChanges::kRow = codec::complete<MarkerChanges>({"Markers", kChanges});
+constexpr Row Track::kRow = codec::complete<Track>({"", kTrack});
+constexpr Row Tracks::kRow = codec::complete<Tracks>({"Tracks", kTracks});
 
 bool has_moved(const TrackPose& from, const TrackPose& to) {
   constexpr double kMoved = 0.1, kTurned = 0.2;

@@ -108,9 +108,9 @@ constexpr Member kCheck[] = {
 }  // namespace
 
 constexpr Row kKeyRow = {"", kKey};
-constexpr Row SetupView::kRow = {"Setup", kSetup};
-constexpr Row ChangesView::kRow = {"Changes", kChanged};
-constexpr Row CheckView::kRow = {"Checked", kCheck};
+constexpr Row SetupView::kRow = codec::complete<SetupView>({"Setup", kSetup});
+constexpr Row ChangesView::kRow = codec::complete<ChangesView>({"Changes", kChanged});
+constexpr Row CheckView::kRow = codec::complete<CheckView>({"Checked", kCheck});
 
 SetupView setup_view(const Setup& setup) {
   SetupView view{.settings = settings::value_of(setup.settings()),

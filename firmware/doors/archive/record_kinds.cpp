@@ -129,6 +129,9 @@ inline constexpr auto store::kMembers<picture::LayerView> =
     std::tuple(&picture::LayerView::layer, &picture::LayerView::first, &picture::LayerView::last,
                &picture::LayerView::missed, &picture::LayerView::left_out, &picture::LayerView::bounds,
                &picture::LayerView::heights);
+/// The mosaic has its version, its tiles and its finer picture.
+template <>
+inline constexpr std::size_t store::kMemberCount<picture::LayerView> = 7;
 template <>
 inline constexpr auto store::kMembers<picture::Area> =
     std::tuple(&picture::Area::left, &picture::Area::bottom, &picture::Area::right, &picture::Area::top);

@@ -204,6 +204,8 @@ inline constexpr auto store::kMembers<icd::Marker> = std::tuple(
 /// What tells a robot's pose from others.
 template <>
 inline constexpr auto store::kMembers<icd::NamedPose> = std::tuple(&icd::NamedPose::name);
+template <>
+inline constexpr std::size_t store::kMemberCount<icd::NamedPose> = 1;
 
 }  // namespace adit
 

@@ -43,6 +43,11 @@ inline constexpr auto store::kMembers<dispatch::Report> = [] {
                     Named<&Report::beside>{"beside"}, Named<&Report::counted>{"counted"},
                     Named<&Report::uncertain>{"uncertain"});
 }();
+/// The members of `report` and of its position are among them.
+template <>
+inline constexpr std::size_t store::kMemberCount<dispatch::Report> =
+    icd::count_of_members<dispatch::Report>() - 1 + icd::count_of_members<icd::ArtifactReport>() - 1 +
+    icd::count_of_members<icd::Point>();
 template <>
 inline constexpr auto store::kMembers<dispatch::Run> = [] {
   using dispatch::Run, ledger::Named;

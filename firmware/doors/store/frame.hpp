@@ -12,6 +12,8 @@
 #include <type_traits>
 #include <utility>
 
+#include "icd/members.hpp"
+
 namespace adit::store {
 
 /// The members of a struct in a record, as a tuple of pointers to members in byte order. Rooms specialize it
@@ -19,6 +21,9 @@ namespace adit::store {
 /// pointer's place.
 template <class Of>
 inline constexpr auto kMembers = std::tuple();
+/// The number of its kMembers: one for each member of the struct, unless a specialization says otherwise.
+template <class Of>
+inline constexpr std::size_t kMemberCount = icd::count_of_members<Of>();
 
 /// Calls `each` with the plain values in `value`, in order. A struct has its kMembers. An optional has a
 /// flag, then its value or a default one. A list has its size, then its items. Pairs, tuples and arrays have
@@ -49,9 +54,10 @@ void walk(auto& each, Of& value) {
       for (value.clear(); count > 0 && each.ok(); --count) walk(each, value.emplace_back());
     }
   } else {
-    static_assert(std::tuple_size_v<decltype(kMembers<std::remove_const_t<Of>>)> > 0, "specialize kMembers");
-    std::apply([&](auto... member) { (walk(each, std::invoke(member, value)), ...); },
-               kMembers<std::remove_const_t<Of>>);
+    using Struct = std::remove_const_t<Of>;
+    static_assert(std::tuple_size_v<decltype(kMembers<Struct>)> == kMemberCount<Struct>,
+                  "a member is not among its kMembers");
+    std::apply([&](auto... member) { (walk(each, std::invoke(member, value)), ...); }, kMembers<Struct>);
   }
 }
 

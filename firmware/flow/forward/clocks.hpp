@@ -84,6 +84,9 @@ inline constexpr auto store::kMembers<forward::StampFloor::Kept> =
     std::tuple(&forward::StampFloor::Kept::floor, &forward::StampFloor::Kept::wall,
                &forward::StampFloor::Kept::least, &forward::StampFloor::Kept::ledger,
                &forward::StampFloor::Kept::lead, &forward::StampFloor::Kept::overruled);
+/// `is_damaged` is not in the file.
+template <>
+inline constexpr std::size_t store::kMemberCount<forward::StampFloor::Kept> = 6;
 
 }  // namespace adit
 

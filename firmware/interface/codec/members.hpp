@@ -14,6 +14,7 @@
 #include "codec/field.hpp"
 #include "icd/geometry.hpp"
 #include "icd/mapping.hpp"
+#include "icd/members.hpp"
 #include "icd/robot_name.hpp"
 #include "icd/rules.hpp"
 
@@ -46,6 +47,10 @@ enum class Need : std::uint8_t {
 template <class Struct>
 inline constexpr std::nullptr_t members_of = nullptr;
 
+/// The number of the struct's members that are in no message.
+template <class Struct>
+inline constexpr std::size_t kUnsent = 0;
+
 template <class T>
 using BoundOf =
     std::conditional_t<std::is_enum_v<T>, std::uint8_t,
@@ -54,6 +59,7 @@ using BoundOf =
 /// A member with the same place in struct and message.
 template <class Struct, class T>
 struct NamedMember {
+  static constexpr std::size_t kCount = 1;  // of the struct's members
   using Bound = BoundOf<T>;
   using Limits = std::numeric_limits<Bound>;
 
@@ -165,6 +171,7 @@ constexpr NamedMember<Struct, T> named(std::string_view name, T Struct::* at) {
 /// Members of a struct that are a nested object in the message.
 template <class... Members>
 struct Group {
+  static constexpr std::size_t kCount = (Members::kCount + ...);
   std::string_view name;
   std::tuple<Members...> members;
 
@@ -223,7 +230,13 @@ constexpr Group<Members...> group(std::string_view name, Members... members) {
 
 template <class Struct>
 void read_members(const Field& object, Struct& into, const icd::Rules& rules) {
-  std::apply([&](const auto&... each) { (each.read(object, into, rules), ...); }, members_of<Struct>);
+  std::apply(
+      [&]<class... Members>(const Members&... each) {
+        static_assert((Members::kCount + ...) + kUnsent<Struct> == icd::count_of_members<Struct>(),
+                      "a member of the struct is not among its members_of");
+        (each.read(object, into, rules), ...);
+      },
+      members_of<Struct>);
   if constexpr (std::same_as<Struct, icd::Quaternion>) {
     if (const auto rotation = icd::rotation_of(into))
       into = *rotation;
@@ -253,6 +266,7 @@ void write_struct(CborWriter& out, const Struct& from) {
 
 /// "header": {"stamp", "frame_id"}.
 struct HeaderMember {
+  static constexpr std::size_t kCount = 1;
   void read(const Field& parent, auto& into, const icd::Rules& rules) const {
     into.header = read_header(parent, rules);
   }
@@ -262,6 +276,7 @@ struct HeaderMember {
 
 /// "type" and "action". The action is read first, because it decides which members a marker needs.
 struct TypeAndAction {
+  static constexpr std::size_t kCount = 2;
   void read(const Field& parent, icd::Marker& into, const icd::Rules& rules) const {
     into.action = read_action(parent.member("action"));
     kType.read(parent, into, rules);
@@ -317,6 +332,8 @@ inline constexpr auto members_of<icd::PointCloud2> =  // 6.3.2
                named("is_bigendian", &icd::PointCloud2::is_bigendian).needed(Need::MayLack),
                named("point_step", &icd::PointCloud2::point_step).from(1).to(icd::kLargestPoint));
 
+template <>
+inline constexpr std::size_t kUnsent<icd::Marker> = 1;  // expires
 template <>
 inline constexpr auto members_of<icd::Marker> = std::tuple(  // 6.6
     HeaderMember{}, named("ns", &icd::Marker::ns).needed(Need::MayLack),

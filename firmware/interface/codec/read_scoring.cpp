@@ -5,6 +5,7 @@
 #include "codec/json.hpp"
 #include "codec/members.hpp"
 #include "codec/read.hpp"
+#include "icd/members.hpp"
 #include "icd/suggestion.hpp"
 #include "icd/try.hpp"
 
@@ -70,6 +71,7 @@ icd::Checked<std::optional<icd::RobotName>> read_robot(const Document& document,
 }
 
 icd::RunStatus status_of(const Field& body) {
+  static_assert(icd::count_of_members<icd::RunStatus>() == 4, "read each member");
   icd::RunStatus status;
   status.score = body.member("score").whole<std::int32_t>();
   const Field run_clock = body.member("run_clock");
@@ -101,6 +103,7 @@ icd::ReportReply reply_of(const Field& body) {
 }  // namespace
 
 icd::Checked<ReadReport> read_artifact_report(const Document& document, const icd::Rules& rules) {
+  static_assert(icd::count_of_members<icd::ArtifactReport>() == 3, "read each member");
   Reading reading;
   ReadReport read;
   const Field body(document.root, reading);

@@ -19,6 +19,7 @@
 #include "codec/json.hpp"
 #include "codec/value.hpp"
 #include "icd/geometry.hpp"
+#include "icd/members.hpp"
 #include "icd/scoring.hpp"
 
 /// Rows: structs with described members. JSON, its reading, CSV and OpenAPI's schemas (schemas.hpp) use the
@@ -105,6 +106,7 @@ struct Member {
   int column = 0;         // in CSV, from 1
   bool is_needed = true;  // false: may be missing; left out if null
   bool is_exact = false;  // its numbers are identifiers and never rounded
+  bool is_made = false;   // of the whole row, not of one member of the struct
 
   /// A copy with one property changed; before its callers, for clang.
   template <class T>
@@ -126,6 +128,15 @@ struct Member {
     return with(&Member::cell, cell_form).with(&Member::column, place);
   }
 };
+
+/// The row of a struct with a line for each member, but for `left_out` members. Otherwise compilation ends.
+template <class Struct, std::size_t left_out = 0>
+consteval Row complete(const Row& row) {
+  std::size_t members = left_out;
+  for (const Member& member : row.members) members += member.is_made ? 0 : 1;
+  if (members != icd::count_of_members<Struct>()) throw "a member of the struct has no line in its table";
+  return row;
+}
 
 Value write_row(const Row& row, const void* from);
 void read_row(const Row& row, const Field& field, void* into);
@@ -378,7 +389,7 @@ constexpr Member member(std::string_view name, std::string_view meaning = "") {
 /// A member computed from the whole row.
 template <class In, class As>
 constexpr Member made_of(std::string_view name, std::string_view meaning = "") {
-  return {name, meaning, &kind_as<In, As>, [](void* row) { return row; }};
+  return Member{name, meaning, &kind_as<In, As>, [](void* row) { return row; }}.with(&Member::is_made, true);
 }
 /// Members of the row as a nested object.
 template <class In, const Row& kGroup>

@@ -11,6 +11,7 @@
 #include "codec/cbor.hpp"
 #include "codec/members.hpp"
 #include "codec/utf8.hpp"
+#include "icd/members.hpp"
 #include "icd/sentence.hpp"
 #include "icd/text.hpp"
 
@@ -40,6 +41,7 @@ bool stands_for_itself(char letter) {
 }  // namespace
 
 std::string write_artifact_report(const icd::ArtifactReport& report) {
+  static_assert(icd::count_of_members<icd::ArtifactReport>() == 3, "write each member");
   return icd::sentence(
       "{\"x\": ", json_number(report.position.x), ", \"y\": ", json_number(report.position.y),
       ", \"z\": ", json_number(report.position.z), ", \"type\": ", json_string(report.type),
@@ -144,6 +146,7 @@ std::string checksum_of(std::string_view before, std::string_view after) {
 }
 
 icd::ChunkedBytes write_state_update(const icd::StateUpdate& update) {
+  static_assert(icd::count_of_members<icd::NamedPose>() == 2, "write each member");
   CborWriter out;
   out.map(2);
   write_header(out, update.header);

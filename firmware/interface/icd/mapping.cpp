@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "icd/members.hpp"
 #include "icd/require.hpp"
 
 namespace adit::icd {
@@ -40,6 +41,7 @@ bool is_invisible(const Marker& marker) {
 }
 
 std::size_t bytes_of(const Marker& marker) {
+  static_assert(count_of_members<Marker>() == 16, "count the bytes of each text and list");
   constexpr std::size_t kFixed = 640;  // members of fixed size, with the overhead of maps and allocators
   constexpr std::size_t kPoint = 34;   // three named 64-bit numbers of CBOR; in memory 24
   constexpr std::size_t kColor = 45;   // four of them; in memory 32

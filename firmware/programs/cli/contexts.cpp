@@ -44,8 +44,8 @@ std::vector<std::string_view> names_in(const Contexts& contexts) {
 
 }  // namespace
 
-constexpr codec::Row Context::kRow = {"", kContext};
-constexpr codec::Row Contexts::kRow = {"", kContexts};
+constexpr codec::Row Context::kRow = codec::complete<Context>({"", kContext});
+constexpr codec::Row Contexts::kRow = codec::complete<Contexts>({"", kContexts});
 
 const Context* Contexts::find(const std::string& name) const {
   const auto found = std::ranges::find(all, name, &Context::name);

@@ -203,8 +203,8 @@ Result<Outcome> decide_on(const Call& call, std::int64_t number) {
 
 }  // namespace
 
-constexpr codec::Row DecidedReport::kRow = {"", kDecided};
-constexpr codec::Row BegunRun::kRow = {"", kBegun};
+constexpr codec::Row DecidedReport::kRow = codec::complete<DecidedReport>({"", kDecided});
+constexpr codec::Row BegunRun::kRow = codec::complete<BegunRun>({"", kBegun});
 
 Result<Outcome> decide_on_reports(const Call& call) {
   return act_on_each(call, [&call](std::int64_t number) { return decide_on(call, number); });

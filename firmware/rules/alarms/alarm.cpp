@@ -88,8 +88,10 @@ std::string reason_of(const std::string& why) {
   return why.substr(0, end).append(kCut);
 }
 
-constexpr codec::Row Action::kRow = {"", kAction};
-constexpr codec::Row Alarm::kRow = {"Alarm", kAlarm, "A fault, a warning, or a decision to make.", kById};
-constexpr codec::Row EndedAlarm::kRow = {"AlarmOver", kOver, "An alarm that went.", kByIdAndEnd};
+constexpr codec::Row Action::kRow = codec::complete<Action>({"", kAction});
+constexpr codec::Row Alarm::kRow =
+    codec::complete<Alarm>({"Alarm", kAlarm, "A fault, a warning, or a decision to make.", kById});
+constexpr codec::Row EndedAlarm::kRow =
+    codec::complete<EndedAlarm>({"AlarmOver", kOver, "An alarm that went.", kByIdAndEnd});
 
 }  // namespace adit::alarms

@@ -57,7 +57,7 @@ constexpr codec::Member kShown[] = {
 
 }  // namespace
 
-constexpr codec::Row ShownClock::kRow = {"RunClock", kShown, "The run's clock."};
+constexpr codec::Row ShownClock::kRow = codec::complete<ShownClock>({"RunClock", kShown, "The run's clock."});
 
 void RunClock::heard(double shows, double now) {
   bool runs = shows > 0;

@@ -24,7 +24,7 @@ constexpr codec::Member kMembers[] = {
 
 }  // namespace
 
-constexpr codec::Row Acknowledged::kRow = {"", kMembers};
+constexpr codec::Row Acknowledged::kRow = codec::complete<Acknowledged>({"", kMembers});
 
 std::string write_acknowledged(const std::vector<Acknowledged>& all) {
   return codec::write_json({Value::Object{{"version", {kVersion}}, {"acknowledged", codec::json(all)}}}) +

@@ -300,7 +300,7 @@ void add_words(Traffic& traffic, const std::vector<Alarm>& alarms) {
   add_standings(traffic);
 }
 
-constexpr codec::Row Verdict::kRow = {"Verdict", kVerdict, "Is my map arriving?"};
+constexpr codec::Row Verdict::kRow = codec::complete<Verdict>({"Verdict", kVerdict, "Is my map arriving?"});
 
 Verdict verdict_of(const Traffic& traffic) {
   const auto all = maps_of(traffic);

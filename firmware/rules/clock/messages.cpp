@@ -48,9 +48,9 @@ constexpr codec::Member kClockStatus[] = {
 
 }  // namespace
 
-constexpr codec::Row Request::kRow = {"", kClockRequest};
-constexpr codec::Row Ntp::kRow = {"", kNtp};
-constexpr codec::Row Status::kRow = {"", kClockStatus};
+constexpr codec::Row Request::kRow = codec::complete<Request>({"", kClockRequest});
+constexpr codec::Row Ntp::kRow = codec::complete<Ntp>({"", kNtp});
+constexpr codec::Row Status::kRow = codec::complete<Status>({"", kClockStatus});
 
 std::string hindrance(const Request& request, double at, const Status& status) {
   if (request.source == Source::None || request.source == Source::Chip)

@@ -165,15 +165,17 @@ constexpr std::string_view kByNumber[] = {"number"}, kByName[] = {"name"}, kBySi
 
 }  // namespace
 
-constexpr codec::Row ReportRow::kRow = {"Report", kReport, "", kByNumber};
-constexpr codec::Row ActivityRow::kRow = {"Activity", kActivity, "The traffic of one robot and kind.",
-                                          kByTraffic};
-constexpr codec::Row StandingRow::kRow = {"Standing", kStanding, "", kByName};
-constexpr codec::Row RefusalRow::kRow = {"Refusal", kRefusal, "A rejected message.", kByMoment};
-constexpr codec::Row EndpointRow::kRow = {"Endpoint", kEndpoint, "", kByName};
-constexpr codec::Row RejectedRow::kRow = {"Rejected", kRejected, "", kByNumber};
-constexpr codec::Row RobotRow::kRow = {"Robot", kRobot, "", kByName};
-constexpr codec::Row LinkRow::kRow = {"Link", kLink, "", kBySide};
+constexpr codec::Row ReportRow::kRow = codec::complete<ReportRow>({"Report", kReport, "", kByNumber});
+constexpr codec::Row ActivityRow::kRow =
+    codec::complete<ActivityRow>({"Activity", kActivity, "The traffic of one robot and kind.", kByTraffic});
+constexpr codec::Row StandingRow::kRow = codec::complete<StandingRow>({"Standing", kStanding, "", kByName});
+constexpr codec::Row RefusalRow::kRow =
+    codec::complete<RefusalRow>({"Refusal", kRefusal, "A rejected message.", kByMoment});
+constexpr codec::Row EndpointRow::kRow =
+    codec::complete<EndpointRow, 5>({"Endpoint", kEndpoint, "", kByName});
+constexpr codec::Row RejectedRow::kRow = codec::complete<RejectedRow>({"Rejected", kRejected, "", kByNumber});
+constexpr codec::Row RobotRow::kRow = codec::complete<RobotRow>({"Robot", kRobot, "", kByName});
+constexpr codec::Row LinkRow::kRow = codec::complete<LinkRow>({"Link", kLink, "", kBySide});
 
 double seconds_since(Time at, Time now) {
   return std::max(0.0, now - at);

@@ -151,23 +151,23 @@ struct Kept {
   static const Row kRow;
 };
 constexpr Member kKeptMembers[] = {member<&Kept::numbers>("numbers")};
-constexpr Row Kept::kRow = {"", kKeptMembers};
+constexpr Row Kept::kRow = codec::complete<Kept>({"", kKeptMembers});
 
 }  // namespace
 
 constexpr codec::Form kAddressOrNone{
     [](std::string_view text) { return text.empty() || kAddress.fits(text); }, "an IPv4 address, or none"};
 
-constexpr Row Wanted::kRow = {"", kWantedMembers};
-constexpr Row Decision::kRow = {"", kWordMembers};
-constexpr Row Probe::kRow = {"", kProbeMembers};
-constexpr Row Endpoints::kRow = {"", kEndpointsMembers};
-constexpr Row Forget::kRow = {"", kForgetMembers};
-constexpr Row Pending::kRow = {"", kPendingMembers};
-constexpr Row Status::kRow = {"", kStatusMembers};
-constexpr Row Probed::kRow = {"", kProbedMembers};
-constexpr Row AddressConflict::kRow = {"", kTakenAddressMembers};
-constexpr Row AddressConflicts::kRow = {"", kTakenMembers};
+constexpr Row Wanted::kRow = codec::complete<Wanted>({"", kWantedMembers});
+constexpr Row Decision::kRow = codec::complete<Decision>({"", kWordMembers});
+constexpr Row Probe::kRow = codec::complete<Probe>({"", kProbeMembers});
+constexpr Row Endpoints::kRow = codec::complete<Endpoints>({"", kEndpointsMembers});
+constexpr Row Forget::kRow = codec::complete<Forget>({"", kForgetMembers});
+constexpr Row Pending::kRow = codec::complete<Pending>({"", kPendingMembers});
+constexpr Row Status::kRow = codec::complete<Status>({"", kStatusMembers});
+constexpr Row Probed::kRow = codec::complete<Probed>({"", kProbedMembers});
+constexpr Row AddressConflict::kRow = codec::complete<AddressConflict>({"", kTakenAddressMembers});
+constexpr Row AddressConflicts::kRow = codec::complete<AddressConflicts>({"", kTakenMembers});
 
 std::string write_kept(const Numbers& numbers) {
   return codec::write_file(Kept{numbers});

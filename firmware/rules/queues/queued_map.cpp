@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "icd/geometry.hpp"
+#include "icd/members.hpp"
 #include "icd/require.hpp"
 
 namespace adit::queues {
@@ -280,6 +281,7 @@ void inherit(Trial& to, const Trial& from) {
 }
 
 bool mergeable(const icd::PointCloud2& a, const icd::PointCloud2& b) {
+  static_assert(icd::count_of_members<icd::PointCloud2>() == 5, "compare each member but the header");
   return a.fields == b.fields && a.point_step == b.point_step && a.is_bigendian == b.is_bigendian &&
          a.origin.value_or(icd::Pose{}) == b.origin.value_or(icd::Pose{});
 }

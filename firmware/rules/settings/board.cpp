@@ -33,7 +33,7 @@ constexpr codec::Member kBoard[] = {
 
 }  // namespace
 
-constexpr codec::Row Board::kRow = {"", kBoard};
+constexpr codec::Row Board::kRow = codec::complete<Board>({"", kBoard});
 
 std::expected<Board, std::vector<Error>> parse_board(std::string_view json) {
   const auto root = ADIT_TRY(read_json(json));

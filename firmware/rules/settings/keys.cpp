@@ -105,13 +105,14 @@ constexpr Member choice(std::string_view name, std::string_view meaning) {
   return codec::member_of_kind<Word, at>(name, meaning).optional().one_of(kWords);
 }
 
-template <const auto& kKeys>
-constexpr Row kRowOf = {"", kKeys};
+template <class Struct, const auto& kKeys, std::size_t left_out>
+constexpr Row kRowOf = codec::complete<Struct, left_out>({"", kKeys});
 
-/// A struct with these keys.
-template <auto at, const auto& kKeys>
+/// A struct with these keys; `left_out`: members without a key.
+template <auto at, const auto& kKeys, std::size_t left_out = 0>
 constexpr Member object(std::string_view name) {
-  return codec::member_of_kind<codec::KindOfRow<codec::TypeAt<at>, kRowOf<kKeys>>, at>(name);
+  return codec::member_of_kind<
+      codec::KindOfRow<codec::TypeAt<at>, kRowOf<codec::TypeAt<at>, kKeys, left_out>>, at>(name);
 }
 
 constexpr std::array<Member, 2> endpoint(std::string_view meaning) {
@@ -359,7 +360,7 @@ constexpr Member kSettingsKeys[] = {
     object<&Settings::queues, kQueuesKeys>("queues"),
     object<&Settings::runs, kRunsKeys>("runs"),
     object<&Settings::alarms, kAlarmsKeys>("alarms"),
-    object<&Settings::rules, kRulesKeys>("rules"),
+    object<&Settings::rules, kRulesKeys, 1>("rules"),  // without its aliases
     member<&Settings::panel>("panel"),
 };
 
@@ -408,11 +409,11 @@ void add_keys(const Row& row, void* in, const std::string& prefix, std::vector<K
 
 }  // namespace
 
-constexpr Row Course::kRow = {"", kCourseKeys};
-constexpr Row Address::kRow = {"", kListenKeys};
-constexpr Row Robot::kRow = {"", kRobotKeys};
-constexpr Row Panel::kRow = {"", kPanelKeys};
-constexpr Row Settings::kRow = {"", kSettingsKeys};
+constexpr Row Course::kRow = codec::complete<Course>({"", kCourseKeys});
+constexpr Row Address::kRow = codec::complete<Address>({"", kListenKeys});
+constexpr Row Robot::kRow = codec::complete<Robot>({"", kRobotKeys});
+constexpr Row Panel::kRow = codec::complete<Panel>({"", kPanelKeys});
+constexpr Row Settings::kRow = codec::complete<Settings, 1>({"", kSettingsKeys});  // without without_effect
 
 std::vector<Key> keys() {
   Settings defaults;

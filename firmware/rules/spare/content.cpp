@@ -100,7 +100,7 @@ class Reading {
 
 }  // namespace
 
-constexpr codec::Row About::kRow = {"", kAboutMembers};
+constexpr codec::Row About::kRow = codec::complete<About>({"", kAboutMembers});
 
 std::string write(const Content& content) {
   std::string text;

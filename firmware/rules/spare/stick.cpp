@@ -108,7 +108,7 @@ constexpr codec::Member kStatusMembers[] = {
 
 }  // namespace
 
-constexpr codec::Row StickRequest::kRow = {"", kRequestMembers};
-constexpr codec::Row StickStatus::kRow = {"", kStatusMembers};
+constexpr codec::Row StickRequest::kRow = codec::complete<StickRequest>({"", kRequestMembers});
+constexpr codec::Row StickStatus::kRow = codec::complete<StickStatus>({"", kStatusMembers});
 
 }  // namespace adit::spare

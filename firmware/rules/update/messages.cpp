@@ -116,11 +116,11 @@ constexpr Member kStatusMembers[] = {
 
 }  // namespace
 
-constexpr Row Request::kRow = {"", kRequestMembers};
-constexpr Row Running::kRow = {"", kRunningMembers};
-constexpr Row Offer::kRow = {"", kOfferMembers};
-constexpr Row LastUpdate::kRow = {"", kLastUpdateMembers};
-constexpr Row Proven::kRow = {"", kProvenMembers};
-constexpr Row Status::kRow = {"", kStatusMembers};
+constexpr Row Request::kRow = codec::complete<Request>({"", kRequestMembers});
+constexpr Row Running::kRow = codec::complete<Running, 2>({"", kRunningMembers});
+constexpr Row Offer::kRow = codec::complete<Offer>({"", kOfferMembers});
+constexpr Row LastUpdate::kRow = codec::complete<LastUpdate>({"", kLastUpdateMembers});
+constexpr Row Proven::kRow = codec::complete<Proven>({"", kProvenMembers});
+constexpr Row Status::kRow = codec::complete<Status>({"", kStatusMembers});
 
 }  // namespace adit::update

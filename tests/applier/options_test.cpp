@@ -31,6 +31,7 @@ TEST(AditNetworkOptions, SelectOnlyTheWatch) {
   EXPECT_TRUE(parse({"--watch", "--status", "/tmp/x"})->watch);
   EXPECT_EQ(parse({"--watch"})->told, "/run/adit-network");
   EXPECT_THAT(parse({"--watch", "--start"}).error(), HasSubstr("exclude each other"));
+  EXPECT_THAT(parse({"--watch", "--ports"}).error(), HasSubstr("exclude each other"));
 }
 
 TEST(AditNetworkOptions, AreRejectedByName) {

@@ -1,5 +1,7 @@
 """The daily variant: the real root and units in a container, set up, reporting, restarted and killed, in under a minute."""
 
+import contextlib
+import socket
 import time
 import unittest
 
@@ -225,6 +227,26 @@ class Everyday(Contained):
         programs.wait_until(lambda: not self.speaks_ntp(), "chronyd to be stopped", 60)
         self.assertIsNone(ntp.asked_of(network.team, network.box_address))
         self.assertNotIn("elements", self.shell("nft list set inet adit ntp_clients; nft list set inet adit ntp_servers"))
+
+    def team_reaches(self, port):
+        network = self.stage.network
+        with contextlib.suppress(OSError):
+            network.connect(network.team, network.box_address, port, 1).close()
+            return True
+        return False
+
+    def test_added_port_is_opened_and_another_program_stays_closed(self):
+        foreign = self.stage.network.made_in(f"../../proc/{self.box.leader()}/ns/net", lambda: socket.create_server(("0.0.0.0", 11311)))
+        self.addCleanup(foreign.close)
+        session = {**self.session, "Content-Type": "application/json"}
+        for is_added in True, False:
+            held = self.box.ask("GET /adit/settings", session, token=None)[1]
+            listen = [each for each in held["settings"]["team"]["listen"] if each["port"] != 9000]
+            held["settings"]["team"]["listen"] = [*listen, *([{"address": "0.0.0.0", "port": 9000}] if is_added else [])]
+            self.asked("POST /adit/settings", {"settings": held["settings"], "base": held["tag"]})
+            programs.wait_until(lambda is_added=is_added: self.team_reaches(9000) == is_added, "the port to follow the settings", 60)
+            self.shell("systemctl restart adit-nftables.service")
+            self.assertEqual((self.team_reaches(9000), self.team_reaches(80), self.team_reaches(11311)), (is_added, True, False))
 
     def moves_to(self, address, team):
         """Changes the team's side, and confirms at the box's new address."""

@@ -9,6 +9,7 @@ void try_network(Input text) {
   settles(text, codec::read_file<network::Decision>);
   settles(text, codec::read_file<network::Probe>);
   settles(text, codec::read_file<network::Endpoints>);
+  settles(text, codec::read_file<network::TeamPorts>);
   settles(text, codec::read_file<network::Forget>);
   settles(text, codec::read_file<network::Status>);
   settles(text, codec::read_file<network::Probed>);

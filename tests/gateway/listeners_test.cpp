@@ -112,6 +112,23 @@ TEST_F(ListenersTest, ClosedSocketServesItsConnectionsForAWhile) {
   EXPECT_EQ(client.heard(), "");
 }
 
+TEST_F(ListenersTest, PortsAreOpenUntilTheirLastClientIsServed) {
+  ASSERT_TRUE(serve());
+  EXPECT_EQ(listeners_.ports(), network::TeamPorts{}) << "other machines cannot reach loopback";
+  team_.listen = {{"0.0.0.0", free_port()}};
+  const std::uint16_t before = port();
+  ASSERT_TRUE(serve());
+  EXPECT_EQ(listeners_.ports(), network::TeamPorts{{before}});
+  Client client(before);
+  EXPECT_EQ(answer_to(client), kAnswered);
+  listeners_.set_drain_time(100ms);
+  team_.listen = {{"0.0.0.0", free_port()}};
+  ASSERT_TRUE(serve());
+  EXPECT_EQ(listeners_.ports(), network::TeamPorts({{std::min(before, port()), std::max(before, port())}}));
+  EXPECT_TRUE(connections_come_to(0));
+  EXPECT_EQ(listeners_.ports(), network::TeamPorts{{port()}});
+}
+
 TEST_F(ListenersTest, NewLimitsApplyToNewConnections) {
   ASSERT_TRUE(serve());
   Client client(port());

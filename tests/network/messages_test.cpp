@@ -166,6 +166,24 @@ TEST(NetworkMessages, RejectInvalidEndpoints) {
   EXPECT_THAT(codec::read_file<Endpoints>(codec::write_file(many)).error(), HasSubstr("at most 64"));
 }
 
+TEST(NetworkMessages, PortsBecomeRulesOfTheFirewall) {
+  const TeamPorts ports{{80, 8000, 9000}};
+  EXPECT_EQ(codec::read_file<TeamPorts>(codec::write_file(ports)), ports);
+  EXPECT_EQ(rules_for({{9000, 80, 9000}}),
+            "flush set inet adit team_ports\n"
+            "add element inet adit team_ports { 80 }\n"
+            "add element inet adit team_ports { 9000 }\n");
+  EXPECT_EQ(rules_for({}), "flush set inet adit team_ports\n");
+  for (const char* const list :
+       {R"("80")", R"(["80"])", "[65536]", "[-1]", "[80.5]", R"(["80 }; flush ruleset"])", "{}"})
+    EXPECT_FALSE(codec::read_file<TeamPorts>(std::string(R"({"format":1,"ports":)") + list + "}")) << list;
+  TeamPorts many;
+  many.ports.resize(kMostTeamPorts);
+  EXPECT_TRUE(codec::read_file<TeamPorts>(codec::write_file(many)));
+  many.ports.push_back(1);
+  EXPECT_FALSE(codec::read_file<TeamPorts>(codec::write_file(many)));
+}
+
 /// Files of an earlier version of adit-network.
 TEST(NetworkMessages, ReadFilesOfAnEarlierVersion) {
   EXPECT_EQ(read_kept(R"({"format":1,"numbers":{"team":{"address":"192.168.7.11","prefix":24},)"

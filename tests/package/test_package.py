@@ -19,6 +19,7 @@ CAP_NET_RAW = 13  # capabilities(7)
 PASSWORD = "correct horse battery"
 STATE, INTERFACES = "/var/lib/private/adit", "/etc/adit/interfaces"
 OFFICE_KEEPER = "the keeper of the office"
+FOREIGN, ADDED = 11311, 9000  # ports of another program of the PC, and of Adit by its settings
 NOW, BEFORE = "/packages/now/adit_*.deb", "/packages/before/adit_*.deb"
 
 
@@ -154,15 +155,67 @@ class Packages(Story):
             other.leave()
             programs.wait_until(lambda: "address is taken" not in self.box.shell("adit status", good=False), "the alarm to go", 60)
 
-    def entered(self, upgrade):
-        """How often the Command Post's side reached port 22 of the machine during `upgrade`, and how often it tried."""
+    def reaches(self, host, address, port, within=0.02):
+        with contextlib.suppress(OSError):
+            self.stage.network.connect(host, address, port, within).close()
+            return True
+        return False
+
+    def entered(self, change, *at):
+        """How often reaches(*at) during `change`, and how often it tried."""
         entered = tried = 0
-        while not upgrade.done():
+        while not change.done():
             tried += 1
-            with contextlib.suppress(OSError):
-                self.stage.network.connect(self.stage.network.post, hosts.BOX_DARPA, 22, 0.02).close()
-                entered += 1
+            entered += self.reaches(*at)
         return entered, tried
+
+    def team_reaches(self, port):
+        return self.reaches(self.stage.network.team, self.stage.network.box_address, port, 1)
+
+    def has_foreign_program(self, port):
+        """A program of the PC that listens on all addresses, as the third port shows. Closed at the end of the test."""
+        server = self.box.made_inside(lambda: socket.create_server(("0.0.0.0", port), backlog=1000))
+        self.addCleanup(server.close)
+        self.stage.network.connect(self.stage.network.team, pc.OFFICE_ADDRESS, port, 5).close()
+        return server
+
+    def listens_at(self, *ports):
+        held = self.asked("GET /adit/settings")
+        held["settings"]["team"]["listen"] = [{"address": "0.0.0.0", "port": port} for port in ports]
+        self.asked("POST /adit/settings", {"settings": held["settings"], "base": held["tag"]})
+
+    def change_ports(self):
+        """Adds ports by the settings and by systemd, and starts all again."""
+        self.listens_at(8000, ADDED)
+        programs.wait_until(lambda: self.team_reaches(ADDED), "the added port to be open", 60)
+        self.box.shell("systemctl restart adit-nftables")
+        self.assertTrue(self.team_reaches(ADDED))
+        folder = "/run/systemd/system/adit.socket.d"
+        for port in ADDED + 1, None:
+            self.box.shell(f"mkdir -p {folder}; printf '[Socket]\nListenStream={port}\n' >{folder}/port.conf" if port else f"rm -r {folder}")
+            self.box.shell("systemctl daemon-reload; systemctl stop adit; systemctl restart adit.socket; systemctl start adit")
+            for each in 80, 8000, ADDED, *([port] if port else []):
+                programs.wait_until(lambda each=each: self.team_reaches(each), f"port {each} to be open", 60)
+
+    def test_only_adits_ports_are_open_on_the_team_side(self):
+        self.has_foreign_program(FOREIGN)
+        with concurrent.futures.ThreadPoolExecutor(2) as pool:
+            change = pool.submit(self.change_ports)
+            entered = pool.submit(self.entered, change, self.stage.network.team, self.stage.network.box_address, FOREIGN)
+            change.result()
+        self.assertEqual(entered.result()[0], 0, "of the tries to reach another program from the team's side")
+        self.assertGreater(entered.result()[1], 100)
+        programs.wait_until(self.box.knows_the_run, "the box to know the run", 60)
+
+    def test_removed_port_is_closed(self):
+        self.listens_at(8000)
+        programs.wait_until(lambda: not self.team_reaches(ADDED), "Adit to leave the port", 60)
+        foreign = self.has_foreign_program(ADDED)
+        programs.wait_until(lambda: not self.team_reaches(ADDED), "the port to be closed", 60)
+        self.assertTrue(self.team_reaches(80))
+        foreign.close()
+        self.listens_at(8000, ADDED)
+        programs.wait_until(lambda: self.team_reaches(ADDED), "the added port to be open", 60)
 
     def test_network_services_cannot_reach_systemd(self):
         """From copies of the units, and from a copy without a sandbox, which succeeds."""
@@ -180,20 +233,23 @@ class Packages(Story):
         once."""
         self.box.shell(f"sed -i '1i # asked {OFFICE_KEEPER}' {INTERFACES}")
         named = self.box.shell(f"cat {INTERFACES}")
-        login = self.box.made_inside(lambda: socket.create_server(("0.0.0.0", 22), backlog=1000))
-        self.addCleanup(login.close)
-        self.stage.network.connect(self.stage.network.team, pc.OFFICE_ADDRESS, 22, 5).close()
-        with concurrent.futures.ThreadPoolExecutor(2) as pool:
+        self.has_foreign_program(22)
+        self.has_foreign_program(FOREIGN)
+        network = self.stage.network
+        with concurrent.futures.ThreadPoolExecutor(3) as pool:
             upgrade = pool.submit(self.box.apt, f"install {NOW}")
-            entered = pool.submit(self.entered, upgrade)
+            entered = {side: pool.submit(self.entered, upgrade, *at) for side, at in (
+                ("Command Post", (network.post, hosts.BOX_DARPA, 22)), ("team", (network.team, network.box_address, FOREIGN)))}
             posted = []
             while not upgrade.done():
                 posted.append(another(len(posted) + 1))
                 self.assertIn(insist(self.stage, posted[-1], 30).status_code, (201, 503, 504))
             upgrade.result()
         self.assertNotEqual(self.box.version(), "0.0.9")
-        self.assertEqual(entered.result()[0], 0, "of the tries to log in from the Command Post's side")
-        self.assertGreater(entered.result()[1], 100)
+        for side, tries in entered.items():
+            self.assertEqual(tries.result()[0], 0, f"of the tries to reach another program from the side of the {side}")
+            self.assertGreater(tries.result()[1], 100)
+        self.assertTrue(self.team_reaches(ADDED))
         self.assertEqual(self.box.shell(f"cat {INTERFACES}"), named, "as somebody wrote it")
         programs.wait_until(self.box.knows_the_run, "the box to know the run", 60)
         for report in posted:
@@ -207,7 +263,7 @@ class Packages(Story):
             mv {rules} /root/; echo 'table inet adit {{' >{rules}; ! systemctl restart adit-nftables
             nft list ruleset | diff /root/loaded -; grep -q 'could not be loaded' {notice}""")
         self.box.shell(f"""mv /root/nftables.conf {rules}; systemctl restart adit-nftables
-            nft list ruleset | diff /root/loaded -; test ! -e {notice}; {servers} | grep -q 10.0.0.77
+            nft list ruleset | diff /root/loaded -; test ! -e {notice}; {servers} | grep 10.0.0.77
             systemctl stop adit-nftables; nft list ruleset | diff /root/loaded -; systemctl start adit-nftables""")
 
     def test_interrupted_upgrade_is_completed(self):

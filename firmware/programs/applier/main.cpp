@@ -1,4 +1,5 @@
-/// adit-network: changes the box's addresses, for aditd, which has no privileges.
+/// adit-network: changes the box's addresses and the firewall's open ports, for aditd, which has no
+/// privileges.
 
 #include <net/if.h>
 #include <sys/epoll.h>
@@ -16,6 +17,7 @@
 #include "applier/arp.hpp"
 #include "applier/conflict_detector.hpp"
 #include "applier/options.hpp"
+#include "applier/team_ports.hpp"
 #include "command_line/read.hpp"
 #include "host/interfaces.hpp"
 #include "host/log.hpp"
@@ -322,6 +324,7 @@ int main(int argc, char** argv) {
           adit::command_line::answer<adit::applier::Options>(command_line_of, ADIT_VERSION, options))
     return *exit;
   if (options->watch) return watch(*options);
+  if (options->ports) return is_well(adit::applier::write_port_rules(*options)) ? 0 : 1;
   if (!options->start) return run(*options);
   // Once at boot, before networkd.
   return is_well(adit::applier::NetworkdFiles(*options).write_at_start()) ? 0 : 1;

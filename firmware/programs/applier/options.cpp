@@ -38,6 +38,10 @@ command_line::Program command_line_of(Options& options) {
                {"--watch", "",
                 "only write to the directory of --status which other machine uses the box's addresses",
                 &options.watch},
+               {"--ports", "",
+                "only write to the directory of --status the firewall's rules for the ports that aditd "
+                "requests",
+                &options.ports},
                {"--told", "DIR", "directory from which --watch reads the endpoints", &options.told}},
       .ending =
           "Exit code: 0 if no change is pending; 1 if an error occurred, networkd has not read its files, or "
@@ -54,7 +58,8 @@ std::expected<Options, std::string> parse_options(std::span<const char* const> a
   }
   if (options->team == options->command_post)
     return std::unexpected("--team and --command-post name the same interface");
-  if (options->start && options->watch) return std::unexpected("--start and --watch exclude each other");
+  if (options->start + options->watch + options->ports > 1)
+    return std::unexpected("--start, --watch and --ports exclude each other");
   return options;
 }
 

@@ -18,6 +18,7 @@ struct Options {
   std::string team = "team0", command_post = "darpa0";
   bool start = false;  // writes networkd's files before networkd starts, then exits
   bool watch = false;  // only listens for address conflicts
+  bool ports = false;  // only writes the firewall's rules for aditd's ports
   bool help = false, version = false;
 };
 [[gnu::cold]] command_line::Program command_line_of(Options& options);

@@ -151,6 +151,7 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
       routes_(icd_options(), flow_, flow_.workers(), api_),
       listeners_(loop, parts_.sockets, routes_, guesses_,
                  [this](intake::Ended why, const std::string& address) { overview_.ended(why, address); }),
+      team_ports_(loop, parts_.options.state, parts_.options.ports),
       second_(loop.timer([this] { every_second(); })),
       change_(loop.timer([this] { apply_change(); })) {}
 
@@ -274,6 +275,7 @@ void Gateway::every_second() {
   lights_.beat();
   network_.every_second();
   updates_.every_second();
+  team_ports_.every_second(listeners_.ports());
   keep_sessions();
   look_at_sockets();
   listeners_.tick();

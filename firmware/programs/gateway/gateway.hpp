@@ -6,6 +6,7 @@
 
 #include "admin/kept_file.hpp"
 #include "admin/setup.hpp"
+#include "admin/team_ports.hpp"
 #include "api/api.hpp"
 #include "box/lights.hpp"
 #include "box/self_test.hpp"
@@ -94,6 +95,7 @@ class Gateway final : public api::GatewayControl {
   intake::IcdRoutes routes_;
   intake::TokenGuesses guesses_;
   Listeners listeners_;
+  admin::TeamPorts team_ports_;
   loop::Source second_, change_;
   loop::Instant sessions_kept_{};
   std::optional<FileReturn> file_return_;

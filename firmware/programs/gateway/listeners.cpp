@@ -170,8 +170,8 @@ std::expected<void, std::string> Listeners::serve(const settings::Team& team) {
     }
     each.server->stop_listening();
     const bool bounds_alone = has(each.socket);
-    leaving_.push_back(
-        {std::move(each.server), bounds_alone ? std::nullopt : std::optional(loop_.now() + longest_)});
+    leaving_.push_back({std::move(each.at), std::move(each.server),
+                        bounds_alone ? std::nullopt : std::optional(loop_.now() + longest_)});
   }
   return {};
 }
@@ -191,7 +191,22 @@ std::expected<Listeners::Serving, std::string> Listeners::start(ListenSockets::O
             {{"address", open.at.address},
              {"port", std::to_string(open.at.port)},
              {"interface", open.at.interface}});
-  return Serving{open.number, bounds, std::move(server)};
+  return Serving{open.number, std::move(open.at), bounds, std::move(server)};
+}
+
+network::TeamPorts Listeners::ports() const {
+  std::vector<std::uint16_t> all;
+  const auto add = [&all](const intake::Bound& at) {
+    const bool is_loopback = at.address.starts_with("127.") || at.address == "::1";
+    if (!is_loopback) all.push_back(at.port);
+  };
+  for (const Serving& each : serving_) add(each.at);
+  for (const Leaving& each : leaving_) add(each.at);
+  std::ranges::sort(all);
+  const auto twice = std::ranges::unique(all);
+  all.erase(twice.begin(), twice.end());
+  all.resize(std::min(all.size(), network::kMostTeamPorts));
+  return {std::move(all)};
 }
 
 bool Listeners::has(std::uint64_t socket) const {

@@ -15,6 +15,7 @@
 #include "intake/turnstile.hpp"
 #include "loop/file_descriptor.hpp"
 #include "loop/loop.hpp"
+#include "network/messages.hpp"
 #include "settings/settings.hpp"
 
 namespace adit::gateway {
@@ -97,6 +98,8 @@ class Listeners {
   }
 
   bool serves() const { return !serving_.empty(); }
+  /// Ports of the served sockets that other machines can reach, also while their last clients are served.
+  network::TeamPorts ports() const;
   std::size_t connections() const { return sum(&intake::Server::connections); }
   /// Unauthenticated ones.
   std::size_t unauthenticated() const { return sum(&intake::Server::unauthenticated); }
@@ -108,11 +111,13 @@ class Listeners {
   };
   struct Serving {
     std::uint64_t socket = 0;  // ListenSockets::Open::number
+    intake::Bound at;
     Bounds bounds;
     std::unique_ptr<intake::Server> server;
   };
   /// Accepts no new connections.
   struct Leaving {
+    intake::Bound at;
     std::unique_ptr<intake::Server> server;
     std::optional<loop::Instant> until;  // nullopt: its socket has a new server with other bounds
   };

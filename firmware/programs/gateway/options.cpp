@@ -23,6 +23,8 @@ command_line::Program command_line_of(Options& options) {
                {"--watch", "DIR",
                 "read from DIR which other machines use the box's addresses (adit-network --watch)",
                 &options.watch},
+               {"--ports", "DIR", "read the ports that the firewall opens from DIR (adit-network --ports)",
+                &options.ports},
                {"--update", "DIR",
                 "read the status of adit-update, and the newer version that apt has, from DIR",
                 &options.update},

@@ -8,7 +8,7 @@ struct Options {
   std::string settings, secrets, state;
   std::string network = "/run/adit-network", update = "/run/adit-update", clock = "/run/adit-clock",
               spare = "/run/adit-spare";
-  std::string watch = "/run/adit-network-watch";
+  std::string watch = "/run/adit-network-watch", ports = "/run/adit-ports";
   std::string board;  // or ""
   std::string panel;  // adit-panel's socket, or ""
   std::string notices = "/run/adit-notices";

@@ -1,6 +1,9 @@
 #include "network/messages.hpp"
 
+#include <algorithm>
+
 #include "codec/nonce.hpp"
+#include "icd/sentence.hpp"
 #include "icd/try.hpp"
 
 namespace adit::codec {
@@ -58,6 +61,14 @@ constexpr codec::Kind kTaken = {.write = codec::kind_of<std::vector<AddressConfl
                                 .read = read_taken,
                                 .schema = codec::kind_of<std::vector<AddressConflict>>.schema};
 
+void read_ports(const Field& list, void* ports) {
+  if (list.size() > kMostTeamPorts) return list.refuse("expected at most ", kMostTeamPorts);
+  codec::kind_of<std::vector<std::uint16_t>>.read(list, ports);
+}
+constexpr codec::Kind kPorts = {.write = codec::kind_of<std::vector<std::uint16_t>>.write,
+                                .read = read_ports,
+                                .schema = codec::kind_of<std::vector<std::uint16_t>>.schema};
+
 codec::Value write_addresses(const void* addresses) {
   codec::Value::Array list;
   for (const std::uint32_t each : *static_cast<const std::vector<std::uint32_t>*>(addresses))
@@ -107,6 +118,7 @@ constexpr Member kProbeMembers[] = {
 };
 constexpr Member kEndpointsMembers[] = {member<&Endpoints::addresses>("endpoints").as(kAddresses)};
 constexpr Member kForgetMembers[] = {member<&Forget::nonce>("nonce").matching(codec::kNonce)};
+constexpr Member kPortsMembers[] = {member<&TeamPorts::ports>("ports").as(kPorts)};
 constexpr Member kPendingMembers[] = {
     member<&Pending::nonce>("nonce").matching(codec::kNonce),
     member<&Pending::until>("until_ms").from(0),
@@ -162,12 +174,24 @@ constexpr Row Wanted::kRow = codec::complete<Wanted>({"", kWantedMembers});
 constexpr Row Decision::kRow = codec::complete<Decision>({"", kWordMembers});
 constexpr Row Probe::kRow = codec::complete<Probe>({"", kProbeMembers});
 constexpr Row Endpoints::kRow = codec::complete<Endpoints>({"", kEndpointsMembers});
+constexpr Row TeamPorts::kRow = codec::complete<TeamPorts>({"", kPortsMembers});
 constexpr Row Forget::kRow = codec::complete<Forget>({"", kForgetMembers});
 constexpr Row Pending::kRow = codec::complete<Pending>({"", kPendingMembers});
 constexpr Row Status::kRow = codec::complete<Status>({"", kStatusMembers});
 constexpr Row Probed::kRow = codec::complete<Probed>({"", kProbedMembers});
 constexpr Row AddressConflict::kRow = codec::complete<AddressConflict>({"", kTakenAddressMembers});
 constexpr Row AddressConflicts::kRow = codec::complete<AddressConflicts>({"", kTakenMembers});
+
+std::string rules_for(const TeamPorts& ports) {
+  std::vector<std::uint16_t> all = ports.ports;
+  std::ranges::sort(all);
+  const auto twice = std::ranges::unique(all);
+  all.erase(twice.begin(), twice.end());
+  std::string rules = "flush set inet adit team_ports\n";
+  for (const std::uint16_t port : all)
+    rules += icd::sentence("add element inet adit team_ports { ", port, " }\n");
+  return rules;
+}
 
 std::string write_kept(const Numbers& numbers) {
   return codec::write_file(Kept{numbers});

@@ -24,6 +24,7 @@ inline constexpr const char* kWordFile = "word.json";
 inline constexpr const char* kProbeFile = "probe.json";
 inline constexpr const char* kEndpointsFile = "endpoints.json";
 inline constexpr const char* kForgetFile = "forget.json";
+inline constexpr const char* kPortsFile = "ports.json";
 /// The answer to a Probe, in adit-network's runtime directory.
 inline constexpr const char* kProbedFile = "probed.json";
 /// The address conflicts that adit-network --watch has found, in its own runtime directory.
@@ -70,6 +71,20 @@ struct Forget {
   std::string nonce;
   static const codec::Row kRow;
 };
+
+/// aditd's TCP ports on the team's side, which the firewall opens.
+struct TeamPorts {
+  std::vector<std::uint16_t> ports;  // at most kMostTeamPorts
+  static const codec::Row kRow;
+  friend bool operator==(const TeamPorts&, const TeamPorts&) = default;
+};
+inline constexpr std::size_t kMostTeamPorts = 64;
+/// The firewall's rules for the requested ports, in the runtime directory of adit-network --ports. Absent
+/// before the first request of a boot: then services/adit-nftables.conf opens kFirstTeamPorts.
+inline constexpr const char* kPortRulesFile = "ports.nft";
+inline constexpr std::uint16_t kFirstTeamPorts[] = {80, 8000};
+/// Commands of nft that make `ports` the only open ones, in any order and number of repetitions.
+std::string rules_for(const TeamPorts& ports);
 
 struct Pending {
   std::string nonce;

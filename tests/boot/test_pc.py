@@ -52,6 +52,9 @@ class Pc(Updating, Story):
         self.assertAlmostEqual(most / total, int(said[1]) / 100, delta=0.05)
         note("PC: adit.service, of its memory", f"{most >> 20} of {total >> 20} MiB")
 
+    def test_kernel_protects_files_in_shared_directories(self):
+        self.assertEqual(self.box.console.ask("cat /proc/sys/fs/protected_fifos /proc/sys/fs/protected_regular").split(), ["1", "2"])
+
     def test_update_is_rejected_while_two_disks_hold_an_adit(self):
         self.box.plug_stick(boards.PC.image())
         self.box.wait_until(lambda: self.box.console.run(f"cat {NOTICE}")[0] == 0, "it to be noticed")

@@ -249,7 +249,7 @@ class Stick(Sticks):
         (top / b"\xff\x1b[2J.adit-spare".decode("utf-8", "surrogateescape")).write_bytes(EXPORT)
         run("umount", top)
         self.mount_stick()
-        self.assertEqual(len(self.run_it()["exports"]), 6, "they are names so far")
+        self.assertEqual(self.run_it()["exports"], [f"{name}.adit-spare" for name in ("empty", "large", "none")], "files only")
         for name, why in (("link", "link.adit-spare"), ("pipe", "is not a regular file"), ("folder", "is not a regular file"),
                           ("none", "the file is not an export from Adit"), ("empty", "the file is not an export from Adit"),
                           ("large", "larger than an export may be")):
@@ -280,6 +280,20 @@ class Stick(Sticks):
         (self.folder / "wanted/stick.json").write_text(
             json.dumps({"format": 1, "nonce": secrets.token_hex(16), "what": "write", "name": NAME}))
         self.assertEqual((self.run_it()["written"], list((self.folder / "wanted").iterdir())), ("", []))
+
+
+class HostileFileSystem(Sticks):
+    def test_stick_cannot_ask_for_a_panic(self):
+        image = self.folder / "sda1.img"
+        make(self.kind, image)
+        run("tune2fs", "-e", "panic", image, env={**os.environ, "PATH": os.environ["PATH"] + ":/usr/sbin:/sbin"})
+        self.hook(f'grep -F " $2 " /proc/mounts >>{self.folder}/mounts')
+        self.slots.plug(image)
+        self.assertEqual(self.write()["written"], NAME)
+        mounts = (self.folder / "mounts").read_text().splitlines()
+        self.assertEqual([line.split()[3].split(",")[0] for line in mounts], ["ro", "rw", "ro"])
+        for line in mounts:
+            self.assertIn("errors=remount-ro", line)
 
 
 class FatStick(Stick):

@@ -1,7 +1,9 @@
 """A PC that GRUB starts: an update is installed, GRUB counts a start of it, and RAUC marks it good."""
 
+import os
 import pathlib
 import re
+import subprocess
 import tempfile
 
 import boards
@@ -54,6 +56,22 @@ class Pc(Updating, Story):
 
     def test_kernel_protects_files_in_shared_directories(self):
         self.assertEqual(self.box.console.ask("cat /proc/sys/fs/protected_fifos /proc/sys/fs/protected_regular").split(), ["1", "2"])
+
+    def test_stick_cannot_panic_the_kernel(self):
+        """Its superblock asks for a panic at an error, and its root directory is damaged."""
+        image, path = self.folder / "hostile.img", {**os.environ, "PATH": os.environ["PATH"] + ":/usr/sbin:/sbin"}
+        with open(image, "wb") as made:
+            made.truncate(32 << 20)
+        for command in ["mkfs.ext4", "-q", "-b", "4096", image], ["tune2fs", "-e", "panic", image]:
+            subprocess.run(command, env=path, check=True, capture_output=True)
+        block = subprocess.run(["debugfs", "-R", "blocks /", image], env=path, check=True, capture_output=True, text=True).stdout
+        with open(image, "r+b") as damaged:
+            damaged.seek(int(block) * 4096)
+            damaged.write(os.urandom(4096))
+        self.box.plug_stick(image, "hostile")
+        self.box.wait_until(lambda: self.box.console.run("journalctl -kq | grep 'EXT4-fs error.*Directory block'")[0] == 0, "it to be read")
+        self.box.wait_until(self.box.answers, "the box to answer")
+        self.box.pull_stick("hostile")
 
     def test_update_is_rejected_while_two_disks_hold_an_adit(self):
         self.box.plug_stick(boards.PC.image())

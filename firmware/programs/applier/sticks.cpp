@@ -55,7 +55,13 @@ constexpr int kTries = 20;
 constexpr std::chrono::milliseconds kBetween{100};
 
 /// The options of adit-stick@.service after the first one.
-constexpr const char* kOptions = ",nosuid,nodev,noexec,noatime";
+constexpr const char* kOptions = ",nosuid,nodev,noexec,noatime,errors=remount-ro";
+
+/// Not a link, directory or FIFO, which read_export() rejects.
+bool is_plain_file(const std::string& path) {
+  struct stat status{};
+  return lstat(path.c_str(), &status) == 0 && S_ISREG(status.st_mode);
+}
 
 }  // namespace
 
@@ -123,7 +129,9 @@ std::vector<std::string> Sticks::exports(std::span<const spare::Medium> media,
     const auto names = host::names_in(folder(medium.name), kMostAtTop);
     if (!names) unreadable = "cannot read the stick " + medium.name + ": " + names.error();
     for (const std::string& name : names.value_or(std::vector<std::string>())) {
-      if (spare::is_file_name(name) && std::ranges::find(found, name) == found.end()) found.push_back(name);
+      if (spare::is_file_name(name) && is_plain_file(folder(medium.name) + '/' + name) &&
+          std::ranges::find(found, name) == found.end())
+        found.push_back(name);
     }
   }
   if (!found.empty()) unreadable.clear();

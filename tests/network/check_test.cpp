@@ -51,6 +51,15 @@ TEST(NetworkCheck, ListsChanges) {
       << "all except the gateway, which stays unset";
 }
 
+TEST(NetworkCheck, RejectsAPublicTeamAddress) {
+  for (const char* team : {"8.1.2.3/24", "172.32.0.1/16", "192.169.0.1/24", "100.64.0.1/24"}) {
+    EXPECT_THAT(errors(numbers(team), usual()), Contains(HasSubstr(" is not a private address"))) << team;
+  }
+  for (const char* team : {"10.9.0.1/24", "172.16.0.1/16", "172.31.255.1/24", "192.168.0.1/24"})
+    EXPECT_THAT(errors(numbers(team), usual()), IsEmpty()) << team;
+  EXPECT_THAT(errors(with_mode(Mode::Dhcp), usual()), IsEmpty());
+}
+
 TEST(NetworkCheck, RejectsATeamInTheCommandPostSubnets) {
   for (const char* team : {"10.1.1.7/24", "10.2.1.7/25", "10.100.7.7/24", "10.0.0.7/8"}) {
     EXPECT_THAT(errors(numbers(team), usual()),

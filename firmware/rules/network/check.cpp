@@ -76,6 +76,20 @@ void warn_the_asker(const Numbers& wanted, const std::optional<Numbers>& present
   }
 }
 
+/// The addresses with which adit.service and adit.socket exchange packets (IPAddressAllow=). DHCP and
+/// link-local addresses are not in the numbers.
+void check_team_is_private(const Numbers& wanted, std::vector<settings::Error>& errors) {
+  constexpr Subnet kPrivate[] = {{0x0a000000, 8}, {0xac100000, 12}, {0xc0a80000, 16}};
+  const std::uint32_t address = wanted.team.address;
+  if (wanted.mode != Mode::Static ||
+      std::ranges::any_of(kPrivate, [&](const Subnet& each) { return each.contains(address); }))
+    return;
+  errors.push_back(
+      {"team.address", icd::sentence(settings::ipv4_text(address),
+                                     " is not a private address, and the box answers no other: choose one in "
+                                     "10.0.0.0/8, 172.16.0.0/12 or 192.168.0.0/16")});
+}
+
 void check_listening(const Numbers& wanted, const Circumstances& around,
                      std::vector<settings::Error>& errors) {
   const bool fixed = wanted.mode == Mode::Static;
@@ -146,6 +160,7 @@ Findings check(const Numbers& wanted, const std::optional<Numbers>& present, con
           {"team.address", overlaps + "choose another subnet, or allow it by network.allow_overlap"});
     }
   }
+  check_team_is_private(wanted, findings.errors);
   check_listening(wanted, around, findings.errors);
   warn_of_lost_endpoints(wanted, around, findings.warnings);
   warn_the_asker(wanted, present, around, findings.warnings);

@@ -83,6 +83,7 @@ class Tracker(unittest.TestCase):
             self.assertIn("exposed:1: expected 'faces SOURCE PURPOSE'", why)
         for parts in [], [{"name": "x", "supplier": "Organization: Debian"}]:
             self.assertEqual(self.check({}, parts=parts)[0], 1, parts)
+        self.assertRegex((TOP / "toolchain/exposed").read_text(), r"(?m)^faces boost\S+ ", "Beast reads the Command Post's answers")
         done = subprocess.run([TOP / "toolchain/tracker", "/dev/null", TOP / "toolchain/exposed", "/dev/null"], capture_output=True, text=True, check=False)
         self.assertIn("/dev/null: ", done.stderr)
         self.assertEqual(done.returncode, 1)

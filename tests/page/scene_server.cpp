@@ -28,7 +28,7 @@
 namespace adit::api {
 namespace {
 
-class Stage final : public Source, public Operator, public Caretaker {
+class Stage final : public Source, public Operator, public GatewayControl {
  public:
   Stage(loop::Loop& loop, std::string name) : loop_(loop), began_(loop.wall_now()), name_(std::move(name)) {
     draw_scene(map_, began_);

@@ -153,7 +153,7 @@ void Spare::ends(const std::optional<icd::RunStatus>& expected) {
   host::log_failure(host::Level::Warning, "cannot store the run's status for the spare", keep(next));
 }
 
-bool Spare::is_of_current_standby(const std::string& file) const {
+bool Spare::is_current_export(const std::string& file) const {
   return file_.rest && spare::named_for(file).at == std::floor(file_.rest->since);
 }
 
@@ -172,7 +172,7 @@ api::SpareView Spare::state() const {
   view.takes_over = takes_over_;
   view.stick = stick_.view();
   // the last export of an earlier standby does not count
-  if (view.stick && !is_of_current_standby(view.stick->written)) view.stick->written.clear();
+  if (view.stick && !is_current_export(view.stick->written)) view.stick->written.clear();
   if (file_.rest) view.since = file_.rest->since;
   if (view.standby && file_.rest) view.code = spare::spoken(file_.rest->code);
   if (!opened_) return view;

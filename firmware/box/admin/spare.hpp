@@ -99,7 +99,7 @@ class Spare final : public api::Spare {
   };
 
   icd::Checked<void> keep(const SpareFile& next);
-  bool is_of_current_standby(const std::string& file) const;
+  bool is_current_export(const std::string& file) const;
   /// `file`: the export. `name`: the box's address for the team.
   using Named = std::function<void(icd::Checked<std::string> file, const std::string& name)>;
   void seal(const Named& done);

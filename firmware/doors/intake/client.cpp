@@ -219,7 +219,7 @@ void Client::refuse_head() {
 }
 
 bool Client::begin_chunked() {
-  if (!gate_.admit_request_and_read_head()) return false;
+  if (!gate_.consume_head()) return false;
   const auto begin = [this] {
     engine_.begin_request(*this);
     return Next::GoOn;

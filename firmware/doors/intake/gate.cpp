@@ -96,7 +96,7 @@ bool Gate::admit_request() {
   return true;
 }
 
-bool Gate::admit_request_and_read_head() {
+bool Gate::consume_head() {
   if (!admit_request()) return false;
   std::string read(head_text_.size(), '\0');
   return ::recv(fd_, read.data(), read.size(), MSG_DONTWAIT) == static_cast<ssize_t>(read.size());

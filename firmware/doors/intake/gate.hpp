@@ -45,7 +45,7 @@ class Gate {
   bool admit_request();
   /// Also reads the head from the socket, which libmicrohttpd then does not see. False: the head is not
   /// there any more.
-  bool admit_request_and_read_head();
+  bool consume_head();
   /// Call once the head was read from the socket. Acknowledges it at once if its body is still to come: a
   /// client that sends head and body in two writes waits for that (Nagle's algorithm), for 40 ms by default.
   void acknowledge_head() const;

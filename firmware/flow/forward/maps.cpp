@@ -617,7 +617,7 @@ void Maps::go_on() {
     step(next, MapEvent::TooLarge);
     return go_on();
   }
-  if (next && follows) return send_ahead(now);
+  if (next && follows) return pipeline_map(now);
   if (next) {
     if (now < starts()) return wake_.call_at(starts());
     if (channel_.claim_turn()) send(next);
@@ -650,7 +650,7 @@ loop::Instant Maps::begins_to_pack(loop::Instant now) const {
 }
 
 /// Once the one that is under way has arrived; it is looked for when the next may start, and not before.
-void Maps::send_ahead(loop::Instant now) {
+void Maps::pipeline_map(loop::Instant now) {
   if (!may_go_ahead(now)) return;
   Prepared& first = *first_;
   const std::size_t size = first.packed.body.size(), left = size - std::min(size, channel_.sent_bytes());

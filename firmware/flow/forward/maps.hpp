@@ -167,7 +167,7 @@ class Maps {
   void go_on();
   loop::Instant starts() const;
   loop::Instant begins_to_pack(loop::Instant now) const;
-  void send_ahead(loop::Instant now);
+  void pipeline_map(loop::Instant now);
   bool may_go_ahead(loop::Instant now) const;
   void send(const Place& prepared);
   void answered(const Place& sent, const uplink::Outcome& outcome);

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <set>
 #include <utility>
 
 #include "host/log.hpp"
@@ -195,18 +196,16 @@ std::expected<Listeners::Serving, std::string> Listeners::start(ListenSockets::O
 }
 
 network::TeamPorts Listeners::ports() const {
-  std::vector<std::uint16_t> all;
+  std::set<std::uint16_t> all;
   const auto add = [&all](const intake::Bound& at) {
     const bool is_loopback = at.address.starts_with("127.") || at.address == "::1";
-    if (!is_loopback) all.push_back(at.port);
+    if (!is_loopback) all.insert(at.port);
   };
   for (const Serving& each : serving_) add(each.at);
   for (const Leaving& each : leaving_) add(each.at);
-  std::ranges::sort(all);
-  const auto twice = std::ranges::unique(all);
-  all.erase(twice.begin(), twice.end());
-  all.resize(std::min(all.size(), network::kMostTeamPorts));
-  return {std::move(all)};
+  network::TeamPorts ports{{all.begin(), all.end()}};
+  ports.ports.resize(std::min(all.size(), network::kMostTeamPorts));
+  return ports;
 }
 
 bool Listeners::has(std::uint64_t socket) const {

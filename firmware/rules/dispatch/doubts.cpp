@@ -96,7 +96,7 @@ const Report* ReportReview::sent_elsewhere(const Report& report,
   return nullptr;
 }
 
-const Report* ReportReview::find_at_other_command_post(const Report& report) const {
+const Report* ReportReview::other_command_post_twin(const Report& report) const {
   if (account_.run().was_heard() || report.asked) return nullptr;
   return sent_elsewhere(report, [this](const Run& its) { return its.post != account_.run().post; });
 }

@@ -48,7 +48,7 @@ class ReportReview {
   /// The same report of that run, sent after this one and answered, or null.
   const Report* answered_later(const Report& report) const;
   /// The same report, sent to another Command Post, if this one has not answered yet. Otherwise null.
-  const Report* find_at_other_command_post(const Report& report) const;
+  const Report* other_command_post_twin(const Report& report) const;
   Hold reason_to_hold(const Report& report) const;
   /// Reports in doubt that the present run may have got before the ledger lost them. New reports are held.
   std::vector<const Report*> lost_here() const;

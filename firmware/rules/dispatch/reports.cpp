@@ -28,7 +28,7 @@ bool Reports::may_go(const Report& report, Instant now) const {
   if (barred_ || (is_page_ && !ordered_.contains(report.number))) return false;
   if (doubts_.is_pending(now)) return false;
   if (account_.is_fresh(now)) return true;
-  if (!account_.is_dumb(now) || review_.find_at_other_command_post(report) != nullptr) return false;
+  if (!account_.is_dumb(now) || review_.other_command_post_twin(report) != nullptr) return false;
   return report.asked || clients_.is_young(report, now);
 }
 
@@ -255,7 +255,7 @@ bool Reports::take(const PostedReport& posted, ClientId client, bool may_send, T
   }
   Hold hold = fresh ? review_.reason_to_hold(report) : Hold{};
   if (posted.can_be_undone && hold.why.empty()) hold = review_.hold_for_undo();
-  if (const Report* const other = review_.find_at_other_command_post(report); other != nullptr) {
+  if (const Report* const other = review_.other_command_post_twin(report); other != nullptr) {
     report.note = icd::sentence("the same as report ", other->number,
                                 ", sent to another Command Post; queued until the Command Post at ",
                                 run().post, " answers");

@@ -1,6 +1,6 @@
 #include "network/messages.hpp"
 
-#include <algorithm>
+#include <set>
 
 #include "codec/nonce.hpp"
 #include "icd/sentence.hpp"
@@ -183,10 +183,7 @@ constexpr Row AddressConflict::kRow = codec::complete<AddressConflict>({"", kTak
 constexpr Row AddressConflicts::kRow = codec::complete<AddressConflicts>({"", kTakenMembers});
 
 std::string rules_for(const TeamPorts& ports) {
-  std::vector<std::uint16_t> all = ports.ports;
-  std::ranges::sort(all);
-  const auto twice = std::ranges::unique(all);
-  all.erase(twice.begin(), twice.end());
+  const std::set<std::uint16_t> all(ports.ports.begin(), ports.ports.end());
   std::string rules = "flush set inet adit team_ports\n";
   for (const std::uint16_t port : all)
     rules += icd::sentence("add element inet adit team_ports { ", port, " }\n");

@@ -99,7 +99,7 @@ TEST(Cave, ShowsItsFirstArtifactFromTheEntrance) {
     const Cave cave = Cave::generate(seed);
     const Vector3& first = cave.artifacts().front().position;
     EXPECT_LT(std::hypot(first.x, first.y), 6) << seed;
-    EXPECT_TRUE(cave.has_line_of_sight({}, first)) << seed;
+    EXPECT_TRUE(cave.can_see({}, first)) << seed;
   }
 }
 

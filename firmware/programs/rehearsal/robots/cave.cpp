@@ -212,7 +212,7 @@ Cave Cave::generate(std::uint64_t seed) {
   return cave;
 }
 
-bool Cave::has_line_of_sight(const Vector3& from, const Vector3& to) const {
+bool Cave::can_see(const Vector3& from, const Vector3& to) const {
   const double length = std::hypot(to.x - from.x, to.y - from.y);
   const int steps = static_cast<int>(std::ceil(length / (lattice().resolution / 2)));
   for (int step = 0; step <= steps; ++step) {
@@ -236,8 +236,7 @@ void Cave::place_artifacts(Random& random) {
   const std::size_t first_type = random.below(kArtifactTypes.size());
   for (int attempt = 0; attempt < 200'000 && artifacts_.size() < kArtifacts; ++attempt) {
     const Vector3& place = places[random.below(places.size())];
-    if (artifacts_.empty() && (std::hypot(place.x, place.y) > kNear || !has_line_of_sight({}, place)))
-      continue;
+    if (artifacts_.empty() && (std::hypot(place.x, place.y) > kNear || !can_see({}, place))) continue;
     const bool apart = std::ranges::all_of(artifacts_, [&](const Artifact& other) {
       return std::hypot(place.x - other.position.x, place.y - other.position.y) >= kApart;
     });

@@ -102,7 +102,7 @@ class Cave {
   Cell entrance() const { return lattice().cell_at(0, 0); }
 
   /// Whether the straight line between two places crosses no rock.
-  bool has_line_of_sight(const Vector3& from, const Vector3& to) const;
+  bool can_see(const Vector3& from, const Vector3& to) const;
 
   /// Two of each type, at least kApart from each other (so that a report within the 5 m that score can
   /// mean only one of them), the first within sight of the entrance.

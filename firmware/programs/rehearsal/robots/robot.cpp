@@ -315,7 +315,7 @@ void Robot::notice() {
   for (std::size_t i = 0; i < cave_.artifacts().size(); ++i) {
     const Vector3& there = cave_.artifacts()[i].position;
     if (noticed_[i] || std::hypot(there.x - here.x, there.y - here.y) > kSightRange) continue;
-    if (!cave_.has_line_of_sight(here, there)) continue;
+    if (!cave_.can_see(here, there)) continue;
     noticed_[i] = true;
     sightings_.push_back(i);
   }

@@ -79,7 +79,7 @@ TEST_F(ClockSettingTest, ReportsNoTimeAndNoTroubleWhileAditClockStarts) {
   ClockSetting starting{loop_, state_.path(), run_.path(), chronyd_.port(), run_.path()};
   starting.every_second({.server = "10.0.0.5", .clients = ""});
   EXPECT_FALSE(starting.state().is_set) << "the clock has the time at boot";
-  EXPECT_EQ(starting.state().why, "adit-clock is starting: wait a minute");
+  EXPECT_EQ(starting.state().why, "adit-clock is starting, for at most 5 minutes: try again");
   EXPECT_EQ(starting.ntp_trouble(), "");
 }
 

@@ -45,6 +45,14 @@ TEST_F(TeamPortsTest, OtherPortsAreRequestedUntilTheyAreOpen) {
   EXPECT_FALSE(asked(kMore));
 }
 
+TEST_F(TeamPortsTest, UnreadRequestIsNotWrittenAgain) {
+  team_ports_.every_second(kMore);
+  state_.put(network::kPortsFile, "as it was");
+  time_.pass(loop_, TeamPorts::kAskAgain);
+  team_ports_.every_second(kMore);
+  EXPECT_EQ(host::read_file(state_ / network::kPortsFile), "as it was") << "a write to the disk each minute";
+}
+
 TEST_F(TeamPortsTest, RemovedPortsAreClosed) {
   open(kMore);
   EXPECT_EQ(asked(kFirst), kFirst);

@@ -83,7 +83,7 @@ class Slots:
         self.mount_stick(name)
 
     def mount_stick(self, name="sda1"):
-        subprocess.run([self.mount, "--type=vfat,ext4", "--options=ro,nosuid,nodev,noexec,noatime,errors=remount-ro",
+        subprocess.run([self.mount, "--type=vfat,exfat,ext4", "--options=ro,nosuid,nodev,noexec,noatime,errors=remount-ro",
                         self.folder / "dev" / name, self.place(name)], capture_output=True, check=False)
         self.calls.write_text("")
 

@@ -140,8 +140,8 @@ class Stick(Sticks):
         (self.folder / "sda1.img").write_bytes(bytes(1 << 20))
         self.mount_stick()
         status = self.run_it()
-        self.assertIn("expected FAT32 or ext4", status["hindrance"])
-        self.assertIn("expected FAT32 or ext4", status["unreadable"], "of a spare that is not on standby")
+        self.assertIn("expected FAT32, exFAT or ext4", status["hindrance"])
+        self.assertIn("expected FAT32, exFAT or ext4", status["unreadable"], "of a spare that is not on standby")
         self.expect_refused(self.write(), "the box cannot read the stick's file system")
 
     def test_stick_with_too_many_names_is_not_taken_for_an_empty_one(self):

@@ -57,7 +57,7 @@ class Pc(Updating, Story):
     def test_kernel_protects_files_in_shared_directories(self):
         self.assertEqual(self.box.console.ask("cat /proc/sys/fs/protected_fifos /proc/sys/fs/protected_regular").split(), ["1", "2"])
 
-    def test_stick_cannot_panic_the_kernel(self):
+    def hostile_stick(self):
         """Its superblock asks for a panic at an error, and its root directory is damaged."""
         image, path = self.folder / "hostile.img", {**os.environ, "PATH": os.environ["PATH"] + ":/usr/sbin:/sbin"}
         with open(image, "wb") as made:
@@ -68,10 +68,22 @@ class Pc(Updating, Story):
         with open(image, "r+b") as damaged:
             damaged.seek(int(block) * 4096)
             damaged.write(os.urandom(4096))
-        self.box.plug_stick(image, "hostile")
+        return image
+
+    def test_stick_cannot_panic_the_kernel(self):
+        self.box.plug_stick(self.hostile_stick(), "hostile")
         self.box.wait_until(lambda: self.box.console.run("journalctl -kq | grep 'EXT4-fs error.*Directory block'")[0] == 0, "it to be read")
         self.box.wait_until(self.box.answers, "the box to answer")
         self.box.pull_stick("hostile")
+
+    def test_a_stick_with_exfat_is_read(self):
+        image = self.folder / "exfat.img"
+        with open(image, "wb") as made:
+            made.truncate(64 << 20)
+        subprocess.run(["mkfs.exfat", image], env={**os.environ, "PATH": os.environ["PATH"] + ":/usr/sbin:/sbin"}, check=True, capture_output=True)
+        self.box.plug_stick(image, "large")
+        self.box.wait_until(lambda: self.box.console.run("grep '/run/adit-stick/.* exfat ro,' /proc/mounts")[0] == 0, "it to be mounted")
+        self.box.pull_stick("large")
 
     def test_update_is_rejected_while_two_disks_hold_an_adit(self):
         self.box.plug_stick(boards.PC.image())
@@ -91,6 +103,7 @@ class Pc(Updating, Story):
         self.assertEqual((counts["ORDER"], counts["B_OK"], counts["B_TRY"]), ("B A", "1", "0"))
 
     def test_grub_counts_its_start(self):
+        self.box.plug_stick(self.hostile_stick(), "hostile")  # stays in the box while it boots
         self.restart()
         self.box.console.wait_for(rb"Adit: slot b", 180)
         self.box.wait_until(lambda: self.stands()["slot"] == "B", "slot B to answer", 300)
@@ -101,6 +114,15 @@ class Pc(Updating, Story):
         self.settled("good", NEWER, within=300)
         self.assertEqual((self.stands()["version"], self.stands()["slot"]), (NEWER, "B"))
         self.assertEqual(self.counts()["B_TRY"], "0")
+
+    def test_the_stick_was_mounted_only_then(self):
+        """A panic by it would not have used up a try."""
+        good = int(self.box.console.ask("systemctl show -P InactiveEnterTimestampMonotonic adit-good"))
+        read = "journalctl -kb -o short-monotonic | sed -n '/EXT4-fs error.*Directory block/{s/^\\[ *\\([0-9]*\\)\\.\\([0-9]*\\).*/\\1\\2/p;q}'"
+        self.box.wait_until(lambda: self.box.console.ask(read), "the stick to be read")
+        self.assertGreater(int(self.box.console.ask(read)), good)
+        self.assertGreater(good, 0)
+        self.box.pull_stick("hostile")
 
     def test_a_panic_leaves_its_trace_in_the_journal(self):
         heard = len(self.box.console.heard)

@@ -72,7 +72,8 @@ TEST_F(RootProgramTest, IsStartingAfterABootIfItHasAUnit) {
   units.put("adit-x.service", "");
   const RootProgram<Status> program{loop_, "adit-x", requests_.path(), run_.path(), 60s, units.path()};
   EXPECT_TRUE(program.is_starting() && program.runs_here());
-  EXPECT_EQ(program.why(), "adit-x is starting: wait a minute");
+  EXPECT_EQ(program.why(), "adit-x is starting, for at most 5 minutes: try again");
+  EXPECT_EQ(program.refuse().error().status, icd::Status::ServiceUnavailable);
   tell("");
   time_.pass(kFresh);
   EXPECT_FALSE(program.is_starting());
@@ -81,6 +82,7 @@ TEST_F(RootProgramTest, IsStartingAfterABootIfItHasAUnit) {
   time_.pass(kBoot);
   EXPECT_FALSE(program.is_starting() || program.runs_here()) << "the program failed to start";
   EXPECT_THAT(program.why(), HasSubstr("adit-x does not run here"));
+  EXPECT_EQ(program.refuse().error().status, icd::Status::Conflict);
 }
 
 TEST_F(RootProgramTest, RunsEvenIfItsStatusIsUnreadable) {

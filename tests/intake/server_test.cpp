@@ -101,6 +101,17 @@ TEST_F(ServerTest, RejectsALargeBodyAtOnce) {
   EXPECT_EQ(reply->header("connection"), "close");
 }
 
+TEST_F(ServerTest, DiscardsARejectedBodyOfAnySize) {
+  const std::string piece(50 << 20, 'x');
+  constexpr std::size_t kPieces = 6;  // more than the largest map: a disk's image in place of an update
+  client.send("POST /refuse HTTP/1.1\r\nHost: adit\r\nContent-Length: " +
+              std::to_string(kPieces * piece.size()) + "\r\n\r\n");
+  for (std::size_t i = 0; i < kPieces; ++i) {
+    ASSERT_EQ(client.send_until_stalled(piece, std::chrono::seconds(10)), piece.size()) << i;
+  }
+  EXPECT_EQ(client.reply()->status, 401);
+}
+
 TEST_F(ServerTest, RejectsInTheMiddleOfABody) {
   client.send("POST /midway HTTP/1.1\r\nHost: adit\r\nContent-Length: 50000000\r\n\r\nfirst");
   const auto reply = client.reply();

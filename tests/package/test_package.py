@@ -266,6 +266,14 @@ class Packages(Story):
             nft list ruleset | diff /root/loaded -; test ! -e {notice}; {servers} | grep 10.0.0.77
             systemctl stop adit-nftables; nft list ruleset | diff /root/loaded -; systemctl start adit-nftables""")
 
+    def test_ports_that_could_not_be_opened_leave_a_notice(self):
+        notice = "/run/adit-notices/ports"
+        self.box.shell(f"""nft list ruleset >/root/loaded; nft flush table inet adit; nft delete set inet adit team_ports
+            systemctl restart adit-ports; grep -q 'did not open the ports' {notice}
+            systemctl restart adit-nftables adit-ports; nft list ruleset | diff /root/loaded -; test ! -e {notice}
+            nft delete table inet adit; systemctl restart adit-ports; test ! -e {notice}
+            systemctl restart adit-nftables; nft list ruleset | diff /root/loaded -""")
+
     def test_interrupted_upgrade_is_completed(self):
         self.box.shell(f"dpkg --unpack {NOW}")
         self.assertTrue(self.box.answers(), "meanwhile the one that runs goes on")

@@ -66,7 +66,7 @@ TEST(StickPartition, IsNoneIfThereAreSeveralSticks) {
 TEST(StickPartition, IsNoneWithAReason) {
   EXPECT_EQ(chosen({}), "there is no stick in the box");
   EXPECT_EQ(chosen({{.name = "sda1", .disk = "sda"}}),
-            "the box cannot read the stick's file system: expected FAT32 or ext4");
+            "the box cannot read the stick's file system: expected FAT32, exFAT or ext4");
   Medium locked = stick("sda1", "sda", 2000);
   locked.is_write_protected = true;
   EXPECT_EQ(chosen({locked}), "the stick is write-protected");

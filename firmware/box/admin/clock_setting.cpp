@@ -102,7 +102,7 @@ bool ClockSetting::is_told() const {
 
 icd::Checked<void> ClockSetting::set_clock(double time) {
   const auto status = adit_clock_.status();
-  if (!status) return icd::conflict(adit_clock_.why());
+  if (!status) return adit_clock_.refuse();
   if (is_kept_by_ntp())
     return icd::conflict("the NTP server ", ntp_.server, " keeps the time: clock.ntp_server in the settings");
   if (!clock::time_to_set(status->source, {clock::Source::Operator, time}, loop_.wall_now()))

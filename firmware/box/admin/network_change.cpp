@@ -147,6 +147,7 @@ network::Findings NetworkChange::check(const network::Numbers& wanted, const std
 
 icd::Checked<void> NetworkChange::change(const network::Numbers& wanted) {
   if (pending()) return icd::conflict("another change is not yet confirmed or reverted");
+  if (!adit_network_.status()) return adit_network_.refuse();
   if (const std::string why = hindrance(); !why.empty()) return icd::conflict(why);
   wanted_ = {host::draw_nonce(), settings_.network.confirm_within, wanted};
   wanted_at_ = loop_.now();

@@ -66,7 +66,7 @@ std::optional<api::StickRow> SpareStick::view() const {
 icd::Checked<void> SpareStick::check_free() const {
   const auto now = view();
   if (!now) return icd::conflict(kNotHere);
-  if (!adit_spare_.status()) return icd::conflict(adit_spare_.why());
+  if (!adit_spare_.status()) return adit_spare_.refuse();
   if (now->doing.empty()) return {};
   return icd::conflict("the box is already ", now->doing, " an export: wait");
 }

@@ -5,6 +5,7 @@
 
 #include "host/log.hpp"
 #include "host/root_program.hpp"
+#include "host/service.hpp"
 
 namespace adit::admin {
 
@@ -22,7 +23,9 @@ void TeamPorts::every_second(const network::TeamPorts& ports) {
     asked_at_.reset();
     return;
   }
-  if (asked_at_ && asked_ == ports && loop_.now() < *asked_at_ + kAskAgain) return;
+  if (asked_at_ && asked_ == ports &&
+      (loop_.now() < *asked_at_ + kAskAgain || host::may_exist(state_ + '/' + network::kPortsFile)))
+    return;
   asked_ = ports;
   asked_at_ = loop_.now();
   host::log_failure(host::Level::Error, "cannot request ports",

@@ -13,7 +13,7 @@ namespace adit::admin {
 /// Has the firewall open aditd's ports on the team's side and no others, by adit-network --ports.
 class TeamPorts {
  public:
-  /// Wait before an unanswered request is repeated.
+  /// Wait before a request is repeated that was read without an effect. An unread one stays.
   static constexpr std::chrono::seconds kAskAgain{60};
 
   /// `state_folder`: for requests. `rules_folder`: of network::kPortRulesFile. `loop` must outlive this

@@ -228,6 +228,7 @@ api::UpdateView Updates::state() const {
 
 icd::Checked<void> Updates::check_free() const {
   const api::UpdateView view = state();
+  if (!adit_update_.status()) return adit_update_.refuse();
   if (!view.managed) return icd::conflict(view.why);
   if (!view.status.doing.empty()) return icd::conflict("the box is already ", view.status.doing, ": wait");
   return {};

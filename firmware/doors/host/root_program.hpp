@@ -11,6 +11,7 @@
 #include "codec/row.hpp"
 #include "host/service.hpp"
 #include "host/untrusted_folder.hpp"
+#include "icd/sentence.hpp"
 #include "icd/try.hpp"
 #include "loop/loop.hpp"
 
@@ -88,9 +89,14 @@ class RootProgram {
   /// be read. "": there is a status.
   std::string why() const {
     if (status()) return "";
-    if (is_starting()) return name_ + " is starting: wait a minute";
+    if (is_starting()) return name_ + " is starting, for at most 5 minutes: try again";
     return status_ ? name_ + " does not run here: it has no status in " + directory_
                    : "cannot read the status of " + name_ + ": " + status_.error();
+  }
+
+  /// why() as a refusal: 503 while the program is starting, else 409.
+  std::unexpected<icd::Refusal> refuse() const {
+    return icd::refuse(is_starting() ? icd::Status::ServiceUnavailable : icd::Status::Conflict, why());
   }
 
   /// Writes a request that the status does not name.

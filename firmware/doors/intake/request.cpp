@@ -164,12 +164,12 @@ namespace {
 /// The rest of a body that is answered early is read if it is at most kReadAway and arrives within
 /// kReadAwayWithin, so that the connection can be kept. Otherwise the answer is sent at once, and later bytes
 /// are discarded, because closing a socket with unread bytes resets it, and the client would lose the answer:
-/// most libraries read it only after they have sent everything. From an authenticated client as much as the
-/// largest map is discarded, at the least rate; from an unauthenticated one less, within 5 s, so that a robot
-/// with an old token learns why its map is rejected.
+/// most libraries read it only after they have sent everything. From an authenticated client all of it is
+/// discarded, at the least rate; from an unauthenticated one this much, within 5 s, so that a robot with an old
+/// token learns why its map is rejected.
 constexpr std::size_t kReadAway = 64 * 1024;
 constexpr std::chrono::milliseconds kReadAwayWithin(1000);
-constexpr std::size_t kLinger = 256 << 20, kLingerUnauthenticated = 8 << 20;
+constexpr std::size_t kLingerUnauthenticated = 8 << 20;
 
 Answer failure() {
   return error_answer(icd::Status::InternalServerError,
@@ -251,9 +251,8 @@ Next Request::discard_body(std::size_t bytes) {
   if (answered()) sink_.reset();  // frees its data, because discarding may take long
   thrown_away_ += bytes;
   client_->deadline().body_came(bytes);
-  return thrown_away_ > (client_->deadline().is_authenticated() ? kLinger : kLingerUnauthenticated)
-             ? Next::Close
-             : Next::GoOn;
+  const bool is_enough = !client_->deadline().is_authenticated() && thrown_away_ > kLingerUnauthenticated;
+  return is_enough ? Next::Close : Next::GoOn;
 }
 
 void Request::take_chunks(std::span<const std::uint8_t> piece) {

@@ -169,7 +169,7 @@ std::expected<void, std::string> Sticks::remount(const std::string& name, Mode m
   const std::string how = std::string(mode == Mode::Writable ? "rw" : "ro") + kOptions;
   std::expected<void, std::string> done;
   for (int tries = 0; tries < kTries && is_in(name); ++tries) {
-    done = host::run_command({options_.mount, "--collect", "--fsck=no", "--type=vfat,ext4",
+    done = host::run_command({options_.mount, "--collect", "--fsck=no", "--type=vfat,exfat,ext4",
                               "--options=" + how, options_.devices + '/' + name, folder(name)},
                              kMount);
     if (is_mounted(name)) return {};

@@ -49,7 +49,7 @@ struct Medium {
 
 /// Why a stick is not mounted.
 inline constexpr const char* kUnknownFileSystem =
-    "the box cannot read the stick's file system: expected FAT32 or ext4";
+    "the box cannot read the stick's file system: expected FAT32, exFAT or ext4";
 
 /// Where to write an export of `size` bytes: the partition with the most room of the only stick. An error is
 /// a sentence for the user at the box: no stick, several sticks (the export must not have to be searched

@@ -75,6 +75,8 @@ class Pc(Updating, Story):
         self.box.wait_until(lambda: self.box.console.run("journalctl -kq | grep 'EXT4-fs error.*Directory block'")[0] == 0, "it to be read")
         self.box.wait_until(self.box.answers, "the box to answer")
         self.box.pull_stick("hostile")
+        left = "systemctl list-units --no-legend --state=active,activating,deactivating 'adit-stick@*'"
+        self.box.wait_until(lambda: not self.box.console.ask(left).strip(), "it to be gone")
 
     def test_a_stick_with_exfat_is_read(self):
         image = self.folder / "exfat.img"
@@ -103,7 +105,7 @@ class Pc(Updating, Story):
         self.assertEqual((counts["ORDER"], counts["B_OK"], counts["B_TRY"]), ("B A", "1", "0"))
 
     def test_grub_counts_its_start(self):
-        self.box.plug_stick(self.hostile_stick(), "hostile")  # stays in the box while it boots
+        self.box.plug_stick(self.hostile_stick(), "again")  # stays in the box while it boots
         self.restart()
         self.box.console.wait_for(rb"Adit: slot b", 180)
         self.box.wait_until(lambda: self.stands()["slot"] == "B", "slot B to answer", 300)
@@ -122,7 +124,7 @@ class Pc(Updating, Story):
         self.box.wait_until(lambda: self.box.console.ask(read), "the stick to be read")
         self.assertGreater(int(self.box.console.ask(read)), good)
         self.assertGreater(good, 0)
-        self.box.pull_stick("hostile")
+        self.box.pull_stick("again")
 
     def test_a_panic_leaves_its_trace_in_the_journal(self):
         heard = len(self.box.console.heard)

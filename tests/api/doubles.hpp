@@ -130,6 +130,11 @@ class FakeHead final : public intake::RequestHead {
   std::optional<std::uint64_t> content_length() const override { return length_; }
   const std::string& peer() const override { return peer_; }
   const std::string& local() const override { return local_; }
+  bool is_secure() const override { return is_secure_; }
+  FakeHead& by_tls() {
+    is_secure_ = true;
+    return *this;
+  }
   FakeHead& from_to(std::string peer, std::string local) {
     peer_ = std::move(peer);
     local_ = std::move(local);
@@ -141,6 +146,7 @@ class FakeHead final : public intake::RequestHead {
   std::map<std::string, std::string, std::less<>> query_;
   std::vector<intake::Header> headers_;
   std::optional<std::uint64_t> length_;
+  bool is_secure_ = false;
 };
 
 struct FakeStream final : intake::Stream {

@@ -27,10 +27,10 @@ class Client {
     connected_ = ::connect(socket_.get(), reinterpret_cast<const sockaddr*>(&at), sizeof at) == 0;
   }
   bool connected() const { return connected_; }
-  void ask() {
-    constexpr std::string_view kRequest = "GET / HTTP/1.1\r\nHost: x\r\n\r\n";
-    EXPECT_EQ(::send(socket_.get(), kRequest.data(), kRequest.size(), MSG_NOSIGNAL),
-              static_cast<ssize_t>(kRequest.size()));
+  void ask() { send("GET / HTTP/1.1\r\nHost: x\r\n\r\n"); }
+  void send(std::string_view bytes) {
+    EXPECT_EQ(::send(socket_.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL),
+              static_cast<ssize_t>(bytes.size()));
   }
   /// The received bytes; "": the connection has ended.
   std::optional<std::string> heard() {
@@ -127,6 +127,23 @@ TEST_F(ListenersTest, PortsAreOpenUntilTheirLastClientIsServed) {
   EXPECT_EQ(listeners_.ports(), network::TeamPorts({{std::min(before, port()), std::max(before, port())}}));
   EXPECT_TRUE(connections_come_to(0));
   EXPECT_EQ(listeners_.ports(), network::TeamPorts{{port()}});
+}
+
+TEST_F(ListenersTest, SocketForStunnelIsNoAddressOfTheSettings) {
+  std::vector<host::Inherited> given;
+  given.push_back({"tls", std::move(*intake::open_listen_socket({.address = "127.0.0.1", .interface = ""}))});
+  const std::uint16_t tls = intake::port_of(given[0].descriptor.get());
+  sockets_ = *ListenSockets::take_over(std::move(given));
+  EXPECT_FALSE(listeners_.serves_tls());
+  ASSERT_TRUE(serve());
+  EXPECT_TRUE(listeners_.serves_tls());
+  EXPECT_EQ(listeners_.ports(), network::TeamPorts{{network::kTlsPort}})
+      << "the firewall opens stunnel's port";
+  Client client(tls);
+  client.send("PROXY TCP4 10.0.0.5 10.0.0.1 49152 443\r\n");
+  EXPECT_EQ(answer_to(client), kAnswered);
+  team_.listen = {{"127.0.0.1", tls}};
+  EXPECT_FALSE(serve());
 }
 
 TEST_F(ListenersTest, NewLimitsApplyToNewConnections) {

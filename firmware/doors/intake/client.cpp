@@ -121,7 +121,7 @@ Client::Client(Engine& engine, loop::Loop& loop, MHD_Connection* connection, int
       fd_(fd),
       number_(next_number()),
       addresses_(std::move(addresses)),
-      gate_(fd),
+      gate_(fd, addresses_.proxy_header),
       deadline_(engine, gate_),
       look_again_(loop.timer([this] { look_at_head(); })) {
   // libmicrohttpd does not watch the sockets of suspended connections, and misses an end that arrives

@@ -117,6 +117,7 @@ class Client {
  public:
   struct Addresses {
     std::string peer, local;
+    std::size_t proxy_header = 0;  // bytes of it that were read; 0: the client does not speak TLS
   };
   /// The state of the connection. Each has its own deadline.
   enum class Phase : std::uint8_t {
@@ -133,6 +134,7 @@ class Client {
   std::uint64_t number() const { return number_; }  // from 1, unique in the process
   const std::string& peer() const { return addresses_.peer; }
   const std::string& local() const { return addresses_.local; }
+  bool is_secure() const { return addresses_.proxy_header > 0; }
   Engine& engine() const { return engine_; }
   /// For the shares; nullopt if the connection is closing.
   std::optional<Held> held() const;

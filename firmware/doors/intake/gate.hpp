@@ -22,7 +22,8 @@ class Gate {
     Refused,  // head().refusal() says why
   };
 
-  explicit Gate(int fd) : fd_(fd) {}
+  /// `read`: bytes of the connection that were read before.
+  explicit Gate(int fd, std::size_t read = 0) : fd_(fd), requests_end_(read) {}
 
   /// A request has ended. Waits for the next head, unless that was checked together with the previous one
   /// because the client does not wait for answers.
@@ -90,7 +91,7 @@ class Gate {
   std::size_t looked_at_ = 0;  // checked bytes of the head
   loop::Instant looked_ = {};  // the time of the last check
   loop::Instant again_at_ = {};
-  std::uint64_t requests_end_ = 0;  // the end of the last request let in, from the client's first byte
+  std::uint64_t requests_end_;  // the end of the last request let in, from the client's first byte
   std::size_t thrown_away_ = 0;
 };
 

@@ -144,9 +144,14 @@ HeadParts parts_of(std::string_view head) {
           .fields = head.substr(line.size() + 2)};
 }
 
-Head::Head(std::string text, Target target, const std::string& peer, const std::string& local,
+Head::Head(std::string text, Target target, const std::string& peer, const std::string& local, bool is_secure,
            std::optional<std::uint64_t> length)
-    : text_(std::move(text)), target_(std::move(target)), peer_(peer), local_(local), length_(length) {
+    : text_(std::move(text)),
+      target_(std::move(target)),
+      peer_(peer),
+      local_(local),
+      is_secure_(is_secure),
+      length_(length) {
   const HeadParts parts = parts_of(text_);
   method_ = parts.method;
   fields_.reserve(16);

@@ -53,7 +53,7 @@ HeadParts parts_of(std::string_view head);
 class Head final : public RequestHead {
  public:
   /// `text`: a head that HeadChecker has found whole. `target`: its target.
-  Head(std::string text, Target target, const std::string& peer, const std::string& local,
+  Head(std::string text, Target target, const std::string& peer, const std::string& local, bool is_secure,
        std::optional<std::uint64_t> length);
   Head(const Head&) = delete;
   Head& operator=(const Head&) = delete;
@@ -65,6 +65,7 @@ class Head final : public RequestHead {
   std::optional<std::uint64_t> content_length() const override { return length_; }
   const std::string& peer() const override { return peer_; }
   const std::string& local() const override { return local_; }
+  bool is_secure() const override { return is_secure_; }
 
  private:
   std::string text_;
@@ -73,6 +74,7 @@ class Head final : public RequestHead {
   Target target_;
   const std::string& peer_;
   const std::string& local_;
+  bool is_secure_;
   std::optional<std::uint64_t> length_;
 };
 

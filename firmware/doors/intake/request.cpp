@@ -198,7 +198,8 @@ void Request::begin(std::string text, Target target, const Framing& framing) {
   left_ = framing.length;
   has_body_ = framing.has_body;
   if (!framing.length) chunks_.emplace();
-  head_.emplace(std::move(text), std::move(target), client_->peer(), client_->local(), framing.length);
+  head_.emplace(std::move(text), std::move(target), client_->peer(), client_->local(), client_->is_secure(),
+                framing.length);
 }
 
 void Request::open(Handler& handler) {

@@ -2,9 +2,11 @@
 
 #include <microhttpd.h>
 #include <sys/epoll.h>
+#include <sys/socket.h>
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -12,6 +14,7 @@
 #include "intake/client.hpp"
 #include "intake/head.hpp"
 #include "intake/listen_socket.hpp"
+#include "intake/proxy_listener.hpp"
 #include "intake/request.hpp"
 #include "intake/shares.hpp"
 #include "intake/turnstile.hpp"
@@ -74,6 +77,8 @@ class MhdServer final : public Server, public Engine {
   static void say_nothing(void*, const char*, va_list) {}
 
   Next hear(Client& client, std::string_view upload, void** request_cls);
+  /// Gives libmicrohttpd a connection that stunnel passed on.
+  void add(loop::FileDescriptor connection, ProxyHeader header);
   void connected(MHD_Connection* connection, void** client_cls);
   std::vector<Held> held_but(const Client* one) const;
   /// Closes unauthenticated connections above their share.
@@ -97,6 +102,8 @@ class MhdServer final : public Server, public Engine {
   std::map<std::uint64_t, std::unique_ptr<Client>> clients_;  // by Client::number(): oldest first
   std::vector<std::uint64_t> to_hold_back_;                   // numbers of clients
   std::shared_ptr<void> accepts_;
+  std::optional<ProxyListener> proxied_;  // in place of libmicrohttpd, which cannot read a PROXY header
+  std::optional<Client::Addresses> proxied_from_;  // of the connection that is being added
   loop::Instant look_due_ = loop::Instant::max();
   loop::Source readable_, deadline_timer_;
   const std::shared_ptr<MhdServer*> alive_ = std::make_shared<MhdServer*>(this);  // for posted tasks
@@ -121,6 +128,12 @@ std::expected<void, std::string> MhdServer::start(loop::FileDescriptor given) {
   });
   socket.release();  // NOLINT(bugprone-unused-return-value): libmicrohttpd's, until stop_listening()
   listening_ = true;
+  if (listen_.by_tls) {
+    proxied_.emplace(loop_, loop::FileDescriptor(MHD_quiesce_daemon(daemon_)), listen_.unauthenticated_within,
+                     [this](loop::FileDescriptor connection, ProxyHeader header) {
+                       add(std::move(connection), std::move(header));
+                     });
+  }
 
   const MHD_DaemonInfo* info = MHD_get_daemon_info(daemon_, MHD_DAEMON_INFO_EPOLL_FD);
   if (info == nullptr || info->epoll_fd < 0)
@@ -144,8 +157,20 @@ MhdServer::~MhdServer() {
 void MhdServer::stop_listening() {
   if (!std::exchange(listening_, false)) return;
   accepts_.reset();
+  proxied_.reset();
   const MHD_socket socket = MHD_quiesce_daemon(daemon_);
   if (socket != MHD_INVALID_SOCKET) ::close(socket);
+}
+
+void MhdServer::add(loop::FileDescriptor connection, ProxyHeader header) {
+  proxied_from_ = {std::move(header.peer), std::move(header.local), header.size};
+  sockaddr_storage peer{};  // of stunnel
+  socklen_t size = sizeof peer;
+  ::getpeername(connection.get(), reinterpret_cast<sockaddr*>(&peer), &size);
+  MHD_add_connection(daemon_, connection.release(), reinterpret_cast<const sockaddr*>(&peer), size);
+  proxied_from_.reset();
+  hold_back();
+  schedule_run();
 }
 
 void MhdServer::schedule_run() {
@@ -198,8 +223,9 @@ void MhdServer::connected(MHD_Connection* connection, void** client_cls) {
   const sockaddr* const address =
       MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CLIENT_ADDRESS)->client_addr;
   const int socket = MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD)->connect_fd;
-  auto client = std::make_unique<Client>(*this, loop_, connection, socket,
-                                         Client::Addresses{address_text(address), local_address(socket)});
+  auto client = std::make_unique<Client>(
+      *this, loop_, connection, socket,
+      proxied_from_.value_or(Client::Addresses{address_text(address), local_address(socket)}));
   Client* const known = client.get();
   clients_.emplace(known->number(), std::move(client));
   *client_cls = known;

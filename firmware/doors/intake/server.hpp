@@ -36,6 +36,7 @@ struct Listen {
   std::uint16_t port = 0;  // 0: any free port (Server::port())
   std::string interface;   // SO_BINDTODEVICE; "": not bound
   bool free_bind = false;  // also at an address that this machine does not have (yet)
+  bool by_tls = false;     // stunnel passes on the connections, each with a PROXY header (ProxyListener)
   std::uint32_t connections = 128, connections_per_address = 64;  // Shares
   std::chrono::milliseconds unauthenticated_within{5000};         // unauthenticated: each head; each body
   std::chrono::milliseconds rate_over{10000};  // authenticated: each head; LeastRate's window
@@ -56,6 +57,7 @@ class RequestHead {
   virtual std::optional<std::uint64_t> content_length() const = 0;   // absent if chunked
   virtual const std::string& peer() const = 0;                       // "10.0.0.5"
   virtual const std::string& local() const = 0;  // the box's address that the client used: "10.0.0.1"
+  virtual bool is_secure() const = 0;            // the client speaks TLS
 };
 
 /// Prefix of the paths of the box's API, which pages of other origins may not read.

@@ -18,6 +18,7 @@ namespace adit::gateway {
 namespace {
 
 constexpr std::string_view kStored = "listen-";  // no socket unit of Adit has this name
+constexpr std::string_view kTls = "tls";         // FileDescriptorName= of adit-tls-plain.socket
 
 /// The name in systemd's store: "listen-team0-10.0.0.1-8000". The port is the one in the settings, and may be
 /// 0.
@@ -85,7 +86,7 @@ std::expected<std::vector<ListenSockets::Open>, std::string> ListenSockets::open
     loop::FileDescriptor copy(fcntl(held.socket.get(), F_DUPFD_CLOEXEC, 0));
     if (!copy) return std::unexpected(icd::sentence("copying a socket: ", std::strerror(errno)));
     ADIT_TRY(intake::adopt_listen_socket(copy.get(), {}));
-    open.push_back({held.number, std::move(copy), held.at});
+    open.push_back({held.number, std::move(copy), held.at, held.door && held.name == kTls});
   }
   return open;
 }
@@ -126,7 +127,8 @@ std::vector<host::Inherited> ListenSockets::hand_over() {
 bool ListenSockets::is_held(const intake::Listen& listen) {
   const std::string name = name_of(listen);
   for (Held& held : held_) {
-    if (held.door ? !intake::covers(held.at, listen) : held.wanted || held.name != name) continue;
+    if (held.door ? held.name == kTls || !intake::covers(held.at, listen) : held.wanted || held.name != name)
+      continue;
     if (intake::is_deaf(held.socket.get())) continue;
     held.wanted = true;
     return true;
@@ -183,6 +185,7 @@ std::expected<Listeners::Serving, std::string> Listeners::start(ListenSockets::O
                                                {.address = open.at.address,
                                                 .port = open.at.port,
                                                 .interface = open.at.interface,
+                                                .by_tls = open.by_tls,
                                                 .connections = bounds.connections,
                                                 .connections_per_address = bounds.per_address,
                                                 .guesses = &guesses_,
@@ -192,7 +195,7 @@ std::expected<Listeners::Serving, std::string> Listeners::start(ListenSockets::O
             {{"address", open.at.address},
              {"port", std::to_string(open.at.port)},
              {"interface", open.at.interface}});
-  return Serving{open.number, std::move(open.at), bounds, std::move(server)};
+  return Serving{open.number, std::move(open.at), bounds, open.by_tls, std::move(server)};
 }
 
 network::TeamPorts Listeners::ports() const {
@@ -202,6 +205,7 @@ network::TeamPorts Listeners::ports() const {
     if (!is_loopback) all.insert(at.port);
   };
   for (const Serving& each : serving_) add(each.at);
+  if (serves_tls()) all.insert(network::kTlsPort);
   for (const Leaving& each : leaving_) add(each.at);
   network::TeamPorts ports{{all.begin(), all.end()}};
   ports.ports.resize(std::min(all.size(), network::kMostTeamPorts));

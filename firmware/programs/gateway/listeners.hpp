@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <expected>
 #include <functional>
@@ -37,6 +38,7 @@ class ListenSockets {
     std::uint64_t number = 0;  // unique in the process
     loop::FileDescriptor socket;
     intake::Bound at;
+    bool by_tls = false;  // stunnel connects here
   };
   /// Opens one for each of `team.listen` that no door covers, and the doors. Closes unnamed sockets that are
   /// in the way. An error names the address.
@@ -98,6 +100,8 @@ class Listeners {
   }
 
   bool serves() const { return !serving_.empty(); }
+  /// True if the team can use TLS at port network::kTlsPort.
+  bool serves_tls() const { return std::ranges::any_of(serving_, &Serving::by_tls); }
   /// Ports of the served sockets that other machines can reach, also while their last clients are served.
   network::TeamPorts ports() const;
   std::size_t connections() const { return sum(&intake::Server::connections); }
@@ -113,6 +117,7 @@ class Listeners {
     std::uint64_t socket = 0;  // ListenSockets::Open::number
     intake::Bound at;
     Bounds bounds;
+    bool by_tls = false;
     std::unique_ptr<intake::Server> server;
   };
   /// Accepts no new connections.

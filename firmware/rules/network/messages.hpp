@@ -83,6 +83,8 @@ inline constexpr std::size_t kMostTeamPorts = 64;
 /// before the first request of a boot: then services/adit-nftables.conf opens kFirstTeamPorts.
 inline constexpr const char* kPortRulesFile = "ports.nft";
 inline constexpr std::uint16_t kFirstTeamPorts[] = {80, 8000};
+/// The port of stunnel, which passes its connections on to aditd (services/adit-tls.socket).
+inline constexpr std::uint16_t kTlsPort = 443;
 /// Commands of nft that make `ports` the only open ones, in any order and number of repetitions.
 std::string rules_for(const TeamPorts& ports);
 

@@ -27,12 +27,25 @@ def listening():
     return opened
 
 
+def start_with(command, given, log, inside=(), **environment):
+    """Starts a program with (name, socket) pairs as from systemd. `inside`: a command prefix that runs it in its network namespace."""
+    high = [fcntl.fcntl(each.fileno(), fcntl.F_DUPFD, FIRST_HIGH) for _, each in given]
+    moves = " ".join(f"{3 + at}<&{fd} {fd}<&-" for at, fd in enumerate(high))
+    names = {"LISTEN_FDS": str(len(given)), "LISTEN_FDNAMES": ":".join(name for name, _ in given)} if given else {}
+    with open(log, "ab") as output:
+        process = subprocess.Popen([*inside, "bash", "-c", HAND_OVER.format(moves=moves), "-", *command], pass_fds=high,
+                                   stdout=output, stderr=output, env={**os.environ, **names, **environment})
+    for fd in high:
+        os.close(fd)
+    return process
+
+
 class ServiceManager:
     """systemd's part for one service with a socket unit."""
 
-    def __init__(self, folder, doors=(), inside=()):
-        """`doors`: the socket unit's sockets. `inside`: a command prefix that runs a command in its network namespace."""
-        self.folder, self.doors, self.inside = folder, list(doors), list(inside)
+    def __init__(self, folder, doors=(), inside=(), tls=()):
+        """`doors`: the socket unit's sockets; `tls`: those of adit-tls-plain.socket. `inside`: of start_with()."""
+        self.folder, self.doors, self.inside, self.tls = folder, list(doors), list(inside), list(tls)
         self.store = []  # (name, socket), as FDSTORE=1 has it
         self.said = []  # every assignment of every notification, with the time
         self.process = None
@@ -51,7 +64,7 @@ class ServiceManager:
             waker.sendto(b"", str(self.folder / "notify"))
         self.hearing.join()
         self.notify.close()
-        for each in self.doors + [kept for _, kept in self.store]:
+        for each in self.doors + self.tls + [kept for _, kept in self.store]:
             each.close()
 
     def _hear(self):
@@ -76,19 +89,12 @@ class ServiceManager:
         """`settings`: a new document, or None to keep the old one."""
         if settings is not None:
             (self.folder / "settings.json").write_text(json.dumps(settings))
-        given = [("team", door) for door in self.doors] + list(self.store)
-        high = [fcntl.fcntl(each.fileno(), fcntl.F_DUPFD, FIRST_HIGH) for _, each in given]
-        moves = " ".join(f"{3 + at}<&{fd} {fd}<&-" for at, fd in enumerate(high))
+        given = [("team", door) for door in self.doors] + [("tls", each) for each in self.tls] + self.store
         begun = len(self.said)
         command = [programs.BIN / "aditd", "--settings", self.folder / "settings.json", "--secrets",
                    self.folder / "secrets", "--state", self.folder / "state"]
-        names = {"LISTEN_FDS": str(len(given)), "LISTEN_FDNAMES": ":".join(name for name, _ in given)} if given else {}
-        with open(self.folder / "aditd.log", "ab") as log:
-            self.process = subprocess.Popen(
-                [*self.inside, "bash", "-c", HAND_OVER.format(moves=moves), "-", *command], pass_fds=high, stdout=log, stderr=log,
-                env={**os.environ, "NOTIFY_SOCKET": str(self.folder / "notify"), **names, **environment})
-        for fd in high:
-            os.close(fd)
+        self.process = start_with(command, given, self.folder / "aditd.log", self.inside,
+                                  NOTIFY_SOCKET=str(self.folder / "notify"), **environment)
         return begun
 
     def ready(self, begun):

@@ -256,6 +256,8 @@ def settings(network, overrides):
 class Stage:
     """Network, Command Post and box, and a directory for their files."""
 
+    make_box = Box
+
     def __init__(self, team_net="192.168.7", post_options=("--rate", "0"), disk=None, **overrides):
         """`disk`: the size of a separate file system for the state directory ("2m")."""
         self.disk = disk
@@ -275,7 +277,7 @@ class Stage:
                                check=True)
             if self.post_options is not None:
                 self.post = CommandPost(self.network, self.folder, *self.post_options)
-            self.box = Box(self.network, self.folder, **self.overrides)
+            self.box = self.make_box(self.network, self.folder, **self.overrides)
         except BaseException:
             self.__exit__()
             raise

@@ -1,11 +1,13 @@
 // What single fields of a request say: its target, who asks from where, with which token and cookie, and how
-// its body is coded.
+// its body is coded; and the line before a connection by TLS.
 #include <algorithm>
+#include <string>
 
 #include "access/admission.hpp"
 #include "codec/body_decoder.hpp"
 #include "icd/bearer_token.hpp"
 #include "intake/head.hpp"
+#include "intake/proxy_listener.hpp"
 #include "target.hpp"
 #include "uplink/exchange.hpp"
 
@@ -14,6 +16,25 @@ namespace {
 
 bool lies_in(std::string_view part, Input whole) {
   return part.empty() || whole.contains(part);
+}
+
+/// A whole header ends at the first CRLF, whatever follows, and no shorter one was refused.
+void try_proxy_header(Input text) {
+  using intake::ProxyHeader;
+  const auto header = ProxyHeader::parse(text);
+  const Input line = text.substr(0, std::min(text.find("\r\n"), text.size()));
+  if (!header) {
+    const bool ends = header.error() == ProxyHeader::Missing::Refused;
+    require(ends || (text.size() < ProxyHeader::kMostBytes && line.size() == text.size()));
+    const auto longer = ProxyHeader::parse(std::string(text) + "x");
+    require(!ends || longer == std::unexpected(ProxyHeader::Missing::Refused));
+    return;
+  }
+  require(header->size == line.size() + 2 && header->size <= ProxyHeader::kMostBytes);
+  for (std::size_t size = 0; size < header->size; ++size)
+    require(ProxyHeader::parse(text.substr(0, size)) == std::unexpected(ProxyHeader::Missing::More));
+  for (const std::string& address : {header->peer, header->local})
+    require(address.find_first_not_of("0123456789abcdef:.") == std::string::npos && address.size() >= 2);
 }
 
 }  // namespace
@@ -34,6 +55,7 @@ void try_names(Input text) {
     require(std::ranges::all_of(first, [](char c) { return c > ' ' && c <= '~'; }));
   }
 
+  try_proxy_header(text);
   (void)codec::format_of(text);
   (void)codec::coding_of(text);
   (void)uplink::http_date(std::string(text));

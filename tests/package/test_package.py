@@ -95,7 +95,7 @@ class Packages(Story):
             echo 'adit adit/command-post string {pc.PORTS["command_post"]}' | debconf-set-selections
             DEBIAN_FRONTEND=noninteractive dpkg-reconfigure adit""")
         programs.wait_until(self.box.answers, "the page to answer", 60)
-        self.assertEqual({(interface, port) for _, interface, port in self.box.listens()}, {("team0", "80"), ("team0", "8000")})
+        self.assertEqual({(interface, port) for _, interface, port in self.box.listens()}, {("lo", "8443"), ("team0", "443"), ("team0", "80"), ("team0", "8000")})
         self.assertIn("team0", self.box.shell(f"ip -o link show dev {pc.PORTS['team']}"), "its name from before is good, too")
         self.assertEqual(self.box.shell("systemctl --failed --plain --no-legend --no-pager"), "")
 
@@ -126,6 +126,21 @@ class Packages(Story):
                             "the addresses to be confirmed", 60)
         programs.wait_until(self.box.knows_the_run, "the box to know the run", 60)
         self.assertEqual(submit(self.stage).status_code, 201)
+
+    def test_page_is_served_over_tls_with_minimal_rights(self):
+        """aditd's port for stunnel rejects other users, who could claim any address."""
+        self.box.shell(f"""cd {STATE}; test -e tls.pem || openssl req -x509 -newkey ec -pkeyopt ec_paramgen_curve:P-256 -nodes -days 2 \\
+            -subj /CN=adit.local -keyout tls.pem -out /root/tls.crt 2>&1; ! test -e /root/tls.crt || cat /root/tls.crt >>tls.pem""")
+        team = ["ip", "netns", "exec", self.stage.network.team]
+        asked = [*team, "curl", "-sk", "-m", "5", "-o", "/dev/null", "-w", "%{http_code}", f"https://{self.stage.network.box_address}/icon.svg"]
+        programs.wait_until(lambda: subprocess.run(asked, capture_output=True, check=False).stdout == b"200", "an answer over TLS", 60)
+        pid = self.box.shell("systemctl show -p MainPID --value adit-tls.service").strip()
+        rights = dict(line.split(":\t", 1) for line in self.box.shell(f"cat /proc/{pid}/status").splitlines() if ":\t" in line)
+        self.assertEqual({rights[name] for name in ("CapEff", "CapPrm", "CapBnd")}, {f"{0:016x}"})
+        self.assertEqual(rights["Uid"].split()[0], self.box.shell("id -u adit-tls").strip())
+        for user, refused in ("adit-tls", False), ("nobody", True):
+            said = self.box.shell(f"setpriv --reuid {user} --clear-groups bash -c '(exec 3<>/dev/tcp/127.0.0.1/8443) 2>&1 || true'")
+            self.assertEqual("refused" in said, refused, said)
 
     def test_the_card_is_followed_to_its_end(self):
         """As a user at the machine: the Test, robots of the team, an alarm and its end."""
@@ -306,7 +321,7 @@ class Packages(Story):
 
     def test_removal_keeps_the_state_and_stops_everything(self):
         said = self.box.apt("remove adit")
-        for unit in ("adit.service", "adit.socket", "adit-network-start", "adit-network-watch", "adit-nftables"):
+        for unit in ("adit.service", "adit.socket", "adit-tls.service", "adit-network-start", "adit-network-watch", "adit-nftables"):
             self.assertFalse(self.box.is_active(unit), unit)
         self.assertEqual(self.box.listens(), [])
         self.assertEqual(self.box.shell("nft list ruleset"), "")

@@ -18,7 +18,7 @@ bool lies_in(std::string_view part, Input whole) {
   return part.empty() || whole.contains(part);
 }
 
-/// A whole header ends at the first CRLF, whatever follows, and no shorter one was refused.
+/// A whole header ends at the first CRLF. The bytes after it have no effect, and no part of it is refused.
 void try_proxy_header(Input text) {
   using intake::ProxyHeader;
   const auto header = ProxyHeader::parse(text);

@@ -129,11 +129,8 @@ class Packages(Story):
 
     def test_page_is_served_over_tls_with_minimal_rights(self):
         """aditd's port for stunnel rejects other users, who could claim any address."""
-        self.box.shell(f"""cd {STATE}; test -e tls.pem || openssl req -x509 -newkey ec -pkeyopt ec_paramgen_curve:P-256 -nodes -days 2 \\
-            -subj /CN=adit.local -keyout tls.pem -out /root/tls.crt 2>&1; ! test -e /root/tls.crt || cat /root/tls.crt >>tls.pem""")
-        team = ["ip", "netns", "exec", self.stage.network.team]
-        asked = [*team, "curl", "-sk", "-m", "5", "-o", "/dev/null", "-w", "%{http_code}", f"https://{self.stage.network.box_address}/icon.svg"]
-        programs.wait_until(lambda: subprocess.run(asked, capture_output=True, check=False).stdout == b"200", "an answer over TLS", 60)
+        self.box.shell(stage.MAKE_CERTIFICATE)
+        programs.wait_until(self.box.answers_over_tls, "an answer over TLS", 60)
         pid = self.box.shell("systemctl show -p MainPID --value adit-tls.service").strip()
         rights = dict(line.split(":\t", 1) for line in self.box.shell(f"cat /proc/{pid}/status").splitlines() if ":\t" in line)
         self.assertEqual({rights[name] for name in ("CapEff", "CapPrm", "CapBnd")}, {f"{0:016x}"})

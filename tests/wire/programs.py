@@ -170,6 +170,11 @@ class Page:
         change(held["settings"])
         return self.apply("POST /adit/settings", {"settings": held["settings"], "base": held["tag"]})
 
+    def answers_over_tls(self):
+        """Whether a file of the page comes from port 443, with any certificate."""
+        curl = ["curl", "-sk", "-m", "5", "-o", os.devnull, "-w", "%{http_code}", f"https://{self.network.box_address}/icon.svg"]
+        return subprocess.run(curl, capture_output=True, check=False).stdout == b"200"
+
     def reports(self):
         """All reports on the page, oldest first."""
         return self.ask("GET /adit/reports")[1]

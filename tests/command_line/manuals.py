@@ -10,7 +10,7 @@ import tempfile
 
 BIN = pathlib.Path(os.environ["ADIT_BIN"])
 SOURCE = pathlib.Path(os.environ["ADIT_SOURCE"])
-FIXED = ["adit", "aditd", "adit-network", "adit-import", "adit-update", "adit-spare", "adit-panel", "adit-rehearsal", "adit-robots"]
+FIXED = ["adit", "aditd", "adit-network", "adit-import", "adit-update", "adit-spare", "adit-certificate", "adit-panel", "adit-rehearsal", "adit-robots"]
 PROGRAMS = [name for name in FIXED if (BIN / name).exists()]  # those to rehearse with may not be built
 
 sys.path.insert(0, str(SOURCE / "toolchain"))

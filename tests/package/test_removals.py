@@ -10,7 +10,7 @@ from test_package import NOW, setUpModule  # and for the latter, too
 
 REMOVALS = int(os.environ.get("ADIT_REMOVALS", "3"))
 BUSY = 6  # processes
-UNITS = "adit.service adit.socket adit-tls.socket adit-tls-plain.socket adit-panel.service adit-panel.socket adit-interfaces adit-network.path adit-ports.path adit-network-watch"
+UNITS = "adit.service adit.socket adit-tls.socket adit-tls-plain.socket adit-panel.service adit-panel.socket adit-interfaces adit-network.path adit-ports.path adit-certificate.path adit-network-watch"
 
 
 class BusyPc(pc.Stage):

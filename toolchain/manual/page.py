@@ -6,7 +6,7 @@ import time
 FOR_EVERYBODY = {"adit", "adit-rehearsal", "adit-robots"}  # the others are of section 8: a service starts them
 SEE_ALSO = {
     "adit": ["aditd(8)", "adit-settings(5)"],
-    "aditd": ["adit(1)", "adit-settings(5)", "adit-panel(8)", "adit-network(8)", "adit-update(8)", "adit-clock(8)", "adit-spare(8)", "adit-import(8)"],
+    "aditd": ["adit(1)", "adit-settings(5)", "adit-panel(8)", "adit-network(8)", "adit-update(8)", "adit-clock(8)", "adit-spare(8)", "adit-certificate(8)", "adit-import(8)"],
     "adit-rehearsal": ["adit-robots(1)", "aditd(8)"],
     "adit-robots": ["adit-rehearsal(1)", "aditd(8)"],
 }

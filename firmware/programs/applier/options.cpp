@@ -121,6 +121,21 @@ command_line::Program command_line_of(SpareOptions& options) {
   };
 }
 
+command_line::Program command_line_of(CertificateOptions& options) {
+  return {
+      .name = "adit-certificate",
+      .about =
+          "Make the certificate of Adit's page for HTTPS, or check an uploaded one, on aditd's requests. End "
+          "when there are no more requests.",
+      .rows = {{"--state", "DIR", "directory of aditd's requests and of the certificate", &options.state},
+               {"--status", "DIR",
+                "directory of the answers. The file restart there shows that the certificate has changed",
+                &options.status},
+               {"--openssl", "CMD", "OpenSSL", &options.openssl}},
+      .ending = "Exit code: 0 on success; 1 if an error occurred; 2 for a wrong command line.",
+  };
+}
+
 command_line::Program command_line_of(ImportOptions& options) {
   return {
       .name = "adit-import",

@@ -64,6 +64,15 @@ struct SpareOptions {
 };
 [[gnu::cold]] command_line::Program command_line_of(SpareOptions& options);
 
+/// adit-certificate's command line.
+struct CertificateOptions {
+  std::string state = "/var/lib/private/adit";   // aditd's state directory: its requests, and tls.pem
+  std::string status = "/run/adit/certificate";  // directory of the status
+  std::string openssl = "openssl";
+  bool help = false, version = false;
+};
+[[gnu::cold]] command_line::Program command_line_of(CertificateOptions& options);
+
 /// adit-import's command line.
 struct ImportOptions {
   std::string card = "/boot/adit";                    // the user's files

@@ -59,15 +59,23 @@ TEST(RequestHeaders, ComparesHostAndPortOfAnOrigin) {
         Case{"http://10.0.0.2:8000", "10.0.0.1:8000", false}, Case{"null", "10.0.0.1:8000", false},
         Case{"http://evil.example", "10.0.0.1:8000", false}, Case{"10.0.0.1:8000", "10.0.0.1:8000", false},
         Case{"file://10.0.0.1", "10.0.0.1", false}, Case{"http://", "", true}}) {
-    EXPECT_EQ(is_same_origin(origin, host), same) << origin << ' ' << host;
+    EXPECT_EQ(is_same_origin(origin, host, false), same) << origin << ' ' << host;
   }
 }
 
+TEST(RequestHeaders, OverTlsAcceptOnlyAnOriginThatCameByTls) {
+  EXPECT_TRUE(is_same_origin("https://10.0.0.1", "10.0.0.1", true));
+  EXPECT_FALSE(is_same_origin("http://10.0.0.1", "10.0.0.1", true));
+  EXPECT_FALSE(is_same_origin("https://10.0.0.2", "10.0.0.1", true));
+}
+
 TEST(RequestHeaders, TellWhichPortsCookieIsMeant) {
-  EXPECT_EQ(cookie_name("adit", "10.0.0.1:8000"), "adit-8000");
-  EXPECT_EQ(cookie_name("adit", "[fd00::1]:8001"), "adit-8001");
+  EXPECT_EQ(cookie_name("adit", "10.0.0.1:8000", false), "adit-8000");
+  EXPECT_EQ(cookie_name("adit", "[fd00::1]:8001", false), "adit-8001");
+  EXPECT_EQ(cookie_name("adit", "10.0.0.1", true), "__Host-adit");
+  EXPECT_EQ(cookie_name("adit", "10.0.0.1:8443", true), "__Host-adit-8443");
   for (const char* host : {"", "10.0.0.1", "adit.local", "[fd00::1]", "adit.local:", "adit.local:x"})
-    EXPECT_EQ(cookie_name("adit", host), "adit") << host;
+    EXPECT_EQ(cookie_name("adit", host, false), "adit") << host;
 }
 
 TEST(RequestHeaders, NameTheHeaderThatAProxyMustPassOn) {
@@ -99,11 +107,19 @@ TEST(RequestHeaders, FindsACookieByItsWholeName) {
 }
 
 TEST(CookiesIn, AreThoseOfTheHostsPortAndThenOfOtherPorts) {
-  const auto values =
-      cookies_in("adit-device=d; adit-80=b; adit=a; adit-8080=c; adit-x=e; aditx=f", "adit", "10.0.0.1:8080");
+  const auto values = cookies_in("adit-device=d; adit-80=b; adit=a; adit-8080=c; adit-x=e; aditx=f", "adit",
+                                 "10.0.0.1:8080", false);
   EXPECT_EQ(values, (std::vector<std::string_view>{"c", "b", "a"}));
-  EXPECT_EQ(cookies_in("adit-8000=b", "adit", "10.0.0.1:8080"), (std::vector<std::string_view>{"", "b"}))
+  EXPECT_EQ(cookies_in("adit-8000=b", "adit", "10.0.0.1:8080", false),
+            (std::vector<std::string_view>{"", "b"}))
       << "the box has moved to another port";
+}
+
+TEST(CookiesIn, AreOfAnotherSessionWithTlsAndWithoutIt) {
+  constexpr std::string_view kBoth = "adit=a; __Host-adit=b";
+  EXPECT_EQ(cookies_in(kBoth, "adit", "10.0.0.1", false), (std::vector<std::string_view>{"a"}));
+  EXPECT_EQ(cookies_in(kBoth, "adit", "10.0.0.1", true), (std::vector<std::string_view>{"b"}));
+  EXPECT_EQ(cookies_in("adit=a", "adit", "10.0.0.1", true), (std::vector<std::string_view>{""}));
 }
 
 }  // namespace

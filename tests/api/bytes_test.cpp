@@ -85,6 +85,7 @@ RunView view() {
   view.lights = {{.name = "health", .pattern = "on"}};
   view.links = {{.side = "team", .interface = "team0", .carrier = true},
                 {.side = "command_post", .interface = "d", .carrier = std::nullopt}};
+  view.certificate = "AB:CD";
   view.identify_until = 1001;
   view.budget_mbit = 100, view.sent_mbit = 1.5, view.queued_bytes = 6;
   view.map_version = 1'793'000'123'456, view.marker_version = 4;
@@ -137,7 +138,7 @@ TEST(Bytes, OfARun) {
       R"("sentence":"no","parts":2,"setting":"r.m"}],"rejected":[{"number":1,"kind":"grid","robot":"r","at":2.0,)"
       R"("status":400,"why":"w","bytes":3,"replaced":true}],"lights":[{"name":"health",)"
       R"("pattern":"on"}],"links":[{"side":"team","interface":"team0","carrier":true},)"
-      R"({"side":"command_post","interface":"d","carrier":null}],"identify_until":1001.0,)"
+      R"({"side":"command_post","interface":"d","carrier":null}],"certificate":"AB:CD","identify_until":1001.0,)"
       R"("setup_open_until":null,"budget_mbit":100.0,"sent_mbit":1.5,"queued_bytes":6,)"
       R"("map_version":1793000123456,"marker_version":4,)"
       R"("verdict":{"level":"bad","what":"w","why":"y"},"alarms":[{"id":"i:s","severity":"ask",)"
@@ -239,10 +240,13 @@ TEST(Bytes, OfTheSession) {
                                                   .own = true}}),
             R"([{"number":3,"role":"operator","address":"10.0.0.7","agent":"curl","made":940.0,)"
             R"("seen":941.5,"own":true}])");
-  EXPECT_EQ(codec::to_json(SessionView{.role = std::nullopt, .csrf = "", .first_start = true}),
-            R"({"role":null,"csrf":null,"first_start":true,"set_up_open":false})");
-  EXPECT_EQ(codec::to_json(SessionView{.role = access::Role::Viewer, .csrf = "c", .set_up_open = true}),
-            R"({"role":"viewer","csrf":"c","first_start":false,"set_up_open":true})");
+  EXPECT_EQ(
+      codec::to_json(SessionView{.role = std::nullopt, .csrf = "", .first_start = true}),
+      R"({"role":null,"csrf":null,"first_start":true,"set_up_open":false,"secure":false,"https":false})");
+  EXPECT_EQ(
+      codec::to_json(
+          SessionView{.role = access::Role::Viewer, .csrf = "c", .set_up_open = true, .https = true}),
+      R"({"role":"viewer","csrf":"c","first_start":false,"set_up_open":true,"secure":false,"https":true})");
 }
 
 TEST(Bytes, OfTheSettings) {

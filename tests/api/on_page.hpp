@@ -13,6 +13,7 @@
 #include "api/counted_map.hpp"
 #include "api/doubles.hpp"
 #include "api/fake_box.hpp"
+#include "api/fake_certificate.hpp"
 #include "api/fake_clock.hpp"
 #include "api/fake_kept_runs.hpp"
 #include "api/fake_setup.hpp"
@@ -44,7 +45,8 @@ struct Doubles {
             .clock = clock,
             .finer = finer,
             .covered = covered,
-            .spare = spare};
+            .spare = spare,
+            .certificate = certificate};
   }
 
   FakeSource source;
@@ -60,6 +62,7 @@ struct Doubles {
   NoFinerMap finer;
   CountedMap covered{source};
   FakeSpare spare;
+  FakeCertificate certificate;
 };
 
 /// An API of doubles, called without a server.
@@ -68,7 +71,8 @@ struct Page : Doubles {
   std::unique_ptr<intake::BodySink> open(const std::string& method, const std::string& target,
                                          std::vector<intake::Header> headers,
                                          std::optional<std::uint64_t> length) {
-    heads.emplace_back(method, target, std::move(headers), length).from_to(peer, local);
+    auto& head = heads.emplace_back(method, target, std::move(headers), length).from_to(peer, local);
+    if (by_tls) head.by_tls();
     responder = std::make_shared<FakeResponder>();
     return api.open(heads.back(), responder, flow);
   }
@@ -100,6 +104,7 @@ struct Page : Doubles {
 
   std::deque<FakeHead> heads;  // must outlive their requests
   std::string peer = "10.0.0.5", local = "10.0.0.1";
+  bool by_tls = false;
   bool took_body = false;  // the last request was not answered from its head alone
   std::shared_ptr<FakeResponder> responder;
   std::shared_ptr<FakeFlow> flow = std::make_shared<FakeFlow>();

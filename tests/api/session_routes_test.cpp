@@ -57,16 +57,42 @@ class SessionRoutesTest : public OnPage {
 };
 
 TEST_F(SessionRoutesTest, TellAnyClientItsRole) {
-  EXPECT_EQ(session(),
-            (json{{"role", nullptr}, {"csrf", nullptr}, {"first_start", false}, {"set_up_open", false}}));
+  json expected{{"role", nullptr},      {"csrf", nullptr}, {"first_start", false},
+                {"set_up_open", false}, {"secure", false}, {"https", true}};
+  EXPECT_EQ(session(), expected);
   const Browser mine = log_in("correct horse");
-  EXPECT_EQ(
-      session(mine),
-      (json{{"role", "operator"}, {"csrf", mine.csrf}, {"first_start", false}, {"set_up_open", false}}));
+  expected["role"] = "operator";
+  expected["csrf"] = mine.csrf;
+  EXPECT_EQ(session(mine), expected);
   EXPECT_EQ(session(log_in("look, do not touch"))["role"], "viewer");
   const json script = json::parse(ask("GET", "/adit/session", {kByToken}).body);
-  EXPECT_EQ(script,
-            (json{{"role", "operator"}, {"csrf", nullptr}, {"first_start", false}, {"set_up_open", false}}));
+  expected["csrf"] = nullptr;
+  EXPECT_EQ(script, expected);
+}
+
+TEST_F(SessionRoutesTest, SetASecureCookieOverTls) {
+  by_tls = true;
+  const std::string origin = "https://10.0.0.1";
+  const Headers headers = {{"Host", "10.0.0.1"}, {"Origin", origin}, {"Content-Type", "application/json"}};
+  const auto answer = ask("POST", "/adit/login", headers, json{{"password", "correct horse"}}.dump());
+  const std::string cookie = header(answer, "Set-Cookie");
+  EXPECT_THAT(cookie, AllOf(StartsWith("__Host-adit="), HasSubstr("; Path=/"), EndsWith("; Secure")));
+  const std::string shown = cookie.substr(0, cookie.find(';'));
+  const auto role = [&](const std::string& name) {
+    return json::parse(ask("GET", "/adit/session", {{"Host", "10.0.0.1"}, {"Cookie", name}}).body)["role"];
+  };
+  EXPECT_EQ(role(shown), "operator");
+  EXPECT_EQ(role(shown.substr(sizeof "__Host-" - 1)), nullptr) << "set by an answer without TLS";
+  by_tls = false;
+  EXPECT_EQ(role(shown), nullptr);
+}
+
+TEST_F(SessionRoutesTest, OverTlsRejectAPageThatCameWithoutIt) {
+  by_tls = true;
+  const Headers headers = {
+      {"Host", "10.0.0.1"}, {"Origin", "http://10.0.0.1"}, {"Content-Type", "application/json"}};
+  EXPECT_EQ(ask("POST", "/adit/login", headers, json{{"password", "correct horse"}}.dump()).status,
+            Status::Forbidden);
 }
 
 TEST_F(SessionRoutesTest, SetAStrictHttpOnlyCookie) {

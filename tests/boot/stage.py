@@ -29,10 +29,6 @@ NUMBERS = {
     "team": {"mode": "static", "address": cables.FACTORY_ADDRESS, "prefix": 24},
     "command_post": {"addresses": [{"address": hosts.BOX_DARPA, "prefix": 24}], "gateway": ""},
 }
-# If the box has none.
-MAKE_CERTIFICATE = """cd /var/lib/private/adit; test -e tls.pem || { umask 077
-    openssl req -x509 -config /dev/null -newkey ec -pkeyopt ec_paramgen_curve:P-256 -nodes -days 2 -subj /CN=adit.local -keyout new.key -out new.crt 2>&1
-    cat new.key new.crt >tls.pem; rm new.key new.crt; }"""
 ENDPOINTS = [(hosts.SCORING, programs.PORT), (hosts.MAPPING, programs.PORT)]
 FIGURES = pathlib.Path(os.environ.get("ADIT_FIGURES", boards.SOURCE / "build" / "boot-figures.txt"))
 

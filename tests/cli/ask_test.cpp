@@ -53,6 +53,13 @@ TEST(Status, ReadsEachMemberOfTheApi) {
   EXPECT_EQ(outcome.out, status_text(view, false));
 }
 
+TEST(Status, ShowsTheFingerprintOfTheCertificate) {
+  api::RunView view = sample_view();
+  view.certificate = "AB:CD";
+  EXPECT_THAT(asked(codec::to_json(view), {"status"}).out,
+              HasSubstr("SHA-256 of the certificate is AB:CD\n"));
+}
+
 TEST(Status, NamesNewerVersions) {
   api::UpdateView update;
   update.newer = "0.2.0";

@@ -89,12 +89,14 @@ TEST(Options, NameTheWrongWord) {
   } cases[] = {{{},
                 "a command is missing: status, watch, alarms, reports, rejected, run, runs, settings, "
                 "tokens, password, course, identify, "
-                "network, clock, test, spare, ledger, update, reset, log, bundle, login, context, version, "
+                "network, clock, certificate, test, spare, ledger, update, reset, log, bundle, login, "
+                "context, version, "
                 "check or complete"},
                {{"--json"},
                 "a command is missing: status, watch, alarms, reports, rejected, run, runs, settings, "
                 "tokens, password, course, identify, "
-                "network, clock, test, spare, ledger, update, reset, log, bundle, login, context, version, "
+                "network, clock, certificate, test, spare, ledger, update, reset, log, bundle, login, "
+                "context, version, "
                 "check or complete"},
                {{"stat"}, "no such command: stat; did you mean status?"},
                {{"xyzzy"}, "no such command: xyzzy"},

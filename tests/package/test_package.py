@@ -128,9 +128,15 @@ class Packages(Story):
         self.assertEqual(submit(self.stage).status_code, 201)
 
     def test_page_is_served_over_tls_with_minimal_rights(self):
-        """aditd's port for stunnel rejects other users, who could claim any address."""
-        self.box.shell(stage.MAKE_CERTIFICATE)
-        programs.wait_until(self.box.answers_over_tls, "an answer over TLS", 60)
+        """With the certificate that adit-certificate has made, and then with a new one. aditd's port for stunnel rejects other users, who
+        could claim any address."""
+        first = programs.wait_until(lambda: self.box.ask("GET /adit/run")[1]["certificate"], "a certificate", 60)
+        self.assertEqual(self.box.shell(f"stat -c %a {STATE}/tls.pem").strip(), "600")
+        served = ["ip", "netns", "exec", self.stage.network.team, "sh", "-c",
+                  f"openssl s_client -connect {self.stage.network.box_address}:443 </dev/null 2>&1 | openssl x509 -noout -fingerprint -sha256"]
+        is_served = lambda wanted: wanted in subprocess.run(served, capture_output=True, check=False, text=True).stdout
+        programs.wait_until(lambda: is_served(first), "the certificate to be served", 60)
+        self.assertTrue(self.box.answers_over_tls())
         pid = self.box.shell("systemctl show -p MainPID --value adit-tls.service").strip()
         rights = dict(line.split(":\t", 1) for line in self.box.shell(f"cat /proc/{pid}/status").splitlines() if ":\t" in line)
         self.assertEqual({rights[name] for name in ("CapEff", "CapPrm", "CapBnd")}, {f"{0:016x}"})
@@ -138,6 +144,9 @@ class Packages(Story):
         for user, refused in ("adit-tls", False), ("nobody", True):
             said = self.box.shell(f"setpriv --reuid {user} --clear-groups bash -c '(exec 3<>/dev/tcp/127.0.0.1/8443) 2>&1 || true'")
             self.assertEqual("refused" in said, refused, said)
+        second = self.asked("POST /adit/certificate/new", {})["fingerprint"]
+        self.assertNotEqual(second, first)
+        programs.wait_until(lambda: is_served(second), "the new certificate to be served", 60)
 
     def test_the_card_is_followed_to_its_end(self):
         """As a user at the machine: the Test, robots of the team, an alarm and its end."""

@@ -134,6 +134,7 @@ test("every path and method answers an operator as described", async (t) => {
     "POST /adit/spare/from-stick",  // no stick is plugged in
     "POST /adit/spare/take", "POST /adit/spare/open", "POST /adit/spare/take-over",  // and no other box
     "POST /adit/ledger/new", // the ledger can be read
+    "POST /adit/certificate", "POST /adit/certificate/new", // nothing makes certificates here
     "POST /adit/clock"];  // clocks are not set here
   for (const each of operations) {
     const name = `${each.method} ${each.path}`;

@@ -21,6 +21,7 @@
 #include "api/map_scene.hpp"
 #include "api/no_finer_map.hpp"
 #include "api/played.hpp"
+#include "api/played_certificate.hpp"
 #include "api/played_spare.hpp"
 #include "api/played_updates.hpp"
 #include "api/scenes.hpp"
@@ -142,6 +143,9 @@ int serve(std::uint16_t port, const std::string& first, const std::string& more)
   NoFinerMap finer;
   CountedMap covered{stage};
   PlayedSpare spare;
+  PlayedCertificate certificate;
+  const bool is_by_tls = more == "by-tls";
+  if (is_by_tls || more == "https") certificate.offer();
   clock.view = {.now = loop.wall_now() - 7200, .managed = more == "clock-behind", .why = {}, .refusal = {}};
   Api page{loop,
            {.source = stage,
@@ -157,10 +161,12 @@ int serve(std::uint16_t port, const std::string& first, const std::string& more)
             .clock = clock,
             .finer = finer,
             .covered = covered,
-            .spare = spare},
+            .spare = spare,
+            .certificate = certificate},
            {token()}};
   furnish(box, loop.wall_now());
-  auto server = intake::Server::start(loop, {.address = "127.0.0.1", .port = port, .interface = {}}, page);
+  auto server = intake::Server::start(
+      loop, {.address = "127.0.0.1", .port = port, .interface = {}, .by_tls = is_by_tls}, page);
   if (!server) return std::fprintf(stderr, "%s\n", server.error().c_str()), 1;
   std::printf("%d\n", (*server)->port());
   std::fflush(stdout);

@@ -63,6 +63,7 @@ const RestartsCase kRestartsCases[] = {
     {"robots[].colour", [](Settings& s) { s.robots.front().colour = 2; }, kNothing},
     {"network.confirm_within_ms", [](Settings& s) { s.network.confirm_within = 9s; }, kNothing},
     {"network.allow_overlap", [](Settings& s) { s.network.allow_overlap = true; }, kNothing},
+    {"page.https_only", [](Settings& s) { s.page.https_only = true; }, kNothing},
     {"clock.ntp_server", [](Settings& s) { s.clock.ntp_server = "10.0.0.5"; }, kNothing},
     {"clock.serve_ntp", [](Settings& s) { s.clock.serve_ntp = true; }, kNothing},
     {"reports.answer_within_ms", [](Settings& s) { s.reports.answer_within = 9s; }, kNothing},

@@ -61,6 +61,8 @@ intake::Answer wrong_method(std::string_view allowed);
 
 inline constexpr auto kNotModified = static_cast<icd::Status>(304);  // RFC 9110 15.4.5; not in the ICD
 
+inline constexpr auto kPermanentRedirect = static_cast<icd::Status>(308);  // 15.4.9; not in the ICD
+
 inline constexpr std::string_view kReading = "GET, HEAD";
 inline bool only_reads(const intake::RequestHead& head) {
   return head.method() == "GET" || head.method() == "HEAD";

@@ -1,12 +1,16 @@
 #include "api/api.hpp"
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 
+#include "access/admission.hpp"
 #include "api/answers.hpp"
+#include "api/certificate.hpp"
 #include "api/route.hpp"
 #include "codec/body_decoder.hpp"
 #include "icd/sentence.hpp"
+#include "icd/text.hpp"
 
 namespace adit::api {
 namespace {
@@ -31,28 +35,32 @@ SharedRedaction shared(icd::Redaction redaction) {
 
 Api::Api(loop::Loop& loop, const Served& served, std::vector<icd::BearerToken> tokens,
          icd::Redaction redaction)
-    : redaction_(std::make_shared<SharedRedaction>(shared(std::move(redaction)))),
+    : setup_(served.setup),
+      certificate_(served.certificate),
+      redaction_(std::make_shared<SharedRedaction>(shared(std::move(redaction)))),
       authenticator_(loop, served.keys, std::move(tokens)),
       live_(loop, served.source),
-      sessions_(loop, authenticator_, served.keys, served.setup),
+      sessions_(loop, authenticator_, served.keys, served.setup, served.certificate),
       run_(served.source, served.decisions, served.gateway_control, live_, authenticator_),
       maps_(served.source, served.finer, served.covered),
       lists_(loop, served.source),
       reports_(lists_, served.source, served.decisions),
       box_(served.source, lists_, served.box, served.keys, loop),
       kept_(loop, served.runs, served.source),
-      handlers_(&pages_, &sessions_, &run_, &maps_, &reports_, &box_, &kept_, &served.clock, &served.network,
-                &served.test, &served.setup, &served.spare, &served.updates) {}
+      handlers_(&pages_, &sessions_, &run_, &maps_, &reports_, &box_, &kept_, &served.certificate,
+                &served.clock, &served.network, &served.test, &served.setup, &served.spare, &served.updates) {
+}
 
 std::unique_ptr<intake::BodySink> Api::open(const intake::RequestHead& head,
                                             std::shared_ptr<intake::Responder> asked_by,
                                             std::shared_ptr<intake::Flow> flow) {
   auto responder = redacted(std::move(asked_by), redaction_, head);
-  Match found = match(head);
   const auto answer_with = [&responder](intake::Answer answer) {
     responder->answer(std::move(answer));
     return nullptr;
   };
+  if (auto elsewhere = redirect_to_https(head)) return answer_with(*std::move(elsewhere));
+  Match found = match(head);
   if (found.allowed.empty() && !found.route && !head.path().starts_with(intake::kApiPaths)) {
     return answer_with(pages_.file(head));
   }
@@ -80,6 +88,28 @@ std::unique_ptr<intake::BodySink> Api::open(const intake::RequestHead& head,
                                        call.body = std::move(body);
                                        handle(route, call);
                                      });
+}
+
+/// A page is redirected. The API is not: its client has already sent the password or the session, and a page
+/// that was open before logs in again. A script has shown its token already, and may know no TLS.
+std::optional<intake::Answer> Api::redirect_to_https(const intake::RequestHead& head) const {
+  const std::string_view host = head.header("Host"), path = head.path();
+  const bool is_local = head.local().starts_with("127.") || head.local() == "::1";
+  if (head.is_secure() || is_local || !head.header("Authorization").empty()) return std::nullopt;
+  if (!setup_.settings().page.https_only || !access::names_this_box(host) || !certificate_.state().offered)
+    return std::nullopt;
+  const std::size_t name = host.starts_with('[') ? host.find(']') + 1 : host.find(':');
+  const std::string box = icd::sentence("https://", host.substr(0, name));
+  if (path.starts_with(intake::kApiPaths) || path == "/metrics" || !only_reads(head))
+    return rejection_answer({icd::Status::Unauthorized, icd::sentence("log in by HTTPS: ", box)});
+  intake::Answer answer{
+      .status = kPermanentRedirect, .content_type = "text/plain", .body = box + '\n', .headers = {}};
+  // The path was decoded: only a plain one is safe in a header.
+  const bool is_plain = std::ranges::all_of(
+      path, [](char c) { return icd::is_letter_or_digit(c) || c == '/' || c == '_' || c == '.'; });
+  answer.headers.push_back({"Location", icd::sentence(box, is_plain ? path : "/")});
+  answer.headers.push_back({"Cache-Control", "no-store"});  // the setting may change
+  return guarded(std::move(answer));
 }
 
 void Api::set_tokens(std::vector<icd::BearerToken> tokens, icd::Redaction redaction) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "api/answers.hpp"
@@ -34,6 +35,7 @@ struct Served {
   FinerMap& finer;
   CoveredMap& covered;
   Spare& spare;
+  Certificate& certificate;
 };
 
 /// The API for the page and for scripts, on the team's side after a login, and the page's files. Table:
@@ -61,7 +63,11 @@ class Api final : public intake::Handler {
 
  private:
   void handle(const Route& route, const Call& call);
+  /// The answer to a browser that has to use HTTPS, or std::nullopt.
+  std::optional<intake::Answer> redirect_to_https(const intake::RequestHead& head) const;
 
+  const Setup& setup_;
+  const Certificate& certificate_;
   const std::shared_ptr<SharedRedaction> redaction_;
   Authenticator authenticator_;
   Live live_;

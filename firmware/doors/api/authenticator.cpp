@@ -13,7 +13,8 @@ access::Request request_of(const intake::RequestHead& head) {
           .origin = head.header("Origin"),
           .cookie = head.header("Cookie"),
           .authorization = head.header("Authorization"),
-          .csrf = head.header(access::kCsrfHeader)};
+          .csrf = head.header(access::kCsrfHeader),
+          .is_secure = head.is_secure()};
 }
 
 std::uint64_t session_of(const access::Visitor& visitor) {
@@ -50,7 +51,8 @@ intake::Credentials Authenticator::shown(const intake::RequestHead& head) {
 }
 
 const access::Device* Authenticator::device(const intake::RequestHead& head) {
-  const auto ids = access::cookies_in(head.header("Cookie"), access::kDeviceCookie, head.header("Host"));
+  const auto ids =
+      access::cookies_in(head.header("Cookie"), access::kDeviceCookie, head.header("Host"), head.is_secure());
   for (const std::string_view id : ids) {
     if (const access::Device* const known = keys_.devices().find(id)) return known;
   }

@@ -276,6 +276,32 @@ class ReceivingExport final : public intake::BodySink {
 
 }  // namespace
 
+namespace certificate_routes {
+namespace {
+
+Certificate::Done answer_with_state(const Certificate& certificate, const Call& call) {
+  return [&certificate, responder = call.responder](const icd::Checked<void>& done) {
+    responder->answer(after(certificate, done));
+  };
+}
+
+}  // namespace
+
+void take(Certificate& certificate, const Call& call) {
+  const auto& [peer, local] = std::pair(call.head.peer(), call.head.local());
+  const bool is_this_machine = peer == local || peer.starts_with("127.") || peer == "::1";
+  if (!call.head.is_secure() && !is_this_machine)
+    return call.responder->answer(
+        refusal(icd::Status::Conflict, "upload the certificate by HTTPS, because others could read its key"));
+  certificate.take(call.body, answer_with_state(certificate, call));
+}
+
+void make(Certificate& certificate, const Call& call) {
+  certificate.make(answer_with_state(certificate, call));
+}
+
+}  // namespace certificate_routes
+
 namespace spare_routes {
 
 void exported(Spare& spare, const Call& call) {

@@ -5,6 +5,7 @@
 
 #include "api/answers.hpp"
 #include "api/box.hpp"
+#include "api/certificate.hpp"
 #include "api/keys.hpp"
 #include "api/network.hpp"
 #include "api/report_routes.hpp"
@@ -55,6 +56,14 @@ intake::Answer change(Network& network, const Call& call);
 icd::Checked<void> confirm(Network& network, const Call& call);
 
 }  // namespace network_routes
+
+/// The certificate for HTTPS: README.md.
+namespace certificate_routes {
+
+void take(Certificate& certificate, const Call& call);
+void make(Certificate& certificate, const Call& call);
+
+}  // namespace certificate_routes
 
 /// Updates of the box: README.md.
 namespace update_routes {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "api/box.hpp"
+#include "api/certificate.hpp"
 #include "api/clock.hpp"
 #include "api/keys.hpp"
 #include "api/network.hpp"
@@ -131,6 +132,8 @@ constexpr Member kWhoAsks[] = {
     member<&SessionView::set_up_open>("set_up_open",
                                       "whether the operator's password can be set without the present one, "
                                       "because the box's button opened set-up"),
+    member<&SessionView::secure>("secure", "whether this request came by HTTPS"),
+    member<&SessionView::https>("https", "whether the box offers HTTPS, at port 443"),
 };
 
 constexpr std::string_view kTestSteps[] = {"link", "address", "cables", "reach", "token", "clock"};
@@ -293,6 +296,14 @@ constexpr Member kSpareMembers[] = {
     member<&SpareView::stick>("stick", "the stick in the box; null if sticks are not available here"),
 };
 
+constexpr Member kCertificateMembers[] = {
+    member<&CertificateView::offered>("offered", "whether the box offers HTTPS, at port 443"),
+    member<&CertificateView::why>("why", "why the box offers no HTTPS, or empty"),
+    member<&CertificateView::fingerprint>(
+        "fingerprint", "SHA-256 of the certificate, as browsers show it; empty without a certificate"),
+    member<&CertificateView::until>("until", "last day of the certificate: 2036-11-28; or empty"),
+};
+
 constexpr Member kClockMembers[] = {
     member<&ClockView::now>("now", "seconds since 1970"),
     member<&ClockView::managed>("managed", "whether the clock can be set here"),
@@ -417,6 +428,8 @@ constexpr Row StickExportRow::kRow =
     codec::complete<StickExportRow>({"SpareStickExport", kStickExportMembers});
 constexpr Row StickRow::kRow = codec::complete<StickRow>({"SpareStick", kStickMembers});
 constexpr Row SpareView::kRow = codec::complete<SpareView>({"Spare", kSpareMembers});
+
+constexpr Row CertificateView::kRow = codec::complete<CertificateView>({"Certificate", kCertificateMembers});
 
 constexpr Row ClockView::kRow = codec::complete<ClockView>({"Clock", kClockMembers});
 

@@ -9,7 +9,7 @@ def reference($kind): {"$ref": "#/components/\($kind)/\(.)"};
 def rows:
   "\"(?:[^\"\\\\]|\\\\.)*\"" as $string
   | (split("kRoutes[] = {\n")[1] | split("\n};")[0] | gsub("\"\\s*\n\\s*\""; "")) as $table # adjacent literals are one
-  | "(get|post)\\((\($string)),\\s*(\\w+),\\s*(?:(kJson|kBundle|kExport)[<>\\d]*,\\s*)?by<[^()]*>\\(\\),\\s*((?:\($string)[,\\s]*)+)\\)" as $row
+  | "(get|post)\\((\($string)),\\s*(\\w+),\\s*(?:(kJson|kBundle|kCertificate|kExport)[<>\\d]*,\\s*)?by<[^()]*>\\(\\),\\s*((?:\($string)[,\\s]*)+)\\)" as $row
   | [$table | scan($row) as [$method, $path, $who, $body, $words]
      | ["takes", "tag", "summary", "done", "gives", "refusals", "parameters"][if $method == "get" then 1 else 0 end:] as $names
      | [$words | strings[]] as $values
@@ -33,7 +33,7 @@ def content:
 
 # It may be left out where nothing in it is required.
 def body:
-  (.body | IN("kBundle", "kExport")) as $bundle | (.takes | known("bodies"; $parts.bodies)) as $body
+  (.body | IN("kBundle", "kCertificate", "kExport")) as $bundle | (.takes | known("bodies"; $parts.bodies)) as $body
   | {required: ($bundle or ($body.schema | has("required") or has("$ref")))}
   + ($body | with_entries(select(.key == "description")))
   + {content: {(if $bundle then "application/octet-stream" else "application/json" end): ($body | del(.description))}};

@@ -24,11 +24,12 @@ namespace {
 template <class T>
 constexpr const codec::Schema* of = &codec::KindOf<T>::schema;
 
-constexpr codec::Schemas kSchemas({of<RunView>,     of<ReportDetail>, of<MarkerChanges>, of<Tracks>,
-                                   of<MapView>,     of<CoveredView>,  of<History>,       of<RunList>,
-                                   of<LogPage>,     of<NetworkView>,  of<UpdateView>,    of<SessionRow>,
-                                   of<SessionView>, of<SetupView>,    of<CheckView>,     of<ChangesView>,
-                                   of<TestView>,    of<About>,        of<ClockView>,     of<SpareView>});
+constexpr codec::Schemas kSchemas({of<RunView>,        of<ReportDetail>, of<MarkerChanges>, of<Tracks>,
+                                   of<MapView>,        of<CoveredView>,  of<History>,       of<RunList>,
+                                   of<LogPage>,        of<NetworkView>,  of<UpdateView>,    of<SessionRow>,
+                                   of<SessionView>,    of<SetupView>,    of<CheckView>,     of<ChangesView>,
+                                   of<TestView>,       of<About>,        of<ClockView>,     of<SpareView>,
+                                   of<CertificateView>});
 
 [[gnu::used, gnu::section("schemas")]] constexpr std::array kText = kSchemas.text();
 

@@ -31,6 +31,7 @@ struct SessionView {
   std::optional<access::Role> role;  // nullopt: not logged in
   std::string csrf;                  // "": none
   bool first_start = false, set_up_open = false;
+  bool secure = false, https = false;
 
   static const codec::Row kRow;
 };

@@ -23,6 +23,7 @@
 namespace adit::api {
 
 class BoxRoutes;
+class Certificate;
 class Clock;
 class KeptRunsRoutes;
 class MapRoutes;
@@ -37,8 +38,9 @@ class Spare;
 class Updates;
 
 /// All handlers.
-using Handlers = std::tuple<PageRoutes*, SessionRoutes*, RunRoutes*, MapRoutes*, ReportRoutes*, BoxRoutes*,
-                            KeptRunsRoutes*, Clock*, Network*, SelfTest*, Setup*, Spare*, Updates*>;
+using Handlers =
+    std::tuple<PageRoutes*, SessionRoutes*, RunRoutes*, MapRoutes*, ReportRoutes*, BoxRoutes*,
+               KeptRunsRoutes*, Certificate*, Clock*, Network*, SelfTest*, Setup*, Spare*, Updates*>;
 
 /// Clients that may use a route. A script with a token is an operator.
 enum class RouteAccess : std::uint8_t {

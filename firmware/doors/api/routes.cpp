@@ -5,8 +5,10 @@
 #include <tuple>
 #include <type_traits>
 
+#include "access/certificate.hpp"
 #include "api/answers.hpp"
 #include "api/box_routes.hpp"
+#include "api/certificate.hpp"
 #include "api/clock.hpp"
 #include "api/map_routes.hpp"
 #include "api/page_routes.hpp"
@@ -98,6 +100,7 @@ template <std::size_t most>
 constexpr Body kJson{"application/json", most};
 /// Like JSON, this type cannot be sent by another site's form without a CORS preflight.
 constexpr Body kBundle{"application/octet-stream", update::kLargestBundle, true};
+constexpr Body kCertificate{"application/octet-stream", access::kLargestUpload, true};
 constexpr Body kExport{"application/octet-stream", spare::kLargestExport, true};
 
 /// The only possible flag of a body.
@@ -314,6 +317,15 @@ constexpr Route kRoutes[] = {
     post("/adit/update/stay", Operator, kJson<1024>, by<&Updates::stay>(), "Nothing", "box",
          "Keep the running slot, if it is not the expected one (`stray`).",
          "The slot is being recorded as the expected one.", "Update", "409 503"),
+    get("/adit/certificate", Viewer, by<&Certificate::state>(), "box",
+        "Whether the box offers HTTPS, and its certificate's fingerprint.", "The certificate.",
+        "Certificate"),
+    post("/adit/certificate", Operator, kCertificate, by<&certificate_routes::take>(), "Certificate", "box",
+         "Replace the certificate for HTTPS by an uploaded one, once the box has checked it.",
+         "The certificate is in use; the TLS server restarts.", "Certificate", "409 503"),
+    post("/adit/certificate/new", Operator, kJson<1024>, by<&certificate_routes::make>(), "Nothing", "box",
+         "Replace the certificate for HTTPS by a new one of the box's own.",
+         "The certificate is in use; the TLS server restarts.", "Certificate", "409 503"),
     get("/adit/clock", Viewer, by<&Clock::state>(), "box", "The time of day, and the source that set it.",
         "The clock.", "Clock"),
     post("/adit/clock", Operator, kJson<1024>, by<&Clock::set_clock, &time_in>(), "ClockToSet", "box",

@@ -55,6 +55,8 @@ constexpr Member kView[] = {
     member<&RunView::rejected>("rejected", "rejected messages, oldest first, at most 100"),
     member<&RunView::lights>("lights"),
     member<&RunView::links>("links", "the interfaces of the settings"),
+    member<&RunView::certificate>("certificate",
+                                  "SHA-256 of the certificate for HTTPS; empty if HTTPS is not offered"),
     member<&RunView::identify_until>("identify_until", "end of the flashing that identifies the box"),
     member<&RunView::setup_open_until>("setup_open_until",
                                        "end of the time in which a new password can be set without the "

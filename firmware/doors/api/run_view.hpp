@@ -78,6 +78,7 @@ struct RunView {
   std::vector<facts::RejectedRow> rejected;
   std::vector<LightRow> lights;
   std::vector<facts::LinkRow> links;
+  std::string certificate = {};
   std::optional<Time> identify_until, setup_open_until;
   double budget_mbit = 0, sent_mbit = 0;
   std::size_t queued_bytes = 0;

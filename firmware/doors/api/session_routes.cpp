@@ -17,15 +17,16 @@ namespace {
 using access::Role;
 using codec::json;
 
-/// `host`: the request's Host header.
-intake::Header cookie(std::string_view name, std::string_view host, const std::string& id,
+/// `host`: the request's Host header. `is_secure`: it came by TLS.
+intake::Header cookie(std::string_view name, std::string_view host, bool is_secure, const std::string& id,
                       std::chrono::seconds age) {
-  return {"Set-Cookie", access::cookie_name(name, host) + "=" + id +
-                            "; HttpOnly; SameSite=Strict; Path=/; Max-Age=" + std::to_string(age.count())};
+  return {"Set-Cookie", access::cookie_name(name, host, is_secure) + "=" + id +
+                            "; HttpOnly; SameSite=Strict; Path=/; Max-Age=" + std::to_string(age.count()) +
+                            (is_secure ? "; Secure" : "")};
 }
 
-intake::Header session_cookie(std::string_view host, const std::string& id, std::chrono::seconds age) {
-  return cookie(access::kCookie, host, id, age);
+intake::Header no_session(std::string_view host, bool is_secure) {
+  return cookie(access::kCookie, host, is_secure, "", std::chrono::seconds(0));
 }
 
 constexpr std::chrono::hours kDeviceKept{400 * 24};  // the longest lifetime that browsers accept (RFC
@@ -60,7 +61,9 @@ intake::Answer SessionRoutes::session(const intake::RequestHead& head) {
   return fresh(SessionView{.role = visitor ? std::optional(visitor->role) : std::nullopt,
                            .csrf = session != nullptr ? std::string(session->csrf.reveal()) : std::string(),
                            .first_start = keys_.first_start(),
-                           .set_up_open = keys_.set_up_open()});
+                           .set_up_open = keys_.set_up_open(),
+                           .secure = head.is_secure(),
+                           .https = certificate_.state().offered});
 }
 
 intake::Answer SessionRoutes::sessions(const Call& call) {
@@ -88,6 +91,7 @@ SessionRoutes::Poster SessionRoutes::poster_of(const Call& call) {
                       .at_box = keys_.somebody_at_box()},
           .agent = std::string(call.head.header("User-Agent")),
           .host = std::string(call.head.header("Host")),
+          .is_secure = call.head.is_secure(),
           .asker = call.asker,
           .responder = call.responder};
 }
@@ -138,10 +142,12 @@ intake::Answer SessionRoutes::logged_in(Role role, const Poster& poster) {
   const access::Session& session = keys_.sessions().begin(
       keys_.draw(), keys_.draw(), role, {poster.guesser.address, poster.agent}, loop_.now());
   auto answer = object({{"role", json(std::string(name_of(role)))}, {"csrf", json(session.csrf.reveal())}});
-  answer.headers.push_back(session_cookie(poster.host, session.id.reveal(), access::Sessions::kLongest));
+  answer.headers.push_back(cookie(access::kCookie, poster.host, poster.is_secure, session.id.reveal(),
+                                  access::Sessions::kLongest));
   if (const auto known = device_role(poster); !known || *known < role) {
     const access::Device& device = keys_.devices().add(keys_.draw(), role);
-    answer.headers.push_back(cookie(access::kDeviceCookie, poster.host, device.id.reveal(), kDeviceKept));
+    answer.headers.push_back(
+        cookie(access::kDeviceCookie, poster.host, poster.is_secure, device.id.reveal(), kDeviceKept));
   }
   return answer;
 }
@@ -155,7 +161,7 @@ std::optional<Role> SessionRoutes::device_role(const Poster& poster) {
 intake::Answer SessionRoutes::log_out(const Call& call) {
   keys_.sessions().end(call.asker.session);
   auto answer = object({{"role", {}}});
-  answer.headers.push_back(session_cookie(call.head.header("Host"), "", std::chrono::seconds(0)));
+  answer.headers.push_back(no_session(call.head.header("Host"), call.head.is_secure()));
   return answer;
 }
 
@@ -219,7 +225,7 @@ void SessionRoutes::reset(const Call& call) {
       return poster.responder->answer(refused_change(done.error()));
     auto answer =
         object({{"said", {"settings, tokens, passwords and sessions are deleted; the reports are kept"}}});
-    answer.headers.push_back(session_cookie(poster.host, "", std::chrono::seconds(0)));
+    answer.headers.push_back(no_session(poster.host, poster.is_secure));
     poster.responder->answer(std::move(answer));
   });
 }

@@ -6,6 +6,7 @@
 
 #include "access/guesses.hpp"
 #include "api/authenticator.hpp"
+#include "api/certificate.hpp"
 #include "api/keys.hpp"
 #include "api/setup.hpp"
 #include "intake/server.hpp"
@@ -19,8 +20,9 @@ class SessionRoutes {
   static constexpr int kMostChecks = 4;  // queued password checks: each needs memory, and one runs at a time
 
   /// All must outlive this object, and pending answers of `keys`.
-  SessionRoutes(loop::Loop& loop, Authenticator& authenticator, Keys& keys, Setup& setup)
-      : loop_(loop), authenticator_(authenticator), keys_(keys), setup_(setup) {}
+  SessionRoutes(loop::Loop& loop, Authenticator& authenticator, Keys& keys, Setup& setup,
+                Certificate& certificate)
+      : loop_(loop), authenticator_(authenticator), keys_(keys), setup_(setup), certificate_(certificate) {}
 
   intake::Answer session(const intake::RequestHead& head);
   intake::Answer sessions(const Call& call);
@@ -35,6 +37,7 @@ class SessionRoutes {
   struct Poster {
     access::Guesser guesser;
     std::string agent, host;
+    bool is_secure = false;  // by TLS
     Asker asker;
     std::shared_ptr<intake::Responder> responder;
   };
@@ -66,6 +69,7 @@ class SessionRoutes {
   Authenticator& authenticator_;
   Keys& keys_;
   Setup& setup_;
+  Certificate& certificate_;
   access::Guesses guesses_;
   int checking_ = 0;
 };

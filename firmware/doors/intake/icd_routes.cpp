@@ -75,7 +75,7 @@ icd::Checked<void> check_origin(const RequestHead& head, const std::vector<std::
   }
   const bool is_listed = std::ranges::any_of(
       origins, [origin](const std::string& each) { return icd::same_but_for_case(each, origin); });
-  if (is_listed || access::is_same_origin(origin, host)) return {};
+  if (is_listed || access::is_same_origin(origin, host, head.is_secure())) return {};
   return needs_token(icd::sentence("Origin: a page of ", icd::in_quotes(origin),
                                    " needs the team's token, or an entry in the setting team.origins"),
                      "team.origins");

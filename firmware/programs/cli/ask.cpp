@@ -317,7 +317,7 @@ std::expected<settings::Address, std::string> parse_location(std::string_view te
   constexpr std::string_view kScheme = "http://";
   if (text.starts_with("https://"))
     return std::unexpected(
-        icd::sentence("Adit has no TLS: expected http:// instead of https://, got '", text, "'"));
+        icd::sentence("adit uses no TLS: expected http:// instead of https://, got '", text, "'"));
   std::string_view authority = text;
   const bool is_url = text.starts_with(kScheme);
   if (is_url) authority.remove_prefix(kScheme.size());

@@ -115,6 +115,13 @@ constexpr Form kClockForms[] = {
      "show the box's time of day, its source, and the difference to this computer (default)", "", true},
     {"set", set_clock, kNothing,
      "set the time to this computer's. Stamps, sessions and reports are not affected"}};
+constexpr Form kCertificateForms[] = {
+    {"show", show_certificate, kNothing,
+     "show whether the box offers HTTPS, and its certificate's fingerprint (default)", "", true},
+    {"set", set_certificate, kFile,
+     "replace the certificate by the one in FILE (PEM): the private key without a passphrase, the page's "
+     "certificate, and those that sign it, in order"},
+    {"new", make_certificate, kNothing, "replace the certificate by a new one of the box's own", "--yes"}};
 constexpr Form kSpareForms[] = {
     {"show", show_spare, kNothing,
      "show whether the box is on standby, and the export that it imported (default)", "", true},
@@ -275,6 +282,15 @@ constexpr CommandRow kCommands[] = {
      "the time is set, or is being set", "the time is not set, or setting it failed",
      "  adit clock\n"
      "  adit clock set --at 10.0.0.1 --token-file team.token"},
+    {"certificate", "show or replace the page's certificate for HTTPS", kCertificateForms,
+     "If a browser shows the same fingerprint (SHA-256), it is connected to this box. The box checks a new "
+     "certificate before it uses it, and never shows its key.\n"
+     "adit uses no TLS, so the box accepts `set` on its own machine alone. From another one, upload the file "
+     "by HTTPS on the page System.",
+     "HTTPS is offered, or the certificate is replaced",
+     "HTTPS is not offered, or the certificate was rejected",
+     "  adit certificate\n"
+     "  sudo adit certificate set page.pem"},
     {"test", "test each endpoint of the Command Post; uses up no report", kTestForms,
      "Steps:\n"
      "  link     the Command Post's port has a carrier\n"

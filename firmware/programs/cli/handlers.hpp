@@ -74,6 +74,11 @@ Result<Outcome> decide_on_network(const Call& call);
 Result<Outcome> show_clock(const Call& call);
 Result<Outcome> set_clock(const Call& call);
 
+Result<Outcome> show_certificate(const Call& call);
+/// From a file with the key and its certificates.
+Result<Outcome> set_certificate(const Call& call);
+Result<Outcome> make_certificate(const Call& call);
+
 Result<Outcome> show_spare(const Call& call);
 Result<Outcome> export_spare(const Call& call);
 Result<Outcome> take_spare(const Call& call);

@@ -307,11 +307,14 @@ Result<Outcome> status(const Call& call) {
   const auto run = ADIT_TRY(fetch<RunView>(call.adit, "/adit/run"));
   const auto update = fetch<api::UpdateView>(call.adit, "/adit/update");
   const bool is_fine = std::ranges::none_of(run.row.alarms, alarms::calls);
-  return printed(call, run.json,
-                 status_text(run.row, call.console.colour) +
-                     (update ? newer_lines(update->row)
-                             : line("cannot ask for newer versions: ", update.error().sentence)),
-                 is_fine ? Exit::Fine : Exit::Attention);
+  return printed(
+      call, run.json,
+      status_text(run.row, call.console.colour) +
+          (update ? newer_lines(update->row)
+                  : line("cannot ask for newer versions: ", update.error().sentence)) +
+          (run.row.certificate.empty() ? ""
+                                       : line("HTTPS: SHA-256 of the certificate is ", run.row.certificate)),
+      is_fine ? Exit::Fine : Exit::Attention);
 }
 
 namespace {

@@ -129,8 +129,11 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
                   [this] { return export_of(parts_, flow_.reports(), settings_.team, loop_.stamp_now()); },
               .is_time_set = [this] { return clock_.is_set().value_or(false); },
               .restart = [this] { make_way(); }}),
+      certificate_(loop, parts_.options.state, parts_.runtime_folder,
+                   {.serves_tls = [this] { return listeners_.serves_tls(); },
+                    .address = [this] { return team_address(settings_.team); }}),
       overview_({loop, parts_, settings_, flow_, lights_, links_, accounts_, network_, updates_, clock_,
-                 spare_, listeners_},
+                 spare_, certificate_, listeners_},
                 disk_writer_),
       api_(loop,
            {.source = overview_,
@@ -146,7 +149,8 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
             .clock = clock_,
             .finer = flow_.finer(),
             .covered = flow_.covered(),
-            .spare = spare_},
+            .spare = spare_,
+            .certificate = certificate_},
            tokens().all, redaction()),
       routes_(icd_options(), flow_, flow_.workers(), api_),
       listeners_(loop, parts_.sockets, routes_, guesses_,
@@ -275,6 +279,7 @@ void Gateway::every_second() {
   lights_.beat();
   network_.every_second();
   updates_.every_second();
+  certificate_.every_second();
   team_ports_.every_second(listeners_.ports());
   keep_sessions();
   look_at_sockets();

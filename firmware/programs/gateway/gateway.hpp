@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "admin/certificate.hpp"
 #include "admin/kept_file.hpp"
 #include "admin/setup.hpp"
 #include "admin/team_ports.hpp"
@@ -90,6 +91,7 @@ class Gateway final : public api::GatewayControl {
   admin::Updates updates_;
   admin::ClockSetting clock_;
   admin::Spare spare_;
+  admin::Certificate certificate_;
   Overview overview_;
   api::Api api_;
   intake::IcdRoutes routes_;

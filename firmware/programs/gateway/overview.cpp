@@ -168,6 +168,7 @@ api::RunView Overview::view_of(facts::Snapshot snapshot) const {
   auto& reports = snapshot.reports.rows;
   reports.resize(std::min(reports.size(), api::RunView::kMostReports));
   auto verdict = alarms::verdict_of(traffic);
+  const api::CertificateView certificate = rooms_.certificate.state();
   api::RunView view{.now = now,
                     .version = box::kVersion,
                     .run = rooms_.flow.scoring().run(),
@@ -186,6 +187,7 @@ api::RunView Overview::view_of(facts::Snapshot snapshot) const {
                     .rejected = std::move(snapshot.reports.rejected),
                     .lights = {},
                     .links = std::move(traffic.links),
+                    .certificate = certificate.offered ? certificate.fingerprint : "",
                     .identify_until = ends(rooms_.lights.left(panel::State::Identify)),
                     .setup_open_until = ends(rooms_.accounts.set_up_left()),
                     .budget_mbit = rooms_.settings.command_post.budget_mbit,

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "admin/accounts.hpp"
+#include "admin/certificate.hpp"
 #include "admin/clock_setting.hpp"
 #include "admin/factory_reset.hpp"
 #include "admin/kept_file.hpp"
@@ -98,6 +99,7 @@ class Overview final : public api::Source {
     const admin::Updates& updates;
     const admin::ClockSetting& clock;
     const admin::Spare& spare;
+    const admin::Certificate& certificate;
     const Listeners& listeners;
   };
 

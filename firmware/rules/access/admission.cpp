@@ -38,6 +38,8 @@ bool is_port(std::string_view text) {
 constexpr std::string_view kProxyHint =
     "; a proxy must pass Host on (nginx: proxy_set_header Host $http_host; haproxy: no set-header Host)";
 
+constexpr std::string_view kSecurePrefix = "__Host-";  // RFC 6265bis 4.1.3.2
+
 bool only_reads(std::string_view method) {
   return method == "GET" || method == "HEAD";
 }
@@ -55,19 +57,20 @@ bool names_this_box(std::string_view host) {
   return same_but_for_case(name, "localhost") || is_multicast_name(name) || is_address(AF_INET, name);
 }
 
-bool is_same_origin(std::string_view origin, std::string_view host) {
-  for (const std::string_view scheme : {"http://", "https://"}) {
+bool is_same_origin(std::string_view origin, std::string_view host, bool is_secure) {
+  for (const std::string_view scheme : {"https://", "http://"}) {
+    if (is_secure && scheme != "https://") break;
     if (same_but_for_case(origin.substr(0, scheme.size()), scheme))
       return same_but_for_case(origin.substr(scheme.size()), host);
   }
   return false;
 }
 
-std::string cookie_name(std::string_view name, std::string_view host) {
+std::string cookie_name(std::string_view name, std::string_view host, bool is_secure) {
   const std::size_t colon = host.rfind(':');
   const std::string_view port = colon == std::string_view::npos ? "" : host.substr(colon + 1);
   const bool is_given = !port.empty() && std::ranges::all_of(port, icd::is_digit);  // else of "[fd00::1]"
-  return is_given ? icd::sentence(name, "-", port) : std::string(name);
+  return icd::sentence(is_secure ? kSecurePrefix : "", name, is_given ? "-" : "", is_given ? port : "");
 }
 
 std::string_view cookie_in(std::string_view cookies, std::string_view name) {
@@ -80,11 +83,13 @@ std::string_view cookie_in(std::string_view cookies, std::string_view name) {
 }
 
 std::vector<std::string_view> cookies_in(std::string_view cookies, std::string_view name,
-                                         std::string_view host) {
-  std::vector<std::string_view> values{cookie_in(cookies, cookie_name(name, host))};
+                                         std::string_view host, bool is_secure) {
+  std::vector<std::string_view> values{cookie_in(cookies, cookie_name(name, host, is_secure))};
   while (!cookies.empty()) {
     std::string_view value = icd::trimmed(icd::cut(cookies, ';'), " \t");
-    const std::string_view each = icd::cut(value, '=');
+    std::string_view each = icd::cut(value, '=');
+    if (each.starts_with(kSecurePrefix) != is_secure) continue;
+    if (is_secure) each.remove_prefix(kSecurePrefix.size());
     if (!each.starts_with(name)) continue;
     const std::string_view port = each.substr(name.size());
     const bool is_ours =
@@ -100,7 +105,7 @@ icd::Checked<void> check_host_and_origin(const Request& request) {
                   "Host: expected the box's address, localhost or the box's name in .local, got ",
                   icd::in_quotes(request.host), kProxyHint);
   }
-  if (!request.origin.empty() && !is_same_origin(request.origin, request.host)) {
+  if (!request.origin.empty() && !is_same_origin(request.origin, request.host, request.is_secure)) {
     return refuse(icd::Status::Forbidden, "Origin: expected a page of this box, got ",
                   icd::in_quotes(request.origin), " with Host ", icd::in_quotes(request.host), kProxyHint);
   }
@@ -113,7 +118,7 @@ std::optional<Visitor> who(const Request& request, std::span<const icd::BearerTo
     if (!icd::is_one_of(tokens, icd::token_in(request.authorization))) return std::nullopt;
     return Visitor{Role::Operator, nullptr};
   }
-  for (const std::string_view id : cookies_in(request.cookie, kCookie, request.host)) {
+  for (const std::string_view id : cookies_in(request.cookie, kCookie, request.host, request.is_secure)) {
     if (const Session* const session = sessions.find(id, now)) return Visitor{session->role, session};
   }
   return std::nullopt;

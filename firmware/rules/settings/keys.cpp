@@ -244,6 +244,13 @@ constexpr Member kNetworkKeys[] = {
         "Whether the team's subnet may overlap the Command Post's. A robot cannot reach both subnets then."),
 };
 
+constexpr Member kPageKeys[] = {
+    key<&Page::https_only>("https_only",
+                           "Whether browsers may use the page only by HTTPS, while the box offers it. "
+                           "Scripts with a token and the "
+                           "ICD's URIs still work by HTTP."),
+};
+
 constexpr Member kClockKeys[] = {
     key<&Clock::ntp_server>(
         "ntp_server",
@@ -355,6 +362,7 @@ constexpr Member kSettingsKeys[] = {
     object<&Settings::team, kTeamKeys>("team"),
     key<&Settings::robots>("robots", "").within(0, 32),
     object<&Settings::network, kNetworkKeys>("network"),
+    object<&Settings::page, kPageKeys>("page"),
     object<&Settings::clock, kClockKeys>("clock"),
     object<&Settings::reports, kReportsKeys>("reports"),
     object<&Settings::queues, kQueuesKeys>("queues"),

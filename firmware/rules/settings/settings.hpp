@@ -137,6 +137,11 @@ struct Clock {
   bool serve_ntp = false;
 };
 
+/// The page and the API.
+struct Page {
+  bool https_only = false;  // while HTTPS is offered: browsers get no answer without it
+};
+
 /// Rules for changes of the box's addresses. The addresses themselves: room network.
 struct Network {
   std::chrono::milliseconds confirm_within{90000};  // time until an unconfirmed change is reverted
@@ -150,6 +155,7 @@ struct Settings {
   Team team;
   std::vector<Robot> robots;
   Network network;
+  Page page;
   Clock clock;
   Reports reports;
   Queues queues;

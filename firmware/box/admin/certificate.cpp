@@ -1,0 +1,98 @@
+#include "admin/certificate.hpp"
+
+#include <unistd.h>
+
+#include <utility>
+
+#include "host/log.hpp"
+#include "host/service.hpp"
+
+namespace adit::admin {
+
+Certificate::Certificate(loop::Loop& loop, const std::string& state_folder, const std::string& runtime_folder,
+                         Asked asked, const std::string& units)
+    : loop_(loop),
+      adit_certificate_(loop, "adit-certificate", state_folder, runtime_folder + '/' + kStatusFolder,
+                        kTakenUpWithin, units),
+      asked_(std::move(asked)),
+      timer_(loop.timer([this] { look(); })) {
+  read();
+}
+
+api::CertificateView Certificate::state() const {
+  api::CertificateView view;
+  const auto status = adit_certificate_.status();
+  if (status && status->fingerprint == fingerprint_) {
+    view.fingerprint = status->fingerprint;
+    view.until = status->until;
+  }
+  if (!asked_.serves_tls()) {
+    view.why = "Adit has no TLS server here: it needs systemd and the package stunnel4";
+  } else if (!status) {
+    view.why = adit_certificate_.why();
+  } else if (view.fingerprint.empty()) {
+    view.why = status->refusal.empty() ? "the certificate is being made" : status->refusal;
+  }
+  view.offered = view.why.empty();
+  return view;
+}
+
+void Certificate::take(const std::string& pem, Done done) {
+  if (done_) return done(icd::conflict("another certificate is being checked: wait"));
+  if (const auto left = host::write_file(uploaded_file(), pem, host::kOursAlone); !left)
+    return done(icd::refuse(icd::Status::ServiceUnavailable, left.error()));
+  ask(What::Take, std::move(done));
+}
+
+void Certificate::make(Done done) {
+  if (done_) return done(icd::conflict("another certificate is being checked: wait"));
+  ask(What::Make, std::move(done));
+}
+
+void Certificate::ask(What what, Done done) {
+  done_ = std::move(done);
+  if (!adit_certificate_.status()) return finish(icd::conflict(adit_certificate_.why()));
+  const access::CertificateRequest request{
+      .nonce = host::draw_nonce(), .what = what, .address = asked_.address()};
+  if (const auto left = adit_certificate_.ask(access::kCertificateRequestFile, request); !left)
+    return finish(icd::refuse(icd::Status::ServiceUnavailable, left.error()));
+  timer_.call_at(loop_.now() + kLook);
+}
+
+void Certificate::look() {
+  if (!done_) return;
+  if (adit_certificate_.check()) return finish(icd::conflict(adit_certificate_.trouble()));
+  const auto status = adit_certificate_.status();
+  if (!status || adit_certificate_.waits()) return timer_.call_at(loop_.now() + kLook);
+  if (status->refusal.empty()) return finish({});
+  finish(icd::refuse(icd::Status::UnprocessableEntity, status->refusal));
+}
+
+void Certificate::finish(const icd::Checked<void>& done) {
+  if (!done) unlink(uploaded_file().c_str());
+  read();
+  std::exchange(done_, nullptr)(done);
+}
+
+void Certificate::every_second() {
+  read();
+  const auto status = adit_certificate_.status();
+  if (!status || done_) return;
+  if (!fingerprint_.empty() && fingerprint_ == status->fingerprint) {
+    kept_at_.reset();
+    return;
+  }
+  if (kept_at_ && loop_.now() < *kept_at_ + kAskAgain) return;
+  kept_at_ = loop_.now();
+  ask(What::Keep, [](const icd::Checked<void>& done) {
+    if (!done) host::log(host::Level::Error, "the page has no certificate", {{"why", done.error().sentence}});
+  });
+}
+
+void Certificate::read() {
+  const auto text = host::read_optional_file(adit_certificate_.requests() + '/' + access::kCertificateFile);
+  const auto pem = text && *text ? access::read_pem(**text) : std::unexpected("");
+  fingerprint_ = pem ? access::fingerprint_of(*pem) : "";
+}
+
+}  // namespace adit::admin

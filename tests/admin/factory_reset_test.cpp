@@ -15,7 +15,7 @@ class FactoryResetTest : public testing::Test {
  protected:
   void SetUp() override {
     for (const char* file : {"access.json", "access.json.damaged", "acknowledged.json", "devices.json",
-                             "first-start.code", "settings.json", "ledger"})
+                             "first-start.code", "settings.json", "tls.pem", "tls.pem.damaged", "ledger"})
       state_.put(file, "something");
     std::filesystem::create_directory(state_ / "secrets");
     state_.put("secrets/team.token", "secret");
@@ -27,8 +27,9 @@ class FactoryResetTest : public testing::Test {
   }
   bool kept(const char* name) const { return std::filesystem::exists(state_ / name); }
   void expect_first_start() const {
-    for (const char* gone : {"access.json", "access.json.damaged", "acknowledged.json", "devices.json",
-                             "first-start.code", "settings.json", "secrets", "reset"})
+    for (const char* gone :
+         {"access.json", "access.json.damaged", "acknowledged.json", "devices.json", "first-start.code",
+          "settings.json", "tls.pem", "tls.pem.damaged", "secrets", "reset"})
       EXPECT_FALSE(kept(gone)) << gone;
     EXPECT_FALSE(std::filesystem::exists(runtime_ / "sessions.json"));
     for (const char* gone : {"journal", "waiting", "rejected"}) {

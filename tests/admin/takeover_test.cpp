@@ -25,6 +25,10 @@ dispatch::Report answered(std::int64_t number) {
   return report;
 }
 
+constexpr const char* kFirstBoxPem =
+    "-----BEGIN PRIVATE KEY-----\nc2VjcmV0\n-----END PRIVATE KEY-----\n"
+    "-----BEGIN CERTIFICATE-----\nYWRpdA==\n-----END CERTIFICATE-----\n";
+
 class TakeoverTest : public testing::Test {
  protected:
   TakeoverTest() { given_.put("settings.json", kSettings); }
@@ -43,6 +47,7 @@ class TakeoverTest : public testing::Test {
     content.tokens.emplace("scoring", *icd::BearerToken::parse("the-first-box-s"));
     content.tokens.emplace("../../escaped", *icd::BearerToken::parse("of-no-name"));
     content.ledger = *ledger->copy();
+    content.certificate = kFirstBoxPem;
     return content;
   }
   std::vector<dispatch::Report> reports() const {
@@ -73,10 +78,26 @@ TEST_F(TakeoverTest, ImportsReportsSettingsTokensAndStampsOnce) {
   EXPECT_TRUE(loaded->saved);
   EXPECT_EQ(loaded->secrets.token("scoring")->reveal(), "the-first-box-s");
   EXPECT_FALSE(loaded->secrets.token("mapping")) << "the first box had no token";
+  EXPECT_EQ(host::read_file(state_ / "tls.pem"), kFirstBoxPem) << "browsers know the first box's certificate";
   EXPECT_EQ(forward::StampFloor(state_.path()).read()->least, 9e9 / 2);
   EXPECT_EQ(SpareFile::read(state_.path())->taken.at(0).at, 100);
   EXPECT_EQ(takeover_.finish(loop_), false);
   EXPECT_FALSE(fs::exists(state_ / "../../escaped.token"));
+}
+
+TEST_F(TakeoverTest, KeepsTheOwnCertificateIfTheFirstBoxHadNone) {
+  state_.put("tls.pem", "its own");
+  spare::Content other = content();
+  other.certificate.clear();
+  ASSERT_TRUE(takeover_.begin(spare::write(other)));
+  ASSERT_EQ(takeover_.finish(loop_), true);
+  EXPECT_EQ(host::read_file(state_ / "tls.pem"), "its own");
+}
+
+TEST_F(TakeoverTest, RejectsADamagedCertificate) {
+  spare::Content other = content();
+  other.certificate = "torn";
+  EXPECT_THAT(takeover_.check(other).error(), HasSubstr("cannot use the export's certificate"));
 }
 
 TEST_F(TakeoverTest, RecordsTheSizeOfTheOldLedger) {

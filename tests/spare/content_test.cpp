@@ -21,6 +21,7 @@ Content content() {
   content.tokens.emplace("scoring", *icd::BearerToken::parse("scoring-token"));
   content.tokens.emplace("course.A.mapping", *icd::BearerToken::parse("mapping-token"));
   content.ledger = std::string("records\0\n of it", 15);
+  content.certificate = "a key and its certificates\n";
   return content;
 }
 
@@ -37,8 +38,15 @@ TEST(Content, ReadsBackTheSame) {
   EXPECT_FALSE(again->about.expected);
   EXPECT_EQ(again->settings, content().settings);
   EXPECT_EQ(again->ledger, content().ledger);
+  EXPECT_EQ(again->certificate, content().certificate);
   ASSERT_EQ(again->tokens.size(), 2U);
   EXPECT_EQ(again->tokens.at("course.A.mapping").reveal(), "mapping-token");
+}
+
+TEST(Content, MayHaveNoCertificate) {
+  Content without = content();
+  without.certificate.clear();
+  EXPECT_EQ(read(write(without))->certificate, "");
 }
 
 TEST(Content, IsRejectedIfTruncated) {

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "access/certificate.hpp"
 #include "admin/accounts.hpp"
 #include "admin/kept_file.hpp"
 #include "admin/takeover.hpp"
@@ -42,12 +43,14 @@ std::expected<bool, std::string> FactoryReset::finish() {
   // Removes the passwords and the mark last, so that an unfinished reset does not look finished.
   for (const std::string& file :
        {runtime_ + '/' + SessionKeeper::kFile, state_ + '/' + AcknowledgedFile::kFile,
-        state_ + '/' + Accounts::kDevicesFile, state_ + '/' + Accounts::kCodeFile,
-        state_ + '/' + Accounts::kFile, state_ + '/' + Accounts::kFile + host::kDamaged,
-        state_ + '/' + Takeover::kFile, begun()}) {
+        state_ + '/' + access::kCertificateFile, state_ + '/' + access::kCertificateFile + host::kDamaged,
+        state_ + '/' + access::kUploadedFile, state_ + '/' + Accounts::kDevicesFile,
+        state_ + '/' + Accounts::kCodeFile, state_ + '/' + Accounts::kFile,
+        state_ + '/' + Accounts::kFile + host::kDamaged, state_ + '/' + Takeover::kFile, begun()}) {
     ADIT_TRY(host::remove_file(file));
   }
-  host::log(host::Level::Notice, "factory reset: settings, tokens, passwords and sessions deleted");
+  host::log(host::Level::Notice,
+            "factory reset: settings, tokens, certificate, passwords and sessions deleted");
   return true;
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <compare>
 
+#include "access/certificate.hpp"
 #include "admin/kept_file.hpp"
 #include "codec/row.hpp"
 #include "forward/clocks.hpp"
@@ -145,6 +146,8 @@ std::expected<settings::Saved, std::string> Takeover::check(const spare::Content
                            settings::sentence_of(saved.error()));
   if (!ledger::Ledger::is_copy(content.ledger))
     return std::unexpected("this box cannot use the export's ledger: it is no copy of a ledger");
+  if (const auto pem = access::read_pem(content.certificate); !content.certificate.empty() && !pem)
+    return std::unexpected("this box cannot use the export's certificate: " + pem.error());
   return *std::move(saved);
 }
 
@@ -176,6 +179,9 @@ std::expected<void, std::string> Takeover::take_settings(const spare::Content& c
     const auto token = found == content.tokens.end() ? std::nullopt : std::optional(found->second);
     if (auto kept = store_.save_token(name, token); !kept) return kept;
   }
+  if (!content.certificate.empty())
+    ADIT_TRY(
+        host::write_file(state_ + '/' + access::kCertificateFile, content.certificate, host::kOursAlone));
   return store_.save(saved->settings);
 }
 

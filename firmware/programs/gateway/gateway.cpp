@@ -74,6 +74,8 @@ std::expected<spare::Content, std::string> export_of(const Parts& parts, const d
   content.settings = settings::file_of(parts.loaded.settings);
   content.tokens = {parts.loaded.secrets.tokens.begin(), parts.loaded.secrets.tokens.end()};
   content.ledger = *std::move(ledger);
+  auto certificate = ADIT_TRY(host::read_optional_file(parts.options.state + '/' + access::kCertificateFile));
+  content.certificate = std::move(certificate).value_or("");
   return content;
 }
 

@@ -7,7 +7,8 @@
 namespace adit::spare {
 namespace {
 
-constexpr std::string_view kAbout = "about", kSettings = "settings", kLedger = "ledger", kToken = "token:";
+constexpr std::string_view kAbout = "about", kSettings = "settings", kLedger = "ledger",
+                           kCertificate = "certificate", kToken = "token:";
 constexpr std::size_t kMostTokens = 256, kLongestHead = 128;
 
 constexpr codec::Member kAboutMembers[] = {
@@ -62,6 +63,7 @@ class Reading {
     if (part.name == kAbout) return take_about(part);
     if (part.name == kSettings) return keep(content_.settings, part);
     if (part.name == kLedger) return keep(content_.ledger, part);
+    if (part.name == kCertificate) return keep(content_.certificate, part);
     return take_token(part);
   }
   std::expected<Content, std::string> finish() {
@@ -107,6 +109,7 @@ std::string write(const Content& content) {
   add(text, kAbout, codec::write_file(content.about));
   add(text, kSettings, content.settings);
   for (const auto& [name, token] : content.tokens) add(text, icd::sentence(kToken, name), token.reveal());
+  if (!content.certificate.empty()) add(text, kCertificate, content.certificate);
   add(text, kLedger, content.ledger);
   return text;
 }

@@ -38,11 +38,13 @@ struct Content {
   std::string settings;                            // the settings file
   std::map<std::string, icd::BearerToken> tokens;  // by name
   std::string ledger;                              // Ledger::copy()
+  std::string certificate = {};                    // access::KeyAndChain::text(), or ""
 };
 
 /// The text to seal: parts, each as "NAME SIZE", a newline, and SIZE bytes.
 std::string write(const Content& content);
-/// Each part must occur exactly once; other parts are errors. An error is a sentence.
+/// Each part must occur exactly once, tokens and the certificate at most once; other parts are errors. An
+/// error is a sentence.
 std::expected<Content, std::string> read(std::string_view text);
 
 }  // namespace adit::spare

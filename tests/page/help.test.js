@@ -50,8 +50,8 @@ test("shows the glyph of each alarm, and each glyph's meaning", async (t) => {
 test("answers the questions of the first hour before the alarms, and has the signs last", async (t) => {
   const page = await help(t);
   assert.deepEqual(await page.$$eval("main > section", (all) => all.map((each) => each.className)), ["troubles", "signs"]);
-  assert.deepEqual(FIRST, ["first_page", "first_password", "first_start", "first_boot", "first_log"]);
-  assert.deepEqual(await page.$$eval(".troubles dl", (all) => all.slice(0, 5).map(({ id }) => id)), FIRST);
+  assert.deepEqual(FIRST, ["first_page", "first_https", "first_password", "first_start", "first_boot", "first_log"]);
+  assert.deepEqual(await page.$$eval(".troubles dl", (all) => all.slice(0, 6).map(({ id }) => id)), FIRST);
   await search(page).fill("password forgotten");
   assert.deepEqual(await shown(page), ["first_password"]);
 });

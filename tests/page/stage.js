@@ -15,7 +15,7 @@ export const FILES = fileURLToPath(new URL("../../firmware/doors/site/files", im
 /** Debian's headless shell of Chromium: the same engine, in half the time of the whole browser. */
 export const CHROMIUM = process.env.CHROMIUM ?? "/usr/bin/chromium-headless-shell";
 
-/** Serves `scene` on `port` (0: any free one); `more`: "first-start" or "set-up-open". */
+/** Serves `scene` on `port` (0: any free one); `more`: "first-start", "set-up-open", "https" or "by-tls". */
 export async function serve(scene, port = 0, ...more) {
   const program = spawn(join(BIN, "adit_page_scenes"), [String(port), scene, ...more], { stdio: ["pipe", "pipe", "inherit"] });
   const [line] = await once(createInterface({ input: program.stdout }), "line");

@@ -7,6 +7,7 @@ import { come, VIEWER } from "./system_page.js";
 const LINES = {
   sessions: /^\s*No one else is logged in$/,
   passwords: /^\s*Operator’s and viewers’$/,
+  https: /^\s*Not offered$/,
   clock: /^\s*2:00 h behind this device$/,
   update: /^\s*Slot A, 0\.1\.0; 0\.0\.9 was left$/,
   restart: /^\s*Takes about a minute$/,

@@ -3,6 +3,7 @@ import { answered } from "./dialog.js";
 import { beginFrom, check, differs, draft, drop, flat, goOnFrom, merged, onDraft, onFindings, refresh, same, findings, keyOf } from "./draft.js";
 import { make, say } from "./dom.js";
 import { blameAll, fieldOf, revealAll, uncover } from "./field.js";
+import { atThisScheme } from "./https.js";
 import { inShort, nameOf, spoken } from "./names.js";
 import { get, post } from "./session.js";
 import { clip } from "./words.js";
@@ -87,7 +88,8 @@ function newAddress({ team }, before) {
   const [listen] = team.listen;
   if (!listen || same(team.listen, before.team.listen)) return "";
   const host = listen.address === "0.0.0.0" || listen.address === "::" ? location.hostname : listen.address;
-  return `http://${host.includes(":") ? `[${host}]` : host}:${listen.port}/setup${location.hash}`;
+  const there = atThisScheme(`http://${host.includes(":") && host[0] !== "[" ? `[${host}]` : host}:${listen.port}/setup${location.hash}`);
+  return location.protocol === "https:" && new URL(there).host === location.host ? "" : there;
 }
 
 const OWN = "Saved. The box's answer was lost.";

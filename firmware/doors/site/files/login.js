@@ -1,6 +1,7 @@
 // The door: a password, or a new one: at the first start with the code of the box, without while set-up is open.
 import "./presses.js";
 import { missingTokens } from "./draft.js";
+import { warnOfClearText } from "./https.js";
 import { get, isFault, post, session } from "./session.js";
 
 const trouble = document.getElementById("trouble");
@@ -54,6 +55,7 @@ async function setFirst({ code, password, again }) {
 async function begin() {
   const { role, first_start: firstStart, set_up_open: isOpen } = await session();
   if (role) return location.replace(next());
+  await warnOfClearText(document.getElementById("clear"));
   const first = document.getElementById("first");
   if (isOpen) for (const each of first.querySelectorAll(".code")) each.remove();
   if (firstStart || isOpen) show(first, setFirst);

@@ -6,7 +6,7 @@ const labels = new Map();
 const LISTS = { "team.listen": "Listen address", robots: "Robot", courses: "Course" };
 const UNITS = { ms: "ms", mbit: "Mbit/s", hz: "a second", bytes: "bytes", metres: "m", seconds: "s" };
 
-const KNOWN = new Set(["command_post", "team", "robots", "courses", "network", "clock", "reports", "queues", "runs", "alarms", "rules", "panel"]);
+const KNOWN = new Set(["command_post", "team", "robots", "courses", "network", "page", "clock", "reports", "queues", "runs", "alarms", "rules", "panel"]);
 
 /** A field's label is what its setting is called everywhere. */
 export const label = (path, text) => labels.set(path, text);

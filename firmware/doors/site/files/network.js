@@ -2,6 +2,7 @@
 import { fromTo, insist, reviewed } from "./apply.js";
 import { make, say } from "./dom.js";
 import { blame, labelled, reveal } from "./field.js";
+import { atThisScheme } from "./https.js";
 import { label, nameOf, spoken } from "./names.js";
 import { left, told } from "./pending.js";
 import { post } from "./session.js";
@@ -101,7 +102,7 @@ function showPending(network) {
   pendingPlace.hidden = !pending;
   if (!pending) return;
   say(pendingPlace.querySelector(".left"), left(network));
-  const url = `${pending.page}/setup#network`, where = pendingPlace.querySelector(".where"), isHere = new URL(url).host === location.host;
+  const url = atThisScheme(`${pending.page}/setup#network`), where = pendingPlace.querySelector(".where"), isHere = new URL(url).host === location.host;
   const words = isHere ? "You are at the new address. Confirm to keep it." : "Open the page at the new address and confirm there: ";
   if (where.dataset.url === url) return;
   where.dataset.url = url;

@@ -1,6 +1,7 @@
 // The box itself: its log, who is logged in, passwords, what to send to whoever is to help, and what it is made of.
 import "./presses.js";
 import { followAddress, tellCard } from "./card.js";
+import { offerHttps } from "./certificate.js";
 import { offerClock, showClock } from "./clock.js";
 import { badge } from "./dom.js";
 import { followLog } from "./log.js";
@@ -35,6 +36,7 @@ async function begin() {
     tellCard(ports, ...portsLine(network));
   });
   showAbout();
+  offerHttps(operator);
   showClock(operator);
   offerUpdate(operator);
   followAddress();

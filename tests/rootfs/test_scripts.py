@@ -150,7 +150,7 @@ class TwoDisks(Scripts):
 class Greeting(Scripts):
     """The consoles' output for a box of plain files, over that many seconds. `sleep` takes no time, and ends it."""
 
-    def shown(self, code="12345678", passwords="", addresses=("10.0.0.1", "192.168.7.11"), consoles="tty0 ttyS0", seconds=10):
+    def shown(self, code="12345678", passwords="", addresses=("10.0.0.1", "192.168.7.11"), consoles="tty0 ttyS0", seconds=10, status=""):
         state, devices = self.folder / "state", self.folder / "dev"
         for path in state, devices, self.folder / "bin":
             shutil.rmtree(path, ignore_errors=True)
@@ -168,7 +168,8 @@ class Greeting(Scripts):
             (self.folder / "bin" / name).write_text(f"#!/bin/sh\n{does}\n")
             (self.folder / "bin" / name).chmod(0o755)
         (self.folder / "slept").write_text("0\n")
-        self.call(TOP / "rootfs/overlay/usr/lib/adit/greeting", state, self.folder / "active", devices,
+        (self.folder / "status.json").write_text(status)
+        self.call(TOP / "rootfs/overlay/usr/lib/adit/greeting", state, self.folder / "active", devices, self.folder / "status.json",
                   PATH=f"{self.folder}/bin:/usr/bin:/bin")
         return [(devices / name).read_text() for name in consoles.split()]
 
@@ -186,6 +187,14 @@ class Greeting(Scripts):
 
     def test_missing_code_is_shown(self):
         self.assertIn("no code yet", self.shown(code=None)[0])
+
+    def test_fingerprint_of_the_certificate_is_shown(self):
+        sha256 = ":".join(f"{number:02X}" for number in range(32))
+        shown = self.shown(status=json.dumps({"nonce": "", "refusal": "", "fingerprint": sha256, "until": "2036-11-28"}))[0]
+        self.assertIn("https://", shown)
+        self.assertIn(f"  {sha256[:47]}\n  {sha256[48:]}\n", shown)
+        self.assertLess(max(map(len, shown.splitlines()[3:])), 80, shown)
+        self.assertNotIn("https", self.shown(status='{"fingerprint":""}')[0])
 
     def test_unreadable_passwords_count_as_unset(self):
         """Asks for a new code, which is written."""

@@ -147,7 +147,7 @@ test("shows both ports' state in the kernel as a cable is unplugged and plugged 
   const team = (await port("Team’s side: team0").innerText()).replace(/\s+/g, " ");
   assert.match(team, /cable in, 10 Gbit\/s, full duplex Addresses 192\.168\.7\.11\/24.* Name \S+\.local MAC ([0-9a-f]{2}:){5}[0-9a-f]{2}/);
   assert.match((await port("darpa0").innerText()).replace(/\s+/g, " "), /10\.100\.1\.10\/24.* none: the box does not listen on this side/);
-  await page.goto(`${OLD}system`);
+  await page.goto(`${OLD}system#network`);
   await port("darpa0").getByText("cable in").waitFor();
   box.plug("wan0", false);
   await port("darpa0").getByText("no cable").waitFor();

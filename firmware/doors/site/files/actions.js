@@ -1,4 +1,4 @@
-// What the operator may do with a report, and what came of it.
+// The operator's actions on a report, and their results.
 import { learnChange } from "./all_reports.js";
 import { confirmed } from "./dialog.js";
 import { post, session } from "./session.js";
@@ -67,7 +67,7 @@ async function learnRole() {
 /** Ends once it is known who looks at this page. */
 export const learned = learnRole();
 
-// What came of the last action at each report: {text, bad}.
+// The result of the last action on each report: {text, bad}.
 const outcomes = new Map();
 const underWay = new Set();
 /** "" once it is no longer true: the report was sent, and this shows by itself. */

@@ -1,5 +1,5 @@
-// The alarms, as the box finds them: a strip of one height in every state with the two worst, each with its action; the list of all;
-// the tab's title and icon; and a sound, where it is wanted.
+// The alarms of the box: a strip with the two worst, each with its action, which has one height in every state; the list of all;
+// the tab's title and icon; and a sound if the operator wants one.
 import { fillAlarmList } from "./alarm_list.js";
 import { sounds } from "./alarm_sound.js";
 import { alarmCard, BOX_LOST, fillCard, formerly } from "./alarm_card.js";

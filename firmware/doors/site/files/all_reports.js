@@ -9,7 +9,7 @@ const RETRY = 5000, EVERY = 60_000; // ms
 const known = new Map(); // by number
 let last = null, newest = new Set(); // of the last event: its reports, and their numbers
 let all = null; // that the page shows; null: not listed yet
-let isWhole = false; // all are known as they are: each change since was in an event
+let isWhole = false; // all reports are up to date: each later change came in an event
 let asked = -Infinity;
 
 const sameClock = (one, other) => Math.abs(one.received - other.received) < 1;
@@ -24,7 +24,7 @@ function learn(row) {
 
 async function learnAll() {
   asked = performance.now();
-  isWhole = true; // what changes from now on is told
+  isWhole = true; // events bring all later changes
   try {
     for (const row of await get("/adit/reports")) learn(row);
   } catch {

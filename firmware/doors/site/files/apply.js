@@ -1,4 +1,4 @@
-// Applying what was typed, or a file: shown first, and never over what somebody else saved meanwhile.
+// Applies typed settings or a file: shows them first, and never overwrites a newer change by somebody else.
 import { answered } from "./dialog.js";
 import { beginFrom, check, differs, draft, drop, flat, goOnFrom, merged, onDraft, onFindings, refresh, same, findings, keyOf } from "./draft.js";
 import { make, say } from "./dom.js";

@@ -1,4 +1,4 @@
-// What the figures mean: for each thing a level (its shape and colour), a word, and a sentence where one helps.
+// The meaning of the figures: for each a level (its shape and colour), a word, and a sentence if one helps.
 //   good: as it should be   wait: late, or about to be decided   bad: it does not work   quiet: nothing to tell
 //   ask: it waits for the operator's word
 import { signed } from "./words.js";

@@ -1,4 +1,4 @@
-// The box's time of day: where this browser's is another, the operator is asked once whether it counts.
+// The box's time of day. If this browser's differs, asks the operator once whether the browser's is right.
 import { tellCard } from "./card.js";
 import { confirmed } from "./dialog.js";
 import { say } from "./dom.js";

@@ -1,5 +1,5 @@
-// A report composed by hand, in the place of the reports: what, then where, then a look at what is there already, then send.
-// The map stays where it is: a tap on it sets the place, and nothing opens under the finger.
+// Composes a report by hand, in place of the list of reports: type, place, a check for earlier reports there, send.
+// The map does not move: a tap on it sets the place, and no dialog opens under the finger.
 import { ACCEPTED, barred, tell } from "./actions.js";
 import { icon } from "./artifact_icons.js";
 import { notesOn } from "./check.js";
@@ -40,7 +40,7 @@ function go(next) {
   say(panel.querySelector(".count"), { what: "choose a type", where: type, check: "check, then send" }[step]);
   for (const { name, button } of types) button.setAttribute("aria-pressed", String(name === type));
   complain(null);
-  // What is checked is what is sent: a tap on the map moves nothing then.
+  // The checked report is sent unchanged: from now on a tap on the map does not move the place.
   map.setTap(side() === "compose" && step !== "check" ? put : null);
 }
 

@@ -52,8 +52,8 @@ export function badge(node, level, word) {
   return node;
 }
 
-/** Makes the children of `parent` those of `items`, in order: known ones (by `key`) are kept and updated, and stay where they
- *  are unless the order changed, for what is moved loses the focus. */
+/** Makes the children of `parent` those of `items`, in order. Keeps and updates known ones (by `key`), and moves them only if
+ *  the order changed, because a moved element loses the focus. */
 export function list(parent, items, key, create, update) {
   const names = items.map((item) => String(key(item)));
   const known = new Map([...parent.children].map((node) => [node.dataset.key, node]));
@@ -92,7 +92,7 @@ function heirOf(node, focused, going) {
   return heirs.find(({ className }) => className === focused.className) ?? heirs[0] ?? node.closest("section")?.querySelector("h2, h3");
 }
 
-// ms: as long as presses.js lets no finger press what has just come under it
+// ms: as long as presses.js ignores presses on a control that has just appeared
 const TWICE = 500;
 
 /** Gives the focus to what nobody chose. As long as it is marked, presses.js lets no key act on it: it may be one pressed twice. */

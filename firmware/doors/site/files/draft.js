@@ -1,5 +1,5 @@
-// The settings as they are typed, beside those of the box that they began from. What is typed outlives errors, a lost
-// box and a reload of the page, until it is applied or dropped; the box says what is wrong with it.
+// The typed settings, beside the box's settings from which they began. They survive errors, a lost connection and a reload of
+// the page until they are applied or dropped. The box reports their errors.
 import { get, post } from "./session.js";
 
 const STORED = "adit.typed";

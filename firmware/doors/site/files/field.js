@@ -1,4 +1,4 @@
-// One setting as a field: what it means, what is allowed, what is wrong with it.
+// One setting as a field: its meaning, its allowed values, its error.
 import { makeCard, openAround, openFound } from "./card.js";
 import { make, say } from "./dom.js";
 import { draft, keyOf, onDraft, read, same, write } from "./draft.js";
@@ -202,7 +202,7 @@ onDraft((what) => {
   if (what === "begun") showAllFields();
 });
 
-// What has a place of its own, or none: the layout's version.
+// Settings that are shown elsewhere, or not at all: the layout's version.
 const ELSEWHERE = /\[\]|^version$|^command_post\.(course|scoring|mapping)|^network\.allow_overlap$/;
 
 /** All the other settings, made of what the box tells of its keys. */

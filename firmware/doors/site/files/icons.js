@@ -1,4 +1,4 @@
-// Small pictures of what is pressed, as lines of 24 x 24 units.
+// Icons of the buttons, as lines of 24 x 24 units.
 import { drawLines } from "./dom.js";
 
 const DRAWN = {

@@ -1,4 +1,4 @@
-// The link over the last ten minutes: rate, queue, what was throttled, and each endpoint's delay.
+// The link over the last ten minutes: rate, queue, throttling, and each endpoint's delay.
 import { draw, list, make, mark, say } from "./dom.js";
 import { Plot } from "./plot.js";
 import { answeredWords, bytes, mbit, ms } from "./words.js";

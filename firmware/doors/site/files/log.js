@@ -12,7 +12,7 @@ const rows = section.querySelector(".rows"), empty = section.querySelector(".emp
 const level = section.querySelector("select"), text = section.querySelector("input"), file = section.querySelector("a");
 
 let last = 0; // the number of the newest that was asked for
-let asked = 0; // counts what was asked, so that a late answer to an older question is not shown
+let asked = 0; // counts requests, so that a late answer to an older request is not shown
 
 function row({ at, level, message, fields }) {
   const shown = LEVELS[level] ?? "quiet";

@@ -1,4 +1,4 @@
-// Who is logged in, and how to end it.
+// The sessions, and how to end them.
 import { tellCard } from "./card.js";
 import { confirmed } from "./dialog.js";
 import { list, make, say } from "./dom.js";
@@ -42,7 +42,7 @@ function update(node, each, now) {
 
 async function show() {
   const sessions = await get("/adit/sessions");
-  const now = Math.max(...sessions.map(({ seen }) => seen), 0); // the box's clock: who asks is seen now
+  const now = Math.max(...sessions.map(({ seen }) => seen), 0); // the box's clock: the session that asks has just been seen
   list(rows, sessions, ({ number }) => number, create, (node, each) => update(node, each, now));
   const others = sessions.filter(({ own }) => !own).length;
   tellCard(section, others === 0 ? "No one else is logged in" : others === 1 ? "1 other is logged in" : `${others} others are logged in`);

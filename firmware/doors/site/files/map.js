@@ -1,5 +1,5 @@
-// The map of a run on a canvas: where one looks, and what a page and its operator do with the map. map_scene.js has what the map
-// shows, map_drawing.js how that is drawn.
+// The map of a run on a canvas: its view, and the actions of the page and its operator on it. map_scene.js has the content of
+// the map, map_drawing.js draws it.
 import { MapDrawing } from "./map_drawing.js";
 import { listenTo } from "./map_input.js";
 import { robotAt } from "./map_robots.js";

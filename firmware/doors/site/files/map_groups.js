@@ -2,7 +2,7 @@
 import { life } from "./arriving.js";
 import { grouped } from "./grouped.js";
 
-const FEWEST = 3; // of a group: two are told apart, and may be duplicates
+const FEWEST = 3; // of a group: two can be seen apart, and may be duplicates
 const WORST = ["bad", "wait", "good", "quiet"];
 
 /** {singles: reports, groups: [{position, count, level}]}; a group is of one square with sides of `metres` and has its worst level. Reports

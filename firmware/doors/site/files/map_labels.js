@@ -1,4 +1,4 @@
-// Names on the map, none upon another: who comes first has its place, who finds none is not written.
+// Names on the map that do not overlap: the first keeps its place, and a name without a free place is not written.
 
 const OUTLINE = 1 / 3; // of a letter's height: sets it off from any map
 const GAP = 1 / 2; // of a letter's height: so far are two names in a row, or they read as one

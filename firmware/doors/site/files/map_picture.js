@@ -2,7 +2,7 @@
 // of these layers, with the text at the edges.
 import { CachedLayer } from "./map_cached_layer.js";
 
-const REST = 160; // ms without a move: then all is drawn exactly for what is seen
+const REST = 160; // ms without a move: then the view is drawn exactly
 const FRAME_BUDGET = 10; // ms: the rest waits for the next frame
 const MIN_INTERVAL = 1500, MAX_INTERVAL = 2500; // ms: between two pictures of what the box sends
 const ATTENDED = 3000, ATTENDED_INTERVAL = 400; // ms: so long after a hand's action it is drawn so often, for it may be waited for
@@ -23,7 +23,7 @@ export class Picture {
   #moved = -Infinity;
   #handled = performance.now();
   #rest = 0;
-  fontSize = 14; // pixels, of what is written on the map
+  fontSize = 14; // pixels, of text on the map
   hasNames = true; // or there is no room for any
   before = () => {};
 

@@ -1,12 +1,12 @@
-// Reports on the map: a picture of what was found, in the colour of its state, with the state's shape beside it; near duplicates
-// are joined by a line.
+// Reports on the map: a picture of the artifact, in the colour of its state, with the state's shape beside it. A line joins near
+// duplicates.
 import { life } from "./arriving.js";
 import { iconPath } from "./artifact_icons.js";
 import { nearPairs } from "./near.js";
 import { clip } from "./words.js";
 
 const LABELS_FROM = 2; // pixels per metre
-const PICTURES_FROM = 0.7; // pixels per metre: below it only shapes are told apart
+const PICTURES_FROM = 0.7; // pixels per metre: below it only shapes can be recognised
 const NEWEST = 6; // are named before the others
 
 function path(ctx, points, left, top, size) {

@@ -7,7 +7,7 @@ import { Steps } from "./steps.js";
 import { byName } from "./words.js";
 
 const INTERVAL = 5000; // ms: maps are asked for no more often
-const MAX_METRES = 8192; // from the origin: what is farther away is not fitted into the view
+const MAX_METRES = 8192; // from the origin: farther data is not fitted into the view
 
 export class MapScene {
   tiles;

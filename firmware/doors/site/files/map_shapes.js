@@ -6,7 +6,7 @@ import { themeNow } from "./theme_now.js";
 const MIN_HALF = 3; // units from the middle
 const [ARROW, CUBE, SPHERE, CYLINDER, LINE_STRIP, LINE_LIST, CUBE_LIST, SPHERE_LIST, POINTS, , MESH, TRIANGLES] = Array(12).keys();
 const LINE = [2, 3]; // units: the least and the most of a line's width, so that it hides no map
-const MIN_STEP = 2; // pixels: a line's next point is not drawn where it is nearer
+const MIN_STEP = 2; // pixels: a line's next point is not drawn if it is nearer
 
 const byte = (value) => Math.round(255 * Math.min(1, Math.max(0, value)));
 /** A team's colour, as the theme has it: at night as light as it is, but red. */

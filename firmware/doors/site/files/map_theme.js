@@ -1,4 +1,4 @@
-// The map's colours in each theme: of what is drawn upon it, and of the tiles, which the box colours as it is asked to.
+// The map's colours in each theme: of the drawing on it, and of the tiles, which the box colours on request.
 import { lookOf, robotRgb } from "./robot_colour.js";
 import { themeNow } from "./theme_now.js";
 
@@ -16,7 +16,7 @@ const hex = (parts) => parts.map((part) => Math.round(part).toString(16).padStar
 const bare = (colour) => (colour.length === 4 ? [...colour.slice(1)].map((digit) => digit + digit).join("") : colour.slice(1));
 
 /** {grid: [free, occupied], cloud: [lowest, highest] or null (the box's own, from violet to yellow), robot(name): the same of a
- *  cloud by its robot, heights: the legend's colours where they are not the box's own}.
+ *  cloud by its robot, heights: the legend's colours if they are not the box's own}.
  *  @param {Record<string, string>} colours */
 export function looksOf({ free, wall }) {
   const theme = themeNow();

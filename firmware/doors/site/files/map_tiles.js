@@ -4,7 +4,7 @@ import { fetchSoon } from "./session.js";
 
 const AT_ONCE = 4, FINER_AT_ONCE = 2, MAX_IMAGES = 1000; // a finer tile may have to be drawn first
 const MAX_TOGETHER = 64; // tiles of one layer in a request
-const NONE = [204, 404]; // nothing is known there, of what may be asked for; of anything else
+const NONE = [204, 404]; // 204: no data there; 404: no such tile
 
 const overlap = (a, b) => a.left < b.right && b.left < a.right && a.bottom < b.top && b.bottom < a.top;
 
@@ -29,11 +29,11 @@ export class Tiles {
   colours = null; // {free, occupied, heights}: of the images
   heights = null; // {low, high}, in metres, over which the colours of all clouds are spread
   changes = 0; // counts what changes all of it
-  #pieces = new Map(); // by their names, where an image came
+  #pieces = new Map(); // by their names, if an image came
   #looks = null; // map_theme.js
   #byRobot = false;
   #version = 0;
-  #images = new Map(); // "grid/r1/0/1/2" to {name, image}: what was asked for, and what was last fetched
+  #images = new Map(); // "grid/r1/0/1/2" to {name, image}: the requested name, and the image fetched last
   #queue = [];
   #wave = { began: 0, done: 0 }; // since the queue was last empty
   #loading = 0; // requests

@@ -1,12 +1,12 @@
-// Where each robot was. The box keeps about a pose a second (README.md: GET /adit/tracks); they are fetched once,
-// and what comes after is taken from the run's own events.
+// The track of each robot. The box keeps about a pose a second (README.md: GET /adit/tracks). The page fetches them once
+// and takes later poses from the run's events.
 import { chooseColours, dashesOf, lookOf, orderRobots, robotColour } from "./robot_colour.js";
 import { fetchSoon } from "./session.js";
 
 const SPACING = 1, SAME_SPACING = 10; // s; the second while a robot stands
 const SILENCE = 5; // s without an event: some were missed
 const LONGEST = 10; // s: the box leaves out poses only between two that are no farther apart
-const GAP = 60; // s without a pose: where it went in between is not known
+const GAP = 60; // s without a pose: the way in between is unknown
 const MIN_STEP = 2; // pixels: a line need not be finer
 // From the newest: up to how many seconds ago, how wide, how strong.
 const AGES = [[60, 2.25, 0.95], [300, 1.75, 0.6], [Infinity, 1.5, 0.35]];

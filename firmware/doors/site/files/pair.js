@@ -8,7 +8,7 @@ import { ago, clip, metres } from "./words.js";
 
 const panel = document.querySelector("#map .pair");
 let numbers = null, back = null, tab = "map";
-let last = null; // what was shown: {view, now}
+let last = null; // the last shown: {view, now}
 
 /** Shows both on the map; the focus goes back to `from` in the end. */
 export function comparePair(one, other, from) {

@@ -1,4 +1,4 @@
-// Setting and removing passwords. What is wrong with one is the box's to say.
+// Sets and removes passwords. The box reports what is wrong with one.
 import { post } from "./session.js";
 
 const DONE = {

@@ -1,18 +1,18 @@
-// A press belongs to what was there when it began. A tap's click comes after all that the tap opened or moved, and the
-// second one of a double tap finds something else in the same place: so what has appeared, or moved, takes no press until
-// it has stood still for a while, and a press that began elsewhere is given to what it began on, where the finger kept its
-// place, and else dropped. Every page has this; nothing has to ask for it.
+// A press goes to the control under the finger when it began. A tap's click comes after the changes that the tap caused, and the
+// second click of a double tap may find another control in the same place. So a control that has appeared or moved takes no press
+// until it has been still for a while. A press that began elsewhere goes to the control on which it began if the finger kept its
+// place, and is dropped otherwise. Every page has this.
 
 const STILL = 500; // ms: the second tap of a double tap comes sooner
-// pixels: what moves less is where it was
+// pixels: a control that moved less has not moved
 const MOVED = 8;
 const FOLLOWS = 150; // ms: a page that scrolls so soon after a press was scrolled by that press
 const CONTROLS = "button, a[href], input, select, textarea, label, summary, canvas[tabindex]";
 const ACT = ["Enter", " ", "Escape"];
 
-let places = null; // what can be pressed to where its middle is; null: the page has just been loaded
-const moving = new Map(); // what must not be pressed yet to when it moved
-let scrolled = false; // by hand: what moved with it was followed by the eye
+let places = null; // from a control to its middle; null: the page has just been loaded
+const moving = new Map(); // from a control that takes no press yet to the time when it moved
+let scrolled = false; // by hand: the eye followed the controls
 let timer = 0, ended = -Infinity;
 
 const opened = new Set(document.querySelectorAll("dialog[open]")); // the last one opened lies on top
@@ -57,7 +57,7 @@ function settle() {
   timer = moving.size ? setTimeout(settle, STILL / 4) : 0;
 }
 
-// It is told before any further input is, the click of a tap that is being handled included.
+// The observer runs before any further input, the click of the current tap included.
 const observer = new MutationObserver((records) => {
   stack(records);
   look();
@@ -102,7 +102,7 @@ for (const name of ["mousedown", "click"]) {
   }, true);
 }
 
-let held = null; // what had the focus when a key went down
+let held = null; // the control that had the focus when a key went down
 
 /** A key that is held acts on nothing that gets the focus meanwhile, and one pressed twice on nothing that was just given it. */
 addEventListener("keydown", (event) => {

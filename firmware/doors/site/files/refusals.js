@@ -26,7 +26,7 @@ export function showRefusals(refusals, now) {
   set(section.querySelector(".rows"), { hidden: refusals.length === 0 });
   set(section.querySelector(".empty"), { hidden: refusals.length > 0 });
   say(section.querySelector(".count"), refusals.length ? String(refusals.reduce((sum, row) => sum + weightOf(row), 0)) : "");
-  // Two of one moment are told apart by how many stand before them.
+  // The number of rows before it distinguishes two of one time.
   const seen = new Map();
   const key = (row) => {
     const name = `${row.at} ${row.uri} ${row.sender}`;

@@ -69,7 +69,7 @@ function update(node, row, now) {
   say(since, ago(now - row.at));
   say(why, reasonOf(row));
   if (row.replaced && send === document.activeElement) giveFocus(discard);
-  // Not while it is under way: what is disabled loses the focus.
+  // Not during the request, because a disabled control loses the focus.
   discard.disabled = Boolean(barred());
   send.disabled = discard.disabled || row.replaced;
   send.onclick = () => judge(row, "send");

@@ -1,4 +1,4 @@
-// Artifact reports, newest first: where each is in its life, what the Command Post said, and what can be done.
+// Artifact reports, newest first: the state of each, the Command Post's answer, and the possible actions.
 import { actionsOf, barred, CORRECT, hintOf, isBusy, outcomeOf, perform } from "./actions.js";
 import { icon } from "./artifact_icons.js";
 import { correct } from "./compose.js";
@@ -16,8 +16,8 @@ const section = document.getElementById("reports");
 const rows = section.querySelector(".rows"), others = section.querySelector(".others"), filter = section.querySelector(".filter select");
 const MANY = 100; // rows, until one scrolls to the end of them
 const opened = new Set();
-let last = null; // what was shown: {view, now}
-let showsOthers = false; // what is done of other runs: of earlier ones, and of those at other Command Posts
+let last = null; // the last shown: {view, now}
+let showsOthers = false; // shows settled reports of other runs: earlier ones, and those at other Command Posts
 
 const isOfOther = (report, { run_number }) => report.run !== run_number && !isOpen(report);
 
@@ -111,7 +111,7 @@ function showActions(node, report, view, isShown) {
   };
   const actions = isShown ? actionsOf(report, Boolean(nearestOf(report, view))) : [];
   if (still.isHeld && !own.has(report.number) && node.children.length) {
-    // Somebody else acted: what can no longer be done stays where it is, and no other button comes under the hand.
+    // Somebody else acted: an action that is no longer possible keeps its place, so that no other button comes under the hand.
     for (const button of node.children) button.disabled = Boolean(reason) || !actions.some(({ label }) => label === button.dataset.key);
     return;
   }

@@ -1,4 +1,4 @@
-// Is each robot's map arriving? Its panel, and what the Command Post said to what was sent.
+// Is each robot's map arriving? Its panel, and the Command Post's answers.
 import { badge, list, make, mark, say, set } from "./dom.js";
 import { kindOf } from "./arriving.js";
 import { area, coveredIn } from "./covered.js";

@@ -1,4 +1,4 @@
-// How the run stands, in the strip's large figures; what needs the operator, and the lights as they are on the box.
+// How the run stands, in the strip's large figures; the alarms for the operator, and the lights of the box.
 import { badge, list, make, mark, say } from "./dom.js";
 import { ago, clip, clock } from "./words.js";
 

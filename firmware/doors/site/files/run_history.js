@@ -1,5 +1,5 @@
-// What the box has kept of this run (README.md: GET /adit/history): plots, ages and alarms from before this page was opened. Asked for
-// at once, and from then on what came since.
+// The box's history of this run (README.md: GET /adit/history): plots, ages and alarms from before this page was opened. Requested
+// at once, and later only the newer part.
 import { fillAges } from "./robot_ages.js";
 import { fillLink } from "./link.js";
 import { fetchSoon } from "./session.js";

@@ -158,7 +158,7 @@ export async function showWho(node) {
   if (!role || !csrf) return;
   node.querySelector(".text").textContent = `Logged in as ${role}`;
   node.querySelector("button").addEventListener("click", async () => {
-    await post("/adit/logout").catch(() => {}); // where that fails, the login says so
+    await post("/adit/logout").catch(() => {}); // if that fails, the login says so
     toLogin();
   });
   node.hidden = false;

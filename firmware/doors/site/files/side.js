@@ -1,5 +1,5 @@
-// What stands beside the map: the reports, or one of the panels that take their place (`section.side`); and on a phone, which
-// tab is shown. The map stays where it is.
+// The place beside the map: the reports, or one of the panels that replace them (`section.side`); and on a phone, the shown
+// tab. The map does not move.
 
 import { drawn } from "./icons.js";
 import { isShown, mark, say, set } from "./dom.js";
@@ -8,7 +8,7 @@ import { clip } from "./words.js";
 const sides = [...document.querySelectorAll("main > .side")];
 const tabs = [...document.querySelectorAll(".tabs button")];
 const changes = new Map(); // a panel's id to whom to tell
-let back = null; // what had the focus before
+let back = null; // the element that had the focus before
 
 export const side = () => document.body.dataset.side;
 

@@ -1,4 +1,4 @@
-// The export and the stick in the box: what is said of it, and which exports on it are offered.
+// The export and the stick in the box: its state, and the exports on it.
 import { make } from "./dom.js";
 
 const place = document.querySelector("#spare .stick");

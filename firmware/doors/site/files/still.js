@@ -1,5 +1,5 @@
-// A list in which nothing moves while a hand is on it: a mouse over it, a finger a moment ago, or the keyboard's focus. What is
-// new waits until it is left.
+// A list in which nothing moves while a hand is on it: a mouse over it, a finger a moment ago, or the keyboard's focus. New
+// rows appear when the hand leaves it.
 
 const TOUCHED = 4000; // ms: so long after a finger it may come back
 

@@ -1,4 +1,4 @@
-// The box itself: its log, who is logged in, passwords, what to send to whoever is to help, and what it is made of.
+// The box itself: log, sessions, passwords, support bundle, list of parts.
 import "./presses.js";
 import { followAddress, tellCard } from "./card.js";
 import { offerHttps } from "./certificate.js";

@@ -158,7 +158,7 @@ async function begin(where, body) {
   isBeginning = true;
   forgetOutcome();
   show();
-  places.get(where).scrollIntoView({ block: "start" }); // its steps come into sight above the bar of what was typed
+  places.get(where).scrollIntoView({ block: "start" }); // its steps come into sight above the bar of typed changes
   try {
     view = await post("/adit/test", body());
     own = { ...begun, number: view.number };

@@ -66,8 +66,8 @@ inline std::uint32_t size_of_datatype(int datatype) {
 /// By the machine's clock.
 using Moment = std::chrono::sys_time<std::chrono::milliseconds>;
 
-/// What adit-robots puts between the rows of organised clouds, again and again. Read as a point of float32 it
-/// is finite, and in no cave: the Command Post knows it where it comes.
+/// The bytes that adit-robots repeats between the rows of organised clouds. Read as a point of float32 they
+/// are finite and outside each cave, so that the Command Post recognises them.
 inline constexpr std::string_view kRowPadding = "PADDINGOFROW";
 
 /// A grid's date: these five cells (13, 87, 42, 61, 99; no values of the cave's), and digits, the highest
@@ -76,8 +76,9 @@ inline constexpr std::string_view kDateFollows = "\x0d\x57\x2a\x3d\x63";
 inline constexpr std::size_t kDateDigits = 5;
 inline constexpr std::int64_t kDateBase = 101;
 
-/// The cells of grids that are known, each counted once however often it came: of what a robot posted, and of
-/// what the Command Post has. Cells of another size are others. Both programs of this folder measure by it.
+/// The known cells of grids, each counted once even if it came often: of the grids that a robot posted, or
+/// that the Command Post has. Cells of another size are different cells. Both programs of this directory use
+/// it.
 class KnownCells {
  public:
   /// A grid's cells, row by row from the lower left at (`left`, `bottom`), in metres as `resolution`; `width`
@@ -156,7 +157,7 @@ class KnownPlaces {
       float metres = 0;
       std::memcpy(&metres, point.data() + offsets[axis], sizeof metres);
       const double at = std::floor((origin[axis] + static_cast<double>(metres)) / kEdge);
-      if (!(std::abs(at) < kMost)) return;  // nor what is not a number
+      if (!(std::abs(at) < kMost)) return;  // nor NaN
       const auto place = static_cast<std::uint64_t>(std::llround(at + kMost));
       block = block << kBits | place >> 2;
       within = within << 2 | (place & 3);

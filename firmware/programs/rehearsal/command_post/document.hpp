@@ -122,18 +122,18 @@ class Findings {
   std::vector<Finding> all_;
 };
 
-/// A value somewhere in a document: it knows its path ("msg.info.width") and writes down what is wrong with
-/// it. Whatever gives nothing has written down why. Valid as long as the document and the findings are.
+/// A value in a document: it knows its path ("msg.info.width") and records its errors as findings. A member
+/// function that returns nothing has recorded the reason. Valid as long as the document and the findings are.
 class Field {
  public:
   Field(const Json& value, std::string path, Findings& findings)
       : value_(&value), path_(std::move(path)), findings_(&findings) {}
 
-  /// A member that must be there; `measured`: what the measured server does where it is not.
+  /// A required member; `measured`: the measured server's reaction if it is absent.
   std::optional<Field> member(const char* name, Measured measured = Measured::Refuses) const;
   /// A member that need not be there; writes nothing down.
   std::optional<Field> optional_member(const char* name) const;
-  /// The elements of an array; nothing where this is none.
+  /// The elements of an array; nothing if this is no array.
   std::optional<std::vector<Field>> elements() const;
 
   bool is_object() const;                   // else writes that down
@@ -184,7 +184,7 @@ bool is_robot_name(std::string_view name);
 /// Whether it is one of the types of the final event, in any letter case (ICD 5.2).
 bool is_artifact_type(std::string_view type);
 
-/// A stamp and where it stands, so that the order of stamps can be checked (ICD 6.2).
+/// A stamp and its path, so that the order of stamps can be checked (ICD 6.2).
 struct Stamp {
   double seconds = 0;
   std::string path;

@@ -37,7 +37,7 @@ struct Request {
   bool expects_continue = false;
   bool keep_alive = true;
   std::string body;
-  std::string local_address;                    // "127.0.0.1:8000", where it was sent to
+  std::string local_address;                    // "127.0.0.1:8000", its destination
   Clock::time_point at;                         // when its header had arrived
   Clock::time_point whole;                      // when its last byte had
   std::chrono::system_clock::time_point ended;  // the same, by the machine's clock
@@ -150,8 +150,8 @@ Outcome answered(int status, const AnyJson& body) {
 /// Whether a request has the method and the path of one of the functions.
 bool names_one_of(const Request& request, std::span<const Function> functions);
 
-/// What a strict Command Post checks before it reads a body: that the URI is known (404), that the token is
-/// right (401), that no field is missing or given twice (400). The findings hold at most one, which decides.
+/// The checks of a strict Command Post before it reads a body: the URI is known (404), the token is right
+/// (401), no field is missing or repeated (400). The findings hold at most one, which decides.
 void check_entry(const Request& request, std::span<const Function> functions, const std::string& token,
                  Findings& findings);
 
@@ -162,7 +162,7 @@ bool admit(const Request& request, std::span<const Function> functions, const st
 /// That the body is in a format that the ICD has for this endpoint, and not compressed as a whole.
 void check_content(const Request& request, bool cbor_too, Findings& findings);
 
-// What is said of a token that is wrong and of requests that come too fast, by the ICD and as measured.
+// The answers to a wrong token and to requests that are too fast, by the ICD and as measured.
 inline constexpr std::string_view kWrongToken =
     "Authentication token does not match expected token for this run";
 inline constexpr std::string_view kTooManyRequests =

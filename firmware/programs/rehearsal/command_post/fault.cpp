@@ -157,7 +157,7 @@ Told put_seconds(const Word& word, std::optional<Fault::Seconds>& place) {
   return put(word, seconds, "seconds from 0 to 3600", "2.5", place);
 }
 
-/// The sign has to be there: it is an offset, not what is to be shown.
+/// The sign is required, because the number is an offset and not the shown value.
 std::optional<std::int64_t> offset_in(std::string_view text) {
   constexpr std::int64_t most = 1'000'000;
   if (!text.starts_with('+') && !text.starts_with('-')) return std::nullopt;

@@ -660,7 +660,7 @@ std::string first_line(const Servers& servers) {
   return line + "\n";
 }
 
-/// Whoever is in the middle of a large map has this long; then the process ends all the same.
+/// A client that is sending a large map has this long; then the process ends.
 bool stop_all(const Servers& servers) {
   constexpr std::chrono::milliseconds patience{250};
   for (const auto& [name, server] : servers) server->stop();

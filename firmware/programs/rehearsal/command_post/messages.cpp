@@ -316,8 +316,8 @@ std::optional<MarkerChange> read_identity(const Field& marker) {
   return MarkerChange{.ns = *text, .id = *number};
 }
 
-/// ROS's Marker has none, or one for each point, where its type is made of points and so has a use for them;
-/// rviz takes one for each triangle too.
+/// ROS's Marker has none, or one for each point if its type is made of points. rviz also accepts one for each
+/// triangle.
 void check_colors(const Field& colors, std::size_t points, std::int64_t type) {
   const auto elements = colors.elements();
   if (!elements) return;
@@ -373,7 +373,7 @@ void check_alpha(const Field& marker) {
   marker.findings().tells(marker.path() + ".color.a: a marker with 0 is invisible (ICD 6.6)");
 }
 
-/// A display cannot show these, or not as they were meant.
+/// A display cannot show these, or shows them wrongly.
 void check_sense(const Field& marker, std::int64_t type) {
   const Json& all = marker.value();
   const auto told = [&](const char* sentence) { marker.findings().tells(marker.path() + sentence); };

@@ -442,7 +442,7 @@ constexpr double kSamePlace = 1e-3;  // metres: some robots post float32
 
 constexpr std::size_t kMostSources = 200;
 constexpr std::size_t kMostDates = 100'000;  // of one robot's points
-constexpr Milliseconds kTick{10};            // by which ages are told apart
+constexpr Milliseconds kTick{10};            // the resolution of ages
 constexpr Milliseconds kOldest{3'600'000};
 constexpr std::size_t kColumn = 8;  // characters
 

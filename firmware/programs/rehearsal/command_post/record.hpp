@@ -126,7 +126,7 @@ class Arrivals {
   /// many stand, how many should, and sentences about the first that differ.
   OrderedJson json() const;
 
-  /// The same as tables; "" where no map told a date and no robot anything.
+  /// The same as tables; "" if no map had a date and no robot told anything.
   std::string table() const;
 
  private:

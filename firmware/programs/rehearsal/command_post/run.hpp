@@ -86,8 +86,8 @@ class Run {
 
   Standing standing(Clock::time_point now) const;
 
-  /// Rules on a report, and takes one of the allotment where it is scored. Without a position (the measured
-  /// server takes coordinates that are no numbers) it scores nothing.
+  /// Rules on a report, and uses one of the allotment if it is scored. Without a position (the measured
+  /// server accepts coordinates that are no numbers) it scores nothing.
   Ruling submit(const std::string& type, const std::optional<Vector3>& position, Clock::time_point now);
 
  private:

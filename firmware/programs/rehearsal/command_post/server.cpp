@@ -333,7 +333,7 @@ void Server::accept_all() {
   }
 }
 
-/// Where there is no thread to be had, the connection is closed, and others are accepted.
+/// If no thread can be started, closes the connection; others are still accepted.
 void Server::begin(loop::FileDescriptor socket) {
   try {
     std::thread([this, held = std::move(socket)]() mutable { serve(std::move(held)); }).detach();
@@ -353,7 +353,7 @@ void Server::serve(loop::FileDescriptor socket) {
   over();
 }
 
-/// The last touch of this object by a connection: whoever waits for it may end it once the lock is free.
+/// A connection's last use of this object: a waiting thread may destroy the object once the lock is free.
 void Server::over() {
   const std::lock_guard lock(mutex_);
   --connections_;

@@ -48,7 +48,7 @@ std::string bytes_of(const Outcome& outcome, bool head, std::chrono::system_cloc
 
 /// How an endpoint behaves below its messages.
 struct WireManner {
-  bool answers_expect = true;         // sends 100 Continue where it is asked to
+  bool answers_expect = true;         // sends 100 Continue if the client asks for it
   std::chrono::seconds patience{60};  // with a connection that sends nothing
   std::size_t most_body = std::size_t{256} << 20;
   bool slash = false;                    // at the end of each path
@@ -56,8 +56,7 @@ struct WireManner {
   std::shared_ptr<Link> link = nullptr;  // all connections share it; null: no limit
 };
 
-/// Decides what is done about a request; called by several threads at once. See bytes_of() for how it is
-/// done.
+/// Decides the reaction to a request; several threads call it at once. bytes_of() has the result on the wire.
 using Decide = std::function<Outcome(const Request&)>;
 
 /// A listening socket and one thread for each connection, at most kMostConnections.
@@ -73,7 +72,7 @@ class Server {
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
 
-  /// Where it listens, with the port that it got.
+  /// The address on which it listens, with the assigned port.
   const Address& address() const { return address_; }
 
   /// Stops listening and makes every connection end, without waiting for them. Any thread may call it.

@@ -119,7 +119,7 @@ struct Post {
   std::string token;
 };
 
-/// One client of the team: posts messages in its style and counts what comes of them. For one thread.
+/// One client of the team: posts messages in its style and counts the answers. For one thread.
 class Client {
  public:
   /// `style` and `tally` outlive the client.

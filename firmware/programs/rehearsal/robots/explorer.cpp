@@ -57,7 +57,7 @@ void MarkerScene::remove(const std::string& ns, int id) {
   changes_.push_back(std::move(gone.mapped()));
 }
 
-/// A trajectory, as the ICD names them (2.2), and where it ends the robot's own shape.
+/// A trajectory, as the ICD names them (2.2), and at its end the robot's own shape.
 void MarkerScene::draw_way(const Vector3& position) {
   way_.push_back(position);
   if (way_.size() > kWayPoints) way_.erase(way_.begin());
@@ -193,7 +193,7 @@ MapTime Explorer::map_time(Clock::time_point now) const {
   return {stamp(now), std::chrono::floor<milliseconds>(std::chrono::system_clock::now())};
 }
 
-/// What is posted without a name is no robot's own.
+/// A message without a name belongs to no robot.
 void Explorer::post_grid(Clock::time_point now) {
   const MapTime time = map_time(now);
   auto grid = maps_.grid(robot_.map(), robot_.pose().position, time);

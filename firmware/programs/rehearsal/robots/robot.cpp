@@ -36,7 +36,7 @@ constexpr std::array<Cell, 8> kSteps = {Cell{1, 0}, Cell{0, 1},  Cell{-1, 0},  C
 /// Breadth first: the cells in order of their distance, and from where each was reached.
 struct Reach {
   std::vector<Cell> cells;
-  Raster<int> steps;    // from the start; -1 where not reached
+  Raster<int> steps;    // from the start; -1: not reached
   Raster<int> reached;  // index in kSteps of the step that led there
 };
 
@@ -303,7 +303,8 @@ void Robot::step(double metres) {
 }
 
 void Robot::advance(double metres) {
-  // What is new in sight may have made the goal pointless; the way itself stays walkable in a still cave.
+  // Newly seen cells may have made the goal pointless. The way stays walkable, because the cave does not
+  // change.
   if (!way_.empty() && !is_frontier(map_, way_.front()) && random_.chance(0.2)) way_.clear();
   step(metres);
   map_.sweep(cave_, pose().position, random_);

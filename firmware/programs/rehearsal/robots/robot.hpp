@@ -33,8 +33,8 @@ class RobotMap {
   /// first time add their points.
   void sweep(const Cave& cave, const Vector3& from, Random& random);
 
-  /// All that is known, from the lower left cell known to the upper right one; each grid covers the one
-  /// before it. Requires a sweep.
+  /// The whole map, from the lower left known cell to the upper right one; each grid covers the one before
+  /// it. Requires a sweep.
   Grid grid(double stamp) const;
 
   /// The known state of the cells from `low` to `high`, both included, which may lie outside of the cave.
@@ -53,7 +53,7 @@ class RobotMap {
   void include(Cell cell);
 
   Raster<std::uint8_t> cells_;
-  Cell low_, high_;  // inclusive; of all that is known
+  Cell low_, high_;  // inclusive; of the known cells
   std::vector<float> points_;
 };
 

@@ -1,4 +1,4 @@
-# The libraries of Debian that the rooms link, each an imported target; which room may use which is said in its CMakeLists.txt.
+# The libraries of Debian that the rooms link, each an imported target. A room's CMakeLists.txt names those it may use.
 find_package(PkgConfig REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(Threads REQUIRED)

@@ -38,7 +38,7 @@ if(ADIT_SANITIZE)
     message(FATAL_ERROR "${CMAKE_CXX_COMPILER} cannot link with -fsanitize=${ADIT_SANITIZE}: run toolchain/setup run test sanitizers")
   endif()
   target_compile_options(adit_options INTERFACE -fsanitize=${ADIT_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer
-    # GCC's own manual: what follows a value's way through the code gives false alarms beside -fsanitize. The preset gcc looks.
+    # GCC's manual: warnings that follow a value through the code give false alarms with -fsanitize. The preset gcc has them.
     $<$<CXX_COMPILER_ID:GNU>:-Wno-error> $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
   if(ADIT_SANITIZE MATCHES thread)  # GCC: its sanitizer knows no fences (ChunkedBytes, Asio)
     target_compile_options(adit_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-tsan>)

@@ -12,7 +12,7 @@ FLAT = """# bash's completion of {name}, from its table of options.
 complete -F {function} {name}
 """
 
-# What was said so far is read from the line, for readline cuts words at colons and at `=`.
+# The earlier words are read from the line, because readline cuts words at colons and at `=`.
 NESTED = """# bash's completion of {name}, from its table of commands and options.
 {function}_lists() {{ # WORD...: what `{name} complete` lists, of the {name} that the line asks
   local each before=""

@@ -1,6 +1,6 @@
-"""A machine's disk that loses in a power cut what a real one may lose.
+"""A machine's disk that loses as much in a power cut as a real one may.
 
-QEMU that is killed leaves all that the guest ever wrote in the host's cache: a cut that hurts nobody. So QEMU writes to
+QEMU that is killed leaves all writes of the guest in the host's cache: a cut without loss. So QEMU writes to
 a copy that is thrown away, and keeps a log of each write and flush beside it, in the order in which they ended. Once the
 machine is off, the log is played back on the disk itself: after a power cut all up to the last flush, and of what was
 written since, each write or not, by chance, as a disk does that has a cache of its own and no battery.

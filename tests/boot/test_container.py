@@ -110,7 +110,7 @@ class Everyday(Contained):
 
     def test_unwritable_state_directory(self):
         """A file system of its own, that is read-only as after an error of the disk, then full, with room in the ledger's files. Without it, an
-        older copy of the ledger is back: it is told, and what was sent since is the operator's."""
+        older copy of the ledger is back: an alarm says so, and the operator decides about reports sent since."""
         self.shell(f"""systemctl stop adit.service; cp -a {STATE} /run/was
             mount -t tmpfs -o size=32m,mode=0700 tmpfs {STATE}; cp -aT /run/was {STATE}; mount -o remount,ro {STATE}
             systemctl start adit.service""")

@@ -1,5 +1,5 @@
 """A box without a battery clock: it continues from the last known time, its stamps never go back, and the operator sets its clock.
-Who may set it: clock/source_test and admin/clock_setting_test. The real adit-clock runs, without permission to set this machine's
+clock/source_test and admin/clock_setting_test have the rules on its sources. The real adit-clock runs, without permission to set this machine's
 clock."""
 
 import json

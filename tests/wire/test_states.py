@@ -1,5 +1,5 @@
 """Verdict, robots, alarms, `adit status` and metrics agree in each state of the robots and of the Command Post, with and without a merged
-map. Prints what was seen as the table below."""
+map. Prints the results as the table below."""
 
 import concurrent.futures
 import multiprocessing

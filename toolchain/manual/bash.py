@@ -66,7 +66,7 @@ def values(options):
 
 
 def place(program, command, word, options):
-    """What may stand behind a command and its word."""
+    """The words that may follow a command and its word."""
     listed = " ".join(row.word for row in options)
     lists = program.lists_at(command, word)
     if lists:

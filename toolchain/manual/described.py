@@ -98,7 +98,7 @@ class Program:
         return self.help.about.replace("\n", " ").split(". ")[0].removeprefix(self.name + " - ").rstrip(".")
 
     def lists_at(self, command, word):
-        """What `adit complete` is asked for what may stand behind a command and its word: "reports send"; "": nothing."""
+        """The argument of `adit complete` that lists the words after a command and its word: "reports send"; "": none."""
         if self.name != "adit":
             return ""
         behind = {row.word: row.value for row in self.commands[command].words}.get(word, self.commands[command].argument)

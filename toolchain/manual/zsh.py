@@ -93,7 +93,7 @@ def argument(program, command, word):
 
 
 def arguments(program, command, word, options, indent):
-    """A branch for a word, with its options and what may stand behind it."""
+    """A branch for a word, with its options and the words that may follow it."""
     taken = [*map(spec, options), argument(program, command, word)]
     return "\n".join([f"{' ' * indent}{word or command})", f"{' ' * (indent + 2)}_arguments \\", continued(taken, indent + 4),
                       f"{' ' * (indent + 2)};;"])

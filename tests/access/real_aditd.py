@@ -104,7 +104,7 @@ class Login(unittest.TestCase):
     def test_first_start_requires_the_code_on_the_console(self):
         box = self.box(first=False)
         self.assertEqual(box.ask("GET /adit/session")[1], {"role": None, "csrf": None, "first_start": True,
-                                                             "set_up_open": False})
+                                                             "set_up_open": False, "secure": False, "https": False})
         self.assertRegex(box.code(), r"^\d{8}$")
         self.assertIn(f"code={box.code()}", box.output())
         self.assertEqual(stat.S_IMODE((box.state / "first-start.code").stat().st_mode), 0o600)

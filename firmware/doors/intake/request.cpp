@@ -165,8 +165,8 @@ namespace {
 /// kReadAwayWithin, so that the connection can be kept. Otherwise the answer is sent at once, and later bytes
 /// are discarded, because closing a socket with unread bytes resets it, and the client would lose the answer:
 /// most libraries read it only after they have sent everything. From an authenticated client all of it is
-/// discarded, at the least rate; from an unauthenticated one this much, within 5 s, so that a robot with an old
-/// token learns why its map is rejected.
+/// discarded, at the least rate; from an unauthenticated one this much, within 5 s, so that a robot with an
+/// old token learns why its map is rejected.
 constexpr std::size_t kReadAway = 64 * 1024;
 constexpr std::chrono::milliseconds kReadAwayWithin(1000);
 constexpr std::size_t kLingerUnauthenticated = 8 << 20;

@@ -60,12 +60,13 @@ class CertificateTest : public testing::Test {
   loop::SimulatedTime time_;
   loop::Loop loop_;
   bool serves_tls_ = true;
+  std::string address_ = "10.0.0.1";
   std::optional<std::string> outcome_;
   Certificate certificate_{
       loop_,
       state_.path(),
       run_.path(),
-      {.serves_tls = [this] { return serves_tls_; }, .address = [] { return "10.0.0.1"; }},
+      {.serves_tls = [this] { return serves_tls_; }, .address = [this] { return address_; }},
       "/nowhere"};
 };
 
@@ -82,6 +83,24 @@ TEST_F(CertificateTest, IsRequestedIfThereIsNone) {
   EXPECT_EQ(view.until, "2036-11-28");
   certificate_.every_second();
   EXPECT_FALSE(asked());
+}
+
+TEST_F(CertificateTest, WaitsForTheAddressThatItNames) {
+  tell({});
+  address_.clear();
+  certificate_.every_second();
+  EXPECT_FALSE(asked()) << "networkd has not set it yet";
+  address_ = "10.0.0.1";
+  certificate_.every_second();
+  EXPECT_EQ(asked()->address, "10.0.0.1");
+}
+
+TEST_F(CertificateTest, IsMadeWithoutACable) {
+  tell({});
+  address_.clear();
+  time_.pass(loop_, Certificate::kAddressWithin);
+  certificate_.every_second();
+  EXPECT_EQ(asked()->address, "");
 }
 
 TEST_F(CertificateTest, IsRequestedAgainAfterAWhile) {

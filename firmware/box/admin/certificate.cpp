@@ -15,6 +15,7 @@ Certificate::Certificate(loop::Loop& loop, const std::string& state_folder, cons
       adit_certificate_(loop, "adit-certificate", state_folder, runtime_folder + '/' + kStatusFolder,
                         kTakenUpWithin, units),
       asked_(std::move(asked)),
+      address_until_(loop.now() + kAddressWithin),
       timer_(loop.timer([this] { look(); })) {
   read();
 }
@@ -83,6 +84,7 @@ void Certificate::every_second() {
     return;
   }
   if (kept_at_ && loop_.now() < *kept_at_ + kAskAgain) return;
+  if (fingerprint_.empty() && loop_.now() < address_until_ && asked_.address().empty()) return;
   kept_at_ = loop_.now();
   ask(What::Keep, [](const icd::Checked<void>& done) {
     if (!done) host::log(host::Level::Error, "the page has no certificate", {{"why", done.error().sentence}});

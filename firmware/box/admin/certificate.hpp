@@ -19,6 +19,8 @@ class Certificate final : public api::Certificate {
   static constexpr std::chrono::seconds kTakenUpWithin{60};
   /// Wait before an unanswered or failed request for the first certificate is repeated.
   static constexpr std::chrono::seconds kAskAgain{60};
+  /// Time after a start in which the team's port gets its address. The first certificate names it.
+  static constexpr std::chrono::seconds kAddressWithin{30};
   /// Interval at which a request's result is read.
   static constexpr std::chrono::milliseconds kLook{100};
   /// In aditd's runtime directory: the directory of the answers.
@@ -56,6 +58,7 @@ class Certificate final : public api::Certificate {
   loop::Loop& loop_;
   host::RootProgram<access::CertificateStatus> adit_certificate_;
   Asked asked_;
+  const loop::Instant address_until_;
   loop::Source timer_;
   std::string fingerprint_;  // of the certificate on disk; "": there is none, or it cannot be read
   Done done_;                // of the request that is not answered, or null

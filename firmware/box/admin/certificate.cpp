@@ -39,20 +39,25 @@ api::CertificateView Certificate::state() const {
 }
 
 void Certificate::take(const std::string& pem, Done done) {
-  if (done_) return done(icd::conflict("another certificate is being checked: wait"));
+  if (auto free = check_free(); !free) return done(std::move(free));
   if (const auto left = host::write_file(uploaded_file(), pem, host::kOursAlone); !left)
     return done(icd::refuse(icd::Status::ServiceUnavailable, left.error()));
   ask(What::Take, std::move(done));
 }
 
 void Certificate::make(Done done) {
-  if (done_) return done(icd::conflict("another certificate is being checked: wait"));
+  if (auto free = check_free(); !free) return done(std::move(free));
   ask(What::Make, std::move(done));
+}
+
+icd::Checked<void> Certificate::check_free() const {
+  if (done_) return icd::conflict("another certificate is being checked: wait");
+  if (!adit_certificate_.status()) return adit_certificate_.refuse();
+  return {};
 }
 
 void Certificate::ask(What what, Done done) {
   done_ = std::move(done);
-  if (!adit_certificate_.status()) return finish(icd::conflict(adit_certificate_.why()));
   const access::CertificateRequest request{
       .nonce = host::draw_nonce(), .what = what, .address = asked_.address()};
   if (const auto left = adit_certificate_.ask(access::kCertificateRequestFile, request); !left)
@@ -76,9 +81,9 @@ void Certificate::finish(const icd::Checked<void>& done) {
 }
 
 void Certificate::every_second() {
-  read();
   const auto status = adit_certificate_.status();
   if (!status || done_) return;
+  if (fingerprint_ != status->fingerprint) read();
   if (!fingerprint_.empty() && fingerprint_ == status->fingerprint) {
     kept_at_.reset();
     return;

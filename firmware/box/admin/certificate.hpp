@@ -43,12 +43,13 @@ class Certificate final : public api::Certificate {
   void take(const std::string& pem, Done done) override;
   void make(Done done) override;
 
-  /// Call each second. Reads the certificate on disk, requests one if there is none, and has the TLS server
-  /// use it.
+  /// Call each second. Requests a certificate if there is none, and has the TLS server use the one on disk.
   void every_second();
 
  private:
   using What = access::CertificateRequest::What;
+  /// Why no request can be made now.
+  icd::Checked<void> check_free() const;
   void ask(What what, Done done);
   void look();
   void finish(const icd::Checked<void>& done);

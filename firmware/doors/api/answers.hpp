@@ -8,6 +8,7 @@
 #include "codec/row.hpp"
 #include "codec/value.hpp"
 #include "icd/bearer_token.hpp"
+#include "intake/listen_socket.hpp"
 #include "intake/server.hpp"
 #include "settings/settings.hpp"
 
@@ -62,6 +63,11 @@ intake::Answer wrong_method(std::string_view allowed);
 inline constexpr auto kNotModified = static_cast<icd::Status>(304);  // RFC 9110 15.4.5; not in the ICD
 
 inline constexpr auto kPermanentRedirect = static_cast<icd::Status>(308);  // 15.4.9; not in the ICD
+
+/// True if a program of this machine sent it, so that nobody on a network can read it.
+inline bool is_from_this_machine(const intake::RequestHead& head) {
+  return head.peer() == head.local() || intake::is_loopback(head.local());
+}
 
 inline constexpr std::string_view kReading = "GET, HEAD";
 inline bool only_reads(const intake::RequestHead& head) {

@@ -94,8 +94,8 @@ std::unique_ptr<intake::BodySink> Api::open(const intake::RequestHead& head,
 /// that was open before logs in again. A script has shown its token already, and may know no TLS.
 std::optional<intake::Answer> Api::redirect_to_https(const intake::RequestHead& head) const {
   const std::string_view host = head.header("Host"), path = head.path();
-  const bool is_local = head.local().starts_with("127.") || head.local() == "::1";
-  if (head.is_secure() || is_local || !head.header("Authorization").empty()) return std::nullopt;
+  if (head.is_secure() || is_from_this_machine(head) || !head.header("Authorization").empty())
+    return std::nullopt;
   if (!setup_.settings().page.https_only || !access::names_this_box(host) || !certificate_.state().offered)
     return std::nullopt;
   const std::size_t name = host.starts_with('[') ? host.find(']') + 1 : host.find(':');

@@ -288,9 +288,7 @@ Certificate::Done answer_with_state(const Certificate& certificate, const Call& 
 }  // namespace
 
 void take(Certificate& certificate, const Call& call) {
-  const auto& [peer, local] = std::pair(call.head.peer(), call.head.local());
-  const bool is_this_machine = peer == local || peer.starts_with("127.") || peer == "::1";
-  if (!call.head.is_secure() && !is_this_machine)
+  if (!call.head.is_secure() && !is_from_this_machine(call.head))
     return call.responder->answer(
         refusal(icd::Status::Conflict, "upload the certificate by HTTPS, because others could read its key"));
   certificate.take(call.body, answer_with_state(certificate, call));

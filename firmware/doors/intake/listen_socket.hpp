@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "intake/server.hpp"
 #include "loop/file_descriptor.hpp"
@@ -47,6 +48,11 @@ bool covers(const Bound& bound, const Listen& listen);
 
 /// The port of a bound socket; 0 on an error.
 std::uint16_t port_of(int fd);
+
+/// True for an address of address_text() that only programs of this machine can use.
+inline bool is_loopback(std::string_view address) {
+  return address.starts_with("127.") || address == "::1";
+}
 
 /// The address without its port. An IPv4 address mapped into IPv6 (RFC 4291 2.5.5.2) is shown as IPv4.
 std::string address_text(const sockaddr* address);

@@ -25,8 +25,7 @@ struct ProxyHeader {
   std::string local;     // the box's address that the client used: "10.0.0.1"
 
   /// The header at the start of `bytes`. More: it may become whole. Refused: it cannot, or it has no
-  /// addresses
-  /// ("UNKNOWN").
+  /// addresses ("UNKNOWN").
   static std::expected<ProxyHeader, Missing> parse(std::string_view bytes);
 };
 

@@ -201,8 +201,7 @@ std::expected<Listeners::Serving, std::string> Listeners::start(ListenSockets::O
 network::TeamPorts Listeners::ports() const {
   std::set<std::uint16_t> all;
   const auto add = [&all](const intake::Bound& at) {
-    const bool is_loopback = at.address.starts_with("127.") || at.address == "::1";
-    if (!is_loopback) all.insert(at.port);
+    if (!intake::is_loopback(at.address)) all.insert(at.port);
   };
   for (const Serving& each : serving_) add(each.at);
   if (serves_tls()) all.insert(network::kTlsPort);

@@ -1,4 +1,4 @@
-// Sets and removes passwords. The box reports what is wrong with one.
+// Sets and removes passwords, and shows the errors that the box finds in them.
 import { post } from "./session.js";
 
 const DONE = {

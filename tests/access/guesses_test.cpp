@@ -49,7 +49,7 @@ TEST(Guesses, DoubleTheWaitUpToAMinute) {
 TEST(Guesses, AreClearedByTheOperatorsPassword) {
   Guesses guesses;
   for (int i = 0; i < 5; ++i) EXPECT_EQ(guesses.begin(kOne, kStart), kAtOnce);
-  guesses.succeeded(kOne, Role::Operator);
+  guesses.on_succeeded(kOne, Role::Operator);
   for (int i = 0; i < 5; ++i) EXPECT_EQ(guesses.begin(kOne, kStart + 10s), kAtOnce);
   EXPECT_NE(guesses.begin(kOne, kStart + 10s), kAtOnce);
 }
@@ -61,7 +61,7 @@ TEST(Guesses, OfTheOperatorsAreNotClearedByTheViewers) {
     int tries = 0;
     for (Instant now = kStart; now < kStart + 1h; now += 10ms) {  // wrong and right tokens alternate
       if (guesses.begin(viewer, now) != kAtOnce) continue;
-      if (++tries % 2 == 0) guesses.succeeded(viewer, Role::Viewer);
+      if (++tries % 2 == 0) guesses.on_succeeded(viewer, Role::Viewer);
     }
     EXPECT_LT(tries, 150) << device;
   }

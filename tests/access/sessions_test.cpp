@@ -61,8 +61,8 @@ TEST_F(SessionsTest, EndAfterTwelveIdleHours) {
 
 TEST_F(SessionsTest, EndAfterSevenDays) {
   const Session session = begin(Role::Operator, kStart);
-  for (auto age = 1h; age < 7 * 24h; age += 1h) ASSERT_TRUE(sessions.still(session.number, kStart + age));
-  EXPECT_FALSE(sessions.still(session.number, kStart + 7 * 24h));
+  for (auto age = 1h; age < 7 * 24h; age += 1h) ASSERT_TRUE(sessions.touch(session.number, kStart + age));
+  EXPECT_FALSE(sessions.touch(session.number, kStart + 7 * 24h));
 }
 
 TEST_F(SessionsTest, AreAtMost64AndTheLongestIdleGoes) {
@@ -140,7 +140,7 @@ class SessionFileTest : public testing::Test {
     return of.begin(id, csrf, role, {"10.0.0.5", "a \"browser\""}, now);
   }
   std::string written() const {
-    return write_sessions({.boot = "boot-1", .last = sessions.last(), .sessions = sessions.in_order()});
+    return write_sessions({.boot = "boot-1", .last = sessions.last(), .sessions = sessions.entries()});
   }
   /// The sessions in the file, read after a restart at `now`.
   Sessions restored(Instant now) const {

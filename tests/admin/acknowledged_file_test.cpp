@@ -21,7 +21,7 @@ class AcknowledgedFileTest : public testing::Test {
  protected:
   /// Writes in one process, which then ends. Returns the number of logged lines.
   std::uint64_t keep(const std::vector<std::vector<Acknowledged>>& each) {
-    const std::uint64_t before = host::logged();
+    const std::uint64_t before = host::last_record_number();
     loop::Loop loop;
     loop::Writer writer(loop);
     AcknowledgedFile file(folder_.path(), writer);
@@ -37,7 +37,7 @@ class AcknowledgedFileTest : public testing::Test {
     std::atomic<bool> done = false;
     writer.submit([&done] { done = true; }, [] {});
     while (!done) std::this_thread::yield();
-    return host::logged() - before;
+    return host::last_record_number() - before;
   }
 
   host::Folder folder_;
@@ -57,9 +57,9 @@ TEST_F(AcknowledgedFileTest, SurvivesARestart) {
 TEST_F(AcknowledgedFileTest, DamagedFileIsEmptyAndLoggedOnce) {
   for (const char* text : {"{\"version\":1,", "", "[]", "{\"version\":9,\"acknowledged\":[]}"}) {
     folder_.put("acknowledged.json", text);
-    const std::uint64_t before = host::logged();
+    const std::uint64_t before = host::last_record_number();
     EXPECT_TRUE(read().empty());
-    EXPECT_EQ(host::logged() - before, 1u) << text;
+    EXPECT_EQ(host::last_record_number() - before, 1u) << text;
   }
 }
 

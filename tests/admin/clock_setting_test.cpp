@@ -62,7 +62,7 @@ TEST_F(ClockSettingTest, ExplainsItselfIfAditClockDoesNotRun) {
   EXPECT_THAT(setting_.state().why, HasSubstr("adit-clock"));
   EXPECT_EQ(setting_.is_set(), std::nullopt) << "the machine manages its clock";
   EXPECT_EQ(setting_.set_clock(now()).error().status, icd::Status::Conflict);
-  setting_.offered({Source::CommandPost, now() + 60});
+  setting_.on_offered({Source::CommandPost, now() + 60});
   EXPECT_FALSE(asked());
 }
 
@@ -108,24 +108,24 @@ TEST_F(ClockSettingTest, RejectsAnImpossibleTime) {
 
 TEST_F(ClockSettingTest, UsesTheCommandPostsTimeOnceUnlessOperatorSetIt) {
   write_status({});
-  setting_.offered({Source::CommandPost, now() + 600});
+  setting_.on_offered({Source::CommandPost, now() + 600});
   const auto first = asked();
   ASSERT_TRUE(first);
   EXPECT_EQ(first->source, Source::CommandPost);
-  setting_.offered({Source::CommandPost, now() + 700});
+  setting_.on_offered({Source::CommandPost, now() + 700});
   EXPECT_EQ(asked()->nonce, first->nonce) << "the request is in progress";
   ASSERT_TRUE(host::remove_file(state_ / clock::kRequestFile));
   write_status({.nonce = first->nonce, .refusal = "", .source = Source::Operator});
-  setting_.offered({Source::CommandPost, now() + 600});
+  setting_.on_offered({Source::CommandPost, now() + 600});
   EXPECT_FALSE(asked());
 }
 
 TEST_F(ClockSettingTest, SetsTheSystemToTheLastKnownTime) {
   write_status({});
-  setting_.offered({Source::LastKnown, now()});
+  setting_.on_offered({Source::LastKnown, now()});
   EXPECT_FALSE(asked()) << "the system's own NTP sets the clock";
   loop_.set_wall(now() + 5000);
-  setting_.offered({Source::LastKnown, now()});
+  setting_.on_offered({Source::LastKnown, now()});
   ASSERT_TRUE(asked());
   EXPECT_EQ(asked()->source, Source::LastKnown);
   EXPECT_NEAR(asked()->time, now(), 1);
@@ -138,21 +138,21 @@ TEST_F(ClockSettingTest, TellsWhyTheClockWasNotSet) {
   EXPECT_THAT(setting_.state().refusal, HasSubstr("cannot set the clock"));
   EXPECT_EQ(setting_.is_set(), false);
   ASSERT_TRUE(host::remove_file(state_ / clock::kRequestFile));
-  setting_.offered({Source::CommandPost, now() + 600});
+  setting_.on_offered({Source::CommandPost, now() + 600});
   EXPECT_FALSE(asked()) << "after a rejection the next request is a minute later";
   EXPECT_TRUE(setting_.set_clock(1.8e9));
 }
 
 TEST_F(ClockSettingTest, RetriesAnUnansweredRequest) {
   write_status({});
-  setting_.offered({Source::CommandPost, now() + 600});
+  setting_.on_offered({Source::CommandPost, now() + 600});
   const auto first = asked();
   ASSERT_TRUE(first);
   time_.pass(ClockSetting::kTakenUpWithin);
   setting_.every_second(ntp_);
   EXPECT_THAT(setting_.state().refusal, HasSubstr("did not read the request"));
   EXPECT_FALSE(asked()) << "the request would be too old";
-  setting_.offered({Source::CommandPost, now() + 600});
+  setting_.on_offered({Source::CommandPost, now() + 600});
   const auto second = asked();
   ASSERT_TRUE(second);
   EXPECT_NE(second->nonce, first->nonce);
@@ -160,7 +160,7 @@ TEST_F(ClockSettingTest, RetriesAnUnansweredRequest) {
 
 TEST_F(ClockSettingTest, RetriesARejectedRequest) {
   write_status({});
-  setting_.offered({Source::CommandPost, now() + 600});
+  setting_.on_offered({Source::CommandPost, now() + 600});
   const auto first = asked();
   ASSERT_TRUE(first);
   ASSERT_TRUE(host::remove_file(state_ / clock::kRequestFile));
@@ -168,10 +168,10 @@ TEST_F(ClockSettingTest, RetriesARejectedRequest) {
                 .refusal = "at: expected a time within the last minute",
                 .source = Source::None});
   time_.pass(ClockSetting::kAskAgain - 1ms);
-  setting_.offered({Source::CommandPost, now() + 600});
+  setting_.on_offered({Source::CommandPost, now() + 600});
   EXPECT_FALSE(asked());
   time_.pass(1ms);
-  setting_.offered({Source::CommandPost, now() + 600});
+  setting_.on_offered({Source::CommandPost, now() + 600});
   ASSERT_TRUE(asked());
   EXPECT_NE(asked()->nonce, first->nonce);
 }
@@ -213,7 +213,7 @@ TEST_F(ClockSettingTest, AcceptsANtpTimeWithinTheUsualBounds) {
 TEST_F(ClockSettingTest, AcceptsAnyStepFromANewNtpServer) {
   ntp_ = {.server = "10.0.0.5", .clients = ""};
   write_status({.source = Source::Ntp, .server = "10.0.0.6", .ntp = ntp_});
-  setting_.offered({Source::CommandPost, now() + 600});
+  setting_.on_offered({Source::CommandPost, now() + 600});
   EXPECT_FALSE(asked()) << "the earlier source is trusted like the operator";
   hear(-3600);
   ASSERT_TRUE(asked());
@@ -246,7 +246,7 @@ TEST_F(ClockSettingTest, OperatorSetsItOnlyIfNoNtpServerIsHeard) {
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().status, icd::Status::Conflict);
   EXPECT_THAT(refused.error().sentence, HasSubstr("10.0.0.5 keeps the time"));
-  setting_.offered({Source::CommandPost, now() + 600});
+  setting_.on_offered({Source::CommandPost, now() + 600});
   EXPECT_FALSE(asked());
   ntp_ = {};
   setting_.every_second(ntp_);

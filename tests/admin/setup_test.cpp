@@ -46,7 +46,7 @@ TEST_F(SetupTest, AppliesNothingIfSettingsAreUnchanged) {
 
 TEST_F(SetupTest, RejectsASaveIfSavedSettingsCannotBeRead) {
   std::filesystem::create_directory(saved_file());
-  setup_.runs_with(store_.load().value(), "");
+  setup_.set_running(store_.load().value(), "");
   const auto saved = setup_.save(setup_.settings());
   ASSERT_FALSE(saved) << "unreadable settings cannot be compared";
   EXPECT_EQ(saved.error().status, icd::Status::ServiceUnavailable);
@@ -59,9 +59,9 @@ TEST_F(SetupTest, RejectsASaveWhileAnotherIsApplied) {
 
 TEST_F(SetupTest, TellsWhyTheLastChangeWasReverted) {
   EXPECT_EQ(setup_.trouble(), "");
-  setup_.runs_with(store_.load().value(), "the last change was reverted: no room");
+  setup_.set_running(store_.load().value(), "the last change was reverted: no room");
   EXPECT_EQ(setup_.trouble(), "the last change was reverted: no room");
-  setup_.runs_with(store_.load().value(), "");
+  setup_.set_running(store_.load().value(), "");
   EXPECT_EQ(setup_.trouble(), "");
 }
 
@@ -79,7 +79,7 @@ TEST_F(SetupTest, WarnsOfATokenOfUnusualLength) {  // ICD 4
   ASSERT_TRUE(store_.save_token("scoring", icd::BearerToken::parse("flux230{showroom")));
   ASSERT_TRUE(store_.save_token("mapping", icd::BearerToken::parse("flux230{showroo")));
   ASSERT_TRUE(store_.save_token("team", icd::BearerToken::parse("the-teams-own-token")));
-  setup_.runs_with(store_.load().value(), "");
+  setup_.set_running(store_.load().value(), "");
   for (const api::TokenRow& row : setup_.tokens()) {
     EXPECT_TRUE(row.set) << row.name;
     EXPECT_EQ(row.warning, row.name == "mapping" ? "the token mapping has 15 characters; the Command Post's "

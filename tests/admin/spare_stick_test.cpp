@@ -47,7 +47,7 @@ class SpareStickTest : public testing::Test {
 
 TEST_F(SpareStickTest, IsAbsentIfAditSpareDoesNotRun) {
   EXPECT_FALSE(stick_.view());
-  for (const auto& refused : {stick_.write(kName, "x"), stick_.take(kName)})
+  for (const auto& refused : {stick_.write(kName, "x"), stick_.request_import(kName)})
     EXPECT_THAT(why(refused), HasSubstr("adit-spare does not run"));
   EXPECT_FALSE(asked());
 }
@@ -78,7 +78,7 @@ TEST_F(SpareStickTest, WritesTheFileBeforeTheRequest) {
   EXPECT_EQ(asked()->what, spare::StickRequest::What::Write);
   EXPECT_EQ(asked()->name, kName);
   EXPECT_EQ(stick_.view()->doing, "writing");
-  EXPECT_THAT(why(stick_.take(kName)), HasSubstr("the box is already writing"));
+  EXPECT_THAT(why(stick_.request_import(kName)), HasSubstr("the box is already writing"));
   answer({.doing = "checking"});
   EXPECT_EQ(stick_.view()->doing, "checking");
   write_status(
@@ -97,7 +97,7 @@ TEST_F(SpareStickTest, RejectsAWriteThatCannotSucceed) {
 
 TEST_F(SpareStickTest, ReturnsTheReadFile) {
   write_status({.exports = {kName}});
-  ASSERT_TRUE(stick_.take(kName));
+  ASSERT_TRUE(stick_.request_import(kName));
   run_.put(spare::kFromStickFile, "sealed");
   answer({.exports = {kName}});
   EXPECT_THAT(taken_, ElementsAre("sealed"));
@@ -105,10 +105,10 @@ TEST_F(SpareStickTest, ReturnsTheReadFile) {
 
 TEST_F(SpareStickTest, TellsWhyARequestFailed) {
   write_status({.exports = {kName}});
-  ASSERT_TRUE(stick_.take(kName));
+  ASSERT_TRUE(stick_.request_import(kName));
   answer({.refusal = "the file is not an export from Adit"});
   EXPECT_EQ(stick_.view()->refusal, "the file is not an export from Adit");
-  ASSERT_TRUE(stick_.take(kName));
+  ASSERT_TRUE(stick_.request_import(kName));
   EXPECT_EQ(stick_.view()->refusal, "") << "the error stays during a retry";
   answer({});
   EXPECT_THAT(stick_.view()->refusal, HasSubstr("No such file")) << "adit-spare wrote no file";
@@ -118,7 +118,7 @@ TEST_F(SpareStickTest, TellsWhyARequestFailed) {
 TEST_F(SpareStickTest, RejectsNamesOutsideTheStick) {
   write_status({});
   for (const char* const name : {"../../etc/shadow", "a/b.adit-spare", "passwd", ""})
-    EXPECT_THAT(why(stick_.take(name)), HasSubstr("name: expected")) << name;
+    EXPECT_THAT(why(stick_.request_import(name)), HasSubstr("name: expected")) << name;
   EXPECT_FALSE(asked());
 }
 

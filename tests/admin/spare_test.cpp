@@ -144,7 +144,7 @@ TEST(SpareBox, ImportsTheExportThatItsCodeOpens) {
   const auto file = first.exported();
   ASSERT_TRUE(file);
   EXPECT_EQ(why(second.opened("1234567890123456")), "there is no export to open: import one first");
-  ASSERT_TRUE(second.spare().take_in(*file));
+  ASSERT_TRUE(second.spare().import_file(*file));
   EXPECT_TRUE(second.spare().state().asks_code);
   EXPECT_EQ(why(second.opened("12")), "code: expected 16 digits");
   EXPECT_THAT(why(second.opened("1234567890123456")), HasSubstr("not that of this export"));
@@ -192,7 +192,7 @@ TEST(SpareBox, DoesNotTakeOverFromItself) {
   Box box;
   ASSERT_TRUE(box.spare().stand_by());
   box.restart();
-  ASSERT_TRUE(box.spare().take_in(*box.exported()));
+  ASSERT_TRUE(box.spare().import_file(*box.exported()));
   EXPECT_THAT(why(box.opened(box.spare().state().code)), HasSubstr("this box made the export itself"));
 }
 

@@ -107,11 +107,11 @@ TEST_F(StoreTest, LogsAnEarlierVersionsSettingWithoutEffectUntilTheNextSave) {
   const std::string old = settings::sample("", "", R"(, "robots": [{"name": "ugv1", "voxel_metres": 0.1}])");
   given_.put("settings.json", old);
   for (int saved = 0; saved < 2; ++saved) {
-    const std::uint64_t before = host::logged();
+    const std::uint64_t before = host::last_record_number();
     const auto loaded = store_.load().value();
     EXPECT_EQ(loaded.trouble, "");
     ASSERT_EQ(loaded.settings.robots.size(), 1u);
-    const auto records = host::remembered(before);
+    const auto records = host::records_after(before);
     ASSERT_EQ(records.size(), 1u);
     EXPECT_EQ(records[0].level, host::Level::Notice);
     EXPECT_EQ(records[0].message, "the setting has no effect any more");
@@ -119,9 +119,9 @@ TEST_F(StoreTest, LogsAnEarlierVersionsSettingWithoutEffectUntilTheNextSave) {
     state_.put("settings.json", old);
   }
   ASSERT_TRUE(store_.save(store_.load()->settings).has_value());
-  const std::uint64_t before = host::logged();
+  const std::uint64_t before = host::last_record_number();
   EXPECT_EQ(store_.load()->settings.robots.size(), 1u);
-  EXPECT_EQ(host::logged(), before);
+  EXPECT_EQ(host::last_record_number(), before);
 }
 
 TEST_F(StoreTest, TellsWhyNoSettingsCanBeUsed) {

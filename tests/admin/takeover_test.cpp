@@ -104,7 +104,7 @@ TEST_F(TakeoverTest, RecordsTheSizeOfTheOldLedger) {
   const dispatch::Report report = answered(1);
   auto here = ledger::Ledger::open(state_.path());
   ASSERT_TRUE(here->write({&report, 1}));
-  forward::StampFloor(state_.path()).write({.floor = 1, .ledger = here->known()});
+  forward::StampFloor(state_.path()).write({.floor = 1, .ledger = here->known_facts()});
   here = std::unexpected(ledger::Error());  // the ledger is closed
   ASSERT_TRUE(takeover_.begin(spare::write(content())));
   ASSERT_EQ(takeover_.finish(loop_), true);

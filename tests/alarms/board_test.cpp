@@ -29,82 +29,82 @@ TEST(Board, SortsBySeverityThenByAge) {
   Condition older = kSilent;
   older.id = "robot_silent:uav4";
   older.since = 60;
-  EXPECT_THAT(Board().shown({kFew, kHeld, kSilent, older}, 100),
+  EXPECT_THAT(Board().to_alarms({kFew, kHeld, kSilent, older}, 100),
               ElementsAre(id_is("robot_silent:uav4"), id_is("robot_silent:uav5"), id_is("report_held:7"),
                           id_is("reports_left")));
 }
 
 TEST(Board, RecordsTheStartOfAnAlarm) {
   Board board;
-  board.take({kFew, kSilent}, 100);
-  const auto shown = board.shown({kFew, kSilent}, 160);
+  board.update({kFew, kSilent}, 100);
+  const auto shown = board.to_alarms({kFew, kSilent}, 160);
   EXPECT_EQ(shown[0].since, 70) << "the rules' time";
   EXPECT_EQ(shown[1].since, 100) << "the time at which it was found";
 }
 
 TEST(Board, RestartsAnAlarmOfAnotherSeverity) {
   Board board;
-  board.take({kFew}, 100);
+  board.update({kFew}, 100);
   Condition none = kFew;
   none.severity = Severity::Bad;
   none.headline = {"No reports", "left", true};
-  board.take({none}, 160);
-  EXPECT_EQ(board.shown({none}, 164)[0].since, 160) << "few were left since 100, none since 160";
+  board.update({none}, 160);
+  EXPECT_EQ(board.to_alarms({none}, 164)[0].since, 160) << "few were left since 100, none since 160";
 }
 
 TEST(Board, TellsForHowLongAnEndedAlarmWasAtItsWorst) {
   Board board;
   Condition doubt{.id = "report_in_doubt:7", .severity = Severity::Ask, .headline = {"Report 7", "in doubt"}};
-  board.take({doubt}, 100);
+  board.update({doubt}, 100);
   doubt.severity = Severity::Wait;
-  board.take({doubt}, 160);
-  board.take({}, 162);
-  EXPECT_EQ(board.over().front().severity, Severity::Ask);
-  EXPECT_EQ(board.over().front().since, 100) << "the operator was asked since then";
+  board.update({doubt}, 160);
+  board.update({}, 162);
+  EXPECT_EQ(board.ended_alarms().front().severity, Severity::Ask);
+  EXPECT_EQ(board.ended_alarms().front().since, 100) << "the operator was asked since then";
   doubt.severity = Severity::Wait;
-  board.take({doubt}, 200);
+  board.update({doubt}, 200);
   doubt.severity = Severity::Ask;
-  board.take({doubt}, 215);
-  board.take({}, 230);
-  EXPECT_EQ(board.over().front().since, 215);
+  board.update({doubt}, 215);
+  board.update({}, 230);
+  EXPECT_EQ(board.ended_alarms().front().since, 215);
 }
 
 TEST(Board, RemembersTheLastEndedAlarms) {
   Board board;
-  board.take({kSilent}, 100);
-  board.take({}, 111);
-  EXPECT_THAT(board.over(), ElementsAre(EndedAlarm{.id = "robot_silent:uav5",
-                                                   .severity = Severity::Bad,
-                                                   .side = Side::Robot,
-                                                   .was = "uav5 was silent",
-                                                   .since = 70,
-                                                   .until = 111}));
+  board.update({kSilent}, 100);
+  board.update({}, 111);
+  EXPECT_THAT(board.ended_alarms(), ElementsAre(EndedAlarm{.id = "robot_silent:uav5",
+                                                           .severity = Severity::Bad,
+                                                           .side = Side::Robot,
+                                                           .was = "uav5 was silent",
+                                                           .since = 70,
+                                                           .until = 111}));
   for (int i = 0; i < 50; ++i) {
-    board.take({kHeld}, 200 + 2 * i);
-    board.take({}, 201 + 2 * i);
+    board.update({kHeld}, 200 + 2 * i);
+    board.update({}, 201 + 2 * i);
   }
-  EXPECT_EQ(board.over().size(), Board::kMostOver);
-  EXPECT_EQ(board.over().front().until, 299) << "the newest first";
+  EXPECT_EQ(board.ended_alarms().size(), Board::kMostOver);
+  EXPECT_EQ(board.ended_alarms().front().until, 299) << "the newest first";
 }
 
 TEST(Board, RemembersAnAlarmAtItsWorst) {
   Board board;
   for (const std::uint64_t count : {7u, 20u, 7u}) {
-    board.take({{.id = "robots_silent",
-                 .headline = {icd::sentence(count, " robots"), "silent", true},
-                 .degree = count}},
-               100);
+    board.update({{.id = "robots_silent",
+                   .headline = {icd::sentence(count, " robots"), "silent", true},
+                   .degree = count}},
+                 100);
   }
-  board.take({}, 111);
-  EXPECT_EQ(board.over().front().was, "20 robots were silent");
+  board.update({}, 111);
+  EXPECT_EQ(board.ended_alarms().front().was, "20 robots were silent");
 }
 
 TEST(Board, AcknowledgedAlarmStaysQuietWhileUnchanged) {
   Board board;
-  board.take({kSilent, kHeld}, 100);
+  board.update({kSilent, kHeld}, 100);
   ASSERT_TRUE(board.acknowledge(kSilent.id, 100));
-  board.take({kSilent, kHeld}, 101);
-  const auto shown = board.shown({kSilent, kHeld}, 102);
+  board.update({kSilent, kHeld}, 101);
+  const auto shown = board.to_alarms({kSilent, kHeld}, 102);
   EXPECT_TRUE(shown[0].acknowledged);
   EXPECT_FALSE(shown[1].acknowledged) << "this alarm was never acknowledged";
 }
@@ -112,7 +112,7 @@ TEST(Board, AcknowledgedAlarmStaysQuietWhileUnchanged) {
 /// A board on which the condition was acknowledged at 100.
 Board acknowledged_on(const Condition& seen) {
   Board board;
-  board.take({seen}, 90);
+  board.update({seen}, 90);
   EXPECT_TRUE(board.acknowledge(seen.id, 100));
   return board;
 }
@@ -122,18 +122,18 @@ TEST(Board, AcknowledgedAlarmReturnsIfWorseOrRepeated) {
   few.degree = 2;
   Board board = acknowledged_on(few);
   few.degree = 3;
-  EXPECT_FALSE(board.shown({few}, 101)[0].acknowledged);
-  board.take({few}, 101);
+  EXPECT_FALSE(board.to_alarms({few}, 101)[0].acknowledged);
+  board.update({few}, 101);
   few.degree = 2;
-  EXPECT_FALSE(board.shown({few}, 102)[0].acknowledged) << "the alarm was worse meanwhile";
+  EXPECT_FALSE(board.to_alarms({few}, 102)[0].acknowledged) << "the alarm was worse meanwhile";
   ASSERT_TRUE(board.acknowledge(few.id, 100));
   few.severity = Severity::Bad;
-  EXPECT_FALSE(board.shown({few}, 103)[0].acknowledged);
+  EXPECT_FALSE(board.to_alarms({few}, 103)[0].acknowledged);
 
-  board.take({kSilent}, 104);
+  board.update({kSilent}, 104);
   ASSERT_TRUE(board.acknowledge(kSilent.id, 100));
-  board.take({}, 105);
-  EXPECT_FALSE(board.shown({kSilent}, 106)[0].acknowledged) << "the alarm is a new one";
+  board.update({}, 105);
+  EXPECT_FALSE(board.to_alarms({kSilent}, 106)[0].acknowledged) << "the alarm is a new one";
 }
 
 TEST(Board, ComparesWithTheLowestDegreeSinceAcknowledgement) {
@@ -141,10 +141,10 @@ TEST(Board, ComparesWithTheLowestDegreeSinceAcknowledgement) {
   few.degree = 5;
   Board board = acknowledged_on(few);
   few.degree = 1;
-  board.take({few}, 101);
-  EXPECT_TRUE(board.shown({few}, 101)[0].acknowledged) << "a smaller alarm stays acknowledged";
+  board.update({few}, 101);
+  EXPECT_TRUE(board.to_alarms({few}, 101)[0].acknowledged) << "a smaller alarm stays acknowledged";
   few.degree = 5;
-  EXPECT_FALSE(board.shown({few}, 102)[0].acknowledged) << "four of the reports were not acknowledged";
+  EXPECT_FALSE(board.to_alarms({few}, 102)[0].acknowledged) << "four of the reports were not acknowledged";
 }
 
 TEST(Board, RejectsAcknowledgementOfAnAbsentAlarm) {
@@ -156,7 +156,7 @@ TEST(Board, RejectsAcknowledgementOfAnAbsentAlarm) {
 Board after_a_restart(const Condition& seen, double now) {
   const Board before = acknowledged_on(seen);
   Board after;
-  const auto kept = read_acknowledged(write_acknowledged(before.acknowledged()));
+  const auto kept = read_acknowledged(write_acknowledged(before.acknowledgements()));
   EXPECT_TRUE(kept) << kept.error();
   after.remember(*kept, now);
   return after;
@@ -164,20 +164,20 @@ Board after_a_restart(const Condition& seen, double now) {
 
 /// Whether the board shows the condition as acknowledged.
 bool is_quiet(Board& board, const Condition& condition, double now) {
-  board.take({condition}, now);
-  return board.shown({condition}, now).front().acknowledged;
+  board.update({condition}, now);
+  return board.to_alarms({condition}, now).front().acknowledged;
 }
 
 TEST(Board, AcknowledgementSurvivesARestart) {
   Board board = after_a_restart(kHeld, 130);
-  board.take({}, 131);
-  EXPECT_EQ(board.acknowledged().size(), 1u) << "the condition may be found again after some seconds";
+  board.update({}, 131);
+  EXPECT_EQ(board.acknowledgements().size(), 1u) << "the condition may be found again after some seconds";
   EXPECT_TRUE(is_quiet(board, kHeld, 140));
   EXPECT_TRUE(is_quiet(board, kHeld, 5000)) << "the condition continues";
-  ASSERT_EQ(board.acknowledged().size(), 1u);
-  EXPECT_EQ(board.acknowledged().front().at, 100) << "a restart keeps the time";
-  board.take({}, 5001);
-  EXPECT_THAT(board.acknowledged(), IsEmpty());
+  ASSERT_EQ(board.acknowledgements().size(), 1u);
+  EXPECT_EQ(board.acknowledgements().front().at, 100) << "a restart keeps the time";
+  board.update({}, 5001);
+  EXPECT_THAT(board.acknowledgements(), IsEmpty());
   EXPECT_FALSE(is_quiet(board, kHeld, 5002)) << "the alarm is a new one";
 }
 
@@ -201,11 +201,11 @@ TEST(Board, OldAcknowledgementHidesNoNewAlarm) {
   Board early = after_a_restart(few, 99);
   EXPECT_FALSE(is_quiet(early, few, 99)) << "the clock went back";
   Board was_worse = after_a_restart(few, 130);
-  was_worse.take({worse}, 131);
+  was_worse.update({worse}, 131);
   EXPECT_FALSE(is_quiet(was_worse, few, 132)) << "the alarm was worse meanwhile";
   Board went = after_a_restart(few, 130);
-  went.take({otherwise}, 131);
-  went.take({}, 132);
+  went.update({otherwise}, 131);
+  went.update({}, 132);
   EXPECT_FALSE(is_quiet(went, few, 133)) << "the alarm is a new one";
 }
 
@@ -225,10 +225,10 @@ TEST(Acknowledged, AreBounded) {
   for (int i = 0; i < 100; ++i)
     many.push_back({.id = "report_held:" + std::to_string(i), .headline = {"It", "held"}});
   many[7].why = std::string(5000, 'x');
-  board.take(many, 90);
+  board.update(many, 90);
   for (const Condition& each : many) ASSERT_TRUE(board.acknowledge(each.id, 100));
-  EXPECT_EQ(board.acknowledged().size(), Acknowledged::kMost);
-  EXPECT_LT(write_acknowledged(board.acknowledged()).size(), 100'000u);
+  EXPECT_EQ(board.acknowledgements().size(), Acknowledged::kMost);
+  EXPECT_LT(write_acknowledged(board.acknowledgements()).size(), 100'000u);
 }
 
 TEST(Acknowledged, RejectATruncatedFile) {
@@ -254,12 +254,12 @@ TEST(Words, ShowAgesAndPastForms) {
 
 TEST(Board, DurationsSurviveAClockStep) {
   Board board;
-  board.take({kHeld, kFew}, 100);
-  board.take({kFew}, 110);
+  board.update({kHeld, kFew}, 100);
+  board.update({kFew}, 110);
   board.move(3600);
-  EXPECT_EQ(board.shown({kFew}, 3720)[0].since, 3700);
-  EXPECT_EQ(board.over().front().since, 3650);
-  EXPECT_EQ(board.over().front().until, 3710);
+  EXPECT_EQ(board.to_alarms({kFew}, 3720)[0].since, 3700);
+  EXPECT_EQ(board.ended_alarms().front().since, 3650);
+  EXPECT_EQ(board.ended_alarms().front().until, 3710);
 }
 
 }  // namespace

@@ -13,8 +13,8 @@ class HabitsTest : public testing::Test {
   /// The robot posts `times` times, every `gap` seconds, and is checked each second.
   void speaks(const std::string& robot, double gap, int times) {
     for (int i = 0; i < times; ++i) {
-      for (double later = now_ + gap; now_ < later; now_ += 1) habits_.heard(robot, count_, now_);
-      habits_.heard(robot, ++count_, now_);
+      for (double later = now_ + gap; now_ < later; now_ += 1) habits_.on_count(robot, count_, now_);
+      habits_.on_count(robot, ++count_, now_);
     }
   }
   bool is_silent_after(const std::string& robot, double seconds) {
@@ -53,11 +53,11 @@ TEST_F(HabitsTest, BlameAKnownRobotSilentSinceARestart) {
   EXPECT_FALSE(is_silent_after("uav5", 30));
   EXPECT_TRUE(is_silent_after("uav5", 31));
   now_ += 20;
-  habits_.heard("uav5", ++count_, now_);
+  habits_.on_count("uav5", ++count_, now_);
   EXPECT_FALSE(is_silent_after("uav5", 100)) << "the robot has no habit yet";
-  habits_.heard("ugv1", 7, now_);
+  habits_.on_count("ugv1", 7, now_);
   habits_.expect("ugv1", now_);
-  habits_.heard("ugv1", 7, now_ + 20);
+  habits_.on_count("ugv1", 7, now_ + 20);
   EXPECT_TRUE(is_silent_after("ugv1", 31)) << "its messages were queued before";
   habits_.expect("uav6", now_);
   speaks("uav6", 1, 1);
@@ -68,13 +68,13 @@ TEST_F(HabitsTest, BlameAKnownRobotSilentSinceARestart) {
 TEST_F(HabitsTest, SurviveARestart) {
   speaks("uav5", 1, 20);
   Habits next;
-  next.carry_on("uav5", *habits_.of("uav5"), 1);  // a message that was queued before
-  next.heard("uav5", 1, now_ + 5);
+  next.carry_on("uav5", *habits_.habit_of("uav5"), 1);  // a message that was queued before
+  next.on_count("uav5", 1, now_ + 5);
   EXPECT_FALSE(next.robots(rules_, now_ + 30).at("uav5").silent);
   EXPECT_TRUE(next.robots(rules_, now_ + 31).at("uav5").silent) << "counted from its last message";
   next.expect("uav5", now_ + 40);
   EXPECT_EQ(next.robots(rules_, now_ + 60).at("uav5").quiet, 60);
-  next.heard("uav5", 2, now_ + 61);
+  next.on_count("uav5", 2, now_ + 61);
   EXPECT_FALSE(next.robots(rules_, now_ + 62).contains("uav5")) << "the robot comes back";
 }
 
@@ -104,7 +104,7 @@ TEST_F(HabitsTest, ExcludeTheMergedMap) {
 TEST_F(HabitsTest, ReplaceRobotsThatWereSwitchedOff) {
   for (std::size_t robot = 0; robot < Habits::kMost; ++robot) speaks("r" + std::to_string(robot), 1, 1);
   speaks("uav5", 1, 20);
-  EXPECT_FALSE(habits_.of("uav5"));
+  EXPECT_FALSE(habits_.habit_of("uav5"));
   now_ += rules_.away + 1;
   speaks("uav5", 1, 20);
   EXPECT_TRUE(habits_.robots(rules_, now_).contains("uav5"));

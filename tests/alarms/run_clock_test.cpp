@@ -11,7 +11,7 @@ TEST(RunClock, IsUnknownBeforeTheFirstStatus) {
 
 TEST(RunClock, RunsOnAfterOneStatusAndBecomesAnEstimate) {
   RunClock clock;
-  clock.heard(754, 1000);
+  clock.on_status(754, 1000);
   EXPECT_EQ(clock.at(1002), (ShownClock{.seconds = 756, .age = 2, .runs = true}));
   EXPECT_EQ(clock.at(1015), (ShownClock{.seconds = 769, .age = 15, .runs = true}));
   EXPECT_EQ(clock.at(1016), (ShownClock{.seconds = 770, .age = 16, .runs = true, .old = true}));
@@ -35,8 +35,8 @@ constexpr Row kRows[] = {
 TEST(RunClock, StopsIfTheLastStatusesAreEqual) {
   for (const Row& row : kRows) {
     RunClock clock;
-    clock.heard(row.first, 1000);
-    clock.heard(row.second, 1000 + row.apart);
+    clock.on_status(row.first, 1000);
+    clock.on_status(row.second, 1000 + row.apart);
     const auto shown = clock.at(1000 + row.apart + 20);
     ASSERT_TRUE(shown) << row.what;
     EXPECT_EQ(shown->runs, row.runs) << row.what;
@@ -47,9 +47,9 @@ TEST(RunClock, StopsIfTheLastStatusesAreEqual) {
 
 TEST(RunClock, ResumesWithTheFirstDifferentStatus) {
   RunClock clock;
-  for (const double at : {1000.0, 1002.0, 1003.0}) clock.heard(754, at);
+  for (const double at : {1000.0, 1002.0, 1003.0}) clock.on_status(754, at);
   EXPECT_FALSE(clock.at(1003)->runs) << "two statuses in one second are no contradiction";
-  clock.heard(755, 1004);
+  clock.on_status(755, 1004);
   EXPECT_TRUE(clock.at(1004)->runs);
 }
 

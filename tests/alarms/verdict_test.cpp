@@ -387,7 +387,7 @@ TEST(Words, ShowTheAgeOfAPoseNotOfItsDelivery) {
 
 std::string word_of(const EndpointRow& row, const Snapshot& snapshot = {}) {
   facts::Traffic traffic{.endpoints = {row}};
-  add_words(traffic, Board().shown(conditions_of(snapshot), 0));
+  add_words(traffic, Board().to_alarms(conditions_of(snapshot), 0));
   const auto level = static_cast<std::size_t>(traffic.endpoints[0].level);
   return icd::sentence(facts::kLevelWords[level], " ", traffic.endpoints[0].word);
 }

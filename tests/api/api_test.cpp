@@ -206,7 +206,7 @@ TEST_F(PageTest, RedactsTokensInPatches) {
     source.now.verdict.why = "not " + typed;
     source.now.alarms.emplace_back().id = "robot_silent:" + typed;
     const std::size_t before = page->sent.size();
-    api.changed();
+    api.on_changed();
     for (int i = 0; i < 1000 && page->sent.size() == before; ++i) loop.turn(std::chrono::milliseconds{10});
     ASSERT_GT(page->sent.size(), before);
     const std::string& event = page->sent.back();
@@ -245,7 +245,7 @@ TEST(PageOnAServer, ServesABrowser) {
   EXPECT_TRUE(client.wait_for("\"score\":7"));
   served.on_loop([&] {
     doubles.source.now.run->score = 8;
-    api->changed();
+    api->on_changed();
   });
   EXPECT_TRUE(client.wait_for("\"score\":8"));
   served.on_loop([&] { forward.to = nullptr, api.reset(); });

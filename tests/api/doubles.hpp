@@ -73,7 +73,7 @@ struct FakeOperator final : Operator, GatewayControl {
     corrected.emplace_back(number, to);
     return outcome ? *outcome : 42;
   }
-  std::expected<void, std::string> rejected(std::uint64_t number, RejectedAction action) override {
+  std::expected<void, std::string> change_rejected(std::uint64_t number, RejectedAction action) override {
     decided_messages.emplace_back(number, action);
     if (!rejected_trouble.empty()) return std::unexpected(rejected_trouble);
     return {};
@@ -96,7 +96,7 @@ struct FakeOperator final : Operator, GatewayControl {
   std::optional<std::expected<std::int64_t, std::string>>
       outcome;  // of decide(), report() and correct(), if not the same number, 41 or 42
   std::vector<std::pair<std::uint64_t, RejectedAction>> decided_messages;
-  std::string rejected_trouble;  // of rejected(); "": it succeeds
+  std::string rejected_trouble;  // of change_rejected(); "": it succeeds
   std::vector<std::string> acknowledged;
   std::string alarm_trouble;  // of acknowledge(); "": it succeeds
   std::int64_t run = 1;
@@ -186,10 +186,10 @@ inline std::string header(const intake::Answer& answer, std::string_view name) {
 
 /// Forwards requests to a handler that is set later.
 struct Forward final : intake::Handler {
-  intake::Credentials shown(const intake::RequestHead& head) override { return to->shown(head); }
+  intake::Credentials read_credentials(const intake::RequestHead& head) override { return to->read_credentials(head); }
   std::unique_ptr<intake::BodySink> open(const intake::RequestHead& head,
                                          std::shared_ptr<intake::Responder> responder,
-                                         std::shared_ptr<intake::Flow> flow) override {
+                                         std::shared_ptr<intake::FlowControl> flow) override {
     return to->open(head, std::move(responder), std::move(flow));
   }
   intake::Handler* to = nullptr;

@@ -18,7 +18,7 @@ struct FakeBox final : Box {
                          [after](const LogRecord& record) { return record.seq > after; });
     return rows;
   }
-  std::uint64_t logged() const override { return records.empty() ? 0 : records.back().seq; }
+  std::uint64_t last_record_number() const override { return records.empty() ? 0 : records.back().seq; }
   Usage usage() const override { return used; }
   About about() const override { return self; }
   NetworkState network() const override { return networks; }
@@ -30,7 +30,7 @@ struct FakeBox final : Box {
 
   /// Adds a log record about a report.
   void say(int severity, std::string level, std::string message, const std::string& note = "") {
-    const std::uint64_t seq = logged() + 1;
+    const std::uint64_t seq = last_record_number() + 1;
     LogRecord record{.seq = seq,
                      .at = 1'780'000'000 + static_cast<double>(seq),
                      .severity = severity,

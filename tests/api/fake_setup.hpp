@@ -18,7 +18,7 @@ inline constexpr const char* kCourses =
 /// Records requests, and rejects them if the test says so.
 struct FakeSetup : Setup {
   const settings::Settings& settings() const override { return now; }
-  bool saved() const override { return false; }
+  bool is_saved() const override { return false; }
   bool applying() const override { return is_applying; }
   const std::string& trouble() const override { return why; }
   std::vector<TokenRow> tokens() const override {

@@ -20,7 +20,7 @@ struct FakeSpare final : Spare {
   }
   void export_to_stick(Done done) override { done(record("export to the stick")); }
   icd::Checked<void> take_from_stick(const std::string& name) override { return record("take " + name); }
-  icd::Checked<void> take_in(std::string taken) override {
+  icd::Checked<void> import_file(std::string taken) override {
     file = std::move(taken);
     return record("take");
   }

@@ -86,11 +86,11 @@ class LiveTest : public testing::Test {
   /// Makes a change that pages get at once.
   void change() {
     source.now.alarms.emplace_back();
-    live.changed();
+    live.on_changed();
   }
   void change_in_the_queue() {
     ++source.now.queued_bytes;
-    live.changed();
+    live.on_changed();
   }
 
   bool welcome = true;
@@ -139,13 +139,13 @@ TEST_F(LiveTest, SendsReportsAndAlarmsWithoutDelay) {
   const auto page = open();
   pass(milliseconds{300});
   source.now.alarms.emplace_back();
-  live.changed();
+  live.on_changed();
   pass(milliseconds{40});
   EXPECT_THAT(page->sent, SizeIs(2));
   pass(milliseconds{250});
   change_in_the_queue();
   source.now.reports.front().state = "in_doubt";
-  live.changed();
+  live.on_changed();
   pass(milliseconds{40});
   ASSERT_THAT(page->sent, SizeIs(3));
   EXPECT_THAT(page->sent[2], HasSubstr("queued_bytes")) << "a change is missing in the event";
@@ -154,9 +154,9 @@ TEST_F(LiveTest, SendsReportsAndAlarmsWithoutDelay) {
 TEST_F(LiveTest, SendsTheLastOfManyChanges) {
   const auto page = open();
   source.now.version = "old";
-  live.changed();
+  live.on_changed();
   source.now.version = "new";
-  live.changed();
+  live.on_changed();
   pass(milliseconds{1040});
   ASSERT_THAT(page->sent, SizeIs(2));
   EXPECT_NE(page->sent[1].find("\"new\""), std::string::npos);
@@ -170,14 +170,14 @@ TEST_F(LiveTest, SendsAHeartbeatWithinFiveSeconds) {
 }
 
 TEST_F(LiveTest, ReadsNothingWithoutAnOpenPage) {
-  live.changed();
+  live.on_changed();
   pass(milliseconds{300});
   EXPECT_EQ(source.asked, 0);
   open()->gone = true;
   change();
   pass(milliseconds{300});
   const int asked = source.asked;
-  live.changed();
+  live.on_changed();
   pass(milliseconds{300});
   EXPECT_EQ(source.asked, asked) << "a closed page still causes requests";
 }
@@ -204,7 +204,7 @@ TEST_F(LiveTest, SendsRunningTimesOnlyWithTheHeartbeat) {
   for (int i = 0; i < 2; ++i) {
     source.now.now += 0.25;
     source.now.run_clock = {.seconds = source.now.now};
-    live.changed();
+    live.on_changed();
     pass(milliseconds{260});
   }
   EXPECT_THAT(page->sent, SizeIs(1));
@@ -221,7 +221,7 @@ TEST_F(LiveTest, SendsOnePoseInFewBytes) {
   robot.position = {.x = 81.123456789, .y = -1203.987654321, .z = 0.125};
   robot.heading = 3.0123456;
   robot.at = source.now.now = 1'793'000'124.123456;
-  live.changed();
+  live.on_changed();
   pass(milliseconds{1040});
   ASSERT_THAT(page->sent, SizeIs(2));
   EXPECT_EQ(
@@ -257,10 +257,10 @@ TEST_F(LiveTest, SendsOneReportInFewBytes) {
   report.state = "queued";
   source.now.reports.insert(source.now.reports.begin(), report);
   source.now.reports.pop_back();
-  live.changed();
+  live.on_changed();
   pass(milliseconds{300});
   source.now.reports.front().state = "sending";
-  live.changed();
+  live.on_changed();
   pass(milliseconds{300});
   ASSERT_THAT(page->sent, SizeIs(3));
   EXPECT_LT(page->sent[1].size(), 450);
@@ -277,7 +277,7 @@ TEST_F(LiveTest, SendsNoTimesThatDifferBelowTheirPrecision) {
   EXPECT_THAT(page->sent[0], HasSubstr("0.123456789")) << "a report's identity must be exact";
   for (facts::ReportRow& report : source.now.reports) report.changed += 2e-7;
   for (facts::RobotRow& robot : source.now.robots) *robot.at += 2e-7;
-  live.changed();
+  live.on_changed();
   pass(milliseconds{300});
   EXPECT_THAT(page->sent, SizeIs(1));
 }
@@ -315,7 +315,7 @@ TEST_F(LiveTest, SendsEachViewToEachPage) {
     if (step % 8 == 0) readers.push_back({.stream = open()});
     if (step % 5 == 3) readers.back().stream->queued = 1u << 20;
     change_some(source.now, random);
-    live.changed();
+    live.on_changed();
     pass(milliseconds{1040});
     for (PageReader& reader : readers) {
       for (; reader.read < reader.stream->sent.size(); ++reader.read) {

@@ -117,7 +117,8 @@ icd::Marker scene_marker(icd::MarkerType type) {
 MarkerChanges scene_markers(double now) {
   MarkerChanges changes{.version = 1, .whole = true, .left_out = 3, .markers = {}, .gone = {}};
   for (std::int32_t type = 0; type <= icd::kLastMarkerType; ++type) {
-    changes.markers.push_back({drawn(scene_marker(static_cast<icd::MarkerType>(type))), now - 300 + type});
+    changes.markers.push_back(
+        {draw_marker(scene_marker(static_cast<icd::MarkerType>(type))), now - 300 + type});
   }
   changes.markers[2].marker.color.a = 0;
   changes.markers[1].marker.lifetime = 10;
@@ -125,7 +126,7 @@ MarkerChanges scene_markers(double now) {
   arrow.id = 20;
   arrow.points = {{0, -8, 0}, {6, -8, 0}};
   arrow.scale = {0.4, 1.5, 1.5};
-  changes.markers.push_back({drawn(arrow), now - 280});
+  changes.markers.push_back({draw_marker(arrow), now - 280});
   return changes;
 }
 

@@ -22,7 +22,7 @@
 
 namespace adit::api {
 
-struct FakeFlow final : intake::Flow {
+struct FakeFlow final : intake::FlowControl {
   void resume() override { ++resumed; }
   int resumed = 0;
 };

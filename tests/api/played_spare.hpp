@@ -49,7 +49,7 @@ struct PlayedSpare final : Spare {
     taken_ = name;
     return {};
   }
-  icd::Checked<void> take_in(std::string) override {
+  icd::Checked<void> import_file(std::string) override {
     view.asks_code = true;
     return {};
   }

@@ -200,8 +200,9 @@ TEST_F(GuessedAtTest, AdmitAKnownDevice) {
 
 TEST_F(GuessedAtTest, ReserveRoomForAKnownDevice) {
   const std::string device = device_after_login();
-  EXPECT_EQ(api.shown(FakeHead("POST", "/adit/login", {{"Cookie", device}})), intake::Credentials::Enough);
-  EXPECT_EQ(api.shown(FakeHead("POST", "/adit/login", {{"Cookie", "adit-device-8000=guessed"}})),
+  EXPECT_EQ(api.read_credentials(FakeHead("POST", "/adit/login", {{"Cookie", device}})),
+            intake::Credentials::Enough);
+  EXPECT_EQ(api.read_credentials(FakeHead("POST", "/adit/login", {{"Cookie", "adit-device-8000=guessed"}})),
             intake::Credentials::Nothing);
 }
 

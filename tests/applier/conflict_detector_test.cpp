@@ -53,7 +53,7 @@ class AddressConflictsTest : public testing::Test {
   /// Address and MAC address of each conflict.
   std::vector<std::pair<std::uint32_t, Mac>> taken() const {
     std::vector<std::pair<std::uint32_t, Mac>> all;
-    for (const ConflictDetector::Conflict& each : takers.taken()) all.emplace_back(each.address, each.by);
+    for (const ConflictDetector::Conflict& each : takers.conflicts()) all.emplace_back(each.address, each.by);
     return all;
   }
 
@@ -151,7 +151,7 @@ TEST_F(AddressConflictsTest, AreNotLostBetweenTheFirstProbes) {
     if (!fresh.take_due(now).empty() && now > began + seconds(2)) fresh.hear(*all, now);
     ASSERT_TRUE(fresh.wake());
     const std::size_t answering = now >= began + seconds(15) ? 1 : 0;
-    ASSERT_EQ(fresh.taken().size(), answering) << "the other host answers each probe";
+    ASSERT_EQ(fresh.conflicts().size(), answering) << "the other host answers each probe";
   }
 }
 
@@ -190,7 +190,7 @@ TEST_F(AddressConflictsTest, AreBoundedAndProbedSeldom) {
     asked += takers.take_due(now).size();
     now += std::chrono::milliseconds(1);
   }
-  EXPECT_EQ(takers.taken().size(), 1u);
+  EXPECT_EQ(takers.conflicts().size(), 1u);
   EXPECT_LE(asked, static_cast<std::size_t>((now - began) / ConflictDetector::kBetween) + 1);
   std::vector<std::uint32_t> many(1000);
   std::iota(many.begin(), many.end(), 0x0c000000u);

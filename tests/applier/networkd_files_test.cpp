@@ -153,7 +153,7 @@ TEST_F(NetworkdFilesTest, LoseAnUnconfirmedChangeInAPowerCut) {
   ASSERT_TRUE(files->apply(first));
   restart(true);
   EXPECT_FALSE(files->found_a_change());
-  EXPECT_EQ(files->kept(), std::nullopt);
+  EXPECT_EQ(files->confirmed_numbers(), std::nullopt);
   EXPECT_THAT(in(options.networkd), IsEmpty());
 }
 
@@ -171,7 +171,7 @@ TEST_F(NetworkdFilesTest, CompleteAnInterruptedConfirmation) {
   std::ofstream(options.networkd + "/05-adit-team.network") << network::team_file("team0", first);
   fs::remove(options.networkd + "/05-adit-command-post.network");
   restart(false);
-  EXPECT_EQ(files->kept(), second);
+  EXPECT_EQ(files->confirmed_numbers(), second);
   EXPECT_EQ(text_of("05-adit-team.network"), network::team_file("team0", second));
   EXPECT_EQ(text_of("05-adit-command-post.network"), network::command_post_file("darpa0", second, {}));
 }
@@ -179,13 +179,13 @@ TEST_F(NetworkdFilesTest, CompleteAnInterruptedConfirmation) {
 TEST_F(NetworkdFilesTest, UseFactoryAddressesUntilAChangeIsConfirmed) {
   come_with(first);
   restart(true);
-  EXPECT_EQ(files->kept(), first);
+  EXPECT_EQ(files->confirmed_numbers(), first);
   EXPECT_EQ(reloads(), 0u) << "networkd reads the files when it starts";
   EXPECT_EQ(text_of("05-adit-team.network"), network::team_file("team0", first));
   ASSERT_TRUE(files->apply(second));
   ASSERT_TRUE(files->keep(second));
   restart(true);
-  EXPECT_EQ(files->kept(), second);
+  EXPECT_EQ(files->confirmed_numbers(), second);
   EXPECT_EQ(text_of("05-adit-team.network"), network::team_file("team0", second));
 }
 
@@ -266,7 +266,7 @@ TEST_F(NetworkdFilesTest, RenameADamagedConfirmationAndUseFactoryAddresses) {
   ASSERT_TRUE(files->keep(second));
   std::ofstream(options.state + "/confirmed.json") << "{\"format\":1,";
   restart(true);
-  EXPECT_EQ(files->kept(), first);
+  EXPECT_EQ(files->confirmed_numbers(), first);
   EXPECT_THAT(in(options.state), UnorderedElementsAre("confirmed.json.damaged"));
   EXPECT_EQ(text_of("05-adit-team.network"), network::team_file("team0", first));
   EXPECT_TRUE(files->apply(second));
@@ -282,7 +282,7 @@ TEST_F(NetworkdFilesTest, UseFactoryAddressesIfNothingIsReadable) {
   folder.put("network.json", "{");
   NetworkdFiles without(options, &nobody);
   EXPECT_TRUE(without.write_at_start());
-  EXPECT_EQ(without.kept(), std::nullopt);
+  EXPECT_EQ(without.confirmed_numbers(), std::nullopt);
 }
 
 }  // namespace

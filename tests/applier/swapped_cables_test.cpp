@@ -39,7 +39,7 @@ class ExchangedCablesTest : public testing::Test {
   }
   std::vector<std::uint32_t> found() const {
     std::vector<std::uint32_t> all;
-    for (const ConflictDetector::Conflict& each : exchanged.found(now)) all.push_back(each.address);
+    for (const ConflictDetector::Conflict& each : exchanged.conflicts(now)) all.push_back(each.address);
     return all;
   }
 
@@ -124,12 +124,12 @@ TEST(SoughtAddresses, AreEndpointsOnTheLinkAndTheGateway) {
   EXPECT_THAT(sought_in({}, {}, team), IsEmpty());
 }
 
-TEST(ToldStatus, StaysTheLastOneWhileTheFileCannotBeRead) {
+TEST(StatusReader, StaysTheLastOneWhileTheFileCannotBeRead) {
   const host::Folder folder;
   loop::SimulatedTime time;
   loop::Loop loop;
   int changes = 0;
-  ToldStatus told(loop, folder.path(), [&] { ++changes; });
+  StatusReader told(loop, folder.path(), [&] { ++changes; });
   EXPECT_THAT(told.read().endpoints.addresses, IsEmpty());
   folder.put(host::kStatusFile, codec::write_file(status()));
   EXPECT_EQ(told.read(), status());

@@ -57,7 +57,7 @@ TEST_F(ArchiveTest, RestoresPictureTracksAndPlotsAfterARestart) {
   live(run.head);
   EXPECT_TRUE(picture.layers().empty());
   run.draw(3);
-  archive->needs_attention({"no token"}, run.now());
+  archive->set_attention({"no token"}, run.now());
   write();
   live(run.head);
   EXPECT_EQ(shown(picture), shown(run.easel.mosaic));
@@ -147,7 +147,7 @@ TEST_F(ArchiveTest, WritesALineOnceIfItsTilesCannotBeWritten) {
   live(run.head);
   fs::create_directory(folder / "runs/3/map-00000001");  // in the place of the tiles' file
   run.draw(1);
-  archive->needs_attention({"no token"}, run.now());
+  archive->set_attention({"no token"}, run.now());
   archive->tick(run.seen());
   ASSERT_TRUE(loop::turn_until_idle(loop, archive->thread()));
   EXPECT_NE(archive->trouble(), "");
@@ -205,7 +205,7 @@ TEST_F(ArchiveTest, WritesNothingForAnIdleRunUntilOtherDataComes) {
   run.tracks[0].poses.push_back(pose);
   tick();
   EXPECT_EQ(stored(), before);
-  archive->needs_attention({"no token"}, run.now());
+  archive->set_attention({"no token"}, run.now());
   std::this_thread::sleep_for(Archive::kWriteEvery);
   tick();
   EXPECT_GT(stored(), before);

@@ -40,7 +40,7 @@ class Damage : public testing::Test {
       ++count;
     }
     (void)told.tracks();
-    (void)told.samples().since(0);
+    (void)told.samples().history_after(0);
     return count;
   }
   ARun run;
@@ -80,10 +80,10 @@ TEST_F(Damage, ByACutLeavesEarlierRecords) {
 TEST_F(Damage, IsCountedWithoutATornEnd) {
   RunRecords torn(0), damaged(0);
   torn.tell(file.substr(0, file.size() - 1), 1);
-  EXPECT_EQ(torn.damaged(), 0u);
+  EXPECT_EQ(torn.damaged_records(), 0u);
   file.back() ^= 1;
   damaged.tell(file + file, 1);
-  EXPECT_EQ(damaged.damaged(), 2u) << "including the one at the end";
+  EXPECT_EQ(damaged.damaged_records(), 2u) << "including the one at the end";
 }
 
 TEST_F(Damage, EverywhereDoesNotCrash) {

@@ -18,7 +18,7 @@ class DueTilesTest : public testing::Test {
  protected:
   void write_all(double now, std::uint64_t write = 1, std::optional<std::uint64_t> file = 1) {
     for (const TileKey& key : due.at(now)) due.being_written(key, write, now);
-    due.done(write, file);
+    due.on_written(write, file);
   }
   ARun run;
   DueTiles due;
@@ -53,7 +53,7 @@ TEST_F(DueTilesTest, NeverWrittenComeFirstThenTheOldest) {
   due.look(run.easel.mosaic);
   for (const auto& [at, when] : {std::pair(1, 1000.0), std::pair(0, 1010.0)})
     due.being_written({run.easel.layer, {0, at, 0}}, 1, when);
-  due.done(1, 1);
+  due.on_written(1, 1);
   for (int i = 0; i < 3; ++i) run.easel.draw(picture::grid_at(64.0 * i, 0, 1, 0.25, {100}));
   due.look(run.easel.mosaic);
   std::vector<TileIndex> finest;
@@ -77,7 +77,7 @@ TEST_F(DueTilesTest, ChangedDuringTheWriteAreDueAgain) {
   run.easel.draw(picture::grid_at(0, 0, 1, 0.25, {100}));
   run.easel.draw(picture::grid_at(0, 0, 1, 0.25, {0}));
   due.look(run.easel.mosaic);
-  due.done(1, 1);
+  due.on_written(1, 1);
   EXPECT_THAT(places(due.at(2000)), testing::Contains(TileIndex{0, 0, 0}));
 }
 

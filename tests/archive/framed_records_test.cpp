@@ -20,7 +20,7 @@ const Records kThree = {"poses", "w", std::string(300, '\0')};
 
 std::string written(const Records& records) {
   std::string bytes;
-  for (const std::string& body : records) bytes += framed(body);
+  for (const std::string& body : records) bytes += frame_record(body);
   return bytes;
 }
 
@@ -46,7 +46,7 @@ TEST(ArchiveRecord, DamagedIsLostAlone) {
 }
 
 TEST(ArchiveRecord, TornIsSkipped) {
-  const std::string bytes = written(kThree), more = framed("later");
+  const std::string bytes = written(kThree), more = frame_record("later");
   for (std::size_t cut = 0; cut < bytes.size(); ++cut) {
     Records whole;
     for (const std::string& record : kThree) {
@@ -61,8 +61,9 @@ TEST(ArchiveRecord, TornIsSkipped) {
 
 TEST(ArchiveRecord, SearchInADamagedFileIsBounded) {
   std::string bytes;
-  for (int i = 0; i < 100'000; ++i) bytes += framed("x").substr(0, 8) + std::string("\x00\x00\x01\x00", 4);
-  EXPECT_EQ(records_in(bytes + framed("x")), Records{}) << "each costs the checksum of 64 KiB";
+  for (int i = 0; i < 100'000; ++i)
+    bytes += frame_record("x").substr(0, 8) + std::string("\x00\x00\x01\x00", 4);
+  EXPECT_EQ(records_in(bytes + frame_record("x")), Records{}) << "each costs the checksum of 64 KiB";
 }
 
 }  // namespace

@@ -62,9 +62,9 @@ TEST(Labels, OverlapNoLabelAndNoSign) {
 }
 
 TEST(Labels, OfLongTextsEndWithAnEllipsis) {
-  EXPECT_EQ(shortened("Backpack", 8), "Backpack");
-  EXPECT_EQ(shortened("Backpacks", 8), "Backpac\u2026");
-  EXPECT_EQ(shortened("\u00e4\u00f6\u00fc\u00df", 3), "\u00e4\u00f6\u2026");
+  EXPECT_EQ(shorten("Backpack", 8), "Backpack");
+  EXPECT_EQ(shorten("Backpacks", 8), "Backpac\u2026");
+  EXPECT_EQ(shorten("\u00e4\u00f6\u00fc\u00df", 3), "\u00e4\u00f6\u2026");
   EXPECT_LT(width_of("ill", 10), width_of("WWW", 10));
   EXPECT_EQ(width_of("\u00e4", 10), width_of("W", 10));
 }

@@ -20,7 +20,7 @@ TEST(Poses, AreNewsOnlyIfTheRobotMoved) {
   poses.add_to(lines, {track(6, 0)}, 7);
   EXPECT_EQ(poses.last(), 7) << "later poses only";
   EXPECT_TRUE(lines.is_due(now)) << "the first pose of a robot";
-  lines.take(now);
+  lines.pop(now);
   poses.add_to(lines, {track(8, 0)}, 8);
   EXPECT_FALSE(lines.is_due(now));
   poses.add_to(lines, {track(9, 100)}, 9);

@@ -15,7 +15,7 @@ picture::Tile tile(std::string_view bytes) {
   return tile;
 }
 
-const TileState kTile{{"ugv1", picture::Kind::Cloud}, {1, -3, 4}, 1000.5, tile("abc")};
+const TileState kTile{{"ugv1", picture::LayerKind::Cloud}, {1, -3, 4}, 1000.5, tile("abc")};
 
 /// A record's content as bytes.
 std::string body_of(const Record& record) {
@@ -43,7 +43,7 @@ TEST(RecordBody, TileReadsBackTheSame) {
 
 TEST(RecordBody, LayerReadsBackTheSame) {
   picture::LayerView view;
-  view.layer = {"r", picture::Kind::Grid};
+  view.layer = {"r", picture::LayerKind::Grid};
   view.bounds = picture::Area{-1, -2, 3, 4};
   view.heights = picture::Heights{-0.5, 2};
   view.first = 10, view.last = 20, view.missed = 3, view.left_out = 4;

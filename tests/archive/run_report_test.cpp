@@ -154,9 +154,9 @@ TEST(RunReport, StaysSmallForALargeMap) {
 }
 
 TEST(Html, OmitsInvalidTimesAndNumbers) {
-  EXPECT_EQ(lasted(3723), "1:02:03");
-  EXPECT_EQ(lasted(-1), "-");
-  EXPECT_EQ(fixed(1.0 / 0.0, 1), "-");
+  EXPECT_EQ(duration_text(3723), "1:02:03");
+  EXPECT_EQ(duration_text(-1), "-");
+  EXPECT_EQ(to_fixed(1.0 / 0.0, 1), "-");
 }
 
 }  // namespace

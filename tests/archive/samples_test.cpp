@@ -13,12 +13,12 @@ TEST(Samples, HaveListsOfOneLength) {
   Samples samples;
   samples.add(Sample{.at = 10, .sent_mbit = 1, .map_ages = {{"a", 3}}});
   samples.add(Sample{.at = 12, .sent_mbit = 2, .scoring_ms = 9, .map_ages = {{"b", 1}}});
-  const api::History all = samples.since(0);
+  const api::History all = samples.history_after(0);
   EXPECT_THAT(all.at, ElementsAre(10, 12));
   EXPECT_THAT(all.scoring_ms, ElementsAre(std::nullopt, 9));
   ASSERT_EQ(all.robots.size(), 2U);
   EXPECT_THAT(all.robots[0].ages, ElementsAre(3, std::nullopt));
-  EXPECT_THAT(samples.since(10).at, ElementsAre(12));
+  EXPECT_THAT(samples.history_after(10).at, ElementsAre(12));
 }
 
 TEST(Samples, AreDueEachTwoSecondsAndNeverBackInTime) {
@@ -28,14 +28,14 @@ TEST(Samples, AreDueEachTwoSecondsAndNeverBackInTime) {
   EXPECT_FALSE(samples.wants(11));
   EXPECT_TRUE(samples.wants(11.9));
   samples.add(Sample{.at = 5});
-  EXPECT_THAT(samples.since(0).at, ElementsAre(10));
+  EXPECT_THAT(samples.history_after(0).at, ElementsAre(10));
 }
 
 TEST(Samples, AreThinnedEvenlyAndKeepEach429) {
   Samples samples;
   constexpr int kMany = 20'000;
   for (int i = 0; i < kMany; ++i) samples.add(Sample{.at = 2.0 * (i + 1), .throttled = 1});
-  const api::History all = samples.since(0);
+  const api::History all = samples.history_after(0);
   EXPECT_LE(all.at.size(), Samples::kMost);
   EXPECT_GE(all.at.size(), Samples::kMost / 2);
   EXPECT_EQ(std::accumulate(all.throttled.begin(), all.throttled.end(), std::uint64_t{0}), kMany);
@@ -70,8 +70,8 @@ TEST(Samples, ContinueAfterAClockStepBack) {
   samples.move(-50);
   EXPECT_TRUE(samples.wants(52));
   samples.add(Sample{.at = 52});
-  EXPECT_THAT(samples.since(0).at, ElementsAre(50, 52));
-  EXPECT_EQ(samples.since(0).attention.front().at, 50);
+  EXPECT_THAT(samples.history_after(0).at, ElementsAre(50, 52));
+  EXPECT_EQ(samples.history_after(0).attention.front().at, 50);
 }
 
 }  // namespace

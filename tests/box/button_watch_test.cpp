@@ -11,8 +11,8 @@ namespace adit::box {
 namespace {
 
 using namespace std::chrono_literals;
+using panel::LightState;
 using panel::Press;
-using panel::State;
 using panel::WatchedLines;
 using panel::Wire;
 using panel::WireLine;
@@ -61,14 +61,14 @@ TEST_F(ButtonWatchTest, IgnoresABounce) {
 
 TEST_F(ButtonWatchTest, ShowsWhenToRelease) {
   watch();
-  lights.set(State::Serving, true);
+  lights.set(LightState::Serving, true);
   wire.set(true);
   time.pass(loop, panel::Button::kHold - 1ms);
-  EXPECT_FALSE(lights.has(State::ButtonHeld));
+  EXPECT_FALSE(lights.has(LightState::ButtonHeld));
   time.pass(loop, 2ms);
-  EXPECT_TRUE(lights.has(State::ButtonHeld));
+  EXPECT_TRUE(lights.has(LightState::ButtonHeld));
   set(false);
-  EXPECT_FALSE(lights.has(State::ButtonHeld));
+  EXPECT_FALSE(lights.has(LightState::ButtonHeld));
   EXPECT_EQ(presses, std::vector{Press::ShowAddress});
 }
 
@@ -76,7 +76,7 @@ TEST_F(ButtonWatchTest, IgnoresAStuckButton) {
   wire.pressed = true;
   watch();
   time.pass(loop, 3200ms);
-  EXPECT_FALSE(lights.has(State::ButtonHeld));
+  EXPECT_FALSE(lights.has(LightState::ButtonHeld));
   set(false);
   EXPECT_TRUE(presses.empty());
 }
@@ -85,10 +85,10 @@ TEST_F(ButtonWatchTest, CancelsAPressIfTheButtonFails) {
   watch();
   set(true);
   time.pass(loop, 3200ms);
-  EXPECT_TRUE(lights.has(State::ButtonHeld));
+  EXPECT_TRUE(lights.has(LightState::ButtonHeld));
   wire.broken = true;
   set(false);
-  EXPECT_FALSE(lights.has(State::ButtonHeld));
+  EXPECT_FALSE(lights.has(LightState::ButtonHeld));
   wire.broken = false;
   set(false);
   EXPECT_TRUE(presses.empty()) << "a lost button is not a release";
@@ -113,7 +113,7 @@ TEST_F(ButtonWatchTest, IgnoresAButtonPressedAtItsReturn) {
   wire.broken = false;
   set(true);
   time.pass(loop, 3200ms);
-  EXPECT_FALSE(lights.has(State::ButtonHeld));
+  EXPECT_FALSE(lights.has(LightState::ButtonHeld));
   set(false);
   EXPECT_TRUE(presses.empty());
   set(true);
@@ -138,7 +138,7 @@ TEST_F(ButtonWatchTest, ContinuesWithAnotherLine) {
   watch();
   button->let_go();
   EXPECT_FALSE(wire.open);
-  button->take(std::make_unique<WireLine>(wire));
+  button->set_line(std::make_unique<WireLine>(wire));
   set(true);
   set(false);
   EXPECT_EQ(presses, std::vector{Press::Identify});

@@ -12,9 +12,9 @@ namespace adit::box {
 namespace {
 
 using namespace std::chrono_literals;
+using panel::LightState;
 using panel::Lit;
 using panel::Pattern;
-using panel::State;
 using panel::WatchedLines;
 
 constexpr std::size_t kHealth = panel::index_of(panel::Light::Health),
@@ -24,7 +24,8 @@ constexpr std::size_t kHealth = panel::index_of(panel::Light::Health),
 class LightsTest : public testing::Test {
  protected:
   void be_well() {
-    for (const State state : {State::Serving, State::ScoringConnected, State::MappingConnected}) {
+    for (const LightState state :
+         {LightState::Serving, LightState::ScoringConnected, LightState::MappingConnected}) {
       lights.set(state, true);
     }
   }
@@ -40,19 +41,19 @@ TEST_F(LightsTest, SetTheLinesOnlyAfterAChange) {
   const std::size_t changes = seen.shown.size();
   EXPECT_EQ(seen.shown.back(), (Lit{true, true, true, false}));
   be_well();
-  lights.set(State::NeedsOperator, false);
+  lights.set(LightState::NeedsOperator, false);
   EXPECT_EQ(seen.shown.size(), changes);
 }
 
 TEST_F(LightsTest, AreAllDarkAtFirst) {
-  lights.set(State::Serving, false);
+  lights.set(LightState::Serving, false);
   ASSERT_EQ(seen.shown.size(), 1u) << "independent of earlier lights";
   EXPECT_EQ(seen.shown.back(), Lit{});
 }
 
 TEST_F(LightsTest, BlinkByTheTimerOfTheLoop) {
   be_well();
-  lights.set(State::NeedsOperator, true);
+  lights.set(LightState::NeedsOperator, true);
   seen.shown.clear();
   time.pass(loop, 1010ms);
   ASSERT_EQ(seen.shown.size(), 8u) << "steps of 125 ms";
@@ -60,10 +61,10 @@ TEST_F(LightsTest, BlinkByTheTimerOfTheLoop) {
 }
 
 TEST_F(LightsTest, KeepTheirRhythmWhileTheSameIsRepeated) {
-  lights.set(State::NeedsOperator, true);
+  lights.set(LightState::NeedsOperator, true);
   seen.shown.clear();
   for (int i = 0; i < 101; ++i) {
-    lights.set(State::NeedsOperator, true);
+    lights.set(LightState::NeedsOperator, true);
     time.pass(loop, 10ms);
   }
   EXPECT_EQ(seen.shown.size(), 8u);
@@ -71,20 +72,20 @@ TEST_F(LightsTest, KeepTheirRhythmWhileTheSameIsRepeated) {
 
 TEST_F(LightsTest, FlashTogetherWhileIdentified) {
   be_well();
-  lights.set_for(State::Identify, 3s);
+  lights.set_for(LightState::Identify, 3s);
   constexpr panel::Lights kTwice = {Pattern::Twice, Pattern::Twice, Pattern::Twice, Pattern::Twice};
-  EXPECT_EQ(lights.shown(), kTwice);
-  lights.set(State::MappingConnected, false);
-  EXPECT_EQ(lights.shown(), kTwice) << "independent of other states";
-  EXPECT_GT(lights.left(State::Identify).value_or(0ms), 0ms);
+  EXPECT_EQ(lights.shown_lights(), kTwice);
+  lights.set(LightState::MappingConnected, false);
+  EXPECT_EQ(lights.shown_lights(), kTwice) << "independent of other states";
+  EXPECT_GT(lights.remaining(LightState::Identify).value_or(0ms), 0ms);
   const auto showed = [&](const Lit& lit) { return std::ranges::find(seen.shown, lit) != seen.shown.end(); };
   time.pass(loop, 3s - 1ms);
   EXPECT_TRUE(showed(Lit{}) && showed(Lit{true, true, true, true}));
-  EXPECT_EQ(lights.shown(), kTwice);
+  EXPECT_EQ(lights.shown_lights(), kTwice);
   time.pass(loop, 1ms);
-  EXPECT_EQ(lights.left(State::Identify), std::nullopt);
-  EXPECT_FALSE(lights.has(State::Identify));
-  EXPECT_EQ(lights.shown()[kMapping], Pattern::Off);
+  EXPECT_EQ(lights.remaining(LightState::Identify), std::nullopt);
+  EXPECT_FALSE(lights.has(LightState::Identify));
+  EXPECT_EQ(lights.shown_lights()[kMapping], Pattern::Off);
   EXPECT_EQ(seen.shown.back(), (Lit{true, true, false, false}));
 }
 
@@ -95,36 +96,36 @@ TEST_F(LightsTest, PlayDigitsOnceOnTheAttentionLight) {
   const std::vector all{dark, digit, dark, digit, dark, well};
   seen.shown.clear();
   lights.play_digits({{false, 100ms}, {true, 100ms}, {false, 100ms}, {true, 200ms}, {false, 100ms}});
-  EXPECT_EQ(lights.shown()[kAttention], Pattern::Digits);
+  EXPECT_EQ(lights.shown_lights()[kAttention], Pattern::Digits);
   time.pass(loop, 599ms);
-  EXPECT_TRUE(lights.has(State::Address));
+  EXPECT_TRUE(lights.has(LightState::Address));
   time.pass(loop, 1ms);
-  EXPECT_FALSE(lights.has(State::Address));
+  EXPECT_FALSE(lights.has(LightState::Address));
   EXPECT_EQ(seen.shown, all);
 }
 
 TEST_F(LightsTest, ClearATimedStateEarly) {
-  lights.set(State::Serving, true);
-  lights.set_for(State::Identify, 1h);
-  lights.set(State::Identify, false);
-  EXPECT_EQ(lights.left(State::Identify), std::nullopt);
-  EXPECT_EQ(lights.shown()[kHealth], Pattern::On);
+  lights.set(LightState::Serving, true);
+  lights.set_for(LightState::Identify, 1h);
+  lights.set(LightState::Identify, false);
+  EXPECT_EQ(lights.remaining(LightState::Identify), std::nullopt);
+  EXPECT_EQ(lights.shown_lights()[kHealth], Pattern::On);
 }
 
 TEST_F(LightsTest, ContinueAfterThePanelFails) {
   seen.fail = true;
-  lights.set(State::Serving, true);
-  lights.set(State::ScoringConnected, true);
+  lights.set(LightState::Serving, true);
+  lights.set(LightState::ScoringConnected, true);
   EXPECT_EQ(seen.shown.size(), 2u);
 }
 
 TEST_F(LightsTest, RetryAFailedPanelWithoutAChange) {
   seen.fail = true;
-  lights.set(State::Serving, true);
+  lights.set(LightState::Serving, true);
   EXPECT_EQ(lights.trouble(), "gpiochip0: gone");
   seen.fail = false;
   seen.shown.clear();
-  lights.set(State::Serving, true);
+  lights.set(LightState::Serving, true);
   EXPECT_TRUE(seen.shown.empty()) << "fewer updates than requests";
   time.pass(loop, panel::Painter::kAgain);
   EXPECT_EQ(seen.shown, (std::vector{Lit{true, false, false, false}}));
@@ -138,7 +139,7 @@ TEST_F(LightsTest, RepeatAsAHeartbeatIfWatched) {
   WatchedLines::Seen watched{.shown = {}, .is_watched = true};
   be_well();
   lights.let_go();
-  lights.take(std::make_unique<WatchedLines>(watched));
+  lights.set_lines(std::make_unique<WatchedLines>(watched));
   EXPECT_EQ(watched.shown.size(), 1u) << "at once";
   for (int i = 0; i < 3; ++i) {
     time.pass(loop, 1s);
@@ -153,7 +154,7 @@ TEST_F(LightsTest, RepeatAsAHeartbeatIfWatched) {
   EXPECT_EQ(watched.shown.size(), before + 2) << "the write is repeated";
   lights.let_go();
   watched.shown.clear();
-  lights.set(State::NeedsOperator, true);
+  lights.set(LightState::NeedsOperator, true);
   lights.beat();
   time.pass(loop, 1s);
   EXPECT_TRUE(watched.shown.empty());
@@ -170,8 +171,8 @@ TEST_F(LightsTest, ShowTheSameOnNewLines) {
   be_well();
   WatchedLines::Seen other;
   lights.let_go();
-  lights.set(State::NeedsOperator, true);  // the lights cannot be set meanwhile
-  lights.take(std::make_unique<WatchedLines>(other));
+  lights.set(LightState::NeedsOperator, true);  // the lights cannot be set meanwhile
+  lights.set_lines(std::make_unique<WatchedLines>(other));
   EXPECT_EQ(other.shown, (std::vector<Lit>{{true, true, true, true}}));
 }
 

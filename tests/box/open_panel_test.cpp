@@ -46,7 +46,7 @@ TEST_F(OpenPanelTest, SimulatesLightsButNoButtonIfLinesFail) {
               "panel: chip no-such-chip: No such file or directory");
     EXPECT_TRUE(std::filesystem::exists(folder_ / "panel"));
     EXPECT_EQ(opened.button == nullptr, button.empty());
-    if (opened.button) EXPECT_FALSE(opened.button->pressed().has_value());
+    if (opened.button) EXPECT_FALSE(opened.button->is_pressed().has_value());
     EXPECT_FALSE(std::filesystem::exists(folder_ / "panel.button"))
         << "a simulated button proves no presence";
   }

@@ -11,7 +11,7 @@ TEST(Table, AlignsItsColumns) {
   Table table({{"robot"}, {"sent", Align::Right}, {"said"}});
   table.add({{"r1"}, {"7"}, {"200"}});
   table.add({{"robot_long"}, {"12345"}, {"422: no"}});
-  EXPECT_EQ(table.written(false),
+  EXPECT_EQ(table.to_text(false),
             "  robot        sent  said\n"
             "  r1              7  200\n"
             "  robot_long  12345  422: no\n");
@@ -21,7 +21,7 @@ TEST(Table, HasNoTrailingSpaces) {
   Table table({{"a"}, {"b", Align::Right}, {"c"}});
   table.add({{"x"}, {""}, {""}});
   table.add({{""}, {"22"}, {"z"}});
-  EXPECT_EQ(table.written(false),
+  EXPECT_EQ(table.to_text(false),
             "  a   b  c\n"
             "  x\n"
             "     22  z\n");
@@ -31,13 +31,13 @@ TEST(Table, KeepsItsColumnsIfTextIsColoured) {
   Table table({{}, {}});
   table.add({{"NO", Tone::Bad}, {"x"}});
   table.add({{"late"}, {"y"}});
-  EXPECT_EQ(table.written(true), "  \033[1;31mNO\033[0m    x\n  late  y\n");
+  EXPECT_EQ(table.to_text(true), "  \033[1;31mNO\033[0m    x\n  late  y\n");
 }
 
 TEST(Table, EscapesForeignText) {
   Table table(std::vector<Table::Column>(1));
   table.add({{"\033[2Jr1\n"}});
-  EXPECT_EQ(table.written(true), "  \\x1b[2Jr1\\x0a\n");
+  EXPECT_EQ(table.to_text(true), "  \\x1b[2Jr1\\x0a\n");
 }
 
 TEST(Table, NamesAnErrorsStatusOnce) {
@@ -51,7 +51,7 @@ TEST(Table, CountsCharactersAndNotBytes) {
   Table table({{}, {}});
   table.add({{"Höhle"}, {"a"}});
   table.add({{"r1"}, {"b"}});
-  EXPECT_EQ(table.written(false), "  Höhle  a\n  r1     b\n");
+  EXPECT_EQ(table.to_text(false), "  Höhle  a\n  r1     b\n");
 }
 
 }  // namespace

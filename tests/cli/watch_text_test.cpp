@@ -105,19 +105,19 @@ TEST(Watching, EscapesForeignText) {
 }
 
 TEST(Screen, ShowsTheLinesThatFit) {
-  EXPECT_EQ(fitted("one\ntwo\n", 5, 10), "one\ntwo");
-  EXPECT_EQ(fitted("one\ntwo\nthree\n", 2, 20), "one\n... 2 more lines");
-  EXPECT_EQ(fitted("one\ntwo\nthree\n", 1, 20), "... 3 more lines");
-  EXPECT_EQ(fitted("one\n", 0, 20), "");
-  EXPECT_EQ(fitted("", 3, 20), "");
+  EXPECT_EQ(fit("one\ntwo\n", 5, 10), "one\ntwo");
+  EXPECT_EQ(fit("one\ntwo\nthree\n", 2, 20), "one\n... 2 more lines");
+  EXPECT_EQ(fit("one\ntwo\nthree\n", 1, 20), "... 3 more lines");
+  EXPECT_EQ(fit("one\n", 0, 20), "");
+  EXPECT_EQ(fit("", 3, 20), "");
 }
 
 TEST(Screen, CutsLinesByTheirVisibleWidth) {
-  EXPECT_EQ(fitted("abcdef\n", 3, 4), "abcd\033[0m");
-  EXPECT_EQ(fitted("Höhle\n", 3, 5), "Höhle");
-  EXPECT_EQ(fitted("Höhlen\n", 3, 2), "Hö\033[0m");
-  EXPECT_EQ(fitted("\033[31mab\033[0mcd\n", 3, 4), "\033[31mab\033[0mcd");
-  EXPECT_EQ(fitted("\033[31mabc\033[0m\n", 3, 2), "\033[31mab\033[0m");
+  EXPECT_EQ(fit("abcdef\n", 3, 4), "abcd\033[0m");
+  EXPECT_EQ(fit("Höhle\n", 3, 5), "Höhle");
+  EXPECT_EQ(fit("Höhlen\n", 3, 2), "Hö\033[0m");
+  EXPECT_EQ(fit("\033[31mab\033[0mcd\n", 3, 4), "\033[31mab\033[0mcd");
+  EXPECT_EQ(fit("\033[31mabc\033[0m\n", 3, 2), "\033[31mab\033[0m");
 }
 
 }  // namespace

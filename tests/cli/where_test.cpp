@@ -64,7 +64,7 @@ TEST(ParseLocation, RejectsOthers) {
 
 TEST(ParseAddress, ReadsBackTheSame) {
   for (const Address& address : {Address{"10.0.0.1", 1}, Address{"fd00::1", 8000}}) {
-    EXPECT_EQ(parse_address(written(address)).value(), address);
+    EXPECT_EQ(parse_address(to_text(address)).value(), address);
   }
 }
 

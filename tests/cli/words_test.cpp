@@ -34,10 +34,10 @@ TEST(Words, OmitNeedlessDigits) {
 }
 
 TEST(Words, AreColouredOnlyIfSupported) {
-  EXPECT_EQ(painted("NO", Tone::Bad, false), "NO");
-  EXPECT_EQ(painted("NO", Tone::Bad, true), "\033[1;31mNO\033[0m");
-  EXPECT_EQ(painted("yes", Tone::Plain, true), "yes");
-  EXPECT_EQ(painted("", Tone::Bad, true), "");
+  EXPECT_EQ(paint("NO", Tone::Bad, false), "NO");
+  EXPECT_EQ(paint("NO", Tone::Bad, true), "\033[1;31mNO\033[0m");
+  EXPECT_EQ(paint("yes", Tone::Plain, true), "yes");
+  EXPECT_EQ(paint("", Tone::Bad, true), "");
 }
 
 }  // namespace

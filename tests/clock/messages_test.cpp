@@ -66,13 +66,13 @@ TEST(ClockMessages, NtpTimeIsValidOnlyFromTheSetServer) {
 
 TEST(ClockMessages, FormerNtpServerIsTrustedLikeTheOperator) {
   Status status{.source = Source::Ntp, .server = "10.0.0.5", .ntp = {.server = "10.0.0.5"}};
-  EXPECT_EQ(status.trusted(), Source::Ntp);
+  EXPECT_EQ(status.trusted_source(), Source::Ntp);
   for (const char* next : {"10.0.0.6", ""}) {
     status.ntp.server = next;
-    EXPECT_EQ(status.trusted(), Source::Operator) << next;
+    EXPECT_EQ(status.trusted_source(), Source::Operator) << next;
   }
   status.source = Source::Robots;
-  EXPECT_EQ(status.trusted(), Source::Robots);
+  EXPECT_EQ(status.trusted_source(), Source::Robots);
 }
 
 TEST(ClockMessages, TimesOutOfBoundsAreRejected) {

@@ -54,10 +54,10 @@ TEST(Lists, AreParsedOnFirstUse) {
   ASSERT_EQ(list.size(), 2u);
   const Field element = list.element(1);
   const Field inner = element.member("b");
-  EXPECT_EQ(inner.element(0).whole<int>(), 2);
+  EXPECT_EQ(inner.element(0).integer<int>(), 2);
   EXPECT_EQ(inner.element(0).path(), "a[1].b[0]");
-  EXPECT_EQ(list.element(0).whole<int>(), 1);
-  EXPECT_FALSE(reading.refused());
+  EXPECT_EQ(list.element(0).integer<int>(), 1);
+  EXPECT_FALSE(reading.has_refusal());
   EXPECT_EQ(list.text(), "");
   EXPECT_EQ(reading.outcome(0).error().sentence, "a: expected a string, got an array");
 }
@@ -105,7 +105,7 @@ TEST(Lists, GiveTheNumbersOfAnObjectWithExactlyTheseMembers) {
     double numbers[2] = {};
     ASSERT_EQ(list.reals(0, kNames, numbers), is_read) << body;
     if (is_read) EXPECT_EQ(std::pair(numbers[0], numbers[1]), std::pair(0.5, -20.0)) << body;
-    EXPECT_FALSE(reading.refused()) << body;
+    EXPECT_FALSE(reading.has_refusal()) << body;
   }
 }
 

@@ -74,7 +74,7 @@ TEST(Row, RejectsACountThatItsTypeCannotHold) {
   const Value root{std::int64_t{1} << 32};
   std::uint32_t count = 0;
   KindOf<std::uint32_t>::read(Field(root, reading), count);
-  EXPECT_TRUE(reading.refused());
+  EXPECT_TRUE(reading.has_refusal());
 }
 
 TEST(Row, ReadsBackTheSame) {

@@ -183,7 +183,7 @@ TEST(WriteMarkersUpdate, WritesAllAsTheIcdListsIt) {  // ICD 6.6
 TEST(CborWriter, WritesTheShortestHead) {  // RFC 8949 4.1, appendix A
   const auto written = [](std::int64_t number) {
     CborWriter out;
-    out.whole(number);
+    out.integer(number);
     return out.finish().to_vector();
   };
   EXPECT_EQ(written(0), (Bytes{0x00}));
@@ -199,7 +199,7 @@ TEST(CborWriter, WritesTheShortestHead) {  // RFC 8949 4.1, appendix A
 
 TEST(CborWriter, WritesRealNumbersAsDoubles) {
   CborWriter out;
-  out.real(1);
+  out.floating(1);
   EXPECT_EQ(out.finish().to_vector(), (Bytes{0xfb, 0x3f, 0xf0, 0, 0, 0, 0, 0, 0}));
 }
 

@@ -105,7 +105,7 @@ TEST(CommandLine, MayHaveEmptyValuesAndFreeWords) {
   Program program = program_of(options);
   program.empty = Empty::Taken;
   std::string words;
-  program.word = take<[](std::string& all, const std::string& word) -> Wrong {
+  program.word = set_by<[](std::string& all, const std::string& word) -> Wrong {
     all += word;
     return word == "no" ? Wrong("not that") : std::nullopt;
   }>(words);

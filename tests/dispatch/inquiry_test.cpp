@@ -79,16 +79,16 @@ TEST_F(InquiryTest, BelievesRecordedWhileTheRunClockStands) {
 
 TEST_F(InquiryTest, AsksEverySecond) {
   EXPECT_EQ(inquiry_.next_ask(at(0)), at(0));
-  inquiry_.asked(at(2));
+  inquiry_.on_asked(at(2));
   EXPECT_EQ(inquiry_.next_ask(at(2)), at(3));
 }
 
 TEST_F(InquiryTest, AsksOnceMoreWhenItsTimeIsOverSoThatTheOperatorMayDecideThen) {
-  inquiry_.asked(at(14.5));
-  inquiry_.failed(at(14.5));
+  inquiry_.on_asked(at(14.5));
+  inquiry_.on_failed(at(14.5));
   EXPECT_EQ(inquiry_.next_ask(at(15.1)), at(15.5));
-  inquiry_.asked(at(15.5));
-  inquiry_.failed(at(15.5));
+  inquiry_.on_asked(at(15.5));
+  inquiry_.on_failed(at(15.5));
   EXPECT_TRUE(inquiry_.is_in_vain());
   EXPECT_EQ(inquiry_.next_ask(at(16)), at(25.5));
 }

@@ -50,7 +50,7 @@ class TakeOverTest : public testing::Test {
     }
     restart_with(to, taken);
   }
-  void take_over() { take_over(first, spare, first.reports().expected(first.time().now)); }
+  void take_over() { take_over(first, spare, first.reports().expected_status(first.time().now)); }
 
   Scene first, spare;
 };
@@ -156,10 +156,10 @@ TEST_F(TakeOverTest, ChangesNothingTheSecondTime) {
   first.post_queued(2);
   Scene other;
   other.post_queued(3);
-  take_over(first, other, first.reports().expected(first.time().now));
+  take_over(first, other, first.reports().expected_status(first.time().now));
   const auto reports = other.output().ledger;
   const auto runs = other.output().runs;
-  take_over(first, other, first.reports().expected(first.time().now));
+  take_over(first, other, first.reports().expected_status(first.time().now));
   EXPECT_EQ(other.output().ledger, reports);
   EXPECT_EQ(other.output().runs, runs);
 }
@@ -169,7 +169,7 @@ TEST_F(TakeOverTest, SendsReportsQueuedAtTheSpare) {
   other.post_queued(7);
   first.post(1);
   first.answer(recorded_answer());
-  take_over(first, other, first.reports().expected(first.time().now));
+  take_over(first, other, first.reports().expected_status(first.time().now));
   other.hear(19, 0);
   EXPECT_EQ(other.send_next(), 1);
   EXPECT_EQ(other.report(2).report.position.x, 1) << "a free number";
@@ -184,7 +184,7 @@ TEST_F(TakeOverTest, AsksTheOperatorAboutAReportOfBothBoxes) {
     Scene& sends = first_sent ? box : other;
     ASSERT_EQ(sends.send_next(), 1);
     sends.answer(recorded_answer());
-    take_over(box, other, box.reports().expected(box.time().now));
+    take_over(box, other, box.reports().expected_status(box.time().now));
     other.repeat_status(60, 19, 0);
     EXPECT_EQ(other.send_next(), 0);
     EXPECT_THAT(other.undecided(), testing::ElementsAre(HasSubstr("the same as report")));
@@ -197,7 +197,7 @@ TEST_F(TakeOverTest, SendsAReportThatADifferentRunHad) {
   other.answer(recorded_answer(0, "scored", "yesterday"));
   first.post(2);
   first.answer(recorded_answer(0, "scored", "today"));
-  take_over(first, other, first.reports().expected(first.time().now));
+  take_over(first, other, first.reports().expected_status(first.time().now));
   other.hear(19, 0);
   const ClientId again = other.post(1);
   EXPECT_FALSE(other.is_answered(again)) << "sent in today's run";
@@ -218,7 +218,7 @@ TEST_F(TakeOverTest, WorksInTheOtherDirectionLater) {
   spare.post(3);
   spare.answer(recorded_answer());
   first.wait(60);
-  take_over(spare, first, spare.reports().expected(spare.time().now));
+  take_over(spare, first, spare.reports().expected_status(spare.time().now));
   EXPECT_EQ(first.state(1), Answered);
   EXPECT_EQ(first.state(2), Answered) << "the spare sent it";
   EXPECT_EQ(first.state(3), Answered);
@@ -257,7 +257,7 @@ class World {
 
   void live() {
     for (int i = 0; i < 4; ++i) post_one();
-    const auto expected = first_.reports().expected(first_.time().now);
+    const auto expected = first_.reports().expected_status(first_.time().now);
     if (chance(3)) wake_first_box();
     Books here, there = books_of(first_);
     const TakeOver taken = dispatch::take_over(

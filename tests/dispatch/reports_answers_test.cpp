@@ -71,9 +71,9 @@ TEST(A2xx, OfAStrangeReportLeavesTheCountsUncertain) {
   scene.post(10);
   scene.answer(answer_about(500));
   EXPECT_EQ(scene.state(1), Answered);
-  EXPECT_FALSE(scene.reports().expected(scene.time().now)) << "its score is another report's";
+  EXPECT_FALSE(scene.reports().expected_status(scene.time().now)) << "its score is another report's";
   scene.hear(19, 0);
-  EXPECT_TRUE(scene.reports().expected(scene.time().now));
+  EXPECT_TRUE(scene.reports().expected_status(scene.time().now));
 }
 
 TEST(A2xx, OfAReportOfTheLastRunPutsItInDoubt) {

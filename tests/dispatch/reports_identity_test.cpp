@@ -151,9 +151,9 @@ TEST(UnheardCommandPost, KeepsItsDoubts) {
   Reports reports({}, output);
   reports.open({}, {}, time, "10.100.1.200:8000");
   reports.status_failed(NoStatus::Other, time);
-  reports.take({.report = {.type = "Drill", .position = {1, 2, 3}}, .sender = "10.0.0.7"}, 1, true, time);
+  reports.accept({.report = {.type = "Drill", .position = {1, 2, 3}}, .sender = "10.0.0.7"}, 1, true, time);
   ASSERT_NE(reports.choose(time), nullptr);
-  reports.lost("no answer", time);
+  reports.on_lost("no answer", time);
   ASSERT_TRUE(output.runs.contains(1));
   Reports there({}, output);
   there.open({output.ledger.at(1)}, {output.runs.at(1)}, time, kThere);

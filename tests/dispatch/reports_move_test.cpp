@@ -18,7 +18,7 @@ class PendingMove : public testing::Test {
     scene_.post(2);
     announce(kThere);
   }
-  void announce(const std::string& post) { scene_.reports().will_move(post, scene_.time()); }
+  void announce(const std::string& post) { scene_.reports().prepare_move(post, scene_.time()); }
   void arrive() {
     scene_.answer(recorded_answer());
     scene_.move_to(kThere);

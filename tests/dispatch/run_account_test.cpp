@@ -21,7 +21,7 @@ class RunAccountTest : public testing::Test {
     return {score, now_, remaining, "adit"};
   }
   void hear(std::int64_t remaining, std::int64_t score) {
-    account_.heard(status(remaining, score), time());
+    account_.on_status(status(remaining, score), time());
     account_.settle(status(remaining, score), 0, time());
   }
   void answer(const std::string& report_status, std::int64_t points) {
@@ -29,7 +29,7 @@ class RunAccountTest : public testing::Test {
     reply.run = "1";
     reply.report_status = report_status;
     reply.score_change = points;
-    account_.answered(reply, time());
+    account_.on_answered(reply, time());
   }
 
   FakeOutput output_;
@@ -39,7 +39,7 @@ class RunAccountTest : public testing::Test {
 };
 
 TEST_F(RunAccountTest, ExpectsNothingBeforeTheFirstStatus) {
-  EXPECT_EQ(account_.expected(time().now), std::nullopt);
+  EXPECT_EQ(account_.expected_status(time().now), std::nullopt);
   EXPECT_FALSE(account_.is_fresh(time().now));
 }
 
@@ -47,7 +47,7 @@ TEST_F(RunAccountTest, AStatusVouchesUntilTheNextMayBeSent) {
   hear(20, 3);
   EXPECT_TRUE(account_.is_fresh(at(now_ + 15).now));
   EXPECT_FALSE(account_.is_fresh(at(now_ + 16).now));
-  account_.paced(std::chrono::seconds(20));
+  account_.set_spacing(std::chrono::seconds(20));
   EXPECT_TRUE(account_.is_fresh(at(now_ + 22).now)) << "a report would never be sent";
   EXPECT_FALSE(account_.is_fresh(at(now_ + 27).now));
 }
@@ -57,15 +57,15 @@ TEST_F(RunAccountTest, ExpectsTheLastStatusAndItsOwnReports) {
   answer("scored", 1);
   answer("scored", 0);
   now_ += 7;
-  EXPECT_EQ(account_.expected(time().now), status(18, 4));
+  EXPECT_EQ(account_.expected_status(time().now), status(18, 4));
 }
 
 TEST_F(RunAccountTest, ExpectsNothingDuringADoubt) {
   hear(20, 3);
   account_.lose();
-  EXPECT_EQ(account_.expected(time().now), std::nullopt);
+  EXPECT_EQ(account_.expected_status(time().now), std::nullopt);
   hear(19, 3);
-  EXPECT_EQ(account_.expected(time().now), status(19, 3));
+  EXPECT_EQ(account_.expected_status(time().now), status(19, 3));
 }
 
 TEST_F(RunAccountTest, ExpectsNothingSoonAfterASettlement) {
@@ -74,28 +74,28 @@ TEST_F(RunAccountTest, ExpectsNothingSoonAfterASettlement) {
   hear(20, 3);
   now_ = 109;
   hear(19, 3);
-  EXPECT_EQ(account_.expected(time().now), std::nullopt);
+  EXPECT_EQ(account_.expected_status(time().now), std::nullopt);
   now_ = 110;
   hear(19, 3);
-  EXPECT_EQ(account_.expected(time().now), status(19, 3));
+  EXPECT_EQ(account_.expected_status(time().now), status(19, 3));
   EXPECT_THAT(account_.run().unreliable, IsEmpty());
 }
 
 TEST_F(RunAccountTest, ExpectsNothingWhileReportsAreNotScored) {
   hear(20, 3);
   answer("admin stop", 0);
-  EXPECT_EQ(account_.expected(time().now), std::nullopt);
+  EXPECT_EQ(account_.expected_status(time().now), std::nullopt);
   answer("scored", 0);
-  EXPECT_EQ(account_.expected(time().now), status(19, 3));
+  EXPECT_EQ(account_.expected_status(time().now), status(19, 3));
 }
 
 TEST_F(RunAccountTest, DistrustsACountIfItIsWrongTwice) {
   hear(20, 3);
   hear(19, 3);
-  EXPECT_EQ(account_.expected(time().now), std::nullopt) << "wrong once";
+  EXPECT_EQ(account_.expected_status(time().now), std::nullopt) << "wrong once";
   EXPECT_THAT(account_.run().unreliable, IsEmpty());
   hear(19, 3);
-  EXPECT_EQ(account_.expected(time().now), std::nullopt);
+  EXPECT_EQ(account_.expected_status(time().now), std::nullopt);
   EXPECT_THAT(account_.run().unreliable, HasSubstr("another sender may report with this token"));
   EXPECT_EQ(output_.run->unreliable, account_.run().unreliable) << "on disk";
 }
@@ -106,7 +106,7 @@ TEST_F(RunAccountTest, AccusesNoSenderIfTheCountsNeverMove) {
   hear(20, 3);
   hear(20, 3);
   EXPECT_EQ(account_.run().unreliable, Run::kCountsStand);
-  EXPECT_EQ(account_.expected(time().now), std::nullopt);
+  EXPECT_EQ(account_.expected_status(time().now), std::nullopt);
 }
 
 TEST_F(RunAccountTest, DistrustsCountsThatStopMoving) {
@@ -124,7 +124,7 @@ TEST_F(RunAccountTest, ForgivesADelayedCount) {
   answer("scored", 0);
   hear(20, 3);
   hear(19, 3);
-  EXPECT_EQ(account_.expected(time().now), status(19, 3));
+  EXPECT_EQ(account_.expected_status(time().now), status(19, 3));
   EXPECT_THAT(account_.run().unreliable, IsEmpty());
 }
 
@@ -133,7 +133,7 @@ TEST_F(RunAccountTest, ExpectsTheCountWithGrantedReports) {
   now_ = 110;
   account_.grant();
   hear(23, 3);
-  EXPECT_EQ(account_.expected(time().now), status(23, 3));
+  EXPECT_EQ(account_.expected_status(time().now), status(23, 3));
   EXPECT_THAT(account_.run().unreliable, IsEmpty());
 }
 
@@ -143,10 +143,10 @@ TEST_F(RunAccountTest, ExpectsNothingAfterAGrantUntilItsOwnReportsMustBeCounted)
   now_ = 110;
   account_.grant();
   hear(21, 3);
-  EXPECT_EQ(account_.expected(time().now), std::nullopt) << "the report may be counted later";
+  EXPECT_EQ(account_.expected_status(time().now), std::nullopt) << "the report may be counted later";
   now_ = 111;
   hear(21, 3);
-  EXPECT_EQ(account_.expected(time().now), status(21, 3));
+  EXPECT_EQ(account_.expected_status(time().now), status(21, 3));
 }
 
 TEST_F(RunAccountTest, AllowsNewCountsBeforeTheRunStarts) {
@@ -154,7 +154,7 @@ TEST_F(RunAccountTest, AllowsNewCountsBeforeTheRunStarts) {
   hear(5, 0);
   now_ = 10;
   hear(25, 0);
-  EXPECT_EQ(account_.expected(time().now), status(25, 0));
+  EXPECT_EQ(account_.expected_status(time().now), status(25, 0));
 }
 
 TEST_F(RunAccountTest, TrustsTheCountInTheNextRun) {
@@ -162,9 +162,9 @@ TEST_F(RunAccountTest, TrustsTheCountInTheNextRun) {
   account_.distrust("another sender", time().stamp);
   account_.begin({"the operator declared it", {}}, 0, std::nullopt, {}, time());
   EXPECT_EQ(account_.run().number, 2);
-  EXPECT_EQ(account_.expected(time().now), std::nullopt);
+  EXPECT_EQ(account_.expected_status(time().now), std::nullopt);
   hear(25, 0);
-  EXPECT_EQ(account_.expected(time().now), status(25, 0));
+  EXPECT_EQ(account_.expected_status(time().now), status(25, 0));
 }
 
 TEST_F(RunAccountTest, IsFreshForFifteenSecondsAfterAnAnswer) {
@@ -178,7 +178,7 @@ TEST_F(RunAccountTest, IsFreshForFifteenSecondsAfterAnAnswer) {
 
 TEST_F(RunAccountTest, DetectsACommandPostWithoutAStatus) {
   EXPECT_FALSE(account_.is_dumb(time().now));
-  account_.dumb(time().now);
+  account_.on_dumb(time().now);
   EXPECT_TRUE(account_.is_dumb(time().now));
   EXPECT_FALSE(account_.is_dumb(at(116).now)) << "too old";
   hear(20, 3);

@@ -39,7 +39,7 @@ TEST(Runs, ContinueAResumedRunAfterARestart) {
   runs.open({}, 1);
   runs.begin({.post = "b:1"});
   EXPECT_EQ(runs.present().number, 2);
-  runs.take_up(1);
+  runs.adopt(1);
   std::vector<dispatch::Run> kept;
   for (const auto& [number, each] : runs.all()) kept.push_back(each);
   Runs again;
@@ -53,7 +53,7 @@ TEST(Runs, FindTheLatestRunOfACommandPost) {
   Runs runs;
   runs.open({run(1, 1), run(2, 2, "b:1"), run(3, 3), run(4, 4, "b:1")}, 4);
   const auto at = [&](const std::string& post) {
-    const dispatch::Run* const found = runs.at_post(post);
+    const dispatch::Run* const found = runs.latest_at(post);
     return found == nullptr ? 0 : found->number;
   };
   EXPECT_EQ(at("a:1"), 3);

@@ -128,7 +128,7 @@ class Scene {
                 reports_->sending() == nullptr);
   }
   ClientId post(const PostedReport& posted, bool may_send) {
-    reports_->take(posted, ++last_client_, may_send, time());
+    reports_->accept(posted, ++last_client_, may_send, time());
     return last_client_;
   }
   /// Returns the number of the sent report; 0: none.
@@ -137,13 +137,13 @@ class Scene {
     const Report* const chosen = reports_->choose(time());
     return chosen != nullptr ? chosen->number : 0;
   }
-  void answer(const HttpAnswer& answer) { reports_->answered(answer, time()); }
+  void answer(const HttpAnswer& answer) { reports_->on_answered(answer, time()); }
   /// A client posts, and the Command Post records it in the run of that name.
   void record(double x, const std::string& run) {
     post(x);
     answer(recorded_answer(0, "scored", run));
   }
-  void lose() { reports_->lost("no answer", time()); }
+  void lose() { reports_->on_lost("no answer", time()); }
 
   /// A status with the expected run clock.
   void hear(std::int64_t remaining, std::int64_t score) { hear(remaining, score, run_clock()); }

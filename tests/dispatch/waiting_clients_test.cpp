@@ -81,8 +81,8 @@ TEST_F(WaitingClientsTest, KeepTheirDeadlineAtAHandOver) {
 }
 
 TEST_F(WaitingClientsTest, HandOverTheTimeOfTheLastPost) {
-  clients_.posted(8, at_second(5));
-  clients_.posted(9, at_second(1));
+  clients_.on_posted(8, at_second(5));
+  clients_.on_posted(9, at_second(1));
   clients_.hand_over(8, book_.at(9));
   EXPECT_TRUE(clients_.is_young(book_.at(9), at_second(14)));
   EXPECT_FALSE(clients_.is_young(book_.at(9), at_second(15)));

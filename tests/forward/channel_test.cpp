@@ -68,7 +68,7 @@ TEST_F(ChannelTest, IsNoWorseForARejectedMessageOnTrial) {
   EXPECT_EQ(asked(icd::Uri::StateUpdate, rejection)->last().status(), 403);
   const auto channel = asked(icd::Uri::StateUpdate, rejection, true);
   EXPECT_EQ(channel->last().status(), 0);
-  EXPECT_EQ(channel->last().ended(), 0u);
+  EXPECT_EQ(channel->last().ended_requests(), 0u);
   EXPECT_EQ(channel->last().trouble(), "");
   EXPECT_EQ(asked(icd::Uri::StateUpdate, uplink::answer("200 OK", "null"), true)->last().status(), 200);
 }

@@ -29,7 +29,7 @@ class ClocksTest : public testing::Test {
   /// Stamp of a robot's pose.
   icd::Stamp stamped(double stamp) {
     const icd::StateUpdate update{.header = {stamp}, .poses = {{*icd::RobotName::parse("r1"), {}}}};
-    return *clocks_->stamped(update, {.address = "10.0.0.5"}).at(0).stamp;
+    return *clocks_->stamp_poses(update, {.address = "10.0.0.5"}).at(0).stamp;
   }
   void keep() {
     clocks_->keep(disk_, {});
@@ -101,9 +101,9 @@ TEST_F(ClocksTest, ContinueFromTheFloorWithoutAHardwareClock) {
   loop_.set_wall(before - kFar);
   restart("another start");
   EXPECT_GE(now(), before);
-  EXPECT_NEAR(clocks_->clock_step().between(before, now()), 0, 1) << "the time off is unknown";
+  EXPECT_NEAR(clocks_->clock_step().seconds_between(before, now()), 0, 1) << "the time off is unknown";
   EXPECT_NEAR(loop_.wall_now(), before, 1) << "the last known time";
-  EXPECT_NEAR(loop_.wall_ahead(), 0, 1) << "not ahead of the system's clock";
+  EXPECT_NEAR(loop_.wall_offset(), 0, 1) << "not ahead of the system's clock";
 }
 
 TEST_F(ClocksTest, ContinueFromTheLedgerIfTheFloorIsLost) {
@@ -175,7 +175,7 @@ TEST_F(ClocksTest, FollowAClockFarAheadOnceAnotherSourceAgrees) {
     boot("second");
     EXPECT_NEAR(now(), before, 2 * StampFloor::kAhead);
     EXPECT_TRUE(clocks_->hear(before + kYears));
-    EXPECT_NEAR(clocks_->clock_step().between(before, now()), kYears, 1) << "the box was off";
+    EXPECT_NEAR(clocks_->clock_step().seconds_between(before, now()), kYears, 1) << "the box was off";
     clocks_->set_known_time(agrees ? before + kYears : before);
     keep();
     boot("third");
@@ -227,7 +227,7 @@ TEST_F(ClocksTest, DetectAClockStepWithoutElapsedTime) {
   restart("another start");  // a process start; the step is unconfirmed
   EXPECT_TRUE(clocks_->hear(loop_.wall_now()));
   EXPECT_NEAR(clocks_->clock_step().by, 5 * kFar, 1);
-  EXPECT_NEAR(clocks_->clock_step().between(before, now()), kFar, 1) << "time off";
+  EXPECT_NEAR(clocks_->clock_step().seconds_between(before, now()), kFar, 1) << "time off";
   const dispatch::ClockStep step = clocks_->clock_step();
   restart("another start");
   EXPECT_EQ(clocks_->clock_step(), step) << "kept at a process start";
@@ -247,7 +247,7 @@ TEST_F(ClocksTest, MeasureTheTimeThatTheMachineWasOff) {
     loop_.set_wall(known + kFar);
     restart("second");
     if (each.there) clocks_->hear(known + *each.there);
-    EXPECT_NEAR(clocks_->clock_step().between(before, now()), each.off, 1) << each.there.value_or(0);
+    EXPECT_NEAR(clocks_->clock_step().seconds_between(before, now()), each.off, 1) << each.there.value_or(0);
     std::filesystem::remove(folder_.path() + '/' + StampFloor::kFile);
   }
 }
@@ -266,7 +266,7 @@ TEST_F(ClocksTest, HaveOneOffsetPerRobotAndAddress) {
   restart();
   const icd::StateUpdate both{
       .header = {50}, .poses = {{*icd::RobotName::parse("r1"), {}}, {*icd::RobotName::parse("r2"), {}}}};
-  const icd::Stamp first = *clocks_->stamped(both, {.address = "10.0.0.5"}).at(0).stamp;
+  const icd::Stamp first = *clocks_->stamp_poses(both, {.address = "10.0.0.5"}).at(0).stamp;
   loop_.set_stamp(now() + 2);
   EXPECT_NEAR(stamped(50.5), first + 0.5, 1e-6);
 }
@@ -284,7 +284,7 @@ TEST_F(ClocksTest, LimitTheOffsetsOfAState) {
   restart();
   icd::StateUpdate update{.header = {50}, .poses = {}};
   for (int i = 0; i < 500; ++i) update.poses.push_back({*icd::RobotName::parse(std::to_string(i)), {}});
-  clocks_->stamped(update, {.address = "10.0.0.5"});
+  clocks_->stamp_poses(update, {.address = "10.0.0.5"});
   EXPECT_LE(journal::left_in(folder_.path() + "/journal").senders().clocks().size(),
             queues::StampShift::kMostOfAddress);
 }

@@ -37,14 +37,14 @@ constexpr pack::Hurry kFast{.bytes_per_second = 1e10, .slowness = 1, .longest = 
 
 TEST(CloudEffort, IsNoneOnAFastLink) {
   const icd::MapUpdate cloud = large_cloud("r1");
-  const Packed hurried = packed(waiting(cloud), {.hurry = kFast});
+  const Packed hurried = pack_map(waiting(cloud), {.hurry = kFast});
   EXPECT_EQ(hurried.effort, pack::Effort::None);
   EXPECT_GE(hurried.body.size(), cloud.data.bytes.size());
 }
 
 TEST(CloudEffort, EstimatesThePackedSize) {
   const icd::MapUpdate cloud = large_cloud("r1");
-  const Packed full = packed(waiting(cloud)), hurried = packed(waiting(cloud), {.hurry = kMedium});
+  const Packed full = pack_map(waiting(cloud)), hurried = pack_map(waiting(cloud), {.hurry = kMedium});
   ASSERT_EQ(hurried.effort, pack::Effort::None);
   EXPECT_EQ(full.full_size, full.body.size());
   EXPECT_NEAR(static_cast<double>(hurried.full_size), static_cast<double>(full.full_size),
@@ -53,16 +53,16 @@ TEST(CloudEffort, EstimatesThePackedSize) {
 
 TEST(CloudEffort, IsFullOnASlowLink) {
   const icd::MapUpdate cloud = large_cloud("r1");
-  const Packed hurried = packed(waiting(cloud), {.hurry = kSlow});
+  const Packed hurried = pack_map(waiting(cloud), {.hurry = kSlow});
   EXPECT_EQ(hurried.effort, pack::Effort::Full);
-  EXPECT_EQ(hurried.body, packed(waiting(cloud)).body);
+  EXPECT_EQ(hurried.body, pack_map(waiting(cloud)).body);
 }
 
 TEST(CloudEffort, RoundsAsRequested) {
   const icd::MapUpdate cloud = large_cloud("r1");
   for (const auto precision : {queues::Precision::Millimetre, queues::Precision::EightMillimetres}) {
-    const Packed hurried = packed(waiting(cloud, precision), {.hurry = kFast});
-    EXPECT_EQ(hurried.body, packed(waiting(cloud, precision)).body);
+    const Packed hurried = pack_map(waiting(cloud, precision), {.hurry = kFast});
+    EXPECT_EQ(hurried.body, pack_map(waiting(cloud, precision)).body);
     EXPECT_EQ(hurried.precision, precision);
   }
 }
@@ -72,11 +72,11 @@ class CloudOnAFastLink : public MapsToManualEndpoint {
   CloudOnAFastLink() {
     settings_.command_post.rates.map_hz = 10;
     settings_.command_post.budget_mbit = 100'000;
-    maps_->settings_changed();
+    maps_->on_settings_changed();
     maps_->endpoint_changed(icd::BearerToken::parse("a-token"));  // the link gets the budget
   }
   std::uint64_t sent(const char* robot) const {
-    const auto found = counts_.rows().find({Kind::Cloud, robot});
+    const auto found = counts_.rows().find({TrafficKind::Cloud, robot});
     return found == counts_.rows().end() ? 0 : found->second.bytes_sent;
   }
 };
@@ -90,7 +90,7 @@ TEST_F(CloudOnAFastLink, IsSentUnpackedAfterWaiting) {
     ASSERT_TRUE(loop::turn_until(loop_, [&] { return post_.received().size() > before; }));
     take(cloud);
     for (int i = 0; i < 2; ++i) post_.answer("200 OK");
-    ASSERT_TRUE(loop::turn_until(loop_, [&] { return maps_->waiting({Kind::Cloud, "second"}) == 0; }));
+    ASSERT_TRUE(loop::turn_until(loop_, [&] { return maps_->waiting({TrafficKind::Cloud, "second"}) == 0; }));
   }
   EXPECT_GT(sent("second"), cloud.data.bytes.size());
 }

@@ -39,7 +39,7 @@ class DamagedMap : public MapsToManualEndpoint {
   }
   void restore() { maps_->restore(spool_.read()); }
   facts::ActivityRow row() const {
-    const auto found = counts_.rows().find({Kind::Grid, "first"});
+    const auto found = counts_.rows().find({TrafficKind::Grid, "first"});
     return found == counts_.rows().end() ? facts::ActivityRow{} : found->second;
   }
   static constexpr std::uint64_t kOne = MapStore::kFirstNumber + 1, kOther = MapStore::kFirstNumber + 2;
@@ -50,12 +50,12 @@ TEST_F(DamagedMap, IsDroppedAndTheNextOneIsSent) {
   keep(kOther, "second", 0);
   damage(kOne);
   restore();
-  EXPECT_EQ(maps_->waiting({Kind::Grid, "first"}), 1U) << "not read yet";
+  EXPECT_EQ(maps_->waiting({TrafficKind::Grid, "first"}), 1U) << "not read yet";
   post_.answer("200 OK");
   EXPECT_TRUE(receives({"second"}));
   EXPECT_TRUE(loop::turn_until(loop_, [&] { return !fs::exists(file(kOne)); }));
   EXPECT_TRUE(fs::exists(file(kOne) + ".damaged"));
-  EXPECT_EQ(maps_->waiting({Kind::Grid, "first"}), 0U);
+  EXPECT_EQ(maps_->waiting({TrafficKind::Grid, "first"}), 0U);
   EXPECT_EQ(row().failed, 1U);
   EXPECT_TRUE(row().last_sentence.starts_with("its stored copy is damaged: ")) << row().last_sentence;
 }
@@ -67,7 +67,7 @@ TEST_F(DamagedMap, IsDroppedAfterAManualRetry) {
   maps_->resend(std::move(kept[0].map), [](bool) { return true; });
   EXPECT_TRUE(loop::turn_until(loop_, [&] { return row().failed == 1; }));
   EXPECT_TRUE(row().last_sentence.starts_with("its stored copy is damaged: ")) << row().last_sentence;
-  EXPECT_EQ(maps_->waiting({Kind::Grid, "first"}), 0U);
+  EXPECT_EQ(maps_->waiting({TrafficKind::Grid, "first"}), 0U);
 }
 
 TEST_F(DamagedMap, IsNotSentIfThisProcessAcceptedIt) {
@@ -76,7 +76,7 @@ TEST_F(DamagedMap, IsNotSentIfThisProcessAcceptedIt) {
   take(map);
   EXPECT_TRUE(loop::turn_until(loop_, [&] { return row().failed == 1; }));
   EXPECT_TRUE(row().last_sentence.starts_with("its stored copy is damaged: ")) << row().last_sentence;
-  EXPECT_EQ(maps_->waiting({Kind::Grid, "first"}), 0U);
+  EXPECT_EQ(maps_->waiting({TrafficKind::Grid, "first"}), 0U);
 }
 
 TEST_F(DamagedMap, LeavesItsStitchedNeighbour) {
@@ -91,7 +91,7 @@ TEST_F(DamagedMap, LeavesItsStitchedNeighbour) {
   EXPECT_TRUE(loop::turn_until(loop_, [&] { return row().forwarded == 1; }));
   EXPECT_TRUE(loop::turn_until(loop_, [&] { return fs::exists(file(kOne) + ".damaged"); }));
   EXPECT_EQ(row().failed, 1U);
-  EXPECT_EQ(maps_->waiting({Kind::Grid, "first"}), 0U);
+  EXPECT_EQ(maps_->waiting({TrafficKind::Grid, "first"}), 0U);
 }
 
 /// A process packed map kOne at its end, `times` times.
@@ -134,7 +134,7 @@ TEST_F(FaultyMap, IsPutAsideWithItsSenderAndReasonUntilTheOperatorDecides) {
 TEST_F(FaultyMap, IsPutAsideAtItsNextFaultIfTheOperatorSendsItAgain) {
   maps_->endpoint_changed(std::nullopt);  // without a token, maps stay queued
   maps_->resend(grid_in("first", 0), [](bool) { return true; }, {}, /*faults=*/3);
-  EXPECT_TRUE(loop::turn_until(loop_, [&] { return maps_->waiting({Kind::Grid, "first"}) == 1; }));
+  EXPECT_TRUE(loop::turn_until(loop_, [&] { return maps_->waiting({TrafficKind::Grid, "first"}) == 1; }));
   const auto kept = spool::Spool(folder_.path()).read();
   ASSERT_EQ(kept.size(), 1u);
   EXPECT_EQ(kept[0].ends.faults, 3);

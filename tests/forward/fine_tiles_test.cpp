@@ -25,7 +25,7 @@ class FineTilesTest : public testing::Test {
 
   std::shared_ptr<Answer> asked(const std::string& robot, const TileIndex& at) {
     auto answer = std::make_shared<Answer>();
-    picture.finer().tile({robot, picture::Kind::Grid}, at,
+    picture.finer().tile({robot, picture::LayerKind::Grid}, at,
                          [answer](auto tile) { *answer = std::move(tile); });
     return answer;
   }
@@ -45,11 +45,11 @@ class FineTilesTest : public testing::Test {
     return pixels[picture::index_of(0, 0)];
   }
   std::optional<picture::Finer> finer(const std::string& robot, std::uint64_t since = 0) {
-    return picture.finer().finer({robot, picture::Kind::Grid}, since);
+    return picture.finer().finer({robot, picture::LayerKind::Grid}, since);
   }
   void forward(const icd::MapUpdate& map) {
     const int before = changes;
-    picture.forwarded(map);
+    picture.on_forwarded(map);
     ASSERT_TRUE(loop::turn_until(loop, [&] { return changes > before; }));
   }
 

@@ -31,25 +31,25 @@ class FlowTest : public testing::Test {
     flow_.emplace(loop_, ledger_, settings_,
                   Tokens{.scoring = {}, .mapping = {}, .all = {*icd::BearerToken::parse("a-secret")}},
                   Flow::Folders{folder_.path(), folder_.path()},
-                  Flow::Callbacks{.changed = [] {},
-                                  .posted = [this](const std::string& name) { posted_.push_back(name); }});
+                  Flow::Callbacks{.on_changed = [] {},
+                                  .on_posted = [this](const std::string& name) { posted_.push_back(name); }});
     flow_->start();
   }
   icd::Checked<void> take_map(icd::MapUpdate map = spool::cloud(3)) {
     std::optional<icd::Checked<void>> said;
-    flow_->begin_map()->take(std::move(map), sender_,
-                             [&](icd::Checked<void> taken) { said = std::move(taken); });
+    flow_->begin_map()->accept(std::move(map), sender_,
+                               [&](icd::Checked<void> taken) { said = std::move(taken); });
     EXPECT_TRUE(loop::turn_until(loop_, [&] { return said.has_value(); }));
     return said.value_or(std::unexpected(icd::Refusal{icd::Status::Ok, "nothing was said"}));
   }
   /// Few markers are answered at once.
   icd::Checked<void> take_markers() {
     std::optional<icd::Checked<void>> said;
-    flow_->take(spool::markers(), sender_, [&](icd::Checked<void> taken) { said = std::move(taken); });
+    flow_->accept(spool::markers(), sender_, [&](icd::Checked<void> taken) { said = std::move(taken); });
     return said.value();
   }
   icd::Checked<void> take_poses(std::vector<icd::NamedPose> poses, double stamp) {
-    return flow_->take({.header = {stamp}, .poses = std::move(poses)}, sender_);
+    return flow_->accept({.header = {stamp}, .poses = std::move(poses)}, sender_);
   }
   journal::Carried kept() const { return journal::left_in(folder_.path() + "/journal"); }
   double kept_x(const char* robot) const {
@@ -72,7 +72,7 @@ class FlowTest : public testing::Test {
 
 TEST_F(FlowTest, KeepsQueuedMessagesAcrossARestart) {
   ASSERT_TRUE(take_map());
-  ASSERT_TRUE(flow_->take(spool::state(), sender_));
+  ASSERT_TRUE(flow_->accept(spool::state(), sender_));
   ASSERT_TRUE(take_markers());
   EXPECT_THAT(waiting(), ElementsAre(1, 1, 1));
   restart();
@@ -113,7 +113,7 @@ TEST_F(FlowTest, StartsWithoutReadingQueuedData) {
 TEST_F(FlowTest, ShowsSinceWhenTheCommandPostIsBehind) {
   const api::Time before = loop_.wall_now();
   ASSERT_TRUE(take_map());
-  ASSERT_TRUE(flow_->take(spool::state(), sender_));
+  ASSERT_TRUE(flow_->accept(spool::state(), sender_));
   ASSERT_TRUE(take_markers());
   for (const facts::ActivityRow& row : flow_->activities()) {
     ASSERT_TRUE(row.behind_since) << row.kind;
@@ -124,7 +124,7 @@ TEST_F(FlowTest, ShowsSinceWhenTheCommandPostIsBehind) {
 
 TEST_F(FlowTest, ReportsWhichRobotsPost) {
   ASSERT_TRUE(take_map());
-  ASSERT_TRUE(flow_->take(spool::state(), sender_));
+  ASSERT_TRUE(flow_->accept(spool::state(), sender_));
   EXPECT_THAT(posted_, ElementsAre("r1", "r2"));
 }
 
@@ -141,19 +141,20 @@ TEST_F(FlowTest, KeepsTheLastPoseOfTwoAddresses) {
   const intake::Sender other{.address = "10.0.0.6", .bytes = 10};
   ASSERT_TRUE(take_poses({at("a", 0)}, 100));
   ASSERT_TRUE(take_poses({at("a", 1)}, 103)) << "its clock is ahead";
-  ASSERT_TRUE(flow_->take({.header = {50}, .poses = {at("a", 5)}}, other));
+  ASSERT_TRUE(flow_->accept({.header = {50}, .poses = {at("a", 5)}}, other));
   EXPECT_EQ(kept_x("a"), 5);
 }
 
 TEST_F(FlowTest, QuotesNoToken) {
-  flow_->refused(icd::Uri::StateUpdate, sender_, {icd::Status::UnprocessableEntity, "name: got a-secret", 0});
+  flow_->on_rejected(icd::Uri::StateUpdate, sender_,
+                     {icd::Status::UnprocessableEntity, "name: got a-secret", 0});
   ASSERT_EQ(flow_->counts().refusals().size(), 1);
   EXPECT_THAT(flow_->counts().refusals().front().sentence, testing::Not(testing::HasSubstr("a-secret")));
 }
 
 TEST_F(FlowTest, RecordsPartsAndSettingOfARejection) {
-  flow_->refused(icd::Uri::StateUpdate, sender_,
-                 {icd::Status::UnprocessableEntity, "name: got x", 3, "robots[].alias"});
+  flow_->on_rejected(icd::Uri::StateUpdate, sender_,
+                     {icd::Status::UnprocessableEntity, "name: got x", 3, "robots[].alias"});
   ASSERT_EQ(flow_->counts().refusals().size(), 1);
   EXPECT_EQ(flow_->counts().refusals().front().parts, 3u);
   EXPECT_EQ(flow_->counts().refusals().front().setting, "robots[].alias");
@@ -164,7 +165,7 @@ TEST_F(FlowTest, EndsAndAcceptsNoActionOnRejectedMessages) {
   EXPECT_FALSE(flow_->is_ending());
   flow_->end([&] { over = true; });
   EXPECT_TRUE(flow_->is_ending());
-  EXPECT_FALSE(flow_->rejected(1, api::RejectedAction::Discard));
+  EXPECT_FALSE(flow_->change_rejected(1, api::RejectedAction::Discard));
   EXPECT_TRUE(loop::turn_until(loop_, [&] { return over; }));
 }
 
@@ -203,7 +204,7 @@ TEST_F(FlowLedgerTest, GetsASpareFileAndASnapshot) {
 
 TEST_F(FlowLedgerTest, KeepsItsSizeInTheStampFloorIfUnreadable) {
   StampFloor(folder_.path()).write({.floor = 1, .ledger = {.reports = 7, .log = 3}});
-  ledger_ = ledger::Ledger::closed("it cannot be read", {.reports = 7, .log = 3});
+  ledger_ = ledger::Ledger::make_closed("it cannot be read", {.reports = 7, .log = 3});
   restart();
   tick(std::chrono::seconds(10));
   const auto kept = StampFloor(folder_.path()).read();
@@ -219,7 +220,7 @@ class FlowWithAnEndpoint : public testing::Test {
   void sends(Flow& flow, const char* sender, double stamp, const char* robot) {
     const icd::StateUpdate update{.header = {stamp}, .poses = {at(robot, 0)}};
     const int before = states_;
-    ASSERT_TRUE(flow.take(update, {.address = sender}));
+    ASSERT_TRUE(flow.accept(update, {.address = sender}));
     ASSERT_TRUE(loop::turn_until(loop_, [&] { return states_ > before; }));
   }
   std::string last() const {
@@ -249,7 +250,7 @@ class FlowWithAnEndpoint : public testing::Test {
 TEST_F(FlowWithAnEndpoint, RepeatsOnlyPosesOfTheRun) {
   Flow flow(loop_, ledger_, settings_,
             {.scoring = {}, .mapping = icd::BearerToken::parse("a-token"), .all = {}},
-            {folder_.path(), folder_.path()}, {.changed = [] {}, .posted = [](const std::string&) {}});
+            {folder_.path(), folder_.path()}, {.on_changed = [] {}, .on_posted = [](const std::string&) {}});
   flow.start();
   sends(flow, "10.0.0.5", 50, "was_here");
   sends(flow, "10.0.0.6", 50, "goes_on");

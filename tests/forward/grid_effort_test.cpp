@@ -22,12 +22,15 @@ class StoredGrid : public MapsToManualEndpoint {
  protected:
   StoredGrid() {
     settings_.command_post.rates.map_hz = 1;
-    maps_->settings_changed();
+    maps_->on_settings_changed();
   }
-  std::uint64_t sent(const char* robot) const { return counts_.rows().at({Kind::Grid, robot}).bytes_sent; }
+  std::uint64_t sent(const char* robot) const {
+    return counts_.rows().at({TrafficKind::Grid, robot}).bytes_sent;
+  }
   bool are_delivered() {
     return loop::turn_until(loop_, [&] {
-      return maps_->waiting({Kind::Grid, "first"}) + maps_->waiting({Kind::Grid, "second"}) == 0;
+      return maps_->waiting({TrafficKind::Grid, "first"}) + maps_->waiting({TrafficKind::Grid, "second"}) ==
+             0;
     });
   }
 };
@@ -46,7 +49,7 @@ TEST_F(StoredGrid, IsSentUnchangedAfterWaiting) {
 
 TEST_F(StoredGrid, IsCompressedForASlowLink) {
   settings_.command_post.budget_mbit = 1;
-  maps_->settings_changed();
+  maps_->on_settings_changed();
   const icd::MapUpdate large = kept_grid("second", 1100);
   take(large);
   post_.answer("200 OK");

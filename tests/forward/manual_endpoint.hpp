@@ -81,8 +81,8 @@ class MapsToManualEndpoint : public testing::Test, protected MapsParts {
   }
   void take(icd::MapUpdate map) {
     bool taken = false;
-    maps_->take(std::move(map), {.bytes = 10}, nullptr,
-                [&](const icd::Checked<void>& said) { taken = said.has_value(); });
+    maps_->accept(std::move(map), {.bytes = 10}, nullptr,
+                  [&](const icd::Checked<void>& said) { taken = said.has_value(); });
     ASSERT_TRUE(loop::turn_until(loop_, [&] { return taken; }));
   }
   bool receives(const std::vector<std::string>& robots) {

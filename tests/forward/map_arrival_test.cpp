@@ -20,14 +20,14 @@ constexpr std::uint64_t kNoSuchRoom = std::uint64_t{1} << 62;
 
 class MapArrivalTest : public testing::Test {
  protected:
-  std::shared_ptr<MapArrival> arrival() {
-    return std::make_shared<MapArrival>(
+  std::shared_ptr<SpooledMapArrival> arrival() {
+    return std::make_shared<SpooledMapArrival>(
         alive_, spool_, [this] { return spare_; },
         [this](icd::MapUpdate update, const intake::Sender&, std::shared_ptr<spool::MapFile> file,
                const auto&) { taken_ = spool_.keep(1, std::move(update), 0, std::move(file)); });
   }
   /// Returns the bytes that were not stored.
-  icd::ChunkedBytes store(MapArrival& arrival, icd::ChunkedBytes bytes) {
+  icd::ChunkedBytes store(SpooledMapArrival& arrival, icd::ChunkedBytes bytes) {
     std::optional<icd::ChunkedBytes> said;
     arrival.store(std::move(bytes), [&](icd::ChunkedBytes left) { said = std::move(left); });
     EXPECT_TRUE(loop::turn_until(loop_, [&] { return said.has_value(); }));
@@ -62,14 +62,14 @@ TEST_F(MapArrivalTest, HasAFileWhenItIsAccepted) {
   EXPECT_TRUE(store(*arriving, take_front(map, 100'000)).empty());
   ASSERT_EQ(names().size(), 1u);
   EXPECT_TRUE(names().front().ends_with(spool::PartFile::kEnding)) << "not a map yet";
-  auto data = arriving->stored();
+  auto data = arriving->stored_bytes();
   ASSERT_TRUE(data);
   EXPECT_EQ(data->size(), 400'001u);
   data->append(map.data.bytes);
   map.data.bytes = std::move(*data);
   EXPECT_EQ(map, whole);
   const NoFileAbove small(700'000);  // too small for a second copy
-  arriving->take(std::move(map), {}, [](const icd::Checked<void>&) {});
+  arriving->accept(std::move(map), {}, [](const icd::Checked<void>&) {});
   ASSERT_TRUE(taken_) << taken_.error().sentence;
   EXPECT_EQ(*taken_, whole);
   EXPECT_EQ(names(), std::vector<std::string>{"map-00000001.cbor"});
@@ -82,9 +82,9 @@ TEST_F(MapArrivalTest, StoresDataThatChangedAfterItsArrival) {
   icd::MapUpdate map = cloud(50'000);
   const auto arriving = arrival();
   EXPECT_TRUE(store(*arriving, take_front(map, 300'000)).empty());
-  ASSERT_TRUE(arriving->stored());
+  ASSERT_TRUE(arriving->stored_bytes());
   const icd::MapUpdate other = cloud(10'000);
-  arriving->take(other, {}, [](const icd::Checked<void>&) {});
+  arriving->accept(other, {}, [](const icd::Checked<void>&) {});
   ASSERT_TRUE(taken_) << taken_.error().sentence;
   EXPECT_EQ(*taken_, other);
   EXPECT_EQ(names(), std::vector<std::string>{"map-00000001.cbor"});
@@ -120,7 +120,7 @@ TEST_F(MapArrivalTest, LeavesReservedRoomFree) {
   spare_ = kNoSuchRoom;
   const icd::ChunkedBytes more = take_front(map, 100'000);
   EXPECT_EQ(store(*arriving, more), more) << "nothing was stored";
-  EXPECT_EQ(arriving->stored()->size(), 300'000u);
+  EXPECT_EQ(arriving->stored_bytes()->size(), 300'000u);
 }
 
 TEST_F(MapArrivalTest, HasNoFileIfNothingWasStored) {
@@ -128,10 +128,10 @@ TEST_F(MapArrivalTest, HasNoFileIfNothingWasStored) {
   const auto arriving = arrival();
   EXPECT_FALSE(store(*arriving, cloud(1000).data.bytes).empty());
   EXPECT_TRUE(names().empty());
-  const auto data = arriving->stored();
+  const auto data = arriving->stored_bytes();
   ASSERT_TRUE(data);
   EXPECT_TRUE(data->empty());
-  arriving->take(cloud(1000), {}, [](const icd::Checked<void>&) {});
+  arriving->accept(cloud(1000), {}, [](const icd::Checked<void>&) {});
   EXPECT_EQ(taken_, cloud(1000));
 }
 

@@ -22,7 +22,8 @@ using picture::TileIndex;
 
 class MapPictureTest : public testing::Test {
  protected:
-  bool drawn(const char* robot, const TileIndex& at, picture::Kind kind = picture::Kind::Grid) const {
+  bool drawn(const char* robot, const TileIndex& at,
+             picture::LayerKind kind = picture::LayerKind::Grid) const {
     return picture.mosaic().tile({robot, kind}, at, {}).tile != nullptr;
   }
 
@@ -33,16 +34,16 @@ class MapPictureTest : public testing::Test {
 };
 
 TEST_F(MapPictureTest, DrawsEachDeliveredMap) {
-  picture.forwarded(grid_of("r1", 4, 0));
-  picture.forwarded(grid_of("r2", 4, 0, 64));
-  picture.forwarded(cloud_along_x("r1", {0, 0, 0}));
-  ASSERT_TRUE(loop::turn_until(loop, [&] { return drawn("r1", {0, 0, 0}, picture::Kind::Cloud); }))
+  picture.on_forwarded(grid_of("r1", 4, 0));
+  picture.on_forwarded(grid_of("r2", 4, 0, 64));
+  picture.on_forwarded(cloud_along_x("r1", {0, 0, 0}));
+  ASSERT_TRUE(loop::turn_until(loop, [&] { return drawn("r1", {0, 0, 0}, picture::LayerKind::Cloud); }))
       << "the last map";
   EXPECT_TRUE(drawn("r1", {0, 0, 0}));
   EXPECT_TRUE(drawn("r2", {0, 1, 0}));
   EXPECT_EQ(changes, 3);
-  picture.forwarded(grid_of("r1", 4, 0));
-  picture.forwarded(grid_of("r3", 4, 0));
+  picture.on_forwarded(grid_of("r1", 4, 0));
+  picture.on_forwarded(grid_of("r3", 4, 0));
   ASSERT_TRUE(loop::turn_until(loop, [&] { return drawn("r3", {0, 0, 0}); }));
   EXPECT_EQ(changes, 4) << "an equal grid changes nothing";
 }
@@ -55,7 +56,7 @@ TEST_F(MapPictureTest, FreesNoMapOnTheLoop) {
   map.data.bytes.append(
       std::shared_ptr<const void>(cells.data(), [&](const void*) { freed_by = std::this_thread::get_id(); }),
       cells);
-  picture.forwarded(std::move(map));
+  picture.on_forwarded(std::move(map));
   ASSERT_TRUE(loop::turn_until(loop, [&] { return drawn("r1", {0, 0, 0}); }));
   EXPECT_NE(freed_by.load(), std::thread::id());
   EXPECT_NE(freed_by.load(), std::this_thread::get_id());
@@ -97,7 +98,7 @@ TEST_F(MapPictureTest, GivesWayToMapsForTheCommandPost) {
     map.data.bytes.append(std::shared_ptr<const void>(cells.data(), [&](const void*) { freed = true; }),
                           cells);
     const auto before = time.used();
-    picture.forwarded(std::move(map));
+    picture.on_forwarded(std::move(map));
     ASSERT_TRUE(loop::turn_until(loop, [&] {
       return freed || time.used() - before > loop::JobQueue<int>::kTurn + std::chrono::milliseconds{5};
     }));
@@ -108,9 +109,9 @@ TEST_F(MapPictureTest, GivesWayToMapsForTheCommandPost) {
 }
 
 TEST_F(MapPictureTest, SkipsAQueuedGridThatTheNextOneCovers) {
-  picture.forwarded(grid_of("r1", 4, 0));
-  picture.forwarded(grid_of("r2", 4, 0, 64));
-  picture.forwarded(grid_of("r1", 5, 100));
+  picture.on_forwarded(grid_of("r1", 4, 0));
+  picture.on_forwarded(grid_of("r2", 4, 0, 64));
+  picture.on_forwarded(grid_of("r1", 5, 100));
   ASSERT_TRUE(loop::turn_until(loop, [&] { return drawn("r1", {0, 0, 0}); }));
   EXPECT_TRUE(drawn("r2", {0, 1, 0}));
   EXPECT_EQ(changes, 2);
@@ -118,22 +119,22 @@ TEST_F(MapPictureTest, SkipsAQueuedGridThatTheNextOneCovers) {
 
 TEST_F(MapPictureTest, DrawsWhatACreepingWindowLeavesBehind) {
   const auto window = [](double x, std::uint8_t value) { return grid_of("r1", 4, value, x); };
-  picture.forwarded(window(0, 0));
-  picture.forwarded(window(0.12, 10));
-  picture.forwarded(window(0.24, 100));
+  picture.on_forwarded(window(0, 0));
+  picture.on_forwarded(window(0.12, 10));
+  picture.on_forwarded(window(0.24, 100));
   ASSERT_TRUE(loop::turn_until(loop, [&] { return changes == 2; }))
       << "one was skipped, 0.24 m are left behind";
 }
 
 TEST_F(MapPictureTest, DrawsCloudsAndUncoveredGrids) {
-  picture.forwarded(grid_of("r1", 4, 0));
-  picture.forwarded(grid_of("r1", 4, 0, 64));
-  picture.forwarded(cloud_along_x("r1", {0, 0, 0}));
-  picture.forwarded(cloud_along_x("r2", {0, 0, 0}));
-  ASSERT_TRUE(loop::turn_until(loop, [&] { return drawn("r2", {0, 0, 0}, picture::Kind::Cloud); }));
+  picture.on_forwarded(grid_of("r1", 4, 0));
+  picture.on_forwarded(grid_of("r1", 4, 0, 64));
+  picture.on_forwarded(cloud_along_x("r1", {0, 0, 0}));
+  picture.on_forwarded(cloud_along_x("r2", {0, 0, 0}));
+  ASSERT_TRUE(loop::turn_until(loop, [&] { return drawn("r2", {0, 0, 0}, picture::LayerKind::Cloud); }));
   EXPECT_TRUE(drawn("r1", {0, 0, 0}));
   EXPECT_TRUE(drawn("r1", {0, 1, 0}));
-  EXPECT_TRUE(drawn("r1", {0, 0, 0}, picture::Kind::Cloud));
+  EXPECT_TRUE(drawn("r1", {0, 0, 0}, picture::LayerKind::Cloud));
 }
 
 TEST_F(MapPictureTest, CountsMapsThatItsQueueCannotHold) {
@@ -141,27 +142,27 @@ TEST_F(MapPictureTest, CountsMapsThatItsQueueCannotHold) {
   const icd::ChunkedBytes piece{std::vector<std::uint8_t>(60'000)};
   while (large.data.bytes.size() < MapPicture::kMostWaiting / 2) large.data.bytes.append(piece);
   large.data.raw_size = large.data.bytes.size();
-  for (int i = 0; i < 3; ++i) picture.forwarded(large);
+  for (int i = 0; i < 3; ++i) picture.on_forwarded(large);
   const auto layers = picture.mosaic().layers();
   ASSERT_EQ(layers.size(), 1U);
   EXPECT_EQ(layers[0].missed, 2U) << "only one fits";
-  EXPECT_TRUE(loop::turn_until(loop, [&] { return drawn("r1", {0, 0, 0}, picture::Kind::Cloud); }));
+  EXPECT_TRUE(loop::turn_until(loop, [&] { return drawn("r1", {0, 0, 0}, picture::LayerKind::Cloud); }));
 }
 
 TEST_F(MapPictureTest, CountsAMapThatCannotBeDrawn) {
   auto damaged = grid_of("r1", 4, 0);
   damaged.data.compression = icd::Compression::Gzip;
-  picture.forwarded(damaged);
+  picture.on_forwarded(damaged);
   ASSERT_TRUE(loop::turn_until(loop, [&] { return !picture.mosaic().layers().empty(); }));
   EXPECT_EQ(picture.mosaic().layers()[0].missed, 1U);
-  picture.forwarded(grid_of("r1", 4, 0));
+  picture.on_forwarded(grid_of("r1", 4, 0));
   EXPECT_TRUE(loop::turn_until(loop, [&] { return drawn("r1", {0, 0, 0}); })) << "later maps are drawn";
 }
 
 TEST_F(MapPictureTest, IsEmptyInANewRun) {
-  picture.forwarded(grid_of("r1", 4, 0));
+  picture.on_forwarded(grid_of("r1", 4, 0));
   ASSERT_TRUE(loop::turn_until(loop, [&] { return drawn("r1", {0, 0, 0}); }));
-  picture.forwarded(grid_of("r2", 4, 0));
+  picture.on_forwarded(grid_of("r2", 4, 0));
   changes = 0;
   picture.begin_run();
   EXPECT_EQ(changes, 1);
@@ -169,10 +170,10 @@ TEST_F(MapPictureTest, IsEmptyInANewRun) {
   loop::turn_for(loop, std::chrono::milliseconds{100});
   EXPECT_FALSE(drawn("r2", {0, 0, 0}));
 
-  picture.forwarded(grid_of("r3", 1000, 0));
+  picture.on_forwarded(grid_of("r3", 1000, 0));
   loop.turn(std::chrono::milliseconds{5});  // passed to the worker
   picture.begin_run();
-  picture.forwarded(grid_of("r4", 4, 0));
+  picture.on_forwarded(grid_of("r4", 4, 0));
   ASSERT_TRUE(loop::turn_until(loop, [&] { return drawn("r4", {0, 0, 0}); }));
   EXPECT_FALSE(drawn("r3", {0, 0, 0}));
 }
@@ -180,7 +181,7 @@ TEST_F(MapPictureTest, IsEmptyInANewRun) {
 class CoveredCountTest : public testing::Test {
  protected:
   void ask() {
-    count.covered([this](const auto& covered) { answers.push_back(covered ? covered->all : 0); });
+    count.count([this](const auto& covered) { answers.push_back(covered ? covered->all : 0); });
   }
   void draw(double x) { easel.draw(picture::grid_at(x, 0, 2, 0.25, picture::Cells(4, 0))); }
   /// Waits for that many answers.

@@ -52,7 +52,7 @@ class MappingEndpoint : public testing::Test, protected MapsParts {
 
 TEST_F(MappingEndpoint, IsLeftAtOnceByAMap) {
   Maps maps = maps_with(token_);
-  maps.take(spool::cloud(3), {.bytes = 10}, nullptr, [](const icd::Checked<void>&) {});
+  maps.accept(spool::cloud(3), {.bytes = 10}, nullptr, [](const icd::Checked<void>&) {});
   EXPECT_TRUE(is_left_at_once(maps));
 }
 
@@ -60,7 +60,7 @@ TEST_F(MappingEndpoint, IsLeftAtOnceByAState) {
   DeliveredScene delivered;
   Telemetry news(loop_, servers_, workers_, settings_, token_, counts_, rejected_, random_, journal_,
                  delivered);
-  ASSERT_TRUE(news.take({{.name = *icd::RobotName::parse("r1"), .pose = {}, .stamp = 1.0}}, 10));
+  ASSERT_TRUE(news.accept({{.name = *icd::RobotName::parse("r1"), .pose = {}, .stamp = 1.0}}, 10));
   EXPECT_TRUE(is_left_at_once(news));
 }
 

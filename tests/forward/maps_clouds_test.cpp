@@ -14,7 +14,7 @@ class QueuedClouds : public testing::Test, protected MapsParts {
  protected:
   void take(const std::vector<float>& xs) {
     bool told = false;
-    maps_.take(cloud_along_x("r1", xs), {.bytes = 10}, nullptr, [&](const icd::Checked<void>& taken) {
+    maps_.accept(cloud_along_x("r1", xs), {.bytes = 10}, nullptr, [&](const icd::Checked<void>& taken) {
       EXPECT_TRUE(taken);
       told = true;
     });
@@ -25,7 +25,7 @@ class QueuedClouds : public testing::Test, protected MapsParts {
   }
   const facts::ActivityRow& row() const { return counts_.rows().at(kClouds); }
 
-  const Traffic kClouds{Kind::Cloud, "r1"};
+  const Traffic kClouds{TrafficKind::Cloud, "r1"};
   Maps maps_ = maps_with(std::nullopt);
 };
 
@@ -51,7 +51,7 @@ TEST_F(QueuedClouds, StayIfANewerOneLacksAPoint) {
 
 TEST_F(QueuedClouds, AreReplacedIfTheSettingIsWhole) {
   settings_.robots = {{.name = "r1", .alias = "", .clouds = queues::Clouds::Whole}};
-  maps_.settings_changed();
+  maps_.on_settings_changed();
   take({1, 2});
   take({7});
   EXPECT_EQ(maps_.waiting(kClouds), 1);
@@ -60,7 +60,7 @@ TEST_F(QueuedClouds, AreReplacedIfTheSettingIsWhole) {
 
 TEST_F(QueuedClouds, StayIfTheSettingIsParts) {
   settings_.robots = {{.name = "r1", .alias = "", .clouds = queues::Clouds::Parts}};
-  maps_.settings_changed();
+  maps_.on_settings_changed();
   take({1, 2});
   take({1, 2});
   ASSERT_TRUE(loop::turn_until_idle(loop_, writer_));

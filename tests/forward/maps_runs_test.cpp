@@ -131,7 +131,7 @@ class MapsAtARunChange : public testing::Test {
     const auto token = icd::BearerToken::parse("a-token");
     flow_.emplace(loop_, ledger_, settings_, Tokens{.scoring = token, .mapping = token, .all = {*token}},
                   Flow::Folders{folder_.path(), folder_.path()},
-                  Flow::Callbacks{.changed = [] {}, .posted = [](const std::string&) {}});
+                  Flow::Callbacks{.on_changed = [] {}, .on_posted = [](const std::string&) {}});
     flow_->start();
   }
   const dispatch::Run& run() const { return flow_->reports().run(); }
@@ -148,12 +148,12 @@ class MapsAtARunChange : public testing::Test {
   }
   void take(icd::MapUpdate map) {
     bool is_taken = false;
-    flow_->begin_map()->take(std::move(map), sender_,
-                             [&](const icd::Checked<void>& said) { is_taken = said.has_value(); });
+    flow_->begin_map()->accept(std::move(map), sender_,
+                               [&](const icd::Checked<void>& said) { is_taken = said.has_value(); });
     ASSERT_TRUE(loop::turn_until(loop_, [&] { return is_taken; }));
   }
   bool all_arrive() {
-    return loop::turn_until(loop_, [&] { return flow_->maps().waiting({Kind::Grid, "r1"}) == 0; });
+    return loop::turn_until(loop_, [&] { return flow_->maps().waiting({TrafficKind::Grid, "r1"}) == 0; });
   }
   void map_the_area() {
     take(part_at(0, kWidth, 50));

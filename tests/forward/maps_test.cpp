@@ -44,7 +44,7 @@ class MapsTest : public testing::Test, protected MapsParts {
       icd::MapUpdate update, std::function<void()> behind = [] {},
       const queues::Upload& upload = {.bytes = 10}) {
     std::optional<icd::Checked<void>> said;
-    maps_.take(std::move(update), upload, nullptr, [&](icd::Checked<void> taken) {
+    maps_.accept(std::move(update), upload, nullptr, [&](icd::Checked<void> taken) {
       files_ = files();
       said = std::move(taken);
     });
@@ -80,8 +80,8 @@ TEST_F(MapsTest, AreNotAnsweredWhileTheWriterIsBusy) {
   std::promise<void> let_go;
   writer_.submit([until = let_go.get_future().share()] { until.wait(); }, [] {});
   bool said = false;
-  maps_.take(grid("r1", 10, 500), {.bytes = 10}, nullptr,
-             [&](const icd::Checked<void>& taken) { said = taken.has_value(); });
+  maps_.accept(grid("r1", 10, 500), {.bytes = 10}, nullptr,
+               [&](const icd::Checked<void>& taken) { said = taken.has_value(); });
   for (int i = 0; i < 10; ++i) loop_.turn(std::chrono::milliseconds{5});
   EXPECT_FALSE(said);
   EXPECT_FALSE(maps_.has_stored_all());
@@ -116,10 +116,10 @@ TEST_F(MapsTest, KeepWhatTheyReplacedOverARestart) {
   next.restore(spool::Spool(folder_.path()).read());
   for (const auto& [x, queued] : {std::pair(0.2, 2u), std::pair(0.09, 1u)}) {
     bool taken = false;
-    next.take(window(x), {.bytes = 10}, nullptr,
-              [&](const icd::Checked<void>& said) { taken = said.has_value(); });
+    next.accept(window(x), {.bytes = 10}, nullptr,
+                [&](const icd::Checked<void>& said) { taken = said.has_value(); });
     ASSERT_TRUE(loop::turn_until(loop_, [&] { return taken; }));
-    EXPECT_EQ(next.waiting({Kind::Grid, "r1"}), queued) << x;
+    EXPECT_EQ(next.waiting({TrafficKind::Grid, "r1"}), queued) << x;
   }
 }
 
@@ -129,13 +129,13 @@ TEST_F(MapsTest, KeepTheAgeOfWhatTheyReplacedOverARestart) {
   newest.header().stamp = loop_.stamp_now();
   EXPECT_EQ(status(take(std::move(newest))), icd::Status::Ok);
   journal::Heard heard{.robot = "r1"};
-  heard.behind[static_cast<std::size_t>(Kind::Grid)] = loop_.stamp_now() - 30;
+  heard.behind[static_cast<std::size_t>(TrafficKind::Grid)] = loop_.stamp_now() - 30;
   journal::Carried carried;
-  EXPECT_TRUE(carried.apply(journal::Kind::Heard, store::bytes_of(heard)));
+  EXPECT_TRUE(carried.apply(journal::RecordKind::Heard, store::bytes_of(heard)));
   Maps next = maps_with(std::nullopt);
   next.carry_on(carried, /*ran_before=*/true);
   next.restore(spool::Spool(folder_.path()).read());
-  const auto since = next.oldest_acceptance({Kind::Grid, "r1"});
+  const auto since = next.oldest_acceptance({TrafficKind::Grid, "r1"});
   ASSERT_TRUE(since);
   EXPECT_NEAR(std::chrono::duration<double>(loop_.now() - *since).count(), 30, 5);
 }
@@ -166,7 +166,7 @@ class OvertakenGrid : public MapsTest {
     EXPECT_TRUE(loop::turn_until_idle(loop_, writer_));
     return spool::Spool(folder_.path()).read();
   }
-  const facts::ActivityRow& row() const { return counts_.rows().at({Kind::Grid, "r1"}); }
+  const facts::ActivityRow& row() const { return counts_.rows().at({TrafficKind::Grid, "r1"}); }
 };
 
 TEST_F(OvertakenGrid, IsQueuedOutsideOfTheNewerOne) {
@@ -221,7 +221,7 @@ TEST_F(OvertakenGrid, IsQueuedAsAWholeOrNotAtAll) {
   std::get<icd::OccupancyGrid>(older.msg).origin.position.y = -1;  // two parts are left
   fs::create_directory(folder_ / host::numbered_name("map-", MapStore::kFirstNumber + 3, ".cbor"));
   EXPECT_EQ(take_older(older), icd::Status::ServiceUnavailable);
-  EXPECT_EQ(maps_.waiting({Kind::Grid, "r1"}), 1u);
+  EXPECT_EQ(maps_.waiting({TrafficKind::Grid, "r1"}), 1u);
   EXPECT_TRUE(loop::turn_until_idle(loop_, writer_));
   EXPECT_FALSE(fs::exists(folder_ / host::numbered_name("map-", MapStore::kFirstNumber + 2, ".cbor")));
   EXPECT_EQ(take_older(columns(-1, 9)), icd::Status::Ok) << "it is tried again";
@@ -245,19 +245,19 @@ TEST_F(MapsTest, AreNotDeletedIfTheBoundsOfTheNewerOneCannotBeStored) {
   EXPECT_EQ(status(take(window(0.1))), icd::Status::Ok);
   EXPECT_TRUE(loop::turn_until_idle(loop_, writer_));
   EXPECT_EQ(files(), 2u) << "a process that starts now finds both";
-  EXPECT_EQ(maps_.waiting({Kind::Grid, "r1"}), 1u);
+  EXPECT_EQ(maps_.waiting({TrafficKind::Grid, "r1"}), 1u);
 }
 
 TEST_F(MapsTest, KeepWhatARetriedGridReplaced) {
   const auto bounds = [](double x) {
-    return icd::GridBounds::of(std::get<icd::OccupancyGrid>(window(x).msg));
+    return icd::GridBounds::from_grid(std::get<icd::OccupancyGrid>(window(x).msg));
   };
   bool kept = false;
   maps_.resend(
       window(0.1), [&](bool well) { return kept = well; }, icd::joint_bounds(bounds(0.1), bounds(0)));
   ASSERT_TRUE(loop::turn_until(loop_, [&] { return kept; }));
   EXPECT_EQ(status(take(window(0.2))), icd::Status::Ok);
-  EXPECT_EQ(maps_.waiting({Kind::Grid, "r1"}), 2u);
+  EXPECT_EQ(maps_.waiting({TrafficKind::Grid, "r1"}), 2u);
   const auto stored = spool::Spool(folder_.path()).read();
   ASSERT_EQ(stored.size(), 2u);
   EXPECT_EQ(stored.front().bounds, icd::joint_bounds(bounds(0.1), bounds(0)));
@@ -313,11 +313,11 @@ TEST_F(MapsTest, KeepARetriedGridOldestAfterARestart) {
   bool kept = false;
   maps_.resend(grid("r1", 20, 700), [&](bool well) { return kept = well; });
   ASSERT_TRUE(loop::turn_until(loop_, [&] { return kept; }));
-  EXPECT_EQ(maps_.waiting({Kind::Grid, "r1"}), 2u);
+  EXPECT_EQ(maps_.waiting({TrafficKind::Grid, "r1"}), 2u);
   Maps next = maps_with(std::nullopt);
   for (const std::uint64_t number : host::numbers_in(folder_.path(), "map-", ".cbor").value())
     next.restore({{number, number == 1 ? grid("r1", 20, 700) : grid("r1", 10, 500)}});
-  EXPECT_EQ(next.waiting({Kind::Grid, "r1"}), 2u) << "it covers the other grid but is older";
+  EXPECT_EQ(next.waiting({TrafficKind::Grid, "r1"}), 2u) << "it covers the other grid but is older";
 }
 
 /// A map in packing or in flight is not in the queue.
@@ -326,8 +326,8 @@ TEST_F(MapsTest, ReplaceARetriedGridByOneInPacking) {
   std::promise<void> let_go;
   workers_.submit(loop::Urgency::OnTheWay, [until = let_go.get_future().share()] { until.wait(); }, [] {});
   bool taken = false;
-  maps.take(grid("r1", 20, 700), {.bytes = 10}, nullptr,
-            [&](const icd::Checked<void>& said) { taken = said.has_value(); });
+  maps.accept(grid("r1", 20, 700), {.bytes = 10}, nullptr,
+              [&](const icd::Checked<void>& said) { taken = said.has_value(); });
   ASSERT_TRUE(loop::turn_until(loop_, [&] { return taken && maps.packing(); }));
   std::optional<bool> kept;
   maps.resend(grid("r1", 10, 500), [&](bool well) {
@@ -335,7 +335,7 @@ TEST_F(MapsTest, ReplaceARetriedGridByOneInPacking) {
     return true;
   });
   EXPECT_EQ(kept, true) << "the newer grid covers it";
-  EXPECT_EQ(maps.waiting({Kind::Grid, "r1"}), 1u);
+  EXPECT_EQ(maps.waiting({TrafficKind::Grid, "r1"}), 1u);
   EXPECT_EQ(files(), 1u);
   let_go.set_value();
 }
@@ -355,15 +355,15 @@ TEST_F(MapsTest, ReplaceQueuedMapsInAFullQueue) {
   EXPECT_EQ(status(take(grid("r1", 10, 50'000))), icd::Status::Ok);
   EXPECT_EQ(status(take(grid("r2", 10, 40'000))), icd::Status::Ok);
   EXPECT_EQ(status(take(grid("r3", 10, 20'000))), icd::Status::TooManyRequests);
-  EXPECT_EQ(counts_.rows().at({Kind::Grid, "r3"}).no_room, 1u);
+  EXPECT_EQ(counts_.rows().at({TrafficKind::Grid, "r3"}).no_room, 1u);
   EXPECT_EQ(status(take(grid("r1", 20, 60'000))), icd::Status::Ok);
   EXPECT_TRUE(has_files(2));
 }
 
 TEST_F(MapsTest, AreCountedIfTheyHaveNoValidPoint) {
   settings_.robots = {{.name = "r1", .alias = "", .clouds = queues::Clouds::Whole}};
-  maps_.settings_changed();
-  const Traffic traffic{Kind::Cloud, "r1"};
+  maps_.on_settings_changed();
+  const Traffic traffic{TrafficKind::Cloud, "r1"};
   const float nan = std::numeric_limits<float>::quiet_NaN();
   ASSERT_TRUE(take(cloud_along_x("r1", {1, 2})));
   EXPECT_TRUE(take(cloud_along_x("r1", {nan, nan, nan})));
@@ -373,11 +373,11 @@ TEST_F(MapsTest, AreCountedIfTheyHaveNoValidPoint) {
   EXPECT_EQ(counts_.rows().at(traffic).replaced, 0u);
   EXPECT_EQ(counts_.rows().at(traffic).no_valid_point, 1u);
   ASSERT_TRUE(take(cloud_along_x("r2", {})));
-  EXPECT_EQ(maps_.waiting({Kind::Cloud, "r2"}), 1u) << "posted without points";
+  EXPECT_EQ(maps_.waiting({TrafficKind::Cloud, "r2"}), 1u) << "posted without points";
 }
 
 TEST_F(MapsTest, WaitSinceTheOldestOfTheirRobotAndKind) {
-  const Traffic traffic{Kind::Grid, "r1"};
+  const Traffic traffic{TrafficKind::Grid, "r1"};
   EXPECT_FALSE(maps_.oldest_acceptance(traffic)) << "nothing is queued";
   ASSERT_TRUE(take(grid("r1", 10, 500)));
   const auto since = maps_.oldest_acceptance(traffic);
@@ -385,13 +385,13 @@ TEST_F(MapsTest, WaitSinceTheOldestOfTheirRobotAndKind) {
   ASSERT_TRUE(take(grid("r2", 10, 500)));
   ASSERT_TRUE(take(grid("r1", 20, 500)));
   EXPECT_EQ(maps_.oldest_acceptance(traffic), since) << "the oldest counts";
-  EXPECT_GT(*maps_.oldest_acceptance({Kind::Grid, "r2"}), *since);
-  EXPECT_FALSE(maps_.oldest_acceptance({Kind::Cloud, "r1"}));
+  EXPECT_GT(*maps_.oldest_acceptance({TrafficKind::Grid, "r2"}), *since);
+  EXPECT_FALSE(maps_.oldest_acceptance({TrafficKind::Cloud, "r1"}));
 }
 
 TEST_F(MapsTest, AreLimitedInNumberUnlessTheyMerge) {
   settings_.robots = {{.name = "r1", .alias = "", .clouds = queues::Clouds::Parts}};
-  maps_.settings_changed();
+  maps_.on_settings_changed();
   settings_.queues.map_bytes = std::size_t{1} << 30;
   const auto cloud_of = [](bool is_bigendian) {
     icd::MapUpdate map = cloud(1);
@@ -400,7 +400,7 @@ TEST_F(MapsTest, AreLimitedInNumberUnlessTheyMerge) {
   };
   std::size_t taken = 0;
   for (std::size_t i = 0; i < Maps::kMostMaps; ++i) {
-    maps_.take(cloud_of(i % 2 == 0), {.bytes = 10}, nullptr, [&](const icd::Checked<void>& said) {
+    maps_.accept(cloud_of(i % 2 == 0), {.bytes = 10}, nullptr, [&](const icd::Checked<void>& said) {
       if (said) ++taken;
     });
     loop_.turn(std::chrono::milliseconds{0});

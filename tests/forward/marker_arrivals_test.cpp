@@ -36,7 +36,7 @@ class MarkerArrivalsTest : public testing::Test {
   MarkerArrivalsTest() { journal_.begin({.boot = "b", .at = loop_.now(), .stamp = loop_.stamp_now()}); }
 
   void take(icd::MarkersUpdate update) {
-    arrivals_.take(std::move(update), {.bytes = 10}, [this](const icd::Checked<void>& taken) {
+    arrivals_.accept(std::move(update), {.bytes = 10}, [this](const icd::Checked<void>& taken) {
       said_.push_back(taken ? icd::Status::Ok : taken.error().status);
     });
   }
@@ -66,15 +66,15 @@ TEST_F(MarkerArrivalsTest, AreLeftOutIfNewerOnesOvertookThem) {
   const auto take_as = [&](icd::Marker marker, double stamp, queues::Upload upload) {
     marker.header.stamp = stamp;
     icd::MarkersUpdate update{.markers = {std::move(marker)}};
-    arrivals_.take(std::move(update), std::move(upload),
-                   [](const icd::Checked<void>& taken) { EXPECT_TRUE(taken); });
+    arrivals_.accept(std::move(update), std::move(upload),
+                     [](const icd::Checked<void>& taken) { EXPECT_TRUE(taken); });
   };
   take_as(change(1, "", icd::MarkerAction::Delete), 10, {.bytes = 10, .began = 2, .ended = 3, .overlaps = 1});
   take_as(change(1, "a"), 9, {.bytes = 10, .began = 1, .ended = 4});
   ASSERT_EQ(queue_.pending().size(), 1u);
   EXPECT_EQ(queue_.pending()[0].action, icd::MarkerAction::Delete);
   EXPECT_EQ(queue_.pending(), left());
-  EXPECT_EQ(counts_.rows().at({Kind::Markers, ""}).accepted, 2u);
+  EXPECT_EQ(counts_.rows().at({TrafficKind::Markers, ""}).accepted, 2u);
 }
 
 TEST_F(MarkerArrivalsTest, AreCountedIfTheyAreInvisible) {  // ICD 6.6
@@ -87,7 +87,7 @@ TEST_F(MarkerArrivalsTest, AreCountedIfTheyAreInvisible) {  // ICD 6.6
   take(std::move(update));
   ASSERT_TRUE(turn_until([this] { return !said_.empty(); }));
   EXPECT_THAT(said_, ElementsAre(icd::Status::Ok)) << "accepted";
-  EXPECT_EQ(counts_.rows().at({Kind::Markers, ""}).invisible, 2u);
+  EXPECT_EQ(counts_.rows().at({TrafficKind::Markers, ""}).invisible, 2u);
 }
 
 TEST_F(MarkerArrivalsTest, AreAnsweredOnceAllAreStoredAndQueued) {

@@ -32,8 +32,8 @@ std::vector<std::string> names(const api::MarkerChanges& news) {
 
 TEST(MarkerScene, HasTheLastStateOfEachMarker) {
   MarkerScene scene;
-  scene.forwarded(std::vector{marker("a", 1, 5), marker("a", 2), marker("b", 1)}, 100);
-  scene.forwarded(std::vector{marker("a", 1, 7)}, 101);
+  scene.on_forwarded(std::vector{marker("a", 1, 5), marker("a", 2), marker("b", 1)}, 100);
+  scene.on_forwarded(std::vector{marker("a", 1, 7)}, 101);
   const auto news = scene.changes(0);
   EXPECT_TRUE(news.whole);
   EXPECT_THAT(names(news), ElementsAre("a2", "b1", "a1"));
@@ -43,12 +43,12 @@ TEST(MarkerScene, HasTheLastStateOfEachMarker) {
 
 TEST(MarkerScene, ListsOnlyChangesSinceAVersion) {
   MarkerScene scene;
-  scene.forwarded(std::vector{marker("a", 1), marker("a", 2)}, 100);
+  scene.on_forwarded(std::vector{marker("a", 1), marker("a", 2)}, 100);
   const auto before = scene.version();
   EXPECT_THAT(scene.changes(before).markers, IsEmpty());
-  scene.forwarded(std::vector{marker("a", 2, 9), marker("a", 1, 0, MarkerAction::Delete),
-                              marker("absent", 1, 0, MarkerAction::Delete)},
-                  101);
+  scene.on_forwarded(std::vector{marker("a", 2, 9), marker("a", 1, 0, MarkerAction::Delete),
+                                 marker("absent", 1, 0, MarkerAction::Delete)},
+                     101);
   const auto news = scene.changes(before);
   EXPECT_FALSE(news.whole);
   EXPECT_THAT(names(news), ElementsAre("a2"));
@@ -58,9 +58,9 @@ TEST(MarkerScene, ListsOnlyChangesSinceAVersion) {
 
 TEST(MarkerScene, ListsAllAfterADeleteAllOrARestart) {
   MarkerScene scene;
-  scene.forwarded(std::vector{marker("a", 1), marker("a", 2)}, 100);
+  scene.on_forwarded(std::vector{marker("a", 1), marker("a", 2)}, 100);
   const auto before = scene.version();
-  scene.forwarded(std::vector{marker("", 0, 0, MarkerAction::DeleteAll), marker("c", 1)}, 101);
+  scene.on_forwarded(std::vector{marker("", 0, 0, MarkerAction::DeleteAll), marker("c", 1)}, 101);
   EXPECT_TRUE(scene.changes(before).whole);
   EXPECT_THAT(names(scene.changes(before)), ElementsAre("c1"));
   EXPECT_TRUE(scene.changes(scene.version() + 5000).whole) << "a version of an earlier process";
@@ -68,7 +68,7 @@ TEST(MarkerScene, ListsAllAfterADeleteAllOrARestart) {
 
 TEST(MarkerScene, IsEmptyInANewRun) {
   MarkerScene scene;
-  scene.forwarded(std::vector{marker("a", 1)}, 100);
+  scene.on_forwarded(std::vector{marker("a", 1)}, 100);
   const auto before = scene.version();
   scene.wipe(200);
   EXPECT_GT(scene.version(), before);
@@ -78,7 +78,7 @@ TEST(MarkerScene, IsEmptyInANewRun) {
 
 TEST(MarkerScene, OmitsAndCountsTheOldestOfTooMany) {
   MarkerScene scene;
-  for (std::int32_t id = 0; id < 2003; ++id) scene.forwarded(std::vector{marker("a", id)}, 100 + id);
+  for (std::int32_t id = 0; id < 2003; ++id) scene.on_forwarded(std::vector{marker("a", id)}, 100 + id);
   const auto news = scene.changes(0);
   EXPECT_THAT(news.markers, SizeIs(MarkerScene::kMost));
   EXPECT_EQ(news.left_out, 3u);
@@ -91,7 +91,7 @@ TEST(MarkerScene, OmitsTheOldestIfTheyAreTooLarge) {
   line.type = static_cast<std::int32_t>(icd::MarkerType::LineStrip);
   for (int i = 0; i < 5000; ++i) line.points.push_back({i * 1.0, 0, 0});
   for (; line.id < 100; ++line.id) {
-    scene.forwarded(std::vector{line}, 100 + line.id);
+    scene.on_forwarded(std::vector{line}, 100 + line.id);
   }
   const auto news = scene.changes(0);
   std::size_t bytes = 0;
@@ -101,18 +101,18 @@ TEST(MarkerScene, OmitsTheOldestIfTheyAreTooLarge) {
   EXPECT_EQ(news.left_out, 100 - news.markers.size());
   EXPECT_EQ(news.markers.back().marker.id, 99);
   const auto first = news.markers.front().marker.id;
-  for (std::int32_t id = first; id < 100; ++id) scene.forwarded(std::vector{marker("a", id)}, 300);
+  for (std::int32_t id = first; id < 100; ++id) scene.on_forwarded(std::vector{marker("a", id)}, 300);
   line.id = 0;
-  scene.forwarded(std::vector{line}, 301);
+  scene.on_forwarded(std::vector{line}, 301);
   EXPECT_THAT(scene.changes(0).markers, SizeIs(101 - first)) << "smaller markers make room";
 }
 
 TEST(MarkerScene, LimitsTheNamesOfDeletedMarkers) {
   MarkerScene scene;
-  const auto begun = (scene.forwarded(std::vector{marker("b", 0)}, 99), scene.version());
+  const auto begun = (scene.on_forwarded(std::vector{marker("b", 0)}, 99), scene.version());
   for (char name = 'a'; name < 'z'; ++name) {
     const std::string longest(200'000, name);
-    scene.forwarded(std::vector{marker(longest, 1), marker(longest, 1, 0, MarkerAction::Delete)}, 100);
+    scene.on_forwarded(std::vector{marker(longest, 1), marker(longest, 1, 0, MarkerAction::Delete)}, 100);
   }
   EXPECT_TRUE(scene.changes(begun).whole) << "older changes are forgotten";
   EXPECT_THAT(names(scene.changes(0)), ElementsAre("b0"));
@@ -133,8 +133,8 @@ TEST(MarkerScene, HasChangesThatAddUpToTheScene) {
       const auto action = below(2000) == 0 ? MarkerAction::DeleteAll
                           : below(3) == 0  ? MarkerAction::Delete
                                            : MarkerAction::Add;
-      scene.forwarded(std::vector{marker("n", static_cast<std::int32_t>(below(6000)), step, action)},
-                      step / 10.0);
+      scene.on_forwarded(std::vector{marker("n", static_cast<std::int32_t>(below(6000)), step, action)},
+                         step / 10.0);
     }
     if (below(20) != 0) continue;
     const auto news = scene.changes(known);

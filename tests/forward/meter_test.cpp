@@ -8,18 +8,18 @@ namespace {
 TEST(MeterTest, ShowsZeroInTheFirstSecond) {
   Meter meter;
   EXPECT_EQ(meter.mbit(), 0);
-  meter.second(1'000'000);
+  meter.on_second(1'000'000);
   EXPECT_EQ(meter.mbit(), 0);
 }
 
 TEST(MeterTest, ShowsTheMeanOfTheLastSeconds) {
   Meter meter;
-  meter.second(7);
-  meter.second(7 + 1'000'000);
+  meter.on_second(7);
+  meter.on_second(7 + 1'000'000);
   EXPECT_DOUBLE_EQ(meter.mbit(), 8);
-  for (std::size_t i = 1; i < Meter::kSeconds; ++i) meter.second(7 + 1'000'000);
+  for (std::size_t i = 1; i < Meter::kSeconds; ++i) meter.on_second(7 + 1'000'000);
   EXPECT_DOUBLE_EQ(meter.mbit(), 8.0 / Meter::kSeconds);
-  meter.second(7 + 1'000'000);
+  meter.on_second(7 + 1'000'000);
   EXPECT_DOUBLE_EQ(meter.mbit(), 0);
 }
 

@@ -27,7 +27,8 @@ class PipelinedMap : public MapsToManualEndpoint {
   bool is_queue_empty() const {
     std::size_t waiting = 0;
     for (const char* robot : {"first", "second", "third"}) {
-      for (const Kind kind : {Kind::Grid, Kind::Cloud}) waiting += maps_->waiting({kind, robot});
+      for (const TrafficKind kind : {TrafficKind::Grid, TrafficKind::Cloud})
+        waiting += maps_->waiting({kind, robot});
     }
     return waiting == 0;
   }
@@ -62,8 +63,8 @@ class PipelinedMap : public MapsToManualEndpoint {
 
 TEST_F(PipelinedMap, IsDeliveredAfterTheFirstMap) {
   send_one_ahead();
-  EXPECT_EQ(maps_->waiting({Kind::Grid, "first"}), 1u);
-  EXPECT_EQ(maps_->waiting({Kind::Grid, "second"}), 1u);
+  EXPECT_EQ(maps_->waiting({TrafficKind::Grid, "first"}), 1u);
+  EXPECT_EQ(maps_->waiting({TrafficKind::Grid, "second"}), 1u);
   for (int i = 0; i < 2; ++i) post_.answer("200 OK");
   EXPECT_TRUE(are_delivered());
   EXPECT_EQ(received_since(), (std::vector<std::string>{"first", "second"}));

@@ -22,18 +22,18 @@ class PreparedMap : public MapsToManualEndpoint {
 TEST_F(PreparedMap, IsPackedWhileTheFirstIsInFlight) {
   send_one_and_pack_one();
   EXPECT_EQ(post_.received().size(), 1u);
-  EXPECT_EQ(maps_->waiting({Kind::Grid, "first"}), 1u);
-  EXPECT_EQ(maps_->waiting({Kind::Grid, "second"}), 1u);
+  EXPECT_EQ(maps_->waiting({TrafficKind::Grid, "first"}), 1u);
+  EXPECT_EQ(maps_->waiting({TrafficKind::Grid, "second"}), 1u);
   post_.answer("200 OK");
   EXPECT_TRUE(receives({"first", "second"}));
-  EXPECT_EQ(maps_->waiting({Kind::Grid, "first"}), 0u);
+  EXPECT_EQ(maps_->waiting({TrafficKind::Grid, "first"}), 0u);
 }
 
 TEST_F(PreparedMap, ReturnsToTheQueueWithTheFirst) {
   send_one_and_pack_one();
   for (const char* answer : {"500 Oops", "200 OK", "200 OK"}) post_.answer(answer);
   EXPECT_TRUE(loop::turn_until(loop_, [&] {
-    return maps_->waiting({Kind::Grid, "first"}) + maps_->waiting({Kind::Grid, "second"}) == 0;
+    return maps_->waiting({TrafficKind::Grid, "first"}) + maps_->waiting({TrafficKind::Grid, "second"}) == 0;
   }));
   EXPECT_EQ(post_.received().size(), 3u);
 }
@@ -45,7 +45,7 @@ TEST_F(PreparedMap, ReturnsToTheQueueIfTheRunChangesWhileItIsPacked) {
   EXPECT_GT(maps_->queued_bytes(), 0u);
   post_.answer("200 OK");
   EXPECT_TRUE(receives({"first"}));
-  EXPECT_TRUE(loop::turn_until(loop_, [&] { return maps_->waiting({Kind::Grid, "first"}) == 0; }));
+  EXPECT_TRUE(loop::turn_until(loop_, [&] { return maps_->waiting({TrafficKind::Grid, "first"}) == 0; }));
   EXPECT_EQ(post_.received().size(), 1u);
 }
 
@@ -65,7 +65,7 @@ TEST_F(PreparedMap, ReplacesAFailedGridThatItCovers) {
   post_.answer("500 Oops");
   ASSERT_TRUE(receives({"first", "first"}));
   post_.answer("200 OK");
-  EXPECT_TRUE(loop::turn_until(loop_, [&] { return maps_->waiting({Kind::Grid, "first"}) == 0; }));
+  EXPECT_TRUE(loop::turn_until(loop_, [&] { return maps_->waiting({TrafficKind::Grid, "first"}) == 0; }));
   EXPECT_EQ(post_.received().size(), 2u);
 }
 
@@ -80,7 +80,7 @@ TEST_F(PreparedMap, ReplacesAnOlderGridSentByTheOperator) {
     return true;
   });
   EXPECT_EQ(kept, true) << "the newer grid covers it";
-  EXPECT_EQ(maps_->waiting({Kind::Grid, "second"}), 1u);
+  EXPECT_EQ(maps_->waiting({TrafficKind::Grid, "second"}), 1u);
 }
 
 }  // namespace

@@ -50,7 +50,7 @@ class RejectedStoreTest : public testing::Test {
   void add(queues::Message message, int status = 422, const std::string& why = "no",
            std::size_t bytes = 100) {
     rejected_->add(std::move(message), status, why, bytes,
-                   {.told = [this](bool kept) { ++(kept ? told_.kept : told_.not_kept); },
+                   {.on_stored = [this](bool kept) { ++(kept ? told_.kept : told_.not_kept); },
                     .let_go = [this] { ++told_.let_go; }});
   }
 
@@ -133,7 +133,7 @@ TEST_F(RejectedStoreTest, ForgetsRetriedAndDiscardedMessages) {
 
 TEST_F(RejectedStoreTest, RetriesNoReplacedMessage) {
   add(grid());
-  rejected_->taken(grid(0, 5));
+  rejected_->mark_contained(grid(0, 5));
   EXPECT_TRUE(rejected_->rows().front().replaced);
   const auto sent = rejected_->begin_resend(1);
   ASSERT_FALSE(sent);
@@ -144,13 +144,15 @@ TEST_F(RejectedStoreTest, RetriesNoReplacedMessage) {
 }
 
 TEST_F(RejectedStoreTest, KeepsWhatAGridReplacedAcrossARestart) {
-  const auto bounds = [](double x) { return icd::GridBounds::of(std::get<icd::OccupancyGrid>(grid(x).msg)); };
+  const auto bounds = [](double x) {
+    return icd::GridBounds::from_grid(std::get<icd::OccupancyGrid>(grid(x).msg));
+  };
   add(grid());
   rejected_->add(grid(0.04), 422, "no", 100, {}, icd::joint_bounds(bounds(0.04), bounds(0.08)));
   ASSERT_EQ(rejected_->rows().size(), 1u) << "replaced the first";
   for (int i = 0; i < 2; ++i) {
-    rejected_->taken(grid(0.07));
-    rejected_->taken(grid(0.01));
+    rejected_->mark_contained(grid(0.07));
+    rejected_->mark_contained(grid(0.01));
     EXPECT_FALSE(rejected_->rows().front().replaced) << "70 mm of one or the other are outside";
     settle();
     restart();
@@ -159,7 +161,7 @@ TEST_F(RejectedStoreTest, KeepsWhatAGridReplacedAcrossARestart) {
   ASSERT_TRUE(item && item->bounds);
   EXPECT_NEAR(item->bounds->low.x, -0.04, 1e-9);
   EXPECT_NEAR(item->bounds->high.x, 0.24, 1e-9);
-  rejected_->taken(grid(0.04));
+  rejected_->mark_contained(grid(0.04));
   EXPECT_TRUE(rejected_->rows().empty()) << "it is being sent";
   rejected_->finish_resend(2, false);
   EXPECT_TRUE(rejected_->rows().front().replaced);
@@ -169,10 +171,10 @@ TEST_F(RejectedStoreTest, ConfirmsThatAReplacementIsStored) {
   add(grid());
   settle();
   int written = 0;
-  EXPECT_FALSE(rejected_->taken(state(), [&] { ++written; })) << "replaces nothing";
+  EXPECT_FALSE(rejected_->mark_contained(state(), [&] { ++written; })) << "replaces nothing";
   hold();
-  EXPECT_TRUE(rejected_->taken(grid(), [&] { ++written; }));
-  EXPECT_FALSE(rejected_->taken(grid(), [&] { ++written; })) << "replaced before";
+  EXPECT_TRUE(rejected_->mark_contained(grid(), [&] { ++written; }));
+  EXPECT_FALSE(rejected_->mark_contained(grid(), [&] { ++written; })) << "replaced before";
   EXPECT_FALSE(found_after_a_kill().front().replaced);
   EXPECT_FALSE(rejected_->has_stored_all());
   EXPECT_EQ(written, 0);
@@ -185,11 +187,11 @@ TEST_F(RejectedStoreTest, ConfirmsThatAReplacementIsStored) {
 
 TEST_F(RejectedStoreTest, CountsDroppedMessages) {
   for (int i = 0; i < 5; ++i) add(state());
-  EXPECT_EQ(rejected_->dropped(), 0) << "the newer state replaces them";
+  EXPECT_EQ(rejected_->dropped_count(), 0) << "the newer state replaces them";
   for (std::size_t i = 0; i < queues::RejectedMessages::kMostItems + 3; ++i) {
     add(grid(static_cast<double>(i)));
   }
-  EXPECT_EQ(rejected_->dropped(), 4);
+  EXPECT_EQ(rejected_->dropped_count(), 4);
 }
 
 TEST_F(RejectedStoreTest, KeepsDamagedFilesAside) {
@@ -260,7 +262,7 @@ TEST_F(RejectedStoreTest, DetectsAReplacementDuringARetry) {
   add(state());
   ASSERT_TRUE(rejected_->begin_resend(1));
   ASSERT_TRUE(rejected_->begin_resend(2));
-  rejected_->taken(grid());
+  rejected_->mark_contained(grid());
   EXPECT_FALSE(rejected_->finish_resend(1, true));
   EXPECT_TRUE(rejected_->finish_resend(2, true));
 }
@@ -324,11 +326,11 @@ TEST_F(RejectedStoreTest, ReleasesTheOriginOfAReplacedMessage) {
   rejected_ = std::make_unique<RejectedStore>(loop_, *writer_, folder_ / "in the way/rejected");
   add(grid());
   settle();
-  EXPECT_FALSE(rejected_->taken(grid()));
+  EXPECT_FALSE(rejected_->mark_contained(grid()));
   EXPECT_EQ(told_.let_go, 1);
   hold();
   add(grid(9));
-  rejected_->taken(grid(9));
+  rejected_->mark_contained(grid(9));
   EXPECT_EQ(told_.let_go, 1) << "its write is pending";
   let_go();
   settle();

@@ -53,7 +53,7 @@ TEST_F(ReplacedMap, IsMarkedBeforeTheNewerOneIsDeleted) {
   rejected_.add(grid_of("r1", 10), 422, "no", 100, {});
   ASSERT_TRUE(loop::turn_until_idle(loop_, writer_));
   WatchedDirectories watched(rejected_folder_.path(), folder_.path());
-  maps.take(grid_of("r1", 20), {.bytes = 10}, nullptr, [](const icd::Checked<void>&) {});
+  maps.accept(grid_of("r1", 20), {.bytes = 10}, nullptr, [](const icd::Checked<void>&) {});
   ASSERT_TRUE(loop::turn_until(loop_, [&] { return watched.names().size() >= 2; }));
   EXPECT_EQ(watched.names().front(), "1.json");
   EXPECT_TRUE(rejected_.rows().front().replaced);

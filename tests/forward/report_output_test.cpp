@@ -20,7 +20,7 @@ bool fails = false;  // the disk fails
 
 // Replaces the C library's function in this program.
 extern "C" int fdatasync(int file) {
-  flushes.push_back(adit::host::logged());
+  flushes.push_back(adit::host::last_record_number());
   if (fails) return errno = EIO, -1;
   return reinterpret_cast<int (*)(int)>(::dlsym(RTLD_NEXT, "fdatasync"))(file);
 }
@@ -54,7 +54,7 @@ class ReportOutputTest : public testing::Test {
   std::uint64_t logged_after(loop::Duration passed) {
     time_.pass(passed - 1ms);
     time_.pass(loop_, 1ms);
-    return host::logged() - said_;
+    return host::last_record_number() - said_;
   }
 
   loop::SimulatedTime time_;
@@ -62,7 +62,7 @@ class ReportOutputTest : public testing::Test {
   loop::Loop loop_;
   ledger::Ledger ledger_ = std::move(*ledger::Ledger::open(folder_.path()));
   ReportOutput output_{loop_, ledger_};
-  const std::uint64_t said_ = host::logged();
+  const std::uint64_t said_ = host::last_record_number();
 };
 
 /// The flush needs no later event. A slow reader of the log delays nothing.

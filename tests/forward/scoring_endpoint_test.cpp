@@ -86,13 +86,13 @@ class ScoringEndpoint : public testing::Test, protected ScoringParts {
     });
   }
   void post(double x, std::vector<int>& told) {
-    scoring_->take(icd::ArtifactReport{.type = "Backpack", .position = {x, 2, 3}},
-                   intake::Sender{.address = "10.0.0.5"}, std::make_shared<Client>(told));
+    scoring_->accept(icd::ArtifactReport{.type = "Backpack", .position = {x, 2, 3}},
+                     intake::Sender{.address = "10.0.0.5"}, std::make_shared<Client>(told));
   }
   void move() {
     settings_.command_post.scoring = there_.address();
     scoring_->endpoint_changed(token_);
-    scoring_->settings_changed();
+    scoring_->on_settings_changed();
   }
   const dispatch::Report& report(std::int64_t number) const { return scoring_->reports().book().at(number); }
 
@@ -194,7 +194,7 @@ TEST_F(ScoringEndpoint, SendsARedirectedReportAtTheOtherFormOfItsPath) {
 TEST_F(ScoringEndpoint, SendsNoReportByARedirect) {
   settings_.reports.doubt_for = std::chrono::milliseconds{100};
   settings_.reports.doubt_asks = 1;
-  scoring_->settings_changed();
+  scoring_->on_settings_changed();
   here_.reports_want_slash = true;
   post(1, first_);
   ASSERT_TRUE(eventually([this] { return here_.reports == 1; }));

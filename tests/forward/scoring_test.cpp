@@ -57,8 +57,8 @@ class ScoringTest : public testing::Test, protected ScoringParts {
   }
   std::shared_ptr<Asker> report(double x) {
     auto client = std::make_shared<Asker>();
-    scoring_->take(icd::ArtifactReport{.type = "Backpack", .position = {x, 2, 3}},
-                   intake::Sender{.address = "10.0.0.5"}, client);
+    scoring_->accept(icd::ArtifactReport{.type = "Backpack", .position = {x, 2, 3}},
+                     intake::Sender{.address = "10.0.0.5"}, client);
     return client;
   }
   /// Answer to a client that asks before the first status has arrived.
@@ -227,9 +227,9 @@ TEST_F(ScoringTest, SendsNoReportToAWebPage) {
   };
   const Ends ends{*this};
   lead_to({stand_in});
-  ASSERT_TRUE(eventually([&] { return scoring_->channel().last().ended() > 0; }));
+  ASSERT_TRUE(eventually([&] { return scoring_->channel().last().ended_requests() > 0; }));
   const auto client = report(1);
-  ASSERT_TRUE(eventually([&] { return scoring_->channel().last().ended() > 5; }));
+  ASSERT_TRUE(eventually([&] { return scoring_->channel().last().ended_requests() > 5; }));
   EXPECT_FALSE(client->heard);
   EXPECT_TRUE(scoring_->channel().last().is_foreign());
   is_up = true;

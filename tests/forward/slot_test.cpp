@@ -17,16 +17,16 @@ uplink::Sent sent_in(milliseconds took) {
 
 /// Bytes of exact points in this time.
 std::size_t exact_in(const Slot& slot, int seconds) {
-  return slot.points_within(std::chrono::seconds(seconds))[0];
+  return slot.points_for(std::chrono::seconds(seconds))[0];
 }
 
 TEST(Slot, HoldsMoreRoundedPoints) {
   Slot slot(10 * kMegabyte);
-  const queues::PointsAt at_first = slot.points_within(std::chrono::seconds(1));
+  const queues::PointsAt at_first = slot.points_for(std::chrono::seconds(1));
   EXPECT_LT(at_first[0], at_first[1]);
   EXPECT_LT(at_first[1], at_first[2]);
-  slot.packed(4 * kMegabyte, kMegabyte, Precision::EightMillimetres);
-  EXPECT_EQ(slot.points_within(std::chrono::seconds(1))[2], 40 * kMegabyte);
+  slot.on_packed(4 * kMegabyte, kMegabyte, Precision::EightMillimetres);
+  EXPECT_EQ(slot.points_for(std::chrono::seconds(1))[2], 40 * kMegabyte);
   EXPECT_LT(exact_in(slot, 1), 40 * kMegabyte) << "exact points pack less well";
 }
 
@@ -39,19 +39,19 @@ TEST(Slot, HoldsTheBudgetOfMapsAtFirst) {
 
 TEST(Slot, HoldsMoreOfCloudsThatPackWell) {
   Slot slot(10 * kMegabyte);
-  slot.packed(4 * kMegabyte, kMegabyte, Precision::Exact);
+  slot.on_packed(4 * kMegabyte, kMegabyte, Precision::Exact);
   EXPECT_EQ(exact_in(slot, 1), 40 * kMegabyte);
-  slot.packed(4 * kMegabyte, 5 * kMegabyte, Precision::Exact);
+  slot.on_packed(4 * kMegabyte, 5 * kMegabyte, Precision::Exact);
   EXPECT_EQ(exact_in(slot, 1), 10 * kMegabyte);
 }
 
 TEST(Slot, FollowsTheMeasuredLink) {
   Slot slot(10 * kMegabyte);
-  slot.left(4 * kMegabyte, sent_in(std::chrono::seconds(1)), kBegin);
+  slot.on_sent(4 * kMegabyte, sent_in(std::chrono::seconds(1)), kBegin);
   EXPECT_EQ(exact_in(slot, 1), 4 * kMegabyte);
-  slot.left(8 * kMegabyte, sent_in(std::chrono::seconds(1)), kBegin);
+  slot.on_sent(8 * kMegabyte, sent_in(std::chrono::seconds(1)), kBegin);
   EXPECT_EQ(exact_in(slot, 1), 8 * kMegabyte);
-  slot.left(80 * kMegabyte, sent_in(std::chrono::seconds(1)), kBegin);
+  slot.on_sent(80 * kMegabyte, sent_in(std::chrono::seconds(1)), kBegin);
   EXPECT_EQ(exact_in(slot, 1), 10 * kMegabyte) << "the budget is the limit";
 }
 
@@ -62,13 +62,13 @@ TEST(Slot, HoldsLessIfTheLinkDeliversLess) {
   slot.link_delivers(6 * kMegabyte);
   slot.link_delivers(9 * kMegabyte);
   EXPECT_EQ(exact_in(slot, 1), 6 * kMegabyte) << "until a map leaves faster";
-  slot.left(6 * kMegabyte, sent_in(milliseconds(600)), {});
+  slot.on_sent(6 * kMegabyte, sent_in(milliseconds(600)), {});
   EXPECT_EQ(exact_in(slot, 1), 10 * kMegabyte);
 }
 
 TEST(Slot, IgnoresTimeBeforeTheSlot) {
   Slot slot(10 * kMegabyte);
-  slot.left(kMegabyte, sent_in(std::chrono::seconds(1)), kBegin + std::chrono::seconds(1));
+  slot.on_sent(kMegabyte, sent_in(std::chrono::seconds(1)), kBegin + std::chrono::seconds(1));
   EXPECT_EQ(exact_in(slot, 1), 10 * kMegabyte);
 }
 
@@ -91,10 +91,10 @@ TEST(Slot, LimitsItsLead) {
 
 TEST(Slot, DetectsThatASlowLinkIsFastAgain) {
   Slot slot(10 * kMegabyte);
-  slot.left(kMegabyte, sent_in(std::chrono::seconds(1000)), kBegin);
+  slot.on_sent(kMegabyte, sent_in(std::chrono::seconds(1000)), kBegin);
   const std::size_t few = exact_in(slot, 1);
   EXPECT_LT(few, kMegabyte);
-  slot.left(few, sent_in(milliseconds(1)), kBegin);
+  slot.on_sent(few, sent_in(milliseconds(1)), kBegin);
   EXPECT_EQ(exact_in(slot, 1), 10 * kMegabyte);
 }
 
@@ -102,7 +102,7 @@ TEST(Slot, HasTheFiguresForTheEffort) {
   Slot slot(10 * kMegabyte);
   const auto hurry = [&slot] { return slot.hurry(std::chrono::seconds(2)); };
   EXPECT_EQ(hurry().bytes_per_second, 10 * kMegabyte);
-  slot.left(2 * kMegabyte, sent_in(std::chrono::seconds(1)), kBegin);
+  slot.on_sent(2 * kMegabyte, sent_in(std::chrono::seconds(1)), kBegin);
   EXPECT_EQ(hurry().bytes_per_second, 2 * kMegabyte);
   EXPECT_EQ(hurry().longest, 2);
 }

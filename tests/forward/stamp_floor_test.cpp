@@ -48,7 +48,7 @@ TEST_F(StampFloorTest, KeepsTheTimeOfDay) {
   living.write(*living.due(1.7e9, 1.8e9, {}));
   EXPECT_DOUBLE_EQ(StampFloor(folder_.string()).read()->wall, 1.8e9);
   EXPECT_FALSE(living.due(1.7e9 + 1, 1.6e9, {}));
-  living.is_due();  // the clock was set
+  living.make_due();  // the clock was set
   living.write(*living.due(1.7e9 + 1, 1.6e9, {}));
   EXPECT_DOUBLE_EQ(StampFloor(folder_.string()).read()->wall, 1.6e9);
 }
@@ -96,9 +96,9 @@ TEST_F(StampFloorTest, LogsAFailureOnce) {
   StampFloor floor(folder_.string());
   StampFloor for_the_writer = floor;
   const auto logged_by = [&](double seconds) {
-    const std::uint64_t before = host::logged();
+    const std::uint64_t before = host::last_record_number();
     for_the_writer.write({.floor = seconds, .wall = seconds});
-    return host::logged() - before;
+    return host::last_record_number() - before;
   };
   fs::remove_all(folder_);
   EXPECT_EQ(logged_by(1), 1u);
@@ -114,9 +114,9 @@ TEST_F(StampFloorTest, IsWrittenInPlaceOnAFullDisk) {
   StampFloor floor(folder_.string());
   floor.write({.floor = 1.7e9, .wall = 1.6e9, .least = 1.75e9});
   fs::create_directories(folder_ / "stamps.writing" / "in the way");
-  const std::uint64_t before = host::logged();
+  const std::uint64_t before = host::last_record_number();
   floor.write({.floor = 1.8e9, .wall = 1.7e9});
-  EXPECT_EQ(host::logged(), before);
+  EXPECT_EQ(host::last_record_number(), before);
   EXPECT_EQ(floor.read()->floor, 1.8e9);
   EXPECT_EQ(floor.read()->wall, 1.7e9);
   EXPECT_EQ(floor.read()->least, 0) << "the longer old content is gone";
@@ -125,10 +125,10 @@ TEST_F(StampFloorTest, IsWrittenInPlaceOnAFullDisk) {
 TEST_F(StampFloorTest, IsZeroIfItsFileIsInvalid) {
   EXPECT_EQ(read().floor, 0);
   for (const char* text : {"", "soon", "1700000000.0\n1600000000.0\n0.0\n7\n3\n"}) {
-    const std::uint64_t before = host::logged();
+    const std::uint64_t before = host::last_record_number();
     put(text);
     EXPECT_EQ(read(), StampFloor::Kept{.is_damaged = true}) << text;
-    EXPECT_EQ(host::logged(), before + 1) << text;
+    EXPECT_EQ(host::last_record_number(), before + 1) << text;
   }
 }
 

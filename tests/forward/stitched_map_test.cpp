@@ -30,22 +30,22 @@ queues::QueuedMap taken_of(const std::vector<icd::MapUpdate>& maps) {
   queues::MapQueue queue{0};
   std::uint64_t number = 0;
   for (const icd::MapUpdate& map : maps) queue.add(++number, map, queues::Instant{});
-  return *queue.take();
+  return *queue.pop();
 }
 
 TEST(StitchedMap, HasTheCellsOfItsParts) {
   const auto waiting = taken_of({row_at(0, {1, 2, 3}), row_at(3, {4}), row_at(2, {5, 6, 7})});
   ASSERT_EQ(waiting.updates.size(), 3);
-  const Packed map = packed(waiting);
+  const Packed map = pack_map(waiting);
   EXPECT_FALSE(map.body.empty());
   EXPECT_THAT(codec::bytes_of(map.stitched), ElementsAre(1, 2, 5, 6, 7));
 }
 
 TEST(StitchedMap, IsStitchedOnce) {
   auto waiting = taken_of({row_at(0, {1, 2, 3}), row_at(3, {4})});
-  const Packed first = packed(waiting);
+  const Packed first = pack_map(waiting);
   waiting.map.data = first.stitched;
-  const Packed second = packed(waiting);
+  const Packed second = pack_map(waiting);
   EXPECT_EQ(second.body, first.body);
   EXPECT_EQ(second.stitched.raw_size, 0);
 }
@@ -55,10 +55,10 @@ TEST(StitchedMap, HasNoBodyIfAPartIsDamaged) {
   auto bytes = damaged.data.bytes.to_vector();
   bytes[bytes.size() - 6] ^= 1;
   damaged.data.bytes = icd::ChunkedBytes{bytes};
-  EXPECT_TRUE(packed(taken_of({row_at(0, {1, 2, 3}), damaged})).body.empty());
+  EXPECT_TRUE(pack_map(taken_of({row_at(0, {1, 2, 3}), damaged})).body.empty());
   const auto alone = taken_of({damaged});
-  EXPECT_TRUE(packed(alone).body.empty()) << "detected by packing";
-  EXPECT_TRUE(packed(alone, {.hurry = {.longest = 0}}).body.empty()) << "detected by drawing";
+  EXPECT_TRUE(pack_map(alone).body.empty()) << "detected by packing";
+  EXPECT_TRUE(pack_map(alone, {.hurry = {.longest = 0}}).body.empty()) << "detected by drawing";
 }
 
 TEST(StitchedMap, FillsItsGapsWithSentCells) {
@@ -66,8 +66,8 @@ TEST(StitchedMap, FillsItsGapsWithSentCells) {
   std::uint64_t number = 0;
   const auto take = [&](const std::vector<icd::MapUpdate>& maps) {
     for (const icd::MapUpdate& map : maps) queue.add(++number, map, queues::Instant{});
-    auto waiting = *queue.take();
-    Packed map = packed(waiting);
+    auto waiting = *queue.pop();
+    Packed map = pack_map(waiting);
     EXPECT_TRUE(map.drawn);
     if (map.drawn) queue.canvases().lay(waiting.map.name, *map.drawn);
     return map;
@@ -90,7 +90,7 @@ queues::QueuedMap cloud_at(float begin, int points, queues::Precision precision)
 TEST(PackedCloud, HasItsPrecision) {
   using queues::Precision;
   for (const Precision each : {Precision::Exact, Precision::Millimetre, Precision::EightMillimetres}) {
-    const Packed map = packed(cloud_at(5, 2000, each));
+    const Packed map = pack_map(cloud_at(5, 2000, each));
     EXPECT_EQ(map.precision, each);
     EXPECT_EQ(map.points_size, 2000 * 12);
   }
@@ -98,7 +98,7 @@ TEST(PackedCloud, HasItsPrecision) {
 
 TEST(PackedCloud, IsExactIfItCannotBeRounded) {
   const auto precision_of = [](const queues::QueuedMap& waiting, bool arranges) {
-    return packed(waiting, {.arranges_clouds = arranges}).precision;
+    return pack_map(waiting, {.arranges_clouds = arranges}).precision;
   };
   using queues::Precision;
   EXPECT_EQ(precision_of(cloud_at(5, 2000, Precision::Millimetre), /*arranges=*/false), Precision::Exact);
@@ -110,13 +110,13 @@ TEST(PackedCloud, IsExactIfItCannotBeRounded) {
 TEST(PackedMap, GoesAsItIsAfterTheSameChecks) {
   auto cloud = cloud_at(5, 2000, queues::Precision::Millimetre);
   cloud.packing = queues::PackingRule::LastAsItIs;
-  EXPECT_EQ(packed(cloud).body, codec::write_map_update(cloud.map));
+  EXPECT_EQ(pack_map(cloud).body, codec::write_map_update(cloud.map));
   cloud.map = cloud_along_x("r1", {1, NAN, 3});
-  EXPECT_EQ(packed(cloud).body, codec::write_map_update(cloud_along_x("r1", {1, 3})));
+  EXPECT_EQ(pack_map(cloud).body, codec::write_map_update(cloud_along_x("r1", {1, 3})));
   for (const icd::MapUpdate& map : {grid_of("r1", 50), row_at(0, {1, 2, 3})}) {
     queues::QueuedMap grid{
         .map = map, .accepted = {}, .updates = {1}, .packing = queues::PackingRule::LastAsItIs};
-    EXPECT_EQ(packed(grid).body, codec::write_map_update(map));
+    EXPECT_EQ(pack_map(grid).body, codec::write_map_update(map));
   }
 }
 
@@ -126,7 +126,7 @@ TEST(PackedCloud, IsUnchangedIfPackingNeedsTooMuchMemory) {
     queues::QueuedMap waiting = cloud_at(5, 2000, precision);
     const auto is_packed = [&](std::size_t points) {
       waiting.map.data = cloud_along_x("r1", std::vector<float>(points)).data;
-      const Packed map = packed(waiting);
+      const Packed map = pack_map(waiting);
       EXPECT_EQ(map.effort == pack::Effort::None, map.body.size() > waiting.map.data.raw_size);
       return map.effort == pack::Effort::Full;
     };

@@ -63,8 +63,8 @@ struct Process {
   /// Few markers are answered at once.
   icd::Checked<void> take(icd::MarkersUpdate update) {
     std::optional<icd::Checked<void>> said;
-    telemetry.take(std::move(update), {.bytes = 10},
-                   [&](icd::Checked<void> taken) { said = std::move(taken); });
+    telemetry.accept(std::move(update), {.bytes = 10},
+                     [&](icd::Checked<void> taken) { said = std::move(taken); });
     return said.value();
   }
 
@@ -124,25 +124,25 @@ struct TelemetryStub {
 TEST_F(TelemetryTest, KeepsNoDeliveredPoseAcrossARestart) {
   TelemetryStub post(true);
   auto process = process_with(post.peer);
-  ASSERT_TRUE(process->telemetry.take(pose("r1", 1), 10));
+  ASSERT_TRUE(process->telemetry.accept(pose("r1", 1), 10));
   ASSERT_TRUE(eventually(*process, [&] { return !process->delivered.robots().empty(); }));
   process.reset();
   process = process_without_a_token();
-  EXPECT_EQ(process->telemetry.waiting(Kind::State), 0u);
-  ASSERT_TRUE(process->telemetry.take(pose("r2", 2), 10));
+  EXPECT_EQ(process->telemetry.waiting(TrafficKind::State), 0u);
+  ASSERT_TRUE(process->telemetry.accept(pose("r2", 2), 10));
   ASSERT_EQ(left().robots().size(), 1u);
   EXPECT_EQ(left().robots().begin()->first.text(), "r2");
 }
 
 TEST_F(TelemetryTest, KeepsTheAgeOfAPoseOverARestart) {
   auto process = process_without_a_token();
-  ASSERT_TRUE(process->telemetry.take(pose("r1", 1), 10));
+  ASSERT_TRUE(process->telemetry.accept(pose("r1", 1), 10));
   journal::Heard heard{.robot = "r1"};
-  heard.behind[static_cast<std::size_t>(Kind::State)] = loop_.stamp_now() - 30;
-  process->journal.heard(heard);
+  heard.behind[static_cast<std::size_t>(TrafficKind::State)] = loop_.stamp_now() - 30;
+  process->journal.record_heard(heard);
   process.reset();
   process = process_without_a_token();
-  const auto since = process->telemetry.oldest_acceptance({Kind::State, "r1"});
+  const auto since = process->telemetry.oldest_acceptance({TrafficKind::State, "r1"});
   ASSERT_TRUE(since);
   EXPECT_NEAR(std::chrono::duration<double>(loop_.now() - *since).count(), 30, 5);
 }
@@ -157,10 +157,10 @@ TEST_F(TelemetryTest, SendsARestoredPoseOnce) {
       if (request.find("r2") != std::string::npos) ++of_r2;
     }
   });
-  ASSERT_TRUE(process_without_a_token()->telemetry.take(pose("r1", 1), 10));
+  ASSERT_TRUE(process_without_a_token()->telemetry.accept(pose("r1", 1), 10));
   const auto process = process_with(peer);
   ASSERT_TRUE(eventually(*process, [&] { return process->delivered.robots().size() == 1; }));
-  ASSERT_TRUE(process->telemetry.take(pose("r2", 2), 10));
+  ASSERT_TRUE(process->telemetry.accept(pose("r2", 2), 10));
   ASSERT_TRUE(eventually(*process, [&] { return of_r2 == 1; }));
   EXPECT_EQ(of_r1, 1);
 }
@@ -169,13 +169,13 @@ TEST_F(TelemetryTest, SendsARestoredPoseOnce) {
 TEST_F(TelemetryTest, KeepsMessagesUntilReplacementsAreStored) {
   TelemetryStub post(true);
   const auto process = process_with(post.peer);
-  process->rejected.add(icd::StateUpdate{.header = {1}, .poses = {pose("r1", 1).at(0).named()}}, 422, "no",
-                        100, {});
+  process->rejected.add(icd::StateUpdate{.header = {1}, .poses = {pose("r1", 1).at(0).to_named_pose()}}, 422,
+                        "no", 100, {});
   process->rejected.add(icd::MarkersUpdate{{marker("a", "older")}}, 422, "no", 100, {});
   std::promise<void> held;
   process->writer.submit([until = held.get_future().share()] { until.wait(); }, [] {});
   const auto replaced = [&](std::size_t row) { return process->rejected.rows().at(row).replaced; };
-  ASSERT_TRUE(process->telemetry.take(pose("r1", 2), 10));
+  ASSERT_TRUE(process->telemetry.accept(pose("r1", 2), 10));
   ASSERT_TRUE(eventually(*process, [&] { return replaced(0); }));
   EXPECT_EQ(left().robots().size(), 1u);
   EXPECT_FALSE(process->rejected.has_stored_all());
@@ -191,7 +191,7 @@ TEST_F(TelemetryTest, RetriesNoMarkerThatANewerOneReplaces) {
   ASSERT_TRUE(process->take(icd::MarkersUpdate{{marker("a", "newer"), marker("b", "other")}}));
   EXPECT_TRUE(process->telemetry.resend(icd::MarkersUpdate{{marker("a", "older")}}));
   EXPECT_THAT(texts(left().markers()), ElementsAre("newer", "other"));
-  EXPECT_EQ(process->telemetry.waiting(Kind::Markers), 2u);
+  EXPECT_EQ(process->telemetry.waiting(TrafficKind::Markers), 2u);
 }
 
 TEST_F(TelemetryTest, RetriesNoMarkerThatWasDeleted) {
@@ -199,7 +199,7 @@ TEST_F(TelemetryTest, RetriesNoMarkerThatWasDeleted) {
   ASSERT_TRUE(process->take(icd::MarkersUpdate{{kWipe}}));
   EXPECT_TRUE(process->telemetry.resend(icd::MarkersUpdate{{marker("a", "older")}}));
   EXPECT_THAT(texts(left().markers()), ElementsAre("wipe"));
-  EXPECT_EQ(process->telemetry.waiting(Kind::Markers), 1u);
+  EXPECT_EQ(process->telemetry.waiting(TrafficKind::Markers), 1u);
 }
 
 TEST_F(TelemetryTest, RetriesADeleteAllBeforeNewerMarkers) {
@@ -207,7 +207,7 @@ TEST_F(TelemetryTest, RetriesADeleteAllBeforeNewerMarkers) {
   ASSERT_TRUE(process->take(icd::MarkersUpdate{{marker("", "newer")}}));
   EXPECT_TRUE(process->telemetry.resend(icd::MarkersUpdate{{kWipe}}));
   EXPECT_THAT(texts(left().markers()), ElementsAre("wipe", "newer"));
-  EXPECT_EQ(process->telemetry.waiting(Kind::Markers), 2u);
+  EXPECT_EQ(process->telemetry.waiting(TrafficKind::Markers), 2u);
 }
 
 TEST_F(TelemetryTest, RetriesAMarkerThatNothingReplaces) {
@@ -221,7 +221,7 @@ TEST_F(TelemetryTest, RejectsADeleteAllThatFailsAlone) {
   TelemetryStub post(true);
   const auto process = process_with(post.peer);
   ASSERT_TRUE(process->take(icd::MarkersUpdate{{kWipe, marker("a", "1"), marker("b", "2")}}));
-  ASSERT_TRUE(eventually(*process, [&] { return process->telemetry.waiting(Kind::Markers) == 0; }));
+  ASSERT_TRUE(eventually(*process, [&] { return process->telemetry.waiting(TrafficKind::Markers) == 0; }));
   ASSERT_TRUE(eventually(
       *process, [&] { return !process->rejected.rows().empty() && left().markers().markers.empty(); }));
   EXPECT_EQ(process->rejected.rows().size(), 1u);
@@ -261,7 +261,7 @@ TEST_F(TelemetryTest, CountsALifetimeOverARestart) {
   loop_.set_stamp(loop_.stamp_now() + 40);
   TelemetryStub post(true);
   const auto process = process_with(post.peer);
-  ASSERT_TRUE(eventually(*process, [&] { return process->telemetry.waiting(Kind::Markers) == 0; }));
+  ASSERT_TRUE(eventually(*process, [&] { return process->telemetry.waiting(TrafficKind::Markers) == 0; }));
   const auto shown = [&] { return process->delivered.markers().changes(0).markers; };
   ASSERT_TRUE(eventually(*process, [&] { return !shown().empty(); }));
   ASSERT_EQ(shown().size(), 1u);
@@ -273,9 +273,10 @@ TEST_F(TelemetryTest, CountsALifetimeOverARestart) {
 TEST_F(TelemetryTest, IsBehindUntilItIsDelivered) {
   TelemetryStub post(true);
   const auto process = process_with(post.peer);
-  const Traffic robot{Kind::State, "r2"}, other{Kind::State, "r9"}, markers{Kind::Markers, ""};
+  const Traffic robot{TrafficKind::State, "r2"}, other{TrafficKind::State, "r9"},
+      markers{TrafficKind::Markers, ""};
   EXPECT_FALSE(process->telemetry.oldest_acceptance(robot));
-  ASSERT_TRUE(process->telemetry.take(pose("r2", 7.5), 10));
+  ASSERT_TRUE(process->telemetry.accept(pose("r2", 7.5), 10));
   ASSERT_TRUE(process->take(icd::MarkersUpdate{{marker("", "one")}}));
   EXPECT_TRUE(process->telemetry.oldest_acceptance(robot));
   EXPECT_TRUE(process->telemetry.oldest_acceptance(markers));
@@ -309,17 +310,17 @@ class OneRejectedRobot : public TelemetryTest, public testing::WithParamInterfac
 TEST_P(OneRejectedRobot, FailsAlone) {
   RejectingStub post(GetParam(), {"r5"});
   const auto process = process_with(post.peer);
-  const auto row = [&](const char* robot) { return process->counts.rows().at({Kind::State, robot}); };
+  const auto row = [&](const char* robot) { return process->counts.rows().at({TrafficKind::State, robot}); };
   double stamp = 1;
-  ASSERT_TRUE(process->telemetry.take(pose("r5", stamp), 10));
+  ASSERT_TRUE(process->telemetry.accept(pose("r5", stamp), 10));
   ASSERT_TRUE(eventually(*process, [&] {
-    EXPECT_TRUE(process->telemetry.take(pose("r1", ++stamp), 10));
+    EXPECT_TRUE(process->telemetry.accept(pose("r1", ++stamp), 10));
     return row("r5").last_sentence.contains("Adit tries this one again within 60 s");
   }));
   EXPECT_THAT(row("r5").last_sentence, testing::StartsWith("the Command Post answered"));
   EXPECT_GE(row("r1").forwarded, 1u);
   EXPECT_THAT(process->rejected.rows(), IsEmpty());
-  EXPECT_TRUE(process->telemetry.oldest_acceptance({Kind::State, "r5"}));
+  EXPECT_TRUE(process->telemetry.oldest_acceptance({TrafficKind::State, "r5"}));
 
   post.rejects = false;
   process->telemetry.endpoint_changed(icd::BearerToken::parse("another-token"));
@@ -336,8 +337,8 @@ TEST_F(TelemetryTest, DeliversMarkersBesideARejectedOne) {
   const auto process = process_with(post.peer);
   ASSERT_TRUE(process->take(icd::MarkersUpdate{{marker("a", "1"), marker("b", "bad"), marker("c", "2")}}));
   const auto shown = [&] { return process->delivered.markers().changes(0).markers.size(); };
-  ASSERT_TRUE(
-      eventually(*process, [&] { return shown() == 2 && process->telemetry.waiting(Kind::Markers) == 1; }));
+  ASSERT_TRUE(eventually(
+      *process, [&] { return shown() == 2 && process->telemetry.waiting(TrafficKind::Markers) == 1; }));
   EXPECT_THAT(process->rejected.rows(), IsEmpty());
   post.rejects = false;
   EXPECT_TRUE(eventually(*process, [&] { return shown() == 3; }));
@@ -347,7 +348,7 @@ TEST_F(TelemetryTest, DeliversMarkersBesideARejectedOne) {
 TEST_F(TelemetryTest, SendsAllRobotsTogetherAfterAllWereRejected) {
   RejectingStub post("401 Unauthorized", {"r1", "r2", "r3"});
   const auto process = process_with(post.peer);
-  for (const char* robot : {"r1", "r2", "r3"}) ASSERT_TRUE(process->telemetry.take(pose(robot, 1), 10));
+  for (const char* robot : {"r1", "r2", "r3"}) ASSERT_TRUE(process->telemetry.accept(pose(robot, 1), 10));
   ASSERT_TRUE(eventually(*process, [&] { return post.rejected >= 12; }));
   EXPECT_NE(process->telemetry.channel().trouble(), "");
   post.rejects = false;
@@ -359,17 +360,17 @@ TEST_F(TelemetryTest, SendsAllRobotsTogetherAfterAllWereRejected) {
 TEST_F(TelemetryTest, CountsNoRepeatedPoseAsForwarded) {
   TelemetryStub post(true);
   const auto process = process_with(post.peer);
-  const Traffic silent{Kind::State, "r1"}, other{Kind::State, "r2"};
+  const Traffic silent{TrafficKind::State, "r1"}, other{TrafficKind::State, "r2"};
   const auto forwarded = [&](const Traffic& of) {
     const auto row = process->counts.rows().find(of);
     return row == process->counts.rows().end() ? 0 : row->second.forwarded;
   };
-  ASSERT_TRUE(process->telemetry.take(pose("r1", 1), 10));
+  ASSERT_TRUE(process->telemetry.accept(pose("r1", 1), 10));
   ASSERT_TRUE(eventually(*process, [&] { return forwarded(silent) == 1; }));
   const auto last = process->counts.rows().at(silent).last_forwarded;
   const api::Time seen = process->delivered.robots().at(0).at.value();
   for (std::uint64_t i = 1; i <= 3; ++i) {
-    ASSERT_TRUE(process->telemetry.take(pose("r2", static_cast<double>(i)), 10));
+    ASSERT_TRUE(process->telemetry.accept(pose("r2", static_cast<double>(i)), 10));
     ASSERT_TRUE(eventually(*process, [&] { return forwarded(other) == i; }));
   }
   EXPECT_EQ(forwarded(silent), 1u);
@@ -381,14 +382,14 @@ TEST_F(TelemetryTest, CountsNoRepeatedPoseAsForwarded) {
 TEST_F(TelemetryTest, BlamesOnlyRobotsWithANewPose) {
   TelemetryStub post(true);
   const auto process = process_with(post.peer);
-  ASSERT_TRUE(process->telemetry.take(pose("r1", 1), 10));
+  ASSERT_TRUE(process->telemetry.accept(pose("r1", 1), 10));
   ASSERT_TRUE(eventually(*process, [&] {
-    return process->telemetry.waiting(Kind::State) == 0 && !process->telemetry.channel().busy();
+    return process->telemetry.waiting(TrafficKind::State) == 0 && !process->telemetry.channel().busy();
   }));
-  ASSERT_TRUE(process->telemetry.take(pose("wipe", 2), 10));  // rejected by the endpoint
-  ASSERT_TRUE(
-      eventually(*process, [&] { return process->counts.rows().at({Kind::State, "wipe"}).failed >= 1; }));
-  EXPECT_EQ(process->counts.rows().at({Kind::State, "r1"}).failed, 0u);
+  ASSERT_TRUE(process->telemetry.accept(pose("wipe", 2), 10));  // rejected by the endpoint
+  ASSERT_TRUE(eventually(
+      *process, [&] { return process->counts.rows().at({TrafficKind::State, "wipe"}).failed >= 1; }));
+  EXPECT_EQ(process->counts.rows().at({TrafficKind::State, "r1"}).failed, 0u);
 }
 
 }  // namespace

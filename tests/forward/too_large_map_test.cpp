@@ -111,8 +111,8 @@ class TooLargeMap : public testing::Test, protected MapsParts {
     settings_.command_post.mapping = proxy_->address();
     std::size_t taken = 0;
     for (const icd::MapUpdate& each : updates)
-      maps_.take(each, {.bytes = 10}, nullptr,
-                 [&](const icd::Checked<void>& said) { taken += said ? 1 : 0; });
+      maps_.accept(each, {.bytes = 10}, nullptr,
+                   [&](const icd::Checked<void>& said) { taken += said ? 1 : 0; });
     ASSERT_TRUE(loop::turn_until(loop_, [&] { return taken == updates.size(); }));
     maps_.endpoint_changed(icd::BearerToken::parse("a-token"));
   }
@@ -144,9 +144,9 @@ class TooLargeMap : public testing::Test, protected MapsParts {
     for (int i = 0; i < count; ++i) all.push_back(cloud_of(kPoints));
     return all;
   }
-  const facts::ActivityRow& row() const { return counts_.rows().at({Kind::Cloud, "r1"}); }
+  const facts::ActivityRow& row() const { return counts_.rows().at({TrafficKind::Cloud, "r1"}); }
   bool becomes(std::size_t waiting) {
-    return loop::turn_until(loop_, [&] { return maps_.waiting({Kind::Cloud, "r1"}) == waiting; });
+    return loop::turn_until(loop_, [&] { return maps_.waiting({TrafficKind::Cloud, "r1"}) == waiting; });
   }
 
   std::optional<ProxyStub> proxy_;  // outlives the connections to it
@@ -182,9 +182,9 @@ TEST_F(TooLargeMap, IsSentInSmallerMessagesAfterThreeResetsWhileOthersAreDeliver
   ASSERT_TRUE(loop::turn_until(loop_, [&] { return row().failed >= 2; }));
   EXPECT_EQ(delivered_, 0u);
   ASSERT_TRUE(loop::turn_until(loop_, [&] {
-    counts_.forwarded({Kind::State, "r2"}, 1, 100, 200, 0);
+    counts_.count_forwarded({TrafficKind::State, "r2"}, 1, 100, 200, 0);
     maps_.link_is_back();  // no back-off
-    return maps_.waiting({Kind::Cloud, "r1"}) == 0;
+    return maps_.waiting({TrafficKind::Cloud, "r1"}) == 0;
   }));
   EXPECT_EQ(delivered_, std::size_t{12} * kPoints * kClouds);
   EXPECT_LE(proxy_->too_large, 5);
@@ -196,7 +196,7 @@ TEST_F(TooLargeMap, IsSentInSmallerMessagesAfterThreePagesWith400WhileOthersAreD
   EXPECT_THAT(row().last_sentence, Not(HasSubstr("smaller messages")));
   const auto others_pass_until = [&](const std::function<bool()>& is_done) {
     return loop::turn_until(loop_, [&] {
-      counts_.forwarded({Kind::State, "r2"}, 1, 100, 200, 0);
+      counts_.count_forwarded({TrafficKind::State, "r2"}, 1, 100, 200, 0);
       maps_.link_is_back();  // no back-off
       return is_done();
     });
@@ -204,7 +204,7 @@ TEST_F(TooLargeMap, IsSentInSmallerMessagesAfterThreePagesWith400WhileOthersAreD
   ASSERT_TRUE(
       others_pass_until([&] { return row().last_sentence.contains("it is sent in smaller messages"); }));
   EXPECT_EQ(row().failed, 4u) << "nothing else was delivered between the first two";
-  ASSERT_TRUE(others_pass_until([&] { return maps_.waiting({Kind::Cloud, "r1"}) == 0; }));
+  ASSERT_TRUE(others_pass_until([&] { return maps_.waiting({TrafficKind::Cloud, "r1"}) == 0; }));
   EXPECT_EQ(proxy_->points().size(), std::size_t{10} * kPoints);
   EXPECT_THAT(rejected_.rows(), IsEmpty());
 }
@@ -286,7 +286,7 @@ TEST_F(TooLargeMap, IsSentInRowsIfItIsASingleGrid) {
   auto& grid = std::get<icd::OccupancyGrid>(map.msg);
   grid.origin = {.position = {10, -3, 1}, .orientation = {0, 0, std::sqrt(0.5), std::sqrt(0.5)}};
   send({map});
-  ASSERT_TRUE(loop::turn_until(loop_, [&] { return maps_.waiting({Kind::Grid, "r1"}) == 0; }));
+  ASSERT_TRUE(loop::turn_until(loop_, [&] { return maps_.waiting({TrafficKind::Grid, "r1"}) == 0; }));
   std::vector<std::uint8_t> cells;
   for (const ProxyStub::Rows& rows : proxy_->grids()) {
     EXPECT_EQ(rows.grid.width, grid.width);
@@ -315,15 +315,15 @@ TEST_F(TooLargeMap, LosesNoRowsIfGridsAreReplacedFasterThanTheirRowsAreSent) {
     icd::MapUpdate newer = noise(kSide, kSide);
     newest = codec::bytes_of(newer.data);
     bool is_queued = false;
-    maps_.take(std::move(newer), {.bytes = 10}, nullptr,
-               [&](const icd::Checked<void>& said) { is_queued = said.has_value(); });
+    maps_.accept(std::move(newer), {.bytes = 10}, nullptr,
+                 [&](const icd::Checked<void>& said) { is_queued = said.has_value(); });
     ASSERT_TRUE(loop::turn_until(loop_, [&] { return is_queued; }));
   }
   const auto row_of = [](const ProxyStub::Rows& rows) {
     return static_cast<std::size_t>(std::lround(rows.grid.origin.position.y / rows.grid.resolution));
   };
   const std::size_t when_replaced = proxy_->grids().size();
-  ASSERT_TRUE(loop::turn_until(loop_, [&] { return maps_.waiting({Kind::Grid, "r1"}) == 0; }));
+  ASSERT_TRUE(loop::turn_until(loop_, [&] { return maps_.waiting({TrafficKind::Grid, "r1"}) == 0; }));
   std::set<std::size_t> sent;
   std::vector<std::uint8_t> there(newest.size());
   const auto grids = proxy_->grids();
@@ -342,9 +342,9 @@ TEST_F(TooLargeMap, IsNotTheFaultOfTheAddress) {
   ASSERT_TRUE(loop::turn_until(loop_, [&] { return maps_.channel().last().status() == 413; }));
   EXPECT_FALSE(maps_.channel().last().is_foreign());
   EXPECT_THAT(maps_.channel().trouble(), HasSubstr("too large ("));
-  EXPECT_THAT(counts_.rows().at({Kind::Grid, "r1"}).last_sentence,
+  EXPECT_THAT(counts_.rows().at({TrafficKind::Grid, "r1"}).last_sentence,
               HasSubstr(" kB): the Command Post answered 413"));
-  EXPECT_EQ(maps_.waiting({Kind::Grid, "r1"}), 1) << "nobody else's map has passed";
+  EXPECT_EQ(maps_.waiting({TrafficKind::Grid, "r1"}), 1) << "nobody else's map has passed";
 }
 
 TEST_F(TooLargeMap, IsRejectedWithItsSizeByTheCommandPostItself) {

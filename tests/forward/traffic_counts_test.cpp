@@ -5,20 +5,20 @@
 namespace adit::forward {
 namespace {
 
-const Traffic kCloudOfR1{Kind::Cloud, "r1"};
+const Traffic kCloudOfR1{TrafficKind::Cloud, "r1"};
 
 TEST(TrafficCounts, CountsTheMapsOfEachRobot) {
   int changes = 0;
   TrafficCounts counts([&] { ++changes; });
-  counts.accepted(kCloudOfR1, 1000, 10.0);
-  counts.accepted(kCloudOfR1, 1100, 11.0);
+  counts.count_accepted(kCloudOfR1, 1000, 10.0);
+  counts.count_accepted(kCloudOfR1, 1100, 11.0);
   counts.rounded_to(kCloudOfR1, queues::Precision::EightMillimetres);
-  counts.forwarded(kCloudOfR1, 2, 900, 200, 12.0);
-  counts.accepted({Kind::Grid, "r1"}, 5, 13.0);
-  counts.not_taken({Kind::Grid, "r1"}, DeliveryFailure::Throttled, 429, "too frequent");
+  counts.count_forwarded(kCloudOfR1, 2, 900, 200, 12.0);
+  counts.count_accepted({TrafficKind::Grid, "r1"}, 5, 13.0);
+  counts.not_taken({TrafficKind::Grid, "r1"}, DeliveryFailure::Throttled, 429, "too frequent");
 
   ASSERT_EQ(counts.rows().size(), 2u);
-  const facts::ActivityRow &grid = counts.rows().at({Kind::Grid, "r1"}),
+  const facts::ActivityRow &grid = counts.rows().at({TrafficKind::Grid, "r1"}),
                            &cloud = counts.rows().at(kCloudOfR1);
   EXPECT_EQ(grid.kind, "grid");
   EXPECT_EQ(grid.throttled, 1u);
@@ -40,7 +40,7 @@ TEST(TrafficCounts, CountsTheMapsOfEachRobot) {
 TEST(TrafficCounts, ClearsTheSentenceOnceAMessageIsDelivered) {
   TrafficCounts counts([] {});
   counts.not_taken(kCloudOfR1, DeliveryFailure::Failed, 0, "connection reset");
-  counts.forwarded(kCloudOfR1, 1, 10, 200, 1.0);
+  counts.count_forwarded(kCloudOfR1, 1, 10, 200, 1.0);
   EXPECT_EQ(counts.rows().at(kCloudOfR1).last_sentence, "");
   EXPECT_EQ(counts.rows().at(kCloudOfR1).failed, 1u);
 }
@@ -48,7 +48,7 @@ TEST(TrafficCounts, ClearsTheSentenceOnceAMessageIsDelivered) {
 TEST(TrafficCounts, CountsRobotsBeyondTheLastRowTogether) {
   TrafficCounts counts([] {});
   for (std::size_t i = 0; i < 2 * TrafficCounts::kMostRows; ++i)
-    counts.accepted({Kind::State, std::to_string(i)}, 1, 0.0);
+    counts.count_accepted({TrafficKind::State, std::to_string(i)}, 1, 0.0);
   const auto& rows = counts.rows();
   EXPECT_LE(rows.size(), TrafficCounts::kMostRows + 1);
   std::uint64_t accepted = 0;
@@ -59,18 +59,18 @@ TEST(TrafficCounts, CountsRobotsBeyondTheLastRowTogether) {
 TEST(TrafficCounts, HasTheTimeOfTheLastFullQueue) {
   TrafficCounts counts([] {});
   counts.no_room(kCloudOfR1, 10);
-  counts.no_room({Kind::Markers, ""}, 20);
-  counts.no_room({Kind::Markers, ""}, 21);
-  EXPECT_EQ(counts.rows().at({Kind::Markers, ""}).no_room, 2u);
-  EXPECT_EQ(counts.rows().at({Kind::Markers, ""}).last_no_room, 21);
+  counts.no_room({TrafficKind::Markers, ""}, 20);
+  counts.no_room({TrafficKind::Markers, ""}, 21);
+  EXPECT_EQ(counts.rows().at({TrafficKind::Markers, ""}).no_room, 2u);
+  EXPECT_EQ(counts.rows().at({TrafficKind::Markers, ""}).last_no_room, 21);
   EXPECT_EQ(counts.rows().at(kCloudOfR1).last_no_room, 10);
 }
 
 TEST(TrafficCounts, KeepsTheLastRejectionsNewestFirst) {
   TrafficCounts counts([] {});
   for (std::size_t i = 0; i < TrafficCounts::kMostRefusals + 5; ++i) {
-    counts.refused(icd::Uri::MapUpdate, {"10.0.0.5", 3},
-                   {icd::Status::UnprocessableEntity, std::to_string(i)}, double(i));
+    counts.count_rejected(icd::Uri::MapUpdate, {"10.0.0.5", 3},
+                          {icd::Status::UnprocessableEntity, std::to_string(i)}, double(i));
   }
   const auto rows = counts.refusals();
   ASSERT_EQ(rows.size(), TrafficCounts::kMostRefusals);
@@ -83,9 +83,9 @@ TEST(TrafficCounts, KeepsTheLastRejectionsNewestFirst) {
 TEST(TrafficCounts, CountsRejectionsByUriAndStatus) {
   TrafficCounts counts([] {});
   for (std::size_t i = 0; i < TrafficCounts::kMostRefusals + 5; ++i) {
-    counts.refused(icd::Uri::MapUpdate, {"10.0.0.5", 3}, {icd::Status::UnprocessableEntity, "why"}, 0);
+    counts.count_rejected(icd::Uri::MapUpdate, {"10.0.0.5", 3}, {icd::Status::UnprocessableEntity, "why"}, 0);
   }
-  counts.refused(icd::Uri::StateUpdate, {"10.0.0.5", 3}, {icd::Status::Unauthorized, "why"}, 0);
+  counts.count_rejected(icd::Uri::StateUpdate, {"10.0.0.5", 3}, {icd::Status::Unauthorized, "why"}, 0);
   std::map<std::pair<std::string, int>, std::uint64_t> by_uri;
   for (const auto& row : counts.refused_counts()) by_uri[{row.uri, row.status}] = row.count;
   EXPECT_EQ(by_uri.size(), 2);
@@ -96,8 +96,8 @@ TEST(TrafficCounts, CountsRejectionsByUriAndStatus) {
 TEST(TrafficCounts, CountsRejectedParts) {
   TrafficCounts counts([] {});
   for (const std::size_t parts : {3u, 12u}) {
-    counts.refused(icd::Uri::StateUpdate, {"10.0.0.5", 3},
-                   {icd::Status::UnprocessableEntity, "poses[1].name: missing", parts}, 0);
+    counts.count_rejected(icd::Uri::StateUpdate, {"10.0.0.5", 3},
+                          {icd::Status::UnprocessableEntity, "poses[1].name: missing", parts}, 0);
   }
   ASSERT_EQ(counts.refused_counts().size(), 1u);
   EXPECT_EQ(counts.refused_counts()[0].count, 2u);
@@ -107,8 +107,8 @@ TEST(TrafficCounts, CountsRejectedParts) {
 
 TEST(TrafficCounts, KeepsItsAgesAtAClockStep) {
   TrafficCounts counts([] {});
-  counts.accepted(kCloudOfR1, 1000, 10.0);
-  counts.refused(icd::Uri::MapUpdate, {}, {icd::Status::UnprocessableEntity, "bad"}, 11.0);
+  counts.count_accepted(kCloudOfR1, 1000, 10.0);
+  counts.count_rejected(icd::Uri::MapUpdate, {}, {icd::Status::UnprocessableEntity, "bad"}, 11.0);
   counts.move(3600);
   EXPECT_EQ(counts.rows().at(kCloudOfR1).last_accepted, 3610.0);
   EXPECT_FALSE(counts.rows().at(kCloudOfR1).last_forwarded);

@@ -52,9 +52,9 @@ TEST(UriPace, ObeysTheRetryAfterOfA503) {
   journal.begin({.boot = "b", .at = loop.now(), .stamp = loop.stamp_now()});
   const auto wait = [&](int status, std::optional<seconds> retry_after) {
     UriPace pace(icd::Uri::MapUpdate, 1, random, journal);
-    pace.sent(loop.now());
+    pace.on_sent(loop.now());
     const auto now = loop.now();
-    pace.failed(
+    pace.on_failed(
         uplink::Answered{.status = status, .content_type = "", .body = "", .retry_after = retry_after}, now);
     return pace.ready() - now;
   };

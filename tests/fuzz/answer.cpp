@@ -53,7 +53,7 @@ void try_answer(Input text) {
     require(at_once.parser.too_long_status() == cut.parser.too_long_status());
     return;
   }
-  const uplink::Answered answered = at_once.parser.take(), same = cut.parser.take();
+  const uplink::Answered answered = at_once.parser.take_answer(), same = cut.parser.take_answer();
   require(answered.status == same.status && answered.body == same.body);
   require(answered.content_type == same.content_type && answered.retry_after == same.retry_after);
   require(answered.date == same.date);

@@ -7,7 +7,7 @@ namespace adit::fuzz {
 namespace {
 
 using journal::Carried;
-using journal::Kind;
+using journal::RecordKind;
 
 using Records = std::vector<std::pair<Kind, std::string>>;
 

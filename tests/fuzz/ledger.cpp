@@ -26,8 +26,8 @@ void try_records(Input input) {
   require(again.records() == book.records() && ledger::Ledger::is_copy(book.copy()));
   (void)book.runs();
   for (const Report& report : book.reports()) (void)book.history(report.number);
-  require(ledger::more_of_report(ledger::encoded(Report{.number = 1}, input)) == input);
-  require(ledger::more_of_run(ledger::encoded(dispatch::Run(), input)) == input);
+  require(ledger::more_of_report(ledger::to_bytes(Report{.number = 1}, input)) == input);
+  require(ledger::more_of_run(ledger::to_bytes(dispatch::Run(), input)) == input);
 }
 
 struct Killed {

@@ -24,7 +24,7 @@ void try_settings(Input text) {
   require(saved && saved->passed_over.empty());
   require(settings::tag_of(saved->settings) == settings::tag_of(*settings));
   require(settings::changes(*settings, saved->settings).empty());
-  (void)settings::in_use(*settings);
+  (void)settings::effective_settings(*settings);
 }
 
 }  // namespace adit::fuzz

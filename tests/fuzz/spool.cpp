@@ -24,10 +24,10 @@ void try_spool(Input text) {
   folder.put("kept", text);
   const std::string file = folder / "kept";
   kept_as_read(file, spool::read_state, [](const icd::StateUpdate& state, const std::string& again) {
-    require(spool::write_whole(again, codec::write_state_update(state)).has_value());
+    require(spool::replace_file(again, codec::write_state_update(state)).has_value());
   });
   kept_as_read(file, spool::read_markers, [](const icd::MarkersUpdate& markers, const std::string& again) {
-    require(spool::write_whole(again, codec::write_markers_update(markers)).has_value());
+    require(spool::replace_file(again, codec::write_markers_update(markers)).has_value());
   });
   kept_as_read(file, spool::read_map, [](icd::MapUpdate map, const std::string& again) {
     const icd::ChunkedBytes data = map.data.bytes;

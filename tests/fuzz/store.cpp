@@ -27,9 +27,9 @@ std::map<std::string, std::string> files_of(Input input) {
   for (unsigned file = 0; file < 4 && !input.empty(); ++file, input.remove_prefix(1)) {
     const FileName name = name_of(file);
     base += bytes_of(input)[0] % 8;
-    const std::string header = FileHeader{.number = name.number, .salt = kSalt, .base = base}.written();
-    files[name.text()] = written({.kind = kFileBegins, .process = 1, .durable = base, .body = header},
-                                 kKeeping.layout, kSalt, 0);
+    const std::string header = FileHeader{.number = name.number, .salt = kSalt, .base = base}.to_bytes();
+    files[name.text()] = to_bytes({.kind = kFileBegins, .process = 1, .durable = base, .body = header},
+                                  kKeeping.layout, kSalt, 0);
   }
   while (input.size() >= 6) {
     const auto bytes = bytes_of(input.substr(0, 6));
@@ -37,8 +37,8 @@ std::map<std::string, std::string> files_of(Input input) {
     const std::string body(input.substr(6, bytes[5]));
     file.resize((file.size() + 7) / 8 * 8);
     file += bytes[1] == 255 ? body
-                            : written({bytes[1], bytes[2], bytes[3], bytes[4], body}, kKeeping.layout, kSalt,
-                                      file.size());
+                            : to_bytes({bytes[1], bytes[2], bytes[3], bytes[4], body}, kKeeping.layout, kSalt,
+                                       file.size());
     input.remove_prefix(std::min<std::size_t>(input.size(), 6U + bytes[5]));
   }
   return files;

@@ -26,19 +26,19 @@ TEST(Crowding, IsEmptyAtFirst) {
 
 TEST(Crowding, NamesTheBusiestAddressWhileItLasts) {
   Crowding crowding;
-  crowding.ended(Ended::GaveWay, "10.0.0.7", kFirst);
-  for (int i = 0; i < 5; ++i) crowding.ended(Ended::GaveWay, "10.0.0.9", kFirst + 30s);
-  crowding.ended(Ended::NoRoom, "10.0.0.8", kFirst);
+  crowding.on_ended(Ended::GaveWay, "10.0.0.7", kFirst);
+  for (int i = 0; i < 5; ++i) crowding.on_ended(Ended::GaveWay, "10.0.0.9", kFirst + 30s);
+  crowding.on_ended(Ended::NoRoom, "10.0.0.8", kFirst);
   EXPECT_THAT(crowding.crowds(kFirst + 59s), ElementsAre(of("10.0.0.8"), of("10.0.0.9")));
   EXPECT_THAT(crowding.crowds(kFirst + 60s), ElementsAre(of("10.0.0.9")));
   EXPECT_THAT(crowding.crowds(kFirst + 90s), IsEmpty());
-  crowding.ended(Ended::GaveWay, "10.0.0.7", kFirst + 9min);
+  crowding.on_ended(Ended::GaveWay, "10.0.0.7", kFirst + 9min);
   EXPECT_THAT(crowding.crowds(kFirst + 9min), ElementsAre(of("10.0.0.7"))) << "the other events are too old";
 }
 
 TEST(Crowding, ReportsWrongTokens) {
   Crowding crowding;
-  for (int i = 0; i < 1786; ++i) crowding.ended(Ended::WrongToken, "10.0.0.7", kFirst);
+  for (int i = 0; i < 1786; ++i) crowding.on_ended(Ended::WrongToken, "10.0.0.7", kFirst);
   EXPECT_THAT(crowding.crowds(kFirst),
               ElementsAre(Field(&facts::Crowd::kind, facts::Crowd::Kind::WrongToken)));
   const auto lines = crowding.to_log(kFirst);
@@ -48,7 +48,7 @@ TEST(Crowding, ReportsWrongTokens) {
 
 TEST(Crowding, TellsAClientWithoutATokenFromAWrongOne) {
   Crowding crowding;
-  crowding.ended(Ended::NoToken, "10.0.0.7", kFirst);
+  crowding.on_ended(Ended::NoToken, "10.0.0.7", kFirst);
   EXPECT_THAT(crowding.crowds(kFirst), ElementsAre(Field(&facts::Crowd::kind, facts::Crowd::Kind::NoToken)));
   EXPECT_THAT(crowding.crowds(kFirst), ElementsAre(of("10.0.0.7")));
   EXPECT_EQ(crowding.count(Ended::WrongToken), 0u);
@@ -62,9 +62,9 @@ TEST(Crowding, IsLoggedAtOnceAndThenOnceAMinute) {
     for (const auto& line : crowding.to_log(now)) numbers.push_back(line.times);
     return numbers;
   };
-  crowding.ended(Ended::NoRoom, "10.0.0.8", kFirst);
+  crowding.on_ended(Ended::NoRoom, "10.0.0.8", kFirst);
   EXPECT_THAT(times(kFirst), ElementsAre(1));
-  for (int i = 0; i < 1000; ++i) crowding.ended(Ended::NoRoom, "10.0.0.8", kFirst + 1s);
+  for (int i = 0; i < 1000; ++i) crowding.on_ended(Ended::NoRoom, "10.0.0.8", kFirst + 1s);
   EXPECT_THAT(times(kFirst + 59s), IsEmpty());
   EXPECT_THAT(times(kFirst + 60s), ElementsAre(1000));
   EXPECT_THAT(times(kFirst + 10min), IsEmpty());
@@ -72,8 +72,8 @@ TEST(Crowding, IsLoggedAtOnceAndThenOnceAMinute) {
 
 TEST(Crowding, OnlyCountsIdleAndSlowConnections) {
   Crowding crowding;
-  crowding.ended(Ended::Idle, "10.0.0.8", kFirst);
-  crowding.ended(Ended::Slow, "10.0.0.8", kFirst);
+  crowding.on_ended(Ended::Idle, "10.0.0.8", kFirst);
+  crowding.on_ended(Ended::Slow, "10.0.0.8", kFirst);
   EXPECT_EQ(crowding.count(Ended::Idle), 1u);
   EXPECT_EQ(crowding.count(Ended::Slow), 1u);
   EXPECT_EQ(crowding.count(Ended::NoRoom), 0u);
@@ -82,8 +82,8 @@ TEST(Crowding, OnlyCountsIdleAndSlowConnections) {
 
 TEST(Crowding, LimitsItsAddresses) {
   Crowding crowding;
-  for (int i = 0; i < 10'000; ++i) crowding.ended(Ended::GaveWay, std::to_string(i), kFirst);
-  crowding.ended(Ended::GaveWay, "0", kFirst);
+  for (int i = 0; i < 10'000; ++i) crowding.on_ended(Ended::GaveWay, std::to_string(i), kFirst);
+  crowding.on_ended(Ended::GaveWay, "0", kFirst);
   EXPECT_THAT(crowding.crowds(kFirst), ElementsAre(of("0")));
   EXPECT_EQ(crowding.count(Ended::GaveWay), 10'001u);
 }

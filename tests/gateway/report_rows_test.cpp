@@ -47,18 +47,18 @@ TEST(LatestReports, IncludeAllUnfinishedReports) {
 TEST(ReadAnswers, AreReadAgainAfterAChange) {
   ReadAnswers answers;
   dispatch::Report report{.number = 7};
-  EXPECT_FALSE(answers.of(report));
+  EXPECT_FALSE(answers.answer_of(report));
   const std::string reply = R"({"id": 1, "run": "2", "team": "t", "run_clock": 3.5, "type": "Drill", "x": 1,)"
                             R"( "y": 2, "z": 3, "report_status": "scored", "score_change": )";
   report.answer = reply + "1}";
-  ASSERT_TRUE(answers.of(report));
-  EXPECT_EQ(answers.of(report)->score_change, 1);
+  ASSERT_TRUE(answers.answer_of(report));
+  EXPECT_EQ(answers.answer_of(report)->score_change, 1);
   report.answer = reply + "0}";
-  ASSERT_TRUE(answers.of(report));
-  EXPECT_EQ(answers.of(report)->score_change, 0);
-  EXPECT_EQ(answers.of(report)->report_status, "scored");
+  ASSERT_TRUE(answers.answer_of(report));
+  EXPECT_EQ(answers.answer_of(report)->score_change, 0);
+  EXPECT_EQ(answers.answer_of(report)->report_status, "scored");
   report.answer = "not an answer";
-  EXPECT_FALSE(answers.of(report));
+  EXPECT_FALSE(answers.answer_of(report));
 }
 
 /// A proxy may repeat the answer to another report.
@@ -95,8 +95,8 @@ TEST(ReadAnswers, AreKeptPerReport) {
   };
   for (int round = 0; round < 2; ++round) {
     for (std::int64_t number = 1; number <= 2500; ++number) {
-      ASSERT_TRUE(answers.of(report(number)));
-      ASSERT_EQ(answers.of(report(number))->score_change, number);
+      ASSERT_TRUE(answers.answer_of(report(number)));
+      ASSERT_EQ(answers.answer_of(report(number))->score_change, number);
     }
   }
 }

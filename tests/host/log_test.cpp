@@ -52,26 +52,26 @@ TEST(PlainLine, ShowsLettersOfAllLanguages) {
 }
 
 TEST(EscapedText, EscapesInvalidUtf8) {
-  EXPECT_EQ(escaped("a\xff"), R"(a\xff)");
-  EXPECT_EQ(escaped("\xc3"), R"(\xc3)") << "half a character";
-  EXPECT_EQ(escaped("\xc3(\x80"), R"(\xc3(\x80)");
-  EXPECT_EQ(escaped("\xc0\xaf"), R"(\xc0\xaf)") << "an overlong form";
-  EXPECT_EQ(escaped("\xed\xa0\x80"), R"(\xed\xa0\x80)") << "half of a surrogate pair";
-  EXPECT_EQ(escaped("\xf4\x90\x80\x80"), R"(\xf4\x90\x80\x80)") << "over U+10FFFF";
+  EXPECT_EQ(escape("a\xff"), R"(a\xff)");
+  EXPECT_EQ(escape("\xc3"), R"(\xc3)") << "half a character";
+  EXPECT_EQ(escape("\xc3(\x80"), R"(\xc3(\x80)");
+  EXPECT_EQ(escape("\xc0\xaf"), R"(\xc0\xaf)") << "an overlong form";
+  EXPECT_EQ(escape("\xed\xa0\x80"), R"(\xed\xa0\x80)") << "half of a surrogate pair";
+  EXPECT_EQ(escape("\xf4\x90\x80\x80"), R"(\xf4\x90\x80\x80)") << "over U+10FFFF";
 }
 
 TEST(EscapedText, EscapesControlAndDeceptiveCharacters) {
-  EXPECT_EQ(escaped("\u009b2J"), R"(\xc2\x9b2J)") << "CSI as one character";
-  EXPECT_EQ(escaped("a\u202eb"), R"(a\xe2\x80\xaeb)") << "from right to left";
-  EXPECT_EQ(escaped("a\u2066b"), R"(a\xe2\x81\xa6b)");
-  EXPECT_EQ(escaped("a\u2028b"), R"(a\xe2\x80\xa8b)") << "a line's end";
-  EXPECT_EQ(escaped("a\u200bb"), R"(a\xe2\x80\x8bb)") << "no width";
-  EXPECT_EQ(escaped("\ufeff"), R"(\xef\xbb\xbf)");
-  EXPECT_EQ(escaped("\U000e0041"), R"(\xf3\xa0\x81\x81)") << "a tag";
+  EXPECT_EQ(escape("\u009b2J"), R"(\xc2\x9b2J)") << "CSI as one character";
+  EXPECT_EQ(escape("a\u202eb"), R"(a\xe2\x80\xaeb)") << "from right to left";
+  EXPECT_EQ(escape("a\u2066b"), R"(a\xe2\x81\xa6b)");
+  EXPECT_EQ(escape("a\u2028b"), R"(a\xe2\x80\xa8b)") << "a line's end";
+  EXPECT_EQ(escape("a\u200bb"), R"(a\xe2\x80\x8bb)") << "no width";
+  EXPECT_EQ(escape("\ufeff"), R"(\xef\xbb\xbf)");
+  EXPECT_EQ(escape("\U000e0041"), R"(\xf3\xa0\x81\x81)") << "a tag";
 }
 
 TEST(EscapedText, EscapesAllButAsciiForAnAsciiTerminal) {
-  EXPECT_EQ(to_ascii(escaped("Höhle \\")), R"(H\xc3\xb6hle \\)");
+  EXPECT_EQ(to_ascii(escape("Höhle \\")), R"(H\xc3\xb6hle \\)");
 }
 
 TEST(JournalEntry, HasEachFieldApart) {

@@ -93,23 +93,23 @@ TEST_F(Notify, StoresDescriptorsByName) {
 }
 
 TEST(InheritedDescriptors, IsEmptyOutsideSystemdOrForAnotherProcess) {
-  EXPECT_TRUE(inherited().value().empty());
+  EXPECT_TRUE(inherited_sockets().value().empty());
   setenv("LISTEN_FDS", "1", 1);
   setenv("LISTEN_PID", "1", 1);
-  EXPECT_TRUE(inherited().value().empty());
+  EXPECT_TRUE(inherited_sockets().value().empty());
   setenv("LISTEN_PID", std::to_string(getpid()).c_str(), 1);
   setenv("LISTEN_FDS", "many", 1);
-  EXPECT_FALSE(inherited());
+  EXPECT_FALSE(inherited_sockets());
   EXPECT_EQ(getenv("LISTEN_FDS"), nullptr) << "a child process would use the variable";
 }
 
 TEST(WatchdogWithin, IsTheValueOfSystemd) {
   unsetenv("WATCHDOG_USEC");
-  EXPECT_EQ(watchdog_within(), std::nullopt);
+  EXPECT_EQ(watchdog_interval(), std::nullopt);
   setenv("WATCHDOG_USEC", "10000000", 1);
-  EXPECT_EQ(watchdog_within(), std::chrono::seconds(10));
+  EXPECT_EQ(watchdog_interval(), std::chrono::seconds(10));
   setenv("WATCHDOG_PID", "1", 1);
-  EXPECT_EQ(watchdog_within(), std::nullopt) << "the watchdog is another process's";
+  EXPECT_EQ(watchdog_interval(), std::nullopt) << "the watchdog is another process's";
   unsetenv("WATCHDOG_USEC");
   unsetenv("WATCHDOG_PID");
 }

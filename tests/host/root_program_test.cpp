@@ -64,7 +64,7 @@ class RootProgramTest : public testing::Test {
 
 TEST_F(RootProgramTest, DoesNotRunHereIfItHasNoStatus) {
   EXPECT_FALSE(program_.runs_here());
-  EXPECT_THAT(program_.why(), HasSubstr("adit-x does not run here"));
+  EXPECT_THAT(program_.status_error(), HasSubstr("adit-x does not run here"));
 }
 
 TEST_F(RootProgramTest, IsStartingAfterABootIfItHasAUnit) {
@@ -72,16 +72,16 @@ TEST_F(RootProgramTest, IsStartingAfterABootIfItHasAUnit) {
   units.put("adit-x.service", "");
   const RootProgram<Status> program{loop_, "adit-x", requests_.path(), run_.path(), 60s, units.path()};
   EXPECT_TRUE(program.is_starting() && program.runs_here());
-  EXPECT_EQ(program.why(), "adit-x is starting, for at most 5 minutes: try again");
+  EXPECT_EQ(program.status_error(), "adit-x is starting, for at most 5 minutes: try again");
   EXPECT_EQ(program.refuse().error().status, icd::Status::ServiceUnavailable);
   tell("");
   time_.pass(kFresh);
   EXPECT_FALSE(program.is_starting());
-  EXPECT_EQ(program.why(), "");
+  EXPECT_EQ(program.status_error(), "");
   fs::remove(run_ / kStatusFile);
   time_.pass(kBoot);
   EXPECT_FALSE(program.is_starting() || program.runs_here()) << "the program failed to start";
-  EXPECT_THAT(program.why(), HasSubstr("adit-x does not run here"));
+  EXPECT_THAT(program.status_error(), HasSubstr("adit-x does not run here"));
   EXPECT_EQ(program.refuse().error().status, icd::Status::Conflict);
 }
 
@@ -89,12 +89,12 @@ TEST_F(RootProgramTest, RunsEvenIfItsStatusIsUnreadable) {
   run_.put(kStatusFile, "{");
   EXPECT_TRUE(program_.runs_here());
   EXPECT_FALSE(program_.status());
-  EXPECT_THAT(program_.why(), HasSubstr("cannot read the status of adit-x: "));
+  EXPECT_THAT(program_.status_error(), HasSubstr("cannot read the status of adit-x: "));
   fs::remove(run_ / kStatusFile);
   fs::create_directory(run_ / kStatusFile);
   time_.pass(kFresh);
   EXPECT_TRUE(program_.runs_here());
-  EXPECT_THAT(program_.why(), HasSubstr("cannot read the status of adit-x: "));
+  EXPECT_THAT(program_.status_error(), HasSubstr("cannot read the status of adit-x: "));
 }
 
 TEST_F(RootProgramTest, IsReadAgainOnceItsStatusIsOld) {
@@ -216,13 +216,13 @@ TEST_F(AnsweringTest, HasNoRequestsWithoutTheirDirectory) {
 TEST(StatusFile, TellsTheFirstStartSinceTheBoot) {
   const Folder run;
   StatusFile file(run / kStatusFile);
-  EXPECT_FALSE(file.told<Status>());
+  EXPECT_FALSE(file.read_earlier<Status>());
   EXPECT_EQ(file.tell(Status{"a"}), true);
   EXPECT_EQ(file.tell(Status{"a"}), false) << "the status was written";
-  EXPECT_EQ(file.told<Status>()->nonce, "a");
+  EXPECT_EQ(file.read_earlier<Status>()->nonce, "a");
   run.put(kStatusFile, "{");
-  ASSERT_TRUE(file.told<Status>()) << "an unreadable status is not the first start";
-  EXPECT_EQ(file.told<Status>()->nonce, "");
+  ASSERT_TRUE(file.read_earlier<Status>()) << "an unreadable status is not the first start";
+  EXPECT_EQ(file.read_earlier<Status>()->nonce, "");
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ class UntrustedFolderTest : public testing::Test {
   std::expected<std::optional<std::string>, UntrustedFolder::Untaken> take(const std::string& name) {
     auto opened = UntrustedFolder::open(folder.path());
     EXPECT_TRUE(opened);
-    return opened->take(name);
+    return opened->take_file(name);
   }
   bool is_there(const std::string& name) const {
     struct stat status{};

@@ -41,7 +41,9 @@ OccupancyGrid tilted(OccupancyGrid grid, double angle) {
 
 TEST(CoveredPart, IsWhatANewerGridCovers) {
   const OccupancyGrid older = grid(0, 0, 100, 100);
-  const auto part = [&](const OccupancyGrid& newer) { return covered_part(GridBounds::of(newer), older); };
+  const auto part = [&](const OccupancyGrid& newer) {
+    return covered_part(GridBounds::from_grid(newer), older);
+  };
   const auto shifted = part(grid(1, -1, 60, 40));
   ASSERT_TRUE(shifted);
   EXPECT_NEAR(shifted->low.x, 1, 1e-9);
@@ -102,7 +104,7 @@ TEST(GridBounds, AreCoveredAsInTheTable) {
       {"a resolution that overflows", grid(1, 1, 2, 2, 5e-324), grid(1, 1, 1, 1, 5e-324), true},
   };
   for (const auto& [what, newer, older, covered] : cases)
-    EXPECT_EQ(covers(newer, GridBounds::of(older)), covered) << what;
+    EXPECT_EQ(covers(newer, GridBounds::from_grid(older)), covered) << what;
 }
 
 TEST(GridBounds, AcceptAResolutionRoundedToFloat32) {
@@ -110,18 +112,18 @@ TEST(GridBounds, AcceptAResolutionRoundedToFloat32) {
   for (int cells = 1; cells < 4000; cells += 7) {
     const auto older = grid(-10, -10, 100, 100, resolution);
     const auto newer = grid(-10 - cells * 0.05, -10, 8192, 100, resolution);
-    EXPECT_TRUE(covers(newer, GridBounds::of(older))) << cells << " cells apart";
+    EXPECT_TRUE(covers(newer, GridBounds::from_grid(older))) << cells << " cells apart";
   }
 }
 
 /// The number of grids in a row, each replacing the one before, until one does not.
 template <class Next>
 int replaced_in_a_row(OccupancyGrid grid, Next next, int most = 1000) {
-  auto bounds = GridBounds::of(grid);
+  auto bounds = GridBounds::from_grid(grid);
   for (int count = 0; count < most; ++count) {
     const OccupancyGrid newer = next(grid, count);
     if (!covers(newer, bounds)) return count;
-    bounds = joint_bounds(GridBounds::of(newer), bounds);
+    bounds = joint_bounds(GridBounds::from_grid(newer), bounds);
     grid = newer;
   }
   return most;
@@ -174,10 +176,10 @@ TEST(GridBounds, LetACorrectedGridReplaceTheOneBefore) {
 
 TEST(GridBounds, TellIfTheyAreLargerThanTheGrid) {
   const auto newer = grid(0, 0, 40, 30);
-  auto bounds = joint_bounds(GridBounds::of(newer), GridBounds::of(grid(0.05, 0.1, 20, 20)));
+  auto bounds = joint_bounds(GridBounds::from_grid(newer), GridBounds::from_grid(grid(0.05, 0.1, 20, 20)));
   EXPECT_FALSE(bounds.is_larger_than(newer)) << "on one lattice";
   for (const auto& older : {grid(-0.01, 0, 20, 20), grid(0, 0.015, 40, 30), with_z(newer, 0.001)}) {
-    bounds = joint_bounds(GridBounds::of(newer), GridBounds::of(older));
+    bounds = joint_bounds(GridBounds::from_grid(newer), GridBounds::from_grid(older));
     EXPECT_TRUE(bounds.is_larger_than(newer));
   }
 }
@@ -209,7 +211,7 @@ TEST(GridBounds, LieWithinTheLastGridOfEachRow) {
   for (int row = 0; row < 2000; ++row) {
     const double angle = about(std::numbers::pi);
     OccupancyGrid last = turned(grid(about(9), about(9), 40, 30), angle);
-    auto bounds = GridBounds::of(last);
+    auto bounds = GridBounds::from_grid(last);
     std::vector<OccupancyGrid> all{last};
     for (int i = 0; i < 30; ++i) {
       OccupancyGrid next = last;
@@ -218,7 +220,7 @@ TEST(GridBounds, LieWithinTheLastGridOfEachRow) {
       next.origin.position.z += about(0.005);
       next = turned(next, angle + about(0.003));
       if (!covers(next, bounds)) break;
-      bounds = joint_bounds(GridBounds::of(next), bounds);
+      bounds = joint_bounds(GridBounds::from_grid(next), bounds);
       all.push_back(next);
       last = next;
       ++replaced;

@@ -65,7 +65,7 @@ TEST(Redaction, RedactsHtmlTextButNotMarkup) {
 TEST(BearerToken, IsRedactedIfTruncated) {
   const std::string whole(64, 'k');
   const auto token = *BearerToken::parse("0123456789" + whole);
-  std::string text = "type: expected one of ICD 3, got " + in_quotes("0123456789" + whole);
+  std::string text = "type: expected one of ICD 3, got " + quote_text("0123456789" + whole);
   token.strike_from(text);
   EXPECT_EQ(text, "type: expected one of ICD 3, got \"[token]...\"");
   text = "0123456789 and 0123456789kk are something else";

@@ -34,17 +34,17 @@ TEST(SizeText, SaysTheTrueSize) {
 }
 
 TEST(InQuotes, KeepsForeignTextShortAndOnOneLine) {
-  EXPECT_EQ(in_quotes("map"), "\"map\"");
-  EXPECT_EQ(in_quotes(""), "\"\"");
-  EXPECT_EQ(in_quotes("a\nb\x7f\x1b[2J"), "\"a?b??[2J\"");
-  EXPECT_EQ(in_quotes(std::string(40, 'a')), "\"" + std::string(40, 'a') + "\"");
-  EXPECT_EQ(in_quotes(std::string(4000, 'a')), "\"" + std::string(40, 'a') + "...\"");
+  EXPECT_EQ(quote_text("map"), "\"map\"");
+  EXPECT_EQ(quote_text(""), "\"\"");
+  EXPECT_EQ(quote_text("a\nb\x7f\x1b[2J"), "\"a?b??[2J\"");
+  EXPECT_EQ(quote_text(std::string(40, 'a')), "\"" + std::string(40, 'a') + "\"");
+  EXPECT_EQ(quote_text(std::string(4000, 'a')), "\"" + std::string(40, 'a') + "...\"");
 }
 
 TEST(InQuotes, SplitsNoCharacter) {
   const std::string text = std::string(39, 'a') + "\xc3\xa9\xc3\xa9";
-  EXPECT_EQ(in_quotes(text), "\"" + std::string(39, 'a') + "...\"");
-  EXPECT_EQ(in_quotes(std::string(100, '\x80')), "\"...\"");
+  EXPECT_EQ(quote_text(text), "\"" + std::string(39, 'a') + "...\"");
+  EXPECT_EQ(quote_text(std::string(100, '\x80')), "\"...\"");
 }
 
 TEST(Unprocessable, Is422) {

@@ -15,7 +15,7 @@ std::optional<loop::Duration> too_slow_after(std::uint64_t bytes, loop::Duration
   LeastRate rate(10s, kStart);
   for (loop::Duration passed{}; passed < total; passed += 100ms) {
     if (kStart + passed >= rate.look_at() && rate.is_too_slow(kStart + passed)) return passed;
-    if (passed % every == 0ns) rate.moved(bytes);
+    if (passed % every == 0ns) rate.count_bytes(bytes);
   }
   return std::nullopt;
 }
@@ -38,7 +38,7 @@ TEST(LeastRate, DetectsAClientThatIsALittleTooSlow) {
 
 TEST(LeastRate, DetectsAStopAfterAnyAmount) {
   LeastRate rate(10s, kStart);
-  rate.moved(1'000'000);
+  rate.count_bytes(1'000'000);
   EXPECT_FALSE(rate.is_too_slow(kStart + 5s));
   EXPECT_FALSE(rate.is_too_slow(kStart + 10s));
   EXPECT_TRUE(rate.is_too_slow(kStart + 15s));

@@ -9,9 +9,9 @@ namespace adit::intake {
 /// Answers 404 to everything.
 class NotFound final : public Handler {
  public:
-  Credentials shown(const RequestHead&) override { return Credentials::Nothing; }
+  Credentials read_credentials(const RequestHead&) override { return Credentials::Nothing; }
   std::unique_ptr<BodySink> open(const RequestHead&, std::shared_ptr<Responder> responder,
-                                 std::shared_ptr<Flow>) override {
+                                 std::shared_ptr<FlowControl>) override {
     responder->answer(error_answer(icd::Status::NotFound, "there is nothing here"));
     return nullptr;
   }

@@ -23,13 +23,13 @@ namespace adit::intake {
 class ScriptedHandler final : public Handler {
  public:
   std::vector<std::shared_ptr<Responder>> responders;
-  std::vector<std::shared_ptr<Flow>> flows;
+  std::vector<std::shared_ptr<FlowControl>> flows;
   std::vector<std::shared_ptr<Stream>> streams;
   std::atomic<std::size_t> body_bytes = 0;
   std::atomic<int> ends = 0, gone = 0, exchanges = 0;
   bool asks_token = false;  // accepts tokens that do not begin with "wrong"
 
-  Credentials shown(const RequestHead& head) override {
+  Credentials read_credentials(const RequestHead& head) override {
     if (!asks_token) return Credentials::Enough;
     const std::string_view token = icd::token_in(head.header("Authorization"));
     return token.empty()                ? Credentials::Nothing
@@ -38,7 +38,7 @@ class ScriptedHandler final : public Handler {
   }
 
   std::unique_ptr<BodySink> open(const RequestHead& head, std::shared_ptr<Responder> responder,
-                                 std::shared_ptr<Flow> flow) override {
+                                 std::shared_ptr<FlowControl> flow) override {
     if (head.path() == "/refuse") {
       responder->answer(error_answer(icd::Status::Unauthorized, "no"));
       return nullptr;
@@ -52,7 +52,7 @@ class ScriptedHandler final : public Handler {
   class Scripted final : public BodySink {
    public:
     Scripted(ScriptedHandler& script, const RequestHead& head, std::shared_ptr<Responder> responder,
-             std::shared_ptr<Flow> flow)
+             std::shared_ptr<FlowControl> flow)
         : script_(script),
           head_(head),
           responder_(std::move(responder)),
@@ -91,7 +91,7 @@ class ScriptedHandler final : public Handler {
     ScriptedHandler& script_;
     const RequestHead& head_;
     std::shared_ptr<Responder> responder_;
-    std::shared_ptr<Flow> flow_;
+    std::shared_ptr<FlowControl> flow_;
     std::string path_, body_;
   };
 };

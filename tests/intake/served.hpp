@@ -19,7 +19,7 @@ class Served {
  public:
   explicit Served(Handler& handler, Listen listen = {}) {
     if (listen.address.empty()) listen.address = "127.0.0.1";
-    listen.ended = [this](Ended why, const std::string&) { ++ended_[static_cast<std::size_t>(why)]; };
+    listen.on_ended = [this](Ended why, const std::string&) { ++ended_[static_cast<std::size_t>(why)]; };
     std::promise<void> started;
     thread_ = std::thread([this, &started, &handler, listen] {
       loop_ = std::make_unique<loop::Loop>();

@@ -15,9 +15,9 @@ namespace {
 /// Throws at /open, /body or /end, drops its responder at /drop, and answers any other path.
 class ThrowingHandler final : public Handler {
  public:
-  Credentials shown(const RequestHead&) override { return Credentials::Enough; }
+  Credentials read_credentials(const RequestHead&) override { return Credentials::Enough; }
   std::unique_ptr<BodySink> open(const RequestHead& head, std::shared_ptr<Responder> responder,
-                                 std::shared_ptr<Flow>) override {
+                                 std::shared_ptr<FlowControl>) override {
     const std::string path(head.path());
     if (path == "/open") throw std::bad_alloc();
     if (path == "/drop") responder.reset();

@@ -27,8 +27,9 @@ class ServerRoom : public testing::Test {
     return *clients.back();
   }
   bool has_authenticated(std::size_t count) {
-    return served.eventually(
-        [&] { return served.server().connections() - served.server().unauthenticated() == count; });
+    return served.eventually([&] {
+      return served.server().connections() - served.server().unauthenticated_connections() == count;
+    });
   }
 
   ScriptedHandler handler;
@@ -56,7 +57,7 @@ TEST_F(DefaultServerRoom, IsReservedForAuthenticatedClients) {
     known.send(request("POST", "/echo", kToken, "3"));
     ASSERT_TRUE(known.reply()) << i;
   }
-  EXPECT_TRUE(served.eventually([&] { return served.server().unauthenticated() <= 32; }));
+  EXPECT_TRUE(served.eventually([&] { return served.server().unauthenticated_connections() <= 32; }));
   EXPECT_GE(served.ended(Ended::GaveWay), 60u);
   const auto told = held.front()->reply();
   ASSERT_TRUE(told);

@@ -29,11 +29,11 @@ class FakeMessageHandler final : public MessageHandler {
   std::vector<Sender> senders;
   std::vector<std::shared_ptr<Responder>> responders;  // of reports and status
   std::vector<std::pair<icd::Uri, icd::Refusal>> refusals;
-  std::optional<icd::Refusal> full;  // answer of take()
+  std::optional<icd::Refusal> full;  // answer of accept()
 
   std::vector<std::function<void()>> storing;  // pending answers of maps and pieces, for the test to call
   bool stores_at_once = true;
-  bool fails = false;  // take() throws
+  bool fails = false;  // accept() throws
 
   int arriving = 0;             // uploads in progress
   std::size_t stored = 0;       // all stored bytes of map data
@@ -41,15 +41,15 @@ class FakeMessageHandler final : public MessageHandler {
   bool stores_pieces = true;    // otherwise they wait in `storing`
 
   std::shared_ptr<MapArrival> begin_map() override { return std::make_shared<Arrival>(*this); }
-  icd::Checked<void> take(icd::StateUpdate update, const Sender& sender) override {
+  icd::Checked<void> accept(icd::StateUpdate update, const Sender& sender) override {
     return keep(states, update, sender);
   }
-  void take(icd::MarkersUpdate update, const Sender& sender,
-            std::function<void(icd::Checked<void>)> done) override {
+  void accept(icd::MarkersUpdate update, const Sender& sender,
+              std::function<void(icd::Checked<void>)> done) override {
     done(keep(markers, std::move(update), sender));
   }
-  void take(const icd::ArtifactReport& report, const Sender& sender,
-            std::shared_ptr<Responder> responder) override {
+  void accept(const icd::ArtifactReport& report, const Sender& sender,
+              std::shared_ptr<Responder> responder) override {
     reports.push_back(report);
     senders.push_back(sender);
     responders.push_back(std::move(responder));
@@ -61,7 +61,7 @@ class FakeMessageHandler final : public MessageHandler {
   void left_out(icd::Uri /*uri*/, const Sender& /*sender*/, const std::string& why) override {
     left_out_of_reports.push_back(why);
   }
-  void refused(icd::Uri uri, const Sender& sender, const icd::Refusal& refusal) override {
+  void on_rejected(icd::Uri uri, const Sender& sender, const icd::Refusal& refusal) override {
     senders.push_back(sender);
     refusals.emplace_back(uri, refusal);
   }
@@ -87,9 +87,9 @@ class FakeMessageHandler final : public MessageHandler {
       if (message_handler_.stores_pieces) return done(std::move(bytes));
       message_handler_.storing.emplace_back([bytes, done = std::move(done)] { done(bytes); });
     }
-    icd::Checked<icd::ChunkedBytes> stored() override { return stored_; }
-    void take(icd::MapUpdate update, const Sender& sender,
-              std::function<void(icd::Checked<void>)> done) override {
+    icd::Checked<icd::ChunkedBytes> stored_bytes() override { return stored_; }
+    void accept(icd::MapUpdate update, const Sender& sender,
+                std::function<void(icd::Checked<void>)> done) override {
       auto kept = message_handler_.keep(message_handler_.maps, std::move(update), sender);
       if (message_handler_.stores_at_once) return done(std::move(kept));
       message_handler_.storing.emplace_back([kept = std::move(kept), done = std::move(done)] { done(kept); });
@@ -158,9 +158,9 @@ class Team {
   /// Forwards to the routes, which need the loop's thread.
   struct Front final : Handler {
     explicit Front(Team& owner) : team(owner) {}
-    Credentials shown(const RequestHead& head) override { return routes->shown(head); }
+    Credentials read_credentials(const RequestHead& head) override { return routes->read_credentials(head); }
     std::unique_ptr<BodySink> open(const RequestHead& head, std::shared_ptr<Responder> responder,
-                                   std::shared_ptr<Flow> flow) override {
+                                   std::shared_ptr<FlowControl> flow) override {
       return routes->open(head, std::move(responder), std::move(flow));
     }
     Team& team;

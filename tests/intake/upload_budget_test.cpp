@@ -35,11 +35,11 @@ TEST(UploadShare, IsReturnedOnceAtItsEnd) {
     std::optional<UploadShare> share(std::in_place, budget, "a");
     EXPECT_TRUE(share->grow_to(60));
     EXPECT_TRUE(share->grow_to(75));
-    EXPECT_FALSE(budget->take("b", 13));
+    EXPECT_FALSE(budget->reserve("b", 13));
   }
   EXPECT_TRUE(UploadShare(budget, "a").grow_to(75));
-  EXPECT_FALSE(budget->take("a", 76));
-  EXPECT_TRUE(budget->take("a", 75));
+  EXPECT_FALSE(budget->reserve("a", 76));
+  EXPECT_TRUE(budget->reserve("a", 75));
 }
 
 TEST(UploadShare, KeepsItsBudgetAlive) {

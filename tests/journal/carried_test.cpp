@@ -33,7 +33,7 @@ icd::Marker marker(const std::string& ns, std::int32_t id, icd::MarkerAction act
   return made;
 }
 
-void tell(Carried& carried, Kind kind, const std::string& said = {}) {
+void tell(Carried& carried, RecordKind kind, const std::string& said = {}) {
   ASSERT_TRUE(carried.apply(kind, said)) << static_cast<int>(kind);
 }
 
@@ -52,18 +52,18 @@ std::vector<std::string> names_in(const Carried& carried) {
 /// The state that a later process reads from a snapshot.
 Carried again(const Carried& carried) {
   Carried other;
-  carried.write([&](Kind kind, std::string_view said) { ASSERT_TRUE(other.apply(kind, said)); });
+  carried.write([&](RecordKind kind, std::string_view said) { ASSERT_TRUE(other.apply(kind, said)); });
   return other;
 }
 
 TEST(CarriedState, KeepsPosesUntilDelivered) {
   Carried carried;
-  tell(carried, Kind::Poses, store::bytes_of(state("r1", 1, 10)));
-  tell(carried, Kind::Poses, store::bytes_of(state("r2", 2, 11)));
+  tell(carried, RecordKind::Poses, store::bytes_of(state("r1", 1, 10)));
+  tell(carried, RecordKind::Poses, store::bytes_of(state("r2", 2, 11)));
   EXPECT_THAT(names_in(carried), ElementsAre("r1", "r2"));
-  tell(carried, Kind::StateSent, sent({"r1", "r2"}));
+  tell(carried, RecordKind::StateSent, sent({"r1", "r2"}));
   EXPECT_THAT(names_in(again(carried)), ElementsAre("r1", "r2")) << "the state was not answered";
-  tell(carried, Kind::StateDone);
+  tell(carried, RecordKind::StateDone);
   EXPECT_THAT(carried.robots(), IsEmpty()) << "the next process may serve another Command Post";
 }
 
@@ -73,7 +73,7 @@ TEST(CarriedState, KeepsPosesUnchanged) {
   for (const queues::PostedPose& posted :
        {queues::PostedPose{name, pose, 12.25, "10.0.0.5"}, queues::PostedPose{name, pose, {}, ""}}) {
     Carried carried;
-    tell(carried, Kind::Poses, store::bytes_of(std::vector{posted}));
+    tell(carried, RecordKind::Poses, store::bytes_of(std::vector{posted}));
     carried = again(carried);
     ASSERT_THAT(carried.robots(), SizeIs(1));
     EXPECT_EQ(carried.robots().begin()->second.posted, posted);
@@ -84,59 +84,59 @@ TEST(CarriedState, SkipsTruncatedAndNamelessPoses) {
   Carried carried;
   const std::string poses = store::bytes_of(state("r1", 1, 10));
   for (std::size_t size = 0; size < poses.size(); ++size)
-    EXPECT_FALSE(carried.apply(Kind::Poses, poses.substr(0, size))) << size;
+    EXPECT_FALSE(carried.apply(RecordKind::Poses, poses.substr(0, size))) << size;
   using Posed = std::tuple<std::string, std::string, std::optional<icd::Stamp>, icd::Pose>;
   const std::vector<Posed> all{{"r1", "", {}, {}}, {"no name", "", {}, {}}};
-  EXPECT_FALSE(carried.apply(Kind::Poses, store::bytes_of(all)));
+  EXPECT_FALSE(carried.apply(RecordKind::Poses, store::bytes_of(all)));
   EXPECT_THAT(carried.robots(), IsEmpty());
 }
 
 TEST(CarriedState, KeepsQueuedPosesIfOthersAreDelivered) {
   Carried carried;
-  tell(carried, Kind::Poses, store::bytes_of(state("r1", 1, 10)));
-  tell(carried, Kind::Poses, store::bytes_of(state("r2", 2, 11)));
-  tell(carried, Kind::StateSent, sent({"r1"}));
+  tell(carried, RecordKind::Poses, store::bytes_of(state("r1", 1, 10)));
+  tell(carried, RecordKind::Poses, store::bytes_of(state("r2", 2, 11)));
+  tell(carried, RecordKind::StateSent, sent({"r1"}));
   carried = again(carried);
-  tell(carried, Kind::StateDone);
+  tell(carried, RecordKind::StateDone);
   EXPECT_THAT(names_in(carried), ElementsAre("r2"));
 }
 
 TEST(CarriedState, KeepsPosesReceivedDuringASend) {
   Carried carried;
-  tell(carried, Kind::Poses, store::bytes_of(state("r1", 1, 10)));
-  tell(carried, Kind::StateSent, sent({"r1"}));
-  tell(carried, Kind::Poses, store::bytes_of(state("r1", 2, 11)));
+  tell(carried, RecordKind::Poses, store::bytes_of(state("r1", 1, 10)));
+  tell(carried, RecordKind::StateSent, sent({"r1"}));
+  tell(carried, RecordKind::Poses, store::bytes_of(state("r1", 2, 11)));
   carried = again(carried);
-  tell(carried, Kind::StateDone);
+  tell(carried, RecordKind::StateDone);
   ASSERT_THAT(carried.robots(), SizeIs(1));
   EXPECT_EQ(carried.robots().begin()->second.posted.pose.position.x, 2);
 }
 
 TEST(CarriedState, ResendsMessagesInFlightAtARestart) {
   Carried carried;
-  tell(carried, Kind::Poses, store::bytes_of(state("r1", 1, 10)));
-  tell(carried, Kind::Markers, store::bytes_of(std::vector{marker("a", 1, icd::MarkerAction::Add, 1)}));
-  tell(carried, Kind::StateSent, sent({"r1"}));
-  tell(carried, Kind::MarkersSent, names_of(std::vector{marker("a", 1, icd::MarkerAction::Add, 1)}));
-  tell(carried, Kind::LifeBegins);
-  tell(carried, Kind::StateDone);  // of the next process, in which no state is in flight
-  tell(carried, Kind::MarkersDone);
+  tell(carried, RecordKind::Poses, store::bytes_of(state("r1", 1, 10)));
+  tell(carried, RecordKind::Markers, store::bytes_of(std::vector{marker("a", 1, icd::MarkerAction::Add, 1)}));
+  tell(carried, RecordKind::StateSent, sent({"r1"}));
+  tell(carried, RecordKind::MarkersSent, names_of(std::vector{marker("a", 1, icd::MarkerAction::Add, 1)}));
+  tell(carried, RecordKind::LifeBegins);
+  tell(carried, RecordKind::StateDone);  // of the next process, in which no state is in flight
+  tell(carried, RecordKind::MarkersDone);
   EXPECT_THAT(carried.robots(), SizeIs(1));
   EXPECT_THAT(carried.markers().markers, SizeIs(1));
 }
 
 TEST(CarriedState, ResendsMessagesWhoseAnswerWasNotRecorded) {
   Carried carried;
-  tell(carried, Kind::Poses, store::bytes_of(state("r1", 1, 10)));
-  tell(carried, Kind::Poses, store::bytes_of(state("r2", 1, 10)));
+  tell(carried, RecordKind::Poses, store::bytes_of(state("r1", 1, 10)));
+  tell(carried, RecordKind::Poses, store::bytes_of(state("r2", 1, 10)));
   const auto a = marker("a", 1, icd::MarkerAction::Add, 1), b = marker("b", 1, icd::MarkerAction::Add, 1);
-  tell(carried, Kind::Markers, store::bytes_of(std::vector{a, b}));
-  tell(carried, Kind::StateSent, sent({"r1"}));
-  tell(carried, Kind::StateSent, sent({"r2"}));
-  tell(carried, Kind::MarkersSent, names_of(std::vector{a}));
-  tell(carried, Kind::MarkersSent, names_of(std::vector{b}));
-  tell(carried, Kind::StateDone);
-  tell(carried, Kind::MarkersDone);
+  tell(carried, RecordKind::Markers, store::bytes_of(std::vector{a, b}));
+  tell(carried, RecordKind::StateSent, sent({"r1"}));
+  tell(carried, RecordKind::StateSent, sent({"r2"}));
+  tell(carried, RecordKind::MarkersSent, names_of(std::vector{a}));
+  tell(carried, RecordKind::MarkersSent, names_of(std::vector{b}));
+  tell(carried, RecordKind::StateDone);
+  tell(carried, RecordKind::MarkersDone);
   EXPECT_THAT(names_in(carried), ElementsAre("r1"));
   EXPECT_THAT(carried.markers().markers, ElementsAre(a));
 }
@@ -158,7 +158,7 @@ TEST(CarriedState, KeepsEachMemberOfAMarker) {
   icd::Marker unstamped = marker("b", 2, icd::MarkerAction::Delete, 0);
   unstamped.header.stamp.reset();
   Carried carried;
-  tell(carried, Kind::Markers, store::bytes_of(std::vector{each, unstamped}));
+  tell(carried, RecordKind::Markers, store::bytes_of(std::vector{each, unstamped}));
   EXPECT_THAT(again(carried).markers().markers, ElementsAre(each, unstamped));
 }
 
@@ -174,13 +174,13 @@ TEST(CarriedState, KeepsClocksPacesAndStamps) {
       r2{"10.0.0.5", icd::Uri::MapUpdate, "r2"};
   Carried carried;
   EXPECT_FALSE(carried.clock());
-  tell(carried, Kind::Clock,
+  tell(carried, RecordKind::Clock,
        store::bytes_of(Clock{.boot = "b1", .at = pace::Instant(seconds(5)), .stamp = 1.5e9}));
-  tell(carried, Kind::Senders,
+  tell(carried, RecordKind::Senders,
        store::bytes_of(queues::StampShift::Clocks{{r1, {.theirs = 100, .ours = 1.5e9, .latest = 104}},
                                                   {r2, {.theirs = 7, .ours = 1.5e9, .latest = 8}}}));
-  tell(carried, Kind::Pace, store::bytes_of(icd::Uri::MapUpdate, learned));
-  tell(carried, Kind::Stamp, store::bytes_of(icd::Uri::StateUpdate, 1.5e9 + 4));
+  tell(carried, RecordKind::Pace, store::bytes_of(icd::Uri::MapUpdate, learned));
+  tell(carried, RecordKind::Stamp, store::bytes_of(icd::Uri::StateUpdate, 1.5e9 + 4));
   for (const Carried& each : {carried, again(carried)}) {
     EXPECT_EQ(each.clock()->boot, "b1");
     EXPECT_EQ(each.clock()->at, pace::Instant(seconds(5)));
@@ -191,7 +191,7 @@ TEST(CarriedState, KeepsClocksPacesAndStamps) {
     EXPECT_EQ(each.senders().clocks()[0].second.latest_given(), 1.5e9 + 1);
     EXPECT_EQ(each.senders().clocks()[1].second.latest_given(), 1.5e9 + 4);
   }
-  tell(carried, Kind::Clock,
+  tell(carried, RecordKind::Clock,
        store::bytes_of(Clock{.boot = "b2", .at = pace::Instant(seconds(1)), .stamp = 1.6e9}));
   EXPECT_THAT(carried.paces(), IsEmpty()) << "times of another boot";
   EXPECT_THAT(carried.senders().clocks(), IsEmpty());
@@ -210,10 +210,10 @@ TEST(CarriedState, KeepsTheClocksOfStates) {
     const std::string robot = "r" + std::to_string(random() % 70);  // more clocks than an address may have
     const double stamp = theirs[address] = std::max(1.0, theirs[address] + step(random) + 1.5);
     const icd::Stamp ours = live.shift({address, icd::Uri::StateUpdate, robot}, stamp, 1.5e9 + i * 0.5);
-    if (const auto changed = live.changed(); !changed.empty())
-      tell(carried, Kind::Senders, store::bytes_of(changed));
+    if (const auto changed = live.take_changed(); !changed.empty())
+      tell(carried, RecordKind::Senders, store::bytes_of(changed));
     const std::vector<queues::PostedPose> poses{{*icd::RobotName::parse(robot), {}, ours, address}};
-    tell(carried, Kind::Poses, store::bytes_of(std::span(poses)));
+    tell(carried, RecordKind::Poses, store::bytes_of(std::span(poses)));
     if (i % 100 == 50) carried = again(carried);
   }
   const auto expected = live.clocks(), found = carried.senders().clocks();
@@ -228,33 +228,33 @@ TEST(CarriedState, KeepsTheClocksOfStates) {
 
 TEST(CarriedState, KnowsWhenRobotsWereHeardUntilTheNextBoot) {
   Carried carried;
-  tell(carried, Kind::Clock, store::bytes_of(Clock{.boot = "b1", .at = {}, .stamp = 1.5e9}));
-  tell(carried, Kind::Heard, store::bytes_of(Heard{.robot = "r1", .messages = 1, .last = 10}));
+  tell(carried, RecordKind::Clock, store::bytes_of(Clock{.boot = "b1", .at = {}, .stamp = 1.5e9}));
+  tell(carried, RecordKind::Heard, store::bytes_of(Heard{.robot = "r1", .messages = 1, .last = 10}));
   Heard newest{.robot = "r1", .messages = 4, .gap = 1.5, .last = 20};
   newest.kinds[2] = {.accepted = 20, .forwarded = 19};
   newest.behind[2] = 18;
-  tell(carried, Kind::Heard, store::bytes_of(newest));
-  EXPECT_FALSE(carried.apply(Kind::Heard, store::bytes_of(newest).substr(1)));
+  tell(carried, RecordKind::Heard, store::bytes_of(newest));
+  EXPECT_FALSE(carried.apply(RecordKind::Heard, store::bytes_of(newest).substr(1)));
   for (const Carried& each : {carried, again(carried)}) {
-    ASSERT_THAT(each.heard(), ElementsAre(Pair("r1", testing::_)));
-    const Heard& heard = each.heard().at("r1");
+    ASSERT_THAT(each.heard_by_robot(), ElementsAre(Pair("r1", testing::_)));
+    const Heard& heard = each.heard_by_robot().at("r1");
     EXPECT_EQ(std::tuple(heard.messages, heard.gap, heard.last), std::tuple(4u, 1.5, 20.0));
     EXPECT_TRUE(std::isnan(heard.kinds[0].accepted));
     EXPECT_EQ(heard.kinds[2].accepted, 20);
     EXPECT_EQ(heard.kinds[2].forwarded, 19);
-    EXPECT_EQ(each.behind("r1", 2), 18);
-    EXPECT_TRUE(std::isnan(each.behind("r1", 0)) && std::isnan(each.behind("r2", 2)));
+    EXPECT_EQ(each.lag("r1", 2), 18);
+    EXPECT_TRUE(std::isnan(each.lag("r1", 0)) && std::isnan(each.lag("r2", 2)));
   }
   carried.set_boot("b2");
-  EXPECT_THAT(carried.heard(), IsEmpty());
+  EXPECT_THAT(carried.heard_by_robot(), IsEmpty());
 }
 
 TEST(CarriedState, DropsTimesOfAnotherBoot) {
   using std::chrono::seconds;
   Carried carried;
-  tell(carried, Kind::Clock,
+  tell(carried, RecordKind::Clock,
        store::bytes_of(Clock{.boot = "b1", .at = pace::Instant(seconds(5)), .stamp = 1.5e9}));
-  tell(carried, Kind::Pace, store::bytes_of(icd::Uri::MapUpdate, pace::Learned{.spacing = seconds(7)}));
+  tell(carried, RecordKind::Pace, store::bytes_of(icd::Uri::MapUpdate, pace::Learned{.spacing = seconds(7)}));
   carried.set_boot("b1");
   EXPECT_TRUE(carried.clock());
   EXPECT_THAT(carried.paces(), SizeIs(1));
@@ -267,9 +267,9 @@ TEST(CarriedState, SkipsUnknownRecords) {
   Carried carried;
   for (int kind = 0; kind < 256; ++kind) {
     for (const std::string said : {"", "?", "\x01\0\0\0\0\0\0\0"})
-      (void)carried.apply(static_cast<Kind>(kind), said);
+      (void)carried.apply(static_cast<RecordKind>(kind), said);
   }
-  EXPECT_FALSE(carried.apply(static_cast<Kind>(99), ""));
+  EXPECT_FALSE(carried.apply(static_cast<RecordKind>(99), ""));
   EXPECT_THAT(carried.robots(), IsEmpty());
   EXPECT_THAT(carried.markers().markers, IsEmpty());
 }
@@ -277,13 +277,13 @@ TEST(CarriedState, SkipsUnknownRecords) {
 TEST(CarriedState, KnowsPostedGridAreasOnceRecorded) {
   Carried carried;
   EXPECT_FALSE(carried.grids());
-  tell(carried, Kind::Grids);
+  tell(carried, RecordKind::Grids);
   EXPECT_THAT(again(carried).grids(), testing::Optional(IsEmpty()));
   const queues::Extent first{-1, -2, 3, 4}, larger{-1, -2, 30, 4};
-  tell(carried, Kind::Grids, store::bytes_of("r1", first));
-  tell(carried, Kind::Grids, store::bytes_of("r1", larger));
-  tell(carried, Kind::Grids, store::bytes_of("*", queues::Extent::everywhere()));
-  EXPECT_FALSE(carried.apply(Kind::Grids, "torn"));
+  tell(carried, RecordKind::Grids, store::bytes_of("r1", first));
+  tell(carried, RecordKind::Grids, store::bytes_of("r1", larger));
+  tell(carried, RecordKind::Grids, store::bytes_of("*", queues::Extent::everywhere()));
+  EXPECT_FALSE(carried.apply(RecordKind::Grids, "torn"));
   carried.set_boot("another start");
   EXPECT_THAT(again(carried).grids(), testing::Optional(testing::ElementsAre(
                                           Pair("*", queues::Extent::everywhere()), Pair("r1", larger))));
@@ -308,7 +308,7 @@ TEST(CarriedState, KeepsQueuedMessages) {
       case 0: {  // accepted
         icd::MarkersUpdate update;
         for (int left = pick(4); left >= 0; --left) update.markers.push_back(any(i));
-        tell(carried, Kind::Markers, store::bytes_of(update.markers));
+        tell(carried, RecordKind::Markers, store::bytes_of(update.markers));
         waiting = queues::merged(waiting, update.markers);
         break;
       }
@@ -316,16 +316,16 @@ TEST(CarriedState, KeepsQueuedMessages) {
         if (!under_way.empty() || waiting.empty()) break;
         under_way.assign(waiting.begin(), waiting.begin() + 1 + pick(static_cast<int>(waiting.size())));
         waiting.erase(waiting.begin(), waiting.begin() + static_cast<std::ptrdiff_t>(under_way.size()));
-        tell(carried, Kind::MarkersSent, names_of(under_way));
+        tell(carried, RecordKind::MarkersSent, names_of(under_way));
         break;
       case 2:
         under_way.clear();
-        tell(carried, Kind::MarkersDone);
+        tell(carried, RecordKind::MarkersDone);
         break;
       case 3:
         waiting = queues::merged(under_way, waiting);
         under_way.clear();
-        tell(carried, Kind::MarkersBack);
+        tell(carried, RecordKind::MarkersBack);
         break;
       default:
         carried = again(carried);

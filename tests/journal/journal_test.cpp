@@ -68,11 +68,11 @@ class JournalTest : public testing::Test {
 TEST_F(JournalTest, RestoresUndeliveredMessages) {
   {
     const auto journal = life();
-    EXPECT_TRUE(journal->accepted(pose(1)));
-    EXPECT_TRUE(journal->accepted(one_marker(1)));
-    journal->markers_sent(one_marker(1));
-    EXPECT_TRUE(journal->accepted(one_marker(2)));
-    journal->markers_answered(true);
+    EXPECT_TRUE(journal->record_accepted(pose(1)));
+    EXPECT_TRUE(journal->record_accepted(one_marker(1)));
+    journal->record_markers_sent(one_marker(1));
+    EXPECT_TRUE(journal->record_accepted(one_marker(2)));
+    journal->record_markers_answered(true);
   }
   for (int lives = 0; lives < 3; ++lives) {
     SCOPED_TRACE(lives);
@@ -128,8 +128,8 @@ TEST(JournalFiles, OfAnEarlierVersionAreRead) {
   EXPECT_THAT(carried.stamps(), testing::ElementsAre(testing::Pair(icd::Uri::StateUpdate, 1e9 + 1)));
   EXPECT_THAT(carried.grids(),
               testing::Optional(testing::ElementsAre(testing::Pair("g", queues::Extent{1, 2, 3, 4}))));
-  ASSERT_EQ(carried.heard().size(), 1U);
-  const Heard& heard = carried.heard().at("r1");
+  ASSERT_EQ(carried.heard_by_robot().size(), 1U);
+  const Heard& heard = carried.heard_by_robot().at("r1");
   EXPECT_EQ(std::tie(heard.messages, heard.gap, heard.last), std::tuple(9U, 0.5, 40));
   EXPECT_EQ(std::tie(heard.kinds[0].accepted, heard.kinds[0].forwarded), std::tuple(1, 2));
   EXPECT_TRUE(std::isnan(heard.kinds[1].accepted) && std::isnan(heard.kinds[1].forwarded));
@@ -154,8 +154,8 @@ TEST_F(JournalTest, HoldsAllAnsweredMessagesAfterAnyCut) {
     const std::string file = files("log-").front();
     sizes.push_back(fs::file_size(file));
     for (int i = 1; i <= kAnswered; ++i) {
-      ASSERT_TRUE(journal->accepted(pose(i)));
-      ASSERT_TRUE(journal->accepted(one_marker(i)));
+      ASSERT_TRUE(journal->record_accepted(pose(i)));
+      ASSERT_TRUE(journal->record_accepted(one_marker(i)));
       sizes.push_back(fs::file_size(file));
     }
   }
@@ -178,9 +178,9 @@ TEST_F(JournalTest, HoldsAllAnsweredMessagesAfterAnyCut) {
 }
 
 TEST_F(JournalTest, ContinuesAfterATornRecord) {
-  ASSERT_TRUE(life()->accepted(pose(1)));
+  ASSERT_TRUE(life()->record_accepted(pose(1)));
   std::ofstream(files("log-").front(), std::ios::binary | std::ios::app) << "ADTL torn";
-  ASSERT_TRUE(life()->accepted(one_marker(7)));
+  ASSERT_TRUE(life()->record_accepted(one_marker(7)));
   EXPECT_EQ(left().markers(), one_marker(7));
   EXPECT_EQ(left().robots().size(), 1u);
 }
@@ -190,12 +190,12 @@ TEST_F(JournalTest, ReportsAMissingRecordAndDistrustsLaterDeliveries) {
   std::size_t at = 0;
   {
     const auto journal = life();
-    ASSERT_TRUE(journal->accepted(one_marker(1)));
+    ASSERT_TRUE(journal->record_accepted(one_marker(1)));
     at = fs::file_size(files("log-").front());
-    ASSERT_TRUE(journal->accepted(pose(1)));
-    journal->markers_sent(one_marker(1));
-    journal->markers_answered(true);
-    journal->markers_sent({});
+    ASSERT_TRUE(journal->record_accepted(pose(1)));
+    journal->record_markers_sent(one_marker(1));
+    journal->record_markers_answered(true);
+    journal->record_markers_sent({});
   }
   std::fstream(files("log-").front(), std::ios::in | std::ios::out | std::ios::binary)
       .seekp(static_cast<std::streamoff>(at + 16))
@@ -213,7 +213,7 @@ TEST_F(JournalTest, StaysSmallAndLosesNothingAtRestarts) {
   for (int round = 0; round < 100; ++round) {
     for (int id = 0; id < kMarkers; ++id) {
       const icd::MarkersUpdate update = one_marker(id, 1000 + static_cast<std::size_t>(round));
-      ASSERT_TRUE(journal->accepted(update));
+      ASSERT_TRUE(journal->record_accepted(update));
     }
     loop_.turn(std::chrono::nanoseconds(0));
   }
@@ -232,7 +232,7 @@ TEST_F(JournalTest, StaysSmallAndLosesNothingAtRestarts) {
 }
 
 TEST_F(JournalTest, ChangesNothingIfAFileCannotBeRead) {
-  ASSERT_TRUE(life()->accepted(pose(1)));
+  ASSERT_TRUE(life()->record_accepted(pose(1)));
   const fs::path unreadable = folder_ / "journal" / "log-00000002.0123456789abcdef";
   fs::create_directory(unreadable);
   const std::string why = unreadable.string() + ": is not a regular file";
@@ -241,7 +241,7 @@ TEST_F(JournalTest, ChangesNothingIfAFileCannotBeRead) {
     EXPECT_TRUE(journal.read().robots().empty());
     EXPECT_EQ(journal.trouble(), why);
     journal.begin({.boot = "b", .at = loop_.now(), .stamp = 1e9});
-    const auto kept = journal.accepted(pose(2));
+    const auto kept = journal.record_accepted(pose(2));
     ASSERT_FALSE(kept);
     EXPECT_EQ(kept.error(), why);
     EXPECT_EQ(files("log-").size(), 2u) << "no new one";
@@ -277,16 +277,16 @@ class NoRoom {
 
 TEST_F(JournalTest, ReportsAFullDiskAndKeepsItsRecords) {
   const auto journal = life();
-  ASSERT_TRUE(journal->accepted(one_marker(1)));
+  ASSERT_TRUE(journal->record_accepted(one_marker(1)));
   const auto size = fs::file_size(files("log-").front());
   for (std::uintmax_t room = 0; room < 40; ++room) {
     const NoRoom none(size + room);
-    const auto kept = journal->accepted(one_marker(2));
+    const auto kept = journal->record_accepted(one_marker(2));
     ASSERT_FALSE(kept) << "with room for " << room << " bytes";
     EXPECT_THAT(kept.error(), testing::HasSubstr("journal: "));
     EXPECT_EQ(journal->trouble(), kept.error());
   }
-  ASSERT_TRUE(journal->accepted(one_marker(3)));
+  ASSERT_TRUE(journal->record_accepted(one_marker(3)));
   EXPECT_EQ(journal->trouble(), "");
   std::vector<std::int32_t> ids;
   for (const icd::Marker& marker : left().markers().markers) ids.push_back(marker.id);
@@ -298,18 +298,18 @@ TEST_F(JournalTest, ReportsAFullDiskAndKeepsItsRecords) {
 TEST_F(JournalTest, RecordsTheStartOnceTheDiskHasRoom) {
   {
     const auto journal = life();
-    ASSERT_TRUE(journal->accepted(one_marker(1)));
-    journal->markers_sent(one_marker(1));
+    ASSERT_TRUE(journal->record_accepted(one_marker(1)));
+    journal->record_markers_sent(one_marker(1));
   }
   std::unique_ptr<Journal> journal;
   {
     const NoRoom none(1);
     journal = std::make_unique<Journal>(loop_, folder_ / "journal");
     journal->begin({.boot = "after", .at = loop_.now(), .stamp = 2e9});
-    EXPECT_FALSE(journal->accepted(one_marker(2)));
+    EXPECT_FALSE(journal->record_accepted(one_marker(2)));
   }
-  ASSERT_TRUE(journal->accepted(one_marker(3)));
-  journal->markers_answered(true);  // this process sent none
+  ASSERT_TRUE(journal->record_accepted(one_marker(3)));
+  journal->record_markers_answered(true);  // this process sent none
   journal = nullptr;
   std::vector<std::int32_t> ids;
   for (const icd::Marker& marker : left().markers().markers) ids.push_back(marker.id);
@@ -320,15 +320,15 @@ TEST_F(JournalTest, RecordsTheStartOnceTheDiskHasRoom) {
 /// Otherwise a delivered DeleteAll would be sent again after later messages.
 TEST_F(JournalTest, RecordsDeliveriesFirstOnceTheDiskHasRoom) {
   const auto journal = life();
-  ASSERT_TRUE(journal->accepted(one_marker(1)));
+  ASSERT_TRUE(journal->record_accepted(one_marker(1)));
   {
     const NoRoom none(1);
-    journal->markers_sent(one_marker(1));
-    journal->markers_answered(false);
-    journal->markers_sent(one_marker(1));
-    journal->markers_answered(true);
+    journal->record_markers_sent(one_marker(1));
+    journal->record_markers_answered(false);
+    journal->record_markers_sent(one_marker(1));
+    journal->record_markers_answered(true);
   }
-  ASSERT_TRUE(journal->accepted(one_marker(2)));
+  ASSERT_TRUE(journal->record_accepted(one_marker(2)));
   std::vector<std::int32_t> ids;
   for (const icd::Marker& marker : left().markers().markers) ids.push_back(marker.id);
   EXPECT_THAT(ids, testing::ElementsAre(2));
@@ -336,30 +336,30 @@ TEST_F(JournalTest, RecordsDeliveriesFirstOnceTheDiskHasRoom) {
 
 TEST_F(JournalTest, SkipsFailedSendsDuringAFullDisk) {
   const auto journal = life();
-  ASSERT_TRUE(journal->accepted(one_marker(1)));
+  ASSERT_TRUE(journal->record_accepted(one_marker(1)));
   {
     const NoRoom none(1);
     // Together more than the limit of unwritten records.
     icd::MarkersUpdate sent = one_marker(1);
     sent.markers.front().ns = std::string(Journal::kMostUnsaid / 3, 'n');
     for (int round = 0; round < 10; ++round) {
-      journal->markers_sent(sent);
-      journal->markers_answered(false);
+      journal->record_markers_sent(sent);
+      journal->record_markers_answered(false);
     }
-    journal->markers_sent(one_marker(1));
-    journal->markers_answered(true);
+    journal->record_markers_sent(one_marker(1));
+    journal->record_markers_answered(true);
   }
-  journal->paced(icd::Uri::StateUpdate, {});
+  journal->record_pace(icd::Uri::StateUpdate, {});
   EXPECT_TRUE(left().markers().markers.empty());
 }
 
 TEST_F(JournalTest, ReportsAnUnwritableDirectory) {
   std::ofstream(folder_ / "journal") << "";
   const auto journal = life();
-  EXPECT_FALSE(journal->accepted(pose(1)));
+  EXPECT_FALSE(journal->record_accepted(pose(1)));
   fs::remove(folder_ / "journal");
   fs::create_directory(folder_ / "journal");
-  EXPECT_TRUE(journal->accepted(pose(1))) << "once the directory is writable";
+  EXPECT_TRUE(journal->record_accepted(pose(1))) << "once the directory is writable";
 }
 
 /// The journal's cost per post. Printed, not asserted, because machines differ.
@@ -369,8 +369,9 @@ TEST_F(JournalTest, PrintsItsCostPerState) {
   std::vector<double> micros;
   for (int i = 0; i < kPosts; ++i) {
     const auto began = std::chrono::steady_clock::now();
-    journal->senders({{{"10.0.0.5", icd::Uri::StateUpdate, "r1"}, {.theirs = 1, .ours = 2, .latest = 3}}});
-    ASSERT_TRUE(journal->accepted(pose(i)));
+    journal->record_senders(
+        {{{"10.0.0.5", icd::Uri::StateUpdate, "r1"}, {.theirs = 1, .ours = 2, .latest = 3}}});
+    ASSERT_TRUE(journal->record_accepted(pose(i)));
     micros.push_back(
         std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - began).count());
   }

@@ -32,7 +32,7 @@ class DamagedLedger : public testing::Test {
                                         {4, Queued},
                                         {4, Sending}})
       ASSERT_TRUE(write(ledger, in_state(backpack(number), state)));
-    known_ = ledger.known();
+    known_ = ledger.known_facts();
     all_ = ledger.reports();
     files_ = files_in(state_.ledger());
     file_ = files_.begin()->first;
@@ -48,15 +48,15 @@ class DamagedLedger : public testing::Test {
 
   /// The next start reports the missing records, sends no report again, and reuses no number. The start
   /// after it reports nothing.
-  void expect_said(const Known& known, const std::string& sentence = "") const {
+  void expect_said(const LedgerFacts& known, const std::string& sentence = "") const {
     std::vector<Report> reports;
-    Known after;
+    LedgerFacts after;
     {
       const auto ledger = open_or_fail(state_.path(), known);
       EXPECT_THAT(ledger.damage(), AllOf(HasSubstr("The ledger was damaged"), HasSubstr(sentence)));
       EXPECT_EQ(ledger.refusal(), "");
       reports = ledger.reports();
-      after = ledger.known();
+      after = ledger.known_facts();
     }
     EXPECT_GE(after.reports, known_.reports);
     EXPECT_GT(after.log, known.log);
@@ -84,7 +84,7 @@ class DamagedLedger : public testing::Test {
   }
 
   State state_;
-  Known known_;
+  LedgerFacts known_;
   std::vector<Report> all_;
   Files files_;
   std::string file_;
@@ -193,11 +193,11 @@ TEST_F(DamagedLedger, IsNoLedgerThatLacksAnUnsyncedRecord) {
   std::string older = log();
   {
     auto ledger = open_or_fail(state_.path(), known_);
-    const Known before = ledger.known();
+    const LedgerFacts before = ledger.known_facts();
     const Report settled = in_state(backpack(3), ReportState::Queued);
     ASSERT_TRUE(ledger.write({&settled, 1}, nullptr, dispatch::Flush::Soon));
-    EXPECT_EQ(ledger.known(), before);
-    known_ = ledger.known();
+    EXPECT_EQ(ledger.known_facts(), before);
+    known_ = ledger.known_facts();
   }
   put(older);
   EXPECT_EQ(open_or_fail(state_.path(), known_).damage(), "");
@@ -228,7 +228,7 @@ TEST_F(DamagedLedger, NamesTheMissingFileOfSeveral) {
   turn_log(state_.ledger());
   files_ = files_in(state_.ledger());
   ASSERT_EQ(files_.size(), 3u);
-  const Known known{.reports = 4, .log = 3};
+  const LedgerFacts known{.reports = 4, .log = 3};
   for (const auto& [name, bytes] : files_) {
     SCOPED_TRACE(name);
     Files left = files_;
@@ -245,9 +245,9 @@ TEST_F(DamagedLedger, HasAllIfASnapshotIsDamagedOrMissing) {
     (void)open_or_fail(state_.path());
     turn_log(state_.ledger());
     auto ledger = open_or_fail(state_.path());
-    (void)fill_file(ledger, ledger.known().reports + 1);
+    (void)fill_file(ledger, ledger.known_facts().reports + 1);
     ASSERT_TRUE(keep_up(ledger));
-    known_ = ledger.known();
+    known_ = ledger.known_facts();
     all_ = ledger.reports();
     files_ = files_in(state_.ledger());
     const std::string name = files_.rbegin()->first;
@@ -256,7 +256,7 @@ TEST_F(DamagedLedger, HasAllIfASnapshotIsDamagedOrMissing) {
       Files damaged = files_;
       damaged.at(name).assign(damaged.at(name).size(), 'x');
       if (is_missing) damaged.erase(name);
-      ledger = Ledger::closed("", {});
+      ledger = Ledger::make_closed("", {});
       put_files(state_.ledger(), damaged);
       const auto again = open_or_fail(state_.path(), known_);
       EXPECT_THAT(again.damage(), HasSubstr(is_missing ? "" : "a damaged snapshot. No report is missing"));
@@ -278,7 +278,7 @@ TEST_F(DamagedLedger, ReportsLaterDamage) {
   put(bytes);
   {
     auto ledger = open_or_fail(state_.path());
-    ASSERT_TRUE(write(ledger, backpack(ledger.known().reports + 1)));
+    ASSERT_TRUE(write(ledger, backpack(ledger.known_facts().reports + 1)));
   }
   auto files = files_in(state_.ledger());
   for (auto& [name, each] : files) {

@@ -19,10 +19,10 @@ class LedgerOnDisk : public testing::Test {
  protected:
   LedgerOnDisk() : disk_(store::Random(1, "disk"), "ledger") {}
 
-  Ledger open(const Known& known = {}) { return open_or_fail(disk_.path(), known); }
+  Ledger open(const LedgerFacts& known = {}) { return open_or_fail(disk_.path(), known); }
   void expect_all(const Ledger& before) {
     const auto reports = before.reports();
-    const Known known = before.known();
+    const LedgerFacts known = before.known_facts();
     const Files files = files_in(disk_.log());
     const State copy;
     put_files(copy.ledger(), files);
@@ -97,7 +97,7 @@ TEST_F(LedgerOnDisk, FullDiskAtTheEndOfAFileIsNoDamage) {
     std::int64_t last = 0;
     {
       auto ledger = open();
-      last = ledger.known().reports;
+      last = ledger.known_facts().reports;
       disk_.full = 1;
       while (write(ledger, backpack(last + 1))) ++last;
       while (write(ledger, in_state(backpack(1), ReportState::Sending))) continue;
@@ -196,7 +196,7 @@ TEST_F(LedgerOnDisk, FailingDiskLosesNoAcceptedReport) {
       }
     }
     disk_.failing_syncs = disk_.failing_writes = disk_.full = 0;
-    ledger = Ledger::closed("", {});
+    ledger = Ledger::make_closed("", {});
     if (start % 2 == 1) disk_.cut_power();
   }
   EXPECT_GT(kept.size(), 50u);
@@ -205,8 +205,8 @@ TEST_F(LedgerOnDisk, FailingDiskLosesNoAcceptedReport) {
 /// Damage is found while the disk is full: all records can be read, none is written. Once there is room,
 /// the ledger continues as if there had been room at the start.
 TEST_F(LedgerOnDisk, DamageOnAFullDiskIsReportedAndRepairedLater) {
-  const Known known{.reports = 20, .log = 7};
-  Known after;
+  const LedgerFacts known{.reports = 20, .log = 7};
+  LedgerFacts after;
   std::vector<Report> reports;
   {
     auto ledger = open();
@@ -219,15 +219,15 @@ TEST_F(LedgerOnDisk, DamageOnAFullDiskIsReportedAndRepairedLater) {
     for (int i = 0; i < 5; ++i) EXPECT_FALSE(ledger.make_ready());
     EXPECT_FALSE(write(ledger, in_state(backpack(1), ReportState::Withdrawn)));
     EXPECT_EQ(find_or_fail(ledger, 1).state, ReportState::InDoubt);
-    EXPECT_GE(ledger.known().reports, 20) << "the stamp floor must keep the number";
-    EXPECT_GE(ledger.known().log, 7u);
+    EXPECT_GE(ledger.known_facts().reports, 20) << "the stamp floor must keep the number";
+    EXPECT_GE(ledger.known_facts().log, 7u);
     EXPECT_FALSE(std::filesystem::exists(disk_.log() + "/damaged-2"))
         << "each try puts the files aside again";
     disk_.full = 0;
     EXPECT_TRUE(ledger.make_ready());
     EXPECT_EQ(ledger.refusal(), "");
     reports = ledger.reports();
-    after = ledger.known();
+    after = ledger.known_facts();
     EXPECT_GT(after.log, known.log) << "a name is used twice";
     expect_all(ledger);
   }
@@ -284,8 +284,8 @@ class LedgerKilledAtDamage : public testing::Test {
       disk.start();
       const auto ledger = open_or_fail(disk.path(), known_);
       EXPECT_THAT(files_in(disk.log()).rbegin()->first, testing::StartsWith("snapshot-"));
-      EXPECT_GE(ledger.known().reports, 4);
-      EXPECT_GE(ledger.known().log, known_.log);
+      EXPECT_GE(ledger.known_facts().reports, 4);
+      EXPECT_GE(ledger.known_facts().log, known_.log);
       for (const Report& report : ledger.reports())
         ASSERT_EQ(report.state, report.number == 3 ? ReportState::Answered : ReportState::InDoubt)
             << report.number;
@@ -294,7 +294,7 @@ class LedgerKilledAtDamage : public testing::Test {
 
  private:
   Files files_;
-  Known known_;
+  LedgerFacts known_;
 };
 
 TEST_F(LedgerKilledAtDamage, ReportsMissingRecordsAgain) {

@@ -52,7 +52,7 @@ TEST(Ledger, RestoresReportsRunsAndHistories) {
   auto ledger = open_or_fail(state.path());
   check(ledger);
   ASSERT_TRUE(keep_up(ledger));
-  EXPECT_EQ(ledger.known().reports, 11);
+  EXPECT_EQ(ledger.known_facts().reports, 11);
 }
 
 /// The output that Reports needs.
@@ -73,7 +73,7 @@ TEST(Ledger, RestoresACorrectedReport) {
     dispatch::Reports reports({.review = dispatch::Review::All, .policy = {}}, output);
     reports.open({}, {}, {});
     reports.status_heard({.score = 0, .run_clock = 1, .remaining_reports = 20, .current_team = "t"}, {}, {});
-    reports.take({.report = {.type = "Drill", .position = {1, 2, 3}}, .sender = "10.0.0.7"}, 1, true, {});
+    reports.accept({.report = {.type = "Drill", .position = {1, 2, 3}}, .sender = "10.0.0.7"}, 1, true, {});
     ASSERT_TRUE(reports.correct(1, {.type = "Rope", .position = {4, 5, 6}}, {}));
   }
   auto ledger = open_or_fail(state.path());
@@ -117,7 +117,7 @@ TEST(Ledger, KeepsAllThroughFullFilesAndSnapshots) {
       ASSERT_TRUE(keep_up(ledger));
       ASSERT_TRUE(keep_up(ledger));
     }
-    EXPECT_EQ(ledger.known().log, 4u);
+    EXPECT_EQ(ledger.known_facts().log, 4u);
   }
   const auto files = files_in(state.ledger());
   EXPECT_THAT(files, testing::Contains(testing::Key(testing::StartsWith("snapshot-00000004"))));
@@ -191,7 +191,7 @@ TEST(OpenLedger, GoesOnWithoutTheFileInMemory) {
   EXPECT_TRUE(write(*ledger, backpack(1)));
   std::filesystem::remove(memory);
   std::ofstream(memory) << "ADTL";
-  ledger = Ledger::closed("", {});  // and gives up its lock
+  ledger = Ledger::make_closed("", {});  // and gives up its lock
   ledger = Ledger::open(state.path(), {}, memory);
   ASSERT_TRUE(ledger) << ledger.error().what;
   EXPECT_EQ(ledger->warning(), memory + " is damaged");
@@ -200,34 +200,34 @@ TEST(OpenLedger, GoesOnWithoutTheFileInMemory) {
 
 /// The stamp floor is written from it, so it must not forget the unreadable ledger.
 TEST(ClosedLedger, RejectsReportsAndForgetsNothing) {
-  auto ledger = Ledger::closed("x: Input/output error", {.reports = 20, .log = 3});
+  auto ledger = Ledger::make_closed("x: Input/output error", {.reports = 20, .log = 3});
   EXPECT_TRUE(ledger.is_closed());
   EXPECT_EQ(ledger.refusal(), "x: Input/output error");
   EXPECT_THAT(ledger.reports(), IsEmpty());
   EXPECT_FALSE(write(ledger, backpack(1)));
   EXPECT_FALSE(ledger.make_ready());
-  EXPECT_FALSE(ledger.take_over(Ledger::closed("", {}).copy().value_or(""), {}));
+  EXPECT_FALSE(ledger.take_over(Ledger::make_closed("", {}).copy().value_or(""), {}));
   EXPECT_TRUE(ledger.flush());
   EXPECT_FALSE(ledger.upkeep());
   EXPECT_THAT(ledger.copy().error().what, HasSubstr("cannot be read"))
       << "a spare would take it for the complete ledger";
   EXPECT_EQ(ledger.refusal(), "x: Input/output error");
-  EXPECT_EQ(ledger.known().reports, 20);
-  EXPECT_EQ(ledger.known().log, 3u);
+  EXPECT_EQ(ledger.known_facts().reports, 20);
+  EXPECT_EQ(ledger.known_facts().log, 3u);
 }
 
 /// A power cut may follow, which empties the memory. Then an older copy of the ledger would be believed.
 TEST(ClosedLedger, KnowsWhatMemoryKnows) {
   const State state;
   const std::string memory = state.path() + "/known";
-  Known last;
+  LedgerFacts last;
   {
     auto ledger = open_or_fail(state.path(), {}, memory);
     ASSERT_TRUE(write(ledger, backpack(1)));
-    last = ledger.known();
+    last = ledger.known_facts();
   }
-  EXPECT_EQ(Ledger::closed("", {}, memory).known(), last);
-  EXPECT_EQ(Ledger::closed("", {.reports = 20}, memory).known().reports, 20);
+  EXPECT_EQ(Ledger::make_closed("", {}, memory).known_facts(), last);
+  EXPECT_EQ(Ledger::make_closed("", {.reports = 20}, memory).known_facts().reports, 20);
 }
 
 TEST(ClosedLedger, IsReplacedByANewOneThatContinuesItsNumbers) {
@@ -248,8 +248,8 @@ TEST(ClosedLedger, IsReplacedByANewOneThatContinuesItsNumbers) {
   EXPECT_TRUE(Ledger::can_be_read(state.path()));
   const auto ledger = open_or_fail(state.path(), {.reports = 1, .log = 1});
   EXPECT_THAT(ledger.damage(), HasSubstr("report 1 is lost"));
-  EXPECT_EQ(ledger.known().reports, 1000);
-  EXPECT_EQ(ledger.known().log, 2u);
+  EXPECT_EQ(ledger.known_facts().reports, 1000);
+  EXPECT_EQ(ledger.known_facts().log, 2u);
 }
 
 }  // namespace

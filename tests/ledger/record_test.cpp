@@ -74,9 +74,9 @@ std::string in_hex(std::string_view bytes) {
 
 /// The format of 0.1.0 (firmware/doors/ledger/README.md). It never changes. Later members come after these.
 TEST(LedgerRecord, HasTheseBytes) {
-  const std::string report = encoded(full_report()), run = encoded(full_run());
-  const std::string history = encoded(Step{10, "queued", "why"});
-  EXPECT_EQ(in_hex(encoded(Steps{.highest = 7, .reports = {{report, history}}, .runs = {run}})),
+  const std::string report = to_bytes(full_report()), run = to_bytes(full_run());
+  const std::string history = to_bytes(Step{10, "queued", "why"});
+  EXPECT_EQ(in_hex(to_bytes(Steps{.highest = 7, .reports = {{report, history}}, .runs = {run}})),
             "070000000000000001000000000000004201000000000000020000000000000005000000000000004472696c6c000000"
             "000000f83f0000000000000080a0c8eb85f3cce17f050000000000000073706f7431080000000000000031302e302e30"
             "2e37000000000000244000000000000029400800000000000000616e737765726564060000000000000073636f726564"
@@ -115,20 +115,20 @@ TEST(LedgerRecord, IsReadFromFilesOfAnEarlierVersion) {
 }
 
 TEST(LedgerRecord, ReadsBackEachMember) {
-  EXPECT_EQ(report_in(encoded(full_report())), full_report());
-  EXPECT_EQ(run_in(encoded(full_run())), full_run());
-  EXPECT_EQ(report_in(encoded(backpack(1))), backpack(1));
-  EXPECT_EQ(run_in(encoded(dispatch::Run())), dispatch::Run());
+  EXPECT_EQ(report_in(to_bytes(full_report())), full_report());
+  EXPECT_EQ(run_in(to_bytes(full_run())), full_run());
+  EXPECT_EQ(report_in(to_bytes(backpack(1))), backpack(1));
+  EXPECT_EQ(run_in(to_bytes(dispatch::Run())), dispatch::Run());
   for (std::size_t state = 0; state < std::size(dispatch::kStateWords); ++state) {
     const Report report = in_state(full_report(), static_cast<ReportState>(state));
-    EXPECT_EQ(report_in(encoded(report)), report);
+    EXPECT_EQ(report_in(to_bytes(report)), report);
   }
 }
 
 TEST(LedgerRecord, IsDescribedForOtherReaders) {
   const std::string readme = project_text("firmware/doors/ledger/README.md"),
                     reader = project_text("tests/wire/ledger_files.py");
-  for (const codec::Value& record : {shown(full_report()), shown(full_run())}) {
+  for (const codec::Value& record : {to_value(full_report()), to_value(full_run())}) {
     for (const auto& [name, value] : std::get<codec::Value::Object>(record.is)) {
       EXPECT_THAT(readme, HasSubstr('`' + name + '`'));
       EXPECT_TRUE(std::regex_search(reader, std::regex(R"([" ])" + name + ":")))
@@ -144,46 +144,46 @@ TEST(LedgerRecord, ReadsBackHostileTextUnchanged) {
     report.report.type = report.sender = report.note = report.content_type = report.answer = text;
     report.before = icd::RunStatus{std::numeric_limits<std::int64_t>::min(), -1e308,
                                    std::numeric_limits<std::int64_t>::max(), text};
-    EXPECT_EQ(report_in(encoded(report)), report);
+    EXPECT_EQ(report_in(to_bytes(report)), report);
     dispatch::Run run = full_run();
     run.id = run.why = run.post = run.unreliable = text;
-    EXPECT_EQ(run_in(encoded(run)), run);
-    EXPECT_THAT(steps_in(encoded(Step{1, "queued", text})),
+    EXPECT_EQ(run_in(to_bytes(run)), run);
+    EXPECT_THAT(steps_in(to_bytes(Step{1, "queued", text})),
                 testing::Optional(ElementsAre(Step{1, "queued", text})));
   }
 }
 
 TEST(LedgerRecord, IsRejectedWithAWrongLengthOrNumber) {
-  const std::string report = encoded(full_report()), run = encoded(full_run()),
-                    step = encoded(Step{10, "queued", ""});
-  const std::string whole = encoded(Steps{.highest = 7, .reports = {{report, step}}, .runs = {run}});
+  const std::string report = to_bytes(full_report()), run = to_bytes(full_run()),
+                    step = to_bytes(Step{10, "queued", ""});
+  const std::string whole = to_bytes(Steps{.highest = 7, .reports = {{report, step}}, .runs = {run}});
   ASSERT_TRUE(steps_record_in(whole));
   for (std::size_t size = 0; size < whole.size(); ++size)
     EXPECT_FALSE(steps_record_in(whole.substr(0, size)));
   EXPECT_FALSE(steps_record_in(whole + 'x'));
-  EXPECT_FALSE(report_in(encoded(Report())));
-  EXPECT_FALSE(run_in(encoded(dispatch::Run{.number = 0})));
+  EXPECT_FALSE(report_in(to_bytes(Report())));
+  EXPECT_FALSE(run_in(to_bytes(dispatch::Run{.number = 0})));
   EXPECT_FALSE(steps_in(step.substr(1)));
   EXPECT_FALSE(Ledger::is_copy("ledger.sqlite"));
 }
 
 TEST(LedgerRecord, UnknownStateIsInDoubtAndKeepsItsWord) {
-  std::string later = encoded(full_report());
+  std::string later = to_bytes(full_report());
   later.replace(later.find("answered"), 8, "promised");
   const auto report = report_in(later);
   ASSERT_TRUE(report);
   EXPECT_EQ(report->state, ReportState::InDoubt);
   EXPECT_EQ(report->note, "its state 'promised' is unknown to this version; scored");
   EXPECT_EQ(report->before, std::nullopt);
-  EXPECT_THAT(steps_in(encoded(Step{1, "promised", ""})),
+  EXPECT_THAT(steps_in(to_bytes(Step{1, "promised", ""})),
               testing::Optional(ElementsAre(Step{1, "promised", ""})));
 }
 
 /// This version reads and writes between two starts of a later version.
 TEST(LedgerRecord, KeepsMembersAndKindsOfALaterVersion) {
   Book book;
-  const std::string report = encoded(full_report(), "its more"), run = encoded(full_run(), "run's more");
-  ASSERT_TRUE(book.apply(kSteps, encoded(Steps{.highest = 2, .reports = {{report, ""}}, .runs = {run}})));
+  const std::string report = to_bytes(full_report(), "its more"), run = to_bytes(full_run(), "run's more");
+  ASSERT_TRUE(book.apply(kSteps, to_bytes(Steps{.highest = 2, .reports = {{report, ""}}, .runs = {run}})));
   ASSERT_TRUE(book.apply(9, "a later kind"));
   const auto write_again = [](const Book& from) {
     Book next;

@@ -56,7 +56,7 @@ class State {
   std::string path_;
 };
 
-inline Ledger open_or_fail(const std::string& state, const Known& known = {},
+inline Ledger open_or_fail(const std::string& state, const LedgerFacts& known = {},
                            const std::string& memory = "") {
   auto ledger = Ledger::open(state, known, memory);
   if (!ledger) throw std::runtime_error(ledger.error().what);
@@ -85,9 +85,9 @@ inline Result<void> write(Ledger& ledger, const dispatch::Report& report,
 /// Writes new reports from number `first` on, until the current file has no room for another one. Returns
 /// the next number.
 inline std::int64_t fill_file(Ledger& ledger, std::int64_t first) {
-  const std::uint64_t log = ledger.known().log;
+  const std::uint64_t log = ledger.known_facts().log;
   std::int64_t number = first;
-  while (write(ledger, backpack(number)) && ledger.known().log == log) ++number;
+  while (write(ledger, backpack(number)) && ledger.known_facts().log == log) ++number;
   return number;
 }
 

@@ -17,7 +17,7 @@ namespace {
 [[noreturn]] void record(const std::string& state, int told) {
   auto ledger = Ledger::open(state);
   if (!ledger) ::_exit(1);
-  std::int64_t number = ledger->known().reports;
+  std::int64_t number = ledger->known_facts().reports;
   while (write(*ledger, backpack(++number))) {
     if (::write(told, &number, sizeof number) != sizeof number) break;
   }

@@ -36,11 +36,11 @@ class Guard : public testing::Test {
 };
 
 TEST_F(Guard, CatchesAnyException) {
-  EXPECT_TRUE(guarded("a test", [] {}));
-  EXPECT_FALSE(guarded("a test", [] { throw std::bad_alloc(); }));
-  EXPECT_FALSE(guarded("a test", [] { throw std::length_error("too long"); }));
-  EXPECT_FALSE(guarded("a test", [] { (void)std::get<int>(std::variant<int, char>('x')); }));
-  EXPECT_FALSE(guarded("a test", [] { throw 7; }));  // NOLINT(hicpp-exception-baseclass): libraries may
+  EXPECT_TRUE(run_guarded("a test", [] {}));
+  EXPECT_FALSE(run_guarded("a test", [] { throw std::bad_alloc(); }));
+  EXPECT_FALSE(run_guarded("a test", [] { throw std::length_error("too long"); }));
+  EXPECT_FALSE(run_guarded("a test", [] { (void)std::get<int>(std::variant<int, char>('x')); }));
+  EXPECT_FALSE(run_guarded("a test", [] { throw 7; }));  // NOLINT(hicpp-exception-baseclass): libraries may
   EXPECT_EQ(caught(), 4);
   EXPECT_NE(told.find("a test: too long\n"), std::string::npos);
   EXPECT_NE(told.find("a test: unknown exception\n"), std::string::npos);
@@ -48,7 +48,7 @@ TEST_F(Guard, CatchesAnyException) {
 
 TEST_F(Guard, SurvivesALogThatThrows) {
   tell_of_caught([](const char*, const char*) { throw std::bad_alloc(); });
-  EXPECT_FALSE(guarded("a test", [] { throw std::runtime_error("x"); }));
+  EXPECT_FALSE(run_guarded("a test", [] { throw std::runtime_error("x"); }));
   EXPECT_EQ(caught(), 1);
 }
 

@@ -23,12 +23,12 @@ class JobQueueTest : public testing::Test {
   void patient(const char* job, int ms = 0) { queue.add(job, Urgency::CanWait, at(ms)); }
   /// Takes the next job; "" if there is none. The caller must report its end.
   std::string taken(int ms) {
-    auto next = queue.take(at(ms));
+    auto next = queue.pop(at(ms));
     if (!next) return "";
     last = next->urgency;
     return next->job;
   }
-  void ended(int ms) { queue.ended(last, at(ms)); }
+  void ended(int ms) { queue.on_ended(last, at(ms)); }
   /// Takes the next job and ends it at once.
   std::string done(int ms) {
     std::string job = taken(ms);
@@ -100,33 +100,33 @@ TEST_F(JobQueueTest, PatientJobsBeginInTimeUnderLoad) {
 TEST_F(JobQueueTest, OneWorkerIsFreeOfPatientJobs) {
   Queue three{3};
   for (int i = 0; i < 3; ++i) three.add("bundle", Urgency::CanWait, kBegin);
-  EXPECT_TRUE(three.take(at(1)));
-  EXPECT_TRUE(three.take(at(1)));
-  EXPECT_FALSE(three.take(at(500)));
+  EXPECT_TRUE(three.pop(at(1)));
+  EXPECT_TRUE(three.pop(at(1)));
+  EXPECT_FALSE(three.pop(at(500)));
   three.add("cloud", Urgency::OnTheWay, at(500));
-  EXPECT_EQ(three.take(at(501))->job, "cloud");
-  three.ended(Urgency::CanWait, at(502));
-  EXPECT_EQ(three.take(at(503))->job, "bundle");
+  EXPECT_EQ(three.pop(at(501))->job, "cloud");
+  three.on_ended(Urgency::CanWait, at(502));
+  EXPECT_EQ(three.pop(at(503))->job, "bundle");
 }
 
 TEST_F(JobQueueTest, PatientJobYieldsAndContinues) {
   patient("picture");
   ASSERT_EQ(taken(0), "picture");
-  EXPECT_FALSE(queue.take_amid(at(0), at(50), at(50))) << "no other job was queued";
+  EXPECT_FALSE(queue.pop_amid(at(0), at(50), at(50))) << "no other job was queued";
   urgent("cloud", 1);
   urgent("grid", 1);
-  EXPECT_FALSE(queue.take_amid(at(0), at(9), at(9))) << "the turn has just begun";
-  EXPECT_EQ(queue.take_amid(at(0), at(10), at(10)), "cloud");
-  EXPECT_FALSE(queue.take_amid(at(0), at(10), at(110))) << "the job has yielded long enough";
-  EXPECT_EQ(queue.take_amid(at(110), at(120), at(120)), "grid");
-  EXPECT_FALSE(queue.take_amid(at(110), at(120), at(125)));
+  EXPECT_FALSE(queue.pop_amid(at(0), at(9), at(9))) << "the turn has just begun";
+  EXPECT_EQ(queue.pop_amid(at(0), at(10), at(10)), "cloud");
+  EXPECT_FALSE(queue.pop_amid(at(0), at(10), at(110))) << "the job has yielded long enough";
+  EXPECT_EQ(queue.pop_amid(at(110), at(120), at(120)), "grid");
+  EXPECT_FALSE(queue.pop_amid(at(110), at(120), at(125)));
 }
 
 TEST_F(JobQueueTest, PatientJobDoesNotYieldToPatientJobs) {
   patient("picture");
   ASSERT_EQ(taken(0), "picture");
   patient("bundle");
-  EXPECT_FALSE(queue.take_amid(at(0), at(500), at(500)));
+  EXPECT_FALSE(queue.pop_amid(at(0), at(500), at(500)));
 }
 
 TEST_F(JobQueueTest, HandsOverQueuedJobs) {

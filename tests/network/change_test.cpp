@@ -211,7 +211,7 @@ TEST_F(ChangeTest, MayFollowAnother) {
 TEST(FirstChange, IsRevertedToNothing) {
   FakeNumbersSetter hands;
   Change change(hands, std::nullopt);
-  change.interrupted();
+  change.on_interrupted();
   EXPECT_EQ(change.status().ended, Ended::Reverted);
   const Instant now{};
   change.want({std::string(32, 'c'), seconds(1), numbers()}, now);

@@ -35,7 +35,7 @@ class Line {
   void rests(double s) {
     time_ += s;
     queue_ = 0;
-    delivery.begins(progress());
+    delivery.on_write_begun(progress());
   }
 
   double carries;          // bytes a second
@@ -66,7 +66,7 @@ class Line {
     const bool is_full = queue_ + delivery.pace() * kStep >= kWindow;
     now.unsent = rests || is_full ? 0 : 1;
     now.in_flight = static_cast<std::size_t>(queue_);
-    if (static_cast<int>(time_ / kStep) % 4 == 0) delivery.goes_on(now);
+    if (static_cast<int>(time_ / kStep) % 4 == 0) delivery.on_write(now);
   }
 
   Progress progress() const {
@@ -86,7 +86,7 @@ TEST(Delivery, MatchesAFullLink) {
   Line line(12.5e6, 0.001);
   EXPECT_NEAR(line.runs(5), kMost, kMost / 100);
   EXPECT_EQ(line.delivery.pace(), kMost);
-  EXPECT_NEAR(line.delivery.delivers(), kMost, kMost / 50);
+  EXPECT_NEAR(line.delivery.delivery_rate(), kMost, kMost / 50);
 }
 
 TEST(Delivery, FollowsALinkThatSlowsDownAndRecovers) {
@@ -95,7 +95,7 @@ TEST(Delivery, FollowsALinkThatSlowsDownAndRecovers) {
   line.carries = 7.5e6;
   line.runs(1);
   EXPECT_GT(line.runs(2), 0.95 * 7.5e6);
-  EXPECT_NEAR(line.delivery.delivers(), 7.5e6, 0.75e6);
+  EXPECT_NEAR(line.delivery.delivery_rate(), 7.5e6, 0.75e6);
   EXPECT_LT(line.most_queued, 0.012);
   line.carries = 12.5e6;
   line.runs(2);
@@ -107,18 +107,18 @@ TEST(Delivery, IgnoresABusySender) {
   line.starves = true;
   line.runs(5);
   EXPECT_EQ(line.delivery.pace(), kMost);
-  EXPECT_EQ(line.delivery.delivers(), kMost);
+  EXPECT_EQ(line.delivery.delivery_rate(), kMost);
 }
 
 TEST(Delivery, IgnoresALongFirstRoundTrip) {
   Delivery delivery(kMost);
   Progress now{.at = at(10), .unsent = 1, .round_trip = std::chrono::milliseconds(40)};
-  delivery.begins(now);
+  delivery.on_write_begun(now);
   for (int i = 0; i < 1000; ++i) {
     now.at += std::chrono::milliseconds(4);
     now.delivered += 46'000;
     now.round_trip = now.round_trip * 7 / 8;
-    delivery.goes_on(now);
+    delivery.on_write(now);
     ASSERT_EQ(delivery.pace(), kMost) << i;
   }
 }
@@ -130,11 +130,11 @@ TEST(Delivery, IgnoresALateAcknowledgementOfAnIdleSender) {
                .in_flight = 1448,
                .round_trip = std::chrono::milliseconds(6),
                .least_round_trip = std::chrono::microseconds(100)};
-  delivery.begins(now);
+  delivery.on_write_begun(now);
   for (int i = 0; i < 1000; ++i) {
     now.at += std::chrono::milliseconds(100);
     now.delivered += 20'000;
-    delivery.goes_on(now);
+    delivery.on_write(now);
     ASSERT_EQ(delivery.pace(), kMost) << i;
   }
 }
@@ -142,10 +142,10 @@ TEST(Delivery, IgnoresALateAcknowledgementOfAnIdleSender) {
 TEST(Delivery, IgnoresSilence) {
   Delivery delivery(kMost);
   Progress now{.at = at(10), .unsent = 1, .round_trip = std::chrono::milliseconds(40)};
-  delivery.begins(now);
+  delivery.on_write_begun(now);
   for (int i = 0; i < 1000; ++i) {
     now.at += std::chrono::milliseconds(50);
-    delivery.goes_on(now);
+    delivery.on_write(now);
   }
   EXPECT_EQ(delivery.pace(), kMost);
 }

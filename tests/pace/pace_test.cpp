@@ -27,30 +27,30 @@ Duration seconds_of(double s) {
 TEST(RateLimit, IsReadyAtOnceAndThenAfterItsSpacing) {
   RateLimit limit{2};
   EXPECT_TRUE(limit.ready(at(0)));
-  limit.sent(at(10));
+  limit.on_sent(at(10));
   EXPECT_FALSE(limit.ready(at(10.49)));
   EXPECT_TRUE(limit.ready(at(10.5)));
 }
 
 TEST(RateLimit, KeepsFirstBytesApartAndLastBytes) {
   RateLimit limit{1};
-  limit.sent(at(10));
-  limit.taken({.first = at(10), .last = at(10.6)}, at(10.7));
+  limit.on_sent(at(10));
+  limit.on_answered({.first = at(10), .last = at(10.6)}, at(10.7));
   EXPECT_EQ(limit.earliest(), (Span{.first = at(11.02), .last = at(11.62)}));
   EXPECT_EQ(limit.next(), at(11.62)) << "without a byte that is held back";
 }
 
 TEST(RateLimit, After429CountsFromTheAnswer) {
   RateLimit limit{1};
-  limit.sent(at(10));
-  limit.throttled(at(10.1), {});
-  limit.sent(at(11.2));
-  limit.taken({.first = at(11.2), .last = at(11.5)}, at(11.7));
+  limit.on_sent(at(10));
+  limit.on_throttled(at(10.1), {});
+  limit.on_sent(at(11.2));
+  limit.on_answered({.first = at(11.2), .last = at(11.5)}, at(11.7));
   EXPECT_EQ(limit.earliest(), (Span{.first = at(12.7), .last = at(12.7)}));
-  EXPECT_TRUE(limit.learned().from_answers);
+  EXPECT_TRUE(limit.learned_rate().from_answers);
   RateLimit next{1};
-  next.carry_on(limit.learned(), at(12));
-  EXPECT_TRUE(next.learned().from_answers);
+  next.carry_on(limit.learned_rate(), at(12));
+  EXPECT_TRUE(next.learned_rate().from_answers);
   EXPECT_EQ(next.earliest(), limit.earliest());
 }
 
@@ -63,35 +63,35 @@ TEST(RateLimit, ObeysRetryAfterUpToALimit) {
                         {seconds{3600}, 30}, {seconds::max(), 30}, {seconds::min(), 1}};
   for (const auto& [retry_after, next] : cases) {
     RateLimit limit{1};
-    limit.throttled(at(0), retry_after);
+    limit.on_throttled(at(0), retry_after);
     EXPECT_EQ(limit.next(), at(next)) << retry_after.count();
   }
 }
 
 TEST(RateLimit, PausesForALimitedTime) {
   RateLimit limit{1};
-  for (int i = 0; i < 100; ++i) limit.throttled(at(i), {});
+  for (int i = 0; i < 100; ++i) limit.on_throttled(at(i), {});
   EXPECT_GE(hertz(limit, 1), RateLimit::kSlowest);
   EXPECT_LE(limit.next(), at(99 + 30.1));
 }
 
 TEST(RateLimit, ContinuesWithLearnedValues) {
   RateLimit slowed(1);
-  for (int i = 0; i < 40; ++i) slowed.throttled(at(i), {}), slowed.taken(left(i), at(i));
+  for (int i = 0; i < 40; ++i) slowed.on_throttled(at(i), {}), slowed.on_answered(left(i), at(i));
   ASSERT_LT(hertz(slowed, 1), 0.9);
-  slowed.throttled(at(40), std::chrono::seconds(20));
+  slowed.on_throttled(at(40), std::chrono::seconds(20));
   RateLimit next(1);
-  next.carry_on(slowed.learned(), at(41));
+  next.carry_on(slowed.learned_rate(), at(41));
   EXPECT_EQ(next.next(), slowed.next());
   EXPECT_GE(next.next(), at(60)) << "including the server's Retry-After";
-  EXPECT_EQ(next.learned().spacing, slowed.learned().spacing);
+  EXPECT_EQ(next.learned_rate().spacing, slowed.learned_rate().spacing);
   RateLimit slower(0.01);
-  slower.carry_on(slowed.learned(), at(41));
+  slower.carry_on(slowed.learned_rate(), at(41));
   EXPECT_EQ(hertz(slower, 0.01), 0.01) << "never more than the settings allow";
   RateLimit free(1), freed(5);
-  free.sent(at(3));
-  free.taken(left(3), at(3));
-  freed.carry_on(free.learned(), at(3));
+  free.on_sent(at(3));
+  free.on_answered(left(3), at(3));
+  freed.carry_on(free.learned_rate(), at(3));
   EXPECT_EQ(freed.next(), at(4) + milliseconds{20});
   EXPECT_EQ(hertz(freed, 5), 5) << "without a learned rate the new settings apply";
 }
@@ -99,13 +99,13 @@ TEST(RateLimit, ContinuesWithLearnedValues) {
 /// The request may have ended just before. In one process the spacing counts from there.
 TEST(RateLimit, KeepsItsSpacingAfterARestartDuringARequest) {
   RateLimit before(1);
-  before.sent(at(3));  // and it took five seconds
+  before.on_sent(at(3));  // and it took five seconds
   RateLimit next(1);
-  next.carry_on(before.learned(), at(8.3));
+  next.carry_on(before.learned_rate(), at(8.3));
   EXPECT_EQ(next.next(), at(9.3));
-  before.taken(left(8), at(8));
+  before.on_answered(left(8), at(8));
   RateLimit known(1);
-  known.carry_on(before.learned(), at(8.3));
+  known.carry_on(before.learned_rate(), at(8.3));
   EXPECT_EQ(known.next(), at(9) + milliseconds{20}) << "the end of the request is known";
 }
 
@@ -119,10 +119,10 @@ TEST(RateLimit, SurvivesTimesOfAnotherClock) {
 
 TEST(RateLimit, StaysBelowASlowRate) {
   RateLimit limit{0.01};
-  limit.throttled(at(0), {});
+  limit.on_throttled(at(0), {});
   EXPECT_EQ(hertz(limit, 0.01), 0.01);
   RateLimit slowest{std::numeric_limits<double>::denorm_min()};
-  slowest.sent(at(0));
+  slowest.on_sent(at(0));
   EXPECT_FALSE(slowest.ready(at(3600)));
 }
 
@@ -141,14 +141,14 @@ TEST(RateLimit, KeepsRequestsApartForAnyAnswers) {
       ASSERT_GE(sent.first - last.first, seconds_of(1 / allowed));
       ASSERT_GE(sent.last - last.last, seconds_of(1 / allowed));
       last = sent;
-      limit.sent(sent.first);
+      limit.on_sent(sent.first);
       now = sent.last + milliseconds{20};
       const double answer = any(random);
-      if (answer < 0.2) limit.throttled(now, {});
-      if (answer >= 0.2 && answer < 0.4) limit.lost(now);
-      if (answer >= 0.4) limit.taken(sent, now);
+      if (answer < 0.2) limit.on_throttled(now, {});
+      if (answer >= 0.2 && answer < 0.4) limit.on_lost(now);
+      if (answer >= 0.4) limit.on_answered(sent, now);
       if (answer > 0.98) {  // a process ends, and the next begins
-        const Learned learned = std::exchange(limit, RateLimit{allowed}).learned();
+        const Learned learned = std::exchange(limit, RateLimit{allowed}).learned_rate();
         limit.carry_on(learned, now);
       }
       ASSERT_GE(hertz(limit, allowed), std::min(allowed, RateLimit::kSlowest) - 1e-9);
@@ -158,18 +158,18 @@ TEST(RateLimit, KeepsRequestsApartForAnyAnswers) {
 
 TEST(Backoff, DoublesUpToALimitAndRestartsAfterSuccess) {
   Backoff backoff{milliseconds{500}, milliseconds{3000}};
-  for (const int wait : {500, 1000, 2000, 3000, 3000}) EXPECT_EQ(backoff.failed(0), milliseconds{wait});
-  backoff.succeeded();
-  EXPECT_EQ(backoff.failed(0), milliseconds{500});
+  for (const int wait : {500, 1000, 2000, 3000, 3000}) EXPECT_EQ(backoff.on_failed(0), milliseconds{wait});
+  backoff.on_succeeded();
+  EXPECT_EQ(backoff.on_failed(0), milliseconds{500});
 }
 
 TEST(Backoff, AddsUpToAQuarterAtRandom) {
   Backoff backoff{milliseconds{1000}, milliseconds{1000}};
-  EXPECT_EQ(backoff.failed(0.5), milliseconds{1125});
+  EXPECT_EQ(backoff.on_failed(0.5), milliseconds{1125});
   std::mt19937_64 random{1};
   std::uniform_real_distribution<double> any{0, 1};
   for (int i = 0; i < 1000; ++i) {
-    const auto wait = backoff.failed(any(random));
+    const auto wait = backoff.on_failed(any(random));
     ASSERT_GE(wait, milliseconds{1000});
     ASSERT_LT(wait, milliseconds{1250});
   }
@@ -177,9 +177,9 @@ TEST(Backoff, AddsUpToAQuarterAtRandom) {
 
 TEST(Backoff, StaysWithinItsLimit) {
   Backoff backoff{milliseconds{7}, std::chrono::hours{24 * 365}};
-  for (int i = 0; i < 200; ++i) EXPECT_LE(backoff.failed(0), std::chrono::hours{24 * 365});
+  for (int i = 0; i < 200; ++i) EXPECT_LE(backoff.on_failed(0), std::chrono::hours{24 * 365});
   Backoff turned_round{milliseconds{500}, milliseconds{100}};
-  EXPECT_EQ(turned_round.failed(0), milliseconds{100});
+  EXPECT_EQ(turned_round.on_failed(0), milliseconds{100});
 }
 
 TEST(Budget, LeavesRoomForReports) {
@@ -198,8 +198,8 @@ TEST(Budget, IsNeverZero) {
 
 TEST(RateLimit, CountsFromTheEndOfALostRequest) {
   RateLimit limit(1);
-  limit.sent(at(10));  // its bytes left at 12.8, and no answer came
-  limit.lost(at(12.9));
+  limit.on_sent(at(10));  // its bytes left at 12.8, and no answer came
+  limit.on_lost(at(12.9));
   EXPECT_EQ(limit.next(), at(13.9));
 }
 

@@ -57,11 +57,11 @@ std::vector<Request> played(Server server, double until,
   std::vector<Request> all;
   double now = 0;
   while (now < until) {
-    limit.sent(at(now));
+    limit.on_sent(at(now));
     all.push_back({now, server(now)});
     const double answered = now + kAnswerTakes;
-    all.back().taken ? limit.taken({.first = at(now), .last = at(now)}, at(answered))
-                     : limit.throttled(at(answered), retry_after);
+    all.back().taken ? limit.on_answered({.first = at(now), .last = at(now)}, at(answered))
+                     : limit.on_throttled(at(answered), retry_after);
     now = std::max(answered, Seconds(limit.next().time_since_epoch()).count());
   }
   return all;
@@ -171,16 +171,16 @@ Counts learns_of_answers(double lives) {
     if (now > next_life) {
       next_life += lives;
       RateLimit next{1};
-      next.carry_on(limit.learned(), at(now));
+      next.carry_on(limit.learned_rate(), at(now));
       limit = next;
     }
-    limit.sent(at(now));
+    limit.on_sent(at(now));
     const double answered = now + kTransfer;
     const bool is_taken = server.takes(now);
     ++(is_taken ? counts.taken : counts.refused);
     server.answered = answered;
-    is_taken ? limit.taken({.first = at(now), .last = at(answered)}, at(answered))
-             : limit.throttled(at(answered), {});
+    is_taken ? limit.on_answered({.first = at(now), .last = at(answered)}, at(answered))
+             : limit.on_throttled(at(answered), {});
     now = std::max(answered, Seconds(limit.earliest().first.time_since_epoch()).count());
   }
   return counts;
@@ -196,8 +196,8 @@ TEST(RateLimitServers, CountingFromAnswersIsLearnedAtOnce) {
 
 TEST(RateLimit, AppliesANewRateAtOnce) {
   RateLimit rate(1);
-  rate.sent(at(0));
-  rate.lost(at(0));
+  rate.on_sent(at(0));
+  rate.on_lost(at(0));
   rate.allow(4, at(0.1));
   EXPECT_EQ(rate.next(), at(0.25));
   rate.allow(0.5, at(0.1));
@@ -206,8 +206,8 @@ TEST(RateLimit, AppliesANewRateAtOnce) {
 
 TEST(RateLimit, NewRateKeepsARequestedPause) {
   RateLimit rate(1);
-  rate.sent(at(0));
-  rate.throttled(at(0), std::chrono::seconds{10});
+  rate.on_sent(at(0));
+  rate.on_throttled(at(0), std::chrono::seconds{10});
   rate.allow(4, at(1));
   EXPECT_EQ(rate.next(), at(10));
 }
@@ -232,83 +232,83 @@ TEST(RateLimit, NewRateKeepsLearnedValues) {
 
 TEST(RateLimit, SpacesTheNextFromAnUnansweredRequest) {
   RateLimit rate(1);
-  rate.sent(at(0));
-  rate.left({.first = at(0), .last = at(0.9)});
+  rate.on_sent(at(0));
+  rate.on_departed({.first = at(0), .last = at(0.9)});
   EXPECT_EQ(rate.earliest(), (Span{.first = at(1.02), .last = at(1.92)}));
 }
 
 TEST(RateLimit, OfTwoInFlightTheLaterCounts) {
   for (const bool first_first : {true, false}) {
     RateLimit rate(1);
-    rate.sent(at(0));
-    rate.left({.first = at(0), .last = at(0.9)});
-    rate.sent(at(1.1), true);
+    rate.on_sent(at(0));
+    rate.on_departed({.first = at(0), .last = at(0.9)});
+    rate.on_sent(at(1.1), true);
     for (const bool is_first : {first_first, !first_first}) {
-      EXPECT_TRUE(rate.learned().under_way);
-      is_first ? rate.taken({.first = at(0), .last = at(0.9)}, at(2.3))
-               : rate.taken({.first = at(1.1), .last = at(2)}, at(2.3));
+      EXPECT_TRUE(rate.learned_rate().under_way);
+      is_first ? rate.on_answered({.first = at(0), .last = at(0.9)}, at(2.3))
+               : rate.on_answered({.first = at(1.1), .last = at(2)}, at(2.3));
     }
     EXPECT_EQ(rate.earliest(), (Span{.first = at(2.12), .last = at(3.02)}));
-    EXPECT_FALSE(rate.learned().under_way);
+    EXPECT_FALSE(rate.learned_rate().under_way);
   }
 }
 
 /// A request that fills the link takes that long to send.
 TEST(RateLimit, NextMayBeginAtTheEndOfALongSend) {
   RateLimit rate(1);
-  rate.sent(at(0));
+  rate.on_sent(at(0));
   const Instant end = at(0) + rate.spacing();
-  rate.left({.first = at(0), .last = end});
+  rate.on_departed({.first = at(0), .last = end});
   EXPECT_EQ(rate.earliest().first, end);
 }
 
 /// Otherwise its answer would end a pause that the server requested later.
 TEST(RateLimit, RequestSentBeforeA429DoesNotEndTheStorm) {
   RateLimit rate(1);
-  rate.sent(at(0));
-  rate.sent(at(1.1), true);
-  rate.throttled(at(1.2), std::chrono::seconds{10});
-  rate.taken({.first = at(0), .last = at(0.9)}, at(1.3));
+  rate.on_sent(at(0));
+  rate.on_sent(at(1.1), true);
+  rate.on_throttled(at(1.2), std::chrono::seconds{10});
+  rate.on_answered({.first = at(0), .last = at(0.9)}, at(1.3));
   EXPECT_EQ(rate.next(), at(11.2));
-  rate.sent(at(11.2));
-  rate.taken({.first = at(11.2), .last = at(11.2)}, at(11.3));
+  rate.on_sent(at(11.2));
+  rate.on_answered({.first = at(11.2), .last = at(11.2)}, at(11.3));
   EXPECT_EQ(rate.next(), at(12.3));
 }
 
 TEST(RateLimit, TwoThrottledRequestsAreOneStorm) {
   RateLimit once(1), twice(1);
-  once.sent(at(0));
-  twice.sent(at(0));
-  twice.sent(at(1.1), true);
-  twice.throttled(at(1.2), {});
-  for (RateLimit* rate : {&once, &twice}) rate->throttled(at(1.2), {});
+  once.on_sent(at(0));
+  twice.on_sent(at(0));
+  twice.on_sent(at(1.1), true);
+  twice.on_throttled(at(1.2), {});
+  for (RateLimit* rate : {&once, &twice}) rate->on_throttled(at(1.2), {});
   EXPECT_EQ(once.next(), twice.next());
 }
 
 /// A storm from a request at 0 s to an answer at `end`.
 RateLimit after_a_storm(double end) {
   RateLimit rate(1);
-  rate.sent(at(0));
-  rate.throttled(at(0.1), {});
-  rate.sent(at(end - 0.1));
-  rate.taken({.first = at(end - 0.1), .last = at(end - 0.1)}, at(end));
+  rate.on_sent(at(0));
+  rate.on_throttled(at(0.1), {});
+  rate.on_sent(at(end - 0.1));
+  rate.on_answered({.first = at(end - 0.1), .last = at(end - 0.1)}, at(end));
   return rate;
 }
 
 TEST(RateLimit, A429RightAfterAStormLearnsThePauseThatEndedIt) {
   RateLimit rate = after_a_storm(5.1);
-  rate.sent(at(6.2));
-  rate.throttled(at(6.3), {});
+  rate.on_sent(at(6.2));
+  rate.on_throttled(at(6.3), {});
   EXPECT_EQ(rate.spacing(), std::chrono::milliseconds(5250));
 }
 
 TEST(RateLimit, OnlyAShortStormShowsALimit) {
   for (const double end : {5.0, 7.0}) {
     RateLimit rate = after_a_storm(end);
-    rate.sent(at(end + 1.1));
-    rate.taken({.first = at(end + 1.1), .last = at(end + 1.1)}, at(end + 1.2));
-    rate.sent(at(end + 2.3));
-    rate.throttled(at(end + 2.4), {});
+    rate.on_sent(at(end + 1.1));
+    rate.on_answered({.first = at(end + 1.1), .last = at(end + 1.1)}, at(end + 1.2));
+    rate.on_sent(at(end + 2.3));
+    rate.on_throttled(at(end + 2.4), {});
     EXPECT_EQ(rate.spacing(), std::chrono::milliseconds(end < 6 ? 1250 : 1000)) << end;
   }
 }
@@ -316,40 +316,40 @@ TEST(RateLimit, OnlyAShortStormShowsALimit) {
 TEST(RateLimit, NothingGoesAheadWhileTheRateIsLearned) {
   RateLimit rate(1);
   EXPECT_TRUE(rate.may_go_ahead());
-  rate.sent(at(0));
-  rate.throttled(at(0.1), {});
+  rate.on_sent(at(0));
+  rate.on_throttled(at(0.1), {});
   EXPECT_FALSE(rate.may_go_ahead());
-  rate.sent(at(2));
-  rate.taken({.first = at(2), .last = at(2)}, at(2.1));
+  rate.on_sent(at(2));
+  rate.on_answered({.first = at(2), .last = at(2)}, at(2.1));
   EXPECT_FALSE(rate.may_go_ahead()) << "the server may count from its answers";
 }
 
 TEST(RateLimit, ForeignRequestTakesItsOwnTurn) {
   RateLimit rate(1);
-  rate.sent(at(0));
-  rate.taken({.first = at(0), .last = at(0)}, at(0.1));
+  rate.on_sent(at(0));
+  rate.on_answered({.first = at(0), .last = at(0)}, at(0.1));
   EXPECT_EQ(rate.claim(at(0.2), at(1.2)), std::nullopt) << "the turn is too late";
   EXPECT_EQ(rate.next(), at(1.02)) << "so no turn is reserved";
   EXPECT_EQ(rate.claim(at(0.2), at(5)), at(1.27))
       << "later than possible, because it uses another connection";
   EXPECT_EQ(rate.next(), at(2.52));
-  rate.claimed(at(1.4));
+  rate.on_claimed(at(1.4));
   EXPECT_EQ(rate.next(), at(2.65)) << "the answer may have been read that late";
   EXPECT_EQ(rate.claim(at(9), at(9)), at(9)) << "at once if no request was sent recently";
 }
 
 TEST(RateLimit, ForeignRequestTeachesNothing) {
   RateLimit rate(1);
-  rate.sent(at(0));
-  rate.throttled(at(0.1), {});
+  rate.on_sent(at(0));
+  rate.on_throttled(at(0.1), {});
   const Instant next = rate.next();
   const auto claimed = rate.claim(at(0.2), at(30));
   ASSERT_TRUE(claimed);
   EXPECT_GT(*claimed, next) << "a claim also keeps the pause";
-  rate.claimed(*claimed + std::chrono::milliseconds{100});
+  rate.on_claimed(*claimed + std::chrono::milliseconds{100});
   EXPECT_GE(rate.next(), *claimed + std::chrono::milliseconds{1100}) << "this server counts from its answers";
   EXPECT_FALSE(rate.may_go_ahead()) << "the storm continues";
-  EXPECT_FALSE(rate.learned().under_way);
+  EXPECT_FALSE(rate.learned_rate().under_way);
 }
 
 }  // namespace

@@ -61,7 +61,7 @@ TEST(WithoutInvalidPoints, DropsNonFinitePointsOfAnyLayout) {
           valid.insert(valid.end(), point.begin(), point.end());
         }
       }
-      const auto kept = without_invalid_points(cloud_of(layout), cut_up(all, random));
+      const auto kept = remove_invalid_points(cloud_of(layout), cut_up(all, random));
       ASSERT_EQ(kept.bytes.to_vector(), valid) << layout.what;
       EXPECT_EQ(kept.raw_size, valid.size()) << layout.what;
       EXPECT_EQ(kept.compression, icd::Compression::None);
@@ -78,7 +78,7 @@ TEST(WithoutInvalidPoints, CopiesNothingIfAllPointsAreFinite) {
     all.insert(all.end(), point.begin(), point.end());
   }
   const auto data = cut_up(all, random);
-  const auto kept = without_invalid_points(cloud_of(layout), data);
+  const auto kept = remove_invalid_points(cloud_of(layout), data);
   ASSERT_EQ(kept.bytes.chunks().size(), data.bytes.chunks().size());
   for (std::size_t i = 0; i < data.bytes.chunks().size(); ++i) {
     EXPECT_EQ(kept.bytes.chunks()[i]->data(), data.bytes.chunks()[i]->data()) << "shared";

@@ -70,7 +70,7 @@ class Stage final : public Source, public Operator, public GatewayControl {
                                                    const icd::ArtifactReport& to) override {
     return played_.correct(played(), number, to);
   }
-  std::expected<void, std::string> rejected(std::uint64_t number, RejectedAction) override {
+  std::expected<void, std::string> change_rejected(std::uint64_t number, RejectedAction) override {
     return played_.rejected(played(), number);
   }
   std::expected<void, std::string> acknowledge(const std::string& id) override {
@@ -122,7 +122,7 @@ void furnish(FakeBox& box, Time now) {
 
 /// All steps of the set-up are done.
 struct ReadySetup final : FakeSetup {
-  bool saved() const override { return true; }
+  bool is_saved() const override { return true; }
   std::vector<TokenRow> tokens() const override { return {{"scoring", true}, {"mapping", true}}; }
 };
 
@@ -173,7 +173,7 @@ int serve(std::uint16_t port, const std::string& first, const std::string& more)
 
   loop::Source second;
   second = loop.timer([&] {
-    page.changed();
+    page.on_changed();
     second.call_at(loop.now() + std::chrono::seconds{1});
   });
   second.call_at(loop.now());
@@ -183,7 +183,7 @@ int serve(std::uint16_t port, const std::string& first, const std::string& more)
     if (::read(STDIN_FILENO, &byte, 1) != 1) return loop.stop();
     if (byte != '\n') return line.push_back(byte);
     if (line.starts_with("say ")) return box.say(5, "notice", std::exchange(line, {}).substr(4));
-    if (stage.change_to(std::exchange(line, {}))) page.changed();
+    if (stage.change_to(std::exchange(line, {}))) page.on_changed();
   });
   loop.run();
   return 0;

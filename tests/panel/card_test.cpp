@@ -44,7 +44,7 @@ std::string strip(Pattern pattern) {
   std::string svg = "<svg viewBox=\"0 0 100 8\" preserveAspectRatio=\"none\"><path d=\"";
   const Milliseconds end = std::chrono::seconds(2);
   for (Milliseconds at{}; at < end;) {
-    const Moment now = repeated(steps_of(pattern), at);
+    const Moment now = repeated_moment(steps_of(pattern), at);
     const Milliseconds next = std::min(end, at + now.lasts.value_or(end));
     if (now.lit) {
       svg.append("M").append(std::to_string(at.count() / 20)).append(" 0h");

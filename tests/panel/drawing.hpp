@@ -34,7 +34,7 @@ inline std::string drawing() {
     svg += text(kLeft - 10, top + 13, std::string(name_of(pattern)), "end");
     const std::vector<Step> digits = address_digits("10.0.0.1");
     const auto moment = [&](Milliseconds at) {
-      return pattern == Pattern::Digits ? once(digits, at) : repeated(steps_of(pattern), at);
+      return pattern == Pattern::Digits ? single_moment(digits, at) : repeated_moment(steps_of(pattern), at);
     };
     const Milliseconds end = std::chrono::seconds(kSeconds);
     for (Milliseconds at{}; at < end;) {

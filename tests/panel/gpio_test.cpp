@@ -177,13 +177,13 @@ TEST_F(Gpio, ReadsTheButtonByItsLevelNotItsEdges) {
   ASSERT_TRUE(button.has_value()) << button.error();
   EXPECT_EQ((*button)->descriptor(), 7);
   EXPECT_FALSE(line("BUTTON").output);
-  EXPECT_FALSE((*button)->pressed().value());
+  EXPECT_FALSE((*button)->is_pressed().value());
   fake_gpio().drive("BUTTON", false);
   line("BUTTON").events = 40;  // it bounced
-  EXPECT_TRUE((*button)->pressed().value());
+  EXPECT_TRUE((*button)->is_pressed().value());
   EXPECT_EQ(line("BUTTON").events, 0) << "remaining events keep the descriptor readable";
   fake_gpio().drive("BUTTON", true);
-  EXPECT_FALSE((*button)->pressed().value());
+  EXPECT_FALSE((*button)->is_pressed().value());
 }
 
 TEST_F(Gpio, PullsTheButtonToItsReleasedLevel) {
@@ -197,7 +197,7 @@ TEST_F(Gpio, PullsTheButtonToItsReleasedLevel) {
   settings_.button_active_low = false;
   const auto button = open_button();
   EXPECT_EQ(line("BUTTON").pull, -1);
-  EXPECT_TRUE((*button)->pressed().value()) << "the wire is high";
+  EXPECT_TRUE((*button)->is_pressed().value()) << "the wire is high";
 }
 
 TEST_F(Gpio, UsesAButtonOfAChipWithoutPull) {
@@ -213,7 +213,7 @@ TEST_F(Gpio, TellsWhyTheButtonFails) {
   line("BUTTON").requested = false;
   const auto button = open_button();
   line("BUTTON").fails_with = EIO;
-  EXPECT_EQ((*button)->pressed().error(),
+  EXPECT_EQ((*button)->is_pressed().error(),
             "panel: line BUTTON (button) of chip gpiochip1: Input/output error");
   settings_.button = "BUTTN";
   EXPECT_EQ(open_button().error(), "panel: line BUTTN (button) of chip gpiochip1: No such file or directory");

@@ -77,7 +77,7 @@ TEST_F(KeeperTest, ReportsFailureAndRecoveryOfTheLights) {
   std::expected<void, std::string> set;
   const auto is_told = [&](bool well) {
     return time_.pass_until(loop_, [&] {
-      [[maybe_unused]] const auto level = held.button->pressed();
+      [[maybe_unused]] const auto level = held.button->is_pressed();
       set = held.lines->set(kTold);
       return set.has_value() == well;
     });
@@ -93,24 +93,24 @@ TEST_F(KeeperTest, ReportsFailureAndRecoveryOfTheLights) {
 TEST_F(KeeperTest, ReportsAPress) {
   begin();
   const Held held = connect();
-  EXPECT_EQ(held.button->pressed(), false);
+  EXPECT_EQ(held.button->is_pressed(), false);
   set(true);
-  EXPECT_EQ(held.button->pressed(), true);
+  EXPECT_EQ(held.button->is_pressed(), true);
   set(false);
-  EXPECT_EQ(held.button->pressed(), false);
+  EXPECT_EQ(held.button->is_pressed(), false);
 }
 
 TEST_F(KeeperTest, LostButtonCancelsAPress) {
   begin();
   const Held held = connect();
   set(true);
-  EXPECT_EQ(held.button->pressed(), true);
+  EXPECT_EQ(held.button->is_pressed(), true);
   wire_.broken = true;
   set(false);
   wire_.broken = false;
   set(false);
-  EXPECT_FALSE(held.button->pressed().has_value()) << "a lost button is not a release";
-  EXPECT_EQ(held.button->pressed(), false);
+  EXPECT_FALSE(held.button->is_pressed().has_value()) << "a lost button is not a release";
+  EXPECT_EQ(held.button->is_pressed(), false);
   EXPECT_EQ(log_count("cannot read the button"), 1);
   EXPECT_EQ(log_count("button works again"), 1);
 }
@@ -119,10 +119,10 @@ TEST_F(KeeperTest, SilentlyLostButtonIsNoticedAtTheNextBeat) {
   begin();
   const Held held = connect();
   set(true);
-  EXPECT_EQ(held.button->pressed(), true);
+  EXPECT_EQ(held.button->is_pressed(), true);
   wire_.broken = true;
   EXPECT_TRUE(held.lines->set(kTold).has_value());
-  EXPECT_TRUE(time_.pass_until(loop_, [&] { return !held.button->pressed().has_value(); }));
+  EXPECT_TRUE(time_.pass_until(loop_, [&] { return !held.button->is_pressed().has_value(); }));
 }
 
 TEST_F(KeeperTest, ReturnedButtonNeedsARelease) {
@@ -130,35 +130,35 @@ TEST_F(KeeperTest, ReturnedButtonNeedsARelease) {
   const Held held = connect();
   wire_.broken = true;
   set(false);
-  EXPECT_FALSE(held.button->pressed().has_value());
+  EXPECT_FALSE(held.button->is_pressed().has_value());
   wire_.broken = false;
   set(true);
-  EXPECT_EQ(held.button->pressed(), false);
+  EXPECT_EQ(held.button->is_pressed(), false);
   set(false);
-  EXPECT_EQ(held.button->pressed(), false);
+  EXPECT_EQ(held.button->is_pressed(), false);
   set(true);
-  EXPECT_EQ(held.button->pressed(), true);
+  EXPECT_EQ(held.button->is_pressed(), true);
 }
 
 TEST_F(KeeperTest, NewClientIsToldOfALostButton) {
   wire_.broken = true;
   begin();
   const Held held = connect();
-  EXPECT_FALSE(held.button->pressed().has_value());
+  EXPECT_FALSE(held.button->is_pressed().has_value());
 }
 
 TEST_F(KeeperTest, EndOfAditPanelCancelsAPress) {
   begin();
   const Held held = connect();
   set(true);
-  EXPECT_EQ(held.button->pressed(), true);
+  EXPECT_EQ(held.button->is_pressed(), true);
   keeper_.reset();
   EXPECT_TRUE(held.lines->set(kTold).has_value()) << "the lines may come back";
   wire_.pressed = false;
   begin();
   EXPECT_TRUE(held.lines->set(kTold).has_value());
-  EXPECT_FALSE(held.button->pressed().has_value());
-  EXPECT_EQ(held.button->pressed(), false);
+  EXPECT_FALSE(held.button->is_pressed().has_value());
+  EXPECT_EQ(held.button->is_pressed(), false);
 }
 
 }  // namespace

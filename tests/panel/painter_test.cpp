@@ -13,7 +13,7 @@ constexpr Lit kWell{true, true, true, false}, kOther{true, false, false, true};
 
 class PainterTest : public testing::Test {
  protected:
-  PainterTest() { painter_.take(std::make_unique<WatchedLines>(seen_)); }
+  PainterTest() { painter_.set_lines(std::make_unique<WatchedLines>(seen_)); }
   /// The levels that were set in `length` while the same lights are shown.
   std::vector<Lit> shown_for(Milliseconds length, const Lit& lit) {
     seen_.shown.clear();
@@ -65,11 +65,11 @@ TEST_F(PainterTest, ShowsAllOnNewLines) {
   seen_.fail = true;
   shown_for(1s, kWell);
   WatchedLines::Seen other;
-  painter_.take(std::make_unique<WatchedLines>(other));
+  painter_.set_lines(std::make_unique<WatchedLines>(other));
   EXPECT_EQ(painter_.trouble(), "");
   painter_.show(kWell, now_);
   EXPECT_EQ(other.shown, times(1, kWell));
-  painter_.take(nullptr);
+  painter_.set_lines(nullptr);
   painter_.show(kWell, now_);
   EXPECT_EQ(painter_.next(), std::nullopt);
 }

@@ -15,9 +15,9 @@ std::pair<Milliseconds, int> lit_and_turns(Pattern pattern) {
   Milliseconds lit{};
   int turned_on = 0;
   for (Milliseconds at = 8s; at < 10s; ++at) {
-    const bool now = repeated(steps_of(pattern), at).lit;
+    const bool now = repeated_moment(steps_of(pattern), at).lit;
     lit += now ? 1ms : 0ms;
-    turned_on += now && !repeated(steps_of(pattern), at - 1ms).lit ? 1 : 0;
+    turned_on += now && !repeated_moment(steps_of(pattern), at - 1ms).lit ? 1 : 0;
   }
   return {lit, turned_on};
 }
@@ -48,20 +48,21 @@ TEST(Patterns, AreVisibleWithinTwoSeconds) {
 TEST(Patterns, BeginLit) {
   for (const Pattern pattern : kPatterns) {
     if (pattern == Pattern::Off || pattern == Pattern::Digits) continue;
-    EXPECT_TRUE(repeated(steps_of(pattern), 0ms).lit) << name_of(pattern);
+    EXPECT_TRUE(repeated_moment(steps_of(pattern), 0ms).lit) << name_of(pattern);
   }
 }
 
 TEST(Steps, TellWhenTheNextBegins) {
   const Step kSteps[] = {{true, 100ms}, {false, 300ms}};
-  EXPECT_EQ(repeated(kSteps, 0ms).lasts, 100ms);
-  EXPECT_EQ(repeated(kSteps, 99ms).lasts, 1ms);
-  EXPECT_EQ(repeated(kSteps, 100ms).lasts, 300ms);
-  EXPECT_EQ(repeated(kSteps, 450ms).lasts, 50ms);
-  EXPECT_EQ(once(kSteps, 399ms).lasts, 1ms);
-  EXPECT_EQ(once(kSteps, 400ms).lasts, std::nullopt);
-  EXPECT_FALSE(once(kSteps, 400ms).lit);
-  EXPECT_EQ(repeated(steps_of(Pattern::On), 5s).lasts, std::nullopt) << "a steady light has no next step";
+  EXPECT_EQ(repeated_moment(kSteps, 0ms).lasts, 100ms);
+  EXPECT_EQ(repeated_moment(kSteps, 99ms).lasts, 1ms);
+  EXPECT_EQ(repeated_moment(kSteps, 100ms).lasts, 300ms);
+  EXPECT_EQ(repeated_moment(kSteps, 450ms).lasts, 50ms);
+  EXPECT_EQ(single_moment(kSteps, 399ms).lasts, 1ms);
+  EXPECT_EQ(single_moment(kSteps, 400ms).lasts, std::nullopt);
+  EXPECT_FALSE(single_moment(kSteps, 400ms).lit);
+  EXPECT_EQ(repeated_moment(steps_of(Pattern::On), 5s).lasts, std::nullopt)
+      << "a steady light has no next step";
 }
 
 TEST(Frame, LastsUntilItsFirstLightChanges) {

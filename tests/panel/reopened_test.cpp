@@ -76,7 +76,7 @@ class ReopenedChip : public testing::Test {
   /// Reads the button only when its descriptor is readable, as its user does.
   static std::expected<bool, std::string> look(ButtonLine& button) {
     EXPECT_TRUE(is_readable_soon(button));
-    return button.pressed();
+    return button.is_pressed();
   }
 
   static constexpr std::chrono::milliseconds kPace{20};
@@ -132,7 +132,7 @@ TEST_F(ReopenedChip, LinesThatFailBrieflyAreKept) {
 
 TEST_F(ReopenedChip, LostButtonIsNoticedUntouchedAndReopened) {
   const auto held = button();
-  EXPECT_EQ(held->pressed(), false);
+  EXPECT_EQ(held->is_pressed(), false);
   const int descriptor = held->descriptor();
   vanish();
   EXPECT_EQ(look(*held).error(), "panel: line BUTTON (button) of chip gpiochip0: No such device");
@@ -148,11 +148,11 @@ TEST_F(ReopenedChip, LostButtonIsNoticedUntouchedAndReopened) {
 TEST_F(ReopenedChip, BrieflyLostButtonCountsAsLost) {
   const auto held = button();
   line("BUTTON").level = false;
-  EXPECT_EQ(held->pressed(), true);
+  EXPECT_EQ(held->is_pressed(), true);
   line("BUTTON").fails_with = EIO;
-  EXPECT_FALSE(held->pressed().has_value());
+  EXPECT_FALSE(held->is_pressed().has_value());
   line("BUTTON").fails_with = 0;
-  EXPECT_FALSE(held->pressed().has_value()) << "the button is opened again too early";
+  EXPECT_FALSE(held->is_pressed().has_value()) << "the button is opened again too early";
   EXPECT_EQ(look(*held), true);
 }
 
@@ -168,7 +168,7 @@ TEST_F(ReopenedChip, NamedLinesOfALateChipAreHeld) {
   vanish();
   const Held held = hold(settings_, "adit-panel", "", [](const std::string& why) { FAIL() << why; });
   EXPECT_EQ(held.lines->set(kWell).error(), "panel: chip gpiochip0: No such file or directory");
-  EXPECT_FALSE(held.button->pressed().has_value());
+  EXPECT_FALSE(held.button->is_pressed().has_value());
   settings_.button = "";
   EXPECT_EQ(hold(settings_, "adit-panel", "", {}).button, nullptr);
   EXPECT_EQ(hold({}, "adit-panel", "", {}).lines, nullptr);

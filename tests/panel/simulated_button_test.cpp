@@ -38,17 +38,17 @@ class SimulatedButtonTest : public testing::Test {
 TEST_F(SimulatedButtonTest, IsPressedAndReleasedByTextLines) {
   const auto button = simulated_button(fifo_);
   ASSERT_TRUE(button.has_value()) << button.error();
-  EXPECT_FALSE((*button)->pressed().value());
+  EXPECT_FALSE((*button)->is_pressed().value());
   EXPECT_FALSE(is_readable(**button));
   write("press\n");
   EXPECT_TRUE(is_readable(**button));
-  EXPECT_TRUE((*button)->pressed().value());
+  EXPECT_TRUE((*button)->is_pressed().value());
   EXPECT_FALSE(is_readable(**button)) << "not readable after the writer closed";
-  EXPECT_TRUE((*button)->pressed().value());
+  EXPECT_TRUE((*button)->is_pressed().value());
   write("rel");
-  EXPECT_TRUE((*button)->pressed().value());
+  EXPECT_TRUE((*button)->is_pressed().value());
   write("ease\n");
-  EXPECT_FALSE((*button)->pressed().value());
+  EXPECT_FALSE((*button)->is_pressed().value());
 }
 
 TEST_F(SimulatedButtonTest, IgnoresOtherText) {
@@ -57,10 +57,10 @@ TEST_F(SimulatedButtonTest, IgnoresOtherText) {
        {std::string("PRESS\n"), std::string(" press\n"), std::string("press \n"), std::string("\n\n"),
         std::string("press\0\n", 7), std::string(30'000, 'x') + "press\n", std::string(5000, '\n')}) {
     write(text);
-    EXPECT_FALSE((*button)->pressed().value()) << text.substr(0, 20);
+    EXPECT_FALSE((*button)->is_pressed().value()) << text.substr(0, 20);
   }
   write("unpress\npress\n");
-  EXPECT_TRUE((*button)->pressed().value());
+  EXPECT_TRUE((*button)->is_pressed().value());
 }
 
 TEST_F(SimulatedButtonTest, IsPrivateAndRemovedAtTheEnd) {
@@ -78,9 +78,9 @@ TEST_F(SimulatedButtonTest, ReplacesTheFileOfAnEarlierOne) {
   std::ofstream(fifo_) << "press\n";
   const auto button = simulated_button(fifo_);
   ASSERT_TRUE(button.has_value()) << button.error();
-  EXPECT_FALSE((*button)->pressed().value());
+  EXPECT_FALSE((*button)->is_pressed().value());
   std::filesystem::create_symlink("/dev/zero", folder_ / "link");
-  EXPECT_FALSE(simulated_button(folder_ / "link").value()->pressed().value());
+  EXPECT_FALSE(simulated_button(folder_ / "link").value()->is_pressed().value());
 }
 
 TEST_F(SimulatedButtonTest, TellsWhyItCannotBeCreated) {

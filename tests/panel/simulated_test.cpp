@@ -26,7 +26,7 @@ class SimulatedLights : public testing::Test {
 };
 
 TEST_F(SimulatedLights, WritesTheLitLights) {
-  const auto lines = simulated(folder_ / "panel");
+  const auto lines = make_simulated_lines(folder_ / "panel");
   ASSERT_TRUE(lines->set({true, false, true, false}).has_value());
   EXPECT_EQ(shown(), "health on\nscoring off\nmapping on\nattention off\n");
   ASSERT_TRUE(lines->set({false, true, false, true}).has_value());
@@ -34,7 +34,7 @@ TEST_F(SimulatedLights, WritesTheLitLights) {
 }
 
 TEST_F(SimulatedLights, ReplacesTheFileAtomically) {
-  const auto lines = simulated(folder_ / "panel");
+  const auto lines = make_simulated_lines(folder_ / "panel");
   ASSERT_TRUE(lines->set({true, true, true, true}).has_value());
   std::ifstream reader(folder_ / "panel");
   ASSERT_TRUE(lines->set({false, false, false, false}).has_value());
@@ -44,7 +44,7 @@ TEST_F(SimulatedLights, ReplacesTheFileAtomically) {
 }
 
 TEST_F(SimulatedLights, WritesOnlyChanges) {
-  const auto lines = simulated(folder_ / "panel");
+  const auto lines = make_simulated_lines(folder_ / "panel");
   ASSERT_TRUE(lines->set({true, false, false, false}).has_value());
   std::filesystem::remove(folder_ / "panel");
   ASSERT_TRUE(lines->set({true, false, false, false}).has_value());
@@ -54,12 +54,12 @@ TEST_F(SimulatedLights, WritesOnlyChanges) {
 }
 
 TEST_F(SimulatedLights, IsDarkAtTheEnd) {
-  ASSERT_TRUE(simulated(folder_ / "panel")->set({true, true, true, true}).has_value());
+  ASSERT_TRUE(make_simulated_lines(folder_ / "panel")->set({true, true, true, true}).has_value());
   EXPECT_EQ(shown(), "health off\nscoring off\nmapping off\nattention off\n");
 }
 
 TEST_F(SimulatedLights, ReportsAWriteErrorAndRetries) {
-  const auto lines = simulated(folder_ / "later/panel");
+  const auto lines = make_simulated_lines(folder_ / "later/panel");
   const auto set = lines->set({true, false, false, false});
   ASSERT_FALSE(set.has_value());
   EXPECT_EQ(set.error(), "panel: " + (folder_ / "later/panel").string() + ": No such file or directory");

@@ -12,20 +12,20 @@ namespace {
 constexpr auto kOff = Pattern::Off, kOn = Pattern::On, kSlow = Pattern::Slow, kFast = Pattern::Fast,
                kFlash = Pattern::Flash, kWink = Pattern::Wink;
 
-constexpr std::initializer_list<State> kGoodStates = {State::Serving, State::ScoringConnected,
-                                                      State::MappingConnected};
+constexpr std::initializer_list<LightState> kGoodStates = {LightState::Serving, LightState::ScoringConnected,
+                                                           LightState::MappingConnected};
 
-Lights shown(std::initializer_list<State> asserted) {
+Lights shown(std::initializer_list<LightState> asserted) {
   States states;
-  for (const State state : asserted) states.set(state, true);
-  return states.shown();
+  for (const LightState state : asserted) states.set(state, true);
+  return states.current_lights();
 }
 
-Lights good_except(std::initializer_list<State> more) {
+Lights good_except(std::initializer_list<LightState> more) {
   States states;
-  for (const State state : kGoodStates) states.set(state, true);
-  for (const State state : more) states.set(state, true);
-  return states.shown();
+  for (const LightState state : kGoodStates) states.set(state, true);
+  for (const LightState state : more) states.set(state, true);
+  return states.current_lights();
 }
 
 Lights all(Pattern pattern) {
@@ -38,48 +38,51 @@ TEST(States, OfAHealthyBoxAreThreeSteadyLights) {
 
 TEST(States, AreShownEachOnItsOwnLight) {
   EXPECT_EQ(shown({}), all(kOff));
-  EXPECT_EQ(shown({State::NotServing}), (Lights{kFast, kOff, kOff, kOff}));
-  EXPECT_EQ(good_except({State::ScoringFailing}), (Lights{kOn, kFast, kOn, kOff}));
-  EXPECT_EQ(good_except({State::MappingFailing}), (Lights{kOn, kOn, kFast, kOff}));
-  EXPECT_EQ(good_except({State::ReportWaiting}), (Lights{kOn, kSlow, kOn, kOff}));
-  EXPECT_EQ(good_except({State::NeedsOperator}), (Lights{kOn, kOn, kOn, kFast}));
-  EXPECT_EQ(good_except({State::CommandPostUnplugged}), (Lights{kOn, kFlash, kFlash, kOff}));
-  EXPECT_EQ(good_except({State::TeamUnplugged}), (Lights{kFlash, kOn, kOn, kOff}));
-  EXPECT_EQ(good_except({State::UpdateRunning}), (Lights{kWink, kOn, kOn, kOff}));
-  EXPECT_EQ(good_except({State::SetUpOpen}), (Lights{kOn, kOn, kOn, kSlow}));
+  EXPECT_EQ(shown({LightState::NotServing}), (Lights{kFast, kOff, kOff, kOff}));
+  EXPECT_EQ(good_except({LightState::ScoringFailing}), (Lights{kOn, kFast, kOn, kOff}));
+  EXPECT_EQ(good_except({LightState::MappingFailing}), (Lights{kOn, kOn, kFast, kOff}));
+  EXPECT_EQ(good_except({LightState::ReportWaiting}), (Lights{kOn, kSlow, kOn, kOff}));
+  EXPECT_EQ(good_except({LightState::NeedsOperator}), (Lights{kOn, kOn, kOn, kFast}));
+  EXPECT_EQ(good_except({LightState::CommandPostUnplugged}), (Lights{kOn, kFlash, kFlash, kOff}));
+  EXPECT_EQ(good_except({LightState::TeamUnplugged}), (Lights{kFlash, kOn, kOn, kOff}));
+  EXPECT_EQ(good_except({LightState::UpdateRunning}), (Lights{kWink, kOn, kOn, kOff}));
+  EXPECT_EQ(good_except({LightState::SetUpOpen}), (Lights{kOn, kOn, kOn, kSlow}));
 }
 
 TEST(States, OfHigherPriorityHideOthersOnlyOnTheirLights) {
-  EXPECT_EQ(good_except({State::ScoringFailing, State::ReportWaiting}), (Lights{kOn, kFast, kOn, kOff}));
-  EXPECT_EQ(good_except({State::CommandPostUnplugged, State::ScoringFailing, State::MappingFailing}),
-            (Lights{kOn, kFlash, kFlash, kOff}))
+  EXPECT_EQ(good_except({LightState::ScoringFailing, LightState::ReportWaiting}),
+            (Lights{kOn, kFast, kOn, kOff}));
+  EXPECT_EQ(
+      good_except({LightState::CommandPostUnplugged, LightState::ScoringFailing, LightState::MappingFailing}),
+      (Lights{kOn, kFlash, kFlash, kOff}))
       << "the reason of the failure";
-  EXPECT_EQ(shown({State::ReportWaiting}), (Lights{kOff, kSlow, kOff, kOff})) << "also without a connection";
-  EXPECT_EQ(good_except({State::NeedsOperator, State::SetUpOpen}), (Lights{kOn, kOn, kOn, kSlow}));
-  EXPECT_EQ(shown({State::NotServing, State::TeamUnplugged}), (Lights{kFlash, kOff, kOff, kOff}));
+  EXPECT_EQ(shown({LightState::ReportWaiting}), (Lights{kOff, kSlow, kOff, kOff}))
+      << "also without a connection";
+  EXPECT_EQ(good_except({LightState::NeedsOperator, LightState::SetUpOpen}), (Lights{kOn, kOn, kOn, kSlow}));
+  EXPECT_EQ(shown({LightState::NotServing, LightState::TeamUnplugged}), (Lights{kFlash, kOff, kOff, kOff}));
 }
 
 TEST(States, OfWholePicturesHideAllOthers) {
   States states;
-  for (const StateRow& row : state_table()) states.set(row.state, row.state != State::Fault);
-  EXPECT_EQ(states.shown(), all(Pattern::Rush));
-  states.set(State::ResetWarning, false);
-  EXPECT_EQ(states.shown(), all(kOn)) << "the button is held";
-  states.set(State::ButtonHeld, false);
-  EXPECT_EQ(states.shown(), all(Pattern::Twice)) << "identify";
-  states.set(State::Identify, false);
-  EXPECT_EQ(states.shown(), (Lights{kOff, kOff, kOff, Pattern::Digits}));
-  states.set(State::Address, false);
-  EXPECT_EQ(states.shown(), (Lights{kWink, kFlash, kFlash, kSlow}));
+  for (const StateRow& row : state_table()) states.set(row.state, row.state != LightState::Fault);
+  EXPECT_EQ(states.current_lights(), all(Pattern::Rush));
+  states.set(LightState::ResetWarning, false);
+  EXPECT_EQ(states.current_lights(), all(kOn)) << "the button is held";
+  states.set(LightState::ButtonHeld, false);
+  EXPECT_EQ(states.current_lights(), all(Pattern::Twice)) << "identify";
+  states.set(LightState::Identify, false);
+  EXPECT_EQ(states.current_lights(), (Lights{kOff, kOff, kOff, Pattern::Digits}));
+  states.set(LightState::Address, false);
+  EXPECT_EQ(states.current_lights(), (Lights{kWink, kFlash, kFlash, kSlow}));
 }
 
 TEST(States, AreGoneOnceCleared) {
   States states;
-  EXPECT_TRUE(states.set(State::NeedsOperator, true));
-  EXPECT_FALSE(states.set(State::NeedsOperator, true)) << "the state did not change";
-  EXPECT_TRUE(states.has(State::NeedsOperator));
-  EXPECT_TRUE(states.set(State::NeedsOperator, false));
-  EXPECT_EQ(states.shown(), all(kOff));
+  EXPECT_TRUE(states.set(LightState::NeedsOperator, true));
+  EXPECT_FALSE(states.set(LightState::NeedsOperator, true)) << "the state did not change";
+  EXPECT_TRUE(states.has(LightState::NeedsOperator));
+  EXPECT_TRUE(states.set(LightState::NeedsOperator, false));
+  EXPECT_EQ(states.current_lights(), all(kOff));
 }
 
 TEST(StateTable, HasDistinctRows) {
@@ -111,7 +114,7 @@ TEST(StateTable, HasOneMeaningPerPatternOfALight) {
 
 TEST(StateTable, HasADarkHealthLightOnlyIfNotRunning) {
   for (const StateRow& row : state_table()) {
-    if (row.state == State::Address) continue;  // it ends by itself
+    if (row.state == LightState::Address) continue;  // it ends by itself
     EXPECT_NE(row.patterns[index_of(Light::Health)], std::optional(kOff)) << row.name;
   }
 }

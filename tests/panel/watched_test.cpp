@@ -28,9 +28,9 @@ class WatchedTest : public testing::Test {
 
 TEST_F(WatchedTest, IsDarkUntilTheFirstMessage) {
   EXPECT_EQ(watched.frame(kItBegan + 40s).lit, kNoneLit);
-  watched.came(kItBegan + 40s);
+  watched.on_came(kItBegan + 40s);
   EXPECT_EQ(watched.frame(kItBegan + 80s).lit, kNoneLit) << "counted from the start of aditd";
-  watched.lights(kAllWell, kItBegan + 81s);
+  watched.on_lights(kAllWell, kItBegan + 81s);
   EXPECT_EQ(watched.frame(kItBegan + 81s).lit, kAllWell);
 }
 
@@ -40,7 +40,7 @@ TEST_F(WatchedTest, ShowsAFaultIfNoProcessConnects) {
 }
 
 TEST_F(WatchedTest, WakesWhenSilenceBecomesAFault) {
-  watched.lights(kAllWell, kItBegan);
+  watched.on_lights(kAllWell, kItBegan);
   const Frame frame = watched.frame(kItBegan + 1s);
   EXPECT_EQ(frame.lit, kAllWell);
   EXPECT_EQ(frame.lasts, Watched::kSilence - 1s);
@@ -49,46 +49,46 @@ TEST_F(WatchedTest, WakesWhenSilenceBecomesAFault) {
 }
 
 TEST_F(WatchedTest, RecoversAfterAHang) {
-  watched.lights(kAllWell, kItBegan);
+  watched.on_lights(kAllWell, kItBegan);
   EXPECT_TRUE(watched.is_faulty(kItBegan + 10s));
-  watched.lights(kAllWell, kItBegan + 10s);
+  watched.on_lights(kAllWell, kItBegan + 10s);
   EXPECT_EQ(watched.frame(kItBegan + 10s).lit, kAllWell);
 }
 
 TEST_F(WatchedTest, ShowsACrashUntilTheNextProcessReports) {
-  watched.lights(kAllWell, kItBegan);
-  watched.gone(kItBegan + 100ms);
+  watched.on_lights(kAllWell, kItBegan);
+  watched.on_gone(kItBegan + 100ms);
   EXPECT_TRUE(blinks_fault(kItBegan + 100ms));
-  watched.came(kItBegan + 2s);
+  watched.on_came(kItBegan + 2s);
   EXPECT_TRUE(watched.is_faulty(kItBegan + 2s)) << "aditd may die before its first message";
-  watched.gone(kItBegan + 3s);
+  watched.on_gone(kItBegan + 3s);
   EXPECT_TRUE(watched.is_faulty(kItBegan + 10min));
-  watched.lights(kAllWell, kItBegan + 11min);
+  watched.on_lights(kAllWell, kItBegan + 11min);
   EXPECT_EQ(watched.frame(kItBegan + 11min).lit, kAllWell);
 }
 
 TEST_F(WatchedTest, IsDarkAfterAnAnnouncedEnd) {
-  watched.lights(kAllWell, kItBegan);
-  watched.ends(kItBegan + 1s);
-  watched.gone(kItBegan + 1s);
+  watched.on_lights(kAllWell, kItBegan);
+  watched.on_ended(kItBegan + 1s);
+  watched.on_gone(kItBegan + 1s);
   EXPECT_EQ(watched.frame(kItBegan + 1s).lit, kNoneLit);
   EXPECT_FALSE(watched.is_faulty(kItBegan + 24h)) << "aditd was stopped";
-  watched.came(kItBegan + 24h);
+  watched.on_came(kItBegan + 24h);
   EXPECT_EQ(watched.frame(kItBegan + 24h).lit, kNoneLit);
   EXPECT_TRUE(watched.is_faulty(kItBegan + 24h + Watched::kStart)) << "aditd started without a message";
 }
 
 TEST_F(WatchedTest, ShowsACrashBeforeTheFirstMessage) {
-  watched.came(kItBegan);
-  watched.gone(kItBegan + 1s);
+  watched.on_came(kItBegan);
+  watched.on_gone(kItBegan + 1s);
   EXPECT_TRUE(blinks_fault(kItBegan + 1s));
 }
 
 TEST_F(WatchedTest, StaysFaultyIfAHungProcessIsKilled) {
-  watched.lights(kAllWell, kItBegan);
+  watched.on_lights(kAllWell, kItBegan);
   const Instant hung = kItBegan + Watched::kSilence;
   const Frame before = watched.frame(hung + 600ms);
-  watched.gone(hung + 600ms);
+  watched.on_gone(hung + 600ms);
   EXPECT_EQ(watched.frame(hung + 600ms).lit, before.lit);
   EXPECT_TRUE(blinks_fault(hung + 1s));
 }

@@ -30,7 +30,7 @@ class WireLine final : public ButtonLine {
   WireLine& operator=(const WireLine&) = delete;
   ~WireLine() override { wire_.open = false; }
   int descriptor() const override { return wire_.changed.get(); }
-  std::expected<bool, std::string> pressed() override {
+  std::expected<bool, std::string> is_pressed() override {
     eventfd_t count = 0;
     eventfd_read(wire_.changed.get(), &count);
     ++wire_.looked;

@@ -72,9 +72,9 @@ TEST(CoveredArea, ForgetsAnEarlierRun) {
 TEST(CoveredArea, IsIncompleteIfAGridIsMissing) {
   Easel easel;
   easel.draw(square("ugv1", 0, 0, 8));
-  easel.mosaic.missed({"uav1", Kind::Cloud}, 2000);
+  easel.mosaic.on_missed({"uav1", LayerKind::Cloud}, 2000);
   EXPECT_TRUE(covered(easel.mosaic).is_whole);
-  easel.mosaic.missed({"uav1", Kind::Grid}, 2001);
+  easel.mosaic.on_missed({"uav1", LayerKind::Grid}, 2001);
   EXPECT_FALSE(covered(easel.mosaic).is_whole);
 }
 

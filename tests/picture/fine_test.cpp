@@ -14,7 +14,7 @@ class FineLevels : public testing::Test {
  protected:
   void forward(const icd::MapUpdate& map) {
     easel.draw(map);
-    grids.take(forwarded_grid(map), ++number);
+    grids.add(forwarded_grid(map), ++number);
   }
   Tile tile(const TileIndex& at) {
     const TileIndex over = coarser(at);
@@ -22,7 +22,7 @@ class FineLevels : public testing::Test {
       TileIndex base = at;
       while (base.level < 0) base = coarser(base);
       drawn_over_ = over, drawn_number_ = number;
-      drawn_ = draw_fine_from_base(at, grids.in(easel.layer, area_of(over)),
+      drawn_ = draw_fine_from_base(at, grids.grids_in(easel.layer, area_of(over)),
                                    easel.mosaic.tile(easel.layer, base, {}).tile);
     }
     return drawn_[place_in_block(at)];

@@ -23,9 +23,9 @@ class ForwardedGridsTest : public testing::Test {
  protected:
   bool take(const icd::MapUpdate& map) {
     layer = layer_of(map);
-    return grids.take(forwarded_grid(map), ++number);
+    return grids.add(forwarded_grid(map), ++number);
   }
-  std::size_t kept(const Area& area = kNear) const { return grids.in(layer, area).size(); }
+  std::size_t kept(const Area& area = kNear) const { return grids.grids_in(layer, area).size(); }
 
   ForwardedGrids grids;
   Layer layer;
@@ -38,7 +38,7 @@ TEST_F(ForwardedGridsTest, ReplaceGridsInsideThem) {
   EXPECT_EQ(kept(), 1U) << "although on another lattice";
   take(square(0.3, 0.3, 20));
   EXPECT_EQ(kept(), 2U);
-  const auto both = grids.in(layer, kNear);
+  const auto both = grids.grids_in(layer, kNear);
   EXPECT_EQ(std::get<icd::OccupancyGrid>(square(0.3, 0.3, 20).msg).origin, both.back()->grid.origin)
       << "in their order";
   EXPECT_EQ(kept({5, 5, 6, 6}), 0U);
@@ -70,7 +70,7 @@ TEST_F(ForwardedGridsTest, RepeatedGridChangesNothing) {
 }
 
 TEST_F(ForwardedGridsTest, TellTheirResolutionAndChanges) {
-  EXPECT_FALSE(grids.finer({"ugv1", Kind::Grid}, 0));
+  EXPECT_FALSE(grids.finer({"ugv1", LayerKind::Grid}, 0));
   take(square(0, 0, 20, 0.2));
   EXPECT_EQ(grids.finer(layer, 0)->level, -1);
   take(square(10, 0, 20, 0.05));
@@ -119,8 +119,8 @@ TEST_F(ForwardedGridsTest, StayWithinTheBudgetAndDropTheOldest) {
     ASSERT_LE(grids.bytes(), ForwardedGrids::kBudget);
   }
   EXPECT_GT(grids.bytes(), ForwardedGrids::kBudget * 9 / 10);
-  EXPECT_EQ(grids.in({"r0", Kind::Grid}, {0, 0, 10, 10}).size(), 0U) << "the first one";
-  EXPECT_EQ(grids.in({"r19", Kind::Grid}, {599, 0, 600, 10}).size(), 1U) << "the last one";
+  EXPECT_EQ(grids.grids_in({"r0", LayerKind::Grid}, {0, 0, 10, 10}).size(), 0U) << "the first one";
+  EXPECT_EQ(grids.grids_in({"r19", LayerKind::Grid}, {599, 0, 600, 10}).size(), 1U) << "the last one";
   grids.clear();
   EXPECT_EQ(grids.bytes(), 0U);
 }
@@ -130,9 +130,9 @@ TEST_F(ForwardedGridsTest, LimitTheCellsReadForABlock) {
     ForwardedGrid grid = *forwarded_grid(square(-0.3 * i, 0, 20));
     grid.data.raw_size = ForwardedGrids::kMostCells / 4;  // as if it had that many
     layer = grid.layer;
-    grids.take(std::make_shared<const ForwardedGrid>(std::move(grid)), ++number);
+    grids.add(std::make_shared<const ForwardedGrid>(std::move(grid)), ++number);
   }
-  const auto some = grids.in(layer, kNear);
+  const auto some = grids.grids_in(layer, kNear);
   ASSERT_EQ(some.size(), 4U);
   EXPECT_EQ(some.back()->grid.origin.position.x, -1.5) << "the last ones";
 }

@@ -27,8 +27,8 @@ TEST(Mosaic, IsEmptyAtFirst) {
   const Mosaic mosaic;
   EXPECT_EQ(mosaic.version(), 0U);
   EXPECT_TRUE(mosaic.layers().empty());
-  EXPECT_EQ(mosaic.tile({"a", Kind::Grid}, {0, 0, 0}, {}).tile, nullptr);
-  EXPECT_TRUE(mosaic.canvas({"a", Kind::Grid}).tiles.empty());
+  EXPECT_EQ(mosaic.tile({"a", LayerKind::Grid}, {0, 0, 0}, {}).tile, nullptr);
+  EXPECT_TRUE(mosaic.canvas({"a", LayerKind::Grid}).tiles.empty());
 }
 
 TEST(Mosaic, HasALayerForEachRobotAndKind) {
@@ -38,14 +38,14 @@ TEST(Mosaic, HasALayerForEachRobotAndKind) {
   easel.draw(of("", cloud_of({{9, 9, 1}})));
   const auto layers = easel.mosaic.layers();
   ASSERT_EQ(layers.size(), 3U);
-  EXPECT_EQ(layers[0].layer, (Layer{"", Kind::Cloud}));
-  EXPECT_EQ(layers[1].layer, (Layer{"ugv1", Kind::Grid}));
+  EXPECT_EQ(layers[0].layer, (Layer{"", LayerKind::Cloud}));
+  EXPECT_EQ(layers[1].layer, (Layer{"ugv1", LayerKind::Grid}));
   EXPECT_EQ(layers[1].bounds, (Area{0, 0, 0.25, 0.25}));
   EXPECT_EQ(layers[2].bounds, (Area{5, 5, 5.25, 5.25}));
   EXPECT_TRUE(layers[0].heights);
   EXPECT_FALSE(layers[1].heights);
   EXPECT_EQ(layers[1].tiles.size(), 3U) << "one of each level";
-  easel.layer = {"ugv1", Kind::Grid};
+  easel.layer = {"ugv1", LayerKind::Grid};
   EXPECT_EQ(easel.seen(5.1, 5.1), 0) << "another robot's cells";
 }
 
@@ -76,7 +76,7 @@ TEST(Mosaic, FollowsAClockStep) {
         << "the earlier picture at the shifted time";
     EXPECT_EQ(easel.mosaic.tile(easel.layer, {0, 0, 0}, std::nullopt).stamp, easel.now)
         << "not at the old time";
-    EXPECT_EQ(easel.mosaic.wiped(), 1e9 + 2 + step);
+    EXPECT_EQ(easel.mosaic.wipe_time(), 1e9 + 2 + step);
     EXPECT_EQ(easel.mosaic.layers().at(0).first, 1e9 + 1 + step);
     EXPECT_EQ(easel.mosaic.layers().at(0).last, easel.now);
   }
@@ -128,7 +128,7 @@ TEST(Mosaic, WipeBlanksOnlyLaterTimes) {
   const auto before = easel.mosaic.version();
   const Canvas old = easel.mosaic.canvas(easel.layer);
   easel.mosaic.wipe(1500);
-  EXPECT_EQ(easel.mosaic.wiped(), 1500);
+  EXPECT_EQ(easel.mosaic.wipe_time(), 1500);
   EXPECT_EQ(easel.seen(0.1, 0.1), 0);
   EXPECT_EQ(easel.seen(0.1, 0.1, 0, 1400), kOccupied);
   const auto layers = easel.mosaic.layers(before);
@@ -192,8 +192,8 @@ TEST(Mosaic, RejectsADrawingBeyondItsBudget) {
 
 TEST(Mosaic, CountsMapsNotDrawn) {
   Mosaic mosaic;
-  mosaic.missed({"ugv1", Kind::Cloud}, 5);
-  mosaic.missed({"ugv1", Kind::Cloud}, 6);
+  mosaic.on_missed({"ugv1", LayerKind::Cloud}, 5);
+  mosaic.on_missed({"ugv1", LayerKind::Cloud}, 6);
   ASSERT_EQ(mosaic.layers().size(), 1U);
   EXPECT_EQ(mosaic.layers()[0].missed, 2U);
 }
@@ -206,8 +206,8 @@ TEST(Mosaic, LimitsItsLayers) {
   const auto map = of("onemore", grid_at(0, 0, 1, 0.25, {0}));
   EXPECT_FALSE(easel.mosaic.apply(*draw(map, easel.mosaic.canvas(layer_of(map))), 3000));
   EXPECT_EQ(easel.mosaic.layers().size(), Mosaic::kMostLayers);
-  easel.mosaic.missed({"twomore", Kind::Cloud}, 3001);
-  EXPECT_EQ(easel.mosaic.missed(), 2U);
+  easel.mosaic.on_missed({"twomore", LayerKind::Cloud}, 3001);
+  EXPECT_EQ(easel.mosaic.missed_maps(), 2U);
 }
 
 }  // namespace

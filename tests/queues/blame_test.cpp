@@ -38,15 +38,15 @@ Outcome played(const Server& server, int clouds, int senders, double until) {
       queue.add(static_cast<std::uint64_t>(posted) + 1,
                 cloud_update(name, {static_cast<std::uint8_t>(posted + 1)}), at(now));
     }
-    auto map = queue.take(at(now));
+    auto map = queue.pop(at(now));
     if (!map) continue;
     const std::uint8_t which = points_of(map->map).front();
     const std::string name = map->map.name->text();
     outcome.tries_of_first += which == 1 ? 1 : 0;
     if (server(which, now)) {
-      blame.passed(name, at(now));
+      blame.on_passed(name, at(now));
       outcome.delivered.push_back(which);
-    } else if (blame.failed(name, map->trial, at(now)) == Blame::Next::Reject) {
+    } else if (blame.on_failed(name, map->trial, at(now)) == Blame::Next::Reject) {
       outcome.rejected.push_back(which);
     } else {
       queue.put_back(std::move(*map));
@@ -96,8 +96,8 @@ TEST(Blame, SpacesTheTries) {
   Trial trial;
   std::vector<double> rests;
   double now = 0;
-  while (blame.failed("ugv1", trial, at(now)) == Blame::Next::Again) {
-    blame.passed("ugv2", at(now + 0.5));
+  while (blame.on_failed("ugv1", trial, at(now)) == Blame::Next::Again) {
+    blame.on_passed("ugv2", at(now + 0.5));
     const double rest = std::chrono::duration<double>(trial.rests_until - at(now)).count();
     rests.push_back(rest);
     now += std::max(rest, 1.0);
@@ -112,22 +112,22 @@ TEST(Blame, RestsUpToAMinuteIfTheAnswerMayNotReject) {
   std::vector<double> rests;
   double now = 0;
   for (int i = 0; i < 9; ++i) {
-    ASSERT_EQ(blame.failed("ugv1", trial, at(now), false), Blame::Next::Again) << i;
-    blame.passed("ugv2", at(now + 0.5));
+    ASSERT_EQ(blame.on_failed("ugv1", trial, at(now), false), Blame::Next::Again) << i;
+    blame.on_passed("ugv2", at(now + 0.5));
     rests.push_back(std::chrono::duration<double>(trial.rests_until - at(now)).count());
     now += std::max(rests.back(), 1.0);
   }
   EXPECT_EQ(rests, (std::vector<double>{0, 2, 4, 8, 16, 32, 60, 60, 60}));
-  EXPECT_EQ(blame.failed("ugv1", trial, at(now)), Blame::Next::Again)
+  EXPECT_EQ(blame.on_failed("ugv1", trial, at(now)), Blame::Next::Again)
       << "its first answer that may reject it";
 }
 
 TEST(Blame, CountsNoStrikeBeforeAnotherMapPassed) {
   Blame blame;
   Trial trial;
-  blame.passed("ugv2", at(0));
+  blame.on_passed("ugv2", at(0));
   for (int i = 1; i < 100; ++i) {
-    ASSERT_EQ(blame.failed("ugv1", trial, at(i)), Blame::Next::Again);
+    ASSERT_EQ(blame.on_failed("ugv1", trial, at(i)), Blame::Next::Again);
   }
   EXPECT_EQ(trial.strikes, 0);
 }
@@ -135,15 +135,15 @@ TEST(Blame, CountsNoStrikeBeforeAnotherMapPassed) {
 TEST(Blame, CountsNoStrikeIfAnotherSenderAlsoFails) {
   Blame blame;
   Trial trial, other;
-  blame.passed("ugv2", at(0));
-  blame.failed("ugv1", trial, at(1));
-  blame.passed("ugv3", at(2));
-  blame.failed("ugv2", other, at(3));  // it was accepted before
-  blame.failed("ugv1", trial, at(4));
+  blame.on_passed("ugv2", at(0));
+  blame.on_failed("ugv1", trial, at(1));
+  blame.on_passed("ugv3", at(2));
+  blame.on_failed("ugv2", other, at(3));  // it was accepted before
+  blame.on_failed("ugv1", trial, at(4));
   EXPECT_EQ(trial.strikes, 0);
-  blame.passed("ugv3", at(5));
-  blame.failed("ugv2", other, at(6));  // on trial itself, so its failure says little about others
-  blame.failed("ugv1", trial, at(7));
+  blame.on_passed("ugv3", at(5));
+  blame.on_failed("ugv2", other, at(6));  // on trial itself, so its failure says little about others
+  blame.on_failed("ugv1", trial, at(7));
   EXPECT_EQ(trial.strikes, 1);
 }
 
@@ -165,12 +165,12 @@ TEST(MapQueueOnTrial, SendsOneOtherMapFirst) {
   queue.add(2, cloud_update("ugv2", {2}), at(1));
   queue.add(3, cloud_update("ugv2", {3}), at(2));
   Blame blame;
-  auto first = queue.take(at(3));
+  auto first = queue.pop(at(3));
   ASSERT_EQ(points_of(first->map).front(), 1);
-  blame.failed("ugv1", first->trial, at(3));
+  blame.on_failed("ugv1", first->trial, at(3));
   queue.put_back(std::move(*first));
-  EXPECT_EQ(points_of(queue.take(at(4))->map).front(), 2);
-  EXPECT_EQ(points_of(queue.take(at(5))->map).front(), 1) << "only one other map goes first";
+  EXPECT_EQ(points_of(queue.pop(at(4))->map).front(), 2);
+  EXPECT_EQ(points_of(queue.pop(at(5))->map).front(), 1) << "only one other map goes first";
 }
 
 TEST(MapQueueOnTrial, KeepsLaterGridsOfItsNameBehindItAtFirst) {
@@ -180,25 +180,25 @@ TEST(MapQueueOnTrial, KeepsLaterGridsOfItsNameBehindItAtFirst) {
             at(1));  // overlaps it without forming a rectangle
   Blame blame;
   for (int i = 0; i < SenderQueue::kInPlace; ++i) {
-    auto taken = queue.take(at(10 * i));
+    auto taken = queue.pop(at(10 * i));
     ASSERT_EQ(taken->updates.front(), 1) << i;
-    blame.failed("ugv1", taken->trial, at(10 * i));
+    blame.on_failed("ugv1", taken->trial, at(10 * i));
     queue.put_back(std::move(*taken));
   }
-  EXPECT_EQ(queue.take(at(100))->updates.front(), 2) << "to see whether others pass";
+  EXPECT_EQ(queue.pop(at(100))->updates.front(), 2) << "to see whether others pass";
 }
 
 TEST(MapQueueOnTrial, DoesNotMergeAFailedMap) {
   MapQueue queue(1000);
   queue.add(1, cloud_update("ugv1", {1}), at(0));
   Blame blame;
-  auto first = queue.take(at(1));
-  blame.failed("ugv1", first->trial, at(1));
+  auto first = queue.pop(at(1));
+  blame.on_failed("ugv1", first->trial, at(1));
   queue.put_back(std::move(*first));
   queue.add(2, cloud_update("ugv1", {2}), at(2));
   queue.add(3, cloud_update("ugv1", {3}), at(2));
-  EXPECT_EQ(points_of(queue.take(at(3))->map), (std::vector<std::uint8_t>{2, 3}));
-  EXPECT_EQ(points_of(queue.take(at(4))->map), (std::vector<std::uint8_t>{1}));
+  EXPECT_EQ(points_of(queue.pop(at(3))->map), (std::vector<std::uint8_t>{2, 3}));
+  EXPECT_EQ(points_of(queue.pop(at(4))->map), (std::vector<std::uint8_t>{1}));
 }
 
 /// One robot posts maps that are too large each three seconds, another one good maps each second. One map is
@@ -212,17 +212,17 @@ TEST(MapQueueOnTrial, TriesALaterMapTwiceAfterOneThatWasTooLarge) {
     if (now % 3 == 0) queue.add(1000 + now, cloud_update("large", {1}), at(static_cast<double>(now)));
     queue.add(now, cloud_update("good", {2}), at(static_cast<double>(now)));
     const Instant instant = at(static_cast<double>(now));
-    auto map = *queue.take(instant);
+    auto map = *queue.pop(instant);
     const std::string name = map.map.name->text();
     if (name == "good") {
-      blame.passed(name, instant);
-      queue.on_passed(Sender::of(map.map));
+      blame.on_passed(name, instant);
+      queue.on_passed(Sender::from_map(map.map));
       ++delivered;
       continue;
     }
     ++tries[map.updates.back()];
-    const auto next = blame.failed(name, map.trial, instant);
-    queue.on_too_large(Sender::of(map.map), map.trial);
+    const auto next = blame.on_failed(name, map.trial, instant);
+    queue.on_too_large(Sender::from_map(map.map), map.trial);
     if (next == Blame::Next::Again) queue.put_back(std::move(map));
   }
   ASSERT_GE(tries.size(), 4);
@@ -236,15 +236,15 @@ TEST(MapQueueOnTrial, ForgetsStrikesOnceAMapOfThatRobotPassed) {
   MapQueue queue(0);
   Blame blame;
   queue.add(1, cloud_update("ugv1", {1}), at(0));
-  auto first = *queue.take(at(0));
-  for (int i = 0; blame.failed("ugv1", first.trial, at(i)) == Blame::Next::Again; ++i)
-    blame.passed("ugv2", at(i + 0.5));
-  queue.on_too_large(Sender::of(first.map), first.trial);
+  auto first = *queue.pop(at(0));
+  for (int i = 0; blame.on_failed("ugv1", first.trial, at(i)) == Blame::Next::Again; ++i)
+    blame.on_passed("ugv2", at(i + 0.5));
+  queue.on_too_large(Sender::from_map(first.map), first.trial);
   queue.add(2, cloud_update("ugv1", {2}), at(3));
-  queue.on_passed(Sender::of(first.map));
+  queue.on_passed(Sender::from_map(first.map));
   queue.add(3, cloud_update("ugv1", {3}), at(3));
   for (const std::uint64_t number : {2u, 3u}) {
-    const auto later = queue.take(at(3));
+    const auto later = queue.pop(at(3));
     EXPECT_THAT(later->updates, testing::ElementsAre(number));
     EXPECT_EQ(later->trial.strikes, 0);
   }
@@ -253,13 +253,13 @@ TEST(MapQueueOnTrial, ForgetsStrikesOnceAMapOfThatRobotPassed) {
 TEST(MapQueueOnTrial, GivesItsPlaceToANewerCoveringGrid) {
   MapQueue queue(0);
   queue.add(1, grid_update("ugv1", grid(0, 0, 10, 10)), at(0));
-  auto first = queue.take(at(1));
+  auto first = queue.pop(at(1));
   first->trial.failures = 4;
   first->trial.strikes = Blame::kMostStrikes - 1;
   first->trial.failed = at(1);
   queue.put_back(std::move(*first));
   queue.add(2, grid_update("ugv1", grid(0, 0, 20, 20)), at(2));
-  const auto newer = queue.take(at(3));
+  const auto newer = queue.pop(at(3));
   EXPECT_EQ(newer->updates, (std::vector<std::uint64_t>{1, 2}));
   EXPECT_LE(newer->trial.strikes, Blame::kMostStrikes - 2) << "the newer map starts without most strikes";
 }

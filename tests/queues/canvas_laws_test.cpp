@@ -65,7 +65,7 @@ class CanvasLaws : public testing::TestWithParam<std::uint64_t> {
     posted_.put(std::get<icd::OccupancyGrid>(map.msg), values);
     note_posted(std::get<icd::OccupancyGrid>(map.msg), values);
     if (const auto grows = queue_.canvases().grows(map)) {
-      queue_.canvases().grown(*grows);
+      queue_.canvases().on_grown(*grows);
       extents_[grows->first] = grows->second;
     }
     kept_[++number_] = map;
@@ -87,7 +87,7 @@ class CanvasLaws : public testing::TestWithParam<std::uint64_t> {
     int run = 0;  // the run that was known
   };
   std::optional<Sent> take() {
-    auto next = queue_.take();
+    auto next = queue_.pop();
     if (!next) return {};
     auto cells = packed_of(queue_, *next);
     gaps_ += next->has_gaps ? 1 : 0;
@@ -112,7 +112,7 @@ class CanvasLaws : public testing::TestWithParam<std::uint64_t> {
     if (what % 2 == 0) arrives(*sent);  // without an answer
     if (following_) forget(queue_.put_back(std::exchange(following_, {})->waiting));
     if (what == 3) ++sent->waiting.trial.failures;
-    if (what == 1 && !sent->waiting.parts.empty()) return queue_.put_back_apart(std::move(sent->waiting));
+    if (what == 1 && !sent->waiting.parts.empty()) return queue_.put_back_single(std::move(sent->waiting));
     forget(queue_.put_back(std::move(sent->waiting)));
   }
 
@@ -169,7 +169,7 @@ class CanvasLaws : public testing::TestWithParam<std::uint64_t> {
       std::vector<const icd::MapUpdate*> maps;
       if (under_way_ != nullptr) maps.push_back(&under_way_->waiting.map);
       if (following_) maps.push_back(&following_->waiting.map);
-      return queue_.canvases().heard(maps);
+      return queue_.canvases().on_status(maps);
     }
     known_run_ = status;
     if (following_) forget(queue_.put_back(std::exchange(following_, {})->waiting));

@@ -21,13 +21,13 @@ class CanvasesTest : public testing::Test {
   void add(icd::MapUpdate map) {
     ++number_;
     if (const auto grows = queue_.canvases().grows(map)) {
-      queue_.canvases().grown(*grows);
+      queue_.canvases().on_grown(*grows);
       posted_[grows->first] = grows->second;
     }
     queue_.add(number_, std::move(map), at(static_cast<double>(number_)));
   }
   QueuedMap take_packed() {
-    auto next = queue_.take();
+    auto next = queue_.pop();
     packed_of(queue_, *next);
     return *std::move(next);
   }
@@ -46,7 +46,7 @@ class CanvasesTest : public testing::Test {
     return go_together(x, y);
   }
   void hear(int statuses) {
-    for (int i = 0; i < statuses; ++i) queue_.canvases().heard({});
+    for (int i = 0; i < statuses; ++i) queue_.canvases().on_status({});
   }
 
   MapQueue queue_{0};
@@ -83,7 +83,7 @@ TEST_F(CanvasesTest, NewRunKnowsMapsInFlightAtTheSecondLastStatus) {
   add(window_at(100, 100));
   const QueuedMap under_way = take_packed();
   const icd::MapUpdate* const maps[] = {&under_way.map};
-  queue_.canvases().heard(maps);
+  queue_.canvases().on_status(maps);
   hear(1);
   queue_.canvases().begin_run();
   EXPECT_EQ(go_together_from_now_on(102, 102), 1) << "the cells in its corner are unknown";
@@ -194,7 +194,7 @@ TEST_F(CanvasesTest, ForgetTheOldestAtTheMemoryLimit) {
   EXPECT_EQ(go_together(3, 3), 1);
   for (int i = 0; i < 600; ++i) {
     queue_.add(1, grid_update("x" + std::to_string(i), grid(0, 0, 4, 4)), at(1));
-    auto next = queue_.take();
+    auto next = queue_.pop();
     EXPECT_TRUE(!next->ground || i <= static_cast<int>(Canvases::kMostNames));
   }
 }
@@ -211,7 +211,7 @@ TEST_F(CanvasesTest, IgnoreWholeTurnedAndOversizedGrids) {
   add(turned);
   EXPECT_FALSE(take_packed().ground);
   queue_.add(99, grid_update("R1", grid(-500, -500, 3000, 3000)), at(99));
-  EXPECT_FALSE(queue_.take()->ground);
+  EXPECT_FALSE(queue_.pop()->ground);
 }
 
 TEST(ExtentOfAGrid, HoldsItsCells) {

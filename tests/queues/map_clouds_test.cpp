@@ -50,8 +50,8 @@ TEST(WholeClouds, ReplaceQueuedCloudsAndKeepTheirAge) {
   EXPECT_FALSE(queue.replaces_any(cloud_update("R2", {3})));
   EXPECT_THAT(queue.add(3, cloud_update("R1", {3}), at(2)).numbers, ElementsAre(2));
   EXPECT_EQ(queue.count(), 2);
-  EXPECT_THAT(queue.take()->updates, ElementsAre(1));
-  const auto whole = *queue.take();
+  EXPECT_THAT(queue.pop()->updates, ElementsAre(1));
+  const auto whole = *queue.pop();
   EXPECT_THAT(whole.updates, ElementsAre(2, 3));
   EXPECT_THAT(points_of(whole.map), ElementsAre(3));
   EXPECT_EQ(whole.accepted, at(1));
@@ -61,10 +61,10 @@ TEST(WholeClouds, ReplaceQueuedCloudsAndKeepTheirAge) {
 TEST(WholeClouds, FailedCloudIsReplacedByANewerOne) {
   MapQueue queue = queue_of(Clouds::Whole);
   queue.add(1, cloud_update("R1", {1}), at(1));
-  auto under_way = *queue.take();
+  auto under_way = *queue.pop();
   queue.add(2, cloud_update("R1", {2}), at(2));
   EXPECT_THAT(queue.put_back(std::move(under_way)).numbers, ElementsAre(1));
-  EXPECT_THAT(points_of(queue.take()->map), ElementsAre(2));
+  EXPECT_THAT(points_of(queue.pop()->map), ElementsAre(2));
   EXPECT_EQ(queue.count(), 0);
 }
 
@@ -85,7 +85,7 @@ TEST(ComparedClouds, AreReplacedByACloudWithAllTheirPoints) {
   EXPECT_THAT(compare_all(queue), IsEmpty());
   EXPECT_FALSE(queue.to_compare()) << "the comparison was made";
   EXPECT_EQ(queue.count(), 2);
-  const auto merged = *queue.take();
+  const auto merged = *queue.pop();
   EXPECT_THAT(merged.updates, ElementsAre(1, 2, 3));
   EXPECT_THAT(points_of(merged.map), ElementsAre(2, 3, 1, 4));
   EXPECT_EQ(merged.accepted, at(1));
@@ -115,10 +115,10 @@ TEST(ComparedClouds, StayIfOneChangedMeanwhile) {
   queue.add(2, cloud_update("R1", {2}), at(2));
   queue.add(3, cloud_update("R1", {2, 3}), at(3));
   const auto two = *queue.to_compare();
-  queue.put_back(*queue.take());  // merged with the cloud that was not compared
+  queue.put_back(*queue.pop());  // merged with the cloud that was not compared
   queue.add(4, cloud_update("R1", {4}), at(4));
   EXPECT_THAT(queue.replace(two), IsEmpty());
-  EXPECT_THAT(points_of(queue.take()->map), ElementsAre(1, 2, 2, 3, 4));
+  EXPECT_THAT(points_of(queue.pop()->map), ElementsAre(1, 2, 2, 3, 4));
 }
 
 /// One robot's whole and partial clouds, posted, sent, failed and compared in any order.
@@ -165,7 +165,7 @@ class CloudsCourse {
   }
 
   void send(bool taken) {
-    auto next = queue_.take();
+    auto next = queue_.pop();
     if (!next) return;
     while (pick(3) == 0) add();
     if (!taken) {

@@ -69,7 +69,7 @@ class Course {
   }
 
   void send(bool taken) {
-    auto next = queue_.take();
+    auto next = queue_.pop();
     if (!next) return;
     while (pick(3) == 0) add();  // while the map is in flight
     if (taken) {
@@ -111,7 +111,8 @@ TEST_P(MapQueueLaws, EachGridIsSentOrCoveredByALaterOne) {
         std::ranges::any_of(course_.sent, [&, n = number, &u = update](const QueuedMap& map) {
           const auto* sent = std::get_if<icd::OccupancyGrid>(&map.map.msg);
           return sent && map.map.name == u.name && map.updates.back() >= n &&
-                 std::ranges::count(map.updates, n) == 1 && icd::covers(*sent, icd::GridBounds::of(*grid));
+                 std::ranges::count(map.updates, n) == 1 &&
+                 icd::covers(*sent, icd::GridBounds::from_grid(*grid));
         });
     EXPECT_TRUE(is_sent) << number;
   }

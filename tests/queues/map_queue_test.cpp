@@ -25,10 +25,10 @@ TEST(MapQueue, SendsInOrderOfArrival) {
   queue.add(1, grid_update("R1", kSmall), at(1));
   queue.add(2, cloud_update("R2", {1}), at(2));
   queue.add(3, grid_update("", kSmall), at(3));
-  EXPECT_THAT(queue.take()->updates, ElementsAre(1));
-  EXPECT_THAT(queue.take()->updates, ElementsAre(2));
-  EXPECT_THAT(queue.take()->updates, ElementsAre(3));
-  EXPECT_FALSE(queue.take());
+  EXPECT_THAT(queue.pop()->updates, ElementsAre(1));
+  EXPECT_THAT(queue.pop()->updates, ElementsAre(2));
+  EXPECT_THAT(queue.pop()->updates, ElementsAre(3));
+  EXPECT_FALSE(queue.pop());
 }
 
 TEST(MapQueue, SendsAMapThatGoesLastAfterAllOthers) {
@@ -37,17 +37,17 @@ TEST(MapQueue, SendsAMapThatGoesLastAfterAllOthers) {
   queue.restore(2, cloud_update("R1", {2}), at(1));
   queue.restore(3, grid_update("R2", kSmall), at(1), {}, PackingRule::LastAsItIs);
   queue.restore(4, grid_update("R2", kElsewhere), at(1));
-  auto resting = *queue.take(at(2));
+  auto resting = *queue.pop(at(2));
   EXPECT_THAT(resting.updates, ElementsAre(2));
   resting.trial.rests_until = at(100);
   resting.trial.failed = at(2);
   queue.put_back(resting);
-  EXPECT_THAT(queue.take(at(3))->updates, ElementsAre(4));
-  EXPECT_THAT(queue.take(at(3))->updates, ElementsAre(2)) << "it rests, but it is not the last";
+  EXPECT_THAT(queue.pop(at(3))->updates, ElementsAre(4));
+  EXPECT_THAT(queue.pop(at(3))->updates, ElementsAre(2)) << "it rests, but it is not the last";
   queue.add(5, cloud_update("R1", {3}), at(4));
-  EXPECT_THAT(queue.take(at(5))->updates, ElementsAre(5)) << "not merged with the one that goes alone";
-  EXPECT_THAT(queue.take(at(5))->updates, ElementsAre(1));
-  EXPECT_THAT(queue.take(at(5))->updates, ElementsAre(3));
+  EXPECT_THAT(queue.pop(at(5))->updates, ElementsAre(5)) << "not merged with the one that goes alone";
+  EXPECT_THAT(queue.pop(at(5))->updates, ElementsAre(1));
+  EXPECT_THAT(queue.pop(at(5))->updates, ElementsAre(3));
 }
 
 TEST(MapQueue, CoveringGridInheritsPlaceAndAge) {
@@ -56,7 +56,7 @@ TEST(MapQueue, CoveringGridInheritsPlaceAndAge) {
   queue.add(2, grid_update("R2", kSmall), at(2));
   EXPECT_THAT(queue.add(3, grid_update("R1", kLarge), at(3)).numbers, ElementsAre(1));
   EXPECT_EQ(queue.count(), 2);
-  const auto first = queue.take();
+  const auto first = queue.pop();
   EXPECT_THAT(first->updates, ElementsAre(1, 3));
   EXPECT_EQ(std::get<icd::OccupancyGrid>(first->map.msg), kLarge);
   EXPECT_EQ(first->accepted, at(1));
@@ -67,7 +67,7 @@ TEST(MapQueue, ReportsEachReplacedUpdateOnce) {
   EXPECT_THAT(queue.add(1, grid_update("R1", kSmall), at(1)).numbers, IsEmpty());
   EXPECT_THAT(queue.add(2, grid_update("R1", kSmall), at(2)).numbers, ElementsAre(1));
   EXPECT_THAT(queue.add(3, grid_update("R1", kSmall), at(3)).numbers, ElementsAre(2));
-  EXPECT_THAT(queue.take()->updates, ElementsAre(1, 2, 3));
+  EXPECT_THAT(queue.pop()->updates, ElementsAre(1, 2, 3));
 }
 
 TEST(MapQueue, KeepsAGridThatIsNotCovered) {
@@ -90,7 +90,7 @@ TEST(MapQueue, ReplacesAllCoveredGrids) {
   queue.add(1, grid_update("R1", kSmall), at(1));
   queue.add(2, grid_update("R1", grid(1, 1, 10, 10)), at(2));
   EXPECT_THAT(queue.add(3, grid_update("R1", kLarge), at(3)).numbers, ElementsAre(1, 2));
-  EXPECT_THAT(queue.take()->updates, ElementsAre(1, 2, 3));
+  EXPECT_THAT(queue.pop()->updates, ElementsAre(1, 2, 3));
 }
 
 /// A window whose origin is off by millimetres.
@@ -106,7 +106,7 @@ TEST(MapQueue, ReplacesGridsWhoseOriginIsCorrected) {
   for (int i = 0; i < 100; ++i)
     queue.add(static_cast<std::uint64_t>(i), window(13 * (i % 2), -13 * (i / 2 % 2), i % 3), at(i));
   EXPECT_EQ(queue.count(), 1) << "each replaced the one before";
-  EXPECT_EQ(queue.take()->updates.size(), 100);
+  EXPECT_EQ(queue.pop()->updates.size(), 100);
 }
 
 TEST(MapQueue, KeepsWhatACreepingWindowLeavesBehind) {
@@ -117,19 +117,19 @@ TEST(MapQueue, KeepsWhatACreepingWindowLeavesBehind) {
   EXPECT_THAT(queue.add(4, window(30), at(4)).numbers, IsEmpty()) << "30 mm of the first are outside";
   EXPECT_THAT(queue.add(5, window(40), at(5)).numbers, ElementsAre(4));
   EXPECT_FALSE(queue.replaces_any(window(40 + 20)));
-  EXPECT_THAT(queue.take()->updates, ElementsAre(1, 2, 3));
-  EXPECT_THAT(queue.take()->updates, ElementsAre(4, 5));
+  EXPECT_THAT(queue.pop()->updates, ElementsAre(1, 2, 3));
+  EXPECT_THAT(queue.pop()->updates, ElementsAre(4, 5));
 }
 
 TEST(MapQueue, KeepsWhatAFailedGridReplaced) {
   MapQueue queue{kPlenty};
   queue.add(1, window(0), at(1));
   queue.add(2, window(20), at(2));
-  auto failed = *queue.take();
+  auto failed = *queue.pop();
   queue.add(3, window(40), at(3));
   EXPECT_FALSE(queue.absorb(failed)) << "40 mm of the first are outside";
   EXPECT_THAT(queue.put_back(failed).numbers, IsEmpty());
-  failed = *queue.take();
+  failed = *queue.pop();
   queue.add(4, window(5), at(4));
   EXPECT_TRUE(queue.absorb(failed));
   const Replaced replaced = queue.put_back(failed);
@@ -145,14 +145,14 @@ TEST(MapQueue, KeepsWhatThePartsOfAStitchedGridReplaced) {
   queue.add(1, tile(0, 20), at(1));
   queue.add(2, tile(0, 0), at(2));
   queue.add(3, tile(1, 0), at(3));
-  auto failed = *queue.take();
+  auto failed = *queue.pop();
   ASSERT_THAT(failed.updates, ElementsAre(1, 2, 3));
   EXPECT_EQ(queue.put_back(failed).numbers.size(), 0);
   EXPECT_TRUE(queue.replaces_any(grid_update("R1", grid(0, 0, 40, 20))));
   EXPECT_FALSE(queue.replaces_any(grid_update("R1", grid(0.01, 0, 40, 20))))
       << "30 mm of the first are outside";
   // The whole replaces a map that was sent before it. Then its parts are queued singly.
-  failed = *queue.take();
+  failed = *queue.pop();
   QueuedMap older{grid_update("R1", grid(1.02, 0, 20, 20)), at(0), {0}};
   queue.put_back(failed);
   const Replaced replaced = queue.put_back(older);
@@ -160,7 +160,7 @@ TEST(MapQueue, KeepsWhatThePartsOfAStitchedGridReplaced) {
   ASSERT_TRUE(replaced.bounds);
   EXPECT_EQ(replaced.bounds->first, 3) << "the last part stands for it after a restart";
   EXPECT_NEAR(replaced.bounds->second.high.x, 1.02, 1e-9) << "from the last part's own origin";
-  queue.put_back_apart(*queue.take());
+  queue.put_back_single(*queue.pop());
   EXPECT_EQ(queue.count(), 2);
   EXPECT_FALSE(queue.replaces_any(grid_update("R1", grid(0.99, 0, 20, 20))))
       << "30 mm of the older are outside";
@@ -189,9 +189,9 @@ TEST(MapQueue, NeverSendsOldCellsAfterNewerOnes) {
   queue.add(3, grid_update("R1", grid(0.2, 0.2, 200, 200)),
             at(3));  // overlaps the next grid, but is not covered
   queue.add(4, grid_update("R1", kLarge), at(4));
-  EXPECT_THAT(queue.take()->updates, ElementsAre(3));
-  EXPECT_THAT(queue.take()->updates, ElementsAre(2)) << "R2's turn";
-  EXPECT_THAT(queue.take()->updates, ElementsAre(1, 4));
+  EXPECT_THAT(queue.pop()->updates, ElementsAre(3));
+  EXPECT_THAT(queue.pop()->updates, ElementsAre(2)) << "R2's turn";
+  EXPECT_THAT(queue.pop()->updates, ElementsAre(1, 4));
 }
 
 TEST(MapQueue, MergesConsecutiveCloudsOfARobot) {
@@ -199,7 +199,7 @@ TEST(MapQueue, MergesConsecutiveCloudsOfARobot) {
   queue.add(1, cloud_update("R1", {1, 2}), at(1));
   queue.add(2, grid_update("R2", kSmall), at(2));
   queue.add(3, cloud_update("R1", {3}), at(3));
-  const auto merged = queue.take();
+  const auto merged = queue.pop();
   EXPECT_THAT(merged->updates, ElementsAre(1, 3));
   EXPECT_THAT(points_of(merged->map), ElementsAre(1, 2, 3));
   EXPECT_EQ(merged->map.data.raw_size, 36);
@@ -211,36 +211,36 @@ TEST(MapQueue, SplitsFailedMergedCloudsAndSendsEachAlone) {
   MapQueue queue{kPlenty};
   queue.add(1, cloud_update("R1", {1}), at(1));
   queue.add(2, cloud_update("R1", {2}), at(2));
-  auto merged = *queue.take();
+  auto merged = *queue.pop();
   queue.add(3, cloud_update("R1", {3}), at(3));
   queue.put_back(std::move(merged));
-  merged = *queue.take();
+  merged = *queue.pop();
   EXPECT_THAT(merged.updates, ElementsAre(1, 2, 3));
-  queue.put_back_apart(std::move(merged));
+  queue.put_back_single(std::move(merged));
   queue.add(4, cloud_update("R1", {4}), at(4));
   queue.add(5, cloud_update("R1", {5}), at(5));
   for (const float point : {1.0F, 2.0F, 3.0F}) {
-    const auto part = queue.take();
+    const auto part = queue.pop();
     EXPECT_THAT(part->updates, ElementsAre(static_cast<std::uint64_t>(point)));
     EXPECT_THAT(points_of(part->map), ElementsAre(point));
   }
-  EXPECT_THAT(queue.take()->updates, ElementsAre(4, 5)) << "later maps are merged as usual";
+  EXPECT_THAT(queue.pop()->updates, ElementsAre(4, 5)) << "later maps are merged as usual";
   EXPECT_EQ(queue.bytes(), 0);
 }
 
 TEST(MapQueue, HalvesMergedCloudsThatAreTooLarge) {
   MapQueue queue{kPlenty};
   for (std::uint8_t i = 1; i <= 5; ++i) queue.add(i, cloud_update("R1", {i}), at(i));
-  queue.put_back_halves(*queue.take());
+  queue.put_back_halves(*queue.pop());
   queue.add(6, cloud_update("R1", {6}), at(6));
-  queue.put_back_halves(*queue.take());
-  EXPECT_THAT(points_of(queue.take()->map), ElementsAre(1, 2));
-  EXPECT_THAT(queue.take()->updates, ElementsAre(3));
-  const auto second = queue.take();
+  queue.put_back_halves(*queue.pop());
+  EXPECT_THAT(points_of(queue.pop()->map), ElementsAre(1, 2));
+  EXPECT_THAT(queue.pop()->updates, ElementsAre(3));
+  const auto second = queue.pop();
   EXPECT_THAT(second->updates, ElementsAre(4, 5));
   EXPECT_THAT(points_of(second->map), ElementsAre(4, 5));
   EXPECT_EQ(second->map.data.raw_size, 24);
-  EXPECT_THAT(queue.take()->updates, ElementsAre(6)) << "not joined with a half";
+  EXPECT_THAT(queue.pop()->updates, ElementsAre(6)) << "not joined with a half";
   EXPECT_EQ(queue.bytes(), 0);
 }
 
@@ -256,7 +256,7 @@ TEST(MapQueue, GoesOnWithTheRowsThatAnOlderGridWouldHaveSentNext) {
     const double turn = 0.0001 * i;
     newer.origin.orientation = {0, 0, std::sin(turn), std::cos(turn)};
     queue.add(static_cast<std::uint64_t>(i), grid_update("R1", newer), at(i));
-    auto next = *queue.take();
+    auto next = *queue.pop();
     shrink(next, 5);
     const auto rows = rows_of(next);
     const long first = std::lround(rows.origin.position.y / 0.05);
@@ -265,7 +265,7 @@ TEST(MapQueue, GoesOnWithTheRowsThatAnOlderGridWouldHaveSentNext) {
     queue.put_back(std::move(next));
   }
   for (long row = 0; row < kRows; ++row) EXPECT_TRUE(sent.contains(row)) << row;
-  auto last = *queue.take();
+  auto last = *queue.pop();
   std::size_t cells = last.piece.delivered;
   do cells += std::size_t{rows_of(last).height} * 8;
   while (next_piece(last));
@@ -288,9 +288,9 @@ TEST(MapQueue, SendsGridsAloneWhoseWholeIsTooLarge) {
   MapQueue queue{kPlenty};
   queue.add(1, grid_update("R1", grid(0, 0, 20, 20)), at(1));
   queue.add(2, grid_update("R1", grid(1, 0, 20, 20)), at(2));
-  queue.put_back_halves(*queue.take());
-  EXPECT_THAT(queue.take()->updates, ElementsAre(1));
-  EXPECT_THAT(queue.take()->updates, ElementsAre(2));
+  queue.put_back_halves(*queue.pop());
+  EXPECT_THAT(queue.pop()->updates, ElementsAre(1));
+  EXPECT_THAT(queue.pop()->updates, ElementsAre(2));
 }
 
 TEST(MapQueue, MergedCloudsHaveTheNewersHeader) {
@@ -305,8 +305,8 @@ TEST(MapQueue, MergesWithinItsLimitAndInOrder) {
   queue.add(1, cloud_update("R1", {1, 2}), at(1));
   queue.add(2, cloud_update("R1", {3, 4}), at(2));
   queue.add(3, cloud_update("R1", {5}), at(3));  // would fit, but must not go before 2
-  EXPECT_THAT(queue.take()->updates, ElementsAre(1));
-  EXPECT_THAT(queue.take()->updates, ElementsAre(2, 3));
+  EXPECT_THAT(queue.pop()->updates, ElementsAre(1));
+  EXPECT_THAT(queue.pop()->updates, ElementsAre(2, 3));
 }
 
 TEST(MapQueue, MergesNoCloudsPastOneThatDoesNotFit) {
@@ -316,9 +316,9 @@ TEST(MapQueue, MergesNoCloudsPastOneThatDoesNotFit) {
   queue.add(1, cloud_update("R1", {1}), at(1));
   queue.add(2, cloud_update("R1", {2}, other), at(2));
   queue.add(3, cloud_update("R1", {3}), at(3));
-  EXPECT_THAT(queue.take()->updates, ElementsAre(1));
-  EXPECT_THAT(queue.take()->updates, ElementsAre(2));
-  EXPECT_THAT(queue.take()->updates, ElementsAre(3));
+  EXPECT_THAT(queue.pop()->updates, ElementsAre(1));
+  EXPECT_THAT(queue.pop()->updates, ElementsAre(2));
+  EXPECT_THAT(queue.pop()->updates, ElementsAre(3));
 }
 
 TEST(MapQueue, MergesNoPackedCloud) {
@@ -328,8 +328,8 @@ TEST(MapQueue, MergesNoPackedCloud) {
   queue.add(1, cloud_update("R1", {1}), at(1));
   queue.put_back({packed, at(0), {0}});
   queue.add(2, cloud_update("R1", {3}), at(2));
-  EXPECT_THAT(queue.take()->updates, ElementsAre(0));
-  EXPECT_THAT(queue.take()->updates, ElementsAre(1, 2));
+  EXPECT_THAT(queue.pop()->updates, ElementsAre(0));
+  EXPECT_THAT(queue.pop()->updates, ElementsAre(1, 2));
 }
 
 TEST(MapQueue, TellsWhichCloudsCanBeMerged) {
@@ -352,26 +352,26 @@ TEST(MapQueue, PutsAFailedMapFirstOfItsSender) {
   MapQueue queue{kPlenty};
   queue.add(1, grid_update("R1", kSmall), at(1));
   queue.add(2, cloud_update("R2", {1}), at(2));
-  auto failed = *queue.take();
+  auto failed = *queue.pop();
   queue.add(3, grid_update("R1", kElsewhere), at(3));
   EXPECT_FALSE(queue.absorb(failed));
   EXPECT_THAT(queue.put_back(failed).numbers, ElementsAre());
-  EXPECT_THAT(queue.take()->updates, ElementsAre(2)) << "a failed try counts as a turn";
-  EXPECT_THAT(queue.take()->updates, ElementsAre(1));
-  EXPECT_THAT(queue.take()->updates, ElementsAre(3));
+  EXPECT_THAT(queue.pop()->updates, ElementsAre(2)) << "a failed try counts as a turn";
+  EXPECT_THAT(queue.pop()->updates, ElementsAre(1));
+  EXPECT_THAT(queue.pop()->updates, ElementsAre(3));
 }
 
 TEST(MapQueue, DropsAFailedGridThatANewerOneCovers) {
   MapQueue queue{kPlenty};
   queue.add(1, grid_update("R1", kSmall), at(1));
-  auto failed = *queue.take();
+  auto failed = *queue.pop();
   queue.add(2, cloud_update("R2", {1}), at(2));
   queue.add(3, grid_update("R1", kLarge), at(3));
   EXPECT_TRUE(queue.absorb(failed));
   EXPECT_THAT(queue.put_back(failed).numbers, ElementsAre(1)) << "the map is no longer needed";
   EXPECT_EQ(queue.count(), 2);
-  EXPECT_THAT(queue.take()->updates, ElementsAre(2)) << "R2's turn";
-  const auto heir = queue.take();
+  EXPECT_THAT(queue.pop()->updates, ElementsAre(2)) << "R2's turn";
+  const auto heir = queue.pop();
   EXPECT_THAT(heir->updates, ElementsAre(1, 3));
   EXPECT_EQ(heir->accepted, at(1));
   EXPECT_EQ(std::get<icd::OccupancyGrid>(heir->map.msg), kLarge);
@@ -388,7 +388,7 @@ TEST(MapQueue, RetriesByHandKeepTheirOrder) {
   EXPECT_THAT(queue.put_back(sent_again(3, kSmall, 30)).numbers, IsEmpty());
   EXPECT_THAT(queue.put_back(sent_again(1, kLarge, 10)).numbers, IsEmpty());
   EXPECT_THAT(queue.put_back(sent_again(2, kLarge, 20)).numbers, IsEmpty());
-  for (const std::uint64_t number : {1, 2, 3}) EXPECT_THAT(queue.take()->updates, ElementsAre(number));
+  for (const std::uint64_t number : {1, 2, 3}) EXPECT_THAT(queue.pop()->updates, ElementsAre(number));
 }
 
 TEST(MapQueue, GridThatAbsorbsARetryStandsForIt) {
@@ -399,7 +399,7 @@ TEST(MapQueue, GridThatAbsorbsARetryStandsForIt) {
   const auto absorbed = queue.absorb(retry);
   ASSERT_TRUE(absorbed && absorbed->bounds);
   EXPECT_EQ(absorbed->bounds->first, 1);
-  EXPECT_THAT(queue.take()->updates, ElementsAre(1));
+  EXPECT_THAT(queue.pop()->updates, ElementsAre(1));
   queue.add(3, window(0), at(3));
   queue.absorb(retry);
   EXPECT_FALSE(queue.replaces_any(window(-10))) << "30 mm of the retry are outside";
@@ -412,7 +412,7 @@ TEST(MapQueue, OfEqualStampsTheLaterRetryIsNewer) {
   EXPECT_THAT(queue.put_back(sent_again(1, kLarge, 10)).numbers, IsEmpty());
   EXPECT_FALSE(queue.absorb(sent_again(2, kSmall, 10)));
   EXPECT_THAT(queue.put_back(sent_again(2, kSmall, 10)).numbers, IsEmpty());
-  for (const std::uint64_t number : {1, 2}) EXPECT_THAT(queue.take()->updates, ElementsAre(number));
+  for (const std::uint64_t number : {1, 2}) EXPECT_THAT(queue.pop()->updates, ElementsAre(number));
   queue.put_back(sent_again(2, kLarge, 10));
   EXPECT_TRUE(queue.absorb(sent_again(1, kSmall, 10)));
 }
@@ -423,17 +423,17 @@ TEST(MapQueue, RetryByHandSendsACloudFirstOfItsSender) {
   QueuedMap map{cloud_update("R1", {2}), at(9), {1}, {}, PackingRule::Alone};
   map.again = 10;
   queue.put_back(map);
-  for (const std::uint64_t number : {1, 7}) EXPECT_THAT(queue.take()->updates, ElementsAre(number));
+  for (const std::uint64_t number : {1, 7}) EXPECT_THAT(queue.pop()->updates, ElementsAre(number));
 }
 
 TEST(MapQueue, RetryByHandIsOlderThanNeverRejectedMaps) {
   MapQueue queue{kPlenty};
   queue.add(7, grid_update("R1", kSmall), at(1));
-  auto failed = *queue.take();
+  auto failed = *queue.pop();
   queue.put_back(sent_again(1, kLarge, 10));
   EXPECT_THAT(queue.put_back(failed).numbers, IsEmpty());
-  EXPECT_THAT(queue.take()->updates, ElementsAre(1));
-  EXPECT_THAT(queue.take()->updates, ElementsAre(7));
+  EXPECT_THAT(queue.pop()->updates, ElementsAre(1));
+  EXPECT_THAT(queue.pop()->updates, ElementsAre(7));
 }
 
 TEST(MapQueue, CountsItsMemory) {
@@ -443,9 +443,9 @@ TEST(MapQueue, CountsItsMemory) {
   EXPECT_GE(queue.bytes(), 36);
   queue.add(2, grid_update("R1", kSmall), at(2));
   queue.add(3, grid_update("R1", kSmall), at(3));
-  auto taken = *queue.take();
+  auto taken = *queue.pop();
   queue.put_back(taken);
-  while (queue.take()) {
+  while (queue.pop()) {
   }
   EXPECT_EQ(queue.bytes(), 0);
 }
@@ -454,7 +454,7 @@ TEST(MapQueue, StaysFastInAFloodOfTinyClouds) {
   MapQueue queue{kPlenty / 4};
   const auto tiny = cloud_update("R1", {1});
   for (std::uint64_t i = 0; i < 30'000; ++i) queue.add(i, tiny, at(1));
-  EXPECT_EQ(queue.take()->updates.size(), kPlenty / 4 / 12);
+  EXPECT_EQ(queue.pop()->updates.size(), kPlenty / 4 / 12);
 }
 
 TEST(MapQueue, TellsIfAMapMergesIntoTheLastOfItsSender) {
@@ -464,9 +464,9 @@ TEST(MapQueue, TellsIfAMapMergesIntoTheLastOfItsSender) {
   EXPECT_TRUE(queue.joins(grid_update("R1", grid(0.2, 0, 4, 4))));
   EXPECT_FALSE(queue.joins(grid_update("R1", grid(0.2, 0, 4, 4, 0.1)))) << "the grid has another lattice";
   EXPECT_FALSE(queue.joins(grid_update("R2", grid(0.2, 0, 4, 4))));
-  queue.put_back_apart(*[&] {
+  queue.put_back_single(*[&] {
     queue.add(2, grid_update("R1", grid(0.2, 0, 4, 4)), at(2));
-    return queue.take();
+    return queue.pop();
   }());
   EXPECT_FALSE(queue.joins(grid_update("R1", grid(0.4, 0, 4, 4)))) << "the queued grid is sent alone";
 

@@ -31,8 +31,8 @@ struct Race {
   void post(icd::MapUpdate map) { queue.add(++number, std::move(map), at(now)); }
   /// Sends the next map, which takes `bytes` of the link. Returns its sender.
   std::string send(std::size_t bytes = 1) {
-    const auto next = *queue.take(at(now));
-    queue.carried(Sender::of(next.map), bytes);
+    const auto next = *queue.pop(at(now));
+    queue.charge(Sender::from_map(next.map), bytes);
     return next.map.name->text();
   }
 };
@@ -98,7 +98,7 @@ TEST_P(MapTurns, NewestMapWaitsAtMostOneTurnPerSender) {
     for (std::size_t i = 1; i < names.size(); ++i) {  // sometimes its whole map
       if (random() % i == 0) race.post(grid_update(names[i], grid(0, 0, 10, 10)));
     }
-    const auto next = *race.queue.take(at(race.now));
+    const auto next = *race.queue.pop(at(race.now));
     if (next.map.name->text() == "hostile") continue;
     EXPECT_LT(at(race.now) - next.accepted, at(static_cast<double>(names.size())) - at(0));
   }
@@ -113,9 +113,9 @@ TEST_P(MapTurns, LargeMapsGetNoMoreOfTheLink) {
   std::size_t all = 0;
   while (all < 400) {
     for (const auto& name : names) race.post(patch(name, race.number));
-    const auto next = *race.queue.take();
+    const auto next = *race.queue.pop();
     const std::size_t cost = next.map.name->text() == "hostile" ? 1 + random() % kLargest : 1 + random() % 2;
-    race.queue.carried(Sender::of(next.map), cost * kSlot);
+    race.queue.charge(Sender::from_map(next.map), cost * kSlot);
     slots[next.map.name->text()] += cost;
     all += cost;
     for (const auto& name : names) EXPECT_GE(slots[name] + kLargest, all / names.size()) << name;
@@ -130,7 +130,7 @@ TEST(MapTurn, GridsAndCloudsOfARobotTakeSeparateTurns) {
   queue.add(2, patch("R1", 2), at(2));
   queue.add(3, cloud_update("R1", {1}), at(3));
   for (const std::uint64_t number : {1, 3, 2})
-    EXPECT_THAT(queue.take()->updates, testing::ElementsAre(number));
+    EXPECT_THAT(queue.pop()->updates, testing::ElementsAre(number));
 }
 
 TEST(MapTurn, IsNotSavedUpByAnIdleSender) {

@@ -115,7 +115,7 @@ TEST(MarkerChanges, MergingKeepsTheScene) {
 
 std::vector<icd::Marker> in_order(const MarkerChanges& changes) {
   std::vector<icd::Marker> all;
-  for (const auto& [place, marker] : changes.in_order()) all.push_back(marker);
+  for (const auto& [place, marker] : changes.changes_by_place()) all.push_back(marker);
   return all;
 }
 
@@ -142,7 +142,7 @@ TEST(MarkerChanges, LateOlderChangesGiveTheSameScene) {
 TEST(MarkerQueue, GivesNothingIfEmpty) {
   MarkerQueue queue{{.per_message = 10}};
   EXPECT_TRUE(queue.empty());
-  EXPECT_FALSE(queue.take(0));
+  EXPECT_FALSE(queue.pop(0));
   EXPECT_FALSE(queue.oldest());
 }
 
@@ -152,7 +152,7 @@ TEST(MarkerQueue, SendsTheMarkersOfManyUpdatesTogether) {
   queue.add({{add(2, "new"), add(3)}}, at(2));
   EXPECT_EQ(queue.count(), 3);
   EXPECT_EQ(queue.oldest(), at(1));
-  const auto taken = queue.take(0);
+  const auto taken = queue.pop(0);
   EXPECT_THAT(taken->update.markers, ElementsAre(add(1), add(2, "new"), add(3)));
   EXPECT_EQ(taken->updates, 2);
   EXPECT_EQ(taken->accepted, at(1));
@@ -163,11 +163,11 @@ TEST(MarkerQueue, CountsAnUpdateWithItsLastMarker) {
   MarkerQueue queue{{.per_message = 2}};
   queue.add({{add(1), add(2), add(3)}}, at(1));
   queue.add({{add(1, "new")}}, at(2));
-  const auto first = queue.take(0);
+  const auto first = queue.pop(0);
   EXPECT_THAT(first->update.markers, SizeIs(2));
   EXPECT_EQ(first->updates, 1) << "the second update's marker was first in the queue";
   EXPECT_EQ(queue.oldest(), at(1));
-  EXPECT_EQ(queue.take(0)->updates, 1);
+  EXPECT_EQ(queue.pop(0)->updates, 1);
 }
 
 TEST(MarkerQueue, SendsWhatRemainsOfALifetime) {
@@ -177,7 +177,7 @@ TEST(MarkerQueue, SendsWhatRemainsOfALifetime) {
   markers[2].points.resize(2);
   start_lifetimes(markers, 100);
   queue.add({markers}, at(1));
-  const auto first = *queue.take(104);
+  const auto first = *queue.pop(104);
   EXPECT_EQ(first.update.markers[0].lifetime, 6);
   EXPECT_EQ(first.update.markers[1].lifetime, MarkerQueue::kLeastLifetime);
   EXPECT_THAT(first.update.markers[2],
@@ -185,7 +185,7 @@ TEST(MarkerQueue, SendsWhatRemainsOfALifetime) {
                     Field(&icd::Marker::action, icd::MarkerAction::Delete)));
   EXPECT_EQ(first.update.markers[3], add(4, "for ever"));
   queue.put_back(first);
-  const auto retry = *queue.take(106);
+  const auto retry = *queue.pop(106);
   EXPECT_EQ(retry.update.markers[0].lifetime, 4);
   EXPECT_EQ(retry.update.markers[1].action, icd::MarkerAction::Delete);
 }
@@ -194,7 +194,7 @@ TEST(MarkerQueue, SendsAnUpdateWithoutMarkers) {
   MarkerQueue queue{{.per_message = 2}};
   queue.add({}, at(1));
   EXPECT_FALSE(queue.empty());
-  const auto taken = queue.take(0);
+  const auto taken = queue.pop(0);
   EXPECT_THAT(taken->update.markers, IsEmpty());
   EXPECT_EQ(taken->updates, 1);
 }
@@ -202,11 +202,11 @@ TEST(MarkerQueue, SendsAnUpdateWithoutMarkers) {
 TEST(MarkerQueue, FailedMarkersGoBeforeLaterOnes) {
   MarkerQueue queue{{.per_message = 10}};
   queue.add({{add(1), add(2)}}, at(1));
-  auto failed = *queue.take(0);
+  auto failed = *queue.pop(0);
   queue.add({{add(3), remove(2)}}, at(2));
   queue.put_back(failed);
   EXPECT_EQ(queue.oldest(), at(1));
-  const auto taken = queue.take(0);
+  const auto taken = queue.pop(0);
   EXPECT_THAT(taken->update.markers, ElementsAre(add(1), remove(2), add(3)));
   EXPECT_EQ(taken->updates, 2);
 }
@@ -214,10 +214,10 @@ TEST(MarkerQueue, FailedMarkersGoBeforeLaterOnes) {
 TEST(MarkerQueue, LaterDeleteAllReplacesFailedMarkers) {
   MarkerQueue queue{{.per_message = 10}};
   queue.add({{add(1), add(2)}}, at(1));
-  auto failed = *queue.take(0);
+  auto failed = *queue.pop(0);
   queue.add({{remove_all()}}, at(2));
   queue.put_back(failed);
-  const auto taken = queue.take(0);
+  const auto taken = queue.pop(0);
   EXPECT_THAT(taken->update.markers, ElementsAre(remove_all()));
   EXPECT_EQ(taken->updates, 2);
 }
@@ -226,9 +226,9 @@ TEST(MarkerQueue, FrequentChangesDoNotDelayOtherMarkers) {
   MarkerQueue queue{{.per_message = 1}};
   queue.add({{add(1), add(2)}}, at(1));
   queue.add({{add(1, "again")}}, at(2));
-  queue.take(0);
+  queue.pop(0);
   queue.add({{add(1, "and again")}}, at(3));
-  EXPECT_THAT(queue.take(0)->update.markers, ElementsAre(add(2)));
+  EXPECT_THAT(queue.pop(0)->update.markers, ElementsAre(add(2)));
 }
 
 icd::Marker path(std::int32_t id, std::size_t points) {
@@ -240,10 +240,10 @@ icd::Marker path(std::int32_t id, std::size_t points) {
 TEST(MarkerQueue, LimitsTheBytesOfAMessage) {
   MarkerQueue queue{{.bytes_per_message = icd::bytes_of(path(1, 10)) + icd::bytes_of(path(2, 20))}};
   queue.add({{path(1, 10), path(2, 20), path(3, 1), path(4, 90), path(5, 0)}}, at(1));
-  EXPECT_THAT(queue.take(0)->update.markers, ElementsAre(path(1, 10), path(2, 20)));
-  EXPECT_THAT(queue.take(0)->update.markers, ElementsAre(path(3, 1)));
-  EXPECT_THAT(queue.take(0)->update.markers, ElementsAre(path(4, 90))) << "a larger marker is sent alone";
-  EXPECT_THAT(queue.take(0)->update.markers, ElementsAre(path(5, 0)));
+  EXPECT_THAT(queue.pop(0)->update.markers, ElementsAre(path(1, 10), path(2, 20)));
+  EXPECT_THAT(queue.pop(0)->update.markers, ElementsAre(path(3, 1)));
+  EXPECT_THAT(queue.pop(0)->update.markers, ElementsAre(path(4, 90))) << "a larger marker is sent alone";
+  EXPECT_THAT(queue.pop(0)->update.markers, ElementsAre(path(5, 0)));
 }
 
 TEST(MarkerQueue, LimitsTheNumberOfMarkers) {
@@ -256,7 +256,7 @@ TEST(MarkerQueue, LimitsTheNumberOfMarkers) {
   queue.add(many, at(1));
   EXPECT_FALSE(queue.has_room_for({{add(-1)}}));
   EXPECT_TRUE(queue.has_room_for({{add(7, "moved")}}));
-  queue.take(0);
+  queue.pop(0);
   EXPECT_TRUE(queue.has_room_for({{add(-1)}}));
 }
 
@@ -300,7 +300,7 @@ TEST(MarkerQueue, HasRoomForAMarkerThatChangesOften) {
     ASSERT_TRUE(queue.has_room_for(update));
     queue.add(update, at(i));
   }
-  EXPECT_EQ(queue.take(0)->updates, kTimes);
+  EXPECT_EQ(queue.pop(0)->updates, kTimes);
   EXPECT_TRUE(queue.empty());
 }
 
@@ -313,13 +313,13 @@ TEST(MarkerChanges, TellTheirSizeAndTheirSizeWithAnUpdate) {
       const auto foretold = changes.size_with(newer);
       for (const icd::Marker& marker : newer) changes.apply(marker);
       MarkerChanges::Size counted;
-      for (const auto& [place, marker] : changes.in_order()) {
+      for (const auto& [place, marker] : changes.changes_by_place()) {
         ++counted.count;
         counted.bytes += icd::bytes_of(marker);
       }
       ASSERT_EQ(changes.size(), counted);
       ASSERT_EQ(foretold, counted);
-      if (any.pick(3) == 0) changes.take({.count = 3, .bytes = 2000});
+      if (any.pick(3) == 0) changes.pop({.count = 3, .bytes = 2000});
     }
   }
 }
@@ -340,7 +340,7 @@ TEST_P(MarkerQueueLaws, FinalSceneIsRightAndEachUpdateCountsOnce) {
     ++accepted;
   };
   const auto send_one = [&](bool fails) {
-    auto taken = queue.take(0);
+    auto taken = queue.pop(0);
     if (!taken) return;
     MarkerChanges sent;
     for (const icd::Marker& marker : taken->update.markers) sent.apply(marker);
@@ -372,18 +372,18 @@ TEST(MarkerQueue, AppliesNewLimitsFromThenOn) {
   MarkerQueue queue({.per_message = 2});
   queue.add({{add(1), add(2), add(3), add(4), add(5)}}, at(1));
   queue.set_bounds({.per_message = 3});
-  EXPECT_THAT(queue.take(0)->update.markers, SizeIs(3));
+  EXPECT_THAT(queue.pop(0)->update.markers, SizeIs(3));
   queue.set_bounds({.per_message = 1, .bytes = 1});
-  EXPECT_THAT(queue.take(0)->update.markers, SizeIs(1));
+  EXPECT_THAT(queue.pop(0)->update.markers, SizeIs(1));
   EXPECT_FALSE(queue.has_room_for({{add(6)}}));
 }
 
 TEST(MarkerQueue, KeepsItsReducedMessageSize) {
   MarkerQueue queue({.per_message = 4});
   queue.add({{add(1), add(2), add(3), add(4)}}, at(1));
-  queue.put_back_narrower(*queue.take(0));
+  queue.put_back_narrower(*queue.pop(0));
   queue.set_bounds({.per_message = 8});
-  EXPECT_THAT(queue.take(0)->update.markers, SizeIs(2));
+  EXPECT_THAT(queue.pop(0)->update.markers, SizeIs(2));
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ inline std::vector<icd::Marker> merged(const std::vector<icd::Marker>& older,
   MarkerChanges changes;
   for (const icd::Marker& marker : older) changes.apply(marker);
   for (const icd::Marker& marker : newer) changes.apply(marker);
-  return changes.take(changes.size());
+  return changes.pop(changes.size());
 }
 
 }  // namespace adit::queues

@@ -69,7 +69,7 @@ TEST(OvertakenMaps, AreLimitedForEachClient) {
 
 std::vector<Cells> outside(const icd::OccupancyGrid& older, std::initializer_list<icd::OccupancyGrid> newer) {
   std::vector<icd::GridBounds> bounds;
-  for (const icd::OccupancyGrid& each : newer) bounds.push_back(icd::GridBounds::of(each));
+  for (const icd::OccupancyGrid& each : newer) bounds.push_back(icd::GridBounds::from_grid(each));
   return cells_outside(older, bounds);
 }
 
@@ -95,9 +95,9 @@ TEST(CellsOutside, AreEachCellOnce) {
         grid(0, 0, static_cast<std::uint32_t>(pick(1, 12)), static_cast<std::uint32_t>(pick(1, 12)), cell);
     std::vector<icd::GridBounds> newer;
     for (int i = pick(0, 4); i > 0; --i) {
-      newer.push_back(icd::GridBounds::of(grid(cell * pick(-60, 120) / 10, cell * pick(-60, 120) / 10,
-                                               static_cast<std::uint32_t>(pick(1, 9)),
-                                               static_cast<std::uint32_t>(pick(1, 9)), cell)));
+      newer.push_back(icd::GridBounds::from_grid(grid(cell * pick(-60, 120) / 10, cell * pick(-60, 120) / 10,
+                                                      static_cast<std::uint32_t>(pick(1, 9)),
+                                                      static_cast<std::uint32_t>(pick(1, 9)), cell)));
     }
     const auto parts = cells_outside(older, newer);
     for (std::int64_t y = 0; y < older.height; ++y) {

@@ -21,7 +21,7 @@ inline void lay(std::vector<std::uint8_t>& cells, const icd::OccupancyGrid& grid
   }
 }
 
-/// The cells of a grid from take(), packed as by the gateway, which informs the queue.
+/// The cells of a grid from pop(), packed as by the gateway, which informs the queue.
 inline std::vector<std::uint8_t> packed_of(MapQueue& queue, const QueuedMap& taken) {
   const auto& grid = std::get<icd::OccupancyGrid>(taken.map.msg);
   std::vector<std::uint8_t> cells(std::size_t{grid.width} * grid.height, icd::kUnknownCell);

@@ -20,7 +20,7 @@ const QueuedMap kCloud = queued_map(cloud_update("r1", {1}));
 
 Pipelining after(int accepted) {
   Pipelining ahead;
-  for (int i = 0; i < accepted; ++i) ahead.taken(false);
+  for (int i = 0; i < accepted; ++i) ahead.on_accepted(false);
   return ahead;
 }
 
@@ -52,9 +52,9 @@ TEST(Pipelining, AllowedAfterSeveralDeliveriesInARow) {
   EXPECT_FALSE(may_go(after(Pipelining::kWell - 1)));
   Pipelining ahead = after(Pipelining::kWell);
   EXPECT_TRUE(may_go(ahead));
-  ahead.failed(false);
+  ahead.on_failed(false);
   EXPECT_FALSE(may_go(ahead));
-  for (int i = 0; i < Pipelining::kWell; ++i) ahead.taken(false);
+  for (int i = 0; i < Pipelining::kWell; ++i) ahead.on_accepted(false);
   EXPECT_TRUE(may_go(ahead));
 }
 
@@ -67,10 +67,10 @@ TEST(Pipelining, AllowedWhileTheAnswerIsNotLate) {
 TEST(Pipelining, SecondAllowedAfterOneAheadWasDelivered) {
   Pipelining ahead = after(Pipelining::kWell);
   EXPECT_FALSE(may_go(ahead, 1, true)) << "this map is a trial";
-  ahead.taken(true);
+  ahead.on_accepted(true);
   EXPECT_TRUE(may_go(ahead, 1, true));
-  ahead.failed(true);
-  for (int i = 0; i < Pipelining::kMostWell; ++i) ahead.taken(false);
+  ahead.on_failed(true);
+  for (int i = 0; i < Pipelining::kMostWell; ++i) ahead.on_accepted(false);
   EXPECT_FALSE(may_go(ahead, 1, true)) << "this map is another trial";
   EXPECT_TRUE(may_go(ahead));
 }
@@ -87,15 +87,15 @@ TEST(Pipelining, BacksOffIfTwoInFlightFail) {
   Pipelining ahead;
   for (int tried = 0, accepted_between = Pipelining::kWell; tried < 10; ++tried) {
     int accepted = 0;
-    for (; !may_go(ahead); ++accepted) ahead.taken(false);
+    for (; !may_go(ahead); ++accepted) ahead.on_accepted(false);
     EXPECT_EQ(accepted, accepted_between);
-    ahead.failed(true);
+    ahead.on_failed(true);
     accepted_between = std::min(2 * accepted_between, Pipelining::kMostWell);
   }
-  for (int i = 0; i < Pipelining::kMostWell; ++i) ahead.taken(false);
-  ahead.taken(true);
-  ahead.failed(false);
-  for (int i = 0; i < Pipelining::kWell; ++i) ahead.taken(false);
+  for (int i = 0; i < Pipelining::kMostWell; ++i) ahead.on_accepted(false);
+  ahead.on_accepted(true);
+  ahead.on_failed(false);
+  for (int i = 0; i < Pipelining::kWell; ++i) ahead.on_accepted(false);
   EXPECT_TRUE(may_go(ahead)) << "a map was accepted";
 }
 

@@ -31,7 +31,7 @@ class PrecisionOf : public testing::Test {
   void add(const char* name, int clouds) {
     for (int i = 0; i < clouds; ++i) queue_.add(++number_, cloud_update(name, {1, 2, 3}), at(i));
   }
-  Precision next() { return queue_.take()->precision; }
+  Precision next() { return queue_.pop()->precision; }
 
   MapQueue queue_{kMergeRoom};
   std::uint64_t number_ = 0;
@@ -42,7 +42,7 @@ TEST_F(PrecisionOf, ARobotIsItsSetting) {
   add("R2", 3);
   EXPECT_EQ(next(), Precision::Millimetre);
   add("R3", 3);
-  while (queue_.count(Sender{robot("R2"), false}) > 0) (void)queue_.take();
+  while (queue_.count(Sender{robot("R2"), false}) > 0) (void)queue_.pop();
   EXPECT_EQ(next(), Precision::Exact) << "a robot without a setting";
 }
 
@@ -63,17 +63,17 @@ TEST_F(PrecisionOf, AutoFollowsTheQueuedBytes) {
   EXPECT_EQ(next(), Precision::Millimetre);
   add("R1", 4);
   EXPECT_EQ(next(), Precision::EightMillimetres);
-  while (queue_.count() > 0) (void)queue_.take();
+  while (queue_.count() > 0) (void)queue_.pop();
   add("R1", 1);
   EXPECT_EQ(next(), Precision::Exact) << "once the queue is empty";
 }
 
 TEST_F(PrecisionOf, AutoMergesAtMostOneMessage) {
   add("R1", 1);
-  const std::size_t points = queue_.take()->map.data.raw_size;
+  const std::size_t points = queue_.pop()->map.data.raw_size;
   queue_.a_message_holds({points, 2 * points, 3 * points});
   add("R1", 9);
-  const auto taken = queue_.take();
+  const auto taken = queue_.pop();
   EXPECT_EQ(taken->precision, Precision::EightMillimetres);
   EXPECT_EQ(taken->map.data.raw_size, 3 * points);
 }
@@ -81,7 +81,7 @@ TEST_F(PrecisionOf, AutoMergesAtMostOneMessage) {
 TEST_F(PrecisionOf, ARetriedCloudIsChosenAnew) {
   add("R1", 1);
   queue_.a_message_holds({1, 1, 1});
-  auto back = *queue_.take();
+  auto back = *queue_.pop();
   EXPECT_EQ(back.precision, Precision::EightMillimetres);
   queue_.a_message_holds(kAnyPoints);
   (void)queue_.put_back(std::move(back));

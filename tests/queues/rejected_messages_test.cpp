@@ -107,8 +107,8 @@ TEST(RejectedMessages, AreNotReplacedBitByBitByACreepingWindow) {
   EXPECT_EQ(rejected.replaced_by(window(0.04)), std::vector<std::uint64_t>{3});
   EXPECT_EQ(rejected.replaced_by(window(0.02)), (std::vector<std::uint64_t>{2, 3}));
   RejectedMessage replaced_others = item(window(1));
-  replaced_others.bounds = icd::joint_bounds(icd::GridBounds::of(grid(1, 0, 100, 100)),
-                                             icd::GridBounds::of(grid(0.98, 0, 100, 100)));
+  replaced_others.bounds = icd::joint_bounds(icd::GridBounds::from_grid(grid(1, 0, 100, 100)),
+                                             icd::GridBounds::from_grid(grid(0.98, 0, 100, 100)));
   rejected.add(replaced_others);
   EXPECT_EQ(rejected.replaced_by(window(0.99)), std::vector<std::uint64_t>{4});
   EXPECT_TRUE(rejected.replaced_by(window(1.02)).empty());
@@ -178,24 +178,24 @@ TEST(RejectedMessages, IsBounded) {
 TEST(RejectedMessages, GivesEachMessageOutOnce) {
   RejectedMessages rejected;
   rejected.add(item(cloud_update("ugv1", {1})));
-  EXPECT_TRUE(rejected.take(1));
-  EXPECT_FALSE(rejected.take(1));
+  EXPECT_TRUE(rejected.extract(1));
+  EXPECT_FALSE(rejected.extract(1));
   EXPECT_EQ(rejected.find(1), nullptr);
 }
 
 TEST(StateQueueApart, FindsTheFaultyRobotAndSendsTheOthers) {
   StateQueue queue;
   queue.add(posted(state_of({"ugv1", "ugv2", "ugv3"})), at(0));
-  queue.put_back_apart(*queue.take());
+  queue.put_back_single(*queue.pop());
   std::vector<std::string> passed;
   for (int i = 0; i < 3; ++i) {
-    const auto taken = queue.take(at(1 + i));
+    const auto taken = queue.pop(at(1 + i));
     ASSERT_EQ(taken->update.poses.size(), 1);
     const icd::RobotName& name = taken->update.poses.front().name;
     if (name.text() == "ugv2") {
       queue.give_up(name, at(1 + i));
     } else {
-      queue.passed(*taken);
+      queue.on_passed(*taken);
       passed.push_back(name.text());
     }
   }
@@ -203,37 +203,37 @@ TEST(StateQueueApart, FindsTheFaultyRobotAndSendsTheOthers) {
   EXPECT_TRUE(queue.empty());
 
   queue.add(posted(state_of({"ugv1", "ugv2", "ugv3"})), at(5));
-  const auto together = queue.take(at(6));
+  const auto together = queue.pop(at(6));
   ASSERT_EQ(together->update.poses.size(), 2) << "accepted poses are sent together again";
-  const auto apart = queue.take(at(20));
+  const auto apart = queue.pop(at(20));
   ASSERT_EQ(apart->update.poses.size(), 1);
   EXPECT_EQ(apart->update.poses.front().name.text(), "ugv2");
-  queue.passed(*apart);
+  queue.on_passed(*apart);
   queue.add(posted(state_of({"ugv1"})), at(21));
-  EXPECT_EQ(queue.take(at(22))->update.poses.size(), 3);
+  EXPECT_EQ(queue.pop(at(22))->update.poses.size(), 3);
 }
 
 TEST(StateQueueApart, RetriesOnlyTheNewestRejectedPose) {
   const icd::StateUpdate rejected_poses = state_of({"ugv1"});
   StateQueue queue;
   queue.add_unless_known(rejected_poses, at(0));
-  const auto given_up = queue.take();
+  const auto given_up = queue.pop();
   ASSERT_TRUE(given_up) << "no newer pose is known";
   queue.add_unless_known(rejected_poses, at(1));
   EXPECT_TRUE(queue.empty()) << "the pose is in flight";
   queue.give_up(rejected_poses.poses.front().name, at(1));
   queue.add_unless_known(rejected_poses, at(2));
-  const auto again = queue.take();
+  const auto again = queue.pop();
   ASSERT_TRUE(again);
-  queue.passed(*again);
+  queue.on_passed(*again);
   queue.add_unless_known(rejected_poses, at(3));
   EXPECT_TRUE(queue.empty()) << "the pose was delivered";
 
   queue.add(posted(rejected_poses), at(4));
-  queue.take();
+  queue.pop();
   queue.add(posted(rejected_poses), at(5));  // a newer one
   queue.give_up(rejected_poses.poses.front().name, at(6));
-  queue.passed(*queue.take());
+  queue.on_passed(*queue.pop());
   queue.add_unless_known(rejected_poses, at(7));
   EXPECT_TRUE(queue.empty()) << "a newer pose was delivered";
 }
@@ -242,7 +242,7 @@ TEST(StateQueueApart, SendsOtherRobotsWhileOneIsOnTrial) {
   StateQueue queue;
   queue.add(posted(state_of({"ugv1", "ugv2"})), at(0));
   queue.give_up(*robot("ugv2"), at(0));
-  EXPECT_EQ(queue.take(at(1))->update.poses.front().name.text(), "ugv1");
+  EXPECT_EQ(queue.pop(at(1))->update.poses.front().name.text(), "ugv1");
   EXPECT_FALSE(queue.empty()) << "ugv2 still has an unsent pose";
   EXPECT_EQ(queue.unsent().size(), 1) << "ugv1 is in flight";
 }
@@ -255,12 +255,12 @@ TEST(MarkerQueueNarrower, FindsTheFaultyMarker) {
   std::vector<std::int32_t> refused;
   std::size_t taken = 0;
   int messages = 0;
-  while (auto waiting = queue.take(0)) {
+  while (auto waiting = queue.pop(0)) {
     ++messages;
     const auto& markers = waiting->update.markers;
     const bool bad = std::ranges::find(markers, 37, &icd::Marker::id) != markers.end();
     if (!bad) {
-      queue.passed();
+      queue.on_passed();
       taken += markers.size();
     } else if (markers.size() > 1) {
       queue.put_back_narrower(*waiting);
@@ -277,10 +277,10 @@ TEST(MarkerQueueBehind, SendsOthersFirstAndLosesNothing) {
   MarkerQueue queue({.per_message = 1});
   queue.add({{marker("a", 1)}}, at(0));
   queue.add({{marker("b", 1)}}, at(0));
-  const auto first = queue.take(0);
-  queue.put_behind(*first);
-  EXPECT_EQ(queue.take(0)->update.markers.front().ns, "b");
-  const auto again = queue.take(0);
+  const auto first = queue.pop(0);
+  queue.requeue_last(*first);
+  EXPECT_EQ(queue.pop(0)->update.markers.front().ns, "b");
+  const auto again = queue.pop(0);
   EXPECT_EQ(again->update.markers.front().ns, "a");
   EXPECT_EQ(again->updates, 1);
 }
@@ -288,10 +288,10 @@ TEST(MarkerQueueBehind, SendsOthersFirstAndLosesNothing) {
 TEST(MarkerQueueBehind, SendsAPostponedMarkerAfterTheOthers) {
   MarkerQueue queue({.per_message = 1});
   queue.add({{marker("a", 1), marker("b", 1)}}, at(0));
-  queue.put_behind(*queue.take(0));
-  EXPECT_EQ(queue.take(0)->updates, 0u) << "only a part of the update was sent";
+  queue.requeue_last(*queue.pop(0));
+  EXPECT_EQ(queue.pop(0)->updates, 0u) << "only a part of the update was sent";
   ASSERT_TRUE(queue.oldest());
-  const auto again = queue.take(0);
+  const auto again = queue.pop(0);
   EXPECT_EQ(again->update.markers.front().ns, "a");
   EXPECT_EQ(again->updates, 1u);
 }
@@ -299,13 +299,13 @@ TEST(MarkerQueueBehind, SendsAPostponedMarkerAfterTheOthers) {
 TEST(MarkerQueueBehind, KeepsANewerChangeOfThePostponedMarker) {
   MarkerQueue queue({.per_message = 1});
   queue.add({{marker("a", 1)}}, at(0));
-  const auto first = queue.take(0);
+  const auto first = queue.pop(0);
   icd::Marker newer = marker("a", 1);
   newer.text = "newer";
   queue.add({{newer}}, at(1));
-  queue.put_behind(*first);
+  queue.requeue_last(*first);
   EXPECT_EQ(queue.count(), 1);
-  const auto taken = queue.take(0);
+  const auto taken = queue.pop(0);
   EXPECT_EQ(taken->update.markers.front().text, "newer");
   EXPECT_EQ(taken->updates, 2);
 }
@@ -314,14 +314,14 @@ TEST(MarkerQueueBehind, DoesNotReorderADeleteAll) {
   MarkerQueue queue({.per_message = 1});
   queue.add({{marker("", 0, icd::MarkerAction::DeleteAll), marker("a", 1)}}, at(0));
   for (int round = 0; round < 3; ++round) {
-    const auto first = queue.take(0);
+    const auto first = queue.pop(0);
     ASSERT_EQ(first->update.markers.front().action, icd::MarkerAction::DeleteAll);
-    queue.put_behind(*first);
-    (void)queue.take(0);  // the message that is sent before it once
+    queue.requeue_last(*first);
+    (void)queue.pop(0);  // the message that is sent before it once
   }
-  queue.passed();
-  EXPECT_EQ(queue.take(0)->update.markers.front().action, icd::MarkerAction::DeleteAll);
-  EXPECT_EQ(queue.take(0)->update.markers.front().ns, "a") << "also in its own turn";
+  queue.on_passed();
+  EXPECT_EQ(queue.pop(0)->update.markers.front().action, icd::MarkerAction::DeleteAll);
+  EXPECT_EQ(queue.pop(0)->update.markers.front().ns, "a") << "also in its own turn";
 }
 
 TEST(MarkerQueueBehind, TriesOtherMarkersAheadOfADeleteAll) {
@@ -329,8 +329,8 @@ TEST(MarkerQueueBehind, TriesOtherMarkersAheadOfADeleteAll) {
   queue.add({{marker("", 0, icd::MarkerAction::DeleteAll), marker("a", 1), marker("b", 1)}}, at(0));
   std::vector<std::string> ahead;
   for (int round = 0; round < 3; ++round) {
-    queue.put_behind(*queue.take(0));
-    const auto other = queue.take(0);
+    queue.requeue_last(*queue.pop(0));
+    const auto other = queue.pop(0);
     EXPECT_TRUE(other->is_ahead);
     EXPECT_EQ(other->updates, 0u) << "the update is still queued";
     ahead.push_back(other->update.markers.front().ns);
@@ -342,8 +342,8 @@ TEST(MarkerQueueBehind, TriesOtherMarkersAheadOfADeleteAll) {
 TEST(MarkerQueueBehind, SendsNothingAheadOfALoneDeleteAll) {
   MarkerQueue queue({.per_message = 1});
   queue.add({{marker("", 0, icd::MarkerAction::DeleteAll)}}, at(0));
-  queue.put_behind(*queue.take(0));
-  const auto again = queue.take(0);
+  queue.requeue_last(*queue.pop(0));
+  const auto again = queue.pop(0);
   EXPECT_FALSE(again->is_ahead);
   EXPECT_EQ(again->updates, 1u);
 }
@@ -352,9 +352,9 @@ TEST(MarkerQueueBehind, SendsNothingAheadOfALoneDeleteAll) {
 TEST(StateQueue, FailedSendDoesNotMakeOldPosesNews) {
   StateQueue queue;
   queue.add(posted(state_of({"ugv1"})), at(0));
-  queue.passed(*queue.take());
+  queue.on_passed(*queue.pop());
   queue.add(posted(state_of({"ugv2"})), at(1));
-  const auto both = *queue.take();
+  const auto both = *queue.pop();
   ASSERT_EQ(both.update.poses.size(), 2u);
   queue.put_back(both);
   ASSERT_EQ(queue.unsent().size(), 1u);
@@ -368,13 +368,13 @@ TEST(StateQueue, ForgetsRobotsWithoutNewsIfFull) {
     many.poses.push_back({*robot("r" + std::to_string(i)), {}});
   }
   queue.add(posted(many), at(0));
-  const auto under_way = *queue.take();
+  const auto under_way = *queue.pop();
   EXPECT_FALSE(queue.has_room_for(state_of({"ugv1"}))) << "the messages in flight may return";
-  queue.passed(under_way);
+  queue.on_passed(under_way);
   queue.add(posted(state_of({"r7"})), at(1));
   ASSERT_TRUE(queue.has_room_for(state_of({"ugv1"})));
   queue.add(posted(state_of({"ugv1"})), at(2));
-  EXPECT_EQ(queue.take()->update.poses.size(), 2u);
+  EXPECT_EQ(queue.pop()->update.poses.size(), 2u);
 }
 
 }  // namespace

@@ -241,22 +241,22 @@ TEST(StampShift, KeepsTheSpacingOfMarkersInAMessage) {
 TEST(StampShift, ReportsEachChangedClockOnce) {
   StampShift shift;
   shift.shift(of("R1"), {}, kNow);
-  EXPECT_TRUE(shift.changed().empty());
+  EXPECT_TRUE(shift.take_changed().empty());
   for (const char* robot : {"R2", "R1", "R2"}) shift.shift(of(robot), 100.0, kNow);
   shift.shift(of("R2"), 101.0, kNow);
-  const auto changed = shift.changed();
+  const auto changed = shift.take_changed();
   ASSERT_EQ(changed.size(), 2);
   EXPECT_EQ(changed[0].first, of("R2"));
   EXPECT_EQ(changed[0].second.latest, 101.0);
-  EXPECT_TRUE(shift.changed().empty());
+  EXPECT_TRUE(shift.take_changed().empty());
   shift.shift(of("R2"), 101.5, kNow + 1);
-  EXPECT_TRUE(shift.changed().empty()) << "the clock did not change";
+  EXPECT_TRUE(shift.take_changed().empty()) << "the clock did not change";
   shift.shift(of("R2"), 110.0, kNow + 1);
-  EXPECT_EQ(shift.changed().size(), 1) << "the clock was set again";
+  EXPECT_EQ(shift.take_changed().size(), 1) << "the clock was set again";
   for (const icd::Uri uri : {icd::Uri::MapUpdate, icd::Uri::MarkersUpdate}) {
     for (const double stamp : {50.0, 51.0}) {
       shift.shift({"R1", uri, ""}, stamp, kNow);
-      EXPECT_EQ(shift.changed().size(), 1);
+      EXPECT_EQ(shift.take_changed().size(), 1);
     }
   }
 }
@@ -280,17 +280,17 @@ TEST(StampShift, ContinuesUnchangedAfterARestart) {
 
 TEST(StampShift, KnowsTheClockOfARobotThatSendsForAWhile) {
   StampShift shift;
-  EXPECT_FALSE(shift.told(kNow, 0, 1e9));
+  EXPECT_FALSE(shift.sender_time(kNow, 0, 1e9));
   for (int second = 0; second <= 9; ++second) shift.shift(of("R1"), 5000.0 + second, kNow + second);
-  EXPECT_FALSE(shift.told(kNow + 9, 0, 1e9));
+  EXPECT_FALSE(shift.sender_time(kNow + 9, 0, 1e9));
   shift.shift(of("R1"), 5010.0, kNow + 10);
-  EXPECT_THAT(*shift.told(kNow + 12, 0, 1e9), DoubleNear(5012, 1e-6));
+  EXPECT_THAT(*shift.sender_time(kNow + 12, 0, 1e9), DoubleNear(5012, 1e-6));
   for (int second = 0; second <= 10; ++second) shift.shift(of("R2"), 100.0 + second, kNow + second);
-  EXPECT_THAT(*shift.told(kNow + 12, 0, 1e9), DoubleNear(112, 1e-6)) << "the earliest stamp";
-  EXPECT_THAT(*shift.told(kNow + 12, 1000, 1e9), DoubleNear(5012, 1e-6))
+  EXPECT_THAT(*shift.sender_time(kNow + 12, 0, 1e9), DoubleNear(112, 1e-6)) << "the earliest stamp";
+  EXPECT_THAT(*shift.sender_time(kNow + 12, 1000, 1e9), DoubleNear(5012, 1e-6))
       << "the other robot's clock is not set";
-  EXPECT_THAT(*shift.told(kNow + 12, 0, 1000), DoubleNear(112, 1e-6));
-  EXPECT_FALSE(shift.told(kNow + 21, 0, 1e9)) << "the robots are silent";
+  EXPECT_THAT(*shift.sender_time(kNow + 12, 0, 1000), DoubleNear(112, 1e-6));
+  EXPECT_FALSE(shift.sender_time(kNow + 21, 0, 1e9)) << "the robots are silent";
 }
 
 TEST(StampShift, ForgetsTheLongestSilentAddressAfterARestart) {

@@ -35,7 +35,7 @@ TEST(StateQueue, SendsAllRobotsInOneMessage) {
   StateQueue queue;
   post(queue, state(10, {pose("R2", 2)}), at(1));
   post(queue, state(11, {pose("R1", 1)}), at(2));
-  const auto taken = queue.take();
+  const auto taken = queue.pop();
   EXPECT_THAT(taken->update.poses, ElementsAre(pose("R1", 1), pose("R2", 2)));
   EXPECT_THAT(taken->update.header.stamp, Optional(11.0));
   EXPECT_EQ(taken->accepted, at(1));
@@ -44,21 +44,21 @@ TEST(StateQueue, SendsAllRobotsInOneMessage) {
 TEST(StateQueue, AlsoSendsRobotsWithoutNews) {
   StateQueue queue;
   post(queue, state(10, {pose("R1", 1), pose("R2", 2)}), at(1));
-  queue.take();
+  queue.pop();
   post(queue, state(12, {pose("R2", 3)}), at(2));
-  const auto taken = queue.take();
+  const auto taken = queue.pop();
   EXPECT_THAT(taken->update.poses, ElementsAre(pose("R1", 1), pose("R2", 3)));
   EXPECT_THAT(taken->news, ElementsAre(pose("R2", 3)));
 }
 
 TEST(StateQueue, GivesNothingWithoutNews) {
   StateQueue queue;
-  EXPECT_FALSE(queue.take());
+  EXPECT_FALSE(queue.pop());
   post(queue, state(10, {pose("R1", 1)}), at(1));
   EXPECT_FALSE(queue.empty());
-  queue.take();
+  queue.pop();
   EXPECT_TRUE(queue.empty());
-  EXPECT_FALSE(queue.take());
+  EXPECT_FALSE(queue.pop());
 }
 
 struct OrderCase {
@@ -74,11 +74,11 @@ TEST_P(StateQueueOrder, IsByStampWithinAClientElseByArrival) {
   const OrderCase& given = GetParam();
   StateQueue queue;
   post(queue, state(given.held, {pose("R1", 1)}), at(1));
-  queue.passed(*queue.take());
+  queue.on_passed(*queue.pop());
   post(queue, state(given.newer, {pose("R1", 2)}, given.address), at(2));
   EXPECT_EQ(queue.empty(), given.x == 1) << "an older pose is not news";
   post(queue, state(1, {pose("R2", 0)}), at(3));
-  EXPECT_THAT(queue.take()->update.poses, ElementsAre(pose("R1", given.x), pose("R2", 0)));
+  EXPECT_THAT(queue.pop()->update.poses, ElementsAre(pose("R1", given.x), pose("R2", 0)));
 }
 
 INSTANTIATE_TEST_SUITE_P(Table, StateQueueOrder,
@@ -97,41 +97,41 @@ INSTANTIATE_TEST_SUITE_P(Table, StateQueueOrder,
 TEST(StateQueue, RepeatsNoPoseOfAnEarlierRun) {
   StateQueue queue;
   post(queue, state(10, {pose("R1", 1), pose("R2", 1)}), at(1));
-  queue.passed(*queue.take());
+  queue.on_passed(*queue.pop());
   post(queue, state(11, {pose("R2", 2), pose("R3", 2)}), at(2));
   queue.begin_run();
   post(queue, state(12, {pose("R3", 3)}), at(3));
-  const auto first = queue.take();
+  const auto first = queue.pop();
   EXPECT_THAT(first->update.poses, ElementsAre(pose("R2", 2), pose("R3", 3))) << "a queued pose was lost";
-  queue.passed(*first);
+  queue.on_passed(*first);
   post(queue, state(13, {pose("R4", 4)}), at(4));
-  EXPECT_THAT(queue.take()->update.poses, ElementsAre(pose("R3", 3), pose("R4", 4)));
+  EXPECT_THAT(queue.pop()->update.poses, ElementsAre(pose("R3", 3), pose("R4", 4)));
   EXPECT_THAT(queue.news_in(state(9, {pose("R1", 9)})), IsEmpty()) << "a late pose is not news";
 }
 
 TEST(StateQueue, RetriesAPoseOfAnEarlierRunUntilDelivered) {
   StateQueue queue;
   post(queue, state(10, {pose("R1", 1)}), at(1));
-  const auto under_way = *queue.take();
+  const auto under_way = *queue.pop();
   queue.begin_run();
   queue.put_back(under_way);
-  const auto again = queue.take();
+  const auto again = queue.pop();
   EXPECT_THAT(again->news, ElementsAre(pose("R1", 1)));
   post(queue, state(11, {pose("R1", 2)}), at(2));
-  queue.passed(*again);
-  queue.passed(*queue.take());
+  queue.on_passed(*again);
+  queue.on_passed(*queue.pop());
   post(queue, state(12, {pose("R2", 3)}), at(3));
-  EXPECT_THAT(queue.take()->update.poses, ElementsAre(pose("R1", 2), pose("R2", 3))) << "R1 posted again";
+  EXPECT_THAT(queue.pop()->update.poses, ElementsAre(pose("R1", 2), pose("R2", 3))) << "R1 posted again";
 }
 
 TEST(StateQueue, FailedPosesAreNewsAndReplaceNoNewerOnes) {
   StateQueue queue;
   post(queue, state(10, {pose("R1", 1), pose("R2", 1)}), at(1));
-  const auto failed = *queue.take();
+  const auto failed = *queue.pop();
   post(queue, state(11, {pose("R1", 2)}), at(2));
   queue.put_back(failed);
   EXPECT_EQ(queue.next(at(2))->accepted, at(1));
-  const auto taken = queue.take();
+  const auto taken = queue.pop();
   EXPECT_THAT(taken->update.poses, ElementsAre(pose("R1", 2), pose("R2", 1)));
   EXPECT_EQ(taken->accepted, at(1));
 }
@@ -169,7 +169,7 @@ TEST(StateQueue, SendsTheNewestPosesUntilDelivered) {
   for (int i = 0; i < 5000; ++i) {
     if (pick(2) == 0) add();
     ASSERT_EQ(queue.empty(), lacking.empty());
-    auto taken = queue.take();
+    auto taken = queue.pop();
     if (!taken) continue;
     ASSERT_THAT(taken->update.poses, SizeIs(newest.size()));
     for (const auto& robot : taken->update.poses) {
@@ -181,7 +181,7 @@ TEST(StateQueue, SendsTheNewestPosesUntilDelivered) {
     if (pick(3) != 0) lacking.clear();
     const bool is_taken = lacking.empty();
     if (pick(3) == 0) add();
-    is_taken ? queue.passed(*taken) : queue.put_back(*taken);
+    is_taken ? queue.on_passed(*taken) : queue.put_back(*taken);
   }
 }
 
@@ -192,21 +192,21 @@ class OneRejectedRobot : public testing::Test {
   void play(double until, const std::function<bool(const std::string&)>& rejects) {
     for (; now_ < until; now_ += 1) {
       for (const char* name : {"R1", "R2", "R3"}) post(queue_, state(now_, {pose(name, now_)}), at(now_));
-      const auto sent = queue_.take(at(now_));
+      const auto sent = queue_.pop(at(now_));
       if (!sent) continue;
       const auto& poses = sent->update.poses;
       if (std::ranges::none_of(poses, [&](const auto& each) { return rejects(each.name.text()); })) {
-        queue_.passed(*sent);
+        queue_.on_passed(*sent);
         for (const auto& each : poses) {
-          blame_.passed(each.name.text(), at(now_));
+          blame_.on_passed(each.name.text(), at(now_));
           arrived_[each.name.text()] = each.pose.position.x;
         }
       } else if (Trial* const trial = queue_.trial_of(*sent)) {
         tries_.push_back(now_);
-        blame_.failed(poses.front().name.text(), *trial, at(now_), false);
+        blame_.on_failed(poses.front().name.text(), *trial, at(now_), false);
         queue_.put_back(*sent);
       } else {
-        queue_.put_back_apart(*sent);
+        queue_.put_back_single(*sent);
       }
       for (const auto& [name, x] : arrived_) {
         if (!rejects(name)) oldest_ = std::max(oldest_, now_ - x);
@@ -257,14 +257,14 @@ TEST_F(OneRejectedRobot, IsLateAlone) {
 TEST(StateQueue, TriesSilentRobotsAlone) {
   StateQueue queue;
   post(queue, state(1, {pose("R1", 1), pose("R2", 1)}), at(1));
-  queue.passed(*queue.take(at(1)));
+  queue.on_passed(*queue.pop(at(1)));
   post(queue, state(2, {pose("R2", 2)}), at(2));
-  queue.put_back_apart(*queue.take(at(2)));
-  const auto first = *queue.take(at(3));
+  queue.put_back_single(*queue.pop(at(2)));
+  const auto first = *queue.pop(at(3));
   EXPECT_THAT(first.update.poses, ElementsAre(pose("R2", 2)));
-  Blame().failed("R2", *queue.trial_of(first), at(3), false);
+  Blame().on_failed("R2", *queue.trial_of(first), at(3), false);
   queue.put_back(first);
-  const auto second = *queue.take(at(4));
+  const auto second = *queue.pop(at(4));
   EXPECT_THAT(second.update.poses, ElementsAre(pose("R1", 1)));
   EXPECT_THAT(second.news, IsEmpty());
 }
@@ -272,32 +272,32 @@ TEST(StateQueue, TriesSilentRobotsAlone) {
 TEST(StateQueue, RepeatsNoPoseThatWasGivenUp) {
   StateQueue queue;
   post(queue, state(1, {pose("R1", 1), pose("R2", 1)}), at(1));
-  queue.put_back_apart(*queue.take(at(1)));
+  queue.put_back_single(*queue.pop(at(1)));
   for (int i = 0; i < 2; ++i) {
-    const auto alone = *queue.take(at(2));
+    const auto alone = *queue.pop(at(2));
     if (alone.update.poses.front() == pose("R1", 1)) {
       queue.give_up(alone.update.poses.front().name, at(2));
     } else {
-      queue.passed(alone);
+      queue.on_passed(alone);
     }
   }
   for (const double later : {20.0, 21.0, 22.0}) {
     post(queue, state(later, {pose("R2", later)}), at(later));
-    const auto next = *queue.take(at(later));
+    const auto next = *queue.pop(at(later));
     EXPECT_THAT(next.update.poses, ElementsAre(pose("R2", later)));
-    queue.passed(next);
+    queue.on_passed(next);
   }
 }
 
 TEST(StateQueue, ForgetsDeliveredRobots) {
   StateQueue queue;
   post(queue, state(10, {pose("R1", 1), pose("R2", 2)}), at(1));
-  queue.passed(*queue.take());
+  queue.on_passed(*queue.pop());
   post(queue, state(12, {pose("R2", 3)}), at(2));
   queue.forget_what_was_taken();
-  EXPECT_TRUE(queue.take());
+  EXPECT_TRUE(queue.pop());
   post(queue, state(13, {pose("R3", 4)}), at(3));
-  EXPECT_THAT(queue.take()->update.poses, ElementsAre(pose("R2", 3), pose("R3", 4)));
+  EXPECT_THAT(queue.pop()->update.poses, ElementsAre(pose("R2", 3), pose("R3", 4)));
 }
 
 }  // namespace

@@ -99,14 +99,14 @@ class StitchLaws : public testing::TestWithParam<std::uint64_t> {
 
   /// Sends as a gateway does: other grids arrive meanwhile, and the message may be lost or rejected.
   void send(int how) {
-    auto next = queue_.take();
+    auto next = queue_.pop();
     if (!next) return;
     const auto cells = packed_of(queue_, *next);
     while (pick(3) == 0) post();
     if (how == 6) {
       queue_.put_back(std::move(*next));
     } else if (how == 7 && !next->parts.empty()) {
-      queue_.put_back_apart(std::move(*next));
+      queue_.put_back_single(std::move(*next));
     } else {
       arrives(*next, cells);
     }

@@ -88,7 +88,7 @@ TEST(StitchedGrid, HasTheNewestHeaderAndTheOutermostCorner) {
   auto older = grid(0.25, 0.5, 4, 4, 0.25), newer = grid(1.25, 0.5, 4, 4, 0.25);
   older.header.stamp = 1;
   newer.header.stamp = 2;
-  const auto whole = stitched(std::vector<const icd::OccupancyGrid*>{&older, &newer});
+  const auto whole = stitch_grids(std::vector<const icd::OccupancyGrid*>{&older, &newer});
   ASSERT_TRUE(whole);
   EXPECT_EQ(whole->header.stamp, 2.0);
   EXPECT_EQ(whole->origin, older.origin);
@@ -103,7 +103,7 @@ TEST(StitchedGrid, LiesOnTheLatticeOfItsTurnedParts) {
     auto left = first, below = first;
     left.origin = *corner_at(first, -3, 0);
     below.origin = *corner_at(first, 0, -3);
-    const auto whole = stitched(std::vector<const icd::OccupancyGrid*>{&first, &left, &below});
+    const auto whole = stitch_grids(std::vector<const icd::OccupancyGrid*>{&first, &left, &below});
     ASSERT_TRUE(whole);
     EXPECT_EQ(cells_in(*whole, first), (Cells{3, 3, 3, 3}));
     EXPECT_EQ(cells_in(*whole, left), (Cells{0, 3, 3, 3}));

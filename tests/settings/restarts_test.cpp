@@ -140,7 +140,7 @@ TEST(Restarts, IncludeTheEndpointsOfTheCourseInUse) {
   next.courses.front().scoring = {"10.9", 9};
   next.courses.front().mapping = now.command_post.mapping;
   next.command_post.course = "A";
-  EXPECT_EQ(restarts_by(in_use(now), in_use(next)), kScoring);
+  EXPECT_EQ(restarts_by(effective_settings(now), effective_settings(next)), kScoring);
 }
 
 }  // namespace

@@ -145,9 +145,9 @@ TEST(Settings, InUseHaveTheEndpointsOfTheCourseAndTheAliases) {
   const std::string rest =
       R"(, "courses": [{"name": "B", "scoring": {"address": "10.100.2.200", "port": 8000},)"
       R"( "mapping": {"address": "10.100.2.201", "port": 8000}}], "robots": [{"name": "ugv1", "alias": "husky"}])";
-  const Settings none = in_use(parsed(sample("", "", rest)));
+  const Settings none = effective_settings(parsed(sample("", "", rest)));
   EXPECT_EQ(none.command_post.scoring, (Address{"10.100.1.200", 8000}));
-  const Settings with_course = in_use(parsed(sample(R"(, "course": "B")", "", rest)));
+  const Settings with_course = effective_settings(parsed(sample(R"(, "course": "B")", "", rest)));
   EXPECT_EQ(with_course.command_post.scoring, (Address{"10.100.2.200", 8000}));
   EXPECT_EQ(with_course.command_post.mapping, (Address{"10.100.2.201", 8000}));
   EXPECT_EQ(with_course.rules.aliases.at("husky").text(), "ugv1");

@@ -13,9 +13,9 @@ Subnet subnet(std::string_view text) {
 
 TEST(Subnet, IsReadAndWritten) {
   EXPECT_EQ(subnet("10.1.1.0/24"), (Subnet{0x0a010100, 24}));
-  EXPECT_EQ(written(subnet("192.168.7.11/24")), "192.168.7.0/24");
-  EXPECT_EQ(written(subnet("255.255.255.255/32")), "255.255.255.255/32");
-  EXPECT_EQ(written(subnet("10.0.0.1/0")), "0.0.0.0/0");
+  EXPECT_EQ(to_text(subnet("192.168.7.11/24")), "192.168.7.0/24");
+  EXPECT_EQ(to_text(subnet("255.255.255.255/32")), "255.255.255.255/32");
+  EXPECT_EQ(to_text(subnet("10.0.0.1/0")), "0.0.0.0/0");
 }
 
 TEST(Subnet, RejectsOtherForms) {
@@ -70,7 +70,7 @@ TEST(Subnets, OverlapIfOneContainsTheOther) {
 
 TEST(Subnets, OfTheCommandPostAreKnown) {
   std::string all;
-  for (const Subnet& each : command_post_subnets()) all += written(each) + ' ';
+  for (const Subnet& each : command_post_subnets()) all += to_text(each) + ' ';
   EXPECT_EQ(all, "10.1.1.0/24 10.2.1.0/24 10.100.0.0/16 ");
 }
 

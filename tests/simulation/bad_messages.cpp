@@ -92,7 +92,7 @@ std::string post(const std::string& path, const std::string& body, const char* t
 constexpr const char *kJsonType = "application/json", *kCborType = "application/cbor";
 
 BadMessage spoilt(Random& random, std::int64_t serial) {
-  const Spoilt& chosen = all_spoilt()[random.below(all_spoilt().size())];
+  const Spoilt& chosen = all_spoilt()[random.uniform_index(all_spoilt().size())];
   const Posting posting = good(chosen.kind, serial);
   const bool cbor = chosen.cbor_only || (posting.path != kReports && random.chance(0.5));
   Json message = message_of(posting, {.cbor = cbor});
@@ -104,24 +104,24 @@ BadMessage spoilt(Random& random, std::int64_t serial) {
 /// A fault outside the message: its path, method, headers or encoding.
 BadMessage misposted(Random& random, std::int64_t serial) {
   constexpr const char* kKinds[] = {"report", "pose", "marker", "cloud", "grid"};
-  const Posting posting = good(kKinds[random.below(std::size(kKinds))], serial);
+  const Posting posting = good(kKinds[random.uniform_index(std::size(kKinds))], serial);
   const std::string& path = posting.path;
   const std::string json = bytes_of(message_of(posting, {}), false);
   const std::string cbor = bytes_of(message_of(posting, {.cbor = true}), true);
-  switch (random.below(9)) {
+  switch (random.uniform_index(9)) {
     case 0:
       return {"a wrong token", path, 401, post(path, json, kJsonType, "Bearer token-of-another")};
     case 1:
       return {"no token", path, 401, post(path, json, kJsonType, "")};
     case 2:
       return {"JSON that ends early", path, 400,
-              post(path, json.substr(0, 1 + random.below(json.size() - 1)), kJsonType, kRight)};
+              post(path, json.substr(0, 1 + random.uniform_index(json.size() - 1)), kJsonType, kRight)};
     case 3:
       return {"JSON that goes on", path, 400, post(path, json + "}", kJsonType, kRight)};
     case 4:
       if (path == kReports) return {"CBOR for a report", path, 422, post(path, cbor, kCborType, kRight)};
       return {"CBOR that ends early", path, 400,
-              post(path, cbor.substr(0, 1 + random.below(cbor.size() - 1)), kCborType, kRight)};
+              post(path, cbor.substr(0, 1 + random.uniform_index(cbor.size() - 1)), kCborType, kRight)};
     case 5:
       return {"text", path, 422, post(path, json, "text/plain", kRight)};
     case 6:

@@ -48,7 +48,7 @@ Queues queues(Random random, std::size_t largest_map) {
   const settings::Settings usual;
   std::size_t map_bytes = usual.queues.map_bytes, merge_bytes = usual.queues.merge_bytes;
   queues.settings =
-      R"("markers_per_message": )" + std::to_string(random.chance(0.3) ? 1 + random.below(4) : 2000);
+      R"("markers_per_message": )" + std::to_string(random.chance(0.3) ? 1 + random.uniform_index(4) : 2000);
   if (random.chance(0.3)) map_bytes = 1u << 20;
   if (random.chance(0.3)) merge_bytes = random.chance(0.5) ? 0 : 4000;
   queues.settings += R"(, "map_bytes": )" + std::to_string(map_bytes);
@@ -184,7 +184,7 @@ void Box::run_process() {
   if (boots_) starts_again_ = false;  // the power was cut during exec
   if (starts_again_) return;
   const auto& [least, most] = std::exchange(boots_, false) ? kBoot : kRestart;
-  if (!finished_) world_.run_for(seconds(random_.between(least, most)));
+  if (!finished_) world_.run_for(seconds(random_.uniform(least, most)));
 }
 
 void Box::finish() {
@@ -234,8 +234,8 @@ void Box::replace_ledger() {
 
 void Box::die_soon(World::How how) {
   const auto dies = [this, how] { how == World::How::PowerCut ? lost_power() : died(); };
-  if (random_.chance(0.25)) return world_.die_after_report(random_.below(kRightThen), how, dies);
-  world_.die_after(random_.below(random_.chance(0.5) ? kSoon : kMostCrossings), how, dies);
+  if (random_.chance(0.25)) return world_.die_after_report(random_.uniform_index(kRightThen), how, dies);
+  world_.die_after(random_.uniform_index(random_.chance(0.5) ? kSoon : kMostCrossings), how, dies);
 }
 
 /// The next process starts from the files as they are now. Later writes by objects of the dead process go

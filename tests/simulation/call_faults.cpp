@@ -28,8 +28,8 @@ CallFaults::CallFaults(World& world) : world_(world), random_(world.random("call
 void CallFaults::plan(double trouble_for) {
   trouble_for_ = trouble_for;
   if (!random_.chance(0.25)) return;
-  for (std::uint64_t left = 1 + random_.below(3); left > 0; --left) {
-    const auto call = static_cast<Call>(random_.below(static_cast<std::uint64_t>(Call::End)));
+  for (std::uint64_t left = 1 + random_.uniform_index(3); left > 0; --left) {
+    const auto call = static_cast<Call>(random_.uniform_index(static_cast<std::uint64_t>(Call::End)));
     const bool runs_out = call == Call::Map || (call == Call::Open && random_.chance(0.5)) ||
                           (call == Call::List && random_.chance(0.5));
     Fault fault{.call = call,
@@ -38,10 +38,10 @@ void CallFaults::plan(double trouble_for) {
                 .number = !runs_out           ? EIO
                           : call == Call::Map ? ENOMEM
                                               : EMFILE,
-                .begins = random_.between(0, trouble_for),
-                .lasts = random_.between(0.1, kLongest),
-                .odds = random_.chance(0.5) ? 1 : random_.between(0.05, 0.5),
-                .most = random_.chance(0.3) ? 1 + random_.below(3) : kAll,
+                .begins = random_.uniform(0, trouble_for),
+                .lasts = random_.uniform(0.1, kLongest),
+                .odds = random_.chance(0.5) ? 1 : random_.uniform(0.05, 0.5),
+                .most = random_.chance(0.3) ? 1 + random_.uniform_index(3) : kAll,
                 .random = world_.random("call " + std::to_string(left))};
     fault.name = std::to_string(left) + ". " + kNames[static_cast<int>(call)] +
                  (fault.in_memory ? kInRuntime : " in state");
@@ -92,7 +92,7 @@ int CallFaults::error(Call call, const std::string& name) {
 std::optional<std::size_t> CallFaults::cut(Call call, const std::string& name, std::size_t size) {
   Fault* const fault = hit(call, name);
   if (fault == nullptr) return std::nullopt;
-  return fault->random.chance(0.5) ? 0 : fault->random.below(size);
+  return fault->random.chance(0.5) ? 0 : fault->random.uniform_index(size);
 }
 
 }  // namespace adit::simulation

@@ -43,13 +43,13 @@ void Client::ask_several(std::string request, std::vector<Event> about, std::fun
   const std::uint64_t id = world_.entropy();
   done_ = std::move(done);
   written_ = 0;
-  hang_up_at_ = random_.chance(manners_.hangs_up) ? 1 + random_.below(request_.size()) : 0;
+  hang_up_at_ = random_.chance(manners_.hangs_up) ? 1 + random_.uniform_index(request_.size()) : 0;
   half_close_ = random_.chance(manners_.half_closes);
-  stalls_at_ = random_.chance(manners_.stalls) ? 1 + random_.below(request_.size() - 1) : 0;
+  stalls_at_ = random_.chance(manners_.stalls) ? 1 + random_.uniform_index(request_.size() - 1) : 0;
   pauses_at_ = 0;
   if (manners_.pauses > 0 && random_.chance(manners_.pauses)) {
     const std::size_t head = request_.find("\r\n\r\n") + 4;
-    pauses_at_ = head + random_.below(request_.size() - head);
+    pauses_at_ = head + random_.uniform_index(request_.size() - head);
   }
   const std::uint64_t number = ++number_;
   if (fd_ < 0) connect();
@@ -71,11 +71,11 @@ void Client::go_on() {
   if (stalls_at_ != 0 && written_ >= stalls_at_) return stall();
   const std::size_t left = request_.size() - written_;
   const bool dribbles = random_.chance(manners_.dribbles);
-  write(dribbles ? 1 + random_.below(left) : left);
+  write(dribbles ? 1 + random_.uniform_index(left) : left);
   if (!done_ || written_ == request_.size()) return;
   const bool pauses = pauses_at_ != 0 && written_ == pauses_at_;
   if (pauses) pauses_at_ = 0;
-  const double delay = pauses ? random_.between(1, 8) : random_.between(0.0005, dribbles ? 0.5 : 0.01);
+  const double delay = pauses ? random_.uniform(1, 8) : random_.uniform(0.0005, dribbles ? 0.5 : 0.01);
   const std::uint64_t number = number_;
   world_.after(seconds(delay), [this, number] {
     if (number == number_) go_on();

@@ -119,9 +119,9 @@ CommandPost::CommandPost(World& world, const Faults& faults, double trouble_for,
       pausing_(world.random(numbered("pauses", place))),
       failing_(world.random(numbered("failing maps", place))),
       gzips_(world.random(numbered("gzipped answers", place)).chance(0.15)),
-      answers_early_(early_.chance(0.125) ? early_.between(0.05, 0.3) : 0),
-      repeats_(repeating_.chance(0.125) ? repeating_.between(0.1, 0.4) : 0),
-      fails_maps_(failing_.chance(0.125) ? failing_.between(0.3, 0.8) : 0),
+      answers_early_(early_.chance(0.125) ? early_.uniform(0.05, 0.3) : 0),
+      repeats_(repeating_.chance(0.125) ? repeating_.uniform(0.1, 0.4) : 0),
+      fails_maps_(failing_.chance(0.125) ? failing_.uniform(0.3, 0.8) : 0),
       has_one_limit_(world.random(numbered("one limit", place)).chance(0.125)),
       is_serial_(world.random(numbered("serial", place)).chance(0.2)),
       scoreboard_(world, faults_, random_, place),
@@ -130,14 +130,14 @@ CommandPost::CommandPost(World& world, const Faults& faults, double trouble_for,
   slash_ = slash.chance(0.15) ? Slash::Wanted : slash.chance(0.5) ? Slash::Unknown : Slash::Either;
   if (slash_ == Slash::Either && slash.chance(0.3)) redirects_reports_ = slash.chance(0.5) ? 307 : 308;
   Random proxy = world.random("proxy");
-  if (proxy.chance(0.25)) largest_ = 400 + proxy.below(2000);
+  if (proxy.chance(0.25)) largest_ = 400 + proxy.uniform_index(2000);
   is_below_single_ = proxy.chance(0.3);
   resets_large_ = proxy.chance(0.2);
   if (world.has_large_maps()) {
     resets_large_ = !world.has_large_grids() && proxy.chance(0.5);
-    largest_ = resets_large_             ? 256'000 + proxy.below(100'000)
-               : world.has_large_grids() ? 66'000 + proxy.below(24'000)
-                                         : 70'000 + proxy.below(200'000);
+    largest_ = resets_large_             ? 256'000 + proxy.uniform_index(100'000)
+               : world.has_large_grids() ? 66'000 + proxy.uniform_index(24'000)
+                                         : 70'000 + proxy.uniform_index(200'000);
   }
   plan_portal(trouble_for);
   plan_registry(trouble_for);
@@ -153,9 +153,9 @@ CommandPost::CommandPost(World& world, const Faults& faults, double trouble_for,
 void CommandPost::plan_clerk(double trouble_for) {
   Random random = world_.random(numbered("clerk", scoreboard_.place()));
   if (!random.chance(0.2)) return;
-  for (std::uint64_t i = 1 + random.below(3); i > 0; --i) {
+  for (std::uint64_t i = 1 + random.uniform_index(3); i > 0; --i) {
     const bool grants = random.chance(0.4);
-    const double when = random.between(1, trouble_for);
+    const double when = random.uniform(1, trouble_for);
     if (world_.omits("clerk")) continue;
     world_.after(seconds(when), [this, grants] { let_clerk(grants); });
   }
@@ -165,8 +165,8 @@ void CommandPost::plan_clerk(double trouble_for) {
 void CommandPost::plan_portal(double trouble_for) {
   Random random = world_.random(numbered("portal", scoreboard_.place()));
   if (!random.chance(0.17)) return;
-  for (std::uint64_t i = 1 + random.below(2); i > 0; --i) {
-    const double begins = random.between(0, trouble_for), takes = random.between(1, 15);
+  for (std::uint64_t i = 1 + random.uniform_index(2); i > 0; --i) {
+    const double begins = random.uniform(0, trouble_for), takes = random.uniform(1, 15);
     if (world_.omits(kPortal)) continue;
     world_.after(seconds(begins), [this, takes] {
       if (calm_) return;
@@ -189,10 +189,10 @@ void CommandPost::plan_registry(double trouble_for) {
                                     "503 Service Unavailable"};
   Random random = world_.random(numbered("registry", scoreboard_.place()));
   if (!random.chance(0.2)) return;
-  const std::string robot = "R" + std::to_string(1 + random.below(3));
-  const char* const line = kLines[random.below(std::size(kLines))];
-  const double begins = random.chance(0.5) ? 0 : random.between(0, trouble_for);
-  const double takes = random.between(5, trouble_for);
+  const std::string robot = "R" + std::to_string(1 + random.uniform_index(3));
+  const char* const line = kLines[random.uniform_index(std::size(kLines))];
+  const double begins = random.chance(0.5) ? 0 : random.uniform(0, trouble_for);
+  const double takes = random.uniform(5, trouble_for);
   if (world_.omits(kUnregistered)) return;
   rejection_ =
       random.chance(0.8) ? http_answer(line, kJson, "\"unknown robot\"") : http_answer(line, kPage, kHtml);
@@ -212,9 +212,9 @@ void CommandPost::note(Fault fault, const std::string& path) {
 
 void CommandPost::plan_periods(Fault fault, double trouble_for) {
   const bool is_long = fault == Fault::Outage || fault == Fault::Mute || fault == Fault::StatusDown;
-  for (std::uint64_t i = 1 + random_.below(2); i > 0; --i) {
-    const double begins = random_.between(1, trouble_for);
-    const double takes = random_.between(0.5, is_long ? kLongestOutage : kLongest);
+  for (std::uint64_t i = 1 + random_.uniform_index(2); i > 0; --i) {
+    const double begins = random_.uniform(1, trouble_for);
+    const double takes = random_.uniform(0.5, is_long ? kLongestOutage : kLongest);
     if (world_.omits(name_of(fault))) continue;
     world_.after(seconds(begins), [this, fault, takes] { begin(fault, takes); });
   }
@@ -348,9 +348,9 @@ bool CommandPost::redirects(const HttpMessage& request, Link& link) {
 /// Answers 429.
 bool CommandPost::refuses(const HttpMessage& request, const WhenLeft& left, Link& link) {
   if (is_on(Fault::Storm) || is_on(Fault::PoliteStorm)) {
-    const std::string after = is_on(Fault::PoliteStorm)
-                                  ? retry_after(pausing_, World::kEpoch + world_.time(), 1 + random_.below(4))
-                                  : std::string();
+    const std::string after = is_on(Fault::PoliteStorm) ? retry_after(pausing_, World::kEpoch + world_.time(),
+                                                                      1 + random_.uniform_index(4))
+                                                        : std::string();
     link.send(http_answer("429 Too Many Requests", kJson + after, "\"too many requests\""));
     return true;
   }
@@ -413,13 +413,13 @@ void CommandPost::answer(const HttpMessage& request, Link& link) {
                                                         : true;
   if (fault != Fault::End && befalls && !world_.omits(name_of(fault))) return misbehave(fault, request, link);
   const std::string said = take(request);
-  link.send(gzips_ ? gzipped(said) : said, seconds(random_.between(0, 0.01)));
+  link.send(gzips_ ? gzipped(said) : said, seconds(random_.uniform(0, 0.01)));
 }
 
 /// Answers 200 to an incomplete message. Its rest never arrives, so it is not accepted.
 void CommandPost::may_answer_early(const HttpMessage& head, Link& link) {
   const bool does = early_.chance(answers_early_);
-  const auto resets = seconds(early_.between(0, 0.5));
+  const auto resets = seconds(early_.uniform(0, 0.5));
   if (!does || calm_ || is_on(Fault::Mute) || !is_mapping(head) || world_.omits(kEarly)) return;
   world_.note({.actor = Actor::Post, .kind = Kind::Fault, .what = head.path(), .who = kEarly});
   link.go_deaf();
@@ -436,13 +436,13 @@ std::optional<std::string> CommandPost::repeat_last_answer(const Item& item) {
 }
 
 void CommandPost::take_later(const HttpMessage& request, double within) {
-  world_.after(seconds(random_.between(0, within)), [this, request] { take(request); });
+  world_.after(seconds(random_.uniform(0, within)), [this, request] { take(request); });
 }
 
 /// Decides the time of the answer and the fate of the connection.
 void CommandPost::misbehave(Fault fault, const HttpMessage& request, Link& link) {
   note(fault, request.path());
-  const auto soon = seconds(random_.between(0, 0.5));
+  const auto soon = seconds(random_.uniform(0, 0.5));
   switch (fault) {
     case Fault::LostBefore:
       return link.end(Link::How::Reset, soon);
@@ -450,7 +450,7 @@ void CommandPost::misbehave(Fault fault, const HttpMessage& request, Link& link)
       request.path() == kReports&& random_.chance(0.5) ? take_later(request, kLatest) : void(take(request));
       return link.end(Link::How::Reset, soon);
     case Fault::Delay: {
-      const auto late = seconds(random_.between(0.1, kLatest));
+      const auto late = seconds(random_.uniform(0.1, kLatest));
       if (request.path() != kReports) return link.send(take(request), late);
       world_.after(late, [this, request, self = link.shared_from_this()] { self->send(take(request)); });
       return;
@@ -478,7 +478,7 @@ std::string CommandPost::bad_answer(Fault fault, const HttpMessage& request) {
   switch (fault) {
     case Fault::CutAnswer: {
       const std::string answer = take(request);
-      return answer.substr(0, random_.below(answer.size()));
+      return answer.substr(0, random_.uniform_index(answer.size()));
     }
     case Fault::Error:
       maybe_take();
@@ -507,7 +507,7 @@ std::string CommandPost::bad_answer(Fault fault, const HttpMessage& request) {
     case Fault::Between:
       maybe_take();
       return from_between(random_, pausing_.chance(0.5) ? retry_after(pausing_, World::kEpoch + world_.time(),
-                                                                      1 + pausing_.below(10))
+                                                                      1 + pausing_.uniform_index(10))
                                                         : "");
     case Fault::Unwanted:
       return http_answer("422 Unprocessable Entity", kJson, "\"Unknown field: 'x'\"");

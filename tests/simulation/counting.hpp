@@ -24,7 +24,7 @@ class Counting {
  public:
   enum class What : std::uint8_t { Starts, LastBytes, Answers };
 
-  explicit Counting(Random random) : what_(static_cast<What>(random.below(3))) {}
+  explicit Counting(Random random) : what_(static_cast<What>(random.uniform_index(3))) {}
 
   What what() const { return what_; }
   bool is_too_soon(const std::string& path, const WhenLeft& left) const;

@@ -50,8 +50,8 @@ Switcher::Switcher(World& world, double trouble_for)
     world_.after(seconds(at), [this, course] { switch_to(course); });
   };
   double at = 0;
-  for (std::uint64_t i = 1 + random.below(3); i > 0; --i) {
-    at += random.between(3, 25);
+  for (std::uint64_t i = 1 + random.uniform_index(3); i > 0; --i) {
+    at += random.uniform(3, 25);
     if (at < trouble_for) plan(at);
   }
   plan(trouble_for + kStay / 2);

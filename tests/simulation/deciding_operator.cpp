@@ -38,7 +38,7 @@ DecidingOperator::DecidingOperator(World& world, double trouble_for)
       trouble_for_(trouble_for),
       looks_(random_.chance(0.4)),
       composes_(looks_ && random_.chance(0.3)) {
-  world_.after(seconds(looks_ ? random_.between(1, 8) : trouble_for), [this] { look(); });
+  world_.after(seconds(looks_ ? random_.uniform(1, 8) : trouble_for), [this] { look(); });
 }
 
 bool DecidingOperator::is_over() const {
@@ -47,7 +47,7 @@ bool DecidingOperator::is_over() const {
 
 void DecidingOperator::look() {
   if (world_.time() > trouble_for_ + kAfter) return;
-  world_.after(seconds(is_over() ? 10 : random_.between(2, 12)), [this] { look(); });
+  world_.after(seconds(is_over() ? 10 : random_.uniform(2, 12)), [this] { look(); });
   if (is_over()) client_.is_needed();
   if (client_.busy() || !decisions_.empty()) return;
   if (!is_over() && composes_ && random_.chance(0.3)) compose();

@@ -240,7 +240,7 @@ int Disk::fails(CallFaults::Call call, int folder, const char* path) {
 /// The length of a write in which the process dies. The kernel cuts a write only between two pages. In
 /// memory it is cut at any byte, which is harder.
 std::uint64_t Disk::cut(const Open& open, std::uint64_t size, off_t at) {
-  const std::uint64_t part = random_.below(size), place = static_cast<std::uint64_t>(at);
+  const std::uint64_t part = random_.uniform_index(size), place = static_cast<std::uint64_t>(at);
   if (is_in_memory(open.name)) return part;
   const std::uint64_t end = (place + part) / kPageBytes * kPageBytes;
   return end > place ? end - place : 0;
@@ -354,7 +354,7 @@ int Disk::link(int from_folder, const char* from, int to_folder, const char* to)
 bool Disk::fill_random(void* bytes, std::size_t size) {
   if (the_disk == nullptr) return false;
   std::generate_n(static_cast<char*>(bytes), size,
-                  [] { return static_cast<char>(the_disk->unique_.below(256)); });
+                  [] { return static_cast<char>(the_disk->unique_.uniform_index(256)); });
   return true;
 }
 
@@ -391,7 +391,7 @@ int Disk::may_change(int folder, const char* path) {
 
 std::string Disk::unique() {
   std::string letters(6, ' ');
-  for (char& letter : letters) letter = static_cast<char>('a' + unique_.below(26));
+  for (char& letter : letters) letter = static_cast<char>('a' + unique_.uniform_index(26));
   return letters;
 }
 

@@ -16,11 +16,11 @@ DiskFaults::DiskFaults(World& world)
     : world_(world), random_(world.random("disk faults")), delays_(random_) {}
 
 void DiskFaults::plan(double trouble_for) {
-  const std::uint64_t kinds = random_.chance(0.5) ? 0 : 1 + random_.below(2);
+  const std::uint64_t kinds = random_.chance(0.5) ? 0 : 1 + random_.uniform_index(2);
   for (std::uint64_t i = 0; i < kinds; ++i) {
-    const auto kind = static_cast<Kind>(random_.below(static_cast<std::uint64_t>(Kind::Unreadable)));
+    const auto kind = static_cast<Kind>(random_.uniform_index(static_cast<std::uint64_t>(Kind::Unreadable)));
     names_.append(names_.empty() ? "; disk: " : " ").append(kDiskFaults[static_cast<int>(kind)]);
-    for (std::uint64_t times = 1 + random_.below(2); times > 0; --times) plan(kind, trouble_for);
+    for (std::uint64_t times = 1 + random_.uniform_index(2); times > 0; --times) plan(kind, trouble_for);
   }
   if (!world_.random("unreadable").chance(0.1)) return;
   names_.append(names_.empty() ? "; disk: " : " ").append("Unreadable");
@@ -30,10 +30,10 @@ void DiskFaults::plan(double trouble_for) {
 /// A fault may begin with the run.
 void DiskFaults::plan(Kind kind, double trouble_for) {
   const bool at_once = random_.chance(0.2);
-  const double begins = at_once ? 0 : random_.between(0, trouble_for);
-  const double ends = std::min(trouble_for, begins + random_.between(0.5, 15));
+  const double begins = at_once ? 0 : random_.uniform(0, trouble_for);
+  const double ends = std::min(trouble_for, begins + random_.uniform(0.5, 15));
   const Drawn drawn = {.fails_once = random_.chance(0.5),
-                       .room = random_.chance(0.5) ? 0 : random_.below(20000),
+                       .room = random_.chance(0.5) ? 0 : random_.uniform_index(20000),
                        .delays = world_.random("slow disk " + std::to_string(++planned_))};
   if (world_.omits(kDiskFaults[static_cast<int>(kind)])) return;
   if (at_once) {
@@ -68,7 +68,7 @@ bool DiskFaults::sync_fails() {
 }
 
 double DiskFaults::sync_takes() {
-  return is(Kind::Slow) && delays_.chance(0.3) ? delays_.between(0.01, kSlowest) : 0;
+  return is(Kind::Slow) && delays_.chance(0.3) ? delays_.uniform(0.01, kSlowest) : 0;
 }
 
 }  // namespace adit::simulation

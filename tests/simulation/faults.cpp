@@ -18,9 +18,9 @@ std::string name_of(Fault fault) {
 }
 
 Faults::Faults(Random random) : random_(random), odds_(kKinds, 0.0) {
-  const double odds = random_.between(0.05, 0.4);
+  const double odds = random_.uniform(0.05, 0.4);
   if (random_.chance(0.5)) {
-    for (std::uint64_t i = random_.below(3); i > 0; --i) odds_[random_.below(kKinds)] = odds;
+    for (std::uint64_t i = random_.uniform_index(3); i > 0; --i) odds_[random_.uniform_index(kKinds)] = odds;
   } else {
     for (double& each : odds_) each = random_.chance(0.2) ? odds / 2 : 0;
   }

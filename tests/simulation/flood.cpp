@@ -13,16 +13,16 @@ constexpr std::int64_t kFirstSerial = 20'000;
 
 Flood::Flood(World& world, double until)
     : world_(world), random_(world.random("flood")), clouds_(random_.chance(0.5)), serial_(kFirstSerial) {
-  for (std::uint64_t i = 1 + random_.below(kMostFlooding); i > 0; --i) {
+  for (std::uint64_t i = 1 + random_.uniform_index(kMostFlooding); i > 0; --i) {
     clients_.push_back(std::make_unique<Client>(world, address(80), Manners{.patience = 8},
                                                 world.random("flood " + std::to_string(i))));
   }
-  world.after(seconds(random_.between(0, until)), [this] { begin(); });
+  world.after(seconds(random_.uniform(0, until)), [this] { begin(); });
 }
 
 void Flood::begin() {
   for (std::size_t i = 0; i < clients_.size(); ++i) {
-    world_.after(seconds(random_.between(0, 0.5)), [this, i] { post(i); });
+    world_.after(seconds(random_.uniform(0, 0.5)), [this, i] { post(i); });
   }
 }
 

@@ -30,14 +30,14 @@ rehearsal::Request read(const HttpMessage& request) {
 
 void classify_report(const std::string& body, Findings& findings) {
   const auto document = rehearsal::read_document(body, rehearsal::Format::JsonText);
-  if (!document) return findings.breaks("JSON parsing failed: " + document.error());
-  if (document->repeated) findings.breaks("'" + *document->repeated + "' is given twice");
+  if (!document) return findings.add_violation("JSON parsing failed: " + document.error());
+  if (document->repeated) findings.add_violation("'" + *document->repeated + "' is given twice");
   const rehearsal::Field report(document->value, "", findings);
   rehearsal::read_point(report);
   const auto text = report.text("type");
-  if (text && !rehearsal::is_artifact_type(*text)) findings.breaks("type: none of the ten");
+  if (text && !rehearsal::is_artifact_type(*text)) findings.add_violation("type: none of the ten");
   const auto robot = report.optional_member("name").and_then(&rehearsal::Field::to_text);
-  if (robot && !rehearsal::is_robot_name(*robot)) findings.breaks("name: no robot's");
+  if (robot && !rehearsal::is_robot_name(*robot)) findings.add_violation("name: no robot's");
 }
 
 void judge_body(const rehearsal::Request& request, Findings& findings) {
@@ -51,7 +51,7 @@ void judge_body(const rehearsal::Request& request, Findings& findings) {
   rehearsal::read_mapping(request.body, cbor ? rehearsal::Format::CborBytes : rehearsal::Format::JsonText,
                           judgement);
   for (const rehearsal::Finding& finding : judgement.findings.all()) {
-    if (finding.breaks_icd) findings.breaks(finding.sentence);
+    if (finding.breaks_icd) findings.add_violation(finding.sentence);
   }
 }
 

@@ -25,14 +25,14 @@ Link::Link(World& world, std::uint64_t number, uplink::Endpoint endpoint, Random
       number_(number),
       endpoint_(std::move(endpoint)),
       random_(random),
-      typical_(random_.chance(0.8) ? random_.between(0.0001, 0.002) : random_.between(0.002, 0.15)),
-      window_(random_.chance(0.7) ? kWindow : static_cast<std::size_t>(random_.between(1000, 8000))),
+      typical_(random_.chance(0.8) ? random_.uniform(0.0001, 0.002) : random_.uniform(0.002, 0.15)),
+      window_(random_.chance(0.7) ? kWindow : static_cast<std::size_t>(random_.uniform(1000, 8000))),
       acknowledges_late_(world.random("acknowledgements " + std::to_string(number)).chance(0.5)) {
   if (world.has_large_maps()) window_ = std::max(window_, kWindow);
 }
 
 loop::Duration Link::latency() {
-  return seconds(typical_ * random_.between(0.8, 1.5));
+  return seconds(typical_ * random_.uniform(0.8, 1.5));
 }
 
 /// The arrival time of bytes sent now. A stalled line holds them and retries ever less often (RFC 6298
@@ -40,7 +40,7 @@ loop::Duration Link::latency() {
 loop::Instant Link::arrival() {
   const Stalls& stalls = world_.network().stalls();
   if (!stalls.is_on()) return world_.now() + latency();
-  return stalls.ends() + seconds(random_.between(0, stalls.length())) + latency();
+  return stalls.ends() + seconds(random_.uniform(0, stalls.length())) + latency();
 }
 
 /// The arrival time of the last byte: in order, and limited by the line's rate.
@@ -71,7 +71,7 @@ std::size_t Link::write(std::string_view bytes) {
   if (taken > 0) last_left_ = world_.now();
   while (left > 0) {
     const std::size_t most = is_thin_ ? std::min(left, kSegment) : left;
-    const std::size_t size = random_.chance(0.8) ? most : 1 + random_.below(most);
+    const std::size_t size = random_.chance(0.8) ? most : 1 + random_.uniform_index(most);
     last_there_ = arrival_of(size);
     if (world_.network().stalls().is_on()) held_until_ = last_there_;
     world_.at(last_there_, [self = shared_from_this(), piece = std::string(bytes.substr(taken - left, size)),
@@ -125,7 +125,7 @@ void Link::vanish() {
 void Link::send(std::string bytes, loop::Duration delay) {
   answers_until_ = world_.now() + delay;
   while (!bytes.empty()) {
-    const std::size_t size = random_.chance(0.7) ? bytes.size() : 1 + random_.below(bytes.size());
+    const std::size_t size = random_.chance(0.7) ? bytes.size() : 1 + random_.uniform_index(bytes.size());
     last_here_ = std::max(last_here_, arrival() + delay);
     world_.at(last_here_, [self = shared_from_this(), piece = bytes.substr(0, size)] {
       if (!self->closed_ && !self->reset) self->inbox += piece;
@@ -142,7 +142,7 @@ void Link::end(How how, loop::Duration delay) {
 
 Network::Network(World& world) : world_(world), stalls_(world) {
   Random random = world.random("rate of maps");
-  map_rate_ = random.chance(0.25) && !world.has_large_maps() ? random.between(300, 1500) : 0;
+  map_rate_ = random.chance(0.25) && !world.has_large_maps() ? random.uniform(300, 1500) : 0;
 }
 
 int Network::connect(const uplink::Endpoint& endpoint) {

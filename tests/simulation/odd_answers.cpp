@@ -26,7 +26,7 @@ Parts parts_of(const std::string& answer) {
 std::string chunked(const Parts& parts, Random& random) {
   std::string text = parts.head + "Transfer-Encoding: chunked\r\n\r\n";
   for (std::size_t at = 0; at < parts.body.size();) {
-    const std::size_t size = 1 + random.below(parts.body.size() - at);
+    const std::size_t size = 1 + random.uniform_index(parts.body.size() - at);
     char head[32];
     std::snprintf(head, sizeof head, "%zx\r\n", size);
     text += head + parts.body.substr(at, size) + "\r\n";
@@ -41,12 +41,12 @@ std::string in_another_form(const std::string& answer, Random& random) {
   if (random.chance(0.5)) return chunked(parts_of(answer), random);
   constexpr const char* kInterim[] = {"HTTP/1.1 100 Continue\r\n\r\n", "HTTP/1.1 102 Processing\r\n\r\n",
                                       "HTTP/1.1 103 Early Hints\r\nLink: </a>; rel=preload\r\n\r\n"};
-  return kInterim[random.below(std::size(kInterim))] + answer;
+  return kInterim[random.uniform_index(std::size(kInterim))] + answer;
 }
 
 std::string with_wrong_length(const std::string& answer, Random& random) {
   const Parts parts = parts_of(answer);
-  const std::size_t off = 1 + random.below(std::max<std::size_t>(parts.body.size(), 2) - 1);
+  const std::size_t off = 1 + random.uniform_index(std::max<std::size_t>(parts.body.size(), 2) - 1);
   const std::size_t length =
       random.chance(0.5) ? parts.body.size() + off : parts.body.size() - std::min(off, parts.body.size());
   return parts.head + kLength + std::to_string(length) + "\r\n\r\n" + parts.body;
@@ -61,20 +61,20 @@ std::string with_wrong_types(Random& random) {
       "{\"id\": [], \"report_status\": 3, \"score_change\": \"1\", \"run\": {}}",
       "true"};
   return http_answer(random.chance(0.5) ? "200 OK" : "201 Created", kJson,
-                     kBodies[random.below(std::size(kBodies))]);
+                     kBodies[random.uniform_index(std::size(kBodies))]);
 }
 
 std::string redirect(Random& random) {
   constexpr const char* kLines[] = {"301 Moved Permanently", "302 Found", "307 Temporary Redirect",
                                     "308 Permanent Redirect"};
-  return http_answer(kLines[random.below(std::size(kLines))],
+  return http_answer(kLines[random.uniform_index(std::size(kLines))],
                      "Location: http://portal.example/\r\nContent-Type: text/html\r\n",
                      random.chance(0.5) ? kElsewhere : "");
 }
 
 std::string from_between(Random& random, const std::string& fields) {
   constexpr const char* kLines[] = {"502 Bad Gateway", "503 Service Unavailable", "504 Gateway Timeout"};
-  return http_answer(kLines[random.below(std::size(kLines))], "Content-Type: text/html\r\n" + fields,
+  return http_answer(kLines[random.uniform_index(std::size(kLines))], "Content-Type: text/html\r\n" + fields,
                      kElsewhere);
 }
 

@@ -38,27 +38,27 @@ Operator::Operator(World& world, const Box& box, double until)
   id_ = mine.id.reveal();
   csrf_ = mine.csrf.reveal();
   const access::KeptSessions kept{
-      .boot = host::boot(), .last = sessions.last(), .sessions = sessions.in_order()};
+      .boot = host::boot(), .last = sessions.last(), .sessions = sessions.entries()};
   if (!host::write_file(box.runtime() + '/' + admin::SessionKeeper::kFile, access::write_sessions(kept),
                         host::kOursAlone))
     std::abort();
-  for (std::uint64_t i = random.chance(0.3) ? 1 + random.below(3) : 0; i > 0; --i)
-    world.after(seconds(random.between(0.5, until)), [this] { save(); });
+  for (std::uint64_t i = random.chance(0.3) ? 1 + random.uniform_index(3) : 0; i > 0; --i)
+    world.after(seconds(random.uniform(0.5, until)), [this] { save(); });
 }
 
 /// Changes one or several sections.
 void Operator::change(settings::Settings& next) {
   next.reports.near_metres = next.reports.near_metres > 5 ? 5 : 6;
-  if (random_.chance(0.5)) next.reports.review = static_cast<dispatch::Review>(random_.below(3));
-  if (random_.chance(0.5)) next.reports.undo = std::chrono::seconds(random_.below(30));
+  if (random_.chance(0.5)) next.reports.review = static_cast<dispatch::Review>(random_.uniform_index(3));
+  if (random_.chance(0.5)) next.reports.undo = std::chrono::seconds(random_.uniform_index(30));
   if (random_.chance(0.3))
-    next.reports.answer_within = std::chrono::milliseconds(8000 + random_.below(12000));
+    next.reports.answer_within = std::chrono::milliseconds(8000 + random_.uniform_index(12000));
   if (random_.chance(0.3))
-    next.command_post.timeouts.connect = std::chrono::milliseconds(1000 + random_.below(3000));
-  if (random_.chance(0.3)) next.command_post.budget_mbit = random_.between(20, 200);
+    next.command_post.timeouts.connect = std::chrono::milliseconds(1000 + random_.uniform_index(3000));
+  if (random_.chance(0.3)) next.command_post.budget_mbit = random_.uniform(20, 200);
   if (random_.chance(0.3))
-    next.team.connections_per_address = static_cast<std::uint32_t>(4 + random_.below(5));
-  if (random_.chance(0.3)) next.queues.map_bytes = (128u + random_.below(128)) << 20;
+    next.team.connections_per_address = static_cast<std::uint32_t>(4 + random_.uniform_index(5));
+  if (random_.chance(0.3)) next.queues.map_bytes = (128u + random_.uniform_index(128)) << 20;
 }
 
 void Operator::save() {

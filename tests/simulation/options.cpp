@@ -28,7 +28,7 @@ command_line::Program command_line_of(Options& options) {
            {"--jobs", "N", "so many processes, each with seeds of its own",
             number<1UL, UINT64_MAX>(options.jobs)},
            {"--without", "WORDS", "what is left out of the runs, as a shrunk run's replay says",
-            command_line::take<omit>(options.without)},
+            command_line::set_by<omit>(options.without)},
            {"--log", "", "each event", &options.log},
            {"--story", "", "each event without what is of every run", &options.story},
            {"--until", "CHECK", "ends where that check finds something", &options.until},

@@ -23,12 +23,12 @@ Blunderer::Blunderer(World& world, int number)
       random_(world.random("blunderer " + std::to_string(number))),
       client_(world, address(50 + number), manners(random_),
               world.random("client of blunderer " + std::to_string(number))),
-      every_(random_.between(0.3, 5)),
+      every_(random_.uniform(0.3, 5)),
       serial_(kBadSerials + number * kSerialsOfOne) {}
 
 void Blunderer::post_until(double end) {
   end_ = end;
-  world_.after(seconds(random_.between(0, every_)), [this] { post(); });
+  world_.after(seconds(random_.uniform(0, every_)), [this] { post(); });
 }
 
 void Blunderer::post() {
@@ -36,7 +36,7 @@ void Blunderer::post() {
   const BadMessage bad = bad_message(random_, ++serial_);
   client_.ask(bad.request,
               {.what = bad.path, .who = "bad", .serial = serial_, .status = bad.status, .text = bad.what},
-              [this](int) { world_.after(seconds(every_ * random_.between(0.2, 1.8)), [this] { post(); }); });
+              [this](int) { world_.after(seconds(every_ * random_.uniform(0.2, 1.8)), [this] { post(); }); });
 }
 
 Staller::Staller(World& world)
@@ -47,7 +47,7 @@ Staller::Staller(World& world)
 
 void Staller::post_until(double end) {
   end_ = end;
-  world_.after(seconds(random_.between(0, end)), [this] { post(); });
+  world_.after(seconds(random_.uniform(0, end)), [this] { post(); });
 }
 
 void Staller::post() {
@@ -57,7 +57,7 @@ void Staller::post() {
                           : Posting{kMap, {{.who = "stalled", .serial = ++serial_, .says = Extent{}.says()}}};
   client_.ask(request_of(posting, {}),
               {.what = posting.path, .who = "stalled", .serial = serial_, .says = posting.items[0].says},
-              [this](int) { world_.after(seconds(random_.between(0, 2)), [this] { post(); }); });
+              [this](int) { world_.after(seconds(random_.uniform(0, 2)), [this] { post(); }); });
 }
 
 Watcher::Watcher(World& world, int number)
@@ -65,17 +65,17 @@ Watcher::Watcher(World& world, int number)
       random_(world.random("watcher " + std::to_string(number))),
       client_(world, address(60 + number), manners(random_),
               world.random("client of watcher " + std::to_string(number))),
-      every_(random_.between(0.1, 4)) {}
+      every_(random_.uniform(0.1, 4)) {}
 
 void Watcher::ask_until(double end) {
   end_ = end;
-  world_.after(seconds(random_.between(0, every_)), [this] { ask(); });
+  world_.after(seconds(random_.uniform(0, every_)), [this] { ask(); });
 }
 
 void Watcher::ask() {
   if (world_.time() > end_) return;
   client_.ask(status_request(), {.what = kStatus, .who = "watcher"},
-              [this](int) { world_.after(seconds(every_ * random_.between(0.2, 1.8)), [this] { ask(); }); });
+              [this](int) { world_.after(seconds(every_ * random_.uniform(0.2, 1.8)), [this] { ask(); }); });
 }
 
 }  // namespace adit::simulation

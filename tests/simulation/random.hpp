@@ -20,9 +20,9 @@ class Random {
     return z ^ (z >> 31);
   }
   /// A number below `end`. Requires end > 0.
-  std::uint64_t below(std::uint64_t end) { return next() % end; }
+  std::uint64_t uniform_index(std::uint64_t end) { return next() % end; }
   double unit() { return static_cast<double>(next() >> 11) * 0x1p-53; }
-  double between(double low, double high) { return low + (high - low) * unit(); }
+  double uniform(double low, double high) { return low + (high - low) * unit(); }
   bool chance(double probability) { return unit() < probability; }
 
  private:

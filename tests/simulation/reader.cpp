@@ -47,7 +47,7 @@ Reader::Reader(World& world, double until)
       client_(world, "10.0.0.11", {.keeps_alive = false, .patience = 20, .dribbles = 0},
               world.random("client of the reader")),
       until_(until) {
-  world.after(seconds(world.random("reader").between(0, kEvery)), [this] { look(); });
+  world.after(seconds(world.random("reader").uniform(0, kEvery)), [this] { look(); });
 }
 
 void Reader::wait_for_rest(double from, double end, std::function<void()> rested) {

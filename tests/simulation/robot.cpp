@@ -33,7 +33,7 @@ Style style(const World& world, const std::string& name) {
 }
 
 int between(Random& random, int low, int high) {
-  return low + static_cast<int>(random.below(static_cast<std::uint64_t>(high - low + 1)));
+  return low + static_cast<int>(random.uniform_index(static_cast<std::uint64_t>(high - low + 1)));
 }
 
 }  // namespace
@@ -50,14 +50,14 @@ Robot::Robot(World& world, int number)
       slow_client_(world, address(number), {.patience = 30, .pauses = 1},
                    world.random("slow client " + name_)),
       style_(style(world, name_)),
-      clock_(random_.between(-1000, 1000)),
-      jump_(random_.chance(0.3) ? (random_.chance(0.5) ? 1 : -1) * random_.between(kJump, 2000) : 0),
-      jumps_at_(random_.between(1, 60)),
+      clock_(random_.uniform(-1000, 1000)),
+      jump_(random_.chance(0.3) ? (random_.chance(0.5) ? 1 : -1) * random_.uniform(kJump, 2000) : 0),
+      jumps_at_(random_.uniform(1, 60)),
       stamps_(random_.chance(0.7)),
       logs_(world.random("log of " + name_)),
       has_backlog_(stamps_ && jump_ == 0 && logs_.chance(0.3)),
       log_client_(world, address(number), {.patience = 30}, world.random("log client " + name_)),
-      every_(random_.between(0.1, 2)),
+      every_(random_.uniform(0.1, 2)),
       wipes_(random_.chance(0.5) ? 0.1 : 0),
       writings_(world.random("writings of " + name_).chance(0.01) ? kWritings : 0),
       serial_(number * kSerials),
@@ -70,12 +70,12 @@ Robot::Robot(World& world, int number)
       fades_(fade_.chance(0.3)),
       large_(number == 1 && world.has_large_maps() ? kLargeClouds : 0),
       large_grids_(number == 1 && world.has_large_grids() ? kLargeGrids : 0),
-      noise_(1000 + world.random("noise of " + name_).below(3000)) {}
+      noise_(1000 + world.random("noise of " + name_).uniform_index(3000)) {}
 
 void Robot::post_until(double end) {
   end_ = end;
-  if (has_backlog_) world_.after(seconds(logs_.between(0, end)), [this] { fill_backlog(); });
-  world_.after(seconds(random_.between(0, every_)), [this] { post(); });
+  if (has_backlog_) world_.after(seconds(logs_.uniform(0, end)), [this] { fill_backlog(); });
+  world_.after(seconds(random_.uniform(0, every_)), [this] { post(); });
 }
 
 void Robot::post() {
@@ -92,13 +92,13 @@ void Robot::post() {
 }
 
 void Robot::post_later() {
-  const double pause = row_ > 0 ? 0.01 : every_ * random_.between(0.2, 1.8);
+  const double pause = row_ > 0 ? 0.01 : every_ * random_.uniform(0.2, 1.8);
   world_.after(seconds(pause), [this] { post(); });
 }
 
 void Robot::fill_backlog() {
-  const double now = world_.time(), span = std::min(now, logs_.between(2, kLongestBacklog));
-  const std::uint64_t poses = 5 + logs_.below(60);
+  const double now = world_.time(), span = std::min(now, logs_.uniform(2, kLongestBacklog));
+  const std::uint64_t poses = 5 + logs_.uniform_index(60);
   for (std::uint64_t i = 1; i <= poses; ++i)
     backlog_.push_back(now - span * static_cast<double>(i) / static_cast<double>(poses));
   if (logs_.chance(0.7)) std::ranges::reverse(backlog_);  // the newest comes last
@@ -113,7 +113,7 @@ void Robot::post_backlog() {
   Posting posting{kState, {item(name_, {number_, static_cast<int>(late * 1000)})}};
   posting.items.front().stamp -= late;
   log_client_.ask_several(request_of(posting, style_), events_of(posting), [this](int) {
-    world_.after(seconds(logs_.between(0.005, 0.2)), [this] { post_backlog(); });
+    world_.after(seconds(logs_.uniform(0.005, 0.2)), [this] { post_backlog(); });
   });
 }
 
@@ -127,10 +127,10 @@ Posting Robot::next() {
   const double kind = random_.unit();
   if (kind < 0.35) return {kState, {item(name_, {number_})}};
   row_of_grids_ = rolls_ && kind < 0.55;
-  if (row_of_grids_) row_ = 1 + random_.below(5);
+  if (row_of_grids_) row_ = 1 + random_.uniform_index(5);
   if (kind < 0.55) return {kMap, {grid()}};
   if (kind < 0.8) return markers();
-  if (random_.chance(0.4)) row_ = 1 + random_.below(5);
+  if (random_.chance(0.4)) row_ = 1 + random_.uniform_index(5);
   return clouds();
 }
 
@@ -207,7 +207,7 @@ Posting Robot::clouds() {
 /// those of others.
 Posting Robot::markers() {
   Posting posting{kMarkers, {}};
-  for (std::uint64_t i = 1 + random_.below(4); i > 0; --i) {
+  for (std::uint64_t i = 1 + random_.uniform_index(4); i > 0; --i) {
     const int action = random_.chance(wipes_) ? kDeleteAll : random_.chance(0.25) ? kDelete : kAdd;
     const bool is_line = random_.chance(0.5), is_text = is_line && writings_ > 0;
     if (is_text) --writings_;

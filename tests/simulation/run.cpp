@@ -22,9 +22,9 @@ constexpr double kLeastRest = 120, kMostRest = 1200;
 /// In three of four runs: up to four ends of the process, by SIGTERM, SIGKILL or a power cut.
 void plan_ends(World& world, Box& box, double trouble_for) {
   Random random = world.random("ends");
-  for (std::uint64_t i = random.chance(0.25) ? 0 : 1 + random.below(4); i > 0; --i) {
+  for (std::uint64_t i = random.chance(0.25) ? 0 : 1 + random.uniform_index(4); i > 0; --i) {
     const double how = random.unit();
-    const auto when = seconds(random.between(0.5, trouble_for));
+    const auto when = seconds(random.uniform(0.5, trouble_for));
     if (world.omits("ends")) continue;
     world.after(when, [&box, how] {
       if (how < 0.3) return box.terminate();
@@ -38,11 +38,11 @@ void plan_ends(World& world, Box& box, double trouble_for) {
 void plan_clock(World& world, double trouble_for) {
   Random random = world.random("clock");
   if (!random.chance(0.3)) return;
-  for (std::uint64_t i = 1 + random.below(3); i > 0; --i) {
+  for (std::uint64_t i = 1 + random.uniform_index(3); i > 0; --i) {
     // A step of less than half a second has no effect.
-    const double by = random.between(1, random.chance(0.5) ? 8 : 1e7);
+    const double by = random.uniform(1, random.chance(0.5) ? 8 : 1e7);
     const double step = random.chance(0.5) ? by : -by;
-    const auto when = seconds(random.between(0, trouble_for));
+    const auto when = seconds(random.uniform(0, trouble_for));
     if (world.omits("clock")) continue;
     world.after(when, [&world, step] { world.set_clock(world.clock_ahead() + step); });
   }
@@ -65,8 +65,8 @@ void plan_calls(World& world, Box& box, double trouble_for) {
 void plan_older_copies(World& world, Box& box, double trouble_for) {
   Random random = world.random("older copies");
   if (!random.chance(0.2)) return;
-  for (std::uint64_t i = 1 + random.below(2); i > 0; --i) {
-    const double one = random.between(0, trouble_for), other = random.between(0, trouble_for);
+  for (std::uint64_t i = 1 + random.uniform_index(2); i > 0; --i) {
+    const double one = random.uniform(0, trouble_for), other = random.uniform(0, trouble_for);
     const double how = random.unit();
     if (world.omits("older copies")) continue;
     world.after(seconds(std::min(one, other)), [&box] { box.copy_ledger(); });
@@ -85,7 +85,7 @@ Outcome play(const Plan& plan) {
   World world(plan.seed, plan.without);
   world.history().tells = plan.tells;
   Box box(world);
-  const double trouble_for = world.random("length").between(10, 60);
+  const double trouble_for = world.random("length").uniform(10, 60);
   const Faults faults(world.random("faults"));
   Courses posts(world, faults, trouble_for);
   world.network().serve(&posts);

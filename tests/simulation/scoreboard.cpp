@@ -25,8 +25,8 @@ Scoreboard::Scoreboard(World& world, const Faults& faults, Random& random, int p
       faults_(faults),
       place_(place),
       numbers_runs_(random.chance(0.3)),
-      run_began_(-random.between(300, 3000)) {
-  const double drawn = world.random("names of runs " + std::to_string(place)).between(0, 1);
+      run_began_(-random.uniform(300, 3000)) {
+  const double drawn = world.random("names of runs " + std::to_string(place)).uniform(0, 1);
   names_ = drawn < 0.15 ? Names::One : drawn < 0.25 ? Names::Renamed : Names::Own;
 }
 

@@ -6,9 +6,9 @@ namespace adit::simulation {
 
 void Stalls::plan(double trouble_for) {
   Random random = world_.random("stalls");
-  for (std::uint64_t i = random.chance(0.25) ? 1 + random.below(2) : 0; i > 0; --i) {
-    const double begins = random.between(0, trouble_for);
-    const double length = std::min(random.between(1, 20), trouble_for - begins);
+  for (std::uint64_t i = random.chance(0.25) ? 1 + random.uniform_index(2) : 0; i > 0; --i) {
+    const double begins = random.uniform(0, trouble_for);
+    const double length = std::min(random.uniform(1, 20), trouble_for - begins);
     if (world_.omits("stalls")) continue;
     world_.after(seconds(begins), [this, length] { begin(length); });
   }

@@ -21,20 +21,20 @@ Station::Station(World& world, double end)
       random_(world.random("station")),
       style_{.cbor = random_.chance(0.5), .gzip = random_.chance(0.3)},
       end_(end),
-      clock_(random_.between(-1000, 1000)),
-      every_(random_.between(0.1, 1)),
+      clock_(random_.uniform(-1000, 1000)),
+      every_(random_.uniform(0.1, 1)),
       clients_{Client(world, address(kNumber), kManners, world.random("first client of the station")),
                Client(world, address(kNumber), kManners, world.random("second client of the station"))},
       planner_(world, address(random_.chance(0.5) ? kNumber : kPlanner), kManners,
                world.random("client of the planner")),
-      namespaces_(kFew + static_cast<int>(random_.below(kMany))),
+      namespaces_(kFew + static_cast<int>(random_.uniform_index(kMany))),
       serial_(kFirstSerial) {
   robots_.push_back({"S1", end});
-  robots_.push_back({"S2", random_.between(0, end)});
-  if (random_.chance(0.5)) robots_.push_back({"S3", random_.between(0, end)});
-  if (random_.chance(0.3)) robots_.push_back({"R1", random_.between(0, end)});  // it also posts by itself
-  world.after(seconds(random_.between(0, end / 4)), [this] { begin(); });
-  if (random_.chance(0.5)) world.after(seconds(random_.between(0, end)), [this] { plan(); });
+  robots_.push_back({"S2", random_.uniform(0, end)});
+  if (random_.chance(0.5)) robots_.push_back({"S3", random_.uniform(0, end)});
+  if (random_.chance(0.3)) robots_.push_back({"R1", random_.uniform(0, end)});  // it also posts by itself
+  world.after(seconds(random_.uniform(0, end / 4)), [this] { begin(); });
+  if (random_.chance(0.5)) world.after(seconds(random_.uniform(0, end)), [this] { plan(); });
 }
 
 Posting Station::states(bool all) {
@@ -44,7 +44,7 @@ Posting Station::states(bool all) {
     if (robot.until >= now || all) posting.items.push_back({robot.name, ++serial_, stamp, {kNumber}});
   }
   if (!all && !posting.items.empty() && random_.chance(0.6))
-    posting.items = {posting.items[random_.below(posting.items.size())]};
+    posting.items = {posting.items[random_.uniform_index(posting.items.size())]};
   return posting;
 }
 
@@ -64,7 +64,7 @@ void Station::post(std::size_t connection) {
   if (world_.time() > end_) return;
   Posting posting = states(false);
   if (posting.items.empty()) return;
-  const double late = random_.between(0, kLate), pause = every_ * random_.between(0.2, 1.8);
+  const double late = random_.uniform(0, kLate), pause = every_ * random_.uniform(0.2, 1.8);
   world_.after(seconds(late), [this, connection, pause, posting = std::move(posting)] {
     clients_[connection].ask_several(request_of(posting, style_), events_of(posting),
                                      [this, connection, pause](int) {

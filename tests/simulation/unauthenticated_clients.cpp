@@ -27,11 +27,11 @@ constexpr std::string_view kBegun =
 UnauthenticatedClients::UnauthenticatedClients(World& world, double until)
     : world_(world), random_(world.random("strangers")), until_(until) {
   if (world_.omits("strangers")) return;
-  const double begin = random_.between(0, until_);
-  for (std::uint64_t i = 8 + random_.below(kMost - 8); i > 0; --i) {
+  const double begin = random_.uniform(0, until_);
+  for (std::uint64_t i = 8 + random_.uniform_index(kMost - 8); i > 0; --i) {
     sockets_.push_back(
         std::make_unique<Socket>(Socket{.address = address(kFirst + static_cast<int>(i % kAddresses))}));
-    world_.after(seconds(begin + random_.between(0, 1)),
+    world_.after(seconds(begin + random_.uniform(0, 1)),
                  [this, one = sockets_.back().get()] { connect(*one); });
   }
 }
@@ -57,7 +57,7 @@ void UnauthenticatedClients::close(Socket& socket) {
 }
 
 void UnauthenticatedClients::send_a_byte(Socket& socket) {
-  world_.after(seconds(random_.between(1, 10)), [this, one = &socket, fd = socket.fd] {
+  world_.after(seconds(random_.uniform(1, 10)), [this, one = &socket, fd = socket.fd] {
     if (fd < 0 || one->fd != fd) return;
     if (world_.time() > until_) return close(*one);
     ::send(fd, " ", 1, MSG_NOSIGNAL | MSG_DONTWAIT);
@@ -70,7 +70,7 @@ void UnauthenticatedClients::read(Socket& socket) {
   const ssize_t got = ::recv(socket.fd, bytes.data(), bytes.size(), MSG_DONTWAIT);
   if (got > 0 || (got < 0 && errno == EAGAIN)) return;
   close(socket);
-  world_.after(seconds(random_.between(0.1, 2)), [this, one = &socket] { connect(*one); });
+  world_.after(seconds(random_.uniform(0.1, 2)), [this, one = &socket] { connect(*one); });
 }
 
 }  // namespace adit::simulation

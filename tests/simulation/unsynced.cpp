@@ -93,7 +93,7 @@ void UnsyncedFile::apply(const Change& change, std::string& bytes, Random& rando
 /// them.
 std::string UnsyncedFile::after_power_cut(std::string now, Random& random) const {
   for (auto change = changes_.rbegin(); change != changes_.rend(); ++change) take_back(*change, now);
-  const std::uint64_t how = random.below(3), first = random.below(changes_.size() + 1);
+  const std::uint64_t how = random.uniform_index(3), first = random.uniform_index(changes_.size() + 1);
   for (std::size_t i = 0; i < changes_.size(); ++i) {
     const Change& change = changes_[i];
     const bool is_out = how == 1 ? i < first : how == 2 && random.chance(0.5);
@@ -183,7 +183,7 @@ void Unsynced::cut(const fs::path& tree, Random& random) {
   for (const Naming& each : namings_) ++changed[folder_of(each.name)];
   for (const auto& [folder, count] : changed) {
     const double how = random.unit();
-    kept[folder] = how < 0.4 ? 0 : how < 0.6 ? count : random.below(count + 1);
+    kept[folder] = how < 0.4 ? 0 : how < 0.6 ? count : random.uniform_index(count + 1);
   }
   while (!namings_.empty()) {
     const Naming last = std::move(namings_.back());

@@ -41,15 +41,15 @@ void tell_console(Level level, std::string_view message, std::initializer_list<F
 
 /// No check looks for secrets in the log.
 void keep_out_of_log(icd::Redaction) {}
-std::string without_secrets(std::string text) {
+std::string strip_secrets(std::string text) {
   return text;
 }
 
-std::vector<Record> remembered(std::uint64_t after) {
-  return memory().after(after);
+std::vector<Record> records_after(std::uint64_t after) {
+  return memory().records_after(after);
 }
 
-std::uint64_t logged() {
+std::uint64_t last_record_number() {
   return memory().last();
 }
 

@@ -82,7 +82,7 @@ void Source::wait_for(std::uint32_t events) {
 void Source::call_at(Instant when) {
   World& world = state_->world;
   const std::uint64_t setting = ++state_->setting;
-  const auto late = simulation::seconds(state_->lateness->between(0, kLatestTimer));
+  const auto late = simulation::seconds(state_->lateness->uniform(0, kLatestTimer));
   world.at(std::max(when, world.now()) + late, [weak = std::weak_ptr(state_), setting] {
     const auto alive = weak.lock();
     if (!alive || alive->setting != setting) return;
@@ -161,8 +161,8 @@ double Loop::wall_now() const {
 void Loop::set_wall(double now) {
   impl_->wall.set(now, this->now());
 }
-double Loop::wall_ahead() const {
-  return impl_->wall.ahead();
+double Loop::wall_offset() const {
+  return impl_->wall.offset();
 }
 double Loop::look_at_wall(bool system_is_right) {
   return impl_->wall.look(impl_->world.stamp(), now(), system_is_right);

@@ -39,11 +39,11 @@ void notify_alive() {
   tell("WATCHDOG");
 }
 
-std::optional<std::chrono::microseconds> watchdog_within() {
+std::optional<std::chrono::microseconds> watchdog_interval() {
   return kWatchdog;
 }
 
-std::expected<std::vector<Inherited>, std::string> inherited() {
+std::expected<std::vector<Inherited>, std::string> inherited_sockets() {
   return std::exchange(World::current().inherited, {});
 }
 void store_descriptor(const std::string&, int) {}

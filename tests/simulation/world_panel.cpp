@@ -37,7 +37,7 @@ class Shown final : public Lines {
 
 }  // namespace
 
-std::unique_ptr<Lines> simulated(std::string) {
+std::unique_ptr<Lines> make_simulated_lines(std::string) {
   return std::make_unique<Shown>();
 }
 

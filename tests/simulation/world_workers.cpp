@@ -33,8 +33,8 @@ class Pool : public std::enable_shared_from_this<Pool> {
 
   void end() {
     over_ = true;
-    while (auto next = finishes_ ? jobs_.take(loop_.now()) : std::nullopt) {
-      guarded("a job of a worker", next->job.work);
+    while (auto next = finishes_ ? jobs_.pop(loop_.now()) : std::nullopt) {
+      run_guarded("a job of a worker", next->job.work);
     }
     JobQueue<Job> dropped(1);
     jobs_.hand_over_to(dropped);
@@ -51,7 +51,7 @@ class Pool : public std::enable_shared_from_this<Pool> {
     --idle_;
     ++waking_;
     const double busy = random_.chance(0.02) ? kBusy : 0;
-    world_.after(simulation::seconds(random_.between(0, kBegins + busy)), [weak = weak_from_this()] {
+    world_.after(simulation::seconds(random_.uniform(0, kBegins + busy)), [weak = weak_from_this()] {
       if (const auto self = weak.lock()) {
         self->world_.when_moving([weak] {
           if (const auto still = weak.lock(); still && !still->over_) still->work();
@@ -62,7 +62,7 @@ class Pool : public std::enable_shared_from_this<Pool> {
 
   void work() {
     --waking_;
-    auto next = jobs_.take(loop_.now());
+    auto next = jobs_.pop(loop_.now());
     if (!next) {  // enough deferrable jobs run; the next one that ends begins it
       ++idle_;
       return;
@@ -70,11 +70,11 @@ class Pool : public std::enable_shared_from_this<Pool> {
     Job& job = next->job;
     world_.crossing();
     bool well = false;
-    const Duration waited = world_.in_worker([&] { well = guarded("a job of a worker", job.work); });
+    const Duration waited = world_.in_worker([&] { well = run_guarded("a job of a worker", job.work); });
     world_.crossing();
     job.work = nullptr;
     const double busy = random_.chance(0.02) ? kBusy : 0;
-    world_.after(waited + simulation::seconds(random_.between(0, kTakes + busy)),
+    world_.after(waited + simulation::seconds(random_.uniform(0, kTakes + busy)),
                  [weak = weak_from_this(), urgency = next->urgency,
                   end = well ? std::move(job.done) : std::move(job.failed)]() mutable {
                    if (const auto self = weak.lock(); self && !self->over_)
@@ -85,7 +85,7 @@ class Pool : public std::enable_shared_from_this<Pool> {
   /// Runs `end` in the loop, when the process does not stand still.
   void hand_back(Urgency urgency, std::function<void()> end) {
     ++idle_;
-    jobs_.ended(urgency, loop_.now());
+    jobs_.on_ended(urgency, loop_.now());
     loop_.post([weak = weak_from_this(), end = std::move(end)] {
       const auto self = weak.lock();
       if (!self || self->over_) return;

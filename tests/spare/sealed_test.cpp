@@ -67,7 +67,7 @@ TEST(Code, HasSixteenDigits) {
 }
 
 TEST(Code, IsShownInGroupsAndReadInAnyGrouping) {
-  EXPECT_EQ(spoken("1234567890123456"), "1234 5678 9012 3456");
+  EXPECT_EQ(code_text("1234567890123456"), "1234 5678 9012 3456");
   for (const char* const typed : {"1234567890123456", "1234 5678 9012 3456", "1234-5678-9012-3456 "})
     EXPECT_EQ(code_in(typed), "1234567890123456") << typed;
   for (const char* const wrong : {"", "123456789012345", "12345678901234567", "1234567890123x56", "１234"})

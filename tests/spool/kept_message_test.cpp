@@ -27,9 +27,9 @@ class StoredMessageTest : public testing::Test {
 };
 
 TEST_F(StoredMessageTest, ReadsBackTheSame) {
-  ASSERT_TRUE(write_whole(file_, codec::write_state_update(state())));
+  ASSERT_TRUE(replace_file(file_, codec::write_state_update(state())));
   EXPECT_EQ(read_state(file_), state());
-  ASSERT_TRUE(write_whole(file_, codec::write_markers_update(markers())));
+  ASSERT_TRUE(replace_file(file_, codec::write_markers_update(markers())));
   EXPECT_EQ(read_markers(file_), markers());
   struct stat status{};
   ASSERT_EQ(::stat(file_.c_str(), &status), 0);
@@ -37,9 +37,9 @@ TEST_F(StoredMessageTest, ReadsBackTheSame) {
 }
 
 TEST_F(StoredMessageTest, KeepsTheOldFileOnAFullDisk) {
-  ASSERT_TRUE(write_whole(file_, bytes("older")));
+  ASSERT_TRUE(replace_file(file_, bytes("older")));
   const NoFileAbove small(4096);
-  const auto written = write_whole(file_, codec::write_map_update(cloud(1000)));
+  const auto written = replace_file(file_, codec::write_map_update(cloud(1000)));
   ASSERT_FALSE(written);
   EXPECT_TRUE(written.error().starts_with(file_ + ": ")) << written.error();
   EXPECT_EQ(host::read_file(file_), "older");
@@ -48,7 +48,7 @@ TEST_F(StoredMessageTest, KeepsTheOldFileOnAFullDisk) {
 
 TEST_F(StoredMessageTest, LeavesNoFileIfItCannotBeRenamed) {
   fs::create_directory(file_);
-  EXPECT_FALSE(write_whole(file_, bytes("newer")));
+  EXPECT_FALSE(replace_file(file_, bytes("newer")));
   EXPECT_EQ(host::names_in(folder_.path())->size(), 1u);
 }
 
@@ -62,9 +62,9 @@ TEST_F(StoredMessageTest, PartialFilesAloneAreRemoved) {
 
 TEST_F(StoredMessageTest, IsRejectedIfTruncatedOrOfAnotherKind) {
   const std::string whole = codec::write_state_update(state()).to_string();
-  ASSERT_TRUE(write_whole(file_, bytes(whole.substr(0, whole.size() - 1))));
+  ASSERT_TRUE(replace_file(file_, bytes(whole.substr(0, whole.size() - 1))));
   EXPECT_FALSE(read_state(file_));
-  ASSERT_TRUE(write_whole(file_, bytes(whole)));
+  ASSERT_TRUE(replace_file(file_, bytes(whole)));
   EXPECT_FALSE(read_map(file_));
   EXPECT_FALSE(read_markers(file_));
 }

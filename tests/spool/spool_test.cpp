@@ -63,7 +63,7 @@ TEST_F(SpoolTest, StoresTheBoundsOfAGridUntilItIsForgotten) {
   auto older = own;
   older.origin.position.x += 0.03;
   older.origin.position.z -= 0.01;
-  const auto bounds = icd::joint_bounds(icd::GridBounds::of(own), icd::GridBounds::of(older));
+  const auto bounds = icd::joint_bounds(icd::GridBounds::from_grid(own), icd::GridBounds::from_grid(older));
   for (const std::uint64_t number : {1, 2, 3, 4}) ASSERT_TRUE(spool.keep(number, map, 0));
   for (const std::uint64_t number : {1, 2, 3}) ASSERT_TRUE(spool.keep_bounds(number, bounds));
   auto kept = spool.read();
@@ -84,7 +84,7 @@ TEST_F(SpoolTest, StoresTheBoundsOfAGridUntilItIsForgotten) {
     EXPECT_FALSE(kept[2].bounds) << damaged;
   }
   std::ofstream(folder_ / "map-00000003.bounds") << "[5,5,5,-5,-5,-5,-5]";
-  EXPECT_EQ(spool.read()[2].bounds, icd::GridBounds::of(own)) << "never smaller than the grid";
+  EXPECT_EQ(spool.read()[2].bounds, icd::GridBounds::from_grid(own)) << "never smaller than the grid";
 }
 
 TEST_F(SpoolTest, RejectsMapsUntilItsDirectoryWasRead) {

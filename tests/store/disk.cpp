@@ -69,20 +69,21 @@ void Disk::flip_bit() {
     }
   }
   if (used.empty()) return;
-  const auto& [path, at] = used[random_.below(used.size())];
+  const auto& [path, at] = used[random_.uniform_index(used.size())];
   std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
   file.seekg(static_cast<std::streamoff>(at));
   const int byte = file.get();
   file.seekp(static_cast<std::streamoff>(at));
-  file.put(static_cast<char>(byte ^ (1 << random_.below(8))));
+  file.put(static_cast<char>(byte ^ (1 << random_.uniform_index(8))));
 }
 
 void Disk::lengthen() {
   const auto all = files();
   if (!all.empty())
-    fs::resize_file(fs::path(log()) /
-                        std::next(all.begin(), static_cast<std::ptrdiff_t>(random_.below(all.size())))->first,
-                    std::uintmax_t{1} << 40);
+    fs::resize_file(
+        fs::path(log()) /
+            std::next(all.begin(), static_cast<std::ptrdiff_t>(random_.uniform_index(all.size())))->first,
+        std::uintmax_t{1} << 40);
 }
 
 std::map<std::string, std::string> Disk::files() const {
@@ -150,7 +151,7 @@ ssize_t Disk::write(int fd, const char* bytes, std::size_t size, off_t at) {
   may_be_killed();
   if (is_dead_ || fails(failing_writes, EIO)) return -1;
   const bool is_cut = random_.chance(kills) || random_.chance(failing_writes);
-  const std::size_t count = is_cut ? std::min(size, random_.below(size / 512 + 1) * 512) : size;
+  const std::size_t count = is_cut ? std::min(size, random_.uniform_index(size / 512 + 1) * 512) : size;
   if (count > 0) {
     struct stat status{};
     ::fstat(fd, &status);

@@ -30,7 +30,7 @@ class LogTest : public testing::Test {
 
 /// The format of 0.1.0 (firmware/doors/store/README.md).
 TEST(Frame, HasTheseBytes) {
-  const std::string bytes = written({5, 0x0102, 3, 0x0101, "adit"}, {8, 1}, 0x1122334455667788, 64);
+  const std::string bytes = to_bytes({5, 0x0102, 3, 0x0101, "adit"}, {8, 1}, 0x1122334455667788, 64);
   const std::string expected(
       "ADTL\x26\x7A\x4C\x97"
       "\4\0\0\0\5\0\0\0"
@@ -42,7 +42,7 @@ TEST(Frame, HasTheseBytes) {
 
 TEST(Frame, IsValidOnlyInItsPlaceAndFile) {
   const std::string bytes =
-      std::string(8, ' ') + written({.kind = 1, .sequence = 1, .body = "a"}, {8, 1}, 7, 8);
+      std::string(8, ' ') + to_bytes({.kind = 1, .sequence = 1, .body = "a"}, {8, 1}, 7, 8);
   EXPECT_TRUE(parse(bytes, 8, 7));
   EXPECT_FALSE(parse(bytes, 8, 6));
   EXPECT_FALSE(parse(bytes.substr(8), 0, 7));
@@ -215,10 +215,10 @@ TEST_F(LogTest, FileOfALaterVersionIsKept) {
   files_ = small_.files();
   const std::string name = files_.begin()->first;
   const FileName file{FileName::Kind::Log, 1, std::stoull(name.substr(name.find('.') + 1), nullptr, 16)};
-  const std::string body = FileHeader{.version = 2, .number = 1, .salt = file.salt, .size = 8192}.written();
+  const std::string body = FileHeader{.version = 2, .number = 1, .salt = file.salt, .size = 8192}.to_bytes();
   std::string bytes = files_.at(name);
   bytes.replace(0, 1024,
-                written({.kind = kFileBegins, .process = 1, .body = body}, kSmall.layout, file.salt, 0)
+                to_bytes({.kind = kFileBegins, .process = 1, .body = body}, kSmall.layout, file.salt, 0)
                     .append(1024, '\0'),
                 0, 1024);
   small_.write(name, bytes);
@@ -234,7 +234,7 @@ TEST_F(LogTest, IsWrittenByOneProcessAtATime) {
 /// A peer that knows the format cannot insert a record into the log with its message.
 TEST_F(LogTest, FrameInsideARecordIsIgnored) {
   const std::string forged =
-      written({.kind = 1, .sequence = 9, .process = 99, .body = "forged"}, kSmall.layout, 0, 2048);
+      to_bytes({.kind = 1, .sequence = 9, .process = 99, .body = "forged"}, kSmall.layout, 0, 2048);
   small_.fill({std::string(472, 'x') + forged, "b"}, Durability::Now);
   files_ = small_.files();
   for (const std::size_t at : {1024, 1024 + 1536})

@@ -65,7 +65,7 @@ class Play {
 
   /// Runs a process. Returns a sentence about a violation, or "".
   std::string run() {
-    const std::uint64_t processes = 1 + random_.below(6);
+    const std::uint64_t processes = 1 + random_.uniform_index(6);
     for (std::uint64_t i = 0; i < processes && trouble_.empty(); ++i) {
       disk_.start();
       try {
@@ -126,7 +126,7 @@ class Play {
              {found.bodies.begin() + static_cast<std::ptrdiff_t>(durable), found.bodies.end()},
              {}};
     if (!started && !on_disk_) return;
-    for (std::uint64_t left = random_.below(40); left > 0; --left) step(*directory, log);
+    for (std::uint64_t left = random_.uniform_index(40); left > 0; --left) step(*directory, log);
   }
 
   struct Reading {
@@ -156,13 +156,14 @@ class Play {
       const std::size_t least = whole->found.bodies.size() - (whole->last - whole->durable);
       if (now->found.bodies.size() < least) trouble_ = std::string(what) + " shows in nothing";
     };
-    disk_.replace(copies_[random_.below(copies_.size())]);
+    disk_.replace(copies_[random_.uniform_index(copies_.size())]);
     expect_shown("an older copy");
     auto zeroed = before;
     std::string& bytes =
-        std::next(zeroed.begin(), static_cast<std::ptrdiff_t>(random_.below(zeroed.size())))->second;
+        std::next(zeroed.begin(), static_cast<std::ptrdiff_t>(random_.uniform_index(zeroed.size())))->second;
     if (!bytes.empty())
-      std::fill(bytes.begin() + static_cast<std::ptrdiff_t>(random_.below(bytes.size())), bytes.end(), '\0');
+      std::fill(bytes.begin() + static_cast<std::ptrdiff_t>(random_.uniform_index(bytes.size())), bytes.end(),
+                '\0');
     disk_.replace(zeroed);
     expect_shown("a zeroed tail");
     disk_.replace(before);
@@ -182,7 +183,7 @@ class Play {
     if (on_disk_ && random_.chance(0.05)) return void(make_spare(directory, keeping_, false));
     const bool now = !on_disk_ || random_.chance(0.6);
     std::string body = "record " + std::to_string(++count_) + ' ';
-    if (random_.chance(0.1)) body.resize(random_.below(3000), 'x');
+    if (random_.chance(0.1)) body.resize(random_.uniform_index(3000), 'x');
     book_.tried.push_back(body);
     const auto appended = log.append(kKind, body, now ? Durability::Now : Durability::Soon);
     if (!appended) return;

@@ -12,17 +12,17 @@ LastUpdate last_update(Stage stage) {
 }
 
 TEST(LastUpdate, InstalledWaitsForTheRestart) {
-  EXPECT_EQ(settled(last_update(Stage::Installed), kOld, "first"), last_update(Stage::Installed));
+  EXPECT_EQ(settle_update(last_update(Stage::Installed), kOld, "first"), last_update(Stage::Installed));
   EXPECT_FALSE(on_trial(last_update(Stage::Installed), kOld, "first"));
 }
 
 TEST(LastUpdate, RunningIsATrial) {
-  EXPECT_EQ(settled(last_update(Stage::Installed), kNew, "second").stage, Stage::Installed);
+  EXPECT_EQ(settle_update(last_update(Stage::Installed), kNew, "second").stage, Stage::Installed);
   EXPECT_TRUE(on_trial(last_update(Stage::Installed), kNew, "second"));
 }
 
 TEST(LastUpdate, IsLeftIfTheOldSlotRunsAgain) {
-  const LastUpdate left = settled(last_update(Stage::Installed), kOld, "second");
+  const LastUpdate left = settle_update(last_update(Stage::Installed), kOld, "second");
   EXPECT_EQ(left.stage, Stage::Left);
   EXPECT_EQ(left.version, "0.2.0");
   EXPECT_EQ(left.why, "the update did not become healthy in three starts; 0.1.0 is running again");
@@ -32,11 +32,11 @@ TEST(LastUpdate, IsLeftIfTheOldSlotRunsAgain) {
 TEST(LastUpdate, RunningIsATrialEvenIfItsEndWasNotSeen) {
   for (const Stage stage : {Stage::Installing, Stage::Interrupted, Stage::Failed, Stage::Left}) {
     EXPECT_TRUE(on_trial(last_update(stage), kNew, "second")) << name_of(stage);
-    const LastUpdate whole = settled(last_update(stage), kNew, "second");
+    const LastUpdate whole = settle_update(last_update(stage), kNew, "second");
     EXPECT_EQ(whole.stage, Stage::Installed) << name_of(stage);
     EXPECT_EQ(whole.why, "") << name_of(stage);
     EXPECT_TRUE(on_trial(whole, kNew, "second"));
-    EXPECT_EQ(settled(whole, kOld, "third").stage, Stage::Left) << name_of(stage);
+    EXPECT_EQ(settle_update(whole, kOld, "third").stage, Stage::Left) << name_of(stage);
     EXPECT_FALSE(on_trial(last_update(stage), kOld, "second")) << name_of(stage);
   }
 }
@@ -47,13 +47,13 @@ TEST(LastUpdate, AnotherVersionIsNoTrial) {
   for (const Stage stage : {Stage::Installing, Stage::Interrupted, Stage::Failed, Stage::Installed}) {
     EXPECT_FALSE(on_trial(last_update(stage), before, "second")) << name_of(stage);
   }
-  EXPECT_EQ(settled(last_update(Stage::Installing), before, "second").stage, Stage::Interrupted);
-  EXPECT_EQ(settled(last_update(Stage::Failed), before, "second"), last_update(Stage::Failed));
+  EXPECT_EQ(settle_update(last_update(Stage::Installing), before, "second").stage, Stage::Interrupted);
+  EXPECT_EQ(settle_update(last_update(Stage::Failed), before, "second"), last_update(Stage::Failed));
 }
 
 TEST(LastUpdate, InterruptedIsOverInThisOrTheNextBoot) {
   for (const char* boot : {"first", "second"}) {
-    const LastUpdate broken = settled(last_update(Stage::Installing), kOld, boot);
+    const LastUpdate broken = settle_update(last_update(Stage::Installing), kOld, boot);
     EXPECT_EQ(broken.stage, Stage::Interrupted) << boot;
     EXPECT_EQ(broken.why,
               "the update was interrupted: the running slot is unchanged, install the update again");
@@ -64,23 +64,23 @@ TEST(LastUpdate, FinishedByRaucWaitsForTheRestart) {
   Running finished = kOld;
   finished.other_next = true;
   for (const Stage stage : {Stage::Installing, Stage::Interrupted, Stage::Failed}) {
-    const LastUpdate whole = settled(last_update(stage), finished, "first");
+    const LastUpdate whole = settle_update(last_update(stage), finished, "first");
     EXPECT_EQ(whole.stage, Stage::Installed) << name_of(stage);
     EXPECT_EQ(whole.why, "") << name_of(stage);
     EXPECT_FALSE(on_trial(whole, kOld, "first"));
   }
-  EXPECT_EQ(settled(last_update(Stage::Good), finished, "first").stage, Stage::Good);
+  EXPECT_EQ(settle_update(last_update(Stage::Good), finished, "first").stage, Stage::Good);
 }
 
 TEST(LastUpdate, EndedStaysUnchanged) {
   for (const Stage stage : {Stage::None, Stage::Good}) {
     for (const Running& running : {kOld, kNew}) {
-      EXPECT_EQ(settled(last_update(stage), running, "third"), last_update(stage)) << name_of(stage);
+      EXPECT_EQ(settle_update(last_update(stage), running, "third"), last_update(stage)) << name_of(stage);
       EXPECT_FALSE(on_trial(last_update(stage), running, "third")) << name_of(stage);
     }
   }
   for (const Stage stage : {Stage::Interrupted, Stage::Failed, Stage::Left}) {
-    EXPECT_EQ(settled(last_update(stage), kOld, "third"), last_update(stage)) << name_of(stage);
+    EXPECT_EQ(settle_update(last_update(stage), kOld, "third"), last_update(stage)) << name_of(stage);
   }
 }
 

@@ -117,7 +117,7 @@ TEST_P(AnswerParserCases, AreReadTheSameInAnyPieces) {
     if (saw_all || c.keeps_alive) {
       EXPECT_EQ(parser.may_keep_alive(), c.keeps_alive);
     }
-    const Answered answered = parser.take();
+    const Answered answered = parser.take_answer();
     EXPECT_EQ(answered.status, c.status);
     EXPECT_EQ(answered.body, c.body);
   }
@@ -130,7 +130,7 @@ std::optional<std::chrono::seconds> retry_after(const std::string& value, const 
   EXPECT_EQ(parser.feed("HTTP/1.1 429 Slow\r\nContent-Length: 0\r\nDate: " + date +
                         "\r\nRetry-After: " + value + "\r\n\r\n"),
             State::Whole);
-  return parser.take().retry_after;
+  return parser.take_answer().retry_after;
 }
 
 TEST(AnswerParser, ReadsRetryAfterInSeconds) {
@@ -157,7 +157,7 @@ std::string decoded(const std::string& coding, const std::string& body) {
   EXPECT_EQ(parser.feed("HTTP/1.1 200 OK\r\nContent-Encoding: " + coding +
                         "\r\nContent-Length: " + std::to_string(body.size()) + "\r\n\r\n" + body),
             State::Whole);
-  return parser.take().body;
+  return parser.take_answer().body;
 }
 
 std::string gzipped(const std::string& text) {
@@ -187,7 +187,7 @@ TEST(AnswerParser, GivesTheContentTypeUnchanged) {
   ASSERT_EQ(
       parser.feed("HTTP/1.1 500 Oops\r\ncontent-TYPE: text/html; charset=utf-8\r\nContent-Length: 0\r\n\r\n"),
       State::Whole);
-  EXPECT_EQ(parser.take().content_type, "text/html; charset=utf-8");
+  EXPECT_EQ(parser.take_answer().content_type, "text/html; charset=utf-8");
 }
 
 TEST(AnswerParser, AcceptsAnAnswerOfExactlyTheLimit) {
@@ -196,7 +196,7 @@ TEST(AnswerParser, AcceptsAnAnswerOfExactlyTheLimit) {
   EXPECT_EQ(
       parser.feed("HTTP/1.1 200 OK\r\nContent-Length: " + std::to_string(body.size()) + "\r\n\r\n" + body),
       State::Whole);
-  EXPECT_EQ(parser.take().body, body);
+  EXPECT_EQ(parser.take_answer().body, body);
 }
 
 TEST(AnswerParser, StreamsAnAnswerOfAnyLength) {
@@ -217,7 +217,7 @@ TEST(AnswerParser, StreamsAnAnswerOfAnyLength) {
       ASSERT_EQ(parser.take_part(), part);
     }
     EXPECT_EQ(is_chunked ? parser.feed("0\r\n\r\n") : parser.feed_end(), State::Whole);
-    EXPECT_EQ(parser.take().body, "");
+    EXPECT_EQ(parser.take_answer().body, "");
   }
 }
 
@@ -286,7 +286,7 @@ TEST(HttpDate, IsReadFromAnAnswer) {
   ASSERT_EQ(
       parser.feed("HTTP/1.1 200 OK\r\nDate: Sun, 06 Nov 1994 08:49:37 GMT\r\nContent-Length: 0\r\n\r\n"),
       AnswerParser::State::Whole);
-  EXPECT_EQ(parser.take().date->time_since_epoch().count(), 784111777);
+  EXPECT_EQ(parser.take_answer().date->time_since_epoch().count(), 784111777);
 }
 
 }  // namespace

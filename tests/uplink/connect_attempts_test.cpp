@@ -10,13 +10,13 @@ using std::chrono::seconds;
 TEST(ConnectAttempts, PauseDoublesUpToFiveSecondsWhileTheyFail) {
   ConnectAttempts attempts;
   const loop::Instant now(seconds{100});
-  attempts.begins(now);
-  for (const int pause : {1, 2, 4, 5, 5}) EXPECT_EQ(attempts.failed("refused"), now + seconds{pause});
+  attempts.on_begun(now);
+  for (const int pause : {1, 2, 4, 5, 5}) EXPECT_EQ(attempts.on_failed("refused"), now + seconds{pause});
   EXPECT_EQ(attempts.trouble(), "refused");
   attempts.retry_now();
-  EXPECT_EQ(attempts.failed("no route"), now + seconds{1});
+  EXPECT_EQ(attempts.on_failed("no route"), now + seconds{1});
   EXPECT_EQ(attempts.trouble(), "no route");
-  attempts.succeeded();
+  attempts.on_succeeded();
   EXPECT_EQ(attempts.next(), now + seconds{1});
   EXPECT_EQ(attempts.trouble(), "");
 }

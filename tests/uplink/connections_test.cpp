@@ -83,7 +83,7 @@ TEST_F(TwoRequests, UnusedConnectionEnds) {
   ASSERT_TRUE(one_has_arrived());
   let_.release();
   ASSERT_TRUE(is_told(0));
-  EXPECT_TRUE(connections_.connected());
+  EXPECT_TRUE(connections_.is_connected());
   send(post("second"));
   let_.release();
   ASSERT_TRUE(is_told(1));

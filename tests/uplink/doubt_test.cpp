@@ -82,7 +82,7 @@ TEST_P(RequestsInDoubt, AreSentOnceAndTellWhy) {
   EXPECT_TRUE(std::holds_alternative<InDoubt>(outcome)) << answered(outcome).status;
   EXPECT_THAT(why(outcome), AllOf(HasSubstr("POST /map/update to 127.0.0.1:"),
                                   HasSubstr(std::string(GetParam().sentence))));
-  EXPECT_FALSE(connection.connected());
+  EXPECT_FALSE(connection.is_connected());
   EXPECT_TRUE(loop::turn_until(loop_, [&] { return peer.begun() > 0; }));
   for (int i = 0; i < 5; ++i) loop_.turn(milliseconds(2));
   EXPECT_EQ(peer.begun(), 1) << "it was sent again";

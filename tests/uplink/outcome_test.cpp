@@ -33,7 +33,7 @@ TEST_F(AnsweredRequests, WereRejectedDuringTheirBody) {
     EXPECT_EQ(got.body, "\"Reduce to <1Hz.\"");
     EXPECT_EQ(got.retry_after, std::chrono::seconds(2));
     EXPECT_LT(connection.sent_bytes(), body.size());
-    EXPECT_FALSE(connection.connected()) << "half a request has been sent on it";
+    EXPECT_FALSE(connection.is_connected()) << "half a request has been sent on it";
   }
 }
 
@@ -59,7 +59,7 @@ TEST_F(AnsweredRequests, WereAcceptedEarlyByAPeerThatReadsOn) {
   EXPECT_EQ(answered(outcome).status, 200) << why(outcome);
   EXPECT_EQ(answered(outcome).body, "null");
   EXPECT_GT(connection.sent_bytes(), body.size());
-  EXPECT_FALSE(connection.connected()) << "bytes after the answer were not read";
+  EXPECT_FALSE(connection.is_connected()) << "bytes after the answer were not read";
 }
 
 TEST_F(AnsweredRequests, WereAcceptedBeforeAHeldBackByte) {
@@ -127,7 +127,7 @@ TEST_F(AnsweredRequests, ReconnectIfTheKeptConnectionWasClosed) {
     answer_read.set_value();
     while (peer.ended() == 0)
       std::this_thread::sleep_for(milliseconds(1));  // the loop does not get to see it
-    EXPECT_TRUE(connection.connected());
+    EXPECT_TRUE(connection.is_connected());
     EXPECT_EQ(answered(ask(connection, get())).body, "\"second\"");
     EXPECT_EQ(peer.begun(), 2);
   }

@@ -93,7 +93,7 @@ TEST_F(ConnectionRequests, FollowEachOtherOnOneConnection) {
   Connection connection(loop_, peer.endpoint(), token());
   for (int i = 0; i < 20; ++i) EXPECT_EQ(answered(ask(connection, post("x"))).status, 200);
   EXPECT_EQ(peer.begun(), 1);
-  EXPECT_TRUE(connection.connected());
+  EXPECT_TRUE(connection.is_connected());
 }
 
 TEST_F(ConnectionRequests, ReconnectAfterAnAnswerThatClosed) {
@@ -113,7 +113,7 @@ TEST_F(ConnectionRequests, ReconnectAfterAnAnswerThatClosed) {
     });
     Connection connection(loop_, peer.endpoint(), token());
     const Answered first = answered(ask(connection, get()));
-    EXPECT_FALSE(connection.connected());
+    EXPECT_FALSE(connection.is_connected());
     const Answered second = answered(ask(connection, get()));
     EXPECT_GE(first.status, 200);
     EXPECT_EQ(first.status, second.status);

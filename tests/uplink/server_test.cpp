@@ -58,7 +58,7 @@ class ServerTest : protected StandingTime, public Asking {
   }
   /// Lets time pass until the idle connection is closed, and none while the peer's thread answers.
   bool is_answered_after_closing(std::size_t idle, std::size_t place) {
-    return time.pass_until(loop_, [&] { return !connections_[idle]->connected(); }) && is_answered(place);
+    return time.pass_until(loop_, [&] { return !connections_[idle]->is_connected(); }) && is_answered(place);
   }
   void learn() {
     send(0, get("/a"));
@@ -101,7 +101,7 @@ TEST_F(ServerTest, IdleConnectionIsClosedAfterASecondWithoutAnAnswer) {
   const loop::Instant sent = loop_.now();
   EXPECT_TRUE(is_answered_after_closing(0, 1));
   EXPECT_GE(loop_.now() - sent, Server::kSilence);
-  EXPECT_FALSE(connections_[0]->connected());
+  EXPECT_FALSE(connections_[0]->is_connected());
 }
 
 TEST_F(ServerTest, WarmConnectionIsClosed) {
@@ -120,7 +120,7 @@ TEST_F(ServerTest, SerialServerGetsOneConnectionAtATime) {
     for (const std::size_t place : {0u, 1u, 2u}) {
       send(place, get("/a"));
       EXPECT_TRUE(is_answered(place));
-      EXPECT_FALSE(connections_[place]->connected());
+      EXPECT_FALSE(connections_[place]->is_connected());
     }
   }
   EXPECT_EQ(received(), "aaaaaaaaa");
@@ -130,7 +130,7 @@ TEST_F(ServerTest, SerialServerGetsOneConnectionAtATime) {
 class TurnsTest : public ServerTest {
  protected:
   TurnsTest() {
-    for (Server::Turn& each : turns_) each.came = [this, &each] { came(each); };
+    for (Server::Turn& each : turns_) each.on_turn = [this, &each] { came(each); };
   }
   ~TurnsTest() override {
     for (Server::Turn& each : turns_) server_->remove(each);
@@ -219,8 +219,8 @@ TEST_F(TurnsTest, AllComeIfSeveralConnectionsAreTriedAgain) {
   came(turns_[1]);
   came(turns_[2]);
   time.pass(Server::kTryAgain);
-  EXPECT_TRUE(
-      loop::turn_until(loop_, [&] { return connections_[1]->connected() && connections_[2]->connected(); }));
+  EXPECT_TRUE(loop::turn_until(
+      loop_, [&] { return connections_[1]->is_connected() && connections_[2]->is_connected(); }));
 }
 
 TEST_F(ServerTest, SerialServerIsTriedAgain) {
@@ -230,7 +230,7 @@ TEST_F(ServerTest, SerialServerIsTriedAgain) {
   send(1, get("/a"));
   ASSERT_TRUE(is_answered(1));
   time.pass(Server::kTryAgain);
-  EXPECT_TRUE(loop::turn_until(loop_, [&] { return connections_[0]->connected(); }));
+  EXPECT_TRUE(loop::turn_until(loop_, [&] { return connections_[0]->is_connected(); }));
   EXPECT_FALSE(server().is_serial());
 }
 
@@ -246,7 +246,7 @@ TEST_F(ServerTest, RequestInFlightIsNotClosed) {
   EXPECT_TRUE(is_answered(0));
   EXPECT_TRUE(is_answered(1));
   EXPECT_EQ(received(), "ab");
-  EXPECT_FALSE(connections_[0]->connected()) << "it blocked the other one";
+  EXPECT_FALSE(connections_[0]->is_connected()) << "it blocked the other one";
 }
 
 TEST_F(ServerTest, WarmConnectionsReturnIfThatDidNotHelp) {
@@ -258,12 +258,12 @@ TEST_F(ServerTest, WarmConnectionsReturnIfThatDidNotHelp) {
   send(1, get("/b"));
   ASSERT_TRUE(has_received("ab"));
   time.pass(loop_, Server::kSilence + milliseconds(300));
-  EXPECT_FALSE(connections_[0]->connected());
+  EXPECT_FALSE(connections_[0]->is_connected());
   time.pass(Server::kSilence);
-  EXPECT_TRUE(loop::turn_until(loop_, [&] { return connections_[0]->connected(); }));
+  EXPECT_TRUE(loop::turn_until(loop_, [&] { return connections_[0]->is_connected(); }));
   let_.release();
   EXPECT_TRUE(is_answered(1));
-  EXPECT_TRUE(connections_[0]->connected());
+  EXPECT_TRUE(connections_[0]->is_connected());
   EXPECT_FALSE(server().is_serial());
 }
 
@@ -273,7 +273,7 @@ TEST_F(ServerTest, SlowServerIsNotSerial) {
     send(0, get("/a"));
     ASSERT_TRUE(is_answered(0));
     ask_slowly(1);
-    EXPECT_EQ(connections_[0]->connected(), i > 0) << "a known connection cannot be blocked";
+    EXPECT_EQ(connections_[0]->is_connected(), i > 0) << "a known connection cannot be blocked";
   }
   EXPECT_FALSE(server().is_serial());
 }
@@ -303,7 +303,7 @@ TEST_F(ServerTest, ServerThatClosesAfterEachAnswerIsSerial) {
   listen();
   connections_[0]->keep_warm();
   for (int i = 1; i <= 2; ++i) {
-    ASSERT_TRUE(loop::turn_until(loop_, [&] { return connections_[0]->connected(); }));
+    ASSERT_TRUE(loop::turn_until(loop_, [&] { return connections_[0]->is_connected(); }));
     EXPECT_FALSE(server().is_serial());
     time.pass(milliseconds(1));
     send(1, get("/a"));
@@ -320,7 +320,7 @@ TEST_F(ServerTest, SlowServerBesideAWarmConnectionIsNotSerial) {
   listen(true);
   connections_[0]->keep_warm();
   for (int i = 0; i < 3; ++i) {
-    ASSERT_TRUE(loop::turn_until(loop_, [&] { return connections_[0]->connected(); }));
+    ASSERT_TRUE(loop::turn_until(loop_, [&] { return connections_[0]->is_connected(); }));
     time.pass(milliseconds(1));
     ask_slowly(1);
     time.pass(Server::kSilence);

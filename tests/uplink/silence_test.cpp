@@ -24,7 +24,7 @@ class Silence : public Asking {
     return more_arrives();
   }
   std::size_t arrived() const {
-    return exchange_->sent() - std::min(exchange_->sent(), unacknowledged_bytes(fd_.get()));
+    return exchange_->sent_bytes() - std::min(exchange_->sent_bytes(), unacknowledged_bytes(fd_.get()));
   }
   /// Writes until the peer's kernel has acknowledged more bytes.
   bool more_arrives() {

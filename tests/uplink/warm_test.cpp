@@ -36,9 +36,9 @@ class WarmConnection : public Asking {
 TEST_F(WarmConnection, ConnectsAheadOfNeed) {
   const ListeningPeer peer(always(answer("200 OK", "null")));
   Connection connection(loop_, peer.endpoint(), token());
-  EXPECT_FALSE(connection.connected());
+  EXPECT_FALSE(connection.is_connected());
   connection.keep_warm();
-  EXPECT_TRUE(loop::turn_until(loop_, [&] { return connection.connected(); }));
+  EXPECT_TRUE(loop::turn_until(loop_, [&] { return connection.is_connected(); }));
   EXPECT_EQ(answered(ask(connection, get())).status, 200);
   EXPECT_EQ(peer.begun(), 1);
 }
@@ -59,16 +59,16 @@ TEST_F(WarmConnection, ReportsTroubleAndConnectsLater) {
   EXPECT_THAT(connection.trouble(), HasSubstr("Connection refused"));
   EXPECT_FALSE(connection.busy());
   peer.listen();
-  EXPECT_TRUE(loop::turn_until(loop_, [&] { return connection.connected(); }));
+  EXPECT_TRUE(loop::turn_until(loop_, [&] { return connection.is_connected(); }));
   EXPECT_EQ(connection.trouble(), "");
 }
 
 TEST_F(WarmConnection, RetriesAtOnceIfTheNetworkMayBeBack) {
   EXPECT_TRUE(is_quick([&](Connection& connection) {
     connection.retry_now();
-    EXPECT_TRUE(loop::turn_until(loop_, [&] { return connection.connected(); }));
+    EXPECT_TRUE(loop::turn_until(loop_, [&] { return connection.is_connected(); }));
     connection.retry_now();
-    EXPECT_TRUE(connection.connected()) << "an open connection stays";
+    EXPECT_TRUE(connection.is_connected()) << "an open connection stays";
   }));
 }
 
@@ -87,8 +87,8 @@ TEST_F(WarmConnection, ReconnectsAfterAnAnswerThatClosed) {
   Connection connection(loop_, peer.endpoint(), token());
   connection.keep_warm();
   EXPECT_EQ(answered(ask(connection, get())).status, 422);
-  EXPECT_FALSE(connection.connected());
-  EXPECT_TRUE(loop::turn_until(loop_, [&] { return connection.connected(); }));
+  EXPECT_FALSE(connection.is_connected());
+  EXPECT_TRUE(loop::turn_until(loop_, [&] { return connection.is_connected(); }));
 }
 
 TEST_F(WarmConnection, RequestsDoNotWaitForARetry) {

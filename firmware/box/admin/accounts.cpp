@@ -41,9 +41,10 @@ std::vector<access::Device> read_known(const std::string& file, const access::Ac
 }
 
 /// Returns `accounts` with a role's password changed. Slow.
-icd::Checked<access::Accounts> with(access::Accounts accounts, Role role,
-                                    const std::optional<std::string>& password, const access::Salt& salt) {
-  accounts.of(role).reset();
+icd::Checked<access::Accounts> with_password(access::Accounts accounts, Role role,
+                                             const std::optional<std::string>& password,
+                                             const access::Salt& salt) {
+  accounts.hash_of(role).reset();
   if (!password) return accounts;
   if (access::role_of(*password, accounts)) {
     return icd::refuse(icd::Status::UnprocessableEntity,
@@ -51,7 +52,7 @@ icd::Checked<access::Accounts> with(access::Accounts accounts, Role role,
   }
   auto hashed = access::hash(*password, salt);
   if (!hashed) return icd::refuse(icd::Status::ServiceUnavailable, hashed.error());
-  accounts.of(role) = std::move(*hashed);
+  accounts.hash_of(role) = std::move(*hashed);
   return accounts;
 }
 
@@ -110,7 +111,7 @@ void Accounts::check(std::string password, std::string address,
       },
       [this, role, accounts = accounts_, address = std::move(address), done = std::move(done)] {
         // the password has changed since
-        if (*role && accounts_.of(**role) != accounts.of(**role)) role->reset();
+        if (*role && accounts_.hash_of(**role) != accounts.hash_of(**role)) role->reset();
         if (*role) {
           host::log(Level::Notice, "logged in",
                     {{"role", std::string(name_of(**role))}, {"sender", address}});
@@ -133,7 +134,7 @@ void Accounts::set(Role role, std::optional<std::string> password,
   auto changed = std::make_shared<icd::Checked<access::Accounts>>(
       icd::refuse(icd::Status::ServiceUnavailable, "cannot set the password: try again"));
   const auto change = [changed, role, password = std::move(password), salt, accounts = accounts_] {
-    *changed = with(accounts, role, password, salt);
+    *changed = with_password(accounts, role, password, salt);
   };
   const auto keep = [changed, file = file(), code_file = code_file()] {
     if (!*changed) return;
@@ -144,12 +145,12 @@ void Accounts::set(Role role, std::optional<std::string> password,
       unlink(code_file.c_str());  // a code is valid only without a password
     }
   };
-  const auto ended = [this, changed, role, done = std::move(done)] { was_set(role, *changed, done); };
+  const auto ended = [this, changed, role, done = std::move(done)] { on_password_set(role, *changed, done); };
   workers_.submit(loop::Urgency::OnTheWay, change, [this, keep, ended] { writer_.submit(keep, ended); });
 }
 
-void Accounts::was_set(Role role, const icd::Checked<access::Accounts>& changed,
-                       const std::function<void(icd::Checked<void>)>& done) {
+void Accounts::on_password_set(Role role, const icd::Checked<access::Accounts>& changed,
+                               const std::function<void(icd::Checked<void>)>& done) {
   setting_ = false;
   if (!changed) {
     host::log(Level::Warning, "password not set", {{"why", changed.error().sentence}});
@@ -157,7 +158,7 @@ void Accounts::was_set(Role role, const icd::Checked<access::Accounts>& changed,
   }
   accounts_ = *changed;
   if (role == Role::Operator) set_up_.close();
-  host::log(Level::Notice, accounts_.of(role) ? "password set" : "password removed",
+  host::log(Level::Notice, accounts_.hash_of(role) ? "password set" : "password removed",
             {{"role", std::string(name_of(role))}});
   done({});
 }

@@ -43,7 +43,7 @@ class Accounts final : public api::Keys {
            std::function<void(icd::Checked<void>)> done) override;
   access::Sessions& sessions() override { return sessions_.sessions(); }
   access::Devices& devices() override { return devices_; }
-  bool somebody_at_box() const override { return at_box_.left(loop_.now()).has_value(); }
+  bool somebody_at_box() const override { return at_box_.remaining(loop_.now()).has_value(); }
   access::Secret draw() override;
 
   /// The code for the first password, if none was set at the start.
@@ -52,7 +52,7 @@ class Accounts final : public api::Keys {
   /// Call only for the box's own button.
   void open_set_up();
   void button_pressed() { at_box_.open(loop_.now(), kAtBox); }
-  std::optional<access::Duration> set_up_left() const { return set_up_.left(loop_.now()); }
+  std::optional<access::Duration> set_up_left() const { return set_up_.remaining(loop_.now()); }
 
  private:
   std::string file() const { return folder_ + '/' + kFile; }
@@ -60,8 +60,8 @@ class Accounts final : public api::Keys {
   std::string devices_file() const { return folder_ + '/' + kDevicesFile; }
   std::optional<icd::BearerToken> kept_code();
   void keep_devices();
-  void was_set(access::Role role, const icd::Checked<access::Accounts>& changed,
-               const std::function<void(icd::Checked<void>)>& done);
+  void on_password_set(access::Role role, const icd::Checked<access::Accounts>& changed,
+                       const std::function<void(icd::Checked<void>)>& done);
 
   const loop::Loop& loop_;
   loop::Workers& workers_;

@@ -30,7 +30,7 @@ api::CertificateView Certificate::state() const {
   if (!asked_.serves_tls()) {
     view.why = "Adit has no TLS server here: it needs systemd and the package stunnel4";
   } else if (!status) {
-    view.why = adit_certificate_.why();
+    view.why = adit_certificate_.status_error();
   } else if (view.fingerprint.empty()) {
     view.why = status->refusal.empty() ? "the certificate is being made" : status->refusal;
   }

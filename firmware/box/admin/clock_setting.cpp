@@ -70,7 +70,7 @@ void NtpWatch::hear() {
   }
 }
 
-std::optional<double> NtpWatch::behind() const {
+std::optional<double> NtpWatch::offset() const {
   if (!told_ || !server_ || loop_.now() >= told_at_ + kGone) return std::nullopt;
   if (told_->server != *server_ || std::abs(system_now() - told_->heard) > kSilence) return std::nullopt;
   return told_->behind;
@@ -78,8 +78,10 @@ std::optional<double> NtpWatch::behind() const {
 
 api::ClockView ClockSetting::state() const {
   const auto status = adit_clock_.status();
-  api::ClockView view{
-      .now = loop_.wall_now(), .managed = status != nullptr, .why = adit_clock_.why(), .refusal = trouble()};
+  api::ClockView view{.now = loop_.wall_now(),
+                      .managed = status != nullptr,
+                      .why = adit_clock_.status_error(),
+                      .refusal = trouble()};
   view.ntp = ntp_said();
   view.is_kept = is_kept_by_ntp();
   view.is_set = is_set().value_or(!adit_clock_.is_starting());
@@ -113,13 +115,13 @@ icd::Checked<void> ClockSetting::set_clock(double time) {
   return {};
 }
 
-void ClockSetting::offered(const clock::Offer& offer) {
+void ClockSetting::on_offered(const clock::Offer& offer) {
   const auto status = adit_clock_.status();
   if (!status || adit_clock_.waits()) return;
   const bool came_to_nothing = !trouble().empty() || !status->refusal.empty();
   if (came_to_nothing && loop_.now() < asked_at_ + kAskAgain) return;  // set_clock() has no such limit
-  const double of_the_system = loop_.wall_now() - loop_.wall_ahead();
-  const auto time = clock::time_to_set(status->trusted(), offer, of_the_system);
+  const double of_the_system = loop_.wall_now() - loop_.wall_offset();
+  const auto time = clock::time_to_set(status->trusted_source(), offer, of_the_system);
   if (!time) return;
   if (const auto asked = ask(offer.source, *time); !asked) not_written_ = asked.error();
 }
@@ -160,27 +162,27 @@ void ClockSetting::ask_for_ntp() {
 /// Offers the time until adit-clock has set it. Then chronyd keeps the clock by itself.
 void ClockSetting::follow_ntp() {
   const auto status = adit_clock_.status();
-  const auto behind = watch_.behind();
-  if (!status || !behind || status->trusted() == clock::Source::Ntp) return;
-  offered({clock::Source::Ntp, loop_.wall_now() - loop_.wall_ahead() + *behind});
+  const auto behind = watch_.offset();
+  if (!status || !behind || status->trusted_source() == clock::Source::Ntp) return;
+  on_offered({clock::Source::Ntp, loop_.wall_now() - loop_.wall_offset() + *behind});
 }
 
 bool ClockSetting::is_kept_by_ntp() const {
   const auto status = adit_clock_.status();
-  return status && status->trusted() == clock::Source::Ntp && watch_.behind();
+  return status && status->trusted_source() == clock::Source::Ntp && watch_.offset();
 }
 
 std::string ClockSetting::ntp_trouble() const {
   if (!ntp_.is_on()) return "";
   const auto status = adit_clock_.status();
   if (adit_clock_.is_starting()) return "";
-  if (!status && adit_clock_.runs_here()) return adit_clock_.why();
+  if (!status && adit_clock_.runs_here()) return adit_clock_.status_error();
   if (!status) return "the settings ask for NTP, but Adit does not set the clock of this machine";
   if (status->ntp == ntp_ && !status->trouble.empty()) return status->trouble;
-  if (ntp_.server.empty() || watch_.behind() || loop_.now() < ntp_since_ + kFirstAnswer) return "";
+  if (ntp_.server.empty() || watch_.offset() || loop_.now() < ntp_since_ + kFirstAnswer) return "";
   return icd::sentence(
       "the NTP server ", ntp_.server, " does not answer",
-      status->trusted() == clock::Source::Ntp ? ", or its time is off by more than a minute" : "");
+      status->trusted_source() == clock::Source::Ntp ? ", or its time is off by more than a minute" : "");
 }
 
 std::string ClockSetting::ntp_said() const {

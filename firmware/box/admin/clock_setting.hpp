@@ -27,12 +27,12 @@ class NtpWatch {
   /// Call each second. `server`: an IPv4 address, or "" to stop asking.
   void every_second(const std::string& server);
   /// Seconds by which the system clock is behind the server. std::nullopt: the server is silent.
-  std::optional<double> behind() const;
+  std::optional<double> offset() const;
 
  private:
   void ask();
   void hear();
-  double system_now() const { return loop_.wall_now() - loop_.wall_ahead(); }
+  double system_now() const { return loop_.wall_now() - loop_.wall_offset(); }
 
   loop::Loop& loop_;
   const std::uint16_t port_;
@@ -69,7 +69,7 @@ class ClockSetting final : public api::Clock {
   /// Call each second. `ntp`: from the settings.
   void every_second(const clock::Ntp& ntp);
   /// Requests the offered time if time_to_set() accepts it.
-  void offered(const clock::Offer& offer);
+  void on_offered(const clock::Offer& offer);
   /// std::nullopt: adit-clock is starting or does not run here, and the time may be right.
   std::optional<bool> is_set() const;
   /// Whether another source than the box's own clock has set the time of day.

@@ -20,13 +20,13 @@ FactoryReset::FactoryReset(Store& store, std::string state_folder, std::string r
     : store_(store), state_(std::move(state_folder)), runtime_(std::move(runtime_folder)) {}
 
 std::expected<void, std::string> FactoryReset::begin() {
-  return host::write_file(begun(), "", host::kOursAlone);
+  return host::write_file(marker_path(), "", host::kOursAlone);
 }
 
 std::expected<bool, std::string> FactoryReset::finish() {
   std::error_code unknown;
-  const bool is_begun = std::filesystem::exists(begun(), unknown);
-  if (unknown) return std::unexpected(unread_ = begun() + ": " + unknown.message());
+  const bool is_begun = std::filesystem::exists(marker_path(), unknown);
+  if (unknown) return std::unexpected(unread_ = marker_path() + ": " + unknown.message());
   if (!is_begun) return false;
   ADIT_TRY(store_.forget());
   const network::Forget forget{host::draw_nonce()};
@@ -46,7 +46,7 @@ std::expected<bool, std::string> FactoryReset::finish() {
         state_ + '/' + access::kCertificateFile, state_ + '/' + access::kCertificateFile + host::kDamaged,
         state_ + '/' + access::kUploadedFile, state_ + '/' + Accounts::kDevicesFile,
         state_ + '/' + Accounts::kCodeFile, state_ + '/' + Accounts::kFile,
-        state_ + '/' + Accounts::kFile + host::kDamaged, state_ + '/' + Takeover::kFile, begun()}) {
+        state_ + '/' + Accounts::kFile + host::kDamaged, state_ + '/' + Takeover::kFile, marker_path()}) {
     ADIT_TRY(host::remove_file(file));
   }
   host::log(host::Level::Notice,

@@ -29,7 +29,7 @@ class FactoryReset {
   const std::string& unread() const { return unread_; }
 
  private:
-  std::string begun() const { return state_ + '/' + kFile; }
+  std::string marker_path() const { return state_ + '/' + kFile; }
 
   Store& store_;
   std::string state_, runtime_, unread_;

@@ -49,7 +49,7 @@ SessionKeeper::SessionKeeper(std::string file, access::Instant now)
 
 void SessionKeeper::keep() {
   if (!unread_.empty()) return;
-  access::KeptSessions kept{.boot = boot_, .last = sessions_.last(), .sessions = sessions_.in_order()};
+  access::KeptSessions kept{.boot = boot_, .last = sessions_.last(), .sessions = sessions_.entries()};
   const auto written = host::write_kept(file_, access::write_sessions(kept));
   const bool failed_before = std::exchange(failed_, !written.has_value());
   if (written || failed_before) return;

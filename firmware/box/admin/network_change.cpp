@@ -57,7 +57,7 @@ std::string NetworkChange::hindrance() const {
     return icd::sentence("the settings name no ", team.empty() ? "team.interface" : "command_post.interface");
   }
   const auto status = adit_network_.status();
-  if (!status) return adit_network_.why();
+  if (!status) return adit_network_.status_error();
   if (!status->trouble.empty()) return "adit-network cannot work: " + status->trouble;
   if (status->team_interface != team || status->command_post_interface != post) {
     return icd::sentence("adit-network has ", status->team_interface, " and ", status->command_post_interface,
@@ -74,13 +74,13 @@ std::optional<network::Pending> NetworkChange::pending() const {
                           wanted_.confirm_within};
 }
 
-std::optional<network::Numbers> NetworkChange::kept() const {
+std::optional<network::Numbers> NetworkChange::confirmed_numbers() const {
   const auto status = adit_network_.status();
   return status ? status->kept : std::nullopt;
 }
 
 std::expected<std::optional<network::Numbers>, std::string> NetworkChange::present() const {
-  if (auto kept = this->kept()) return kept;
+  if (auto kept = this->confirmed_numbers()) return kept;
   const auto team = ADIT_TRY(host::own_address(settings_.team.interface));
   if (!team) return std::nullopt;
   auto post = ADIT_TRY(host::own_addresses(settings_.command_post.interface));
@@ -110,7 +110,7 @@ api::NetworkView NetworkChange::state() const {
   view.managed = view.why.empty();
   view.team = team.value_or(std::nullopt);
   view.command_post = std::move(post).value_or(std::vector<settings::Subnet>());
-  const auto kept = this->kept();
+  const auto kept = this->confirmed_numbers();
   if (kept) {
     view.mode = kept->mode;
     view.gateway = kept->gateway;
@@ -170,7 +170,7 @@ icd::Checked<void> NetworkChange::confirm(const std::string& local) {
 icd::Checked<void> NetworkChange::check_confirmable(const network::Numbers& wanted,
                                                     const std::string& local) const {
   const bool fixed = wanted.mode == network::Mode::Static;
-  const auto kept = this->kept();
+  const auto kept = this->confirmed_numbers();
   const bool stays = kept && kept->mode == wanted.mode && kept->team.address == wanted.team.address;
   if ((stays || !fixed) && adit_network_.waits())
     return icd::conflict("the change is not applied yet: try again in a few seconds");
@@ -214,7 +214,7 @@ std::expected<std::string, std::string> NetworkChange::next_hop(const settings::
 std::expected<network::Probe, std::string> NetworkChange::probe(const std::string& interface,
                                                                 const settings::Address& endpoint) const {
   const auto status = adit_network_.status();
-  if (!status) return std::unexpected(adit_network_.why());
+  if (!status) return std::unexpected(adit_network_.status_error());
   if (status->command_post_interface != interface)
     return std::unexpected("adit-network has " + status->command_post_interface + " instead");
   const auto hop = ADIT_TRY(next_hop(endpoint));
@@ -245,7 +245,8 @@ icd::Checked<void> NetworkChange::say(network::Decision::What what, const networ
 }
 
 /// The interface's first conflict.
-std::optional<facts::AddressConflict> NetworkChange::taken(const std::string& interface, bool is_team) const {
+std::optional<facts::AddressConflict> NetworkChange::address_conflict(const std::string& interface,
+                                                                      bool is_team) const {
   for (const network::AddressConflict& each : taken_.addresses) {
     if (each.interface != interface || loop_.now() >= each.seen + network::kTakenFor) continue;
     return facts::AddressConflict{
@@ -255,7 +256,7 @@ std::optional<facts::AddressConflict> NetworkChange::taken(const std::string& in
 }
 
 /// The first one that is an endpoint of the settings or its gateway.
-std::optional<facts::SwappedAddress> NetworkChange::exchanged() const {
+std::optional<facts::SwappedAddress> NetworkChange::swapped_address() const {
   const auto scoring = next_hop(settings_.command_post.scoring),
              mapping = next_hop(settings_.command_post.mapping);
   std::string trouble;
@@ -281,7 +282,7 @@ facts::Network NetworkChange::fact() const {
   facts::Network fact;
   read_taken();
   const auto waits = pending();
-  const auto kept = this->kept();
+  const auto kept = this->confirmed_numbers();
   const bool bare = kept && kept->command_post.empty();
   fact.no_address = !waits && bare && hindrance().empty();
   if (waits) {
@@ -290,9 +291,9 @@ facts::Network NetworkChange::fact() const {
   }
   for (const bool is_team : {true, false}) {
     const std::string& interface = is_team ? settings_.team.interface : settings_.command_post.interface;
-    if (auto taken = this->taken(interface, is_team)) fact.taken.push_back(std::move(*taken));
+    if (auto taken = address_conflict(interface, is_team)) fact.taken.push_back(std::move(*taken));
   }
-  if (!taken_.exchanged.empty()) fact.exchanged = exchanged();
+  if (!taken_.exchanged.empty()) fact.exchanged = swapped_address();
   return fact;
 }
 

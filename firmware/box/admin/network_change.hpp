@@ -57,13 +57,13 @@ class NetworkChange final : public api::Network {
   /// stay for network::kTakenFor.
   void read_taken() const;
   void lead_to_endpoints();
-  std::optional<facts::SwappedAddress> exchanged() const;
-  std::optional<facts::AddressConflict> taken(const std::string& interface, bool is_team) const;
+  std::optional<facts::SwappedAddress> swapped_address() const;
+  std::optional<facts::AddressConflict> address_conflict(const std::string& interface, bool is_team) const;
   /// Why changes are impossible here, or "".
   std::string hindrance() const;
   std::string page_at(const network::Numbers& numbers) const;
   std::optional<network::Pending> pending() const;
-  std::optional<network::Numbers> kept() const;
+  std::optional<network::Numbers> confirmed_numbers() const;
   /// Error: no numbers are confirmed, and the box's addresses cannot be read.
   std::expected<std::optional<network::Numbers>, std::string> present() const;
   /// Accepts `local` if a change to `wanted` may be confirmed from that address.

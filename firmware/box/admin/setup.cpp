@@ -32,10 +32,10 @@ Setup::Setup(Store& store, FactoryReset& reset, const Store::Loaded& loaded, std
       for_reports_(std::move(for_reports)),
       apply_(std::move(apply)),
       restart_(std::move(restart)) {
-  runs_with(loaded, std::move(trouble));
+  set_running(loaded, std::move(trouble));
 }
 
-void Setup::runs_with(const Store::Loaded& loaded, std::string trouble) {
+void Setup::set_running(const Store::Loaded& loaded, std::string trouble) {
   settings_ = loaded.settings;
   saved_ = loaded.saved;
   trouble_ = std::move(trouble);
@@ -51,11 +51,11 @@ void Setup::runs_with(const Store::Loaded& loaded, std::string trouble) {
 
 std::vector<std::string> Setup::warnings(const Settings& next) const {
   std::vector<std::string> sentences;
-  const auto now = settings::in_use(settings_), then = settings::in_use(next);
+  const auto now = settings::effective_settings(settings_), then = settings::effective_settings(next);
   if (now.team.listen != then.team.listen || now.team.interface != then.team.interface) {
     sentences.push_back(icd::sentence("Adit and this page move from ",
-                                      icd::listed(now.team.listen, forward::address_text), " to ",
-                                      icd::listed(then.team.listen, forward::address_text),
+                                      icd::join_words(now.team.listen, forward::address_text), " to ",
+                                      icd::join_words(then.team.listen, forward::address_text),
                                       ": open the page there, and point robots and stations there"));
   }
   if (now.command_post.scoring != then.command_post.scoring) {
@@ -77,8 +77,8 @@ std::vector<std::string> Setup::warnings(const Settings& next) const {
   return sentences;
 }
 
-icd::Checked<void> Setup::applied(const std::expected<void, std::string>& written, const char* what,
-                                  const std::function<void()>& apply) {
+icd::Checked<void> Setup::apply_if_written(const std::expected<void, std::string>& written, const char* what,
+                                           const std::function<void()>& apply) {
   if (!written) {
     host::log(host::Level::Error, "cannot store a change", {{"what", what}, {"why", written.error()}});
     return icd::refuse(icd::Status::ServiceUnavailable, "cannot store the change: " + written.error());
@@ -98,17 +98,17 @@ icd::Checked<void> Setup::save(const Settings& next) {
   }
   const auto written = store_.save(next);
   is_kept_ = written || store_.revert();
-  return applied(written, "settings", apply_);
+  return apply_if_written(written, "settings", apply_);
 }
 
 icd::Checked<void> Setup::set_token(const std::string& name, const std::optional<icd::BearerToken>& token) {
   if (applying_) return being_applied();
-  return applied(store_.save_token(name, token), "a token", apply_);
+  return apply_if_written(store_.save_token(name, token), "a token", apply_);
 }
 
 icd::Checked<void> Setup::reset() {
   if (applying_) return being_applied();
-  return applied(reset_.begin(), "a factory reset", restart_);
+  return apply_if_written(reset_.begin(), "a factory reset", restart_);
 }
 
 }  // namespace adit::admin

@@ -17,16 +17,16 @@ class Setup final : public api::Setup {
   /// Returns the effect on reports of a scoring endpoint at this address and port.
   using Meaning = std::function<std::string(const std::string& post)>;
 
-  /// `apply` is called after a change is on disk, and must cause runs_with(). `restart` replaces the gateway.
-  /// `store` and `reset` must outlive this object.
+  /// `apply` is called after a change is on disk, and must cause set_running(). `restart` replaces the
+  /// gateway. `store` and `reset` must outlive this object.
   Setup(Store& store, FactoryReset& reset, const Store::Loaded& loaded, std::string trouble,
         Meaning for_reports, std::function<void()> apply, std::function<void()> restart);
 
   /// Reports the configuration in use after a change was applied or reverted. `trouble`: see api::Setup.
-  void runs_with(const Store::Loaded& loaded, std::string trouble);
+  void set_running(const Store::Loaded& loaded, std::string trouble);
 
   const settings::Settings& settings() const override { return settings_; }
-  bool saved() const override { return saved_; }
+  bool is_saved() const override { return saved_; }
   bool applying() const override { return applying_; }
   const std::string& trouble() const override { return trouble_; }
   std::vector<api::TokenRow> tokens() const override { return tokens_; }
@@ -38,8 +38,8 @@ class Setup final : public api::Setup {
 
  private:
   /// Calls `apply` if `written` is good. `what`: for the error.
-  icd::Checked<void> applied(const std::expected<void, std::string>& written, const char* what,
-                             const std::function<void()>& apply);
+  icd::Checked<void> apply_if_written(const std::expected<void, std::string>& written, const char* what,
+                                      const std::function<void()>& apply);
 
   Store& store_;
   FactoryReset& reset_;

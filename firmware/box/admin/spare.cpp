@@ -47,14 +47,14 @@ SpareStick::SpareStick(loop::Loop& loop, const std::string& state_folder, const 
 std::optional<api::StickRow> SpareStick::view() const {
   if (!adit_spare_.runs_here()) return std::nullopt;
   const auto now = adit_spare_.status();
-  api::StickRow row{.hindrance = now ? now->hindrance : adit_spare_.why(),
+  api::StickRow row{.hindrance = now ? now->hindrance : adit_spare_.status_error(),
                     .unreadable = now ? now->unreadable : "",
                     .doing = now ? now->doing : "",
                     .refusal = refusal_,
                     .written = now && !asked_ ? now->written : "",
                     .exports = {}};
   if (asked_ && row.doing.empty()) row.doing = pending_action(*asked_);
-  if (!now && !adit_spare_.is_starting()) row.unreadable = adit_spare_.why();
+  if (!now && !adit_spare_.is_starting()) row.unreadable = adit_spare_.status_error();
   if (!now) return row;
   for (const std::string& name : now->exports) {
     spare::NamedFor named = spare::named_for(name);
@@ -79,7 +79,7 @@ icd::Checked<void> SpareStick::write(const std::string& name, const std::string&
   return ask(What::Write, name);
 }
 
-icd::Checked<void> SpareStick::take(const std::string& name) {
+icd::Checked<void> SpareStick::request_import(const std::string& name) {
   if (!spare::is_file_name(name))
     return icd::refuse(Status::UnprocessableEntity, "name: expected the name of an export on the stick");
   ADIT_TRY(check_free());
@@ -146,7 +146,7 @@ Spare::Spare(loop::Loop& loop, loop::Workers& workers, Takeover& takeover, std::
   if (!standby_.empty()) host::log(host::Level::Warning, "this box is on standby", {{"why", standby_}});
 }
 
-void Spare::ends(const std::optional<icd::RunStatus>& expected) {
+void Spare::on_end(const std::optional<icd::RunStatus>& expected) {
   if (!goes_on_standby_ || !expected) return;
   SpareFile next = file_;
   next.rest->expected = expected;
@@ -174,7 +174,7 @@ api::SpareView Spare::state() const {
   // the last export of an earlier standby does not count
   if (view.stick && !is_current_export(view.stick->written)) view.stick->written.clear();
   if (file_.rest) view.since = file_.rest->since;
-  if (view.standby && file_.rest) view.code = spare::spoken(file_.rest->code);
+  if (view.standby && file_.rest) view.code = spare::code_text(file_.rest->code);
   if (!opened_) return view;
   const spare::About& about = opened_->content.about;
   view.taken_in = {.name = about.name,
@@ -263,15 +263,15 @@ void Spare::seal(const Named& done) {
 
 icd::Checked<void> Spare::take_from_stick(const std::string& name) {
   if (takes_over_) return icd::conflict("this box is taking over just now");
-  return stick_.take(name);
+  return stick_.request_import(name);
 }
 
 /// Runs the checks of an upload.
 void Spare::taken_from_stick(std::string file) {
-  host::log_failure(host::Level::Warning, "export from the stick rejected", take_in(std::move(file)));
+  host::log_failure(host::Level::Warning, "export from the stick rejected", import_file(std::move(file)));
 }
 
-icd::Checked<void> Spare::take_in(std::string file) {
+icd::Checked<void> Spare::import_file(std::string file) {
   if (takes_over_) return icd::conflict("this box is taking over just now");
   opened_.reset();
   sealed_ = std::make_shared<const std::string>(std::move(file));

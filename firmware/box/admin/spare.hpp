@@ -36,7 +36,7 @@ class SpareStick {
   icd::Checked<void> check_free() const;
   /// Writes the whole file under that name.
   icd::Checked<void> write(const std::string& name, const std::string& file);
-  icd::Checked<void> take(const std::string& name);
+  icd::Checked<void> request_import(const std::string& name);
 
  private:
   using What = spare::StickRequest::What;
@@ -78,7 +78,7 @@ class Spare final : public api::Spare {
   const std::string& unread() const { return unread_; }
   bool is_stuck() const { return !stuck_.empty(); }
   /// Call when the gateway ends without requests in flight. `expected`: the answer of /api/status then.
-  void ends(const std::optional<icd::RunStatus>& expected);
+  void on_end(const std::optional<icd::RunStatus>& expected);
 
   api::SpareView state() const override;
   icd::Checked<void> stand_by() override;
@@ -86,7 +86,7 @@ class Spare final : public api::Spare {
   void export_to(Sealed done) override;
   void export_to_stick(Done done) override;
   icd::Checked<void> take_from_stick(const std::string& name) override;
-  icd::Checked<void> take_in(std::string file) override;
+  icd::Checked<void> import_file(std::string file) override;
   void open(const std::string& code, Done done) override;
   icd::Checked<void> forget() override;
   icd::Checked<void> take_over() override;

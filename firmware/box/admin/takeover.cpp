@@ -72,7 +72,7 @@ namespace {
 /// Seconds by which this box's stamps (`stamp` now) are ahead of the first box's. `wall`: this box's time of
 /// day. The time since the first box's standby comes from both times of day. If they cannot be compared, it
 /// counts as 0, because a long silence would look like a new run.
-double ahead(const spare::About& about, double stamp, double wall) {
+double stamp_offset(const spare::About& about, double stamp, double wall) {
   const double since = std::max(0.0, wall - about.told_at.value_or(wall));
   return stamp - since - about.stamp;
 }
@@ -103,39 +103,39 @@ void keep_hardware(settings::Settings& here, settings::Settings& taken) {
 }  // namespace
 
 std::expected<void, std::string> Takeover::begin(const std::string& content) {
-  return host::write_file(begun(), content, host::kOursAlone);
+  return host::write_file(marker_path(), content, host::kOursAlone);
 }
 
 std::expected<bool, std::string> Takeover::finish(const loop::Loop& loop) {
-  const auto file = host::slurp(begun(), spare::kLargestExport);
+  const auto file = host::slurp(marker_path(), spare::kLargestExport);
   if (!file && file.error() == ENOENT) return false;
-  if (!file) return std::unexpected(unread_ = host::trouble(begun(), file.error()));
+  if (!file) return std::unexpected(unread_ = host::trouble(marker_path(), file.error()));
   const auto content = spare::read(file->text);
-  if (!content) return std::unexpected(begun() + ": " + content.error());
-  ADIT_TRY(take(*content, loop));
-  ADIT_TRY(host::remove_file(begun()));
+  if (!content) return std::unexpected(marker_path() + ": " + content.error());
+  ADIT_TRY(apply(*content, loop));
+  ADIT_TRY(host::remove_file(marker_path()));
   host::log(host::Level::Notice, "this box took over from another",
             {{"from", content->about.name}, {"reports", std::to_string(content->about.reports)}});
   return true;
 }
 
 /// Every step can be repeated. The last step records the first box, which finishes the takeover.
-std::expected<void, std::string> Takeover::take(const spare::Content& content, const loop::Loop& loop) {
+std::expected<void, std::string> Takeover::apply(const spare::Content& content, const loop::Loop& loop) {
   forward::StampFloor stamps(state_);
   const auto kept = ADIT_TRY(stamps.read());
   const double least = std::ceil(std::max(content.about.stamps, kept.least));  // the stored form
   const dispatch::Handover handover{
       .expected = content.about.expected,
       .stamp = std::max(loop.stamp_now(), least),
-      .ahead = ahead(content.about, std::max(loop.stamp_now(), least), loop.wall_now())};
-  if (auto taken = take_ledger(content, handover, kept.ledger); !taken) return taken;
+      .ahead = stamp_offset(content.about, std::max(loop.stamp_now(), least), loop.wall_now())};
+  if (auto taken = apply_ledger(content, handover, kept.ledger); !taken) return taken;
   forward::StampFloor::Kept next = kept;
   next.floor = std::max(kept.floor, least);
   next.least = least;
   stamps.write(next);
   const auto written = stamps.read();
   if (!written || written->least < least) return std::unexpected("cannot store the first box's time stamps");
-  if (auto taken = take_settings(content); !taken) return taken;
+  if (auto taken = apply_settings(content); !taken) return taken;
   return note(content.about);
 }
 
@@ -152,12 +152,12 @@ std::expected<settings::Saved, std::string> Takeover::check(const spare::Content
 }
 
 std::expected<void, std::string> Takeover::abandon() {
-  return host::remove_file(begun());
+  return host::remove_file(marker_path());
 }
 
-std::expected<void, std::string> Takeover::take_ledger(const spare::Content& content,
-                                                       const dispatch::Handover& handover,
-                                                       const ledger::Known& known) {
+std::expected<void, std::string> Takeover::apply_ledger(const spare::Content& content,
+                                                        const dispatch::Handover& handover,
+                                                        const ledger::LedgerFacts& known) {
   auto here = ledger::Ledger::open(state_, known, memory_);
   if (!here) return std::unexpected("this box's ledger: " + here.error().what);
   if (!here->damage().empty()) host::log(host::Level::Error, here->damage());
@@ -166,7 +166,7 @@ std::expected<void, std::string> Takeover::take_ledger(const spare::Content& con
   return {};
 }
 
-std::expected<void, std::string> Takeover::take_settings(const spare::Content& content) {
+std::expected<void, std::string> Takeover::apply_settings(const spare::Content& content) {
   auto saved = settings::parse_saved(content.settings);
   if (!saved) return std::unexpected("the first box's settings: " + settings::sentence_of(saved.error()));
   auto here = ADIT_TRY(store_.load());

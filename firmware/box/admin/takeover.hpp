@@ -80,12 +80,12 @@ class Takeover {
   std::expected<void, std::string> abandon();
 
  private:
-  std::string begun() const { return state_ + '/' + kFile; }
-  std::expected<void, std::string> take(const spare::Content& content, const loop::Loop& loop);
-  std::expected<void, std::string> take_ledger(const spare::Content& content,
-                                               const dispatch::Handover& handover,
-                                               const ledger::Known& known);
-  std::expected<void, std::string> take_settings(const spare::Content& content);
+  std::string marker_path() const { return state_ + '/' + kFile; }
+  std::expected<void, std::string> apply(const spare::Content& content, const loop::Loop& loop);
+  std::expected<void, std::string> apply_ledger(const spare::Content& content,
+                                                const dispatch::Handover& handover,
+                                                const ledger::LedgerFacts& known);
+  std::expected<void, std::string> apply_settings(const spare::Content& content);
   std::expected<void, std::string> note(const spare::About& about);
 
   Store& store_;

@@ -32,7 +32,7 @@ class UpdateUpload::Writing : public std::enable_shared_from_this<Writing> {
   Writing(loop::Writer& writer, Ends ends, loop::FileDescriptor file)
       : writer_(writer), ends_(std::move(ends)), file_(std::move(file)) {}
 
-  bool take(std::span<const std::uint8_t> piece) {
+  bool consume(std::span<const std::uint8_t> piece) {
     received_ += piece.size();
     waiting_.insert(waiting_.end(), piece.begin(), piece.end());
     if (waiting_.size() < kTogether) return true;
@@ -51,11 +51,11 @@ class UpdateUpload::Writing : public std::enable_shared_from_this<Writing> {
     if (!dropped_ && !done_) {
       dropped_ = true;
       unlink(ends_.part.c_str());
-      ends_.over();
+      ends_.on_over();
     }
   }
 
-  std::uint64_t received() const { return received_; }
+  std::uint64_t received_bytes() const { return received_; }
 
  private:
   void write_waiting() {
@@ -97,21 +97,21 @@ class UpdateUpload::Writing : public std::enable_shared_from_this<Writing> {
   }
 
   void end() {
-    icd::Checked<void> outcome = whole();
+    icd::Checked<void> outcome = check_complete();
     if (!outcome) unlink(ends_.part.c_str());
     dropped_ = true;
-    ends_.over();
+    ends_.on_over();
     std::exchange(done_, {})(std::move(outcome));
   }
 
-  icd::Checked<void> whole() {
+  icd::Checked<void> check_complete() {
     if (error_ != 0) return std::unexpected(cannot(std::strerror(error_)));
     if (received_ != ends_.size)
       return std::unexpected(cannot(icd::sentence("got ", received_, " of ", ends_.size, " bytes")));
     file_ = loop::FileDescriptor();  // adit-update rejects a file that is open for writing
     if (std::rename(ends_.part.c_str(), ends_.whole.c_str()) != 0)
       return std::unexpected(cannot(std::strerror(errno)));
-    return ends_.asked();
+    return ends_.request_install();
   }
 
   loop::Writer& writer_;
@@ -141,15 +141,15 @@ UpdateUpload::~UpdateUpload() {
 }
 
 bool UpdateUpload::write(std::span<const std::uint8_t> piece) {
-  return writing_->take(piece);
+  return writing_->consume(piece);
 }
 
 void UpdateUpload::finish(std::function<void(icd::Checked<void>)> done) {
   writing_->finish(std::move(done));
 }
 
-std::uint64_t UpdateUpload::received() const {
-  return writing_->received();
+std::uint64_t UpdateUpload::received_bytes() const {
+  return writing_->received_bytes();
 }
 
 namespace {
@@ -188,7 +188,7 @@ void read_newer(const std::string& path, api::UpdateView& view) {
     view.newer = line;
   } else {
     view.newer_why =
-        icd::sentence(path, ": expected a version and a line feed, got '", host::escaped(line), "'");
+        icd::sentence(path, ": expected a version and a line feed, got '", host::escape(line), "'");
   }
 }
 
@@ -209,7 +209,7 @@ void Updates::every_second() {
 api::UpdateView Updates::state() const {
   const auto status = adit_update_.status();
   api::UpdateView view;
-  view.why = status ? status->trouble : adit_update_.why();
+  view.why = status ? status->trouble : adit_update_.status_error();
   view.managed = view.why.empty();
   view.runs_here = adit_update_.runs_here();
   if (status) view.status = *status;
@@ -217,7 +217,7 @@ api::UpdateView Updates::state() const {
   if (auto trouble = adit_update_.trouble(); !trouble.empty()) view.status.refusal = std::move(trouble);
   if (receiving_ != nullptr) {
     view.status.doing = "receiving";
-    view.status.progress = static_cast<int>(100 * receiving_->received() / expected_);
+    view.status.progress = static_cast<int>(100 * receiving_->received_bytes() / expected_);
     view.status.refusal.clear();
   } else if (adit_update_.waits()) {
     view.status.doing = pending_action(asked_);
@@ -256,8 +256,8 @@ icd::Checked<std::unique_ptr<api::Upload>> Updates::receive(std::uint64_t size, 
                 .whole = bundle_file(),
                 .size = size,
                 .resume = std::move(resume),
-                .asked = [this, again] { return ask(update::Request::What::Install, again); },
-                .over = [this] { receiving_ = nullptr; }}));
+                .request_install = [this, again] { return ask(update::Request::What::Install, again); },
+                .on_over = [this] { receiving_ = nullptr; }}));
   host::log(host::Level::Notice, "receiving an update", {{"bytes", std::to_string(size)}});
   receiving_ = upload.get();
   expected_ = size;

@@ -22,11 +22,11 @@ class UpdateUpload final : public api::Upload {
 
   /// Data and callbacks of the caller. All but `part` and `whole` are used on the loop.
   struct Ends {
-    std::string part, whole;                    // path during the upload, and afterwards
-    std::uint64_t size = 0;                     // announced size
-    std::function<void()> resume;               // accept more data
-    std::function<icd::Checked<void>()> asked;  // the file is complete: requests the installation
-    std::function<void()> over;                 // the upload is finished or abandoned
+    std::string part, whole;                              // path during the upload, and afterwards
+    std::uint64_t size = 0;                               // announced size
+    std::function<void()> resume;                         // accept more data
+    std::function<icd::Checked<void>()> request_install;  // the file is complete: requests the installation
+    std::function<void()> on_over;                        // the upload is finished or abandoned
   };
   /// Error: the file cannot be created. `writer` must outlive this object.
   static icd::Checked<std::unique_ptr<UpdateUpload>> begin(loop::Writer& writer, Ends ends);
@@ -36,7 +36,7 @@ class UpdateUpload final : public api::Upload {
 
   bool write(std::span<const std::uint8_t> piece) override;
   void finish(std::function<void(icd::Checked<void>)> done) override;
-  std::uint64_t received() const;
+  std::uint64_t received_bytes() const;
 
  private:
   class Writing;

@@ -24,7 +24,7 @@ panel::Held open_panel(const settings::Panel& settings, const PanelPlace& place,
 
 Lights::Lights(loop::Loop& loop, std::unique_ptr<panel::Lines> lines)
     : loop_(loop), began_(loop.now()), digits_began_(began_), tick_(loop.timer([this] { paint(); })) {
-  painter_.take(std::move(lines));
+  painter_.set_lines(std::move(lines));
 }
 
 void Lights::beat() {
@@ -33,18 +33,18 @@ void Lights::beat() {
   paint();
 }
 
-void Lights::take(std::unique_ptr<panel::Lines> lines) {
-  painter_.take(std::move(lines));
+void Lights::set_lines(std::unique_ptr<panel::Lines> lines) {
+  painter_.set_lines(std::move(lines));
   paint();
 }
 
-void Lights::set(panel::State state, bool asserted) {
-  until(state).reset();
+void Lights::set(panel::LightState state, bool asserted) {
+  deadline(state).reset();
   if (states_.set(state, asserted) || painter_.is_blank()) paint();
 }
 
-void Lights::set_for(panel::State state, loop::Duration length) {
-  until(state) = loop_.now() + length;
+void Lights::set_for(panel::LightState state, loop::Duration length) {
+  deadline(state) = loop_.now() + length;
   states_.set(state, true);
   paint();
 }
@@ -52,10 +52,10 @@ void Lights::set_for(panel::State state, loop::Duration length) {
 void Lights::play_digits(std::vector<panel::Step> steps) {
   digits_ = std::move(steps);
   digits_began_ = loop_.now();
-  set_for(panel::State::Address, panel::length_of(digits_));
+  set_for(panel::LightState::Address, panel::length_of(digits_));
 }
 
-std::optional<loop::Duration> Lights::left(panel::State state) const {
+std::optional<loop::Duration> Lights::remaining(panel::LightState state) const {
   const auto& until = until_[static_cast<std::size_t>(state)];
   const loop::Instant now = loop_.now();
   return until && now < *until ? std::optional(*until - now) : std::nullopt;
@@ -64,22 +64,22 @@ std::optional<loop::Duration> Lights::left(panel::State state) const {
 void Lights::clear_expired() {
   const loop::Instant now = loop_.now();
   for (const panel::StateRow& row : panel::state_table()) {
-    auto& end = until(row.state);
+    auto& end = deadline(row.state);
     if (!end || now < *end) continue;
     end.reset();
     states_.set(row.state, false);
   }
 }
 
-Lights::Milliseconds Lights::since(loop::Instant then) const {
+Lights::Milliseconds Lights::elapsed_time(loop::Instant then) const {
   return std::chrono::duration_cast<Milliseconds>(loop_.now() - then);
 }
 
 panel::Frame Lights::frame() const {
-  panel::Frame frame = panel::frame_of(shown_, since(began_));
+  panel::Frame frame = panel::frame_of(shown_, elapsed_time(began_));
   for (const panel::Light light : panel::kLights) {
     if (shown_[panel::index_of(light)] != panel::Pattern::Digits) continue;
-    const panel::Moment moment = panel::once(digits_, since(digits_began_));
+    const panel::Moment moment = panel::single_moment(digits_, elapsed_time(digits_began_));
     frame.lit[panel::index_of(light)] = moment.lit;
     if (moment.lasts) frame.lasts = std::min(*moment.lasts, frame.lasts.value_or(*moment.lasts));
   }
@@ -88,7 +88,7 @@ panel::Frame Lights::frame() const {
 
 void Lights::paint() {
   clear_expired();
-  shown_ = states_.shown();
+  shown_ = states_.current_lights();
   const panel::Frame now = frame();
   painter_.show(now.lit, loop_.now());
   log_trouble();
@@ -127,7 +127,7 @@ constexpr std::chrono::seconds kAgain{2};  // to the next try after a failed rea
 ButtonWatch::ButtonWatch(loop::Loop& loop, std::unique_ptr<panel::ButtonLine> line, Lights& lights,
                          std::function<void(panel::Press)> pressed)
     : loop_(loop), lights_(lights), pressed_(std::move(pressed)) {
-  take(std::move(line));
+  set_line(std::move(line));
 }
 
 void ButtonWatch::let_go() {
@@ -138,7 +138,7 @@ void ButtonWatch::let_go() {
   show();
 }
 
-void ButtonWatch::take(std::unique_ptr<panel::ButtonLine> line) {
+void ButtonWatch::set_line(std::unique_ptr<panel::ButtonLine> line) {
   line_ = std::move(line);
   if (!line_) return;
   edges_ = loop_.watch(line_->descriptor(), EPOLLIN, [this](std::uint32_t) { look(); });
@@ -148,7 +148,7 @@ void ButtonWatch::take(std::unique_ptr<panel::ButtonLine> line) {
 
 /// Reads the line at each timer event, because its last change may not have been reported yet.
 void ButtonWatch::look() {
-  const auto level = line_->pressed();
+  const auto level = line_->is_pressed();
   if (!level) return lose(level.error());
   if (!button_) return begin(*level);
   const loop::Instant now = loop_.now();
@@ -177,8 +177,8 @@ void ButtonWatch::lose(const std::string& why) {
 }
 
 void ButtonWatch::show() {
-  lights_.set(panel::State::ButtonHeld, button_ && button_->phase() == Button::Phase::Held);
-  lights_.set(panel::State::ResetWarning, button_ && button_->phase() == Button::Phase::Warning);
+  lights_.set(panel::LightState::ButtonHeld, button_ && button_->phase() == Button::Phase::Held);
+  lights_.set(panel::LightState::ResetWarning, button_ && button_->phase() == Button::Phase::Warning);
 }
 
 }  // namespace adit::box

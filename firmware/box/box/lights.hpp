@@ -33,29 +33,31 @@ class Lights {
  public:
   Lights(loop::Loop& loop, std::unique_ptr<panel::Lines> lines);
 
-  /// Releases the lines, before take() with others or the same.
-  void let_go() { painter_.take(nullptr); }
-  void take(std::unique_ptr<panel::Lines> lines);
+  /// Releases the lines, before set_lines() with others or the same.
+  void let_go() { painter_.set_lines(nullptr); }
+  void set_lines(std::unique_ptr<panel::Lines> lines);
 
   /// Call once a second: sets watched lines again, which shows their holder that the loop turns.
   void beat();
 
-  void set(panel::State state, bool asserted);
+  void set(panel::LightState state, bool asserted);
   /// For `length` from now on.
-  void set_for(panel::State state, loop::Duration length);
-  /// Asserts panel::State::Address while the steps play once.
+  void set_for(panel::LightState state, loop::Duration length);
+  /// Asserts panel::LightState::Address while the steps play once.
   void play_digits(std::vector<panel::Step> steps);
-  bool has(panel::State state) const { return states_.has(state); }
+  bool has(panel::LightState state) const { return states_.has(state); }
   /// Remaining time of set_for(), or nullopt.
-  std::optional<loop::Duration> left(panel::State state) const;
-  const panel::Lights& shown() const { return shown_; }
+  std::optional<loop::Duration> remaining(panel::LightState state) const;
+  const panel::Lights& shown_lights() const { return shown_; }
   /// Why the panel may differ, or "".
   const std::string& trouble() const { return painter_.trouble(); }
 
  private:
   using Milliseconds = panel::Milliseconds;
-  Milliseconds since(loop::Instant then) const;
-  std::optional<loop::Instant>& until(panel::State state) { return until_[static_cast<std::size_t>(state)]; }
+  Milliseconds elapsed_time(loop::Instant then) const;
+  std::optional<loop::Instant>& deadline(panel::LightState state) {
+    return until_[static_cast<std::size_t>(state)];
+  }
   void clear_expired();
   panel::Frame frame() const;
   void paint();
@@ -82,9 +84,9 @@ class ButtonWatch {
   ButtonWatch(loop::Loop& loop, std::unique_ptr<panel::ButtonLine> line, Lights& lights,
               std::function<void(panel::Press)> pressed);
 
-  /// Releases the line, before take() with another or the same.
+  /// Releases the line, before set_line() with another or the same.
   void let_go();
-  void take(std::unique_ptr<panel::ButtonLine> line);
+  void set_line(std::unique_ptr<panel::ButtonLine> line);
 
  private:
   void look();

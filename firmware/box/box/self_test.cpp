@@ -55,7 +55,7 @@ icd::Checked<TestTarget> tried_of(const api::Candidate& candidate, const setting
   if (candidate.course) next.command_post.course = *candidate.course;
   const auto known = settings::parse(settings::value_of(next));  // checks the course
   if (!known) return std::unexpected(unfit(known.error()));
-  const settings::Settings in_use = settings::in_use(*known);
+  const settings::Settings in_use = settings::effective_settings(*known);
   // Clears the course, which would replace these addresses.
   next.command_post = in_use.command_post;
   put(candidate.scoring, next.command_post.scoring);
@@ -78,7 +78,7 @@ TestStep bad(std::string name, std::string said, std::string advice) {
   return {.name = std::move(name), .state = "bad", .said = std::move(said), .advice = std::move(advice)};
 }
 
-std::string answered(int status, const std::string& body) {
+std::string check_answer(int status, const std::string& body) {
   const std::string answer = icd::sentence("the answer is ", status);
   switch (dispatch::body_of(body)) {
     case dispatch::Body::Empty:
@@ -114,13 +114,13 @@ const settings::Address& address_in(const settings::CommandPost& post, Asked ask
   return asked == Asked::Scoring ? post.scoring : post.mapping;
 }
 
-TestStep skipped(const std::string& name, const std::string& why) {
+TestStep skipped_step(const std::string& name, const std::string& why) {
   return {.name = name, .state = "skipped", .said = why, .advice = ""};
 }
 
 TestStep link(const std::string& interface, std::optional<bool> carrier) {
   if (interface.empty())
-    return skipped("link", "the settings name no command_post.interface: any interface is used");
+    return skipped_step("link", "the settings name no command_post.interface: any interface is used");
   if (!carrier) {
     return bad(
         "link", icd::sentence("there is no interface ", interface),
@@ -135,8 +135,8 @@ TestStep link(const std::string& interface, std::optional<bool> carrier) {
 TestStep address(const std::string& interface,
                  const std::expected<std::optional<settings::Subnet>, std::string>& own,
                  const std::optional<network::Probed>& probed, const std::string& not_asked) {
-  if (interface.empty()) return skipped("address", "the settings name no command_post.interface");
-  if (!own) return skipped("address", own.error());
+  if (interface.empty()) return skipped_step("address", "the settings name no command_post.interface");
+  if (!own) return skipped_step("address", own.error());
   if (!*own) {
     return bad(
         "address", icd::sentence(interface, " has no IPv4 address"),
@@ -146,10 +146,10 @@ TestStep address(const std::string& interface,
   const std::string has =
       icd::sentence(interface, " has ", conflict.empty() ? network::host_text(**own) : conflict);
   if (!probed)
-    return skipped("address", icd::sentence(has, "; not checked for an address conflict: ", not_asked));
+    return skipped_step("address", icd::sentence(has, "; not checked for an address conflict: ", not_asked));
   if (!probed->trouble.empty()) {
-    return skipped("address",
-                   icd::sentence(has, "; could not check for an address conflict: ", probed->trouble));
+    return skipped_step("address",
+                        icd::sentence(has, "; could not check for an address conflict: ", probed->trouble));
   }
   if (!probed->own.empty()) {
     return bad("address",
@@ -167,13 +167,14 @@ TestStep address(const std::string& interface,
 
 TestStep cables(const std::string& interface, const std::string& team, const std::string& sought,
                 const std::optional<network::Probed>& probed) {
-  if (!probed || sought.empty()) return skipped("cables", "could not check which network is at which port");
+  if (!probed || sought.empty())
+    return skipped_step("cables", "could not check which network is at which port");
   if (probed->found_on == interface) return good("cables", icd::sentence(sought, " is at ", interface));
   if (probed->found_on.empty() && !probed->not_sought.empty())
-    return skipped("cables",
-                   icd::sentence("could not check which network is at which port: ", probed->not_sought));
+    return skipped_step(
+        "cables", icd::sentence("could not check which network is at which port: ", probed->not_sought));
   if (probed->found_on.empty() || probed->found_on != team) {
-    return skipped("cables", icd::sentence("no machine answers for ", sought, " at either port"));
+    return skipped_step("cables", icd::sentence("no machine answers for ", sought, " at either port"));
   }
   return bad("cables", icd::sentence(sought, " is not at ", interface, " but at ", team),
              "The Command Post's network is at the team's port: exchange the two cables.");
@@ -215,8 +216,8 @@ TestStep no_token(Asked asked) {
 }
 
 TestStep no_turn(const std::string& name) {
-  return skipped(name,
-                 "not checked: the run itself uses all requests that the endpoint allows; try again later");
+  return skipped_step(
+      name, "not checked: the run itself uses all requests that the endpoint allows; try again later");
 }
 
 TestStep token(Asked asked, const uplink::Outcome& outcome, bool slash) {
@@ -244,26 +245,27 @@ TestStep token(Asked asked, const uplink::Outcome& outcome, bool slash) {
   if ((status == 401 || status == 403) && body != dispatch::Body::Other) {
     return bad(
         "token",
-        icd::sentence("the ", name_of(asked), " token is rejected; ", answered(status, answer->body)),
+        icd::sentence("the ", name_of(asked), " token is rejected; ", check_answer(status, answer->body)),
         icd::sentence("Enter the token again exactly; scoring and mapping may have different tokens. If "
                       "the token is right, compare the ",
                       name_of(asked), " address and port with those posted."));
   }
   if (status == 429)
-    return skipped("token",
-                   "the endpoint got too many requests to check the token: try again in a few seconds");
+    return skipped_step("token",
+                        "the endpoint got too many requests to check the token: try again in a few seconds");
   if (status >= 500 && status != 501) {
-    return skipped("token", icd::sentence("the endpoint failed before it checked the token; ",
-                                          answered(status, answer->body)));
+    return skipped_step("token", icd::sentence("the endpoint failed before it checked the token; ",
+                                               check_answer(status, answer->body)));
   }
-  return bad("token", answered(status, answer->body), no_endpoint(asked));
+  return bad("token", check_answer(status, answer->body), no_endpoint(asked));
 }
 
 TestStep unknown_path(TestStep accepted, int status, const uplink::Outcome& outcome) {
   const auto* answer = std::get_if<uplink::Answered>(&outcome);
   if (answer == nullptr || answer->status == icd::kTooManyRequests) {
-    return skipped("token", icd::sentence("POST /state/update got ", status, ", but POST ", kUnknownPath,
-                                          " got no answer that shows whether this is a mapping endpoint"));
+    return skipped_step("token",
+                        icd::sentence("POST /state/update got ", status, ", but POST ", kUnknownPath,
+                                      " got no answer that shows whether this is a mapping endpoint"));
   }
   const bool are_both_good = icd::is_success(status) && icd::is_success(answer->status);
   if (answer->status != status && !are_both_good) return accepted;
@@ -274,7 +276,7 @@ TestStep unknown_path(TestStep accepted, int status, const uplink::Outcome& outc
 }
 
 TestStep clock(std::optional<std::chrono::sys_seconds> date, double now) {
-  if (!date) return skipped("clock", "its answers have no Date");
+  if (!date) return skipped_step("clock", "its answers have no Date");
   // A Date stands for one whole second.
   const double there = static_cast<double>(date->time_since_epoch().count());
   const double ahead = now - std::clamp(now, there, there + 1);
@@ -289,10 +291,10 @@ TestStep clock(std::optional<std::chrono::sys_seconds> date, double now) {
 }
 
 TestStep run_clock(std::optional<double> first, std::optional<double> second) {
-  if (!first || !second) return skipped("clock", "its answers have no Date and no run clock");
+  if (!first || !second) return skipped_step("clock", "its answers have no Date and no run clock");
   if (*second > *first) return good("clock", "its answers have no Date, but the run clock moves");
-  return skipped("clock", icd::sentence("its answers have no Date, and the run clock stands at ", *second,
-                                        " s: the run has not started, or has ended"));
+  return skipped_step("clock", icd::sentence("its answers have no Date, and the run clock stands at ",
+                                             *second, " s: the run has not started, or has ended"));
 }
 
 }  // namespace steps
@@ -327,25 +329,25 @@ EndpointTest::EndpointTest(loop::Loop& loop, const Turns& turns, const TestTarge
       done_(std::move(done)),
       timer_(loop.timer([this] { std::exchange(when_due_, {})(); })) {}
 
-uplink::Endpoint EndpointTest::there() const {
+uplink::Endpoint EndpointTest::tested_endpoint() const {
   auto endpoint = forward::endpoint_of(tried_.post, address(), 0);
   endpoint.connect_within = kReachWithin;
   return endpoint;
 }
 
 void EndpointTest::reach() {
-  auto socket = uplink::begin_connect(there());
-  if (!socket) return connected(socket.error().error, socket.error().why);
+  auto socket = uplink::begin_connect(tested_endpoint());
+  if (!socket) return on_connected(socket.error().error, socket.error().why);
   socket_ = std::move(*socket);
   connecting_ = loop_.watch(socket_.get(), EPOLLOUT, [this](std::uint32_t) {
     const int error = uplink::connect_error(socket_.get());
-    connected(error, error == 0 ? "" : std::strerror(error));
+    on_connected(error, error == 0 ? "" : std::strerror(error));
   });
-  when_due_ = [this] { connected(ETIMEDOUT, std::strerror(ETIMEDOUT)); };
+  when_due_ = [this] { on_connected(ETIMEDOUT, std::strerror(ETIMEDOUT)); };
   timer_.call_at(loop_.now() + kReachWithin);
 }
 
-void EndpointTest::connected(int error, const std::string& why) {
+void EndpointTest::on_connected(int error, const std::string& why) {
   timer_.cancel();
   connecting_ = {};
   socket_ = loop::FileDescriptor();
@@ -358,9 +360,9 @@ void EndpointTest::ask(const char* step, std::string_view path, std::function<vo
   const auto at = turns_.claim(uri(), loop_.now() + kLongestTurn);
   if (!at) return done_(steps::no_turn(step));
   when_due_ = [this, path, done = std::move(done)] {
-    turns_.claimed(uri());  // at the time of sending, which may be later
+    turns_.on_claimed(uri());  // at the time of sending, which may be later
     send(path, [this, done](uplink::Outcome outcome) {
-      turns_.claimed(uri());
+      turns_.on_claimed(uri());
       done(std::move(outcome));
     });
   };
@@ -369,7 +371,7 @@ void EndpointTest::ask(const char* step, std::string_view path, std::function<vo
 
 void EndpointTest::send(std::string_view path, std::function<void(uplink::Outcome)> done) {
   const bool scoring = asked_ == steps::Asked::Scoring;
-  connection_ = std::make_unique<uplink::Connection>(loop_, there(), *token());
+  connection_ = std::make_unique<uplink::Connection>(loop_, tested_endpoint(), *token());
   connection_->send({.method = std::string(icd::method_of(uri())),
                      .target = std::string(path) + (wants_slash_ ? "/" : ""),
                      .content_type = scoring ? "" : std::string(codec::kJson),
@@ -446,7 +448,7 @@ SelfTest::SelfTest(loop::Loop& loop, const settings::Settings& settings,
       turns_(std::move(turns)),
       network_(network),
       changed_(std::move(changed)),
-      timer_(loop.timer([this] { probing_.until ? wait_for_probe() : next(); })) {}
+      timer_(loop.timer([this] { probing_.until ? wait_for_probe() : start_next(); })) {}
 
 icd::Checked<void> SelfTest::begin_test(const api::Candidate& candidate) {
   if (view_.running) return icd::conflict("a test is running: see GET /adit/test");
@@ -513,13 +515,13 @@ void SelfTest::finish(api::TestStep step) {
 
 void SelfTest::skip_the_rest(const std::string& why) {
   for (api::TestStep& step : endpoint().steps) {
-    if (step.state == "waiting") step = steps::skipped(step.name, why);
+    if (step.state == "waiting") step = steps::skipped_step(step.name, why);
   }
   at_ = At::End;
   timer_.call_at(loop_.now());
 }
 
-void SelfTest::next() {
+void SelfTest::start_next() {
   if (at_ == At::End) {
     at_endpoint_.reset();
     if (++tested_ == asked_.size()) {

@@ -77,7 +77,7 @@ TestStep clock(std::optional<std::chrono::sys_seconds> date, double now);
 /// Without Date: by two readings of the run clock, in seconds.
 TestStep run_clock(std::optional<double> first, std::optional<double> second);
 
-TestStep skipped(const std::string& name, const std::string& why);
+TestStep skipped_step(const std::string& name, const std::string& why);
 
 /// Largest difference that passes.
 inline constexpr std::chrono::seconds kOff{2};
@@ -99,7 +99,7 @@ class EndpointTest {
   struct Turns {
     std::function<bool(icd::Uri uri, const settings::Address& at)> are_shared;  // the run uses this endpoint
     std::function<std::optional<loop::Instant>(icd::Uri uri, loop::Instant latest)> claim;
-    std::function<void(icd::Uri uri)> claimed;  // at the request, and at its end
+    std::function<void(icd::Uri uri)> on_claimed;  // at the request, and at its end
   };
 
   /// `done` gets the result of each step, within its call or later, and must not destroy this object. The
@@ -120,7 +120,7 @@ class EndpointTest {
     double answered_at = 0;  // by the box's time of day
   };
 
-  void connected(int error, const std::string& why);
+  void on_connected(int error, const std::string& why);
   void token_answered(const uplink::Outcome& outcome);
   void check_unknown_path(api::TestStep accepted, int status);
   void ask(const char* step, std::string_view path, std::function<void(uplink::Outcome)> done);
@@ -131,7 +131,7 @@ class EndpointTest {
     return asked_ == steps::Asked::Scoring ? tried_.scoring : tried_.mapping;
   }
   const settings::Address& address() const { return steps::address_in(tried_.post, asked_); }
-  uplink::Endpoint there() const;
+  uplink::Endpoint tested_endpoint() const;
 
   loop::Loop& loop_;
   const Turns& turns_;
@@ -165,7 +165,7 @@ class SelfTest final : public api::SelfTest {
   api::TestView state() const override { return view_; }
   icd::Checked<void> begin_test(const api::Candidate& candidate) override;
   /// Call when settings or tokens are applied. Marks the present result as outdated.
-  void settings_changed() { view_.outdated = view_.number > 0; }
+  void on_settings_changed() { view_.outdated = view_.number > 0; }
 
  private:
   enum class At : std::uint8_t { Link, Address, Cables, Reach, Token, Clock, End };
@@ -178,7 +178,7 @@ class SelfTest final : public api::SelfTest {
   };
 
   void list(steps::Asked asked);
-  void next();
+  void start_next();
   void run_step();
   void finish(api::TestStep step);
   void skip_the_rest(const std::string& why);

@@ -111,12 +111,12 @@ namespace {
 
 constexpr const char* kLesserGpl = "LGPL-2.1-or-later";
 
-std::string dotted(int major, int minor, int patch) {
+std::string version_text(int major, int minor, int patch) {
   return icd::sentence(major, ".", minor, ".", patch);
 }
 
 std::string boost_version() {
-  return dotted(BOOST_VERSION / 100000, BOOST_VERSION / 100 % 1000, BOOST_VERSION % 100);
+  return version_text(BOOST_VERSION / 100000, BOOST_VERSION / 100 % 1000, BOOST_VERSION % 100);
 }
 
 /// Libraries of the program, with versions at run time if known, else of the build.
@@ -144,11 +144,11 @@ api::LogRecord row_of(const host::Record& record) {
                      .at = record.at,
                      .severity = static_cast<int>(record.level),
                      .level = std::string(host::name_of(record.level)),
-                     .message = host::escaped(record.message),
+                     .message = host::escape(record.message),
                      .fields = {},
                      .line = host::line_of(record)};
   row.fields.reserve(record.fields.size());
-  for (const auto& [name, value] : record.fields) row.fields.emplace_back(name, host::escaped(value));
+  for (const auto& [name, value] : record.fields) row.fields.emplace_back(name, host::escape(value));
   return row;
 }
 
@@ -162,23 +162,23 @@ ThisBox::ThisBox(const loop::Loop& loop, loop::Workers& workers, settings::Board
       settings_(std::move(settings)),
       add_to_(std::move(add_to)) {}
 
-api::Time ThisBox::started() const {
+api::Time ThisBox::start_time() const {
   return loop_.wall_now() - host::process().age_seconds;
 }
 
 std::vector<api::LogRecord> ThisBox::log(std::uint64_t after) const {
   std::vector<api::LogRecord> rows;
-  for (const host::Record& record : host::remembered(after)) rows.push_back(row_of(record));
+  for (const host::Record& record : host::records_after(after)) rows.push_back(row_of(record));
   return rows;
 }
 
-std::uint64_t ThisBox::logged() const {
-  return host::logged();
+std::uint64_t ThisBox::last_record_number() const {
+  return host::last_record_number();
 }
 
 api::Usage ThisBox::usage() const {
   const host::Process process = host::process();
-  api::Usage usage{.started = started(),
+  api::Usage usage{.started = start_time(),
                    .cpu_seconds = process.cpu_seconds,
                    .resident_bytes = process.resident_bytes,
                    .open_files = process.open_files,
@@ -194,7 +194,7 @@ api::About ThisBox::about() const {
       .version = kVersion,
       .build = build_text(),
       .licence = "Apache-2.0",
-      .started = started(),
+      .started = start_time(),
       .kernel = host::kernel(),
       .model = host::model(),
       .board = board_.name.empty() ? std::nullopt : std::optional(api::BoardRow{board_.name, board_.title}),

@@ -69,17 +69,17 @@ class ThisBox final : public api::Box {
           std::function<void(api::Usage&)> add_to);
 
   std::vector<api::LogRecord> log(std::uint64_t after) const override;
-  std::uint64_t logged() const override;
+  std::uint64_t last_record_number() const override;
   api::Usage usage() const override;
   api::About about() const override;
   api::NetworkState network() const override;
   std::string settings() const override { return settings_; }
-  void runs_with(std::string settings) { settings_ = std::move(settings); }
+  void set_settings(std::string settings) { settings_ = std::move(settings); }
   void work(std::function<void()> work, std::function<void()> done) override;
 
  private:
   /// Of the process, by the present time of day. The process may have had earlier gateways.
-  api::Time started() const;
+  api::Time start_time() const;
 
   const loop::Loop& loop_;
   loop::Workers& workers_;

@@ -23,8 +23,8 @@ constexpr std::size_t kFewestPacked = 1400;  // a smaller body fits one packet a
 constexpr std::size_t kMostPacked = 1u << 20;
 
 /// Removes and returns the trimmed text before the next `mark`; `text` becomes the rest.
-std::string_view take(std::string_view& text, char mark) {
-  return icd::trimmed(icd::cut(text, mark), " \t");
+std::string_view split_off(std::string_view& text, char mark) {
+  return icd::trim(icd::cut(text, mark), " \t");
 }
 
 /// "q=0", "q=0.0": not acceptable.
@@ -49,9 +49,9 @@ bool pays(const intake::Answer& answer) {
 bool takes_gzip(std::string_view accept_encoding) {
   bool any = false;
   while (!accept_encoding.empty()) {
-    auto coding = take(accept_encoding, ',');
-    const auto name = take(coding, ';');
-    const bool taken = !is_forbidden(icd::trimmed(coding, " \t"));
+    auto coding = split_off(accept_encoding, ',');
+    const auto name = split_off(coding, ';');
+    const bool taken = !is_forbidden(icd::trim(coding, " \t"));
     if (icd::same_but_for_case(name, "gzip") || icd::same_but_for_case(name, "x-gzip")) return taken;
     if (name == "*") any = taken;
   }
@@ -81,7 +81,7 @@ constexpr const char* kContentSecurityPolicy =
 
 }  // namespace
 
-intake::Answer guarded(intake::Answer answer) {
+intake::Answer add_headers(intake::Answer answer) {
   answer.headers.push_back({"Content-Security-Policy", kContentSecurityPolicy});
   answer.headers.push_back({"X-Content-Type-Options", "nosniff"});
   answer.headers.push_back({"Referrer-Policy", "no-referrer"});
@@ -89,9 +89,9 @@ intake::Answer guarded(intake::Answer answer) {
 }
 
 intake::Answer fresh(std::string content_type, std::string body) {
-  return guarded({.content_type = std::move(content_type),
-                  .body = std::move(body),
-                  .headers = {{"Cache-Control", "no-store"}}});
+  return add_headers({.content_type = std::move(content_type),
+                      .body = std::move(body),
+                      .headers = {{"Cache-Control", "no-store"}}});
 }
 
 intake::Answer object(codec::Value::Object members) {
@@ -103,22 +103,22 @@ intake::Answer download(intake::Answer answer, const std::string& name) {
   return answer;
 }
 
-intake::Answer refused(const icd::Refusal& why) {
+intake::Answer refusal_answer(const icd::Refusal& why) {
   return refusal(why.status, why.sentence);
 }
 
-intake::Answer refused(const std::vector<settings::Error>& errors) {
+intake::Answer refusal_answer(const std::vector<settings::Error>& errors) {
   return refusal(icd::Status::UnprocessableEntity, settings::sentence_of(errors));
 }
 
 intake::Answer refused_change(const icd::Refusal& why) {
-  auto answer = refused(why);
+  auto answer = refusal_answer(why);
   if (why.status == icd::Status::Conflict) answer.headers.push_back({"Retry-After", "1"});
   return answer;
 }
 
 intake::Answer refusal(icd::Status status, std::string_view sentence) {
-  return guarded(intake::error_answer(status, sentence));
+  return add_headers(intake::error_answer(status, sentence));
 }
 
 icd::Refusal nothing_at(std::string_view path) {
@@ -128,7 +128,7 @@ icd::Refusal nothing_at(std::string_view path) {
     return paths;
   }();
   return {icd::Status::NotFound,
-          icd::sentence("there is no resource at ", icd::in_quotes(path), icd::did_you_mean(path, kPaths))};
+          icd::sentence("there is no resource at ", icd::quote_text(path), icd::did_you_mean(path, kPaths))};
 }
 
 intake::Answer wrong_method(std::string_view allowed) {
@@ -146,12 +146,12 @@ class RedactedStream final : public intake::Stream {
  public:
   RedactedStream(std::shared_ptr<intake::Stream> stream, PresentRedaction redaction)
       : stream_(std::move(stream)), redaction_(std::move(redaction)) {}
-  bool send(std::string_view bytes) override { return stream_->send(struck(bytes)); }
-  bool send_instead(std::string_view bytes) override { return stream_->send_instead(struck(bytes)); }
+  bool send(std::string_view bytes) override { return stream_->send(redact_bytes(bytes)); }
+  bool send_instead(std::string_view bytes) override { return stream_->send_instead(redact_bytes(bytes)); }
   std::size_t waiting() const override { return stream_->waiting(); }
 
  private:
-  std::string struck(std::string_view bytes) const {
+  std::string redact_bytes(std::string_view bytes) const {
     std::string text(bytes);
     redact(**redaction_, kEvents, text);
     return text;
@@ -194,8 +194,9 @@ void redact(const icd::Redaction& redaction, std::string_view content_type, std:
   }
 }
 
-std::shared_ptr<intake::Responder> redacted(std::shared_ptr<intake::Responder> responder,
-                                            PresentRedaction redaction, const intake::RequestHead& head) {
+std::shared_ptr<intake::Responder> redact_answers(std::shared_ptr<intake::Responder> responder,
+                                                  PresentRedaction redaction,
+                                                  const intake::RequestHead& head) {
   return std::make_shared<RedactedResponder>(std::move(responder), std::move(redaction),
                                              takes_gzip(head.header("Accept-Encoding")));
 }

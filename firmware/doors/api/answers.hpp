@@ -27,7 +27,7 @@ bool is_packed(const intake::Answer& answer);
 void pack_if_it_pays(intake::Answer& answer);
 
 /// Adds headers against loading, framing and content sniffing.
-intake::Answer guarded(intake::Answer answer);
+intake::Answer add_headers(intake::Answer answer);
 
 /// 200, not cached.
 intake::Answer fresh(std::string content_type, std::string body);
@@ -45,13 +45,13 @@ intake::Answer object(codec::Value::Object members);
 intake::Answer download(intake::Answer answer, const std::string& name);
 
 intake::Answer refusal(icd::Status status, std::string_view sentence);
-intake::Answer refused(const icd::Refusal& why);
+intake::Answer refusal_answer(const icd::Refusal& why);
 /// 422 for numbers or settings that have these errors.
-intake::Answer refused(const std::vector<settings::Error>& errors);
+intake::Answer refusal_answer(const std::vector<settings::Error>& errors);
 /// The answer to an action of an interface such as Clock: its state(), or the refusal.
 template <class Part>
-intake::Answer after(const Part& part, const icd::Checked<void>& done) {
-  return done ? fresh(part.state()) : refused(done.error());
+intake::Answer answer_after(const Part& part, const icd::Checked<void>& done) {
+  return done ? fresh(part.state()) : refusal_answer(done.error());
 }
 /// Refusal of a change of the settings. 409 while another change is being applied (api::Setup) has
 /// Retry-After, because that takes a second.
@@ -70,7 +70,7 @@ inline bool is_from_this_machine(const intake::RequestHead& head) {
 }
 
 inline constexpr std::string_view kReading = "GET, HEAD";
-inline bool only_reads(const intake::RequestHead& head) {
+inline bool is_read_only(const intake::RequestHead& head) {
   return head.method() == "GET" || head.method() == "HEAD";
 }
 
@@ -82,7 +82,8 @@ using PresentRedaction = std::shared_ptr<const SharedRedaction>;
 void redact(const icd::Redaction& redaction, std::string_view content_type, std::string& body);
 
 /// Forwards answers and streams after redaction. Compresses answers if `head` accepts gzip and it pays.
-std::shared_ptr<intake::Responder> redacted(std::shared_ptr<intake::Responder> responder,
-                                            PresentRedaction redaction, const intake::RequestHead& head);
+std::shared_ptr<intake::Responder> redact_answers(std::shared_ptr<intake::Responder> responder,
+                                                  PresentRedaction redaction,
+                                                  const intake::RequestHead& head);
 
 }  // namespace adit::api

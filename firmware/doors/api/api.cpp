@@ -27,7 +27,7 @@ std::optional<intake::Answer> unfit(const Body& body, const intake::RequestHead&
   return SmallBody::too_long(body.most, body.as_it_comes ? "file" : "body");
 }
 
-SharedRedaction shared(icd::Redaction redaction) {
+SharedRedaction share_redaction(icd::Redaction redaction) {
   return std::make_shared<icd::Redaction>(std::move(redaction));
 }
 
@@ -37,7 +37,7 @@ Api::Api(loop::Loop& loop, const Served& served, std::vector<icd::BearerToken> t
          icd::Redaction redaction)
     : setup_(served.setup),
       certificate_(served.certificate),
-      redaction_(std::make_shared<SharedRedaction>(shared(std::move(redaction)))),
+      redaction_(std::make_shared<SharedRedaction>(share_redaction(std::move(redaction)))),
       authenticator_(loop, served.keys, std::move(tokens)),
       live_(loop, served.source),
       sessions_(loop, authenticator_, served.keys, served.setup, served.certificate),
@@ -53,8 +53,8 @@ Api::Api(loop::Loop& loop, const Served& served, std::vector<icd::BearerToken> t
 
 std::unique_ptr<intake::BodySink> Api::open(const intake::RequestHead& head,
                                             std::shared_ptr<intake::Responder> asked_by,
-                                            std::shared_ptr<intake::Flow> flow) {
-  auto responder = redacted(std::move(asked_by), redaction_, head);
+                                            std::shared_ptr<intake::FlowControl> flow) {
+  auto responder = redact_answers(std::move(asked_by), redaction_, head);
   const auto answer_with = [&responder](intake::Answer answer) {
     responder->answer(std::move(answer));
     return nullptr;
@@ -67,7 +67,7 @@ std::unique_ptr<intake::BodySink> Api::open(const intake::RequestHead& head,
   const auto asker = authenticator_.admit(head, found.who);
   if (!asker) return answer_with(rejection_answer(asker.error()));
   if (!found.route)
-    return answer_with(found.allowed.empty() ? refused(nothing_at(head.path()))
+    return answer_with(found.allowed.empty() ? refusal_answer(nothing_at(head.path()))
                                              : wrong_method(found.allowed));
   const Route& route = *found.route;
   if (auto why = unfit(route.body, head)) return answer_with(std::move(*why));
@@ -100,7 +100,7 @@ std::optional<intake::Answer> Api::redirect_to_https(const intake::RequestHead& 
     return std::nullopt;
   const std::size_t name = host.starts_with('[') ? host.find(']') + 1 : host.find(':');
   const std::string box = icd::sentence("https://", host.substr(0, name));
-  if (path.starts_with(intake::kApiPaths) || path == "/metrics" || !only_reads(head))
+  if (path.starts_with(intake::kApiPaths) || path == "/metrics" || !is_read_only(head))
     return rejection_answer({icd::Status::Unauthorized, icd::sentence("log in by HTTPS: ", box)});
   intake::Answer answer{
       .status = kPermanentRedirect, .content_type = "text/plain", .body = box + '\n', .headers = {}};
@@ -109,17 +109,17 @@ std::optional<intake::Answer> Api::redirect_to_https(const intake::RequestHead& 
       path, [](char c) { return icd::is_letter_or_digit(c) || c == '/' || c == '_' || c == '.'; });
   answer.headers.push_back({"Location", icd::sentence(box, is_plain ? path : "/")});
   answer.headers.push_back({"Cache-Control", "no-store"});  // the setting may change
-  return guarded(std::move(answer));
+  return add_headers(std::move(answer));
 }
 
 void Api::set_tokens(std::vector<icd::BearerToken> tokens, icd::Redaction redaction) {
   authenticator_.set_tokens(std::move(tokens));
-  *redaction_ = shared(std::move(redaction));
+  *redaction_ = share_redaction(std::move(redaction));
 }
 
 /// A POST may change open pages.
 void Api::handle(const Route& route, const Call& call) {
-  if (route.method == "POST") live_.changed();
+  if (route.method == "POST") live_.on_changed();
   if (route.handle.answer == nullptr) return route.handle.answer_later(handlers_, call);
   call.responder->answer(route.handle.answer(handlers_, call));
 }

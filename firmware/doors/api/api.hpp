@@ -50,16 +50,18 @@ class Api final : public intake::Handler {
   Api(loop::Loop& loop, const Served& served, std::vector<icd::BearerToken> tokens,
       icd::Redaction redaction = icd::Redaction());
 
-  intake::Credentials shown(const intake::RequestHead& head) override { return authenticator_.shown(head); }
+  intake::Credentials read_credentials(const intake::RequestHead& head) override {
+    return authenticator_.read_credentials(head);
+  }
   std::unique_ptr<intake::BodySink> open(const intake::RequestHead& head,
                                          std::shared_ptr<intake::Responder> asked_by,
-                                         std::shared_ptr<intake::Flow> flow) override;
+                                         std::shared_ptr<intake::FlowControl> flow) override;
 
   /// Replaces tokens and redaction.
   void set_tokens(std::vector<icd::BearerToken> tokens, icd::Redaction redaction);
 
   /// Call after a change of data that the page shows.
-  void changed() { live_.changed(); }
+  void on_changed() { live_.on_changed(); }
 
  private:
   void handle(const Route& route, const Call& call);

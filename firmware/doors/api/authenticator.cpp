@@ -33,16 +33,16 @@ icd::Checked<Asker> Authenticator::admit(const intake::RequestHead& head, RouteA
                                                            (keys_.first_start() || keys_.set_up_open()));
   if (!for_anybody) return std::unexpected(visitor.error());
   ADIT_TRY(access::check_host_and_origin(request));
-  const auto known = this->who(head);
+  const auto known = this->find_visitor(head);
   return Asker{.admitted = false, .session = known ? session_of(*known) : 0};
 }
 
-std::optional<access::Visitor> Authenticator::who(const intake::RequestHead& head) {
-  return access::who(request_of(head), tokens_, keys_.sessions(), loop_.now());
+std::optional<access::Visitor> Authenticator::find_visitor(const intake::RequestHead& head) {
+  return access::find_visitor(request_of(head), tokens_, keys_.sessions(), loop_.now());
 }
 
-intake::Credentials Authenticator::shown(const intake::RequestHead& head) {
-  const auto visitor = who(head);
+intake::Credentials Authenticator::read_credentials(const intake::RequestHead& head) {
+  const auto visitor = find_visitor(head);
   if (!head.header("Authorization").empty())
     return visitor ? intake::Credentials::Token : intake::Credentials::WrongToken;
   if (visitor) return intake::Credentials::Enough;
@@ -61,11 +61,11 @@ const access::Device* Authenticator::device(const intake::RequestHead& head) {
 
 std::function<bool()> Authenticator::may_stay(const Asker& asker) {
   if (asker.session == 0) return [] { return true; };
-  return [this, number = asker.session] { return keys_.sessions().still(number, loop_.now()); };
+  return [this, number = asker.session] { return keys_.sessions().touch(number, loop_.now()); };
 }
 
 intake::Answer rejection_answer(const icd::Refusal& why) {
-  auto answer = refused(why);
+  auto answer = refusal_answer(why);
   if (why.status == icd::Status::Unauthorized) answer.headers.push_back({"WWW-Authenticate", "Bearer"});
   return answer;
 }

@@ -27,8 +27,8 @@ class Authenticator {
   /// Error 401 or 403: the client may not do what `who` may.
   icd::Checked<Asker> admit(const intake::RequestHead& head, RouteAccess who);
   /// Visitor::session is valid until the next call on this object.
-  std::optional<access::Visitor> who(const intake::RequestHead& head);
-  intake::Credentials shown(const intake::RequestHead& head);
+  std::optional<access::Visitor> find_visitor(const intake::RequestHead& head);
+  intake::Credentials read_credentials(const intake::RequestHead& head);
   /// The client's known device, or null. As Devices::find().
   const access::Device* device(const intake::RequestHead& head);
   /// Whether the client may still receive a long answer. This object must outlive the result.

@@ -90,7 +90,7 @@ icd::Checked<LogPage> BoxRoutes::log(const intake::RequestHead& head) const {
   const auto filter = ADIT_TRY(read_log_filter(head));
   auto records = box_.log(filter.after);
   std::erase_if(records, [&](const LogRecord& record) { return !filter.lets(record); });
-  return LogPage{box_.logged(), std::move(records)};
+  return LogPage{box_.last_record_number(), std::move(records)};
 }
 
 std::string BoxRoutes::log_lines(const LogFilter& filter) const {
@@ -171,10 +171,10 @@ CheckView check(Network& network, const Call& call) {
 
 intake::Answer change(Network& network, const Call& call) {
   const auto wanted = numbers_in(call.body);
-  if (!wanted) return refused(wanted.error());
+  if (!wanted) return refusal_answer(wanted.error());
   const auto findings = network.check(*wanted, call.head.peer());
-  if (!findings.errors.empty()) return refused(findings.errors);
-  return after(network, network.change(*wanted));
+  if (!findings.errors.empty()) return refusal_answer(findings.errors);
+  return answer_after(network, network.change(*wanted));
 }
 
 icd::Checked<void> confirm(Network& network, const Call& call) {
@@ -237,10 +237,10 @@ std::unique_ptr<intake::BodySink> update_routes::receive(Updates& updates, const
   const std::string_view again = call.head.query("again");
   if (!again.empty() && again != "0" && again != "1") return refuse(unprocessable("again: expected 0 or 1"));
   auto upload = updates.receive(*size, again == "1", [flow = call.flow] { flow->resume(); });
-  if (!upload) return refuse(refused(upload.error()));
+  if (!upload) return refuse(refusal_answer(upload.error()));
   return std::make_unique<Receiving>(std::move(*upload), *size,
                                      [&updates, responder = call.responder](const icd::Checked<void>& done) {
-                                       responder->answer(after(updates, done));
+                                       responder->answer(answer_after(updates, done));
                                      });
 }
 
@@ -281,7 +281,7 @@ namespace {
 
 Certificate::Done answer_with_state(const Certificate& certificate, const Call& call) {
   return [&certificate, responder = call.responder](const icd::Checked<void>& done) {
-    responder->answer(after(certificate, done));
+    responder->answer(answer_after(certificate, done));
   };
 }
 
@@ -302,35 +302,36 @@ void make(Certificate& certificate, const Call& call) {
 
 namespace spare_routes {
 
-void exported(Spare& spare, const Call& call) {
+void send_export(Spare& spare, const Call& call) {
   spare.export_to([responder = call.responder](icd::Checked<std::string> file) {
-    if (!file) return responder->answer(refused(file.error()));
+    if (!file) return responder->answer(refusal_answer(file.error()));
     responder->answer(download(fresh("application/octet-stream", *std::move(file)), "export.adit-spare"));
   });
 }
 
 void to_stick(Spare& spare, const Call& call) {
   spare.export_to_stick([&spare, responder = call.responder](const icd::Checked<void>& done) {
-    responder->answer(after(spare, done));
+    responder->answer(answer_after(spare, done));
   });
 }
 
-std::unique_ptr<intake::BodySink> take_in(Spare& spare, const Call& call) {
+std::unique_ptr<intake::BodySink> begin_import(Spare& spare, const Call& call) {
   if (call.head.content_length().value_or(spare::kLargestExport + 1) > spare::kLargestExport) {
     call.responder->answer(SmallBody::too_long(spare::kLargestExport, "export"));
     return nullptr;
   }
   return std::make_unique<ReceivingExport>(
       [&spare, responder = call.responder](icd::Checked<std::string> file) {
-        responder->answer(file ? after(spare, spare.take_in(*std::move(file))) : refused(file.error()));
+        responder->answer(file ? answer_after(spare, spare.import_file(*std::move(file)))
+                               : refusal_answer(file.error()));
       });
 }
 
 void open(Spare& spare, const Call& call) {
   const auto code = read_text(call.body, "code");
-  if (!code) return call.responder->answer(refused(code.error()));
+  if (!code) return call.responder->answer(refusal_answer(code.error()));
   spare.open(*code, [&spare, responder = call.responder](const icd::Checked<void>& done) {
-    responder->answer(after(spare, done));
+    responder->answer(answer_after(spare, done));
   });
 }
 

@@ -76,9 +76,9 @@ std::unique_ptr<intake::BodySink> receive(Updates& updates, const Call& call);
 /// Spare and standby. Routes: README.md. `spare` must outlive the answers.
 namespace spare_routes {
 
-void exported(Spare& spare, const Call& call);
+void send_export(Spare& spare, const Call& call);
 void to_stick(Spare& spare, const Call& call);
-std::unique_ptr<intake::BodySink> take_in(Spare& spare, const Call& call);
+std::unique_ptr<intake::BodySink> begin_import(Spare& spare, const Call& call);
 void open(Spare& spare, const Call& call);
 icd::Checked<void> take_over(Spare& spare, const std::string& body);
 

@@ -168,7 +168,7 @@ void know(const codec::Field& field, std::span<const std::string_view> names) {
   if (!field.is<Value::Object>()) return field.refuse_kind("an object");
   for (const auto& [name, value] : std::get<Value::Object>(field.value()->is)) {
     if (std::ranges::find(names, name) == names.end())
-      field.refuse("no such member: ", icd::in_quotes(name), "; expected ", codec::in_turn(names));
+      field.refuse("no such member: ", icd::quote_text(name), "; expected ", codec::list_alternatives(names));
   }
 }
 
@@ -179,7 +179,7 @@ Candidate::Endpoint endpoint_in(const codec::Field& field) {
   const codec::Field address = field.member("address"), port = field.member("port"),
                      token = field.member("token");
   if (!address.is_absent()) endpoint.address = address.text();
-  if (!port.is_absent()) endpoint.port = port.whole<std::uint16_t>(1);
+  if (!port.is_absent()) endpoint.port = port.integer<std::uint16_t>(1);
   if (token.is_absent() || token.is_empty_text()) return endpoint;
   endpoint.token = icd::BearerToken::parse(token.text());
   if (!endpoint.token) token.refuse("expected 1 to 256 visible ASCII characters");

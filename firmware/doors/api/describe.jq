@@ -5,11 +5,11 @@ def words: (. // "") | split(" ") | map(select(. != ""));
 def known($what; $all): . as $name | $all[$name] // error("openapi.json has no \($name) among its \($what)");
 def reference($kind): {"$ref": "#/components/\($kind)/\(.)"};
 
-# Each row of the table: get(path, who, by<...>(), words...), or post(path, who, body, by<...>(), takes, words...).
+# Each row of the table: get(path, who, handle_of<...>(), words...), or post(path, who, body, handle_of<...>(), takes, words...).
 def rows:
   "\"(?:[^\"\\\\]|\\\\.)*\"" as $string
   | (split("kRoutes[] = {\n")[1] | split("\n};")[0] | gsub("\"\\s*\n\\s*\""; "")) as $table # adjacent literals are one
-  | "(get|post)\\((\($string)),\\s*(\\w+),\\s*(?:(kJson|kBundle|kCertificate|kExport)[<>\\d]*,\\s*)?by<[^()]*>\\(\\),\\s*((?:\($string)[,\\s]*)+)\\)" as $row
+  | "(get|post)\\((\($string)),\\s*(\\w+),\\s*(?:(kJson|kBundle|kCertificate|kExport)[<>\\d]*,\\s*)?handle_of<[^()]*>\\(\\),\\s*((?:\($string)[,\\s]*)+)\\)" as $row
   | [$table | scan($row) as [$method, $path, $who, $body, $words]
      | ["takes", "tag", "summary", "done", "gives", "refusals", "parameters"][if $method == "get" then 1 else 0 end:] as $names
      | [$words | strings[]] as $values

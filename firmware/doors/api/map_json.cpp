@@ -26,8 +26,10 @@ template <>
 struct KindOf<picture::LayerView> : KindOfRow<picture::LayerView, api::kLayer> {};
 
 template <>
-struct KindOf<picture::Kind> : WriteOnly {
-  static Value write(picture::Kind kind) { return {kind == picture::Kind::Grid ? "grid" : "cloud"}; }
+struct KindOf<picture::LayerKind> : WriteOnly {
+  static Value write(picture::LayerKind kind) {
+    return {kind == picture::LayerKind::Grid ? "grid" : "cloud"};
+  }
   static constexpr Schema schema = KindOf<std::string>::schema;
 };
 
@@ -152,8 +154,8 @@ MapView map_view(const picture::Mosaic& map, std::uint64_t since) {
                   .occupied = grid[picture::kMostOccupiedIndex],
                   .heights = {heights.begin(), heights.end()}},
       .spacing = map.spacing(),
-      .wiped = map.wiped(),
-      .missed = map.missed(),
+      .wiped = map.wipe_time(),
+      .missed = map.missed_maps(),
       .layers = map.layers(since)};
 }
 

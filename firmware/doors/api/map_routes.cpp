@@ -21,7 +21,7 @@ using icd::Status;
 
 constexpr Time kLongest = 10;  // seconds, as between the poses of a robot that stands
 
-TrackPose between(const TrackPose& from, const TrackPose& to, Time at) {
+TrackPose interpolate(const TrackPose& from, const TrackPose& to, Time at) {
   const double part = (at - from.at) / (to.at - from.at);
   const auto mix = [part](double one, double other) { return one + part * (other - one); };
   return {.at = at,
@@ -34,11 +34,11 @@ bool is_straight(std::span<const TrackPose> way) {
   const TrackPose &from = way.front(), &to = way.back();
   if (to.at <= from.at || to.at > from.at + kLongest) return false;
   return std::ranges::none_of(way.subspan(1, way.size() - 2), [&](const TrackPose& pose) {
-    return has_moved(between(from, to, pose.at), pose);
+    return has_moved(interpolate(from, to, pose.at), pose);
   });
 }
 
-std::vector<TrackPose> thinned(std::span<const TrackPose> poses) {
+std::vector<TrackPose> thin_tracks(std::span<const TrackPose> poses) {
   std::vector<TrackPose> kept;
   for (std::size_t i = 0; i < poses.size();) {
     kept.push_back(poses[i]);
@@ -51,8 +51,8 @@ std::vector<TrackPose> thinned(std::span<const TrackPose> poses) {
 
 /// Leaves out poses that lie on a straight way, so that interpolation in time between the others gives each
 /// of them back (has_moved() tells no difference). A way is at most 10 s long. First and last pose stay.
-Tracks thinned(std::vector<Track> tracks) {
-  for (Track& track : tracks) track.poses = thinned(track.poses);
+Tracks thin_tracks(std::vector<Track> tracks) {
+  for (Track& track : tracks) track.poses = thin_tracks(track.poses);
   return {std::move(tracks)};
 }
 
@@ -108,9 +108,9 @@ std::optional<picture::Colour> colour_in(std::string_view text) {
   return picture::Colour{part(16), part(8), part(0)};
 }
 
-std::string coloured(const picture::Packed& tile, const LayerAsked& asked) {
+std::string colour_tile(const picture::Packed& tile, const LayerAsked& asked) {
   const bool is_coloured = asked.from && asked.to;
-  if (asked.layer.kind == picture::Kind::Grid) {
+  if (asked.layer.kind == picture::LayerKind::Grid) {
     return is_coloured ? picture::write_png(tile, picture::grid_palette(*asked.from, *asked.to))
                        : picture::write_png(tile, picture::grid_palette());
   }
@@ -135,7 +135,7 @@ intake::Answer image_of(const picture::Packed& tile, const TileAsked& asked, std
   if (asked.has.contains(etag)) {
     answer.status = kNotModified;
   } else {
-    answer.body = coloured(tile, asked.in);
+    answer.body = colour_tile(tile, asked.in);
   }
   return answer;
 }
@@ -165,13 +165,14 @@ icd::Checked<LayerAsked> layer_asked(const intake::RequestHead& head, std::span<
     return icd::refuse(Status::BadRequest,
                        "from and to: expected both or neither, each with six hexadecimal digits, as in "
                        "2266ee");
-  return LayerAsked{.layer = {.robot = parts[1] == kMerged ? "" : parts[1],
-                              .kind = parts[0] == "grid" ? picture::Kind::Grid : picture::Kind::Cloud},
-                    .stamp = at,
-                    .low = low,
-                    .high = high,
-                    .from = from,
-                    .to = to};
+  return LayerAsked{
+      .layer = {.robot = parts[1] == kMerged ? "" : parts[1],
+                .kind = parts[0] == "grid" ? picture::LayerKind::Grid : picture::LayerKind::Cloud},
+      .stamp = at,
+      .low = low,
+      .high = high,
+      .from = from,
+      .to = to};
 }
 
 std::vector<std::string> split(std::string_view text, char separator) {
@@ -224,7 +225,7 @@ intake::Answer tile_of(const picture::Mosaic& map, const TileAsked& asked) {
   // So that a replay requests a tile only when it changes.
   answer.headers.push_back({"Adit-Since", icd::number_text(shown.stamp)});
   if (shown.until) answer.headers.push_back({"Adit-Until", icd::number_text(*shown.until)});
-  return guarded(std::move(answer));
+  return add_headers(std::move(answer));
 }
 
 /// A line with the head of each tile in JSON, then their PNGs.
@@ -235,7 +236,7 @@ intake::Answer tiles_of(const picture::Mosaic& map, const TilesAsked& asked) {
     TileHead& tile = head.tiles.emplace_back(icd::sentence(at.level, "/", at.x, "/", at.y));
     const auto shown = map.tile(asked.in.layer, at, asked.in.stamp);
     if (shown.tile == nullptr) continue;
-    const std::string image = coloured(*shown.tile, asked.in);
+    const std::string image = colour_tile(*shown.tile, asked.in);
     tile.bytes = image.size();
     tile.since = shown.stamp;
     tile.until = shown.until;
@@ -246,10 +247,10 @@ intake::Answer tiles_of(const picture::Mosaic& map, const TilesAsked& asked) {
 
 /// The same for a drawn tile of a finer level. Null: 204, because the client cannot know which tiles exist.
 intake::Answer finer_tile(const picture::Tile& tile, const TileAsked& asked) {
-  return guarded(tile ? image_of(*tile, asked, "no-cache")
-                      : intake::Answer{.status = icd::Status::NoContent,
-                                       .body = {},
-                                       .headers = {{"Cache-Control", "no-store"}}});
+  return add_headers(tile ? image_of(*tile, asked, "no-cache")
+                          : intake::Answer{.status = icd::Status::NoContent,
+                                           .body = {},
+                                           .headers = {{"Cache-Control", "no-store"}}});
 }
 
 }  // namespace
@@ -268,28 +269,28 @@ icd::Checked<MarkerChanges> MapRoutes::markers(const intake::RequestHead& head) 
 
 icd::Checked<Tracks> MapRoutes::tracks(const intake::RequestHead& head) const {
   const auto since = ADIT_TRY(time_asked(head));
-  return thinned(source_.tracks(since));
+  return thin_tracks(source_.tracks(since));
 }
 
 void MapRoutes::tile(const Call& call) const {
   const auto asked = tile_asked(call.head, call.parameters);
-  if (!asked) return call.responder->answer(refused(asked.error()));
+  if (!asked) return call.responder->answer(refusal_answer(asked.error()));
   if (asked->at.level >= 0 || !picture::is_in_world(asked->at))
     return call.responder->answer(tile_of(source_.map(), *asked));
   finer_.tile(asked->in.layer, asked->at,
               [responder = call.responder, asked = *asked](const icd::Checked<picture::Tile>& tile) {
-                responder->answer(tile ? finer_tile(*tile, asked) : refused(tile.error()));
+                responder->answer(tile ? finer_tile(*tile, asked) : refusal_answer(tile.error()));
               });
 }
 
 void MapRoutes::tiles(const Call& call) const {
   const auto asked = tiles_asked(call.head, call.parameters);
-  call.responder->answer(asked ? tiles_of(source_.map(), *asked) : refused(asked.error()));
+  call.responder->answer(asked ? tiles_of(source_.map(), *asked) : refusal_answer(asked.error()));
 }
 
 void MapRoutes::covered(const Call& call) const {
-  covered_.covered([responder = call.responder](const icd::Checked<picture::Covered>& covered) {
-    responder->answer(covered ? fresh(covered_view(*covered)) : refused(covered.error()));
+  covered_.count([responder = call.responder](const icd::Checked<picture::Covered>& covered) {
+    responder->answer(covered ? fresh(covered_view(*covered)) : refusal_answer(covered.error()));
   });
 }
 
@@ -298,7 +299,7 @@ namespace {
 constexpr std::size_t kDetailsInATurn = 16;  // each is a query of the ledger
 
 /// A run's report contains its style and images, and no script. Other content must not load.
-intake::Answer printed(std::string html) {
+intake::Answer html_answer(std::string html) {
   return {.content_type = "text/html; charset=utf-8",
           .body = std::move(html),
           .headers = {{"Content-Security-Policy",
@@ -339,13 +340,15 @@ void KeptRunsRoutes::with_run(const Call& call, Answering answer) {
   }
   waiting.push_back({call.responder, std::move(answer)});
   if (waiting.size() > 1) return;
-  runs_.read(key, [this, key](const auto& run) { came(key, run); });
+  runs_.read(key, [this, key](const auto& run) { on_run_read(key, run); });
 }
 
-void KeptRunsRoutes::came(const std::string& key, const icd::Checked<std::shared_ptr<const KeptRun>>& run) {
+void KeptRunsRoutes::on_run_read(const std::string& key,
+                                 const icd::Checked<std::shared_ptr<const KeptRun>>& run) {
   const auto waiting = std::exchange(waiting_[key], {});
   waiting_.erase(key);
-  for (const Waiting& each : waiting) each.responder->answer(run ? each.answer(**run) : refused(run.error()));
+  for (const Waiting& each : waiting)
+    each.responder->answer(run ? each.answer(**run) : refusal_answer(run.error()));
   const auto row = row_of(key);
   if (!run || !row || row->is_present) return;  // the present run changes
   held_ = *run;
@@ -354,24 +357,24 @@ void KeptRunsRoutes::came(const std::string& key, const icd::Checked<std::shared
 
 void KeptRunsRoutes::layers(const Call& call) {
   const auto since = version_asked(call.head);
-  if (!since) return call.responder->answer(refused(since.error()));
+  if (!since) return call.responder->answer(refusal_answer(since.error()));
   with_run(call, [since = *since](const KeptRun& run) { return fresh(map_view(run.picture, since)); });
 }
 
 void KeptRunsRoutes::tile(const Call& call) {
   const auto asked = tile_asked(call.head, std::span(call.parameters).subspan(1));
-  if (!asked) return call.responder->answer(refused(asked.error()));
+  if (!asked) return call.responder->answer(refusal_answer(asked.error()));
   with_run(call, [asked = *asked](const KeptRun& run) { return tile_of(run.picture, asked); });
 }
 
 void KeptRunsRoutes::tiles(const Call& call) {
   const auto asked = tiles_asked(call.head, std::span(call.parameters).subspan(1));
-  if (!asked) return call.responder->answer(refused(asked.error()));
+  if (!asked) return call.responder->answer(refusal_answer(asked.error()));
   with_run(call, [asked = *asked](const KeptRun& run) { return tiles_of(run.picture, asked); });
 }
 
 void KeptRunsRoutes::tracks(const Call& call) {
-  with_run(call, [](const KeptRun& run) { return fresh(thinned(run.tracks)); });
+  with_run(call, [](const KeptRun& run) { return fresh(thin_tracks(run.tracks)); });
 }
 
 void KeptRunsRoutes::plots(const Call& call) {
@@ -388,7 +391,7 @@ struct KeptRunsRoutes::Gathering {
 
 void KeptRunsRoutes::report(const Call& call) {
   const auto row = row_of(call.parameters.front());
-  if (!row) return call.responder->answer(refused(row.error()));
+  if (!row) return call.responder->answer(refusal_answer(row.error()));
   gather(std::make_shared<Gathering>(row->key, row->run, 0, std::vector<ReportDetail>(), call.responder));
 }
 
@@ -404,13 +407,13 @@ void KeptRunsRoutes::gather(const std::shared_ptr<Gathering>& gathering) {
   }
   runs_.report(gathering->key, std::move(gathering->reports), source_.view().colours,
                [responder = gathering->responder](icd::Checked<std::string> html) {
-                 responder->answer(html ? printed(*std::move(html)) : refused(html.error()));
+                 responder->answer(html ? html_answer(*std::move(html)) : refusal_answer(html.error()));
                });
 }
 
 void KeptRunsRoutes::remove(const Call& call) {
   const auto row = row_of(call.parameters.front());
-  if (!row) return call.responder->answer(refused(row.error()));
+  if (!row) return call.responder->answer(refusal_answer(row.error()));
   if (held_ && held_->facts.key == row->key) held_.reset();
   runs_.remove(row->key,
                [key = row->key, responder = call.responder](const std::expected<void, std::string>& done) {

@@ -68,7 +68,7 @@ class KeptRunsRoutes {
   };
   struct Gathering;
   void with_run(const Call& call, Answering answer);
-  void came(const std::string& key, const icd::Checked<std::shared_ptr<const KeptRun>>& run);
+  void on_run_read(const std::string& key, const icd::Checked<std::shared_ptr<const KeptRun>>& run);
   void gather(const std::shared_ptr<Gathering>& gathering);
   /// Error: 404, or 503 if the list may lack a run.
   icd::Checked<RunRow> row_of(const std::string& key) const;

@@ -12,7 +12,7 @@ namespace adit::api {
 namespace {
 
 /// Escapes backslashes and newlines, and in a label's value quotation marks.
-std::string escaped(std::string_view text, bool quoted) {
+std::string escape_label(std::string_view text, bool quoted) {
   std::string safe;
   safe.reserve(text.size());
   for (const char c : text) {
@@ -218,7 +218,7 @@ void write_refused(Exposition& out, const Usage& usage) {
 void Exposition::begin(std::string_view name, std::string_view help) {
   name_ = name;
   const std::string_view type = name.ends_with("_total") ? "counter" : "gauge";
-  text_.append("# HELP ").append(name).append(" ").append(escaped(help, false)).append("\n");
+  text_.append("# HELP ").append(name).append(" ").append(escape_label(help, false)).append("\n");
   text_.append("# TYPE ").append(name).append(" ").append(type).append("\n");
 }
 
@@ -226,7 +226,7 @@ void Exposition::write_sample(std::span<const Label> labels, double value) {
   text_ += name_;
   char before = '{';
   for (const auto& [name, text] : labels) {
-    text_.append(1, before).append(name).append("=\"").append(escaped(text, true)).append("\"");
+    text_.append(1, before).append(name).append("=\"").append(escape_label(text, true)).append("\"");
     before = ',';
   }
   if (!labels.empty()) text_ += '}';

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kMostInflated = 1u << 20;
 
-icd::Checked<std::string> inflated(const site::File& file) {
+icd::Checked<std::string> inflate_file(const site::File& file) {
   const std::span bytes(reinterpret_cast<const std::uint8_t*>(file.packed.data()), file.packed.size());
   std::string text;
   const auto size = codec::gunzip(icd::ChunkedBytes(bytes), kMostInflated, file.path,
@@ -42,19 +42,19 @@ intake::Answer answer_with(const site::File& file, const intake::RequestHead& he
     answer.headers.push_back({"Content-Encoding", "gzip"});
     answer.body = file.packed;
   } else {
-    auto text = inflated(file);
-    if (!text) return refused(text.error());
+    auto text = inflate_file(file);
+    if (!text) return refusal_answer(text.error());
     answer.body = std::move(*text);
   }
-  return guarded(std::move(answer));
+  return add_headers(std::move(answer));
 }
 
 }  // namespace
 
 intake::Answer PageRoutes::file(const intake::RequestHead& head) const {
   const auto* const file = site::file_at(head.path());
-  if (file == nullptr) return refused(nothing_at(head.path()));
-  return only_reads(head) ? answer_with(*file, head) : wrong_method(kReading);
+  if (file == nullptr) return refusal_answer(nothing_at(head.path()));
+  return is_read_only(head) ? answer_with(*file, head) : wrong_method(kReading);
 }
 
 intake::Answer PageRoutes::description(const intake::RequestHead& head) const {

@@ -85,7 +85,7 @@ icd::Checked<intake::Answer> accept(const std::string& body, Take take) {
 
 }  // namespace
 
-void ReportRoutes::listed(const Call& call, ListForm form, intake::Answer begun) const {
+void ReportRoutes::send_list(const Call& call, ListForm form, intake::Answer begun) const {
   std::optional<std::int64_t> run;
   if (const auto named = call.head.query("run"); !named.empty() && named != kAll) {
     run = named == kPresent ? source_.view().run_number : icd::number_in<std::int64_t>(named);
@@ -101,12 +101,12 @@ void ReportRoutes::listed(const Call& call, ListForm form, intake::Answer begun)
 }
 
 void ReportRoutes::list(const Call& call) const {
-  listed(call, json_list(), fresh("application/json", ""));
+  send_list(call, json_list(), fresh("application/json", ""));
 }
 
 void ReportRoutes::csv(const Call& call) const {
-  listed(call, {.begin = csv_header(), .row = csv_line, .between = "", .end = ""},
-         download(fresh("text/csv; charset=utf-8; header=present", ""), "adit-reports.csv"));
+  send_list(call, {.begin = csv_header(), .row = csv_line, .between = "", .end = ""},
+            download(fresh("text/csv; charset=utf-8; header=present", ""), "adit-reports.csv"));
 }
 
 icd::Checked<ReportDetail> ReportRoutes::one(std::int64_t number) const {

@@ -63,7 +63,7 @@ class ReportRoutes {
 
  private:
   /// Completes `begun` with the list of the run in the request (its number, "present" or "all").
-  void listed(const Call& call, ListForm form, intake::Answer begun) const;
+  void send_list(const Call& call, ListForm form, intake::Answer begun) const;
   icd::Checked<intake::Answer> decide(std::int64_t number, Action action);
 
   const ReportLists& lists_;

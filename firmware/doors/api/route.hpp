@@ -68,7 +68,7 @@ struct Asker {
 struct Call {
   const intake::RequestHead& head;
   std::shared_ptr<intake::Responder> responder;  // for late answers
-  std::shared_ptr<intake::Flow> flow;            // for streamed bodies
+  std::shared_ptr<intake::FlowControl> flow;     // for streamed bodies
   Asker asker;
   std::vector<std::string> parameters;  // of the path, in order
   SharedRedaction redaction;            // is applied to the answer, but not to a file that it packs

@@ -19,7 +19,7 @@ constexpr std::chrono::seconds kCalm{1};
 
 /// Rounds to milliseconds, millimetres or microseconds, which is finer than the page shows and halves the
 /// text.
-double rounded(double number) {
+double round_number(double number) {
   constexpr double kSteps = 1000;
   return std::round(number * kSteps) / kSteps + 0.0;  // avoids -0
 }
@@ -43,7 +43,7 @@ Live::Live(loop::Loop& loop, Source& source)
 
 RunView Live::look() {
   RunView view = source_.view();
-  codec::change_numbers(RunView::kRow, &view, rounded);
+  codec::change_numbers(RunView::kRow, &view, round_number);
   // Ages change all the time. Whole seconds keep events small.
   const auto whole_seconds = [](std::optional<double>& age) {
     if (age) *age = std::floor(*age);
@@ -55,7 +55,7 @@ RunView Live::look() {
   return view;
 }
 
-const std::string& Live::whole() {
+const std::string& Live::full_state() {
   if (whole_.empty()) whole_ = "data: " + codec::to_json(told_) + "\n\n";
   whole_size_ = whole_.size();
   return whole_;
@@ -74,7 +74,7 @@ void Live::open(intake::Responder& responder, std::function<bool()> may_stay) {
     send_to_all(true);  // so that the whole view is no older than kSpacing
   }
   auto stream = responder.stream("text/event-stream");
-  if (!stream || !stream->send("retry: 1000\n" + whole())) return;
+  if (!stream || !stream->send("retry: 1000\n" + full_state())) return;
   pages_.push_back({std::move(stream), std::move(may_stay)});
 }
 
@@ -86,7 +86,7 @@ void Live::begin() {
   timer_.call_at(sent_ + kHeartbeat);
 }
 
-void Live::changed() {
+void Live::on_changed() {
   if (pages_.empty() || std::exchange(dirty_, true)) return;
   timer_.call_at(std::max(loop_.now(), looked_ + kSpacing));
 }
@@ -112,7 +112,7 @@ void Live::send_to_all(bool in_any_case) {
 bool Live::tell(const OpenPage& page, std::string_view event) {
   if (!page.may_stay()) return false;
   const bool is_slow = page.stream->waiting() + event.size() > 2 * whole_size_ + kMostPatches;
-  return is_slow ? page.stream->send_instead(whole()) : page.stream->send(event);
+  return is_slow ? page.stream->send_instead(full_state()) : page.stream->send(event);
 }
 
 void Live::drop_the_gone(std::string_view event) {
@@ -132,11 +132,11 @@ intake::Answer RunRoutes::begin_run() {
 
 intake::Answer RunRoutes::begin_ledger() {
   const auto kept_as = gateway_control_.begin_ledger();
-  return kept_as ? object({{"kept_as", json(*kept_as)}}) : refused(kept_as.error());
+  return kept_as ? object({{"kept_as", json(*kept_as)}}) : refusal_answer(kept_as.error());
 }
 
-intake::Answer RunRoutes::rejected(std::uint64_t number, RejectedAction action) {
-  const auto done = operator_.rejected(number, action);
+intake::Answer RunRoutes::change_rejected(std::uint64_t number, RejectedAction action) {
+  const auto done = operator_.change_rejected(number, action);
   return done ? object({{"rejected", json(number)}}) : refusal(icd::Status::Conflict, done.error());
 }
 

@@ -34,7 +34,7 @@ class Live {
   /// Answers with a stream of events, or 503 beyond kMostPages. The stream ends once `may_stay` returns
   /// false.
   void open(intake::Responder& responder, std::function<bool()> may_stay);
-  void changed();
+  void on_changed();
 
  private:
   struct OpenPage {
@@ -46,7 +46,7 @@ class Live {
   void begin();
   void send_to_all(bool in_any_case);
   /// The state of the pages as an event.
-  const std::string& whole();
+  const std::string& full_state();
   bool tell(const OpenPage& page, std::string_view event);
   void drop_the_gone(std::string_view event);
 
@@ -82,8 +82,8 @@ class RunRoutes {
   intake::Answer begin_ledger();
   /// An action on a rejected message.
   template <RejectedAction action>
-  intake::Answer rejected(std::uint64_t number) {
-    return rejected(number, action);
+  intake::Answer change_rejected(std::uint64_t number) {
+    return change_rejected(number, action);
   }
   /// Acknowledges an alarm.
   icd::Checked<intake::Answer> acknowledge(const std::string& body);
@@ -91,7 +91,7 @@ class RunRoutes {
   icd::Checked<intake::Answer> identify(const std::string& body);
 
  private:
-  intake::Answer rejected(std::uint64_t number, RejectedAction action);
+  intake::Answer change_rejected(std::uint64_t number, RejectedAction action);
 
   Source& source_;
   Operator& operator_;

@@ -44,24 +44,24 @@ std::size_t corners_of(const Marker& marker) {
   }
 }
 
-double apart(const Point& a, const Point& b) {
+double point_distance(const Point& a, const Point& b) {
   return std::hypot(a.x - b.x, a.y - b.y, a.z - b.z);
 }
 
 double length_of(const std::vector<Point>& points) {
   double length = 0;
-  for (std::size_t i = 1; i < points.size(); ++i) length += apart(points[i - 1], points[i]);
+  for (std::size_t i = 1; i < points.size(); ++i) length += point_distance(points[i - 1], points[i]);
   return length;
 }
 
 /// Points of a strip at even distances along it, with both ends. So the time that a robot stood still has no
 /// weight.
-std::vector<std::size_t> along(const std::vector<Point>& points, double length) {
+std::vector<std::size_t> evenly_spaced(const std::vector<Point>& points, double length) {
   const double step = length / static_cast<double>(DrawnMarker::kMostPoints - 2);
   std::vector<std::size_t> kept = {0};
   double gone = 0;
   for (std::size_t i = 1; i + 1 < points.size(); ++i) {
-    gone += apart(points[i - 1], points[i]);
+    gone += point_distance(points[i - 1], points[i]);
     if (gone < step || gone == 0) continue;
     kept.push_back(i);
     gone = 0;
@@ -75,7 +75,7 @@ std::vector<std::size_t> kept_parts(const Marker& marker, std::size_t parts, std
   if (parts > most && marker.is(MarkerType::LineStrip)) {
     // A strip of infinite length has no even distances and is thinned like a list.
     if (const double length = length_of(marker.points); std::isfinite(length))
-      return along(marker.points, length);
+      return evenly_spaced(marker.points, length);
   }
   const std::size_t each = std::max<std::size_t>(1, (parts + most - 1) / most);
   std::vector<std::size_t> kept;
@@ -144,7 +144,7 @@ std::size_t DrawnMarker::size() const {
   return kFixed + ns.size() + text.size() + mesh.size() + kPoint * points.size() + kColor * colors.size();
 }
 
-DrawnMarker drawn(const icd::Marker& marker) {
+DrawnMarker draw_marker(const icd::Marker& marker) {
   DrawnMarker shown{.ns = marker.ns,
                     .id = marker.id,
                     .type = marker.type,
@@ -161,10 +161,10 @@ DrawnMarker drawn(const icd::Marker& marker) {
 
 namespace {
 
-using codec::Kind;
 using codec::Member;
 using codec::member;
 using codec::Row;
+using codec::RowKind;
 using codec::Value;
 
 /// Rounds to a hundredth, finer than any screen.
@@ -172,7 +172,7 @@ Value rounded_value(double value) {
   return {std::round(value * 100) / 100};
 }
 
-constexpr Kind kRounded = {
+constexpr RowKind kRounded = {
     .write = [](const void* value) { return rounded_value(*static_cast<const double*>(value)); },
     .read = codec::kind_of<double>.read,
     .schema = codec::kind_of<double>.schema};
@@ -297,7 +297,7 @@ constexpr Row Tracks::kRow = codec::complete<Tracks>({"Tracks", kTracks});
 bool has_moved(const TrackPose& from, const TrackPose& to) {
   constexpr double kMoved = 0.1, kTurned = 0.2;
   const double turned = std::abs(std::remainder(to.heading - from.heading, 2 * M_PI));
-  return apart(from.position, to.position) >= kMoved || turned >= kTurned;
+  return point_distance(from.position, to.position) >= kMoved || turned >= kTurned;
 }
 
 }  // namespace adit::api

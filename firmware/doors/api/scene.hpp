@@ -43,7 +43,7 @@ struct DrawnMarker {
 };
 
 /// Thins a long strip evenly along its length, and a long list evenly by parts.
-DrawnMarker drawn(const icd::Marker& marker);
+DrawnMarker draw_marker(const icd::Marker& marker);
 
 /// Direction of the robot's x axis seen from above, in radians about z.
 double heading_of(const icd::Quaternion& orientation);

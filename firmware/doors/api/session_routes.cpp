@@ -56,7 +56,7 @@ std::string text_in(const codec::Field& object, std::string_view name) {
 }  // namespace
 
 intake::Answer SessionRoutes::session(const intake::RequestHead& head) {
-  const auto visitor = authenticator_.who(head);
+  const auto visitor = authenticator_.find_visitor(head);
   const auto* const session = visitor ? visitor->session : nullptr;
   return fresh(SessionView{.role = visitor ? std::optional(visitor->role) : std::nullopt,
                            .csrf = session != nullptr ? std::string(session->csrf.reveal()) : std::string(),
@@ -111,7 +111,7 @@ template <class Done>
 void SessionRoutes::check_posted(const Call& call, Done done) {
   const Poster poster = poster_of(call);
   const auto password = read_text(call.body, "password");
-  if (!password) return poster.responder->answer(refused(password.error()));
+  if (!password) return poster.responder->answer(refusal_answer(password.error()));
   if (keys_.first_start()) {
     return poster.responder->answer(
         refusal(icd::Status::Conflict, "no password is set yet: set one with the code"));
@@ -126,7 +126,7 @@ void SessionRoutes::check(const std::string& password, const Poster& poster, Don
   keys_.check(password, poster.guesser.address,
               [this, guesser = poster.guesser, done = std::move(done)](std::optional<Role> role) {
                 --checking_;
-                if (role) guesses_.succeeded(guesser, *role);
+                if (role) guesses_.on_succeeded(guesser, *role);
                 done(role);
               });
 }
@@ -197,7 +197,7 @@ bool SessionRoutes::is_by_button(const Change& change) const {
 void SessionRoutes::change_password(const Call& call) {
   const Poster poster = poster_of(call);
   const auto change = read_change(call.body);
-  if (!change) return poster.responder->answer(refused(change.error()));
+  if (!change) return poster.responder->answer(refusal_answer(change.error()));
   if (is_by_button(*change)) return set(*change, poster);
   if (keys_.first_start()) {
     if (change->role != Role::Operator) {
@@ -205,7 +205,7 @@ void SessionRoutes::change_password(const Call& call) {
     }
     if (!may_try(poster)) return;
     if (!keys_.is_code(change->code)) return poster.responder->answer(wrong("the code"));
-    guesses_.succeeded(poster.guesser, Role::Operator);
+    guesses_.on_succeeded(poster.guesser, Role::Operator);
     return set(*change, poster);
   }
   if (!poster.asker.admitted) {  // another client was faster, or the password is the viewers'
@@ -232,7 +232,7 @@ void SessionRoutes::reset(const Call& call) {
 
 void SessionRoutes::set(const Change& change, const Poster& poster) {
   keys_.set(change.role, change.password, [this, role = change.role, poster](const icd::Checked<void>& kept) {
-    if (!kept) return poster.responder->answer(refused(kept.error()));
+    if (!kept) return poster.responder->answer(refusal_answer(kept.error()));
     keys_.sessions().end_all(role, poster.asker.session);
     keys_.devices().end_all(role, poster.guesser.device);
     poster.responder->answer(object({{"role", json(std::string(name_of(role)))}}));

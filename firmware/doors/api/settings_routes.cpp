@@ -81,7 +81,7 @@ intake::Answer apply(Setup& setup, const settings::Settings& next) {
 
 namespace settings_routes {
 
-intake::Answer exported(const Setup& setup) {
+intake::Answer export_settings(const Setup& setup) {
   return download(fresh("application/json", settings::file_of(setup.settings())), "adit-settings.json");
 }
 
@@ -101,9 +101,9 @@ icd::Checked<intake::Answer> save(Setup& setup, const std::string& body) {
     return refusal(icd::Status::Conflict, "another user has changed the settings meanwhile: reload them");
   }
   const auto next = settings::parse(posted.settings);
-  if (!next) return refused(next.error());
+  if (!next) return refusal_answer(next.error());
   const auto unfit = unfit_to_save(setup.settings(), *next);
-  if (!unfit.empty()) return refused(unfit);
+  if (!unfit.empty()) return refusal_answer(unfit);
   return apply(setup, *next);
 }
 
@@ -111,7 +111,7 @@ intake::Answer switch_course(Setup& setup, const std::string& name) {
   settings::Settings next = setup.settings();
   next.command_post.course = name;
   const auto checked = settings::parse(settings::value_of(next));
-  if (!checked) return refused(checked.error());
+  if (!checked) return refusal_answer(checked.error());
   return apply(setup, *checked);
 }
 
@@ -119,8 +119,8 @@ icd::Checked<intake::Answer> set_token(Setup& setup, const std::string& body) {
   const auto posted = ADIT_TRY(read_token(body));
   const auto rows = setup.tokens();
   if (std::ranges::find(rows, posted.name, &TokenRow::name) == rows.end())
-    return icd::unprocessable("name: expected one of ", icd::listed(rows, &TokenRow::name), ", got ",
-                              icd::in_quotes(posted.name));
+    return icd::unprocessable("name: expected one of ", icd::join_words(rows, &TokenRow::name), ", got ",
+                              icd::quote_text(posted.name));
   if (const auto kept = setup.set_token(posted.name, posted.token); !kept)
     return refused_change(kept.error());
   return object({{"name", {posted.name}}, {"set", {posted.token.has_value()}}});

@@ -11,7 +11,7 @@ namespace adit::api {
 /// Settings, tokens and courses. Routes: README.md.
 namespace settings_routes {
 
-intake::Answer exported(const Setup& setup);
+intake::Answer export_settings(const Setup& setup);
 icd::Checked<CheckView> check(const Setup& setup, const std::string& body);
 icd::Checked<intake::Answer> save(Setup& setup, const std::string& body);
 icd::Checked<intake::Answer> set_token(Setup& setup, const std::string& body);

@@ -5,10 +5,10 @@
 namespace adit::api {
 namespace {
 
-using codec::Kind;
 using codec::member;
 using codec::Member;
 using codec::Row;
+using codec::RowKind;
 using codec::Schema;
 using codec::Value;
 
@@ -17,13 +17,13 @@ constexpr Schema kSettingsSchema = {
     .more = R"("description":"The settings file: firmware/rules/settings/README.md.",)"
             R"("properties":{"version":{"const":1}},"required":["version"])",
     .name = "Settings"};
-constexpr Kind kSettings = {
+constexpr RowKind kSettings = {
     .write = codec::kind_of<Value>.write, .read = codec::kind_of<Value>.read, .schema = &kSettingsSchema};
 
 /// A whole or a real number, by key.
-constexpr Kind kNumber = {.write = codec::kind_of<Value>.write,
-                          .read = codec::kind_of<Value>.read,
-                          .schema = &codec::KindOf<double>::schema};
+constexpr RowKind kNumber = {.write = codec::kind_of<Value>.write,
+                             .read = codec::kind_of<Value>.read,
+                             .schema = &codec::KindOf<double>::schema};
 
 constexpr std::string_view kKeyKinds[] = {"flag", "whole", "real", "text", "choice", "version"};
 
@@ -115,7 +115,7 @@ constexpr Row CheckView::kRow = codec::complete<CheckView>({"Checked", kCheck});
 SetupView setup_view(const Setup& setup) {
   SetupView view{.settings = settings::value_of(setup.settings()),
                  .tag = settings::tag_of(setup.settings()),
-                 .saved = setup.saved(),
+                 .saved = setup.is_saved(),
                  .applying = setup.applying(),
                  .trouble = setup.trouble(),
                  .tokens = setup.tokens()};

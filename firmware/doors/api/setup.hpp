@@ -28,7 +28,7 @@ class Setup {
   /// As written: the Command Post's own endpoints, even if a course is in use.
   virtual const settings::Settings& settings() const = 0;
   /// Whether they were saved here; otherwise they were given.
-  virtual bool saved() const = 0;
+  virtual bool is_saved() const = 0;
   /// Whether a change is about to be applied. The other functions return the earlier values until then.
   virtual bool applying() const = 0;
   /// Why the last change is not in use (reverted, incomplete), as a sentence; or "".

@@ -41,7 +41,7 @@ class CoveredMap {
   virtual ~CoveredMap() = default;
   /// Counts the area if the map has changed, then calls `done`, perhaps at once. Error: too many requests are
   /// queued.
-  virtual void covered(Done done) = 0;
+  virtual void count(Done done) = 0;
 };
 
 /// Map levels finer than the mosaic's, for the present alone.
@@ -77,7 +77,7 @@ class Operator {
   virtual std::expected<std::int64_t, std::string> correct(std::int64_t number,
                                                            const icd::ArtifactReport& to) = 0;
   /// An error is a sentence.
-  virtual std::expected<void, std::string> rejected(std::uint64_t number, RejectedAction action) = 0;
+  virtual std::expected<void, std::string> change_rejected(std::uint64_t number, RejectedAction action) = 0;
   /// Returns the new run's number.
   virtual std::int64_t begin_run() = 0;
 };

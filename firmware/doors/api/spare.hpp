@@ -73,7 +73,7 @@ class Spare {
   /// Requests the import of that export from the stick.
   virtual icd::Checked<void> take_from_stick(const std::string& name) = 0;
   /// Imports an export in place of an earlier one.
-  virtual icd::Checked<void> take_in(std::string file) = 0;
+  virtual icd::Checked<void> import_file(std::string file) = 0;
   /// Opens the import with its code. Calls `done` later.
   virtual void open(const std::string& code, Done done) = 0;
   virtual icd::Checked<void> forget() = 0;

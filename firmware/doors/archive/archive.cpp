@@ -50,8 +50,9 @@ using ReadRun = icd::Checked<std::shared_ptr<api::KeptRun>>;
 void read_all(const RunsFolder& runs, const std::string& key, RunRecords& told,
               const std::function<bool()>& enough) {
   const auto all_read = read_run(runs.folder_of(key), told, enough);
-  if (all_read && told.damaged() == 0) return;
-  const std::string why = all_read ? icd::sentence("damaged records: ", told.damaged()) : all_read.error();
+  if (all_read && told.damaged_records() == 0) return;
+  const std::string why =
+      all_read ? icd::sentence("damaged records: ", told.damaged_records()) : all_read.error();
   host::log(host::Level::Error, "a part of a stored run is lost; the rest is used",
             {{"run", key}, {"why", why}});
   told.samples().add(api::AttentionStep{told.last(), true,
@@ -84,7 +85,7 @@ ReadRun kept_run(const RunsFolder& runs, const std::string& key, const api::RunR
   RunRecords told(StoredRuns::kLookedAt);
   read_all(runs, key, told, enough);
   return std::make_shared<api::KeptRun>(api::KeptRun{with_times(facts, present), std::move(told.picture()),
-                                                     told.tracks(), told.samples().since(0)});
+                                                     told.tracks(), told.samples().history_after(0)});
 }
 
 }  // namespace
@@ -160,19 +161,19 @@ void Archive::begin(const Head& head, GoOn go_on) {
         read_all(runs, *opening->key, *opening->told, enough);
       },
       [this, opening, begins = begins_] {
-        if (begins == begins_) opened(*opening);
+        if (begins == begins_) on_opened(*opening);
       });
 }
 
-void Archive::opened(Opening& opening) {
+void Archive::on_opened(Opening& opening) {
   Begun begun = *std::exchange(begun_, std::nullopt);
   if (!opening.told) opening.told.emplace(0);
-  has_folder(opening);
+  on_folder_open(opening);
   RunRecords& told = *opening.told;
   told.move(begun.moved);
   samples_ = std::move(told.samples());
-  attention_.go_on(samples_.since(0).attention);
-  const auto wiped = told.picture().wiped();
+  attention_.go_on(samples_.history_after(0).attention);
+  const auto wiped = told.picture().wipe_time();
   const auto tracks = told.tracks();
   queue_.go_on_from(told, tracks, wiped, begun.go_on(std::move(told.picture()), tracks));
   next_write_ = loop_.now();
@@ -180,7 +181,7 @@ void Archive::opened(Opening& opening) {
 }
 
 /// A run without a directory is not written.
-void Archive::has_folder(const Opening& opening) {
+void Archive::on_folder_open(const Opening& opening) {
   if (opening.key) {
     present_.key = *opening.key;
     present_.folder = opening.folder;
@@ -198,7 +199,7 @@ void Archive::make_folder() {
   writer_.submit([opening, runs = stored_.folder()]() mutable { opening->open_folder(runs); },
                  [this, opening, begins = begins_] {
                    --writing_;
-                   if (begins == begins_) has_folder(*opening);
+                   if (begins == begins_) on_folder_open(*opening);
                  });
 }
 
@@ -267,7 +268,7 @@ bool Archive::write(const Seen& seen, std::size_t most, double tiles_of) {
       },
       [this, write, begins = begins_] {
         --writing_;
-        if (begins == begins_) return written(*write);
+        if (begins == begins_) return on_written(*write);
         if (!write->outcome)
           host::log(host::Level::Warning, "cannot store the end of the previous run",
                     {{"why", write->outcome.error()}});
@@ -275,15 +276,15 @@ bool Archive::write(const Seen& seen, std::size_t most, double tiles_of) {
   return true;
 }
 
-void Archive::written(const Write& write) {
+void Archive::on_written(const Write& write) {
   const std::string why = write.outcome ? "" : write.outcome.error();
   if (std::exchange(trouble_, why) != why && !why.empty())
     host::log(host::Level::Warning, "cannot store the run's map and tracks", {{"why", why}});
-  queue_.done(write, limits_.run);
+  queue_.on_written(write, limits_.run);
   if (write.outcome && !stored_.resize(present_.key, write.outcome->bytes)) stored_.look();
 }
 
-void Archive::needs_attention(const std::vector<std::string>& sentences, api::Time now) {
+void Archive::set_attention(const std::vector<std::string>& sentences, api::Time now) {
   if (begun_) return;
   for (api::AttentionStep& step : attention_.look(sentences, now)) {
     queue_.add(record_of(step), true);

@@ -84,7 +84,7 @@ class Archive final : public api::KeptRuns {
   /// Writes all queued data of this run, beyond the allowance, because it is the last chance. Stores the
   /// facts of the last tick, because a newer status may belong to the next run.
   void end_run(const Seen& seen);
-  void needs_attention(const std::vector<std::string>& sentences, api::Time now);
+  void set_attention(const std::vector<std::string>& sentences, api::Time now);
   /// Call if the time of day was advanced by `seconds`: shifts all times of this run.
   void move(double seconds);
 
@@ -94,7 +94,7 @@ class Archive final : public api::KeptRuns {
   loop::Writer& thread() { return writer_; }
 
   api::RunList list() const override;
-  api::History history(api::Time since) const override { return samples_.since(since); }
+  api::History history(api::Time since) const override { return samples_.history_after(since); }
   void read(const std::string& key, ReadDone done) override {
     stored_.read(key, present_.row, std::move(done));
   }
@@ -119,13 +119,13 @@ class Archive final : public api::KeptRuns {
     api::RunRow row;                    // at the last tick, without its bytes
   };
 
-  void opened(Opening& opening);
-  void has_folder(const Opening& opening);
+  void on_opened(Opening& opening);
+  void on_folder_open(const Opening& opening);
   /// Retries if the run has no directory.
   void make_folder();
   void note(const Seen& seen);
   bool write(const Seen& seen, std::size_t most, double tiles_of);
-  void written(const Write& write);
+  void on_written(const Write& write);
 
   loop::Loop& loop_;
   Limits limits_;

@@ -11,7 +11,7 @@
 
 namespace adit::archive {
 
-std::string fixed(double number, int digits) {
+std::string to_fixed(double number, int digits) {
   char text[64];
   constexpr double kMost = 1e15;
   if (!std::isfinite(number)) return "-";
@@ -19,7 +19,7 @@ std::string fixed(double number, int digits) {
   return {text, static_cast<std::size_t>(std::clamp(size, 0, 63))};
 }
 
-std::string lasted(double seconds) {
+std::string duration_text(double seconds) {
   if (!(seconds > 0) || seconds > 1e9) return "-";
   const auto whole = static_cast<long>(seconds);
   char text[48];
@@ -61,7 +61,7 @@ double width_of(std::string_view text, double font_size) {
   return width * font_size;
 }
 
-std::string shortened(std::string_view text, std::size_t most) {
+std::string shorten(std::string_view text, std::size_t most) {
   std::size_t characters = 0, end = 0;
   for (std::size_t i = 0; i < text.size(); ++i) {
     if (!icd::begins_character(text[i])) continue;
@@ -97,13 +97,13 @@ constexpr Box kAround{14, 6, 4, 9};  // the axes, in millimetres
 constexpr double kFinest = 0.1;      // millimetres between two points
 
 std::string line(double x1, double y1, double x2, double y2, const char* kind) {
-  return icd::sentence("<path class=\"", kind, "\" d=\"M", fixed(x1, 2), " ", fixed(y1, 2), "L", fixed(x2, 2),
-                       " ", fixed(y2, 2), "\"/>");
+  return icd::sentence("<path class=\"", kind, "\" d=\"M", to_fixed(x1, 2), " ", to_fixed(y1, 2), "L",
+                       to_fixed(x2, 2), " ", to_fixed(y2, 2), "\"/>");
 }
 
 std::string text(double x, double y, const char* anchor, const std::string& words) {
-  return icd::sentence("<text x=\"", fixed(x, 2), "\" y=\"", fixed(y, 2), "\" text-anchor=\"", anchor, "\">",
-                       icd::escape_html(words), "</text>");
+  return icd::sentence("<text x=\"", to_fixed(x, 2), "\" y=\"", to_fixed(y, 2), "\" text-anchor=\"", anchor,
+                       "\">", icd::escape_html(words), "</text>");
 }
 
 /// The axes' scales: to millimetres.
@@ -121,7 +121,7 @@ std::string path_of(const Plot& plot, const Scales& scales) {
   double last_x = 0, last_y = 0;
   const auto go_to = [&](double x, double y) {
     path += is_in_gap ? 'M' : 'L';
-    path += fixed(x, 2) + ' ' + fixed(y, 2);
+    path += to_fixed(x, 2) + ' ' + to_fixed(y, 2);
     is_in_gap = false;
     last_x = x, last_y = y;
   };
@@ -145,7 +145,7 @@ std::string path_of(const Plot& plot, const Scales& scales) {
 
 }  // namespace
 
-std::string drawn(const Plot& plot) {
+std::string draw_plot(const Plot& plot) {
   icd::require(plot.minutes.size() == plot.values.size());
   double most = 0;
   bool any = false;
@@ -164,19 +164,19 @@ std::string drawn(const Plot& plot) {
   std::string all;
   for (const double value : rows) {
     all += line(kAround.left, scales.y(value), scales.right, scales.y(value), "grid");
-    all += text(kAround.left - 1.5, scales.y(value) + 1, "end", fixed(value, decimals_of(rows)));
+    all += text(kAround.left - 1.5, scales.y(value) + 1, "end", to_fixed(value, decimals_of(rows)));
   }
   for (const double minute : columns) {
     all += line(scales.x(minute), scales.bottom, scales.x(minute), scales.bottom + 1.2, "axis");
-    all += text(scales.x(minute), scales.bottom + 4.4, "middle", fixed(minute, decimals_of(columns)));
+    all += text(scales.x(minute), scales.bottom + 4.4, "middle", to_fixed(minute, decimals_of(columns)));
   }
   all += line(kAround.left, scales.bottom, scales.right, scales.bottom, "axis") +
          line(kAround.left, kAround.top, kAround.left, scales.bottom, "axis") +
          text(0, 3, "start", plot.name) + text(scales.right, scales.bottom + 8, "end", "minutes of the run");
-  return icd::sentence("<figure style=\"width:", fixed(plot.width, 0), "mm\"><svg role=\"img\" aria-label=\"",
-                       icd::escape_html(plot.name), "\" viewBox=\"0 0 ", fixed(plot.width, 0), " ",
-                       fixed(plot.height, 0), "\">", all, "<path class=\"curve\" d=\"", path_of(plot, scales),
-                       "\"/></svg></figure>\n");
+  return icd::sentence("<figure style=\"width:", to_fixed(plot.width, 0),
+                       "mm\"><svg role=\"img\" aria-label=\"", icd::escape_html(plot.name),
+                       "\" viewBox=\"0 0 ", to_fixed(plot.width, 0), " ", to_fixed(plot.height, 0), "\">",
+                       all, "<path class=\"curve\" d=\"", path_of(plot, scales), "\"/></svg></figure>\n");
 }
 
 }  // namespace adit::archive

@@ -9,10 +9,10 @@
 namespace adit::archive {
 
 /// The number with `digits` decimals.
-std::string fixed(double number, int digits);
+std::string to_fixed(double number, int digits);
 
 /// "1:02:03", or "-" for no time.
-std::string lasted(double seconds);
+std::string duration_text(double seconds);
 
 /// A rectangle on paper, in millimetres; y grows downwards.
 struct Box {
@@ -49,7 +49,7 @@ class Labels {
 double width_of(std::string_view text, double font_size);
 
 /// A text of at most `most` characters: the beginning and an ellipsis if it is longer. `text` is UTF-8.
-std::string shortened(std::string_view text, std::size_t most);
+std::string shorten(std::string_view text, std::size_t most);
 
 /// Multiples of 1, 2 or 5 times a power of ten from `low` to `high`: at most `most` + 1. Empty unless `low`
 /// is below `high` and both are finite.
@@ -68,6 +68,6 @@ struct Plot {
 
 /// A figure with an svg element, or "" without a value. Of values that lie closer than a tenth of a
 /// millimetre, the highest is drawn.
-std::string drawn(const Plot& plot);
+std::string draw_plot(const Plot& plot);
 
 }  // namespace adit::archive

@@ -40,9 +40,9 @@ bool is_whole(std::string_view bytes) {
 
 }  // namespace
 
-std::string framed(std::string_view body) {
+std::string frame_record(std::string_view body) {
   icd::require(!body.empty() && body.size() <= kLargestRecord);
-  return store::written({.body = body}, kPacked, kSalt, kPlace);
+  return store::to_bytes({.body = body}, kPacked, kSalt, kPlace);
 }
 
 std::size_t for_each_record(std::string_view bytes, const std::function<void(std::string_view)>& told) {
@@ -70,7 +70,7 @@ void Lines::add(std::string record, bool is_news) {
   trim_to(kMost);
 }
 
-std::string Lines::take(loop::Instant now) {
+std::string Lines::pop(loop::Instant now) {
   std::string taken;
   while (!records_.empty() && taken.size() + records_.front().size() <= kLargestRecord) {
     taken += records_.front();
@@ -167,7 +167,7 @@ class Put : public store::Writer {
 };
 
 /// Accepts finite numbers and short UTF-8 texts.
-class Take : public store::Reader {
+class RecordReader : public store::Reader {
  public:
   using store::Reader::Reader, store::Reader::operator();
   void operator()(double& real) {
@@ -199,7 +199,7 @@ bool is_between(double from, double to, double most) {
 
 /// Whether values are within their limits.
 bool is_good(const picture::Layer& layer) {
-  return layer.kind <= picture::Kind::Cloud;
+  return layer.kind <= picture::LayerKind::Cloud;
 }
 bool is_good(const Head& head) {
   return is_time(head.began);
@@ -235,7 +235,7 @@ bool is_good(const Step& step) {
 template <class Of>
 std::optional<Record> read_one(std::string_view values) {
   Of one{};
-  if (!store::read<Take>(values, one) || !is_good(one)) return std::nullopt;
+  if (!store::read<RecordReader>(values, one) || !is_good(one)) return std::nullopt;
   return one;
 }
 
@@ -249,7 +249,7 @@ std::optional<Record> read_any(std::size_t kind, std::string_view values, const 
 
 std::string record_of(const Record& record) {
   const std::string kind(1, static_cast<char>(record.index()));
-  return framed(kind + std::visit([](const auto& one) { return store::bytes_of<Put>(one); }, record));
+  return frame_record(kind + std::visit([](const auto& one) { return store::bytes_of<Put>(one); }, record));
 }
 
 std::optional<Record> read(std::string_view body) {

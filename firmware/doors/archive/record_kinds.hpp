@@ -24,7 +24,7 @@ inline constexpr std::size_t kLargestRecord = std::size_t{72} << 10;
 
 /// A record in a file: a frame of store/, with a body (record_kinds.hpp) that must not be empty. It is valid
 /// at any place of any file.
-std::string framed(std::string_view body);
+std::string frame_record(std::string_view body);
 
 /// Calls `told` with the body of each complete record in `bytes`, in order. Skips damaged bytes up to the
 /// next complete record or the end. Returns the number of damaged records, without a torn last one, which a
@@ -42,8 +42,8 @@ class Lines {
   /// News: a robot moved, or an alarm began or ended. Others show only that time passed.
   void add(std::string record, bool is_news);
   /// The oldest records, for one write.
-  std::string take(loop::Instant now);
-  /// After a failed write of take(): they are due at once.
+  std::string pop(loop::Instant now);
+  /// After a failed write of pop(): they are due at once.
   void give_back(std::string records);
   void be_due() { is_due_ = true; }
   bool is_due(loop::Instant now) const { return bytes_ > 0 && (is_due_ || now >= rests_until_); }

@@ -44,7 +44,7 @@ void DueTiles::being_written(const TileKey& tile, std::uint64_t write, double no
   its.due = false;
 }
 
-void DueTiles::done(std::uint64_t write, std::optional<std::uint64_t> file) {
+void DueTiles::on_written(std::uint64_t write, std::optional<std::uint64_t> file) {
   for (auto& [at, tile] : tiles_) {
     if (tile.write != write) continue;
     tile.write = 0;
@@ -110,7 +110,7 @@ void Samples::thin() {
   spacing_ *= 2;
 }
 
-api::History Samples::since(api::Time since) const {
+api::History Samples::history_after(api::Time since) const {
   api::History all{.spacing = spacing_};
   const auto from = std::ranges::upper_bound(samples_, since, {}, &Sample::at);
   std::set<std::string> robots;

@@ -38,7 +38,7 @@ class DueTiles {
   /// Records that write number `write` takes the tile's state at `now`.
   void being_written(const TileKey& tile, std::uint64_t write, double now);
   /// Records the write's file. std::nullopt: the write failed, and its tiles are due again.
-  void done(std::uint64_t write, std::optional<std::uint64_t> file);
+  void on_written(std::uint64_t write, std::optional<std::uint64_t> file);
   /// Makes the tiles of that file due, so that the file can be removed. True: it has no newest states.
   bool leave(std::uint64_t file);
   /// Starts with the tiles of `picture` that are stored in `files`.
@@ -74,7 +74,7 @@ class Samples {
   /// Call if the time of day was advanced by `seconds`.
   void move(double seconds);
 
-  api::History since(api::Time since) const;
+  api::History history_after(api::Time since) const;
 
  private:
   void thin();
@@ -118,7 +118,7 @@ class RunRecords {
   Samples& samples() { return samples_; }
   /// The file of each tile's newest state.
   std::map<TileKey, std::uint64_t>& files() { return files_; }
-  std::size_t damaged() const { return damaged_; }                  // records
+  std::size_t damaged_records() const { return damaged_; }          // records
   double last() const { return std::max(last_line_, last_tile_); }  // latest time in the records
 
  private:
@@ -128,7 +128,7 @@ class RunRecords {
   void add(const picture::LayerView& view, std::uint64_t /*file*/) {
     if (tiles_fit_) picture_.take_up(view);
   }
-  void add(const Wiped& wiped, std::uint64_t /*file*/) { picture_.was_wiped(wiped.stamp); }
+  void add(const Wiped& wiped, std::uint64_t /*file*/) { picture_.set_wipe_time(wiped.stamp); }
   void add(const api::Track& track, std::uint64_t file);
   template <class Line>
   void add(const Line& line, std::uint64_t file);

@@ -60,8 +60,8 @@ std::string signed_change(const std::optional<std::int64_t>& change) {
 
 std::string place(const std::optional<icd::Point>& at) {
   if (!at) return "unknown";
-  return with_minus(fixed(at->x, 2)) + ", " + with_minus(fixed(at->y, 2)) + ", " +
-         with_minus(fixed(at->z, 2));
+  return with_minus(to_fixed(at->x, 2)) + ", " + with_minus(to_fixed(at->y, 2)) + ", " +
+         with_minus(to_fixed(at->z, 2));
 }
 
 std::string title_of(const api::RunRow& run) {
@@ -81,7 +81,7 @@ std::string counts_of(const std::vector<api::ReportDetail>& reports) {
 /// "1234.5 m²"; "at least" if the picture lacks parts of grids.
 std::string area_of(std::uint64_t pixels, bool is_whole) {
   const double metres = picture::square_metres(pixels);
-  return (is_whole ? "" : "at least ") + fixed(metres, metres < 100 ? 1 : 0) + " m\u00b2";
+  return (is_whole ? "" : "at least ") + to_fixed(metres, metres < 100 ? 1 : 0) + " m\u00b2";
 }
 
 /// If the box does not know the run's start, the first stored time; 0: unknown.
@@ -100,7 +100,7 @@ std::string facts_of(const api::KeptRun& kept, const std::vector<api::ReportDeta
          fact("Team", run.team) + fact("Course", run.course) + fact("Command Post", run.post) +
          fact("Command Post's name of the run", run.id) + fact("Began (UTC)", icd::utc(began)) +
          fact("Last written (UTC)", icd::utc(run.last)) +
-         fact("Lasted", began > 0 ? lasted(run.last - began) : "") + "</dl>\n";
+         fact("Lasted", began > 0 ? duration_text(run.last - began) : "") + "</dl>\n";
 }
 
 /// Times of the day `day` without it.
@@ -147,7 +147,7 @@ std::string oldest_map(const api::KeptRun& run, const std::string& robot) {
   if (row == run.history.robots.end()) return "";
   std::optional<double> oldest;
   for (const auto& age : row->ages) oldest = std::max(oldest, age);
-  return oldest ? fixed(*oldest, 0) + " s" : "never there";
+  return oldest ? to_fixed(*oldest, 0) + " s" : "never there";
 }
 
 std::string robots_table(const api::KeptRun& run, const picture::Covered& covered) {
@@ -160,11 +160,11 @@ std::string robots_table(const api::KeptRun& run, const picture::Covered& covere
     std::string maps;
     for (const picture::LayerView& layer : run.picture.layers()) {
       if (layer.layer.robot != robot) continue;
-      maps +=
-          icd::sentence(maps.empty() ? "" : ", ", layer.layer.kind == picture::Kind::Grid ? "grid" : "cloud");
+      maps += icd::sentence(maps.empty() ? "" : ", ",
+                            layer.layer.kind == picture::LayerKind::Grid ? "grid" : "cloud");
     }
     const auto area = covered.of.find(robot);
-    rows += "<tr>" + cell(robot) + cell(fixed(length, 1) + " m", true) + cell(maps) +
+    rows += "<tr>" + cell(robot) + cell(to_fixed(length, 1) + " m", true) + cell(maps) +
             cell(area == covered.of.end() ? "no grid" : area_of(area->second, covered.is_whole), true) +
             cell(oldest_map(run, robot), true) + "</tr>\n";
   }
@@ -203,17 +203,17 @@ std::string plots(const api::KeptRun& run, const Curve& curve, api::Time began) 
   Plot link{
       .name = "Sent (Mbit/s)", .values = to_optionals(history.sent_mbit), .width = kHalf, .height = kTall};
   for (const api::Time at : history.at) link.minutes.push_back(minutes(at));
-  std::string all = drawn(area) + drawn(link);
+  std::string all = draw_plot(area) + draw_plot(link);
   link.name = "Queued maps (MB)";
   for (std::size_t i = 0; i < link.values.size(); ++i)
     link.values[i] = static_cast<double>(history.queued_bytes[i]) / 1e6;
-  all += drawn(link);
+  all += draw_plot(link);
   link.name = "Answers of scoring (ms)";
   link.values = history.scoring_ms;
-  all += drawn(link);
+  all += draw_plot(link);
   link.name = "Answers of mapping (ms)";
   link.values = history.mapping_ms;
-  all += drawn(link);
+  all += draw_plot(link);
   return all.empty() ? "<p>No plot is stored.</p>\n" : "<div class=\"plots\">" + all + "</div>\n";
 }
 
@@ -290,15 +290,16 @@ Sheet sheet_of(const picture::Area& shown) {
   return sheet;
 }
 
-std::string image(const picture::Packed& tile, picture::Kind kind, const picture::TileIndex& at,
+std::string image(const picture::Packed& tile, picture::LayerKind kind, const picture::TileIndex& at,
                   const Sheet& sheet) {
   const picture::Area area = picture::area_of(at);
-  const std::string png = kind == picture::Kind::Grid ? picture::write_png(tile, picture::grid_palette())
-                                                      : picture::write_png(tile, picture::cloud_palette());
+  const std::string png = kind == picture::LayerKind::Grid
+                              ? picture::write_png(tile, picture::grid_palette())
+                              : picture::write_png(tile, picture::cloud_palette());
   const auto* bytes = reinterpret_cast<const std::uint8_t*>(png.data());
-  const std::string side = fixed((area.right - area.left) * sheet.scale, 3);
-  return icd::sentence("<image x=\"", fixed(sheet.x(area.left), 3), "\" y=\"", fixed(sheet.y(area.top), 3),
-                       "\" width=\"", side, "\" height=\"", side,
+  const std::string side = to_fixed((area.right - area.left) * sheet.scale, 3);
+  return icd::sentence("<image x=\"", to_fixed(sheet.x(area.left), 3), "\" y=\"",
+                       to_fixed(sheet.y(area.top), 3), "\" width=\"", side, "\" height=\"", side,
                        "\" image-rendering=\"pixelated\" href=\"data:image/png;base64,",
                        codec::base64_of({bytes, png.size()}), "\"/>\n");
 }
@@ -308,7 +309,7 @@ std::string tiles_of(const picture::Mosaic& picture, const std::vector<picture::
                      const Sheet& sheet, std::size_t& left_out) {
   const int level = level_of(layers);
   std::string all;
-  for (const picture::Kind kind : {picture::Kind::Cloud, picture::Kind::Grid}) {
+  for (const picture::LayerKind kind : {picture::LayerKind::Cloud, picture::LayerKind::Grid}) {
     for (const picture::LayerView& layer : layers) {
       if (layer.layer.kind != kind) continue;
       for (const picture::TileView& tile : layer.tiles) {
@@ -354,18 +355,20 @@ std::string axes(const Sheet& sheet) {
   const auto columns = ticks(sheet.area.left, sheet.area.right, static_cast<int>((right - left) / kBetween));
   const auto rows = ticks(sheet.area.bottom, sheet.area.top, static_cast<int>((bottom - top) / kBetween));
   for (const double x : columns) {
-    const std::string at = fixed(sheet.x(x), 2);
-    lines += icd::sentence("M", at, " ", fixed(top, 2), "V", fixed(bottom, 2));
-    figures += icd::sentence("<text x=\"", at, "\" y=\"", fixed(bottom + 4, 2), "\" text-anchor=\"middle\">",
-                             with_minus(fixed(x, decimals_of(columns))), "</text>");
+    const std::string at = to_fixed(sheet.x(x), 2);
+    lines += icd::sentence("M", at, " ", to_fixed(top, 2), "V", to_fixed(bottom, 2));
+    figures +=
+        icd::sentence("<text x=\"", at, "\" y=\"", to_fixed(bottom + 4, 2), "\" text-anchor=\"middle\">",
+                      with_minus(to_fixed(x, decimals_of(columns))), "</text>");
   }
   for (const double y : rows) {
-    lines += icd::sentence("M", fixed(left, 2), " ", fixed(sheet.y(y), 2), "H", fixed(right, 2));
-    figures += icd::sentence("<text x=\"", fixed(left - 1, 2), "\" y=\"", fixed(sheet.y(y) + 1, 2),
-                             "\" text-anchor=\"end\">", with_minus(fixed(y, decimals_of(rows))), "</text>");
+    lines += icd::sentence("M", to_fixed(left, 2), " ", to_fixed(sheet.y(y), 2), "H", to_fixed(right, 2));
+    figures +=
+        icd::sentence("<text x=\"", to_fixed(left - 1, 2), "\" y=\"", to_fixed(sheet.y(y) + 1, 2),
+                      "\" text-anchor=\"end\">", with_minus(to_fixed(y, decimals_of(rows))), "</text>");
   }
-  return icd::sentence("<path class=\"grid\" d=\"", lines, "\"/>", figures, "<text x=\"", fixed(right, 2),
-                       "\" y=\"", fixed(bottom + 8, 2),
+  return icd::sentence("<path class=\"grid\" d=\"", lines, "\"/>", figures, "<text x=\"", to_fixed(right, 2),
+                       "\" y=\"", to_fixed(bottom + 8, 2),
                        "\" text-anchor=\"end\">x and y in metres, frame darpa</text>\n");
 }
 
@@ -387,7 +390,7 @@ std::string stroke_of(const Look& look) {
 std::string polyline(const api::Track& track, const Look& look, const Sheet& sheet) {
   std::string points;
   for (const api::TrackPose& pose : track.poses)
-    points += fixed(sheet.x(pose.position.x), 2) + ',' + fixed(sheet.y(pose.position.y), 2) + ' ';
+    points += to_fixed(sheet.x(pose.position.x), 2) + ',' + to_fixed(sheet.y(pose.position.y), 2) + ' ';
   return icd::sentence("<polyline ", stroke_of(look), " points=\"", points, "\"><title>",
                        icd::escape_html(track.robot), "</title></polyline>\n");
 }
@@ -447,20 +450,20 @@ std::vector<Sign> signs_of(const std::vector<api::ReportDetail>& reports, const 
 }
 
 /// A disk for a group with its number, a square for one report: filled if one of them scored.
-std::string drawn(const Sign& sign) {
+std::string draw_sign(const Sign& sign) {
   std::string title, shape;
   for (const api::ReportDetail* each : sign.reports)
     title += icd::sentence(title.empty() ? "" : ", ", each->row.number, " ", each->row.type);
   const char* kind = sign.has_scored() ? "scored" : "report";
   if (sign.reports.size() == 1) {
-    shape = icd::sentence("<rect class=\"", kind, "\" x=\"", fixed(sign.x - kReport, 2), "\" y=\"",
-                          fixed(sign.y - kReport, 2), "\" width=\"", fixed(2 * kReport, 1), "\" height=\"",
-                          fixed(2 * kReport, 1), "\"/>");
+    shape = icd::sentence("<rect class=\"", kind, "\" x=\"", to_fixed(sign.x - kReport, 2), "\" y=\"",
+                          to_fixed(sign.y - kReport, 2), "\" width=\"", to_fixed(2 * kReport, 1),
+                          "\" height=\"", to_fixed(2 * kReport, 1), "\"/>");
   } else {
-    shape =
-        icd::sentence("<circle class=\"", kind, "\" cx=\"", fixed(sign.x, 2), "\" cy=\"", fixed(sign.y, 2),
-                      "\" r=\"", fixed(kGroup, 1), "\"/><text class=\"", kind, "\" x=\"", fixed(sign.x, 2),
-                      "\" y=\"", fixed(sign.y + 0.8, 2), "\">", sign.reports.size(), "</text>");
+    shape = icd::sentence("<circle class=\"", kind, "\" cx=\"", to_fixed(sign.x, 2), "\" cy=\"",
+                          to_fixed(sign.y, 2), "\" r=\"", to_fixed(kGroup, 1), "\"/><text class=\"", kind,
+                          "\" x=\"", to_fixed(sign.x, 2), "\" y=\"", to_fixed(sign.y + 0.8, 2), "\">",
+                          sign.reports.size(), "</text>");
   }
   return icd::sentence("<g><title>", icd::escape_html(title), "</title>", shape, "</g>\n");
 }
@@ -468,26 +471,26 @@ std::string drawn(const Sign& sign) {
 /// The first of `texts` that has room beside the sign; "" if none has. A line leads to a label farther away.
 std::string label(Labels& labels, double x, double y, double radius, const std::vector<std::string>& texts) {
   for (const std::string& each : texts) {
-    const std::string text = shortened(each, kMostCharacters);
+    const std::string text = shorten(each, kMostCharacters);
     const auto box = labels.place(x, y, radius, width_of(text, kFont), kFont * 1.2);
     if (!box) continue;
     const double to_x = std::clamp(x, box->left, box->right), to_y = std::clamp(y, box->top, box->bottom);
     const bool is_far = std::hypot(to_x - x, to_y - y) > radius + 1.5;
     const bool is_right = box->left > x, is_left = box->right < x;
-    return icd::sentence(is_far ? icd::sentence("<path class=\"leader\" d=\"M", fixed(x, 2), " ", fixed(y, 2),
-                                                "L", fixed(to_x, 2), " ", fixed(to_y, 2), "\"/>")
-                                : "",
-                         "<text class=\"label\" text-anchor=\"",
-                         is_right  ? "start"
-                         : is_left ? "end"
-                                   : "middle",
-                         "\" x=\"",
-                         fixed(is_right  ? box->left
-                               : is_left ? box->right
-                                         : (box->left + box->right) / 2,
-                               2),
-                         "\" y=\"", fixed(box->bottom - kFont * 0.32, 2), "\">", icd::escape_html(text),
-                         "</text>\n");
+    return icd::sentence(
+        is_far ? icd::sentence("<path class=\"leader\" d=\"M", to_fixed(x, 2), " ", to_fixed(y, 2), "L",
+                               to_fixed(to_x, 2), " ", to_fixed(to_y, 2), "\"/>")
+               : "",
+        "<text class=\"label\" text-anchor=\"",
+        is_right  ? "start"
+        : is_left ? "end"
+                  : "middle",
+        "\" x=\"",
+        to_fixed(is_right  ? box->left
+                 : is_left ? box->right
+                           : (box->left + box->right) / 2,
+                 2),
+        "\" y=\"", to_fixed(box->bottom - kFont * 0.32, 2), "\">", icd::escape_html(text), "</text>\n");
   }
   return "";
 }
@@ -509,20 +512,21 @@ std::string legend(const std::vector<api::Track>& tracks, const std::vector<Look
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     all += swatch(icd::sentence("<path ", stroke_of(looks[i]),
                                 " d=\"M0 2H8\"/><circle class=\"robot\" cx=\"6\" cy=\"2\" r=\"",
-                                fixed(kRobot, 1), "\" fill=\"", colour_of(looks[i]), "\"/>"),
-                  shortened(tracks[i].robot, kMostCharacters));
+                                to_fixed(kRobot, 1), "\" fill=\"", colour_of(looks[i]), "\"/>"),
+                  shorten(tracks[i].robot, kMostCharacters));
   }
-  const auto has = [&](picture::Kind kind) {
+  const auto has = [&](picture::LayerKind kind) {
     return std::ranges::any_of(layers,
                                [&](const auto& each) { return each.layer.kind == kind && each.bounds; });
   };
-  if (has(picture::Kind::Grid)) {
+  if (has(picture::LayerKind::Grid)) {
     all += colour_swatch(picture::grid_palette()[1], "grid: free");
     all += colour_swatch(picture::grid_palette()[picture::kMostOccupiedIndex], "grid: occupied");
   }
-  if (has(picture::Kind::Cloud)) {
-    all += colour_swatch(picture::height_ramp().front(),
-                         icd::sentence("cloud: at or below ", with_minus(fixed(picture::kLowest, 0)), " m"));
+  if (has(picture::LayerKind::Cloud)) {
+    all +=
+        colour_swatch(picture::height_ramp().front(),
+                      icd::sentence("cloud: at or below ", with_minus(to_fixed(picture::kLowest, 0)), " m"));
     all += colour_swatch(picture::height_ramp().back(),
                          icd::sentence("cloud: at or above ", picture::kHighest, " m"));
   }
@@ -558,26 +562,26 @@ std::string drawn_map(const api::KeptRun& run, const std::vector<api::ReportDeta
     const double x = sheet.x(last.x), y = sheet.y(last.y);
     labels.keep_free({x - kRobot, y - kRobot, x + kRobot, y + kRobot});
     lines += polyline(tracks[i], looks[i], sheet);
-    robots += icd::sentence("<circle class=\"robot\" cx=\"", fixed(x, 2), "\" cy=\"", fixed(y, 2), "\" r=\"",
-                            fixed(kRobot, 1), "\" fill=\"", colour_of(looks[i]), "\"/>\n");
+    robots += icd::sentence("<circle class=\"robot\" cx=\"", to_fixed(x, 2), "\" cy=\"", to_fixed(y, 2),
+                            "\" r=\"", to_fixed(kRobot, 1), "\" fill=\"", colour_of(looks[i]), "\"/>\n");
   }
   for (const api::Track& track : tracks) {
     const icd::Point& last = track.poses.back().position;
     names += label(labels, sheet.x(last.x), sheet.y(last.y), kRobot, {track.robot});
   }
   for (const Sign& sign : signs) {
-    marks += drawn(sign);
+    marks += draw_sign(sign);
     const facts::ReportRow& row = sign.reports.front()->row;
     const std::string number = std::to_string(row.number);
     if (sign.reports.size() == 1)
       names += label(labels, sign.x, sign.y, kReport, {number + " " + row.type, number});
   }
-  const std::string inside = icd::sentence("x=\"", fixed(kLeft, 1), "\" y=\"", fixed(kTop, 1), "\" width=\"",
-                                           fixed(sheet.frame.right - kLeft, 2), "\" height=\"",
-                                           fixed(sheet.frame.bottom - kTop, 2), "\"");
+  const std::string inside = icd::sentence("x=\"", to_fixed(kLeft, 1), "\" y=\"", to_fixed(kTop, 1),
+                                           "\" width=\"", to_fixed(sheet.frame.right - kLeft, 2),
+                                           "\" height=\"", to_fixed(sheet.frame.bottom - kTop, 2), "\"");
   return icd::sentence(
-      "<figure><svg role=\"img\" aria-label=\"The map\" viewBox=\"0 0 ", fixed(kWidth, 0), " ",
-      fixed(sheet.frame.bottom + kBottom, 2), "\"><clipPath id=\"frame\"><rect ", inside,
+      "<figure><svg role=\"img\" aria-label=\"The map\" viewBox=\"0 0 ", to_fixed(kWidth, 0), " ",
+      to_fixed(sheet.frame.bottom + kBottom, 2), "\"><clipPath id=\"frame\"><rect ", inside,
       "/></clipPath>\n<g clip-path=\"url(#frame)\">", drawn_there, "</g>\n", axes(sheet),
       "<g clip-path=\"url(#frame)\">", lines, "</g>\n", names, robots, marks, "<rect class=\"frame\" ",
       inside, "/></svg>\n", legend(tracks, looks, layers, signs),

@@ -88,7 +88,7 @@ std::shared_ptr<Write> WriteQueue::next(const Seen& seen, const api::RunRow& row
   put_layers(seen.picture, batch);
   const std::size_t taken = batch.facts.size() + lines_.bytes() + batch.beside.size();
   put_tiles(seen, batch, most - std::min(most, taken), tiles_of);
-  if (!batch.is_empty() || lines_.is_due(loop_.now())) batch.lines = lines_.take(loop_.now());
+  if (!batch.is_empty() || lines_.is_due(loop_.now())) batch.lines = lines_.pop(loop_.now());
   allowance_.spend(batch.lines.size());
   if (is_left_) write->goes = std::exchange(leaves_, std::nullopt);
   is_left_ = false;
@@ -110,8 +110,8 @@ void WriteQueue::put_facts(const api::RunRow& row, Batch& batch) {
 }
 
 void WriteQueue::put_layers(const picture::Mosaic& picture, Batch& batch) {
-  if (picture.wiped() && picture.wiped() != wiped_) {
-    wiped_ = picture.wiped();
+  if (picture.wipe_time() && picture.wipe_time() != wiped_) {
+    wiped_ = picture.wipe_time();
     batch.beside += record_of(Wiped{*wiped_});
   }
   if (picture.version() == layers_seen_) return;
@@ -139,9 +139,9 @@ void WriteQueue::put_tiles(const Seen& seen, Batch& batch, std::size_t left, dou
   }
 }
 
-void WriteQueue::done(const Write& write, std::uint64_t limit) {
+void WriteQueue::on_written(const Write& write, std::uint64_t limit) {
   const auto& outcome = write.outcome;
-  due_.done(write.number, outcome ? std::optional(outcome->file) : std::nullopt);
+  due_.on_written(write.number, outcome ? std::optional(outcome->file) : std::nullopt);
   if (!outcome) {
     be_due();
     steps_.insert(0, write.steps);

@@ -113,7 +113,7 @@ class WriteQueue {
   /// that are due at that stamp.
   std::shared_ptr<Write> next(const Seen& seen, const api::RunRow& row, std::size_t most, double tiles_of);
   /// Call after the write. `limit`: of the run, in bytes.
-  void done(const Write& write, std::uint64_t limit);
+  void on_written(const Write& write, std::uint64_t limit);
 
  private:
   void put_facts(const api::RunRow& row, Batch& batch);

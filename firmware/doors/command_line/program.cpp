@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kWidth = 100;
 
 /// Wraps a line at kWidth. All lines but the first are indented by `indent` blanks.
-std::string wrapped(std::string_view line, std::size_t indent) {
+std::string wrap_line(std::string_view line, std::size_t indent) {
   std::string all(icd::cut(line, ' '));
   std::size_t column = indent + all.size();
   while (!line.empty()) {
@@ -29,7 +29,7 @@ std::string paragraphs(std::string_view text) {
   std::string all;
   while (!text.empty()) {
     const std::string_view line = icd::cut(text, '\n');
-    all.append(line.starts_with(' ') ? std::string(line) : wrapped(line, 0)).append("\n");
+    all.append(line.starts_with(' ') ? std::string(line) : wrap_line(line, 0)).append("\n");
   }
   return all;
 }
@@ -61,7 +61,7 @@ std::string help(const Program& program) {
   for (const Row& row : program.rows) {
     std::string head = "  ";
     head.append(head_of(row)).resize(column, ' ');
-    text.append(head).append(wrapped(sentence_of(row), column)).append("\n");
+    text.append(head).append(wrap_line(sentence_of(row), column)).append("\n");
   }
   return text.append("\n").append(paragraphs(program.ending));
 }

@@ -13,14 +13,14 @@ using Wrong = std::optional<std::string>;
 
 /// A function that stores an option's value in `into`. The value is "" for an option without one. Plain
 /// pointers keep the many rows small.
-struct Take {
+struct ValueSetter {
   Wrong (*take)(void* into, const std::string& value) = nullptr;
   void* into = nullptr;
 };
 
 /// Stores a value by TakeInto(Into&, value).
 template <auto TakeInto, class Into>
-Take take(Into& into) {
+ValueSetter set_by(Into& into) {
   return {[](void* known, const std::string& value) -> Wrong {
             return TakeInto(*static_cast<Into*>(known), value);
           },
@@ -36,7 +36,7 @@ struct Row {
   const char* word;   // "--settings", or a plain word: "good"
   const char* value;  // its name in the help, "FILE", "N|all"; "": it has no value
   const char* help;   // its purpose; a default text in `into` is appended
-  std::variant<bool*, std::string*, std::vector<std::string>*, Take> into;
+  std::variant<bool*, std::string*, std::vector<std::string>*, ValueSetter> into;
   Wanted wanted = Wanted::Maybe;
 };
 
@@ -49,7 +49,7 @@ struct Program {
   std::string ending = "";  // further information, formatted like `about`
   Empty empty = Empty::Refused;
   std::vector<std::string>* given = nullptr;  // gets the words of the options that were given; may be null
-  Take word = {};  // stores each word that matches no row; null: such words are errors
+  ValueSetter word = {};  // stores each word that matches no row; null: such words are errors
 };
 
 /// The text of --help. This function and read() are cold: they run once and should be small.
@@ -62,8 +62,8 @@ struct Program {
 
 /// Stores a number from Least to Most in `into`. It must be whole if Least is an integer.
 template <auto Least, decltype(Least) Most, class Into>
-Take number(Into& into) {
-  return take<[](Into& place, const std::string& text) {
+ValueSetter number(Into& into) {
+  return set_by<[](Into& place, const std::string& text) {
     std::conditional_t<std::is_integral_v<decltype(Least)>, std::uint64_t, double> number = 0;
     auto wrong = read_number(text, Least, Most, number);
     if (!wrong) place = Into(number);

@@ -26,7 +26,7 @@ std::vector<option> options_of(const Program& program) {
   return options;
 }
 
-std::string_view without_dashes(std::string_view word) {
+std::string_view strip_dashes(std::string_view word) {
   return word.substr(std::min(word.find_first_not_of('-'), word.size()));
 }
 
@@ -35,8 +35,8 @@ std::string unknown(std::string_view word, const Program& program) {
   std::string sentence = std::string("unknown word '").append(word).append("'");
   std::vector<std::string_view> known;
   known.reserve(program.rows.size());
-  for (const Row& row : program.rows) known.push_back(without_dashes(row.word));
-  const auto meant = icd::nearest(without_dashes(word), known);
+  for (const Row& row : program.rows) known.push_back(strip_dashes(row.word));
+  const auto meant = icd::nearest(strip_dashes(word), known);
   if (!meant) return sentence;
   const auto row = std::ranges::find(known, *meant) - known.begin();
   return sentence.append("; did you mean ")
@@ -73,7 +73,7 @@ class Reading {
       }
       const int found = getopt_long(count, all.data(), "-:h", options.data(), nullptr);
       if (found == -1) break;
-      if (auto wrong = take(found, at)) return wrong;
+      if (auto wrong = apply_option(found, at)) return wrong;
     }
     for (; optind < count; ++optind) {
       if (auto wrong = word(all[static_cast<std::size_t>(optind)])) return wrong;
@@ -83,7 +83,7 @@ class Reading {
 
  private:
   /// `found`: getopt_long's result for the word `at`.
-  Wrong take(int found, std::string_view at) {
+  Wrong apply_option(int found, std::string_view at) {
     if (found == 1) return word(optarg);
     if (found == 'h') return word("--help");
     const std::string name(at.substr(0, at.find('=')));
@@ -116,7 +116,7 @@ class Reading {
     if (auto* const flag = std::get_if<bool*>(&row.into)) **flag = true;
     if (auto* const text = std::get_if<std::string*>(&row.into)) **text = value;
     if (auto* const list = std::get_if<std::vector<std::string>*>(&row.into)) (*list)->push_back(value);
-    if (const auto* const take = std::get_if<Take>(&row.into)) {
+    if (const auto* const take = std::get_if<ValueSetter>(&row.into)) {
       if (const auto why = take->take(take->into, value)) return name + ": " + *why;
     }
     return std::nullopt;

@@ -28,7 +28,7 @@ std::expected<unsigned, std::string> highest_in(const std::string& path, int cou
     highest = std::max(highest, number);
   }
   if (numbers && (numbers >> std::ws).eof() && highest <= most) return highest;
-  return std::unexpected(path + ": unknown value " + icd::in_quotes(file->text));
+  return std::unexpected(path + ": unknown value " + icd::quote_text(file->text));
 }
 
 }  // namespace

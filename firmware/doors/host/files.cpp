@@ -94,10 +94,10 @@ void set_damaged_aside(const std::string& path, std::string_view what, const std
 std::expected<std::string, std::string> read_file(const std::string& path) {
   auto file = slurp(path);
   if (!file) return std::unexpected(trouble(path, file.error()));
-  return without_checksum(std::move(file->text));
+  return strip_checksum(std::move(file->text));
 }
 
-std::string without_checksum(std::string text) {
+std::string strip_checksum(std::string text) {
   const std::size_t line = text.rfind(kChecksum);
   if (line != std::string::npos && text.substr(line) == checksum_of(text.substr(0, line))) text.resize(line);
   return text;
@@ -125,7 +125,7 @@ std::expected<void, std::string> write_kept(const std::string& path, const std::
 void keep_copy(const std::string& path) {
   const auto file = slurp(path), copy = slurp(path + kCopy);
   if (!file || (!copy && copy.error() != ENOENT) || (copy && copy->text == file->text)) return;
-  if (copy && without_checksum(file->text) == file->text) return;  // perhaps it is damaged
+  if (copy && strip_checksum(file->text) == file->text) return;  // perhaps it is damaged
   log_failure(Level::Warning, "a saved file has no copy", write_file(path + kCopy, file->text, kOursAlone));
 }
 

@@ -22,7 +22,7 @@ struct File {
 /// The text, or errno; EFBIG above `most` bytes.
 std::expected<File, int> slurp(const std::string& path, std::size_t most = kLargestFile);
 /// The text without the last line of write_kept(), if its checksum is right.
-std::string without_checksum(std::string text);
+std::string strip_checksum(std::string text);
 
 /// Syncs the directory of this file, so that the file's name survives a power cut. False: see errno.
 bool sync_folder(const std::string& path);

@@ -27,7 +27,7 @@ Memory& memory() {
 /// Thread-safe.
 class KeptOut {
  public:
-  void are(icd::Redaction redaction) {
+  void set(icd::Redaction redaction) {
     const std::scoped_lock lock(mutex_);
     redaction_ = std::move(redaction);
   }
@@ -70,18 +70,18 @@ void write_down(double at, Level level, std::string_view message, std::span<cons
 void log(Level level, std::string_view message, std::initializer_list<Field> fields) {
   if (level > kLeast) return;
   const double at = loop::system_now();
-  const std::string said = without_secrets(std::string(message));
+  const std::string said = strip_secrets(std::string(message));
   std::vector<Field> struck(fields);
-  for (auto& [name, value] : struck) value = without_secrets(std::move(value));
+  for (auto& [name, value] : struck) value = strip_secrets(std::move(value));
   memory().keep(at, level, said, struck);
   write_down(at, level, said, struck);
 }
 
 void keep_out_of_log(icd::Redaction redaction) {
-  kept_out().are(std::move(redaction));
+  kept_out().set(std::move(redaction));
 }
 
-std::string without_secrets(std::string text) {
+std::string strip_secrets(std::string text) {
   kept_out().strike_from(text);
   return text;
 }
@@ -93,11 +93,11 @@ void tell_console(Level level, std::string_view message, std::initializer_list<F
   write_down(at, level, message, fields);
 }
 
-std::vector<Record> remembered(std::uint64_t after) {
-  return memory().after(after);
+std::vector<Record> records_after(std::uint64_t after) {
+  return memory().records_after(after);
 }
 
-std::uint64_t logged() {
+std::uint64_t last_record_number() {
   return memory().last();
 }
 

@@ -52,20 +52,20 @@ void tell_console(Level level, std::string_view message, std::initializer_list<F
 /// Removes these secrets from all later records, except from tell_console().
 void keep_out_of_log(icd::Redaction redaction);
 /// The text with those secrets removed.
-std::string without_secrets(std::string text);
+std::string strip_secrets(std::string text);
 
 /// The stored records with a larger number, oldest first.
-std::vector<Record> remembered(std::uint64_t after);
+std::vector<Record> records_after(std::uint64_t after);
 
 /// Number of the last record, which counts all records.
-std::uint64_t logged();
+std::uint64_t last_record_number();
 
 /// The record as a line of the log.
 std::string line_of(const Record& record);
 
 /// Escapes a client's text, so that it cannot forge a line or control a terminal. Visible UTF-8 characters
 /// and blanks stay, other bytes become \xNN, and a backslash is doubled.
-std::string escaped(std::string_view text);
+std::string escape(std::string_view text);
 /// Escapes an escaped text for a terminal without UTF-8: each byte of a character outside ASCII.
 std::string to_ascii(std::string_view text);
 

@@ -13,7 +13,7 @@
 namespace adit::host {
 namespace {
 
-std::string clipped(std::string_view text) {
+std::string clip(std::string_view text) {
   return std::string(text.substr(0, Memory::kLongest));
 }
 
@@ -26,10 +26,10 @@ std::size_t bytes_of(const Record& record) {
 }  // namespace
 
 void Memory::keep(double at, Level level, std::string_view message, std::span<const Field> fields) {
-  Record record{.seq = 0, .at = at, .level = level, .message = clipped(message), .fields = {}};
+  Record record{.seq = 0, .at = at, .level = level, .message = clip(message), .fields = {}};
   record.fields.reserve(fields.size());
   for (const auto& [name, value] : fields) {
-    if (!value.empty()) record.fields.emplace_back(name, clipped(value));
+    if (!value.empty()) record.fields.emplace_back(name, clip(value));
   }
   const std::scoped_lock lock(mutex_);
   record.seq = ++last_;
@@ -48,7 +48,7 @@ std::uint64_t Memory::last() const {
   return last_;
 }
 
-std::vector<Record> Memory::after(std::uint64_t seq) const {
+std::vector<Record> Memory::records_after(std::uint64_t seq) const {
   const std::scoped_lock lock(mutex_);
   const auto first = std::ranges::upper_bound(records_, seq, {}, &Record::seq);
   return {first, records_.end()};
@@ -66,7 +66,7 @@ constexpr Span kUnseen[] = {{0x80, 0x9f},     {0xad, 0xad},      {0x61c, 0x61c},
                             {0xfff9, 0xffff}, {0xe0000, 0xeffff}};
 
 /// The code of a UTF-8 character of several bytes.
-char32_t decoded(std::string_view character) {
+char32_t to_code_point(std::string_view character) {
   const auto first = static_cast<std::uint8_t>(character[0]);
   char32_t code = first & (0xffu >> (character.size() + 1));
   for (const char c : character.substr(1)) code = code << 6 | (static_cast<std::uint8_t>(c) & 0x3fu);
@@ -78,7 +78,7 @@ std::size_t visible(std::string_view text) {
   const auto first = static_cast<std::uint8_t>(text[0]);
   const std::string_view character = text.substr(0, codec::character_size(text));
   if (character.size() <= 1) return first >= 0x20 && first < 0x7f ? 1 : 0;
-  const bool unseen = std::ranges::any_of(kUnseen, [code = decoded(character)](const Span& span) {
+  const bool unseen = std::ranges::any_of(kUnseen, [code = to_code_point(character)](const Span& span) {
     return code >= span.first && code <= span.last;
   });
   return unseen ? 0 : character.size();
@@ -86,7 +86,7 @@ std::size_t visible(std::string_view text) {
 
 }  // namespace
 
-std::string escaped(std::string_view text) {
+std::string escape(std::string_view text) {
   std::string safe;
   safe.reserve(text.size());
   while (!text.empty()) {
@@ -119,9 +119,9 @@ std::string to_ascii(std::string_view text) {
 namespace {
 
 std::string quoted_where_needed(std::string_view value) {
-  if (value.find_first_of(" \"=") == std::string_view::npos) return escaped(value);
+  if (value.find_first_of(" \"=") == std::string_view::npos) return escape(value);
   std::string text = "\"";
-  for (const char c : escaped(value)) {
+  for (const char c : escape(value)) {
     if (c == '"') text += '\\';
     text += c;
   }
@@ -155,7 +155,7 @@ std::string time_text(double at) {
 }
 
 std::string sentence(std::string_view message, std::span<const Field> fields) {
-  std::string text = escaped(message);
+  std::string text = escape(message);
   for (const auto& [name, value] : fields) {
     if (value.empty()) continue;
     text.append(" ").append(name).append("=").append(quoted_where_needed(value));

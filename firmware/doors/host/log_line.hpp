@@ -23,7 +23,7 @@ class Memory {
   /// `at`: seconds since 1970.
   void keep(double at, Level level, std::string_view message, std::span<const Field> fields);
   /// Records with a larger number, oldest first.
-  std::vector<Record> after(std::uint64_t seq) const;
+  std::vector<Record> records_after(std::uint64_t seq) const;
   /// Number of the last stored record; 0: no record yet.
   std::uint64_t last() const;
 

@@ -86,11 +86,11 @@ std::string await_end(pid_t process) {
 }
 
 /// The reading end of one output.
-class Ear {
+class PipeReader {
  public:
-  Ear(int fd, std::string& heard) : fd_(fd), heard_(heard) {}
+  PipeReader(int fd, std::string& heard) : fd_(fd), heard_(heard) {}
   int fd() const { return over_ ? -1 : fd_; }  // poll(2) ignores -1
-  bool over() const { return over_; }
+  bool is_over() const { return over_; }
 
   void read() {
     char buffer[4096];
@@ -119,8 +119,9 @@ class Ear {
 };
 
 /// Reads both outputs to their ends. False: not by `until`.
-bool hear(Ear& out, Ear& err, Clock::time_point until, const std::function<void(std::string_view)>& line) {
-  while (!out.over() || !err.over()) {
+bool hear(PipeReader& out, PipeReader& err, Clock::time_point until,
+          const std::function<void(std::string_view)>& line) {
+  while (!out.is_over() || !err.is_over()) {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now()).count();
     pollfd ready[] = {{out.fd(), POLLIN, 0}, {err.fd(), POLLIN, 0}};
     const int count = left > 0 ? poll(ready, 2, static_cast<int>(left)) : 0;
@@ -150,7 +151,7 @@ Output output_of(const std::vector<std::string>& words, std::chrono::millisecond
   }
   out->to = loop::FileDescriptor();
   err->to = loop::FileDescriptor();
-  Ear outs(out->from.get(), output.out), errs(err->from.get(), output.err);
+  PipeReader outs(out->from.get(), output.out), errs(err->from.get(), output.err);
   const bool in_time = hear(outs, errs, Clock::now() + within, line);
   if (!in_time) kill(*process, SIGKILL);
   output.trouble = await_end(*process);
@@ -167,7 +168,7 @@ std::expected<void, std::string> run_command(const std::vector<std::string>& wor
   const std::string& said = output.err.empty() ? output.out : output.err;
   if (said.empty()) return std::unexpected(sentence + output.trouble);
   const std::string first = said.substr(0, std::min(said.find('\n'), kMostTold));
-  return std::unexpected(sentence + escaped(first) + " (" + output.trouble + ')');
+  return std::unexpected(sentence + escape(first) + " (" + output.trouble + ')');
 }
 
 }  // namespace adit::host

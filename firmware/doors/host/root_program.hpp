@@ -76,7 +76,7 @@ class RootProgram {
   const std::string& requests() const { return requests_; }
   const std::string& directory() const { return directory_; }
 
-  /// The status, read at most kFresh ago. Null: see why().
+  /// The status, read at most kFresh ago. Null: see status_error().
   std::shared_ptr<const Status> status() const {
     refresh();
     return status_.value_or(nullptr);
@@ -87,16 +87,17 @@ class RootProgram {
   bool runs_here() const { return status() || !status_ || is_starting(); }
   /// Why there is no status, as a sentence: the program is starting, does not run here, or its status cannot
   /// be read. "": there is a status.
-  std::string why() const {
+  std::string status_error() const {
     if (status()) return "";
     if (is_starting()) return name_ + " is starting, for at most 5 minutes: try again";
     return status_ ? name_ + " does not run here: it has no status in " + directory_
                    : "cannot read the status of " + name_ + ": " + status_.error();
   }
 
-  /// why() as a refusal: 503 while the program is starting, else 409.
+  /// status_error() as a refusal: 503 while the program is starting, else 409.
   std::unexpected<icd::Refusal> refuse() const {
-    return icd::refuse(is_starting() ? icd::Status::ServiceUnavailable : icd::Status::Conflict, why());
+    return icd::refuse(is_starting() ? icd::Status::ServiceUnavailable : icd::Status::Conflict,
+                       status_error());
   }
 
   /// Writes a request that the status does not name.
@@ -173,7 +174,7 @@ class StatusFile {
   /// The status of an earlier start in this boot, or std::nullopt at the first start. A file that cannot be
   /// read is logged and gives an empty status; the next tell() replaces it.
   template <class Status>
-  std::optional<Status> told() const {
+  std::optional<Status> read_earlier() const {
     auto status = read_row<Status>(path_);
     if (status) return *std::move(status);
     log_unreadable(status.error());
@@ -202,7 +203,7 @@ void log_rejected_request(const char* file, const std::string& why);
 template <class Request>
 std::expected<std::optional<Request>, std::string> take_request(UntrustedFolder& folder, const char* file) {
   while (true) {
-    const auto text = folder.take(file);
+    const auto text = folder.take_file(file);
     if (text && !*text) return std::nullopt;
     if (!text && text.error().stays) return std::unexpected(text.error().why);
     auto request = text ? codec::read_file<Request>(**text) : std::unexpected(text.error().why);

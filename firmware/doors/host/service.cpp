@@ -39,8 +39,8 @@ std::expected<Token, Fault> read_one(const std::string& path, Place place) {
   if (place != Place::Credentials && (file->status.st_mode & 077) != 0) {
     return std::unexpected(Fault{path + ": other users may read or write it; run: chmod 600 " + path});
   }
-  const std::string checked = without_checksum(file->text);
-  const std::string_view text = icd::trimmed(checked);
+  const std::string checked = strip_checksum(file->text);
+  const std::string_view text = icd::trim(checked);
   if (text.empty() && place != Place::Saved) return Token();
   auto token = icd::BearerToken::parse_file(checked);
   if (!token)
@@ -51,7 +51,7 @@ std::expected<Token, Fault> read_one(const std::string& path, Place place) {
 
 bool has_checksum(const std::string& path) {
   const auto file = slurp(path);
-  return file && without_checksum(file->text).size() < file->text.size();
+  return file && strip_checksum(file->text).size() < file->text.size();
 }
 
 /// The same, or of its copy if a saved file is damaged. Half a token is a token, too, without a checksum.
@@ -131,7 +131,7 @@ std::expected<Secrets, std::string> read_secrets(const std::string& given, const
   for (const std::string& file : {saved + '/' + kReplacedFile, saved + '/' + kReplacedFile + kCopy}) {
     const auto replaced = slurp(file);
     if (!replaced && replaced.error() != ENOENT) secrets.unread = trouble(file, replaced.error());
-    const std::string lines = replaced ? without_checksum(replaced->text) : "";
+    const std::string lines = replaced ? strip_checksum(replaced->text) : "";
     for (std::string_view rest = lines; !rest.empty();) {
       if (auto token = icd::BearerToken::parse(icd::cut(rest, '\n'))) secrets.replaced.push_back(*token);
     }

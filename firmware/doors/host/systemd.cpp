@@ -17,7 +17,7 @@ namespace {
 
 /// Escaped, because a newline in `status` would begin another assignment (sd_notify(3)).
 std::string assignment(const std::string& status) {
-  return "STATUS=" + escaped(without_secrets(status));
+  return "STATUS=" + escape(strip_secrets(status));
 }
 
 /// Sets systemd's watchdog interval.
@@ -29,7 +29,7 @@ void notify_watchdog(std::chrono::microseconds within) {
 
 void notify_ready(const std::string& status) {
   sd_notify(0, ("READY=1\n" + assignment(status)).c_str());
-  if (const auto within = watchdog_within()) notify_watchdog(*within);
+  if (const auto within = watchdog_interval()) notify_watchdog(*within);
 }
 
 void notify_status(const std::string& status) {
@@ -41,20 +41,20 @@ void notify_stopping() {
 }
 
 void notify_restarting() {
-  if (watchdog_within()) notify_watchdog(kLongestStart);
+  if (watchdog_interval()) notify_watchdog(kLongestStart);
 }
 
 void notify_alive() {
   sd_notify(0, "WATCHDOG=1");
 }
 
-std::optional<std::chrono::microseconds> watchdog_within() {
+std::optional<std::chrono::microseconds> watchdog_interval() {
   std::uint64_t usec = 0;
   if (sd_watchdog_enabled(0, &usec) <= 0) return std::nullopt;
   return std::chrono::microseconds(usec);
 }
 
-std::expected<std::vector<Inherited>, std::string> inherited() {
+std::expected<std::vector<Inherited>, std::string> inherited_sockets() {
   char** names = nullptr;
   const int count = sd_listen_fds_with_names(1, &names);
   if (count < 0) {
@@ -80,7 +80,7 @@ void forget_descriptor(const std::string& name) {
 namespace {
 
 /// Writes to stderr, because the log's descriptor may be closed.
-void must(int result, const char* doing) {
+void require_success(int result, const char* doing) {
   if (result >= 0) return;
   std::fprintf(stderr, "cannot start again: %s: %s\n", doing, std::strerror(errno));
   _exit(1);
@@ -92,24 +92,24 @@ void restart_process(std::vector<Inherited> sockets, char* const* arguments,
                      std::map<std::string, std::string> variables) {
   const int count = static_cast<int>(sockets.size());
   std::string names;
-  must(close_range(SD_LISTEN_FDS_START, ~0U, CLOSE_RANGE_CLOEXEC), "closing descriptors");
+  require_success(close_range(SD_LISTEN_FDS_START, ~0U, CLOSE_RANGE_CLOEXEC), "closing descriptors");
   // Copies above all final places first, because a final place may be another socket's.
   for (Inherited& each : sockets) {
     each.descriptor =
         loop::FileDescriptor(fcntl(each.descriptor.get(), F_DUPFD_CLOEXEC, SD_LISTEN_FDS_START + count));
-    must(each.descriptor.get(), "copying a socket");
+    require_success(each.descriptor.get(), "copying a socket");
     names += (names.empty() ? "" : ":") + each.name;
   }
   for (int i = 0; i < count; ++i)
-    must(dup2(sockets[static_cast<std::size_t>(i)].descriptor.get(), SD_LISTEN_FDS_START + i),
-         "passing a socket");
+    require_success(dup2(sockets[static_cast<std::size_t>(i)].descriptor.get(), SD_LISTEN_FDS_START + i),
+                    "passing a socket");
   if (count > 0) {  // sd_listen_fds() rejects 0
     variables["LISTEN_PID"] = std::to_string(getpid());
     variables["LISTEN_FDS"] = std::to_string(count);
     variables["LISTEN_FDNAMES"] = names;
   }
   for (const auto& [name, value] : variables) setenv(name.c_str(), value.c_str(), 1);
-  must(execv("/proc/self/exe", arguments), "exec");
+  require_success(execv("/proc/self/exe", arguments), "exec");
   std::abort();
 }
 

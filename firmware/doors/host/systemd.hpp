@@ -22,7 +22,7 @@ void notify_alive();                                      // WATCHDOG=1
 inline constexpr std::chrono::seconds kLongestStart{60};  // services/adit.service: TimeoutStartSec=
 
 /// systemd's watchdog interval (WatchdogSec=), or std::nullopt without a watchdog.
-std::optional<std::chrono::microseconds> watchdog_within();
+std::optional<std::chrono::microseconds> watchdog_interval();
 
 /// A descriptor from systemd: a unit's socket, or one stored by the service.
 struct Inherited {
@@ -32,7 +32,7 @@ struct Inherited {
 
 /// All inherited descriptors (sd_listen_fds_with_names(3)), closed on exec. Empty outside systemd, and at a
 /// second call.
-std::expected<std::vector<Inherited>, std::string> inherited();
+std::expected<std::vector<Inherited>, std::string> inherited_sockets();
 
 /// Makes systemd store a copy across restarts of the service (FDSTORE=1), until forget_descriptor(). `name`:
 /// at most 255 visible ASCII characters, no colon. Without effect outside systemd.
@@ -41,8 +41,8 @@ void store_descriptor(const std::string& name, int descriptor);
 void forget_descriptor(const std::string& name);
 
 /// Replaces the process by a new start of its program (exec); the PID stays. The new start gets `sockets` as
-/// inherited(), descriptors 0 to 2, and the environment with `variables`. Blocked signals stay pending. Other
-/// threads end. If exec fails, the process exits with status 1. `arguments`: main()'s.
+/// inherited_sockets(), descriptors 0 to 2, and the environment with `variables`. Blocked signals stay
+/// pending. Other threads end. If exec fails, the process exits with status 1. `arguments`: main()'s.
 [[noreturn]] void restart_process(std::vector<Inherited> sockets, char* const* arguments,
                                   std::map<std::string, std::string> variables);
 

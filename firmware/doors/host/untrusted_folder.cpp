@@ -30,7 +30,7 @@ std::expected<UntrustedFolder, std::string> UntrustedFolder::open(const std::str
   return UntrustedFolder(std::move(folder));
 }
 
-std::expected<std::optional<std::string>, UntrustedFolder::Untaken> UntrustedFolder::take(
+std::expected<std::optional<std::string>, UntrustedFolder::Untaken> UntrustedFolder::take_file(
     const std::string& name) {
   auto text = read(name);
   if (text && !*text) return std::nullopt;

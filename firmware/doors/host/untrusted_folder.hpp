@@ -25,7 +25,7 @@ class UntrustedFolder {
   };
   /// Removes a file and returns its content. std::nullopt: no such file. Error: not a plain file, too large
   /// or unreadable; removed in any case unless `stays`.
-  std::expected<std::optional<std::string>, Untaken> take(const std::string& name);
+  std::expected<std::optional<std::string>, Untaken> take_file(const std::string& name);
 
   /// Removes an entry of any type. If a directory cannot be deleted (it may be deeper than files can be
   /// opened), frees its name: the rest is NAME.XXXXXX.

@@ -76,7 +76,7 @@ bool Deadline::keeps_up() {
   if (!rate_) return false;
   if (!bytes_expected_) {
     const std::uint64_t before = std::exchange(taken_before_, gate_.traffic().taken);
-    rate_->moved(taken_before_ - before);
+    rate_->count_bytes(taken_before_ - before);
   }
   if (rate_->is_too_slow(engine_.now())) return false;
   set(rate_->look_at());
@@ -127,11 +127,11 @@ Client::Client(Engine& engine, loop::Loop& loop, MHD_Connection* connection, int
   // libmicrohttpd does not watch the sockets of suspended connections, and misses an end that arrives
   // together with the last bytes. Edge-triggered, because unread bytes would be reported again and again.
   arrivals_ =
-      loop.watch(fd, EPOLLIN | EPOLLRDHUP | EPOLLET, [this](std::uint32_t events) { happened(events); });
+      loop.watch(fd, EPOLLIN | EPOLLRDHUP | EPOLLET, [this](std::uint32_t events) { on_events(events); });
   await_head();
 }
 
-std::optional<Held> Client::held() const {
+std::optional<Held> Client::held_share() const {
   if (leaving_ || hung_up_) return std::nullopt;
   return Held{.number = number_,
               .address = addresses_.peer,
@@ -140,11 +140,11 @@ std::optional<Held> Client::held() const {
               .since = stage_.since};
 }
 
-Held::Doing Client::doing() const {
-  if (stage_.phase == Phase::Idle) return Held::Doing::Idle;
-  if (stage_.phase == Phase::Head && gate_.has_unseen()) return Held::Doing::Fresh;
-  if (stage_.phase == Phase::Head || request_->is_sending()) return Held::Doing::Sending;
-  return deadline_.has_client_ended() && suspended_ ? Held::Doing::Left : Held::Doing::Waiting;
+Held::Activity Client::doing() const {
+  if (stage_.phase == Phase::Idle) return Held::Activity::Idle;
+  if (stage_.phase == Phase::Head && gate_.has_unseen()) return Held::Activity::Fresh;
+  if (stage_.phase == Phase::Head || request_->is_sending()) return Held::Activity::Sending;
+  return deadline_.has_client_ended() && suspended_ ? Held::Activity::Left : Held::Activity::Waiting;
 }
 
 void Client::give_way() {
@@ -158,7 +158,7 @@ void Client::give_way() {
   cut();
 }
 
-void Client::happened(std::uint32_t events) {
+void Client::on_events(std::uint32_t events) {
   if ((events & EPOLLIN) != 0) gate_.bytes_came();
   if ((events & (EPOLLHUP | EPOLLERR)) != 0) {
     hung_up_ = true;
@@ -177,8 +177,8 @@ void Client::hold_back() {
   if (hung_up_ || leaving_) return;
   suspend();
   if (stage_.phase == Phase::Head) {
-    happened(state_of(fd_));
-  } else if (gate_.has_new_bytes() || deadline_.has_client_ended()) {  // happened() will tell later bytes
+    on_events(state_of(fd_));
+  } else if (gate_.has_new_bytes() || deadline_.has_client_ended()) {  // on_events() will tell later bytes
     look_at_head();
   }
 }
@@ -224,7 +224,7 @@ bool Client::begin_chunked() {
     engine_.begin_request(*this);
     return Next::GoOn;
   };
-  return guarded(begin) == Next::GoOn;
+  return run_guarded(begin) == Next::GoOn;
 }
 
 /// libmicrohttpd does not take part: version 0.9 accepts chunks that RFC 9112 does not allow, and version 1
@@ -240,12 +240,12 @@ void Client::read_on() {
     }
     Next next = Next::Close;
     if (request_->has_unended_body()) {
-      next = guarded([this] { return request_->end(); });
+      next = run_guarded([this] { return request_->end(); });
     } else {
       const ssize_t size = ::recv(fd_, bytes.data(), bytes.size(), MSG_DONTWAIT);
       if (size < 0 && errno == EAGAIN) return;
       if (size > 0) {
-        next = guarded([&] { return request_->body({bytes.data(), static_cast<std::size_t>(size)}); });
+        next = run_guarded([&] { return request_->body({bytes.data(), static_cast<std::size_t>(size)}); });
       }
     }
     if (next == Next::Close) cut();
@@ -254,7 +254,7 @@ void Client::read_on() {
 
 Next Client::fail() {
   Next next = Next::Close;
-  if (request_) loop::guarded("the answer to a failed request", [&] { next = request_->failed(); });
+  if (request_) loop::run_guarded("the answer to a failed request", [&] { next = request_->on_failed(); });
   return next;
 }
 
@@ -295,12 +295,12 @@ void Client::expect_stream() {
   ::setsockopt(fd_, IPPROTO_TCP, TCP_USER_TIMEOUT, &kUntaken, sizeof kUntaken);
 }
 
-void Client::late() {
+void Client::on_late() {
   if (!deadline_.is_late()) return;
   if (gate_.has_refused()) return cut();
   switch (stage_.phase) {
     case Phase::Request:
-      request_->late();
+      request_->on_late();
       return;
     case Phase::Idle:
       cut();

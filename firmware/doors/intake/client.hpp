@@ -47,7 +47,7 @@ class LeastRate {
 
   LeastRate(loop::Duration window, loop::Instant now) : half_(window / 2), look_at_(now + half_) {}
 
-  void moved(std::uint64_t bytes) { in_this_half_ += bytes; }
+  void count_bytes(std::uint64_t bytes) { in_this_half_ += bytes; }
   loop::Instant look_at() const { return look_at_; }
   /// Call this once for each look_at(), at that time or later.
   bool is_too_slow(loop::Instant now) {
@@ -84,7 +84,7 @@ class Deadline {
   void expect_head();
   void expect_body();
   void body_came(std::size_t bytes) {
-    if (rate_) rate_->moved(bytes);
+    if (rate_) rate_->count_bytes(bytes);
   }
   /// The client must read its answer at the least rate. `taken`: of Gate::traffic() before the answer.
   void expect_steady_reading(std::uint64_t taken);
@@ -137,7 +137,7 @@ class Client {
   bool is_secure() const { return addresses_.proxy_header > 0; }
   Engine& engine() const { return engine_; }
   /// For the shares; nullopt if the connection is closing.
-  std::optional<Held> held() const;
+  std::optional<Held> held_share() const;
   /// Closes the connection to make room for another one. If a request is not answered yet, the client gets a
   /// 503.
   void give_way();
@@ -155,9 +155,9 @@ class Client {
   const std::shared_ptr<Request>& request() const { return request_; }
   /// Calls `step`, which goes on with the request. If it throws, the request fails.
   template <class Step>
-  Next guarded(const Step& step) {
+  Next run_guarded(const Step& step) {
     Next next{};
-    return loop::guarded("a request", [&] { next = step(); }) ? next : fail();
+    return loop::run_guarded("a request", [&] { next = step(); }) ? next : fail();
   }
 
   Deadline& deadline() { return deadline_; }
@@ -166,13 +166,13 @@ class Client {
   void expect_stream();
   static constexpr std::chrono::milliseconds kStreamWithin{30000};
   /// Call this after deadline().at().
-  void late();
+  void on_late();
 
   /// Both have no effect if the connection is already in that state. suspend() must not be called while
   /// libmicrohttpd adds the connection.
   void suspend();
   void resume();
-  bool suspended() const { return suspended_; }
+  bool is_suspended() const { return suspended_; }
 
   /// Writes past libmicrohttpd, which must have no bytes to write.
   void say(std::string_view text);
@@ -182,13 +182,13 @@ class Client {
   void cut();
 
  private:
-  Held::Doing doing() const;
+  Held::Activity doing() const;
   void enter(Phase phase) { stage_ = {.phase = phase, .since = engine_.now()}; }
   void await_head();
   /// RFC 9112 9.3. Also false if the answer is uncertain: a Connection field other than keep-alive, or
   /// HTTP/1.0.
   bool client_keeps_connection() const;
-  void happened(std::uint32_t events);
+  void on_events(std::uint32_t events);
   void look_at_head();
   void refuse_head();
   Next fail();

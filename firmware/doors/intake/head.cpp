@@ -57,7 +57,7 @@ std::expected<FieldLine, std::string_view> parse_field_line(std::string_view lin
   if (!is_token(name)) return std::unexpected("a header field: its name has a character that is not allowed");
   if (!has_no_controls(value))
     return std::unexpected("a header field: must have no control characters");  // RFC 9110 5.5
-  return FieldLine{.name = name, .value = icd::trimmed(value, kBlanks)};
+  return FieldLine{.name = name, .value = icd::trim(value, kBlanks)};
 }
 
 bool is_authority(std::string_view text) {
@@ -158,7 +158,7 @@ Head::Head(std::string text, Target target, const std::string& peer, const std::
   for (std::string_view left = parts.fields; !left.starts_with('\r');) {
     const std::string_view line = left.substr(0, left.find('\r'));
     const std::string_view name = line.substr(0, line.find(':'));
-    fields_.push_back({.name = name, .value = icd::trimmed(line.substr(name.size() + 1), kBlanks)});
+    fields_.push_back({.name = name, .value = icd::trim(line.substr(name.size() + 1), kBlanks)});
     left.remove_prefix(line.size() + 2);
   }
 }

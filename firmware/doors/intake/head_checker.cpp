@@ -119,14 +119,14 @@ void HeadChecker::field(std::string_view so_far, std::string_view line) {
   } else if (icd::same_but_for_case(field->name, "Cookie")) {
     cookie(field->value);
   } else {
-    single(so_far, *field);
+    check_single(so_far, *field);
   }
 }
 
 /// RFC 9110 5.3: a field that is not a list occurs once. A repeated equal value has one meaning for all
 /// readers, except in Content-Encoding (8.4): that is a list, and the repeated value would mean a second
 /// coding.
-void HeadChecker::single(std::string_view so_far, const FieldLine& field) {
+void HeadChecker::check_single(std::string_view so_far, const FieldLine& field) {
   static constexpr std::array<std::string_view, 4> kNames = {"Content-Type", "Authorization", "Origin",
                                                              "Content-Encoding"};
   const auto* const name = std::ranges::find_if(

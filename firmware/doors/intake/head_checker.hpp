@@ -53,7 +53,7 @@ class HeadChecker {
   void request_line(std::string_view so_far, std::string_view line);
   void target(std::string_view so_far, std::string_view method, std::string_view target);
   void field(std::string_view so_far, std::string_view line);
-  void single(std::string_view so_far, const FieldLine& field);
+  void check_single(std::string_view so_far, const FieldLine& field);
   void host(std::string_view so_far, std::string_view value);
   void content_length(std::string_view value);
   void transfer_encoding(std::string_view value);

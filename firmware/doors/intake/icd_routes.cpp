@@ -18,8 +18,8 @@ namespace {
 constexpr std::size_t kSmallBody = codec::Limits{}.text_bytes;
 
 /// A field's value as shown in a sentence.
-std::string shown(std::string_view text) {
-  return text.empty() ? "none" : icd::in_quotes(text);
+std::string field_text(std::string_view text) {
+  return text.empty() ? "none" : icd::quote_text(text);
 }
 
 /// GET /api/status. Ignores a body.
@@ -40,13 +40,13 @@ icd::Checked<codec::BodyKind> kind_of(icd::Uri uri, const RequestHead& head) {
   const bool scoring = icd::endpoint_of(uri) == icd::Endpoint::Scoring;
   if (!format || (scoring && *format != codec::Format::Json)) {
     const std::string_view expected = scoring ? "application/json" : "application/json or application/cbor";
-    return icd::unprocessable("Content-Type: expected ", expected, ", got ", shown(type));
+    return icd::unprocessable("Content-Type: expected ", expected, ", got ", field_text(type));
   }
   const std::string_view encoding = head.header("Content-Encoding");
   const auto coding = codec::coding_of(encoding);
   if (!coding) {
     return icd::unprocessable("Content-Encoding: expected gzip, deflate or no such header, got ",
-                              shown(encoding));
+                              field_text(encoding));
   }
   return codec::BodyKind{.format = *format, .coding = *coding};
 }
@@ -56,7 +56,7 @@ icd::Checked<bool> resubmits_of(const RequestHead& head) {
   const std::string_view word = head.header("Adit-Resubmit");
   if (word.empty()) return false;
   if (icd::same_but_for_case(word, "yes")) return true;
-  return icd::unprocessable("Adit-Resubmit: expected yes or no such header, got ", icd::in_quotes(word));
+  return icd::unprocessable("Adit-Resubmit: expected yes or no such header, got ", icd::quote_text(word));
 }
 
 /// Accepts pages of this box and of `origins`. Without the check of Host, a page whose name resolves to the
@@ -71,17 +71,17 @@ icd::Checked<void> check_origin(const RequestHead& head, const std::vector<std::
     return needs_token(
         icd::sentence("Host: expected the box's address, localhost, its name in .local, or the team's token, "
                       "because the request has the Origin ",
-                      icd::in_quotes(origin), ", got ", icd::in_quotes(host)));
+                      icd::quote_text(origin), ", got ", icd::quote_text(host)));
   }
   const bool is_listed = std::ranges::any_of(
       origins, [origin](const std::string& each) { return icd::same_but_for_case(each, origin); });
   if (is_listed || access::is_same_origin(origin, host, head.is_secure())) return {};
-  return needs_token(icd::sentence("Origin: a page of ", icd::in_quotes(origin),
+  return needs_token(icd::sentence("Origin: a page of ", icd::quote_text(origin),
                                    " needs the team's token, or an entry in the setting team.origins"),
                      "team.origins");
 }
 
-icd::Refusal stops() {
+icd::Refusal stopping_refusal() {
   return {icd::Status::ServiceUnavailable,
           "the box is stopping; this message was not accepted, send it again"};
 }
@@ -162,8 +162,8 @@ IcdRoutes::IcdRoutes(IcdOptions options, MessageHandler& message_handler, loop::
       small_(std::make_shared<UploadBudget>(options_.small_bytes)),
       without_room_(std::make_shared<UploadBudget>(MapUpload::kWithoutRoom)) {}
 
-Credentials IcdRoutes::shown(const RequestHead& head) {
-  if (!icd::uri_of(head.path())) return other_.shown(head);
+Credentials IcdRoutes::read_credentials(const RequestHead& head) {
+  if (!icd::uri_of(head.path())) return other_.read_credentials(head);
   // A preflight has no token.
   if (head.method() == "OPTIONS") return options_.asks_token ? Credentials::Nothing : Credentials::Enough;
   if (is_free(head)) return Credentials::Enough;
@@ -203,7 +203,7 @@ std::size_t IcdRoutes::most_bytes(icd::Uri uri) const {
 }
 
 std::unique_ptr<BodySink> IcdRoutes::open(const RequestHead& head, std::shared_ptr<Responder> responder,
-                                          std::shared_ptr<Flow> flow) {
+                                          std::shared_ptr<FlowControl> flow) {
   const auto uri = icd::uri_of(head.path());
   if (!uri) {
     if (is_preflight_elsewhere(head))
@@ -234,14 +234,15 @@ std::unique_ptr<BodySink> IcdRoutes::open(const RequestHead& head, std::shared_p
                    {{"Allow", allowed_methods(*uri)}});
     return nullptr;
   }
-  auto sink = take_in(context, head, std::move(flow));
+  auto sink = accept_upload(context, head, std::move(flow));
   if (sink) return *std::move(sink);
   context.refuse(sink.error());
   return nullptr;
 }
 
-icd::Checked<std::unique_ptr<BodySink>> IcdRoutes::take_in(UploadContext& context, const RequestHead& head,
-                                                           std::shared_ptr<Flow> flow) {
+icd::Checked<std::unique_ptr<BodySink>> IcdRoutes::accept_upload(UploadContext& context,
+                                                                 const RequestHead& head,
+                                                                 std::shared_ptr<FlowControl> flow) {
   codec::BodyKind kind;
   if (icd::method_of(context.uri) != "GET") kind = ADIT_TRY(read_head(context, head));
   switch (context.uri) {
@@ -266,7 +267,7 @@ icd::Checked<std::unique_ptr<BodySink>> IcdRoutes::take_in(UploadContext& contex
 
 icd::Checked<codec::BodyKind> IcdRoutes::read_head(UploadContext& context, const RequestHead& head) const {
   const bool is_report = context.uri == icd::Uri::ArtifactReports;
-  if (stopping_ && !is_report) return std::unexpected(stops());
+  if (stopping_ && !is_report) return std::unexpected(stopping_refusal());
   const auto length = head.content_length();
   if (length == 0 && head.header("Content-Length").empty())  // RFC 9110 15.5.12
     return icd::refuse(icd::Status::LengthRequired, "Content-Length: missing, and no body came in chunks");
@@ -285,7 +286,7 @@ icd::Checked<codec::BodyKind> IcdRoutes::read_head(UploadContext& context, const
 void IcdRoutes::stop() {
   stopping_ = true;
   const std::set<Upload*> all = uploads_->under_way;
-  for (Upload* upload : all) upload->reject(stops());
+  for (Upload* upload : all) upload->reject(stopping_refusal());
 }
 
 }  // namespace adit::intake

@@ -42,9 +42,9 @@ class IcdRoutes final : public Handler {
  public:
   IcdRoutes(IcdOptions options, MessageHandler& message_handler, loop::Workers& workers, Handler& other);
 
-  Credentials shown(const RequestHead& head) override;
+  Credentials read_credentials(const RequestHead& head) override;
   std::unique_ptr<BodySink> open(const RequestHead& head, std::shared_ptr<Responder> responder,
-                                 std::shared_ptr<Flow> flow) override;
+                                 std::shared_ptr<FlowControl> flow) override;
 
   /// Sets the options for new requests. `upload_bytes`, `marker_bytes` and `small_bytes` do not change.
   void serve_with(IcdOptions options) { options_ = std::move(options); }
@@ -60,8 +60,8 @@ class IcdRoutes final : public Handler {
   /// 401 or 403 if the request needs a right token and has none.
   icd::Checked<void> check_entry(const RequestHead& head) const;
   /// Accepts a request. The refusal is the sender's answer.
-  icd::Checked<std::unique_ptr<BodySink>> take_in(UploadContext& context, const RequestHead& head,
-                                                  std::shared_ptr<Flow> flow);
+  icd::Checked<std::unique_ptr<BodySink>> accept_upload(UploadContext& context, const RequestHead& head,
+                                                        std::shared_ptr<FlowControl> flow);
   /// The head of a message with a body: the body's kind, and into `context` whether it is a resubmission.
   icd::Checked<codec::BodyKind> read_head(UploadContext& context, const RequestHead& head) const;
   /// The most bytes of a body sent to `uri`.

@@ -24,7 +24,7 @@ constexpr int kProbes = 3;  // unanswered probes before the kernel closes a conn
 
 using Seconds = std::chrono::seconds;
 
-std::string failed(const std::string& doing) {
+std::string failure_text(const std::string& doing) {
   return doing + ": " + std::strerror(errno);
 }
 
@@ -76,13 +76,13 @@ std::expected<loop::FileDescriptor, std::string> open_listen_socket(const Listen
   const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> address(found, &::freeaddrinfo);
 
   loop::FileDescriptor fd(::socket(address->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
-  if (!fd) return std::unexpected(failed("opening a socket for " + place));
+  if (!fd) return std::unexpected(failure_text("opening a socket for " + place));
   set(fd.get(), SOL_SOCKET, SO_REUSEADDR, 1);
   if (address->ai_family == AF_INET6) set(fd.get(), IPPROTO_IPV6, IPV6_V6ONLY, 0);
   if (!listen.interface.empty() &&
       ::setsockopt(fd.get(), SOL_SOCKET, SO_BINDTODEVICE, listen.interface.c_str(),
                    static_cast<socklen_t>(listen.interface.size())) != 0) {
-    return std::unexpected(failed("binding to interface " + listen.interface));
+    return std::unexpected(failure_text("binding to interface " + listen.interface));
   }
   if (listen.free_bind) {
     const bool v6 = address->ai_family == AF_INET6;
@@ -90,19 +90,19 @@ std::expected<loop::FileDescriptor, std::string> open_listen_socket(const Listen
   }
   set_keepalive(fd.get(), listen.idle);
   if (::bind(fd.get(), address->ai_addr, address->ai_addrlen) != 0) {
-    return std::unexpected(failed("binding to " + place));
+    return std::unexpected(failure_text("binding to " + place));
   }
-  if (::listen(fd.get(), kBacklog) != 0) return std::unexpected(failed("listening on " + place));
+  if (::listen(fd.get(), kBacklog) != 0) return std::unexpected(failure_text("listening on " + place));
   return fd;
 }
 
 std::expected<void, std::string> adopt_listen_socket(int fd, const Listen& listen) {
   const int flags = ::fcntl(fd, F_GETFL);
   if (flags < 0 || ::fcntl(fd, F_SETFL, flags | O_NONBLOCK) != 0) {
-    return std::unexpected(failed("taking over a socket"));
+    return std::unexpected(failure_text("taking over a socket"));
   }
   set_keepalive(fd, listen.idle);
-  if (::listen(fd, kBacklog) != 0) return std::unexpected(failed("listening on an inherited socket"));
+  if (::listen(fd, kBacklog) != 0) return std::unexpected(failure_text("listening on an inherited socket"));
   return {};
 }
 

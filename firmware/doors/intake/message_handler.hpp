@@ -23,7 +23,7 @@ struct Sender {
   bool resubmits = false;  // a report to send as a new one, even if it equals an earlier one
 };
 
-/// A map that is arriving. The destructor discards it unless take() was called.
+/// A map that is arriving. The destructor discards it unless accept() was called.
 class MapArrival {
  public:
   virtual ~MapArrival() = default;
@@ -32,13 +32,13 @@ class MapArrival {
   /// calls `done` on the loop with the bytes for which there was no room.
   virtual void store(icd::ChunkedBytes bytes, std::function<void(icd::ChunkedBytes left)> done) = 0;
   /// All stored bytes. For any thread, but not while store() is running.
-  virtual icd::Checked<icd::ChunkedBytes> stored() = 0;
+  virtual icd::Checked<icd::ChunkedBytes> stored_bytes() = 0;
 
   /// Stores and queues the whole, checked map. Then calls `done` on the loop: the map survives a process
   /// restart, or the refusal says why not (a queue is full: 429; there is no room: 503). The sender is
-  /// answered after that. Costs least if the map's data begins with stored().
-  virtual void take(icd::MapUpdate update, const Sender& sender,
-                    std::function<void(icd::Checked<void>)> done) = 0;
+  /// answered after that. Costs least if the map's data begins with stored_bytes().
+  virtual void accept(icd::MapUpdate update, const Sender& sender,
+                      std::function<void(icd::Checked<void>)> done) = 0;
 };
 
 /// Accepts the team's messages after all checks. Called on the loop.
@@ -50,20 +50,21 @@ class MessageHandler {
   virtual std::shared_ptr<MapArrival> begin_map() = 0;
   /// Queues the message, or returns the refusal (a queue is full: 429). On success the sender gets 200
   /// `null`.
-  virtual icd::Checked<void> take(icd::StateUpdate update, const Sender& sender) = 0;
+  virtual icd::Checked<void> accept(icd::StateUpdate update, const Sender& sender) = 0;
   /// The same. Calls `done` on the loop, at once or later.
-  virtual void take(icd::MarkersUpdate update, const Sender& sender,
-                    std::function<void(icd::Checked<void>)> done) = 0;
+  virtual void accept(icd::MarkersUpdate update, const Sender& sender,
+                      std::function<void(icd::Checked<void>)> done) = 0;
 
   /// Answers later, with the Command Post's answer.
-  virtual void take(const icd::ArtifactReport& report, const Sender& sender,
-                    std::shared_ptr<Responder> responder) = 0;
+  virtual void accept(const icd::ArtifactReport& report, const Sender& sender,
+                      std::shared_ptr<Responder> responder) = 0;
   virtual void status(const Sender& sender, std::shared_ptr<Responder> responder) = 0;
 
-  /// Records that a part of a message was dropped, and why. take() follows. The sender does not learn of it.
+  /// Records that a part of a message was dropped, and why. accept() follows. The sender does not learn of
+  /// it.
   virtual void left_out(icd::Uri uri, const Sender& sender, const std::string& why) = 0;
   /// Records that a message was rejected. The sender has the answer.
-  virtual void refused(icd::Uri uri, const Sender& sender, const icd::Refusal& refusal) = 0;
+  virtual void on_rejected(icd::Uri uri, const Sender& sender, const icd::Refusal& refusal) = 0;
 };
 
 }  // namespace adit::intake

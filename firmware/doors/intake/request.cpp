@@ -60,7 +60,7 @@ void ChunkReader::end_line() {
 void ChunkReader::size_line() {
   const std::string_view line = line_;
   const std::string_view digits = line.substr(0, line.find_first_not_of("0123456789abcdefABCDEF"));
-  const std::string_view rest = icd::trimmed(line.substr(digits.size()), kBlanks);
+  const std::string_view rest = icd::trim(line.substr(digits.size()), kBlanks);
   const auto size = icd::number_in<std::uint64_t>(digits, 16);
   const bool is_extended = rest.starts_with(';') && has_no_controls(rest);
   if (!size || digits.size() > 16 || *size > static_cast<std::uint64_t>(INT64_MAX) ||
@@ -184,7 +184,7 @@ class AnswerGuard final : public PassingResponder {
   AnswerGuard(const AnswerGuard&) = delete;
   AnswerGuard& operator=(const AnswerGuard&) = delete;
   ~AnswerGuard() override {
-    loop::guarded("the answer to a dropped request", [this] { inner().answer(failure()); });
+    loop::run_guarded("the answer to a dropped request", [this] { inner().answer(failure()); });
   }
 
   void answer(Answer answer) override { inner().answer(std::move(answer)); }
@@ -207,9 +207,9 @@ void Request::open(Handler& handler) {
   sink_ = handler.open(*head_, std::make_shared<AnswerGuard>(shared_from_this()), shared_from_this());
   in_call_ = false;
   stage_ = Stage::Body;
-  if (!sink_ && !answered()) answer_ = error_answer(icd::Status::InternalServerError, "no answer");
+  if (!sink_ && !is_answered()) answer_ = error_answer(icd::Status::InternalServerError, "no answer");
   if (!has_body_) return;
-  if (answered()) {
+  if (is_answered()) {
     send_early_answer();
   } else {
     client_->deadline().expect_body();
@@ -235,43 +235,43 @@ Next Request::body(std::span<const std::uint8_t> piece) {
     return discard_body(piece.size());
   }
   if (left_) *left_ -= std::min<std::uint64_t>(piece.size(), *left_);
-  if (answered()) return Next::GoOn;  // the rest is read and ignored
+  if (is_answered()) return Next::GoOn;  // the rest is read and ignored
   if (chunks_) {
-    take_chunks(piece);
+    consume_chunks(piece);
   } else {
-    take(piece);
+    consume(piece);
   }
   return Next::GoOn;
 }
 
 bool Request::has_unended_body() const {
-  return chunks_ && chunks_->state() == ChunkReader::State::Whole && stage_ == Stage::Body && !answered();
+  return chunks_ && chunks_->state() == ChunkReader::State::Whole && stage_ == Stage::Body && !is_answered();
 }
 
 Next Request::discard_body(std::size_t bytes) {
-  if (answered()) sink_.reset();  // frees its data, because discarding may take long
+  if (is_answered()) sink_.reset();  // frees its data, because discarding may take long
   thrown_away_ += bytes;
   client_->deadline().body_came(bytes);
   const bool is_enough = !client_->deadline().is_authenticated() && thrown_away_ > kLingerUnauthenticated;
   return is_enough ? Next::Close : Next::GoOn;
 }
 
-void Request::take_chunks(std::span<const std::uint8_t> piece) {
+void Request::consume_chunks(std::span<const std::uint8_t> piece) {
   std::string data;
   const auto state = chunks_->feed({reinterpret_cast<const char*>(piece.data()), piece.size()}, data);
   if (state == ChunkReader::State::Refused) {
     refuse(error_answer(icd::Status::BadRequest, chunks_->trouble()));
   } else if (!data.empty()) {
-    take({reinterpret_cast<const std::uint8_t*>(data.data()), data.size()});
+    consume({reinterpret_cast<const std::uint8_t*>(data.data()), data.size()});
   }
 }
 
-void Request::take(std::span<const std::uint8_t> piece) {
+void Request::consume(std::span<const std::uint8_t> piece) {
   resumed_ = false;
   in_call_ = true;
   const bool more = sink_->on_body(piece);
   in_call_ = false;
-  if (answered()) {
+  if (is_answered()) {
     send_early_answer();
   } else if (more || resumed_) {
     client_->deadline().body_came(piece.size());
@@ -286,13 +286,13 @@ Next Request::end() {
   if (stage_ == Stage::Body) {
     stage_ = Stage::Whole;
     client_->deadline().expect_nothing();
-    if (!answered()) {
+    if (!is_answered()) {
       in_call_ = true;
       sink_->on_end();
       in_call_ = false;
     }
   }
-  if (answered()) return hand_over();
+  if (is_answered()) return hand_over();
   if (client_->hung_up()) return Next::Close;
   client_->suspend();
   return Next::GoOn;
@@ -351,7 +351,7 @@ Next Request::hand_over() {
   return Next::GoOn;
 }
 
-void Request::late() {
+void Request::on_late() {
   if (stage_ == Stage::Body && answer_) return refuse(*answer_);
   if (stage_ != Stage::Refusing) client_->engine().tell(Ended::Slow, client_->peer());
   if (stage_ == Stage::Body) {
@@ -360,7 +360,7 @@ void Request::late() {
   client_->cut();
 }
 
-Next Request::failed() {
+Next Request::on_failed() {
   in_call_ = false;
   const bool whole = stage_ == Stage::Whole;
   if (stream_ || stage_ == Stage::Answering || stage_ == Stage::Refusing || stage_ == Stage::Over)
@@ -370,25 +370,25 @@ Next Request::failed() {
   return whole ? Next::Close : Next::GoOn;
 }
 
-void Request::completed() {
+void Request::on_completed() {
   if (stage_ == Stage::Over) return;
   stage_ = Stage::Over;
   client_ = nullptr;
   if (stream_) stream_->detach();
   const std::unique_ptr<BodySink> sink = std::move(sink_);
-  if (sink && !answered()) sink->on_gone();
+  if (sink && !is_answered()) sink->on_gone();
   head_.reset();
 }
 
 void Request::answer(Answer answer) {
-  if (answered() || client_gone()) return;
+  if (is_answered() || client_gone()) return;
   answer_ = std::move(answer);
   on_answer();
 }
 
 std::shared_ptr<Stream> Request::stream(std::string_view content_type) {
   auto stream = std::make_shared<ReplyStream>();
-  if (!answered() && !client_gone()) {
+  if (!is_answered() && !client_gone()) {
     stream->attach(*client_, content_type);
     stream_ = stream;
     on_answer();
@@ -407,12 +407,12 @@ void Request::on_answer() {
 }
 
 bool Request::client_gone() const {
-  return stage_ == Stage::Over || client_->hung_up() || (stage_ == Stage::Refusing && !answered());
+  return stage_ == Stage::Over || client_->hung_up() || (stage_ == Stage::Refusing && !is_answered());
 }
 
 void Request::resume() {
   resumed_ = true;
-  if (stage_ != Stage::Body || !client_->suspended()) return;
+  if (stage_ != Stage::Body || !client_->is_suspended()) return;
   client_->deadline().expect_body();
   client_->resume();
 }

@@ -87,9 +87,9 @@ class ReplyStream final : public Stream {
 enum class Next : std::uint8_t { GoOn, Close };
 
 /// One request, from its head to the end of its answer. libmicrohttpd's callbacks drive it on one side, or
-/// Client if its body is chunked, and holders of its Responder or Flow on the other. It outlives its
+/// Client if its body is chunked, and holders of its Responder or FlowControl on the other. It outlives its
 /// connection while they hold it.
-class Request final : public Responder, public Flow, public std::enable_shared_from_this<Request> {
+class Request final : public Responder, public FlowControl, public std::enable_shared_from_this<Request> {
  public:
   Request(Client& client, std::string_view method);
 
@@ -107,7 +107,7 @@ class Request final : public Responder, public Flow, public std::enable_shared_f
   bool has_unended_body() const;
   /// The body is whole. Called again each time the connection is resumed.
   Next end();
-  void late();
+  void on_late();
   /// True while more of the head or the body is to come.
   bool is_sending() const {
     return stage_ == Stage::Head || stage_ == Stage::Body || stage_ == Stage::Refusing;
@@ -115,12 +115,12 @@ class Request final : public Responder, public Flow, public std::enable_shared_f
   /// An answer without `Connection: close` was given to libmicrohttpd.
   bool keeps_connection() const { return stage_ == Stage::Answering && !stream_ && !is_last_; }
   /// True if libmicrohttpd has no part of an answer yet.
-  bool is_unanswered() const { return !answered() && (stage_ == Stage::Body || stage_ == Stage::Whole); }
+  bool is_unanswered() const { return !is_answered() && (stage_ == Stage::Body || stage_ == Stage::Whole); }
   /// A callback of the handler threw. Answers 500, unless an answer was being sent, and closes the
   /// connection.
-  Next failed();
+  Next on_failed();
   /// libmicrohttpd has finished the request, in any way.
-  void completed();
+  void on_completed();
 
   /// The handler's side.
   void answer(Answer answer) override;
@@ -138,11 +138,11 @@ class Request final : public Responder, public Flow, public std::enable_shared_f
     Over,
   };
 
-  bool answered() const { return answer_ || stream_; }
-  void take(std::span<const std::uint8_t> piece);
+  bool is_answered() const { return answer_ || stream_; }
+  void consume(std::span<const std::uint8_t> piece);
   /// Discards a piece of a body that was answered before it was whole.
   Next discard_body(std::size_t bytes);
-  void take_chunks(std::span<const std::uint8_t> piece);
+  void consume_chunks(std::span<const std::uint8_t> piece);
   /// Sends an answer that came before the body was whole.
   void send_early_answer();
   void refuse(Answer answer);

@@ -39,7 +39,7 @@ class MhdServer final : public Server, public Engine {
   MhdServer(loop::Loop& loop, Listen listen, Handler& handler)
       : loop_(loop),
         listen_(std::move(listen)),
-        shares_(Shares::of(listen_.connections, listen_.connections_per_address)),
+        shares_(Shares::split(listen_.connections, listen_.connections_per_address)),
         turnstile_(loop, handler, listen_.guesses == nullptr ? own_guesses_ : *listen_.guesses, listen_.late,
                    [this](Ended why, const std::string& address) { tell(why, address); }) {}
   MhdServer(const MhdServer&) = delete;
@@ -50,14 +50,14 @@ class MhdServer final : public Server, public Engine {
   void stop_listening() override;
   std::uint16_t port() const override { return port_; }
   std::size_t connections() const override { return clients_.size(); }
-  std::size_t unauthenticated() const override;
+  std::size_t unauthenticated_connections() const override;
 
   loop::Instant now() const override { return loop_.now(); }
   const Listen& listen() const override { return listen_; }
   void schedule_run() override;
   void look_at(loop::Instant when) override;
   void tell(Ended why, const std::string& address) override {
-    if (listen_.ended) listen_.ended(why, address);
+    if (listen_.on_ended) listen_.on_ended(why, address);
   }
   void schedule_hold_back(std::uint64_t number) override { to_hold_back_.push_back(number); }
   void begin_request(Client& client) override;
@@ -79,7 +79,7 @@ class MhdServer final : public Server, public Engine {
   Next hear(Client& client, std::string_view upload, void** request_cls);
   /// Gives libmicrohttpd a connection that stunnel passed on.
   void add(loop::FileDescriptor connection, ProxyHeader header);
-  void connected(MHD_Connection* connection, void** client_cls);
+  void on_connected(MHD_Connection* connection, void** client_cls);
   std::vector<Held> held_but(const Client* one) const;
   /// Closes unauthenticated connections above their share.
   void close_unauthenticated();
@@ -211,14 +211,14 @@ void MhdServer::look_at_deadlines() {
   look_due_ = loop::Instant::max();
   const loop::Instant now = loop_.now();
   for (const auto& [number, client] : clients_) {
-    if (client->deadline().at() <= now) client->late();
+    if (client->deadline().at() <= now) client->on_late();
   }
   loop::Instant next = loop::Instant::max();
   for (const auto& [number, client] : clients_) next = std::min(next, client->deadline().at());
   if (next != loop::Instant::max()) look_at(next);
 }
 
-void MhdServer::connected(MHD_Connection* connection, void** client_cls) {
+void MhdServer::on_connected(MHD_Connection* connection, void** client_cls) {
   // libmicrohttpd 1 overwrites the answer at the next question.
   const sockaddr* const address =
       MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CLIENT_ADDRESS)->client_addr;
@@ -232,7 +232,7 @@ void MhdServer::connected(MHD_Connection* connection, void** client_cls) {
   schedule_hold_back(known->number());
 }
 
-std::size_t MhdServer::unauthenticated() const {
+std::size_t MhdServer::unauthenticated_connections() const {
   return static_cast<std::size_t>(std::ranges::count_if(
       clients_, [](const auto& each) { return !each.second->deadline().is_authenticated(); }));
 }
@@ -241,13 +241,13 @@ std::vector<Held> MhdServer::held_but(const Client* one) const {
   std::vector<Held> all;
   for (const auto& [number, client] : clients_) {
     if (client.get() == one) continue;
-    if (const auto held = client->held()) all.push_back(*held);
+    if (const auto held = client->held_share()) all.push_back(*held);
   }
   return all;
 }
 
 void MhdServer::close_unauthenticated() {
-  if (unauthenticated() <= shares_.unauthenticated) return;
+  if (unauthenticated_connections() <= shares_.unauthenticated) return;
   while (const auto number = unauthenticated_to_close(held_but(nullptr), shares_))
     clients_.at(*number)->give_way();
 }
@@ -268,7 +268,7 @@ void MhdServer::begin_request(Client& client) {
     request->refuse_head("request target: expected a path of UTF-8, percent-encoded");
   } else {
     request->begin(std::move(head), std::move(*target), client.gate().framing());
-    const Credentials shown = turnstile_.shown(request->head());
+    const Credentials shown = turnstile_.read_credentials(request->head());
     const bool known = shown == Credentials::Token || shown == Credentials::Enough;
     const bool has_room = !known || client.deadline().is_authenticated() || make_room_for(client);
     client.deadline().set_authenticated(known && has_room);
@@ -290,7 +290,7 @@ MHD_Result MhdServer::request_came(void* cls, MHD_Connection* connection, const 
   Client* client = client_of(connection);
   if (client == nullptr || server.stopping_) return MHD_NO;
   const std::string_view piece(upload, std::exchange(*upload_size, 0));
-  const Next next = client->guarded([&] { return server.hear(*client, piece, request_cls); });
+  const Next next = client->run_guarded([&] { return server.hear(*client, piece, request_cls); });
   return next == Next::Close ? MHD_NO : MHD_YES;
 }
 
@@ -311,20 +311,20 @@ void MhdServer::request_completed(void*, MHD_Connection* connection, void** requ
   if (*request_cls == nullptr || client == nullptr || !client->request()) return;
   *request_cls = nullptr;
   const std::shared_ptr<Request> request = client->request();
-  loop::guarded("the end of a request",
-                [&] { client->on_request_end(why == MHD_REQUEST_TERMINATED_COMPLETED_OK); });
-  loop::guarded("the end of a request", [&] { request->completed(); });
+  loop::run_guarded("the end of a request",
+                    [&] { client->on_request_end(why == MHD_REQUEST_TERMINATED_COMPLETED_OK); });
+  loop::run_guarded("the end of a request", [&] { request->on_completed(); });
 }
 
 void MhdServer::connection_changed(void* cls, MHD_Connection* connection, void** client_cls,
                                    MHD_ConnectionNotificationCode what) {
   auto& server = *static_cast<MhdServer*>(cls);
   if (what == MHD_CONNECTION_NOTIFY_STARTED) {
-    loop::guarded("a connection of the team", [&] { server.connected(connection, client_cls); });
+    loop::run_guarded("a connection of the team", [&] { server.on_connected(connection, client_cls); });
   } else if (auto* client = static_cast<Client*>(std::exchange(*client_cls, nullptr)); client != nullptr) {
-    loop::guarded("a connection of the team", [&] {
+    loop::run_guarded("a connection of the team", [&] {
       // Of a request that libmicrohttpd does not know.
-      if (const std::shared_ptr<Request> request = client->request()) request->completed();
+      if (const std::shared_ptr<Request> request = client->request()) request->on_completed();
       server.clients_.erase(client->number());
       server.schedule_run();  // libmicrohttpd checks only then if there is room for another connection
     });

@@ -43,7 +43,7 @@ struct Listen {
   std::chrono::milliseconds idle{60000};       // between requests
   std::chrono::milliseconds late{1000};        // delay of late answers (TokenGuesses)
   TokenGuesses* guesses = nullptr;             // must outlive the server; null: its own
-  std::function<void(Ended why, const std::string& address)> ended = {};  // called for each; may be empty
+  std::function<void(Ended why, const std::string& address)> on_ended = {};  // called for each; may be empty
 };
 
 /// The head of one request. Valid until the request ends.
@@ -119,7 +119,7 @@ class BodySink {
  public:
   virtual ~BodySink() = default;
   /// A piece of the body, valid during the call. The sink receives it in either case. False: back-pressure;
-  /// the connection is suspended until Flow::resume().
+  /// the connection is suspended until FlowControl::resume().
   virtual bool on_body(std::span<const std::uint8_t> piece) = 0;
   /// The body is whole. Answer now or later.
   virtual void on_end() = 0;
@@ -128,9 +128,9 @@ class BodySink {
 };
 
 /// Resumes the body of a suspended request.
-class Flow {
+class FlowControl {
  public:
-  virtual ~Flow() = default;
+  virtual ~FlowControl() = default;
   virtual void resume() = 0;
 };
 
@@ -148,11 +148,11 @@ class Handler {
   virtual ~Handler() = default;
   /// Called before open(). An authenticated client (Token, Enough) has room however many unauthenticated
   /// clients there are, and has the time that a slow radio needs.
-  virtual Credentials shown(const RequestHead& head) = 0;
+  virtual Credentials read_credentials(const RequestHead& head) = 0;
   /// Called when the head is whole. May answer at once. Then the body is read and ignored up to a limit, or
   /// the connection is closed. Null is allowed only after an answer.
   virtual std::unique_ptr<BodySink> open(const RequestHead& head, std::shared_ptr<Responder> responder,
-                                         std::shared_ptr<Flow> flow) = 0;
+                                         std::shared_ptr<FlowControl> flow) = 0;
 };
 
 /// An HTTP/1.1 server by libmicrohttpd on the loop, for one address.
@@ -173,7 +173,7 @@ class Server {
   virtual std::uint16_t port() const = 0;
   virtual std::size_t connections() const = 0;
   /// Connections that have shown no token.
-  virtual std::size_t unauthenticated() const = 0;
+  virtual std::size_t unauthenticated_connections() const = 0;
   /// Accepts no new connections; requests in flight continue. A copy of the socket still listens, and clients
   /// that connect wait for its owner.
   virtual void stop_listening() = 0;

@@ -14,13 +14,13 @@ constexpr std::uint32_t kPartOfUnauthenticated = 4, kMostUnauthenticated = 32;
 
 using Counts = std::map<std::string_view, std::size_t>;
 
-Counts by_address(const std::vector<Held>& held) {
+Counts count_by_address(const std::vector<Held>& held) {
   Counts counts;
   for (const Held& each : held) ++counts[each.address];
   return counts;
 }
 
-std::optional<std::uint64_t> longest(const std::vector<Held>& held, Held::Doing doing) {
+std::optional<std::uint64_t> longest(const std::vector<Held>& held, Held::Activity doing) {
   const Held* found = nullptr;
   for (const Held& each : held) {
     if (each.doing == doing && (found == nullptr || each.since < found->since)) found = &each;
@@ -30,17 +30,17 @@ std::optional<std::uint64_t> longest(const std::vector<Held>& held, Held::Doing 
 
 /// The connection that costs least to close.
 std::optional<std::uint64_t> easiest(const std::vector<Held>& held) {
-  const auto idle = longest(held, Held::Doing::Idle);
-  return idle ? idle : longest(held, Held::Doing::Left);
+  const auto idle = longest(held, Held::Activity::Idle);
+  return idle ? idle : longest(held, Held::Activity::Left);
 }
 
 /// A connection of the address with most, if `address` would still have fewer with one more.
-std::optional<std::uint64_t> of_greedy(std::string_view address, const std::vector<Held>& known) {
-  Counts counts = by_address(known);
+std::optional<std::uint64_t> find_greedy(std::string_view address, const std::vector<Held>& known) {
+  Counts counts = count_by_address(known);
   const std::size_t own = counts[address] + 1;
   const Held* found = nullptr;
   for (const Held& each : known) {
-    if (each.doing != Held::Doing::Sending || counts[each.address] < own + 1) continue;
+    if (each.doing != Held::Activity::Sending || counts[each.address] < own + 1) continue;
     if (found == nullptr || counts[each.address] > counts[found->address] ||
         (counts[each.address] == counts[found->address] && each.number < found->number)) {
       found = &each;
@@ -57,7 +57,7 @@ std::vector<Held> those(std::span<const Held> held, const auto& which) {
 
 }  // namespace
 
-Shares Shares::of(std::uint32_t connections, std::uint32_t of_address) {
+Shares Shares::split(std::uint32_t connections, std::uint32_t of_address) {
   const std::uint32_t unauthenticated =
       std::clamp(connections / kPartOfUnauthenticated, 1u, kMostUnauthenticated);
   const std::uint32_t known = std::max(connections, unauthenticated + 1) - unauthenticated;
@@ -67,13 +67,14 @@ Shares Shares::of(std::uint32_t connections, std::uint32_t of_address) {
 
 std::optional<std::uint64_t> unauthenticated_to_close(std::span<const Held> held, const Shares& shares) {
   const auto unauthenticated = those(held, [](const Held& each) { return !each.known; });
-  const auto seen = those(unauthenticated, [](const Held& each) { return each.doing != Held::Doing::Fresh; });
+  const auto seen =
+      those(unauthenticated, [](const Held& each) { return each.doing != Held::Activity::Fresh; });
   if (unauthenticated.size() <= shares.unauthenticated || seen.empty()) return std::nullopt;
-  const Counts counts = by_address(unauthenticated);
+  const Counts counts = count_by_address(unauthenticated);
   return std::ranges::min_element(seen, {},
                                   [&](const Held& each) {
                                     return std::tuple(-static_cast<std::int64_t>(counts.at(each.address)),
-                                                      each.doing != Held::Doing::Idle, each.number);
+                                                      each.doing != Held::Activity::Idle, each.number);
                                   })
       ->number;
 }
@@ -86,7 +87,7 @@ Room room_for(std::string_view address, std::span<const Held> others, const Shar
     gives_way = easiest(own);
   } else if (known.size() >= shares.known) {
     gives_way = easiest(known);
-    if (!gives_way) gives_way = of_greedy(address, known);
+    if (!gives_way) gives_way = find_greedy(address, known);
   } else {
     return {};
   }

@@ -16,12 +16,12 @@ struct Shares {
   std::uint32_t known_of_address = 0;
 
   /// Splits `connections`, of which one address may have `of_address`.
-  static Shares of(std::uint32_t connections, std::uint32_t of_address);
+  static Shares split(std::uint32_t connections, std::uint32_t of_address);
 };
 
 /// One connection, as the shares see it.
 struct Held {
-  enum class Doing : std::uint8_t {
+  enum class Activity : std::uint8_t {
     Fresh,    // accepted, and its bytes were not checked yet
     Idle,     // between requests
     Sending,  // its head or its body is not whole
@@ -32,7 +32,7 @@ struct Held {
   std::uint64_t number = 0;  // a lower number is older
   std::string_view address;
   bool known = false;
-  Doing doing = Doing::Sending;
+  Activity doing = Activity::Sending;
   loop::Instant since{};  // the start of that state
 };
 

@@ -96,10 +96,10 @@ Answer not_looked_at() {
 
 }  // namespace
 
-Credentials Turnstile::shown(const RequestHead& head) {
+Credentials Turnstile::read_credentials(const RequestHead& head) {
   verdict_ = {};
   const std::string_view token = icd::token_in(head.header("Authorization"));
-  const Credentials shown = handler_.shown(head);
+  const Credentials shown = handler_.read_credentials(head);
   if (shown == Credentials::Token) {
     verdict_ = guesses_.right(head.peer(), loop_.now());
   } else if (shown == Credentials::WrongToken) {
@@ -115,7 +115,7 @@ Credentials Turnstile::shown(const RequestHead& head) {
 }
 
 std::unique_ptr<BodySink> Turnstile::open(const RequestHead& head, std::shared_ptr<Responder> responder,
-                                          std::shared_ptr<Flow> flow) {
+                                          std::shared_ptr<FlowControl> flow) {
   if (!verdict_.late) return handler_.open(head, std::move(responder), std::move(flow));
   auto late = std::make_shared<LateResponder>(loop_, std::move(responder), late_);
   if (verdict_.looked == Looked::Wrong) {

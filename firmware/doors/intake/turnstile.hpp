@@ -80,9 +80,9 @@ class Turnstile final : public Handler {
       : loop_(loop), handler_(handler), guesses_(guesses), late_(late), refused_(std::move(refused)) {}
 
   /// Called once for each request, just before open().
-  Credentials shown(const RequestHead& head) override;
+  Credentials read_credentials(const RequestHead& head) override;
   std::unique_ptr<BodySink> open(const RequestHead& head, std::shared_ptr<Responder> responder,
-                                 std::shared_ptr<Flow> flow) override;
+                                 std::shared_ptr<FlowControl> flow) override;
 
  private:
   loop::Loop& loop_;

@@ -32,7 +32,7 @@ void UploadContext::refuse(const icd::Refusal& refusal, std::vector<Header> head
   Answer answer = error_answer(refusal.status, refusal.sentence);
   answer.headers = std::move(headers);
   responder->answer(std::move(answer));
-  message_handler.refused(uri, sender, refusal);
+  message_handler.on_rejected(uri, sender, refusal);
 }
 
 void UploadContext::answer(const icd::Checked<void>& taken) const {
@@ -68,9 +68,9 @@ void SmallUpload::on_end() {
 void SmallUpload::give_to_desk(const codec::Document& document) {
   switch (context_.uri) {
     case icd::Uri::StateUpdate:
-      return take_state(document);
+      return accept_state(document);
     case icd::Uri::ArtifactReports:
-      return take_report(document);
+      return accept_report(document);
     case icd::Uri::Status:
     case icd::Uri::MapUpdate:
     case icd::Uri::MarkersUpdate:
@@ -78,20 +78,20 @@ void SmallUpload::give_to_desk(const codec::Document& document) {
   }
 }
 
-void SmallUpload::take_state(const codec::Document& document) {
+void SmallUpload::accept_state(const codec::Document& document) {
   auto read = codec::read_state_parts(document, rules_);
   if (!read) return context_.refuse(read.error());
-  auto taken = context_.message_handler.take(std::move(read->message), context_.sender_at_end());
+  auto taken = context_.message_handler.accept(std::move(read->message), context_.sender_at_end());
   if (taken && read->refused.count > 0) taken = std::unexpected(read->refused.refusal());
   context_.answer(taken);
 }
 
-void SmallUpload::take_report(const codec::Document& document) {
+void SmallUpload::accept_report(const codec::Document& document) {
   const auto read = codec::read_artifact_report(document, rules_);
   if (!read) return context_.refuse(read.error());
   if (!read->left_out.empty())
     context_.message_handler.left_out(context_.uri, context_.sender, read->left_out);
-  context_.message_handler.take(read->report, context_.sender, context_.responder);
+  context_.message_handler.accept(read->report, context_.sender, context_.responder);
 }
 
 namespace {
@@ -140,7 +140,7 @@ class Decoding {
   icd::Checked<icd::MapUpdate> finish(Before before) {
     auto document = ADIT_TRY(decoder_.finish());
     if (before.stored) {
-      auto data = ADIT_TRY(before.stored->stored());
+      auto data = ADIT_TRY(before.stored->stored_bytes());
       data.append(before.left);
       data.append(document.data);
       document.data = std::move(data);
@@ -178,8 +178,8 @@ class Decoding {
 
 class MapUpload::State final : public Taking, public std::enable_shared_from_this<State> {
  public:
-  State(UploadContext context, MapUploadOptions options, std::shared_ptr<Flow> flow, loop::Workers& workers,
-        std::shared_ptr<UploadBudget> budget)
+  State(UploadContext context, MapUploadOptions options, std::shared_ptr<FlowControl> flow,
+        loop::Workers& workers, std::shared_ptr<UploadBudget> budget)
       : Taking(std::move(context), std::move(budget)),
         options_(std::move(options)),
         without_room_(options_.without_room, context_.sender.address),
@@ -188,8 +188,8 @@ class MapUpload::State final : public Taking, public std::enable_shared_from_thi
         arrival_(context_.message_handler.begin_map()),
         decoding_(std::make_shared<Decoding>(options_.kind, options_.rules)) {}
 
-  bool take(std::span<const std::uint8_t> piece) override;
-  void whole() override {
+  bool consume(std::span<const std::uint8_t> piece) override;
+  void on_whole() override {
     whole_ = true;
     give_to_worker();
   }
@@ -205,22 +205,22 @@ class MapUpload::State final : public Taking, public std::enable_shared_from_thi
   bool is_held();
   bool is_worth_it() const;
   void give_to_worker();
-  void worked();
+  void on_worked();
   void take_result(icd::Checked<icd::MapUpdate> result);
   void store_what_came();
-  void stored(icd::ChunkedBytes left);
+  void on_stored(icd::ChunkedBytes left);
   void go_on();
   static icd::Refusal not_held() {
     return {icd::Status::ServiceUnavailable, "Adit has no memory for this map; send it again later"};
   }
-  void failed() {
+  void on_failed() {
     at_work_ = false;
     reject(not_held());
   }
 
   MapUploadOptions options_;
   UploadShare without_room_;
-  std::shared_ptr<Flow> flow_;
+  std::shared_ptr<FlowControl> flow_;
   loop::Workers& workers_;
   std::shared_ptr<MapArrival> arrival_;  // null if over; so is the next
   std::shared_ptr<Decoding> decoding_;
@@ -236,7 +236,7 @@ class MapUpload::State final : public Taking, public std::enable_shared_from_thi
   bool whole_ = false;
 };
 
-bool MapUpload::State::take(std::span<const std::uint8_t> piece) {
+bool MapUpload::State::consume(std::span<const std::uint8_t> piece) {
   if (over_) return true;
   context_.sender.bytes += piece.size();
   if (context_.sender.bytes > options_.most_bytes) {
@@ -277,7 +277,7 @@ bool MapUpload::State::is_worth_it() const {
 
 void MapUpload::State::give_to_worker() {
   if (at_work_ || over_ || !is_worth_it()) return;
-  if (storing_ && (whole_ || decoding_->data_held() >= kStored)) return;  // stored() continues
+  if (storing_ && (whole_ || decoding_->data_held() >= kStored)) return;  // on_stored() continues
   at_work_ = true;
   auto pieces = std::make_shared<Pieces>();
   if (!decoding_->has_more()) {
@@ -290,14 +290,14 @@ void MapUpload::State::give_to_worker() {
   workers_.submit(
       loop::Urgency::OnTheWay,
       [decoding = decoding_, pieces, before = std::move(before)] { decoding->work(*pieces, before); },
-      [self = shared_from_this(), arrival = arrival_] { self->worked(); },
-      [self = shared_from_this()] { self->failed(); });
+      [self = shared_from_this(), arrival = arrival_] { self->on_worked(); },
+      [self = shared_from_this()] { self->on_failed(); });
 }
 
-void MapUpload::State::worked() {
+void MapUpload::State::on_worked() {
   at_work_ = false;
   if (over_) return;
-  const bool well = loop::guarded("receiving a map", [this] {
+  const bool well = loop::run_guarded("receiving a map", [this] {
     if (auto& result = decoding_->result()) return take_result(std::move(*result));
     go_on();
   });
@@ -308,7 +308,7 @@ void MapUpload::State::take_result(icd::Checked<icd::MapUpdate> result) {
   const auto arrival = arrival_;
   abandon();
   if (!result) return context_.answer(std::unexpected(std::move(result.error())));
-  arrival->take(
+  arrival->accept(
       std::move(*result), context_.sender_at_end(),
       [self = shared_from_this()](const icd::Checked<void>& taken) { self->context_.answer(taken); });
 }
@@ -328,19 +328,20 @@ void MapUpload::State::store_what_came() {
   has_stored_ = storing_ = true;
   taken_ += decoding_->data_held();
   arrival_->store(decoding_->take_data(),
-                  [self = shared_from_this()](icd::ChunkedBytes left) { self->stored(std::move(left)); });
+                  [self = shared_from_this()](icd::ChunkedBytes left) { self->on_stored(std::move(left)); });
 }
 
-void MapUpload::State::stored(icd::ChunkedBytes left) {
+void MapUpload::State::on_stored(icd::ChunkedBytes left) {
   storing_ = false;
   if (over_) return;
   left_ = std::move(left);
   if (at_work_) return;
-  if (!loop::guarded("storing a map", [this] { go_on(); })) failed();
+  if (!loop::run_guarded("storing a map", [this] { go_on(); })) on_failed();
 }
 
-MapUpload::MapUpload(const UploadContext& context, MapUploadOptions options, std::shared_ptr<Flow> flow,
-                     loop::Workers& workers, std::shared_ptr<UploadBudget> budget)
+MapUpload::MapUpload(const UploadContext& context, MapUploadOptions options,
+                     std::shared_ptr<FlowControl> flow, loop::Workers& workers,
+                     std::shared_ptr<UploadBudget> budget)
     : WorkerUpload(context,
                    std::make_shared<State>(context, options, std::move(flow), workers, std::move(budget))) {}
 
@@ -390,11 +391,11 @@ class MarkersUpload::State final : public Taking, public std::enable_shared_from
         turns_(turns),
         at_once_(std::in_place, kind, codec::Split::Lists, kAtOnce) {}
 
-  bool take(std::span<const std::uint8_t> piece) override {
+  bool consume(std::span<const std::uint8_t> piece) override {
     if (!over_) keep(piece);
     return true;
   }
-  void whole() override;
+  void on_whole() override;
 
  private:
   void let_go() override { body_.clear(); }
@@ -406,19 +407,19 @@ class MarkersUpload::State final : public Taking, public std::enable_shared_from
   void small_was_read(std::shared_ptr<Body> body, Parts parts);
   void wait_for_turn();
   void read_large_one();
-  void was_read(Parts parts) {
+  void on_read(Parts parts) {
     if (over_) return;
-    if (!loop::guarded("receiving markers", [&] { decoded(std::move(parts)); })) fail(not_held());
+    if (!loop::run_guarded("receiving markers", [&] { on_decoded(std::move(parts)); })) fail(not_held());
   }
   void end_turn() {
     if (const auto turns = turns_.lock()) turns->end();
   }
   /// Gives the accepted markers to the message handler. If the message handler accepts them, the answer is
   /// about the rejected ones.
-  void decoded(Parts parts) {
+  void on_decoded(Parts parts) {
     abandon();
     if (!parts) return context_.refuse(parts.error());
-    context_.message_handler.take(
+    context_.message_handler.accept(
         std::move(parts->message), context_.sender_at_end(),
         [self = shared_from_this(), refused = std::move(parts->refused)](icd::Checked<void> taken) {
           if (taken && refused.count > 0) taken = std::unexpected(refused.refusal());
@@ -428,7 +429,7 @@ class MarkersUpload::State final : public Taking, public std::enable_shared_from
   static icd::Refusal not_held() {
     return {icd::Status::ServiceUnavailable, "Adit has no memory for these markers; send them again later"};
   }
-  void failed() { reject(not_held()); }
+  void on_failed() { reject(not_held()); }
 
   codec::BodyKind kind_;
   icd::Rules rules_;
@@ -460,11 +461,11 @@ void MarkersUpload::State::feed(std::span<const std::uint8_t> piece) {
   at_once_.reset();
 }
 
-void MarkersUpload::State::whole() {
+void MarkersUpload::State::on_whole() {
   if (over_) return;
   if (body_.size() > kSmall.text_bytes) return wait_for_turn();
   if (!at_once_) return give_to_worker();
-  decoded(read_parts(*at_once_, rules_));
+  on_decoded(read_parts(*at_once_, rules_));
 }
 
 void MarkersUpload::State::give_to_worker() {
@@ -474,14 +475,14 @@ void MarkersUpload::State::give_to_worker() {
       loop::Urgency::OnTheWay,
       [kind = kind_, rules = rules_, body, parts] { *parts = read_small(kind, rules, *body); },
       [self = shared_from_this(), body, parts] { self->small_was_read(body, std::move(*parts)); },
-      [self = shared_from_this()] { self->failed(); });
+      [self = shared_from_this()] { self->on_failed(); });
 }
 
 void MarkersUpload::State::small_was_read(std::shared_ptr<Body> body, Parts parts) {
   if (over_) return;
-  if (parts || !is_too_large(parts.error())) return was_read(std::move(parts));
+  if (parts || !is_too_large(parts.error())) return on_read(std::move(parts));
   body_ = std::move(*body);
-  if (!loop::guarded("reading markers", [this] { wait_for_turn(); })) failed();
+  if (!loop::run_guarded("reading markers", [this] { wait_for_turn(); })) on_failed();
 }
 
 void MarkersUpload::State::wait_for_turn() {
@@ -489,9 +490,9 @@ void MarkersUpload::State::wait_for_turn() {
   if (!turns) return;
   turns->wait(context_.sender.address, [self = shared_from_this()] {
     if (self->over_) return self->end_turn();
-    if (loop::guarded("reading markers", [&] { self->read_large_one(); })) return;
+    if (loop::run_guarded("reading markers", [&] { self->read_large_one(); })) return;
     self->end_turn();
-    self->failed();
+    self->on_failed();
   });
 }
 
@@ -503,11 +504,11 @@ void MarkersUpload::State::read_large_one() {
       [kind = kind_, rules = rules_, body, parts] { *parts = read_large(kind, rules, *body); },
       [self = shared_from_this(), parts] {
         self->end_turn();
-        self->was_read(std::move(*parts));
+        self->on_read(std::move(*parts));
       },
       [self = shared_from_this()] {
         self->end_turn();
-        self->failed();
+        self->on_failed();
       });
 }
 

@@ -51,7 +51,7 @@ class UploadBudget {
   explicit UploadBudget(std::size_t bytes) : whole_(bytes), left_(bytes) {}
 
   /// Takes bytes for `address`. False: the budget or the share of `address` is used up.
-  bool take(const std::string& address, std::size_t bytes) {
+  bool reserve(const std::string& address, std::size_t bytes) {
     if (!is_fair(address, bytes)) return false;
     left_ -= bytes;
     held_[address] += bytes;
@@ -90,7 +90,7 @@ class UploadShare {
   /// Grows the part to `bytes`. False: the budget does not allow it, and the part stays as it is.
   bool grow_to(std::size_t bytes) {
     if (bytes <= taken_) return true;
-    if (!budget_->take(address_, bytes - taken_)) return false;
+    if (!budget_->reserve(address_, bytes - taken_)) return false;
     taken_ = bytes;
     return true;
   }
@@ -186,8 +186,8 @@ class WorkerUpload : public Upload {
     Taking& operator=(const Taking&) = delete;
 
     /// As BodySink::on_body().
-    virtual bool take(std::span<const std::uint8_t> piece) = 0;
-    virtual void whole() = 0;
+    virtual bool consume(std::span<const std::uint8_t> piece) = 0;
+    virtual void on_whole() = 0;
     void abandon() {
       over_ = true;
       let_go();
@@ -220,8 +220,8 @@ class WorkerUpload : public Upload {
   WorkerUpload(const WorkerUpload&) = delete;
   WorkerUpload& operator=(const WorkerUpload&) = delete;
 
-  bool on_body(std::span<const std::uint8_t> piece) final { return taking_->take(piece); }
-  void on_end() final { taking_->whole(); }
+  bool on_body(std::span<const std::uint8_t> piece) final { return taking_->consume(piece); }
+  void on_end() final { taking_->on_whole(); }
   void on_gone() final { taking_->abandon(); }
   void reject(const icd::Refusal& refusal) final { taking_->reject(refusal); }
 
@@ -252,8 +252,8 @@ class SmallUpload final : public Upload {
   void give_to_desk(const codec::Document& document);
   /// Gives the accepted parts to the message handler. If the message handler accepts them, the answer is
   /// about the rejected parts.
-  void take_state(const codec::Document& document);
-  void take_report(const codec::Document& document);
+  void accept_state(const codec::Document& document);
+  void accept_report(const codec::Document& document);
 
   UploadContext context_;
   UploadShare share_;
@@ -288,7 +288,7 @@ class MapUpload final : public WorkerUpload {
       64 * 1024;  // the least bytes of a job, except at the beginning and the end
   static constexpr std::size_t kWithoutRoom = 24u << 20;
 
-  MapUpload(const UploadContext& context, MapUploadOptions options, std::shared_ptr<Flow> flow,
+  MapUpload(const UploadContext& context, MapUploadOptions options, std::shared_ptr<FlowControl> flow,
             loop::Workers& workers, std::shared_ptr<UploadBudget> budget);
 
  private:

@@ -35,43 +35,43 @@ bool read_into(std::map<Key, Value>& all, std::string_view said) {
 
 }  // namespace
 
-bool Carried::apply(Kind kind, std::string_view said) {
+bool Carried::apply(RecordKind kind, std::string_view said) {
   switch (kind) {
-    case Kind::Clock:
+    case RecordKind::Clock:
       return read_clock(said);
-    case Kind::LifeBegins:
-      state_comes_back(), markers_come_back();
+    case RecordKind::LifeBegins:
+      put_back_state(), put_back_markers();
       return true;
-    case Kind::Senders:
+    case RecordKind::Senders:
       return read_senders(said);
-    case Kind::StateSent:
+    case RecordKind::StateSent:
       return read_state_sent(said);
-    case Kind::StateDone:
+    case RecordKind::StateDone:
       state_is_done();
       return true;
-    case Kind::StateBack:
-      state_comes_back();
+    case RecordKind::StateBack:
+      put_back_state();
       return true;
-    case Kind::Markers:
+    case RecordKind::Markers:
       return read_markers(said);
-    case Kind::MarkersSent:
+    case RecordKind::MarkersSent:
       return read_sent(said);
-    case Kind::MarkersDone:
+    case RecordKind::MarkersDone:
       markers_under_way_.clear();
       return true;
-    case Kind::MarkersBack:
-      markers_come_back();
+    case RecordKind::MarkersBack:
+      put_back_markers();
       return true;
-    case Kind::Pace:
+    case RecordKind::Pace:
       return read_into(paces_, said);
-    case Kind::Stamp:
+    case RecordKind::Stamp:
       return read_into(stamps_, said);
-    case Kind::Grids:
+    case RecordKind::Grids:
       if (!grids_) grids_.emplace();
       return said.empty() || read_into(*grids_, said);  // an empty one begins them
-    case Kind::Poses:
+    case RecordKind::Poses:
       return read_poses(said);
-    case Kind::Heard:
+    case RecordKind::Heard:
       return read_heard(said);
   }
   return false;
@@ -116,7 +116,7 @@ bool Carried::read_poses(std::string_view said) {
   }
   for (queues::PostedPose& posted : poses) {
     if (posted.stamp && !posted.address.empty())
-      senders_.given({posted.address, icd::Uri::StateUpdate, posted.name.text()}, *posted.stamp);
+      senders_.restore_stamp({posted.address, icd::Uri::StateUpdate, posted.name.text()}, *posted.stamp);
     const auto known = robots_.find(posted.name);
     if (known == robots_.end()) {
       robots_.emplace(posted.name, Robot{posted});
@@ -132,7 +132,7 @@ bool Carried::read_poses(std::string_view said) {
 bool Carried::read_state_sent(std::string_view said) {
   std::vector<std::string> robots;
   if (!store::read(said, robots)) return false;
-  state_comes_back();
+  put_back_state();
   for (const std::string& robot : robots) {
     const auto name = icd::RobotName::parse(robot);
     const auto held = name ? robots_.find(*name) : robots_.end();
@@ -153,7 +153,7 @@ bool Carried::read_markers(std::string_view said) {
 bool Carried::read_sent(std::string_view said) {
   std::vector<std::tuple<std::string, std::int32_t, icd::MarkerAction>> sent;
   if (!store::read(said, sent)) return false;
-  markers_come_back();
+  put_back_markers();
   markers_under_way_.clear();
   icd::Marker like;
   for (auto& [ns, id, action] : sent) {
@@ -171,7 +171,7 @@ bool Carried::read_heard(std::string_view said) {
   return true;
 }
 
-double Carried::behind(const std::string& robot, std::size_t kind) const {
+double Carried::lag(const std::string& robot, std::size_t kind) const {
   const auto heard = heard_.find(robot);
   return heard == heard_.end() ? Heard::kNever : heard->second.behind.at(kind);
 }
@@ -181,12 +181,12 @@ void Carried::state_is_done() {
   std::erase_if(robots_, [](const auto& robot) { return !robot.second.news; });
 }
 
-void Carried::state_comes_back() {
+void Carried::put_back_state() {
   for (auto& [name, robot] : robots_) robot.news = std::exchange(robot.under_way, false) || robot.news;
 }
 
 /// As queues::MarkerQueue::put_back().
-void Carried::markers_come_back() {
+void Carried::put_back_markers() {
   queues::MarkerChanges older;
   for (icd::Marker& marker : std::exchange(markers_under_way_, {})) older.apply(std::move(marker));
   markers_.apply_before(std::move(older));
@@ -194,41 +194,41 @@ void Carried::markers_come_back() {
 
 icd::MarkersUpdate Carried::markers() const {
   Carried ended = *this;
-  ended.markers_come_back();
+  ended.put_back_markers();
   icd::MarkersUpdate update;
   update.markers.reserve(ended.markers_.size().count);
-  for (const auto& [place, marker] : ended.markers_.in_order()) update.markers.push_back(marker);
+  for (const auto& [place, marker] : ended.markers_.changes_by_place()) update.markers.push_back(marker);
   return update;
 }
 
-void Carried::write(const std::function<void(Kind, std::string_view)>& to) const {
-  if (clock_) to(Kind::Clock, store::bytes_of(*clock_));
-  to(Kind::Senders, store::bytes_of(senders_.clocks()));
-  for (const auto& [uri, learned] : paces_) to(Kind::Pace, store::bytes_of(uri, learned));
-  for (const auto& [uri, stamp] : stamps_) to(Kind::Stamp, store::bytes_of(uri, stamp));
+void Carried::write(const std::function<void(RecordKind, std::string_view)>& to) const {
+  if (clock_) to(RecordKind::Clock, store::bytes_of(*clock_));
+  to(RecordKind::Senders, store::bytes_of(senders_.clocks()));
+  for (const auto& [uri, learned] : paces_) to(RecordKind::Pace, store::bytes_of(uri, learned));
+  for (const auto& [uri, stamp] : stamps_) to(RecordKind::Stamp, store::bytes_of(uri, stamp));
   if (grids_) {
-    to(Kind::Grids, {});
-    for (const auto& [key, extent] : *grids_) to(Kind::Grids, store::bytes_of(key, extent));
+    to(RecordKind::Grids, {});
+    for (const auto& [key, extent] : *grids_) to(RecordKind::Grids, store::bytes_of(key, extent));
   }
-  for (const auto& [robot, heard] : heard_) to(Kind::Heard, store::bytes_of(heard));
+  for (const auto& [robot, heard] : heard_) to(RecordKind::Heard, store::bytes_of(heard));
   const auto write_robots = [&](bool Robot::* these) {
     std::vector<icd::RobotName> names;
     for (const auto& [name, robot] : robots_) {
       if (!(robot.*these)) continue;
-      to(Kind::Poses, store::bytes_of(std::span(&robot.posted, 1)));
+      to(RecordKind::Poses, store::bytes_of(std::span(&robot.posted, 1)));
       names.push_back(name);
     }
     return names;
   };
-  to(Kind::StateSent, store::bytes_of(write_robots(&Robot::under_way)));
+  to(RecordKind::StateSent, store::bytes_of(write_robots(&Robot::under_way)));
   write_robots(&Robot::news);
   const auto write_markers = [&to](std::span<const icd::Marker> markers) {
-    for (const std::string& record : records_of(markers)) to(Kind::Markers, record);
+    for (const std::string& record : records_of(markers)) to(RecordKind::Markers, record);
   };
   write_markers(markers_under_way_);
-  to(Kind::MarkersSent, names_of(markers_under_way_));
+  to(RecordKind::MarkersSent, names_of(markers_under_way_));
   std::vector<icd::Marker> waiting;
-  for (const auto& [place, marker] : markers_.in_order()) waiting.push_back(marker);
+  for (const auto& [place, marker] : markers_.changes_by_place()) waiting.push_back(marker);
   write_markers(waiting);
 }
 
@@ -242,9 +242,9 @@ std::pair<Carried, std::string> read_records(const store::Contents& contents) {
       continue;
     }
     const auto& record = std::get<store::Record>(item);
-    Kind kind{record.kind};
-    if (!damage.empty() && kind == Kind::StateDone) kind = Kind::StateBack;
-    if (!damage.empty() && kind == Kind::MarkersDone) kind = Kind::MarkersBack;
+    RecordKind kind{record.kind};
+    if (!damage.empty() && kind == RecordKind::StateDone) kind = RecordKind::StateBack;
+    if (!damage.empty() && kind == RecordKind::MarkersDone) kind = RecordKind::MarkersBack;
     if (!carried.apply(kind, record.body)) ++unknown;
   }
   if (unknown > 0) {
@@ -281,7 +281,7 @@ store::Result<std::size_t> write_snapshot(const store::Directory& directory, sto
                                           std::uint64_t before, const std::atomic<bool>& enough) {
   const auto contents = ADIT_TRY(store::Contents::read(directory, Journal::kKeeping, before));
   store::Result<void> written;
-  read_records(contents).first.write([&](Kind kind, std::string_view said) {
+  read_records(contents).first.write([&](RecordKind kind, std::string_view said) {
     if (written && !enough) written = snapshot.add(static_cast<std::uint8_t>(kind), said);
   });
   if (enough) return std::unexpected(store::Error{.what = "aditd is stopping"});
@@ -318,7 +318,7 @@ bool Journal::can_be_read(const std::string& folder) {
 
 Carried Journal::read() {
   if (!contents_) {
-    (void)failed(unread_);
+    (void)on_failed(unread_);
     return {};
   }
   auto [carried, damage] = read_records(*contents_);
@@ -334,41 +334,41 @@ void Journal::begin(const Clock& clock) {
     const bool is_first = contents_->is_new;
     const auto started = log_->start(*contents_);
     contents_.reset();
-    if (!started) (void)failed(started.error().what);
+    if (!started) (void)on_failed(started.error().what);
     if (!is_first) compact();
   }
-  note(Kind::LifeBegins, {});
-  note(Kind::Clock, store::bytes_of(clock));
+  note(RecordKind::LifeBegins, {});
+  note(RecordKind::Clock, store::bytes_of(clock));
 }
 
-void Journal::senders(const queues::StampShift::Clocks& clocks) {
-  if (!clocks.empty()) note(Kind::Senders, store::bytes_of(clocks));
+void Journal::record_senders(const queues::StampShift::Clocks& clocks) {
+  if (!clocks.empty()) note(RecordKind::Senders, store::bytes_of(clocks));
 }
 
-Journal::Kept Journal::accepted(const icd::MarkersUpdate& update) {
+Journal::Kept Journal::record_accepted(const icd::MarkersUpdate& update) {
   for (const std::string& record : records_of(update.markers)) {
     if (auto kept = accepted_markers(record); !kept) return kept;
   }
   return {};
 }
 
-void Journal::state_answered(bool done) {
-  if (done) return note(Kind::StateDone, {});
-  comes_back(Kind::StateSent, Kind::StateBack);
+void Journal::record_state_answered(bool done) {
+  if (done) return note(RecordKind::StateDone, {});
+  record_return(RecordKind::StateSent, RecordKind::StateBack);
 }
 
-void Journal::markers_answered(bool done) {
-  if (done) return note(Kind::MarkersDone, {});
-  comes_back(Kind::MarkersSent, Kind::MarkersBack);
+void Journal::record_markers_answered(bool done) {
+  if (done) return note(RecordKind::MarkersDone, {});
+  record_return(RecordKind::MarkersSent, RecordKind::MarkersBack);
 }
 
-void Journal::note(Kind kind, std::string said) {
+void Journal::note(RecordKind kind, std::string said) {
   if (append(kind, said) || unsaid_size_ + said.size() > kMostUnsaid) return;
   unsaid_size_ += said.size();
   unsaid_.push_back({kind, std::move(said)});
 }
 
-void Journal::comes_back(Kind sent, Kind back) {
+void Journal::record_return(RecordKind sent, RecordKind back) {
   const auto last = std::find_if(unsaid_.rbegin(), unsaid_.rend(),
                                  [&](const Unsaid& unsaid) { return unsaid.kind == sent; });
   if (last == unsaid_.rend()) return note(back, {});
@@ -378,15 +378,15 @@ void Journal::comes_back(Kind sent, Kind back) {
 
 /// If the directory could not be opened at the start, tries again. Records found in it then were not read, so
 /// append() fails.
-Journal::Kept Journal::append(Kind kind, std::string_view said) {
+Journal::Kept Journal::append(RecordKind kind, std::string_view said) {
   if (!log_) {
     if (!contents_) {
-      if (auto opened = open(); !opened) return failed(opened.error());
+      if (auto opened = open(); !opened) return on_failed(opened.error());
     }
-    if (!contents_->is_new) return failed(unread_);
+    if (!contents_->is_new) return on_failed(unread_);
     unread_.clear();
     log_.emplace(*directory_, kKeeping);
-    if (auto started = log_->start(*contents_); !started) return failed(started.error().what);
+    if (auto started = log_->start(*contents_); !started) return on_failed(started.error().what);
   }
   if (auto said_before = append_unsaid(); !said_before) return said_before;
   if (auto written = write(kind, said); !written) return written;
@@ -403,14 +403,14 @@ Journal::Kept Journal::append_unsaid() {
   return {};
 }
 
-Journal::Kept Journal::write(Kind kind, std::string_view said) {
+Journal::Kept Journal::write(RecordKind kind, std::string_view said) {
   const auto written = log_->append(static_cast<std::uint8_t>(kind), said, store::Durability::Now);
-  if (!written) return failed(written.error().what);
+  if (!written) return on_failed(written.error().what);
   size_ += store::room_of(said.size(), store::kInMemory);
   return {};
 }
 
-Journal::Kept Journal::failed(const std::string& why) {
+Journal::Kept Journal::on_failed(const std::string& why) {
   if (trouble_.empty()) {
     host::log(host::Level::Error, "states and markers cannot be stored; rejecting them", {{"why", why}});
   }

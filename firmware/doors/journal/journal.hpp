@@ -34,7 +34,7 @@
 namespace adit::journal {
 
 /// Kinds of records. The numbers are in files and must not change.
-enum class Kind : std::uint8_t {
+enum class RecordKind : std::uint8_t {
   Clock = 1,         // a boot, a monotonic time and its stamp
   LifeBegins = 2,    // a process started; its predecessor's messages in flight count as not delivered
   Senders = 18,      // senders' clocks
@@ -86,10 +86,10 @@ class Carried {
   };
 
   /// False: the record is unknown and had no effect.
-  bool apply(Kind kind, std::string_view said);
+  bool apply(RecordKind kind, std::string_view said);
 
   /// Writes the same state as few records.
-  void write(const std::function<void(Kind, std::string_view)>& to) const;
+  void write(const std::function<void(RecordKind, std::string_view)>& to) const;
 
   /// Sets the present boot. Drops monotonic times of another boot, and stamps derived from them.
   void set_boot(const std::string& boot);
@@ -105,9 +105,9 @@ class Carried {
   /// serve another Command Post.
   const std::map<icd::RobotName, Robot>& robots() const { return robots_; }
   /// By robot. Empty after a boot.
-  const std::map<std::string, Heard>& heard() const { return heard_; }
+  const std::map<std::string, Heard>& heard_by_robot() const { return heard_; }
   /// Heard::behind of a robot and kind; NaN also for an unknown robot.
-  double behind(const std::string& robot, std::size_t kind) const;
+  double lag(const std::string& robot, std::size_t kind) const;
   /// Markers that are not delivered, in order.
   icd::MarkersUpdate markers() const;
 
@@ -120,8 +120,8 @@ class Carried {
   bool read_sent(std::string_view said);
   bool read_heard(std::string_view said);
   void state_is_done();
-  void state_comes_back();
-  void markers_come_back();
+  void put_back_state();
+  void put_back_markers();
 
   std::optional<Clock> clock_;
   queues::StampShift senders_;
@@ -138,11 +138,11 @@ class Carried {
 /// because the message that was delivered may be in the gap. Unknown records are logged.
 std::pair<Carried, std::string> read_records(const store::Contents& contents);
 
-/// What the records of Kind::Markers say for an accepted message: at least one record, each of about a
+/// What the records of RecordKind::Markers say for an accepted message: at least one record, each of about a
 /// megabyte at most or of one marker. Any thread may make them.
 std::vector<std::string> records_of(std::span<const icd::Marker> markers);
 
-/// What a record of Kind::MarkersSent says: ns, id and action of each marker.
+/// What a record of RecordKind::MarkersSent says: ns, id and action of each marker.
 std::string names_of(std::span<const icd::Marker> markers);
 
 }  // namespace adit::journal
@@ -244,35 +244,43 @@ class Journal {
   /// Call once, after read() and before any other member.
   void begin(const Clock& clock);
   /// Records a change of the clock.
-  void clock(const Clock& clock) { note(Kind::Clock, store::bytes_of(clock)); }
+  void clock(const Clock& clock) { note(RecordKind::Clock, store::bytes_of(clock)); }
 
   /// Error: not stored; the client must not get a success.
   using Kept = std::expected<void, std::string>;
-  Kept accepted(std::span<const queues::PostedPose> poses) {
-    return append(Kind::Poses, store::bytes_of(poses));
+  Kept record_accepted(std::span<const queues::PostedPose> poses) {
+    return append(RecordKind::Poses, store::bytes_of(poses));
   }
-  Kept accepted(const icd::MarkersUpdate& update);
+  Kept record_accepted(const icd::MarkersUpdate& update);
   /// `record`: one of records_of() a message. If a later one fails, the next process sends the markers of the
   /// earlier ones although the client was refused; the client's next try replaces them.
-  Kept accepted_markers(const std::string& record) { return append(Kind::Markers, record); }
+  Kept accepted_markers(const std::string& record) { return append(RecordKind::Markers, record); }
 
-  void senders(const queues::StampShift::Clocks& clocks);
+  void record_senders(const queues::StampShift::Clocks& clocks);
   /// For the next process. A failed record is dropped, because the next one replaces it.
-  void heard(const Heard& heard) { (void)append(Kind::Heard, store::bytes_of(heard)); }
+  void record_heard(const Heard& heard) {
+    (void)append(RecordKind::Heard, store::bytes_of(heard));
+  }
 
   /// Call before these poses or markers are sent.
-  void state_sent(const icd::StateUpdate& update) { note(Kind::StateSent, store::bytes_of(update.poses)); }
-  void markers_sent(const icd::MarkersUpdate& update) { note(Kind::MarkersSent, names_of(update.markers)); }
+  void record_state_sent(const icd::StateUpdate& update) {
+    note(RecordKind::StateSent, store::bytes_of(update.poses));
+  }
+  void record_markers_sent(const icd::MarkersUpdate& update) {
+    note(RecordKind::MarkersSent, names_of(update.markers));
+  }
   /// `done`: delivered or rejected; otherwise queued again.
-  void state_answered(bool done);
-  void markers_answered(bool done);
+  void record_state_answered(bool done);
+  void record_markers_answered(bool done);
 
-  void paced(icd::Uri uri, const pace::Learned& learned) { note(Kind::Pace, store::bytes_of(uri, learned)); }
-  void stamped(icd::Uri uri, icd::Stamp stamp) { note(Kind::Stamp, store::bytes_of(uri, stamp)); }
-  /// Starts the record of posted grids; grids_posted() does so too.
-  Kept grids_begin() { return append(Kind::Grids, {}); }
-  Kept grids_posted(const std::string& name, const queues::Extent& extent) {
-    return append(Kind::Grids, store::bytes_of(name, extent));
+  void record_pace(icd::Uri uri, const pace::Learned& learned) {
+    note(RecordKind::Pace, store::bytes_of(uri, learned));
+  }
+  void record_stamp(icd::Uri uri, icd::Stamp stamp) { note(RecordKind::Stamp, store::bytes_of(uri, stamp)); }
+  /// Starts the record of posted grids; record_grid() does so too.
+  Kept begin_grids() { return append(RecordKind::Grids, {}); }
+  Kept record_grid(const std::string& name, const queues::Extent& extent) {
+    return append(RecordKind::Grids, store::bytes_of(name, extent));
   }
 
   /// Why the last record could not be stored, or "".
@@ -280,20 +288,20 @@ class Journal {
 
  private:
   struct Unsaid {
-    Kind kind;
+    RecordKind kind;
     std::string said;
   };
   Kept open();
-  void note(Kind kind, std::string said);
+  void note(RecordKind kind, std::string said);
   /// Records that sent data is queued again. If the record of the sending is still unwritten, removes that
   /// record.
-  void comes_back(Kind sent, Kind back);
-  Kept append(Kind kind, std::string_view said);
+  void record_return(RecordKind sent, RecordKind back);
+  Kept append(RecordKind kind, std::string_view said);
   Kept append_unsaid();
-  Kept write(Kind kind, std::string_view said);
+  Kept write(RecordKind kind, std::string_view said);
   void compact();
   void not_compacted(const store::Error& error);
-  Kept failed(const std::string& why);
+  Kept on_failed(const std::string& why);
 
   const std::string path_;
   std::optional<store::Directory> directory_;

@@ -93,7 +93,7 @@ class Put : public store::Writer {
   void operator()(const std::optional<icd::RobotName>& robot) { (*this)(icd::text_of(robot)); }
 };
 
-class Take : public store::Reader {
+class RecordReader : public store::Reader {
  public:
   using store::Reader::Reader, store::Reader::operator();
   void operator()(ReportState& state) {
@@ -142,8 +142,8 @@ template <>
 constexpr std::size_t kOldestMembers<Run> = 14;
 
 template <class Of>
-std::optional<Of> take(std::string_view record) {
-  Take take(record);
+std::optional<Of> read_record(std::string_view record) {
+  RecordReader take(record);
   Of what;
   store::read_first_members<kOldestMembers<Of>>(take, what);
   if (!take.ok() || what.number < 1) return std::nullopt;
@@ -159,63 +159,63 @@ std::optional<Of> take(std::string_view record) {
 }
 
 template <class Of>
-std::string_view left_behind(std::string_view record) {
-  Take take(record);
+std::string_view rest_of(std::string_view record) {
+  RecordReader take(record);
   Of what;
   store::read_first_members<kOldestMembers<Of>>(take, what);
-  return take.left();
+  return take.remaining();
 }
 
 }  // namespace
 
-std::string encoded(const Report& report, std::string_view more) {
+std::string to_bytes(const Report& report, std::string_view more) {
   return store::bytes_of<Put>(report).append(more);
 }
 
-std::string encoded(const Run& run, std::string_view more) {
+std::string to_bytes(const Run& run, std::string_view more) {
   return store::bytes_of<Put>(run).append(more);
 }
 
 std::optional<Report> report_in(std::string_view record) {
-  return take<Report>(record);
+  return read_record<Report>(record);
 }
 
 std::optional<Run> run_in(std::string_view record) {
-  return take<Run>(record);
+  return read_record<Run>(record);
 }
 
 std::string_view more_of_report(std::string_view record) {
-  return left_behind<Report>(record);
+  return rest_of<Report>(record);
 }
 
 std::string_view more_of_run(std::string_view record) {
-  return left_behind<Run>(record);
+  return rest_of<Run>(record);
 }
 
-codec::Value shown(const Report& report) {
+codec::Value to_value(const Report& report) {
   return show(report);
 }
 
-codec::Value shown(const Run& run) {
+codec::Value to_value(const Run& run) {
   return show(run);
 }
 
-std::string encoded(const Step& step) {
+std::string to_bytes(const Step& step) {
   return store::bytes_of(step);
 }
 
 std::string step_of(const Report& report) {
-  return encoded(Step{report.changed, std::string(dispatch::name_of(report.state)), report.note});
+  return to_bytes(Step{report.changed, std::string(dispatch::name_of(report.state)), report.note});
 }
 
 std::optional<std::vector<Step>> steps_in(std::string_view record) {
   std::vector<Step> steps;
   store::Reader reader(record);
-  while (reader.ok() && !reader.at_end()) steps.push_back(reader.read<Step>());
+  while (reader.ok() && !reader.is_at_end()) steps.push_back(reader.read<Step>());
   return reader.ok() ? std::optional(std::move(steps)) : std::nullopt;
 }
 
-std::string encoded(const Steps& steps) {
+std::string to_bytes(const Steps& steps) {
   return store::bytes_of(steps);
 }
 
@@ -234,7 +234,7 @@ namespace {
 using dispatch::Run;
 using store::Error;
 
-constexpr std::uint8_t kSteps = static_cast<std::uint8_t>(Kind::Steps);
+constexpr std::uint8_t kSteps = static_cast<std::uint8_t>(RecordKind::Steps);
 
 std::string doing(std::int64_t number) {
   return "recording a step of report " + std::to_string(number);
@@ -281,10 +281,10 @@ std::vector<std::pair<std::uint8_t, std::string>> Book::records() const {
   auto records = unknown_;
   for (const auto& [number, kept] : reports_) {
     records.emplace_back(
-        kSteps, encoded(Steps{.highest = highest_, .reports = {{kept.record, kept.history}}, .runs = {}}));
+        kSteps, to_bytes(Steps{.highest = highest_, .reports = {{kept.record, kept.history}}, .runs = {}}));
   }
   for (const auto& [number, run] : runs_)
-    records.emplace_back(kSteps, encoded(Steps{.highest = highest_, .reports = {}, .runs = {run}}));
+    records.emplace_back(kSteps, to_bytes(Steps{.highest = highest_, .reports = {}, .runs = {run}}));
   return records;
 }
 
@@ -295,7 +295,7 @@ std::string Book::record_of(const Reports& reports, const Runs& runs) const {
     all.reports.push_back({kept.record, kept.history});
   }
   for (const auto& [number, run] : runs) all.runs.push_back(run);
-  return encoded(all);
+  return to_bytes(all);
 }
 
 store::Result<std::string> Book::record(std::span<const Report> steps, const Run* run) const {
@@ -308,7 +308,7 @@ store::Result<std::string> Book::record(std::span<const Report> steps, const Run
       return std::unexpected(Error{.what = doing(step.number) + ": a value is not a number"});
     if (!kept.record.empty() && !is_same(*report_in(kept.record), step))
       return std::unexpected(Error{.what = doing(step.number) + ": another report has this number"});
-    kept.record = encoded(step, more_of_report(kept.record));
+    kept.record = to_bytes(step, more_of_report(kept.record));
     kept.history += step_of(step);
   }
   if (run != nullptr && (run->number < 1 || !is_number(run->last)))
@@ -329,7 +329,7 @@ store::Result<std::string> Book::record(const dispatch::TakeOver& taken, const B
     Kept& kept = reports[each.report.number];
     if (before != from.end()) kept = before->second;
     if (!is_new) kept.history.clear();
-    kept.record = encoded(each.report, more_of_report(kept.record));
+    kept.record = to_bytes(each.report, more_of_report(kept.record));
     if (each.has_stepped) kept.history += step_of(each.report);
   }
   for (const Run& run : taken.runs) runs[run.number] = encode_with_unknown(run);
@@ -338,7 +338,7 @@ store::Result<std::string> Book::record(const dispatch::TakeOver& taken, const B
 
 std::string Book::encode_with_unknown(const Run& run) const {
   const auto known = runs_.find(run.number);
-  return encoded(run, known == runs_.end() ? std::string_view() : more_of_run(known->second));
+  return to_bytes(run, known == runs_.end() ? std::string_view() : more_of_run(known->second));
 }
 
 std::vector<Report> Book::reports() const {
@@ -425,12 +425,12 @@ std::string Book::salvage(double now, std::int64_t expected, bool end_is_lost) {
   std::int64_t last_run = runs_.empty() ? 1 : runs_.rbegin()->first;
   for (const Report& report : all) last_run = std::max(last_run, report.run);
   if (!runs_.contains(last_run)) {
-    runs_[last_run] = encoded(Run{.number = last_run, .began = now, .why = "the ledger was damaged"});
+    runs_[last_run] = to_bytes(Run{.number = last_run, .began = now, .why = "the ledger was damaged"});
   }
   for (auto& [number, kept] : runs_) {
     Run run = *run_in(kept);
     if (run.unreliable.empty()) run.unreliable = kDamaged;
-    kept = encoded(run, more_of_run(kept));
+    kept = to_bytes(run, more_of_run(kept));
   }
   highest_ = std::max(highest_, expected);
   std::string missing;
@@ -464,7 +464,7 @@ double Book::last_word() const {
 
 void Book::put(const Report& report) {
   Kept& kept = reports_[report.number];
-  kept.record = encoded(report, more_of_report(kept.record));
+  kept.record = to_bytes(report, more_of_report(kept.record));
   kept.history += step_of(report);
   highest_ = std::max(highest_, report.number);
 }

@@ -19,20 +19,20 @@
 namespace adit::ledger {
 
 /// Kinds of records. The numbers are in files and must not change.
-enum class Kind : std::uint8_t {
+enum class RecordKind : std::uint8_t {
   Steps = 1,  // steps of reports and runs, written together
 };
 
 /// The bytes of a report or run. `more`: later members, written by a later version.
-std::string encoded(const dispatch::Report& report, std::string_view more = {});
-std::string encoded(const dispatch::Run& run, std::string_view more = {});
+std::string to_bytes(const dispatch::Report& report, std::string_view more = {});
+std::string to_bytes(const dispatch::Run& run, std::string_view more = {});
 /// std::nullopt if a member is missing or the number is below 1. An unknown state becomes InDoubt, because
 /// only the operator can decide on it.
 std::optional<dispatch::Report> report_in(std::string_view record);
 std::optional<dispatch::Run> run_in(std::string_view record);
 /// For people and scripts.
-codec::Value shown(const dispatch::Report& report);
-codec::Value shown(const dispatch::Run& run);
+codec::Value to_value(const dispatch::Report& report);
+codec::Value to_value(const dispatch::Run& run);
 /// The members that a later version wrote.
 std::string_view more_of_report(std::string_view record);
 std::string_view more_of_run(std::string_view record);
@@ -43,7 +43,7 @@ struct Step {
   std::string state, note;
   friend bool operator==(const Step&, const Step&) = default;
 };
-std::string encoded(const Step& step);
+std::string to_bytes(const Step& step);
 /// The step to the report's present state.
 std::string step_of(const dispatch::Report& report);
 /// The steps in these bytes, or std::nullopt if they are invalid.
@@ -59,7 +59,7 @@ struct Steps {
   std::vector<Entry> reports;
   std::vector<std::string_view> runs;
 };
-std::string encoded(const Steps& steps);
+std::string to_bytes(const Steps& steps);
 /// Parts of `record`, or std::nullopt if the record or a report or run in it is invalid.
 std::optional<Steps> steps_record_in(std::string_view record);
 

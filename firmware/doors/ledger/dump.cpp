@@ -21,8 +21,8 @@ void put_more(Value& shown, std::string_view more) {
   if (!more.empty()) std::get<Value::Object>(shown.is).emplace_back("unknown_bytes", json(more.size()));
 }
 
-Value dumped(const Steps::Entry& entry) {
-  Value report = shown(*report_in(entry.report));
+Value to_value(const Steps::Entry& entry) {
+  Value report = ledger::to_value(*report_in(entry.report));
   Value::Array history;
   const auto steps = steps_in(entry.history);
   for (const Step& step : *steps)
@@ -35,9 +35,9 @@ Value dumped(const Steps::Entry& entry) {
 
 void put(Value::Object& line, const Steps& steps) {
   Value::Array reports, runs;
-  for (const Steps::Entry& entry : steps.reports) reports.push_back(dumped(entry));
+  for (const Steps::Entry& entry : steps.reports) reports.push_back(to_value(entry));
   for (const std::string_view record : steps.runs) {
-    Value run = shown(*run_in(record));
+    Value run = ledger::to_value(*run_in(record));
     put_more(run, more_of_run(record));
     runs.push_back(std::move(run));
   }
@@ -46,15 +46,15 @@ void put(Value::Object& line, const Steps& steps) {
   line.emplace_back("runs", Value{std::move(runs)});
 }
 
-Value::Object dumped(const store::Gap& gap) {
+Value::Object to_value(const store::Gap& gap) {
   return {{"gap",
            {Value::Object{{"first", json(gap.first)}, {"last", json(gap.last)}, {"file", json(gap.file)}}}}};
 }
 
 /// `damage`: gets a sentence if the record is invalid.
-Value::Object dumped(const store::Record& record, std::vector<std::string>& damage) {
+Value::Object to_value(const store::Record& record, std::vector<std::string>& damage) {
   Value::Object line{{"sequence", json(record.sequence)}, {"kind", json(record.kind)}};
-  const bool is_known = record.kind == static_cast<std::uint8_t>(Kind::Steps);
+  const bool is_known = record.kind == static_cast<std::uint8_t>(RecordKind::Steps);
   const auto steps = is_known ? steps_record_in(record.body) : std::nullopt;
   if (steps) {
     put(line, *steps);
@@ -76,7 +76,8 @@ store::Result<std::vector<std::string>> dump(const std::string& directory,
   for (const store::Item& item : contents.items) {
     const auto* const gap = std::get_if<store::Gap>(&item);
     if (gap != nullptr) damage.push_back("records are missing in " + gap->file);
-    print(codec::write_json({gap != nullptr ? dumped(*gap) : dumped(std::get<store::Record>(item), damage)}) +
+    print(codec::write_json(
+              {gap != nullptr ? to_value(*gap) : to_value(std::get<store::Record>(item), damage)}) +
           '\n');
   }
   return damage;

@@ -30,7 +30,7 @@ Result<void> write(store::Snapshot& snapshot, const Book& book, const std::atomi
 
 }  // namespace
 
-Known latest_of(const Known& one, const Known& other) {
+LedgerFacts latest_of(const LedgerFacts& one, const LedgerFacts& other) {
   return {.reports = std::max(one.reports, other.reports),
           .log = std::max(one.log, other.log),
           .last = std::max(one.last, other.last)};
@@ -44,19 +44,19 @@ KnownFile::KnownFile(const std::string& path) {
   const auto size = file_ ? ::pread(file_.get(), bytes.data(), bytes.size(), 0) : -1;
   if (size < 0) trouble_ = icd::sentence(path, ": ", std::generic_category().message(errno));
   bytes.resize(static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
-  const auto known = store::value_in<Known>(bytes);
+  const auto known = store::value_in<LedgerFacts>(bytes);
   if (!known && size > 0) trouble_ = path + " is damaged";
-  known_ = known.value_or(Known());
+  known_ = known.value_or(LedgerFacts());
 }
 
-void KnownFile::write(const Known& known) {
+void KnownFile::write(const LedgerFacts& known) {
   if (!file_ || known == known_) return;
   known_ = known;
   if (store::write_all(file_.get(), store::file_of(known, store::kInMemory), 0) != 0)
     (void)::ftruncate(file_.get(), 0);
 }
 
-Result<Ledger> Ledger::open(const std::string& state, const Known& stored, const std::string& memory) {
+Result<Ledger> Ledger::open(const std::string& state, const LedgerFacts& stored, const std::string& memory) {
   Ledger ledger;
   ledger.directory_ =
       std::make_shared<store::Directory>(ADIT_TRY(store::Directory::lock(state + '/' + kDirectory)));
@@ -64,7 +64,7 @@ Result<Ledger> Ledger::open(const std::string& state, const Known& stored, const
   auto reading = ADIT_TRY(read(contents));
   Book& book = ledger.book_ = std::move(reading.book);
   const KnownFile& file = ledger.file_ = KnownFile(memory);
-  const Known known = ledger.known_ = latest_of(stored, file.content());
+  const LedgerFacts known = ledger.known_ = latest_of(stored, file.content());
   if ((known.log != 0 && !contents.has(known.log)) || book.highest() < known.reports ||
       contents.last < known.last) {
     reading.gap += icd::sentence(reading.gap.empty() ? "" : ", ", "its last records are not there");
@@ -90,7 +90,7 @@ Result<Ledger> Ledger::open(const std::string& state, const Known& stored, const
   return ledger;
 }
 
-Ledger Ledger::closed(std::string why, const Known& known, const std::string& memory) {
+Ledger Ledger::make_closed(std::string why, const LedgerFacts& known, const std::string& memory) {
   Ledger ledger;
   ledger.refusal_ = std::move(why);
   ledger.known_ = latest_of(known, KnownFile(memory).content());
@@ -119,20 +119,20 @@ Result<void> Ledger::write(std::span<const dispatch::Report> steps, const dispat
 Result<void> Ledger::append(const std::string& record, dispatch::Flush flush, bool has_new) {
   if (auto ready = has_new ? make_ready(record.size()) : begin(); !ready) return ready;
   const auto durability = flush == dispatch::Flush::Now ? store::Durability::Now : store::Durability::Soon;
-  constexpr auto kKind = static_cast<std::uint8_t>(Kind::Steps);
+  constexpr auto kKind = static_cast<std::uint8_t>(RecordKind::Steps);
   if (auto appended = log_->append(kKind, record, durability); !appended) return appended;
   (void)book_.apply(kKind, record);
-  file_.write(known());
+  file_.write(known_facts());
   return {};
 }
 
 Result<void> Ledger::flush() {
   auto flushed = log_ ? log_->flush() : Result<void>();
-  file_.write(known());
+  file_.write(known_facts());
   return flushed;
 }
 
-Known Ledger::known() const {
+LedgerFacts Ledger::known_facts() const {
   return {.reports = std::max(known_.reports, book_.highest()),
           .log = has_begun_ ? log_->number() : known_.log,
           .last = has_begun_ ? log_->durable() : known_.last};
@@ -152,7 +152,7 @@ Result<void> Ledger::begin() {
   auto begun = begin_log();
   refusal_ = begun ? "" : begun.error().what;
   has_begun_ = begun.has_value();
-  file_.write(known());
+  file_.write(known_facts());
   return begun;
 }
 
@@ -223,7 +223,7 @@ Result<std::string> Ledger::copy() const {
 
 Result<void> Ledger::take_over(const std::string& copy, const dispatch::Handover& handover) {
   Book there;
-  if (!there.apply(static_cast<std::uint8_t>(Kind::Steps), copy))
+  if (!there.apply(static_cast<std::uint8_t>(RecordKind::Steps), copy))
     return std::unexpected(Error{.what = "it is no copy of a ledger"});
   const Book& here = book_;
   const dispatch::TakeOver taken =

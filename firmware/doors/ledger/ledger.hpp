@@ -27,14 +27,14 @@ using store::Error;
 using store::Result;
 
 /// Facts about a ledger that are stored elsewhere. A ledger with less is damaged.
-struct Known {
+struct LedgerFacts {
   std::int64_t reports = 0;  // count of numbers given out
   std::uint64_t log = 0;     // number of its last log; 0: unknown
   std::uint64_t last = 0;    // sequence number of its last record on the disk; 0: unknown
 
-  friend bool operator==(const Known&, const Known&) = default;
+  friend bool operator==(const LedgerFacts&, const LedgerFacts&) = default;
 };
-Known latest_of(const Known& one, const Known& other);
+LedgerFacts latest_of(const LedgerFacts& one, const LedgerFacts& other);
 
 /// What a process of this boot knew last, as the only value of a file in memory.
 class KnownFile {
@@ -43,15 +43,15 @@ class KnownFile {
   /// `path` "": no file.
   explicit KnownFile(const std::string& path);
   /// The last values in the file; 0: unknown.
-  const Known& content() const { return known_; }
+  const LedgerFacts& content() const { return known_; }
   /// Why the file could not be opened or read, or "".
   const std::string& trouble() const { return trouble_; }
   /// After a failed write the file is empty, so that no older values are believed.
-  void write(const Known& known);
+  void write(const LedgerFacts& known);
 
  private:
   loop::FileDescriptor file_;
-  Known known_;
+  LedgerFacts known_;
   std::string trouble_;
 };
 
@@ -86,13 +86,14 @@ class Ledger {
   /// `known` is gone, each report that may have been sent becomes in doubt, and damage() says so. If the
   /// directory cannot be written, reports can be read, refusal() has the reason, and a later write may
   /// succeed. Error: unreadable, locked by another process, or from a later version; no file is changed.
-  /// `memory`: a file in memory that always has known(), so that an older copy of the ledger is damage, too;
+  /// `memory`: a file in memory that always has known_facts(), so that an older copy of the ledger is damage,
+  /// too;
   /// "": none.
-  static Result<Ledger> open(const std::string& state, const Known& known = {},
+  static Result<Ledger> open(const std::string& state, const LedgerFacts& known = {},
                              const std::string& memory = "");
-  /// A ledger that cannot be read, for `why`. It has no reports and rejects new ones. known() has the latest
-  /// of `known` and of the file `memory`, as in open().
-  static Ledger closed(std::string why, const Known& known, const std::string& memory = "");
+  /// A ledger that cannot be read, for `why`. It has no reports and rejects new ones. known_facts() has the
+  /// latest of `known` and of the file `memory`, as in open().
+  static Ledger make_closed(std::string why, const LedgerFacts& known, const std::string& memory = "");
   /// Whether open() would succeed. Blocks on the disk; any thread.
   static bool can_be_read(const std::string& state);
   /// Renames an unreadable ledger, so that the next open() creates a new one. Returns the new name.
@@ -131,7 +132,7 @@ class Ledger {
   const std::string& refusal() const { return refusal_; }
   bool is_closed() const { return directory_ == nullptr; }
   /// Facts to store elsewhere, never less than open() was given.
-  Known known() const;
+  LedgerFacts known_facts() const;
 
   /// Due work for another thread: a snapshot or a spare file. Null: no work. Call upkeep_done() with its
   /// result before the next call.
@@ -153,7 +154,7 @@ class Ledger {
   std::unique_ptr<store::Log> log_;
   Book book_;
   std::string damage_, refusal_;
-  Known known_;  // from open()
+  LedgerFacts known_;  // from open()
   KnownFile file_;
   bool is_damaged_ = false, is_aside_ = false, has_turned_ = false, has_begun_ = false;
   bool is_under_way_ = false;                       // upkeep is running
@@ -165,5 +166,5 @@ class Ledger {
 }  // namespace adit::ledger
 
 template <>
-inline constexpr auto adit::store::kMembers<adit::ledger::Known> =
-    std::tuple(&adit::ledger::Known::reports, &adit::ledger::Known::log, &adit::ledger::Known::last);
+inline constexpr auto adit::store::kMembers<adit::ledger::LedgerFacts> = std::tuple(
+    &adit::ledger::LedgerFacts::reports, &adit::ledger::LedgerFacts::log, &adit::ledger::LedgerFacts::last);

@@ -25,7 +25,7 @@ void count_fault() noexcept {
 
 }  // namespace
 
-void caught(const char* where, const char* what) noexcept {
+void log_exception(const char* where, const char* what) noexcept {
   so_far.fetch_add(1, std::memory_order_relaxed);
   try {
     if (auto* const told = tell.load()) return told(where, what);
@@ -46,7 +46,7 @@ void end_by_uncaught() noexcept {
   std::set_terminate([] {
     tell_of_caught(nullptr);  // stderr only: this thread may hold the log's lock
     if (const auto thrown = std::current_exception())
-      guarded("the process", [&] { std::rethrow_exception(thrown); });
+      run_guarded("the process", [&] { std::rethrow_exception(thrown); });
     count_fault();
     std::_Exit(1);
   });

@@ -10,9 +10,9 @@ namespace adit::loop {
 /// Counts an exception that no code of the program handled, and reports it to the function of
 /// tell_of_caught(), or to stderr if there is no such function or it throws. `where`: the aborted work, as in
 /// "a job of a worker". Thread-safe.
-void caught(const char* where, const char* what) noexcept;
+void log_exception(const char* where, const char* what) noexcept;
 
-/// The number of calls of caught() since the process start. Thread-safe.
+/// The number of calls of log_exception() since the process start. Thread-safe.
 std::uint64_t caught_so_far() noexcept;
 
 /// Sets the function that reports such exceptions. It is called on the thread that caught the exception, and
@@ -42,17 +42,17 @@ class FaultCounter {
   FileDescriptor file_;
 };
 
-/// Calls `work`. If `work` throws, reports that by caught() and returns false. Requests and jobs of workers
-/// are called by guarded(), so that each fails alone.
+/// Calls `work`. If `work` throws, reports that by log_exception() and returns false. Requests and jobs of
+/// workers are called by run_guarded(), so that each fails alone.
 template <class Work>
-bool guarded(const char* where, Work&& work) noexcept {
+bool run_guarded(const char* where, Work&& work) noexcept {
   try {
     work();
     return true;
   } catch (const std::exception& error) {
-    caught(where, error.what());
+    log_exception(where, error.what());
   } catch (...) {
-    caught(where, "unknown exception");
+    log_exception(where, "unknown exception");
   }
   return false;
 }

@@ -27,7 +27,7 @@ constexpr std::chrono::milliseconds kReadTogether{1};  // the largest time betwe
 
 /// Ends the process if sd-event fails (no memory, or a descriptor that cannot be watched). systemd restarts
 /// it.
-void must(int result, const char* doing) {
+void require_success(int result, const char* doing) {
   if (result >= 0) return;
   std::fprintf(stderr, "event loop: %s: %s\n", doing, std::strerror(-result));
   std::abort();
@@ -66,7 +66,7 @@ struct Source::State : std::enable_shared_from_this<Source::State> {
   static int ready(sd_event_source*, int, std::uint32_t events, void* userdata) {
     return run(userdata, events);
   }
-  static int expired(sd_event_source*, std::uint64_t, void* userdata) { return run(userdata, 0); }
+  static int on_expired(sd_event_source*, std::uint64_t, void* userdata) { return run(userdata, 0); }
   static int came(sd_event_source*, const signalfd_siginfo*, void* userdata) { return run(userdata, 0); }
 };
 
@@ -84,25 +84,27 @@ Source::~Source() {
 }
 
 void Source::wait_for(std::uint32_t events) {
-  must(sd_event_source_set_io_events(state_->source, events), "wait_for");
-  must(sd_event_source_set_enabled(state_->source, events == 0 ? SD_EVENT_OFF : SD_EVENT_ON), "wait_for");
+  require_success(sd_event_source_set_io_events(state_->source, events), "wait_for");
+  require_success(sd_event_source_set_enabled(state_->source, events == 0 ? SD_EVENT_OFF : SD_EVENT_ON),
+                  "wait_for");
 }
 
 void Source::call_at(Instant when) {
-  must(sd_event_source_set_time(state_->source, to_usec(when)), "call_at");
-  must(sd_event_source_set_enabled(state_->source, SD_EVENT_ONESHOT), "call_at");
+  require_success(sd_event_source_set_time(state_->source, to_usec(when)), "call_at");
+  require_success(sd_event_source_set_enabled(state_->source, SD_EVENT_ONESHOT), "call_at");
 }
 
 void Source::cancel() {
-  must(sd_event_source_set_enabled(state_->source, SD_EVENT_OFF), "cancel");
+  require_success(sd_event_source_set_enabled(state_->source, SD_EVENT_OFF), "cancel");
 }
 
 class Loop::Impl {
  public:
   Impl() : wake(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
-    must(wake ? 0 : -errno, "eventfd");
-    must(sd_event_new(&event), "sd_event_new");
-    must(sd_event_add_io(event, nullptr, wake.get(), EPOLLIN, &Impl::woken, this), "watching posts");
+    require_success(wake ? 0 : -errno, "eventfd");
+    require_success(sd_event_new(&event), "sd_event_new");
+    require_success(sd_event_add_io(event, nullptr, wake.get(), EPOLLIN, &Impl::on_woken, this),
+                    "watching posts");
   }
   ~Impl() { sd_event_unref(event); }
   Impl(const Impl&) = delete;
@@ -111,11 +113,11 @@ class Loop::Impl {
   void turn(std::uint64_t most_usec) {
     thread = std::this_thread::get_id();
     const int result = sd_event_run(event, own_posts ? 0 : most_usec);
-    if (result != -EINTR) must(result, "sd_event_run");
+    if (result != -EINTR) require_success(result, "sd_event_run");
     if (std::exchange(own_posts, false)) run_posted();
   }
 
-  static int woken(sd_event_source*, int fd, std::uint32_t, void* userdata) {
+  static int on_woken(sd_event_source*, int fd, std::uint32_t, void* userdata) {
     eventfd_t count = 0;
     ::eventfd_read(fd, &count);
     static_cast<Impl*>(userdata)->run_posted();
@@ -168,8 +170,8 @@ double Loop::wall_now() const {
 void Loop::set_wall(double now) {
   impl_->wall.set(now, this->now());
 }
-double Loop::wall_ahead() const {
-  return impl_->wall.ahead();
+double Loop::wall_offset() const {
+  return impl_->wall.offset();
 }
 double Loop::look_at_wall(bool system_is_right) {
   const Instant before = now();
@@ -182,19 +184,21 @@ double Loop::look_at_wall(bool system_is_right) {
 Source Loop::watch(int fd, std::uint32_t events, std::function<void(std::uint32_t)> ready) {
   auto state = std::make_shared<Source::State>();
   state->call = std::move(ready);
-  must(sd_event_add_io(impl_->event, &state->source, fd, events, &Source::State::ready, state.get()),
-       "watching a descriptor");
-  if (events == 0) must(sd_event_source_set_enabled(state->source, SD_EVENT_OFF), "watching a descriptor");
+  require_success(
+      sd_event_add_io(impl_->event, &state->source, fd, events, &Source::State::ready, state.get()),
+      "watching a descriptor");
+  if (events == 0)
+    require_success(sd_event_source_set_enabled(state->source, SD_EVENT_OFF), "watching a descriptor");
   return Source(std::move(state));
 }
 
 Source Loop::timer(std::function<void()> expired) {
   auto state = std::make_shared<Source::State>();
   state->call = [call = std::move(expired)](std::uint32_t) { call(); };
-  must(sd_event_add_time(impl_->event, &state->source, CLOCK_MONOTONIC, kNever, kAccuracyUsec,
-                         &Source::State::expired, state.get()),
-       "making a timer");
-  must(sd_event_source_set_enabled(state->source, SD_EVENT_OFF), "making a timer");
+  require_success(sd_event_add_time(impl_->event, &state->source, CLOCK_MONOTONIC, kNever, kAccuracyUsec,
+                                    &Source::State::on_expired, state.get()),
+                  "making a timer");
+  require_success(sd_event_source_set_enabled(state->source, SD_EVENT_OFF), "making a timer");
   return Source(std::move(state));
 }
 
@@ -202,11 +206,12 @@ Source Loop::signal(int number, std::function<void()> came) {
   sigset_t set;
   sigemptyset(&set);
   sigaddset(&set, number);
-  must(-pthread_sigmask(SIG_BLOCK, &set, nullptr), "blocking a signal");
+  require_success(-pthread_sigmask(SIG_BLOCK, &set, nullptr), "blocking a signal");
   auto state = std::make_shared<Source::State>();
   state->call = [call = std::move(came)](std::uint32_t) { call(); };
-  must(sd_event_add_signal(impl_->event, &state->source, number, &Source::State::came, state.get()),
-       "watching a signal");
+  require_success(
+      sd_event_add_signal(impl_->event, &state->source, number, &Source::State::came, state.get()),
+      "watching a signal");
   return Source(std::move(state));
 }
 

@@ -23,7 +23,7 @@ class WallClock {
 
   double now(Instant at) const { return seen_ + seconds(at) + ahead_; }
   /// Seconds by which now() is ahead of the system's clock.
-  double ahead() const { return ahead_; }
+  double offset() const { return ahead_; }
   /// Makes now() return `now` at `at`, until look() drops the correction.
   void set(double now, Instant at) { ahead_ += now - this->now(at); }
 
@@ -100,7 +100,7 @@ class Loop {
   /// finds that the system's clock was set or is right.
   void set_wall(double now);
   /// Seconds by which wall_now() is ahead of the system's clock.
-  double wall_ahead() const;
+  double wall_offset() const;
   /// Checks whether the system's clock was set. Returns the seconds by which wall_now() steps.
   /// `system_is_right`: drop the correction of set_wall(). Call this each second.
   double look_at_wall(bool system_is_right);

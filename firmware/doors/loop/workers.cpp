@@ -149,7 +149,7 @@ class Workers::Impl {
     while (auto next = wait_for_next(life)) {
       run(next->job);
       const std::lock_guard lock(mutex_);
-      jobs_.ended(next->urgency, loop_.now());
+      jobs_.on_ended(next->urgency, loop_.now());
     }
   }
 
@@ -158,11 +158,11 @@ class Workers::Impl {
     std::unique_lock lock(mutex_);
     life.at_work = false;
     life.answered = asked_;
-    auto next = jobs_.take(loop_.now());
+    auto next = jobs_.pop(loop_.now());
     while (!next && !stopping_) {
       came_.wait(lock);
       life.answered = asked_;
-      next = jobs_.take(loop_.now());
+      next = jobs_.pop(loop_.now());
     }
     life.at_work = true;
     life.began = loop_.now();
@@ -171,7 +171,7 @@ class Workers::Impl {
 
   std::optional<Job> take_amid(Life& life, Instant since) {
     const std::lock_guard lock(mutex_);
-    return jobs_.take_amid(life.began, since, loop_.now());
+    return jobs_.pop_amid(life.began, since, loop_.now());
   }
   void goes_on(Life& life) {
     const std::lock_guard lock(mutex_);
@@ -179,7 +179,7 @@ class Workers::Impl {
   }
 
   void run(Job& job) noexcept {
-    job.ends->well = guarded("a job of a worker", job.work);
+    job.ends->well = run_guarded("a job of a worker", job.work);
     job.work = nullptr;  // freed here, so that `done` is the only owner of its data
     loop_.post(std::move(job.end));
   }

@@ -50,7 +50,7 @@ class JobQueue {
 
   /// The next job for an idle worker. nullopt if no job is queued, or if only CanWait jobs are queued and
   /// enough workers run such jobs.
-  std::optional<Next> take(Instant now) {
+  std::optional<Next> pop(Instant now) {
     const bool may_wait = !can_wait_.empty() && at_work_ < most_that_can_wait_;
     if (may_wait && (on_the_way_.empty() || has_waited_long(now))) {
       Next next{std::move(can_wait_.front().job), Urgency::CanWait};
@@ -58,20 +58,20 @@ class JobQueue {
       ++at_work_;
       return next;
     }
-    auto job = take_on_the_way();
+    auto job = pop_shared();
     if (!job) return std::nullopt;
     return Next{std::move(*job), Urgency::OnTheWay};
   }
 
   /// The OnTheWay job to run within a CanWait job that has run since `began` and has given way since `since`.
   /// nullopt: the CanWait job goes on.
-  std::optional<Job> take_amid(Instant began, Instant since, Instant now) {
+  std::optional<Job> pop_amid(Instant began, Instant since, Instant now) {
     if (since - began < kTurn || now - since >= kPatience) return std::nullopt;
-    return take_on_the_way();
+    return pop_shared();
   }
 
-  /// Call this when a job from take() has ended.
-  void ended(Urgency urgency, Instant now) {
+  /// Call this when a job from pop() has ended.
+  void on_ended(Urgency urgency, Instant now) {
     if (urgency == Urgency::OnTheWay) return;
     --at_work_;
     last_ended_ = now;
@@ -92,7 +92,7 @@ class JobQueue {
     Instant came{};
   };
 
-  std::optional<Job> take_on_the_way() {
+  std::optional<Job> pop_shared() {
     if (on_the_way_.empty()) return std::nullopt;
     std::optional<Job> job{std::move(on_the_way_.front())};
     on_the_way_.pop_front();

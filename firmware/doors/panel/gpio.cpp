@@ -19,7 +19,7 @@ const std::string& line_of(const settings::Panel& settings, Light light) {
 }
 
 /// "line H (health) of chip gpiochip0"
-std::string about(const settings::Panel& settings, const std::string& line, std::string_view what) {
+std::string describe_line(const settings::Panel& settings, const std::string& line, std::string_view what) {
   const std::string chip = settings.chip.empty() ? " of any chip" : " of chip " + settings.chip;
   return "line " + line + " (" + std::string(what) + ")" + chip;
 }
@@ -44,7 +44,8 @@ class GpioLines final : public Lines {
     for (const Light light : kLights) {
       const auto& output = outputs_[index_of(light)];
       if (!output || output->set(lit[index_of(light)]) == 0) continue;
-      if (result) result = trouble(about(settings_, line_of(settings_, light), name_of(light)), errno);
+      if (result)
+        result = trouble(describe_line(settings_, line_of(settings_, light), name_of(light)), errno);
     }
     return result;
   }
@@ -62,7 +63,7 @@ class GpioButton final : public ButtonLine {
   int descriptor() const override { return line_->descriptor(); }
 
   /// Uses the level, not the edges, because the kernel drops edges during a long bounce.
-  std::expected<bool, std::string> pressed() override {
+  std::expected<bool, std::string> is_pressed() override {
     const int value = line_->drop_edges() < 0 ? -1 : line_->get();
     if (value < 0) return trouble(about_, errno);
     return value == 1;
@@ -87,7 +88,7 @@ std::expected<std::unique_ptr<Lines>, std::string> open_gpio(const settings::Pan
     if (line.empty()) continue;
     outputs[index_of(light)] = ADIT_TRY(request_line({.chip = settings.chip,
                                                       .line = line,
-                                                      .about = about(settings, line, name_of(light)),
+                                                      .about = describe_line(settings, line, name_of(light)),
                                                       .consumer = consumer,
                                                       .active_low = settings.active_low,
                                                       .is_output = true}));
@@ -97,7 +98,7 @@ std::expected<std::unique_ptr<Lines>, std::string> open_gpio(const settings::Pan
 
 std::expected<std::unique_ptr<ButtonLine>, std::string> open_gpio_button(const settings::Panel& settings,
                                                                          const std::string& consumer) {
-  const std::string what = about(settings, settings.button, "button");
+  const std::string what = describe_line(settings, settings.button, "button");
   auto line = ADIT_TRY(request_line({.chip = settings.chip,
                                      .line = settings.button,
                                      .about = what,

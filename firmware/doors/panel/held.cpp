@@ -84,10 +84,10 @@ class ReopenedButton final : public ButtonLine {
   /// Stays the same across lines: readable if the present line or the timer is.
   int descriptor() const override { return epoll_.get(); }
 
-  std::expected<bool, std::string> pressed() override {
+  std::expected<bool, std::string> is_pressed() override {
     if (is_time() && !line_) reopen();
     if (!line_) return std::unexpected(why_);
-    auto level = line_->pressed();
+    auto level = line_->is_pressed();
     if (!level) let_go(level.error());
     return level;
   }
@@ -154,7 +154,9 @@ namespace {
 
 std::unique_ptr<Lines> hold_lines(const settings::Panel& settings, const std::string& consumer,
                                   const std::string& simulated_file) {
-  const auto make = [simulated_file] { return simulated_file.empty() ? nullptr : simulated(simulated_file); };
+  const auto make = [simulated_file] {
+    return simulated_file.empty() ? nullptr : make_simulated_lines(simulated_file);
+  };
   if (settings.is_simulated()) return make();
   return reopened_lines([settings, consumer] { return open_gpio(settings, consumer); }, make);
 }

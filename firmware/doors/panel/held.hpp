@@ -23,7 +23,7 @@ std::unique_ptr<Lines> reopened_lines(
     std::function<Instant()> now = [] { return std::chrono::steady_clock::now(); });
 
 /// A button that is closed if it cannot be read, and opened again. It becomes readable every `pace`, because
-/// a vanished chip reports no press. pressed() fails at least once for each loss.
+/// a vanished chip reports no press. is_pressed() fails at least once for each loss.
 std::expected<std::unique_ptr<ButtonLine>, std::string> reopened_button(
     std::function<std::expected<std::unique_ptr<ButtonLine>, std::string>()> open,
     std::chrono::milliseconds pace = kReopen);
@@ -35,15 +35,15 @@ struct Held {
 };
 
 /// Opens the panel of `settings` for `consumer` (shown by gpioinfo(1) as its user). Lines that are lost or
-/// not available yet are opened again; until then set() and pressed() fail. `complain` gets an error of the
-/// button. `simulated` is the file of a simulated panel; "": there is none. Its lights stand in for lines
+/// not available yet are opened again; until then set() and is_pressed() fail. `complain` gets an error of
+/// the button. `simulated` is the file of a simulated panel; "": there is none. Its lights stand in for lines
 /// that cannot be opened. Its button, `simulated`.button, is used only if `settings` names no line at all.
 Held hold(const settings::Panel& settings, const std::string& consumer, const std::string& simulated,
           const std::function<void(const std::string&)>& complain);
 
 /// Lights and button held by adit-panel at `socket`. adit-panel ignores `settings` if its board names a
 /// panel. set() reconnects if there is no connection. It fails after half a minute without a connection, or
-/// if adit-panel has reported a failure of the lights. pressed() receives these reports. A button that is
+/// if adit-panel has reported a failure of the lights. is_pressed() receives these reports. A button that is
 /// held while connecting counts as not pressed until it is released. A press is cancelled if the connection
 /// is lost or adit-panel cannot read the button. `announced`: a connection by announce().
 std::expected<Held, std::string> remote(const std::string& socket, const settings::Panel& settings,

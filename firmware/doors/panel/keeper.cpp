@@ -14,15 +14,15 @@
 namespace adit::panel {
 namespace {
 
-Milliseconds between(Instant from, Instant to) {
+Milliseconds milliseconds_between(Instant from, Instant to) {
   return std::chrono::duration_cast<Milliseconds>(to - from);
 }
 
 const Lights& fault_lights() {
   static const Lights lights = [] {
     States states;
-    states.set(State::Fault, true);
-    return states.shown();
+    states.set(LightState::Fault, true);
+    return states.current_lights();
   }();
   return lights;
 }
@@ -35,21 +35,21 @@ void Watched::enter(Phase phase, Instant now) {
 }
 
 /// After a death the fault shows until the next aditd sends lights.
-void Watched::came(Instant now) {
+void Watched::on_came(Instant now) {
   if (phase_ == Phase::Awaited || phase_ == Phase::Ended) enter(Phase::Awaited, now);
 }
 
-void Watched::lights(const Lit& lit, Instant now) {
+void Watched::on_lights(const Lit& lit, Instant now) {
   enter(Phase::Well, now);
   lit_ = lit;
 }
 
-void Watched::gone(Instant now) {
+void Watched::on_gone(Instant now) {
   if (phase_ == Phase::Ended || phase_ == Phase::Dead) return;
-  enter(Phase::Dead, fault_since(now).value_or(now));
+  enter(Phase::Dead, fault_start(now).value_or(now));
 }
 
-std::optional<Instant> Watched::fault_since(Instant now) const {
+std::optional<Instant> Watched::fault_start(Instant now) const {
   const auto since = [&](Instant then) { return now >= then ? std::optional(then) : std::nullopt; };
   switch (phase_) {
     case Phase::Awaited:
@@ -65,12 +65,12 @@ std::optional<Instant> Watched::fault_since(Instant now) const {
 }
 
 Frame Watched::frame(Instant now) const {
-  if (const auto fault = fault_since(now)) return frame_of(fault_lights(), between(*fault, now));
+  if (const auto fault = fault_start(now)) return frame_of(fault_lights(), milliseconds_between(*fault, now));
   switch (phase_) {
     case Phase::Awaited:
-      return {{}, between(now, since_ + kStart)};
+      return {{}, milliseconds_between(now, since_ + kStart)};
     case Phase::Well:
-      return {lit_, between(now, since_ + kSilence)};
+      return {lit_, milliseconds_between(now, since_ + kSilence)};
     case Phase::Ended:
     case Phase::Dead:
       break;
@@ -93,7 +93,7 @@ Keeper::Keeper(loop::Loop& loop, loop::FileDescriptor listening, std::optional<s
       listening_(std::move(listening)),
       tick_(loop.timer([this] { show(); })),
       callers_(loop.watch(listening_.get(), EPOLLIN, [this](std::uint32_t) { accept(); })) {
-  if (boards) use(*boards);
+  if (boards) configure(*boards);
   show();
 }
 
@@ -104,13 +104,13 @@ void Keeper::accept() {
   if (client_) lose();
   client_ = Client{.socket = std::move(caller), .owns_press = !pressed_.value_or(false)};
   client_->messages = loop_.watch(client_->socket.get(), EPOLLIN, [this](std::uint32_t) { hear(); });
-  watched_.came(loop_.now());
+  watched_.on_came(loop_.now());
   show();
 }
 
 void Keeper::lose() {
   client_.reset();
-  watched_.gone(loop_.now());
+  watched_.on_gone(loop_.now());
   tick_.call_at(loop_.now());
 }
 
@@ -125,33 +125,33 @@ void Keeper::hear() {
       lose();
     } else {
       const auto length = static_cast<std::size_t>(size);
-      take(length > bytes.size() ? std::string_view() : std::string_view(bytes.data(), length));
+      handle(length > bytes.size() ? std::string_view() : std::string_view(bytes.data(), length));
     }
   }
   show();
 }
 
-void Keeper::take(std::string_view message) {
+void Keeper::handle(std::string_view message) {
   const auto told = parse_message(message);
-  if (told) return std::visit([this](const auto& each) { take(each); }, *told);
+  if (told) return std::visit([this](const auto& each) { handle(each); }, *told);
   if (!std::exchange(complained_, true)) {
     world_.complain("unknown message from aditd, connection closed: " + told.error());
   }
   lose();
 }
 
-void Keeper::take(const LightRequest& message) {
-  watched_.lights(message.lit, loop_.now());
+void Keeper::handle(const LightRequest& message) {
+  watched_.on_lights(message.lit, loop_.now());
   complained_ = false;
 }
 
 /// A line can be opened only once, so the old lines are closed first.
-void Keeper::use(const settings::Panel& panel) {
+void Keeper::configure(const settings::Panel& panel) {
   edges_ = {};
   button_.reset();
-  painter_.take(nullptr);
+  painter_.set_lines(nullptr);
   Held held = world_.open(panel);
-  painter_.take(std::move(held.lines));
+  painter_.set_lines(std::move(held.lines));
   button_ = std::move(held.button);
   used_ = panel;
   watch_button();
@@ -170,7 +170,7 @@ void Keeper::watch_button() {
 /// Losing the button cancels a press. A button that is pressed when it is back, or at the start, counts as
 /// not pressed until it is released.
 void Keeper::look_at_button() {
-  const auto level = button_->pressed();
+  const auto level = button_->is_pressed();
   log_button(level);
   const bool is_first = !pressed_;
   pressed_ = level ? std::optional(*level) : std::nullopt;

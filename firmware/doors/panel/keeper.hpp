@@ -30,19 +30,19 @@ class Watched {
   explicit Watched(Instant now) : since_(now) {}
 
   /// It connected, sent its lights, announced its end, or lost its connection.
-  void came(Instant now);
-  void lights(const Lit& lit, Instant now);
-  void ends(Instant now) { enter(Phase::Ended, now); }
-  void gone(Instant now);
+  void on_came(Instant now);
+  void on_lights(const Lit& lit, Instant now);
+  void on_ended(Instant now) { enter(Phase::Ended, now); }
+  void on_gone(Instant now);
 
   /// The present lights, and when to ask again at the latest.
   Frame frame(Instant now) const;
-  bool is_faulty(Instant now) const { return fault_since(now).has_value(); }
+  bool is_faulty(Instant now) const { return fault_start(now).has_value(); }
 
  private:
   enum class Phase : std::uint8_t { Awaited, Well, Ended, Dead };
   void enter(Phase phase, Instant now);
-  std::optional<Instant> fault_since(Instant now) const;
+  std::optional<Instant> fault_start(Instant now) const;
 
   Phase phase_ = Phase::Awaited;
   Instant since_;  // start of the phase; of Well: the last lights
@@ -76,14 +76,14 @@ class Keeper {
 
   void accept();
   void hear();
-  void take(std::string_view message);
-  void take(const LightRequest& message);
-  void take(const EndRequest& /*message*/) { watched_.ends(loop_.now()); }
-  void take(const LinesRequest& message) {
-    if (!knows_board_ && used_ != message.panel) use(message.panel);
+  void handle(std::string_view message);
+  void handle(const LightRequest& message);
+  void handle(const EndRequest& /*message*/) { watched_.on_ended(loop_.now()); }
+  void handle(const LinesRequest& message) {
+    if (!knows_board_ && used_ != message.panel) configure(message.panel);
   }
   void lose();
-  void use(const settings::Panel& panel);
+  void configure(const settings::Panel& panel);
   void watch_button();
   void look_at_button();
   void log_button(const std::expected<bool, std::string>& level);

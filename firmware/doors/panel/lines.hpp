@@ -31,7 +31,7 @@ class ButtonLine {
   virtual int descriptor() const = 0;
   /// The present level. Consumes what made descriptor() readable. An error means that the line cannot be
   /// read; the caller must cancel a press. It may call again later.
-  virtual std::expected<bool, std::string> pressed() = 0;
+  virtual std::expected<bool, std::string> is_pressed() = 0;
 };
 
 /// Opens the lines named in `settings` with libgpiod, for `consumer` (shown by gpioinfo(1) as their user).
@@ -49,7 +49,7 @@ std::string gpiod_version();
 
 /// A panel without GPIO. Its state is in `file` ("health on\n..."), which is replaced atomically at each
 /// change.
-std::unique_ptr<Lines> simulated(std::string file);
+std::unique_ptr<Lines> make_simulated_lines(std::string file);
 /// The simulated button: a new FIFO for this user only. It accepts the lines "press" and "release" and
 /// ignores others. Replaces a file at `fifo`.
 std::expected<std::unique_ptr<ButtonLine>, std::string> simulated_button(const std::string& fifo);

@@ -21,7 +21,7 @@ class Painter {
   static constexpr Milliseconds kMended{5000};
 
   /// Null: no lines. The next show() sets the new lines.
-  void take(std::unique_ptr<Lines> lines) {
+  void set_lines(std::unique_ptr<Lines> lines) {
     lines_ = std::move(lines);
     tried_.reset();
     trouble_.clear();

@@ -50,7 +50,7 @@ Milliseconds length_of(std::span<const Step> steps) {
                          [](Milliseconds sum, const Step& step) { return sum + step.length; });
 }
 
-Moment once(std::span<const Step> steps, Milliseconds elapsed) {
+Moment single_moment(std::span<const Step> steps, Milliseconds elapsed) {
   for (const Step& step : steps) {
     if (elapsed < step.length) return {step.lit, step.length - elapsed};
     elapsed -= step.length;
@@ -58,16 +58,16 @@ Moment once(std::span<const Step> steps, Milliseconds elapsed) {
   return {};
 }
 
-Moment repeated(std::span<const Step> steps, Milliseconds elapsed) {
+Moment repeated_moment(std::span<const Step> steps, Milliseconds elapsed) {
   if (steps.empty()) return {};
   if (steps.size() == 1) return {steps.front().lit, std::nullopt};
-  return once(steps, elapsed % length_of(steps));
+  return single_moment(steps, elapsed % length_of(steps));
 }
 
 Frame frame_of(const Lights& lights, Milliseconds elapsed) {
   Frame frame;
   for (const Light light : kLights) {
-    const Moment moment = repeated(steps_of(lights[index_of(light)]), elapsed);
+    const Moment moment = repeated_moment(steps_of(lights[index_of(light)]), elapsed);
     frame.lit[index_of(light)] = moment.lit;
     if (moment.lasts) frame.lasts = std::min(*moment.lasts, frame.lasts.value_or(*moment.lasts));
   }

@@ -42,9 +42,9 @@ struct Moment {
   std::optional<Milliseconds> lasts;  // until the next step; nullopt: for ever
 };
 /// The state `elapsed` after the start of repeated steps. Dark if `steps` is empty.
-Moment repeated(std::span<const Step> steps, Milliseconds elapsed);
+Moment repeated_moment(std::span<const Step> steps, Milliseconds elapsed);
 /// The same for steps that are played once, and dark afterwards.
-Moment once(std::span<const Step> steps, Milliseconds elapsed);
+Moment single_moment(std::span<const Step> steps, Milliseconds elapsed);
 Milliseconds length_of(std::span<const Step> steps);
 
 using Lights = std::array<Pattern, kLights.size()>;  // by Light

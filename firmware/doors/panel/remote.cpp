@@ -54,7 +54,7 @@ class Connection {
     return std::unexpected(trouble_);
   }
 
-  std::expected<bool, std::string> pressed() {
+  std::expected<bool, std::string> is_pressed() {
     std::array<char, kLongestMessage> bytes{};
     for (int i = 0; fd_ && i < kMessagesAtOnce; ++i) {
       const ssize_t size = recv(fd_.get(), bytes.data(), bytes.size(), MSG_DONTWAIT);
@@ -64,7 +64,7 @@ class Connection {
         break;
       }
       if (const auto said = parse_report({bytes.data(), static_cast<std::size_t>(size)}))
-        std::visit([this](const auto& each) { take(each); }, *said);
+        std::visit([this](const auto& each) { handle(each); }, *said);
     }
     if (std::exchange(was_lost_, false) || !pressed_)
       return std::unexpected("adit-panel cannot read the button");
@@ -75,11 +75,11 @@ class Connection {
   int descriptor() const { return epoll_.get(); }
 
  private:
-  void take(const ButtonState& said) {
+  void handle(const ButtonState& said) {
     pressed_ = said.pressed;
     if (!pressed_) was_lost_ = true;
   }
-  void take(const LightsState& said) { trouble_ = said.trouble; }
+  void handle(const LightsState& said) { trouble_ = said.trouble; }
 
   /// False with errno, also if `fd` is empty.
   bool greet(loop::FileDescriptor fd) {
@@ -104,7 +104,7 @@ class Connection {
   loop::FileDescriptor epoll_, fd_;
   std::optional<Clock::time_point> unheard_since_;
   std::optional<bool> pressed_ = false;  // nullopt: it cannot be read
-  bool was_lost_ = false;                // a press was cancelled since the last call of pressed()
+  bool was_lost_ = false;                // a press was cancelled since the last call of is_pressed()
   std::string trouble_;                  // with the lights
 };
 
@@ -135,7 +135,7 @@ class RemoteButton final : public ButtonLine {
  public:
   explicit RemoteButton(std::shared_ptr<Connection> connection) : connection_(std::move(connection)) {}
   int descriptor() const override { return connection_->descriptor(); }
-  std::expected<bool, std::string> pressed() override { return connection_->pressed(); }
+  std::expected<bool, std::string> is_pressed() override { return connection_->is_pressed(); }
 
  private:
   std::shared_ptr<Connection> connection_;

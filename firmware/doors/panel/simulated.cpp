@@ -46,7 +46,7 @@ class SimulatedLines final : public Lines {
 
 }  // namespace
 
-std::unique_ptr<Lines> simulated(std::string file) {
+std::unique_ptr<Lines> make_simulated_lines(std::string file) {
   return std::make_unique<SimulatedLines>(std::move(file));
 }
 

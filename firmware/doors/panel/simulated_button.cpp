@@ -26,18 +26,18 @@ class SimulatedButton final : public ButtonLine {
   int descriptor() const override { return fifo_.get(); }
 
   /// Reads at most as much as a pipe holds, so that a flood cannot block the loop.
-  std::expected<bool, std::string> pressed() override {
+  std::expected<bool, std::string> is_pressed() override {
     std::array<char, 4096> bytes{};
     for (int i = 0; i < 16; ++i) {
       const ssize_t size = read(fifo_.get(), bytes.data(), bytes.size());
       if (size <= 0) break;
-      for (const char byte : std::string_view(bytes.data(), static_cast<std::size_t>(size))) take(byte);
+      for (const char byte : std::string_view(bytes.data(), static_cast<std::size_t>(size))) handle(byte);
     }
     return pressed_;
   }
 
  private:
-  void take(char byte) {
+  void handle(char byte) {
     if (byte != '\n') {
       if (line_.size() <= kLongest) line_.push_back(byte);
       return;

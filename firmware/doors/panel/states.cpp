@@ -40,63 +40,72 @@ constexpr auto kOff = Pattern::Off, kOn = Pattern::On, kSlow = Pattern::Slow, kF
 // set-up precedes an operator's pending action, because its remaining time is shown here alone, and the
 // action on the page, too.
 constexpr StateRow kTable[] = {
-    {State::Fault,
+    {LightState::Fault,
      "fault",
      {kSlow, kOff, kOff, kOff},
      "Adit has died or hangs, and restarts; if this lasts, power off and on"},
-    {State::ResetWarning,
+    {LightState::ResetWarning,
      "reset warning",
      {kRush, kRush, kRush, kRush},
      "button held: release it, or a factory reset follows"},
-    {State::ButtonHeld,
+    {LightState::ButtonHeld,
      "button held",
      {kOn, kOn, kOn, kOn},
      "button held: release it for the address and set-up"},
-    {State::Identify, "identify", {kTwice, kTwice, kTwice, kTwice}, "identifies this box"},
-    {State::Address, "address", {kOff, kOff, kOff, kDigits}, "shows the box's address on the team's side"},
-    {State::UpdateRunning,
+    {LightState::Identify, "identify", {kTwice, kTwice, kTwice, kTwice}, "identifies this box"},
+    {LightState::Address,
+     "address",
+     {kOff, kOff, kOff, kDigits},
+     "shows the box's address on the team's side"},
+    {LightState::UpdateRunning,
      "update running",
      {kWink, kLeft, kLeft, kLeft},
      "installs an update: leave the power on"},
-    {State::CommandPostUnplugged,
+    {LightState::CommandPostUnplugged,
      "Command Post unplugged",
      {kLeft, kFlash, kFlash, kLeft},
      "no link to the Command Post: is the cable in?"},
-    {State::TeamUnplugged,
+    {LightState::TeamUnplugged,
      "team unplugged",
      {kFlash, kLeft, kLeft, kLeft},
      "no link to the team: is the cable in?"},
-    {State::NotServing,
+    {LightState::NotServing,
      "not serving",
      {kFast, kLeft, kLeft, kLeft},
      "Adit does not listen on the team's side, or cannot store reports: see the page"},
-    {State::ScoringFailing,
+    {LightState::ScoringFailing,
      "scoring failing",
      {kLeft, kFast, kLeft, kLeft},
      "the last request failed, was rejected or unanswered"},
-    {State::MappingFailing,
+    {LightState::MappingFailing,
      "mapping failing",
      {kLeft, kLeft, kFast, kLeft},
      "the last update failed, was rejected or unanswered"},
-    {State::SetUpOpen,
+    {LightState::SetUpOpen,
      "set-up open",
      {kLeft, kLeft, kLeft, kSlow},
      "for ten minutes, a new password needs no old one"},
-    {State::NeedsOperator,
+    {LightState::NeedsOperator,
      "needs operator",
      {kLeft, kLeft, kLeft, kFast},
      "a person must decide: see the page"},
-    {State::Acknowledged,
+    {LightState::Acknowledged,
      "acknowledged",
      {kLeft, kLeft, kLeft, kOn},
      "an acknowledged alarm is still active"},
-    {State::ReportWaiting, "report waiting", {kLeft, kSlow, kLeft, kLeft}, "a report waits for its answer"},
-    {State::Serving, "serving", {kOn, kLeft, kLeft, kLeft}, "Adit serves the team and can store reports"},
-    {State::ScoringConnected,
+    {LightState::ReportWaiting,
+     "report waiting",
+     {kLeft, kSlow, kLeft, kLeft},
+     "a report waits for its answer"},
+    {LightState::Serving,
+     "serving",
+     {kOn, kLeft, kLeft, kLeft},
+     "Adit serves the team and can store reports"},
+    {LightState::ScoringConnected,
      "scoring connected",
      {kLeft, kOn, kLeft, kLeft},
      "connected to the scoring endpoint, no report waits"},
-    {State::MappingConnected,
+    {LightState::MappingConnected,
      "mapping connected",
      {kLeft, kLeft, kOn, kLeft},
      "connected to the mapping endpoint"},
@@ -118,14 +127,14 @@ std::span<const StateRow> state_table() {
   return kTable;
 }
 
-bool States::set(State state, bool asserted) {
+bool States::set(LightState state, bool asserted) {
   bool& now = asserted_[static_cast<std::size_t>(state)];
   const bool changed = now != asserted;
   now = asserted;
   return changed;
 }
 
-Lights States::shown() const {
+Lights States::current_lights() const {
   Lights lights{};
   for (const Light light : kLights) {
     for (const StateRow& row : kTable) {

@@ -18,7 +18,7 @@ std::vector<Step> address_digits(std::string_view address);
 
 /// The panel's states. Each is asserted and cleared by itself. If several states concern a light, it shows
 /// the first of them here.
-enum class State : std::uint8_t {
+enum class LightState : std::uint8_t {
   Fault,
   ResetWarning,
   ButtonHeld,
@@ -41,23 +41,23 @@ enum class State : std::uint8_t {
 
 /// A row of the table of states, which is also on board/card.html.
 struct StateRow {
-  State state;
+  LightState state;
   std::string_view name;                                        // "reset warning"
   std::array<std::optional<Pattern>, kLights.size()> patterns;  // by Light; nullopt: does not concern it
   std::string_view meaning;
 };
-/// In the order of State.
+/// In the order of LightState.
 std::span<const StateRow> state_table();
-inline constexpr std::size_t kStates = static_cast<std::size_t>(State::MappingConnected) + 1;
+inline constexpr std::size_t kStates = static_cast<std::size_t>(LightState::MappingConnected) + 1;
 
 /// The asserted states. At first there are none, and all lights are dark.
 class States {
  public:
   /// True if this changed the state.
-  bool set(State state, bool asserted);
-  bool has(State state) const { return asserted_[static_cast<std::size_t>(state)]; }
+  bool set(LightState state, bool asserted);
+  bool has(LightState state) const { return asserted_[static_cast<std::size_t>(state)]; }
   /// For each light, the pattern of the first asserted state that concerns it, or dark.
-  Lights shown() const;
+  Lights current_lights() const;
 
  private:
   std::array<bool, kStates> asserted_{};

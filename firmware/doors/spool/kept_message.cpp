@@ -123,7 +123,7 @@ std::size_t MapFile::stored_bytes() const {
   return file_.size() - std::min(file_.size(), kBefore);
 }
 
-icd::ChunkedBytes MapFile::stored() {
+icd::ChunkedBytes MapFile::mapped_bytes() {
   shown_ = file_.map().value_or(MappedFile{});
   return data_in(shown_, stored_bytes());
 }
@@ -188,7 +188,7 @@ void make_folder_of_ours(const std::string& folder) {
   fs::permissions(folder, fs::perms::owner_all, error);
 }
 
-std::expected<void, std::string> write_whole(const std::string& path, icd::ChunkedBytes bytes) {
+std::expected<void, std::string> replace_file(const std::string& path, icd::ChunkedBytes bytes) {
   PartFile file(path);
   int error = file.append(bytes);
   if (error == 0) error = file.name(path);
@@ -242,7 +242,7 @@ codec::Value to_json(const icd::GridBounds& bounds) {
 
 icd::GridBounds read_bounds(const codec::Field& field, const icd::OccupancyGrid& grid) {
   constexpr std::size_t kNumbers = 7;
-  const auto own = icd::GridBounds::of(grid);
+  const auto own = icd::GridBounds::from_grid(grid);
   if (field.size() != kNumbers) {
     field.refuse("expected ", kNumbers, " numbers");
     return own;

@@ -75,9 +75,9 @@ class MapFile {
   /// Appends data and frees each chunk once it is written. After an error, `data` holds the rest.
   int append(icd::ChunkedBytes& data) { return error_ != 0 ? error_ : file_.append(data); }
   /// The data that append() has written, mapped from the file. Empty with errno: it cannot be mapped.
-  icd::ChunkedBytes stored();
+  icd::ChunkedBytes mapped_bytes();
   std::size_t stored_bytes() const;
-  /// Whether `data` begins with all chunks that stored() gave.
+  /// Whether `data` begins with all chunks that mapped_bytes() gave.
   bool begins(const icd::ChunkedBytes& data) const;
 
   /// Writes the rest of `map`, renames the file to `path`, and replaces the map's data by the mapped file.
@@ -91,7 +91,7 @@ class MapFile {
  private:
   PartFile file_;
   int error_;
-  MappedFile shown_;  // from stored()
+  MappedFile shown_;  // from mapped_bytes()
 };
 
 // Messages in files of their own, in the form of codec/write.hpp. The files survive a crash of the process,
@@ -102,7 +102,7 @@ void make_folder_of_ours(const std::string& folder);
 
 /// Writes a file for this user alone, completely or not at all, and frees each chunk once it is written. An
 /// error names the file and leaves an older file unchanged. Writer thread.
-std::expected<void, std::string> write_whole(const std::string& path, icd::ChunkedBytes bytes);
+std::expected<void, std::string> replace_file(const std::string& path, icd::ChunkedBytes bytes);
 
 /// Removes unfinished files of a killed process. No writer may be active in the directory.
 void remove_parts(const std::string& folder);

@@ -106,8 +106,8 @@ icd::Checked<icd::MapUpdate> Spool::keep(std::uint64_t number, icd::MapUpdate ma
 bool Spool::keep_bounds(std::uint64_t number, const icd::GridBounds& bounds) const {
   const auto text = codec::write_json(to_json(bounds));
   const auto written =
-      write_whole(bounds_file_of(number),
-                  icd::ChunkedBytes({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}));
+      replace_file(bounds_file_of(number),
+                   icd::ChunkedBytes({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}));
   if (!written)
     host::log(host::Level::Warning, "cannot store what a grid replaced; the older grids stay stored",
               {{"why", written.error()}});
@@ -211,7 +211,7 @@ icd::Checked<Spool::KeptMap> Spool::read(std::uint64_t number) const {
   const auto value = codec::parse_json(text_in(*file));
   codec::Reading reading;
   if (value) kept.bounds = read_bounds(codec::Field(*value, reading), *grid);
-  if (!value || reading.refused()) {
+  if (!value || reading.has_refusal()) {
     kept.bounds.reset();
     host::log(host::Level::Warning, "what a queued grid replaced is unknown: its file is damaged",
               {{"file", path}});

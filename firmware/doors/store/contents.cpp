@@ -24,7 +24,7 @@ class Assembly {
     drop_void();
     for (const Scan& log : logs_) find_durable(log);
     for (const Scan& log : logs_) {
-      if (!take(log)) break;
+      if (!add_frames(log)) break;
     }
     finish();
     return std::move(contents_);
@@ -47,7 +47,7 @@ class Assembly {
 
   Result<std::uint64_t> most_bytes(const FileName& name, const Layout& layout) const {
     if (!keeping_.syncs || name.kind != FileName::Kind::Log) return keeping_.most_bytes;
-    const std::size_t room = layout.copies * room_of(FileHeader().written().size(), layout);
+    const std::size_t room = layout.copies * room_of(FileHeader().to_bytes().size(), layout);
     const auto begin = ADIT_TRY(directory_.read(name.text(), room));
     const auto header = scan(name, begin, layout).header;
     return header && header->size > 0 ? header->size : keeping_.most_bytes;
@@ -121,7 +121,7 @@ class Assembly {
   }
 
   /// False: a frame is missing, and the rest was never synced.
-  bool take(const Scan& log) {
+  bool add_frames(const Scan& log) {
     if (log.size < least_size(log)) gap(next_, std::nullopt, log.name);
     for (const Scan::Found& found : log.frames) {
       const Frame& frame = found.frame;
@@ -160,7 +160,7 @@ class Assembly {
                    .salt = log.name.salt,
                    .base = base,
                    .size = keeping_.syncs ? std::max<std::uint64_t>(log.size, least_size(log)) : 0}
-            .written());
+            .to_bytes());
     const Frame header =
         log.begin ? log.begin->frame : Frame{.kind = kFileBegins, .durable = base, .body = body};
     contents_.rewrites.push_back({log.name, 0, header});
@@ -186,7 +186,7 @@ Result<Contents> Contents::read(const Directory& directory, const Keeping& keepi
   return Assembly(directory, keeping, before).run();
 }
 
-std::string FileHeader::written() const {
+std::string FileHeader::to_bytes() const {
   std::string body;
   for (const std::uint64_t value : {version, number, salt, base, size}) put_number(body, value, 8);
   return body;

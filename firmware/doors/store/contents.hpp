@@ -48,7 +48,7 @@ struct FileHeader {
   /// Of a log: records above it in earlier files are void. Of a snapshot: it contains all records up to it.
   std::uint64_t base = 0;
   std::uint64_t size = 0;  // bytes written and synced before this header; 0: the file grows
-  std::string written() const;
+  std::string to_bytes() const;
   static std::optional<FileHeader> parse(std::string_view body);
 };
 

@@ -31,7 +31,7 @@ Error::Cause cause_of(int number) {
 
 }  // namespace
 
-std::unexpected<Error> failed(const std::string& path, int number) {
+std::unexpected<Error> path_error(const std::string& path, int number) {
   return std::unexpected(Error{cause_of(number), path + ": " + loop::text_of(number)});
 }
 
@@ -64,16 +64,16 @@ Result<Directory> Directory::open(const std::string& path) {
   Directory directory;
   directory.path_ = path;
   directory.fd_ = loop::FileDescriptor(::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (!directory.fd_) return failed(path, errno);
+  if (!directory.fd_) return path_error(path, errno);
   return directory;
 }
 
 Result<Directory> Directory::lock(const std::string& path) {
-  if (::mkdir(path.c_str(), 0700) != 0 && errno != EEXIST) return failed(path, errno);
+  if (::mkdir(path.c_str(), 0700) != 0 && errno != EEXIST) return path_error(path, errno);
   auto directory = open(path);
   if (!directory) return directory;
   if (::flock(directory->fd_.get(), LOCK_EX | LOCK_NB) == 0) return directory;
-  if (errno != EWOULDBLOCK) return failed(path, errno);
+  if (errno != EWOULDBLOCK) return path_error(path, errno);
   return std::unexpected(Error{Error::Cause::InUse, path + ": another process has it open"});
 }
 
@@ -83,12 +83,12 @@ Result<std::vector<std::string>> Directory::names() const {
   if (!all) {
     const int number = errno;
     if (again >= 0) loop::close_descriptor(again);
-    return failed(path_, number);
+    return path_error(path_, number);
   }
   std::vector<std::string> names;
   errno = 0;
   while (const dirent* entry = ::readdir(all.get())) names.emplace_back(entry->d_name);
-  if (errno != 0) return failed(path_, errno);
+  if (errno != 0) return path_error(path_, errno);
   return names;
 }
 
@@ -179,7 +179,7 @@ Result<std::string> Directory::rename_aside(const std::string& name) const {
 }
 
 Result<void> Directory::sync() const {
-  if (::fsync(fd_.get()) != 0) return failed(path_, errno);
+  if (::fsync(fd_.get()) != 0) return path_error(path_, errno);
   return {};
 }
 
@@ -191,7 +191,7 @@ Result<void> Directory::sync_name() const {
 
 Result<std::uint64_t> random_salt() {
   std::uint64_t salt = 0;
-  if (::getrandom(&salt, sizeof salt, 0) != sizeof salt) return failed("random numbers", errno);
+  if (::getrandom(&salt, sizeof salt, 0) != sizeof salt) return path_error("random numbers", errno);
   return salt;
 }
 

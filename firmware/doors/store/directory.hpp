@@ -31,7 +31,7 @@ template <class T>
 using Result = std::expected<T, Error>;
 
 /// "PATH: No such file or directory", with the cause of errno `number`.
-std::unexpected<Error> failed(const std::string& path, int number);
+std::unexpected<Error> path_error(const std::string& path, int number);
 
 /// A file of a log, named "log-NUMBER.SALT", "snapshot-NUMBER.SALT" or "spare-NUMBER.SALT", with at least 8
 /// decimal and 16 hexadecimal digits.
@@ -77,10 +77,10 @@ class Directory {
   /// Syncs the directory's own name.
   Result<void> sync_name() const;
   std::unexpected<Error> trouble(const std::string& name, int number) const {
-    return failed(path_ + '/' + name, number);
+    return path_error(path_ + '/' + name, number);
   }
   /// For write errors: names the directory, because the file's name differs at each try.
-  std::unexpected<Error> trouble(int number) const { return failed(path_, number); }
+  std::unexpected<Error> trouble(int number) const { return path_error(path_, number); }
 
  private:
   Result<std::vector<std::string>> names() const;

@@ -19,7 +19,7 @@ void Writer::operator()(std::string_view text) {
   bytes_ += text;
 }
 
-std::string_view Reader::take(std::size_t size) {
+std::string_view Reader::consume(std::size_t size) {
   check(size <= left_.size());
   if (!ok_) return {};
   const std::string_view taken = left_.substr(0, size);
@@ -28,7 +28,7 @@ std::string_view Reader::take(std::size_t size) {
 }
 
 std::uint64_t Reader::number() {
-  const std::string_view bytes = take(8);
+  const std::string_view bytes = consume(8);
   return bytes.empty() ? 0 : number_at(bytes, 0, 8);
 }
 
@@ -51,7 +51,7 @@ std::uint32_t checksum(std::string_view checked, std::uint64_t salt, std::size_t
   return libdeflate_crc32(sum, checked.data(), checked.size());
 }
 
-std::size_t aligned(std::size_t offset, const Layout& layout) {
+std::size_t align_up(std::size_t offset, const Layout& layout) {
   return (offset + layout.align - 1) / layout.align * layout.align;
 }
 
@@ -69,10 +69,10 @@ std::uint64_t number_at(std::string_view bytes, std::size_t at, std::size_t size
 }
 
 std::size_t room_of(std::size_t body, const Layout& layout) {
-  return aligned(kHeader + body, layout);
+  return align_up(kHeader + body, layout);
 }
 
-std::string written(const Frame& frame, const Layout& layout, std::uint64_t salt, std::size_t offset) {
+std::string to_bytes(const Frame& frame, const Layout& layout, std::uint64_t salt, std::size_t offset) {
   std::string all;
   all.reserve(layout.copies * room_of(frame.body.size(), layout));
   for (std::size_t copy = 0; copy < layout.copies; ++copy) {
@@ -111,7 +111,7 @@ std::optional<Parsed> parse(std::string_view file, std::size_t offset, std::uint
 }
 
 std::size_t next_candidate(std::string_view file, std::size_t offset, const Layout& layout) {
-  for (offset = aligned(offset, layout); offset + kHeader <= file.size(); offset += layout.align) {
+  for (offset = align_up(offset, layout); offset + kHeader <= file.size(); offset += layout.align) {
     if (number_at(file, offset, 4) == kMagic) return offset;
   }
   return file.size();

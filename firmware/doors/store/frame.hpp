@@ -102,8 +102,8 @@ class Reader {
     word = static_cast<Word>(number);
   }
   void operator()(double& real);
-  void operator()(std::string_view& text) { text = take(number()); }
-  void operator()(std::string& text) { text = take(number()); }
+  void operator()(std::string_view& text) { text = consume(number()); }
+  void operator()(std::string& text) { text = consume(number()); }
   void operator()(std::chrono::nanoseconds& time) { time = std::chrono::nanoseconds(read<std::int64_t>()); }
   void operator()(std::chrono::steady_clock::time_point& at) {
     at = std::chrono::steady_clock::time_point(read<std::chrono::nanoseconds>());
@@ -119,12 +119,12 @@ class Reader {
   /// Makes ok() false from now on unless `is_good`.
   void check(bool is_good) { ok_ = ok_ && is_good; }
   bool ok() const { return ok_; }
-  bool at_end() const { return left_.empty(); }
-  std::string_view left() const { return left_; }
+  bool is_at_end() const { return left_.empty(); }
+  std::string_view remaining() const { return left_; }
 
  private:
   std::uint64_t number();
-  std::string_view take(std::size_t size);
+  std::string_view consume(std::size_t size);
 
   std::string_view left_;
   bool ok_ = true;
@@ -136,7 +136,7 @@ template <std::size_t oldest, class Of>
 void read_first_members(auto& take, Of& value) {
   std::size_t place = 0;
   const auto read = [&](auto member) {
-    if (place++ < oldest || !take.at_end()) walk(take, std::invoke(member, value));
+    if (place++ < oldest || !take.is_at_end()) walk(take, std::invoke(member, value));
   };
   std::apply([&read](auto... member) { (read(member), ...); }, kMembers<Of>);
 }
@@ -151,11 +151,11 @@ std::string bytes_of(const Of&... values) {
 
 /// Reads values that bytes_of() wrote. False, with undefined values, if one is missing or wrong, or bytes are
 /// left.
-template <class Take = Reader, class... Of>
+template <class ReaderType = Reader, class... Of>
 bool read(std::string_view bytes, Of&... values) {
-  Take take(bytes);
+  ReaderType take(bytes);
   (walk(take, values), ...);
-  return take.ok() && take.at_end();
+  return take.ok() && take.is_at_end();
 }
 
 /// Largest body of a record, in bytes.
@@ -188,7 +188,7 @@ struct Frame {
 std::size_t room_of(std::size_t body, const Layout& layout);
 
 /// All copies of a frame at `offset` of the file with this salt.
-std::string written(const Frame& frame, const Layout& layout, std::uint64_t salt, std::size_t offset);
+std::string to_bytes(const Frame& frame, const Layout& layout, std::uint64_t salt, std::size_t offset);
 
 struct Parsed {
   Frame frame;       // its body refers to the file's bytes
@@ -205,7 +205,7 @@ std::size_t next_candidate(std::string_view file, std::size_t offset, const Layo
 template <class Of>
 std::string file_of(const Of& value, const Layout& layout) {
   const std::string body = bytes_of(value);
-  return written({.kind = 1, .body = body}, layout, 0, 0);
+  return to_bytes({.kind = 1, .body = body}, layout, 0, 0);
 }
 /// The value of file_of() from the copy at `offset`, or std::nullopt if the copy is absent or damaged. A
 /// later version may have added members.

@@ -87,7 +87,7 @@ Result<void> Log::rewrite(const Contents& contents) {
       auto opened = ADIT_TRY(directory_.open_to_write(name));
       fd = std::move(opened);
     }
-    const std::string frame = written(each.frame, keeping_.layout, each.file.salt, each.offset);
+    const std::string frame = to_bytes(each.frame, keeping_.layout, each.file.salt, each.offset);
     if (const int error = write_all(fd.get(), frame, each.offset); error != 0)
       return directory_.trouble(name, error);
   }
@@ -134,7 +134,7 @@ Result<void> Log::flush() {
 /// so, and the accepted ones follow it.
 Result<void> Log::turn_for(std::size_t body) {
   if (!is_dead_) (void)flush();  // after an error is_dead_ is set
-  std::size_t size = bytes_of(FileHeader().written().size()) + bytes_of(body);
+  std::size_t size = bytes_of(FileHeader().to_bytes().size()) + bytes_of(body);
   for (const Unsynced& each : unsynced_) size += bytes_of(each.body.size());
   ++highest_;
   auto made = make_file(keeping_.syncs ? std::max(size, keeping_.file_bytes) : 0);
@@ -187,7 +187,7 @@ Result<void> Log::fill(File& file) const {
                                         .salt = file.name.salt,
                                         .base = durable_,
                                         .size = keeping_.syncs ? file.size : 0}
-                                 .written();
+                                 .to_bytes();
   std::uint64_t sequence = durable_;
   auto wrote = write(file, {kFileBegins, 0, process_, durable_, header});
   for (const Unsynced& each : unsynced_) {
@@ -198,7 +198,7 @@ Result<void> Log::fill(File& file) const {
 }
 
 Result<void> Log::write(File& file, const Frame& frame) const {
-  const std::string bytes = written(frame, keeping_.layout, file.name.salt, file.at);
+  const std::string bytes = to_bytes(frame, keeping_.layout, file.name.salt, file.at);
   if (const int error = write_all(file.fd.get(), bytes, file.at); error != 0)
     return directory_.trouble(error);
   file.at += bytes_of(frame.body.size());
@@ -229,7 +229,7 @@ Result<Snapshot> Snapshot::begin(const Directory& directory, const Keeping& keep
   snapshot.file_ = std::move(made);
   snapshot.part_ = part;
   const FileHeader header{.number = log.number(), .salt = salt, .base = log.last()};
-  ADIT_TRY(snapshot.write(kFileBegins, 0, header.written()));
+  ADIT_TRY(snapshot.write(kFileBegins, 0, header.to_bytes()));
   return snapshot;
 }
 
@@ -244,7 +244,7 @@ Result<void> Snapshot::add(std::uint8_t kind, std::string_view body) {
 
 Result<void> Snapshot::write(std::uint8_t kind, std::uint64_t sequence, std::string_view body) {
   const std::string bytes =
-      written({kind, sequence, process_, base_, body}, snapshot_layout(keeping_.layout), name_.salt, at_);
+      to_bytes({kind, sequence, process_, base_, body}, snapshot_layout(keeping_.layout), name_.salt, at_);
   if (at_ + bytes.size() > keeping_.most_bytes)
     return std::unexpected(Error{
         Error::Cause::TooLong, "a snapshot of more than " + std::to_string(keeping_.most_bytes) + " bytes"});

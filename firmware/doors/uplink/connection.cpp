@@ -29,16 +29,16 @@ pace::Progress progress_of(int fd, loop::Instant now) {
 
 }  // namespace
 
-void LinkPace::begins(int fd, loop::Instant now) {
+void LinkPace::on_write_begun(int fd, loop::Instant now) {
   if (!delivery_) return;
-  delivery_->begins(progress_of(fd, now));
+  delivery_->on_write_begun(progress_of(fd, now));
   told_ = 0;
   tell(fd);
 }
 
-void LinkPace::goes_on(int fd, loop::Instant now) {
+void LinkPace::on_write(int fd, loop::Instant now) {
   if (!delivery_) return;
-  delivery_->goes_on(progress_of(fd, now));
+  delivery_->on_write(progress_of(fd, now));
   tell(fd);
 }
 
@@ -48,8 +48,8 @@ void LinkPace::tell(int fd) {
   told_ = pace;
 }
 
-std::uint64_t LinkPace::delivers() const {
-  return delivery_ ? static_cast<std::uint64_t>(delivery_->delivers()) : 0;
+std::uint64_t LinkPace::delivery_rate() const {
+  return delivery_ ? static_cast<std::uint64_t>(delivery_->delivery_rate()) : 0;
 }
 
 void Connection::keep_warm() {
@@ -59,7 +59,7 @@ void Connection::keep_warm() {
 
 void Connection::retry_now() {
   attempts_.retry_now();
-  if (connected() || (!socket_ && !stays_warm())) return;
+  if (is_connected() || (!socket_ && !stays_warm())) return;
   close_socket();
   connect();
 }
@@ -74,12 +74,12 @@ bool Connection::stays_warm() const {
 }
 
 void Connection::connect() {
-  attempts_.begins(loop_.now());
+  attempts_.on_begun(loop_.now());
   auto fd = begin_connect(endpoint_);
   if (!fd) return connecting_failed(fd.error().why);
   timer_.call_at(loop_.now() + endpoint_.connect_within);
   socket_.emplace(std::move(*fd));
-  socket_->source = loop_.watch(socket_->fd.get(), EPOLLOUT, [this](std::uint32_t) { ready(); });
+  socket_->source = loop_.watch(socket_->fd.get(), EPOLLOUT, [this](std::uint32_t) { on_socket_ready(); });
 }
 
 /// Connects an idle connection now, or when the pause since the last attempt is over.
@@ -95,15 +95,15 @@ void Connection::connecting_ended(int error) {
   socket_->idle_since = loop_.now();
   socket_->is_fresh = exchange_ != nullptr;
   socket_->sent_twice = transmission(socket_->fd.get()).sent_twice;
-  attempts_.succeeded();
+  attempts_.on_succeeded();
   if (exchange_) return begin();
   rest();
 }
 
 void Connection::connecting_failed(const std::string& why) {
   const loop::Instant next =
-      attempts_.failed("connecting to " + authority_of(endpoint_) +
-                       (endpoint_.interface.empty() ? "" : " by " + endpoint_.interface) + ": " + why);
+      attempts_.on_failed("connecting to " + authority_of(endpoint_) +
+                          (endpoint_.interface.empty() ? "" : " by " + endpoint_.interface) + ": " + why);
   close_socket();
   if (stays_warm()) timer_.call_at(next);
   if (exchange_) deliver(NeverSent{trouble()});
@@ -117,7 +117,7 @@ void Connection::rest() {
 
 /// The connection was idle for kIdle, the peer closed it, or the peer sent bytes without a request. Closes it
 /// before it connects again, because some servers serve one connection at a time.
-void Connection::idle_ended() {
+void Connection::on_idle_ended() {
   close_socket();
   return_warm();
 }
@@ -177,7 +177,7 @@ void Connection::send(Request request, std::function<void(Outcome)> done) {
 void Connection::give_up() {
   done_ = nullptr;
   outcome_.reset();
-  if (exchange_) sent_ = exchange_->sent();
+  if (exchange_) sent_ = exchange_->sent_bytes();
   exchange_.reset();
   if (socket_) drop();
 }
@@ -185,24 +185,24 @@ void Connection::give_up() {
 void Connection::begin_sending() {
   silence_.call_at(loop_.now() + kLookForSilence);
   open();
-  if (connected() && exchange_) begin();
+  if (is_connected() && exchange_) begin();
 }
 
-void Connection::ready() {
-  if (!connected()) return connecting_ended(connect_error(socket_->fd.get()));
-  if (!exchange_) return idle_ended();
+void Connection::on_socket_ready() {
+  if (!is_connected()) return connecting_ended(connect_error(socket_->fd.get()));
+  if (!exchange_) return on_idle_ended();
   if (read_answer()) return;
   if (exchange_->wants_to_write()) write();
 }
 
 void Connection::time_came() {
   if (!socket_) return return_warm();
-  if (!connected()) return connecting_failed("no answer in time");
-  if (!exchange_) return idle_ended();
+  if (!is_connected()) return connecting_failed("no answer in time");
+  if (!exchange_) return on_idle_ended();
   if (read_answer()) return;
   exchange_->listen(socket_->fd.get(), loop_.now());
   if (exchange_->is_silent_at(loop_.now()))
-    return in_doubt({.why = exchange_->sentence("the peer was silent for too long")});
+    return on_in_doubt({.why = exchange_->sentence("the peer was silent for too long")});
   const bool has_more = exchange_->release(loop_.now());
   schedule_listening();
   if (has_more) write();
@@ -210,9 +210,9 @@ void Connection::time_came() {
 
 /// An idle connection cannot block one that the server has answered before.
 void Connection::check_silence() {
-  if (!exchange_ || wait_.is_silent || (connected() && socket_->is_served)) return;
+  if (!exchange_ || wait_.is_silent || (is_connected() && socket_->is_served)) return;
   loop::Instant silent_at = wait_.since + Server::kSilence;
-  if (connected()) {
+  if (is_connected()) {
     exchange_->listen(socket_->fd.get(), loop_.now());
     silent_at = exchange_->silence_start() + Server::kSilence;
   }
@@ -224,8 +224,8 @@ void Connection::check_silence() {
 
 /// Updates the pace while the kernel's buffer is full.
 void Connection::look() {
-  if (!exchange_ || !connected() || !exchange_->wants_to_write()) return;
-  pace_->goes_on(socket_->fd.get(), loop_.now());
+  if (!exchange_ || !is_connected() || !exchange_->wants_to_write()) return;
+  pace_->on_write(socket_->fd.get(), loop_.now());
   look_.call_at(loop_.now() + LinkPace::kLook);
 }
 
@@ -251,19 +251,20 @@ void Connection::retry_request() {
 }
 
 void Connection::write() {
-  const bool begins = exchange_->sent() == 0;
-  if (!begins) pace_->goes_on(socket_->fd.get(), loop_.now());
+  const bool begins = exchange_->sent_bytes() == 0;
+  if (!begins) pace_->on_write(socket_->fd.get(), loop_.now());
   const int error = exchange_->write(socket_->fd.get());
   if (begins) began_to_leave();
   if (error == 0) return socket_->source.wait_for(exchange_->wants_to_write() ? kComing | EPOLLOUT : kComing);
-  if (exchange_->sent() == 0) return socket_->is_fresh ? never_sent(std::strerror(error)) : retry_request();
+  if (exchange_->sent_bytes() == 0)
+    return socket_->is_fresh ? never_sent(std::strerror(error)) : retry_request();
   if (!read_answer()) socket_->source.wait_for(kComing);
 }
 
 void Connection::began_to_leave() {
   exchange_->began_to_leave(loop_.now());
   if (!exchange_->wants_to_write()) return;  // too short to measure the link
-  pace_->begins(socket_->fd.get(), loop_.now());
+  pace_->on_write_begun(socket_->fd.get(), loop_.now());
   look_.call_at(loop_.now() + LinkPace::kLook);
 }
 
@@ -274,10 +275,10 @@ bool Connection::read_answer() {
       if (exchange_->is_early()) schedule_listening();
       return false;
     case Exchange::Answer::Lost:
-      in_doubt(exchange_->doubt());
+      on_in_doubt(exchange_->doubt());
       return true;
     case Exchange::Answer::Whole:
-      answered();
+      on_answered();
       return true;
   }
   return false;
@@ -286,19 +287,19 @@ bool Connection::read_answer() {
 void Connection::on_earlier_request_ended() {
   if (!exchange_) return;
   exchange_->on_earlier_request_ended(loop_.now());
-  if (connected()) schedule_listening();
+  if (is_connected()) schedule_listening();
 }
 
 std::optional<Sent> Connection::has_arrived() const {
-  if (!exchange_ || !connected() || !exchange_->has_arrived(socket_->fd.get())) return {};
-  return exchange_->left(transmission(socket_->fd.get()), loop_.now());
+  if (!exchange_ || !is_connected() || !exchange_->has_arrived(socket_->fd.get())) return {};
+  return exchange_->sent_times(transmission(socket_->fd.get()), loop_.now());
 }
 
-void Connection::answered() {
+void Connection::on_answered() {
   Answered answer = exchange_->take_answer();
   const Transmission seen = transmission(socket_->fd.get());
-  answer.sent = exchange_->left(seen, loop_.now());
-  reset_on_close(socket_->fd.get(), exchange_->sent() < exchange_->total());
+  answer.sent = exchange_->sent_times(seen, loop_.now());
+  reset_on_close(socket_->fd.get(), exchange_->sent_bytes() < exchange_->total());
   // The measured mapping server promises keep-alive with a 4xx and still closes.
   const bool keep = server_->on_answer(*this, exchange_->may_keep_alive() && answer.status < 400);
   if (keep) {
@@ -312,7 +313,7 @@ void Connection::answered() {
   deliver(std::move(answer));
 }
 
-void Connection::in_doubt(InDoubt doubt) {
+void Connection::on_in_doubt(InDoubt doubt) {
   drop();
   deliver(std::move(doubt));
 }
@@ -325,7 +326,7 @@ void Connection::never_sent(const std::string& reason) {
 
 /// Ends the exchange. Calls `done` last, because it may send the next request.
 void Connection::deliver(Outcome outcome) {
-  sent_ = exchange_->sent();
+  sent_ = exchange_->sent_bytes();
   exchange_.reset();
   if (!within_send_) return call_done(std::move(outcome));
   outcome_ = std::move(outcome);
@@ -388,7 +389,7 @@ void Server::close_idle() {
 
 /// The connection ends without a request. It may have blocked the silent ones.
 void Server::suspect(const Connection& closed) {
-  if (!closed.connected() || closed.socket_->is_passed) return;
+  if (!closed.is_connected() || closed.socket_->is_passed) return;
   const loop::Instant answer_by = loop_.now() + (closed.socket_->is_served ? kSilence : kAtOnce);
   for (Connection* const each : connections_) {
     if (each->is_silent() && !each->wait_.answer_by) each->wait_.answer_by = answer_by;
@@ -398,7 +399,7 @@ void Server::suspect(const Connection& closed) {
 bool Server::on_answer(Connection& one, bool can_stay) {
   const loop::Instant now = loop_.now();
   for (Connection* const each : connections_) {
-    if (each == &one || !each->connected() || !is_quiet(each->socket_->fd.get())) continue;
+    if (each == &one || !each->is_connected() || !is_quiet(each->socket_->fd.get())) continue;
     if (each->socket_->idle_since >= one.wait_.since) continue;
     each->socket_->is_passed = true;
     helped_ = 0;
@@ -438,7 +439,7 @@ void Server::wake() {
     Turn* const next = next_turn();
     if (next == nullptr) return;
     next->is_claimed = false;
-    next->came();
+    next->on_turn();
   }
 }
 
@@ -453,7 +454,7 @@ std::shared_ptr<Server> Servers::at(const Endpoint& endpoint) {
 Connections::Connections(loop::Loop& loop, Endpoint endpoint, icd::BearerToken token,
                          std::shared_ptr<Server> server, std::function<void()> turn_came)
     : server_(std::move(server)),
-      turn_{.came = std::move(turn_came)},
+      turn_{.on_turn = std::move(turn_came)},
       first_(loop, std::move(endpoint), std::move(token), server_) {
   server_->add(turn_);
 }
@@ -474,12 +475,12 @@ void Connections::get_ready() {
   const Connection* const busy = the_busy_one();
   if (busy == nullptr || std::exchange(has_tried_, true)) return;
   if (!second_) second_ = first_.another();
-  other_than(*busy)->open();
+  peer_of(*busy)->open();
 }
 
 bool Connections::is_ready() const {
   const Connection* const busy = the_busy_one();
-  return busy != nullptr && (busy == &first_ ? second_ && second_->connected() : first_.connected());
+  return busy != nullptr && (busy == &first_ ? second_ && second_->is_connected() : first_.is_connected());
 }
 
 std::optional<Sent> Connections::has_arrived() const {
@@ -489,8 +490,8 @@ std::optional<Sent> Connections::has_arrived() const {
 
 /// If both connections are idle, at most one is open.
 Connection& Connections::one_for_the_next() {
-  if (const Connection* const busy = the_busy_one()) return *other_than(*busy);
-  return second_ && second_->connected() ? *second_ : first_;
+  if (const Connection* const busy = the_busy_one()) return *peer_of(*busy);
+  return second_ && second_->is_connected() ? *second_ : first_;
 }
 
 void Connections::send(Request request, std::function<void(Outcome)> done) {
@@ -498,15 +499,15 @@ void Connections::send(Request request, std::function<void(Outcome)> done) {
   Connection& one = one_for_the_next();
   request.goes_ahead = busy();
   one.send(std::move(request), [this, &one, done = std::move(done)](Outcome outcome) {
-    ended(one);
+    on_ended(one);
     done(std::move(outcome));  // may destroy this object
   });
   latest_ = &one;
   has_tried_ = false;
 }
 
-void Connections::ended(Connection& one) {
-  Connection* const other = other_than(one);
+void Connections::on_ended(Connection& one) {
+  Connection* const other = peer_of(one);
   if (other == nullptr) return;
   if (!other->busy()) return other->close();
   one.close();

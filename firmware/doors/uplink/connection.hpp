@@ -25,13 +25,13 @@ namespace adit::uplink {
 /// When to connect next. The pause between two attempts doubles while they fail.
 class ConnectAttempts {
  public:
-  void begins(loop::Instant now) { began_ = now; }
-  void succeeded() {
+  void on_begun(loop::Instant now) { began_ = now; }
+  void on_succeeded() {
     trouble_.clear();
     retry_now();
   }
   /// Returns the time of the next attempt.
-  loop::Instant failed(std::string why) {
+  loop::Instant on_failed(std::string why) {
     trouble_ = std::move(why);
     return began_ + std::exchange(pause_, std::min(pause_ * 2, kLongestPause));
   }
@@ -58,13 +58,13 @@ class LinkPace {
   }
 
   /// Call this when the first bytes of a request have just been written to `fd`.
-  void begins(int fd, loop::Instant now);
+  void on_write_begun(int fd, loop::Instant now);
   /// Call this before more bytes are written, and every kLook.
-  void goes_on(int fd, loop::Instant now);
+  void on_write(int fd, loop::Instant now);
   static constexpr loop::Duration kLook = pace::Delivery::kInterval / 2;
 
   /// Bytes per second that the link delivers, as measured; 0: not paced.
-  std::uint64_t delivers() const;
+  std::uint64_t delivery_rate() const;
 
  private:
   void tell(int fd);
@@ -118,15 +118,15 @@ class Connection {
   void on_earlier_request_ended();
   /// When the request in flight left; nullopt until the peer's TCP has acknowledged all of it.
   std::optional<Sent> has_arrived() const;
-  bool connected() const { return socket_ && socket_->is_open; }
+  bool is_connected() const { return socket_ && socket_->is_open; }
   /// Why the last attempt to connect failed, or "".
   const std::string& trouble() const { return attempts_.trouble(); }
 
   /// Bytes of the present or last request, with its head, that the kernel has accepted.
-  std::size_t sent_bytes() const { return exchange_ ? exchange_->sent() : sent_; }
+  std::size_t sent_bytes() const { return exchange_ ? exchange_->sent_bytes() : sent_; }
   /// Bytes per second that the link delivered during the last requests, at most Endpoint::bytes_per_second; 0
   /// if it is not paced.
-  std::uint64_t delivers() const { return pace_->delivers(); }
+  std::uint64_t delivers() const { return pace_->delivery_rate(); }
 
  private:
   friend class Server;
@@ -159,7 +159,7 @@ class Connection {
   // `done` may destroy this object. So a function that may call it does so last.
 
   // Callbacks of the socket and the timers.
-  void ready();
+  void on_socket_ready();
   void time_came();
   void look();
   void check_silence();
@@ -169,7 +169,7 @@ class Connection {
   void connecting_ended(int error);
   void connecting_failed(const std::string& why);
   void rest();
-  void idle_ended();
+  void on_idle_ended();
   void drop();
   void close_socket();
   bool stays_warm() const;
@@ -186,8 +186,8 @@ class Connection {
   void began_to_leave();
   bool read_answer();
   void schedule_listening() { timer_.call_at(exchange_->next_listening(loop_.now())); }
-  void answered();
-  void in_doubt(InDoubt doubt);
+  void on_answered();
+  void on_in_doubt(InDoubt doubt);
   void never_sent(const std::string& reason);
   void deliver(Outcome outcome);
   void tell();
@@ -237,7 +237,7 @@ class Server : public std::enable_shared_from_this<Server> {
 
   /// Of a sender.
   struct Turn {
-    std::function<void()> came;  // claim() again
+    std::function<void()> on_turn;  // claim() again
     bool is_claimed = false;
     bool goes_first = false;
     loop::Instant last{};  // when it came
@@ -250,7 +250,7 @@ class Server : public std::enable_shared_from_this<Server> {
 
   void add(Turn& turn) { turns_.push_back(&turn); }
   void remove(Turn& turn) { std::erase(turns_, &turn); }
-  /// True: send now. False: `came` will be called. `goes_first`: before turns that do not.
+  /// True: send now. False: `on_turn` will be called. `goes_first`: before turns that do not.
   bool claim(Turn& turn, bool goes_first);
 
  private:
@@ -305,7 +305,7 @@ class Servers {
 /// silence counts only from then on (Request::goes_ahead).
 class Connections {
  public:
-  /// `turn_came`: as Server::Turn::came.
+  /// `turn_came`: as Server::Turn::on_turn.
   Connections(loop::Loop& loop, Endpoint endpoint, icd::BearerToken token, std::shared_ptr<Server> server,
               std::function<void()> turn_came);
   ~Connections() { server_->remove(turn_); }
@@ -338,8 +338,9 @@ class Connections {
   /// Server::claim(). Call before each send().
   bool claim_turn(bool goes_first) { return server_->claim(turn_, goes_first); }
   /// True also between two requests to a serial server.
-  bool connected() const {
-    return first_.connected() || (second_ && second_->connected()) || (is_serial() && trouble().empty());
+  bool is_connected() const {
+    return first_.is_connected() || (second_ && second_->is_connected()) ||
+           (is_serial() && trouble().empty());
   }
   /// As in Connection, for the connection of the last request.
   const std::string& trouble() const { return latest_->trouble(); }
@@ -348,9 +349,9 @@ class Connections {
 
  private:
   const Connection* the_busy_one() const;
-  Connection* other_than(const Connection& one) { return &one == &first_ ? second_.get() : &first_; }
+  Connection* peer_of(const Connection& one) { return &one == &first_ ? second_.get() : &first_; }
   Connection& one_for_the_next();
-  void ended(Connection& one);
+  void on_ended(Connection& one);
 
   const std::shared_ptr<Server> server_;
   Server::Turn turn_;

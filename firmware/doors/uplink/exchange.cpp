@@ -87,7 +87,7 @@ std::optional<std::chrono::seconds> retry_after(const std::string& value,
 
 /// `body` without its Content-Encoding, though Adit asks for none. As it came if the coding is unknown, the
 /// bytes are invalid, or they would exceed `longest` bytes.
-std::string decoded(std::string body, std::string_view coding, std::size_t longest) {
+std::string decode_body(std::string body, std::string_view coding, std::size_t longest) {
   const bool is_gzip = icd::same_but_for_case(coding, "gzip") || icd::same_but_for_case(coding, "x-gzip");
   if (!is_gzip && !icd::same_but_for_case(coding, "deflate")) return body;
   std::string text;
@@ -137,21 +137,21 @@ struct AnswerParser::Impl {
     parser->get().body().longest = longest_body;
   }
 
-  State malformed(std::string why) {
+  State on_malformed(std::string why) {
     fault = std::move(why);
     return State::Malformed;
   }
 
-  State malformed(boost::beast::error_code error) {
-    if (error == http::error::body_limit || error == http::error::header_limit) return too_long(error);
-    return malformed("the answer is not HTTP: " + error.message());
+  State on_malformed(boost::beast::error_code error) {
+    if (error == http::error::body_limit || error == http::error::header_limit) return on_too_long(error);
+    return on_malformed("the answer is not HTTP: " + error.message());
   }
 
   /// The status is known if the head was parsed. body_limit is reported after the head.
-  State too_long(boost::beast::error_code error) {
+  State on_too_long(boost::beast::error_code error) {
     const bool has_status = error == http::error::body_limit || parser->is_header_done();
     if (has_status) too_long_status = static_cast<int>(parser->get().result_int());
-    return malformed("the answer is too long");
+    return on_malformed("the answer is too long");
   }
 
   /// Whole, or Incomplete after a 1xx, which the final answer follows.
@@ -160,7 +160,7 @@ struct AnswerParser::Impl {
     if (status >= kFirstFinal && status <= kLast) return State::Whole;
     // 101 would end HTTP on this connection. Adit never asks for that.
     if (status == kSwitchingProtocols || status < 100 || status > kLast)
-      return malformed("the answer has status " + std::to_string(status));
+      return on_malformed("the answer has status " + std::to_string(status));
     begin();
     return State::Incomplete;
   }
@@ -171,7 +171,7 @@ struct AnswerParser::Impl {
       const std::size_t used = parser->put(boost::asio::buffer(unread), error);
       unread.erase(0, used);
       if (error == http::error::need_more) return State::Incomplete;
-      if (error) return malformed(error);
+      if (error) return on_malformed(error);
       if (parser->is_done()) {
         if (const State state = head_and_body_done(); state != State::Incomplete) return state;
       } else if (used == 0) {
@@ -189,22 +189,22 @@ AnswerParser::State AnswerParser::feed(std::string_view bytes) {
   icd::require(impl_->fault.empty() && !impl_->parser->is_done());
   impl_->read += bytes.size();
   // Interim answers and chunk extensions could go on for ever and never reach the body's limit.
-  if (impl_->read > kMostBytes(impl_->longest_body)) return impl_->too_long({});
+  if (impl_->read > kMostBytes(impl_->longest_body)) return impl_->on_too_long({});
   State state = State::Malformed;
-  const bool well = loop::guarded("reading an answer", [&] {
+  const bool well = loop::run_guarded("reading an answer", [&] {
     impl_->unread.append(bytes);
     state = impl_->parse();
   });
-  return well ? state : impl_->malformed("the answer could not be read");
+  return well ? state : impl_->on_malformed("the answer could not be read");
 }
 
 AnswerParser::State AnswerParser::feed_end() {
-  if (!has_begun()) return impl_->malformed("the peer closed the connection and did not answer");
+  if (!has_begun()) return impl_->on_malformed("the peer closed the connection and did not answer");
   boost::beast::error_code error;
   // After an interim answer the new parser has read no bytes, and put_eof() would make it a whole 200.
   if (impl_->parser->is_header_done()) impl_->parser->put_eof(error);
   if (error || !impl_->parser->is_done())
-    return impl_->malformed("the peer closed the connection in the middle of its answer");
+    return impl_->on_malformed("the peer closed the connection in the middle of its answer");
   return impl_->head_and_body_done();
 }
 
@@ -222,15 +222,15 @@ std::string AnswerParser::location() const {
   return to_string(impl_->parser->get()[http::field::location]);
 }
 
-Answered AnswerParser::take() {
+Answered AnswerParser::take_answer() {
   auto message = impl_->parser->release();
   Answered answered;
   answered.status = static_cast<int>(message.result_int());
   answered.content_type = to_string(message[http::field::content_type]);
   answered.date = http_date(to_string(message[http::field::date]));
   answered.retry_after = retry_after(to_string(message[http::field::retry_after]), answered.date);
-  answered.body = decoded(std::move(message.body().text), to_string(message[http::field::content_encoding]),
-                          impl_->longest_body);
+  answered.body = decode_body(std::move(message.body().text),
+                              to_string(message[http::field::content_encoding]), impl_->longest_body);
   return answered;
 }
 
@@ -361,7 +361,7 @@ bool Exchange::has_arrived(int fd) const {
   return sent_ == total_ && unacknowledged_bytes(fd) == 0;
 }
 
-Exchange::Answer Exchange::lost(const std::string& why) {
+Exchange::Answer Exchange::on_lost(const std::string& why) {
   fault_ = sentence(is_early_ ? "the peer answered " + std::to_string(status()) +
                                     " before the whole request had arrived; then: " + why
                               : why);
@@ -376,13 +376,13 @@ Exchange::Answer Exchange::read(int fd) {
     const int error = got ? 0 : got.error();
     if (error == EINTR) continue;
     if (error == EAGAIN || error == EWOULDBLOCK) return Answer::Waiting;
-    if (error != 0) return lost(std::strerror(error));
+    if (error != 0) return on_lost(std::strerror(error));
     // The failed write has consumed the socket's error, so this end may be a reset and does not prove the end
     // of an answer without a length.
-    if (*got == 0 && write_broken_) return lost("the peer closed the connection during the request");
-    if (is_early_) return lost(*got == 0 ? "it closed the connection" : "it sent bytes after the answer");
+    if (*got == 0 && write_broken_) return on_lost("the peer closed the connection during the request");
+    if (is_early_) return on_lost(*got == 0 ? "it closed the connection" : "it sent bytes after the answer");
     const auto state = *got == 0 ? parser_.feed_end() : parser_.feed({bytes.data(), *got});
-    if (state == AnswerParser::State::Malformed) return lost(parser_.fault());
+    if (state == AnswerParser::State::Malformed) return on_lost(parser_.fault());
     if (state == AnswerParser::State::Incomplete) continue;
     is_early_ = icd::is_success(status()) && !has_arrived(fd);
     if (!is_early_) return Answer::Whole;
@@ -391,13 +391,13 @@ Exchange::Answer Exchange::read(int fd) {
 
 Answered Exchange::take_answer() {
   const std::string location = parser_.location();
-  Answered answered = parser_.take();
+  Answered answered = parser_.take_answer();
   answered.began = first_left_;
   answered.wants_slash = redirects_to_slash(answered.status, location, authority_, request_.target);
   return answered;
 }
 
-Sent Exchange::left(const Transmission& seen, loop::Instant now) const {
+Sent Exchange::sent_times(const Transmission& seen, loop::Instant now) const {
   if (seen.sent_twice != sent_twice_) return {.first = now, .last = now};
   if (sent_ < total_) return {.first = first_left_, .last = now};
   return {.first = first_left_, .last = std::max(first_left_, now - seen.since_last_byte)};

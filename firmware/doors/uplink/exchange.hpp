@@ -95,14 +95,14 @@ class AnswerParser {
 
   /// The status; 0 until the head has arrived.
   int status() const;
-  /// Returns and removes the body received since the last call, for an endless answer. take() does not return
-  /// these bytes, and all limits start again.
+  /// Returns and removes the body received since the last call, for an endless answer. take_answer() does not
+  /// return these bytes, and all limits start again.
   std::string take_part();
 
-  /// For Whole, before take(): the field Location, or "".
+  /// For Whole, before take_answer(): the field Location, or "".
   std::string location() const;
   /// For Whole. A body with a Content-Encoding is decoded, if that takes at most `longest_body`.
-  Answered take();
+  Answered take_answer();
   /// For Whole: both sides allow reuse of the connection, and no bytes followed the answer.
   bool may_keep_alive() const;
   /// For Malformed: the status if the only fault is the length; else 0.
@@ -153,7 +153,7 @@ class Exchange {
   int status() const { return parser_.status(); }
   std::string take_part() { return parser_.take_part(); }
   /// When the request left. Call this after its answer, with the kernel's values read just before `now`.
-  Sent left(const Transmission& seen, loop::Instant now) const;
+  Sent sent_times(const Transmission& seen, loop::Instant now) const;
   bool may_keep_alive() const { return sent_ == total_ && !is_early_ && parser_.may_keep_alive(); }
   /// For Lost.
   InDoubt doubt() const { return {.why = fault_, .too_long_status = parser_.too_long_status()}; }
@@ -179,14 +179,14 @@ class Exchange {
     return request_.answer_within * (request_.goes_ahead ? 2 : 1);
   }
 
-  std::size_t sent() const { return sent_; }
+  std::size_t sent_bytes() const { return sent_; }
   std::size_t total() const { return total_; }
   /// "POST /map/update to 10.100.1.201:8000: `what` (120 of 4711 bytes sent)".
   std::string sentence(const std::string& what) const;
 
  private:
   loop::Instant silent_at() const { return heard_ + request_.answer_within; }
-  Answer lost(const std::string& why);
+  Answer on_lost(const std::string& why);
   void advance(std::size_t bytes);
   bool holds_back() const { return may_go_ < total_; }
 

@@ -157,7 +157,7 @@ bool knows_path(const uplink::Outcome& outcome) {
 Channel::Channel(loop::Loop& loop, uplink::Servers& servers, const char* name, EndpointAccess way,
                  std::function<void()> turn_came)
     : loop_(loop), servers_(servers), name_(name), turn_came_(std::move(turn_came)), last_(loop) {
-  take(std::move(way));
+  set_access(std::move(way));
 }
 
 bool Channel::leads_elsewhere(const EndpointAccess& way) const {
@@ -170,7 +170,7 @@ void Channel::give_up() {
   connection_.reset();
   const uplink::InDoubt doubt{.why = "it was in flight to " + address_ +
                                      " when the settings named another address"};
-  for (const auto& request : std::vector(under_way_)) ended(request, doubt);
+  for (const auto& request : std::vector(under_way_)) on_ended(request, doubt);
 }
 
 void Channel::give_way() {
@@ -183,7 +183,7 @@ bool Channel::turns() {
   if (!next_ || busy()) return false;
   if (connection_) finished_bytes_ += connection_->sent_bytes();
   const bool is_elsewhere = leads_elsewhere(*next_);
-  take(*std::exchange(next_, std::nullopt));
+  set_access(*std::exchange(next_, std::nullopt));
   if (!is_elsewhere) return false;
   wants_slash_ = has_page_ = is_trial_due_ = was_serial_ = false;
   reports_want_slash_.reset();
@@ -191,7 +191,7 @@ bool Channel::turns() {
   return true;
 }
 
-void Channel::take(EndpointAccess way) {
+void Channel::set_access(EndpointAccess way) {
   auto server = servers_.at(way.endpoint);  // first: another token does not change the server
   connection_.reset();
   address_ = address_text({way.endpoint.address, way.endpoint.port});
@@ -219,7 +219,7 @@ void Channel::send(icd::Uri uri, std::string_view content_type, icd::ChunkedByte
                      .answer_within = answer_within_,
                      .longest_answer = longest_answer_to(uri),
                      .last_byte_not_before = last_byte_not_before},
-                    [this, under_way](uplink::Outcome outcome) { ended(under_way, std::move(outcome)); });
+                    [this, under_way](uplink::Outcome outcome) { on_ended(under_way, std::move(outcome)); });
   under_way_.push_back(under_way);
 }
 
@@ -227,7 +227,7 @@ std::optional<uplink::Sent> Channel::has_arrived() const {
   return connection_ ? connection_->has_arrived() : std::nullopt;
 }
 
-void Channel::ended(const std::shared_ptr<UnderWay>& request, uplink::Outcome outcome) {
+void Channel::on_ended(const std::shared_ptr<UnderWay>& request, uplink::Outcome outcome) {
   const bool is_vain = (request->is_trial && !knows_path(outcome)) ||
                        (request->is_on_trial && may_concern_the_message(outcome));
   last_.note({.uri = request->uri, .sent_at = request->sent_at, .bytes = request->bytes, .is_vain = is_vain},
@@ -277,7 +277,7 @@ void Channel::learn_path(const UnderWay& request, const uplink::Outcome& outcome
 std::string Channel::trouble() const {
   if (!connection_) return std::string("no ") + name_ + " token is set";
   if (!last_.trouble().empty()) return last_.trouble();
-  return connected() ? "" : connection_->trouble();
+  return is_connected() ? "" : connection_->trouble();
 }
 
 EndpointAccess access_to_scoring(const settings::CommandPost& command_post,

@@ -43,14 +43,14 @@ class LastAnswer {
   int status() const { return status_; }
   /// From the request's first byte until its answer.
   std::optional<double> answer_ms() const { return answer_ms_; }
-  /// Seconds since heard().
+  /// Seconds since answer_time().
   double age() const { return std::chrono::duration<double>(loop_.now() - heard_).count(); }
   /// True if it came from another machine than a Command Post. foreign() counts such answers.
   bool is_foreign() const { return is_foreign_; }
   std::uint64_t foreign() const { return foreign_; }
-  std::uint64_t ended() const { return ended_; }          // requests, without vain ones
-  std::uint64_t throttled() const { return throttled_; }  // answers 429
-  loop::Instant heard() const { return heard_; }
+  std::uint64_t ended_requests() const { return ended_; }         // requests, without vain ones
+  std::uint64_t throttled_answers() const { return throttled_; }  // answers 429
+  loop::Instant answer_time() const { return heard_; }
   /// The Command Post's time of day now, in seconds since 1970, by the last Date that is certainly its own.
   std::optional<double> command_post_time() const;
 
@@ -125,7 +125,7 @@ class Channel {
   bool can_go_ahead() const { return !next_ && connection_ && connection_->is_ready(); }
   /// uplink::Connections::has_arrived()
   std::optional<uplink::Sent> has_arrived() const;
-  bool connected() const { return connection_ && connection_->connected(); }
+  bool is_connected() const { return connection_ && connection_->is_connected(); }
   /// uplink::Connection::retry_now()
   void retry_now() {
     if (connection_) connection_->retry_now();
@@ -159,9 +159,9 @@ class Channel {
     bool is_on_trial;
     std::function<void(uplink::Outcome)> done;
   };
-  void take(EndpointAccess way);
+  void set_access(EndpointAccess way);
   bool leads_elsewhere(const EndpointAccess& way) const;
-  void ended(const std::shared_ptr<UnderWay>& request, uplink::Outcome outcome);
+  void on_ended(const std::shared_ptr<UnderWay>& request, uplink::Outcome outcome);
   void learn_path(const UnderWay& request, const uplink::Outcome& outcome);
 
   loop::Loop& loop_;

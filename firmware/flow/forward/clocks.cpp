@@ -23,7 +23,7 @@ std::expected<StampFloor::Kept, std::string> StampFloor::read() const {
   return first.floor < second.floor ? second : first;  // a power cut may have left an older copy
 }
 
-std::optional<StampFloor::Kept> StampFloor::due(double now, double wall, const ledger::Known& ledger) {
+std::optional<StampFloor::Kept> StampFloor::due(double now, double wall, const ledger::LedgerFacts& ledger) {
   const bool is_soon = ledger != ledger_ || outcome_->has_failed;
   if (now < last_ + (is_soon ? kSoon : kEvery)) return {};
   last_ = now;
@@ -43,10 +43,10 @@ void StampFloor::write(const Kept& kept) {
             {{"why", written.error()}});
 }
 
-void StampFloor::remember(const ledger::Known& ledger) {
+void StampFloor::remember(const ledger::LedgerFacts& ledger) {
   auto kept = read();
   if (!kept || kept->is_damaged) return;
-  const ledger::Known latest = ledger::latest_of(kept->ledger, ledger);
+  const ledger::LedgerFacts latest = ledger::latest_of(kept->ledger, ledger);
   if (std::exchange(kept->ledger, latest) != latest) write(*kept);
 }
 
@@ -136,8 +136,8 @@ void Clocks::stamp(icd::MapUpdate& update, const queues::Upload& upload) {
   keep();
 }
 
-std::vector<queues::PostedPose> Clocks::stamped(const icd::StateUpdate& update,
-                                                const queues::Upload& upload) {
+std::vector<queues::PostedPose> Clocks::stamp_poses(const icd::StateUpdate& update,
+                                                    const queues::Upload& upload) {
   const std::optional<icd::Stamp> stamp = update.header.stamp;
   const double now = loop_.stamp_now();
   std::vector<queues::PostedPose> poses;
@@ -159,7 +159,7 @@ void Clocks::stamp(icd::MarkersUpdate& update, const queues::Upload& upload) {
   keep();
 }
 
-void Clocks::keep(loop::Writer& writer, const ledger::Known& ledger) {
+void Clocks::keep(loop::Writer& writer, const ledger::LedgerFacts& ledger) {
   if (!kept_) return;
   auto due = floor_.due(loop_.stamp_now(), loop_.wall_now(), ledger);
   if (!due) return;

@@ -28,9 +28,9 @@ namespace adit::forward {
 class StampFloor {
  public:
   struct Kept {
-    double floor = 0, wall = 0;  // seconds since 1970; 0: unknown
-    double least = 0;            // lowest allowed stamp, for stamps of another box
-    ledger::Known ledger = {};   // a ledger with less is damaged
+    double floor = 0, wall = 0;       // seconds since 1970; 0: unknown
+    double least = 0;                 // lowest allowed stamp, for stamps of another box
+    ledger::LedgerFacts ledger = {};  // a ledger with less is damaged
     /// Seconds by which stamps were ahead of the time of day, by the last source that told it.
     std::optional<double> lead = {};
     double overruled = 0;     // times in the ledger up to it are no stamps, after forget()
@@ -52,14 +52,14 @@ class StampFloor {
   std::expected<Kept, std::string> read() const;
 
   /// The values to write now, if due. `now`: stamp clock; `wall`: time of day.
-  std::optional<Kept> due(double now, double wall, const ledger::Known& ledger);
+  std::optional<Kept> due(double now, double wall, const ledger::LedgerFacts& ledger);
   /// The next due() returns values.
-  void is_due() { last_ = 0; }
+  void make_due() { last_ = 0; }
   /// May run on a worker, one call at a time, on copies. Logs a failure when its text changes.
   void write(const Kept& kept);
   /// Stores these facts about the ledger, if the file is good and has less. For a process that could not read
   /// the file at its start, on the thread of write().
-  void remember(const ledger::Known& ledger);
+  void remember(const ledger::LedgerFacts& ledger);
   /// Removes a bound that is more than kMostAhead beyond the time of day, for the operator: stamps step back
   /// once. Call before Clocks. Logs a failure.
   void forget();
@@ -72,7 +72,7 @@ class StampFloor {
   };
   std::shared_ptr<Outcome> outcome_ = std::make_shared<Outcome>();
   double last_ = 0;
-  ledger::Known ledger_;
+  ledger::LedgerFacts ledger_;
 };
 
 }  // namespace adit::forward
@@ -123,16 +123,16 @@ class Clocks {
 
   /// Convert stamps to the stamp clock, and journal the sender's offsets.
   void stamp(icd::MapUpdate& update, const queues::Upload& upload);
-  std::vector<queues::PostedPose> stamped(const icd::StateUpdate& update, const queues::Upload& upload);
+  std::vector<queues::PostedPose> stamp_poses(const icd::StateUpdate& update, const queues::Upload& upload);
   void stamp(icd::MarkersUpdate& update, const queues::Upload& upload);
 
   /// Writes the bound of the stamps if it is due. Call now and then. The writer's thread waits for the disk.
-  void keep(loop::Writer& writer, const ledger::Known& ledger);
+  void keep(loop::Writer& writer, const ledger::LedgerFacts& ledger);
   /// The file is written at the next keep().
-  void wall_was_set() { floor_.is_due(); }
+  void wall_was_set() { floor_.make_due(); }
   /// The time of day by the stamps of robots: the earliest plausible one.
   std::optional<double> told_by_robots() const {
-    return senders_.told(loop_.stamp_now(), clock::kEarliest, clock::kLatest);
+    return senders_.sender_time(loop_.stamp_now(), clock::kEarliest, clock::kLatest);
   }
 
  private:
@@ -144,7 +144,7 @@ class Clocks {
   void begin_start(const StampFloor::Kept& kept, double newest);
   bool is_far_beyond(double floor, const StampFloor::Kept& kept) const;
   journal::Clock now() const;
-  void keep() { journal_.senders(senders_.changed()); }
+  void keep() { journal_.record_senders(senders_.take_changed()); }
 
   loop::Loop& loop_;
   journal::Journal& journal_;

@@ -18,7 +18,7 @@ std::vector<api::TrackPose> halve_poses(const std::vector<api::TrackPose>& poses
 
 }  // namespace
 
-void Tracks::forwarded(const std::string& robot, const api::TrackPose& pose) {
+void Tracks::on_forwarded(const std::string& robot, const api::TrackPose& pose) {
   Kept& track = tracks_[robot];
   if (!track.poses.empty()) {
     const api::TrackPose& last = track.poses.back();
@@ -35,10 +35,10 @@ void Tracks::forwarded(const std::string& robot, const api::TrackPose& pose) {
 void Tracks::go_on_from(const std::vector<api::Track>& earlier) {
   const auto later = std::exchange(tracks_, {});
   for (const auto& [robot, poses] : earlier) {
-    for (const api::TrackPose& pose : poses) forwarded(robot, pose);
+    for (const api::TrackPose& pose : poses) on_forwarded(robot, pose);
   }
   for (const auto& [robot, kept] : later) {
-    for (const api::TrackPose& pose : kept.poses) forwarded(robot, pose);
+    for (const api::TrackPose& pose : kept.poses) on_forwarded(robot, pose);
   }
 }
 
@@ -48,7 +48,7 @@ void Tracks::move(double seconds) {
   }
 }
 
-std::vector<api::Track> Tracks::since(api::Time since) const {
+std::vector<api::Track> Tracks::tracks_after(api::Time since) const {
   std::vector<api::Track> tracks;
   for (const auto& [robot, kept] : tracks_) {
     const auto from = std::ranges::upper_bound(kept.poses, since, {}, &api::TrackPose::at);
@@ -63,7 +63,7 @@ void MarkerScene::begin_change(api::Time now) {
   version_ = std::max(version_ + 1, by_clock);
 }
 
-void MarkerScene::forwarded(std::span<const icd::Marker> markers, api::Time now) {
+void MarkerScene::on_forwarded(std::span<const icd::Marker> markers, api::Time now) {
   for (const icd::Marker& marker : markers) {
     begin_change(now);
     apply(marker, now);
@@ -93,7 +93,7 @@ void MarkerScene::apply(const icd::Marker& marker, api::Time now) {
     case icd::MarkerAction::Delete:
       return remove(entries_.find(key));
     case icd::MarkerAction::Add: {
-      Entry entry{.marker = api::drawn(marker), .at = now, .version = version_};
+      Entry entry{.marker = api::draw_marker(marker), .at = now, .version = version_};
       const auto [at, is_new] = entries_.try_emplace(key);
       if (!is_new) let_go(at->second);
       return put(at, std::move(entry));
@@ -152,13 +152,13 @@ api::MarkerChanges MarkerScene::changes(std::uint64_t since) const {
   return changes;
 }
 
-void DeliveredScene::forwarded(std::span<const icd::NamedPose> poses, api::Time now) {
+void DeliveredScene::on_forwarded(std::span<const icd::NamedPose> poses, api::Time now) {
   for (const icd::NamedPose& named : poses) {
     const std::string& name = named.name.text();
     if (robots_.size() >= kMostRobots && !robots_.contains(name)) forget_the_oldest();
     const double heading = api::heading_of(named.pose.orientation);
     robots_[name] = {.name = name, .position = named.pose.position, .heading = heading, .at = now};
-    tracks_.forwarded(name, {.at = now, .position = named.pose.position, .heading = heading});
+    tracks_.on_forwarded(name, {.at = now, .position = named.pose.position, .heading = heading});
   }
 }
 

@@ -22,7 +22,7 @@ class Tracks {
   static constexpr double kSpacing = 1, kStill = 10;  // seconds
 
   /// Callers bound the number of robots.
-  void forwarded(const std::string& robot, const api::TrackPose& pose);
+  void on_forwarded(const std::string& robot, const api::TrackPose& pose);
   /// Adds earlier poses before the present ones.
   void go_on_from(const std::vector<api::Track>& earlier);
   void wipe() { tracks_.clear(); }
@@ -31,7 +31,7 @@ class Tracks {
   void forget(const std::string& robot) { tracks_.erase(robot); }
 
   /// By name: poses later than `since`. Robots without such poses are left out.
-  std::vector<api::Track> since(api::Time since) const;
+  std::vector<api::Track> tracks_after(api::Time since) const;
 
  private:
   struct Kept {
@@ -54,7 +54,7 @@ class MarkerScene {
   ~MarkerScene() = default;
 
   /// Each marker gets a higher version.
-  void forwarded(std::span<const icd::Marker> markers, api::Time now);
+  void on_forwarded(std::span<const icd::Marker> markers, api::Time now);
   /// The time of day was set ahead by `seconds`.
   void move(double seconds) {
     for (auto& [key, entry] : entries_) entry.at += seconds;
@@ -108,8 +108,10 @@ class DeliveredScene {
   static constexpr std::size_t kMostRobots = 100;  // the latest ones
 
   /// Poses that robots posted, not ones that a state repeats.
-  void forwarded(std::span<const icd::NamedPose> poses, api::Time now);
-  void forwarded(std::span<const icd::Marker> markers, api::Time now) { markers_.forwarded(markers, now); }
+  void on_forwarded(std::span<const icd::NamedPose> poses, api::Time now);
+  void on_forwarded(std::span<const icd::Marker> markers, api::Time now) {
+    markers_.on_forwarded(markers, now);
+  }
   /// Robots keep their positions.
   void begin_run(api::Time now);
 
@@ -122,7 +124,7 @@ class DeliveredScene {
   /// Last poses, by name.
   std::vector<facts::RobotRow> robots() const;
   /// Last pose of each robot in this run before a restart.
-  const std::map<std::string, api::Time>& before() const { return before_; }
+  const std::map<std::string, api::Time>& earlier_poses() const { return before_; }
   const MarkerScene& markers() const { return markers_; }
   const Tracks& tracks() const { return tracks_; }
 

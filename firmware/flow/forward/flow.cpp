@@ -40,10 +40,10 @@ void LedgerUpkeep::tick(loop::Writer& disk) {
   at_ = loop_.now() + kEvery;  // in case of failure
   const auto result =
       std::make_shared<ledger::Result<void>>(std::unexpected(ledger::Error{.what = "an exception"}));
-  disk.submit([work = std::move(work), result] { *result = work(); }, [this, result] { done(*result); });
+  disk.submit([work = std::move(work), result] { *result = work(); }, [this, result] { on_done(*result); });
 }
 
-void LedgerUpkeep::done(const ledger::Result<void>& result) {
+void LedgerUpkeep::on_done(const ledger::Result<void>& result) {
   ledger_.upkeep_done(result);
   if (result) at_ = loop_.now();
   const std::string why = result ? "" : result.error().what;
@@ -102,37 +102,37 @@ std::shared_ptr<intake::MapArrival> Flow::begin_map() {
                               std::shared_ptr<spool::MapFile> file,
                               std::function<void(icd::Checked<void>)> done) {
     if (!standby_.empty()) return done(icd::refuse(icd::Status::ServiceUnavailable, standby_));
-    take(std::move(update), sender, std::move(file), std::move(done));
+    accept(std::move(update), sender, std::move(file), std::move(done));
   });
 }
 
-void Flow::take(icd::MapUpdate update, const intake::Sender& sender, std::shared_ptr<spool::MapFile> file,
-                std::function<void(icd::Checked<void>)> done) {
-  if (update.name) callbacks_.posted(update.name->text());
+void Flow::accept(icd::MapUpdate update, const intake::Sender& sender, std::shared_ptr<spool::MapFile> file,
+                  std::function<void(icd::Checked<void>)> done) {
+  if (update.name) callbacks_.on_posted(update.name->text());
   const queues::Upload upload = upload_of(sender);
   clocks_.stamp(update, upload);
-  maps_.take(std::move(update), upload, std::move(file), std::move(done));
+  maps_.accept(std::move(update), upload, std::move(file), std::move(done));
 }
 
-icd::Checked<void> Flow::take(icd::StateUpdate update, const intake::Sender& sender) {
+icd::Checked<void> Flow::accept(icd::StateUpdate update, const intake::Sender& sender) {
   if (!standby_.empty()) return icd::refuse(icd::Status::ServiceUnavailable, standby_);
-  for (const icd::NamedPose& pose : update.poses) callbacks_.posted(pose.name.text());
+  for (const icd::NamedPose& pose : update.poses) callbacks_.on_posted(pose.name.text());
   ADIT_TRY(telemetry_.has_room_for(update));
-  return telemetry_.take(clocks_.stamped(update, upload_of(sender)), sender.bytes);
+  return telemetry_.accept(clocks_.stamp_poses(update, upload_of(sender)), sender.bytes);
 }
 
-void Flow::take(icd::MarkersUpdate update, const intake::Sender& sender, MarkerArrivals::Done done) {
+void Flow::accept(icd::MarkersUpdate update, const intake::Sender& sender, MarkerArrivals::Done done) {
   if (!standby_.empty()) return done(icd::refuse(icd::Status::ServiceUnavailable, standby_));
   queues::Upload upload = upload_of(sender);
   clocks_.stamp(update, upload);
-  telemetry_.take(std::move(update), std::move(upload), std::move(done));
+  telemetry_.accept(std::move(update), std::move(upload), std::move(done));
 }
 
-void Flow::take(const icd::ArtifactReport& report, const intake::Sender& sender,
-                std::shared_ptr<intake::Responder> responder) {
+void Flow::accept(const icd::ArtifactReport& report, const intake::Sender& sender,
+                  std::shared_ptr<intake::Responder> responder) {
   if (!standby_.empty())
     return responder->answer(intake::error_answer(icd::Status::ServiceUnavailable, standby_));
-  scoring_.take(report, sender, std::move(responder));
+  scoring_.accept(report, sender, std::move(responder));
 }
 
 void Flow::status(const intake::Sender&, std::shared_ptr<intake::Responder> responder) {
@@ -154,7 +154,7 @@ void Flow::left_out(icd::Uri uri, const intake::Sender& sender, const std::strin
 }
 
 /// gateway::Crowding logs wrong tokens together.
-void Flow::refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusal& callbacks) {
+void Flow::on_rejected(icd::Uri uri, const intake::Sender& sender, const icd::Refusal& callbacks) {
   icd::Refusal refusal = callbacks;
   refusal.sentence = tokens_.strike_from(callbacks.sentence);
   if (refusal.status != icd::Status::Unauthorized) {
@@ -164,10 +164,10 @@ void Flow::refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusa
                {"status", std::to_string(static_cast<int>(refusal.status))},
                {"why", refusal.sentence}});
   }
-  counts_.refused(uri, sender, refusal, loop_.wall_now());
+  counts_.count_rejected(uri, sender, refusal, loop_.wall_now());
 }
 
-std::expected<void, std::string> Flow::rejected(std::uint64_t number, api::RejectedAction action) {
+std::expected<void, std::string> Flow::change_rejected(std::uint64_t number, api::RejectedAction action) {
   if (is_ending()) return std::unexpected("the box is stopping and sends no more messages");
   if (!standby_.empty()) return std::unexpected(standby_);
   if (action == api::RejectedAction::Discard) return rejected_.discard(number);
@@ -182,9 +182,9 @@ std::expected<void, std::string> Flow::rejected(std::uint64_t number, api::Rejec
   return {};
 }
 
-void Flow::changed() {
+void Flow::on_changed() {
   picture_the_run();
-  callbacks_.changed();
+  callbacks_.on_changed();
 }
 
 void Flow::picture_the_run() {
@@ -193,12 +193,12 @@ void Flow::picture_the_run() {
     case RunNews::Change::None:
       return;
     case RunNews::Change::LikelyAnother:
-      maps_.heard();
+      maps_.on_status();
       return;
     case RunNews::Change::FirstLook:
       break;
     case RunNews::Change::Another:
-      archive_.end_run(seen());
+      archive_.end_run(archive_view());
       maps_.change_run(run_news_.next_map());
       telemetry_.change_run();
       delivered_.begin_run(loop_.wall_now());
@@ -269,7 +269,8 @@ void restore_counts(TrafficCounts& counts, const std::map<std::string, journal::
     for (std::size_t kind = 0; kind < heard.kinds.size(); ++kind) {
       const auto [accepted, forwarded] = heard.kinds[kind];
       if (std::isnan(accepted)) continue;
-      counts.restore({static_cast<Kind>(kind), robot}, time_of(loop, accepted), time_of(loop, forwarded));
+      counts.restore({static_cast<TrafficKind>(kind), robot}, time_of(loop, accepted),
+                     time_of(loop, forwarded));
     }
   }
 }
@@ -291,13 +292,13 @@ Flow::Flow(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& s
       journal_(loop, folders.runtime + kJournal),
       clocks_(loop, journal_, folders.state),
       rejected_(loop, writer_, folders.runtime + kRejected),
-      counts_([this] { changed(); }),
+      counts_([this] { on_changed(); }),
       servers_(loop),
       scoring_(loop, servers_, ledger, settings, tokens_.scoring, counts_, random_, journal_, clocks_),
       run_news_(settings),
-      picture_(loop, workers_, [this] { changed(); }),
+      picture_(loop, workers_, [this] { on_changed(); }),
       maps_(loop, servers_, workers_, writer_, spool_, settings, tokens_.mapping, counts_, rejected_, random_,
-            journal_, [this](icd::MapUpdate map) { picture_.forwarded(std::move(map)); }),
+            journal_, [this](icd::MapUpdate map) { picture_.on_forwarded(std::move(map)); }),
       telemetry_(loop, servers_, workers_, settings, tokens_.mapping, counts_, rejected_, random_, journal_,
                  delivered_),
       archive_(loop, folders.state),
@@ -344,7 +345,7 @@ void Flow::carry_on(double newest) {
   maps_.carry_on(carried, clocks_.ran_before());
   telemetry_.carry_on(carried);
   restore(is_first);
-  heard_before_ = carried.heard();
+  heard_before_ = carried.heard_by_robot();
   restore_counts(counts_, heard_before_, loop_);
 }
 
@@ -363,7 +364,7 @@ void Flow::restore(bool is_first) {
   maps_.restore(std::move(kept));
 }
 
-void Flow::settings_changed(const settings::Restarts& restarts, Tokens tokens) {
+void Flow::on_settings_changed(const settings::Restarts& restarts, Tokens tokens) {
   tokens_ = std::move(tokens);
   archive_.limit(limits_of(settings_));
   spool_.leave_to_others(bytes_without_maps(settings_));
@@ -371,9 +372,9 @@ void Flow::settings_changed(const settings::Restarts& restarts, Tokens tokens) {
     scoring_.endpoint_changed(tokens_.scoring);  // first: no more requests to the old endpoint
   if (restarts.mapping) maps_.endpoint_changed(tokens_.mapping);
   if (restarts.mapping) telemetry_.endpoint_changed(tokens_.mapping);
-  scoring_.settings_changed();
-  maps_.settings_changed();
-  telemetry_.settings_changed();
+  scoring_.on_settings_changed();
+  maps_.on_settings_changed();
+  telemetry_.on_settings_changed();
 }
 
 void Flow::link_is_back() {
@@ -383,11 +384,11 @@ void Flow::link_is_back() {
 }
 
 void Flow::tick(loop::Writer& disk) {
-  meter_.second(sent_bytes());
+  meter_.on_second(sent_bytes());
   scoring_.tick();
-  clocks_.keep(disk, ledger_.known());
+  clocks_.keep(disk, ledger_.known_facts());
   if (!is_ending()) upkeep_.tick(disk);
-  archive_.tick(seen());
+  archive_.tick(archive_view());
 }
 
 KnownTimes Flow::known_times() const {
@@ -414,7 +415,7 @@ void Flow::end(std::function<void()> over) {
 void Flow::drain() {
   if (ending_.is_over(loop_.now())) {
     over_();
-    return archive_.write_now(seen());
+    return archive_.write_now(archive_view());
   }
   drained_.call_at(loop_.now() + Ending::kStep);
   const bool scoring = scoring_.stop(), maps = maps_.stop(), telemetry = telemetry_.stop();
@@ -434,24 +435,25 @@ archive::Sample sample_of(const Flow& flow, double now) {
     double& age = ages[row.robot];
     age = std::max(age, row.age.value_or(0));
   }
-  const Channel& mapping = flow.maps().channel().last().heard() > flow.telemetry().channel().last().heard()
-                               ? flow.maps().channel()
-                               : flow.telemetry().channel();
+  const Channel& mapping =
+      flow.maps().channel().last().answer_time() > flow.telemetry().channel().last().answer_time()
+          ? flow.maps().channel()
+          : flow.telemetry().channel();
   return {.at = now,
           .sent_mbit = flow.sent_mbit(),
           .queued_bytes = flow.maps().queued_bytes(),
           .scoring_ms = flow.scoring().channel().last().answer_ms(),
           .mapping_ms = mapping.last().answer_ms(),
-          .throttled = flow.scoring().channel().last().throttled() +
-                       flow.maps().channel().last().throttled() +
-                       flow.telemetry().channel().last().throttled(),
+          .throttled = flow.scoring().channel().last().throttled_answers() +
+                       flow.maps().channel().last().throttled_answers() +
+                       flow.telemetry().channel().last().throttled_answers(),
           .map_ages = {ages.begin(), ages.end()}};
 }
 
 api::RunRow facts_of(const Flow& flow, const std::string& course) {
   const dispatch::Run& run = flow.reports().run();
   std::set<std::string> robots;
-  for (const facts::RobotRow& robot : flow.delivered().robots()) robots.insert(robot.name);
+  for (const facts::RobotRow& robot : flow.delivered_scene().robots()) robots.insert(robot.name);
   for (const auto& [traffic, row] : flow.counts().rows()) robots.insert(traffic.robot);
   robots.erase("");
   api::RunRow facts{.run = run.number,
@@ -482,11 +484,11 @@ void Flow::keep_the_run() {
                  });
 }
 
-archive::Seen Flow::seen() const {
+archive::Seen Flow::archive_view() const {
   return {.now = loop_.wall_now(),
           .stamp = loop_.stamp_now(),
           .picture = picture_.mosaic(),
-          .tracks = [this](api::Time since) { return delivered_.tracks().since(since); },
+          .tracks = [this](api::Time since) { return delivered_.tracks().tracks_after(since); },
           .sample = [this] { return sample_of(*this, loop_.wall_now()); },
           .facts = [this] { return facts_of(*this, settings_.command_post.course); }};
 }

@@ -40,7 +40,7 @@ class Meter {
   static constexpr std::size_t kSeconds = 5;
 
   /// Call once a second with the total of sent bytes.
-  void second(std::uint64_t bytes) {
+  void on_second(std::uint64_t bytes) {
     bytes_.push_back(bytes);
     if (bytes_.size() > kSeconds + 1) bytes_.pop_front();
   }
@@ -89,7 +89,7 @@ class LedgerUpkeep {
   void tick(loop::Writer& disk);
 
  private:
-  void done(const ledger::Result<void>& result);
+  void on_done(const ledger::Result<void>& result);
 
   loop::Loop& loop_;
   ledger::Ledger& ledger_;
@@ -150,8 +150,8 @@ class Flow final : public intake::MessageHandler, public api::Operator {
   };
   /// Callbacks, called on the loop.
   struct Callbacks {
-    std::function<void()> changed;                        // the page's contents changed
-    std::function<void(const std::string& name)> posted;  // a robot posted
+    std::function<void()> on_changed;                        // the page's contents changed
+    std::function<void(const std::string& name)> on_posted;  // a robot posted
   };
 
   /// `settings`: with the course in use. All references outlive this.
@@ -174,7 +174,7 @@ class Flow final : public intake::MessageHandler, public api::Operator {
   /// Before start(): accepts and sends no message. Clients get the sentence `why`.
   void stand_by(const std::string& why);
   /// `restarts`: endpoints with a new address, way or token. Clients keep waiting.
-  void settings_changed(const settings::Restarts& restarts, Tokens tokens);
+  void on_settings_changed(const settings::Restarts& restarts, Tokens tokens);
   /// Once a second. `disk`: for small files of the state directory.
   void tick(loop::Writer& disk);
   KnownTimes known_times() const;
@@ -190,20 +190,20 @@ class Flow final : public intake::MessageHandler, public api::Operator {
   bool is_ending() const { return ending_.has_begun(); }
 
   std::shared_ptr<intake::MapArrival> begin_map() override;
-  icd::Checked<void> take(icd::StateUpdate update, const intake::Sender& sender) override;
-  void take(icd::MarkersUpdate update, const intake::Sender& sender, MarkerArrivals::Done done) override;
-  void take(const icd::ArtifactReport& report, const intake::Sender& sender,
-            std::shared_ptr<intake::Responder> responder) override;
+  icd::Checked<void> accept(icd::StateUpdate update, const intake::Sender& sender) override;
+  void accept(icd::MarkersUpdate update, const intake::Sender& sender, MarkerArrivals::Done done) override;
+  void accept(const icd::ArtifactReport& report, const intake::Sender& sender,
+              std::shared_ptr<intake::Responder> responder) override;
   void status(const intake::Sender& sender, std::shared_ptr<intake::Responder> responder) override;
   void left_out(icd::Uri uri, const intake::Sender& sender, const std::string& why) override;
-  void refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusal& callbacks) override;
+  void on_rejected(icd::Uri uri, const intake::Sender& sender, const icd::Refusal& callbacks) override;
 
   /// When the operator's test may send one status request or state, as a turn of the run's pace. nullopt: not
   /// before `latest`.
   std::optional<loop::Instant> claim(icd::Uri uri, loop::Instant latest) {
     return pace_of(uri).claim(loop_.now(), latest);
   }
-  void claimed(icd::Uri uri) { pace_of(uri).claimed(loop_.now()); }
+  void on_claimed(icd::Uri uri) { pace_of(uri).on_claimed(loop_.now()); }
 
   std::expected<std::int64_t, std::string> decide(std::int64_t number, api::Action action) override {
     if (!standby_.empty()) return std::unexpected(standby_);
@@ -218,7 +218,7 @@ class Flow final : public intake::MessageHandler, public api::Operator {
     if (!standby_.empty()) return std::unexpected(standby_);
     return scoring_.correct(number, to);
   }
-  std::expected<void, std::string> rejected(std::uint64_t number, api::RejectedAction action) override;
+  std::expected<void, std::string> change_rejected(std::uint64_t number, api::RejectedAction action) override;
   std::int64_t begin_run() override { return scoring_.begin_run(); }
 
   const Scoring& scoring() const { return scoring_; }
@@ -228,13 +228,13 @@ class Flow final : public intake::MessageHandler, public api::Operator {
   /// The last messages before a restart, by robot.
   const std::map<std::string, journal::Heard>& heard_before() const { return heard_before_; }
   /// Stores `heard` for the next process.
-  void keep(const journal::Heard& heard) { journal_.heard(heard); }
-  const RejectedStore& rejected() const { return rejected_; }
+  void keep(const journal::Heard& heard) { journal_.record_heard(heard); }
+  const RejectedStore& rejected_store() const { return rejected_; }
   const TrafficCounts& counts() const { return counts_; }
-  const DeliveredScene& delivered() const { return delivered_; }
+  const DeliveredScene& delivered_scene() const { return delivered_; }
   const picture::Mosaic& picture() const { return picture_.mosaic(); }
   api::FinerMap& finer() { return picture_.finer(); }
-  api::CoveredMap& covered() { return picture_.covered(); }
+  api::CoveredMap& covered_map() { return picture_.covered_map(); }
   archive::Archive& archive() { return archive_; }
   const archive::Archive& archive() const { return archive_; }
   /// The record's rows with the queued messages.
@@ -255,12 +255,12 @@ class Flow final : public intake::MessageHandler, public api::Operator {
   }
   void carry_on(double newest);
   void restore(bool is_first);
-  void take(icd::MapUpdate update, const intake::Sender& sender, std::shared_ptr<spool::MapFile> file,
-            std::function<void(icd::Checked<void>)> done);
-  void changed();
+  void accept(icd::MapUpdate update, const intake::Sender& sender, std::shared_ptr<spool::MapFile> file,
+              std::function<void(icd::Checked<void>)> done);
+  void on_changed();
   void picture_the_run();
   void keep_the_run();
-  archive::Seen seen() const;
+  archive::Seen archive_view() const;
   void drain();
 
   loop::Loop& loop_;

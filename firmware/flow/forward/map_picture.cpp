@@ -38,12 +38,12 @@ void FineTiles::clear() {
   drawn_bytes_ = 0;
 }
 
-FineTiles::Of FineTiles::of(const Place& place) const {
+FineTiles::Of FineTiles::areas_at(const Place& place) const {
   return {.newest = grids_.newest_in(place.layer, picture::area_of(place.over)),
           .base = mosaic_.tile(place.layer, base_of(place.over), {}).tile};
 }
 
-const picture::FineBlock* FineTiles::found(const Place& place, const Of& of) {
+const picture::FineBlock* FineTiles::find_block(const Place& place, const Of& of) {
   const auto found = drawn_.find(place);
   if (found == drawn_.end() || found->second.of != of) return nullptr;
   found->second.used = ++uses_;
@@ -52,10 +52,10 @@ const picture::FineBlock* FineTiles::found(const Place& place, const Of& of) {
 
 void FineTiles::tile(const picture::Layer& layer, const picture::TileIndex& at, Done done) {
   const Place place{layer, picture::coarser(at)};
-  const Of now = of(place);
+  const Of now = areas_at(place);
   const auto finer = grids_.finer(layer, 0);
   if (now.newest == 0 || !finer || at.level < finer->level) return done(nullptr);
-  if (const auto* tiles = found(place, now)) return done((*tiles)[picture::place_in_block(at)]);
+  if (const auto* tiles = find_block(place, now)) return done((*tiles)[picture::place_in_block(at)]);
   std::size_t waiting = 0;
   for (const auto& [each, askers] : askers_) waiting += askers.size();
   if (waiting == kMostAskers)
@@ -72,8 +72,8 @@ void FineTiles::pump() {
     waiting_.pop_front();
     auto askers = std::move(askers_[place]);
     askers_.erase(place);
-    Of now = of(place);
-    const auto* tiles = found(place, now);
+    Of now = areas_at(place);
+    const auto* tiles = find_block(place, now);
     if (tiles == nullptr) return draw(place, std::move(now), std::move(askers));
     for (const Asker& asker : askers) asker.done((*tiles)[picture::place_in_block(asker.at)]);
   }
@@ -82,10 +82,11 @@ void FineTiles::pump() {
 /// Later requests wait for the next block, because a grid may arrive.
 void FineTiles::draw(const Place& place, Of of, std::vector<Asker> askers) {
   is_drawing_ = true;
-  const auto job = std::make_shared<Job>(Job{.place = place,
-                                             .of = std::move(of),
-                                             .askers = std::move(askers),
-                                             .grids = grids_.in(place.layer, picture::area_of(place.over))});
+  const auto job =
+      std::make_shared<Job>(Job{.place = place,
+                                .of = std::move(of),
+                                .askers = std::move(askers),
+                                .grids = grids_.grids_in(place.layer, picture::area_of(place.over))});
   workers_.submit(
       loop::Urgency::CanWait,
       [job, &workers = workers_] {  // workers outlive the jobs
@@ -93,10 +94,10 @@ void FineTiles::draw(const Place& place, Of of, std::vector<Asker> askers) {
                                                   [&workers] { workers.give_way(); });
         job->grids.clear();
       },
-      [this, job] { drawn(*job); });
+      [this, job] { on_drawn(*job); });
 }
 
-void FineTiles::drawn(const Job& job) {
+void FineTiles::on_drawn(const Job& job) {
   is_drawing_ = false;
   if (job.tiles) keep(job.place, job.of, *job.tiles);
   for (const Asker& asker : job.askers) {
@@ -127,7 +128,7 @@ namespace {
 /// Nothing for clouds: none replaces another, because senders post new points only.
 std::optional<icd::GridBounds> bounds_of(const icd::MapUpdate& map) {
   const auto* const grid = std::get_if<icd::OccupancyGrid>(&map.msg);
-  return grid == nullptr ? std::nullopt : std::optional(icd::GridBounds::of(*grid));
+  return grid == nullptr ? std::nullopt : std::optional(icd::GridBounds::from_grid(*grid));
 }
 
 }  // namespace
@@ -138,7 +139,7 @@ struct CoveredCount::Job {
   std::optional<picture::Covered> covered{};
 };
 
-void CoveredCount::covered(Done done) {
+void CoveredCount::count(Done done) {
   if (askers_.size() == kMostAskers)
     return done(
         icd::refuse(icd::Status::ServiceUnavailable, "too many requests for the area; try again later"));
@@ -159,10 +160,10 @@ void CoveredCount::pump() {
         job->covered = area->now();
         job->changes.places.clear();
       },
-      [this, job] { counted(*job); });
+      [this, job] { on_counted(*job); });
 }
 
-void CoveredCount::counted(const Job& job) {
+void CoveredCount::on_counted(const Job& job) {
   is_counting_ = false;
   for (const Done& done : job.askers) {
     if (job.covered) {
@@ -189,7 +190,7 @@ MapPicture::MapPicture(loop::Loop& loop, loop::Workers& workers, std::function<v
       fine_(workers, mosaic_),
       covered_(workers, mosaic_) {}
 
-void MapPicture::forwarded(icd::MapUpdate map) {
+void MapPicture::on_forwarded(icd::MapUpdate map) {
   auto bounds = bounds_of(map);
   std::erase_if(waiting_, [&](const Waiting& older) {
     if (!bounds || !older.bounds || map.name != older.map.name) return false;
@@ -201,7 +202,7 @@ void MapPicture::forwarded(icd::MapUpdate map) {
   waiting_bytes_ += map.data.bytes.size();
   waiting_.push_back({.map = std::move(map), .stamp = loop_.wall_now(), .bounds = bounds});
   while (waiting_bytes_ > kMostWaiting && waiting_.size() > 1) {
-    mosaic_.missed(picture::layer_of(waiting_.front().map), waiting_.front().stamp);
+    mosaic_.on_missed(picture::layer_of(waiting_.front().map), waiting_.front().stamp);
     waiting_bytes_ -= waiting_.front().map.data.bytes.size();
     waiting_.pop_front();
   }
@@ -250,20 +251,20 @@ void MapPicture::draw(Waiting waiting) {
         job->forwarded = picture::forwarded_grid(job->waiting.map);
         job->waiting.map.data = {};  // unmapping takes milliseconds
       },
-      [this, job] { drawn(*job); });
+      [this, job] { on_drawn(*job); });
 }
 
-void MapPicture::drawn(Job& job) {
+void MapPicture::on_drawn(Job& job) {
   const double stamp = *std::exchange(drawing_, std::nullopt);
   const picture::Layer layer = picture::layer_of(job.waiting.map);
   const auto before = mosaic_.version();
   if (job.drawing) {
     const bool is_applied = mosaic_.apply(std::move(*job.drawing), stamp);
-    if (is_applied && job.forwarded && fine_.take(std::move(job.forwarded), mosaic_.version() + 1)) {
+    if (is_applied && job.forwarded && fine_.add(std::move(job.forwarded), mosaic_.version() + 1)) {
       mosaic_.count_change(stamp);
     }
   } else {
-    mosaic_.missed(layer, stamp);
+    mosaic_.on_missed(layer, stamp);
     host::log(host::Level::Warning, "cannot draw a map",
               {{"robot", layer.robot}, {"why", job.drawing.error().sentence}});
   }

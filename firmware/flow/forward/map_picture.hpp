@@ -30,8 +30,8 @@ class FineTiles final : public api::FinerMap {
   FineTiles(loop::Workers& workers, const picture::Mosaic& mosaic) : workers_(workers), mosaic_(mosaic) {}
 
   /// False if no finer tile can differ.
-  bool take(std::shared_ptr<const picture::ForwardedGrid> grid, std::uint64_t number) {
-    return grids_.take(std::move(grid), number);
+  bool add(std::shared_ptr<const picture::ForwardedGrid> grid, std::uint64_t number) {
+    return grids_.add(std::move(grid), number);
   }
   void clear();
 
@@ -66,11 +66,11 @@ class FineTiles final : public api::FinerMap {
   };
   struct Job;
 
-  Of of(const Place& place) const;
-  const picture::FineBlock* found(const Place& place, const Of& of);
+  Of areas_at(const Place& place) const;
+  const picture::FineBlock* find_block(const Place& place, const Of& of);
   void pump();
   void draw(const Place& place, Of of, std::vector<Asker> askers);
-  void drawn(const Job& job);
+  void on_drawn(const Job& job);
   void keep(const Place& place, const Of& of, const picture::FineBlock& tiles);
 
   loop::Workers& workers_;
@@ -92,12 +92,12 @@ class CoveredCount final : public api::CoveredMap {
   /// Both outlive this.
   CoveredCount(loop::Workers& workers, const picture::Mosaic& mosaic) : workers_(workers), mosaic_(mosaic) {}
 
-  void covered(Done done) override;
+  void count(Done done) override;
 
  private:
   struct Job;
   void pump();
-  void counted(const Job& job);
+  void on_counted(const Job& job);
 
   loop::Workers& workers_;
   const picture::Mosaic& mosaic_;
@@ -118,7 +118,7 @@ class MapPicture {
   MapPicture(loop::Loop& loop, loop::Workers& workers, std::function<void()> changed);
 
   /// Draws an accepted map, unless a later one covers it.
-  void forwarded(icd::MapUpdate map);
+  void on_forwarded(icd::MapUpdate map);
   /// Draws no map until go_on_from(), at most for kMostHeld.
   void hold() { held_until_ = loop_.now() + kMostHeld; }
   void go_on_from(picture::Mosaic earlier);
@@ -129,7 +129,7 @@ class MapPicture {
 
   const picture::Mosaic& mosaic() const { return mosaic_; }
   api::FinerMap& finer() { return fine_; }
-  api::CoveredMap& covered() { return covered_; }
+  api::CoveredMap& covered_map() { return covered_; }
   std::size_t finer_bytes() const { return fine_.bytes(); }
 
  private:
@@ -143,7 +143,7 @@ class MapPicture {
 
   void pump();
   void draw(Waiting waiting);
-  void drawn(Job& job);
+  void on_drawn(Job& job);
 
   loop::Loop& loop_;
   loop::Workers& workers_;

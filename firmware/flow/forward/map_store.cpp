@@ -9,18 +9,18 @@
 
 namespace adit::forward {
 
-MapArrival::MapArrival(std::weak_ptr<loop::Writer> writer, spool::Spool& spool,
-                       std::function<std::uint64_t()> spare, Take take)
+SpooledMapArrival::SpooledMapArrival(std::weak_ptr<loop::Writer> writer, spool::Spool& spool,
+                                     std::function<std::uint64_t()> spare, Accept take)
     : writer_(std::move(writer)), spool_(spool), spare_(std::move(spare)), take_(std::move(take)) {}
 
 /// The writer removes an unnamed file. The loop does not wait.
-MapArrival::~MapArrival() {
+SpooledMapArrival::~SpooledMapArrival() {
   const auto writer = writer_.lock();
   if (!writer || !stored_->file) return;
   writer->submit([stored = std::move(stored_)]() mutable { stored->file.reset(); }, [] {});
 }
 
-void MapArrival::store(icd::ChunkedBytes bytes, std::function<void(icd::ChunkedBytes left)> done) {
+void SpooledMapArrival::store(icd::ChunkedBytes bytes, std::function<void(icd::ChunkedBytes left)> done) {
   const auto writer = writer_.lock();
   if (!writer) return;  // the gateway has ended
   const auto held = std::make_shared<icd::ChunkedBytes>(std::move(bytes));
@@ -34,22 +34,22 @@ void MapArrival::store(icd::ChunkedBytes bytes, std::function<void(icd::ChunkedB
       [held, done = std::move(done)] { done(std::move(*held)); });
 }
 
-icd::Checked<icd::ChunkedBytes> MapArrival::stored() {
+icd::Checked<icd::ChunkedBytes> SpooledMapArrival::stored_bytes() {
   if (!stored_->file || stored_->file->stored_bytes() == 0) return {};
-  icd::ChunkedBytes data = stored_->file->stored();
+  icd::ChunkedBytes data = stored_->file->mapped_bytes();
   if (data.empty()) return std::unexpected(not_stored());
   return data;
 }
 
-void MapArrival::take(icd::MapUpdate update, const intake::Sender& sender,
-                      std::function<void(icd::Checked<void>)> done) {
+void SpooledMapArrival::accept(icd::MapUpdate update, const intake::Sender& sender,
+                               std::function<void(icd::Checked<void>)> done) {
   take_(std::move(update), sender, std::exchange(stored_->file, nullptr), std::move(done));
 }
 
 namespace {
 
 /// In this thread, with the file.
-icd::Checked<icd::MapUpdate> without_data(icd::MapUpdate map, std::shared_ptr<spool::MapFile> file) {
+icd::Checked<icd::MapUpdate> strip_data(icd::MapUpdate map, std::shared_ptr<spool::MapFile> file) {
   map.data = {};
   file.reset();
   return map;
@@ -68,8 +68,8 @@ MapStore::MapStore(loop::Writer& writer, spool::Spool& spool)
       trouble_(spool.trouble()) {}
 
 std::shared_ptr<intake::MapArrival> MapStore::arrives(std::function<std::uint64_t()> spare,
-                                                      MapArrival::Take take) {
-  return std::make_shared<MapArrival>(while_alive_, spool_, std::move(spare), std::move(take));
+                                                      SpooledMapArrival::Accept take) {
+  return std::make_shared<SpooledMapArrival>(while_alive_, spool_, std::move(spare), std::move(take));
 }
 
 void MapStore::store(icd::MapUpdate update, std::shared_ptr<spool::MapFile> file, std::uint64_t spare,
@@ -92,7 +92,7 @@ void MapStore::store(icd::MapUpdate update, std::shared_ptr<spool::MapFile> file
         Stored& stored = job->stored;
         stored.has_no_valid_point = !again && pack::has_only_invalid_points(job->update);
         stored.map = stored.has_no_valid_point
-                         ? without_data(std::move(job->update), std::move(job->file))
+                         ? strip_data(std::move(job->update), std::move(job->file))
                          : spool.keep(stored.number, std::move(job->update), spare, std::move(job->file));
         if (!stored.map || !job->bounds || spool.keep_bounds(stored.number, *job->bounds)) return;
         spool.forget(stored.number);
@@ -142,11 +142,11 @@ void MapStore::set_aside(std::vector<Damaged> damaged) {
       [] {});
 }
 
-bool MapStore::restored(std::uint64_t number) {
+bool MapStore::adopt(std::uint64_t number) {
   const bool again = number < kFirstNumber;
   std::uint64_t& last = again ? again_numbers_ : numbers_;
   last = std::max(last, number);
-  must_check(number);
+  mark_unchecked(number);
   return again;
 }
 

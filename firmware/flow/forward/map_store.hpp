@@ -17,25 +17,25 @@ namespace adit::forward {
 
 /// A map that is stored in the spool as it arrives. Until it is accepted, it leaves its own size and `spare`
 /// bytes free. Data without room stays in memory until the map is complete, because a grid may compress to a
-/// tenth. On the loop, except stored().
-class MapArrival final : public intake::MapArrival {
+/// tenth. On the loop, except stored_bytes().
+class SpooledMapArrival final : public intake::MapArrival {
  public:
   /// Accepts the complete map with its file; null if it has none.
-  using Take =
+  using Accept =
       std::function<void(icd::MapUpdate update, const intake::Sender& sender,
                          std::shared_ptr<spool::MapFile> file, std::function<void(icd::Checked<void>)> done)>;
 
   /// `writer` and `spool` live while `writer` can be locked.
-  MapArrival(std::weak_ptr<loop::Writer> writer, spool::Spool& spool, std::function<std::uint64_t()> spare,
-             Take take);
-  ~MapArrival() override;
-  MapArrival(const MapArrival&) = delete;
-  MapArrival& operator=(const MapArrival&) = delete;
+  SpooledMapArrival(std::weak_ptr<loop::Writer> writer, spool::Spool& spool,
+                    std::function<std::uint64_t()> spare, Accept take);
+  ~SpooledMapArrival() override;
+  SpooledMapArrival(const SpooledMapArrival&) = delete;
+  SpooledMapArrival& operator=(const SpooledMapArrival&) = delete;
 
   void store(icd::ChunkedBytes bytes, std::function<void(icd::ChunkedBytes left)> done) override;
-  icd::Checked<icd::ChunkedBytes> stored() override;
-  void take(icd::MapUpdate update, const intake::Sender& sender,
-            std::function<void(icd::Checked<void>)> done) override;
+  icd::Checked<icd::ChunkedBytes> stored_bytes() override;
+  void accept(icd::MapUpdate update, const intake::Sender& sender,
+              std::function<void(icd::Checked<void>)> done) override;
 
  private:
   /// The writer's while it works on it.
@@ -46,7 +46,7 @@ class MapArrival final : public intake::MapArrival {
   std::weak_ptr<loop::Writer> writer_;
   spool::Spool& spool_;
   std::function<std::uint64_t()> spare_;
-  Take take_;
+  Accept take_;
   std::shared_ptr<Stored> stored_ = std::make_shared<Stored>();
 };
 
@@ -72,7 +72,8 @@ class MapStore {
   MapStore(loop::Writer& writer, spool::Spool& spool);
 
   /// `spare`: bytes to leave free. The arrival may outlive this.
-  std::shared_ptr<intake::MapArrival> arrives(std::function<std::uint64_t()> spare, MapArrival::Take take);
+  std::shared_ptr<intake::MapArrival> arrives(std::function<std::uint64_t()> spare,
+                                              SpooledMapArrival::Accept take);
   /// Stores `update` and leaves `spare` bytes free. `file`: with its data, or null. `again`: the operator
   /// sends it again, with these bounds (QueuedMap::bounds).
   void store(icd::MapUpdate update, std::shared_ptr<spool::MapFile> file, std::uint64_t spare, bool again,
@@ -87,9 +88,9 @@ class MapStore {
   void set_aside(std::vector<Damaged> damaged);
 
   /// An earlier process stored map `number`: its data is unchecked. True: the operator sends it again.
-  bool restored(std::uint64_t number);
+  bool adopt(std::uint64_t number);
   /// Has the data checked by the next work on the map.
-  void must_check(std::uint64_t number) { unchecked_.insert(number); }
+  void mark_unchecked(std::uint64_t number) { unchecked_.insert(number); }
   /// The number of the next map that the operator sends again.
   std::uint64_t next_resend_number() const { return again_numbers_ + 1; }
   /// A worker begins to pack `waiting`. Returns its unchecked maps.

@@ -79,11 +79,11 @@ std::size_t slot_of(const settings::CommandPost& post) {
 }
 
 queues::Sender sender_of(const Traffic& traffic) {
-  return {icd::RobotName::parse(traffic.robot), traffic.kind == Kind::Grid};
+  return {icd::RobotName::parse(traffic.robot), traffic.kind == TrafficKind::Grid};
 }
 
 /// For queues::Blame.
-std::string whose(const icd::MapUpdate& map) {
+std::string blame_key(const icd::MapUpdate& map) {
   return (map.is_grid() ? "grid " : "cloud ") + icd::text_of(map.name);
 }
 
@@ -123,19 +123,19 @@ Maps::Maps(loop::Loop& loop, uplink::Servers& servers, loop::Workers& workers, l
       store_(writer, spool),
       slot_(pace::map_bytes_per_second(settings.command_post.budget_mbit)),
       packing_(loop, [this] { store_.work_overruns(); }) {
-  take_settings();
+  apply_settings();
   queue_.canvases().lead_to(channel_.address());
 }
 
-void Maps::take_settings() {
+void Maps::apply_settings() {
   queue_.set_slot_bytes(slot_of(settings_.command_post));
   queue_.merge_at_most(settings_.queues.merge_bytes);
   queue_.set_cloud_modes(settings::map_by_robot(settings_.robots, &settings::Robot::clouds));
   queue_.set_precisions(settings::map_by_robot(settings_.robots, &settings::Robot::precision));
 }
 
-void Maps::settings_changed() {
-  take_settings();
+void Maps::on_settings_changed() {
+  apply_settings();
   slot_.allow(pace::map_bytes_per_second(settings_.command_post.budget_mbit));
   pace_.allow(settings_.command_post.rates.map_hz, loop_.now());
   pump();
@@ -154,14 +154,14 @@ void Maps::carry_on(const journal::Carried& carried, bool ran_before) {
   if (!carried.grids()) {
     const auto everywhere = queues::Extent::everywhere();
     const auto told =
-        ran_before ? journal_.grids_posted(queues::Canvases::kAnyName, everywhere) : journal_.grids_begin();
+        ran_before ? journal_.record_grid(queues::Canvases::kAnyName, everywhere) : journal_.begin_grids();
     if (ran_before || !told) posted[queues::Canvases::kAnyName] = everywhere;
     are_grids_told_ = told.has_value();
   }
   queue_.canvases().carry_on(std::move(posted));
   pace_.carry_on(carried, loop_.now());
-  for (const auto& [robot, heard] : carried.heard()) {
-    for (const Kind kind : {Kind::Grid, Kind::Cloud})
+  for (const auto& [robot, heard] : carried.heard_by_robot()) {
+    for (const TrafficKind kind : {TrafficKind::Grid, TrafficKind::Cloud})
       behind_[{kind, robot}] = heard.behind.at(static_cast<std::size_t>(kind));
   }
 }
@@ -172,13 +172,13 @@ bool Maps::is_told(const icd::MapUpdate& update) {
   if (!update.is_grid()) return true;
   if (!are_grids_told_) {
     const auto everywhere = queues::Extent::everywhere();
-    are_grids_told_ = journal_.grids_posted(queues::Canvases::kAnyName, everywhere).has_value();
+    are_grids_told_ = journal_.record_grid(queues::Canvases::kAnyName, everywhere).has_value();
     if (!are_grids_told_) return false;
   }
   const auto grows = queue_.canvases().grows(update);
   if (!grows) return true;
-  if (!journal_.grids_posted(grows->first, grows->second)) return false;
-  queue_.canvases().grown(*grows);
+  if (!journal_.record_grid(grows->first, grows->second)) return false;
+  queue_.canvases().on_grown(*grows);
   return true;
 }
 
@@ -190,10 +190,10 @@ bool Maps::has_room_for(const icd::MapUpdate& update, bool replaces) const {
   return replaces || waiting == 0 || waiting + update.data.bytes.size() <= settings_.queues.map_bytes;
 }
 
-void Maps::take(const std::shared_ptr<Arrived>& map) {
+void Maps::accept(const std::shared_ptr<Arrived>& map) {
   if (overtaken_.must_wait(map->upload)) return waiting_.push_back(map);
   icd::MapUpdate& update = map->update;
-  const bool is_whole = queue_.clouds_of(queues::Sender::of(update)) == queues::Clouds::Whole;
+  const bool is_whole = queue_.clouds_of(queues::Sender::from_map(update)) == queues::Clouds::Whole;
   const auto newer = update.is_grid() || is_whole ? overtaken_.find_newer(update, map->upload)
                                                   : std::vector<icd::GridBounds>();
   const bool replaces = newer.empty() && queue_.replaces_any(update);
@@ -212,11 +212,11 @@ void Maps::take(const std::shared_ptr<Arrived>& map) {
   const std::uint64_t spare =
       replaces ? 0 : std::max<std::uint64_t>(queue_.largest_replaceable(), of_its_own);
   store_.store(std::move(update), std::move(map->file), spare, /*again=*/false,
-               [this, map](MapStore::Stored& stored) { this->stored(stored, *map); });
+               [this, map](MapStore::Stored& stored) { this->on_stored(stored, *map); });
 }
 
 /// Queued now; the sender may know.
-void Maps::stored(MapStore::Stored& stored, Arrived& map) {
+void Maps::on_stored(MapStore::Stored& stored, Arrived& map) {
   if (stored.has_no_valid_point) {
     counts_.no_valid_point(traffic_of(*stored.map), map.upload.bytes, loop_.wall_now());
     store_.forget({&stored.number, 1});
@@ -234,7 +234,7 @@ void Maps::queue(MapStore::Stored& stored) {
   const Traffic traffic = traffic_of(*stored.map);
   tell_clouds(*stored.map);
   const auto replaced = queue_.add(stored.number, std::move(*stored.map), loop_.now());
-  counts_.replaced(traffic, replaced.numbers.size());
+  counts_.count_replaced(traffic, replaced.numbers.size());
   store_.forget(replaced);
 }
 
@@ -242,7 +242,7 @@ void Maps::leave_out(const std::shared_ptr<Arrived>& map, std::span<const icd::G
   const auto* const grid = std::get_if<icd::OccupancyGrid>(&map->update.msg);
   if (grid != nullptr) map->tiles = tiles_outside(*grid, newer);
   if (map->tiles.empty()) {  // the Command Post has newer data, or will have it
-    counts_.replaced(traffic_of(map->update), 1);
+    counts_.count_replaced(traffic_of(map->update), 1);
     return accept(*map);
   }
   map->cut = std::unexpected(not_stored());
@@ -277,7 +277,7 @@ void Maps::store_next_tile(const std::shared_ptr<Arrived>& map) {
 }
 
 void Maps::accept(Arrived& map) {
-  counts_.accepted(traffic_of(map.update), map.upload.bytes, loop_.wall_now());
+  counts_.count_accepted(traffic_of(map.update), map.upload.bytes, loop_.wall_now());
   end(map, {});
   compare();
   pump();
@@ -287,7 +287,7 @@ void Maps::end(Arrived& map, const icd::Checked<void>& outcome) {
   store_.discard(std::exchange(map.file, nullptr));
   overtaken_.end(map.upload);
   map.done(outcome);
-  for (const auto& each : std::exchange(waiting_, {})) take(each);
+  for (const auto& each : std::exchange(waiting_, {})) accept(each);
 }
 
 void Maps::restore(spool::Spool::Kept kept) {
@@ -302,12 +302,12 @@ void Maps::restore(spool::Spool::Kept kept) {
 
 /// Its file stays until the rejected messages have one.
 void Maps::put_aside(spool::Spool::KeptMap kept) {
-  store_.restored(kept.number);
+  store_.adopt(kept.number);
   const Traffic traffic = traffic_of(kept.map);
   const std::size_t bytes = kept.map.data.bytes.size();
   const std::string why =
       icd::sentence("the service ended ", kept.ends.faults, " times by a fault while it packed this map");
-  counts_.accepted(traffic, bytes, time_of(loop_, kept.map.header().stamp.value_or(loop_.stamp_now())));
+  counts_.count_accepted(traffic, bytes, time_of(loop_, kept.map.header().stamp.value_or(loop_.stamp_now())));
   counts_.not_taken(traffic, DeliveryFailure::Failed, 0, why);
   rejected_.add(std::move(kept.map), 0, why, bytes,
                 {.let_go = [this, number = kept.number] { store_.forget({&number, 1}); }}, kept.bounds,
@@ -317,9 +317,9 @@ void Maps::put_aside(spool::Spool::KeptMap kept) {
 void Maps::restore(spool::Spool::KeptMap kept) {
   const std::uint64_t number = kept.number;
   icd::MapUpdate update = std::move(kept.map);
-  const bool again = store_.restored(number);
+  const bool again = store_.adopt(number);
   const icd::Stamp stamp = update.header().stamp.value_or(loop_.stamp_now());
-  counts_.accepted(traffic_of(update), update.data.bytes.size(), time_of(loop_, stamp));
+  counts_.count_accepted(traffic_of(update), update.data.bytes.size(), time_of(loop_, stamp));
   if (again) {
     store_.forget(queue_.put_back(requeued_map(number, std::move(update), kept.bounds, kept.ends)));
   } else {
@@ -334,7 +334,7 @@ void Maps::restore(spool::Spool::KeptMap kept) {
 }
 
 void Maps::tell_clouds(const icd::MapUpdate& update) {
-  const queues::Clouds clouds = queue_.clouds_of(queues::Sender::of(update));
+  const queues::Clouds clouds = queue_.clouds_of(queues::Sender::from_map(update));
   if (clouds != queues::Clouds::Auto) counts_.set_cloud_kind(traffic_of(update), clouds);
 }
 
@@ -375,7 +375,7 @@ void Maps::finish_storing(MapStore::Stored& stored, queues::QueuedMap back,
     absorbed->numbers.push_back(stored.number);
     return store_.forget(*std::move(absorbed));
   }
-  store_.must_check(stored.number);  // perhaps rejected by an earlier process
+  store_.mark_unchecked(stored.number);  // perhaps rejected by an earlier process
   store_.forget(queue_.put_back(std::move(back)));
   pump();
 }
@@ -405,16 +405,16 @@ void Maps::compare() {
   workers_.submit(
       loop::Urgency::OnTheWay,
       [it] { it->has_all = pack::has_all_points(it->two.newer, it->two.older, it->two.point_step); },
-      [this, it] { compared(it->two, it->has_all); });
+      [this, it] { on_compared(it->two, it->has_all); });
   is_comparing_ = true;
 }
 
-void Maps::compared(const queues::Successive& two, bool has_all) {
+void Maps::on_compared(const queues::Successive& two, bool has_all) {
   is_comparing_ = false;
-  const Traffic traffic{Kind::Cloud, icd::text_of(two.sender.name)};
+  const Traffic traffic{TrafficKind::Cloud, icd::text_of(two.sender.name)};
   if (has_all) {
     const auto replaced = queue_.replace(two);
-    counts_.replaced(traffic, replaced.size());
+    counts_.count_replaced(traffic, replaced.size());
     store_.forget(replaced);
   } else {
     queue_.keep_both(two);
@@ -442,8 +442,8 @@ std::optional<queues::Replaced> Maps::absorb(const queues::QueuedMap& back) {
 
 void Maps::prepare(bool follows) {
   slot_.link_delivers(channel_.delivers());
-  queue_.a_message_holds(slot_.points_within(pace_.spacing()));
-  auto waiting = queue_.take(loop_.now());
+  queue_.a_message_holds(slot_.points_for(pace_.spacing()));
+  auto waiting = queue_.pop(loop_.now());
   if (!waiting) return;
   Place& place = follows ? following_ : first_;
   place = std::make_shared<Prepared>(Prepared{.waiting = std::move(*waiting)});
@@ -466,7 +466,7 @@ void Maps::pack(const Place& prepared) {
         starts();
         prepared->damaged = damaged_in(prepared->waiting, unread);
         if (!prepared->damaged.empty()) return;
-        prepared->packed = packed(prepared->waiting, packing);
+        prepared->packed = pack_map(prepared->waiting, packing);
         prepared->packing_took = loop.now() - begins;
         if (!prepared->packed.body.empty() || prepared->packed.has_no_valid_point) return;
         std::vector<std::uint64_t> numbers;
@@ -490,14 +490,14 @@ void Maps::work_done(const Place& prepared) {
   if (prepared->damaged.empty()) {
     const Packed& packed = prepared->packed;
     slot_.worker_took(prepared->packing_took, packed.expected);
-    slot_.packed(packed.points_size, packed.full_size, packed.precision);
+    slot_.on_packed(packed.points_size, packed.full_size, packed.precision);
   }
   if (prepared->state != MapState::Packing) return;  // recalled
   if (!prepared->damaged.empty()) return step(prepared, MapEvent::Damaged);
   queues::QueuedMap& waiting = prepared->waiting;
   if (prepared->packed.has_no_valid_point) {
     if (queues::next_piece(waiting)) return step(prepared, MapEvent::SkippedPiece);
-    counts_.replaced(traffic_of(waiting.map), waiting.updates.size());
+    counts_.count_replaced(traffic_of(waiting.map), waiting.updates.size());
     return step(prepared, MapEvent::SkippedLast);
   }
   if (prepared->packed.drawn) queue_.canvases().lay(waiting.map.name, *prepared->packed.drawn);
@@ -520,7 +520,7 @@ void Maps::work_failed(const Place& prepared) {
                       "it could not be compressed");
     step(prepared, MapEvent::NotPacked);
   }
-  pace_.failed(loop_.now());
+  pace_.on_failed(loop_.now());
   wake_.call_at(pace_.ready());
 }
 
@@ -543,7 +543,7 @@ void Maps::step(Place map, MapEvent event) {
     case PutBack:  // a copy: a worker may read it
       return store_.forget(queue_.put_back(map->waiting));
     case PutBackApart:
-      return queue_.put_back_apart(map->waiting);
+      return queue_.put_back_single(map->waiting);
     case PutBackSmaller:
       return put_back_smaller(*map);
     case Forget:
@@ -578,7 +578,7 @@ void Maps::set_aside(const Prepared& map) {
   std::erase_if(rest.parts, [&](const queues::QueuedMap& part) { return is_gone(part.updates.back()); });
   std::erase_if(rest.updates, is_gone);
   store_.set_aside(map.damaged);
-  if (!rest.parts.empty()) queue_.put_back_apart(std::move(rest));
+  if (!rest.parts.empty()) queue_.put_back_single(std::move(rest));
   for (const MapStore::Damaged& each : map.damaged) {
     counts_.not_taken(traffic_of(map.waiting.map), DeliveryFailure::Failed, 0,
                       "its stored copy is damaged: " + each.why);
@@ -619,18 +619,18 @@ void Maps::go_on() {
   }
   if (next && follows) return pipeline_map(now);
   if (next) {
-    if (now < starts()) return wake_.call_at(starts());
+    if (now < start_time()) return wake_.call_at(start_time());
     if (channel_.claim_turn()) send(next);
     return;
   }
   if (queue_.count() == 0) return;
-  const loop::Instant begin = begins_to_pack(now);
+  const loop::Instant begin = packing_time(now);
   if (now >= begin) return prepare(follows);
   wake_.call_at(begin);
 }
 
 /// Of the next map, whose last byte is held back, except to a serial server.
-loop::Instant Maps::starts() const {
+loop::Instant Maps::start_time() const {
   const pace::Span earliest = pace_.earliest();
   return std::max(earliest.first,
                   earliest.last - (channel_.is_serial() ? std::chrono::seconds{} : kLongestHeldBack));
@@ -638,14 +638,14 @@ loop::Instant Maps::starts() const {
 
 /// Late, so that newer data replaces queued maps, but in time for its start or the end of the map in flight.
 /// No packing while the link is down.
-loop::Instant Maps::begins_to_pack(loop::Instant now) const {
+loop::Instant Maps::packing_time(loop::Instant now) const {
   loop::Instant free = now;
   if (channel_.busy() && !first_->arrived) {
-    if (!channel_.connected()) return now + kLookAtConnecting;
+    if (!channel_.is_connected()) return now + kLookAtConnecting;
     const std::size_t size = first_->packed.body.size();
     free += slot_.transfer(size - std::min(size, channel_.sent_bytes()));
   }
-  const loop::Instant begin = std::max(starts(), free) - slot_.lead();
+  const loop::Instant begin = std::max(start_time(), free) - slot_.lead();
   return begin <= now ? begin : std::max(begin, now + kLookAtSending);
 }
 
@@ -656,14 +656,14 @@ void Maps::pipeline_map(loop::Instant now) {
   const std::size_t size = first.packed.body.size(), left = size - std::min(size, channel_.sent_bytes());
   if (!first.arrived && left > 0)
     return wake_.call_at(now + std::max<loop::Duration>(slot_.transfer(left) / 2, kLookAtSending));
-  if (now < starts() - kGetReady) return wake_.call_at(starts() - kGetReady);
+  if (now < start_time() - kGetReady) return wake_.call_at(start_time() - kGetReady);
   channel_.get_ready();
   const auto arrived = first.arrived ? std::nullopt : channel_.has_arrived();
   if (arrived) {
     first.arrived = arrived->last;
-    pace_.left(*arrived);
+    pace_.on_departed(*arrived);
   }
-  loop::Instant begin = starts();
+  loop::Instant begin = start_time();
   if (first.arrived) begin = std::max(begin, *first.arrived + reading_takes(first.waiting.map));
   if (first.arrived && channel_.can_go_ahead() && now >= begin) return send(following_);
   wake_.call_at(std::max(begin, now + kLookForEnd));
@@ -681,10 +681,10 @@ bool Maps::may_go_ahead(loop::Instant now) const {
 void Maps::send(const Place& prepared) {
   const bool ahead = channel_.busy();
   prepared->last_byte_not_before = pace_.earliest().last;
-  pace_.sent(loop_.now(), ahead);
+  pace_.on_sent(loop_.now(), ahead);
   channel_.send(
       icd::Uri::MapUpdate, codec::kCbor, prepared->packed.body,
-      [this, prepared](const uplink::Outcome& outcome) { answered(prepared, outcome); },
+      [this, prepared](const uplink::Outcome& outcome) { on_answered(prepared, outcome); },
       prepared->last_byte_not_before);
   step(prepared, MapEvent::Sent);
   prepared->went_ahead = ahead;
@@ -693,83 +693,85 @@ void Maps::send(const Place& prepared) {
   wake_.call_at(loop_.now());  // for the following map
 }
 
-void Maps::answered(const Place& sent, const uplink::Outcome& outcome) {
+void Maps::on_answered(const Place& sent, const uplink::Outcome& outcome) {
   classify(sent, outcome);
   pump();
 }
 
 void Maps::classify(const Place& sent, const uplink::Outcome& outcome) {
-  if (const auto* answer = std::get_if<uplink::Answered>(&outcome)) return verdict(sent, *answer);
-  pace_.failed(outcome, loop_.now());
+  if (const auto* answer = std::get_if<uplink::Answered>(&outcome)) return on_verdict(sent, *answer);
+  pace_.on_failed(outcome, loop_.now());
   const std::string sentence = sentence_of(outcome);
   if (std::holds_alternative<uplink::InDoubt>(outcome) && is_cut_by_size(*sent))
     return send_smaller(sent, sent->waiting.cuts.at, 0, sentence);
   counts_.not_taken(traffic_of(sent->waiting.map), DeliveryFailure::Failed, 0, sentence);
-  again(sent);
+  retry(sent);
 }
 
-void Maps::taken(const Place& sent, const uplink::Answered& answered) {
-  pace_.taken(answered.sent, loop_.now());
-  slot_.left(sent->packed.body.size(), answered.sent, sent->last_byte_not_before);
+void Maps::on_accepted(const Place& sent, const uplink::Answered& answered) {
+  pace_.on_answered(answered.sent, loop_.now());
+  slot_.on_sent(sent->packed.body.size(), answered.sent, sent->last_byte_not_before);
   slot_.on_passed(sent->packed.body.size());
   icd::MapUpdate& map = sent->waiting.map;
   if (sent->begins_again) {
-    counts_.forwarded(traffic_of(map), 0, sent->packed.body.size(), answered.status, loop_.wall_now());
-    return again(sent);
+    counts_.count_forwarded(traffic_of(map), 0, sent->packed.body.size(), answered.status, loop_.wall_now());
+    return retry(sent);
   }
-  ahead_.taken(sent->went_ahead);
-  blame_.passed(whose(map), loop_.now());
-  queue_.on_passed(queues::Sender::of(map));
-  queue_.carried(queues::Sender::of(map), sent->packed.body.size());
+  ahead_.on_accepted(sent->went_ahead);
+  blame_.on_passed(blame_key(map), loop_.now());
+  queue_.on_passed(queues::Sender::from_map(map));
+  queue_.charge(queues::Sender::from_map(map), sent->packed.body.size());
   if (queues::next_piece(sent->waiting)) {
-    counts_.forwarded(traffic_of(map), 0, sent->packed.body.size(), answered.status, loop_.wall_now());
+    counts_.count_forwarded(traffic_of(map), 0, sent->packed.body.size(), answered.status, loop_.wall_now());
     return step(sent, MapEvent::AcceptedPiece);
   }
   const std::size_t updates = sent->waiting.updates.size();
   if (sent->waiting.again) map.header().stamp = sent->waiting.again;
   // First: the writer works in order.
-  for (const icd::MapUpdate* const said : queues::said_by(sent->waiting)) rejected_.taken(*said);
+  for (const icd::MapUpdate* const said : queues::said_by(sent->waiting)) rejected_.mark_contained(*said);
   step(sent, MapEvent::Accepted);
-  counts_.forwarded(traffic_of(map), updates, sent->packed.body.size(), answered.status, loop_.wall_now());
+  counts_.count_forwarded(traffic_of(map), updates, sent->packed.body.size(), answered.status,
+                          loop_.wall_now());
   if (!map.is_grid()) counts_.rounded_to(traffic_of(map), sent->packed.precision);
   taken_(std::move(map));
 }
 
-void Maps::verdict(const Place& sent, const uplink::Answered& answered) {
+void Maps::on_verdict(const Place& sent, const uplink::Answered& answered) {
   const loop::Instant now = loop_.now();
   const Traffic traffic = traffic_of(sent->waiting.map);
   const std::string sentence = sentence_of(answered, sent->packed.body.size());
   switch (dispatch::mapping_verdict(answered.status, dispatch::body_of(answered.body))) {
     case MappingVerdict::Taken:
-      return taken(sent, answered);
+      return on_accepted(sent, answered);
     case MappingVerdict::Throttled:
-      pace_.throttled(now, answered.retry_after);
+      pace_.on_throttled(now, answered.retry_after);
       counts_.not_taken(traffic, DeliveryFailure::Throttled, answered.status, sentence);
-      return again(sent);
+      return retry(sent);
     case MappingVerdict::Refused:
-      pace_.taken(answered.sent, now);
+      pace_.on_answered(answered.sent, now);
       if (may_have_been_overtaken(*sent)) {
         ++sent->waiting.trial.failures;
         counts_.not_taken(traffic, DeliveryFailure::Failed, answered.status, sentence);
-        return again(sent);
+        return retry(sent);
       }
       return give_up(sent, answered.status, sentence);
     case MappingVerdict::TooLarge:
-      pace_.taken(answered.sent, now);
+      pace_.on_answered(answered.sent, now);
       return on_too_large(sent, answered, sentence);
     case MappingVerdict::Suspect:
-      pace_.lost(now);
+      pace_.on_lost(now);
       if (answered.status == kBadRequest && is_cut_by_size(*sent))
         return send_smaller(sent, sent->waiting.cuts.at, answered.status, sentence);
-      if (blame_.failed(whose(sent->waiting.map), sent->waiting.trial, now) == queues::Blame::Next::Reject)
+      if (blame_.on_failed(blame_key(sent->waiting.map), sent->waiting.trial, now) ==
+          queues::Blame::Next::Reject)
         return give_up(sent, answered.status,
                        sentence + " (other maps were delivered, this map failed repeatedly)");
       counts_.not_taken(traffic, DeliveryFailure::Failed, answered.status, sentence);
-      return again(sent);
+      return retry(sent);
     case MappingVerdict::Failing:
-      pace_.failed(answered, now);
+      pace_.on_failed(answered, now);
       counts_.not_taken(traffic, DeliveryFailure::Failed, answered.status, sentence);
-      return again(sent);
+      return retry(sent);
   }
 }
 
@@ -777,18 +779,18 @@ void Maps::verdict(const Place& sent, const uplink::Answered& answered) {
 /// alone.
 void Maps::on_too_large(const Place& sent, const uplink::Answered& answered, const std::string& sentence) {
   queues::QueuedMap& waiting = sent->waiting;
-  const queues::Sender sender = queues::Sender::of(waiting.map);
-  queue_.carried(sender, sent->packed.body.size());
+  const queues::Sender sender = queues::Sender::from_map(waiting.map);
+  queue_.charge(sender, sent->packed.body.size());
   const std::size_t size = sent->packed.body.size();
   if (queues::can_split(waiting, size)) return send_smaller(sent, size, answered.status, sentence);
   slot_.on_too_large(size);
   const bool is_page = dispatch::body_of(answered.body) == dispatch::Body::Other;
   if (!is_page) return give_up(sent, answered.status, sentence);
-  const auto next = blame_.failed(whose(waiting.map), waiting.trial, loop_.now());
+  const auto next = blame_.on_failed(blame_key(waiting.map), waiting.trial, loop_.now());
   queue_.on_too_large(sender, waiting.trial);
   if (next == queues::Blame::Next::Reject) return give_up(sent, answered.status, sentence);
   counts_.not_taken(traffic_of(waiting.map), DeliveryFailure::Failed, answered.status, sentence);
-  again(sent);
+  retry(sent);
 }
 
 /// The endpoint would not accept it.
@@ -817,18 +819,18 @@ void Maps::send_smaller(const Place& sent, std::size_t bytes, int status, const 
   counts_.not_taken(traffic_of(sent->waiting.map), DeliveryFailure::Failed, status,
                     sentence + "; it is sent in smaller messages");
   slot_.on_too_large(std::min(bytes, sent->packed.body.size()));
-  ahead_.failed(false);
+  ahead_.on_failed(false);
   step(sent, MapEvent::TooLarge);
 }
 
-void Maps::again(const Place& sent) {
-  ahead_.failed(sent->went_ahead || channel_.busy());
+void Maps::retry(const Place& sent) {
+  ahead_.on_failed(sent->went_ahead || channel_.busy());
   step(sent, MapEvent::Failed);
 }
 
 /// Parts of a merged or stitched map are tried separately.
 void Maps::give_up(const Place& sent, int status, const std::string& sentence) {
-  ahead_.failed(false);
+  ahead_.on_failed(false);
   queues::QueuedMap& waiting = sent->waiting;
   counts_.not_taken(traffic_of(waiting.map), DeliveryFailure::Refused, status, sentence);
   if (waiting.again) waiting.map.header().stamp = waiting.again;
@@ -843,13 +845,13 @@ bool Maps::is_heard_from() const {
   return channel_.address() == address_text(settings_.command_post.mapping);
 }
 
-void Maps::heard() {
+void Maps::on_status() {
   if (!is_heard_from()) return;
   std::vector<const icd::MapUpdate*> under_way;
   for (const Place& place : {first_, following_}) {
     if (place) under_way.push_back(&place->waiting.map);
   }
-  queue_.canvases().heard(under_way);
+  queue_.canvases().on_status(under_way);
 }
 
 void Maps::change_run(dispatch::NextMap next) {

@@ -49,12 +49,12 @@ class Maps {
   /// `ran_before`: this box may have sent maps before.
   void carry_on(const journal::Carried& carried, bool ran_before);
   /// As if a map had just been sent.
-  void hold_back() { pace_.sent(loop_.now()); }
-  void settings_changed();
+  void hold_back() { pace_.on_sent(loop_.now()); }
+  void on_settings_changed();
   /// Requests to another address or token are given up and retried at the new one.
   void endpoint_changed(std::optional<icd::BearerToken> token);
   /// A status confirms the present run.
-  void heard();
+  void on_status();
   /// Another run is on, so the Command Post may have another map.
   void change_run(dispatch::NextMap next);
   /// Queues the stored maps. Their data is checked when they are packed. A map whose packing ended
@@ -62,15 +62,15 @@ class Maps {
   void restore(spool::Spool::Kept kept);
 
   /// With room for a grid that replaces one.
-  std::shared_ptr<intake::MapArrival> arrives(MapArrival::Take take) {
+  std::shared_ptr<intake::MapArrival> arrives(SpooledMapArrival::Accept take) {
     return store_.arrives([this] { return queue_.largest_replaceable(); }, std::move(take));
   }
   /// Stamps are on the stamp clock. `file`: of its data, or null. `done`: stored and queued, 429 for a full
   /// queue, 503 if it cannot be stored. Of a grid that newer ones overtook, only the cells outside of them
   /// are queued; a whole cloud that was overtaken is not.
-  void take(icd::MapUpdate update, const queues::Upload& upload, std::shared_ptr<spool::MapFile> file,
-            std::function<void(icd::Checked<void>)> done) {
-    take(std::make_shared<Arrived>(Arrived{std::move(update), upload, std::move(file), std::move(done)}));
+  void accept(icd::MapUpdate update, const queues::Upload& upload, std::shared_ptr<spool::MapFile> file,
+              std::function<void(icd::Checked<void>)> done) {
+    accept(std::make_shared<Arrived>(Arrived{std::move(update), upload, std::move(file), std::move(done)}));
   }
 
   /// Queues a rejected map before its sender's other maps. `done` is called with true if it is stored, or if
@@ -123,16 +123,16 @@ class Maps {
   };
   using Place = std::shared_ptr<Prepared>;
 
-  void take_settings();
+  void apply_settings();
   bool is_heard_from() const;
   void pump() noexcept;
 
   // Arrival: a map for which there is room is queued once it is stored. A worker then finds queued clouds
   // that newer ones contain.
-  void take(const std::shared_ptr<Arrived>& map);
+  void accept(const std::shared_ptr<Arrived>& map);
   bool has_room_for(const icd::MapUpdate& update, bool replaces) const;
   bool is_told(const icd::MapUpdate& update);
-  void stored(MapStore::Stored& stored, Arrived& map);
+  void on_stored(MapStore::Stored& stored, Arrived& map);
   void queue(MapStore::Stored& stored);
   void leave_out(const std::shared_ptr<Arrived>& map, std::span<const icd::GridBounds> newer);
   void store_next_tile(const std::shared_ptr<Arrived>& map);
@@ -148,7 +148,7 @@ class Maps {
                                  const spool::Spool::Ends& ends) const;
   void tell_clouds(const icd::MapUpdate& update);
   void compare();
-  void compared(const queues::Successive& two, bool has_all);
+  void on_compared(const queues::Successive& two, bool has_all);
 
   // Packing: a worker packs one map at a time, the next one to send.
   void prepare(bool follows);
@@ -165,21 +165,21 @@ class Maps {
 
   // Sending, and the answers.
   void go_on();
-  loop::Instant starts() const;
-  loop::Instant begins_to_pack(loop::Instant now) const;
+  loop::Instant start_time() const;
+  loop::Instant packing_time(loop::Instant now) const;
   void pipeline_map(loop::Instant now);
   bool may_go_ahead(loop::Instant now) const;
   void send(const Place& prepared);
-  void answered(const Place& sent, const uplink::Outcome& outcome);
+  void on_answered(const Place& sent, const uplink::Outcome& outcome);
   void classify(const Place& sent, const uplink::Outcome& outcome);
-  void verdict(const Place& sent, const uplink::Answered& answered);
-  void taken(const Place& sent, const uplink::Answered& answered);
+  void on_verdict(const Place& sent, const uplink::Answered& answered);
+  void on_accepted(const Place& sent, const uplink::Answered& answered);
   void on_too_large(const Place& sent, const uplink::Answered& answered, const std::string& sentence);
   bool must_split(const Prepared& prepared) const;
   bool is_cut_by_size(Prepared& sent);
   static bool may_have_been_overtaken(const Prepared& sent);
   void send_smaller(const Place& sent, std::size_t bytes, int status, const std::string& sentence);
-  void again(const Place& sent);
+  void retry(const Place& sent);
   void give_up(const Place& sent, int status, const std::string& sentence);
 
   loop::Loop& loop_;

@@ -34,13 +34,13 @@ MarkerArrivals::MarkerArrivals(loop::Loop& loop, loop::Workers& workers, journal
       journal_(journal),
       queue_(queue),
       counts_(counts),
-      next_turn_(loop.timer([this] { go(next_step()); })) {}
+      next_turn_(loop.timer([this] { run_step(next_step()); })) {}
 
-void MarkerArrivals::take(icd::MarkersUpdate update, queues::Upload upload, Done done) {
+void MarkerArrivals::accept(icd::MarkersUpdate update, queues::Upload upload, Done done) {
   queues::start_lifetimes(update.markers, loop_.stamp_now());
   arrivals_.push_back(
       {std::make_shared<icd::MarkersUpdate>(std::move(update)), std::move(upload), std::move(done)});
-  if (arrivals_.size() == 1) go(&MarkerArrivals::begin);
+  if (arrivals_.size() == 1) run_step(&MarkerArrivals::begin);
 }
 
 MarkerArrivals::Step MarkerArrivals::next_step() const {
@@ -62,8 +62,8 @@ void MarkerArrivals::end() {
 
 bool MarkerArrivals::begin(Arrival& arrival) {
   if (overtaken_.remove_from(*arrival.update, arrival.upload) > 0 && arrival.update->markers.empty()) {
-    counts_.accepted({Kind::Markers, ""}, arrival.upload.bytes, loop_.wall_now());
-    counts_.replaced({Kind::Markers, ""}, 1);
+    counts_.count_accepted({TrafficKind::Markers, ""}, arrival.upload.bytes, loop_.wall_now());
+    counts_.count_replaced({TrafficKind::Markers, ""}, 1);
     return true;
   }
   if (!queue_.has_room_for(*arrival.update) && !takes_some(arrival)) {
@@ -82,7 +82,7 @@ bool MarkerArrivals::begin(Arrival& arrival) {
 }
 
 bool MarkerArrivals::takes_some(Arrival& arrival) {
-  counts_.no_room({Kind::Markers, ""}, loop_.wall_now());
+  counts_.no_room({TrafficKind::Markers, ""}, loop_.wall_now());
   icd::MarkersUpdate known = queue_.those_that_wait(*arrival.update);
   if (known.markers.empty() || !queue_.has_room_for(known)) return false;
   const std::size_t taken = known.markers.size(), all = arrival.update->markers.size();
@@ -103,7 +103,7 @@ void MarkerArrivals::make_records(const Arrival& arrival) {
       [made, update = arrival.update] { *made = journal::records_of(update->markers); },
       [this, made] {
         arrivals_.front().records = std::move(*made);
-        go(&MarkerArrivals::keep);
+        run_step(&MarkerArrivals::keep);
       });
 }
 
@@ -119,7 +119,7 @@ bool MarkerArrivals::keep(Arrival& arrival) {
     return false;
   }
   arrival.records = {};
-  counts_.accepted({Kind::Markers, ""}, arrival.upload.bytes, loop_.wall_now());
+  counts_.count_accepted({TrafficKind::Markers, ""}, arrival.upload.bytes, loop_.wall_now());
   overtaken_.record(*arrival.update, arrival.upload);
   if (arrival.update->markers.size() <= kPart) return add_part(arrival);
   next_turn_.call_at(loop_.now());
@@ -130,7 +130,7 @@ bool MarkerArrivals::add_part(Arrival& arrival) {
   const std::span<icd::Marker> markers = arrival.update->markers;
   const auto part = markers.subspan(arrival.added, std::min(kPart, markers.size() - arrival.added));
   const auto invisible = static_cast<std::size_t>(std::ranges::count_if(part, icd::is_invisible));
-  counts_.invisible(invisible);
+  counts_.count_invisible(invisible);
   arrival.last = queue_.add_part(part, arrival.last);
   arrival.added += part.size();
   free_needless();
@@ -175,12 +175,12 @@ Markers::Markers(loop::Loop& loop, loop::Workers& workers, const settings::Setti
 void Markers::carry_on(const journal::Carried& carried) {
   pace_.carry_on(carried, loop_.now());
   if (icd::MarkersUpdate markers = carried.markers(); !markers.markers.empty()) {
-    counts_.accepted({Kind::Markers, ""}, 0, loop_.wall_now());
+    counts_.count_accepted({TrafficKind::Markers, ""}, 0, loop_.wall_now());
     queue_.add(std::move(markers), loop_.now());
   }
 }
 
-void Markers::settings_changed(const settings::Settings& settings) {
+void Markers::on_settings_changed(const settings::Settings& settings) {
   queue_.set_bounds(bounds_of(settings.queues));
   pace_.allow(settings.command_post.rates.markers_hz, loop_.now());
 }
@@ -210,13 +210,13 @@ bool Markers::resend(icd::MarkersUpdate markers) {
   queues::start_lifetimes(markers.markers, loop_.stamp_now());
   icd::MarkersUpdate in_order = markers;
   if (wipes) std::ranges::copy(queue_.pending(), std::back_inserter(in_order.markers));
-  if (!journal_.accepted(in_order)) return false;
+  if (!journal_.record_accepted(in_order)) return false;
   queue_.put_back({.update = std::move(markers), .accepted = loop_.now(), .updates = 1});
   return true;
 }
 
-Markers::Sent Markers::take() {
-  auto waiting = queue_.take(loop_.stamp_now());
+Markers::Sent Markers::pop() {
+  auto waiting = queue_.pop(loop_.stamp_now());
   if (!waiting) return nullptr;
   for (icd::Marker& marker : waiting->update.markers) {
     marker.header.stamp = pace_.next_stamp(marker.header.stamp.value_or(loop_.stamp_now()));
@@ -224,7 +224,7 @@ Markers::Sent Markers::take() {
   if (!waiting->update.markers.empty()) {
     pace_.keep_stamp(*waiting->update.markers.back().header.stamp);
   }
-  if (!waiting->is_ahead) journal_.markers_sent(waiting->update);
+  if (!waiting->is_ahead) journal_.record_markers_sent(waiting->update);
   under_way_ = std::make_shared<const queues::QueuedMarkers>(std::move(*waiting));
   return under_way_;
 }
@@ -233,11 +233,11 @@ icd::ChunkedBytes Markers::body_of(const queues::QueuedMarkers& markers) {
   return codec::write_markers_update(markers.update);
 }
 
-void Markers::passed(const queues::QueuedMarkers& markers) {
+void Markers::on_passed(const queues::QueuedMarkers& markers) {
   failed_ = 0;
-  blame_.passed("", loop_.now());
+  blame_.on_passed("", loop_.now());
   if (markers.is_ahead) return;
-  queue_.passed();
+  queue_.on_passed();
   if (trials_.empty()) return;
   for (const icd::Marker& marker : markers.update.markers) trials_.erase({marker.ns, marker.id});
 }
@@ -251,7 +251,7 @@ bool Markers::show_some() {
   if (!to_show_) return false;
   const std::span<const icd::Marker> all = to_show_->update.markers;
   const auto some = all.subspan(shown_, std::min(all.size() - shown_, kAtOnce));
-  delivered_.forwarded(some, loop_.wall_now());
+  delivered_.on_forwarded(some, loop_.wall_now());
   shown_ += some.size();
   if (shown_ == all.size()) to_show_.reset();
   return some.size() < all.size();
@@ -259,7 +259,7 @@ bool Markers::show_some() {
 
 void Markers::put_back(const queues::QueuedMarkers& markers) {
   if (markers.is_ahead) return;
-  journal_.markers_answered(false);
+  journal_.record_markers_answered(false);
   queue_.put_back(markers);
 }
 
@@ -281,11 +281,11 @@ bool Markers::is_to_blame(const queues::QueuedMarkers& markers, bool may_reject)
   }
   const icd::Marker& marker = markers.update.markers.front();
   if (trials_.size() >= kMostTrials) trials_.clear();
-  const bool to_blame = blame_.failed("", trials_[{marker.ns, marker.id}], loop_.now(), may_reject) ==
+  const bool to_blame = blame_.on_failed("", trials_[{marker.ns, marker.id}], loop_.now(), may_reject) ==
                         queues::Blame::Next::Reject;
   if (!to_blame) {
-    journal_.markers_answered(false);
-    queue_.put_behind(markers);
+    journal_.record_markers_answered(false);
+    queue_.requeue_last(markers);
   }
   return to_blame;
 }
@@ -293,7 +293,7 @@ bool Markers::is_to_blame(const queues::QueuedMarkers& markers, bool may_reject)
 bool Markers::give_up(const queues::QueuedMarkers& markers) {
   if (markers.is_ahead) return false;  // it has its own turn
   if (markers.update.markers.size() > 1) {
-    journal_.markers_answered(false);
+    journal_.record_markers_answered(false);
     queue_.put_back_narrower(markers);
     return false;
   }

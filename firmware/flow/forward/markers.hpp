@@ -40,7 +40,7 @@ class MarkerArrivals {
   MarkerArrivals(loop::Loop& loop, loop::Workers& workers, journal::Journal& journal,
                  queues::MarkerQueue& queue, TrafficCounts& counts);
 
-  void take(icd::MarkersUpdate update, queues::Upload upload, Done done);
+  void accept(icd::MarkersUpdate update, queues::Upload upload, Done done);
 
   /// True while an update is in the journal, perhaps not yet whole, and not yet whole in the queue. Do not
   /// send then.
@@ -62,7 +62,7 @@ class MarkerArrivals {
   /// True: the outcome is known.
   using Step = bool (MarkerArrivals::*)(Arrival&);
 
-  void go(Step step) noexcept {
+  void run_step(Step step) noexcept {
     if ((this->*step)(arrivals_.front())) end();
   }
   Step next_step() const;
@@ -102,10 +102,10 @@ class Markers {
           std::mt19937_64& random, journal::Journal& journal, DeliveredScene& delivered);
 
   void carry_on(const journal::Carried& carried);
-  void settings_changed(const settings::Settings& settings);
+  void on_settings_changed(const settings::Settings& settings);
   void endpoint_turned();
-  void take(icd::MarkersUpdate update, queues::Upload upload, MarkerArrivals::Done done) {
-    arrivals_.take(std::move(update), std::move(upload), std::move(done));
+  void accept(icd::MarkersUpdate update, queues::Upload upload, MarkerArrivals::Done done) {
+    arrivals_.accept(std::move(update), std::move(upload), std::move(done));
   }
   bool resend(icd::MarkersUpdate markers);
 
@@ -116,14 +116,16 @@ class Markers {
   std::optional<loop::Instant> oldest_to_send() const {
     return arrivals_.is_in_part() ? std::nullopt : queue_.oldest();
   }
-  /// The next message, stamped and journaled as sent: under_way() until answered(). Null: none.
-  Sent take();
-  const Sent& under_way() const { return under_way_; }
+  /// The next message, stamped and journaled as sent: sent_message() until on_answered(). Null: none.
+  Sent pop();
+  const Sent& sent_message() const { return under_way_; }
   static icd::ChunkedBytes body_of(const queues::QueuedMarkers& markers);
-  static std::vector<Traffic> traffic_of(const queues::QueuedMarkers&) { return {{Kind::Markers, ""}}; }
+  static std::vector<Traffic> traffic_of(const queues::QueuedMarkers&) {
+    return {{TrafficKind::Markers, ""}};
+  }
 
-  void answered() { under_way_.reset(); }
-  void passed(const queues::QueuedMarkers& markers);
+  void on_answered() { under_way_.reset(); }
+  void on_passed(const queues::QueuedMarkers& markers);
   /// The markers are shown by show_some(), some in each turn.
   void show(const Sent& markers);
   /// Call before sending. True: the markers were too many for one turn, and the turn is over.
@@ -131,7 +133,7 @@ class Markers {
   /// True if no update arrives and all delivered markers are shown.
   bool is_idle() const { return arrivals_.empty() && !to_show_; }
   void finish(const queues::QueuedMarkers& markers, bool is_done) {
-    if (!markers.is_ahead) journal_.markers_answered(is_done);
+    if (!markers.is_ahead) journal_.record_markers_answered(is_done);
   }
   void put_back(const queues::QueuedMarkers& markers);
   bool is_on_trial(const queues::QueuedMarkers& markers) const;

@@ -29,10 +29,10 @@ std::expected<void, std::string> write_message(const std::string& path, icd::Map
   return std::unexpected(host::trouble(path, error));
 }
 std::expected<void, std::string> write_message(const std::string& path, const icd::StateUpdate& state) {
-  return spool::write_whole(path, codec::write_state_update(state));
+  return spool::replace_file(path, codec::write_state_update(state));
 }
 std::expected<void, std::string> write_message(const std::string& path, const icd::MarkersUpdate& markers) {
-  return spool::write_whole(path, codec::write_markers_update(markers));
+  return spool::replace_file(path, codec::write_markers_update(markers));
 }
 
 constexpr std::string_view kKinds[] = {"map", "state", "markers"};  // in the order of queues::Message
@@ -66,7 +66,7 @@ void remove(const std::string& reason, const std::string& message) {
 
 /// A full disk deletes the message, because a newer one contains it.
 void write_replaced(const Files& files) {
-  if (!spool::write_whole(files.reason, text_bytes(files.text))) remove(files.reason, files.message);
+  if (!spool::replace_file(files.reason, text_bytes(files.text))) remove(files.reason, files.message);
 }
 
 template <class Message>
@@ -92,21 +92,21 @@ icd::Checked<queues::RejectedMessage> read_item(const std::string& path, const s
   const codec::Field root(*value, reading);
   queues::RejectedMessage item;
   const std::string kind(root.member("kind").text());
-  item.status = static_cast<int>(root.member("status").whole(0, 999));
+  item.status = static_cast<int>(root.member("status").integer(0, 999));
   item.why = root.member("why").text();
   item.at = root.member("at").number();
-  item.bytes = static_cast<std::size_t>(root.member("bytes").whole<std::int64_t>(0, std::int64_t{1} << 40));
+  item.bytes = static_cast<std::size_t>(root.member("bytes").integer<std::int64_t>(0, std::int64_t{1} << 40));
   item.replaced = root.member("replaced").truth();
   item.message = ADIT_TRY(read_message(message, kind));
   const codec::Field bounds = root.member("bounds"), faults = root.member("faults");
-  if (!faults.is_absent()) item.faults = static_cast<int>(faults.whole(1, 1 << 30));
+  if (!faults.is_absent()) item.faults = static_cast<int>(faults.integer(1, 1 << 30));
   const auto* const map = std::get_if<icd::MapUpdate>(&item.message);
   if (map != nullptr && map->is_grid() && !bounds.is_absent())
     item.bounds = spool::read_bounds(bounds, std::get<icd::OccupancyGrid>(map->msg));
   return reading.outcome(std::move(item));
 }
 
-std::string who(const queues::Message& message) {
+std::string sender_text(const queues::Message& message) {
   if (const auto* map = std::get_if<icd::MapUpdate>(&message)) return icd::text_of(map->name);
   const auto* state = std::get_if<icd::StateUpdate>(&message);
   return state != nullptr && state->poses.size() == 1 ? state->poses.front().name.text() : "";
@@ -173,7 +173,7 @@ void RejectedStore::add(queues::Message message, int status, const std::string& 
   host::log(faults > 0 ? host::Level::Error : host::Level::Warning,
             faults > 0 ? "a map is put aside; it is kept" : "the Command Post rejected a message; it is kept",
             {{"kind", kind_of(item.message)},
-             {"robot", who(item.message)},
+             {"robot", sender_text(item.message)},
              {"status", std::to_string(status)},
              {"why", why}});
   const auto said_again = [&](std::uint64_t number) {
@@ -200,19 +200,19 @@ void RejectedStore::keep(const queues::RejectedMessage& item, Origin origin) {
         if (!unread.empty()) written = std::unexpected(unread);
         if (written)
           written = std::visit([&](const auto& each) { return write_message(message_file, each); }, message);
-        if (written) written = spool::write_whole(reason_file, text_bytes(reason));
+        if (written) written = spool::replace_file(reason_file, text_bytes(reason));
         *well = written.has_value();
         if (*well) return;
         host::log(host::Level::Warning, "a rejected message is kept in memory only",
                   {{"why", written.error()}});
       },
-      [this, well, number = item.number, origin = std::move(origin)] { kept(number, *well, origin); });
+      [this, well, number = item.number, origin = std::move(origin)] { on_stored(number, *well, origin); });
   ++being_written_;
 }
 
-void RejectedStore::kept(std::uint64_t number, bool well, const Origin& origin) {
+void RejectedStore::on_stored(std::uint64_t number, bool well, const Origin& origin) {
   --being_written_;
-  origin.told(well);
+  origin.on_stored(well);
   const queues::RejectedMessage* const item = items_.find(number);
   if (well || item == nullptr || item->replaced) return origin.let_go();
   in_memory_[number] = origin.let_go;
@@ -234,7 +234,7 @@ void RejectedStore::let_origin_go(std::uint64_t number) {
   in_memory_.erase(origin);
 }
 
-bool RejectedStore::taken(const queues::Message& message, std::function<void()> written) {
+bool RejectedStore::mark_contained(const queues::Message& message, std::function<void()> written) {
   const std::vector<std::uint64_t> replaced = items_.replaced_by(message);
   std::vector<Files> all;
   for (const std::uint64_t number : replaced) {
@@ -268,7 +268,7 @@ std::expected<queues::RejectedMessage, std::string> RejectedStore::begin_resend(
 bool RejectedStore::finish_resend(std::uint64_t number, bool kept) {
   const queues::RejectedMessage* const item = items_.find(number);
   const bool is_wanted = item == nullptr || !item->replaced;
-  if (kept && items_.take(number)) {
+  if (kept && items_.extract(number)) {
     forget(number);
   } else {
     leaving_.erase(number);
@@ -277,7 +277,7 @@ bool RejectedStore::finish_resend(std::uint64_t number, bool kept) {
 }
 
 std::expected<void, std::string> RejectedStore::discard(std::uint64_t number) {
-  if (leaving_.contains(number) || !items_.take(number)) return std::unexpected(no_such(number));
+  if (leaving_.contains(number) || !items_.extract(number)) return std::unexpected(no_such(number));
   forget(number);
   return {};
 }
@@ -286,7 +286,7 @@ std::string RejectedStore::put_aside() const {
   std::string all;
   for (const queues::RejectedMessage& item : items_.items()) {
     if (item.faults == 0 || item.replaced || leaving_.contains(item.number)) continue;
-    const std::string robot = who(item.message);
+    const std::string robot = sender_text(item.message);
     all += icd::sentence(all.empty() ? "" : "; ", "message ", item.number, ", ",
                          robot.empty() ? "" : robot + "'s ", kind_of(item.message), ": ", item.why);
   }
@@ -299,7 +299,7 @@ std::vector<facts::RejectedRow> RejectedStore::rows() const {
     if (leaving_.contains(item.number)) continue;
     rows.push_back({.number = item.number,
                     .kind = kind_of(item.message),
-                    .robot = who(item.message),
+                    .robot = sender_text(item.message),
                     .at = item.at + (loop_.wall_now() - loop_.stamp_now()),
                     .status = item.status,
                     .why = item.why,

@@ -18,14 +18,14 @@ namespace adit::forward {
 /// Rejected maps, states and markers, and maps that were put aside (queues::RejectedMessages), in a directory
 /// that survives the process: `N.cbor`, the message, and `N.json`, the reason. The writer writes in order.
 ///
-/// A message always has a file: its origin keeps the old file until told(), and this store keeps the new one
-/// until the message is queued again.
+/// A message always has a file: its origin keeps the old file until on_stored(), and this store keeps the new
+/// one until the message is queued again.
 class RejectedStore {
  public:
   /// The keeper of a message before its rejection. Both are called on the loop, not inside their own add().
   struct Origin {
     /// Called once: whether the message has a file here. If not, it is in memory alone.
-    std::function<void(bool kept)> told = [](bool) {};
+    std::function<void(bool kept)> on_stored = [](bool) {};
     /// Called once: the origin may delete its file.
     std::function<void()> let_go = [] {};
   };
@@ -48,10 +48,10 @@ class RejectedStore {
   /// The Command Post accepted `message`: marks older rejected messages that it contains, so that they are
   /// never sent. Forget `message` only after `written`, which is called on the loop. False: no mark to write,
   /// and `written` is not called.
-  bool taken(const queues::Message& message, std::function<void()> written = [] {});
+  bool mark_contained(const queues::Message& message, std::function<void()> written = [] {});
   bool empty() const { return items_.items().empty(); }
   /// Messages that were removed for newer ones.
-  std::uint64_t dropped() const { return dropped_; }
+  std::uint64_t dropped_count() const { return dropped_; }
   /// True if the writer has finished.
   bool has_stored_all() const { return being_written_ == 0; }
 
@@ -67,7 +67,7 @@ class RejectedStore {
  private:
   std::string path(std::uint64_t number, const char* ending) const;
   void keep(const queues::RejectedMessage& item, Origin origin);
-  void kept(std::uint64_t number, bool well, const Origin& origin);
+  void on_stored(std::uint64_t number, bool well, const Origin& origin);
   void forget(std::uint64_t number);
   void let_origin_go(std::uint64_t number);
   icd::Checked<void> restore_one(std::uint64_t number);

@@ -29,7 +29,7 @@ ReportOutput::ReportOutput(loop::Loop& loop, ledger::Ledger& ledger)
     : loop_(loop),
       ledger_(ledger),
       follow_up_(loop.timer([this] { follow_up(); })),
-      try_again_(loop.timer([this] { tried(ledger_.make_ready()); })),
+      try_again_(loop.timer([this] { on_tried(ledger_.make_ready()); })),
       trouble_(ledger.refusal()) {
   if (trouble_.empty()) return;
   host::log(
@@ -39,7 +39,7 @@ ReportOutput::ReportOutput(loop::Loop& loop, ledger::Ledger& ledger)
   try_again_.call_at(loop.now() + kTryEvery);
 }
 
-void ReportOutput::tried(const ledger::Result<void>& result) {
+void ReportOutput::on_tried(const ledger::Result<void>& result) {
   const bool was_well = trouble_.empty();
   trouble_ = result ? "" : result.error().what;
   if (result && !was_well) host::log(host::Level::Notice, "the ledger can be written again");
@@ -72,7 +72,7 @@ dispatch::ClientId ReportOutput::add(std::shared_ptr<intake::Responder> responde
 bool ReportOutput::write(std::span<const dispatch::Report> steps, const dispatch::Run* run,
                          dispatch::Flush flush) {
   const auto written = ledger_.write(steps, run, flush);
-  if (!written || ledger_.refusal().empty()) tried(written);
+  if (!written || ledger_.refusal().empty()) on_tried(written);
   if (!written) return false;
   for (const dispatch::Report& report : steps) {
     unlogged_.push_back(

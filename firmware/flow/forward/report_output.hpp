@@ -46,7 +46,7 @@ class ReportOutput final : public dispatch::Output {
     std::string note;
   };
   void follow_up();
-  void tried(const ledger::Result<void>& result);
+  void on_tried(const ledger::Result<void>& result);
 
   loop::Loop& loop_;
   ledger::Ledger& ledger_;

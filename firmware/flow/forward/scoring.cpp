@@ -31,10 +31,11 @@ std::string with_figures(const std::string& body, const icd::RunStatus& run) {
 
 }  // namespace
 
-void StatusCache::heard(std::string body, const icd::RunStatus& run, loop::Instant asked, icd::Stamp now) {
+void StatusCache::on_status(std::string body, const icd::RunStatus& run, loop::Instant asked,
+                            icd::Stamp now) {
   body_ = std::move(body);
   run_ = corrected_ = run;
-  run_clock_.heard(run.run_clock, now);
+  run_clock_.on_status(run.run_clock, now);
   asked_ = asked;
   fresh_ = true;
 }
@@ -128,7 +129,7 @@ void Scoring::start(std::vector<dispatch::Run> runs) {
   schedule_status();
 }
 
-void Scoring::settings_changed() {
+void Scoring::on_settings_changed() {
   reports_->go_by(rules_of(settings_.reports));
   pace_.allow(settings_.command_post.rates, loop_.now());
   pump();
@@ -136,7 +137,7 @@ void Scoring::settings_changed() {
 
 void Scoring::endpoint_changed(std::optional<icd::BearerToken> token) {
   channel_.lead_to(access_to_scoring(settings_.command_post, std::move(token)));
-  if (channel_.busy()) reports_->will_move(address_text(settings_.command_post.scoring), time());
+  if (channel_.busy()) reports_->prepare_move(address_text(settings_.command_post.scoring), time());
   pump();
 }
 
@@ -150,26 +151,26 @@ void Scoring::endpoint_turned() {
   next->carry_on(*reports_, time(), channel_.address());
   reports_ = std::move(next);
   watch_deadlines();
-  counts_.changed();
+  counts_.notify_changed();
 }
 
-void Scoring::take(const icd::ArtifactReport& report, const intake::Sender& sender,
-                   std::shared_ptr<intake::Responder> responder) {
+void Scoring::accept(const icd::ArtifactReport& report, const intake::Sender& sender,
+                     std::shared_ptr<intake::Responder> responder) {
   if (stopping_)
     return responder->answer(intake::error_answer(
         icd::Status::ServiceUnavailable, "the box is stopping; the report was not accepted, send it again"));
-  take({.report = report, .sender = sender.address, .resubmit = sender.resubmits},
-       output_.add(std::move(responder)));
+  accept({.report = report, .sender = sender.address, .resubmit = sender.resubmits},
+         output_.add(std::move(responder)));
 }
 
-void Scoring::take(const dispatch::PostedReport& posted, dispatch::ClientId client) noexcept {
+void Scoring::accept(const dispatch::PostedReport& posted, dispatch::ClientId client) noexcept {
   const loop::Instant now = loop_.now();
-  const bool may_send = !channel_.busy() && channel_.connected() &&
+  const bool may_send = !channel_.busy() && channel_.is_connected() &&
                         std::max(pace_.report_ready(), reports_paused_until_) <= now &&
                         !is_status_first(now) && channel_.claim_turn(/*goes_first=*/true);
-  if (reports_->take(posted, client, may_send, time())) send(*reports_->sending());
+  if (reports_->accept(posted, client, may_send, time())) send(*reports_->sending());
   watch_deadlines();
-  counts_.changed();
+  counts_.notify_changed();
   pump();
 }
 
@@ -228,7 +229,7 @@ void Scoring::pump() noexcept {
   if (stopping_ || !channel_.has_token()) return;
   const dispatch::Time at = time();
   const loop::Instant now = at.now;
-  reports_->paced(pace_.spacing());
+  reports_->set_spacing(pace_.spacing());
   dispatch::NextRequests requests = reports_->next_requests(at);
   const bool is_paused = requests.report && reports_paused_until_ > now;
   if (is_paused) requests.report = false;  // statuses go on
@@ -241,7 +242,7 @@ void Scoring::pump() noexcept {
       status_clients_.empty() && !is_first ? std::min(ask_at_, requests.status.value_or(ask_at_)) : now;
   if (status_at != loop::Instant::max())
     candidates[status] = {now, std::max(status_ready(requests), status_at)};
-  pace::Turn turn = pace::in_order(candidates, now);
+  pace::Turn turn = pace::first_ready(candidates, now);
   if (is_paused) turn.wake = std::min(turn.wake.value_or(reports_paused_until_), reports_paused_until_);
   if (turn.wake) wake_.call_at(*turn.wake);
   if (!turn.candidate || !channel_.claim_turn(/*goes_first=*/turn.candidate == report)) return;
@@ -292,7 +293,7 @@ void Scoring::report_answered(const uplink::Outcome& outcome) {
   status_cache_.no_longer_fresh();  // score and remaining reports may have changed
   ask_at_ = loop_.now();
   watch_deadlines();
-  counts_.changed();
+  counts_.notify_changed();
   pump();
 }
 
@@ -301,11 +302,11 @@ void Scoring::classify_report(const uplink::Outcome& outcome) {
   const loop::Instant now = loop_.now();
   if (const auto* answered = std::get_if<uplink::Answered>(&outcome)) {
     const std::int64_t number = reports_->sending()->number;
-    const dispatch::ReportEvent event = reports_->answered({.status = answered->status,
-                                                            .content_type = answered->content_type,
-                                                            .body = answered->body,
-                                                            .is_unprocessed = answered->is_unprocessed()},
-                                                           time());
+    const dispatch::ReportEvent event = reports_->on_answered({.status = answered->status,
+                                                               .content_type = answered->content_type,
+                                                               .body = answered->body,
+                                                               .is_unprocessed = answered->is_unprocessed()},
+                                                              time());
     correct_status(reports_->book().at(number));
     if (event == dispatch::ReportEvent::Throttled) {
       pace_.report_throttled(answered->sent, answered->retry_after, now);
@@ -319,7 +320,7 @@ void Scoring::classify_report(const uplink::Outcome& outcome) {
     reports_->never_left(never->why, time());
     pace_.report_failed(now);
   } else {
-    reports_->lost(sentence_of(outcome), time());
+    reports_->on_lost(sentence_of(outcome), time());
     pace_.report_lost(now);
   }
 }
@@ -352,7 +353,7 @@ void Scoring::answer_clients(loop::Instant now) {
 void Scoring::deadline_came() {
   answer_clients(loop_.now());
   tick();
-  counts_.changed();
+  counts_.notify_changed();
   watch_deadlines();
 }
 
@@ -376,7 +377,7 @@ void Scoring::status_answered(const uplink::Outcome& outcome) {
   ask_at_ = channel_.is_trial_due() ? loop_.now() : loop_.now() + kAskEvery;
   classify_status(outcome, asked);
   watch_deadlines();
-  counts_.changed();
+  counts_.notify_changed();
   pump();
 }
 
@@ -392,7 +393,7 @@ void Scoring::classify_status(const uplink::Outcome& outcome, loop::Instant aske
     ask_at_ = now;  // clients keep waiting
     return;
   }
-  if (run) status_cache_.heard(answered->body, *run, asked, loop_.stamp_now());  // sent with its age
+  if (run) status_cache_.on_status(answered->body, *run, asked, loop_.stamp_now());  // sent with its age
   if (answered == nullptr) {
     pace_.status_failed(outcome, now);
     status_clients_.answer_all(known_or(no_status(sentence_of(outcome))));
@@ -424,7 +425,7 @@ intake::Answer Scoring::known_or(intake::Answer failure) const {
 
 dispatch::Reports::Outcome Scoring::decide(std::int64_t number, api::Action action) noexcept {
   const Reports::Outcome outcome = carry_out(*reports_, number, action, time());
-  counts_.changed();
+  counts_.notify_changed();
   pump();
   return outcome;
 }
@@ -432,7 +433,7 @@ dispatch::Reports::Outcome Scoring::decide(std::int64_t number, api::Action acti
 dispatch::Reports::Outcome Scoring::report(const icd::ArtifactReport& report, bool resubmit) {
   if (stopping_) return std::unexpected("the box is stopping; the report was not accepted");
   const dispatch::ClientId nobody = output_.add_nobody();
-  take({.report = report, .sender = "operator", .resubmit = resubmit, .can_be_undone = true}, nobody);
+  accept({.report = report, .sender = "operator", .resubmit = resubmit, .can_be_undone = true}, nobody);
   if (const auto number = reports_->awaited_by(nobody)) return *number;
   const dispatch::ClientAnswer told = output_.last_told();
   if (told.number == 0) return std::unexpected(told.sentence);
@@ -442,14 +443,14 @@ dispatch::Reports::Outcome Scoring::report(const icd::ArtifactReport& report, bo
 dispatch::Reports::Outcome Scoring::correct(std::int64_t number, const icd::ArtifactReport& to) noexcept {
   const dispatch::Reports::Outcome outcome = reports_->correct(number, to, time());
   watch_deadlines();
-  counts_.changed();
+  counts_.notify_changed();
   pump();
   return outcome;
 }
 
 std::int64_t Scoring::begin_run() noexcept {
   const std::int64_t number = reports_->declare_new_run(time());
-  counts_.changed();
+  counts_.notify_changed();
   schedule_status();
   return number;
 }

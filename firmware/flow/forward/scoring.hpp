@@ -78,7 +78,7 @@ class StatusCache {
   static constexpr std::chrono::seconds kOldest{60};  // better than no answer
 
   /// `body`: `run` as JSON. `now`: stamp clock.
-  void heard(std::string body, const icd::RunStatus& run, loop::Instant asked, icd::Stamp now);
+  void on_status(std::string body, const icd::RunStatus& run, loop::Instant asked, icd::Stamp now);
   /// A report of the same run was answered: corrects the counts, and the clock if the two URIs may have the
   /// same one. `run_clock`: of the answer; 0: none.
   void add_report(const dispatch::Effect& effect, double run_clock, loop::Instant now);
@@ -125,8 +125,8 @@ class Scoring {
   /// As if a request had just been sent.
   void hold_back() { pace_.hold_back(loop_.now()); }
   /// For the operator's test.
-  UriPace& status_pace() { return pace_.of_status(); }
-  void settings_changed();
+  UriPace& status_pace() { return pace_.status_pace(); }
+  void on_settings_changed();
   /// Answers in flight still come from the old endpoint. At another endpoint the run's data is cleared.
   /// Clients keep waiting.
   void endpoint_changed(std::optional<icd::BearerToken> token);
@@ -135,8 +135,8 @@ class Scoring {
   /// Starts from the ledger, which has these `runs`, and connects.
   void start(std::vector<dispatch::Run> runs);
 
-  void take(const icd::ArtifactReport& report, const intake::Sender& sender,
-            std::shared_ptr<intake::Responder> responder);
+  void accept(const icd::ArtifactReport& report, const intake::Sender& sender,
+              std::shared_ptr<intake::Responder> responder);
   void status(std::shared_ptr<intake::Responder> responder);
   /// Once a second.
   void tick();
@@ -175,7 +175,7 @@ class Scoring {
   /// Reports get stamps, because the stamp clock is never set and rules compare the times.
   dispatch::Time time() const { return {loop_.now(), loop_.stamp_now()}; }
   void endpoint_turned();
-  void take(const dispatch::PostedReport& posted, dispatch::ClientId client) noexcept;
+  void accept(const dispatch::PostedReport& posted, dispatch::ClientId client) noexcept;
   void schedule_status();
   void pump() noexcept;
   bool is_free(const dispatch::NextRequests& requests, loop::Instant now);

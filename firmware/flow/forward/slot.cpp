@@ -30,14 +30,14 @@ void Slot::packing_took(loop::Duration took) {
   packing_takes_ = std::max(took, packing_takes_ - (packing_takes_ - took) / 8);
 }
 
-void Slot::packed(std::size_t points, std::size_t bytes, queues::Precision precision) {
+void Slot::on_packed(std::size_t points, std::size_t bytes, queues::Precision precision) {
   if (points < kTelling) return;
   const double packed_to = static_cast<double>(bytes) / static_cast<double>(points);
   packed_to_ = std::clamp(packed_to / kOfExact.at(static_cast<std::size_t>(precision)), kSmallest, 1.0);
 }
 
 /// Bytes that were held back give only a lower limit of the speed.
-void Slot::left(std::size_t bytes, const uplink::Sent& sent, loop::Instant last_byte_not_before) {
+void Slot::on_sent(std::size_t bytes, const uplink::Sent& sent, loop::Instant last_byte_not_before) {
   if (bytes < kTelling) return;
   const double took = std::max(Seconds(sent.last - sent.first).count(), 1e-6);
   const double seen = std::min(static_cast<double>(bytes) / took, most_);
@@ -80,7 +80,7 @@ loop::Duration Slot::transfer(std::size_t bytes) const {
   return std::chrono::duration_cast<loop::Duration>(Seconds(static_cast<double>(bytes) / bytes_per_second_));
 }
 
-queues::PointsAt Slot::points_within(loop::Duration spacing) const {
+queues::PointsAt Slot::points_for(loop::Duration spacing) const {
   const double leave = std::max(bytes_per_second_ * Seconds(spacing).count(), kLeast);
   const double bytes = std::min(leave, kOfLimit * static_cast<double>(limit()));
   constexpr double kMost = 1e15;

@@ -26,12 +26,12 @@ class Slot {
   /// A map was packed, which took so long.
   void packing_took(loop::Duration took);
   /// Effort::Full packs so many bytes of a cloud's points to so many, at that precision.
-  void packed(std::size_t points, std::size_t bytes, queues::Precision precision);
+  void on_packed(std::size_t points, std::size_t bytes, queues::Precision precision);
   /// A worker took so long to pack a map for which pack::seconds_for() expects so many seconds; 0: the map
   /// was not compressed.
   void worker_took(loop::Duration took, double expected);
   /// So many bytes left, of which the last were held back until then.
-  void left(std::size_t bytes, const uplink::Sent& sent, loop::Instant last_byte_not_before);
+  void on_sent(std::size_t bytes, const uplink::Sent& sent, loop::Instant last_byte_not_before);
 
   /// The link takes no more than so many bytes a second now; 0: not known.
   void link_delivers(std::uint64_t bytes_per_second);
@@ -59,7 +59,7 @@ class Slot {
   pack::Hurry hurry(loop::Duration spacing) const;
   /// How many bytes of points, not packed, leave within `spacing` and within limit(), at each precision: by
   /// the last cloud, and by what rounding makes of clouds.
-  queues::PointsAt points_within(loop::Duration spacing) const;
+  queues::PointsAt points_for(loop::Duration spacing) const;
 
  private:
   loop::Duration packing_takes_{0};

@@ -60,7 +60,7 @@ double unit_of(queues::Precision precision) {
 /// A cloud without one is not accepted, but a piece of a cloud may have none.
 bool has_no_valid_point(const icd::MapUpdate& piece) {
   const auto* const cloud = std::get_if<icd::PointCloud2>(&piece.msg);
-  return cloud != nullptr && pack::without_invalid_points(*cloud, piece.data).raw_size == 0;
+  return cloud != nullptr && pack::remove_invalid_points(*cloud, piece.data).raw_size == 0;
 }
 
 /// The origin shows it.
@@ -71,7 +71,7 @@ bool was_rounded(const icd::MapUpdate& before, const icd::MapUpdate& after) {
 
 }  // namespace
 
-Packed packed(const queues::QueuedMap& waiting, const Packing& packing) {
+Packed pack_map(const queues::QueuedMap& waiting, const Packing& packing) {
   auto whole = assemble(waiting);
   if (!whole) return {};
   Packed packed;

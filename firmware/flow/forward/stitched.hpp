@@ -35,7 +35,7 @@ struct Packing {
 
 /// Rounds a cloud to waiting.precision, or keeps it exact if that is impossible. A map that goes as it is
 /// (queues::PackingRule) only loses invalid points. CPU-bound: call on a worker.
-Packed packed(const queues::QueuedMap& waiting, const Packing& packing = {});
+Packed pack_map(const queues::QueuedMap& waiting, const Packing& packing = {});
 
 /// The map with its cells, stitched from its parts over the ground if necessary, or with the points or
 /// rows that are sent next. An error describes the fault in the data.

@@ -22,10 +22,10 @@ States::States(loop::Loop& loop, const settings::Settings& settings, TrafficCoun
 void States::carry_on(const journal::Carried& carried) {
   pace_.carry_on(carried, loop_.now());
   for (const auto& [name, robot] : carried.robots()) {
-    const double behind = carried.behind(name.text(), static_cast<std::size_t>(Kind::State));
+    const double behind = carried.lag(name.text(), static_cast<std::size_t>(TrafficKind::State));
     queue_.add({&robot.posted, 1}, std::isnan(behind) ? loop_.now() : instant_of(loop_, behind));
-    counts_.accepted({Kind::State, name.text()}, 0,
-                     time_of(loop_, robot.posted.stamp.value_or(loop_.stamp_now())));
+    counts_.count_accepted({TrafficKind::State, name.text()}, 0,
+                           time_of(loop_, robot.posted.stamp.value_or(loop_.stamp_now())));
   }
   queue_.begin_run();  // perhaps from before this run: each goes once
 }
@@ -41,24 +41,24 @@ void States::endpoint_turned() {
 icd::Checked<void> States::has_room_for(const icd::StateUpdate& update) {
   if (queue_.has_room_for(update)) return {};
   for (const icd::NamedPose& pose : update.poses)
-    counts_.no_room({Kind::State, pose.name.text()}, loop_.wall_now());
+    counts_.no_room({TrafficKind::State, pose.name.text()}, loop_.wall_now());
   return icd::refuse(icd::Status::TooManyRequests, "not accepted: too many robots; send it again later");
 }
 
 icd::Checked<void> States::accept(const std::vector<queues::PostedPose>& poses, std::size_t bytes_received) {
   const std::vector<queues::PostedPose> news = queue_.news_in(poses);
-  if (const auto kept = journal_.accepted(news); !kept)
+  if (const auto kept = journal_.record_accepted(news); !kept)
     return icd::refuse(icd::Status::ServiceUnavailable, "not accepted: it cannot be stored: ", kept.error(),
                        "; send it again later");
   for (const queues::PostedPose& pose : poses)
-    counts_.accepted({Kind::State, pose.name.text()}, bytes_received, loop_.wall_now());
+    counts_.count_accepted({TrafficKind::State, pose.name.text()}, bytes_received, loop_.wall_now());
   queue_.add(news, loop_.now());
   return {};
 }
 
 bool States::resend(const icd::StateUpdate& state) {
   queue_.add_unless_known(state, loop_.now());  // a newer pose wins
-  return journal_.accepted(queue_.unsent()).has_value();
+  return journal_.record_accepted(queue_.unsent()).has_value();
 }
 
 std::optional<loop::Instant> States::accepted_at(const std::string& robot) const {
@@ -66,13 +66,13 @@ std::optional<loop::Instant> States::accepted_at(const std::string& robot) const
   return name ? queue_.accepted_at(*name) : std::nullopt;
 }
 
-States::Sent States::take() {
-  auto waiting = queue_.take(loop_.now());
+States::Sent States::pop() {
+  auto waiting = queue_.pop(loop_.now());
   if (!waiting) return nullptr;
   icd::Header& header = waiting->update.header;
   header.stamp = pace_.next_stamp(header.stamp.value_or(loop_.stamp_now()));
   pace_.keep_stamp(*header.stamp);
-  journal_.state_sent(waiting->update);
+  journal_.record_state_sent(waiting->update);
   return std::make_shared<const queues::QueuedState>(std::move(*waiting));
 }
 
@@ -83,14 +83,14 @@ icd::ChunkedBytes States::body_of(const queues::QueuedState& state) {
 std::vector<Traffic> States::traffic_of(const queues::QueuedState& state) {
   std::vector<Traffic> all;
   all.reserve(state.news.size());
-  for (const icd::NamedPose& pose : state.news) all.push_back({Kind::State, pose.name.text()});
+  for (const icd::NamedPose& pose : state.news) all.push_back({TrafficKind::State, pose.name.text()});
   return all;
 }
 
-void States::passed(const queues::QueuedState& state) {
+void States::on_passed(const queues::QueuedState& state) {
   failed_ = 0;
-  queue_.passed(state);
-  for (const icd::NamedPose& pose : state.update.poses) blame_.passed(pose.name.text(), loop_.now());
+  queue_.on_passed(state);
+  for (const icd::NamedPose& pose : state.update.poses) blame_.on_passed(pose.name.text(), loop_.now());
 }
 
 void States::put_back(const queues::QueuedState& state) {
@@ -109,7 +109,7 @@ bool States::is_to_blame(const queues::QueuedState& state, bool may_reject) {
     to_blame = ++failed_ >= Markers::kTriesTogether;
     if (to_blame) pace_.forget_failures();
   } else if (queues::Trial* const trial = queue_.trial_of(state)) {
-    to_blame = blame_.failed(state.update.poses.front().name.text(), *trial, loop_.now(), may_reject) ==
+    to_blame = blame_.on_failed(state.update.poses.front().name.text(), *trial, loop_.now(), may_reject) ==
                queues::Blame::Next::Reject;
   }
   if (!to_blame) put_back(state);
@@ -121,7 +121,7 @@ bool States::give_up(const queues::QueuedState& state) {
   if (!are_several) queue_.give_up(state.update.poses.front().name, loop_.now());
   if (!are_several && !state.news.empty()) return true;
   finish(state, false);
-  if (are_several) queue_.put_back_apart(state);
+  if (are_several) queue_.put_back_single(state);
   return false;
 }
 
@@ -156,9 +156,9 @@ void Telemetry::carry_on(const journal::Carried& carried) {
   markers_.carry_on(carried);
 }
 
-void Telemetry::settings_changed() {
+void Telemetry::on_settings_changed() {
   states_.pace().allow(settings_.command_post.rates.state_hz, loop_.now());
-  markers_.settings_changed(settings_);
+  markers_.on_settings_changed(settings_);
   pump();
 }
 
@@ -168,8 +168,8 @@ void Telemetry::endpoint_changed(std::optional<icd::BearerToken> token) {
   pump();
 }
 
-icd::Checked<void> Telemetry::take(const std::vector<queues::PostedPose>& poses,
-                                   std::size_t bytes_received) noexcept {
+icd::Checked<void> Telemetry::accept(const std::vector<queues::PostedPose>& poses,
+                                     std::size_t bytes_received) noexcept {
   auto accepted = states_.accept(poses, bytes_received);
   if (accepted) pump();
   return accepted;
@@ -186,8 +186,8 @@ void Telemetry::pump() noexcept {
 }
 
 void Telemetry::send_next() {
-  if (markers_.under_way()) {
-    if (channel_.claim_turn()) send(markers_, markers_.under_way());
+  if (markers_.sent_message()) {
+    if (channel_.claim_turn()) send(markers_, markers_.sent_message());
     return;
   }
   const auto state = states_.next();
@@ -199,12 +199,12 @@ void Telemetry::send_next() {
   if (turn.wake) wake_.call_at(*turn.wake);
   if (!turn.candidate || !channel_.claim_turn()) return;
   if (turn.candidate == 1) return send_markers();
-  if (const States::Sent next = states_.take()) send(states_, next);
+  if (const States::Sent next = states_.pop()) send(states_, next);
 }
 
 /// Many markers are written in a turn of their own.
 void Telemetry::send_markers() {
-  const Markers::Sent next = markers_.take();
+  const Markers::Sent next = markers_.pop();
   if (!next) return;
   if (next->update.markers.size() > Markers::kAtOnce) return wake_.call_at(loop_.now());
   send(markers_, next);
@@ -213,19 +213,19 @@ void Telemetry::send_markers() {
 template <class Of>
 void Telemetry::send(Of& of, const typename Of::Sent& sent) {
   const icd::ChunkedBytes body = Of::body_of(*sent);
-  of.pace().sent(loop_.now());
+  of.pace().on_sent(loop_.now());
   channel_.send(
       Of::kUri, codec::kCbor, body,
       [this, &of, sent, bytes = body.size()](const uplink::Outcome& outcome) {
-        answered(of, sent, bytes, outcome);
+        on_answered(of, sent, bytes, outcome);
       },
       {}, of.is_on_trial(*sent));
 }
 
 template <class Of>
-void Telemetry::answered(Of& of, const typename Of::Sent& sent, std::size_t bytes,
-                         const uplink::Outcome& outcome) {
-  markers_.answered();
+void Telemetry::on_answered(Of& of, const typename Of::Sent& sent, std::size_t bytes,
+                            const uplink::Outcome& outcome) {
+  markers_.on_answered();
   classify(of, sent, bytes, outcome);
   pump();
 }
@@ -247,30 +247,30 @@ void Telemetry::classify(Of& of, const typename Of::Sent& sent, std::size_t byte
                               queues::Blame::kLongestRest.count(), " s");
   for (const Traffic& traffic : Of::traffic_of(*sent)) {
     if (verdict == MappingVerdict::Taken) {
-      counts_.forwarded(traffic, 1, bytes, status, loop_.wall_now());
+      counts_.count_forwarded(traffic, 1, bytes, status, loop_.wall_now());
     } else {
       counts_.not_taken(traffic, failure_of(verdict), status, sentence);
     }
   }
   switch (verdict) {
     case MappingVerdict::Taken:
-      of.pace().taken(answer->sent, now);
-      of.passed(*sent);
+      of.pace().on_answered(answer->sent, now);
+      of.on_passed(*sent);
       replace(of, sent);
       of.show(sent);
       break;
     case MappingVerdict::Refused:
-      of.pace().taken(answer->sent, now);
+      of.pace().on_answered(answer->sent, now);
       give_up(of, sent, status, sentence, bytes);
       break;
     case MappingVerdict::Throttled:
-      of.pace().throttled(now, answer->retry_after);
+      of.pace().on_throttled(now, answer->retry_after);
       of.put_back(*sent);
       break;
     case MappingVerdict::TooLarge:
     case MappingVerdict::Suspect:
     case MappingVerdict::Failing:
-      of.pace().failed(outcome, now);
+      of.pace().on_failed(outcome, now);
       if (is_to_blame) give_up(of, sent, status, sentence, bytes);
       if (!concerns_a_part) of.put_back(*sent);
       break;
@@ -284,7 +284,7 @@ void Telemetry::replace(Of& of, const typename Of::Sent& sent) {
     of.finish(*sent, true);
     pump();
   };
-  rejected_writes_ = !rejected_.empty() && rejected_.taken(sent->update, written);
+  rejected_writes_ = !rejected_.empty() && rejected_.mark_contained(sent->update, written);
   if (!rejected_writes_) of.finish(*sent, true);
 }
 
@@ -297,7 +297,7 @@ void Telemetry::give_up(Of& of, const typename Of::Sent& sent, int status, const
     of.finish(*sent, kept);
     pump();
   };
-  rejected_.add(sent->update, status, sentence, bytes, {.told = told});
+  rejected_.add(sent->update, status, sentence, bytes, {.on_stored = told});
   rejected_writes_ = true;
 }
 
@@ -321,16 +321,16 @@ bool Telemetry::stop() {
   return !channel_.busy() && markers_.is_idle();
 }
 
-std::size_t Telemetry::waiting(Kind kind) const {
-  if (kind == Kind::State) return states_.empty() ? 0 : 1;
+std::size_t Telemetry::waiting(TrafficKind kind) const {
+  if (kind == TrafficKind::State) return states_.empty() ? 0 : 1;
   return markers_.count();
 }
 
 std::optional<loop::Instant> Telemetry::oldest_acceptance(const Traffic& traffic) const {
-  if (traffic.kind == Kind::State) return states_.accepted_at(traffic.robot);
+  if (traffic.kind == TrafficKind::State) return states_.accepted_at(traffic.robot);
   const auto oldest = markers_.oldest();
-  if (!markers_.under_way()) return oldest;
-  return std::min(oldest.value_or(markers_.under_way()->accepted), markers_.under_way()->accepted);
+  if (!markers_.sent_message()) return oldest;
+  return std::min(oldest.value_or(markers_.sent_message()->accepted), markers_.sent_message()->accepted);
 }
 
 }  // namespace adit::forward

@@ -34,7 +34,7 @@ class States {
   void carry_on(const journal::Carried& carried);
   /// Another Command Post knows no robots yet.
   void endpoint_turned();
-  /// Telemetry::change_run(), has_room_for(), take() and resend().
+  /// Telemetry::change_run(), has_room_for(), accept() and resend().
   void begin_run() { queue_.begin_run(); }
   icd::Checked<void> has_room_for(const icd::StateUpdate& update);
   icd::Checked<void> accept(const std::vector<queues::PostedPose>& poses, std::size_t bytes_received);
@@ -47,21 +47,21 @@ class States {
   /// When the robot's pose was accepted that is queued or in flight.
   std::optional<loop::Instant> accepted_at(const std::string& robot) const;
   /// The next message, stamped and journaled as sent. Null: none.
-  Sent take();
+  Sent pop();
   static icd::ChunkedBytes body_of(const queues::QueuedState& state);
   /// Robots with news. Repeated poses do not count.
   static std::vector<Traffic> traffic_of(const queues::QueuedState& state);
 
-  void passed(const queues::QueuedState& state);
+  void on_passed(const queues::QueuedState& state);
   /// Passes an accepted message to delivered.
-  void show(const Sent& state) { delivered_.forwarded(state->news, loop_.wall_now()); }
+  void show(const Sent& state) { delivered_.on_forwarded(state->news, loop_.wall_now()); }
   /// Journals the answer. `is_done`: the message is not sent again.
-  void finish(const queues::QueuedState&, bool is_done) { journal_.state_answered(is_done); }
+  void finish(const queues::QueuedState&, bool is_done) { journal_.record_state_answered(is_done); }
   void put_back(const queues::QueuedState& state);
   /// Whether a state of this robot failed alone before while others passed.
   bool is_on_trial(const queues::QueuedState& state);
   /// After an answer that may concern a part of the message. True: the message is at fault. False: it is
-  /// queued again. `may_reject`: as Blame::failed().
+  /// queued again. `may_reject`: as Blame::on_failed().
   bool is_to_blame(const queues::QueuedState& state, bool may_reject);
   /// True: the message is to be rejected. False: several poses are queued again, each alone, or the pose was
   /// delivered before.
@@ -91,12 +91,12 @@ class Telemetry {
   void carry_on(const journal::Carried& carried);
   /// As if messages had just been sent.
   void hold_back() {
-    states_.pace().sent(loop_.now());
-    markers_.pace().sent(loop_.now());
+    states_.pace().on_sent(loop_.now());
+    markers_.pace().on_sent(loop_.now());
   }
   /// For the operator's test, which sends one rejected state.
   UriPace& state_pace() { return states_.pace(); }
-  void settings_changed();
+  void on_settings_changed();
   /// Requests to another address or token are given up and retried at the new one.
   void endpoint_changed(std::optional<icd::BearerToken> token);
   /// Before start(): opens no connection and sends no request.
@@ -109,14 +109,15 @@ class Telemetry {
   /// 429: too many robots.
   icd::Checked<void> has_room_for(const icd::StateUpdate& update) { return states_.has_room_for(update); }
   /// A state for which there is room. 503: it cannot be stored.
-  icd::Checked<void> take(const std::vector<queues::PostedPose>& poses, std::size_t bytes_received) noexcept;
+  icd::Checked<void> accept(const std::vector<queues::PostedPose>& poses,
+                            std::size_t bytes_received) noexcept;
   /// Stamps are on the stamp clock. 429: the queue is full; 503: it cannot be stored.
-  void take(icd::MarkersUpdate update, queues::Upload upload, MarkerArrivals::Done done) {
-    markers_.take(std::move(update), std::move(upload),
-                  [this, done = std::move(done)](icd::Checked<void> outcome) {
-                    done(std::move(outcome));
-                    pump();
-                  });
+  void accept(icd::MarkersUpdate update, queues::Upload upload, MarkerArrivals::Done done) {
+    markers_.accept(std::move(update), std::move(upload),
+                    [this, done = std::move(done)](icd::Checked<void> outcome) {
+                      done(std::move(outcome));
+                      pump();
+                    });
   }
 
   /// Another run is on. It gets robots that post in it, and queued news.
@@ -131,7 +132,7 @@ class Telemetry {
   /// The cable is in again: retries at once.
   void link_is_back();
   const Channel& channel() const { return channel_; }
-  std::size_t waiting(Kind kind) const;
+  std::size_t waiting(TrafficKind kind) const;
   /// When the robot's pose, or the oldest change of a marker, was accepted that is queued or in flight.
   std::optional<loop::Instant> oldest_acceptance(const Traffic& traffic) const;
 
@@ -143,7 +144,7 @@ class Telemetry {
   template <class Of>
   void send(Of& of, const typename Of::Sent& sent);
   template <class Of>
-  void answered(Of& of, const typename Of::Sent& sent, std::size_t bytes, const uplink::Outcome& outcome);
+  void on_answered(Of& of, const typename Of::Sent& sent, std::size_t bytes, const uplink::Outcome& outcome);
   template <class Of>
   void classify(Of& of, const typename Of::Sent& sent, std::size_t bytes, const uplink::Outcome& outcome);
   /// Finishes `sent` after its rejected predecessors are marked. Otherwise a kill could leave both unmarked,

@@ -7,7 +7,7 @@
 namespace adit::forward {
 
 Traffic traffic_of(const icd::MapUpdate& update) {
-  return {update.is_grid() ? Kind::Grid : Kind::Cloud, icd::text_of(update.name)};
+  return {update.is_grid() ? TrafficKind::Grid : TrafficKind::Cloud, icd::text_of(update.name)};
 }
 
 facts::ActivityRow& TrafficCounts::row(const Traffic& traffic) {
@@ -20,7 +20,7 @@ facts::ActivityRow& TrafficCounts::row(const Traffic& traffic) {
   return made;
 }
 
-void TrafficCounts::accepted(const Traffic& traffic, std::size_t bytes, api::Time now) {
+void TrafficCounts::count_accepted(const Traffic& traffic, std::size_t bytes, api::Time now) {
   facts::ActivityRow& activity = row(traffic);
   ++activity.accepted;
   activity.last_accepted = now;
@@ -43,12 +43,12 @@ void TrafficCounts::no_room(const Traffic& traffic, api::Time now) {
 
 void TrafficCounts::no_valid_point(const Traffic& traffic, std::size_t bytes, api::Time now) {
   ++row(traffic).no_valid_point;
-  accepted(traffic, bytes, now);
+  count_accepted(traffic, bytes, now);
 }
 
-void TrafficCounts::invisible(std::size_t markers) {
+void TrafficCounts::count_invisible(std::size_t markers) {
   if (markers == 0) return;
-  row({Kind::Markers, ""}).invisible += markers;
+  row({TrafficKind::Markers, ""}).invisible += markers;
   changed_();
 }
 
@@ -57,16 +57,16 @@ void TrafficCounts::rounded_to(const Traffic& traffic, queues::Precision precisi
 }
 
 void TrafficCounts::set_cloud_kind(const Traffic& traffic, queues::Clouds clouds) {
-  if (traffic.kind == Kind::Cloud)
+  if (traffic.kind == TrafficKind::Cloud)
     row(traffic).clouds = queues::kCloudsWords[static_cast<std::size_t>(clouds)];
 }
 
-void TrafficCounts::forwarded(const Traffic& traffic, std::size_t updates, std::size_t bytes, int status,
-                              api::Time now) {
+void TrafficCounts::count_forwarded(const Traffic& traffic, std::size_t updates, std::size_t bytes,
+                                    int status, api::Time now) {
   facts::ActivityRow& activity = row(traffic);
   ++activity.forwarded;
   ++delivered_;
-  if (traffic.kind == Kind::Cloud && updates > 1) activity.merged += updates - 1;
+  if (traffic.kind == TrafficKind::Cloud && updates > 1) activity.merged += updates - 1;
   activity.last_forwarded = now;
   activity.bytes_sent = bytes;
   activity.last_status = status;
@@ -85,8 +85,8 @@ void TrafficCounts::not_taken(const Traffic& traffic, DeliveryFailure how, int s
   changed_();
 }
 
-void TrafficCounts::refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusal& refusal,
-                            api::Time now) {
+void TrafficCounts::count_rejected(icd::Uri uri, const intake::Sender& sender, const icd::Refusal& refusal,
+                                   api::Time now) {
   api::RefusedCount& counted = refused_[{uri, refusal.status}];
   ++counted.count;
   counted.parts += refusal.parts;

@@ -24,7 +24,7 @@
 namespace adit::forward {
 
 /// In the order of facts::kKinds.
-enum class Kind : std::uint8_t { Grid, Cloud, State, Markers };
+enum class TrafficKind : std::uint8_t { Grid, Cloud, State, Markers };
 
 /// Throttled and Failed messages are retried.
 enum class DeliveryFailure : std::uint8_t { Throttled, Failed, Refused };
@@ -45,7 +45,7 @@ inline loop::Instant instant_of(const loop::Loop& loop, icd::Stamp stamp) {
 
 /// A robot and a kind of message. `robot` "": merged maps, or markers.
 struct Traffic {
-  Kind kind = Kind::Grid;
+  TrafficKind kind = TrafficKind::Grid;
   std::string robot;
   friend bool operator==(const Traffic&, const Traffic&) = default;
   friend bool operator<(const Traffic& one, const Traffic& other) {
@@ -53,8 +53,8 @@ struct Traffic {
   }
 };
 
-inline bool is_map(Kind kind) {
-  return kind == Kind::Grid || kind == Kind::Cloud;
+inline bool is_map(TrafficKind kind) {
+  return kind == TrafficKind::Grid || kind == TrafficKind::Cloud;
 }
 
 /// Counts and reasons for the page: messages accepted, forwarded, replaced, delayed, refused (promise 7). At
@@ -67,26 +67,27 @@ class TrafficCounts {
   /// `changed`: the page's contents changed.
   explicit TrafficCounts(std::function<void()> changed) : changed_(std::move(changed)) {}
 
-  void accepted(const Traffic& traffic, std::size_t bytes, api::Time now);
-  /// Restores times from before a restart (NaN: never). Call after accepted() for queued messages, which may
-  /// be newer.
+  void count_accepted(const Traffic& traffic, std::size_t bytes, api::Time now);
+  /// Restores times from before a restart (NaN: never). Call after count_accepted() for queued messages,
+  /// which may be newer.
   void restore(const Traffic& traffic, api::Time accepted, api::Time forwarded);
   /// A message was rejected because the queue is full.
   void no_room(const Traffic& traffic, api::Time now);
-  void replaced(const Traffic& traffic, std::size_t updates) { row(traffic).replaced += updates; }
+  void count_replaced(const Traffic& traffic, std::size_t updates) { row(traffic).replaced += updates; }
   /// A cloud without a valid point was accepted. It is not sent.
   void no_valid_point(const Traffic& traffic, std::size_t bytes, api::Time now);
-  void invisible(std::size_t markers);
+  void count_invisible(std::size_t markers);
   /// The detected kind of a robot's clouds.
   void set_cloud_kind(const Traffic& traffic, queues::Clouds clouds);
   /// The rounding of the last delivered cloud.
   void rounded_to(const Traffic& traffic, queues::Precision precision);
   /// A message of `bytes` was delivered for `updates` accepted ones.
-  void forwarded(const Traffic& traffic, std::size_t updates, std::size_t bytes, int status, api::Time now);
+  void count_forwarded(const Traffic& traffic, std::size_t updates, std::size_t bytes, int status,
+                       api::Time now);
   /// `status` 0: no status came.
   void not_taken(const Traffic& traffic, DeliveryFailure how, int status, const std::string& sentence);
 
-  void refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusal& refusal, api::Time now);
+  void count_rejected(icd::Uri uri, const intake::Sender& sender, const icd::Refusal& refusal, api::Time now);
 
   /// The time of day was set ahead.
   void move(double seconds);
@@ -100,7 +101,7 @@ class TrafficCounts {
   std::vector<api::RefusedCount> refused_counts() const;
   /// Newest first.
   std::vector<facts::RefusalRow> refusals() const { return {refusals_.begin(), refusals_.end()}; }
-  void changed() const { changed_(); }
+  void notify_changed() const { changed_(); }
 
  private:
   facts::ActivityRow& row(const Traffic& traffic);

@@ -24,8 +24,8 @@ void ScoringPace::link_is_back() {
 }
 
 void ScoringPace::hold_back(pace::Instant now) {
-  reports_.sent(now);
-  statuses_.sent(now);
+  reports_.on_sent(now);
+  statuses_.on_sent(now);
 }
 
 void ScoringPace::endpoint_turned() {
@@ -41,65 +41,65 @@ pace::Instant ScoringPace::status_ready(bool decides) const {
 
 void ScoringPace::report_sent(pace::Instant now) {
   last_report_ = {.left = now};
-  reports_.sent(now);
+  reports_.on_sent(now);
 }
 
 void ScoringPace::report_taken(const uplink::Sent& sent, pace::Instant now) {
   last_report_ = {.left = sent.first};
-  reports_.taken(sent, now);
+  reports_.on_answered(sent, now);
 }
 
 void ScoringPace::report_throttled(const uplink::Sent& sent, std::optional<std::chrono::seconds> retry_after,
                                    pace::Instant now) {
   last_report_ = {.left = sent.first, .is_throttled = true};
-  throttled(reports_, sent.first, last_status_, retry_after, now);
+  on_throttled(reports_, sent.first, last_status_, retry_after, now);
 }
 
 void ScoringPace::report_barred(const uplink::Sent& sent, pace::Instant now) {
   last_report_ = {.left = sent.first};
-  reports_.lost(now);
+  reports_.on_lost(now);
 }
 
 void ScoringPace::report_lost(pace::Instant now) {
   last_report_ = {.left = now};
-  reports_.taken({.first = now, .last = now}, now);
+  reports_.on_answered({.first = now, .last = now}, now);
 }
 
 void ScoringPace::status_sent(pace::Instant now) {
   last_status_ = {.left = now};
-  statuses_.sent(now);
-  if (has_one_limit_) reports_.sent(now);
+  statuses_.on_sent(now);
+  if (has_one_limit_) reports_.on_sent(now);
 }
 
 void ScoringPace::status_taken(const uplink::Sent& sent, pace::Instant now) {
   last_status_ = {.left = sent.first};
-  statuses_.taken(sent, now);
-  if (has_one_limit_) reports_.taken(sent, now);
+  statuses_.on_answered(sent, now);
+  if (has_one_limit_) reports_.on_answered(sent, now);
 }
 
 void ScoringPace::status_throttled(const uplink::Sent& sent, std::optional<std::chrono::seconds> retry_after,
                                    pace::Instant now) {
   last_status_ = {.left = sent.first, .is_throttled = true};
-  if (has_one_limit_) reports_.throttled(now, retry_after);
-  throttled(statuses_, sent.first, last_report_, retry_after, now);
+  if (has_one_limit_) reports_.on_throttled(now, retry_after);
+  on_throttled(statuses_, sent.first, last_report_, retry_after, now);
 }
 
 void ScoringPace::status_failed(const uplink::Outcome& outcome, pace::Instant now) {
-  statuses_.failed(outcome, now);
-  if (has_one_limit_) reports_.failed(outcome, now);
+  statuses_.on_failed(outcome, now);
+  if (has_one_limit_) reports_.on_failed(outcome, now);
 }
 
 void ScoringPace::status_lost(pace::Instant now) {
-  statuses_.lost(now);
-  if (has_one_limit_) reports_.lost(now);
+  statuses_.on_lost(now);
+  if (has_one_limit_) reports_.on_lost(now);
 }
 
-void ScoringPace::throttled(UriPace& its, pace::Instant left, const Last& other,
-                            std::optional<std::chrono::seconds> retry_after, pace::Instant now) {
+void ScoringPace::on_throttled(UriPace& its, pace::Instant left, const Last& other,
+                               std::optional<std::chrono::seconds> retry_after, pace::Instant now) {
   const bool is_found_out = !has_one_limit_ && !other.is_throttled && left < other.left + reports_.spacing();
   has_one_limit_ = has_one_limit_ || is_found_out;
   if (!is_found_out || retry_after) {
-    its.throttled(now, retry_after);
+    its.on_throttled(now, retry_after);
   } else {
     its.count_from(now);
   }

@@ -63,68 +63,68 @@ class UriPace {
     keep();
     return at;
   }
-  void claimed(pace::Instant now) {
-    rate_.claimed(now);
+  void on_claimed(pace::Instant now) {
+    rate_.on_claimed(now);
     keep();
   }
 
   /// `stamp`, or the last stamp if that is later (promise 5). Call keep_stamp() with the message's last
   /// stamp.
   icd::Stamp next_stamp(icd::Stamp stamp) { return last_stamp_ = std::max(last_stamp_, stamp); }
-  void keep_stamp(icd::Stamp last) { journal_.stamped(uri_, last); }
+  void keep_stamp(icd::Stamp last) { journal_.record_stamp(uri_, last); }
 
   /// Call before it leaves, so that the journal has it if the process ends.
-  void sent(pace::Instant now, bool ahead = false) {
-    rate_.sent(now, ahead);
+  void on_sent(pace::Instant now, bool ahead = false) {
+    rate_.on_sent(now, ahead);
     keep();
   }
   /// The last request has arrived, and is not answered yet.
-  void left(const uplink::Sent& sent) { rate_.left({.first = sent.first, .last = sent.last}); }
+  void on_departed(const uplink::Sent& sent) { rate_.on_departed({.first = sent.first, .last = sent.last}); }
   /// `sent`: when its bytes left.
-  void taken(const uplink::Sent& sent, pace::Instant now) {
-    rate_.taken({.first = sent.first, .last = sent.last}, now);
+  void on_answered(const uplink::Sent& sent, pace::Instant now) {
+    rate_.on_answered({.first = sent.first, .last = sent.last}, now);
     keep();
-    backoff_.succeeded();
+    backoff_.on_succeeded();
   }
-  void throttled(pace::Instant now, std::optional<std::chrono::seconds> retry_after) {
-    rate_.throttled(now, retry_after);
+  void on_throttled(pace::Instant now, std::optional<std::chrono::seconds> retry_after) {
+    rate_.on_throttled(now, retry_after);
     keep();
   }
   /// The spacing begins now.
   void count_from(pace::Instant now) {
-    rate_.lost(now);
+    rate_.on_lost(now);
     keep();
   }
-  /// It failed, but may have arrived. The record of sent() makes the next process wait as long.
-  void lost(pace::Instant now) {
-    rate_.lost(now);
-    failed(now);
+  /// It failed, but may have arrived. The record of on_sent() makes the next process wait as long.
+  void on_lost(pace::Instant now) {
+    rate_.on_lost(now);
+    on_failed(now);
   }
-  void failed(const uplink::Outcome& outcome, pace::Instant now) {
+  void on_failed(const uplink::Outcome& outcome, pace::Instant now) {
     if (std::holds_alternative<uplink::NeverSent>(outcome)) {
       rate_.not_sent();
-      failed(now);
+      on_failed(now);
     } else {
-      lost(now);
+      on_lost(now);
       retry_at_ = std::max(retry_at_, now + pause_of(outcome));
     }
   }
   /// The next request could not be sent.
-  void failed(pace::Instant now) {
-    retry_at_ = now + backoff_.failed(std::uniform_real_distribution<double>(0, 1)(random_));
+  void on_failed(pace::Instant now) {
+    retry_at_ = now + backoff_.on_failed(std::uniform_real_distribution<double>(0, 1)(random_));
   }
 
   /// The next failure counts as the first one, because its message differs from the failed ones.
-  void forget_failures() { backoff_.succeeded(); }
+  void forget_failures() { backoff_.on_succeeded(); }
 
   /// The cable is in again: no wait.
   void link_is_back() {
-    backoff_.succeeded();
+    backoff_.on_succeeded();
     retry_at_ = {};
   }
 
  private:
-  void keep() { journal_.paced(uri_, rate_.learned()); }
+  void keep() { journal_.record_pace(uri_, rate_.learned_rate()); }
 
   icd::Uri uri_;
   journal::Journal& journal_;
@@ -153,7 +153,7 @@ class ScoringPace {
 
   bool has_one_limit() const { return has_one_limit_; }
   /// For the operator's test, which requests the status itself.
-  UriPace& of_status() { return statuses_; }
+  UriPace& status_pace() { return statuses_; }
   /// Between reports; with one limit, between requests.
   pace::Duration spacing() const { return reports_.spacing(); }
   pace::Instant report_ready() const { return reports_.ready(); }
@@ -168,7 +168,7 @@ class ScoringPace {
   /// The answer rejects all reports for now.
   void report_barred(const uplink::Sent& sent, pace::Instant now);
   /// It did not leave, or the ledger failed.
-  void report_failed(pace::Instant now) { reports_.failed(now); }
+  void report_failed(pace::Instant now) { reports_.on_failed(now); }
   void report_lost(pace::Instant now);
 
   /// Call before the status leaves.
@@ -187,8 +187,8 @@ class ScoringPace {
 
   /// `left`: when the request left. `other`: of the other kind. If it was throttled, this 429 does not show
   /// one limit.
-  void throttled(UriPace& its, pace::Instant left, const Last& other,
-                 std::optional<std::chrono::seconds> retry_after, pace::Instant now);
+  void on_throttled(UriPace& its, pace::Instant left, const Last& other,
+                    std::optional<std::chrono::seconds> retry_after, pace::Instant now);
 
   UriPace reports_, statuses_;
   Last last_report_, last_status_;

@@ -92,7 +92,7 @@ std::size_t Base64Decoder::decode_groups(std::string_view& run, std::span<std::u
   return static_cast<std::size_t>(to - out.data());
 }
 
-std::expected<void, std::string> Base64Decoder::take(char c) {
+std::expected<void, std::string> Base64Decoder::feed(char c) {
   const auto bad = [&](std::string_view what) {
     return std::unexpected("character " + std::to_string(characters_) + ": " + std::string(what));
   };
@@ -118,7 +118,7 @@ std::expected<std::size_t, std::string> Base64Decoder::decode(std::string_view& 
       written += decode_groups(run, out.subspan(written));
       if (run.empty() || written + 3 > out.size()) break;
     }
-    ADIT_TRY(take(run.front()));
+    ADIT_TRY(feed(run.front()));
     run.remove_prefix(1);
     if (pending_ == 4) {
       for (const int shift : {16, 8, 0}) out[written++] = static_cast<std::uint8_t>(bits_ >> shift);

@@ -28,7 +28,7 @@ class Base64Decoder {
   std::expected<std::size_t, std::string> finish(std::span<std::uint8_t, 2> out);
 
  private:
-  std::expected<void, std::string> take(char c);
+  std::expected<void, std::string> feed(char c);
 
   std::uint32_t bits_ = 0;      // of an unfinished group
   int pending_ = 0;             // number of its characters

@@ -18,14 +18,14 @@ constexpr std::string_view kBlanks = " \t";  // RFC 9110 5.6.3
 }  // namespace
 
 std::optional<Format> format_of(std::string_view content_type) {
-  const std::string_view type = icd::trimmed(content_type.substr(0, content_type.find(';')), kBlanks);
+  const std::string_view type = icd::trim(content_type.substr(0, content_type.find(';')), kBlanks);
   if (icd::same_but_for_case(type, "application/json")) return Format::Json;
   if (icd::same_but_for_case(type, "application/cbor")) return Format::Cbor;
   return std::nullopt;
 }
 
 std::optional<ContentCoding> coding_of(std::string_view content_encoding) {
-  const std::string_view coding = icd::trimmed(content_encoding, kBlanks);
+  const std::string_view coding = icd::trim(content_encoding, kBlanks);
   if (coding.empty() || icd::same_but_for_case(coding, "identity")) return ContentCoding::Identity;
   if (icd::same_but_for_case(coding, "gzip") || icd::same_but_for_case(coding, "x-gzip"))
     return ContentCoding::Gzip;
@@ -81,11 +81,11 @@ struct BodyDecoder::Impl {
         splitter(splitter_for(kind.format, split, limits, data)),
         content(kind.coding, most_inflated(split, limits), [this](std::string_view bytes) {
           begin += bytes.substr(0, kTelling - begin.size());
-          return named(splitter->feed(bytes));
+          return add_format(splitter->feed(bytes));
         }) {}
 
   template <class T>
-  icd::Checked<T> named(icd::Checked<T> checked) const {
+  icd::Checked<T> add_format(icd::Checked<T> checked) const {
     if (!checked) checked.error().sentence += detect_format(format, begin);
     return checked;
   }
@@ -111,11 +111,11 @@ icd::Checked<void> BodyDecoder::feed(std::span<const std::uint8_t> chunk) {
 }
 
 std::size_t BodyDecoder::size() const {
-  return impl_->content.given();
+  return impl_->content.decoded_bytes();
 }
 
 std::size_t BodyDecoder::data_held() const {
-  return impl_->data.held();
+  return impl_->data.available();
 }
 
 icd::ChunkedBytes BodyDecoder::take_data() {
@@ -125,9 +125,9 @@ icd::ChunkedBytes BodyDecoder::take_data() {
 icd::Checked<Document> BodyDecoder::finish() {
   if (!impl_->spent) return std::unexpected(impl_->spent.error());
   ADIT_TRY(impl_->content.finish());
-  auto root = ADIT_TRY(impl_->named(impl_->splitter->finish()));
-  auto data = ADIT_TRY(impl_->data.take());
-  return Document{std::move(root), std::move(data), impl_->data.form(), impl_->data.pressed()};
+  auto root = ADIT_TRY(impl_->add_format(impl_->splitter->finish()));
+  auto data = ADIT_TRY(impl_->data.take_rest());
+  return Document{std::move(root), std::move(data), impl_->data.form(), impl_->data.pressed_cells()};
 }
 
 icd::Checked<Document> decode(BodyKind kind, Split split, std::string_view body, const Limits& limits) {

@@ -24,13 +24,13 @@ icd::Checked<void> BulkData::appear() {
   return {};
 }
 
-icd::Checked<void> BulkData::fits(std::uint64_t bytes) const {
+icd::Checked<void> BulkData::check_size(std::uint64_t bytes) const {
   if (bytes <= most_ - came_) return {};
   return icd::refuse(icd::Status::ContentTooLarge, "msg.data: larger than the limit of ", most_, " bytes");
 }
 
 icd::Checked<void> BulkData::append(std::span<const std::uint8_t> bytes) {
-  if (auto fit = fits(bytes.size()); !fit) return fit;
+  if (auto fit = check_size(bytes.size()); !fit) return fit;
   if (bytes.empty()) return {};
   constexpr std::uint8_t kGzip = 0x1F;  // RFC 1952 2.3.1; a grid whose first cell has this value is
                                         // compressed later
@@ -78,14 +78,14 @@ icd::Refusal BulkData::bad_element(std::string_view got) const {
                         got.substr(0, kLongest), got.size() > kLongest ? "..." : "")};
 }
 
-icd::Checked<icd::ChunkedBytes> BulkData::take() {
+icd::Checked<icd::ChunkedBytes> BulkData::take_rest() {
   ADIT_TRY(flush());
   return press_ ? press_->finish() : std::move(bytes_);
 }
 
-std::optional<PressedCells> BulkData::pressed() const {
+std::optional<PressedCells> BulkData::pressed_cells() const {
   if (!press_) return std::nullopt;
-  return PressedCells{.count = came_, .checked = press_->checked()};
+  return PressedCells{.count = came_, .checked = press_->check_result()};
 }
 
 }  // namespace adit::codec

@@ -22,14 +22,14 @@ class CellPress {
   void feed(std::span<const std::uint8_t> cells);
 
   /// Bytes that take_some() would return.
-  std::size_t held() const { return gzipper_.held(); }
+  std::size_t available() const { return gzipper_.available(); }
   /// The gzip member's bytes since the last take_some().
   icd::ChunkedBytes take_some() { return gzipper_.take_some(); }
   /// The rest of the member. Call once.
   icd::ChunkedBytes finish() { return gzipper_.finish(); }
 
   /// The first invalid cell by icd::check_cells(). Cells after it are not compressed.
-  const icd::Checked<void>& checked() const { return checked_; }
+  const icd::Checked<void>& check_result() const { return checked_; }
 
  private:
   Gzipper gzipper_{GzipStrategy::Runs};
@@ -54,7 +54,7 @@ class BulkData {
 
   icd::Checked<void> append(std::span<const std::uint8_t> bytes);
   /// Whether `bytes` more are within the limit.
-  icd::Checked<void> fits(std::uint64_t bytes) const;
+  icd::Checked<void> check_size(std::uint64_t bytes) const;
 
   /// Appends an array element: a whole number from -1 (stored as 255) to 255. `text`: its form in the body.
   icd::Checked<void> append_element(double value, std::string_view text);
@@ -66,13 +66,13 @@ class BulkData {
 
   DataForm form() const { return form_; }
   /// Bytes that take_some() would return.
-  std::size_t held() const { return press_ ? press_->held() : bytes_.size(); }
+  std::size_t available() const { return press_ ? press_->available() : bytes_.size(); }
   /// Data since the last take_some(), except the last few array elements.
   icd::ChunkedBytes take_some() { return press_ ? press_->take_some() : std::move(bytes_); }
   /// The rest. Call once, at the end.
-  icd::Checked<icd::ChunkedBytes> take();
-  /// Set if take_some() and take() return compressed cells.
-  std::optional<PressedCells> pressed() const;
+  icd::Checked<icd::ChunkedBytes> take_rest();
+  /// Set if take_some() and take_rest() return compressed cells.
+  std::optional<PressedCells> pressed_cells() const;
 
  private:
   icd::Checked<void> flush() { return append(std::span(elements_).first(std::exchange(waiting_, 0))); }

@@ -124,7 +124,7 @@ void CborWriter::text(std::string_view utf8) {
   used_ += utf8.size();
 }
 
-void CborWriter::whole(std::int64_t number) {
+void CborWriter::integer(std::int64_t number) {
   if (number >= 0) {
     head(Major::Unsigned, static_cast<std::uint64_t>(number));
   } else {

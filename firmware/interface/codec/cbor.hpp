@@ -43,7 +43,7 @@ class CborHead {
   bool indefinite() const { return info() == 31; }
   bool is_break() const { return bytes_[0] == 0xFF; }
   /// Additional information that RFC 8949 reserves.
-  bool reserved() const { return info() >= 28 && info() <= 30; }
+  bool is_reserved() const { return info() >= 28 && info() <= 30; }
   std::uint64_t argument() const;
   /// The value of a floating-point item (major type 7, info 25 to 27).
   double number() const;
@@ -65,10 +65,12 @@ class CborWriter {
   void map(std::size_t members) { head(Major::Map, members); }
   void array(std::size_t elements) { head(Major::Array, elements); }
   void text(std::string_view utf8);
-  void whole(std::int64_t number);
+  void integer(std::int64_t number);
   /// Always a 64-bit float, so that the reader gets a float.
-  void real(double number) { head(Major::Simple, 27, std::bit_cast<std::uint64_t>(number), sizeof number); }
-  void truth(bool yes) { head(Major::Simple, yes ? 21 : 20); }
+  void floating(double number) {
+    head(Major::Simple, 27, std::bit_cast<std::uint64_t>(number), sizeof number);
+  }
+  void boolean(bool yes) { head(Major::Simple, yes ? 21 : 20); }
   /// A byte string that shares the chunks of `bytes`.
   void byte_string(const icd::ChunkedBytes& bytes);
 

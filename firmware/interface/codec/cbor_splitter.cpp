@@ -27,7 +27,7 @@ icd::Checked<void> CborSplitter::feed(std::string_view bytes) {
 icd::Checked<Value> CborSplitter::finish() {
   if (at_ == 0) return std::unexpected(fault_at(at_, "an empty document"));
   if (!whole_) return std::unexpected(fault_at(at_, "the document is cut short"));
-  if (split_ == Split::Lists) return cbor_value_with_lists(rest_.take());
+  if (split_ == Split::Lists) return cbor_value_with_lists(rest_.take_text());
   Value root = cbor_value(rest_.text());
   if (data_.form() != DataForm::Absent) mark_split_out(root);
   return root;
@@ -49,7 +49,7 @@ icd::Checked<std::size_t> CborSplitter::head(std::string_view in) {
 }
 
 icd::Checked<void> CborSplitter::check_head() const {
-  if (head_.reserved()) return std::unexpected(fault("reserved additional information"));
+  if (head_.is_reserved()) return std::unexpected(fault("reserved additional information"));
   const Major major = head_.major();
   if (head_.indefinite() && (major == Major::Unsigned || major == Major::Negative || major == Major::Tag)) {
     return std::unexpected(fault("an indefinite length in an item that allows none"));

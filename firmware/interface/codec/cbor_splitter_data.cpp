@@ -104,7 +104,7 @@ icd::Checked<void> CborSplitter::chunk_of_string() {
 icd::Checked<void> CborSplitter::begin_piece() {
   piece_left_ = head_.argument();
   if (string_->into == Into::Data) {
-    if (auto fit = data_.fits(piece_left_); !fit) return fit;
+    if (auto fit = data_.check_size(piece_left_); !fit) return fit;
   }
   return piece_left_ == 0 ? end_of_piece() : icd::Checked<void>{};
 }

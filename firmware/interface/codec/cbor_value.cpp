@@ -22,7 +22,7 @@ Value negative(std::uint64_t argument) {  // RFC 8949 3.1: the value is -1 - arg
   return {-1.0 - static_cast<double>(argument)};
 }
 
-Value whole(std::uint64_t number) {
+Value integer_value(std::uint64_t number) {
   if (number <= static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max())) {
     return {static_cast<std::int64_t>(number)};
   }
@@ -36,9 +36,9 @@ Value simple(const CborHead& head) {
   return {};
 }
 
-icd::Checked<Value> with_lists_at(const SharedText& text, std::size_t begin, std::size_t end);
+icd::Checked<Value> parse_with_lists(const SharedText& text, std::size_t begin, std::size_t end);
 bool reals_in(std::string_view object, std::span<const std::string_view> names, std::span<double> into);
-constexpr List::Format kCborLists = {.element = with_lists_at, .reals = reals_in, .gap = 0};
+constexpr List::Format kCborLists = {.element = parse_with_lists, .reals = reals_in, .gap = 0};
 
 /// Moves past the next head of well-formed items.
 CborHead take_head(std::string_view& items) {
@@ -147,7 +147,7 @@ class CborReader {
     const CborHead head = take_head(left_);
     switch (head.major()) {
       case Major::Unsigned:
-        return whole(head.argument());
+        return integer_value(head.argument());
       case Major::Negative:
         return negative(head.argument());
       case Major::Bytes: {
@@ -187,7 +187,7 @@ class CborReader {
 
   /// `add` reads one element or pair.
   template <class Items, class Add>
-  Value filled(const CborHead& head, const Add& add) {
+  Value read_items(const CborHead& head, const Add& add) {
     Items items;
     if (!head.indefinite()) items.reserve(head.argument());  // each has at least one byte
     take_each(left_, head, [&] { add(items); });
@@ -201,11 +201,11 @@ class CborReader {
   }
 
   Value array(const CborHead& head) {
-    return filled<Value::Array>(head, [this](Value::Array& array) { array.push_back(value()); });
+    return read_items<Value::Array>(head, [this](Value::Array& array) { array.push_back(value()); });
   }
 
   Value object(const CborHead& head) {
-    return filled<Value::Object>(head, [this](Value::Object& object) {
+    return read_items<Value::Object>(head, [this](Value::Object& object) {
       auto name = name_of(value());
       Value member = value();
       if (name) object.emplace_back(*std::move(name), std::move(member));
@@ -252,7 +252,7 @@ bool reals_in(std::string_view object, std::span<const std::string_view> names, 
 }
 
 /// The value at `begin`.
-icd::Checked<Value> with_lists_at(const SharedText& text, std::size_t begin, std::size_t /*end*/) {
+icd::Checked<Value> parse_with_lists(const SharedText& text, std::size_t begin, std::size_t /*end*/) {
   Cut cut;
   CborCutter(*text, begin, cut).keep();
   if (cut.values > kMostOutsideLists) return std::unexpected(too_many_outside_lists(kMostOutsideLists));
@@ -266,7 +266,7 @@ Value cbor_value(std::string_view bytes) {
 }
 
 icd::Checked<Value> cbor_value_with_lists(std::string bytes) {
-  return with_lists_at(std::make_shared<const std::string>(std::move(bytes)), 0, 0);
+  return parse_with_lists(std::make_shared<const std::string>(std::move(bytes)), 0, 0);
 }
 
 }  // namespace adit::codec

@@ -26,7 +26,7 @@ class ContentDecoder {
   icd::Checked<void> feed(std::string_view bytes);
   icd::Checked<void> finish();
   /// Bytes passed to `sink`.
-  std::size_t given() const { return given_; }
+  std::size_t decoded_bytes() const { return given_; }
 
  private:
   struct End {

@@ -13,7 +13,7 @@ namespace adit::codec {
 namespace {
 
 /// The value as int64, if it is a whole number in range.
-std::optional<std::int64_t> whole_of(const Value& value) {
+std::optional<std::int64_t> integer_of(const Value& value) {
   if (const auto* given = std::get_if<std::int64_t>(&value.is)) return *given;
   if (const auto* given = std::get_if<std::uint64_t>(&value.is)) {
     if (*given > std::uint64_t{std::numeric_limits<std::int64_t>::max()}) return std::nullopt;
@@ -34,7 +34,7 @@ std::optional<double> number_of(const Value& value) {
 }
 
 /// A value for a sentence: a number itself, otherwise its kind.
-std::string got(const Value& value) {
+std::string got_text(const Value& value) {
   if (const auto* given = std::get_if<std::int64_t>(&value.is)) return std::to_string(*given);
   if (const auto* given = std::get_if<std::uint64_t>(&value.is)) return std::to_string(*given);
   if (const auto* given = std::get_if<double>(&value.is)) return icd::number_text(*given);
@@ -85,7 +85,7 @@ std::string limits(double least, double most) {
 }  // namespace
 
 void Reading::miss(const std::string& path, std::string_view hint) {
-  if (refused() && missing_.empty()) return;
+  if (has_refusal() && missing_.empty()) return;
   if (missing_.size() == kMostMissing || std::ranges::find(missing_, path) != missing_.end()) return;
   missing_.push_back(path);
   if (hint_.empty()) hint_ = hint;
@@ -160,14 +160,14 @@ double Field::float32(double least, double most) const {
   return is_noise ? std::clamp(*given, least, most) : number(least, most);
 }
 
-std::int64_t Field::whole_number(std::int64_t least, std::int64_t most) const {
+std::int64_t Field::read_integer(std::int64_t least, std::int64_t most) const {
   if (!value_ || !number_of(*value_)) {
     refuse_kind("a whole number");
     return least;
   }
-  const auto given = whole_of(*value_);
+  const auto given = integer_of(*value_);
   if (given && *given >= least && *given <= most) return *given;
-  refuse("expected a whole number from ", least, " to ", most, ", got ", got(*value_));
+  refuse("expected a whole number from ", least, " to ", most, ", got ", got_text(*value_));
   return least;
 }
 
@@ -195,10 +195,10 @@ std::string_view Field::text() const {
 
 bool Field::truth() const {
   if (is<bool>()) return std::get<bool>(value_->is);
-  const auto given = value_ ? whole_of(*value_) : std::nullopt;
+  const auto given = value_ ? integer_of(*value_) : std::nullopt;
   if (given && (*given == 0 || *given == 1)) return *given == 1;
   if (value_ && number_of(*value_)) {
-    refuse("expected true or false, got ", got(*value_));
+    refuse("expected true or false, got ", got_text(*value_));
   } else {
     refuse_kind("true or false");
   }
@@ -227,8 +227,8 @@ double Field::seconds(double most) const {
   const auto& names =
       count == 1 ? *std::ranges::find_if(kTimeNames, is_spelt) : kTimeNames[has("sec") ? 1 : 0];
   constexpr std::uint32_t kLastNanosecond = 999'999'999;
-  const auto secs = member(names.seconds).whole<std::uint32_t>(0, static_cast<std::uint32_t>(most));
-  const auto nsecs = member(names.nanoseconds).whole<std::uint32_t>(0, kLastNanosecond);
+  const auto secs = member(names.seconds).integer<std::uint32_t>(0, static_cast<std::uint32_t>(most));
+  const auto nsecs = member(names.nanoseconds).integer<std::uint32_t>(0, kLastNanosecond);
   return std::min(secs + nsecs / 1e9, most);
 }
 

@@ -20,7 +20,7 @@ namespace adit::codec {
 /// check once at the end. If that is a missing member, the refusal names all that are missing.
 class Reading {
  public:
-  bool refused() const { return refusal_.has_value(); }
+  bool has_refusal() const { return refusal_.has_value(); }
   void refuse(icd::Refusal refusal) {
     if (!refusal_) refusal_ = std::move(refusal);
   }
@@ -88,9 +88,9 @@ class Field {
 
   /// A whole number from `least` to `most`. 80.0 is allowed.
   template <class Integer>
-  Integer whole(Integer least = std::numeric_limits<Integer>::min(),
-                Integer most = std::numeric_limits<Integer>::max()) const {
-    return static_cast<Integer>(whole_number(least, most));
+  Integer integer(Integer least = std::numeric_limits<Integer>::min(),
+                  Integer most = std::numeric_limits<Integer>::max()) const {
+    return static_cast<Integer>(read_integer(least, most));
   }
 
   /// A string without NUL characters. In CBOR a byte string of UTF-8 is allowed, because Python 2 writes text
@@ -107,12 +107,12 @@ class Field {
   /// Refuses with 422 about this field.
   template <class... Parts>
   void refuse(const Parts&... parts) const {
-    if (!reading_.refused()) reading_.refuse(icd::unprocessable(path(), ": ", parts...).error());
+    if (!reading_.has_refusal()) reading_.refuse(icd::unprocessable(path(), ": ", parts...).error());
   }
   /// The same with the setting that can prevent it. `key`: a literal or "".
   template <class... Parts>
   void refuse_by_setting(std::string_view key, const Parts&... parts) const {
-    if (!reading_.refused())
+    if (!reading_.has_refusal())
       reading_.refuse(icd::unprocessable_by_setting(key, path(), ": ", parts...).error());
   }
   /// Refuses with "expected ..., got a string", or "missing".
@@ -133,7 +133,7 @@ class Field {
   std::optional<std::string_view> characters() const;
   /// Refuses an absent value.
   void miss() const;
-  std::int64_t whole_number(std::int64_t least, std::int64_t most) const;
+  std::int64_t read_integer(std::int64_t least, std::int64_t most) const;
   const Value::Object* object() const;
 
   std::unique_ptr<const Value> own_;  // null: the value is in the document

@@ -48,7 +48,7 @@ class Inflater {
   z_stream stream_{};
 };
 
-icd::Refusal damaged(std::string_view path, const char* why, std::size_t after) {
+icd::Refusal damage_refusal(std::string_view path, const char* why, std::size_t after) {
   if (after > 0)
     return icd::unprocessable(path, ": expected only gzip members after a gzip member, got ", after,
                               " other bytes")
@@ -171,7 +171,7 @@ icd::Checked<Gunzipped> gunzip(icd::ChunkedBytes bytes, std::size_t most, std::s
       const int code = inflate(&zlib, Z_NO_FLUSH);
       ended = code == Z_STREAM_END;
       if (code != Z_OK && code != Z_BUF_ERROR && !ended)
-        return std::unexpected(damaged(path, zlib.msg, after));
+        return std::unexpected(damage_refusal(path, zlib.msg, after));
       if (ended) ++all.members;
       const std::size_t made = piece.size() - zlib.avail_out;
       all.size += made;
@@ -180,7 +180,7 @@ icd::Checked<Gunzipped> gunzip(icd::ChunkedBytes bytes, std::size_t most, std::s
       ADIT_TRY(sink({piece.data(), made}));
     }
   }
-  if (!ended) return std::unexpected(damaged(path, "one that is cut short", after));
+  if (!ended) return std::unexpected(damage_refusal(path, "one that is cut short", after));
   return all;
 }
 

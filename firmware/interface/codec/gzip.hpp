@@ -31,7 +31,7 @@ class Gzipper {
 
   void feed(std::span<const std::uint8_t> bytes);
   /// Bytes that take_some() would return.
-  std::size_t held() const { return member_.size(); }
+  std::size_t available() const { return member_.size(); }
   /// The member's bytes since the last take_some(), in whole chunks.
   icd::ChunkedBytes take_some() { return std::move(member_); }
   /// The member, or its rest after take_some(). Call once, after the last feed().

@@ -156,7 +156,7 @@ icd::Checked<Value> JsonSplitter::finish() {
   if (whole_) return std::move(whole_->root);
   ADIT_TRY(end());
   if (split_ == Split::Lists) {
-    const auto text = std::make_shared<const std::string>(rest_.take());
+    const auto text = std::make_shared<const std::string>(rest_.take_text());
     if (auto root = json_value_with_lists(text, rest_.values())) return *std::move(root);
     return std::unexpected(too_many_outside_lists(kMostOutsideLists));
   }
@@ -173,7 +173,7 @@ icd::Checked<std::size_t> JsonSplitter::step(std::string_view in) {
     ++mark_;
     return 1;
   }
-  if (may_be_mark && mark_ > 0) return std::unexpected(expected("a byte order mark", in[0]));
+  if (may_be_mark && mark_ > 0) return std::unexpected(mismatch("a byte order mark", in[0]));
   switch (token_) {
     case Token::None:
       return structure(in);
@@ -200,7 +200,7 @@ icd::Checked<std::size_t> JsonSplitter::structure(std::string_view in) {
     case Expect::Separator:
       return separator(c);
     case Expect::Colon:
-      if (c != ':') return std::unexpected(expected("':'", c));
+      if (c != ':') return std::unexpected(mismatch("':'", c));
       keep(":");
       expect_ = Expect::Value;
       return 1;
@@ -208,7 +208,7 @@ icd::Checked<std::size_t> JsonSplitter::structure(std::string_view in) {
       if (c == '}') return close(c);
       [[fallthrough]];
     case Expect::Key:
-      if (c != '"') return std::unexpected(expected("a member's name", c));
+      if (c != '"') return std::unexpected(mismatch("a member's name", c));
       keep("\"");
       path_.begin_key();
       token_ = Token::Key;
@@ -223,9 +223,9 @@ icd::Checked<std::size_t> JsonSplitter::structure(std::string_view in) {
 }
 
 icd::Checked<std::size_t> JsonSplitter::separator(char c) {
-  if (path_.depth() == 0) return std::unexpected(expected("the end of the document", c));
+  if (path_.depth() == 0) return std::unexpected(mismatch("the end of the document", c));
   if (c == (is_in_object() ? '}' : ']')) return close(c);
-  if (c != ',') return std::unexpected(expected(is_in_object() ? "',' or '}'" : "',' or ']'", c));
+  if (c != ',') return std::unexpected(mismatch(is_in_object() ? "',' or '}'" : "',' or ']'", c));
   keep(",");
   expect_ = is_in_object() ? Expect::Key : Expect::Value;
   return 1;
@@ -257,7 +257,7 @@ icd::Checked<std::size_t> JsonSplitter::value(char first) {
     case 'n':
       return begin_literal("null");
     default:
-      return std::unexpected(expected("a value", first));
+      return std::unexpected(mismatch("a value", first));
   }
 }
 
@@ -288,7 +288,7 @@ icd::Checked<std::size_t> JsonSplitter::begin_literal(std::string_view word) {
 }
 
 icd::Checked<std::size_t> JsonSplitter::literal(std::string_view in) {
-  if (in[0] != word_[0]) return std::unexpected(expected("true, false or null", in[0]));
+  if (in[0] != word_[0]) return std::unexpected(mismatch("true, false or null", in[0]));
   keep(word_.substr(0, 1));
   word_.remove_prefix(1);
   if (word_.empty()) value_ended();
@@ -345,7 +345,7 @@ icd::Refusal JsonSplitter::fault_at(std::size_t at, std::string_view what) {
   return {icd::Status::BadRequest, icd::sentence("not well-formed JSON at byte ", at, ": ", what)};
 }
 
-icd::Refusal JsonSplitter::expected(std::string_view what, char got) const {
+icd::Refusal JsonSplitter::mismatch(std::string_view what, char got) const {
   return fault(icd::sentence("expected ", what, ", got ", byte_name(got)));
 }
 

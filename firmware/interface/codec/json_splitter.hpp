@@ -112,7 +112,7 @@ class JsonSplitter final : public Splitter {
 
   icd::Refusal fault(std::string_view what) const { return fault_at(at_, what); }
   static icd::Refusal fault_at(std::size_t at, std::string_view what);
-  icd::Refusal expected(std::string_view what, char got) const;
+  icd::Refusal mismatch(std::string_view what, char got) const;
 
   const Split split_;
   BulkData& data_;

@@ -48,7 +48,7 @@ class JsonReader {
   void skip_blanks() {
     while (at_ != end_ && is_blank(*at_)) ++at_;
   }
-  bool take(char c) {
+  bool consume(char c) {
     skip_blanks();
     if (next() != c) return false;
     ++at_;
@@ -65,9 +65,9 @@ class JsonReader {
       case '"':
         return string(into == nullptr ? nullptr : &into->is.emplace<std::string>());
       case '{':
-        return nested([&] { return object(into); });
+        return read_nested([&] { return object(into); });
       case '[':
-        return nested([&] { return array(into); });
+        return read_nested([&] { return array(into); });
       case 't':
         return word("true", {true}, into);
       case 'f':
@@ -80,7 +80,7 @@ class JsonReader {
   }
 
   template <class Read>
-  bool nested(Read read) {
+  bool read_nested(Read read) {
     if (depth_ == BodyDecoder::kDeepest) return false;
     ++at_;
     ++depth_;
@@ -137,11 +137,11 @@ class JsonReader {
   /// Reads the items up to the closing `bracket`. `each` starts after the opening bracket or a comma.
   template <class Each>
   bool items(char bracket, Each each) {
-    if (take(bracket)) return true;
+    if (consume(bracket)) return true;
     do {
       if (!each()) return false;
-    } while (take(','));
-    return take(bracket);
+    } while (consume(','));
+    return consume(bracket);
   }
 
   bool array(Value* into) {
@@ -168,7 +168,7 @@ class JsonReader {
 
   bool name(std::string* into) {
     skip_blanks();
-    return next() == '"' && string(into) && take(':');
+    return next() == '"' && string(into) && consume(':');
   }
 
   bool object(Value* into) {

@@ -20,7 +20,7 @@ void write_header(CborWriter& out, const icd::Header& header) {
   out.map(header.stamp ? 2 : 1);
   if (header.stamp) {
     out.text("stamp");
-    out.real(*header.stamp);
+    out.floating(*header.stamp);
   }
   out.text("frame_id");
   out.text(icd::kFrame);
@@ -31,7 +31,7 @@ icd::MarkerAction read_action(const Field& field) {
     field.refuse_kind("a whole number");
     return icd::MarkerAction::Delete;  // needs no more members, so that only the action is named
   }
-  const auto action = field.whole<std::int64_t>();
+  const auto action = field.integer<std::int64_t>();
   for (const auto known : {icd::MarkerAction::Add, icd::MarkerAction::Delete, icd::MarkerAction::DeleteAll}) {
     if (action == static_cast<std::int64_t>(known)) return known;
   }
@@ -46,7 +46,7 @@ std::optional<icd::RobotName> read_robot_name(const Field& field, const icd::Rul
   if (!name) {
     field.refuse_by_setting(
         text.empty() ? "" : "robots[].alias", "expected 1 to ", icd::RobotName::kLongest,
-        " letters, digits and underscores, got ", icd::in_quotes(text),
+        " letters, digits and underscores, got ", icd::quote_text(text),
         text.empty() ? "" : " (the setting robots[].alias can map this name to a valid one)");
   }
   return name;

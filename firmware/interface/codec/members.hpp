@@ -97,7 +97,7 @@ struct NamedMember {
     else
       return need != Need::IfSaid || from.*at != T();
   }
-  std::size_t written(const Struct& from) const { return is_written(from) ? 1 : 0; }
+  std::size_t count_written(const Struct& from) const { return is_written(from) ? 1 : 0; }
   void write(CborWriter& out, const Struct& from) const {
     if (!is_written(from)) return;
     out.text(name);
@@ -119,9 +119,9 @@ struct NamedMember {
     } else if constexpr (std::floating_point<Value>) {
       value = is_time ? field.seconds(most) : field.float32(least, most);
     } else if constexpr (std::is_enum_v<Value>) {
-      value = static_cast<Value>(field.whole<Bound>(least, most));
+      value = static_cast<Value>(field.integer<Bound>(least, most));
     } else if constexpr (std::integral<Value>) {
-      value = field.whole<Value>(least, most);
+      value = field.integer<Value>(least, most);
     } else if constexpr (std::same_as<Value, std::string>) {
       const std::string_view text = field.text();
       if (text.size() > most) return field.refuse("expected at most ", most, unit, ", got ", text.size());
@@ -130,7 +130,7 @@ struct NamedMember {
       const std::size_t count = field.size();
       if (count > most) return field.refuse("expected at most ", most, unit, ", got ", count);
       value.reserve(count);
-      for (std::size_t i = 0; i < count && !field.reading().refused(); ++i) {
+      for (std::size_t i = 0; i < count && !field.reading().has_refusal(); ++i) {
         if (read_reals(field, i, value.emplace_back())) continue;
         const Field element = field.element(i);
         read_members(element, value.back(), rules);
@@ -145,11 +145,11 @@ struct NamedMember {
   template <class Value>
   static void write_value(CborWriter& out, const Value& value) {
     if constexpr (std::same_as<Value, bool>) {
-      out.truth(value);
+      out.boolean(value);
     } else if constexpr (std::floating_point<Value>) {
-      out.real(value);
+      out.floating(value);
     } else if constexpr (std::is_enum_v<Value> || std::integral<Value>) {
-      out.whole(static_cast<std::int64_t>(value));
+      out.integer(static_cast<std::int64_t>(value));
     } else if constexpr (std::same_as<Value, std::string>) {
       out.text(value);
     } else if constexpr (requires { value.begin(); }) {
@@ -180,13 +180,13 @@ struct Group {
     const Field field = parent.member(name);
     std::apply([&](const auto&... each) { (each.read(field, into, rules), ...); }, members);
   }
-  static std::size_t written(const auto& /*from*/) { return 1; }
+  static std::size_t count_written(const auto& /*from*/) { return 1; }
   template <class Struct>
   void write(CborWriter& out, const Struct& from) const {
     out.text(name);
     std::apply(
         [&](const auto&... each) {
-          out.map((each.written(from) + ...));
+          out.map((each.count_written(from) + ...));
           (each.write(out, from), ...);
         },
         members);
@@ -247,8 +247,9 @@ void read_members(const Field& object, Struct& into, const icd::Rules& rules) {
 
 /// Number of members that write_members() writes.
 template <class Struct>
-std::size_t written(const Struct& from) {
-  return std::apply([&](const auto&... each) { return (each.written(from) + ...); }, members_of<Struct>);
+std::size_t count_written(const Struct& from) {
+  return std::apply([&](const auto&... each) { return (each.count_written(from) + ...); },
+                    members_of<Struct>);
 }
 
 template <class Struct>
@@ -258,7 +259,7 @@ void write_members(CborWriter& out, const Struct& from) {
 
 template <class Struct>
 void write_struct(CborWriter& out, const Struct& from) {
-  out.map(written(from));
+  out.map(count_written(from));
   write_members(out, from);
 }
 
@@ -270,7 +271,7 @@ struct HeaderMember {
   void read(const Field& parent, auto& into, const icd::Rules& rules) const {
     into.header = read_header(parent, rules);
   }
-  static std::size_t written(const auto& /*from*/) { return 1; }
+  static std::size_t count_written(const auto& /*from*/) { return 1; }
   void write(CborWriter& out, const auto& from) const { write_header(out, from.header); }
 };
 
@@ -281,11 +282,11 @@ struct TypeAndAction {
     into.action = read_action(parent.member("action"));
     kType.read(parent, into, rules);
   }
-  static std::size_t written(const icd::Marker& /*from*/) { return 2; }
+  static std::size_t count_written(const icd::Marker& /*from*/) { return 2; }
   void write(CborWriter& out, const icd::Marker& from) const {
     kType.write(out, from);
     out.text("action");
-    out.whole(static_cast<std::int64_t>(from.action));
+    out.integer(static_cast<std::int64_t>(from.action));
   }
 
  private:

@@ -78,7 +78,7 @@ std::optional<Value> patched_object(Value::Object object, const Value::Object& p
   return Value{std::move(object)};
 }
 
-std::optional<Value> change(const Kind& kind, void* before, void* now);
+std::optional<Value> change(const RowKind& kind, void* before, void* now);
 
 std::optional<Value> change(const Row& row, void* before, void* now) {
   Value::Object changes;
@@ -101,7 +101,7 @@ struct Places {
   bool moved = false;  // whether a row moved
 };
 
-bool is_same(const Kind& kind, void* one, void* other) {
+bool is_same(const RowKind& kind, void* one, void* other) {
   return kind.same != nullptr ? kind.same(one, other) : kind.write(one) == kind.write(other);
 }
 
@@ -149,7 +149,7 @@ Places places_of(const Row& row, const Rows& before, const Rows& now) {
 }
 
 /// As runs of adjacent rows.
-Value::Array kept(const Places& places) {
+Value::Array kept_rows(const Places& places) {
   const auto& from = places.from;
   Value::Array runs;
   for (std::size_t to = 0, count = 0; to < from.size(); to += count) {
@@ -172,13 +172,13 @@ std::optional<Value> list_change(const Row& row, const Rows& before, const Rows&
     if (changed) rows.emplace_back(std::to_string(i), *std::move(changed));
   }
   if (now.count != before.count) list.emplace_back("length", Value{std::uint64_t{now.count}});
-  if (places.moved) list.emplace_back("kept", Value{kept(places)});
+  if (places.moved) list.emplace_back("kept", Value{kept_rows(places)});
   if (!rows.empty()) list.emplace_back("rows", Value{std::move(rows)});
   if (list.empty()) return std::nullopt;
   return Value{std::move(list)};
 }
 
-std::optional<Value> change(const Kind& kind, void* before, void* now) {
+std::optional<Value> change(const RowKind& kind, void* before, void* now) {
   if (kind.rows != nullptr) {
     const Row& row = *row_of(*kind.schema);
     const Rows rows_before = kind.rows(before), rows = kind.rows(now);

@@ -56,7 +56,7 @@ std::optional<std::vector<std::uint32_t>> little_endian_order(const icd::PointCl
 
 /// Reorders the bytes of points; consumes `points` chunk by chunk. Bytes after the last whole point stay.
 /// Requires an order that is not empty.
-icd::ChunkedBytes in_order(icd::ChunkedBytes points, const std::vector<std::uint32_t>& order) {
+icd::ChunkedBytes reorder(icd::ChunkedBytes points, const std::vector<std::uint32_t>& order) {
   icd::require(!order.empty());
   icd::ChunkedBytes turned;
   std::vector<std::uint8_t> came, goes;  // whole points of one piece
@@ -87,7 +87,7 @@ class CellCheck {
  public:
   explicit CellCheck(const icd::OccupancyGrid& grid) : grid_(grid) {}
 
-  icd::Checked<void> take(std::span<const std::uint8_t> cells) {
+  icd::Checked<void> check(std::span<const std::uint8_t> cells) {
     const std::size_t expected = icd::cells_of(grid_);
     if (cells.size() > expected - taken_) {  // at once, so that a gzip bomb is not inflated further
       return icd::unprocessable("msg.info.width: expected ", grid_.width, " x ", grid_.height, " = ",
@@ -106,7 +106,7 @@ class CellCheck {
 };
 
 /// A grid's data in the sent form.
-icd::MapData pressed(Gzipper& gzipper, const icd::OccupancyGrid& grid) {
+icd::MapData press_grid(Gzipper& gzipper, const icd::OccupancyGrid& grid) {
   return {.bytes = gzipper.finish(), .compression = icd::Compression::Gzip, .raw_size = icd::cells_of(grid)};
 }
 
@@ -126,14 +126,14 @@ icd::Checked<icd::MapData> read_gzipped_cells(const icd::OccupancyGrid& grid, ic
     CellCheck check(grid);
     Gzipper gzipper(GzipStrategy::Runs);
     const auto sink = [&](std::span<const std::uint8_t> cells) {
-      auto checked = check.take(cells);
+      auto checked = check.check(cells);
       if (checked && is_kept) gzipper.feed(cells);
       return checked;
     };
     const auto inflated = ADIT_TRY(gunzip(data, rules.map_bytes, kPath, sink));
     ADIT_TRY(check.finish());
     if (!is_kept) continue;
-    icd::MapData ours = pressed(gzipper, grid);
+    icd::MapData ours = press_grid(gzipper, grid);
     const bool is_one = inflated.members == 1;  // a Command Post hangs at a second member
     if (is_one && data.size() < ours.bytes.size() && has_plain_head(data)) ours.bytes = std::move(data);
     return ours;
@@ -156,7 +156,7 @@ icd::Checked<void> check_points(const icd::PointCloud2& cloud, const CloudRows& 
 }
 
 /// The first `row_size` of each `row_step` bytes.
-icd::ChunkedBytes without_row_padding(icd::ChunkedBytes data, std::size_t row_size, std::size_t row_step) {
+icd::ChunkedBytes strip_row_padding(icd::ChunkedBytes data, std::size_t row_size, std::size_t row_step) {
   icd::ChunkedBytes points;
   std::size_t at = 0;  // position in the row
   while (!data.empty()) {
@@ -199,7 +199,7 @@ icd::Checked<icd::MapData> read_cells(const icd::OccupancyGrid& grid, icd::Chunk
   }
   Gzipper gzipper(GzipStrategy::Runs);
   while (!data.empty()) gzipper.feed(*data.pop_front());
-  return pressed(gzipper, grid);
+  return press_grid(gzipper, grid);
 }
 
 /// The same for cells compressed on arrival.
@@ -236,7 +236,7 @@ icd::Checked<icd::MapData> read_points(const icd::PointCloud2& cloud, const Clou
   }
   ADIT_TRY(check_points(cloud, rows, points.size()));
   if (are_padded(rows, cloud, points.size()))
-    points = without_row_padding(std::move(points), rows.width * cloud.point_step, rows.row_step);
+    points = strip_row_padding(std::move(points), rows.width * cloud.point_step, rows.row_step);
   const std::size_t size = points.size();
   return icd::MapData{.bytes = std::move(points), .compression = icd::Compression::None, .raw_size = size};
 }
@@ -251,7 +251,7 @@ icd::Compression read_compression(const Field& field, DataForm form) {
   const std::string_view scheme = field.text();
   if (icd::same_but_for_case(scheme, "none")) return icd::Compression::None;
   if (!icd::same_but_for_case(scheme, "gzip"))
-    field.refuse("expected \"none\" or \"gzip\", got ", icd::in_quotes(scheme));
+    field.refuse("expected \"none\" or \"gzip\", got ", icd::quote_text(scheme));
   if (form == DataForm::Integers) field.refuse("expected \"none\" with data as an array, got \"gzip\"");
   return icd::Compression::Gzip;
 }
@@ -265,7 +265,7 @@ template <class Map>
 Map read_msg(const Field& msg, const icd::Rules& rules) {
   Map map;
   read_members(msg, map, rules);
-  if (!msg.reading().refused()) msg.reading().keep(icd::check(map, rules));
+  if (!msg.reading().has_refusal()) msg.reading().keep(icd::check(map, rules));
   return map;
 }
 
@@ -279,7 +279,7 @@ icd::Checked<icd::MapUpdate> read_structure(const Document& document, const icd:
   const std::string_view kind = type.text();
   const Field msg = body.member("msg");
   if (kind != "OccupancyGrid" && kind != "PointCloud2") {
-    type.refuse("expected \"OccupancyGrid\" or \"PointCloud2\", got ", icd::in_quotes(kind));
+    type.refuse("expected \"OccupancyGrid\" or \"PointCloud2\", got ", icd::quote_text(kind));
     if (msg.is_absent()) msg.refuse_kind("an object");
     return reading.outcome(std::move(update));  // the type decides which members msg needs
   }
@@ -299,14 +299,14 @@ CloudRows read_rows(const Value& root) {
   Reading reading;
   const Field body(root, reading);
   const Field msg = body.member("msg");
-  const auto number = [&](std::string_view name) { return msg.member(name).whole<std::uint32_t>(); };
+  const auto number = [&](std::string_view name) { return msg.member(name).integer<std::uint32_t>(); };
   const CloudRows rows{.width = number("width"), .height = number("height"), .row_step = number("row_step")};
-  return reading.refused() ? CloudRows{} : rows;
+  return reading.has_refusal() ? CloudRows{} : rows;
 }
 
 /// ICD 6.3.2: points are sent little-endian, because one server reorders those of a big-endian cloud with an
 /// origin wrongly. If the values cannot be reordered, the points are sent as received.
-icd::Checked<icd::MapData> turned(icd::PointCloud2& cloud, icd::MapData data) {
+icd::Checked<icd::MapData> to_little_endian(icd::PointCloud2& cloud, icd::MapData data) {
   const auto order = little_endian_order(cloud);
   if (!order && cloud.origin) {
     return icd::unprocessable(
@@ -314,7 +314,7 @@ icd::Checked<icd::MapData> turned(icd::PointCloud2& cloud, icd::MapData data) {
   }
   if (!order) return data;
   cloud.is_bigendian = false;
-  data.bytes = in_order(std::move(data.bytes), *order);
+  data.bytes = reorder(std::move(data.bytes), *order);
   return data;
 }
 
@@ -347,7 +347,7 @@ icd::Checked<void> check_data(const icd::MapUpdate& map) {
   if (grid == nullptr) return icd::check_size(std::get<icd::PointCloud2>(map.msg), map.data.bytes.size());
   CellCheck check(*grid);
   auto read =
-      for_each_piece(map.data, [&](std::span<const std::uint8_t> piece) { return check.take(piece); });
+      for_each_piece(map.data, [&](std::span<const std::uint8_t> piece) { return check.check(piece); });
   return read ? check.finish() : read;
 }
 
@@ -386,7 +386,7 @@ icd::Checked<icd::MapUpdate> read_map_update(Document document, const icd::Rules
   if (!update) return update;
   auto data = ADIT_TRY(read_data(*update, std::move(document), compression, rules));
   if (auto* cloud = std::get_if<icd::PointCloud2>(&update->msg); cloud != nullptr && cloud->is_bigendian) {
-    auto turned_data = ADIT_TRY(turned(*cloud, std::move(data)));
+    auto turned_data = ADIT_TRY(to_little_endian(*cloud, std::move(data)));
     data = std::move(turned_data);
   }
   update->data = std::move(data);

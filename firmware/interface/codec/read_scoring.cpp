@@ -31,10 +31,10 @@ std::string_view read_type(const Field& field, const icd::Rules& rules) {
     const bool is_curable = cure.empty() && is_forwardable(type);
     if (is_curable) cure = " (the setting rules.forward_unknown_types accepts others)";
     field.refuse_by_setting(is_curable ? "rules.forward_unknown_types" : "", "expected one of ", ten, "got ",
-                            icd::in_quotes(type), cure);
+                            icd::quote_text(type), cure);
   } else if (!is_forwardable(type)) {
     field.refuse("expected 1 to ", kLongestUnknownType, " printable ASCII characters, got ",
-                 icd::in_quotes(type));
+                 icd::quote_text(type));
   }
   return type;
 }
@@ -52,7 +52,7 @@ std::expected<Message, std::string> read_reply(std::string_view json, Message (*
 /// A string, or a number as text, or "".
 std::string read_name(const Field& field) {
   if (field.is<std::string>()) return std::string(field.text());
-  if (field.is<std::int64_t>()) return std::to_string(field.whole<std::int64_t>());
+  if (field.is<std::int64_t>()) return std::to_string(field.integer<std::int64_t>());
   if (field.is<double>()) return icd::number_text(field.number());
   return {};
 }
@@ -73,11 +73,11 @@ icd::Checked<std::optional<icd::RobotName>> read_robot(const Document& document,
 icd::RunStatus status_of(const Field& body) {
   static_assert(icd::count_of_members<icd::RunStatus>() == 4, "read each member");
   icd::RunStatus status;
-  status.score = body.member("score").whole<std::int32_t>();
+  status.score = body.member("score").integer<std::int32_t>();
   const Field run_clock = body.member("run_clock");
   const Field clock = body.member("clock");
   status.run_clock = run_clock.is_absent() && !clock.is_absent() ? clock.number() : run_clock.number();
-  status.remaining_reports = body.member("remaining_reports").whole<std::int32_t>();
+  status.remaining_reports = body.member("remaining_reports").integer<std::int32_t>();
   status.current_team = read_name(body.member("current_team"));
   return status;
 }
@@ -95,7 +95,7 @@ icd::ReportReply reply_of(const Field& body) {
   reply.run = read_name(body.member("run"));
   if (const Field clock = body.member("run_clock"); has_number(clock)) reply.run_clock = clock.number();
   reply.report_status = body.member("report_status").text();
-  reply.score_change = body.member("score_change").whole<std::int32_t>();
+  reply.score_change = body.member("score_change").integer<std::int32_t>();
   reply.report = report_in(body);
   return reply;
 }

@@ -59,13 +59,13 @@ void read_each(const Field& list, RefusedParts& refused, Read read, Keep keep) {
 
 /// Refuses a message without good parts. Otherwise returns it with its refused parts.
 template <class Message>
-icd::Checked<CheckedParts<Message>> sorted(Reading& reading, Message message, RefusedParts refused) {
-  if (!reading.refused() && refused.count > 0 && refused.others == 0) reading.refuse(refused.refusal());
+icd::Checked<CheckedParts<Message>> check_parts(Reading& reading, Message message, RefusedParts refused) {
+  if (!reading.has_refusal() && refused.count > 0 && refused.others == 0) reading.refuse(refused.refusal());
   return reading.outcome(CheckedParts<Message>{std::move(message), std::move(refused)});
 }
 
 template <class Message>
-icd::Checked<Message> whole(icd::Checked<CheckedParts<Message>> parts) {
+icd::Checked<Message> require_all_parts(icd::Checked<CheckedParts<Message>> parts) {
   if (!parts) return std::unexpected(std::move(parts.error()));
   parts->refused.others = 0;  // no part is accepted
   if (parts->refused.count > 0) return std::unexpected(parts->refused.refusal());
@@ -99,7 +99,7 @@ icd::Checked<CheckedParts<icd::StateUpdate>> read_state_parts(const Document& do
   read_each(
       body.member("poses"), refused, [&](const Field& field) { return read_named_pose(field, rules); },
       [&](const icd::NamedPose& named) { poses.add(named); });
-  return sorted(reading, std::move(update), std::move(refused));
+  return check_parts(reading, std::move(update), std::move(refused));
 }
 
 icd::Checked<CheckedParts<icd::MarkersUpdate>> read_markers_parts(const Document& document,
@@ -118,15 +118,15 @@ icd::Checked<CheckedParts<icd::MarkersUpdate>> read_markers_parts(const Document
       markers, refused,
       [&](const Field& field) { return field.reading().outcome(read_marker(field, rules)); },
       [&](icd::Marker marker) { update.markers.push_back(std::move(marker)); });
-  return sorted(reading, std::move(update), std::move(refused));
+  return check_parts(reading, std::move(update), std::move(refused));
 }
 
 icd::Checked<icd::StateUpdate> read_state_update(const Document& document, const icd::Rules& rules) {
-  return whole(read_state_parts(document, rules));
+  return require_all_parts(read_state_parts(document, rules));
 }
 
 icd::Checked<icd::MarkersUpdate> read_markers_update(const Document& document, const icd::Rules& rules) {
-  return whole(read_markers_parts(document, rules));
+  return require_all_parts(read_markers_parts(document, rules));
 }
 
 }  // namespace adit::codec

@@ -67,7 +67,7 @@ struct Rows {
 const Row* row_of(const Schema& schema);
 
 /// Functions for one C++ type: writing, reading, description, and comparison for patches.
-struct Kind {
+struct RowKind {
   using Same = bool (*)(const void* one, const void* other);
   using ToRows = Rows (*)(void* value);
   using Add = void* (*)(void* value);
@@ -97,7 +97,7 @@ struct Form {
 struct Member {
   std::string_view name;     // "": a row whose members are among these
   std::string_view meaning;  // beyond the name: unit, meaning of "" or 0
-  const Kind* kind;
+  const RowKind* kind;
   void* (*in)(void* row);
   std::span<const std::string_view> words = {};  // possible values of a text; empty: any
   const Form* form = nullptr;                    // of a text; null: any
@@ -116,7 +116,7 @@ struct Member {
     return other;
   }
 
-  constexpr Member as(const Kind& other) const { return with(&Member::kind, &other); }
+  constexpr Member as(const RowKind& other) const { return with(&Member::kind, &other); }
   constexpr Member one_of(std::span<const std::string_view> all) const { return with(&Member::words, all); }
   constexpr Member optional() const { return with(&Member::is_needed, false); }
   constexpr Member exact() const { return with(&Member::is_exact, true); }
@@ -146,7 +146,7 @@ void read_member(const Member& member, const Field& field, void* into);
 /// Changes all reals in the row and its rows, except those of exact members.
 void change_numbers(const Row& row, void* in, double (*changed)(double));
 
-/// The functions of a type's Kind.
+/// The functions of a type's RowKind.
 template <class T>
 struct KindOf;
 
@@ -156,7 +156,7 @@ template <class T>
 concept IsRow = requires(T& value) { KindOf<T>::rows_at(&value, 1); };
 
 template <class T, class As>
-constexpr Kind::Same same_as() {
+constexpr RowKind::Same same_as() {
   if constexpr (requires(const T& value) { As::same(value, value); }) {
     return [](const void* one, const void* other) {
       return As::same(*static_cast<const T*>(one), *static_cast<const T*>(other));
@@ -166,7 +166,7 @@ constexpr Kind::Same same_as() {
   }
 }
 template <class T, class As>
-constexpr Kind::ToRows rows_as() {
+constexpr RowKind::ToRows rows_as() {
   if constexpr (requires(T& value) { As::rows(value); }) {
     return [](void* value) { return As::rows(*static_cast<T*>(value)); };
   } else {
@@ -175,7 +175,7 @@ constexpr Kind::ToRows rows_as() {
 }
 
 template <class T, class As>
-constexpr Kind::Add adder_of() {
+constexpr RowKind::Add adder_of() {
   if constexpr (requires(T& value) { As::add(value); }) {
     return [](void* value) -> void* { return &As::add(*static_cast<T*>(value)); };
   } else {
@@ -183,9 +183,9 @@ constexpr Kind::Add adder_of() {
   }
 }
 
-/// A Kind from a class with KindOf's members; `same`, `rows` and `add` are optional.
+/// A RowKind from a class with KindOf's members; `same`, `rows` and `add` are optional.
 template <class T, class As>
-inline constexpr Kind kind_as = {
+inline constexpr RowKind kind_as = {
     .write = [](const void* value) -> Value { return As::write(*static_cast<const T*>(value)); },
     .read = [](const Field& field, void* value) { As::read(field, *static_cast<T*>(value)); },
     .schema = &As::schema,
@@ -193,7 +193,7 @@ inline constexpr Kind kind_as = {
     .rows = rows_as<T, As>(),
     .add = adder_of<T, As>()};
 template <class T>
-inline constexpr const Kind& kind_of = kind_as<T, KindOf<T>>;
+inline constexpr const RowKind& kind_of = kind_as<T, KindOf<T>>;
 
 /// For types that are written alike exactly if they are equal.
 struct Equal {
@@ -219,7 +219,7 @@ template <class Count, class Period>
 struct KindOf<std::chrono::duration<Count, Period>> : Equal {
   using Time = std::chrono::duration<Count, Period>;
   static Value write(Time time) { return {std::int64_t{time.count()}}; }
-  static void read(const Field& field, Time& time) { time = Time(field.whole<Count>()); }
+  static void read(const Field& field, Time& time) { time = Time(field.integer<Count>()); }
   static constexpr Schema schema = {.type = "integer"};
 };
 
@@ -241,7 +241,7 @@ struct KindOf<double> : Equal {
 template <std::signed_integral Whole>
 struct KindOf<Whole> : Equal {
   static Value write(Whole number) { return {std::int64_t{number}}; }
-  static void read(const Field& field, Whole& number) { number = field.whole<Whole>(); }
+  static void read(const Field& field, Whole& number) { number = field.integer<Whole>(); }
   static constexpr Schema schema = {.type = "integer"};
 };
 
@@ -252,7 +252,7 @@ struct KindOf<Count> : Equal {
   static void read(const Field& field, Count& number) {
     constexpr std::uint64_t kMost =
         std::min<std::uint64_t>(std::numeric_limits<Count>::max(), std::numeric_limits<std::int64_t>::max());
-    number = static_cast<Count>(field.whole<std::int64_t>(0, static_cast<std::int64_t>(kMost)));
+    number = static_cast<Count>(field.integer<std::int64_t>(0, static_cast<std::int64_t>(kMost)));
   }
   static constexpr Schema schema = {.type = "integer", .least = 0};
 };
@@ -273,7 +273,7 @@ template <class T>
 struct KindOf<T> : KindOfRow<T, T::kRow> {};
 
 /// "a, b or c", for a sentence. `quote`: around each word.
-std::string in_turn(std::span<const std::string_view> words, std::string_view quote = "");
+std::string list_alternatives(std::span<const std::string_view> words, std::string_view quote = "");
 
 /// A number or enum that is written as one of these words, in order from 0.
 template <class Index, const auto& kWords>
@@ -281,7 +281,7 @@ struct KindOfWord : Equal {
   static Value write(Index value) { return {std::string(kWords[static_cast<std::size_t>(value)])}; }
   static void read(const Field& field, Index& value) {
     const auto* const word = std::find(std::begin(kWords), std::end(kWords), field.text());
-    if (word == std::end(kWords)) return field.refuse("expected ", in_turn(kWords));
+    if (word == std::end(kWords)) return field.refuse("expected ", list_alternatives(kWords));
     value = static_cast<Index>(word - std::begin(kWords));
   }
   static constexpr Schema schema = {.type = "string"};
@@ -333,7 +333,7 @@ struct KindOf<std::vector<T>> {
   }
   static void read(const Field& field, std::vector<T>& all) {
     all.clear();
-    for (std::size_t i = 0; i < field.size() && !field.reading().refused(); ++i) {
+    for (std::size_t i = 0; i < field.size() && !field.reading().has_refusal(); ++i) {
       const Field element = field.element(i);
       KindOf<T>::read(element, all.emplace_back());
     }
@@ -358,7 +358,7 @@ struct KindOf<std::vector<T>> {
 
 inline constexpr Schema kTextOrNullSchema = KindOf<std::string>::schema.nullable();
 /// Text; null if empty.
-inline constexpr Kind kTextOrNull = {
+inline constexpr RowKind kTextOrNull = {
     .write = [](const void* value) -> Value {
       const auto& all = *static_cast<const std::string*>(value);
       return all.empty() ? Value{} : Value{all};

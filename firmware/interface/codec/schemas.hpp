@@ -59,12 +59,12 @@ class Schemas {
     size_ += size;
   }
   /// Starts the next item of an object or array.
-  constexpr void next() {
+  constexpr void begin_item() {
     if (text_[size_ - 1] != '{' && text_[size_ - 1] != '[') add(",");
   }
   /// Writes a member's name and the start of its value.
   constexpr void begin(std::string_view name, std::string_view value = "") {
-    next();
+    begin_item();
     add_text(name);
     add(":");
     add(value);
@@ -78,7 +78,7 @@ class Schemas {
     } while (number > 0);
     begin(name, {&digits[first], digits.size() - first});
   }
-  static constexpr std::int64_t whole(double bound) {
+  static constexpr std::int64_t to_integer(double bound) {
     const auto number = static_cast<std::int64_t>(bound);
     if (static_cast<double>(number) != bound) throw std::invalid_argument("not written here");
     return number;
@@ -130,7 +130,7 @@ class Schemas {
     if (schema.fewest > 0) add("minItems", static_cast<std::int64_t>(schema.fewest));
     if (schema.most > 0) add("maxItems", static_cast<std::int64_t>(schema.most));
     if (schema.more.empty()) return;
-    next();
+    begin_item();
     add(schema.more);
   }
 
@@ -147,7 +147,7 @@ class Schemas {
     begin("required", "[");
     each_member(row, [this](const Member& member) {
       if (!member.is_needed) return;
-      next();
+      begin_item();
       add_text(member.name);
     });
     add("]");
@@ -157,17 +157,17 @@ class Schemas {
   constexpr void add_member(const Member& member) {
     Schema schema = *member.kind->schema;
     schema.or_null = schema.or_null && member.is_needed;
-    if (member.least) schema.least = whole(*member.least);
+    if (member.least) schema.least = to_integer(*member.least);
     add_schema(schema);
     if (!member.words.empty()) {
       begin("enum", "[");
       for (const std::string_view word : member.words) {
-        next();
+        begin_item();
         add_text(word);
       }
       add(schema.or_null ? ",null]" : "]");
     }
-    if (member.most) add("maximum", whole(*member.most));
+    if (member.most) add("maximum", to_integer(*member.most));
     add_meaning(member.meaning);
   }
 

@@ -56,7 +56,7 @@ std::size_t blanks(std::string_view text, std::size_t at) {
 }
 
 /// Number of characters from `period` on that equal the ones `period` before them.
-std::size_t repeated(std::string_view text, std::size_t period) {
+std::size_t repeated_length(std::string_view text, std::size_t period) {
   using Word = std::uint64_t;
   std::size_t n = 0;
   const std::size_t most = text.size() - period;
@@ -111,7 +111,7 @@ std::optional<PlainElements> take_plain_elements(std::string_view& text) {
   if (comma == text.size() || text[comma] != ',') return std::nullopt;
   // White space after the comma is part of the repeated text: "0, " and "0, ".
   const std::size_t period = comma + 1;
-  const std::size_t again = repeated(text, period) / period;
+  const std::size_t again = repeated_length(text, period) / period;
   text.remove_prefix(period * (1 + again));
   return PlainElements{.value = one->value, .count = 1 + again};
 }
@@ -120,7 +120,7 @@ std::optional<PlainElements> take_plain_cbor_elements(std::string_view& bytes, s
   icd::require(most > 0);
   const auto one = cbor_element(bytes);
   if (!one) return std::nullopt;
-  const std::uint64_t again = std::min<std::uint64_t>(repeated(bytes, one->end) / one->end, most - 1);
+  const std::uint64_t again = std::min<std::uint64_t>(repeated_length(bytes, one->end) / one->end, most - 1);
   const auto count = static_cast<std::size_t>(1 + again);
   bytes.remove_prefix(one->end * count);
   return PlainElements{.value = one->value, .count = count};

@@ -51,7 +51,7 @@ class KeptText {
   icd::Refusal too_large() const;
   std::size_t values() const { return values_; }
   const std::string& text() const { return text_; }
-  std::string take() { return std::move(text_); }
+  std::string take_text() { return std::move(text_); }
 
  private:
   const Most most_;

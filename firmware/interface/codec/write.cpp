@@ -113,7 +113,7 @@ icd::ChunkedBytes write_map_update(const icd::MapUpdate& update) {
   out.text("msg");
   std::visit(
       [&](const auto& msg) {
-        out.map(written(msg) + 2);
+        out.map(count_written(msg) + 2);
         write_members(out, msg);
       },
       update.msg);
@@ -124,7 +124,8 @@ icd::ChunkedBytes write_map_update(const icd::MapUpdate& update) {
 }
 
 DataFirst write_data_first(const icd::MapUpdate& update) {
-  const std::size_t members = std::visit([](const auto& msg) { return codec::written(msg) + 2; }, update.msg);
+  const std::size_t members =
+      std::visit([](const auto& msg) { return codec::count_written(msg) + 2; }, update.msg);
   CborWriter out;
   write_compression(out, update.data);
   std::visit([&](const auto& msg) { write_members(out, msg); }, update.msg);

@@ -13,14 +13,14 @@ constexpr std::string_view kStruck = "[token]";
 constexpr std::size_t kShortest = 4;
 constexpr std::size_t kLeast = 8;  // minimum length of a beginning that is replaced
 
-void strike_whole(std::string& text, std::string_view token) {
+void strike_token(std::string& text, std::string_view token) {
   for (std::size_t at = 0; (at = text.find(token, at)) != std::string::npos; at += kStruck.size()) {
     text.replace(at, token.size(), kStruck);
   }
 }
 
 /// Puts `mark` before each of `letters`.
-std::string doubled(std::string_view token, std::string_view letters, char mark) {
+std::string insert_before_letters(std::string_view token, std::string_view letters, char mark) {
   std::string text;
   for (const char letter : token) {
     if (letters.contains(letter)) text += mark;
@@ -37,7 +37,7 @@ std::string decode_utf_16(std::string_view pairs, std::size_t high) {
   return pairs.empty() ? text : text + '\0';
 }
 
-/// in_quotes() shows the beginning of a long text, followed by "...".
+/// quote_text() shows the beginning of a long text, followed by "...".
 void strike_cut(std::string& text, std::string_view token) {
   const std::string_view beginning = token.substr(0, kLeast);
   for (std::size_t at = 0; (at = text.find(beginning, at)) != std::string::npos; ++at) {
@@ -60,10 +60,10 @@ std::optional<BearerToken> BearerToken::parse(std::string_view text) {
 
 std::optional<BearerToken> BearerToken::parse_file(std::string_view content) {
   constexpr std::string_view kUtf8 = "\xEF\xBB\xBF", kLittleEndian = "\xFF\xFE", kBigEndian = "\xFE\xFF";
-  if (content.starts_with(kLittleEndian)) return parse(trimmed(decode_utf_16(content.substr(2), 1)));
-  if (content.starts_with(kBigEndian)) return parse(trimmed(decode_utf_16(content.substr(2), 0)));
+  if (content.starts_with(kLittleEndian)) return parse(trim(decode_utf_16(content.substr(2), 1)));
+  if (content.starts_with(kBigEndian)) return parse(trim(decode_utf_16(content.substr(2), 0)));
   if (content.starts_with(kUtf8)) content.remove_prefix(kUtf8.size());
-  return parse(trimmed(content));
+  return parse(trim(content));
 }
 
 bool BearerToken::matches(std::string_view presented) const {
@@ -82,14 +82,14 @@ bool BearerToken::may_be_in(std::string_view text) const {
 
 void BearerToken::strike_from(std::string& text) const {
   if (text_.size() < kShortest || !may_be_in(text)) return;
-  strike_whole(text, text_);
+  strike_token(text, text_);
   if (text_.find_first_of("\"\\") != std::string::npos) {
-    const std::string in_json = doubled(text_, "\"\\", '\\');
-    strike_whole(text, doubled(in_json, "\"\\", '\\'));  // a stored answer within JSON
-    strike_whole(text, in_json);
-    strike_whole(text, doubled(text_, "\"", '"'));  // CSV
+    const std::string in_json = insert_before_letters(text_, "\"\\", '\\');
+    strike_token(text, insert_before_letters(in_json, "\"\\", '\\'));  // a stored answer within JSON
+    strike_token(text, in_json);
+    strike_token(text, insert_before_letters(text_, "\"", '"'));  // CSV
   }
-  if (text_.find_first_of("\"&<>'") != std::string::npos) strike_whole(text, escape_html(text_));
+  if (text_.find_first_of("\"&<>'") != std::string::npos) strike_token(text, escape_html(text_));
   strike_cut(text, text_);
 }
 
@@ -108,7 +108,7 @@ bool is_one_of(std::span<const BearerToken> tokens, std::string_view presented) 
 std::string_view token_in(std::string_view authorization) {
   constexpr std::string_view kBlanks = " \t";
   constexpr std::string_view kScheme = "bearer";
-  authorization = trimmed(authorization, kBlanks);
+  authorization = trim(authorization, kBlanks);
   if (authorization.size() <= kScheme.size() ||
       !same_but_for_case(authorization.substr(0, kScheme.size()), kScheme))
     return {};

@@ -31,7 +31,7 @@ class BearerToken {
 
   /// Replaces the token by "[token]" in a text from another program that others will read: a field of a
   /// client, or a server's echo. Also finds the token as JSON, CSV and HTML write it, and its beginning if
-  /// in_quotes() has cut it. A token of less than 4 characters is no secret and stays.
+  /// quote_text() has cut it. A token of less than 4 characters is no secret and stays.
   void strike_from(std::string& text) const;
   /// False if strike_from() cannot find anything in `text`. Faster than strike_from().
   bool may_be_in(std::string_view text) const;

@@ -48,12 +48,12 @@ struct Seen {
 
 using Matrix = std::array<std::array<double, 3>, 3>;
 
-Point turned(const Matrix& by, const Point& p) {
+Point rotate(const Matrix& by, const Point& p) {
   return {by[0][0] * p.x + by[0][1] * p.y + by[0][2] * p.z, by[1][0] * p.x + by[1][1] * p.y + by[1][2] * p.z,
           by[2][0] * p.x + by[2][1] * p.y + by[2][2] * p.z};
 }
 
-Matrix transposed(const Matrix& m) {
+Matrix transpose(const Matrix& m) {
   return {{{m[0][0], m[1][0], m[2][0]}, {m[0][1], m[1][1], m[2][1]}, {m[0][2], m[1][2], m[2][2]}}};
 }
 
@@ -71,31 +71,31 @@ double length(const Point& p) {
   return std::hypot(p.x, p.y, p.z);
 }
 
-Point shifted(const Point& p, const Point& by, double times = 1) {
+Point translate(const Point& p, const Point& by, double times = 1) {
   return {p.x + times * by.x, p.y + times * by.y, p.z + times * by.z};
 }
 
 /// `box` along the axes of `axes`, from its origin.
 Seen seen_from(const Pose& axes, const GridBounds& box) {
   const Placement there{axes};
-  const Matrix back = transposed(there.turn);
-  const Point shift = turned(back, shifted(box.origin.position, there.shift, -1));
+  const Matrix back = transpose(there.turn);
+  const Point shift = rotate(back, translate(box.origin.position, there.shift, -1));
   if (axes.orientation == box.origin.orientation)
-    return {shifted(box.low, shift), shifted(box.high, shift), 0};
+    return {translate(box.low, shift), translate(box.high, shift), 0};
   const Matrix turn = product(back, Placement{box.origin}.turn);
   const Point half = {(box.high.x - box.low.x) / 2, (box.high.y - box.low.y) / 2,
                       (box.high.z - box.low.z) / 2};
-  const Point middle = shifted(turned(turn, shifted(box.low, half)), shift);
+  const Point middle = translate(rotate(turn, translate(box.low, half)), shift);
   Seen seen{middle, middle, 0};
   for (const double x : {-half.x, half.x}) {
     for (const double y : {-half.y, half.y}) {
       for (const double z : {-half.z, half.z}) {
-        const Point before{x, y, z}, after = turned(turn, before), corner = shifted(middle, after);
+        const Point before{x, y, z}, after = rotate(turn, before), corner = translate(middle, after);
         seen.low = {std::min(seen.low.x, corner.x), std::min(seen.low.y, corner.y),
                     std::min(seen.low.z, corner.z)};
         seen.high = {std::max(seen.high.x, corner.x), std::max(seen.high.y, corner.y),
                      std::max(seen.high.z, corner.z)};
-        seen.turn = std::max(seen.turn, length(shifted(after, before, -1)));
+        seen.turn = std::max(seen.turn, length(translate(after, before, -1)));
       }
     }
   }
@@ -105,7 +105,7 @@ Seen seen_from(const Pose& axes, const GridBounds& box) {
 /// Whether the origin of `older` is certainly outside `newer`. Much cheaper than seen_from(), because each
 /// new grid is compared with each queued grid of its name.
 bool is_far(const OccupancyGrid& newer, const Pose& older) {
-  const Point between = shifted(newer.origin.position, older.position, -1);
+  const Point between = translate(newer.origin.position, older.position, -1);
   const double most = (1.0 + newer.width + newer.height) * newer.resolution;
   return between.x * between.x + between.y * between.y + between.z * between.z > most * most;
 }
@@ -117,7 +117,7 @@ bool is_within(double low, double high, double length, double slack) {
 
 }  // namespace
 
-GridBounds GridBounds::of(const OccupancyGrid& grid) {
+GridBounds GridBounds::from_grid(const OccupancyGrid& grid) {
   return {.origin = grid.origin,
           .resolution = grid.resolution,
           .low = {},

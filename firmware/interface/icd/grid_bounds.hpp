@@ -16,7 +16,7 @@ struct GridBounds {
   double turned = 0;      // metres by which the turns between the grids moved a corner, in all
 
   /// The box around the grid alone.
-  static GridBounds of(const OccupancyGrid& grid);
+  static GridBounds from_grid(const OccupancyGrid& grid);
   /// Whether it is larger than `grid`, to which it belongs, by more than a rounding error.
   bool is_larger_than(const OccupancyGrid& grid) const;
   friend bool operator==(const GridBounds&, const GridBounds&) = default;

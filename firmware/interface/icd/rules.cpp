@@ -32,8 +32,8 @@ Checked<std::size_t> find_unique(const std::vector<FieldSchema>& fields, std::st
   if (count == 1) {
     return static_cast<std::size_t>(std::ranges::find(fields, name, &FieldSchema::name) - fields.begin());
   }
-  if (count == 0) return unprocessable("msg.fields: missing field ", in_quotes(name));
-  return unprocessable("msg.fields: expected one field ", in_quotes(name), ", got ", count);
+  if (count == 0) return unprocessable("msg.fields: missing field ", quote_text(name));
+  return unprocessable("msg.fields: expected one field ", quote_text(name), ", got ", count);
 }
 
 /// Clouds that crash a server, or that it drops: x, y, z not once each, or not of one float type.
@@ -45,7 +45,7 @@ Checked<void> check_coordinates(const std::vector<FieldSchema>& fields) {
     const FieldSchema& field = fields[index];
     const auto given = static_cast<int>(field.datatype);
     if (field.datatype != Datatype::Float32 && field.datatype != Datatype::Float64) {
-      return unprocessable("msg.fields[", index, "].datatype: expected 7 or 8 for ", in_quotes(name),
+      return unprocessable("msg.fields[", index, "].datatype: expected 7 or 8 for ", quote_text(name),
                            ", got ", given);
     }
     if (name == "x") datatype = field.datatype;
@@ -54,7 +54,7 @@ Checked<void> check_coordinates(const std::vector<FieldSchema>& fields) {
                            " as for \"x\", got ", given);
     }
     if (field.count != 1) {
-      return unprocessable("msg.fields[", index, "].count: expected 1 for ", in_quotes(name), ", got ",
+      return unprocessable("msg.fields[", index, "].count: expected 1 for ", quote_text(name), ", got ",
                            field.count);
     }
   }
@@ -116,7 +116,7 @@ Checked<void> check_size(const PointCloud2& cloud, std::size_t bytes) {
 Checked<void> check_frame_id(std::string_view frame_id, std::string_view path, const Rules& rules) {
   if (frame_id == kFrame || rules.rewrite_frame_id) return {};
   return unprocessable_by_setting("rules.rewrite_frame_id", path, ": expected \"", kFrame, "\", got ",
-                                  in_quotes(frame_id),
+                                  quote_text(frame_id),
                                   " (the setting rules.rewrite_frame_id accepts any frame)");
 }
 

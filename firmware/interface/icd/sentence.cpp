@@ -42,7 +42,7 @@ std::string size_text(std::uint64_t bytes) {
   return tenths % 10 == 0 ? sentence(tenths / 10, " MB") : sentence(tenths / 10, ".", tenths % 10, " MB");
 }
 
-std::string in_quotes(std::string_view text) {
+std::string quote_text(std::string_view text) {
   const bool cut = text.size() > kMostQuoted;
   std::string quote = "\"";
   for (const char byte : beginning_of(text, kMostQuoted)) {

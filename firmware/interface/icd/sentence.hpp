@@ -20,7 +20,7 @@ std::string real_text(double number);
 std::string size_text(std::uint64_t bytes);
 
 /// A sender's text for a sentence: in quotation marks, on one line, cut after 40 bytes.
-std::string in_quotes(std::string_view text);
+std::string quote_text(std::string_view text);
 
 /// Escapes a text for HTML, also for an attribute in double quotes. A newline or tab becomes a blank, another
 /// control character U+FFFD.

@@ -14,7 +14,7 @@
 namespace adit::icd {
 
 /// Without these characters at both ends.
-constexpr std::string_view trimmed(std::string_view text, std::string_view space = " \t\r\n") {
+constexpr std::string_view trim(std::string_view text, std::string_view space = " \t\r\n") {
   text.remove_prefix(std::min(text.find_first_not_of(space), text.size()));
   return text.substr(0, text.find_last_not_of(space) + 1);
 }
@@ -29,7 +29,7 @@ constexpr std::string_view cut(std::string_view& text, char end) {
 
 /// "a, b, c": the text of each item, if it has one.
 template <class Items, class TextOf = std::identity>
-std::string listed(const Items& items, TextOf text_of = {}) {
+std::string join_words(const Items& items, TextOf text_of = {}) {
   std::string list;
   for (const auto& item : items) {
     const auto& text = std::invoke(text_of, item);

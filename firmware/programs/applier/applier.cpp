@@ -27,7 +27,7 @@ Applier::Applier(loop::Loop& loop, const Options& options)
       due_(loop.timer([this] { look(); })) {}
 
 std::expected<void, std::string> Applier::start() {
-  const auto before = file_.told<network::Status>();
+  const auto before = file_.read_earlier<network::Status>();
   if (auto settled = files_.settle(); !settled) {
     network::Status status = before.value_or(network::Status{});
     status.team_interface = options_.team;
@@ -36,14 +36,14 @@ std::expected<void, std::string> Applier::start() {
     (void)file_.tell(status);  // a failure is logged
     return settled;
   }
-  change_.emplace(files_, files_.kept());
+  change_.emplace(files_, files_.confirmed_numbers());
   change_->set_endpoints(files_.endpoints());
   change_->set_interfaces(options_.team, options_.command_post);
   // Or an earlier start found the change and could not make networkd read its files.
-  const bool was_pending = before && before->pending && before->pending->wanted != files_.kept();
+  const bool was_pending = before && before->pending && before->pending->wanted != files_.confirmed_numbers();
   if (files_.found_a_change() || was_pending) {
     host::log(Level::Warning, "a change that was not confirmed was reverted");
-    change_->interrupted();
+    change_->on_interrupted();
   }
   if (!tell()) return std::unexpected("cannot write the status");
   auto folder = ADIT_TRY(host::open_requests(options_.wanted));
@@ -55,7 +55,7 @@ std::expected<void, std::string> Applier::start() {
 }
 
 void Applier::stop() {
-  if (folder_) take_word();
+  if (folder_) handle_word();
   change_->stop(loop_.now());
   tell();
   loop_.stop();
@@ -79,11 +79,11 @@ void Applier::watch_folder() {
 
 /// Reads requests before tick(), so that a confirmation that came during slow work is still in time.
 void Applier::look() {
-  if (folder_) take_requests();
+  if (folder_) handle_requests();
   change_->tick(loop_.now());
   tell();
-  if (folder_) take_probe();
-  after();
+  if (folder_) handle_probe();
+  run_after_requests();
 }
 
 /// Removes requests of an earlier boot, except requests that remain valid.
@@ -91,15 +91,15 @@ void Applier::drop_requests() {
   for (const char* name : {network::kWantedFile, network::kWordFile, network::kProbeFile}) remove(name);
 }
 
-void Applier::take_requests() {
-  if (!take_forget()) return;
-  take_endpoints();
-  take_wanted();
-  take_word();
+void Applier::handle_requests() {
+  if (!handle_forget()) return;
+  handle_endpoints();
+  handle_wanted();
+  handle_word();
 }
 
 template <class Request>
-std::optional<Request> Applier::asked(const char* name) {
+std::optional<Request> Applier::read_request(const char* name) {
   auto request = host::take_request<Request>(*folder_, name);
   if (request) return *std::move(request);
   cannot_take(request.error());
@@ -115,8 +115,8 @@ void Applier::cannot_take(const std::string& why) {
   host::log(Level::Error, "cannot take a request", {{"why", why}});
 }
 
-void Applier::take_wanted() {
-  const auto wanted = asked<network::Wanted>(network::kWantedFile);
+void Applier::handle_wanted() {
+  const auto wanted = read_request<network::Wanted>(network::kWantedFile);
   if (!wanted) return;
   host::log(Level::Notice, "change requested",
             {{"team", network::team_text(wanted->numbers)},
@@ -124,16 +124,17 @@ void Applier::take_wanted() {
   change_->want(*wanted, loop_.now());
 }
 
-void Applier::take_word() {
-  if (const auto word = asked<network::Decision>(network::kWordFile)) change_->hear(*word, loop_.now());
+void Applier::handle_word() {
+  if (const auto word = read_request<network::Decision>(network::kWordFile))
+    change_->hear(*word, loop_.now());
 }
 
-void Applier::take_probe() {
-  if (const auto probe = asked<network::Probe>(network::kProbeFile)) answer_probe(*probe);
+void Applier::handle_probe() {
+  if (const auto probe = read_request<network::Probe>(network::kProbeFile)) answer_probe(*probe);
 }
 
 /// Removes the request only after it is done, so that a power cut repeats it. False: not done.
-bool Applier::take_forget() {
+bool Applier::handle_forget() {
   const auto text = folder_->read(network::kForgetFile);
   if (text && !*text) return true;
   if (text && !forget(**text)) {
@@ -158,8 +159,8 @@ bool Applier::forget(const std::string& text) {
   return true;
 }
 
-void Applier::take_endpoints() {
-  const auto endpoints = asked<network::Endpoints>(network::kEndpointsFile);
+void Applier::handle_endpoints() {
+  const auto endpoints = read_request<network::Endpoints>(network::kEndpointsFile);
   if (!endpoints) return;
   if (const auto done = files_.lead_to(*endpoints); !done) {
     return host::log(Level::Error, "cannot set the routes to the endpoints", {{"why", done.error()}});
@@ -219,7 +220,7 @@ bool Applier::tell() {
   return true;
 }
 
-void Applier::after() {
+void Applier::run_after_requests() {
   if (const auto wake = change_->wake()) {
     due_.call_at(*wake);
   } else {

@@ -33,20 +33,20 @@ class Applier {
  private:
   void look();
   void drop_requests();
-  void take_requests();
-  void take_wanted();
-  void take_word();
-  void take_probe();
-  void take_endpoints();
-  bool take_forget();
+  void handle_requests();
+  void handle_wanted();
+  void handle_word();
+  void handle_probe();
+  void handle_endpoints();
+  bool handle_forget();
   bool forget(const std::string& text);
-  void after();
+  void run_after_requests();
   bool tell();
   void answer_probe(const network::Probe& probe);
   void seek(std::uint32_t address, network::Probed& probed) const;
   /// Reads and removes the request in a file. std::nullopt: no valid request.
   template <class Request>
-  std::optional<Request> asked(const char* name);
+  std::optional<Request> read_request(const char* name);
   void remove(const char* name);
   void cannot_take(const std::string& why);
   void watch_folder();

@@ -76,7 +76,7 @@ constexpr std::uint16_t kArpInNetworkOrder = __builtin_bswap16(ETH_P_ARP);
 /// Limit set by the length of BPF jumps.
 constexpr std::size_t kMostFiltered = 64;
 
-std::unexpected<std::string> failed(const std::string& interface, const char* doing) {
+std::unexpected<std::string> arp_error(const std::string& interface, const char* doing) {
   return std::unexpected(interface + ": " + doing + ": " + std::strerror(errno));
 }
 
@@ -128,7 +128,7 @@ std::expected<Mac, std::string> mac_of(const std::string& interface) {
   const loop::FileDescriptor any(socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   ifreq asked{};
   interface.copy(asked.ifr_name, IFNAMSIZ - 1);
-  if (ioctl(any.get(), SIOCGIFHWADDR, &asked) != 0) return failed(interface, "reading its MAC address");
+  if (ioctl(any.get(), SIOCGIFHWADDR, &asked) != 0) return arp_error(interface, "reading its MAC address");
   if (asked.ifr_hwaddr.sa_family != ARPHRD_ETHER)
     return std::unexpected(interface + ": expected an Ethernet interface");
   Mac mac{};
@@ -140,7 +140,7 @@ std::expected<ArpSocket, std::string> ArpSocket::open(const std::string& interfa
   ArpSocket arp;
   arp.interface_ = interface;
   arp.socket_ = loop::FileDescriptor(socket(AF_PACKET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
-  if (!arp.socket_) return failed(interface, "opening a socket for ARP");
+  if (!arp.socket_) return arp_error(interface, "opening a socket for ARP");
   auto mac = ADIT_TRY(mac_of(interface));
   arp.own_ = mac;
   sockaddr_ll place{};
@@ -148,7 +148,7 @@ std::expected<ArpSocket, std::string> ArpSocket::open(const std::string& interfa
   place.sll_protocol = kArpInNetworkOrder;
   place.sll_ifindex = static_cast<int>(if_nametoindex(interface.c_str()));
   if (bind(arp.socket_.get(), reinterpret_cast<const sockaddr*>(&place), sizeof place) != 0) {
-    return failed(interface, "binding a socket to it");
+    return arp_error(interface, "binding a socket to it");
   }
   arp.everybody_ = place;
   arp.everybody_.sll_halen = ETH_ALEN;
@@ -160,7 +160,7 @@ std::expected<void, std::string> ArpSocket::filter_addresses(const std::vector<s
   auto program = arp_filter(addresses);
   const sock_fprog set{static_cast<std::uint16_t>(program.size()), program.data()};
   if (setsockopt(socket_.get(), SOL_SOCKET, SO_ATTACH_FILTER, &set, sizeof set) != 0)
-    return failed(interface_, "setting the socket's filter");
+    return arp_error(interface_, "setting the socket's filter");
   return {};
 }
 
@@ -168,7 +168,7 @@ std::expected<void, std::string> ArpSocket::ask(std::uint32_t address) const {
   const auto packet = arp_probe(own_, address);
   if (sendto(socket_.get(), packet.data(), packet.size(), 0, reinterpret_cast<const sockaddr*>(&everybody_),
              sizeof everybody_) < 0) {
-    return failed(interface_, "sending an ARP request");
+    return arp_error(interface_, "sending an ARP request");
   }
   return {};
 }

@@ -48,7 +48,7 @@ std::string reason_in(std::string_view output) {
   const std::size_t at = output.find("lookup: ");
   if (at == std::string_view::npos) return "OpenSSL cannot read it";
   output.remove_prefix(at + std::string_view("lookup: ").size());
-  return std::string(icd::trimmed(icd::cut(output, '\n')));
+  return std::string(icd::trim(icd::cut(output, '\n')));
 }
 
 /// "2036-11-28" in "notAfter=2036-11-28 14:15:52Z".
@@ -63,7 +63,7 @@ std::expected<void, std::string> Certificates::work() {
   std::error_code error;
   std::filesystem::create_directories(options_.status, error);
   if (error) return std::unexpected(options_.status + ": " + error.message());
-  const auto before = file_.told<access::CertificateStatus>();
+  const auto before = file_.read_earlier<access::CertificateStatus>();
   status_ = before.value_or(access::CertificateStatus{});
   ADIT_TRY(host::answer_requests<CertificateRequest>(
       {options_.state, access::kCertificateRequestFile, access::kUploadedFile}, !before,
@@ -81,7 +81,7 @@ std::expected<void, std::string> Certificates::answer(const CertificateRequest& 
                                                       host::UntrustedFolder& folder) {
   using enum CertificateRequest::What;
   if (request.what == Take) {
-    auto uploaded = folder.take(access::kUploadedFile);
+    auto uploaded = folder.take_file(access::kUploadedFile);
     if (!uploaded) return std::unexpected(std::move(uploaded.error().why));
     if (!*uploaded) return std::unexpected("the uploaded file is gone: try again");
     return take(**uploaded);

@@ -81,7 +81,7 @@ std::string Chronyd::stop() const {
 }
 
 std::expected<void, std::string> ClockSetter::work() {
-  if (const auto before = file_.told<clock::Status>()) {
+  if (const auto before = file_.read_earlier<clock::Status>()) {
     status_ = *before;
   } else if (agrees(options_.chip, clocks_.wall())) {
     status_.source = clock::Source::Chip;
@@ -95,7 +95,7 @@ std::expected<void, std::string> ClockSetter::work() {
     const auto time = ADIT_TRY(host::take_request<clock::Request>(*folder, clock::kRequestFile));
     if (time) answer(*time);
     if (!ntp && !time) break;
-    status_.trouble = chronyd_.run_with(status_.ntp, status_.trusted());
+    status_.trouble = chronyd_.run_with(status_.ntp, status_.trusted_source());
     (void)file_.tell(status_);
   }
   return {};

@@ -89,7 +89,7 @@ std::optional<ConflictDetector::Instant> ConflictDetector::wake() const {
   return first;
 }
 
-std::vector<ConflictDetector::Conflict> ConflictDetector::taken() const {
+std::vector<ConflictDetector::Conflict> ConflictDetector::conflicts() const {
   std::vector<Conflict> all;
   for (const Own& own : own_) {
     if (own.taken) all.push_back(*own.taken);
@@ -113,7 +113,7 @@ std::vector<std::uint32_t> sought_in(const network::Status& status, const std::v
   return all;
 }
 
-ToldStatus::ToldStatus(loop::Loop& loop, std::string folder, std::function<void()> changed)
+StatusReader::StatusReader(loop::Loop& loop, std::string folder, std::function<void()> changed)
     : loop_(loop), folder_(std::move(folder)), changed_(std::move(changed)), due_(loop.timer([this] {
         watch_folder();
         changed_();
@@ -121,7 +121,7 @@ ToldStatus::ToldStatus(loop::Loop& loop, std::string folder, std::function<void(
   watch_folder();
 }
 
-void ToldStatus::watch_folder() {
+void StatusReader::watch_folder() {
   noticed_ = {};  // before its descriptor is closed
   notices_ = loop::FileDescriptor(inotify_init1(IN_NONBLOCK | IN_CLOEXEC));
   if (!notices_ || inotify_add_watch(notices_.get(), folder_.c_str(), IN_MOVED_TO) < 0)
@@ -134,7 +134,7 @@ void ToldStatus::watch_folder() {
   });
 }
 
-const network::Status& ToldStatus::read() {
+const network::Status& StatusReader::read() {
   auto read = host::read_row<network::Status>(folder_ + '/' + host::kStatusFile);
   const std::string trouble = read ? "" : read.error();
   if (std::exchange(trouble_, trouble) != trouble && !trouble.empty())
@@ -168,15 +168,15 @@ void SwappedCables::hear_at_post(const ArpPacket& packet, Instant now) {
 
 SwappedCables::Due SwappedCables::take_due(Instant now) {
   Due due{.at_team = at_team_.take_due(now), .at_post = {}};
-  const auto taken = at_team_.taken();
+  const auto taken = at_team_.conflicts();
   std::ranges::copy_if(due.at_team, std::back_inserter(due.at_post), [&taken](std::uint32_t address) {
     return std::ranges::find(taken, address, &ConflictDetector::Conflict::address) != taken.end();
   });
   return due;
 }
 
-std::vector<ConflictDetector::Conflict> SwappedCables::found(Instant now) const {
-  auto found = at_team_.taken();
+std::vector<ConflictDetector::Conflict> SwappedCables::conflicts(Instant now) const {
+  auto found = at_team_.conflicts();
   std::erase_if(found, [&](const ConflictDetector::Conflict& each) {
     const auto at_post = std::ranges::find(at_post_, each.address, &AtPost::address);
     const bool is_there =

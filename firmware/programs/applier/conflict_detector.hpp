@@ -48,7 +48,7 @@ class ConflictDetector {
   /// Time of the next take_due().
   std::optional<Instant> wake() const;
 
-  std::vector<Conflict> taken() const;
+  std::vector<Conflict> conflicts() const;
 
  private:
   struct Own {
@@ -72,11 +72,11 @@ std::vector<std::uint32_t> sought_in(const network::Status& status, const std::v
                                      const std::vector<settings::Subnet>& team);
 
 /// adit-network's status, read by another program, with notices of changes.
-class ToldStatus {
+class StatusReader {
  public:
   /// `folder`: of adit-network; may appear later. `changed` is called after each possible change. `loop` must
   /// outlive this object.
-  ToldStatus(loop::Loop& loop, std::string folder, std::function<void()> changed);
+  StatusReader(loop::Loop& loop, std::string folder, std::function<void()> changed);
 
   /// Without a status: no endpoints. If the status cannot be read: logs that once, returns the last one, and
   /// calls `changed` later.
@@ -120,7 +120,7 @@ class SwappedCables {
   std::optional<Instant> wake() const { return at_team_.wake(); }
 
   /// The Command Post's addresses seen at the team's port alone.
-  std::vector<ConflictDetector::Conflict> found(Instant now) const;
+  std::vector<ConflictDetector::Conflict> conflicts(Instant now) const;
 
  private:
   /// An address and its last sighting at its own port.

@@ -45,7 +45,7 @@ class Reader {
 
  private:
   void refuse(const std::string& name, const std::string& what) {
-    found_.errors.push_back(icd::sentence("adit/", host::escaped(name), ": ", host::escaped(what)));
+    found_.errors.push_back(icd::sentence("adit/", host::escape(name), ": ", host::escape(what)));
   }
   void refuse(const std::string& name, const std::vector<settings::Error>& errors) {
     for (const settings::Error& error : errors) refuse(name, error.sentence());
@@ -101,7 +101,7 @@ class Reader {
     if (!value) return refuse(kCardNetwork, value.error());
     const auto numbers = numbers_of(*value, *text);
     if (!numbers) return refuse(kCardNetwork, numbers.error());
-    const Settings settings = settings::in_use(counting());
+    const Settings settings = settings::effective_settings(counting());
     const auto findings = network::check(*numbers, std::nullopt,
                                          {.allow_overlap = settings.network.allow_overlap,
                                           .confirm_within = settings.network.confirm_within,
@@ -143,7 +143,7 @@ class Reader {
     for (std::string& each : known) each += settings::kTokenEnding;
     if (std::ranges::find(known, file) == known.end())
       return refuse(name,
-                    icd::sentence("unknown name; expected one of ", icd::listed(known), ", ", kCardCode));
+                    icd::sentence("unknown name; expected one of ", icd::join_words(known), ", ", kCardCode));
     const auto text = text_of(folder, file, name);
     if (!text) return;
     auto token = icd::BearerToken::parse_file(*text);
@@ -229,7 +229,7 @@ std::string said_of(const Found& found, bool lasting) {
     }
   }
   for (const std::string& name : found.left_alone) {
-    text += icd::sentence("adit/", host::escaped(name), ": ignored; Adit reads ", kCardSettings, ", ",
+    text += icd::sentence("adit/", host::escape(name), ": ignored; Adit reads ", kCardSettings, ", ",
                           kCardNetwork, " and ", kCardSecrets, "/*", settings::kTokenEnding, "\n");
   }
   return text;

@@ -80,12 +80,12 @@ class AddressWatch {
   static void ask(const Side& side, const std::vector<std::uint32_t>& addresses);
   static void say(Side& side, Instant now);
   void tell(Instant now);
-  network::AddressConflicts taken(Instant now) const;
+  network::AddressConflicts conflicts(Instant now) const;
 
   loop::Loop& loop_;
   std::array<Side, 2> sides_;
   SwappedCables exchanged_;
-  ToldStatus told_;
+  StatusReader told_;
   host::StatusFile file_;
   std::optional<Instant> written_at_;
   const loop::FileDescriptor kernel_;
@@ -245,7 +245,7 @@ void AddressWatch::ask(const Side& side, const std::vector<std::uint32_t>& addre
 
 /// Logs conflicts at most once per kBetweenLines, so that a machine cannot fill the log by coming and going.
 void AddressWatch::say(Side& side, Instant now) {
-  const auto taken = side.takers.taken();
+  const auto taken = side.takers.conflicts();
   const auto is_taken = [&taken](std::uint32_t address) {
     return std::ranges::find(taken, address, &ConflictDetector::Conflict::address) != taken.end();
   };
@@ -266,17 +266,17 @@ void AddressWatch::say(Side& side, Instant now) {
 void AddressWatch::tell(Instant now) {
   if (written_at_ && now < *written_at_ + kBetweenTellings) return;
   written_at_.reset();
-  const auto is_written = file_.tell(taken(now));
+  const auto is_written = file_.tell(conflicts(now));
   if (!is_written || *is_written) written_at_ = now;
 }
 
-network::AddressConflicts AddressWatch::taken(Instant now) const {
+network::AddressConflicts AddressWatch::conflicts(Instant now) const {
   network::AddressConflicts all;
   for (const Side& side : sides_) {
-    for (const ConflictDetector::Conflict& each : side.takers.taken())
+    for (const ConflictDetector::Conflict& each : side.takers.conflicts())
       all.addresses.push_back(row_of(side.interface, each));
   }
-  for (const ConflictDetector::Conflict& each : exchanged_.found(now))
+  for (const ConflictDetector::Conflict& each : exchanged_.conflicts(now))
     all.exchanged.push_back(row_of(sides_.front().interface, each));
   return all;
 }
@@ -298,7 +298,7 @@ int watch(const adit::applier::Options& options) {
   const auto interrupted = loop.signal(SIGINT, [&loop] { loop.stop(); });
   if (!is_well(watch.start())) return 1;
   std::optional<adit::loop::Watchdog> watchdog;
-  if (const auto within = adit::host::watchdog_within())
+  if (const auto within = adit::host::watchdog_interval())
     watchdog.emplace(loop, *within, &adit::host::notify_alive);
   adit::host::notify_ready("listening");
   loop.run();

@@ -51,7 +51,7 @@ class NetworkdFiles final : public network::NumbersSetter {
   /// a box without addresses cannot be reached.
   std::expected<void, std::string> write_at_start();
   /// The confirmed numbers, or the factory ones.
-  const std::optional<network::Numbers>& kept() const { return kept_; }
+  const std::optional<network::Numbers>& confirmed_numbers() const { return kept_; }
   const network::Endpoints& endpoints() const { return endpoints_; }
   /// Whether settle() found an unconfirmed change.
   bool found_a_change() const { return found_a_change_; }

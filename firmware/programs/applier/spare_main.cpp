@@ -42,7 +42,7 @@ class SpareKeeper {
   /// Answers all requests, then returns. Error: its own directory is unusable, or a request cannot be
   /// removed. Requests from before the boot are dropped, because their senders have seen them fail.
   std::expected<void, std::string> work() {
-    const auto before = file_.told<spare::StickStatus>();
+    const auto before = file_.read_earlier<spare::StickStatus>();
     status_ = before.value_or(spare::StickStatus{});
     if (!status_.doing.empty()) status_.refusal = "the last action was interrupted: try again";
     status_.doing.clear();
@@ -63,7 +63,7 @@ class SpareKeeper {
     status_.written.clear();
     status_.refusal = request.what == spare::StickRequest::What::Write
                           ? write(request.name, take_export(folder))
-                          : take(request.name);
+                          : import_export(request.name);
     status_.doing.clear();
     if (!status_.refusal.empty()) host::log(Level::Warning, "request rejected", {{"why", status_.refusal}});
     look();  // the stick may have changed
@@ -77,7 +77,7 @@ class SpareKeeper {
     if (!media) return media.error();
     const auto medium = spare::medium_for(*media, bytes->size());
     if (!medium) return medium.error();
-    doing("writing");
+    set_action("writing");
     std::string why = write_to(*medium, name, *bytes);
     // Unmounts after an error as well, because the stick may be pulled out.
     const auto done = sticks_.remount(medium->name, Mode::ReadOnly);
@@ -85,7 +85,7 @@ class SpareKeeper {
       return "the stick was removed before the export was complete: insert it again";
     if (!why.empty()) return why;
     if (!done) return done.error();
-    doing("checking");
+    set_action("checking");
     why = check(*medium, name, *bytes);
     if (why.empty()) {
       status_.written = name;
@@ -111,8 +111,8 @@ class SpareKeeper {
     return "the export on the stick differs from the written bytes: use another stick";
   }
 
-  std::string take(const std::string& name) {
-    doing("reading");
+  std::string import_export(const std::string& name) {
+    set_action("reading");
     const auto folder = sticks_.folder_with(name);
     if (!folder) return folder.error();
     const auto bytes = read_export(*folder, name);
@@ -122,7 +122,7 @@ class SpareKeeper {
     return kept ? "" : kept.error();
   }
 
-  void doing(const char* what) {
+  void set_action(const char* what) {
     status_.doing = what;
     tell();
   }

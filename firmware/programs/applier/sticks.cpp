@@ -30,7 +30,7 @@ FileDescriptor open_folder(const std::string& path) {
   return FileDescriptor(open(path.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
 }
 
-std::unexpected<std::string> failed(const std::string& name, int error) {
+std::unexpected<std::string> stick_error(const std::string& name, int error) {
   std::string why = host::trouble(name, error);
   if (error == ENOSPC || error == EDQUOT) why = "the stick is full";
   if (error == EROFS) why = "the stick is write-protected, or its file system is damaged";
@@ -68,23 +68,23 @@ bool is_plain_file(const std::string& path) {
 std::expected<void, std::string> write_export(const std::string& folder, const std::string& name,
                                               const std::string& bytes) {
   const FileDescriptor in = open_folder(folder);
-  if (!in) return failed("the stick", errno);
+  if (!in) return stick_error("the stick", errno);
   unlinkat(in.get(), kUnfinished, 0);
   const int error = put(in.get(), name, bytes);
   if (error == 0) return {};
   unlinkat(in.get(), kUnfinished, 0);
-  return failed(name, error);
+  return stick_error(name, error);
 }
 
 std::expected<std::string, std::string> read_export(const std::string& folder, const std::string& name) {
   const FileDescriptor in = open_folder(folder);
   const FileDescriptor file =
       in ? loop::open_regular(name, O_RDONLY | O_NOFOLLOW, in.get()) : FileDescriptor();
-  if (!file) return failed(name, errno);
+  if (!file) return stick_error(name, errno);
   auto bytes = loop::read_all(file, spare::kLargestExport);
   if (bytes) return std::move(*bytes);
   if (bytes.error() == EFBIG) return std::unexpected(name + ": the file is larger than an export may be");
-  return failed(name, bytes.error());
+  return stick_error(name, bytes.error());
 }
 
 bool Sticks::is_in(const std::string& name) const {

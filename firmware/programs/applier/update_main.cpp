@@ -51,7 +51,8 @@ class BundleFile {
   /// Takes a file out of a directory in which another user writes. The file has no name afterwards, belongs
   /// to this user and is open for writing in no process. After an error the file is still removed, if
   /// possible.
-  static std::expected<BundleFile, std::string> take(host::UntrustedFolder& folder, const std::string& name);
+  static std::expected<BundleFile, std::string> take_file(host::UntrustedFolder& folder,
+                                                          const std::string& name);
   /// Opens a file on a read-only file system.
   static std::expected<BundleFile, std::string> open(const std::string& path);
 
@@ -109,7 +110,7 @@ class Updater {
   void answer(const update::Request& request, host::UntrustedFolder& folder);
   /// "", or why it failed.
   std::string install(const std::expected<BundleFile, std::string>& file, bool again);
-  std::string give_up_other();
+  std::string abandon_spare_slot();
   std::string write(const BundleFile& file, const update::Bundle& bundle);
   std::string restart();
   std::string go_back();
@@ -182,8 +183,8 @@ std::expected<void, std::string> make_ours(const loop::FileDescriptor& file, con
   return {};
 }
 
-std::expected<BundleFile, std::string> BundleFile::take(host::UntrustedFolder& folder,
-                                                        const std::string& name) {
+std::expected<BundleFile, std::string> BundleFile::take_file(host::UntrustedFolder& folder,
+                                                             const std::string& name) {
   const std::string path = folder.path_by_descriptor() + '/' + name;
   auto file = open_plain(path, name);
   const auto gone = folder.remove(name);
@@ -311,7 +312,7 @@ std::vector<Candidate> candidates(const std::string& sticks, const std::string& 
   for (const std::string& stick : all.value_or(std::vector<std::string>())) {
     const std::string folder = sticks + '/' + stick;
     const auto names = host::names_in(folder, Sticks::kMostAtTop);
-    if (!names) trouble = host::escaped(stick) + ": " + names.error();
+    if (!names) trouble = host::escape(stick) + ": " + names.error();
     for (const std::string& name : names.value_or(std::vector<std::string>())) {
       if (update::is_bundle_name(name)) found.push_back({folder, name, update::promise_of(name, compatible)});
     }
@@ -342,7 +343,7 @@ OnStick look_at_sticks(const std::string& folder, const Rauc& rauc, const update
   for (const Candidate& candidate : candidates(folder, running.compatible, found.trouble)) {
     const auto offer = checked_offer(candidate, rauc, running);
     if (!offer) {
-      found.trouble = host::escaped(candidate.name) + ": " + offer.error();
+      found.trouble = host::escape(candidate.name) + ": " + offer.error();
     } else if (!found.offer ||
                *update::Version::parse(found.offer->version) < *update::Version::parse(offer->version)) {
       found.offer = *offer;
@@ -360,7 +361,7 @@ constexpr std::chrono::seconds kRestart{30};
 constexpr const char* kNotKept = "cannot store the state of the update";
 
 std::expected<void, std::string> Updater::work() {
-  const auto before = file_.told<update::Status>();
+  const auto before = file_.read_earlier<update::Status>();
   if (before) status_.nonce = before->nonce;
   boot_ = host::boot();
   find_out();
@@ -387,7 +388,7 @@ void Updater::find_out() {
   const auto read = load_last_update(options_.state);
   const update::LastUpdate kept =  // not saved: the next update replaces an unreadable one
       read ? *read : update::LastUpdate{.stage = Stage::Failed, .why = read.error()};
-  update::LastUpdate last_update = running ? update::settled(kept, status_.running, boot_) : kept;
+  update::LastUpdate last_update = running ? update::settle_update(kept, status_.running, boot_) : kept;
   if (last_update.stage == Stage::Left && kept.stage != Stage::Left) {
     host::log_failure(Level::Error, "cannot stop the boot loader from starting the failed update again",
                       rauc_.disable_other_slot());
@@ -417,7 +418,7 @@ void Updater::answer(const update::Request& request, host::UntrustedFolder& fold
   status_.nonce = request.nonce;
   status_.refusal.clear();
   if (request.what == What::Install) {
-    status_.refusal = install(BundleFile::take(folder, update::kBundleFile), request.again);
+    status_.refusal = install(BundleFile::take_file(folder, update::kBundleFile), request.again);
   } else if (request.what == What::Restart) {
     status_.refusal = restart();
   } else if (request.what == What::Back) {
@@ -453,7 +454,7 @@ std::string Updater::install(const std::expected<BundleFile, std::string>& file,
 
 /// Gives up the content of the slot to be written: go_back() is no longer possible, and it is not the next
 /// slot to start. If the slot is next afterwards, RAUC has written all of it.
-std::string Updater::give_up_other() {
+std::string Updater::abandon_spare_slot() {
   const auto proven = load_proven(options_.state);
   const bool may_be_other = !proven || proven->slot == status_.running.other;
   if (may_be_other && !save(options_.state, update::Proven{})) return kNotKept;
@@ -467,7 +468,7 @@ std::string Updater::give_up_other() {
 std::string Updater::write(const BundleFile& file, const update::Bundle& bundle) {
   update::LastUpdate last_update{
       .stage = Stage::Installing, .version = bundle.version, .slot = status_.running.other, .boot = boot_};
-  if (std::string why = give_up_other(); !why.empty()) return why;
+  if (std::string why = abandon_spare_slot(); !why.empty()) return why;
   // Without this file the slot would not be on trial.
   if (!save(options_.state, last_update)) return kNotKept;
   status_.doing = "installing";
@@ -481,7 +482,7 @@ std::string Updater::write(const BundleFile& file, const update::Bundle& bundle)
   last_update.stage = installed ? Stage::Installed : Stage::Failed;
   last_update.why = installed ? "" : installed.error();
   if (!installed) {  // RAUC continues if its client died or took too long; status() waits for its end
-    if (const auto ended = rauc_.status()) last_update = update::settled(last_update, *ended, boot_);
+    if (const auto ended = rauc_.status()) last_update = update::settle_update(last_update, *ended, boot_);
   }
   tell_of(last_update);
   return last_update.why;

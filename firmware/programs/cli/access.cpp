@@ -12,7 +12,7 @@ std::string tokens_text(const std::vector<api::TokenRow>& tokens, bool colour) {
     table.add({{name, Tone::Strong},
                {set ? "set" : "not set", set ? Tone::Good : Tone::Warning},
                {warning, Tone::Warning}});
-  return table.written(colour);
+  return table.to_text(colour);
 }
 
 namespace {
@@ -33,7 +33,8 @@ Result<Outcome> change_token(const Call& call, const Value& token, const std::st
 /// `what`: "the operator's present password".
 Result<std::string> read_password(const Console& console, const std::string& what) {
   const auto text = console.read_secret(what + ": ");
-  if (!text) return failed(what + " is missing: type it at a terminal, or pipe a line for each into adit");
+  if (!text)
+    return to_failure(what + " is missing: type it at a terminal, or pipe a line for each into adit");
   return *text;
 }
 
@@ -41,7 +42,7 @@ Result<std::string> read_password(const Console& console, const std::string& wha
 Result<std::string> read_new_password(const Call& call, const std::string& role) {
   auto password = ADIT_TRY(read_password(call.console, "new password of the " + role));
   const auto again = ADIT_TRY(read_password(call.console, "the new password again"));
-  if (again != password) return failed("the two new passwords differ; the password was not changed");
+  if (again != password) return to_failure("the two new passwords differ; the password was not changed");
   return password;
 }
 
@@ -53,7 +54,7 @@ Result<bool> is_first_start(const Adit& adit) {
   const codec::Field root(session, reading);
   const bool first_start = root.member("first_start").truth();
   const auto outcome = reading.outcome(first_start);
-  if (!outcome) return failed(outcome.error().sentence);
+  if (!outcome) return to_failure(outcome.error().sentence);
   return *outcome;
 }
 
@@ -75,7 +76,7 @@ Result<Outcome> show_tokens(const Call& call) {
   Value::Array tokens;
   for (const auto& [name, set, warning] : setup.row.tokens)
     tokens.push_back({Value::Object{{"name", {name}}, {"set", {set}}, {"warning", {warning}}}});
-  return printed(call, codec::write_json({tokens}), tokens_text(setup.row.tokens, call.console.colour));
+  return print_result(call, codec::write_json({tokens}), tokens_text(setup.row.tokens, call.console.colour));
 }
 
 Result<Outcome> set_token(const Call& call) {
@@ -85,7 +86,7 @@ Result<Outcome> set_token(const Call& call) {
     token = ADIT_TRY(read_token(call.console, "token " + name + ": "));
   } else {
     auto read = token_in_file(file);
-    if (!read) return failed(read.error());
+    if (!read) return to_failure(read.error());
     token = std::move(read->token);
   }
   return change_token(call, {token->reveal()}, "token " + name + " is set\n");

@@ -45,8 +45,8 @@ int wait_for(int fd, short events, Clock::time_point deadline) {
 }
 
 /// The whole answer, or an error.
-std::expected<HttpReply, std::string> exchanged(int fd, uplink::Exchange& exchange,
-                                                Clock::time_point deadline) {
+std::expected<HttpReply, std::string> run_exchange(int fd, uplink::Exchange& exchange,
+                                                   Clock::time_point deadline) {
   while (true) {
     if (exchange.wants_to_write())
       exchange.write(fd);  // after a write error, the peer's answer may still tell the reason
@@ -70,8 +70,8 @@ uplink::Endpoint endpoint_of(const settings::Address& address) {
   return {.address = address.address, .port = address.port, .interface = ""};
 }
 
-std::expected<loop::FileDescriptor, std::string> connected(const uplink::Endpoint& endpoint,
-                                                           Clock::time_point deadline) {
+std::expected<loop::FileDescriptor, std::string> connect_to(const uplink::Endpoint& endpoint,
+                                                            Clock::time_point deadline) {
   auto fd = uplink::begin_connect(endpoint);
   if (!fd) return std::unexpected(fd.error().why);
   int error = wait_for(fd->get(), POLLOUT, deadline);
@@ -81,7 +81,7 @@ std::expected<loop::FileDescriptor, std::string> connected(const uplink::Endpoin
 }
 
 std::string cannot_reach(const settings::Address& address, const std::string& why) {
-  return "cannot reach Adit at " + written(address) + ": " + why;
+  return "cannot reach Adit at " + to_text(address) + ": " + why;
 }
 
 }  // namespace
@@ -107,10 +107,10 @@ std::expected<HttpReply, NoReply> http_ask(const settings::Address& address, con
                                            uplink::Request request, std::chrono::milliseconds within) {
   const auto deadline = Clock::now() + within;
   const uplink::Endpoint endpoint = endpoint_of(address);
-  const auto fd = connected(endpoint, deadline);
+  const auto fd = connect_to(endpoint, deadline);
   if (!fd) return std::unexpected(NoReply{cannot_reach(address, fd.error()), false});
   uplink::Exchange exchange(endpoint, token, std::move(request));
-  auto reply = exchanged(fd->get(), exchange, deadline);
+  auto reply = run_exchange(fd->get(), exchange, deadline);
   if (!reply) return std::unexpected(NoReply{cannot_reach(address, reply.error()), true});
   return std::move(*reply);
 }
@@ -121,7 +121,7 @@ std::expected<std::unique_ptr<HttpStream>, std::string> HttpStream::ask(const se
                                                                         std::chrono::milliseconds within) {
   const auto deadline = Clock::now() + within;
   const uplink::Endpoint endpoint = endpoint_of(address);
-  auto fd = connected(endpoint, deadline);
+  auto fd = connect_to(endpoint, deadline);
   if (!fd) return std::unexpected(cannot_reach(address, fd.error()));
   auto stream = std::make_unique<HttpStream>(*std::move(fd), endpoint, token, std::move(request));
   while (stream->exchange_.wants_to_write()) {
@@ -190,7 +190,7 @@ std::expected<std::string, std::string> address_of(const std::string& interface,
 }
 
 /// The option's value, or else the environment variable's, or "".
-std::string given(const std::string& option, const char* name) {
+std::string option_or_environment(const std::string& option, const char* name) {
   return option.empty() ? variable(name) : option;
 }
 
@@ -205,7 +205,7 @@ std::expected<settings::Address, std::string> address_in(const std::string& file
 }
 
 /// The address of the host. IPv4 first, because link-local addresses of IPv6 need an interface.
-std::expected<settings::Address, std::string> resolved(const settings::Address& address) {
+std::expected<settings::Address, std::string> resolve(const settings::Address& address) {
   if (is_numeric(address.address)) return address;
   std::string why;
   for (const int family : {AF_INET, AF_INET6}) {
@@ -233,7 +233,7 @@ struct Named {
 
 std::expected<Named, std::string> named_by(const Options& options) {
   const bool file_named = options.settings != kGivenSettings;
-  const std::string at = file_named ? options.at : given(options.at, "ADIT_AT");
+  const std::string at = file_named ? options.at : option_or_environment(options.at, "ADIT_AT");
   if (at.empty() && file_named) return Named{};
   const auto contexts = ADIT_TRY(load_contexts(contexts_file()));
   const Context* const context = contexts.find(at.empty() ? contexts.current : at);
@@ -245,7 +245,7 @@ std::expected<settings::Address, std::string> address_of(const Options& options,
   if (!named.at.empty()) {
     const auto address = parse_location(named.at);
     if (!address) return std::unexpected(named.source + address.error());
-    return resolved(*address);
+    return resolve(*address);
   }
   const bool file_named = options.settings != kGivenSettings;
   const bool is_saved = !file_named && host::may_exist(options.saved_settings);
@@ -254,21 +254,22 @@ std::expected<settings::Address, std::string> address_of(const Options& options,
 }
 
 Result<Token> token_of(const Options& options, const Console& console, const Named& named) {
-  const std::string file = given(options.token_file, "ADIT_TOKEN_FILE"), text = variable("ADIT_TOKEN");
+  const std::string file = option_or_environment(options.token_file, "ADIT_TOKEN_FILE"),
+                    text = variable("ADIT_TOKEN");
   if (file == "-") return Token{ADIT_TRY(read_token(console, "token: ")), "the input"};
   if (file.empty() && (!text.empty() || named.context)) {
     auto token = icd::BearerToken::parse(text.empty() ? named.context->token : text);
     const std::string source = text.empty() ? "context " + named.context->name : "ADIT_TOKEN";
-    if (!token) return failed(source + ": expected a token of 1 to 256 visible ASCII characters");
+    if (!token) return to_failure(source + ": expected a token of 1 to 256 visible ASCII characters");
     return Token{*std::move(token), source};
   }
   const std::vector<std::string> folders = {options.saved_secrets, options.secrets};
   auto token = find_token(file, folders);
-  if (!token) return failed(token.error());
+  if (!token) return to_failure(token.error());
   if (*token) return std::move(**token);
-  return failed("cannot read a token in " + options.saved_secrets + " or " + options.secrets +
-                ": set the team's token on the page, run adit as root, name a token file by --token-file "
-                "FILE, or save the token once by adit login");
+  return to_failure("cannot read a token in " + options.saved_secrets + " or " + options.secrets +
+                    ": set the team's token on the page, run adit as root, name a token file by --token-file "
+                    "FILE, or save the token once by adit login");
 }
 
 /// For an answer other than 200.
@@ -278,7 +279,7 @@ Failure failure_of(const Adit& adit, const HttpReply& reply) {
   const std::string sentence = sentence_in(reply.body);
   if (sentence.empty())
     return {Exit::Unable,
-            "the server at " + written(adit.address) + " is not Adit, or is another version (HTTP status " +
+            "the server at " + to_text(adit.address) + " is not Adit, or is another version (HTTP status " +
                 std::to_string(reply.status) + ")",
             reply.status};
   const bool decided =
@@ -288,13 +289,13 @@ Failure failure_of(const Adit& adit, const HttpReply& reply) {
 
 Result<std::string> body_of(const Adit& adit, std::expected<HttpReply, NoReply> reply,
                             const std::string& if_sent) {
-  if (!reply) return failed(reply.error().sentence + (reply.error().sent ? if_sent : ""));
+  if (!reply) return to_failure(reply.error().sentence + (reply.error().sent ? if_sent : ""));
   if (reply->status != kOk && reply->status != kAccepted) return std::unexpected(failure_of(adit, *reply));
   return std::move(reply->body);
 }
 
 std::unexpected<Failure> not_understood(const Adit& adit, const std::string& why) {
-  return failed("cannot read the answer of Adit at " + written(adit.address) + ": " + why);
+  return to_failure("cannot read the answer of Adit at " + to_text(adit.address) + ": " + why);
 }
 
 }  // namespace
@@ -341,7 +342,7 @@ std::expected<settings::Address, std::string> parse_location(std::string_view te
       std::string(text) + "'");
 }
 
-std::string written(const settings::Address& address) {
+std::string to_text(const settings::Address& address) {
   return uplink::authority_of(endpoint_of(address));
 }
 
@@ -358,23 +359,23 @@ std::expected<settings::Address, std::string> reach(const settings::Team& team) 
   return address;
 }
 
-std::unexpected<Failure> failed(std::string sentence, Exit exit) {
+std::unexpected<Failure> to_failure(std::string sentence, Exit exit) {
   return std::unexpected(Failure{exit, std::move(sentence)});
 }
 
 Result<icd::BearerToken> read_token(const Console& console, const std::string& question) {
   const auto text = console.read_secret(question);
-  if (!text) return failed("no token was given: type it at a terminal, or pipe it into adit");
-  auto token = icd::BearerToken::parse(icd::trimmed(*text));
-  if (!token) return failed("expected a token of 1 to 256 visible ASCII characters");
+  if (!text) return to_failure("no token was given: type it at a terminal, or pipe it into adit");
+  auto token = icd::BearerToken::parse(icd::trim(*text));
+  if (!token) return to_failure("expected a token of 1 to 256 visible ASCII characters");
   return *std::move(token);
 }
 
 Result<Adit> adit_of(const Options& options, const Console& console) {
   const auto named = named_by(options);
-  if (!named) return failed(named.error());
+  if (!named) return to_failure(named.error());
   const auto address = address_of(options, *named);
-  if (!address) return failed(address.error());
+  if (!address) return to_failure(address.error());
   return Adit{*address, ADIT_TRY(token_of(options, console, *named))};
 }
 
@@ -395,7 +396,7 @@ std::string sentence_in(const std::string& body) {
   return sentence == nullptr ? "" : *sentence;
 }
 
-Result<void> read_into(const Adit& adit, const Result<codec::Value>& answer, const codec::Kind& kind,
+Result<void> read_into(const Adit& adit, const Result<codec::Value>& answer, const codec::RowKind& kind,
                        void* row) {
   if (!answer) return std::unexpected(answer.error());
   codec::Reading reading;
@@ -411,13 +412,13 @@ Result<codec::Value> json_in(const Adit& adit, std::string_view body) {
   return *std::move(value);
 }
 
-Outcome printed(const Call& call, const std::string& json, const std::string& text, Exit exit) {
+Outcome print_result(const Call& call, const std::string& json, const std::string& text, Exit exit) {
   return {exit, call.options.json ? json + '\n' : text, ""};
 }
 
 Result<Outcome> act(const Call& call, Post action, const std::string& done) {
   const auto answer = ADIT_TRY(post(call.adit, std::move(action)));
-  return printed(call, answer, done);
+  return print_result(call, answer, done);
 }
 
 Outcome act_on_each(const Call& call, const std::function<Result<Outcome>(std::int64_t number)>& act_on) {
@@ -436,20 +437,20 @@ Outcome act_on_each(const Call& call, const std::function<Result<Outcome>(std::i
 Result<void> confirm(const Options& options, const Console& console, const std::string& why,
                      const std::string& question, const std::string& undone) {
   if (options.yes) return {};
-  const auto meant = console.ask(host::escaped(why) + '\n' + question);
-  if (!meant) return failed(why + " It was not done; to do it, add --yes", Exit::Attention);
-  if (!*meant) return failed(undone, Exit::Attention);
+  const auto meant = console.ask(host::escape(why) + '\n' + question);
+  if (!meant) return to_failure(why + " It was not done; to do it, add --yes", Exit::Attention);
+  if (!*meant) return to_failure(undone, Exit::Attention);
   return {};
 }
 
 Result<void> write_to(const std::string& file, const std::string& content) {
   std::ofstream stream(file, std::ios::binary);
-  if (!stream || !(stream << content).flush()) return failed(file + ": cannot be written");
+  if (!stream || !(stream << content).flush()) return to_failure(file + ": cannot be written");
   return {};
 }
 
 Outcome unable(const Failure& failure) {
-  return {failure.exit, "", "adit: " + host::escaped(failure.sentence) + '\n'};
+  return {failure.exit, "", "adit: " + host::escape(failure.sentence) + '\n'};
 }
 
 }  // namespace adit::cli

@@ -53,7 +53,7 @@ std::expected<settings::Address, std::string> parse_address(std::string_view tex
 /// The same; also a host's name ("adit.local:8000"), or a URL of a page ("http://adit.local/setup"), whose
 /// default port is 80.
 std::expected<settings::Address, std::string> parse_location(std::string_view text);
-std::string written(const settings::Address& address);
+std::string to_text(const settings::Address& address);
 
 /// The address of an Adit with these settings, from this machine. If it listens at all addresses of
 /// team.interface, returns one of them, because a socket bound to the interface does not answer on loopback.
@@ -129,7 +129,7 @@ struct Failure {
 template <class T>
 using Result = std::expected<T, Failure>;
 
-std::unexpected<Failure> failed(std::string sentence, Exit exit = Exit::Unable);
+std::unexpected<Failure> to_failure(std::string sentence, Exit exit = Exit::Unable);
 
 /// Context of a command that asks Adit.
 struct Call {
@@ -157,7 +157,7 @@ std::string sentence_in(const std::string& body);
 
 Result<codec::Value> json_in(const Adit& adit, std::string_view body);
 /// Reads the answer into a row of that kind. Error: not an answer of this Adit.
-Result<void> read_into(const Adit& adit, const Result<codec::Value>& answer, const codec::Kind& kind,
+Result<void> read_into(const Adit& adit, const Result<codec::Value>& answer, const codec::RowKind& kind,
                        void* row);
 
 /// Adit's answer as JSON, and as a row or rows.
@@ -167,7 +167,7 @@ struct Fetched {
   Row row = {};
 };
 template <class Row>
-Result<Fetched<Row>> told(const Adit& adit, Result<std::string> json) {
+Result<Fetched<Row>> read_row_of(const Adit& adit, Result<std::string> json) {
   if (!json) return std::unexpected(std::move(json.error()));
   Fetched<Row> told{*std::move(json)};
   ADIT_TRY(read_into(adit, json_in(adit, told.json), codec::kind_of<Row>, &told.row));
@@ -175,7 +175,7 @@ Result<Fetched<Row>> told(const Adit& adit, Result<std::string> json) {
 }
 template <class Row>
 Result<Fetched<Row>> fetch(const Adit& adit, const std::string& target) {
-  return told<Row>(adit, get(adit, target));
+  return read_row_of<Row>(adit, get(adit, target));
 }
 
 /// Time limit and interval of questions for an action's outcome.
@@ -193,13 +193,14 @@ Result<Fetched<Row>> fetch_until(const Adit& adit, const std::string& target, co
     auto answer = fetch<Row>(adit, target);
     if (answer ? is_over(answer->row) : !waiting.may_be_away) return answer;
     if (std::chrono::steady_clock::now() >= end)
-      return answer ? Result<Fetched<Row>>(failed(waiting.late)) : answer;
+      return answer ? Result<Fetched<Row>>(to_failure(waiting.late)) : answer;
     std::this_thread::sleep_for(waiting.every);
   }
 }
 
 /// With --json `json` (without its newline), else `text`.
-Outcome printed(const Call& call, const std::string& json, const std::string& text, Exit exit = Exit::Fine);
+Outcome print_result(const Call& call, const std::string& json, const std::string& text,
+                     Exit exit = Exit::Fine);
 
 /// Shows a row of Adit's. The exit status is 1 unless `is_fine`.
 template <class Row>
@@ -207,8 +208,8 @@ Result<Outcome> show(
     const Call& call, const std::string& target, std::string (*text_of)(const Row& row, bool colour),
     bool (*is_fine)(const Row& row) = [](const Row& /*row*/) { return true; }) {
   const auto answer = ADIT_TRY(fetch<Row>(call.adit, target));
-  return printed(call, answer.json, text_of(answer.row, call.console.colour),
-                 is_fine(answer.row) ? Exit::Fine : Exit::Attention);
+  return print_result(call, answer.json, text_of(answer.row, call.console.colour),
+                      is_fine(answer.row) ? Exit::Fine : Exit::Attention);
 }
 
 /// Executes an action, and prints Adit's JSON or `done`.

@@ -73,7 +73,7 @@ Result<void> read_numbers(std::span<const std::string> words, network::Numbers& 
     std::string_view rest = word;
     const std::string_view name = icd::cut(rest, '=');
     const auto wrong = [&](const char* expected) {
-      return failed(icd::sentence(name, "=: expected ", expected, ", got '", rest, "'"));
+      return to_failure(icd::sentence(name, "=: expected ", expected, ", got '", rest, "'"));
     };
     if (name == "team") {
       const auto mode = std::ranges::find(network::kModeWords, rest);
@@ -88,14 +88,14 @@ Result<void> read_numbers(std::span<const std::string> words, network::Numbers& 
       while (!rest.empty()) {
         const auto subnet = settings::parse_subnet(std::string(icd::cut(rest, ',')));
         if (!subnet)
-          return failed("command_post=: expected addresses as 10.100.2.10/24, separated by commas");
+          return to_failure("command_post=: expected addresses as 10.100.2.10/24, separated by commas");
         numbers.command_post.push_back(*subnet);
       }
     } else if (name == "gateway") {
       numbers.gateway = settings::ipv4_of(std::string(rest));
       if (!rest.empty() && !numbers.gateway) return wrong("an IPv4 address, or no value for no gateway");
     } else {
-      return failed("'" + word + "': expected team=, command_post= or gateway=");
+      return to_failure("'" + word + "': expected team=, command_post= or gateway=");
     }
   }
   return {};
@@ -110,10 +110,10 @@ Result<Outcome> change_network(const Call& call) {
                           .command_post = now.command_post,
                           .gateway = now.gateway};
   ADIT_TRY(read_numbers(call.options.arguments, wanted));
-  const auto changed = ADIT_TRY(told<api::NetworkView>(
+  const auto changed = ADIT_TRY(read_row_of<api::NetworkView>(
       call.adit,
       post(call.adit, {.target = "/adit/network", .check = "adit network", .body = codec::to_json(wanted)})));
-  return printed(call, changed.json, text_of(changed.row, call.console.colour));
+  return print_result(call, changed.json, text_of(changed.row, call.console.colour));
 }
 
 Result<Outcome> decide_on_network(const Call& call) {
@@ -122,11 +122,11 @@ Result<Outcome> decide_on_network(const Call& call) {
   const auto told = fetch_until<api::NetworkView>(call.adit, "/adit/network", kConfirming,
                                                   [](const api::NetworkView& view) { return !view.pending; });
   // After a revert, the box may no longer have the address that was asked.
-  if (!told && !confirms) return printed(call, "{}", "the box is returning to the old addresses\n");
+  if (!told && !confirms) return print_result(call, "{}", "the box is returning to the old addresses\n");
   if (!told) return std::unexpected(told.error());
   const api::NetworkView& view = told->row;
   const bool done = view.last == (confirms ? "confirmed" : "reverted");
-  return printed(
+  return print_result(
       call, told->json,
       line("the change is ", view.last, done || view.last_why.empty() ? "" : ": ", done ? "" : view.last_why),
       done ? Exit::Fine : Exit::Attention);
@@ -227,13 +227,13 @@ bool is_fine(const UpdateView& view) {
 
 Result<std::string> read_bundle(const std::string& path) {
   std::ifstream file(path, std::ios::binary | std::ios::ate);
-  if (!file) return failed(path + ": cannot be read");
+  if (!file) return to_failure(path + ": cannot be read");
   const auto length = static_cast<std::streamoff>(file.tellg());
-  if (length <= 0) return failed(path + ": is empty, or not a file");
-  if (std::cmp_greater(length, update::kLargestBundle)) return failed(path + ": too large for an update");
+  if (length <= 0) return to_failure(path + ": is empty, or not a file");
+  if (std::cmp_greater(length, update::kLargestBundle)) return to_failure(path + ": too large for an update");
   std::string bytes(static_cast<std::size_t>(length), '\0');
   file.seekg(0);
-  if (!file.read(bytes.data(), length)) return failed(path + ": cannot be read");
+  if (!file.read(bytes.data(), length)) return to_failure(path + ": cannot be read");
   return bytes;
 }
 
@@ -251,7 +251,7 @@ Result<Outcome> follow(const Call& call) {
         return false;
       }));
   const UpdateView& view = told.row;
-  return printed(
+  return print_result(
       call, told.json,
       view.status.refusal.empty() ? last_line(view) : line("the update was rejected: ", view.status.refusal),
       is_fine(view) ? Exit::Fine : Exit::Attention);

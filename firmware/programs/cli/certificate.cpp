@@ -30,8 +30,8 @@ Result<Outcome> replace(const Call& call, const char* target, std::string body, 
                                         .body = std::move(body),
                                         .within = kChecked,
                                         .content_type = content_type}));
-  const auto view = ADIT_TRY(told<CertificateView>(call.adit, std::move(done)));
-  return printed(call, view.json, text_of(view.row, false));
+  const auto view = ADIT_TRY(read_row_of<CertificateView>(call.adit, std::move(done)));
+  return print_result(call, view.json, text_of(view.row, false));
 }
 
 }  // namespace
@@ -44,8 +44,8 @@ Result<Outcome> show_certificate(const Call& call) {
 Result<Outcome> set_certificate(const Call& call) {
   const std::string& path = call.options.argument();
   auto file = host::slurp(path, access::kLargestUpload);
-  if (!file) return failed(host::trouble(path, file.error()));
-  if (const auto pem = access::read_pem(file->text); !pem) return failed(path + ": " + pem.error());
+  if (!file) return to_failure(host::trouble(path, file.error()));
+  if (const auto pem = access::read_pem(file->text); !pem) return to_failure(path + ": " + pem.error());
   return replace(call, kCertificate, std::move(file->text), "application/octet-stream");
 }
 

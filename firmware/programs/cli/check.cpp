@@ -21,7 +21,7 @@ namespace {
 using codec::Value;
 using settings::Settings;
 
-std::string by(const std::string& interface) {
+std::string listening_place(const std::string& interface) {
   return interface.empty() ? "on any interface" : "on " + interface + " only";
 }
 
@@ -31,7 +31,8 @@ std::string asked_of(const settings::Team& team) {
 }
 
 std::string lines_of(const settings::Panel& panel) {
-  return icd::listed(std::array{panel.health, panel.scoring, panel.mapping, panel.attention, panel.button});
+  return icd::join_words(
+      std::array{panel.health, panel.scoring, panel.mapping, panel.attention, panel.button});
 }
 
 /// The team's subnets, as far as settings and interfaces show.
@@ -72,7 +73,7 @@ std::vector<std::string> warnings_of(const Options& options, const Settings& set
        team_subnets(settings.team, interfaces.value_or(std::vector<host::Interface>()))) {
     const std::string what = network::overlap_of({.team = team}, around);
     if (what.empty()) continue;
-    sentences.push_back(icd::sentence("the team's network ", settings::written(team), " overlaps ", what,
+    sentences.push_back(icd::sentence("the team's network ", settings::to_text(team), " overlaps ", what,
                                       " on the Command Post's side (ICD 3): ",
                                       settings.network.allow_overlap
                                           ? "allowed, but a robot cannot reach both"
@@ -86,36 +87,37 @@ std::string summary(const std::string& file, const Settings& settings,
                     const std::vector<std::string>& warnings, bool colour) {
   const settings::CommandPost& post = settings.command_post;
   Table table({{}, {}, {}});
-  table.add({{"scoring", Tone::Strong}, {written(post.scoring)}, {by(post.interface)}});
-  table.add({{"mapping", Tone::Strong}, {written(post.mapping)}, {by(post.interface)}});
+  table.add({{"scoring", Tone::Strong}, {to_text(post.scoring)}, {listening_place(post.interface)}});
+  table.add({{"mapping", Tone::Strong}, {to_text(post.mapping)}, {listening_place(post.interface)}});
   for (const settings::Address& listen : settings.team.listen) {
-    table.add(
-        {{"team", Tone::Strong}, {written(listen)}, {by(settings.team.interface) + asked_of(settings.team)}});
+    table.add({{"team", Tone::Strong},
+               {to_text(listen)},
+               {listening_place(settings.team.interface) + asked_of(settings.team)}});
   }
   table.add({{"link", Tone::Strong}, {decimal(post.budget_mbit, 3) + " Mbit/s"}, {}});
   const settings::Panel& panel = settings.panel;
   const std::string chip = panel.chip.empty() ? "any chip" : panel.chip;
   table.add({{"panel", Tone::Strong}, {panel.is_simulated() ? "simulated" : chip}, {lines_of(panel)}});
   std::string text =
-      host::escaped(file) + ": " + painted("correct", Tone::Good, colour) + '\n' + table.written(colour);
+      host::escape(file) + ": " + paint("correct", Tone::Good, colour) + '\n' + table.to_text(colour);
   for (const std::string& warning : warnings)
-    text += "  " + painted("warning", Tone::Warning, colour) + ": " + host::escaped(warning) + '\n';
+    text += "  " + paint("warning", Tone::Warning, colour) + ": " + host::escape(warning) + '\n';
   return text;
 }
 
 std::string sentences(const std::string& file, const std::vector<settings::Error>& errors, bool colour) {
   const std::string number = std::to_string(errors.size()) + (errors.size() == 1 ? " error" : " errors");
-  std::string text = host::escaped(file) + ": " + painted(number, Tone::Bad, colour) + '\n';
+  std::string text = host::escape(file) + ": " + paint(number, Tone::Bad, colour) + '\n';
   for (const settings::Error& error : errors) {
-    const std::string path = host::escaped(error.path);
+    const std::string path = host::escape(error.path);
     text += "  " + (error.at.empty() ? "" : error.at + ": ") +
-            (path.empty() ? "" : painted(path, Tone::Strong, colour) + ": ") + host::escaped(error.what) +
-            '\n';
+            (path.empty() ? "" : paint(path, Tone::Strong, colour) + ": ") + host::escape(error.what) + '\n';
   }
   return text;
 }
 
-std::string as_json(const std::vector<settings::Error>& errors, const std::vector<std::string>& warnings) {
+std::string errors_to_json(const std::vector<settings::Error>& errors,
+                           const std::vector<std::string>& warnings) {
   Value::Array list, told;
   for (const std::string& warning : warnings) told.push_back({warning});
   for (const settings::Error& error : errors) {
@@ -131,13 +133,13 @@ std::string as_json(const std::vector<settings::Error>& errors, const std::vecto
 Result<Outcome> check(const Options& options, const Console& console) {
   const std::string file = options.argument().empty() ? options.settings : options.argument();
   const auto text = host::read_file(file);
-  if (!text) return failed(text.error());
+  if (!text) return to_failure(text.error());
   const auto settings = settings::parse(*text);
   auto errors = settings ? std::vector<settings::Error>() : settings.error();
   settings::find_places(*text, errors);
   const auto warnings = settings ? warnings_of(options, *settings) : std::vector<std::string>();
   const Exit exit = settings ? Exit::Fine : Exit::Attention;
-  if (options.json) return Outcome{exit, as_json(errors, warnings), ""};
+  if (options.json) return Outcome{exit, errors_to_json(errors, warnings), ""};
   return Outcome{
       exit,
       settings ? summary(file, *settings, warnings, console.colour) : sentences(file, errors, console.colour),

@@ -63,7 +63,8 @@ std::string usage_of(const CommandRow& command) {
 
 void explain_all(Program& program) {
   std::vector<Row> rows;
-  for (const CommandRow& row : commands()) rows.push_back({row.name, "", row.sentence, command_line::Take()});
+  for (const CommandRow& row : commands())
+    rows.push_back({row.name, "", row.sentence, command_line::ValueSetter()});
   std::erase_if(program.rows, [](const Row& row) { return !is_among(row.word, kUsual); });
   put_first(program, rows);
   program.ending =
@@ -97,7 +98,7 @@ void explain(Program& program, const CommandRow& command, std::deque<std::string
   std::vector<Row> rows;
   for (const Form& form : command.forms) {
     if (*form.word != '\0')
-      rows.push_back({form.word, form.argument.shown, form.sentence, command_line::Take()});
+      rows.push_back({form.word, form.argument.shown, form.sentence, command_line::ValueSetter()});
   }
   put_first(program, rows);
   program.ending.append("Exit status:\n  0  if ").append(command.fine);
@@ -141,7 +142,7 @@ Outcome run(std::span<const std::string_view> words, const Console& console) {
   const auto options = parse_options(words);
   if (!options) {
     const auto& [sentence, command] = options.error();
-    return {Exit::Unable, "", "adit: " + host::escaped(sentence) + '\n' + see_help(command)};
+    return {Exit::Unable, "", "adit: " + host::escape(sentence) + '\n' + see_help(command)};
   }
   if (options->version) return {Exit::Fine, "adit " ADIT_VERSION "\n", ""};
   if (options->help) return {Exit::Fine, help_about(options->command), ""};

@@ -30,8 +30,7 @@ bool is_plain(std::string_view word) {
 std::string lines(const std::vector<Candidate>& all) {
   std::string text;
   for (const Candidate& each : all) {
-    if (is_plain(each.word))
-      text.append(each.word).append("\t").append(host::escaped(each.what)).append("\n");
+    if (is_plain(each.word)) text.append(each.word).append("\t").append(host::escape(each.what)).append("\n");
   }
   return text;
 }
@@ -45,11 +44,11 @@ std::string json_of(const std::vector<Candidate>& all) {
 
 /// Prints the words that `candidates_of` finds in Adit's answer.
 template <class Row>
-Result<Outcome> listed(const Call& call, const char* target,
-                       const std::function<std::vector<Candidate>(const Row&)>& candidates_of) {
+Result<Outcome> list_names(const Call& call, const char* target,
+                           const std::function<std::vector<Candidate>(const Row&)>& candidates_of) {
   const auto told = ADIT_TRY(fetch<Row>(call.adit, target));
   const auto all = candidates_of(told.row);
-  return printed(call, json_of(all), lines(all));
+  return print_result(call, json_of(all), lines(all));
 }
 
 }  // namespace
@@ -57,7 +56,7 @@ Result<Outcome> listed(const Call& call, const char* target,
 Result<Outcome> complete_reports(const Call& call) {
   using Reports = std::vector<facts::ReportRow>;
   const std::string word = call.options.argument();
-  return listed<Reports>(call, "/adit/reports", [&word](const Reports& reports) {
+  return list_names<Reports>(call, "/adit/reports", [&word](const Reports& reports) {
     std::vector<Candidate> all;
     for (const facts::ReportRow& report : reports) {
       if (word.empty() || word == "show" || std::ranges::count(verbs_for(report), word) > 0)
@@ -68,7 +67,7 @@ Result<Outcome> complete_reports(const Call& call) {
 }
 
 Result<Outcome> complete_rejected(const Call& call) {
-  return listed<api::RunView>(call, "/adit/run", [](const api::RunView& view) {
+  return list_names<api::RunView>(call, "/adit/run", [](const api::RunView& view) {
     std::vector<Candidate> all;
     all.reserve(view.rejected.size());
     for (const facts::RejectedRow& row : view.rejected)
@@ -84,11 +83,11 @@ Result<Outcome> complete_courses(const Call& call) {
   all.reserve(settings.courses.size());
   for (const settings::Course& course : settings.courses)
     all.push_back({course.name, course.scoring.address});
-  return printed(call, json_of(all), lines(all));
+  return print_result(call, json_of(all), lines(all));
 }
 
 Result<Outcome> complete_runs(const Call& call) {
-  return listed<api::RunList>(call, "/adit/runs", [](const api::RunList& list) {
+  return list_names<api::RunList>(call, "/adit/runs", [](const api::RunList& list) {
     std::vector<Candidate> all;
     all.reserve(list.runs.size());
     for (const api::RunRow& run : list.runs)
@@ -129,7 +128,7 @@ std::string pattern_of(const std::string& path) {
 }  // namespace
 
 Result<Outcome> complete_tokens(const Call& call) {
-  return listed<api::SetupView>(call, "/adit/settings", [](const api::SetupView& setup) {
+  return list_names<api::SetupView>(call, "/adit/settings", [](const api::SetupView& setup) {
     std::vector<Candidate> all;
     all.reserve(setup.tokens.size());
     for (const auto& [name, set, warning] : setup.tokens) all.push_back({name, set ? "set" : "not set"});
@@ -138,7 +137,7 @@ Result<Outcome> complete_tokens(const Call& call) {
 }
 
 Result<Outcome> complete_alarms(const Call& call) {
-  return listed<api::RunView>(call, "/adit/run", [](const api::RunView& view) {
+  return list_names<api::RunView>(call, "/adit/run", [](const api::RunView& view) {
     std::vector<Candidate> all;
     all.reserve(view.alarms.size());
     for (const alarms::Alarm& alarm : view.alarms) all.push_back({alarm.id, alarms::line_of(alarm)});
@@ -148,7 +147,7 @@ Result<Outcome> complete_alarms(const Call& call) {
 
 Result<Outcome> complete_contexts(const Options& options, const Console& /*console*/) {
   const auto contexts = load_contexts(contexts_file());
-  if (!contexts) return failed(contexts.error());
+  if (!contexts) return to_failure(contexts.error());
   std::vector<Candidate> all;
   all.reserve(contexts->all.size());
   for (const Context& each : contexts->all) all.push_back({each.name, each.at});
@@ -160,7 +159,7 @@ Result<Outcome> complete_keys(const Options& options, const Console& /*console*/
   const auto rows = settings::keys();
   if (const std::string key = options.argument(); !key.empty()) {
     const auto row = std::ranges::find(rows, pattern_of(key), &api::KeyRow::path);
-    if (row == rows.end()) return failed("no such settings key: " + key);
+    if (row == rows.end()) return to_failure("no such settings key: " + key);
     const auto values = values_of(*row);
     return Outcome{Exit::Fine, options.json ? json_of(values) + '\n' : lines(values), ""};
   }

@@ -84,24 +84,24 @@ std::expected<void, std::string> save(const Contexts& contexts, const std::strin
 
 namespace {
 
-Result<Contexts> loaded() {
+Result<Contexts> load() {
   auto contexts = load_contexts(contexts_file());
-  if (!contexts) return failed(contexts.error());
+  if (!contexts) return to_failure(contexts.error());
   return *std::move(contexts);
 }
 
-Result<const Context*> named(const Contexts& contexts, const std::string& name) {
+Result<const Context*> find_context(const Contexts& contexts, const std::string& name) {
   if (const Context* const found = contexts.find(name)) return found;
   const std::string advice =
       contexts.all.empty() ? "; adit login ADDRESS makes one" : icd::did_you_mean(name, names_in(contexts));
-  return failed("there is no context " + name + advice, Exit::Attention);
+  return to_failure("there is no context " + name + advice, Exit::Attention);
 }
 
 /// Without the port that Adit usually has.
 std::string name_for(const std::string& at) {
   const auto address = parse_location(at);
   if (!address) return at;
-  const std::string whole = written(*address), usual = ":8000";
+  const std::string whole = to_text(*address), usual = ":8000";
   return whole.ends_with(usual) ? whole.substr(0, whole.size() - usual.size()) : whole;
 }
 
@@ -114,16 +114,16 @@ std::string json_of(const Contexts& contexts) {
 }
 
 /// Saves them. The output says `done`, or with --json lists all.
-Result<Outcome> saved(const Contexts& contexts, const Options& options, std::string done) {
+Result<Outcome> save_contexts(const Contexts& contexts, const Options& options, std::string done) {
   if (const auto written = save(contexts, contexts_file()); !written)
-    return failed("cannot save the context: " + written.error());
+    return to_failure("cannot save the context: " + written.error());
   return Outcome{Exit::Fine, options.json ? json_of(contexts) : std::move(done), ""};
 }
 
 }  // namespace
 
 Result<Outcome> log_in(const Options& options, const Console& console) {
-  Contexts contexts = ADIT_TRY(loaded());
+  Contexts contexts = ADIT_TRY(load());
   const Context* const known = contexts.find(options.argument());
   const std::string at = known == nullptr ? options.argument() : known->at;
   const std::string usual_name = known == nullptr ? name_for(at) : known->name;
@@ -138,35 +138,35 @@ Result<Outcome> log_in(const Options& options, const Console& console) {
   std::erase_if(contexts.all, [&name](const Context& each) { return each.name == name; });
   contexts.all.push_back({name, at, adit.token.token.reveal()});
   contexts.current = name;
-  return saved(contexts, options,
-               line("logged in to Adit ", about.version, " at ", written(adit.address),
-                    "; later commands ask it (context ", name, ")"));
+  return save_contexts(contexts, options,
+                       line("logged in to Adit ", about.version, " at ", to_text(adit.address),
+                            "; later commands ask it (context ", name, ")"));
 }
 
 Result<Outcome> show_contexts(const Options& options, const Console& console) {
-  const Contexts contexts = ADIT_TRY(loaded());
+  const Contexts contexts = ADIT_TRY(load());
   if (options.json) return Outcome{Exit::Fine, json_of(contexts), ""};
   if (contexts.all.empty()) return Outcome{Exit::Fine, "no context: see adit help login\n", ""};
   Table table({{}, {}, {}});
   for (const Context& each : contexts.all)
     table.add({{each.name == contexts.current ? "*" : "", Tone::Good}, {each.name, Tone::Strong}, {each.at}});
-  return Outcome{Exit::Fine, table.written(console.colour), ""};
+  return Outcome{Exit::Fine, table.to_text(console.colour), ""};
 }
 
 Result<Outcome> use_context(const Options& options, const Console& /*console*/) {
-  Contexts contexts = ADIT_TRY(loaded());
-  const Context* const context = ADIT_TRY(named(contexts, options.argument()));
+  Contexts contexts = ADIT_TRY(load());
+  const Context* const context = ADIT_TRY(find_context(contexts, options.argument()));
   contexts.current = context->name;
-  return saved(contexts, options, line("commands ask the Adit at ", context->at));
+  return save_contexts(contexts, options, line("commands ask the Adit at ", context->at));
 }
 
 Result<Outcome> remove_context(const Options& options, const Console& /*console*/) {
-  Contexts contexts = ADIT_TRY(loaded());
+  Contexts contexts = ADIT_TRY(load());
   const std::string name = options.argument();
-  if (const auto found = named(contexts, name); !found) return std::unexpected(found.error());
+  if (const auto found = find_context(contexts, name); !found) return std::unexpected(found.error());
   std::erase_if(contexts.all, [&name](const Context& each) { return each.name == name; });
   if (contexts.current == name) contexts.current.clear();
-  return saved(contexts, options, line("context ", name, " and its token are removed"));
+  return save_contexts(contexts, options, line("context ", name, " and its token are removed"));
 }
 
 }  // namespace adit::cli

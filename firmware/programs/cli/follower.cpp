@@ -21,7 +21,7 @@ Event event_of(std::string_view lines) {
   return event;
 }
 
-Look seen(const Adit& adit, const codec::Value& told) {
+Look to_look(const Adit& adit, const codec::Value& told) {
   Seen seen{told, {}};
   const auto is_read = read_into(adit, told, codec::kind_of<api::RunView>, &seen.view);
   if (!is_read) return std::unexpected(is_read.error().sentence);
@@ -47,11 +47,11 @@ std::optional<Event> EventReader::next() {
 std::optional<Look> Follower::look() {
   if (!stream_) return Clock::now() < again_ ? std::nullopt : open();
   auto came = stream_->read();
-  if (!came) return ended(came.error());
+  if (!came) return on_ended(came.error());
   if (!came->empty()) {
     heard_ = Clock::now();
   } else if (Clock::now() >= heard_ + kSilence) {
-    return lost("no event for 6 s");
+    return on_lost("no event for 6 s");
   }
   events_.feed(*came);
   return news();
@@ -69,19 +69,19 @@ std::optional<Look> Follower::open() {
 }
 
 /// After a stream that had events, asks again at once. Only if that fails is Adit away.
-std::optional<Look> Follower::ended(const HttpStream::Ended& end) {
+std::optional<Look> Follower::on_ended(const HttpStream::Ended& end) {
   if (end.status != 0) {
     stream_.reset();
     return ask();
   }
-  if (!has_told_) return lost(end.why);
+  if (!has_told_) return on_lost(end.why);
   stream_.reset();
   return Clock::now() < again_ ? std::nullopt : open();
 }
 
-std::optional<Look> Follower::lost(const std::string& why) {
+std::optional<Look> Follower::on_lost(const std::string& why) {
   stream_.reset();
-  return std::unexpected("lost the connection to Adit at " + written(adit_.address) + ": " + why);
+  return std::unexpected("lost the connection to Adit at " + to_text(adit_.address) + ": " + why);
 }
 
 Look Follower::ask() const {
@@ -89,22 +89,22 @@ Look Follower::ask() const {
   if (!json) return std::unexpected(json.error().sentence);
   const auto told = json_in(adit_, *json);
   if (!told) return std::unexpected(told.error().sentence);
-  return seen(adit_, *told);
+  return to_look(adit_, *told);
 }
 
 std::optional<Look> Follower::news() {
   bool is_news = false;
   while (const auto event = events_.next()) {
-    if (!take(*event)) return lost("cannot read an event");
+    if (!on_event(*event)) return on_lost("cannot read an event");
     is_news = true;
   }
-  if (events_.waiting() > kLargestBody) return lost("an event is too long");
+  if (events_.waiting() > kLargestBody) return on_lost("an event is too long");
   if (!is_news) return std::nullopt;
   has_told_ = true;
-  return seen(adit_, told_);
+  return to_look(adit_, told_);
 }
 
-bool Follower::take(const Event& event) {
+bool Follower::on_event(const Event& event) {
   auto data = codec::parse_json(event.data);
   if (!data) return false;
   if (event.type != "patch") {

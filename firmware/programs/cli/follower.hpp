@@ -58,11 +58,11 @@ class Follower {
 
  private:
   std::optional<Look> open();
-  std::optional<Look> ended(const HttpStream::Ended& end);
-  std::optional<Look> lost(const std::string& why);
+  std::optional<Look> on_ended(const HttpStream::Ended& end);
+  std::optional<Look> on_lost(const std::string& why);
   Look ask() const;
   std::optional<Look> news();
-  bool take(const Event& event);
+  bool on_event(const Event& event);
 
   const Adit& adit_;
   std::unique_ptr<HttpStream> stream_;  // null: no stream until again_

@@ -44,8 +44,8 @@ std::string text_of(const api::LogPage& page, bool colour) {
   for (const api::LogRecord& record : page.records) {
     std::string fields;
     for (const auto& [name, value] : record.fields) fields.append(" ").append(name).append("=").append(value);
-    text += painted(api::iso_time(record.at), Tone::Faint, colour) + ' ' +
-            painted(host::escaped(record.level), tone_of_record(record), colour) + ": " +
+    text += paint(api::iso_time(record.at), Tone::Faint, colour) + ' ' +
+            paint(host::escape(record.level), tone_of_record(record), colour) + ": " +
             line(record.message, fields);
   }
   return text;
@@ -70,7 +70,7 @@ std::string alarms_text(const api::RunView& view, bool colour) {
   std::string text;
   for (const alarms::Alarm& alarm : view.alarms) {
     const Tone tone = alarms::calls(alarm) ? Tone::Bad : Tone::Warning;
-    text += painted(host::escaped(alarms::line_of(alarm)), tone, colour) +
+    text += paint(host::escape(alarms::line_of(alarm)), tone, colour) +
             line(alarm.acknowledged ? "  (acknowledged)" : "") +
             line("  since ", api::iso_time(alarm.since), ", id ", alarm.id);
     if (!alarm.details.empty()) text += line("  ", alarm.details);
@@ -104,15 +104,15 @@ Result<Outcome> fetch_bundle(const Call& call) {
   const auto bundle = ADIT_TRY(get(call.adit, "/adit/bundle", kPacked));
   ADIT_TRY(write_to(file, bundle));
   const Value json{Value::Object{{"file", {file}}, {"bytes", {std::uint64_t{bundle.size()}}}}};
-  return printed(call, codec::write_json(json),
-                 line("wrote the support bundle to ", file, " (", icd::size_text(bundle.size()),
-                      "; without tokens and passwords)"));
+  return print_result(call, codec::write_json(json),
+                      line("wrote the support bundle to ", file, " (", icd::size_text(bundle.size()),
+                           "; without tokens and passwords)"));
 }
 
 Result<Outcome> list_alarms(const Call& call) {
   const auto view = ADIT_TRY(fetch<api::RunView>(call.adit, "/adit/run")).row;
-  return printed(call, codec::to_json(view.alarms), alarms_text(view, call.console.colour),
-                 std::ranges::any_of(view.alarms, alarms::calls) ? Exit::Attention : Exit::Fine);
+  return print_result(call, codec::to_json(view.alarms), alarms_text(view, call.console.colour),
+                      std::ranges::any_of(view.alarms, alarms::calls) ? Exit::Attention : Exit::Fine);
 }
 
 Result<Outcome> acknowledge(const Call& call) {
@@ -141,7 +141,7 @@ Result<Outcome> show_version(const Options& options, const Console& console) {
   facts.add("model", box.model);
   facts.add("kernel", box.kernel);
   facts.add("runs for", duration(box.uptime));
-  return printed({*adit, options, console}, about->json, facts.written(console.colour));
+  return print_result({*adit, options, console}, about->json, facts.to_text(console.colour));
 }
 
 }  // namespace adit::cli

@@ -109,7 +109,7 @@ int main(int count, char** arguments) {
       .ask = ask,
       .read_secret = read_secret};
   Outcome outcome{Exit::Unable, "", ""};
-  adit::loop::guarded("adit", [&] { outcome = run(words, console); });
+  adit::loop::run_guarded("adit", [&] { outcome = run(words, console); });
   write_to(stderr, outcome.err);
   console.print(outcome.out);
   return static_cast<int>(printed ? outcome.exit : Exit::Unable);

@@ -34,7 +34,7 @@ std::expected<std::optional<Token>, std::string> find_token(const std::string& f
         return std::unexpected(text.error() +
                                "; run adit as root, or name a token file by --token-file FILE");
       const bool is_saved = &folder == &folders.front();
-      if (is_saved || !icd::trimmed(*text).empty()) return token_in_file(path);
+      if (is_saved || !icd::trim(*text).empty()) return token_in_file(path);
     }
   }
   return std::nullopt;
@@ -70,11 +70,11 @@ class Words {
  public:
   explicit Words(Options& options) : options_(options) {}
 
-  [[gnu::cold]] Wrong take(const std::string& word) {
-    if (options_.command == nullptr) return take_command(word);
-    if (options_.form == nullptr && !words_of(*options_.command).empty()) return take_form(word);
+  [[gnu::cold]] Wrong add_word(const std::string& word) {
+    if (options_.command == nullptr) return set_command(word);
+    if (options_.form == nullptr && !words_of(*options_.command).empty()) return set_form(word);
     if (options_.form == nullptr) options_.form = options_.command->forms.data();
-    return take_argument(word);
+    return add_argument(word);
   }
 
   /// `given`: the options.
@@ -82,10 +82,11 @@ class Words {
     const CommandRow* const command = options_.command;
     const Form*& form = options_.form;
     if (options_.version || options_.help) return std::nullopt;
-    if (command == nullptr) return "a command is missing: " + codec::in_turn(names_of_commands());
+    if (command == nullptr) return "a command is missing: " + codec::list_alternatives(names_of_commands());
     if (form == nullptr && !command->forms.front().usual)
-      return "a subcommand is missing after " + spoken() + ": " + codec::in_turn(words_of(*command));
-    const std::string spoken = this->spoken();
+      return "a subcommand is missing after " + command_text() + ": " +
+             codec::list_alternatives(words_of(*command));
+    const std::string spoken = this->command_text();
     if (form == nullptr) form = command->forms.data();
     for (const std::string& option : given) {
       if (!takes(*form, option)) return spoken + " does not take " + option;
@@ -95,7 +96,7 @@ class Words {
   }
 
  private:
-  Wrong take_command(std::string_view word) {
+  Wrong set_command(std::string_view word) {
     const auto row = std::ranges::find(commands(), word, &CommandRow::name);
     if (row == commands().end())
       return std::string("no such command: ").append(word) + icd::did_you_mean(word, names_of_commands());
@@ -107,17 +108,17 @@ class Words {
     return std::nullopt;
   }
 
-  Wrong take_form(const std::string& word) {
+  Wrong set_form(const std::string& word) {
     for (const Form& form : options_.command->forms) {
       if (word.empty() || word != form.word) continue;
       options_.form = &form;
       return std::nullopt;
     }
     const auto words = words_of(*options_.command);
-    return "expected " + codec::in_turn(words) + ", got " + word + icd::did_you_mean(word, words);
+    return "expected " + codec::list_alternatives(words) + ", got " + word + icd::did_you_mean(word, words);
   }
 
-  Wrong take_argument(const std::string& word) {
+  Wrong add_argument(const std::string& word) {
     const Argument& argument = options_.form->argument;
     if (count_ == argument.most) return "one word too many: " + word;
     ++count_;
@@ -160,7 +161,7 @@ class Words {
   }
 
   /// "reports send"
-  std::string spoken() const {
+  std::string command_text() const {
     const std::string name = options_.command->name, word = options_.word();
     return word.empty() ? name : name + ' ' + word;
   }
@@ -171,21 +172,21 @@ class Words {
 
 /// Reads an endpoint's address for a test.
 template <auto member>
-Wrong take_endpoint(Trial& trial, const std::string& value) {
+Wrong parse_endpoint(Trial& trial, const std::string& value) {
   auto address = parse_address(value);
   if (!address) return std::move(address.error());
   trial.*member = *std::move(address);
   return std::nullopt;
 }
 
-Wrong take_run(Options& options, const std::string& value) {
+Wrong parse_run(Options& options, const std::string& value) {
   options.run = number_in(value, INT64_MAX);
   options.all_runs = value == "all";
   if (options.run || options.all_runs) return std::nullopt;
   return "expected a run's number or all, got " + value;
 }
 
-Wrong take_last(Options& options, const std::string& value) {
+Wrong parse_last(Options& options, const std::string& value) {
   options.last = number_in(value, INT64_MAX);
   return options.last ? std::nullopt : Wrong("expected a number of reports, got " + value);
 }
@@ -212,8 +213,8 @@ command_line::Program command_line_of(Options& options) {
       .about = "adit - the command line of a running aditd",
       .rows =
           {{"--run", "N|all", "list the reports of this run; if not given, of the present run",
-            command_line::take<take_run>(options)},
-           {"--last", "N", "list only the newest N reports", command_line::take<take_last>(options)},
+            command_line::set_by<parse_run>(options)},
+           {"--last", "N", "list only the newest N reports", command_line::set_by<parse_last>(options)},
            {"--csv", "", "print CSV, for a spreadsheet (default)", &options.csv},
            {"--yes", "", "do not ask for confirmation; required without a terminal", &options.yes},
            {"--code", "DIGITS", "the export's code, as the first box printed it", &options.code},
@@ -238,9 +239,9 @@ command_line::Program command_line_of(Options& options) {
            {"--again", "", "install the version that already runs", &options.again},
            {"--course", "NAME", "test this course's Command Post", &options.trial.course},
            {"--scoring", "ADDR[:PORT]", "test this address as the scoring endpoint",
-            command_line::take<take_endpoint<&Trial::scoring>>(options.trial)},
+            command_line::set_by<parse_endpoint<&Trial::scoring>>(options.trial)},
            {"--mapping", "ADDR[:PORT]", "test this address as the mapping endpoint",
-            command_line::take<take_endpoint<&Trial::mapping>>(options.trial)},
+            command_line::set_by<parse_endpoint<&Trial::mapping>>(options.trial)},
            {"--scoring-token", "FILE", "test the token in FILE at the scoring endpoint; it is not saved",
             &options.trial.scoring_token},
            {"--mapping-token", "FILE", "test the token in FILE at the mapping endpoint; it is not saved",
@@ -271,7 +272,7 @@ std::expected<Options, WrongLine> parse_options(std::span<const std::string_view
   auto program = command_line::full_program(command_line_of, options);
   program.given = &given;
   program.word =
-      command_line::take<[](Words& all, const std::string& word) { return all.take(word); }>(others);
+      command_line::set_by<[](Words& all, const std::string& word) { return all.add_word(word); }>(others);
   auto wrong = command_line::read(program, arguments);
   if (!wrong) wrong = others.finish(given);
   if (wrong) return std::unexpected(WrongLine{*std::move(wrong), options.command});

@@ -22,10 +22,10 @@ namespace adit::cli {
 Result<Outcome> dump_ledger(const Options& options, const Console& console) {
   const auto damage =
       ledger::dump(options.argument().empty() ? "/var/lib/adit/ledger" : options.argument(), console.print);
-  if (!damage) return failed(damage.error().what);
+  if (!damage) return to_failure(damage.error().what);
   Outcome outcome;
   if (!damage->empty()) outcome.exit = Exit::Attention;
-  for (const std::string& each : *damage) outcome.err += "adit: " + host::escaped(each) + '\n';
+  for (const std::string& each : *damage) outcome.err += "adit: " + host::escape(each) + '\n';
   return outcome;
 }
 
@@ -61,8 +61,8 @@ Result<Outcome> list_reports(const Call& call) {
   const auto all = static_cast<std::int64_t>(rows.size()), shown = std::min(all, options.last.value_or(all));
   rows.resize(static_cast<std::size_t>(shown));
   const OmittedReports rest{.older = static_cast<std::size_t>(all - shown), .of_other_runs = others};
-  return printed(call, codec::to_json(rows), reports_text(rows, rest, run.row.now, call.console.colour),
-                 exit);
+  return print_result(call, codec::to_json(rows), reports_text(rows, rest, run.row.now, call.console.colour),
+                      exit);
 }
 
 Result<Outcome> show_report(const Call& call) {
@@ -74,7 +74,7 @@ Result<Outcome> show_report(const Call& call) {
 Result<Outcome> export_reports(const Call& call) {
   const bool json = call.options.json;
   const auto text = ADIT_TRY(get(call.adit, json ? "/adit/reports" : "/adit/reports.csv"));
-  return printed(call, text, text);
+  return print_result(call, text, text);
 }
 
 namespace {
@@ -98,11 +98,11 @@ std::string facts_of(const api::ReportDetail& detail, bool colour) {
   facts.add("robot", report.robot);
   facts.add("received", api::iso_time(report.received));
   facts.add("message", sentence_in(detail.answer));
-  facts.add("actions", icd::listed(verbs_for(report)));
-  return facts.written(colour);
+  facts.add("actions", icd::join_words(verbs_for(report)));
+  return facts.to_text(colour);
 }
 
-std::string shown(const std::string& state) {
+std::string state_text(const std::string& state) {
   const auto known = dispatch::state_named(state);
   return known ? std::string(dispatch::shown_name_of(*known)) : state;
 }
@@ -110,9 +110,9 @@ std::string shown(const std::string& state) {
 std::string history(const api::ReportDetail& detail, bool colour) {
   Table table({{}, {}, {}});
   for (const api::ReportStep& step : detail.history) {
-    table.add({{api::iso_time(step.at), Tone::Faint}, {shown(step.state), Tone::Strong}, {step.note}});
+    table.add({{api::iso_time(step.at), Tone::Faint}, {state_text(step.state), Tone::Strong}, {step.note}});
   }
-  return table.empty() ? "" : "\nHistory\n" + table.written(colour);
+  return table.empty() ? "" : "\nHistory\n" + table.to_text(colour);
 }
 
 }  // namespace
@@ -166,10 +166,10 @@ Result<void> read_fields(std::span<const std::string> words, ReportFields& field
                       value = end == std::string::npos ? "" : word.substr(end + 1);
     const bool is_axis = std::ranges::find(kAxes, name, &Axis::name) != std::end(kAxes);
     if (end == std::string::npos || (name != "type" && !is_axis))
-      return failed("'" + word + "': expected type=, x=, y= or z=");
+      return to_failure("'" + word + "': expected type=, x=, y= or z=");
     double metres = 0;
     if (const auto wrong = is_axis ? command_line::read_number(value, -kFar, kFar, metres) : std::nullopt)
-      return failed(name + ": " + *wrong);
+      return to_failure(name + ": " + *wrong);
     fields[name] = is_axis ? codec::Value{metres} : codec::Value{value};
   }
   return {};
@@ -194,11 +194,11 @@ Result<Outcome> decide_on(const Call& call, std::int64_t number) {
   }
   const bool is_new = verb == "resubmit";
   const std::string check = is_new ? "adit reports" : icd::sentence("adit reports show ", number);
-  const auto answer = ADIT_TRY(
-      told<DecidedReport>(call.adit, post(call.adit, {.target = target + "/" + verb, .check = check})));
+  const auto answer = ADIT_TRY(read_row_of<DecidedReport>(
+      call.adit, post(call.adit, {.target = target + "/" + verb, .check = check})));
   const char* const done = std::ranges::find(kDecisions, verb, &Decision::verb)->done;
   const std::string moved = is_new ? std::to_string(answer.row.report) : "";
-  return printed(call, answer.json, icd::sentence("report ", number, done, moved, "\n"));
+  return print_result(call, answer.json, icd::sentence("report ", number, done, moved, "\n"));
 }
 
 }  // namespace
@@ -214,7 +214,7 @@ Result<Outcome> correct_report(const Call& call) {
   const std::vector<std::string>& words = call.options.arguments;
   std::uint64_t number = 0;
   if (const auto wrong = command_line::read_number(words.front(), std::uint64_t{1}, kMostNumber, number))
-    return failed("the report's number: " + *wrong);
+    return to_failure("the report's number: " + *wrong);
   const std::string target = icd::sentence("/adit/reports/", number);
   const auto now = ADIT_TRY(fetch<api::ReportDetail>(call.adit, target));
   const facts::ReportRow& report = now.row.row;
@@ -223,29 +223,29 @@ Result<Outcome> correct_report(const Call& call) {
     if (report.position) body[name] = {(*report.position).*axis};
   }
   ADIT_TRY(read_fields(std::span(words).subspan(1), body));
-  const auto answer = ADIT_TRY(told<DecidedReport>(
+  const auto answer = ADIT_TRY(read_row_of<DecidedReport>(
       call.adit,
       post(call.adit, {.target = target + "/correct",
                        .check = icd::sentence("adit reports show ", number),
                        .body = codec::write_json({codec::Value::Object(body.begin(), body.end())})})));
-  return printed(call, answer.json,
-                 icd::sentence("report ", number, " is corrected as report ", answer.row.report, "\n"));
+  return print_result(call, answer.json,
+                      icd::sentence("report ", number, " is corrected as report ", answer.row.report, "\n"));
 }
 
 Result<Outcome> compose_report(const Call& call) {
   ReportFields body;
   ADIT_TRY(read_fields(call.options.arguments, body));
   for (const char* const name : {"type", "x", "y", "z"}) {
-    if (!body.contains(name)) return failed(std::string(name) + "= is missing");
+    if (!body.contains(name)) return to_failure(std::string(name) + "= is missing");
   }
-  const auto answer = ADIT_TRY(told<DecidedReport>(
+  const auto answer = ADIT_TRY(read_row_of<DecidedReport>(
       call.adit,
       post(call.adit, {.target = "/adit/reports",
                        .check = "adit reports",
                        .body = codec::write_json({codec::Value::Object(body.begin(), body.end())})})));
-  return printed(call, answer.json,
-                 icd::sentence("report ", answer.row.report, " is accepted: see adit reports show ",
-                               answer.row.report, "\n"));
+  return print_result(call, answer.json,
+                      icd::sentence("report ", answer.row.report, " is accepted: see adit reports show ",
+                                    answer.row.report, "\n"));
 }
 
 namespace {
@@ -285,11 +285,11 @@ Result<void> confirm_new_run(const Call& call) {
 
 Result<Outcome> begin_run(const Call& call) {
   ADIT_TRY(confirm_new_run(call));
-  const auto answer =
-      ADIT_TRY(told<BegunRun>(call.adit, post(call.adit, {.target = "/adit/runs", .check = "adit reports"})));
-  return printed(call, answer.json,
-                 icd::sentence("run ", answer.row.run,
-                               " begins; unsent reports of earlier runs are held: see adit reports\n"));
+  const auto answer = ADIT_TRY(
+      read_row_of<BegunRun>(call.adit, post(call.adit, {.target = "/adit/runs", .check = "adit reports"})));
+  return print_result(call, answer.json,
+                      icd::sentence("run ", answer.row.run,
+                                    " begins; unsent reports of earlier runs are held: see adit reports\n"));
 }
 
 Result<Outcome> identify(const Call& call) {
@@ -326,8 +326,8 @@ Result<Outcome> list_rejected(const Call& call) {
   const api::RunView view = ADIT_TRY(fetch<api::RunView>(call.adit, "/adit/run")).row;
   const bool waits =
       std::ranges::any_of(view.rejected, [](const facts::RejectedRow& row) { return !row.replaced; });
-  return printed(call, codec::to_json(view.rejected), rejected_text(view, call.console.colour),
-                 waits ? Exit::Attention : Exit::Fine);
+  return print_result(call, codec::to_json(view.rejected), rejected_text(view, call.console.colour),
+                      waits ? Exit::Attention : Exit::Fine);
 }
 
 Result<Outcome> decide_on_rejected(const Call& call) {

@@ -27,7 +27,7 @@ std::string begin_of(const RunRow& run) {
 std::string text_of(const api::RunList& list, bool colour) {
   std::string text;
   if (!list.trouble.empty())
-    text = painted("Runs are not being kept: " + host::escaped(list.trouble), Tone::Bad, colour) + '\n';
+    text = paint("Runs are not being kept: " + host::escape(list.trouble), Tone::Bad, colour) + '\n';
   if (list.runs.empty()) return text + "0 runs are kept\n";
   const std::vector<ColumnOf<RunRow>> columns = {
       {"key", [](const RunRow& run) { return Cell(run.key, Tone::Strong); }, kRight},
@@ -52,9 +52,9 @@ std::string text_of(const RunRow& run, bool colour) {
   facts.add("last", api::iso_time(run.last));
   facts.add("score", number_or_none(run.score), Tone::Strong);
   facts.add("reports left", number_or_none(run.remaining_reports));
-  facts.add("robots", icd::listed(run.robots));
+  facts.add("robots", icd::join_words(run.robots));
   facts.add("size", icd::size_text(run.bytes));
-  return facts.written(colour);
+  return facts.to_text(colour);
 }
 
 std::string json_of(const api::RunView& view) {
@@ -72,18 +72,18 @@ std::string text_of(const api::RunView& view, bool colour) {
   Facts facts;
   facts.add("run", std::to_string(view.run_number), Tone::Strong);
   facts.add("name", view.run_id, Tone::Strong);
-  if (!view.run) return facts.written(colour) + "no status from the Command Post yet\n";
+  if (!view.run) return facts.to_text(colour) + "no status from the Command Post yet\n";
   facts.add("team", view.run->current_team, Tone::Strong);
   facts.add("clock", clock(view.run->run_clock), Tone::Strong);
   facts.add("score", std::to_string(view.run->score), Tone::Strong);
   facts.add("reports left", std::to_string(view.run->remaining_reports), Tone::Strong);
-  return facts.written(colour);
+  return facts.to_text(colour);
 }
 
 /// A key has digits, and a hyphen if two runs share a number.
 Result<std::string> path_of(const std::string& key) {
   if (!key.empty() && key.find_first_not_of("0123456789-") == std::string::npos) return "/adit/runs/" + key;
-  return failed("there is no run " + key + ": see adit runs", Exit::Attention);
+  return to_failure("there is no run " + key + ": see adit runs", Exit::Attention);
 }
 
 Result<void> confirm_deletion(const Call& call, const std::string& path) {
@@ -101,7 +101,7 @@ Result<void> confirm_deletion(const Call& call, const std::string& path) {
 
 Result<Outcome> show_present_run(const Call& call) {
   const api::RunView view = ADIT_TRY(fetch<api::RunView>(call.adit, "/adit/run")).row;
-  return printed(call, json_of(view), text_of(view, call.console.colour));
+  return print_result(call, json_of(view), text_of(view, call.console.colour));
 }
 
 Result<Outcome> list_runs(const Call& call) {
@@ -121,7 +121,7 @@ Result<Outcome> print_run(const Call& call) {
   ADIT_TRY(write_to(to, html));
   const codec::Value json{
       codec::Value::Object{{"key", {key}}, {"file", {to}}, {"bytes", {std::uint64_t{html.size()}}}}};
-  return printed(call, codec::write_json(json), line("wrote the report of run ", key, " to ", to));
+  return print_result(call, codec::write_json(json), line("wrote the report of run ", key, " to ", to));
 }
 
 Result<Outcome> delete_run(const Call& call) {

@@ -72,12 +72,12 @@ std::string allowed_of(const api::KeyRow& key) {
 std::string items_text(const Value& list) {
   const auto* const items = std::get_if<Value::Array>(&list.is);
   if (items == nullptr || items->empty()) return "it is empty";
-  const std::string names = icd::listed(*items, [](const Value& item) { return text_at(item, "name"); });
+  const std::string names = icd::join_words(*items, [](const Value& item) { return text_at(item, "name"); });
   return "there are " + (names.empty() ? icd::sentence("0 to ", items->size() - 1) : names);
 }
 
 /// "robots[ugv1].alias" as "robots[].alias"
-std::string without_items(std::string_view path) {
+std::string strip_items(std::string_view path) {
   std::string key;
   while (!path.empty()) {
     const std::size_t open = std::min(path.find('['), path.size() - 1);
@@ -103,9 +103,10 @@ std::optional<std::string> missing_item(Value& settings, const std::string& path
 
 Result<std::vector<ShownKey>> keys_named(const api::SetupView& setup, const std::string& name) {
   Value settings = setup.settings;
-  const std::string pattern = without_items(name);
+  const std::string pattern = strip_items(name);
   const bool has_item = pattern != name;
-  if (const auto missing = has_item ? missing_item(settings, name) : std::nullopt) return failed(*missing);
+  if (const auto missing = has_item ? missing_item(settings, name) : std::nullopt)
+    return to_failure(*missing);
   std::vector<ShownKey> found;
   std::vector<std::string_view> known;
   for (const api::KeyRow& key : setup.keys) {
@@ -120,7 +121,7 @@ Result<std::vector<ShownKey>> keys_named(const api::SetupView& setup, const std:
     }
   }
   if (!found.empty()) return found;
-  return failed("no such settings key: " + name + icd::did_you_mean(pattern, known));
+  return to_failure("no such settings key: " + name + icd::did_you_mean(pattern, known));
 }
 
 Value* value_at(Value& settings, std::string_view path) {
@@ -148,7 +149,7 @@ std::string text_of(const std::vector<ShownKey>& keys, bool colour) {
     Table values({{}, {}});
     for (const auto& [path, value] : key.values) values.add({{path, Tone::Strong}, {plain(value)}});
     if (key.values.empty()) values.add({{key.described.path, Tone::Strong}, {"(none)"}});
-    text += (text.empty() ? "" : "\n") + values.written(colour) + line("  ", key.described.meaning) +
+    text += (text.empty() ? "" : "\n") + values.to_text(colour) + line("  ", key.described.meaning) +
             allowed_of(key.described);
   }
   return text;
@@ -175,7 +176,7 @@ constexpr Waiting kApplied{
 std::string warnings_text(const std::vector<std::string>& warnings, bool colour) {
   std::string text;
   for (const std::string& warning : warnings)
-    text += painted("warning", Tone::Warning, colour) + ": " + line(warning);
+    text += paint("warning", Tone::Warning, colour) + ": " + line(warning);
   return text;
 }
 
@@ -184,7 +185,7 @@ std::string text_of(const api::ChangesView& view, bool colour) {
   Table table({{}, {}, {}});
   for (const settings::Change& change : view.changes)
     table.add({{change.path, Tone::Strong}, {plain(change.from)}, {"-> " + plain(change.to)}});
-  return (table.empty() ? "no changes\n" : table.written(colour)) + warnings_text(view.warnings, colour);
+  return (table.empty() ? "no changes\n" : table.to_text(colour)) + warnings_text(view.warnings, colour);
 }
 
 std::string errors_text(const std::vector<settings::Error>& errors) {
@@ -201,25 +202,25 @@ struct SettingsFile {
 
 Result<SettingsFile> read_file(const std::string& file) {
   auto text = host::read_file(file);
-  if (!text) return failed(text.error());
+  if (!text) return to_failure(text.error());
   auto value = codec::parse_json(*text);
   if (value) return SettingsFile{*std::move(text), *std::move(value)};
   std::vector<settings::Error> errors{{"", value.error()}};
   settings::find_places(*text, errors);
-  return failed(file + ": " + errors.front().sentence());
+  return to_failure(file + ": " + errors.front().sentence());
 }
 
 std::string text_of(const api::SetupView& setup, const settings::Settings& settings, bool colour) {
   Table table({{}, {}});
   for (const settings::Change& change : settings::changes({}, settings))
     table.add({{change.path, Tone::Strong}, {plain(change.to)}});
-  return (setup.saved ? "saved on this box\n" : "as installed\n") + table.written(colour) +
+  return (setup.saved ? "saved on this box\n" : "as installed\n") + table.to_text(colour) +
          "all others have their defaults\n\ntokens\n" + tokens_text(setup.tokens, colour);
 }
 
 /// Adit's check of settings.
 Result<Fetched<api::CheckView>> ask_check(const Adit& adit, const Value& settings) {
-  return told<api::CheckView>(
+  return read_row_of<api::CheckView>(
       adit, post(adit, {.target = "/adit/settings/check",
                         .check = kSee,
                         .body = codec::write_json({Value::Object{{"settings", settings}}})}));
@@ -229,18 +230,18 @@ Result<Fetched<api::CheckView>> ask_check(const Adit& adit, const Value& setting
 /// time.
 Result<Fetched<api::ChangesView>> change(const Adit& adit, const std::string& target,
                                          const Value::Object& body, const char* check) {
-  auto changed = told<api::ChangesView>(
+  auto changed = read_row_of<api::ChangesView>(
       adit, post(adit, {.target = target, .check = check, .body = codec::write_json({body})}));
   if (!changed || changed->row.changes.empty()) return changed;  // `trouble` may be older
   const auto now = fetch_until<api::SetupView>(adit, kSettings, kApplied,
                                                [](const api::SetupView& setup) { return !setup.applying; });
   if (!now) {
     const std::string& why = now.error().sentence;
-    return failed("the change was accepted, but is not seen in use" +
-                  (why.empty() ? "" : "; at its new address? " + why));
+    return to_failure("the change was accepted, but is not seen in use" +
+                      (why.empty() ? "" : "; at its new address? " + why));
   }
   if (now->row.trouble.empty()) return changed;
-  return failed(now->row.trouble, Exit::Attention);
+  return to_failure(now->row.trouble, Exit::Attention);
 }
 
 /// VALUE of the command line: JSON, or a text without quotes. `before`: the present value.
@@ -261,7 +262,7 @@ Result<Outcome> apply(const Call& call, const api::SetupView& now, const Value& 
   }
   const auto done =
       ADIT_TRY(change(call.adit, kSettings, {{"settings", settings}, {"base", {now.tag}}}, kSee));
-  return printed(call, done.json, text_of(checked.row.changes, call.console.colour));
+  return print_result(call, done.json, text_of(checked.row.changes, call.console.colour));
 }
 
 /// "" stands for the endpoints of command_post.
@@ -272,11 +273,11 @@ std::string courses_text(const settings::Settings& settings, bool colour) {
   courses.push_back({.name = "", .scoring = post.scoring, .mapping = post.mapping});
   for (const settings::Course& each : courses) {
     table.add({{each.name.empty() ? "\"\"" : each.name, Tone::Strong},
-               {written(each.scoring)},
-               {written(each.mapping)},
+               {to_text(each.scoring)},
+               {to_text(each.mapping)},
                {each.name == post.course ? "in use" : "", Tone::Good}});
   }
-  return table.written(colour);
+  return table.to_text(colour);
 }
 
 Result<Outcome> list_courses(const Call& call) {
@@ -286,14 +287,14 @@ Result<Outcome> list_courses(const Call& call) {
   const Value* const courses = value_at(all, "courses");
   const Value::Object listed{{"course", {settings.command_post.course}},
                              {"courses", courses == nullptr ? Value{} : *courses}};
-  return printed(call, codec::write_json({listed}), courses_text(settings, call.console.colour));
+  return print_result(call, codec::write_json({listed}), courses_text(settings, call.console.colour));
 }
 
 }  // namespace
 
 Result<settings::Settings> settings_in(const api::SetupView& setup) {
   auto settings = settings::parse(setup.settings);
-  if (!settings) return failed("cannot read Adit's answer: " + settings::sentence_of(settings.error()));
+  if (!settings) return to_failure("cannot read Adit's answer: " + settings::sentence_of(settings.error()));
   return *std::move(settings);
 }
 
@@ -302,10 +303,10 @@ Result<Outcome> show_settings(const Call& call) {
   const auto setup = ADIT_TRY(fetch<api::SetupView>(call.adit, kSettings));
   if (const std::string key = call.options.argument(); !key.empty()) {
     const auto keys = ADIT_TRY(keys_named(setup.row, key));
-    return printed(call, codec::write_json(json_of(keys)), text_of(keys, colour));
+    return print_result(call, codec::write_json(json_of(keys)), text_of(keys, colour));
   }
   const auto settings = ADIT_TRY(settings_in(setup.row));
-  return printed(call, setup.json, text_of(setup.row, settings, colour));
+  return print_result(call, setup.json, text_of(setup.row, settings, colour));
 }
 
 Result<Outcome> check_settings(const Call& call) {
@@ -314,8 +315,8 @@ Result<Outcome> check_settings(const Call& call) {
   auto& [errors, changes] = checked.row;
   settings::find_places(file.text, errors);
   if (!errors.empty() && !call.options.json) return Outcome{Exit::Attention, "", errors_text(errors)};
-  return printed(call, checked.json, text_of(changes, call.console.colour),
-                 errors.empty() ? Exit::Fine : Exit::Attention);
+  return print_result(call, checked.json, text_of(changes, call.console.colour),
+                      errors.empty() ? Exit::Fine : Exit::Attention);
 }
 
 Result<Outcome> apply_settings(const Call& call) {
@@ -331,7 +332,7 @@ Result<Outcome> set_setting(const Call& call) {
   Value* const value = value_at(settings, key);
   if (value == nullptr) {
     ADIT_TRY(keys_named(now.row, key));
-    return failed("no such item of a list: " + key);
+    return to_failure("no such item of a list: " + key);
   }
   *value = value_in(text, *value);
   return apply(call, now.row, settings);
@@ -348,7 +349,7 @@ Result<Outcome> course(const Call& call) {
   const auto done = ADIT_TRY(change(call.adit, "/adit/course", {{"name", {name}}}, "adit course"));
   const std::string used = name.empty() ? "no course is in use: the endpoints are those of command_post"
                                         : "course " + name + " is in use";
-  return printed(call, done.json, line(used) + warnings_text(done.row.warnings, call.console.colour));
+  return print_result(call, done.json, line(used) + warnings_text(done.row.warnings, call.console.colour));
 }
 
 }  // namespace adit::cli

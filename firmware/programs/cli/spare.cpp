@@ -83,8 +83,8 @@ Result<SpareView> ask_stick(const Adit& adit, const char* target, const std::str
       fetch_until<SpareView>(adit, kSpare, box_waiting(std::chrono::seconds(330)),
                              [](const SpareView& seen) { return !seen.stick || seen.stick->doing.empty(); }));
   const auto& stick = told.row.stick;
-  if (!stick) return failed("adit-spare is not running");
-  if (!stick->refusal.empty()) return failed(stick->refusal, Exit::Attention);
+  if (!stick) return to_failure("adit-spare is not running");
+  if (!stick->refusal.empty()) return to_failure(stick->refusal, Exit::Attention);
   return std::move(told.row);
 }
 
@@ -92,26 +92,26 @@ Result<SpareView> ask_stick(const Adit& adit, const char* target, const std::str
 Result<api::StickRow> stick_of(const Adit& adit) {
   auto told = ADIT_TRY(fetch<SpareView>(adit, kSpare));
   if (told.row.stick) return *std::move(told.row.stick);
-  return failed("this box cannot use a stick: name a file");
+  return to_failure("this box cannot use a stick: name a file");
 }
 
 /// `where`: place of the export.
 Outcome on_standby(const Call& call, const SpareView& view, const std::string& where) {
-  return printed(call, codec::to_json(view),
-                 line("This box is on standby. Its export is ", where) +
-                     line("Code of its export: ", view.code) +
-                     line("Unplug this box before the spare takes over."));
+  return print_result(call, codec::to_json(view),
+                      line("This box is on standby. Its export is ", where) +
+                          line("Code of its export: ", view.code) +
+                          line("Unplug this box before the spare takes over."));
 }
 
 Result<Outcome> write_to_stick(const Call& call) {
   const auto stick = ADIT_TRY(stick_of(call.adit));
   if (!stick.hindrance.empty())
-    return failed("the box was not put on standby: " + stick.hindrance, Exit::Attention);
+    return to_failure("the box was not put on standby: " + stick.hindrance, Exit::Attention);
   ADIT_TRY(put_on_standby(call));
   const auto view = ask_stick(call.adit, "/adit/spare/to-stick", "");
   if (!view)
-    return failed("the box is on standby, but its export is not on the stick: " + view.error().sentence,
-                  view.error().exit);
+    return to_failure("the box is on standby, but its export is not on the stick: " + view.error().sentence,
+                      view.error().exit);
   return on_standby(call, *view, "on the stick, which you may now unplug: " + view->stick->written);
 }
 
@@ -119,10 +119,10 @@ Result<std::string> read_export(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::string bytes(spare::kLargestExport + 1, '\0');
   file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  if (!file.is_open() || file.bad()) return failed(path + ": cannot be read");
+  if (!file.is_open() || file.bad()) return to_failure(path + ": cannot be read");
   bytes.resize(static_cast<std::size_t>(file.gcount()));
-  if (bytes.size() > spare::kLargestExport) return failed(path + ": too large for an export");
-  if (const std::string why = spare::not_an_export(bytes); !why.empty()) return failed(path + ": " + why);
+  if (bytes.size() > spare::kLargestExport) return to_failure(path + ": too large for an export");
+  if (const std::string why = spare::not_an_export(bytes); !why.empty()) return to_failure(path + ": " + why);
   return bytes;
 }
 
@@ -131,11 +131,11 @@ Result<std::string> name_on_stick(const Call& call) {
   if (!call.options.argument().empty()) return call.options.argument();
   const auto stick = ADIT_TRY(stick_of(call.adit));
   if (stick.exports.size() == 1) return stick.exports.front().name;
-  if (!stick.unreadable.empty()) return failed(stick.unreadable, Exit::Attention);
+  if (!stick.unreadable.empty()) return to_failure(stick.unreadable, Exit::Attention);
   std::string why = stick.exports.empty() ? "the box has no stick with an export"
                                           : "the stick has several exports: name one of";
   for (const api::StickExportRow& each : stick.exports) why += ' ' + each.name;
-  return failed(why, Exit::Attention);
+  return to_failure(why, Exit::Attention);
 }
 
 Result<void> take_from_stick(const Call& call) {
@@ -168,26 +168,26 @@ Result<Outcome> export_spare(const Call& call) {
   const auto view = ADIT_TRY(put_on_standby(call));
   const auto file = ADIT_TRY(get(call.adit, "/adit/spare/export", kFileWithin));
   if (const auto kept = host::write_file(call.options.argument(), file, host::kOursAlone); !kept)
-    return failed("the box is on standby, but its export could not be written: " + kept.error());
+    return to_failure("the box is on standby, but its export could not be written: " + kept.error());
   return on_standby(call, view, "in " + call.options.argument());
 }
 
 Result<Outcome> take_spare(const Call& call) {
   const auto& [adit, options, console] = call;
-  if (options.code.empty()) return failed("the code of the export is missing: give --code");
+  if (options.code.empty()) return to_failure("the code of the export is missing: give --code");
   ADIT_TRY(options.stick ? take_from_stick(call) : take_from_file(call));
   const codec::Value code{codec::Value::Object{{"code", {options.code}}}};
   const auto opened = ADIT_TRY(
       post(adit, {.target = "/adit/spare/open", .check = kSeeSpare, .body = codec::write_json(code)}));
   const auto told = ADIT_TRY(fetch<SpareView>(adit, kSpare));
-  if (!told.row.taken_in) return failed("the box no longer has the export: see adit spare");
+  if (!told.row.taken_in) return to_failure("the box no longer has the export: see adit spare");
   if (!options.json) console.print(text_of(*told.row.taken_in));
   ADIT_TRY(confirm(options, console,
                    "If that box is still plugged in, or no longer on standby, reports may be sent twice.",
                    "Is that box unplugged, and should this box take over?"));
   ADIT_TRY(
       post(adit, {.target = "/adit/spare/take-over", .check = kSeeSpare, .body = R"({"unplugged": true})"}));
-  return printed(call, opened, "this box is taking over\n");
+  return print_result(call, opened, "this box is taking over\n");
 }
 
 Result<Outcome> resume_service(const Call& call) {

@@ -22,14 +22,14 @@ namespace {
 
 using dispatch::ReportState;
 
-std::string counted(std::size_t count, const char* one, const char* several) {
+std::string count_text(std::size_t count, const char* one, const char* several) {
   return count == 0 ? "" : std::to_string(count) + (count == 1 ? one : several);
 }
 
 std::string not_listed(const OmittedReports& rest) {
-  return counted(rest.older, " older report is not listed\n", " older reports are not listed\n") +
-         counted(rest.of_other_runs, " report of another run is not listed: adit reports --run all\n",
-                 " reports of other runs are not listed: adit reports --run all\n");
+  return count_text(rest.older, " older report is not listed\n", " older reports are not listed\n") +
+         count_text(rest.of_other_runs, " report of another run is not listed: adit reports --run all\n",
+                    " reports of other runs are not listed: adit reports --run all\n");
 }
 
 std::function<Cell(const facts::ReportRow&)> coordinate(double icd::Point::* axis) {
@@ -102,9 +102,9 @@ Tone tone_of(const facts::ReportRow& report) {
 
 std::string said_of(const facts::ReportRow& report) {
   const bool is_error = report.status >= 300 && !report.reconciled;
-  return icd::listed(std::array{std::string(report.reconciled ? "found out" : ""),
-                                is_error ? "error " + std::to_string(report.status) : "",
-                                report.report_status});
+  return icd::join_words(std::array{std::string(report.reconciled ? "found out" : ""),
+                                    is_error ? "error " + std::to_string(report.status) : "",
+                                    report.report_status});
 }
 
 std::string gained_by(const facts::ReportRow& report) {
@@ -128,7 +128,8 @@ std::string reports_text(const std::vector<facts::ReportRow>& reports, const Omi
       {"z", coordinate(&icd::Point::z), kRight},
       {"state", [](const Row& row) { return Cell(life_of(row), tone_of(row)); }},
       {"score", gained_by, kRight},
-      {"answer or reason", [](const Row& row) { return icd::listed(std::array{said_of(row), row.note}); }},
+      {"answer or reason",
+       [](const Row& row) { return icd::join_words(std::array{said_of(row), row.note}); }},
       {"sender", &Row::sender},
       {"robot", &Row::robot},
       {"received", [now](const Row& row) { return duration(now - row.received) + " ago"; }, kRight}};
@@ -148,10 +149,10 @@ std::string alarm_line(const alarms::Alarm& alarm, api::Time now, bool colour) {
   const auto& form = kForms[static_cast<std::size_t>(alarm.severity)];
   const std::string what = icd::sentence(std::string_view(&form.sign, 1), " ", alarm.what);
   const std::string& why = alarm.details.empty() ? alarm.why : alarm.details;
-  return "  " + painted(host::escaped(what), alarm.acknowledged ? Tone::Faint : form.tone, colour) +
+  return "  " + paint(host::escape(what), alarm.acknowledged ? Tone::Faint : form.tone, colour) +
          icd::sentence(" (", duration(now - alarm.since), alarm.acknowledged ? ", acknowledged" : "",
                        alarm.hides > 0 ? ", hides " + std::to_string(alarm.hides) : "", ")",
-                       why.empty() ? "" : ": " + host::escaped(why), "\n");
+                       why.empty() ? "" : ": " + host::escape(why), "\n");
 }
 
 std::string alarm_lines(const RunView& view, bool colour) {
@@ -162,8 +163,8 @@ std::string alarm_lines(const RunView& view, bool colour) {
 
 std::string verdict_line(const RunView& view, bool colour) {
   if (view.verdict.what.empty()) return "";
-  return "Maps  " + painted(view.verdict.what, tone_of_level(view.verdict.level), colour) + ": " +
-         host::escaped(view.verdict.why) + '\n';
+  return "Maps  " + paint(view.verdict.what, tone_of_level(view.verdict.level), colour) + ": " +
+         host::escape(view.verdict.why) + '\n';
 }
 
 /// "12:34", "about 12:34"
@@ -179,16 +180,16 @@ std::string to_go(const RunView& view, const alarms::ShownClock& shown) {
 
 std::string run_line(const RunView& view, bool colour) {
   if (!view.run || !view.run_clock)
-    return painted("Run   no status from the Command Post yet", Tone::Warning, colour) + '\n';
+    return paint("Run   no status from the Command Post yet", Tone::Warning, colour) + '\n';
   const icd::RunStatus& run = *view.run;
   const alarms::ShownClock& shown = *view.run_clock;
   const Tone tone = shown.old ? Tone::Faint : Tone::Strong;
-  std::string text = "Run   " + painted(clock_text(shown, shown.seconds), tone, colour) + "   " +
-                     to_go(view, shown) + "   score " + painted(std::to_string(run.score), tone, colour) +
-                     "   " + painted(std::to_string(run.remaining_reports), tone, colour) + " reports left";
-  if (!run.current_team.empty()) text += "   team " + host::escaped(run.current_team);
+  std::string text = "Run   " + paint(clock_text(shown, shown.seconds), tone, colour) + "   " +
+                     to_go(view, shown) + "   score " + paint(std::to_string(run.score), tone, colour) +
+                     "   " + paint(std::to_string(run.remaining_reports), tone, colour) + " reports left";
+  if (!run.current_team.empty()) text += "   team " + host::escape(run.current_team);
   text +=
-      painted("   (heard " + duration(shown.age) + " ago)", shown.old ? Tone::Warning : Tone::Faint, colour);
+      paint("   (heard " + duration(shown.age) + " ago)", shown.old ? Tone::Warning : Tone::Faint, colour);
   return text + '\n';
 }
 
@@ -207,8 +208,8 @@ std::string reports_line(const RunView& view, bool colour) {
   }
   std::string text = states.empty() ? "Reports  0" : "Reports";
   for (const auto& [state, number] : states) {
-    const std::string words = std::to_string(number) + " " + host::escaped(state);
-    text += "  " + painted(words, urgent.contains(state) ? Tone::Bad : Tone::Plain, colour);
+    const std::string words = std::to_string(number) + " " + host::escape(state);
+    text += "  " + paint(words, urgent.contains(state) ? Tone::Bad : Tone::Plain, colour);
   }
   if (view.reports.size() >= RunView::kMostReports)
     text += icd::sentence(" (of the last ", RunView::kMostReports, ")");
@@ -235,7 +236,7 @@ std::string endpoints_table(const RunView& view, bool colour) {
                {last_answer(endpoint)},
                {endpoint.trouble, Tone::Bad}});
   }
-  return table.empty() ? "" : "\nCommand Post\n" + table.written(colour);
+  return table.empty() ? "" : "\nCommand Post\n" + table.to_text(colour);
 }
 
 /// The kind, the mode of clouds, and counts of messages that were left out or are invisible.
@@ -287,7 +288,7 @@ std::string refusals_table(const RunView& view, bool colour) {
                {std::to_string(refusal.status), Tone::Warning},
                {refusal.sentence}});
   }
-  return table.empty() ? "" : "\nRejected from clients, newest first\n" + table.written(colour);
+  return table.empty() ? "" : "\nRejected from clients, newest first\n" + table.to_text(colour);
 }
 
 }  // namespace
@@ -307,7 +308,7 @@ Result<Outcome> status(const Call& call) {
   const auto run = ADIT_TRY(fetch<RunView>(call.adit, "/adit/run"));
   const auto update = fetch<api::UpdateView>(call.adit, "/adit/update");
   const bool is_fine = std::ranges::none_of(run.row.alarms, alarms::calls);
-  return printed(
+  return print_result(
       call, run.json,
       status_text(run.row, call.console.colour) +
           (update ? newer_lines(update->row)
@@ -324,8 +325,8 @@ class Lines {
  public:
   Lines(api::Time at, bool colour) : at_(at), colour_(colour) {}
   void add(const std::string& what, Tone tone = Tone::Plain) {
-    text_ += painted(api::iso_time(at_), Tone::Faint, colour_) + "  " +
-             painted(host::escaped(what), tone, colour_) + '\n';
+    text_ += paint(api::iso_time(at_), Tone::Faint, colour_) + "  " +
+             paint(host::escape(what), tone, colour_) + '\n';
   }
   const std::string& text() const { return text_; }
 
@@ -335,7 +336,7 @@ class Lines {
   std::string text_;
 };
 
-void alarms_told(const api::RunView& before, const api::RunView& now, Lines& lines) {
+void add_alarm_lines(const api::RunView& before, const api::RunView& now, Lines& lines) {
   const auto is_in = [](const api::RunView& view, const alarms::Alarm& alarm) {
     return std::ranges::count(view.alarms, alarm.id, &alarms::Alarm::id) > 0;
   };
@@ -369,7 +370,7 @@ bool was_left_out(const facts::ReportRow& report, const api::RunView& before) {
          report.number < before.reports.front().number && report.changed < before.now;
 }
 
-void reports(const api::RunView& before, const api::RunView& now, Lines& lines) {
+void add_report_lines(const api::RunView& before, const api::RunView& now, Lines& lines) {
   for (const facts::ReportRow& report : now.reports) {
     const auto was = std::ranges::find(before.reports, report.number, &facts::ReportRow::number);
     const bool is_listed = was != before.reports.end();
@@ -386,7 +387,7 @@ std::string state_of(const facts::EndpointRow& endpoint) {
   return endpoint.trouble.empty() ? endpoint.word : endpoint.word + ", " + endpoint.trouble;
 }
 
-void endpoints(const api::RunView& before, const api::RunView& now, Lines& lines) {
+void add_endpoint_lines(const api::RunView& before, const api::RunView& now, Lines& lines) {
   for (const facts::EndpointRow& endpoint : now.endpoints) {
     const auto was = std::ranges::find(before.endpoints, endpoint.name, &facts::EndpointRow::name);
     if (was != before.endpoints.end() && state_of(*was) == state_of(endpoint)) continue;
@@ -406,7 +407,7 @@ std::string_view told_of(const facts::ActivityRow& row) {
   return kTold[static_cast<std::size_t>(row.arrival)];
 }
 
-void arrivals(const api::RunView& before, const api::RunView& now, Lines& lines) {
+void add_arrival_lines(const api::RunView& before, const api::RunView& now, Lines& lines) {
   for (const facts::ActivityRow& row : now.activities) {
     const auto was = std::ranges::find_if(before.activities, [&row](const facts::ActivityRow& each) {
       return each.robot == row.robot && each.kind == row.kind;
@@ -446,15 +447,15 @@ std::string cut(std::string_view line, std::size_t columns) {
 
 std::string changes_text(const api::RunView& before, const api::RunView& now, bool colour) {
   Lines lines(now.now, colour);
-  alarms_told(before, now, lines);
+  add_alarm_lines(before, now, lines);
   run(before, now, lines);
-  endpoints(before, now, lines);
-  reports(before, now, lines);
-  arrivals(before, now, lines);
+  add_endpoint_lines(before, now, lines);
+  add_report_lines(before, now, lines);
+  add_arrival_lines(before, now, lines);
   return lines.text();
 }
 
-std::string fitted(std::string_view text, std::size_t rows, std::size_t columns) {
+std::string fit(std::string_view text, std::size_t rows, std::size_t columns) {
   std::vector<std::string_view> lines;
   while (!text.empty()) lines.push_back(icd::cut(text, '\n'));
   const bool all = lines.size() <= rows;

@@ -49,6 +49,6 @@ std::string changes_text(const api::RunView& before, const api::RunView& now, bo
 
 /// The part of `text` that fits a screen of that size, without a final newline. Long lines are cut. The last
 /// line says how many lines are missing. Colour sequences have no width.
-std::string fitted(std::string_view text, std::size_t rows, std::size_t columns);
+std::string fit(std::string_view text, std::size_t rows, std::size_t columns);
 
 }  // namespace adit::cli

@@ -17,7 +17,7 @@ constexpr double kLongestTime = 1e9;  // seconds; a larger value is an error of 
 
 }  // namespace
 
-std::string painted(const std::string& text, Tone tone, bool colour) {
+std::string paint(const std::string& text, Tone tone, bool colour) {
   if (!colour || tone == Tone::Plain || text.empty()) return text;
   return kCodes[static_cast<std::size_t>(tone)] + text + "\033[0m";
 }
@@ -70,7 +70,7 @@ std::string row_text(const std::vector<Cell>& cells, const std::vector<Table::Co
     const bool right = columns[i].align == Table::Align::Right;
     owed += 2 + (right ? spare : 0);
     if (!cells[i].text.empty()) {
-      text.append(std::exchange(owed, 0), ' ').append(painted(cells[i].text, cells[i].tone, colour));
+      text.append(std::exchange(owed, 0), ' ').append(paint(cells[i].text, cells[i].tone, colour));
     }
     owed += right ? 0 : spare;
   }
@@ -80,11 +80,11 @@ std::string row_text(const std::vector<Cell>& cells, const std::vector<Table::Co
 }  // namespace
 
 void Table::add(std::vector<Cell> cells) {
-  for (Cell& cell : cells) cell.text = host::escaped(cell.text);
+  for (Cell& cell : cells) cell.text = host::escape(cell.text);
   rows_.push_back(std::move(cells));
 }
 
-std::string Table::written(bool colour) const {
+std::string Table::to_text(bool colour) const {
   std::vector<Cell> names;
   std::vector<std::size_t> widths;
   for (const Column& column : columns_) {

@@ -15,12 +15,12 @@ namespace adit::cli {
 enum class Tone : std::uint8_t { Plain, Faint, Strong, Good, Warning, Bad };
 
 /// Applies the tone's colour if `colour`.
-std::string painted(const std::string& text, Tone tone, bool colour);
+std::string paint(const std::string& text, Tone tone, bool colour);
 
 /// A line of strings and numbers, escaped.
 template <class... Parts>
 std::string line(const Parts&... parts) {
-  return host::escaped(icd::sentence(parts...)) + '\n';
+  return host::escape(icd::sentence(parts...)) + '\n';
 }
 
 /// "0.4 s", "12 s", "3 min", "2 h"
@@ -55,7 +55,7 @@ class Table {
   bool empty() const { return rows_.empty(); }
 
   /// With a heading, unless all names are empty. Each line begins with two spaces.
-  std::string written(bool colour) const;
+  std::string to_text(bool colour) const;
 
  private:
   std::vector<Column> columns_;
@@ -72,7 +72,7 @@ struct ColumnOf {
   Table::Align align = Table::Align::Left;
 };
 
-/// The table as Table::written(), or "" without items.
+/// The table as Table::to_text(), or "" without items.
 template <class Item>
 std::string table_of(const std::vector<Item>& items, const std::vector<ColumnOf<Item>>& columns,
                      bool colour) {
@@ -86,7 +86,7 @@ std::string table_of(const std::vector<Item>& items, const std::vector<ColumnOf<
     for (const auto& column : columns) cells.push_back(column.cell(item));
     table.add(std::move(cells));
   }
-  return table.empty() ? "" : table.written(colour);
+  return table.empty() ? "" : table.to_text(colour);
 }
 
 /// Lines of a name and a value.
@@ -94,7 +94,7 @@ class Facts {
  public:
   /// Skips an empty `text`.
   void add(const char* name, const std::string& text, Tone tone = Tone::Plain);
-  std::string written(bool colour) const { return table_.written(colour); }
+  std::string to_text(bool colour) const { return table_.to_text(colour); }
 
  private:
   Table table_{{{}, {}}};

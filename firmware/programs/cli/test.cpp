@@ -23,10 +23,10 @@ std::string line_of(const api::TestStep& step, bool colour) {
   const Tone tone = step.state == "good" ? Tone::Good : step.state == "bad" ? Tone::Bad : Tone::Faint;
   const std::string word = step.state == "bad" ? "BAD" : step.state;
   std::string line =
-      "  " + host::escaped(step.name) + std::string(9 - std::min<std::size_t>(step.name.size(), 8), ' ') +
-      painted(host::escaped(word), tone, colour) +
-      std::string(9 - std::min<std::size_t>(word.size(), 8), ' ') + host::escaped(step.said) + '\n';
-  if (!step.advice.empty()) line += std::string(11, ' ') + host::escaped(step.advice) + '\n';
+      "  " + host::escape(step.name) + std::string(9 - std::min<std::size_t>(step.name.size(), 8), ' ') +
+      paint(host::escape(word), tone, colour) + std::string(9 - std::min<std::size_t>(word.size(), 8), ' ') +
+      host::escape(step.said) + '\n';
+  if (!step.advice.empty()) line += std::string(11, ' ') + host::escape(step.advice) + '\n';
   return line;
 }
 
@@ -43,7 +43,7 @@ class Progress {
         if (number++ < printed_) continue;
         if (!has_ended(step)) return;
         if (&step == &endpoint.steps.front())
-          print_(host::escaped(endpoint.name + " " + endpoint.address) + '\n');
+          print_(host::escape(endpoint.name + " " + endpoint.address) + '\n');
         print_(line_of(step, colour_));
         ++printed_;
       }
@@ -77,7 +77,7 @@ Result<Value> endpoint_to_try(const std::optional<settings::Address>& at, const 
   if (at) endpoint = {{"address", {at->address}}, {"port", {std::int64_t{at->port}}}};
   if (!token_file.empty()) {
     const auto token = token_in_file(token_file);
-    if (!token) return failed(token.error());
+    if (!token) return to_failure(token.error());
     endpoint.emplace_back("token", Value{token->token.reveal()});
   }
   return endpoint.empty() ? Value{} : Value{std::move(endpoint)};
@@ -111,11 +111,11 @@ Result<Outcome> test(const Call& call) {
       }));
   const api::TestView& view = told.row;
   if (view.applied != is_of_use)
-    return failed("a test of other values is running: try again when it has ended");
-  if (view.outdated) return failed("the settings changed during the test: start it again");
+    return to_failure("a test of other values is running: try again when it has ended");
+  if (view.outdated) return to_failure("the settings changed during the test: start it again");
   if (options.json) console.print(told.json + '\n');
   if (!is_whole(view))
-    return failed("the test was interrupted, perhaps by a restart of Adit: start it again");
+    return to_failure("the test was interrupted, perhaps by a restart of Adit: start it again");
   return Outcome{is_bad(view) ? Exit::Attention : Exit::Fine, "", ""};
 }
 

@@ -110,7 +110,7 @@ class Screen {
   void show(std::string_view text) const {
     const auto [rows, columns] = size_of_terminal();
     std::string drawn = kHome;
-    for (const char c : fitted(text, rows, columns)) {
+    for (const char c : fit(text, rows, columns)) {
       if (c == '\n') drawn += kClearLine;
       drawn += c;
     }
@@ -150,7 +150,7 @@ class AsLines : public Shown {
   void show(const Look& seen) override {
     const std::string trouble = seen ? "" : seen.error();
     if (trouble != trouble_)
-      console_.print(trouble.empty() ? "Adit answers again\n" : host::escaped(trouble) + '\n');
+      console_.print(trouble.empty() ? "Adit answers again\n" : host::escape(trouble) + '\n');
     trouble_ = trouble;
     if (!seen) return;
     console_.print(before_ ? changes_text(*before_, seen->view, console_.colour)
@@ -173,12 +173,11 @@ class OnScreen : public Shown {
     if (seen) last_ = seen->view;
     const std::string at = last_ ? "  " + api::iso_time(last_->now) : "";
     const std::string head = "adit watch  " + where_ + at + "  q ends\n";
-    const std::string trouble = seen
-                                    ? ""
-                                    : painted("NO ANSWER, the display is old: " + host::escaped(seen.error()),
-                                              Tone::Bad, console_.colour) +
-                                          '\n';
-    screen_.show(painted(head, Tone::Faint, console_.colour) + trouble +
+    const std::string trouble = seen ? ""
+                                     : paint("NO ANSWER, the display is old: " + host::escape(seen.error()),
+                                             Tone::Bad, console_.colour) +
+                                           '\n';
+    screen_.show(paint(head, Tone::Faint, console_.colour) + trouble +
                  (last_ ? status_text(*last_, console_.colour) : ""));
   }
 
@@ -191,7 +190,7 @@ class OnScreen : public Shown {
 
 std::unique_ptr<Shown> shown_for(const Options& options, const Console& console, const Adit& adit) {
   if (options.json) return std::make_unique<AsJson>(console);
-  if (console.screen) return std::make_unique<OnScreen>(console, written(adit.address));
+  if (console.screen) return std::make_unique<OnScreen>(console, to_text(adit.address));
   return std::make_unique<AsLines>(console);
 }
 
@@ -208,7 +207,7 @@ Result<Outcome> watch(const Call& call) {
   Clock::time_point next{};
   while (true) {
     if (auto look = follower.look()) {
-      if (!seen && !*look) return failed(look->error());
+      if (!seen && !*look) return to_failure(look->error());
       seen = std::move(look);
       is_news = true;
     }

@@ -84,17 +84,17 @@ std::expected<spare::Content, std::string> export_of(const Parts& parts, const d
 Gateway::Gateway(loop::Loop& loop, Parts parts)
     : loop_(loop),
       parts_(std::move(parts)),
-      settings_(settings::in_use(parts_.loaded.settings)),
+      settings_(settings::effective_settings(parts_.loaded.settings)),
       disk_writer_(loop),
       flow_(loop, parts_.ledger, settings_, tokens(), {parts_.runtime_folder, parts_.options.state},
-            {.changed = [this] { api_.changed(); },
-             .posted = [this](const std::string& name) { overview_.posted(name); }}),
+            {.on_changed = [this] { api_.on_changed(); },
+             .on_posted = [this](const std::string& name) { overview_.on_posted(name); }}),
       log_ins_(loop, 1),
       lights_(loop, std::move(parts_.lines)),
       links_(
-          loop, settings_, host::carrier, host::link_changes(), [this] { api_.changed(); },
+          loop, settings_, host::carrier, host::link_changes(), [this] { api_.on_changed(); },
           [this] { flow_.link_is_back(); }),
-      button_(loop, std::move(parts_.button), lights_, [this](panel::Press press) { pressed(press); }),
+      button_(loop, std::move(parts_.button), lights_, [this](panel::Press press) { on_pressed(press); }),
       sessions_(parts_.runtime_folder + '/' + admin::SessionKeeper::kFile, loop.now()),
       accounts_(loop, log_ins_, disk_writer_, sessions_, parts_.options.state,
                 parts_.loaded.secrets.label_code),
@@ -120,8 +120,8 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
                  return at == (icd::endpoint_of(uri) == icd::Endpoint::Scoring ? post.scoring : post.mapping);
                },
            .claim = [this](icd::Uri uri, loop::Instant latest) { return flow_.claim(uri, latest); },
-           .claimed = [this](icd::Uri uri) { flow_.claimed(uri); }},
-          network_, [this] { api_.changed(); }),
+           .on_claimed = [this](icd::Uri uri) { flow_.on_claimed(uri); }},
+          network_, [this] { api_.on_changed(); }),
       updates_(loop, disk_writer_, parts_.options.state, parts_.options.update,
                [this] { return report_under_way(flow_.reports()); }),
       clock_(loop, parts_.options.state, parts_.options.clock, admin::ClockSetting::kChronyd),
@@ -150,13 +150,13 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
             .runs = flow_.archive(),
             .clock = clock_,
             .finer = flow_.finer(),
-            .covered = flow_.covered(),
+            .covered = flow_.covered_map(),
             .spare = spare_,
             .certificate = certificate_},
            tokens().all, redaction()),
       routes_(icd_options(), flow_, flow_.workers(), api_),
       listeners_(loop, parts_.sockets, routes_, guesses_,
-                 [this](intake::Ended why, const std::string& address) { overview_.ended(why, address); }),
+                 [this](intake::Ended why, const std::string& address) { overview_.on_ended(why, address); }),
       team_ports_(loop, parts_.options.state, parts_.options.ports),
       second_(loop.timer([this] { every_second(); })),
       change_(loop.timer([this] { apply_change(); })) {}
@@ -203,7 +203,7 @@ bool Gateway::has_read_all() const {
 
 void Gateway::await_files() {
   if (has_read_all()) return;
-  const auto all_can_be_read = [has_ledger = !parts_.ledger.is_closed(), known = parts_.ledger.known(),
+  const auto all_can_be_read = [has_ledger = !parts_.ledger.is_closed(), known = parts_.ledger.known_facts(),
                                 has_messages = flow_.has_read_messages(), folder = parts_.options.state,
                                 runtime = parts_.runtime_folder, &store = parts_.store] {
     const bool can = (has_ledger || ledger::Ledger::can_be_read(folder)) && store.can_be_read() &&
@@ -212,7 +212,8 @@ void Gateway::await_files() {
     if (can) forward::StampFloor(folder).remember(known);
     return can;
   };
-  file_return_.emplace(loop_, disk_writer_, all_can_be_read, parts_.file_rest, [this] { files_are_back(); });
+  file_return_.emplace(loop_, disk_writer_, all_can_be_read, parts_.file_rest,
+                       [this] { on_files_readable(); });
 }
 
 std::vector<loop::Workers*> Gateway::threads() {
@@ -222,7 +223,7 @@ std::vector<loop::Workers*> Gateway::threads() {
 }
 
 /// The journal may have become readable by itself.
-void Gateway::files_are_back() {
+void Gateway::on_files_readable() {
   if (has_read_all()) return;
   host::log(host::Level::Notice, "all files can be read again; restarting");
   make_way();
@@ -264,8 +265,8 @@ void Gateway::end() {
   if (flow_.is_ending()) return;
   flow_.end([this] {
     loop_.stop();
-    spare_.ends(flow_.reports().expected(loop_.now()));
-    if (!sessions_.sessions().in_order().empty()) sessions_.keep();
+    spare_.on_end(flow_.reports().expected_status(loop_.now()));
+    if (!sessions_.sessions().entries().empty()) sessions_.keep();
   });
   listeners_.stop();
   routes_.stop();
@@ -296,9 +297,9 @@ void Gateway::every_second() {
 void Gateway::look_at_clock() {
   if (const auto ntp = wanted_ntp()) clock_.every_second(*ntp);
   const forward::KnownTimes known = flow_.known_times();
-  clock_.offered({clock::Source::LastKnown, loop_.wall_now()});
-  clock_.offered({clock::Source::CommandPost, known.command_post.value_or(0)});
-  clock_.offered({clock::Source::Robots, known.robots.value_or(0)});
+  clock_.on_offered({clock::Source::LastKnown, loop_.wall_now()});
+  clock_.on_offered({clock::Source::CommandPost, known.command_post.value_or(0)});
+  clock_.on_offered({clock::Source::Robots, known.robots.value_or(0)});
   const double told = clock_.is_told() ? loop_.wall_now() : 0;
   if (const double time = std::max(told, known.command_post.value_or(0)); time > 0)
     flow_.set_known_time(time);
@@ -307,7 +308,7 @@ void Gateway::look_at_clock() {
   host::log(host::Level::Notice, "the clock was set", {{"ahead_by_s", icd::sentence(step)}});
   flow_.wall_was_set(step);
   overview_.wall_was_set(step);
-  api_.changed();
+  api_.on_changed();
 }
 
 std::optional<clock::Ntp> Gateway::wanted_ntp() const {
@@ -315,7 +316,7 @@ std::optional<clock::Ntp> Gateway::wanted_ntp() const {
   if (!settings_.clock.serve_ntp) return ntp;
   const auto own = host::own_address(settings_.team.interface);
   if (!own) return std::nullopt;
-  if (*own) ntp.clients = settings::written(**own);
+  if (*own) ntp.clients = settings::to_text(**own);
   return ntp;
 }
 
@@ -332,7 +333,7 @@ void Gateway::look_at_sockets() {
 void Gateway::keep_sessions() {
   if (loop_.now() < sessions_kept_ + kKeepSessionsEvery) return;
   sessions_kept_ = loop_.now();
-  if (!sessions_.sessions().in_order().empty()) sessions_.keep();
+  if (!sessions_.sessions().entries().empty()) sessions_.keep();
 }
 
 namespace {
@@ -349,17 +350,17 @@ std::expected<void, std::string> Gateway::acknowledge(const std::string& id) {
 
 void Gateway::show_lights() {
   overview_.show_on(lights_);
-  if (std::exchange(told_lights_, lights_.shown()) != lights_.shown()) api_.changed();
+  if (std::exchange(told_lights_, lights_.shown_lights()) != lights_.shown_lights()) api_.on_changed();
 }
 
 api::Time Gateway::identify(double seconds) {
   const auto length = std::chrono::duration_cast<loop::Duration>(std::chrono::duration<double>(seconds));
-  lights_.set_for(panel::State::Identify, length);
-  api_.changed();
+  lights_.set_for(panel::LightState::Identify, length);
+  api_.on_changed();
   return loop_.wall_now() + seconds;
 }
 
-void Gateway::pressed(panel::Press press) {
+void Gateway::on_pressed(panel::Press press) {
   accounts_.button_pressed();
   switch (press) {
     case panel::Press::Identify:
@@ -396,12 +397,12 @@ void Gateway::apply_change() {
   }
   const auto done = loaded ? take_over(std::move(*loaded)) : std::unexpected(std::move(loaded.error()));
   if (!done) revert(done.error());
-  api_.changed();
+  api_.on_changed();
 }
 
 /// An error: unchanged, but sockets may be closed.
 std::expected<void, std::string> Gateway::take_over(admin::Store::Loaded next) {
-  settings::Settings in_use = settings::in_use(next.settings);
+  settings::Settings in_use = settings::effective_settings(next.settings);
   settings::Restarts restarts = settings::restarts_by(settings_, in_use);
   if (restarts.listeners) {
     ADIT_TRY(listen(in_use.team));
@@ -420,17 +421,17 @@ std::expected<void, std::string> Gateway::take_over(admin::Store::Loaded next) {
 }
 
 void Gateway::tell_of_settings(const settings::Restarts& restarts, const forward::Tokens& tokens) {
-  flow_.settings_changed(restarts, tokens);
-  overview_.settings_changed(restarts);
+  flow_.on_settings_changed(restarts, tokens);
+  overview_.on_settings_changed(restarts);
   routes_.serve_with(icd_options());
   api_.set_tokens(tokens.all, redaction());
   host::keep_out_of_log(redaction());
   guesses_.forget();
   links_.look_at(settings_);
-  box_.runs_with(settings::file_of(parts_.loaded.settings));
+  box_.set_settings(settings::file_of(parts_.loaded.settings));
   if (restarts.panel && !parts_.board.panel) reopen_panel();
-  setup_.runs_with(parts_.loaded, parts_.trouble);
-  self_test_.settings_changed();
+  setup_.set_running(parts_.loaded, parts_.trouble);
+  self_test_.on_settings_changed();
 }
 
 /// A line has one holder, so the old ones are released first.
@@ -439,8 +440,8 @@ void Gateway::reopen_panel() {
   button_.let_go();
   auto panel =
       box::open_panel(settings_.panel, {.socket = parts_.options.panel, .folder = parts_.runtime_folder});
-  lights_.take(std::move(panel.lines));
-  button_.take(std::move(panel.button));
+  lights_.set_lines(std::move(panel.lines));
+  button_.set_line(std::move(panel.button));
 }
 
 /// The earlier settings stay in use. If their sockets fail, the process restarts.
@@ -450,7 +451,7 @@ void Gateway::revert(const std::string& why) {
   host::log(host::Level::Error,
             is_back ? "the last change of the settings was reverted" : "the last change cannot be used",
             {{"why", why}});
-  setup_.runs_with(parts_.loaded, parts_.trouble);
+  setup_.set_running(parts_.loaded, parts_.trouble);
   if (auto listening = listen(settings_.team); !listening) return make_way();
   parts_.sockets.settle();
 }

@@ -56,7 +56,7 @@ class Gateway final : public api::GatewayControl {
   /// At the start.
   bool has_read_all() const;
   void await_files();
-  void files_are_back();
+  void on_files_readable();
   void show_lights();
   std::expected<void, std::string> listen(const settings::Team& team);
   void apply_change();
@@ -70,7 +70,7 @@ class Gateway final : public api::GatewayControl {
   forward::Tokens tokens() const;
   icd::Redaction redaction() const;
   std::string unread() const;
-  void pressed(panel::Press press);
+  void on_pressed(panel::Press press);
 
   loop::Loop& loop_;
   Parts parts_;

@@ -51,7 +51,7 @@ std::expected<ListenSockets, std::string> ListenSockets::take_over(std::vector<h
       sockets.held_.push_back(std::move(held));
     } else if (held.door) {
       return std::unexpected(
-          icd::sentence("the socket ", icd::in_quotes(held.name), " from systemd: ", bound.error()));
+          icd::sentence("the socket ", icd::quote_text(held.name), " from systemd: ", bound.error()));
     } else {
       host::log(host::Level::Warning, "unusable socket from systemd",
                 {{"name", held.name}, {"why", bound.error()}});
@@ -189,7 +189,7 @@ std::expected<Listeners::Serving, std::string> Listeners::start(ListenSockets::O
                                                 .connections = bounds.connections,
                                                 .connections_per_address = bounds.per_address,
                                                 .guesses = &guesses_,
-                                                .ended = ended_},
+                                                .on_ended = ended_},
                                                handler_, std::move(open.socket)));
   host::log(host::Level::Notice, "listening",
             {{"address", open.at.address},

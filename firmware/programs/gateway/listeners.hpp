@@ -106,7 +106,9 @@ class Listeners {
   network::TeamPorts ports() const;
   std::size_t connections() const { return sum(&intake::Server::connections); }
   /// Unauthenticated ones.
-  std::size_t unauthenticated() const { return sum(&intake::Server::unauthenticated); }
+  std::size_t unauthenticated_connections() const {
+    return sum(&intake::Server::unauthenticated_connections);
+  }
 
  private:
   struct Bounds {

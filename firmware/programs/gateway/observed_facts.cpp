@@ -6,7 +6,7 @@
 
 namespace adit::gateway {
 
-void Crowding::ended(intake::Ended why, const std::string& address, loop::Instant now) {
+void Crowding::on_ended(intake::Ended why, const std::string& address, loop::Instant now) {
   Kind& kind = kinds_[static_cast<std::size_t>(why)];
   if (now - kind.last >= kRecent) kind.by_address.clear();
   kind.last = now;
@@ -64,11 +64,11 @@ std::string Crowding::sentence(intake::Ended why) const {
 
 namespace {
 
-alarms::ConnectionSample seen(const forward::Channel& channel) {
-  return {.connected = channel.connected(),
+alarms::ConnectionSample sample_connection(const forward::Channel& channel) {
+  return {.connected = channel.is_connected(),
           .busy = channel.busy(),
-          .ended = channel.last().ended(),
-          .throttled = channel.last().throttled(),
+          .ended = channel.last().ended_requests(),
+          .throttled = channel.last().throttled_answers(),
           .sent = channel.bytes_sent(),
           .status = channel.last().status(),
           .foreign = channel.last().is_foreign(),
@@ -76,16 +76,16 @@ alarms::ConnectionSample seen(const forward::Channel& channel) {
 }
 
 /// `row`, with its texts, counts and last answer. `latest`: of the channels, the last that was answered.
-facts::EndpointRow shown(const char* name, const settings::Address& address,
-                         std::initializer_list<const forward::Channel*> channels,
-                         const forward::Channel& latest, facts::EndpointRow row) {
+facts::EndpointRow endpoint_row(const char* name, const settings::Address& address,
+                                std::initializer_list<const forward::Channel*> channels,
+                                const forward::Channel& latest, facts::EndpointRow row) {
   if (!latest.has_token()) row = {.fault = facts::EndpointFault::NoToken};
   row.name = name;
   row.address = forward::address_text(address);
   for (const forward::Channel* channel : channels) {
-    row.connected |= channel->connected();
+    row.connected |= channel->is_connected();
     if (row.trouble.empty()) row.trouble = channel->trouble();
-    row.throttled += channel->last().throttled();
+    row.throttled += channel->last().throttled_answers();
     row.foreign += channel->last().foreign();
   }
   if (row.trouble.empty() && row.fault == facts::EndpointFault::Silent) row.trouble = "no answer";
@@ -102,8 +102,8 @@ struct OfRobot {
 };
 
 /// `now`: stamp clock; `time`: the activities' time of day.
-std::map<std::string, OfRobot> of_robots(const std::vector<facts::ActivityRow>& activities, double now,
-                                         api::Time time) {
+std::map<std::string, OfRobot> rows_by_robot(const std::vector<facts::ActivityRow>& activities, double now,
+                                             api::Time time) {
   std::map<std::string, OfRobot> all;
   for (const facts::ActivityRow& row : activities) {
     const auto kind = std::ranges::find(forward::kHeardKinds, row.kind);
@@ -125,7 +125,7 @@ std::map<std::string, OfRobot> of_robots(const std::vector<facts::ActivityRow>& 
 }  // namespace
 
 void ObservedFacts::carry_on(const forward::Flow& flow, double now) {
-  const auto all = of_robots(flow.activities(), now, now);
+  const auto all = rows_by_robot(flow.activities(), now, now);
   for (const auto& [robot, heard] : flow.heard_before()) {
     const auto its = all.find(robot);
     if (robot.empty() || now - heard.last > alarms::Habits::Rules{}.away) continue;
@@ -137,20 +137,21 @@ void ObservedFacts::carry_on(const forward::Flow& flow, double now) {
 
 void ObservedFacts::look(forward::Flow& flow, const settings::Settings& settings,
                          const std::vector<facts::ActivityRow>& activities, double now, facts::Time time) {
-  scoring_.look({seen(flow.scoring().channel())}, now);
-  mapping_.look({seen(flow.maps().channel()), seen(flow.telemetry().channel())}, now);
-  for (auto& [robot, its] : of_robots(activities, now, time)) {
-    habits_.heard(robot, its.accepted, its.heard.last);
+  scoring_.look({sample_connection(flow.scoring().channel())}, now);
+  mapping_.look({sample_connection(flow.maps().channel()), sample_connection(flow.telemetry().channel())},
+                now);
+  for (auto& [robot, its] : rows_by_robot(activities, now, time)) {
+    habits_.on_count(robot, its.accepted, its.heard.last);
     const std::uint64_t told = its.accepted + its.ended;
     if (std::exchange(told_[robot], told) == told) continue;
-    if (const auto habit = habits_.of(robot)) {
+    if (const auto habit = habits_.habit_of(robot)) {
       its.heard.messages = static_cast<std::uint64_t>(std::min(habit->messages, alarms::Habits::kMessages));
       its.heard.gap = habit->gap;
       its.heard.last = habit->last;
     }
     flow.keep(its.heard);
   }
-  for (const auto& [robot, at] : flow.delivered().before()) {
+  for (const auto& [robot, at] : flow.delivered_scene().earlier_poses()) {
     if (time - at < alarms::Habits::Rules{}.away) habits_.expect(robot, now);
   }
   growth_.look(flow.maps().queued_bytes(), settings.queues.map_bytes, now);
@@ -162,10 +163,11 @@ std::vector<facts::EndpointRow> ObservedFacts::endpoints(const forward::Flow& fl
   const forward::Channel& scoring = flow.scoring().channel();
   const forward::Channel& maps = flow.maps().channel();
   const forward::Channel& telemetry = flow.telemetry().channel();
-  const forward::Channel& latest = maps.last().heard() > telemetry.last().heard() ? maps : telemetry;
+  const forward::Channel& latest =
+      maps.last().answer_time() > telemetry.last().answer_time() ? maps : telemetry;
   std::vector rows{
-      shown("scoring", command_post.scoring, {&scoring}, scoring, scoring_.endpoint(now)),
-      shown("mapping", command_post.mapping, {&maps, &telemetry}, latest, mapping_.endpoint(now))};
+      endpoint_row("scoring", command_post.scoring, {&scoring}, scoring, scoring_.endpoint(now)),
+      endpoint_row("mapping", command_post.mapping, {&maps, &telemetry}, latest, mapping_.endpoint(now))};
   for (facts::EndpointRow& row : rows) {
     if (row.since != 0) row.since += time - now;  // 0: unknown
   }

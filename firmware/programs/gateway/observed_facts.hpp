@@ -27,7 +27,7 @@ class Crowding {
     std::uint64_t times;  // since the last log line
   };
 
-  void ended(intake::Ended why, const std::string& address, loop::Instant now);
+  void on_ended(intake::Ended why, const std::string& address, loop::Instant now);
   std::uint64_t count(intake::Ended why) const { return at(why).count; }
   /// Of the last kRecent.
   std::vector<facts::Crowd> crowds(loop::Instant now) const;

@@ -29,7 +29,7 @@ void Roster::set_up(const std::vector<settings::Robot>& robots) {
   });
 }
 
-bool Roster::posted(const std::string& name, loop::Instant now) {
+bool Roster::on_posted(const std::string& name, loop::Instant now) {
   if (names_.empty() || std::ranges::find(names_, name) != names_.end()) return false;
   if (!unknown_.contains(name) && unknown_.size() >= kMostUnknown) {
     std::erase_if(unknown_, [now](const auto& entry) { return now - entry.second >= kRecent; });
@@ -47,7 +47,8 @@ std::vector<std::string> Roster::unknown(loop::Instant now) const {
 }
 
 std::string Roster::sentence(const std::string& name) const {
-  return icd::sentence("unknown robot '", name, "' sends messages; the settings list ", icd::listed(names_));
+  return icd::sentence("unknown robot '", name, "' sends messages; the settings list ",
+                       icd::join_words(names_));
 }
 
 namespace {
@@ -76,61 +77,61 @@ void Overview::look() {
   observed_.look(rooms_.flow, rooms_.settings, activities, rooms_.loop.stamp_now(), rooms_.loop.wall_now());
   take_snapshot(std::move(activities));
   // At a stop conditions end that are not cleared.
-  if (!rooms_.flow.is_ending()) acknowledged_.keep(board_.acknowledged());
+  if (!rooms_.flow.is_ending()) acknowledged_.keep(board_.acknowledgements());
   std::vector<std::string> headlines;
   for (const alarms::Condition& each : conditions_) {
     if (each.severity != alarms::Severity::Wait) headlines.push_back(each.headline.now());
   }
-  rooms_.flow.archive().needs_attention(headlines, view_.now);
+  rooms_.flow.archive().set_attention(headlines, view_.now);
   log_crowding();
 }
 
 std::expected<void, std::string> Overview::acknowledge(const std::string& id) {
   take_snapshot(rooms_.flow.activities());
   auto done = board_.acknowledge(id, view_.now);
-  view_.alarms = board_.shown(conditions_, view_.now);
-  acknowledged_.keep(board_.acknowledged());
+  view_.alarms = board_.to_alarms(conditions_, view_.now);
+  acknowledged_.keep(board_.acknowledgements());
   return done;
 }
 
 void Overview::show_on(box::Lights& lights) const {
-  using panel::State;
+  using panel::LightState;
   const bool serving = rooms_.listeners.serves() && rooms_.flow.scoring().trouble().empty();
-  lights.set(State::Serving, serving);
-  lights.set(State::NotServing, !serving);
+  lights.set(LightState::Serving, serving);
+  lights.set(LightState::NotServing, !serving);
   const auto& posts = view_.endpoints;
-  lights.set(State::ScoringConnected, posts[0].connected);
-  lights.set(State::ScoringFailing, !posts[0].trouble.empty());
-  lights.set(State::ReportWaiting, !rooms_.flow.reports().waiting_here().empty());
-  lights.set(State::MappingConnected, posts[1].connected);
-  lights.set(State::MappingFailing, !posts[1].trouble.empty());
+  lights.set(LightState::ScoringConnected, posts[0].connected);
+  lights.set(LightState::ScoringFailing, !posts[0].trouble.empty());
+  lights.set(LightState::ReportWaiting, !rooms_.flow.reports().waiting_here().empty());
+  lights.set(LightState::MappingConnected, posts[1].connected);
+  lights.set(LightState::MappingFailing, !posts[1].trouble.empty());
   const auto& all = view_.alarms;
   const auto calling = std::ranges::count_if(all, alarms::calls);
   const auto seen = std::ranges::count_if(
       all, [](const alarms::Alarm& alarm) { return alarms::calls(alarm) && alarm.acknowledged; });
-  lights.set(State::NeedsOperator, calling > seen);
-  lights.set(State::Acknowledged, calling > 0);
-  lights.set(State::UpdateRunning, rooms_.updates.running());
+  lights.set(LightState::NeedsOperator, calling > seen);
+  lights.set(LightState::Acknowledged, calling > 0);
+  lights.set(LightState::UpdateRunning, rooms_.updates.running());
   for (const facts::LinkRow& link : view_.links) {
-    lights.set(link.is_team() ? State::TeamUnplugged : State::CommandPostUnplugged,
+    lights.set(link.is_team() ? LightState::TeamUnplugged : LightState::CommandPostUnplugged,
                !link.carrier.value_or(false));
   }
-  if (lights.has(State::SetUpOpen) && !rooms_.accounts.set_up_open()) {
+  if (lights.has(LightState::SetUpOpen) && !rooms_.accounts.set_up_open()) {
     host::log(host::Level::Notice, "set-up is closed");
   }
-  lights.set(State::SetUpOpen, rooms_.accounts.set_up_open());
+  lights.set(LightState::SetUpOpen, rooms_.accounts.set_up_open());
 }
 
-void Overview::posted(const std::string& robot) {
-  if (roster_.posted(robot, rooms_.loop.now())) host::log(host::Level::Warning, roster_.sentence(robot));
+void Overview::on_posted(const std::string& robot) {
+  if (roster_.on_posted(robot, rooms_.loop.now())) host::log(host::Level::Warning, roster_.sentence(robot));
 }
 
-void Overview::ended(intake::Ended why, const std::string& address) {
-  crowding_.ended(why, address, rooms_.loop.now());
+void Overview::on_ended(intake::Ended why, const std::string& address) {
+  crowding_.on_ended(why, address, rooms_.loop.now());
   log_crowding();
 }
 
-void Overview::settings_changed(const settings::Restarts& restarts) {
+void Overview::on_settings_changed(const settings::Restarts& restarts) {
   if (restarts.scoring) observed_.forget_scoring();
   if (restarts.mapping) observed_.forget_mapping();
   roster_.set_up(rooms_.settings.robots);
@@ -153,14 +154,14 @@ void Overview::take_snapshot(std::vector<facts::ActivityRow> activities) {
                            .network = rooms_.network.fact(),
                            .box = box()};
   conditions_ = alarms::conditions_of(snapshot);
-  board_.take(conditions_, snapshot.traffic.now);
+  board_.update(conditions_, snapshot.traffic.now);
   view_ = view_of(std::move(snapshot));
 }
 
 api::RunView Overview::view_of(facts::Snapshot snapshot) const {
   facts::Traffic& traffic = snapshot.traffic;
   const double now = traffic.now;
-  auto shown = board_.shown(conditions_, now);
+  auto shown = board_.to_alarms(conditions_, now);
   alarms::add_words(traffic, shown);
   const auto ends = [now](std::optional<loop::Duration> left) {
     return left ? std::optional(now + std::chrono::duration<double>(*left).count()) : std::nullopt;
@@ -188,20 +189,20 @@ api::RunView Overview::view_of(facts::Snapshot snapshot) const {
                     .lights = {},
                     .links = std::move(traffic.links),
                     .certificate = certificate.offered ? certificate.fingerprint : "",
-                    .identify_until = ends(rooms_.lights.left(panel::State::Identify)),
+                    .identify_until = ends(rooms_.lights.remaining(panel::LightState::Identify)),
                     .setup_open_until = ends(rooms_.accounts.set_up_left()),
                     .budget_mbit = rooms_.settings.command_post.budget_mbit,
                     .sent_mbit = rooms_.flow.sent_mbit(),
                     .queued_bytes = traffic.queued,
                     .map_version = rooms_.flow.picture().version(),
-                    .marker_version = rooms_.flow.delivered().markers().version(),
+                    .marker_version = rooms_.flow.delivered_scene().markers().version(),
                     .verdict = std::move(verdict),
                     .alarms = std::move(shown),
-                    .alarms_over = board_.over()};
+                    .alarms_over = board_.ended_alarms()};
   for (const panel::Light light : panel::kLights) {
     view.lights.push_back(
         {.name = std::string(panel::name_of(light)),
-         .pattern = std::string(panel::name_of(rooms_.lights.shown()[panel::index_of(light)]))});
+         .pattern = std::string(panel::name_of(rooms_.lights.shown_lights()[panel::index_of(light)]))});
   }
   return view;
 }
@@ -234,7 +235,7 @@ std::optional<api::ReportDetail> Overview::report(std::int64_t number) const {
 
 void Overview::add_to(api::Usage& usage) const {
   usage.connections += rooms_.listeners.connections();
-  usage.unauthenticated = rooms_.listeners.unauthenticated();
+  usage.unauthenticated = rooms_.listeners.unauthenticated_connections();
   usage.ended = {{"no_room", crowding_.count(intake::Ended::NoRoom)},
                  {"gave_way", crowding_.count(intake::Ended::GaveWay)},
                  {"idle", crowding_.count(intake::Ended::Idle)},
@@ -242,7 +243,7 @@ void Overview::add_to(api::Usage& usage) const {
   usage.wrong_tokens = crowding_.count(intake::Ended::WrongToken);
   usage.sent_bytes = rooms_.flow.sent_bytes();
   usage.exceptions = loop::caught_so_far();
-  usage.rejected_dropped = rooms_.flow.rejected().dropped();
+  usage.rejected_dropped = rooms_.flow.rejected_store().dropped_count();
   usage.refused = rooms_.flow.counts().refused_counts();
 }
 
@@ -254,7 +255,7 @@ facts::Traffic Overview::traffic(std::vector<facts::ActivityRow> activities) con
       .links = rooms_.links.rows(),
       .activities = std::move(activities),
       .habits = observed_.habits(rooms_.settings.alarms, steady),
-      .robots = rooms_.flow.delivered().robots(),
+      .robots = rooms_.flow.delivered_scene().robots(),
       .registered = roster_.names(),
       .queued = rooms_.flow.maps().queued_bytes(),
       .queue_room = rooms_.settings.queues.map_bytes,
@@ -276,7 +277,7 @@ facts::Reports Overview::reports() const {
   facts::Reports reports{.rows = latest_rows(all, api::RunView::kMostReports, answers_),
                          .elsewhere = all.waiting_elsewhere(),
                          .run_renamed = all.runs().name_trouble(),
-                         .rejected = rooms_.flow.rejected().rows()};
+                         .rejected = rooms_.flow.rejected_store().rows()};
   for (facts::ReportRow& row : reports.rows) tell_time_of_day(row, rooms_.loop);
   for (const dispatch::Report* const lost : all.lost_here()) reports.lost_here.insert(lost->number);
   if (const auto& run = rooms_.flow.scoring().run()) reports.left = run->remaining_reports;

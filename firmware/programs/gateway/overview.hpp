@@ -70,7 +70,7 @@ class Roster {
   /// Replaces the list.
   void set_up(const std::vector<settings::Robot>& robots);
   /// Call for each accepted message. True: the first of an unknown robot.
-  bool posted(const std::string& name, loop::Instant now);
+  bool on_posted(const std::string& name, loop::Instant now);
   /// Within kRecent.
   std::vector<std::string> unknown(loop::Instant now) const;
   /// "unknown robot 'x' sends messages; the settings list ugv1, ugv2"
@@ -114,11 +114,11 @@ class Overview final : public api::Source {
   /// Shows the last snapshot, and logs the end of set-up.
   void show_on(box::Lights& lights) const;
   /// A robot's message was accepted.
-  void posted(const std::string& robot);
+  void on_posted(const std::string& robot);
   /// A connection of the team was rejected or closed.
-  void ended(intake::Ended why, const std::string& address);
+  void on_ended(intake::Ended why, const std::string& address);
   /// Settings or tokens have changed.
-  void settings_changed(const settings::Restarts& restarts);
+  void on_settings_changed(const settings::Restarts& restarts);
   /// The time of day was set ahead by `seconds`.
   void wall_was_set(double seconds) { board_.move(seconds); }
 
@@ -133,10 +133,10 @@ class Overview final : public api::Source {
   std::optional<api::ReportDetail> report(std::int64_t number) const override;
   const picture::Mosaic& map() const override { return rooms_.flow.picture(); }
   api::MarkerChanges markers(std::uint64_t since) const override {
-    return rooms_.flow.delivered().markers().changes(since);
+    return rooms_.flow.delivered_scene().markers().changes(since);
   }
   std::vector<api::Track> tracks(api::Time since) const override {
-    return rooms_.flow.delivered().tracks().since(since);
+    return rooms_.flow.delivered_scene().tracks().tracks_after(since);
   }
 
  private:

@@ -11,10 +11,10 @@
 
 namespace adit::gateway {
 
-const std::optional<icd::ReportReply>& ReadAnswers::of(const dispatch::Report& report) {
+const std::optional<icd::ReportReply>& ReadAnswers::answer_of(const dispatch::Report& report) {
   if (known_.size() >= kMost && !known_.contains(report.number)) known_.clear();
   const auto [found, is_new] = known_.try_emplace(report.number);
-  Known& known = found->second;
+  CachedAnswer& known = found->second;
   if (!is_new && known.answer == report.answer) return known.reply;
   known = {.answer = report.answer, .reply = std::nullopt};
   if (report.answer.empty()) return known.reply;
@@ -43,7 +43,7 @@ facts::ReportRow row_of(const dispatch::Reports& reports, const dispatch::Report
                        .same_as = report.same_as};
   const bool is_recorded = report.state == dispatch::ReportState::Answered ||
                            (report.state == dispatch::ReportState::Settled && report.reconciled);
-  const auto& reply = answers.of(report);
+  const auto& reply = answers.answer_of(report);
   if (is_recorded && reply && !dispatch::is_about_another(*reply, report.report)) {
     row.report_status = reply->report_status;
     row.score_change = reply->score_change;

@@ -19,15 +19,15 @@ namespace adit::gateway {
 class ReadAnswers {
  public:
   /// nullopt: no answer, or not to a report.
-  const std::optional<icd::ReportReply>& of(const dispatch::Report& report);
+  const std::optional<icd::ReportReply>& answer_of(const dispatch::Report& report);
 
  private:
   static constexpr std::size_t kMost = 1000;  // entries
-  struct Known {
+  struct CachedAnswer {
     std::string answer;
     std::optional<icd::ReportReply> reply;
   };
-  std::map<std::int64_t, Known> known_;  // by report number
+  std::map<std::int64_t, CachedAnswer> known_;  // by report number
 };
 
 /// For the page and `adit reports`.

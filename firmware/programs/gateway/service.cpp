@@ -68,11 +68,11 @@ std::string ledger_memory(const Options& options) {
 ledger::Result<ledger::Ledger> open_ledger(const Options& options) {
   using enum ledger::Error::Cause;
   const auto kept = forward::StampFloor(options.state).read();  // an error puts the box on standby
-  const ledger::Known known = kept ? kept->ledger : ledger::Known();
+  const ledger::LedgerFacts known = kept ? kept->ledger : ledger::LedgerFacts();
   const std::string memory = ledger_memory(options);
   auto opened = ledger::Ledger::open(options.state, known, memory);
   if (!opened && opened.error().cause != InUse && opened.error().cause != Newer)
-    return ledger::Ledger::closed(opened.error().what, known, memory);
+    return ledger::Ledger::make_closed(opened.error().what, known, memory);
   if (opened && !opened->damage().empty()) host::log(host::Level::Error, opened->damage());
   if (opened && !opened->warning().empty())
     host::log(host::Level::Warning, "an older copy of the ledger would not be found",
@@ -211,7 +211,7 @@ std::expected<bool, std::string> Service::run(Gateway& gateway, const settings::
   sockets_.settle();
   host::notify_ready(gateway.status_line());
   std::optional<loop::Watchdog> watchdog;
-  if (const auto within = host::watchdog_within()) {
+  if (const auto within = host::watchdog_interval()) {
     watchdog.emplace(loop_, *within, &host::notify_alive);
     watchdog->watch_workers(gateway.threads());
   }
@@ -226,7 +226,7 @@ std::expected<bool, std::string> Service::run(Gateway& gateway, const settings::
 }
 
 std::expected<void, std::string> Service::take_over_sockets() {
-  auto given = ADIT_TRY(host::inherited());
+  auto given = ADIT_TRY(host::inherited_sockets());
   auto sockets = ADIT_TRY(ListenSockets::take_over(std::move(given)));
   sockets_ = std::move(sockets);
   return {};

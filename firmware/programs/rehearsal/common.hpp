@@ -30,8 +30,8 @@ std::unexpected<std::string> wrong(const Parts&... parts) {
 
 /// Stores an option's value as Parse reads it. The error of Parse is a sentence.
 template <auto Parse, class Into>
-command_line::Take parsed_value(Into& into) {
-  return command_line::take<[](Into& place, const std::string& text) -> command_line::Wrong {
+command_line::ValueSetter parsed_value(Into& into) {
+  return command_line::set_by<[](Into& place, const std::string& text) -> command_line::Wrong {
     auto read = Parse(text);
     if (!read) return std::move(read.error());
     place = *std::move(read);
@@ -67,7 +67,7 @@ inline std::expected<std::string, std::string> read_token(const std::filesystem:
   std::ifstream file(path);
   if (!file) return wrong(path.string(), ": cannot be read");
   const std::string text{std::istreambuf_iterator<char>(file), {}};
-  std::string token(icd::trimmed(text));
+  std::string token(icd::trim(text));
   const bool is_visible = std::ranges::all_of(token, [](char c) { return c > 0x20 && c < 0x7f; });
   if (!token.empty() && is_visible) return token;
   return wrong(path.string(), ": expected one token of visible ASCII characters");

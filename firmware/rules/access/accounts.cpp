@@ -34,7 +34,7 @@ std::string_view salt_of(std::string_view hash) {
 
 std::optional<Role> role_of(const std::string& password, const Accounts& accounts) {
   for (const Role role : {Role::Operator, Role::Viewer}) {
-    if (accounts.of(role) && matches(password, *accounts.of(role))) return role;
+    if (accounts.hash_of(role) && matches(password, *accounts.hash_of(role))) return role;
   }
   return std::nullopt;
 }
@@ -57,14 +57,15 @@ namespace {
 constexpr std::int64_t kDevicesVersion = 2;
 
 std::string_view password_of(Role role, const Accounts& accounts) {
-  return accounts.of(role) ? salt_of(*accounts.of(role)) : "";
+  return accounts.hash_of(role) ? salt_of(*accounts.hash_of(role)) : "";
 }
 
 std::optional<Device> device_in(const codec::Field& object, const Accounts& accounts) {
   const auto role = role_in(object);
   const auto id = token_in(object, "id");
   const std::string_view password = object.member("password").text();
-  if (!role || !id || !accounts.of(*role) || password != password_of(*role, accounts)) return std::nullopt;
+  if (!role || !id || !accounts.hash_of(*role) || password != password_of(*role, accounts))
+    return std::nullopt;
   return Device{.role = *role, .id = *id};
 }
 

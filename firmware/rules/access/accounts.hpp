@@ -18,8 +18,8 @@ namespace adit::access {
 struct Accounts {
   std::optional<std::string> viewer, operator_;
 
-  std::optional<std::string>& of(Role role) { return role == Role::Operator ? operator_ : viewer; }
-  const std::optional<std::string>& of(Role role) const {
+  std::optional<std::string>& hash_of(Role role) { return role == Role::Operator ? operator_ : viewer; }
+  const std::optional<std::string>& hash_of(Role role) const {
     return role == Role::Operator ? operator_ : viewer;
   }
   friend bool operator==(const Accounts&, const Accounts&) = default;
@@ -86,7 +86,7 @@ class Window {
   /// Closes it after use.
   void close() { until_.reset(); }
   /// The rest of its time, or nullopt if it is closed.
-  std::optional<Duration> left(Instant now) const {
+  std::optional<Duration> remaining(Instant now) const {
     return until_ && now < *until_ ? std::optional<Duration>(*until_ - now) : std::nullopt;
   }
 

@@ -40,7 +40,7 @@ constexpr std::string_view kProxyHint =
 
 constexpr std::string_view kSecurePrefix = "__Host-";  // RFC 6265bis 4.1.3.2
 
-bool only_reads(std::string_view method) {
+bool is_read_only(std::string_view method) {
   return method == "GET" || method == "HEAD";
 }
 
@@ -75,7 +75,7 @@ std::string cookie_name(std::string_view name, std::string_view host, bool is_se
 
 std::string_view cookie_in(std::string_view cookies, std::string_view name) {
   while (!cookies.empty()) {
-    const std::string_view pair = icd::trimmed(icd::cut(cookies, ';'), " \t");
+    const std::string_view pair = icd::trim(icd::cut(cookies, ';'), " \t");
     if (pair.starts_with(name) && pair.substr(name.size()).starts_with('='))
       return pair.substr(name.size() + 1);
   }
@@ -86,7 +86,7 @@ std::vector<std::string_view> cookies_in(std::string_view cookies, std::string_v
                                          std::string_view host, bool is_secure) {
   std::vector<std::string_view> values{cookie_in(cookies, cookie_name(name, host, is_secure))};
   while (!cookies.empty()) {
-    std::string_view value = icd::trimmed(icd::cut(cookies, ';'), " \t");
+    std::string_view value = icd::trim(icd::cut(cookies, ';'), " \t");
     std::string_view each = icd::cut(value, '=');
     if (each.starts_with(kSecurePrefix) != is_secure) continue;
     if (is_secure) each.remove_prefix(kSecurePrefix.size());
@@ -103,17 +103,17 @@ icd::Checked<void> check_host_and_origin(const Request& request) {
   if (!names_this_box(request.host)) {
     return refuse(icd::Status::Forbidden,
                   "Host: expected the box's address, localhost or the box's name in .local, got ",
-                  icd::in_quotes(request.host), kProxyHint);
+                  icd::quote_text(request.host), kProxyHint);
   }
   if (!request.origin.empty() && !is_same_origin(request.origin, request.host, request.is_secure)) {
     return refuse(icd::Status::Forbidden, "Origin: expected a page of this box, got ",
-                  icd::in_quotes(request.origin), " with Host ", icd::in_quotes(request.host), kProxyHint);
+                  icd::quote_text(request.origin), " with Host ", icd::quote_text(request.host), kProxyHint);
   }
   return {};
 }
 
-std::optional<Visitor> who(const Request& request, std::span<const icd::BearerToken> tokens,
-                           Sessions& sessions, Instant now) {
+std::optional<Visitor> find_visitor(const Request& request, std::span<const icd::BearerToken> tokens,
+                                    Sessions& sessions, Instant now) {
   if (!request.authorization.empty()) {
     if (!icd::is_one_of(tokens, icd::token_in(request.authorization))) return std::nullopt;
     return Visitor{Role::Operator, nullptr};
@@ -127,11 +127,11 @@ std::optional<Visitor> who(const Request& request, std::span<const icd::BearerTo
 icd::Checked<Visitor> admit(const Request& request, Role role, std::span<const icd::BearerToken> tokens,
                             Sessions& sessions, Instant now) {
   ADIT_TRY(check_host_and_origin(request));
-  const auto visitor = who(request, tokens, sessions, now);
+  const auto visitor = find_visitor(request, tokens, sessions, now);
   if (!visitor) {
     return refuse(icd::Status::Unauthorized, "log in, or send the team's token as Authorization: Bearer");
   }
-  if (visitor->session != nullptr && !only_reads(request.method) &&
+  if (visitor->session != nullptr && !is_read_only(request.method) &&
       !visitor->session->csrf.matches(request.csrf)) {
     return refuse(icd::Status::Forbidden, kCsrfHeader, ": expected the session's CSRF token");
   }

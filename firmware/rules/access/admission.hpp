@@ -53,8 +53,8 @@ icd::Checked<void> check_host_and_origin(const Request& request);
 
 /// With an Authorization header: an operator if it contains one of `tokens`, else nullopt. Without one: the
 /// owner of the session whose cookie the request shows, or nullopt.
-std::optional<Visitor> who(const Request& request, std::span<const icd::BearerToken> tokens,
-                           Sessions& sessions, Instant now);
+std::optional<Visitor> find_visitor(const Request& request, std::span<const icd::BearerToken> tokens,
+                                    Sessions& sessions, Instant now);
 
 /// Checks that the request may do an action that needs `role`. 401 if it shows no valid token or session. 403
 /// if it comes from another page, if its role is lower, or if it is not GET or HEAD and lacks its session's

@@ -24,7 +24,7 @@ std::string_view inside(std::string_view block) {
 /// Bytes of the DER, or nothing.
 std::vector<std::uint8_t> der_of(std::string_view block) {
   std::string digits(inside(block));
-  std::erase_if(digits, [](char each) { return icd::trimmed({&each, 1}).empty(); });
+  std::erase_if(digits, [](char each) { return icd::trim({&each, 1}).empty(); });
   std::vector<std::uint8_t> der(digits.size());
   codec::Base64Decoder decoder;
   std::string_view rest = digits;
@@ -76,7 +76,7 @@ std::expected<KeyAndChain, std::string> read_pem(std::string_view text) {
       pem.key = block;
     } else if (label != "EC PARAMETERS") {  // openssl ecparam -genkey writes it before the key
       return std::unexpected(
-          icd::sentence("expected a private key and certificates, got ", icd::in_quotes(label)));
+          icd::sentence("expected a private key and certificates, got ", icd::quote_text(label)));
     }
   }
   if (pem.chain.empty()) return std::unexpected("there is no certificate in the file; expected PEM");

@@ -20,7 +20,7 @@ Wait Guesses::begin(const Guesser& guesser, Instant now) {
   return {};
 }
 
-void Guesses::succeeded(const Guesser& guesser, Role role) {
+void Guesses::on_succeeded(const Guesser& guesser, Role role) {
   next_ -= kEach;
   const auto own = counts_.find(key_of(guesser));
   if (own == counts_.end()) return;

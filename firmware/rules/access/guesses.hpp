@@ -31,8 +31,8 @@ struct Wait {
 /// turn, in the order in which they asked. A known device needs no turn. An address without a wrong try needs
 /// none while a person is at the box.
 ///
-/// A try counts as wrong when it begins, so that parallel tries gain nothing. succeeded() takes that back. A
-/// client is forgotten kForgotten after its last request.
+/// A try counts as wrong when it begins, so that parallel tries gain nothing. on_succeeded() takes that back.
+/// A client is forgotten kForgotten after its last request.
 class Guesses {
  public:
   static constexpr int kFree = 5;
@@ -47,7 +47,7 @@ class Guesses {
   Wait begin(const Guesser& guesser, Instant now);
   /// The password of the last try was that of `role`. The operator's password clears the wrong tries. The
   /// viewers' password takes back one, because a viewer may be guessing the operator's.
-  void succeeded(const Guesser& guesser, Role role);
+  void on_succeeded(const Guesser& guesser, Role role);
 
  private:
   using Key =

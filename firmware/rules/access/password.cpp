@@ -22,7 +22,7 @@ struct Wiped {
 };
 
 /// "" if libcrypt fails.
-std::string crypted(const std::string& password, const std::string& setting) {
+std::string hash_password(const std::string& password, const std::string& setting) {
   const std::unique_ptr<crypt_data, Wiped> data(new crypt_data{});
   const char* const text = crypt_r(password.c_str(), setting.c_str(), data.get());
   return text == nullptr || *text == '*' ? "" : text;  // "*0": failure (crypt(3))
@@ -58,7 +58,7 @@ std::expected<std::string, std::string> hash(const std::string& password, const 
   const auto* const bytes = reinterpret_cast<const char*>(salt.data());
   const char* const made = crypt_gensalt_rn("$y$", 0, bytes, static_cast<int>(salt.size()), setting,
                                             static_cast<int>(sizeof setting));
-  std::string text = made == nullptr ? "" : crypted(password, made);
+  std::string text = made == nullptr ? "" : hash_password(password, made);
   if (text.empty()) return std::unexpected("cannot hash the password: there may not be enough memory");
   return text;
 }
@@ -66,7 +66,7 @@ std::expected<std::string, std::string> hash(const std::string& password, const 
 bool matches(const std::string& password, const std::string& hash) {
   if (password.size() > kMostBytes) return false;
   const auto expected = icd::BearerToken::parse(hash);  // compares in constant time
-  return expected && expected->matches(crypted(password, hash));
+  return expected && expected->matches(hash_password(password, hash));
 }
 
 }  // namespace adit::access

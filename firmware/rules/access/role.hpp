@@ -42,7 +42,7 @@ std::expected<Kept, std::string> read_kept(std::string_view json, std::int64_t v
   codec::Reading reading;
   const codec::Field object(*root, reading);
   const codec::Field said = object.member("version");
-  if (said.whole<std::int64_t>() != version) said.refuse("expected ", version);
+  if (said.integer<std::int64_t>() != version) said.refuse("expected ", version);
   auto outcome = reading.outcome<Kept>(read(object));
   if (!outcome) return std::unexpected(outcome.error().sentence);
   return std::move(*outcome);
@@ -54,7 +54,7 @@ template <class Element, class Read>
 std::vector<Element> elements_of(const codec::Field& array, Read read_element) {
   std::vector<Element> all;
   const std::size_t count = array.size();
-  for (std::size_t i = 0; i < count && !array.reading().refused(); ++i) {
+  for (std::size_t i = 0; i < count && !array.reading().has_refusal(); ++i) {
     if (std::optional<Element> each = read_element(array.element(i))) all.push_back(std::move(*each));
   }
   return all;

@@ -19,11 +19,11 @@ Value value_of(Instant at) {
 }
 
 Instant instant_in(const Field& object, std::string_view name) {
-  return Instant(Duration(object.member(name).whole<std::int64_t>(0)));
+  return Instant(Duration(object.member(name).integer<std::int64_t>(0)));
 }
 
 std::uint64_t number_in(const Field& object, std::string_view name) {
-  return static_cast<std::uint64_t>(object.member(name).whole<std::int64_t>(0));
+  return static_cast<std::uint64_t>(object.member(name).integer<std::int64_t>(0));
 }
 
 Value value_of(const Session& session) {
@@ -121,7 +121,7 @@ const Session* Sessions::find(std::string_view id, Instant now) {
   return found;
 }
 
-bool Sessions::still(std::uint64_t number, Instant now) {
+bool Sessions::touch(std::uint64_t number, Instant now) {
   forget_ended(now);
   const auto found = std::ranges::find(sessions_, number, &Session::number);
   if (found == sessions_.end()) return false;

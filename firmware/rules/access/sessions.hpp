@@ -50,14 +50,14 @@ class Sessions {
   /// `last`: the last number in use.
   void restore(std::vector<Session> sessions, std::uint64_t last, Instant now);
   std::uint64_t last() const { return last_; }
-  const std::vector<Session>& in_order() const { return sessions_; }
+  const std::vector<Session>& entries() const { return sessions_; }
 
   /// `id` and `csrf` must be new. The result is valid until the next call.
   const Session& begin(const Secret& id, const Secret& csrf, Role role, const Caller& caller, Instant now);
   /// The session with this id, or null. Marks it as seen now. The result is valid until the next call.
   const Session* find(std::string_view id, Instant now);
   /// True if the session has not ended. Marks it as seen now.
-  bool still(std::uint64_t number, Instant now);
+  bool touch(std::uint64_t number, Instant now);
 
   /// False if there is no such session.
   bool end(std::uint64_t number);

@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kLongest = 1e9;  // seconds; a longer age comes from a clock step
 
-std::int64_t whole(double seconds) {
+std::int64_t to_seconds(double seconds) {
   return static_cast<std::int64_t>(std::floor(std::clamp(seconds, 0.0, kLongest)));
 }
 
@@ -57,14 +57,14 @@ constexpr std::string_view kById[] = {"id"}, kByIdAndEnd[] = {"id", "until"};
 }  // namespace
 
 std::string age_text(double seconds) {
-  const std::int64_t all = whole(seconds);
+  const std::int64_t all = to_seconds(seconds);
   if (all < 60) return std::to_string(all) + " s";
   if (all < 3600) return std::to_string(all / 60) + " min";
   return std::to_string(all / 3600) + ":" + two(all / 60 % 60) + " h";
 }
 
 std::string clock_text(double seconds) {
-  const std::int64_t all = whole(seconds);
+  const std::int64_t all = to_seconds(seconds);
   return std::to_string(all / 60) + ":" + two(all % 60);
 }
 

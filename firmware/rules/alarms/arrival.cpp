@@ -59,7 +59,7 @@ constexpr codec::Member kShown[] = {
 
 constexpr codec::Row ShownClock::kRow = codec::complete<ShownClock>({"RunClock", kShown, "The run's clock."});
 
-void RunClock::heard(double shows, double now) {
+void RunClock::on_status(double shows, double now) {
   bool runs = shows > 0;
   if (heard_ && shows == heard_->shows) runs = heard_->runs && now - heard_->at <= kTick;
   heard_ = {.shows = shows, .at = now, .runs = runs};

@@ -34,7 +34,7 @@ struct ShownClock {
 class RunClock {
  public:
   /// Call for each status. `shows`: its clock.
-  void heard(double shows, double now);
+  void on_status(double shows, double now);
   /// The clock at `now`, or std::nullopt before the first status. A clock advances unless it is at 0 s, or
   /// two statuses more than 1.5 s apart show the same time.
   std::optional<ShownClock> at(double now) const;

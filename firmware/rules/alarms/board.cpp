@@ -36,7 +36,7 @@ std::expected<std::vector<Acknowledged>, std::string> read_acknowledged(std::str
   codec::Reading reading;
   const codec::Field file(root, reading);
   const codec::Field version = file.member("version");
-  if (version.whole<std::int64_t>() != kVersion) version.refuse("expected ", kVersion);
+  if (version.integer<std::int64_t>() != kVersion) version.refuse("expected ", kVersion);
   std::vector<Acknowledged> all;
   codec::KindOf<std::vector<Acknowledged>>::read(file.member("acknowledged"), all);
   const auto read = reading.outcome(true);
@@ -45,11 +45,11 @@ std::expected<std::vector<Acknowledged>, std::string> read_acknowledged(std::str
   return all;
 }
 
-bool Board::is_worse(const Condition& condition, const Known& known) {
+bool Board::is_worse(const Condition& condition, const KnownCondition& known) {
   return condition.severity < known.seen.severity || condition.degree > known.seen.degree;
 }
 
-EndedAlarm Board::over(const Known& known, double now) {
+EndedAlarm Board::to_ended(const KnownCondition& known, double now) {
   const Condition& condition = known.worst;
   return {.id = condition.id,
           .severity = condition.severity,
@@ -59,7 +59,7 @@ EndedAlarm Board::over(const Known& known, double now) {
           .until = now};
 }
 
-void Board::see(Known& known, double now) {
+void Board::see(KnownCondition& known, double now) {
   const Condition& condition = known.condition;
   known.acknowledged = true;
   known.seen = {.id = condition.id,
@@ -70,12 +70,12 @@ void Board::see(Known& known, double now) {
                 .at = now};
 }
 
-void Board::take(const std::vector<Condition>& conditions, double now) {
+void Board::update(const std::vector<Condition>& conditions, double now) {
   std::set<std::string_view> here;
   for (const Condition& condition : conditions) {
     here.insert(condition.id);
     const auto [place, came] = known_.try_emplace(condition.id);
-    Known& known = place->second;
+    KnownCondition& known = place->second;
     if (came || condition.severity != known.condition.severity)
       known.since = condition.since > 0 ? condition.since : now;
     if (came || condition.severity < known.worst.severity) known.worst_since = known.since;
@@ -92,7 +92,7 @@ void Board::take(const std::vector<Condition>& conditions, double now) {
       ++each;
       continue;
     }
-    over_.push_front(over(each->second, now));
+    over_.push_front(to_ended(each->second, now));
     if (over_.size() > kMostOver) over_.pop_back();
     std::erase_if(before_, [&](const Acknowledged& before) { return before.id == each->first; });
     each = known_.erase(each);
@@ -113,7 +113,7 @@ void Board::take_up_before(const std::vector<Condition>& conditions, double now)
   for (const Condition& condition : conditions) {
     const auto before = std::ranges::find(before_, condition.id, &Acknowledged::id);
     if (before == before_.end()) continue;
-    Known& known = known_.at(condition.id);
+    KnownCondition& known = known_.at(condition.id);
     const bool worse = condition.severity < before->severity || condition.degree > before->degree;
     const bool same = condition.severity == before->severity && condition.degree == before->degree &&
                       condition.headline.now() == before->what && condition.why == before->why;
@@ -122,7 +122,7 @@ void Board::take_up_before(const std::vector<Condition>& conditions, double now)
   }
 }
 
-std::vector<Acknowledged> Board::acknowledged() const {
+std::vector<Acknowledged> Board::acknowledgements() const {
   std::vector<Acknowledged> all = before_;
   for (const auto& [id, known] : known_) {
     const bool fits = known.seen.what.size() + known.seen.why.size() <= Acknowledged::kLongest;
@@ -152,7 +152,7 @@ std::expected<void, std::string> Board::acknowledge(const std::string& id, doubl
   return {};
 }
 
-std::vector<Alarm> Board::shown(const std::vector<Condition>& conditions, double now) const {
+std::vector<Alarm> Board::to_alarms(const std::vector<Condition>& conditions, double now) const {
   std::vector<Alarm> alarms;
   alarms.reserve(conditions.size());
   for (const Condition& condition : conditions) {

@@ -41,7 +41,7 @@ class Board {
   static constexpr std::size_t kMostOver = 8;
 
   /// Records new and ended conditions. `now`: as in Facts. Call each second, and before acknowledge().
-  void take(const std::vector<Condition>& conditions, double now);
+  void update(const std::vector<Condition>& conditions, double now);
   /// Call if the time of day was advanced by `seconds`: shifts all times, so that durations stay the same.
   void move(double seconds);
   /// Silences the alarm until it gets worse or ends. If its degree falls, a later rise from there counts as
@@ -52,26 +52,26 @@ class Board {
   /// unchanged within Acknowledged::kWaitsFor. An alarm that got worse, ended or changed its text is new.
   void remember(std::vector<Acknowledged> before, double now);
   /// Acknowledgements to store for the next start.
-  std::vector<Acknowledged> acknowledged() const;
+  std::vector<Acknowledged> acknowledgements() const;
 
   /// The conditions as alarms: by severity, then the oldest first.
-  std::vector<Alarm> shown(const std::vector<Condition>& conditions, double now) const;
+  std::vector<Alarm> to_alarms(const std::vector<Condition>& conditions, double now) const;
   /// Newest first.
-  std::vector<EndedAlarm> over() const { return {over_.begin(), over_.end()}; }
+  std::vector<EndedAlarm> ended_alarms() const { return {over_.begin(), over_.end()}; }
 
  private:
-  struct Known {
+  struct KnownCondition {
     Condition condition, worst;  // now; at its worst, for the history
     double since = 0, worst_since = 0;
     bool acknowledged = false;
     Acknowledged seen = {};  // the alarm when it was acknowledged
   };
-  static bool is_worse(const Condition& condition, const Known& known);
-  static void see(Known& known, double now);
+  static bool is_worse(const Condition& condition, const KnownCondition& known);
+  static void see(KnownCondition& known, double now);
   void take_up_before(const std::vector<Condition>& conditions, double now);
-  static EndedAlarm over(const Known& known, double now);
+  static EndedAlarm to_ended(const KnownCondition& known, double now);
 
-  std::map<std::string, Known> known_;
+  std::map<std::string, KnownCondition> known_;
   std::deque<EndedAlarm> over_;
   std::vector<Acknowledged> before_;  // alarms that have not returned yet
   double waits_until_ = 0;

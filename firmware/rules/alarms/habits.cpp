@@ -40,7 +40,7 @@ bool Habits::has_room(double now) {
 
 void Habits::expect(const std::string& robot, double now) {
   if (!known_.contains(robot) && !has_room(now)) return;
-  Known& known = known_.try_emplace(robot, Known{.habit = {.last = now}}).first->second;
+  KnownRobot& known = known_.try_emplace(robot, KnownRobot{.habit = {.last = now}}).first->second;
   if (known.habit.messages > 1 || std::exchange(known.was_expected, true)) return;
   known.habit.messages = kMessages;
   known.is_expected = true;
@@ -50,14 +50,15 @@ void Habits::carry_on(const std::string& robot, const Habit& habit, std::uint64_
   if (has_room(habit.last)) known_[robot] = {.count = count, .habit = habit, .was_expected = true};
 }
 
-void Habits::heard(const std::string& robot, std::uint64_t count, double now) {
+void Habits::on_count(const std::string& robot, std::uint64_t count, double now) {
   if (robot.empty()) return;
   auto place = known_.find(robot);
   if (place == known_.end()) {
-    if (has_room(now)) known_.emplace(robot, Known{.count = count, .habit = {.messages = 1, .last = now}});
+    if (has_room(now))
+      known_.emplace(robot, KnownRobot{.count = count, .habit = {.messages = 1, .last = now}});
     return;
   }
-  Known& known = place->second;
+  KnownRobot& known = place->second;
   if (count == known.count) return;
   if (known.is_expected) {
     known = {.count = count, .habit = {.messages = 1, .last = now}, .was_expected = true};
@@ -74,7 +75,7 @@ void Habits::heard(const std::string& robot, std::uint64_t count, double now) {
   last = now;
 }
 
-std::optional<Habit> Habits::of(const std::string& robot) const {
+std::optional<Habit> Habits::habit_of(const std::string& robot) const {
   const auto known = known_.find(robot);
   return known == known_.end() ? std::nullopt : std::optional(known->second.habit);
 }

@@ -51,21 +51,21 @@ class Habits {
 
   /// `count`: the robot's messages of all kinds so far. `now`: monotonic seconds. Call each second; messages
   /// between two calls count as one.
-  void heard(const std::string& robot, std::uint64_t count, double now);
+  void on_count(const std::string& robot, std::uint64_t count, double now);
   /// Restores the habit from before a restart. `count`: messages counted by this process before its first
-  /// heard().
+  /// on_count().
   void carry_on(const std::string& robot, const Habit& habit, std::uint64_t count);
   /// Makes the robot's silence count from now on. For a robot that sent in this run before a reboot, and has
   /// at most one message since, which may be older than the reboot.
   void expect(const std::string& robot, double now);
   /// The habit of one robot, or std::nullopt.
-  std::optional<Habit> of(const std::string& robot) const;
+  std::optional<Habit> habit_of(const std::string& robot) const;
 
   /// The robots that have a habit and are not switched off.
   facts::Habits robots(const Rules& rules, double now) const;
 
  private:
-  struct Known {
+  struct KnownRobot {
     std::uint64_t count = 0;
     Habit habit = {};
     bool is_expected = false;   // no message has come since expect()
@@ -73,7 +73,7 @@ class Habits {
   };
   bool has_room(double now);
 
-  std::map<std::string, Known> known_;
+  std::map<std::string, KnownRobot> known_;
 };
 
 /// State of one connection to the Command Post.

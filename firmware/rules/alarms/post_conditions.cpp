@@ -23,15 +23,15 @@ struct Trouble {
   EndpointFault is = EndpointFault::None;
   double since = 0;
   std::vector<const EndpointRow*> endpoints = {};
-  std::string only_robot = {};  // only_robot_in()
+  std::string only_robot = {};  // sole_robot()
 
-  bool both() const { return endpoints.size() > 1; }
+  bool is_at_both() const { return endpoints.size() > 1; }
   const EndpointRow& first() const { return *endpoints.front(); }
   /// "Command Post" or "Mapping"
-  std::string who() const { return both() ? "Command Post" : capital(first().name); }
+  std::string subject() const { return is_at_both() ? "Command Post" : capital(first().name); }
   /// "10.100.1.200:8000"
-  std::string where() const {
-    return both() ? endpoints[0]->address + " and " + endpoints[1]->address : first().address;
+  std::string address_text() const {
+    return is_at_both() ? endpoints[0]->address + " and " + endpoints[1]->address : first().address;
   }
 };
 
@@ -39,7 +39,7 @@ Condition condition_of(const Trouble& trouble, std::string name) {
   return {.id = std::move(name),
           .severity = trouble.is == EndpointFault::Throttling ? Severity::Wait : Severity::Bad,
           .side = Side::CommandPost,
-          .subject = trouble.both() ? "" : trouble.first().name,
+          .subject = trouble.is_at_both() ? "" : trouble.first().name,
           .since = trouble.since,
           .action = kTest,
           .degree = trouble.endpoints.size()};
@@ -60,39 +60,40 @@ void find_missing_tokens(const facts::Traffic& traffic, Found& found) {
 }
 
 void say_unreachable(const Trouble& trouble, Condition& condition) {
-  condition.headline = {trouble.who(), "unreachable"};
+  condition.headline = {trouble.subject(), "unreachable"};
   condition.why = trouble.first().said + "; the box tries again";
 }
 
 void say_foreign(const Trouble& trouble, Condition& condition) {
   condition.headline = {"The server", "not a Command Post"};
-  condition.why = sentence(trouble.where(), trouble.both() ? "" : " (" + trouble.first().name + ")",
-                           "; check the address");
+  condition.why =
+      sentence(trouble.address_text(), trouble.is_at_both() ? "" : " (" + trouble.first().name + ")",
+               "; check the address");
   condition.action = kOpenAddresses;
 }
 
 void say_refusing(const Trouble& trouble, Condition& condition) {
-  condition.headline = trouble.both() ? Headline{"Both tokens", "rejected", true}
-                                      : Headline{"The " + trouble.first().name + " token", "rejected"};
+  condition.headline = trouble.is_at_both() ? Headline{"Both tokens", "rejected", true}
+                                            : Headline{"The " + trouble.first().name + " token", "rejected"};
   condition.why = "the Command Post answers 401 or 403; is the course right?";
-  if (!trouble.both() && trouble.first().name == "mapping" && !trouble.only_robot.empty())
+  if (!trouble.is_at_both() && trouble.first().name == "mapping" && !trouble.only_robot.empty())
     condition.why = sentence("the Command Post answers 401 or 403; is the course right, and does it know ",
                              trouble.only_robot, "?");
   condition.action = kOpenTokens;
 }
 
 void say_silent(const Trouble& trouble, Condition& condition) {
-  condition.headline = {trouble.who(), "silent"};
-  condition.why = sentence("no answer from ", trouble.where());
+  condition.headline = {trouble.subject(), "silent"};
+  condition.why = sentence("no answer from ", trouble.address_text());
 }
 
 void say_failing(const Trouble& trouble, Condition& condition) {
-  condition.headline = {trouble.who(), "failing"};
+  condition.headline = {trouble.subject(), "failing"};
   condition.why = sentence("its answer to every request: ", trouble.first().said);
 }
 
 void say_throttling(const Trouble& trouble, Condition& condition) {
-  condition.headline = {trouble.who(), "throttling"};
+  condition.headline = {trouble.subject(), "throttling"};
   condition.why = "it answers 429; Adit sends less often";
   condition.action = {};
 }
@@ -111,7 +112,7 @@ constexpr struct {
 };
 
 /// "": none or several have sent data.
-std::string only_robot_in(const facts::Traffic& traffic) {
+std::string sole_robot(const facts::Traffic& traffic) {
   std::string only;
   for (const facts::ActivityRow& row : traffic.activities) {
     if (row.robot.empty() || row.robot == only) continue;
@@ -125,7 +126,7 @@ std::string only_robot_in(const facts::Traffic& traffic) {
 
 void find_post_troubles(const facts::Traffic& traffic, Found& found) {
   find_missing_tokens(traffic, found);
-  const std::string only_robot = only_robot_in(traffic);
+  const std::string only_robot = sole_robot(traffic);
   for (const auto& row : kTroubles) {
     Trouble trouble{.is = row.is, .only_robot = only_robot};
     for (const EndpointRow& endpoint : traffic.endpoints) {

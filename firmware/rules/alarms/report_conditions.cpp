@@ -43,7 +43,7 @@ Headline headline_of(Need need, const facts::Reports& reports, const ReportRow& 
 }
 
 /// In the operator's words. A note begins with the request, and says later why it had no answer.
-std::string why_of(Need need, const facts::Reports& reports, const ReportRow& row) {
+std::string reason_text(Need need, const facts::Reports& reports, const ReportRow& row) {
   if (need == Need::InDoubt && row.asking)
     return "its answer was lost, and the box asks for the run's status";
   if (need != Need::Lost) return row.note;
@@ -64,7 +64,7 @@ void find_undecided(const facts::Reports& reports, Found& found) {
                      .subject = number,
                      .since = row.changed,
                      .headline = headline_of(*need, reports, row),
-                     .why = why_of(*need, reports, row),
+                     .why = reason_text(*need, reports, row),
                      .action = {row.asking ? "Show report" : "Decide", "/#report=" + number}});
   }
   for (std::size_t at = 0; at < std::size(kNeeds); ++at) {

@@ -73,7 +73,7 @@ void find_silent(const Traffic& traffic, Found& found) {
 const ActivityRow* find_most_delayed(const Traffic& traffic, const std::string& robot, double least) {
   const ActivityRow* longest = nullptr;
   for (const ActivityRow& row : traffic.activities) {
-    const double its = waited(row, traffic).value_or(0);
+    const double its = queue_age(row, traffic).value_or(0);
     if (!row.is_map() || row.robot != robot || its <= least) continue;
     least = its;
     longest = &row;
@@ -95,7 +95,7 @@ void find_late_maps(const Traffic& traffic, Found& found) {
     if (longest == nullptr) continue;
     ++count;
     found.push_back({.id = "map_behind:" + name,
-                     .severity = *waited(*longest, traffic) > stuck ? Severity::Bad : Severity::Wait,
+                     .severity = *queue_age(*longest, traffic) > stuck ? Severity::Bad : Severity::Wait,
                      .side = Side::CommandPost,
                      .subject = name,
                      .since = traffic.now - *longest->age,
@@ -150,7 +150,7 @@ void find_full_queue(const Traffic& traffic, Found& found) {
 }
 
 void find_unknown(const facts::Clients& clients, const Traffic& traffic, Found& found) {
-  const std::string known = icd::listed(traffic.registered);
+  const std::string known = icd::join_words(traffic.registered);
   for (const std::string& name : clients.unknown_robots) {
     found.push_back({.id = "robot_unknown:" + name,
                      .severity = Severity::Ask,

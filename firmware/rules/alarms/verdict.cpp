@@ -29,7 +29,7 @@ const EndpointRow* mapping(const Traffic& traffic) {
 }
 
 /// The mapping endpoint if it accepts no messages at all, or null.
-const EndpointRow* stopped(const Traffic& traffic) {
+const EndpointRow* stopped_endpoint(const Traffic& traffic) {
   const EndpointRow* const endpoint = mapping(traffic);
   return endpoint != nullptr && endpoint->fault < EndpointFault::Throttling ? endpoint : nullptr;
 }
@@ -128,7 +128,7 @@ Groups groups_of(const AllMaps& all) {
 }
 
 /// Robots that send other messages or are registered, but of which no map came.
-std::vector<std::string> without_map(const Traffic& traffic, const AllMaps& all) {
+std::vector<std::string> robots_lacking_map(const Traffic& traffic, const AllMaps& all) {
   std::set<std::string, icd::NaturalOrder> names(traffic.registered.begin(), traffic.registered.end());
   for (const StandingRow& robot : traffic.standings) names.insert(robot.name);
   std::erase_if(names, [&all](const std::string& name) { return all.contains(name); });
@@ -210,7 +210,7 @@ void add_standings(Traffic& traffic) {
   for (const ActivityRow& row : traffic.activities) all[row.robot].push_back(&row);
   all.erase("");
   for (const auto& [name, rows] : all) traffic.standings.push_back(standing_row(name, rows));
-  if (stopped(traffic) != nullptr) return;
+  if (stopped_endpoint(traffic) != nullptr) return;
   for (const std::string& name : unheard(traffic)) {
     traffic.standings.push_back({.name = name,
                                  .level = Level::Bad,
@@ -263,14 +263,14 @@ void add_word(EndpointRow& row, const std::vector<Alarm>& alarms) {
 
 }  // namespace
 
-std::optional<double> waited(const ActivityRow& row, const Traffic& traffic) {
+std::optional<double> queue_age(const ActivityRow& row, const Traffic& traffic) {
   const EndpointRow* const endpoint = mapping(traffic);
   if (!row.age || endpoint == nullptr || !endpoint->well_for) return row.age;
   return std::min(*row.age, *endpoint->well_for);
 }
 
 Standing standing_of(const ActivityRow& row, const Traffic& traffic) {
-  const bool is_stopped = stopped(traffic) != nullptr;
+  const bool is_stopped = stopped_endpoint(traffic) != nullptr;
   const Arrival arrival = arrival_of(row, traffic.turn, !is_stopped && is_silent(row.robot, traffic));
   const Level level = level_of(arrival);
   const bool is_kept_back = is_stopped && (row.age || !row.last_sentence.empty() || level == Level::Bad);
@@ -304,7 +304,7 @@ constexpr codec::Row Verdict::kRow = codec::complete<Verdict>({"Verdict", kVerdi
 
 Verdict verdict_of(const Traffic& traffic) {
   const auto all = maps_of(traffic);
-  if (const EndpointRow* endpoint = stopped(traffic); endpoint != nullptr && !all.empty()) {
+  if (const EndpointRow* endpoint = stopped_endpoint(traffic); endpoint != nullptr && !all.empty()) {
     const std::string why = endpoint->fault == EndpointFault::NoToken
                                 ? "the mapping token is missing"
                                 : "for " + clock_text(traffic.now - endpoint->since);
@@ -312,7 +312,7 @@ Verdict verdict_of(const Traffic& traffic) {
   }
   if (all.empty()) return {Level::Quiet, "No map yet", "no robot has sent one since the box started"};
   const Groups groups = groups_of(all);
-  const auto missing = without_map(traffic, all);
+  const auto missing = robots_lacking_map(traffic, all);
   const std::size_t robots = all.size() + missing.size() - all.count("");
   if (!groups.failing.empty() || !groups.silent.empty()) return partly(groups, robots, missing);
   if (!groups.late.empty()) {

@@ -23,7 +23,7 @@ Standing standing_of(const facts::ActivityRow& row, const facts::Traffic& traffi
 
 /// Seconds that the oldest message has been queued while the endpoint accepted messages, at most.
 /// std::nullopt: the queue is empty.
-std::optional<double> waited(const facts::ActivityRow& row, const facts::Traffic& traffic);
+std::optional<double> queue_age(const facts::ActivityRow& row, const facts::Traffic& traffic);
 
 /// Computes arrival, levels and words of the rows, the robots' ages, and the standings. `alarms`: the present
 /// ones, which give a faulty endpoint its word.

@@ -28,10 +28,10 @@ constexpr codec::Member kClockRequest[] = {
     codec::member<&Request::boot>("boot"),
     codec::member<&Request::server>("server").matching(network::kAddressOrNone),
 };
-/// A subnet in the form of settings::written(), or "".
+/// A subnet in the form of settings::to_text(), or "".
 constexpr codec::Form kSubnetOrNone{[](std::string_view text) {
                                       const auto parsed = settings::parse_subnet(text);
-                                      return text.empty() || (parsed && settings::written(*parsed) == text);
+                                      return text.empty() || (parsed && settings::to_text(*parsed) == text);
                                     },
                                     "a subnet, or none"};
 

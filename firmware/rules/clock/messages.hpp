@@ -87,7 +87,9 @@ struct Status {
 
   /// Source to compare offers with. If the NTP server has changed, its time ranks as the operator's, so that
   /// the new server's time is accepted.
-  Source trusted() const { return source == Source::Ntp && server != ntp.server ? Source::Operator : source; }
+  Source trusted_source() const {
+    return source == Source::Ntp && server != ntp.server ? Source::Operator : source;
+  }
   bool names(std::string_view request) const { return nonce == request; }
   static const codec::Row kRow;
   friend bool operator==(const Status&, const Status&) = default;

@@ -48,7 +48,7 @@ const Report& original_of(const Report& report, const ReportBook& book) {
 }  // namespace
 
 std::vector<const Report*> ReportReview::same_in_run(const icd::ArtifactReport& report) const {
-  std::vector<const Report*> same = book_.same_as(report);
+  std::vector<const Report*> same = book_.find_same(report);
   std::erase_if(same, [this](const Report* other) {
     return !account_.is_of_run(*other) || account_.is_unclaimed(*other);
   });
@@ -88,7 +88,7 @@ const Report* ReportReview::answered_later(const Report& report) const {
 /// The same report, sent in another run that satisfies `counts`, or null.
 const Report* ReportReview::sent_elsewhere(const Report& report,
                                            const std::function<bool(const Run&)>& counts) const {
-  for (const Report* const other : book_.same_as(report.report)) {
+  for (const Report* const other : book_.find_same(report.report)) {
     const Run* const its = account_.runs().find(other->run);
     if (its == nullptr || its->number == account_.run().number || other->number == report.number) continue;
     if (was_sent(*other) && !effect_of(*other).again && counts(*its)) return other;
@@ -124,7 +124,7 @@ Hold ReportReview::maybe_repeat(const Report& report) const {
               other->number};
     }
   }
-  for (const Report* const other : book_.same_as(report.report)) {
+  for (const Report* const other : book_.find_same(report.report)) {
     if (!account_.is_unclaimed(*other) || effect_of(*other).again) continue;
     return {icd::sentence("the same as report ", other->number, ", answered as a new run may have begun (",
                           run.why, "); the next answer decides"),
@@ -137,7 +137,7 @@ Hold ReportReview::maybe_repeat(const Report& report) const {
 std::vector<const Report*> ReportReview::lost_here() const {
   const Run& run = account_.run();
   std::vector<const Report*> lost;
-  for (const std::int64_t number : book_.in_doubt()) {
+  for (const std::int64_t number : book_.numbers_in_doubt()) {
     const Report& report = book_.at(number);
     if (!report.is_lost()) continue;
     const Run* const its = account_.runs().find(report.run);
@@ -214,9 +214,9 @@ std::vector<std::int64_t> ReportReview::end_undos() {
   return ended;
 }
 
-void ReportReview::decided(std::int64_t number) {
+void ReportReview::on_decided(std::int64_t number) {
   undo_.erase(number);
-  compared(number);
+  on_compared(number);
 }
 
 namespace {
@@ -281,7 +281,7 @@ std::string undecidable_first(const Report& report, const Run& run, const Run* i
   return "";
 }
 
-SentSince sent_since(const Report& doubt, const ReportBook& book) {
+SentSince later_reports(const Report& doubt, const ReportBook& book) {
   SentSince since;
   for (const auto& [number, report] : book.all()) {
     if (report.run != doubt.run || report.sending <= doubt.sending) continue;
@@ -377,19 +377,19 @@ void Doubts::begin(Instant now) {
   }
 }
 
-void Doubts::lost(std::int64_t number, Instant now) {
+void Doubts::on_lost(std::int64_t number, Instant now) {
   lost_[number] = now;
   account_.lose();
   begin(now);
 }
 
-void Doubts::failed(Time time) {
+void Doubts::on_failed(Time time) {
   for (const Reports& group : groups()) {
     const auto found = inquiries_.find(group.front()->number);
     if (found == inquiries_.end()) continue;
     Inquiry& inquiry = found->second;
-    inquiry.asked(time.now);
-    inquiry.failed(time.now);
+    inquiry.on_asked(time.now);
+    inquiry.on_failed(time.now);
     if (inquiry.is_in_vain()) {
       explain(group, "the Command Post does not answer with the run's status", time);
     }
@@ -401,7 +401,7 @@ Evidence Doubts::weigh_group(const Reports& group, const icd::RunStatus& status)
   const Report& first = *group.front();
   const auto later = std::ranges::count_if(
       all(), [&](const Report* doubt) { return doubt->sending > group.back()->sending; });
-  return weigh(*first.before, std::ssize(group), first.beside + later, sent_since(first, book_), status);
+  return weigh(*first.before, std::ssize(group), first.beside + later, later_reports(first, book_), status);
 }
 
 std::vector<ReportBook::Step> Doubts::hear(const icd::RunStatus& status, Instant asked, Time time) {
@@ -410,12 +410,12 @@ std::vector<ReportBook::Step> Doubts::hear(const icd::RunStatus& status, Instant
     const auto found = inquiries_.find(group.front()->number);
     if (found == inquiries_.end()) continue;
     Inquiry& inquiry = found->second;
-    inquiry.asked(time.now);
+    inquiry.on_asked(time.now);
     Evidence evidence = weigh_group(group, status);
     evidence.finding = inquiry.hear(evidence, status.run_clock, asked, time.now);
     switch (evidence.finding) {
       case Finding::Recorded:
-        for (const Report* const doubt : group) steps.push_back(this->found(*doubt, evidence));
+        for (const Report* const doubt : group) steps.push_back(this->step_for(*doubt, evidence));
         break;
       case Finding::NotRecorded:
         for (const Report* const doubt : group) steps.push_back(missing(*doubt, evidence));
@@ -452,7 +452,7 @@ void Doubts::count(Instant asked, Time time) {
   book_.note(counted);
 }
 
-ReportBook::Step Doubts::found(const Report& doubt, const Evidence& evidence) const {
+ReportBook::Step Doubts::step_for(const Report& doubt, const Evidence& evidence) const {
   const auto edit = [this, evidence](Report& report) {
     report.status = static_cast<int>(icd::Status::Created);
     report.content_type = codec::kJson;

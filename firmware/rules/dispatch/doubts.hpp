@@ -56,7 +56,7 @@ class ReportReview {
   /// The run is unknown: compare the report before it is sent.
   void compare_later(std::int64_t number) { unchecked_.insert(number); }
   bool is_unchecked(std::int64_t number) const { return unchecked_.contains(number); }
-  void compared(std::int64_t number) { unchecked_.erase(number); }
+  void on_compared(std::int64_t number) { unchecked_.erase(number); }
 
   /// The reason for a report that waits for an undo. Empty if the rules give no time for it.
   Hold hold_for_undo() const;
@@ -71,7 +71,7 @@ class ReportReview {
   /// Ends all waits, and returns their reports. The operator decides.
   std::vector<std::int64_t> end_undos();
   /// The operator decides: ends the wait and the comparison.
-  void decided(std::int64_t number);
+  void on_decided(std::int64_t number);
 
  private:
   /// The time for an undo of a held report. It is in no file, so that a restart leaves the report held.
@@ -119,7 +119,7 @@ class Doubts {
   /// Call at a start, before begin(). Reports of a box that this one replaces may have come into doubt
   /// together.
   void open();
-  /// Starts again, for all() doubts. Call it if one is added or leaves, or if runs were one.
+  /// Starts again, for runs() doubts. Call it if one is added or leaves, or if runs were one.
   void begin(Instant now);
   /// begin() with another run. Notes its state in `before`, the doubts of the run before.
   void begin_run(const Reports& before, Time time) {
@@ -127,13 +127,13 @@ class Doubts {
     explain(before, "", time);
   }
   /// Report `number` came into doubt.
-  void lost(std::int64_t number, Instant now);
+  void on_lost(std::int64_t number, Instant now);
   /// A status that was requested at `asked`. Returns the steps that it decides: of all reports of a group, or
   /// none.
   std::vector<ReportBook::Step> hear(const icd::RunStatus& status, Instant asked, Time time);
   /// After the steps of hear(): the doubts that this status counts.
   void count(Instant asked, Time time);
-  void failed(Time time);
+  void on_failed(Time time);
 
   /// True if a report that is sent now and lost would be decided with an earlier one.
   bool has_open_group() const;
@@ -148,7 +148,7 @@ class Doubts {
   bool blur(std::int64_t decided, Time time);
   /// After the operator's decision.
   void ask_for_others(Time time);
-  /// The counts no longer show what became of all(): the operator decides.
+  /// The counts no longer show what became of runs(): the operator decides.
   void leave_to_operator(const std::string& why, Time time);
 
   /// Reports::is_asking().
@@ -165,7 +165,7 @@ class Doubts {
   const Report* leader_of(const Report& doubt) const;
   std::string undecidable(const Report& doubt) const;
   Evidence weigh_group(const Reports& group, const icd::RunStatus& status) const;
-  ReportBook::Step found(const Report& doubt, const Evidence& evidence) const;
+  ReportBook::Step step_for(const Report& doubt, const Evidence& evidence) const;
   ReportBook::Step missing(const Report& doubt, const Evidence& evidence) const;
 
   const InquiryPolicy& policy_;

@@ -54,7 +54,7 @@ class MergedRuns {
   MergedRuns(const Books& here, const Books& there, const SameReports& same, double ahead);
 
   /// The first box's runs by their numbers here, merged with those that the spare knew.
-  const std::map<std::int64_t, Run>& all() const { return merged_; }
+  const std::map<std::int64_t, Run>& runs() const { return merged_; }
   /// The number here; `there` if the first box has no such run.
   std::int64_t number_here(std::int64_t there) const;
   bool is_present_there(std::int64_t there) const { return there_runs_.present().number == there; }
@@ -71,7 +71,7 @@ class MergedRuns {
  private:
   bool is_blank() const;
   std::int64_t matching_run(const Run& run) const;
-  void take(const Run& run, std::int64_t turn);
+  void merge(const Run& run, std::int64_t turn);
   const Run* own_run() const;
   bool has_reports(std::int64_t run) const;
   void link_to_own();
@@ -103,7 +103,7 @@ Runs runs_of(const Books& books) {
 }
 
 /// The later box wins. No field becomes empty.
-Run joined(Run here, const Run& there) {
+Run merge_run(Run here, const Run& there) {
   if (there.heard > here.heard) {
     here.heard = there.heard;
     here.last = there.last;
@@ -130,7 +130,7 @@ MergedRuns::MergedRuns(const Books& here, const Books& there, const SameReports&
     in_turn.push_back(&run);
   }
   std::ranges::stable_sort(in_turn, {}, &Run::place);
-  for (const Run* const run : in_turn) take(*run, ++turn);
+  for (const Run* const run : in_turn) merge(*run, ++turn);
   link_to_own();
 }
 
@@ -167,7 +167,7 @@ std::int64_t MergedRuns::matching_run(const Run& run) const {
   return same == here_.runs.end() ? 0 : same->number;
 }
 
-void MergedRuns::take(const Run& run, std::int64_t turn) {
+void MergedRuns::merge(const Run& run, std::int64_t turn) {
   const std::int64_t number = numbers_.at(run.number);
   Run next = run;
   if (run.heard != 0) next.heard += ahead_;
@@ -178,7 +178,7 @@ void MergedRuns::take(const Run& run, std::int64_t turn) {
     next.may_be = may_be == numbers_.end() ? 0 : may_be->second;
   } else {
     const auto before = merged_.find(number);
-    next = joined(before != merged_.end() ? before->second : *here_runs_.find(number), next);
+    next = merge_run(before != merged_.end() ? before->second : *here_runs_.find(number), next);
     const bool is_present_already = here_runs_.present().number == number;
     if (is_present_there(run.number) && !is_present_already) next.turn = turn;
   }
@@ -231,9 +231,9 @@ class MergedReports {
   }
 
   TakeOver run() {
-    for (const auto& [number, run] : runs_.all()) result_.runs.push_back(run);
+    for (const auto& [number, run] : runs_.runs()) result_.runs.push_back(run);
     for (const Report& report : there_.reports) number(report);
-    for (const Report& report : there_.reports) take(report);
+    for (const Report& report : there_.reports) merge(report);
     std::set<const Report*> met;
     for (const auto& [there, here] : same_) met.insert(here);
     for (const Report& report : here_.reports) {
@@ -243,18 +243,18 @@ class MergedReports {
   }
 
  private:
-  const Report* known(const Report& report) const {
+  const Report* find_known(const Report& report) const {
     const auto found = same_.find(&report);
     return found == same_.end() ? nullptr : found->second;
   }
 
   void number(const Report& report) {
-    const Report* const here = known(report);
+    const Report* const here = find_known(report);
     if (here == nullptr && here_.reports.empty()) next_number_ = report.number;
     numbers_[report.number] = here != nullptr ? here->number : next_number_++;
   }
 
-  Report renumbered(const Report& report) const {
+  Report renumber(const Report& report) const {
     Report next = report;
     next.number = numbers_.at(report.number);
     next.run = runs_.number_here(report.run);
@@ -265,10 +265,10 @@ class MergedReports {
     return next;
   }
 
-  void take(const Report& report) {
-    const Report* const here = known(report);
+  void merge(const Report& report) {
+    const Report* const here = find_known(report);
     if (here != nullptr && !is_better(report, *here)) return;
-    Report next = renumbered(report);
+    Report next = renumber(report);
     const bool has_stepped = move(next, report) || here != nullptr;
     result_.reports.push_back({.report = std::move(next),
                                .there = here == nullptr ? report.number : 0,

@@ -107,10 +107,10 @@ bool is_near(const icd::ArtifactReport& one, const icd::ArtifactReport& other, d
   return icd::same_but_for_case(one.type, other.type) && distance(one, other) <= metres;
 }
 
-std::string described(const icd::ArtifactReport& report) {
+std::string describe(const icd::ArtifactReport& report) {
   const auto rounded = [](double metres) { return std::round(metres * 1000) / 1000; };
   const icd::Point& at = report.position;
-  return icd::sentence(icd::in_quotes(report.type), " at ", rounded(at.x), ", ", rounded(at.y), ", ",
+  return icd::sentence(icd::quote_text(report.type), " at ", rounded(at.x), ", ", rounded(at.y), ", ",
                        rounded(at.z));
 }
 

@@ -97,7 +97,7 @@ struct ClockStep {
   double by = 0;  // seconds
 
   /// The seconds that passed between two stamps, without the step.
-  double between(double from, double until) const {
+  double seconds_between(double from, double until) const {
     return until - from - (from < to && to <= until ? by : 0);
   }
   friend bool operator==(const ClockStep&, const ClockStep&) = default;
@@ -153,6 +153,6 @@ bool is_near(const icd::ArtifactReport& one, const icd::ArtifactReport& other, d
 double distance(const icd::ArtifactReport& one, const icd::ArtifactReport& other);
 
 /// A quoted type and a place, to the millimetre: "Drill" at 1, 2.5, 3
-std::string described(const icd::ArtifactReport& report);
+std::string describe(const icd::ArtifactReport& report);
 
 }  // namespace adit::dispatch

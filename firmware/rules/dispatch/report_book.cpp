@@ -112,7 +112,7 @@ bool ReportBook::write(std::span<const Report> steps, bool happened, Flush flush
   return true;
 }
 
-std::vector<const Report*> ReportBook::same_as(const icd::ArtifactReport& report) const {
+std::vector<const Report*> ReportBook::find_same(const icd::ArtifactReport& report) const {
   std::vector<const Report*> same;
   const double x = report.position.x;
   const auto end = by_x_.upper_bound(x + 2 * kSamePlace);

@@ -66,7 +66,7 @@ class ReportBook {
   const Report* find(std::int64_t number) const;
   const std::map<std::int64_t, Report>& all() const { return reports_; }
   /// Same reports (report.hpp) in all runs, oldest first.
-  std::vector<const Report*> same_as(const icd::ArtifactReport& report) const;
+  std::vector<const Report*> find_same(const icd::ArtifactReport& report) const;
   /// The report in flight, or null.
   const Report* sending() const { return sending_.empty() ? nullptr : &at(*sending_.begin()); }
   /// Queued, oldest first.
@@ -75,7 +75,7 @@ class ReportBook {
   const std::set<std::int64_t>& open() const { return open_; }
   std::size_t count(ReportState state) const { return counts_.at(static_cast<std::size_t>(state)); }
   /// In doubt, oldest first.
-  const std::set<std::int64_t>& in_doubt() const { return in_doubt_; }
+  const std::set<std::int64_t>& numbers_in_doubt() const { return in_doubt_; }
   /// In doubt in `run`, in the order of sending.
   std::vector<const Report*> doubts(std::int64_t run) const;
 

@@ -18,7 +18,7 @@ void Reports::doubt_those_in_flight(Time time) {
     last_sending_ = std::max(last_sending_, report.sending);
   }
   while (book_.sending() != nullptr) {
-    ended(ReportEvent::Restarted, "the box stopped while it was in flight", time);
+    on_ended(ReportEvent::Restarted, "the box stopped while it was in flight", time);
   }
 }
 
@@ -55,7 +55,7 @@ NextRequests Reports::next_requests(Time time) const {
   return requests;
 }
 
-/// The comparison that Reports::take() left out because the run was unknown. False: do not send it now.
+/// The comparison that Reports::accept() left out because the run was unknown. False: do not send it now.
 bool Reports::check(std::int64_t number, Time time) {
   const Report report = book_.at(number);
   if (report.run != account_.run().number && !report.asked && !clients_.is_young(report, time.now)) {
@@ -71,17 +71,17 @@ bool Reports::check(std::int64_t number, Time time) {
                     [original](Report& moved) { moved.same_as = original; }},
                    time);
     if (joined) {
-      review_.compared(number);
+      review_.on_compared(number);
       clients_.hand_over(number, book_.at(original));
     }
     return false;
   }
   if (const Hold hold = review_.reason_to_hold(report); !hold.why.empty()) {
     const auto keep = [&hold](Report& held) { held.same_as = hold.same_as; };
-    if (book_.move({number, ReportEvent::Held, hold.why, keep}, time)) review_.compared(number);
+    if (book_.move({number, ReportEvent::Held, hold.why, keep}, time)) review_.on_compared(number);
     return false;
   }
-  review_.compared(number);
+  review_.on_compared(number);
   return true;
 }
 
@@ -102,7 +102,7 @@ void Reports::prepare(Report& report, Time time) {
   report.run = account_.run().number;
   report.sending = ++last_sending_;
   report.sent = time.stamp;
-  report.before = doubts_.has_open_group() ? std::nullopt : account_.expected(time.now);
+  report.before = doubts_.has_open_group() ? std::nullopt : account_.expected_status(time.now);
   report.beside = report.before ? doubts_.open_count() : 0;
   report.counted = false;
   report.uncertain.clear();
@@ -112,7 +112,7 @@ void Reports::prepare(Report& report, Time time) {
 }
 
 /// For the report in flight. A new run may have begun meanwhile: either may have recorded it.
-void Reports::ended(ReportEvent event, const std::string& note, Time time, const ReportBook::Edit& edit) {
+void Reports::on_ended(ReportEvent event, const std::string& note, Time time, const ReportBook::Edit& edit) {
   const bool is_lost = event == ReportEvent::Lost || event == ReportEvent::Restarted;
   book_.move({book_.sending()->number, event, note,
               [&](Report& report) {
@@ -126,7 +126,7 @@ void Reports::ended(ReportEvent event, const std::string& note, Time time, const
              time);
 }
 
-ReportEvent Reports::answered(const HttpAnswer& answer, Time time) {
+ReportEvent Reports::on_answered(const HttpAnswer& answer, Time time) {
   const auto reply = codec::read_report_reply(answer.body);
   const Report* const another = reply ? told_of_another(*reply) : nullptr;
   const ReportEvent event = event_of(answer.status, reply && another == nullptr,
@@ -138,13 +138,13 @@ ReportEvent Reports::answered(const HttpAnswer& answer, Time time) {
   };
   barred_ = event == ReportEvent::Barred;
   if (event == ReportEvent::Recorded) {
-    recorded(keep, *reply, time);
+    on_recorded(keep, *reply, time);
   } else {
     const std::string note =
         another != nullptr && event == ReportEvent::Lost
             ? icd::sentence("the answer is for report ", another->number, ", not for this report")
             : answer_text(answer.status, answer.body);
-    ended(event, note, time, keep);
+    on_ended(event, note, time, keep);
   }
   return event;
 }
@@ -153,13 +153,13 @@ ReportEvent Reports::answered(const HttpAnswer& answer, Time time) {
 /// here.
 const Report* Reports::told_of_another(const icd::ReportReply& reply) const {
   if (!reply.report || is_same(*reply.report, book_.sending()->report)) return nullptr;
-  for (const Report* const other : book_.same_as(*reply.report)) {
+  for (const Report* const other : book_.find_same(*reply.report)) {
     if (other->number != book_.sending()->number && other->sending != 0) return other;
   }
   return nullptr;
 }
 
-void Reports::recorded(const ReportBook::Edit& keep, const icd::ReportReply& reply, Time time) {
+void Reports::on_recorded(const ReportBook::Edit& keep, const icd::ReportReply& reply, Time time) {
   changes_.meet(reply, time);  // the answer decides the run
   const Effect effect = effect_of(reply);
   const bool is_strange = is_about_another(reply, book_.sending()->report);
@@ -167,13 +167,13 @@ void Reports::recorded(const ReportBook::Edit& keep, const icd::ReportReply& rep
   if (effect.again) {
     note = "not scored (" + reply.report_status + "); post it again when the run continues";
   } else if (reply.report && !is_same(*reply.report, book_.sending()->report)) {
-    note = "the answer is for " + described(*reply.report);
+    note = "the answer is for " + describe(*reply.report);
   }
-  ended(ReportEvent::Recorded, note, time, [&](Report& report) {
+  on_ended(ReportEvent::Recorded, note, time, [&](Report& report) {
     keep(report);
     report.run = account_.run().number;
   });
-  account_.answered(reply, time);
+  account_.on_answered(reply, time);
   if (is_strange) account_.lose();
 }
 
@@ -222,12 +222,12 @@ void Reports::follow(std::int64_t number, ReportAction action, Time time) {
       clients_.tell_all(number);
       break;
     case ReportAction::Ask:
-      doubts_.lost(number, time.now);
+      doubts_.on_lost(number, time.now);
       break;
   }
 }
 
-bool Reports::take(const PostedReport& posted, ClientId client, bool may_send, Time time) {
+bool Reports::accept(const PostedReport& posted, ClientId client, bool may_send, Time time) {
   Report report{
       .report = posted.report, .sender = posted.sender, .received = time.stamp, .changed = time.stamp};
   report.run = meant_run().number;
@@ -240,7 +240,7 @@ bool Reports::take(const PostedReport& posted, ClientId client, bool may_send, T
     if (is_final(same->state)) {
       clients_.tell(client, *same);
     } else {
-      clients_.posted(same->number, time.now);
+      clients_.on_posted(same->number, time.now);
       clients_.add(client, same->number, time.now + rules_.answer_within);
     }
     return false;
@@ -260,10 +260,10 @@ bool Reports::take(const PostedReport& posted, ClientId client, bool may_send, T
                                 ", sent to another Command Post; queued until the Command Post at ",
                                 run().post, " answers");
   }
-  return take_new(std::move(report), hold, client, may_send, time);
+  return accept_new(std::move(report), hold, client, may_send, time);
 }
 
-bool Reports::take_new(Report report, const Hold& hold, ClientId client, bool may_send, Time time) {
+bool Reports::accept_new(Report report, const Hold& hold, ClientId client, bool may_send, Time time) {
   const bool fresh = is_fresh(time.now);
   // Accepting and choosing in one write flush the disk once.
   const bool now = may_send && hold.why.empty() && fresh && may_go_first(report, time.now);
@@ -290,7 +290,7 @@ std::int64_t Reports::add(Report report, const Hold& hold, bool now, Time time,
   };
   const std::int64_t number = book_.add(std::move(report), events, hold.why, edit, before);
   if (number == 0) return 0;
-  clients_.posted(number, time.now);
+  clients_.on_posted(number, time.now);
   if (hold.for_undo) review_.await_undo(number, time);
   return number;
 }
@@ -299,7 +299,7 @@ std::int64_t Reports::add(Report report, const Hold& hold, bool now, Time time,
 bool Reports::end_undo(std::int64_t number, const std::string& note, Time time) {
   if (!book_.move({number, ReportEvent::UndoOver, note}, time)) return false;
   review_.end_undo(number);
-  clients_.posted(number, time.now);
+  clients_.on_posted(number, time.now);
   return true;
 }
 
@@ -314,7 +314,7 @@ std::map<std::string, std::size_t> Reports::waiting_elsewhere() const {
 
 void Reports::status_heard(const icd::RunStatus& status, Instant asked, Time time) {
   changes_.meet(status, time);
-  account_.heard(status, time);
+  account_.on_status(status, time);
   barred_ = is_page_ = false;  // the token and the address are right
   ordered_.clear();
   book_.move(doubts_.hear(status, asked, time), time);
@@ -324,9 +324,9 @@ void Reports::status_heard(const icd::RunStatus& status, Instant asked, Time tim
 }
 
 void Reports::status_failed(NoStatus why, Time time) {
-  if (why != NoStatus::NoAnswer) account_.dumb(time.now);
+  if (why != NoStatus::NoAnswer) account_.on_dumb(time.now);
   is_page_ = why == NoStatus::Page;
-  doubts_.failed(time);
+  doubts_.on_failed(time);
 }
 
 void Reports::tick(Time time) {
@@ -365,7 +365,7 @@ Open open_here(const Reports& reports) {
 }
 
 /// "2 reports are queued, 1 is in doubt"
-std::string counted(const Open& open) {
+std::string count_text(const Open& open) {
   std::string text;
   const auto add = [&text](std::size_t count, const char* one, const char* many) {
     if (count == 0) return;
@@ -379,7 +379,7 @@ std::string counted(const Open& open) {
 }
 
 std::string describe_known_run(const Reports& reports, const std::string& post) {
-  const Run* const known = reports.runs().at_post(post);
+  const Run* const known = reports.runs().latest_at(post);
   if (known == nullptr) return "";
   const auto count = std::ranges::count_if(
       reports.book().all(), [known](const auto& item) { return item.second.run == known->number; });
@@ -394,7 +394,7 @@ std::string describe_command_post_change(const Reports& reports, const std::stri
   std::string text = "reports go to " + post + " from then on" + describe_known_run(reports, post);
   const Open open = open_here(reports);
   if (open.all() == 0) return text + "; no report is queued, in doubt or held now";
-  text += "; " + counted(open);
+  text += "; " + count_text(open);
   if (!reports.meant_run().was_heard()) {
     return text + ": the Command Post at " + here +
            " has not answered yet, so queued reports are sent to the first Command Post that answers";
@@ -464,7 +464,7 @@ Reports::Outcome Reports::hold(std::int64_t number, Time time) {
                                                               : "it may have been sent already");
   }
   if (!book_.move({number, event, "the operator held it"}, time)) return std::unexpected(kDisk);
-  review_.decided(number);
+  review_.on_decided(number);
   return number;
 }
 
@@ -479,7 +479,7 @@ Reports::Outcome Reports::withdraw(std::int64_t number, Time time) {
   }
   const char* const why = review_.awaits_undo(number) ? "the operator undid it" : "";
   if (!book_.move({number, ReportEvent::Withdrawn, why}, time)) return std::unexpected(kDisk);
-  review_.decided(number);
+  review_.on_decided(number);
   return number;
 }
 
@@ -508,7 +508,7 @@ Reports::Outcome Reports::correct(std::int64_t number, const icd::ArtifactReport
               .sender = "operator",
               .received = time.stamp,
               .changed = time.stamp,
-              .note = icd::sentence("corrects report ", number, ", ", described(report->report)),
+              .note = icd::sentence("corrects report ", number, ", ", describe(report->report)),
               .run = meant_run().number,
               .asked = true};
   if (!next.report.robot) next.report.robot = report->report.robot;
@@ -519,13 +519,13 @@ Reports::Outcome Reports::correct(std::int64_t number, const icd::ArtifactReport
   Report corrected = *report;
   corrected.state = row->to;
   corrected.changed = time.stamp;
-  corrected.note = icd::sentence("the operator corrected it: report ", next.number, ", ", described(to));
+  corrected.note = icd::sentence("the operator corrected it: report ", next.number, ", ", describe(to));
   corrected.run = next.run;
   corrected.same_as = next.number;
   const std::int64_t made = add(std::move(next), review_.hold_for_undo(), false, time, {&corrected, 1});
   if (made == 0) return std::unexpected(kDisk);
   clients_.hand_over(number, book_.at(made));
-  review_.decided(number);
+  review_.on_decided(number);
   return made;
 }
 

@@ -46,8 +46,8 @@ struct PostedReport {
 /// The rules of all reports (promise 1), without I/O or clock. Output writes each step to disk before the
 /// step has effects.
 ///
-/// At most one request is in flight. After choose() returns a report, or take() true, call exactly one of
-/// answered(), never_left() and lost() before the next request. After a request for the status, call
+/// At most one request is in flight. After choose() returns a report, or accept() true, call exactly one of
+/// on_answered(), never_left() and on_lost() before the next request. After a request for the status, call
 /// status_heard() or status_failed().
 class Reports {
  public:
@@ -64,25 +64,25 @@ class Reports {
   void carry_on(Reports& before, Time time, const std::string& post);
   /// The settings name `post`. Call open() after the request in flight. Reports that arrive before that
   /// belong to the run at `post`, also after a restart.
-  void will_move(const std::string& post, Time time) { changes_.will_move(post, time); }
+  void prepare_move(const std::string& post, Time time) { changes_.prepare_move(post, time); }
   /// Waiting clients keep their deadlines.
   void go_by(const ReportRules& rules) { rules_ = rules; }
   /// `spacing`: the time between requests by the Command Post's limit.
-  void paced(Instant::duration spacing) { account_.paced(spacing); }
+  void set_spacing(Instant::duration spacing) { account_.set_spacing(spacing); }
   /// Stamps that were read from disk may be from before the step.
   void clock_stepped(const ClockStep& step) { account_.clock_stepped(step); }
 
   /// Accepts a report. Output answers the client now or later. `may_send`: no request is in flight and the
   /// rate limit allows one. True: the report is on disk as sending(); send it.
-  bool take(const PostedReport& posted, ClientId client, bool may_send, Time time);
+  bool accept(const PostedReport& posted, ClientId client, bool may_send, Time time);
 
   NextRequests next_requests(Time time) const;
   /// The first queued report that may be sent, on disk as sending(). Null: no such report, or the write
   /// failed.
   const Report* choose(Time time);
-  ReportEvent answered(const HttpAnswer& answer, Time time);
-  void never_left(const std::string& why, Time time) { ended(ReportEvent::NeverLeft, why, time); }
-  void lost(const std::string& why, Time time) { ended(ReportEvent::Lost, why, time); }
+  ReportEvent on_answered(const HttpAnswer& answer, Time time);
+  void never_left(const std::string& why, Time time) { on_ended(ReportEvent::NeverLeft, why, time); }
+  void on_lost(const std::string& why, Time time) { on_ended(ReportEvent::Lost, why, time); }
   /// `asked`: time of the request.
   void status_heard(const icd::RunStatus& status, Instant asked, Time time);
   void status_failed(NoStatus why, Time time);
@@ -111,7 +111,7 @@ class Reports {
   const ReportBook& book() const { return book_; }
   const Run& run() const { return account_.run(); }
   const Runs& runs() const { return account_.runs(); }
-  /// The run of a report that is posted now: run(), or the run of will_move().
+  /// The run of a report that is posted now: run(), or the run of prepare_move().
   const Run& meant_run() const { return account_.meant_run(); }
   /// Queued reports for the Command Post of the present run, oldest first.
   std::vector<std::int64_t> waiting_here() const { return account_.waiting_here(); }
@@ -121,7 +121,7 @@ class Reports {
   /// Lost reports. New reports are held until the operator settles them.
   std::vector<const Report*> lost_here() const { return review_.lost_here(); }
   /// The status expected now. nullopt: uncertain, or the counts prove no report.
-  std::optional<icd::RunStatus> expected(Instant now) const { return account_.expected(now); }
+  std::optional<icd::RunStatus> expected_status(Instant now) const { return account_.expected_status(now); }
   /// When a held report is sent unless the operator withdraws it, in seconds since 1970. nullopt: the
   /// operator decides, or it is not held.
   std::optional<double> sends_at(const Report& report) const { return review_.sends_at(report.number); }
@@ -132,7 +132,7 @@ class Reports {
   void begin(std::vector<Run> runs, Time time, const std::string& post);
   void follow(std::int64_t number, ReportAction action, Time time);
   bool is_fresh(Instant now) const { return &meant_run() == &run() && account_.is_fresh(now); }
-  bool take_new(Report report, const Hold& hold, ClientId client, bool may_send, Time time);
+  bool accept_new(Report report, const Hold& hold, ClientId client, bool may_send, Time time);
   std::int64_t add(Report report, const Hold& hold, bool now, Time time, std::span<const Report> before = {});
   bool end_undo(std::int64_t number, const std::string& note, Time time);
   void doubt_those_in_flight(Time time);
@@ -142,8 +142,9 @@ class Reports {
   bool check(std::int64_t number, Time time);
   void prepare(Report& report, Time time);
   const Report* told_of_another(const icd::ReportReply& reply) const;
-  void recorded(const ReportBook::Edit& keep, const icd::ReportReply& reply, Time time);
-  void ended(ReportEvent event, const std::string& note, Time time, const ReportBook::Edit& edit = nullptr);
+  void on_recorded(const ReportBook::Edit& keep, const icd::ReportReply& reply, Time time);
+  void on_ended(ReportEvent event, const std::string& note, Time time,
+                const ReportBook::Edit& edit = nullptr);
 
   ReportRules rules_;
   Output& output_;

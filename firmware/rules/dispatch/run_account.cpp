@@ -58,7 +58,7 @@ Evidence weigh(const icd::RunStatus& before, std::int64_t doubts, std::int64_t b
 
 Finding Inquiry::hear(const Evidence& evidence, double run_clock, Instant asked, Instant now) {
   Finding finding = evidence.finding;
-  if (finding == Finding::NotRecorded && stands_still(run_clock, now)) finding = Finding::Silent;
+  if (finding == Finding::NotRecorded && is_stalled(run_clock, now)) finding = Finding::Silent;
   if (!first_heard_) {
     first_heard_ = now;
     first_clock_ = run_clock;
@@ -74,7 +74,7 @@ Finding Inquiry::hear(const Evidence& evidence, double run_clock, Instant asked,
 }
 
 /// In an administrative stop (ICD 5.2) the clock stands, and the counts do not show reports.
-bool Inquiry::stands_still(double run_clock, Instant now) const {
+bool Inquiry::is_stalled(double run_clock, Instant now) const {
   if (!first_heard_) return false;
   constexpr std::chrono::duration<double> kTooShort{0.2};  // two answers may take unequal times
   constexpr double kRuns = 0.25;  // a running clock shows at least this part of the elapsed time
@@ -100,7 +100,7 @@ constexpr double kAnswerWritten = 1;
 
 }  // namespace
 
-void RunAccount::paced(Instant::duration spacing) {
+void RunAccount::set_spacing(Instant::duration spacing) {
   fresh_ = std::max<Instant::duration>(kFresh, spacing * 5 / 4 + std::chrono::seconds(1));
 }
 
@@ -131,7 +131,7 @@ std::vector<std::int64_t> RunAccount::waiting_at(const std::string& post) const 
   return there;
 }
 
-std::optional<icd::RunStatus> RunAccount::expected(Instant now) const {
+std::optional<icd::RunStatus> RunAccount::expected_status(Instant now) const {
   if (!known_ || odd_ || unscored_ || !run().unreliable.empty()) return std::nullopt;
   icd::RunStatus status = known_->status;
   status.remaining_reports -= known_->since.scored;
@@ -156,13 +156,13 @@ NameCheck RunAccount::check_name(const Run& before, const icd::RunStatus& status
   return dispatch::check_name(before, status, {unheard(before, time), silence(time).since_status});
 }
 
-const Run* RunAccount::of_team(const std::string& team) const {
+const Run* RunAccount::find_by_team(const std::string& team) const {
   return runs_.latest([&](const Run& run) {
     return run.post == post_ && run.last && !team.empty() && run.last->current_team == team;
   });
 }
 
-const Run* RunAccount::of_name(const std::string& id) const {
+const Run* RunAccount::find_by_name(const std::string& id) const {
   return runs_.latest([&](const Run& other) {
     const bool other_team =
         run().last && other.last && are_other_teams(run().last->current_team, other.last->current_team);
@@ -188,12 +188,12 @@ Signs RunAccount::signs_against(const Run& earlier) const {
 }
 
 bool RunAccount::may_have_begun_since(const Run& earlier) const {
-  return !run().last || can_be_young(run().last->run_clock, between(earlier.heard, run().heard));
+  return !run().last || can_be_young(run().last->run_clock, seconds_between(earlier.heard, run().heard));
 }
 
 /// By stamps, less the step and the possible lead after a boot.
 double RunAccount::unheard(const Run& run, Time time) const {
-  return std::max(0.0, clock_step_.between(run.heard, time.stamp) - kClockAhead);
+  return std::max(0.0, clock_step_.seconds_between(run.heard, time.stamp) - kClockAhead);
 }
 
 /// In one process by the monotonic clock.
@@ -228,16 +228,16 @@ std::int64_t RunAccount::announce(const std::string& why, const std::string& pos
   const std::int64_t present = run().number;
   runs_.begin({.began = time.stamp, .why = why, .heard = time.stamp, .post = post});
   const Run next = run();
-  runs_.take_up(present);
-  runs_.will_be(next.number);
+  runs_.adopt(present);
+  runs_.set_next_run(next.number);
   book_.write(run());  // first, so that the other run is never the last on disk
   book_.write(next);
   written_ = time.stamp;
   return next.number;
 }
 
-void RunAccount::take_up(std::int64_t number, std::span<const Report> steps, Time time) {
-  runs_.take_up(number);
+void RunAccount::adopt(std::int64_t number, std::span<const Report> steps, Time time) {
+  runs_.adopt(number);
   status_at_ = run().heard - kAnswerWritten;
   clock_at_.reset();
   status_came_.reset();
@@ -260,7 +260,7 @@ void RunAccount::merge_into(std::int64_t number, std::span<const Report> steps, 
     if (merged.name_trouble.empty()) merged.name_trouble = later.name_trouble;
     merged.heard = later.heard;
   }
-  runs_.take_up(number);
+  runs_.adopt(number);
   merged.turn = run().turn;
   runs_.present() = std::move(merged);
   forget_counts();
@@ -291,7 +291,7 @@ bool RunAccount::stands(const icd::RunStatus& status, Time time) const {
   return !status_came_ || status.run_clock - clock->shows < *silence(time).since_status / 4;
 }
 
-void RunAccount::heard(const icd::RunStatus& status, Time time) {
+void RunAccount::on_status(const icd::RunStatus& status, Time time) {
   is_stopped_ = stands(status, time);
   heard_ = clock_at_ = status_came_ = time.now;
   Run& run = runs_.present();
@@ -307,7 +307,7 @@ void RunAccount::heard(const icd::RunStatus& status, Time time) {
   if (is_news || seen_to_run || is_late) write_down(time.stamp);
 }
 
-void RunAccount::answered(const icd::ReportReply& reply, Time time) {
+void RunAccount::on_answered(const icd::ReportReply& reply, Time time) {
   const Effect effect = effect_of(reply);
   heard_ = time.now;
   unscored_ = !effect.scored;

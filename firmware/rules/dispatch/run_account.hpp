@@ -57,8 +57,8 @@ class Inquiry {
 
   /// Adds the evidence of a status that was requested at `asked`. Returns the certain result, else Silent.
   Finding hear(const Evidence& evidence, double run_clock, Instant asked, Instant now);
-  void asked(Instant now) { asked_ = now; }
-  void failed(Instant now) { in_vain_ = !is_pending(now); }
+  void on_asked(Instant now) { asked_ = now; }
+  void on_failed(Instant now) { in_vain_ = !is_pending(now); }
   /// No result for too long. Adit goes on asking, and the operator may decide.
   bool is_in_vain() const { return in_vain_; }
 
@@ -67,7 +67,7 @@ class Inquiry {
   bool is_pending(Instant now) const;
 
  private:
-  bool stands_still(double run_clock, Instant now) const;
+  bool is_stalled(double run_clock, Instant now) const;
 
   InquiryPolicy policy_;
   Instant lost_;
@@ -90,7 +90,7 @@ class RunAccount {
 
   /// The step that is subtracted from the run's silence.
   void clock_stepped(const ClockStep& step) { clock_step_ = step; }
-  double between(double from, double until) const { return clock_step_.between(from, until); }
+  double seconds_between(double from, double until) const { return clock_step_.seconds_between(from, until); }
   /// A run that began after the last status of `earlier` may show the last clock of the present run.
   bool may_have_begun_since(const Run& earlier) const;
   /// `latest`: Runs::open().
@@ -101,8 +101,8 @@ class RunAccount {
   /// answered later may belong to the next run.
   double status_at() const { return status_at_; }
   const Runs& runs() const { return runs_; }
-  /// Runs::meant().
-  const Run& meant_run() const { return runs_.meant(); }
+  /// Runs::expected_run().
+  const Run& meant_run() const { return runs_.expected_run(); }
   /// True for reports of meant_run(), and for the one in flight, which a later run may record.
   bool is_of_run(const Report& report) const;
   /// Answered before the run was noticed, and its name is not known: it may be of the earlier run.
@@ -111,12 +111,12 @@ class RunAccount {
   std::vector<std::int64_t> waiting_at(const std::string& post) const;
   std::vector<std::int64_t> waiting_here() const { return waiting_at(run().post); }
   /// `spacing`: between requests. A status proves the run until the next can arrive.
-  void paced(Instant::duration spacing);
+  void set_spacing(Instant::duration spacing);
   bool is_fresh(Instant now) const { return heard_ && now - *heard_ <= fresh_; }
   /// True if the Command Post answered recently, but without a usable status.
   bool is_dumb(Instant now) const { return !is_fresh(now) && dumb_at_ && now - *dumb_at_ <= fresh_; }
   /// The status expected now. nullopt: uncertain, or the counts prove no report.
-  std::optional<icd::RunStatus> expected(Instant now) const;
+  std::optional<icd::RunStatus> expected_status(Instant now) const;
 
   /// Why this status or answer is of another run. nullopt: it may be of the present run.
   std::optional<AnotherRun> another(const icd::RunStatus& status, Time time) const;
@@ -125,9 +125,9 @@ class RunAccount {
   bool is_grant(const icd::RunStatus& status, Time time) const;
   NameCheck check_name(const Run& before, const icd::RunStatus& status, Time time) const;
   /// Last earlier run of `team` at this Command Post, or null.
-  const Run* of_team(const std::string& team) const;
+  const Run* find_by_team(const std::string& team) const;
   /// Last earlier run named `id` here, or null.
-  const Run* of_name(const std::string& id) const;
+  const Run* find_by_name(const std::string& id) const;
   /// Latest run that the present one may still be and that `fits`, or null.
   const Run* maybe_present(const std::function<bool(const Run&)>& fits) const;
   /// The signs that the present run is not `earlier`, which it may still be.
@@ -137,16 +137,16 @@ class RunAccount {
   /// be if there are signs, or 0.
   void begin(const AnotherRun& another, std::int64_t may_be, const std::optional<icd::RunStatus>& status,
              std::span<const Report> steps, Time time);
-  /// Runs::will_be().
-  void will_be(std::int64_t number) { runs_.will_be(number); }
+  /// Runs::set_next_run().
+  void set_next_run(std::int64_t number) { runs_.set_next_run(number); }
   /// The same for a new run at `post`, which it writes so that a restart finds it. Returns its number.
   std::int64_t announce(const std::string& why, const std::string& post, Time time);
-  void take_up(std::int64_t number, std::span<const Report> steps, Time time);
+  void adopt(std::int64_t number, std::span<const Report> steps, Time time);
   /// The present run and the runs between are the same run as `number`. `number` becomes the present run, and
   /// gets the latest status and clocks of all of them.
   void merge_into(std::int64_t number, std::span<const Report> steps, Time time);
   /// The present run is not `number`, for certain. It may still be a run between the two.
-  void is_not(std::int64_t number) { book_.write(runs_.is_not(number)); }
+  void exclude(std::int64_t number) { book_.write(runs_.exclude(number)); }
   /// More signs that the present run is not the run that it may be.
   void add_signs(const Signs& signs);
   /// Names prove nothing in the present run. `why`: a sentence.
@@ -154,9 +154,9 @@ class RunAccount {
   /// Somebody granted reports: the next settle() takes the count.
   void grant() { is_granted_ = true; }
 
-  void heard(const icd::RunStatus& status, Time time);
-  void answered(const icd::ReportReply& reply, Time time);
-  void dumb(Instant now) { dumb_at_ = now; }
+  void on_status(const icd::RunStatus& status, Time time);
+  void on_answered(const icd::ReportReply& reply, Time time);
+  void on_dumb(Instant now) { dumb_at_ = now; }
   /// A report came into doubt: the expected status is uncertain.
   void lose() { known_.reset(); }
   /// The same until `until`, because a report that the operator decided may still be recorded.
@@ -171,7 +171,7 @@ class RunAccount {
   void distrust(const std::string& why, double stamp);
 
  private:
-  struct Known {
+  struct LastStatus {
     icd::RunStatus status;
     Instant heard;
     SentSince since;
@@ -194,7 +194,7 @@ class RunAccount {
   std::optional<Instant> dumb_at_;
   std::optional<Instant> clock_at_;     // last clock of the run in this process
   std::optional<Instant> status_came_;  // last status in this process, of a run that may be the present one
-  std::optional<Known> known_;
+  std::optional<LastStatus> known_;
   std::optional<Instant> uncertain_until_;
   bool odd_ = false;        // last status not as expected
   bool has_moved_ = false;  // a count has changed

@@ -155,12 +155,12 @@ std::string describe_move(const std::string& post, const std::string& before) {
 
 }  // namespace
 
-void RunChanges::will_move(const std::string& post, Time time) {
+void RunChanges::prepare_move(const std::string& post, Time time) {
   const Run& run = account_.run();
-  account_.will_be(0);
+  account_.set_next_run(0);
   if (post != run.post) {
-    const Run* const known = account_.runs().at_post(post);
-    if (known != nullptr) return account_.will_be(known->number);
+    const Run* const known = account_.runs().latest_at(post);
+    if (known != nullptr) return account_.set_next_run(known->number);
     account_.announce(describe_move(post, run.post), post, time);
     return;
   }
@@ -176,7 +176,7 @@ void RunChanges::will_move(const std::string& post, Time time) {
 
 void RunChanges::change_post(const std::string& post, Time time) {
   const std::string from = account_.run().post;
-  const Run* const known = account_.runs().at_post(post);
+  const Run* const known = account_.runs().latest_at(post);
   const std::int64_t next = known != nullptr ? known->number : account_.runs().next_number();
   std::vector<Report> steps;
   for (const std::int64_t number : book_.waiting()) {
@@ -192,7 +192,7 @@ void RunChanges::change_post(const std::string& post, Time time) {
   }
   const std::vector<const Report*> doubts = doubts_.all();
   if (known != nullptr) {
-    account_.take_up(next, steps, time);
+    account_.adopt(next, steps, time);
   } else {
     account_.begin({describe_move(post, from), {}}, 0, std::nullopt, steps, time);
   }
@@ -214,10 +214,10 @@ void RunChanges::meet(const icd::RunStatus& status, Time time) {
         time);
   }
   const bool other_team = run.last && are_other_teams(run.last->current_team, status.current_team);
-  const Run* const known = other_team ? account_.of_team(status.current_team) : nullptr;
+  const Run* const known = other_team ? account_.find_by_team(status.current_team) : nullptr;
   if (known == nullptr) return begin(*another, run.number, status, time);
-  const auto differs = another_run(*known, status, {account_.between(known->heard, time.stamp)});
-  if (!differs) return take_up(*known, another->why, time);
+  const auto differs = another_run(*known, status, {account_.seconds_between(known->heard, time.stamp)});
+  if (!differs) return adopt(*known, another->why, time);
   begin({another->why, differs->signs}, known->number, status, time);
 }
 
@@ -229,7 +229,7 @@ void RunChanges::judge_name(const icd::RunStatus& status, Time time) {
   const NameCheck check = before == nullptr ? NameCheck::Unknown : account_.check_name(*before, status, time);
   if (check == NameCheck::Unknown) return;
   if (check == NameCheck::Confirmed) {
-    account_.is_not(before->number);
+    account_.exclude(before->number);
     return clear_held(time);
   }
   const std::string why = icd::sentence(run.why, "; but its count of reports and its clock go on");
@@ -252,7 +252,7 @@ void RunChanges::meet(const icd::ReportReply& reply, Time time) {
   if (before->id != name) {
     // A referee set the clock of a run that gets another name with each answer.
     if (account_.signs_against(*before).is_clock_alone() && !account_.may_have_begun_since(*before)) return;
-    account_.is_not(before->number);
+    account_.exclude(before->number);
     return claim(name, time);
   }
   // Some servers give all runs one name.
@@ -266,14 +266,14 @@ void RunChanges::meet_name(const std::string& name, const AnotherRun& another, T
   if (maybe != nullptr && !account_.signs_against(*maybe).agree()) {
     return return_to(*maybe, Repeats::Join, time);
   }
-  const Run* const known = maybe == nullptr ? account_.of_name(name) : nullptr;
-  known != nullptr ? take_up(*known, another.why, time)
+  const Run* const known = maybe == nullptr ? account_.find_by_name(name) : nullptr;
+  known != nullptr ? adopt(*known, another.why, time)
                    : begin(another, account_.run().number, std::nullopt, time);
 }
 
 /// Queued reports are held, young ones go on into the new run. Either run may have recorded a doubt that was
 /// sent around the last status, so it enters the new one.
-std::vector<Report> RunChanges::steps_into(std::int64_t next, const std::string& why, Time time) {
+std::vector<Report> RunChanges::steps_to(std::int64_t next, const std::string& why, Time time) {
   const std::chrono::duration<double> late = doubts_.doubt_for() + WaitingClients::kYoung;
   const double last_word = account_.run().heard - late.count();
   std::vector<Report> steps;
@@ -311,7 +311,7 @@ void RunChanges::claim(const std::string& name, Time time) {
   for (const auto& [number, report] : book_.all()) {
     const std::string other = account_.is_unclaimed(report) ? run_in(report.answer) : "";
     if (other.empty() || other == name) continue;
-    const Run* const its = account_.of_name(other);
+    const Run* const its = account_.find_by_name(other);
     if (its != nullptr) steps.emplace_back(report).run = its->number;
   }
   std::vector<std::int64_t> repeats;
@@ -345,7 +345,7 @@ void RunChanges::begin(const AnotherRun& another, std::int64_t may_be,
                        const std::optional<icd::RunStatus>& status, Time time) {
   const auto doubts = doubts_.all();
   const std::int64_t next = account_.runs().next_number();
-  auto steps = steps_into(next, another.why, time);
+  auto steps = steps_to(next, another.why, time);
   // Either run may have recorded reports that were answered since the last status.
   for (const auto& [number, report] : book_.all()) {
     const bool since = report.state == ReportState::Answered && report.changed > account_.status_at();
@@ -355,11 +355,11 @@ void RunChanges::begin(const AnotherRun& another, std::int64_t may_be,
   doubts_.begin_run(doubts, time);
 }
 
-void RunChanges::take_up(const Run& known, const std::string& why, Time time) {
+void RunChanges::adopt(const Run& known, const std::string& why, Time time) {
   const std::int64_t number = known.number;
   const auto doubts = doubts_.all();
-  const auto steps = steps_into(number, why, time);
-  account_.take_up(number, steps, time);
+  const auto steps = steps_to(number, why, time);
+  account_.adopt(number, steps, time);
   doubts_.begin_run(doubts, time);
 }
 
@@ -375,7 +375,7 @@ void RunChanges::return_to(const Run& known, Repeats held, Time time) {
   };
   // A repeat may have been sent in the run that seemed to begin: then the operator decides.
   const auto has_twin = [&](const Report& report) {
-    return std::ranges::any_of(book_.same_as(report.report), [&](const Report* other) {
+    return std::ranges::any_of(book_.find_same(report.report), [&](const Report* other) {
       const bool stays = other->state == ReportState::Held || other->state == ReportState::Withdrawn;
       return other->number != report.number && !stays &&
              (other->run == number || merged.contains(other->run));

@@ -24,7 +24,7 @@ class WaitingClients {
   void carry_on(WaitingClients& before);
 
   /// The report was posted now: it is meant for the present run.
-  void posted(std::int64_t number, Instant now) { posted_at_[number] = now; }
+  void on_posted(std::int64_t number, Instant now) { posted_at_[number] = now; }
   bool is_young(const Report& report, Instant now) const;
 
   void add(ClientId client, std::int64_t number, Instant deadline) { clients_[client] = {number, deadline}; }
@@ -69,8 +69,8 @@ class RunChanges {
              WaitingClients& clients)
       : book_(book), account_(account), review_(review), doubts_(doubts), clients_(clients) {}
 
-  /// Reports::will_move().
-  void will_move(const std::string& post, Time time);
+  /// Reports::prepare_move().
+  void prepare_move(const std::string& post, Time time);
   /// The settings name `post`. Keeps queued reports for the old Command Post.
   void change_post(const std::string& post, Time time);
   /// Begins or continues another run if the status or the answer is of another one.
@@ -80,14 +80,14 @@ class RunChanges {
   std::int64_t declare(Time time);
 
  private:
-  std::vector<Report> steps_into(std::int64_t next, const std::string& why, Time time);
+  std::vector<Report> steps_to(std::int64_t next, const std::string& why, Time time);
   void judge_name(const icd::RunStatus& status, Time time);
   void meet_name(const std::string& name, const AnotherRun& another, Time time);
   void claim(const std::string& name, Time time);
   void give_back(const Run& earlier, Time time);
   void begin(const AnotherRun& another, std::int64_t may_be, const std::optional<icd::RunStatus>& status,
              Time time);
-  void take_up(const Run& known, const std::string& why, Time time);
+  void adopt(const Run& known, const std::string& why, Time time);
   enum class Repeats : std::uint8_t { Join, StayHeld };
   void return_to(const Run& known, Repeats repeats, Time time);
   void hand_over(const std::vector<std::int64_t>& repeats);

@@ -62,8 +62,8 @@ bool are_other_teams(const std::string& one, const std::string& other) {
 std::optional<AnotherRun> another_run(const Run& run, const icd::RunStatus& status, const Silence& silence) {
   if (!run.last) return std::nullopt;
   if (are_other_teams(status.current_team, run.last->current_team)) {
-    return AnotherRun{icd::sentence("the team is ", icd::in_quotes(status.current_team), ", it was ",
-                                    icd::in_quotes(run.last->current_team)),
+    return AnotherRun{icd::sentence("the team is ", icd::quote_text(status.current_team), ", it was ",
+                                    icd::quote_text(run.last->current_team)),
                       {}};
   }
   Signs signs{.count = is_count_up(run, status), .score = is_score_back(run, status)};
@@ -83,8 +83,8 @@ std::optional<AnotherRun> another_run(const Run& run, const icd::RunStatus& stat
 std::optional<AnotherRun> another_run(const Run& run, const icd::ReportReply& reply, const Silence& silence) {
   if (!run.id.empty() && !reply.run.empty()) {
     if (run.id == reply.run) return std::nullopt;
-    return AnotherRun{icd::sentence("the Command Post calls it run ", icd::in_quotes(reply.run), ", it was ",
-                                    icd::in_quotes(run.id)),
+    return AnotherRun{icd::sentence("the Command Post calls it run ", icd::quote_text(reply.run), ", it was ",
+                                    icd::quote_text(run.id)),
                       {.name = true}};
   }
   if (reply.run_clock <= 0) return std::nullopt;  // no clock
@@ -135,7 +135,7 @@ void Runs::open(std::vector<Run> all, std::int64_t latest) {
   if (runs_.empty() || runs_.rbegin()->first < latest) runs_[latest] = {.number = latest};
   // The last run is the present one if it has no turn.
   present_ = runs_.rbegin()->first;
-  if (runs_.at(present_).turn == 0) return take_up(present_);
+  if (runs_.at(present_).turn == 0) return adopt(present_);
   present_ = std::ranges::max_element(runs_, {}, [](const auto& item) { return item.second.place(); })->first;
 }
 
@@ -153,7 +153,7 @@ const Run* Runs::latest(const std::function<bool(const Run&)>& fits) const {
   return found;
 }
 
-const Run* Runs::at_post(const std::string& post) const {
+const Run* Runs::latest_at(const std::string& post) const {
   return latest([&post](const Run& run) { return run.post == post; });
 }
 
@@ -170,7 +170,7 @@ void Runs::begin(Run run) {
   runs_[present_] = std::move(run);
 }
 
-void Runs::take_up(std::int64_t number) {
+void Runs::adopt(std::int64_t number) {
   runs_.at(number).turn = next_turn();
   present_ = number;
 }
@@ -203,7 +203,7 @@ bool Runs::may_be(std::int64_t number, std::int64_t other) const {
   return std::ranges::find(numbers, other) != numbers.end();
 }
 
-const Run& Runs::is_not(std::int64_t number) {
+const Run& Runs::exclude(std::int64_t number) {
   Run* later = &present();
   while (later->may_be != number) later = &runs_.at(later->may_be);
   later->may_be = 0;

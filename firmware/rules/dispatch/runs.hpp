@@ -139,21 +139,21 @@ class Runs {
 
   const Run& present() const { return runs_.at(present_); }
   Run& present() { return runs_.at(present_); }
-  /// The run of a report that is posted now: present(), or the run of will_be().
-  const Run& meant() const { return runs_.at(will_be_ != 0 ? will_be_ : present_); }
+  /// The run of a report that is posted now: present(), or the run of set_next_run().
+  const Run& expected_run() const { return runs_.at(will_be_ != 0 ? will_be_ : present_); }
   /// Run `number` will be the present one. 0: no change is due.
-  void will_be(std::int64_t number) { will_be_ = number; }
+  void set_next_run(std::int64_t number) { will_be_ = number; }
   const Run* find(std::int64_t number) const;
   const std::map<std::int64_t, Run>& all() const { return runs_; }
 
   /// Of the fitting runs the one that was present last, except the present one; or null.
   const Run* latest(const std::function<bool(const Run&)>& fits) const;
   /// latest() at `post`.
-  const Run* at_post(const std::string& post) const;
+  const Run* latest_at(const std::string& post) const;
   std::int64_t next_number() const { return runs_.rbegin()->first + 1; }
   /// Gives it a number and a turn.
   void begin(Run run);
-  void take_up(std::int64_t number);
+  void adopt(std::int64_t number);
 
   /// True if run `number` is at `post`. A run that is unknown, or has no address, counts as there.
   bool is_at(std::int64_t number, const std::string& post) const;
@@ -167,7 +167,7 @@ class Runs {
   /// True if `number` is one of maybe_present(), but not the present run.
   bool may_be_present(std::int64_t number) const { return number != present_ && may_be(present_, number); }
   /// The present run is not `number`, which may_be_present(). Returns the run in which another run began.
-  const Run& is_not(std::int64_t number);
+  const Run& exclude(std::int64_t number);
 
  private:
   /// maybe_present() for run `number`.

@@ -7,7 +7,7 @@
 
 namespace adit::network {
 
-void Change::interrupted() {
+void Change::on_interrupted() {
   status_.ended = Ended::Reverted;
   status_.why = "the change was not confirmed before adit-network ended";
 }
@@ -121,22 +121,22 @@ std::string address(const Subnet& host, bool with_route) {
                        "\nDuplicateAddressDetection=none\n");
 }
 
-std::string in_table() {
+std::string table_line() {
   return icd::sentence("Table=", kRouteTable, "\n");
 }
 
 /// A route to the subnet of an address. If two addresses share a subnet, the route uses the first.
 std::string link_route(const Subnet& host) {
-  return icd::sentence("\n[Route]\nDestination=", written(host),
+  return icd::sentence("\n[Route]\nDestination=", to_text(host),
                        "\nScope=link\nPreferredSource=", settings::ipv4_text(host.address), "\n") +
-         in_table();
+         table_line();
 }
 
 std::string endpoint_route(std::uint32_t endpoint, std::uint32_t gateway, const Subnet& own) {
   return icd::sentence("\n[Route]\nDestination=", settings::ipv4_text(endpoint),
                        "/32\nGateway=", settings::ipv4_text(gateway),
                        "\nPreferredSource=", settings::ipv4_text(own.address), "\n") +
-         in_table();
+         table_line();
 }
 
 /// Sends sockets bound to the interface, and packets from its addresses, to the table. The second rule also
@@ -144,11 +144,11 @@ std::string endpoint_route(std::uint32_t endpoint, std::uint32_t gateway, const 
 std::string rules(const std::string& interface, const Numbers& numbers) {
   std::string text = icd::sentence("\n[RoutingPolicyRule]\nOutgoingInterface=", interface,
                                    "\nFamily=ipv4\nPriority=", kRouteTable, "\n") +
-                     in_table();
+                     table_line();
   for (const Subnet& each : numbers.command_post) {
     text += icd::sentence("\n[RoutingPolicyRule]\nFrom=", settings::ipv4_text(each.address),
                           "/32\nPriority=", kRouteTable, "\n") +
-            in_table();
+            table_line();
   }
   return text;
 }

@@ -44,7 +44,7 @@ class Change {
   }
 
   /// Records that the previous process ended during a change. The caller has reverted that change.
-  void interrupted();
+  void on_interrupted();
 
   void want(const Wanted& wanted, Instant now);
   /// Confirms or reverts the pending change. Call before tick(): a late caller may hold a word that came in

@@ -71,7 +71,7 @@ void warn_the_asker(const Numbers& wanted, const std::optional<Numbers>& present
     warnings.push_back(icd::sentence("the page moves: open ", page, " and confirm ", within));
   } else {
     warnings.push_back(icd::sentence("this cuts you off: your address ", around.asker, " is not in ",
-                                     written(wanted.team), ". Give your device an address there, open ", page,
+                                     to_text(wanted.team), ". Give your device an address there, open ", page,
                                      " and confirm ", within));
   }
 }
@@ -138,9 +138,9 @@ std::string overlap_of(const Numbers& wanted, const Circumstances& around) {
   const auto is_in_the_way = [&wanted](const Subnet& each) { return settings::overlaps(wanted.team, each); };
   const auto known = settings::command_post_subnets();  // ICD 3
   if (const auto found = std::ranges::find_if(known, is_in_the_way); found != known.end())
-    return written(*found);
+    return to_text(*found);
   const auto own = std::ranges::find_if(wanted.command_post, is_in_the_way);
-  if (own != wanted.command_post.end()) return written(*own);
+  if (own != wanted.command_post.end()) return to_text(*own);
   for (const auto& [name, address, number] : list_endpoints(around)) {
     if (number && wanted.team.contains(*number)) return icd::sentence("the ", name, " ", address);
   }
@@ -152,7 +152,7 @@ Findings check(const Numbers& wanted, const std::optional<Numbers>& present, con
   findings.changes = differences(wanted, present);
   if (const std::string what = overlap_of(wanted, around); !what.empty()) {
     const std::string overlaps =
-        icd::sentence(written(wanted.team), " overlaps ", what, " on the Command Post's side: ");
+        icd::sentence(to_text(wanted.team), " overlaps ", what, " on the Command Post's side: ");
     if (around.allow_overlap) {
       findings.warnings.push_back(overlaps + "allowed, but a robot cannot reach both");
     } else {

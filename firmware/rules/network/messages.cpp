@@ -18,7 +18,7 @@ struct KindOf<network::Instant> {
   }
   static void read(const Field& field, network::Instant& instant) {
     constexpr auto kLast = std::chrono::floor<std::chrono::milliseconds>(network::Instant::duration::max());
-    instant = network::Instant(std::chrono::milliseconds(field.whole<std::int64_t>(0, kLast.count())));
+    instant = network::Instant(std::chrono::milliseconds(field.integer<std::int64_t>(0, kLast.count())));
   }
   static constexpr Schema schema = {.type = "integer"};
 };
@@ -57,17 +57,17 @@ void read_taken(const Field& list, void* addresses) {
   if (list.size() > kMostTaken) return list.refuse("expected at most ", kMostTaken);
   codec::kind_of<std::vector<AddressConflict>>.read(list, addresses);
 }
-constexpr codec::Kind kTaken = {.write = codec::kind_of<std::vector<AddressConflict>>.write,
-                                .read = read_taken,
-                                .schema = codec::kind_of<std::vector<AddressConflict>>.schema};
+constexpr codec::RowKind kTaken = {.write = codec::kind_of<std::vector<AddressConflict>>.write,
+                                   .read = read_taken,
+                                   .schema = codec::kind_of<std::vector<AddressConflict>>.schema};
 
 void read_ports(const Field& list, void* ports) {
   if (list.size() > kMostTeamPorts) return list.refuse("expected at most ", kMostTeamPorts);
   codec::kind_of<std::vector<std::uint16_t>>.read(list, ports);
 }
-constexpr codec::Kind kPorts = {.write = codec::kind_of<std::vector<std::uint16_t>>.write,
-                                .read = read_ports,
-                                .schema = codec::kind_of<std::vector<std::uint16_t>>.schema};
+constexpr codec::RowKind kPorts = {.write = codec::kind_of<std::vector<std::uint16_t>>.write,
+                                   .read = read_ports,
+                                   .schema = codec::kind_of<std::vector<std::uint16_t>>.schema};
 
 codec::Value write_addresses(const void* addresses) {
   codec::Value::Array list;
@@ -80,7 +80,7 @@ void read_addresses(const Field& list, void* addresses) {
   auto& all = *static_cast<std::vector<std::uint32_t>*>(addresses);
   const std::size_t count = list.size();
   if (count > kMostEndpoints) list.refuse("expected at most ", kMostEndpoints);
-  for (std::size_t i = 0; i < count && !list.reading().refused(); ++i) {
+  for (std::size_t i = 0; i < count && !list.reading().has_refusal(); ++i) {
     const Field field = list.element(i);
     const auto address = settings::ipv4_of(field.text());
     if (!address) {
@@ -94,7 +94,7 @@ void read_addresses(const Field& list, void* addresses) {
 }
 
 constexpr codec::Schema kAddressesSchema = {.type = "array"};
-constexpr codec::Kind kAddresses = {
+constexpr codec::RowKind kAddresses = {
     .write = write_addresses, .read = read_addresses, .schema = &kAddressesSchema};
 
 /// Time within which a change must be confirmed.

@@ -14,7 +14,7 @@ using codec::Value;
 using settings::Error;
 using settings::Subnet;
 
-using settings::shown;
+using settings::value_text;
 
 /// The members of one object, read by name. Collects the errors.
 class Members {
@@ -24,7 +24,7 @@ class Members {
     if (value == nullptr) {
       errors_.push_back({path_, "missing"});
     } else if (object_ = std::get_if<Value::Object>(&value->is); object_ == nullptr) {
-      errors_.push_back({path_, "expected an object, got " + shown(*value)});
+      errors_.push_back({path_, "expected an object, got " + value_text(*value)});
     }
   }
 
@@ -50,7 +50,7 @@ class Members {
       return std::nullopt;
     }
     const auto address = text == nullptr ? std::nullopt : settings::ipv4_of(*text);
-    if (!address) refuse(name, "expected an IPv4 address such as 192.168.7.11, got " + shown(*value));
+    if (!address) refuse(name, "expected an IPv4 address such as 192.168.7.11, got " + value_text(*value));
     return address;
   }
 
@@ -69,7 +69,7 @@ class Members {
     }
     if (!number || *number < kWidest || *number > kNarrowest) {
       refuse(name, icd::sentence("expected a whole number from ", kWidest, " to ", kNarrowest, ", got ",
-                                 shown(*value)));
+                                 value_text(*value)));
       return std::nullopt;
     }
     return static_cast<std::uint8_t>(*number);
@@ -83,14 +83,14 @@ class Members {
     for (const Mode each : {Mode::Static, Mode::Dhcp, Mode::LinkLocal}) {
       if (text != nullptr && *text == name_of(each)) return each;
     }
-    refuse("mode", "expected " + codec::in_turn(kModeWords) + ", got " + shown(*value));
+    refuse("mode", "expected " + codec::list_alternatives(kModeWords) + ", got " + value_text(*value));
     return Mode::Static;
   }
 
   /// Rejects a member that has no meaning in this mode.
   void none(std::string_view name, std::string_view why) {
     if (const Value* value = find(name); !is_none(value)) {
-      refuse(name, icd::sentence("expected none ", why, ", got ", shown(*value)));
+      refuse(name, icd::sentence("expected none ", why, ", got ", value_text(*value)));
     }
   }
 
@@ -99,7 +99,7 @@ class Members {
     if (object_ == nullptr) return;
     for (auto member = object_->begin(); member != object_->end(); ++member) {
       if (std::ranges::find(known_, member->first) == known_.end()) {
-        refuse(icd::in_quotes(member->first), "unknown member");
+        refuse(icd::quote_text(member->first), "unknown member");
       } else if (std::ranges::find(object_->begin(), member, member->first, &Value::Member::first) !=
                  member) {
         refuse(member->first, "given twice");
@@ -127,8 +127,8 @@ std::string unfit(std::uint32_t address, const Subnet& subnet) {
   const std::uint32_t first = address >> 24;
   if (first == 0 || first == 127 || first >= 224) return "is not an address that a host can have";
   if (address >> 16 == kLinkLocal) return "is link-local: a host chooses such an address itself (RFC 3927)";
-  if (address == subnet.first()) return "is the address of the subnet " + written(subnet) + " itself";
-  if (address == subnet.last()) return "is the broadcast address of " + written(subnet);
+  if (address == subnet.first()) return "is the address of the subnet " + to_text(subnet) + " itself";
+  if (address == subnet.last()) return "is the broadcast address of " + to_text(subnet);
   return "";
 }
 
@@ -190,7 +190,7 @@ std::optional<std::vector<Subnet>> own_of(Members& post, std::vector<Error>& err
   }
   const auto* array = std::get_if<Value::Array>(&list->is);
   if (array == nullptr) {
-    post.refuse("addresses", "expected a list of addresses, got " + shown(*list));
+    post.refuse("addresses", "expected a list of addresses, got " + value_text(*list));
     return std::nullopt;
   }
   return hosts(*array, post.path_of("addresses"), errors);
@@ -268,7 +268,7 @@ std::string team_text(const Numbers& numbers) {
 }
 
 std::string command_post_text(const Numbers& numbers) {
-  return numbers.command_post.empty() ? "none" : icd::listed(numbers.command_post, host_text);
+  return numbers.command_post.empty() ? "none" : icd::join_words(numbers.command_post, host_text);
 }
 
 }  // namespace adit::network

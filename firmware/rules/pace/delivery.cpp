@@ -45,38 +45,38 @@ bool has_queue(const Progress& now) {
 
 }  // namespace
 
-void Delivery::begins(const Progress& now) {
+void Delivery::on_write_begun(const Progress& now) {
   began_ = now;
   queued_ = has_queue(now);
   starved_ = false;
 }
 
-void Delivery::goes_on(const Progress& now) {
+void Delivery::on_write(const Progress& now) {
   const bool has = has_queue(now);
   if (probes_ && has && !has_queue(began_)) return queue_ended_probe(now);
   if (drains_ && !has) {
     drains_ = false;
-    return begins(now);
+    return on_write_begun(now);
   }
   queued_ = queued_ && has;
   starved_ = starved_ || is_starved(now);
   if (now.at - began_.at < std::max<Duration>(kInterval, 2 * now.least_round_trip)) return;
-  const double rate = rate_until(now);
+  const double rate = measured_rate(now);
   if (rate > 0 && (!starved_ || rate > link_ * kFound)) measure(rate, now.at);
   if (!drains_ && link_ < most_ && now.at >= probe_at_) probes_ = true;
-  begins(now);
+  on_write_begun(now);
 }
 
-double Delivery::rate_until(const Progress& now) const {
+double Delivery::measured_rate(const Progress& now) const {
   const auto bytes = now.delivered - std::min(began_.delivered, now.delivered);
   return static_cast<double>(bytes) / Seconds(now.at - began_.at).count();
 }
 
 /// The link was full until now.
 void Delivery::queue_ended_probe(const Progress& now) {
-  if (!starved_ && now.at - began_.at >= kTelling) link_ = std::clamp(rate_until(now), link_, most_);
+  if (!starved_ && now.at - began_.at >= kTelling) link_ = std::clamp(measured_rate(now), link_, most_);
   end_probe(true, now.at);
-  begins(now);
+  on_write_begun(now);
 }
 
 void Delivery::measure(double rate, Instant now) {
@@ -88,13 +88,13 @@ void Delivery::measure(double rate, Instant now) {
     link_ = std::clamp(rate, link_, most_);
     end_probe(!found, now);
   } else if (queued_ && rate < given * kKept) {
-    carries(rate, now);
+    set_rate(rate, now);
     drains_ = true;
   } else if (drains_) {  // a round trip that is long for another reason drains no bytes
-    if (rate > given * kDrawn) carries(rate, now);
+    if (rate > given * kDrawn) set_rate(rate, now);
     drains_ = rate > given * kDrawn;
   } else if (stands_ >= kStands) {
-    if (rate < given * kNearly) carries(rate, now);
+    if (rate < given * kNearly) set_rate(rate, now);
     drains_ = true;
     stands_ = 0;
   }
@@ -102,7 +102,7 @@ void Delivery::measure(double rate, Instant now) {
 
 /// A queue existed during the whole interval, so `rate` is the rate of the link. A short disturbance looks
 /// like a slower link, so the next probe comes soon.
-void Delivery::carries(double rate, Instant now) {
+void Delivery::set_rate(double rate, Instant now) {
   const double before = std::exchange(link_, std::clamp(rate, most_ * kSlowest, most_));
   if (link_ > before * kKept) return;
   most_before_ = 0;
@@ -135,7 +135,7 @@ double Delivery::pace() const {
   return probes_ ? std::min(link_ * kMore, most_) : link_;
 }
 
-double Delivery::delivers() const {
+double Delivery::delivery_rate() const {
   const double seen = std::max(most_before_, most_now_);
   return seen > 0 ? std::min(seen, most_) : most_;
 }

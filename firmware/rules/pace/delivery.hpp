@@ -42,23 +42,23 @@ class Delivery {
   explicit Delivery(double most) : most_(most), link_(most) {}
 
   /// Call this when writing starts after a pause or on a new connection.
-  void begins(const Progress& now);
+  void on_write_begun(const Progress& now);
   /// Call this at least once in kInterval while bytes are written.
-  void goes_on(const Progress& now);
+  void on_write(const Progress& now);
 
   /// The pace at which to write.
   double pace() const;
   /// The highest delivery rate of an interval in this second and the previous one. An interval in which TCP
   /// had too little to send counts only if it was faster than the link's known rate. `most` if no rate is
   /// known.
-  double delivers() const;
+  double delivery_rate() const;
 
  private:
-  double rate_until(const Progress& now) const;
+  double measured_rate(const Progress& now) const;
   void queue_ended_probe(const Progress& now);
   void measure(double rate, Instant now);
   void remember(double rate, Instant now);
-  void carries(double rate, Instant now);
+  void set_rate(double rate, Instant now);
   void end_probe(bool in_vain, Instant now);
 
   double most_;

@@ -5,7 +5,7 @@
 
 namespace adit::pace {
 
-std::chrono::nanoseconds Backoff::failed(double random) {
+std::chrono::nanoseconds Backoff::on_failed(double random) {
   const std::chrono::duration<double, std::milli> wait = std::min(wait_, most_);
   wait_ = wait_ > most_ / 2 ? most_ : wait_ * 2;
   return std::chrono::duration_cast<std::chrono::nanoseconds>(wait * (1 + random / 4));
@@ -62,7 +62,7 @@ Instant RateLimit::next() const {
   return std::max(at.first, at.last);
 }
 
-void RateLimit::sent(Instant now, bool ahead) {
+void RateLimit::on_sent(Instant now, bool ahead) {
   if (storm_ && sent_) storm_->worked = now - *sent_;
   sent_ = now;
   under_way_ = ahead ? 2 : 1;
@@ -79,7 +79,7 @@ Duration RateLimit::spacing() const {
   return rule_.from_answers ? rule_.spacing : rule_.spacing + rule_.spacing / kUneven;
 }
 
-void RateLimit::left(const Span& sent) {
+void RateLimit::on_departed(const Span& sent) {
   const Duration uneven = rule_.spacing / kUneven;
   count({.first = sent.first + uneven, .last = sent.last + uneven});
 }
@@ -92,7 +92,7 @@ bool RateLimit::end_one() {
   return true;
 }
 
-void RateLimit::taken(const Span& sent, Instant now) {
+void RateLimit::on_answered(const Span& sent, Instant now) {
   const bool sent_before = end_one();
   if (storm_ && !sent_before) {
     if (storm_->counts_anew && storm_->is_one) ++single_;
@@ -105,16 +105,16 @@ void RateLimit::taken(const Span& sent, Instant now) {
     if (!sent_before) speed_up(now);
   }
   if (!sent_before) floor_ = {};
-  if (!rule_.from_answers) return left(sent);
+  if (!rule_.from_answers) return on_departed(sent);
   count({.first = now, .last = now});
 }
 
-void RateLimit::lost(Instant now) {
+void RateLimit::on_lost(Instant now) {
   end_one();
   count({.first = now, .last = now});
 }
 
-void RateLimit::throttled(Instant now, std::optional<std::chrono::seconds> retry_after) {
+void RateLimit::on_throttled(Instant now, std::optional<std::chrono::seconds> retry_after) {
   const bool sent_before = end_one();
   if (!storm_) {
     begin_storm(now);
@@ -130,11 +130,11 @@ void RateLimit::throttled(Instant now, std::optional<std::chrono::seconds> retry
 std::optional<Instant> RateLimit::claim(Instant now, Instant latest) {
   const Instant at = std::max(now, next() + rule_.spacing / kBeside);
   if (at > latest) return std::nullopt;
-  claimed(at);
+  on_claimed(at);
   return at;
 }
 
-void RateLimit::claimed(Instant now) {
+void RateLimit::on_claimed(Instant now) {
   const Instant counted = now + rule_.spacing / kBeside;
   count({.first = counted, .last = counted});
 }
@@ -190,7 +190,7 @@ void RateLimit::speed_up(Instant now) {
   learned_at_ = now;
 }
 
-Learned RateLimit::learned() const {
+Learned RateLimit::learned_rate() const {
   return {.earliest = earliest(),
           .spacing = rule_.spacing > allowed_ ? rule_.spacing : Duration{0},
           .under_way = under_way_ > 0,
@@ -225,7 +225,7 @@ Turn oldest_first(std::span<const Candidate> candidates, Instant now) {
   return turn;
 }
 
-Turn in_order(std::span<const Candidate> candidates, Instant now) {
+Turn first_ready(std::span<const Candidate> candidates, Instant now) {
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     if (!candidates[i].oldest) continue;
     if (candidates[i].ready > now) return {.candidate = std::nullopt, .wake = candidates[i].ready};

@@ -15,8 +15,8 @@ class Backoff {
       : first_(first), most_(most), wait_(first) {}
 
   /// Returns the pause. `random`: uniform in [0, 1).
-  std::chrono::nanoseconds failed(double random);
-  void succeeded() { wait_ = first_; }
+  std::chrono::nanoseconds on_failed(double random);
+  void on_succeeded() { wait_ = first_; }
 
  private:
   std::chrono::milliseconds first_, most_, wait_;
@@ -78,20 +78,20 @@ class RateLimit {
   /// learned rate applies.
   bool may_go_ahead() const { return !storm_ && !rule_.from_answers && rule_.spacing == allowed_; }
 
-  /// `ahead`: the previous request is still in flight. One call of taken(), not_sent(), lost() or throttled()
-  /// must follow for each request.
-  void sent(Instant now, bool ahead = false);
+  /// `ahead`: the previous request is still in flight. One call of on_answered(), not_sent(), on_lost() or
+  /// on_throttled() must follow for each request.
+  void on_sent(Instant now, bool ahead = false);
   /// The last request has left as `sent` says and is still in flight.
-  void left(const Span& sent);
+  void on_departed(const Span& sent);
   /// The server accepted or rejected (not with 429) a request at `now`. `sent`: when its bytes left.
-  void taken(const Span& sent, Instant now);
+  void on_answered(const Span& sent, Instant now);
   /// No byte of the request left.
   void not_sent() { end_one(); }
   /// The request failed in doubt. Spacing counts from now, because the connection may have been slow and the
   /// server may have received the request just now.
-  void lost(Instant now);
+  void on_lost(Instant now);
   /// The server answered 429. `retry_after` is obeyed up to kLongestPause, because a run lasts half an hour.
-  void throttled(Instant now, std::optional<std::chrono::seconds> retry_after);
+  void on_throttled(Instant now, std::optional<std::chrono::seconds> retry_after);
 
   /// Reserves a turn for a request to the same server on a connection that this limit does not manage.
   /// Returns the time at which it may leave; the spacing to the next request counts from there. Returns
@@ -99,13 +99,13 @@ class RateLimit {
   std::optional<Instant> claim(Instant now, Instant latest);
   /// Call this when the claimed request leaves, which may be later than claimed, and when it ends. Its answer
   /// does not change the rate.
-  void claimed(Instant now);
+  void on_claimed(Instant now);
 
   /// Sets the allowed rate; it also applies to the time since the last request. A learned rate and a pause
   /// that the server asked for stay.
   void allow(double hertz, Instant now);
 
-  Learned learned() const;
+  Learned learned_rate() const;
   /// Restores the previous process's state; this one starts at `now`. A request in flight may have just
   /// ended.
   void carry_on(const Learned& learned, Instant now);
@@ -167,6 +167,6 @@ struct Turn {
 Turn oldest_first(std::span<const Candidate> candidates, Instant now);
 
 /// The first candidate with a message. The others wait for it, even if it is not ready.
-Turn in_order(std::span<const Candidate> candidates, Instant now);
+Turn first_ready(std::span<const Candidate> candidates, Instant now);
 
 }  // namespace adit::pace

@@ -35,7 +35,7 @@ class Steps {
       : low_(low), most_(static_cast<double>((1u << bits) - 1)), per_metre_(most_ / extent) {}
 
   /// 0 if the coordinate is out of range or the steps cannot be computed.
-  Key of(double metres) const {
+  Key key_of(double metres) const {
     const double steps = (metres - low_) * per_metre_;
     return steps >= 0 && steps <= most_ ? static_cast<Key>(steps) : 0;
   }
@@ -58,9 +58,9 @@ std::vector<Key> keys_of(Layers layers, const icd::PointCloud2& cloud, const Box
   std::vector<Key> keys(points.size() / cloud.point_step);
   for (std::size_t number = 0; number < keys.size(); ++number) {
     const Coordinates at = coordinates(points.subspan(number * cloud.point_step, cloud.point_step));
-    Key key = of_first.of(at[first]);
-    key = key << kBitsOfOthers | of_second.of(at[second]);
-    key = key << kBitsOfOthers | of_third.of(at[third]);
+    Key key = of_first.key_of(at[first]);
+    key = key << kBitsOfOthers | of_second.key_of(at[second]);
+    key = key << kBitsOfOthers | of_third.key_of(at[third]);
     keys[number] = key << kNumberBits | number;
   }
   return keys;
@@ -117,8 +117,8 @@ void gather(std::span<const std::uint8_t> points, std::size_t step, std::span<co
 }
 
 /// The size to which gzip compresses a sample of the points in that order.
-std::size_t tried(std::span<const std::uint8_t> points, std::size_t step,
-                  std::span<const std::uint32_t> numbers) {
+std::size_t compressed_size(std::span<const std::uint8_t> points, std::size_t step,
+                            std::span<const std::uint32_t> numbers) {
   constexpr std::size_t kShare = 32, kShareOfFew = 4, kStretches = 16, kTelling = std::size_t{32} << 10;
   const std::size_t bytes = std::max(points.size() / kShare, std::min(points.size() / kShareOfFew, kTelling));
   const std::size_t part = numbers.size() / kStretches;
@@ -135,10 +135,10 @@ void put_block_in_order(const icd::PointCloud2& cloud, const Box& box, std::span
   const std::size_t step = cloud.point_step;
   Numbers best(points.size() / step);
   std::iota(best.begin(), best.end(), 0U);
-  std::size_t smallest = tried(points, step, best);
+  std::size_t smallest = compressed_size(points, step, best);
   for (const Layers layers : {Layers::AlongZ, Layers::AlongY, Layers::AlongX}) {
     Numbers other = numbers_in(layers, cloud, box, points);
-    const std::size_t size = tried(points, step, other);
+    const std::size_t size = compressed_size(points, step, other);
     if (size >= smallest) continue;
     smallest = size;
     best = std::move(other);
@@ -279,7 +279,7 @@ void shift_points(Arranged& arranged, const PointLayout& layout, const icd::Plac
 
 bool round_to(double unit, Arranged& arranged) {
   if (arranged.cloud.is_bigendian || arranged.points.empty()) return false;
-  const auto layout = without_padding(to_float32(arranged.cloud));
+  const auto layout = strip_padding(to_float32(arranged.cloud));
   const auto shift = shift_of(arranged.cloud, box_of(arranged), unit);
   if (!layout || !shift) return false;
   shift_points(arranged, *layout, shift->placed);

@@ -62,7 +62,7 @@ void put_in_order(Arranged& arranged);
 /// - the cloud is big-endian, because a server may object to an origin then
 /// - two fields share bytes, or there are no points
 ///
-/// All points are finite (without_invalid_points()).
+/// All points are finite (remove_invalid_points()).
 bool round_to(double unit, Arranged& arranged);
 
 }  // namespace adit::pack

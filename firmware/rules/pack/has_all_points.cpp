@@ -15,7 +15,7 @@ namespace {
 using Point = std::span<const std::uint8_t>;
 
 /// Steele, Lea and Flood, "Fast splittable pseudorandom number generators" (2014): each bit affects all.
-std::uint64_t mixed(std::uint64_t bits) {
+std::uint64_t mix_bits(std::uint64_t bits) {
   bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9u;
   bits = (bits ^ (bits >> 27)) * 0x94d049bb133111ebu;
   return bits ^ (bits >> 31);
@@ -25,24 +25,24 @@ std::uint64_t hash_of(Point point) {
   std::uint64_t hash = 0x9e3779b97f4a7c15u, word = 0;
   for (; point.size() >= sizeof word; point = point.subspan(sizeof word)) {
     std::memcpy(&word, point.data(), sizeof word);
-    hash = mixed(hash ^ word);
+    hash = mix_bits(hash ^ word);
   }
   word = 0;
   if (!point.empty()) std::memcpy(&word, point.data(), point.size());
-  return mixed(hash ^ word);
+  return mix_bits(hash ^ word);
 }
 
 /// A set of point hashes to find: open addressing, at most half full.
-class Sought {
+class PointSet {
  public:
-  explicit Sought(std::size_t most) : places_(std::bit_ceil(2 * most + 2)) {}
+  explicit PointSet(std::size_t most) : places_(std::bit_ceil(2 * most + 2)) {}
 
   void add(Point point) {
     std::uint64_t& place = place_of(point);
     if (place == 0) ++missing_;
     place = key_of(hash_of(point));
   }
-  void found(Point point) {
+  void on_found(Point point) {
     std::uint64_t& place = place_of(point);
     if (place == 0 || (place & kFound) != 0) return;
     place |= kFound;
@@ -88,14 +88,14 @@ bool begins_with(const icd::ChunkedBytes& whole, const icd::ChunkedBytes& part) 
 /// Looks for every `every`th point of `older`.
 bool has(const icd::ChunkedBytes& newer, const icd::ChunkedBytes& older, std::size_t point_step,
          std::size_t every) {
-  Sought sought(older.size() / point_step / every + 1);
+  PointSet sought(older.size() / point_step / every + 1);
   std::size_t number = 0;
   for_each_point(older, point_step, [&](Point point) {
     if (number++ % every == 0) sought.add(point);
     return true;
   });
   for_each_point(newer, point_step, [&](Point point) {
-    sought.found(point);
+    sought.on_found(point);
     return sought.missing() > 0;
   });
   return sought.missing() == 0;

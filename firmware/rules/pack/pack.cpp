@@ -36,7 +36,7 @@ void append(std::vector<std::uint8_t>& to, const icd::ChunkedBytes& bytes, std::
 }
 
 /// The size to which Quick compresses a byte, measured on a sample of the points.
-double tried(const icd::ChunkedBytes& points) {
+double sampled_ratio(const icd::ChunkedBytes& points) {
   constexpr std::size_t kShare = 32, kTelling = std::size_t{64} << 10, kStretches = 16;
   const std::size_t size = std::min(points.size(), std::max(points.size() / kShare, kTelling));
   std::vector<std::uint8_t> some;
@@ -97,7 +97,7 @@ Choice effort_for(const icd::MapUpdate& map, const Hurry& hurry) {
   if (map.is_grid()) return {effort_for_grid(map, hurry)};
   const std::size_t size = map.data.bytes.size();
   if (effort_for(size, 0, hurry) == Effort::None) return {Effort::None};
-  const double quick_to = tried(map.data.bytes);
+  const double quick_to = sampled_ratio(map.data.bytes);
   return {effort_for(size, quick_to, hurry), quick_to * kFullOfQuick};
 }
 
@@ -119,8 +119,8 @@ namespace {
 void pack_points(icd::PointCloud2& cloud, icd::MapData& data, const CloudForm& form) {
   if (data.bytes.empty() || form.effort == Effort::None) return;
   const bool is_full = form.effort == Effort::Full;
-  const auto tight = form.is_arranged ? without_padding(cloud) : std::nullopt;
-  const PointLayout layout = tight ? *tight : unchanged(cloud);
+  const auto tight = form.is_arranged ? strip_padding(cloud) : std::nullopt;
+  const PointLayout layout = tight ? *tight : plain_layout(cloud);
   Arranged arranged = arrange_contiguous(layout, data, cloud.point_step);
   if (tight && is_full && form.unit > 0) round_to(form.unit, arranged);
   if (tight && is_full) put_in_order(arranged);
@@ -182,7 +182,7 @@ std::optional<icd::MapData> pack_cells(icd::MapData data, Effort effort) {
   return data;
 }
 
-icd::MapData without_invalid_points(const icd::PointCloud2& cloud, icd::MapData data) {
+icd::MapData remove_invalid_points(const icd::PointCloud2& cloud, icd::MapData data) {
   const FiniteCheck is_finite{cloud};
   bool all_are = true;
   for_each_point(data.bytes, cloud.point_step, [&](auto point) { return all_are = is_finite(point); });
@@ -203,7 +203,7 @@ bool has_only_invalid_points(const icd::MapUpdate& map) {
 icd::MapUpdate pack(icd::MapUpdate map, const CloudForm& form) {
   if (map.data.compression != icd::Compression::None) return map;
   auto& cloud = std::get<icd::PointCloud2>(map.msg);
-  map.data = without_invalid_points(cloud, std::move(map.data));
+  map.data = remove_invalid_points(cloud, std::move(map.data));
   pack_points(cloud, map.data, form);
   return map;
 }

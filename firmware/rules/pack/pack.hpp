@@ -80,7 +80,7 @@ inline constexpr double kMillimetre = 0x1p-10, kEightMillimetres = 0x1p-7;
 icd::MapUpdate pack(icd::MapUpdate map, const CloudForm& form = {});
 
 /// `data` without the points whose x, y or z is not finite. `data` must be uncompressed.
-icd::MapData without_invalid_points(const icd::PointCloud2& cloud, icd::MapData data);
+icd::MapData remove_invalid_points(const icd::PointCloud2& cloud, icd::MapData data);
 
 /// True if `map` is a non-empty, uncompressed cloud without any finite point. Reads up to the first finite
 /// point, so the time grows with the size only if there is none.

@@ -17,11 +17,11 @@ void PointLayout::copy(std::span<const std::uint8_t> point, std::span<std::uint8
   for (const Run& run : runs) std::memcpy(to.data() + run.to, point.data() + run.from, run.size);
 }
 
-PointLayout unchanged(const icd::PointCloud2& cloud) {
+PointLayout plain_layout(const icd::PointCloud2& cloud) {
   return {.cloud = cloud, .runs = {{.from = 0, .to = 0, .size = cloud.point_step}}};
 }
 
-std::optional<PointLayout> without_padding(const icd::PointCloud2& cloud) {
+std::optional<PointLayout> strip_padding(const icd::PointCloud2& cloud) {
   PointLayout layout{.cloud = cloud, .runs = {}};
   std::vector<icd::FieldSchema*> fields;
   fields.reserve(cloud.fields.size());

@@ -112,11 +112,11 @@ struct PointLayout {
 };
 
 /// The layout of `cloud`; each point is copied whole.
-PointLayout unchanged(const icd::PointCloud2& cloud);
+PointLayout plain_layout(const icd::PointCloud2& cloud);
 
 /// The layout without the padding between and after the fields. Offsets and point_step change. The fields
 /// keep their bytes, their places in the list, and their order in a point. nullopt if two fields share a
 /// byte. Requires check(cloud).
-std::optional<PointLayout> without_padding(const icd::PointCloud2& cloud);
+std::optional<PointLayout> strip_padding(const icd::PointCloud2& cloud);
 
 }  // namespace adit::pack

@@ -23,7 +23,7 @@ class Union {
     for (std::size_t i = 0; i < all_.size(); ++i) all_[i] |= pixels_[i];
     return known_in(pixels_);
   }
-  std::uint32_t known() const { return known_in(all_); }
+  std::uint32_t known_count() const { return known_in(all_); }
 
  private:
   Packer packer_;
@@ -52,7 +52,7 @@ void CoveredArea::update(const Changes& changes, const Between& between) {
       counts.of.emplace_back(robot, seen->add(*tile));
       between();
     }
-    counts.all = seen->known();
+    counts.all = seen->known_count();
     places_[at] = std::move(counts);
   }
   version_ = changes.version;
@@ -83,7 +83,7 @@ std::vector<std::pair<double, std::uint64_t>> covered_over_time(const Mosaic& mo
     std::uint64_t known = 0;
     for (const Version* state : states) {
       seen->add(*state->tile);
-      more[state->stamp] += seen->known() - std::exchange(known, seen->known());
+      more[state->stamp] += seen->known_count() - std::exchange(known, seen->known_count());
     }
   }
   std::vector<std::pair<double, std::uint64_t>> all{more.begin(), more.end()};

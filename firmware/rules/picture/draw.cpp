@@ -281,7 +281,7 @@ void TurnedGrid::draw(std::size_t row, std::size_t column, std::span<const std::
 Sheet::Sheet(const Frame& frame)
     : frame_(frame), places_(static_cast<std::size_t>(frame.tiles) * static_cast<std::size_t>(frame.tiles)) {}
 
-std::uint16_t Sheet::made(int x, int y) {
+std::uint16_t Sheet::make_part(int x, int y) {
   if (parts_.size() == kMostTiles) return kNone;
   parts_.push_back({{frame_.level, x, y}, std::make_unique<Pixels>()});
   return static_cast<std::uint16_t>(parts_.size());
@@ -314,7 +314,7 @@ using Small = std::array<std::uint8_t, kSmall * kSmall>;  // a tile at the scale
 /// Changed tiles by the coarser tile that contains them.
 using Changed = std::map<TileIndex, std::vector<std::pair<TileIndex, Small>>>;
 
-Small reduced(const Pixels& pixels) {
+Small shrink(const Pixels& pixels) {
   Small small{};
   for (std::size_t row = 0; row < kSide; ++row) {
     const std::uint8_t* from = pixels.data() + row * kSide;
@@ -353,7 +353,7 @@ class Layers {
     change(is_);
     if (is_ == was_) return;
     drawing_.tiles.emplace_back(at, packer_.pack(is_));
-    if (at.level + 1 < kLevels) changed[coarser(at)].emplace_back(at, reduced(is_));
+    if (at.level + 1 < kLevels) changed[coarser(at)].emplace_back(at, shrink(is_));
   }
 
  private:
@@ -424,7 +424,7 @@ std::optional<Heights> heights_of(const Sheet& sheet) {
 /// Lays a map's sheet over `before`, at all levels. Fills in the drawing's tiles, area and heights. Its layer
 /// must be set.
 void lay(const Sheet& sheet, const Canvas& before, Drawing& drawing) {
-  const bool is_grid = drawing.layer.kind == Kind::Grid;
+  const bool is_grid = drawing.layer.kind == LayerKind::Grid;
   Layers layers{before, drawing};
   Changed changed;
   for (const Sheet::Part& part : sheet.parts()) {

@@ -66,13 +66,13 @@ class Sheet {
     const auto at = static_cast<std::size_t>(y - frame_.bottom) * static_cast<std::size_t>(frame_.tiles) +
                     static_cast<std::size_t>(x - frame_.left);
     if (at != last_at_) {
-      if (places_[at] == kNone) places_[at] = made(x, y);
+      if (places_[at] == kNone) places_[at] = make_part(x, y);
       last_ = places_[at] == kNone ? nullptr : parts_[places_[at] - 1U].pixels.get();
       last_at_ = at;
     }
     return last_;
   }
-  std::uint16_t made(int x, int y);
+  std::uint16_t make_part(int x, int y);
 
   Frame frame_;
   std::vector<Part> parts_;

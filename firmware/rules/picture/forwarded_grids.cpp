@@ -33,7 +33,7 @@ bool is_same(const ForwardedGrid& a, const ForwardedGrid& b) {
 }
 
 /// Copies into pieces of their own, because a shared piece would keep a larger buffer alive.
-icd::ChunkedBytes copied(const icd::ChunkedBytes& bytes) {
+icd::ChunkedBytes copy_bytes(const icd::ChunkedBytes& bytes) {
   icd::ChunkedBytes copy;
   for (const icd::Chunk& chunk : bytes.chunks()) {
     for (auto rest = *chunk; !rest.empty();) {
@@ -45,10 +45,10 @@ icd::ChunkedBytes copied(const icd::ChunkedBytes& bytes) {
   return copy;
 }
 
-icd::MapData packed(const icd::MapData& data) {
+icd::MapData pack_data(const icd::MapData& data) {
   const bool is_packed = data.compression == icd::Compression::Gzip;
   if (is_packed && data.bytes.size() > kLargestFineGrid) return {};
-  auto bytes = is_packed ? copied(data.bytes) : codec::gzip(data.bytes, codec::GzipStrategy::Runs);
+  auto bytes = is_packed ? copy_bytes(data.bytes) : codec::gzip(data.bytes, codec::GzipStrategy::Runs);
   if (bytes.size() > kLargestFineGrid) return {};
   return {std::move(bytes), icd::Compression::Gzip, data.raw_size};
 }
@@ -67,11 +67,11 @@ std::shared_ptr<const ForwardedGrid> forwarded_grid(const icd::MapUpdate& map) {
   return std::make_shared<const ForwardedGrid>(
       ForwardedGrid{.layer = layer_of(map),
                     .grid = *grid,
-                    .data = grid->resolution > kLargestFineCell ? icd::MapData{} : packed(map.data),
+                    .data = grid->resolution > kLargestFineCell ? icd::MapData{} : pack_data(map.data),
                     .area = area_of(*grid)});
 }
 
-bool ForwardedGrids::take(std::shared_ptr<const ForwardedGrid> grid, std::uint64_t number) {
+bool ForwardedGrids::add(std::shared_ptr<const ForwardedGrid> grid, std::uint64_t number) {
   const auto found = layers_.find(grid->layer);
   if (grid->data.bytes.empty()) {
     if (found == layers_.end()) return false;
@@ -85,7 +85,7 @@ bool ForwardedGrids::take(std::shared_ptr<const ForwardedGrid> grid, std::uint64
   if (!kept.empty() && is_same(*kept.back().grid, *grid)) return false;
   const auto covered = std::ranges::stable_partition(
       kept, [&](const Kept& older) { return !icd::covers(grid->grid, older.bounds); });
-  auto bounds = icd::GridBounds::of(grid->grid);
+  auto bounds = icd::GridBounds::from_grid(grid->grid);
   for (const Kept& older : covered) bounds = icd::joint_bounds(bounds, older.bounds);
   forget(kept, covered.begin(), covered.end());
   bytes_ += grid->cost();
@@ -114,8 +114,8 @@ void ForwardedGrids::keep_to_budget() {
   }
 }
 
-std::vector<std::shared_ptr<const ForwardedGrid>> ForwardedGrids::in(const Layer& layer,
-                                                                     const Area& area) const {
+std::vector<std::shared_ptr<const ForwardedGrid>> ForwardedGrids::grids_in(const Layer& layer,
+                                                                           const Area& area) const {
   std::vector<std::shared_ptr<const ForwardedGrid>> grids;
   const auto found = layers_.find(layer);
   if (found == layers_.end()) return grids;

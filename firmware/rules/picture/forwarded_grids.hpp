@@ -41,12 +41,12 @@ class ForwardedGrids {
   explicit ForwardedGrids(std::size_t budget = kBudget) : budget_(budget) {}
 
   /// `number` must be greater than all before. False if no finer tile can change because of this grid.
-  bool take(std::shared_ptr<const ForwardedGrid> grid, std::uint64_t number);
+  bool add(std::shared_ptr<const ForwardedGrid> grid, std::uint64_t number);
   void clear();
 
   /// The grids that touch `area`, oldest first: the last ones, with at most kMostCells together. The newest
   /// is always included.
-  std::vector<std::shared_ptr<const ForwardedGrid>> in(const Layer& layer, const Area& area) const;
+  std::vector<std::shared_ptr<const ForwardedGrid>> grids_in(const Layer& layer, const Area& area) const;
   /// The number of the newest grid that touches `area`; 0: no grid.
   std::uint64_t newest_in(const Layer& layer, const Area& area) const;
   /// The finest level of a layer, and the area that changed after `since`. nullopt if it has no level finer

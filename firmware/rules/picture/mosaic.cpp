@@ -120,7 +120,7 @@ bool Mosaic::apply(Drawing drawing, double stamp) {
   return true;
 }
 
-void Mosaic::missed(const Layer& layer, double stamp) {
+void Mosaic::on_missed(const Layer& layer, double stamp) {
   State* state = state_of(layer, stamp);
   ++(state == nullptr ? missed_ : state->view.missed);
 }
@@ -190,7 +190,7 @@ std::map<TileIndex, std::vector<std::pair<std::string, const History*>>> Mosaic:
   std::map<TileIndex, std::vector<std::pair<std::string, const History*>>> places;
   const auto for_each = [&](auto visit) {
     for (const auto& [layer, state] : layers_) {
-      if (layer.kind != Kind::Grid) continue;
+      if (layer.kind != LayerKind::Grid) continue;
       for (const auto& [at, history] : state.tiles) {
         if (at.level > 0) break;  // they are sorted by level
         visit(layer.robot, at, history);
@@ -210,7 +210,7 @@ std::map<TileIndex, std::vector<std::pair<std::string, const History*>>> Mosaic:
 bool Mosaic::has_all_grids() const {
   return missed_ == 0 && std::ranges::all_of(layers_, [](const auto& each) {
            const LayerView& view = each.second.view;
-           return view.layer.kind != Kind::Grid || (view.missed == 0 && view.left_out == 0);
+           return view.layer.kind != LayerKind::Grid || (view.missed == 0 && view.left_out == 0);
          });
 }
 

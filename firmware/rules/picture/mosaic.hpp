@@ -106,7 +106,7 @@ class Mosaic {
   /// begun before the last wipe.
   bool apply(Drawing drawing, double stamp);
   /// A map of that layer came and will not be drawn.
-  void missed(const Layer& layer, double stamp);
+  void on_missed(const Layer& layer, double stamp);
   /// Counts a change of something that is shown with the picture, and returns its version.
   std::uint64_t count_change(double stamp) {
     begin_change(stamp);
@@ -123,7 +123,7 @@ class Mosaic {
   bool take_up(const Layer& layer, const TileIndex& at, Tile tile, double stamp);
   /// Restores the data of a layer, except its tiles.
   void take_up(const LayerView& view);
-  void was_wiped(double stamp) { wiped_ = stamp; }
+  void set_wipe_time(double stamp) { wiped_ = stamp; }
   /// Adds all of `earlier`: its present layers, and earlier states of tiles that are not drawn here. Tiles
   /// that are drawn here stay. Added tiles count as changed at `stamp`.
   void take_up(Mosaic earlier, double stamp);
@@ -150,11 +150,11 @@ class Mosaic {
   /// Grows with every change, also across restarts: the time of the change in milliseconds, or the previous
   /// version plus one. 0: nothing was drawn yet.
   std::uint64_t version() const { return version_; }
-  std::optional<double> wiped() const { return wiped_; }  // time of the last wipe
-  double spacing() const { return spacing_; }             // of earlier states, in seconds: see History
+  std::optional<double> wipe_time() const { return wiped_; }  // time of the last wipe
+  double spacing() const { return spacing_; }                 // of earlier states, in seconds: see History
   std::size_t bytes() const { return bytes_; }
   /// Maps of this run whose layer is one too many.
-  std::size_t missed() const { return missed_; }
+  std::size_t missed_maps() const { return missed_; }
 
  private:
   struct State {

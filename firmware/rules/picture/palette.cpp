@@ -15,19 +15,19 @@ constexpr Colour kFree{0xc8, 0xd2, 0xda}, kOccupied{0xa8, 0x32, 0x1e};
 constexpr Colour kRamp[] = {{71, 44, 122},  {59, 81, 139}, {44, 113, 142}, {33, 144, 141},
                             {39, 173, 129}, {92, 200, 99}, {170, 220, 50}, {253, 231, 37}};
 
-std::uint8_t between(std::uint8_t a, std::uint8_t b, double part) {
+std::uint8_t blend(std::uint8_t a, std::uint8_t b, double part) {
   return static_cast<std::uint8_t>(std::lround(a + (b - a) * part));
 }
 
-Colour between(const Colour& a, const Colour& b, double part) {
-  return {between(a.red, b.red, part), between(a.green, b.green, part), between(a.blue, b.blue, part)};
+Colour blend(const Colour& a, const Colour& b, double part) {
+  return {blend(a.red, b.red, part), blend(a.green, b.green, part), blend(a.blue, b.blue, part)};
 }
 
 /// The colour at `part` of the ramp, 0 to 1.
 Colour ramp_at(double part) {
   const double at = part * (std::size(kRamp) - 1);
   const auto before = std::min(static_cast<std::size_t>(at), std::size(kRamp) - 2);
-  return between(kRamp[before], kRamp[before + 1], at - static_cast<double>(before));
+  return blend(kRamp[before], kRamp[before + 1], at - static_cast<double>(before));
 }
 
 /// `ramp(part)`: the colour of a height at this part of the way from `low` to `high`, 0 to 1.
@@ -47,7 +47,7 @@ std::array<Colour, 256> palette_of(double low, double high, Ramp ramp) {
 std::array<Colour, kMostOccupiedIndex + 1> grid_palette(const Colour& free, const Colour& occupied) {
   std::array<Colour, kMostOccupiedIndex + 1> colours;
   for (std::size_t value = 0; value < kMostOccupiedIndex; ++value) {
-    colours[value + 1] = between(free, occupied, static_cast<double>(value) / (kMostOccupiedIndex - 1));
+    colours[value + 1] = blend(free, occupied, static_cast<double>(value) / (kMostOccupiedIndex - 1));
   }
   return colours;
 }
@@ -75,7 +75,7 @@ std::array<Colour, 256> cloud_palette(double low, double high) {
 }
 
 std::array<Colour, 256> cloud_palette(double low, double high, const Colour& lowest, const Colour& highest) {
-  return palette_of(low, high, [&](double part) { return between(lowest, highest, part); });
+  return palette_of(low, high, [&](double part) { return blend(lowest, highest, part); });
 }
 
 namespace {

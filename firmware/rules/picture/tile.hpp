@@ -38,17 +38,17 @@ inline constexpr int kWorldPixels = 32768;
 inline constexpr int kWorldTiles = kWorldPixels / kSide;
 
 /// The numbers are in files and must not change.
-enum class Kind : std::uint8_t { Grid = 0, Cloud = 1 };
+enum class LayerKind : std::uint8_t { Grid = 0, Cloud = 1 };
 
 /// One robot's maps of one kind; "" is the merged map.
 struct Layer {
   std::string robot;
-  Kind kind = Kind::Grid;
+  LayerKind kind = LayerKind::Grid;
   friend auto operator<=>(const Layer&, const Layer&) = default;
 };
 
 inline Layer layer_of(const icd::MapUpdate& map) {
-  return {icd::text_of(map.name), map.is_grid() ? Kind::Grid : Kind::Cloud};
+  return {icd::text_of(map.name), map.is_grid() ? LayerKind::Grid : LayerKind::Cloud};
 }
 
 /// The tile that covers x to x + 1 and y to y + 1, in units of kSide pixels of its level.

@@ -9,12 +9,12 @@ Blame::Sender& Blame::sender(const std::string& whose) {
   return senders_[whose];
 }
 
-void Blame::passed(const std::string& whose, Instant now) {
+void Blame::on_passed(const std::string& whose, Instant now) {
   sender(whose).passes = true;
   last_passed_ = now;
 }
 
-Blame::Next Blame::failed(const std::string& whose, Trial& trial, Instant now, bool may_reject) {
+Blame::Next Blame::on_failed(const std::string& whose, Trial& trial, Instant now, bool may_reject) {
   Sender& its = sender(whose);
   if (its.passes && trial.failures == 0) its.wavered = now;
   its.passes = false;

@@ -39,10 +39,10 @@ class Blame {
   enum class Next { Again, Reject };
 
   /// A message of `whose` (for example a robot's grids) was accepted.
-  void passed(const std::string& whose, Instant now);
+  void on_passed(const std::string& whose, Instant now);
   /// A message of `whose` failed. Updates `trial`, the failures of that message. `may_reject`: the answer was
   /// about the message rather than about the sender, the token or the server.
-  Next failed(const std::string& whose, Trial& trial, Instant now, bool may_reject = true);
+  Next on_failed(const std::string& whose, Trial& trial, Instant now, bool may_reject = true);
 
  private:
   struct Sender {

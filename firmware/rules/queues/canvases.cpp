@@ -93,7 +93,7 @@ bool Canvas::knows(const Cells& from, Cells all, std::span<const Cells> grids, s
   return true;
 }
 
-Ground Canvas::under(const Cells& cells) const {
+Ground Canvas::ground_at(const Cells& cells) const {
   Ground ground{.canvas = number_, .cells = cells, .before = before_, .tiles = {}};
   const Cells touched = tiles_of(cells);
   for (std::int64_t y = touched.y; y < touched.top(); ++y) {
@@ -144,7 +144,7 @@ void add(Canvases::Posted& to, const std::string& name, const Extent& extent) {
     return;
   }
   const auto [its, is_new] = to.try_emplace(name, extent);
-  if (!is_new) its->second = around(its->second, extent);
+  if (!is_new) its->second = bounding_box(its->second, extent);
 }
 
 void add(Canvases::Posted& to, const Canvases::Posted& from) {
@@ -156,7 +156,7 @@ std::optional<Extent> extent_in(const Canvases::Posted& sent, const std::string&
   std::optional<Extent> all;
   for (const std::string& key : {std::string(Canvases::kAnyName), name}) {
     const auto found = sent.find(key);
-    if (found != sent.end()) all = all ? around(*all, found->second) : found->second;
+    if (found != sent.end()) all = all ? bounding_box(*all, found->second) : found->second;
   }
   return all;
 }
@@ -181,7 +181,7 @@ std::optional<std::pair<std::string, Extent>> Canvases::grows(const icd::MapUpda
   if (before == posted_.end() && posted_.size() >= kMostNames) return {{kAnyName, Extent::everywhere()}};
   if (before == posted_.end()) return {{name, extent}};
   if (before->second.holds(extent)) return {};
-  return {{name, around(before->second, extent)}};
+  return {{name, bounding_box(before->second, extent)}};
 }
 
 /// Grids of an earlier process may have arrived just before this process start.
@@ -191,7 +191,7 @@ Canvases::Sent& Canvases::here() {
   return sent_.emplace(command_post_, Sent{.all = before_, .newer = before_, .older = {}}).first->second;
 }
 
-void Canvases::heard(std::span<const icd::MapUpdate* const> under_way) {
+void Canvases::on_status(std::span<const icd::MapUpdate* const> under_way) {
   Posted newer;
   for (const icd::MapUpdate* map : under_way) {
     if (map->is_grid())
@@ -221,7 +221,7 @@ const Canvas* Canvases::find(const std::optional<icd::RobotName>& name) const {
 }
 
 /// A whole map that grows is not drawn, because it covers all grids that could be stitched to it.
-void Canvases::sends(QueuedMap& next) {
+void Canvases::on_send(QueuedMap& next) {
   const auto& grid = std::get<icd::OccupancyGrid>(next.map.msg);
   const Extent extent = extent_of(grid);
   const std::string name = icd::text_of(next.map.name);
@@ -241,7 +241,7 @@ void Canvases::sends(QueuedMap& next) {
   if (its == canvases_.end()) its = canvases_.emplace(next.map.name, Canvas(++numbers_, grid, before)).first;
   const auto cells = its->second.cells_of(grid);
   if (!cells) return;
-  auto ground = may_join(next) ? std::make_shared<const Ground>(its->second.under(*cells)) : nullptr;
+  auto ground = may_join(next) ? std::make_shared<const Ground>(its->second.ground_at(*cells)) : nullptr;
   its->second.forget(*cells);
   next.ground = std::move(ground);
 }

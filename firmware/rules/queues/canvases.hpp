@@ -38,11 +38,11 @@ class Canvas {
   bool knows(const Cells& from, Cells all, std::span<const Cells> grids, std::size_t& looks) const;
 
   /// The known cells there.
-  Ground under(const Cells& cells) const;
+  Ground ground_at(const Cells& cells) const;
   /// Marks cells that are being sent as unknown, until lay(). Requires at most kMostTouched tiles.
   void forget(const Cells& cells);
-  /// Sets the cells that were drawn over under(). `when`: the number of this lay(), a count. Tiles that were
-  /// forgotten since then stay unknown.
+  /// Sets the cells that were drawn over ground_at(). `when`: the number of this lay(), a count. Tiles that
+  /// were forgotten since then stay unknown.
   void lay(const Ground& drawn, std::uint64_t when) noexcept;
 
   std::size_t tiles() const { return tiles_.size(); }
@@ -91,12 +91,12 @@ class Canvases {
   /// The extent to be recorded before `grid` is accepted, so that a later process knows it; nothing if it is
   /// recorded already.
   std::optional<std::pair<std::string, Extent>> grows(const icd::MapUpdate& grid) const;
-  void grown(const std::pair<std::string, Extent>& posted) {
+  void on_grown(const std::pair<std::string, Extent>& posted) {
     posted_.insert_or_assign(posted.first, posted.second);
   }
   /// The Command Post has answered with a status of the present run. It was asked after all grids that were
   /// sent before the previous status had arrived, except those that are still in flight (`under_way`).
-  void heard(std::span<const icd::MapUpdate* const> under_way);
+  void on_status(std::span<const icd::MapUpdate* const> under_way);
   /// The run may have changed: the Command Post's cells are unknown.
   void change_run() { canvases_.clear(); }
   /// A run has begun with an empty map after the last status of the previous run. Grids that were sent since
@@ -110,7 +110,7 @@ class Canvases {
 
   /// Call before `next` is packed: sets its `ground` if the grid is to be drawn. If this throws, fewer cells
   /// are known and `next` is unchanged.
-  void sends(QueuedMap& next);
+  void on_send(QueuedMap& next);
   /// Sets the cells as they were drawn over that ground.
   void lay(const std::optional<icd::RobotName>& name, const Ground& drawn);
 

@@ -28,7 +28,7 @@ struct Extent {
 };
 
 /// The smallest rectangle that holds both.
-inline Extent around(const Extent& a, const Extent& b) {
+inline Extent bounding_box(const Extent& a, const Extent& b) {
   return {std::min(a.left, b.left), std::min(a.bottom, b.bottom), std::max(a.right, b.right),
           std::max(a.top, b.top)};
 }
@@ -54,7 +54,7 @@ struct Cells {
 };
 
 /// The smallest rectangle that holds both.
-inline Cells around(const Cells& a, const Cells& b) {
+inline Cells bounding_box(const Cells& a, const Cells& b) {
   const std::int64_t x = std::min(a.x, b.x), y = std::min(a.y, b.y);
   return {x, y, std::max(a.right(), b.right()) - x, std::max(a.top(), b.top()) - y};
 }

@@ -11,7 +11,7 @@
 namespace adit::queues {
 
 bool can_swap(const QueuedMap& one, const QueuedMap& other) {
-  if (Sender::of(one.map) != Sender::of(other.map)) return true;
+  if (Sender::from_map(one.map) != Sender::from_map(other.map)) return true;
   return !one.map.is_grid() && !one.is_whole && !other.is_whole;
 }
 
@@ -23,14 +23,14 @@ bool Pipelining::may_go(const QueuedMap& next, const Before& before, Instant now
   return can_swap(next, before.map);
 }
 
-void Pipelining::taken(bool ahead) {
+void Pipelining::on_accepted(bool ahead) {
   taken_ = std::min(taken_ + 1, kMostWell);
   if (!ahead) return;
   tried_ = true;
   well_ = kWell;
 }
 
-void Pipelining::failed(bool two) {
+void Pipelining::on_failed(bool two) {
   taken_ = 0;
   tried_ = false;
   if (two) well_ = std::min(well_ * 2, kMostWell);
@@ -98,7 +98,7 @@ SenderQueue::Rest SenderQueue::resting() const {
   return rest_of(*rested_longest());
 }
 
-QueuedMap SenderQueue::take(Instant now, std::size_t merge_bytes, Canvases& canvases) {
+QueuedMap SenderQueue::pop(Instant now, std::size_t merge_bytes, Canvases& canvases) {
   icd::require(!waiting_.empty());
   const auto may_go = ready(now);
   const auto chosen = may_go == waiting_.end() ? rested_longest() : may_go;
@@ -109,7 +109,7 @@ QueuedMap SenderQueue::take(Instant now, std::size_t merge_bytes, Canvases& canv
   QueuedMap next = *chosen;
   if (next.map.is_grid()) {
     if (may_join(next)) stitch_followers(next, place, canvases.find(next.map.name), leaves);
-    canvases.sends(next);
+    canvases.on_send(next);
   } else if (may_join(next)) {
     merge_followers(next, merge_bytes, leaves);
   }
@@ -170,10 +170,10 @@ void SenderQueue::stitch_followers(QueuedMap& next, std::size_t place, const Can
   std::vector<const icd::OccupancyGrid*> grids;
   grids.reserve(found.which.size());
   for (const std::size_t i : found.which) grids.push_back(grid_at(places[i]));
-  const auto whole = stitched(grids);
+  const auto whole = stitch_grids(grids);
   if (!whole) return;
   if (found.has_gaps && !(Canvas::can_draw(*whole) && canvas->cells_of(*whole))) return;
-  auto bounds = icd::GridBounds::of(*whole);
+  auto bounds = icd::GridBounds::from_grid(*whole);
   for (const std::size_t i : found.which) {
     bounds = icd::joint_bounds(bounds, bounds_of(waiting_[places[i]]));
     if (places[i] == place) continue;
@@ -215,7 +215,7 @@ Replaced SenderQueue::put_back(QueuedMap map) {
   return replaced;
 }
 
-void SenderQueue::put_back_apart(QueuedMap map) {
+void SenderQueue::put_back_single(QueuedMap map) {
   const auto place = place_before_newer(map);
   insert(place, parts_of(std::move(map), /*may_join_again=*/false));
 }
@@ -244,7 +244,7 @@ std::optional<Successive> SenderQueue::to_compare() const {
   if (waiting_.size() < 2 || waiting_.back().is_compared) return {};
   const QueuedMap &older = waiting_[waiting_.size() - 2], &newer = waiting_.back();
   if (!can_merge(older.map, newer.map)) return {};
-  return Successive{.sender = Sender::of(newer.map),
+  return Successive{.sender = Sender::from_map(newer.map),
                     .older_updates = older.updates,
                     .newer_updates = newer.updates,
                     .older = older.map.data,
@@ -316,7 +316,7 @@ const SenderQueue* MapQueue::queue_of(const Sender& sender) const {
 /// The queue of a sender that is about to get a map.
 MapQueue::Waiting& MapQueue::joins(const Sender& sender) {
   Waiting& its = senders_[sender];
-  if (its.queue.count() == 0) its.turn = turns_.joins(its.turn);
+  if (its.queue.count() == 0) its.turn = turns_.join(its.turn);
   return its;
 }
 
@@ -328,13 +328,13 @@ Clouds MapQueue::clouds_of(const Sender& sender) const {
 
 QueuedMap MapQueue::waiting(std::uint64_t number, icd::MapUpdate map, Instant now) const {
   QueuedMap made{.map = std::move(map), .accepted = now, .updates = {number}};
-  made.is_whole = !made.map.is_grid() && clouds_of(Sender::of(made.map)) == Clouds::Whole;
+  made.is_whole = !made.map.is_grid() && clouds_of(Sender::from_map(made.map)) == Clouds::Whole;
   return made;
 }
 
 Replaced MapQueue::add(std::uint64_t number, icd::MapUpdate map, Instant now) {
   QueuedMap added = waiting(number, std::move(map), now);
-  Waiting& its = joins(Sender::of(added.map));
+  Waiting& its = joins(Sender::from_map(added.map));
   inherit(added.trial, its.trial);
   return its.queue.add(std::move(added));
 }
@@ -344,7 +344,7 @@ void MapQueue::restore(std::uint64_t number, icd::MapUpdate map, Instant now,
   QueuedMap restored = waiting(number, std::move(map), now);
   restored.bounds = bounds;
   restored.packing = packing;
-  Waiting& its = joins(Sender::of(restored.map));
+  Waiting& its = joins(Sender::from_map(restored.map));
   its.queue.append(std::move(restored));
 }
 
@@ -372,15 +372,15 @@ Precision MapQueue::precision_of(const Sender& sender, const SenderQueue& queue)
   return found->second == Precision::Auto ? precision_for(queue.bytes(), holds_) : found->second;
 }
 
-std::optional<QueuedMap> MapQueue::take(Instant now) {
+std::optional<QueuedMap> MapQueue::pop(Instant now) {
   const auto chosen = next(now);
   if (chosen == senders_.end()) return {};
   Waiting& its = chosen->second;
   const Precision precision = precision_of(chosen->first, its.queue);
   const std::size_t most = std::min(merge_bytes_, holds_[static_cast<std::size_t>(precision)]);
-  QueuedMap taken = its.queue.take(now, most, canvases_);
+  QueuedMap taken = its.queue.pop(now, most, canvases_);
   taken.precision = precision;
-  its.turn = turns_.served(its.turn);
+  its.turn = turns_.serve(its.turn);
   forget_idle_senders();
   for (auto& [sender, waiting] : senders_) waiting.queue.step_forward();
   return taken;
@@ -408,26 +408,26 @@ void MapQueue::on_passed(const Sender& sender) {
   found->second.queue.inherit({});
 }
 
-void MapQueue::carried(const Sender& sender, std::size_t bytes) {
+void MapQueue::charge(const Sender& sender, std::size_t bytes) {
   icd::require(slot_bytes_ > 0);
   if (bytes <= slot_bytes_) return;
   Waiting& its = senders_[sender];
-  if (its.turn == Turn{}) its.turn = turns_.joins({});
-  its.turn = turns_.owes(its.turn, (bytes - 1) / slot_bytes_);
+  if (its.turn == Turn{}) its.turn = turns_.join({});
+  its.turn = turns_.owe(its.turn, (bytes - 1) / slot_bytes_);
 }
 
 Replaced MapQueue::put_back(QueuedMap map) {
-  Waiting& its = joins(Sender::of(map.map));
+  Waiting& its = joins(Sender::from_map(map.map));
   return its.queue.put_back(std::move(map));
 }
 
-void MapQueue::put_back_apart(QueuedMap map) {
-  Waiting& its = joins(Sender::of(map.map));
-  its.queue.put_back_apart(std::move(map));
+void MapQueue::put_back_single(QueuedMap map) {
+  Waiting& its = joins(Sender::from_map(map.map));
+  its.queue.put_back_single(std::move(map));
 }
 
 void MapQueue::put_back_halves(QueuedMap map) {
-  Waiting& its = joins(Sender::of(map.map));
+  Waiting& its = joins(Sender::from_map(map.map));
   its.queue.put_back_halves(std::move(map));
 }
 
@@ -450,17 +450,17 @@ void MapQueue::keep_both(const Successive& two) {
 }
 
 bool MapQueue::replaces_any(const icd::MapUpdate& map) const {
-  const SenderQueue* queue = queue_of(Sender::of(map));
+  const SenderQueue* queue = queue_of(Sender::from_map(map));
   return queue != nullptr && queue->replaces_any(waiting(0, map, {}));
 }
 
 bool MapQueue::joins(const icd::MapUpdate& map) const {
-  const SenderQueue* queue = queue_of(Sender::of(map));
+  const SenderQueue* queue = queue_of(Sender::from_map(map));
   return queue != nullptr && queue->joins(waiting(0, map, {}));
 }
 
 std::optional<Replaced> MapQueue::absorb(const QueuedMap& map) {
-  const auto found = senders_.find(Sender::of(map.map));
+  const auto found = senders_.find(Sender::from_map(map.map));
   return found == senders_.end() ? std::nullopt : found->second.queue.absorb(map);
 }
 

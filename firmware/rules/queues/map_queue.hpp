@@ -45,9 +45,9 @@ class Pipelining {
   bool may_go(const QueuedMap& next, const Before& before, Instant now) const;
 
   /// A map was accepted. `ahead`: it was sent before the previous map was answered.
-  void taken(bool ahead);
+  void on_accepted(bool ahead);
   /// A map was not accepted, for any reason. `two`: two maps were in flight.
-  void failed(bool two);
+  void on_failed(bool two);
 
  private:
   int taken_ = 0;       // in a row
@@ -72,16 +72,16 @@ class Turns {
   /// The most that one message costs, in slots.
   static constexpr std::uint64_t kMostSlots = 64;
 
-  /// The turn of a sender whose queue was empty, behind all others. `last`: its last result of served() or
-  /// owes().
-  Turn joins(Turn last) { return {std::max(last.round, round_ + 1), ++places_}; }
+  /// The turn of a sender whose queue was empty, behind all others. `last`: its last result of serve() or
+  /// owe().
+  Turn join(Turn last) { return {std::max(last.round, round_ + 1), ++places_}; }
   /// Serves `turn`, and returns the sender's next turn.
-  Turn served(Turn turn) {
+  Turn serve(Turn turn) {
     round_ = std::max(round_, turn.round);
     return {round_ + 1, ++places_};
   }
   /// The sender's next turn if its message used `slots` more than one slot.
-  Turn owes(Turn next, std::uint64_t slots) const {
+  Turn owe(Turn next, std::uint64_t slots) const {
     return {std::min(next.round + std::min(slots, kMostSlots), round_ + 1 + kMostSlots), next.place};
   }
   /// Whether a sender with an empty queue still has to pay. If not, it can be forgotten.
@@ -115,9 +115,9 @@ class SenderQueue {
   /// Of the map that has rested longest. Requires a map.
   Rest resting() const;
   /// The oldest map that may be sent. If there is none, the map that has rested longest. Requires a map.
-  QueuedMap take(Instant now, std::size_t merge_bytes, Canvases& canvases);
+  QueuedMap pop(Instant now, std::size_t merge_bytes, Canvases& canvases);
   Replaced put_back(QueuedMap map);
-  void put_back_apart(QueuedMap map);
+  void put_back_single(QueuedMap map);
   void put_back_halves(QueuedMap map);
   void restart_pieces() {
     for (QueuedMap& each : waiting_) each.piece = {};
@@ -165,9 +165,9 @@ class SenderQueue {
 /// - A newer grid replaces an older grid that it covers, with all that the older one replaced
 ///   (icd::covers()), and inherits its age. Grids of that name that it does not cover go ahead of it, so that
 ///   old cells are never sent after newer ones.
-/// - take() stitches grids of one lattice that fill a rectangle. It fills gaps between them with the cells
+/// - pop() stitches grids of one lattice that fill a rectangle. It fills gaps between them with the cells
 ///   that were last sent there, if these are known (stitch.hpp, canvases.hpp).
-/// - Clouds stay in order. take() merges clouds that follow each other.
+/// - Clouds stay in order. pop() merges clouds that follow each other.
 /// - A cloud replaces all earlier ones if the robot's clouds are Clouds::Whole. With Clouds::Auto it replaces
 ///   the previous one if a comparison shows that it has all its points (to_compare(), replace()).
 /// - No other map is dropped.
@@ -183,7 +183,7 @@ class SenderQueue {
 /// ahead of it.
 class MapQueue {
  public:
-  /// `merge_bytes`: the most bytes of points that take() merges into one message.
+  /// `merge_bytes`: the most bytes of points that pop() merges into one message.
   explicit MapQueue(std::size_t merge_bytes) : merge_bytes_(merge_bytes) {}
 
   void merge_at_most(std::size_t bytes) { merge_bytes_ = bytes; }
@@ -197,7 +197,7 @@ class MapQueue {
 
   /// Applies to clouds that are taken from now on. Robots that are not named have Precision::Exact.
   void set_precisions(std::map<icd::RobotName, Precision> precisions) { precisions_ = std::move(precisions); }
-  /// The bytes of points that fit into one message; take() merges no more. With Precision::Auto, take()
+  /// The bytes of points that fit into one message; pop() merges no more. With Precision::Auto, pop()
   /// chooses the finest precision at which all queued clouds of the robot fit.
   void a_message_holds(const PointsAt& points) { holds_ = points; }
 
@@ -210,7 +210,7 @@ class MapQueue {
                std::optional<icd::GridBounds> bounds = {}, PackingRule packing = PackingRule::Any);
 
   /// Takes the next map to be sent out of the queue. Without `now`, maps that rest are taken as well.
-  std::optional<QueuedMap> take(Instant now = Instant::max());
+  std::optional<QueuedMap> pop(Instant now = Instant::max());
 
   /// The sent cells of each robot's grids. The caller reports there how a grid was drawn.
   Canvases& canvases() { return canvases_; }
@@ -221,7 +221,7 @@ class MapQueue {
   void on_passed(const Sender& sender);
 
   /// A message of `sender` used `bytes` of the link. The sender pays for the part beyond one slot with turns.
-  void carried(const Sender& sender, std::size_t bytes);
+  void charge(const Sender& sender, std::size_t bytes);
 
   /// Queues a map again that was not delivered, or that the operator sends again: as the sender's first map,
   /// but behind older ones that are sent again. If a newer queued grid covers it, that grid inherits its
@@ -230,7 +230,7 @@ class MapQueue {
 
   /// Queues the parts of a merged or stitched map again, each by itself, as the sender's first maps. They are
   /// not joined again, so that only the part that the Command Post rejects fails. Requires parts.
-  void put_back_apart(QueuedMap map);
+  void put_back_single(QueuedMap map);
   /// The same for a map that was too large: the halves of merged clouds, or the parts of a stitched grid.
   void put_back_halves(QueuedMap map);
 
@@ -250,7 +250,7 @@ class MapQueue {
 
   /// Whether add() would replace a queued map.
   bool replaces_any(const icd::MapUpdate& map) const;
-  /// Whether take() could merge or stitch it with the last queued map of its sender.
+  /// Whether pop() could merge or stitch it with the last queued map of its sender.
   bool joins(const icd::MapUpdate& map) const;
   /// If a newer queued grid covers `map`, which is not queued, it stands for `map` from now on. Nothing: none
   /// does.

@@ -93,7 +93,7 @@ std::optional<icd::Marker> MarkerChanges::remove(const icd::Marker& like) {
   return extract(known->second);
 }
 
-std::vector<icd::Marker> MarkerChanges::take(Size most) {
+std::vector<icd::Marker> MarkerChanges::pop(Size most) {
   std::vector<icd::Marker> taken;
   taken.reserve(std::min(most.count, size_.count));
   std::size_t taken_bytes = 0;
@@ -127,7 +127,7 @@ MarkerChanges::Size MarkerChanges::size_with(const std::vector<icd::Marker>& new
 
 void QueuedUpdates::add(Place last, std::uint64_t count, Instant accepted) {
   if (const auto known = by_end_.find(last); known != by_end_.end()) {
-    const Updates others = take(known);
+    const Updates others = extract(known);
     count += others.count;
     accepted = std::min(accepted, others.accepted);
   }
@@ -135,7 +135,7 @@ void QueuedUpdates::add(Place last, std::uint64_t count, Instant accepted) {
   accepted_.insert(accepted);
 }
 
-QueuedUpdates::Updates QueuedUpdates::take(ByEnd::iterator updates) {
+QueuedUpdates::Updates QueuedUpdates::extract(ByEnd::iterator updates) {
   const Updates taken = updates->second;
   accepted_.erase(accepted_.find(taken.accepted));
   by_end_.erase(updates);
@@ -143,14 +143,15 @@ QueuedUpdates::Updates QueuedUpdates::take(ByEnd::iterator updates) {
 }
 
 void QueuedUpdates::move_first_to(Place last) {
-  const Updates first = take(by_end_.begin());
+  const Updates first = extract(by_end_.begin());
   add(last, first.count, first.accepted);
 }
 
 std::uint64_t QueuedUpdates::take_done(const MarkerChanges& changes) {
   std::uint64_t done = 0;
-  while (!empty() && (changes.empty() || by_end_.begin()->first < changes.in_order().begin()->first)) {
-    done += take(by_end_.begin()).count;
+  while (!empty() &&
+         (changes.empty() || by_end_.begin()->first < changes.changes_by_place().begin()->first)) {
+    done += extract(by_end_.begin()).count;
   }
   return done;
 }
@@ -160,8 +161,8 @@ void QueuedUpdates::join(const MarkerChanges& changes) {
   const ByEnd all = std::exchange(by_end_, {});
   accepted_.clear();
   for (const auto& [last, updates] : all) {
-    const auto after = changes.in_order().upper_bound(last);
-    const Place end = after == changes.in_order().begin() ? kNowhere : std::prev(after)->first;
+    const auto after = changes.changes_by_place().upper_bound(last);
+    const Place end = after == changes.changes_by_place().begin() ? kNowhere : std::prev(after)->first;
     add(end, updates.count, updates.accepted);
   }
 }
@@ -220,7 +221,7 @@ MarkerChanges::Place MarkerQueue::add_part(std::span<icd::Marker> some, MarkerCh
   for (icd::Marker& marker : some) {
     if (marker.action == icd::MarkerAction::DeleteAll) {
       needless_.push_back(changes_.wipe(std::move(marker)));
-      last = changes_.in_order().begin()->first;
+      last = changes_.changes_by_place().begin()->first;
     } else {
       last = std::max(last, changes_.apply(std::move(marker)));
     }
@@ -239,26 +240,27 @@ void MarkerQueue::set_bounds(MarkerBounds bounds) {
   if (!is_narrow || most_now_ > bounds.per_message) most_now_ = bounds.per_message;
 }
 
-std::optional<QueuedMarkers> MarkerQueue::take(icd::Stamp now) {
+std::optional<QueuedMarkers> MarkerQueue::pop(icd::Stamp now) {
   if (empty()) return {};
   QueuedMarkers taken;
   taken.accepted = *oldest();
-  if (auto ahead = one_ahead()) {
+  if (auto ahead = copy_later_change()) {
     taken.update.markers.push_back(std::move(*ahead));
     taken.is_ahead = true;
   } else {
-    taken.update.markers = changes_.take({most_now_, bounds_.bytes_per_message});
+    taken.update.markers = changes_.pop({most_now_, bounds_.bytes_per_message});
     taken.updates = updates_.take_done(changes_);
   }
   for (icd::Marker& marker : taken.update.markers) age(marker, now);
   return taken;
 }
 
-std::optional<icd::Marker> MarkerQueue::one_ahead() {
+std::optional<icd::Marker> MarkerQueue::copy_later_change() {
   if (!std::exchange(may_go_ahead_, false) || !changes_.begins_with_delete_all() || count() < 2) return {};
-  const auto second = std::next(changes_.in_order().begin());
-  auto next = changes_.in_order().upper_bound(std::max(ahead_, changes_.in_order().begin()->first));
-  if (next == changes_.in_order().end()) next = second;
+  const auto second = std::next(changes_.changes_by_place().begin());
+  auto next =
+      changes_.changes_by_place().upper_bound(std::max(ahead_, changes_.changes_by_place().begin()->first));
+  if (next == changes_.changes_by_place().end()) next = second;
   ahead_ = next->first;
   return next->second;
 }
@@ -276,7 +278,7 @@ void MarkerQueue::put_back_narrower(const QueuedMarkers& markers) {
   most_now_ = std::max<std::size_t>(1, markers.update.markers.size() / 2);
 }
 
-void MarkerQueue::put_behind(const QueuedMarkers& markers) {
+void MarkerQueue::requeue_last(const QueuedMarkers& markers) {
   if (markers.update.markers.size() != 1 || changes_.empty()) return put_back(markers);
   const icd::Marker& marker = markers.update.markers.front();
   if (marker.action == icd::MarkerAction::DeleteAll) {
@@ -284,7 +286,7 @@ void MarkerQueue::put_behind(const QueuedMarkers& markers) {
     return put_back(markers);
   }
   const bool is_needless = changes_.supersedes(marker);
-  const auto last = is_needless ? changes_.in_order().rbegin()->first : changes_.apply(marker);
+  const auto last = is_needless ? changes_.changes_by_place().rbegin()->first : changes_.apply(marker);
   if (markers.updates > 0) {
     updates_.add(last, markers.updates, markers.accepted);
   } else if (!is_needless && !updates_.empty()) {
@@ -297,7 +299,7 @@ void MarkerQueue::put_behind(const QueuedMarkers& markers) {
 std::vector<icd::Marker> MarkerQueue::pending() const {
   std::vector<icd::Marker> all;
   all.reserve(count());
-  for (const auto& [place, marker] : changes_.in_order()) all.push_back(marker);
+  for (const auto& [place, marker] : changes_.changes_by_place()) all.push_back(marker);
   return all;
 }
 

@@ -47,7 +47,7 @@ class MarkerChanges {
   /// Takes out the change of the same ns and id, or the DeleteAll, if there is one.
   std::optional<icd::Marker> remove(const icd::Marker& like);
   /// Takes out the first changes: at most `most.count`, and at most `most.bytes` unless the first is larger.
-  std::vector<icd::Marker> take(Size most);
+  std::vector<icd::Marker> pop(Size most);
 
   Size size() const { return size_; }
   /// size() as it would be after applying `newer`.
@@ -63,7 +63,7 @@ class MarkerChanges {
   bool holds(const icd::Marker& marker) const {
     return marker.action == icd::MarkerAction::DeleteAll || places_.contains(marker);
   }
-  const std::map<Place, icd::Marker>& in_order() const { return by_place_; }
+  const std::map<Place, icd::Marker>& changes_by_place() const { return by_place_; }
   bool begins_with_delete_all() const;
 
  private:
@@ -129,7 +129,7 @@ class QueuedUpdates {
   };
   using ByEnd = std::map<Place, Updates>;
 
-  Updates take(ByEnd::iterator updates);
+  Updates extract(ByEnd::iterator updates);
 
   ByEnd by_end_;
   std::multiset<Instant> accepted_;  // of each
@@ -173,7 +173,7 @@ class MarkerQueue {
   void add(icd::MarkersUpdate update, Instant now);
   /// Adds a part of a large update, because all of it at once would block the loop. Moves from `some`.
   /// `last`: the result of the previous part, or kNowhere. Call end_of_update() after the last part, and no
-  /// take() before.
+  /// pop() before.
   MarkerChanges::Place add_part(std::span<icd::Marker> some, MarkerChanges::Place last);
   void end_of_update(MarkerChanges::Place last, Instant now);
   /// The changes that a DeleteAll made needless since the last call. Freeing them takes long; any thread may
@@ -182,21 +182,21 @@ class MarkerQueue {
   /// Takes the oldest changes out, in order; nullopt if the queue is empty. A lifetime is reduced to the rest
   /// that remains at `now`, at least kLeastLifetime. An expired marker becomes a Delete, because an older one
   /// of its ns and id may be shown, and Adit cannot know that after a restart.
-  std::optional<QueuedMarkers> take(icd::Stamp now);
-  /// Queues the result of the last take() again, which was not delivered: ahead of newer changes, and merged
+  std::optional<QueuedMarkers> pop(icd::Stamp now);
+  /// Queues the result of the last pop() again, which was not delivered: ahead of newer changes, and merged
   /// with them. The cost grows with `markers`, not with the queue.
   void put_back(const QueuedMarkers& markers);
   /// The same, and halves the number of markers in a message, so that the marker that the Command Post
   /// rejects is found.
   void put_back_narrower(const QueuedMarkers& markers);
   /// Queues a single failed change behind all others, unless they make it needless. A DeleteAll stays first,
-  /// because later changes depend on it. Instead, take() gives a copy of one later change once, in turn, to
+  /// because later changes depend on it. Instead, pop() gives a copy of one later change once, in turn, to
   /// find out whether others are accepted. The result at the Command Post is the same.
-  void put_behind(const QueuedMarkers& markers);
+  void requeue_last(const QueuedMarkers& markers);
   /// Whether a queued change makes an earlier change of that marker needless.
   bool supersedes(const icd::Marker& earlier) const { return changes_.supersedes(earlier); }
   /// The last message was accepted: the next one may have twice as many markers.
-  void passed() { most_now_ = std::min(bounds_.per_message, most_now_ * 2); }
+  void on_passed() { most_now_ = std::min(bounds_.per_message, most_now_ * 2); }
 
   std::size_t count() const { return changes_.size().count; }  // queued changes
   std::size_t bytes() const { return changes_.size().bytes; }
@@ -206,7 +206,7 @@ class MarkerQueue {
   bool empty() const { return updates_.empty(); }
 
  private:
-  std::optional<icd::Marker> one_ahead();
+  std::optional<icd::Marker> copy_later_change();
 
   MarkerBounds bounds_;
   std::size_t most_now_;       // markers in the next message

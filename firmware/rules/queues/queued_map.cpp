@@ -111,7 +111,7 @@ std::vector<const icd::MapUpdate*> said_by(const QueuedMap& taken) {
 }
 
 icd::GridBounds bounds_of(const QueuedMap& grid) {
-  return grid.bounds ? *grid.bounds : icd::GridBounds::of(std::get<icd::OccupancyGrid>(grid.map.msg));
+  return grid.bounds ? *grid.bounds : icd::GridBounds::from_grid(std::get<icd::OccupancyGrid>(grid.map.msg));
 }
 
 bool says_all_of(const QueuedMap& newer, const QueuedMap& older) {

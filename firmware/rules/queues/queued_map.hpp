@@ -21,7 +21,7 @@ namespace adit::queues {
 struct Sender {
   std::optional<icd::RobotName> name;  // absent: merged maps of all robots
   bool is_grid = false;
-  static Sender of(const icd::MapUpdate& map) { return {map.name, map.is_grid()}; }
+  static Sender from_map(const icd::MapUpdate& map) { return {map.name, map.is_grid()}; }
   friend auto operator<=>(const Sender&, const Sender&) = default;
 };
 

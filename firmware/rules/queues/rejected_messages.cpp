@@ -10,7 +10,7 @@ namespace {
 std::optional<icd::GridBounds> bounds_in(const icd::MapUpdate& map, const RejectedMessage& item) {
   const auto* const grid = std::get_if<icd::OccupancyGrid>(&map.msg);
   if (grid == nullptr) return {};
-  return item.bounds ? item.bounds : icd::GridBounds::of(*grid);
+  return item.bounds ? item.bounds : icd::GridBounds::from_grid(*grid);
 }
 
 bool says_all(const icd::MapUpdate& newer, const icd::MapUpdate& older, const RejectedMessage& item) {
@@ -120,7 +120,7 @@ const RejectedMessage* RejectedMessages::find(std::uint64_t number) const {
   return found == items_.end() ? nullptr : &*found;
 }
 
-std::optional<RejectedMessage> RejectedMessages::take(std::uint64_t number) {
+std::optional<RejectedMessage> RejectedMessages::extract(std::uint64_t number) {
   const auto found = std::ranges::find(items_, number, &RejectedMessage::number);
   if (found == items_.end()) return std::nullopt;
   RejectedMessage item = std::move(*found);

@@ -53,7 +53,7 @@ class RejectedMessages {
   void mark_replaced(const std::vector<std::uint64_t>& numbers);
 
   const RejectedMessage* find(std::uint64_t number) const;
-  std::optional<RejectedMessage> take(std::uint64_t number);
+  std::optional<RejectedMessage> extract(std::uint64_t number);
   /// Oldest first.
   const std::deque<RejectedMessage>& items() const { return items_; }
 

@@ -37,7 +37,7 @@ std::vector<icd::GridBounds> OvertakenMaps::find_newer(const icd::MapUpdate& map
   std::vector<icd::GridBounds> newer;
   const auto client = clients_.find(upload.address);
   if (client == clients_.end()) return newer;
-  const Sender sender = Sender::of(map);
+  const Sender sender = Sender::from_map(map);
   for (const Accepted& each : client->second) {
     if (each.sender == sender && each.stamp > stamp_of(map.header()) && each.ended > upload.began)
       newer.push_back(each.bounds);
@@ -65,8 +65,9 @@ void OvertakenMaps::record(const icd::MapUpdate& map, const Upload& upload) {
   if (clients_.size() == kMostClients && !clients_.contains(upload.address)) return;
   std::vector<Accepted>& its = clients_[upload.address];
   if (its.size() == kMostOfClient) its.erase(its.begin());
-  Accepted added{.sender = Sender::of(map), .stamp = stamp_of(map.header()), .ended = upload.ended};
-  if (const auto* grid = std::get_if<icd::OccupancyGrid>(&map.msg)) added.bounds = icd::GridBounds::of(*grid);
+  Accepted added{.sender = Sender::from_map(map), .stamp = stamp_of(map.header()), .ended = upload.ended};
+  if (const auto* grid = std::get_if<icd::OccupancyGrid>(&map.msg))
+    added.bounds = icd::GridBounds::from_grid(*grid);
   its.push_back(std::move(added));
 }
 
@@ -237,7 +238,7 @@ void StampShift::shift_each(const Stamper& stamper, std::span<icd::Marker> marke
     marker.header.stamp = shift(clock, stamper, marker.header.stamp, now, upload);
 }
 
-StampShift::Clocks StampShift::changed() {
+StampShift::Clocks StampShift::take_changed() {
   Clocks clocks;
   for (Stamper& stamper : std::exchange(changed_, {})) {
     Clock* const clock = find(stamper);
@@ -261,7 +262,7 @@ StampShift::Clocks StampShift::clocks() const {
   return clocks;
 }
 
-std::optional<double> StampShift::told(double now, double from, double until) const {
+std::optional<double> StampShift::sender_time(double now, double from, double until) const {
   std::optional<double> earliest;
   for (const auto& [address, its] : addresses_) {
     for (const auto& [name, clock] : its.clocks) {
@@ -279,7 +280,7 @@ void StampShift::carry_on(const Stamper& stamper, const SenderClock& clock) {
   address_of(stamper.address).clocks[{stamper.uri, stamper.robot}] = Clock{clock};
 }
 
-void StampShift::given(const Stamper& stamper, icd::Stamp stamp) {
+void StampShift::restore_stamp(const Stamper& stamper, icd::Stamp stamp) {
   if (Clock* const clock = find(stamper))
     clock->latest = std::max(clock->latest, clock->theirs + (stamp - clock->ours));
 }

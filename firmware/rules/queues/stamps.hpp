@@ -153,19 +153,19 @@ class StampShift {
 
   using Clocks = std::vector<std::pair<Stamper, SenderClock>>;
   /// The clocks to record since the last call, with their present values: those whose offset was set, and
-  /// those of maps and markers that had a stamp. Record a state's stamps with its poses, for given().
-  Clocks changed();
+  /// those of maps and markers that had a stamp. Record a state's stamps with its poses, for restore_stamp().
+  Clocks take_changed();
   /// All clocks; the address that was silent longest comes first.
   Clocks clocks() const;
   /// The time that a sender's clock shows now, seconds since 1970. Considers senders that posted within
   /// kSpeaks, and whose clock has run at the gateway's rate for as long. Of several, the earliest in [from,
   /// until), because a clock outside is not set. Nothing if there is none.
   static constexpr double kSpeaks = 10;  // seconds
-  std::optional<double> told(double now, double from, double until) const;
-  /// Adds a clock of an earlier process, as clocks() or changed() returned it.
+  std::optional<double> sender_time(double now, double from, double until) const;
+  /// Adds a clock of an earlier process, as clocks() or take_changed() returned it.
   void carry_on(const Stamper& stamper, const SenderClock& clock);
   /// `stamp`: what an earlier process converted for the stamper.
-  void given(const Stamper& stamper, icd::Stamp stamp);
+  void restore_stamp(const Stamper& stamper, icd::Stamp stamp);
 
  private:
   /// An older stamp, and when it arrived.

@@ -68,7 +68,7 @@ std::optional<StateQueue::Next> StateQueue::next(Instant now) const {
 
 /// The robot that goes apart, does not rest, and failed longest ago. Robots with news come first, then robots
 /// that repeat their pose, and last the robot that failed just now.
-StateQueue::Robots::iterator StateQueue::next_apart(Instant now) {
+StateQueue::Robots::iterator StateQueue::next_single(Instant now) {
   auto chosen = robots_.end();
   const auto rank = [&](const Held& held) {
     return std::tuple(held.trial.steps_behind, !held.is_news, held.trial.failed.value_or(Instant{}));
@@ -84,13 +84,13 @@ void StateQueue::include(QueuedState& taken, Robots::value_type& robot) {
   Held& held = robot.second;
   const PostedPose& posted = held.posted;
   held.in_flight = held.is_news ? std::optional(held.accepted) : std::nullopt;
-  if (held.is_news) taken.news.push_back(posted.named());
+  if (held.is_news) taken.news.push_back(posted.to_named_pose());
   held.is_news = false;
-  taken.update.poses.push_back(posted.named());
+  taken.update.poses.push_back(posted.to_named_pose());
   taken.update.header.stamp = std::max(taken.update.header.stamp, posted.stamp);
 }
 
-std::optional<QueuedState> StateQueue::take(Instant now) {
+std::optional<QueuedState> StateQueue::pop(Instant now) {
   const auto first = next(now);
   if (!first || first->ready > now) return {};
   QueuedState taken{.update = {}, .news = {}, .accepted = first->accepted};
@@ -99,7 +99,7 @@ std::optional<QueuedState> StateQueue::take(Instant now) {
       robots_, [&](const auto& robot) { return together(robot) && robot.second.is_news; });
   const bool has_failed = std::ranges::any_of(
       robots_, [&](const auto& robot) { return !together(robot) && robot.second.trial.steps_behind; });
-  const auto apart = next_apart(now);
+  const auto apart = next_single(now);
   if (apart != robots_.end() && !(has_failed && others_have_news)) {
     include(taken, *apart);
   } else {
@@ -121,14 +121,14 @@ void StateQueue::put_back(const QueuedState& state) {
   }
 }
 
-void StateQueue::put_back_apart(const QueuedState& state) {
+void StateQueue::put_back_single(const QueuedState& state) {
   put_back(state);
   for (const icd::NamedPose& pose : state.update.poses) {
     if (const auto held = robots_.find(pose.name); held != robots_.end()) held->second.apart = true;
   }
 }
 
-void StateQueue::passed(const QueuedState& state) {
+void StateQueue::on_passed(const QueuedState& state) {
   bool was_outage = false;
   for (const icd::NamedPose& pose : state.update.poses) {
     const auto held = robots_.find(pose.name);

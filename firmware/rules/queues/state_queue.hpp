@@ -24,7 +24,7 @@ struct PostedPose {
   bool is_older_than(const PostedPose& held) const {
     return !address.empty() && address == held.address && stamp < held.stamp;
   }
-  icd::NamedPose named() const { return {name, pose}; }
+  icd::NamedPose to_named_pose() const { return {name, pose}; }
   friend bool operator==(const PostedPose&, const PostedPose&) = default;
 };
 
@@ -68,7 +68,7 @@ class StateQueue {
   std::optional<Next> next(Instant now) const;
   /// The newest poses of all robots that go together, or of one robot that goes apart. Nothing if there is no
   /// news, or only of robots that rest. Without `now`, no robot rests.
-  std::optional<QueuedState> take(Instant now = Instant::max());
+  std::optional<QueuedState> pop(Instant now = Instant::max());
   /// Drops robots without news, because another Command Post knows no robot. Call while no state is in
   /// flight.
   void forget_what_was_taken();
@@ -80,17 +80,17 @@ class StateQueue {
   /// Queues the news of a state again that was not delivered. Newer poses stay.
   void put_back(const QueuedState& state);
   /// The same, and each of its robots goes apart from now on.
-  void put_back_apart(const QueuedState& state);
+  void put_back_single(const QueuedState& state);
   /// The state was accepted: its robots go together again. If a robot of it had failed alone, and all others
   /// too, there was an outage, and all robots that are not at fault go together again.
-  void passed(const QueuedState& state);
+  void on_passed(const QueuedState& state);
   /// All robots go together, and none rests.
   void join_all() {
     for (auto& [name, held] : robots_) held.join();
   }
   /// Drops a robot's own state. Its next state rests for kRest.
   void give_up(const icd::RobotName& name, Instant now);
-  /// Of a state of one robot that take() gave. Null: of several, or the robot was dropped to make room.
+  /// Of a state of one robot that pop() gave. Null: of several, or the robot was dropped to make room.
   Trial* trial_of(const QueuedState& state);
 
   /// The newest pose of each robot that has news.
@@ -118,7 +118,7 @@ class StateQueue {
   };
   using Robots = std::map<icd::RobotName, Held>;
   std::size_t unknown_in(const auto& poses) const;
-  Robots::iterator next_apart(Instant now);
+  Robots::iterator next_single(Instant now);
   void include(QueuedState& taken, Robots::value_type& robot);
   Robots robots_;
 };

@@ -82,7 +82,7 @@ Stitch stitch(std::span<const Cells> grids, const Known& known) {
   if (auto with_those_within = filling(best.cells, grids, {})) best = std::move(*with_those_within);
   std::size_t tries = 0;
   for (std::size_t i = 0, in_vain = 0; in_vain < grids.size() && tries < kMostTries; ++i, ++in_vain) {
-    const Cells all = around(best.cells, grids[i % grids.size()]);
+    const Cells all = bounding_box(best.cells, grids[i % grids.size()]);
     if (all == best.cells || !may_fill(all, grids, known != nullptr)) continue;
     ++tries;
     if (auto larger = filling(all, grids, known)) {
@@ -93,13 +93,13 @@ Stitch stitch(std::span<const Cells> grids, const Known& known) {
   return best;
 }
 
-std::optional<icd::OccupancyGrid> stitched(std::span<const icd::OccupancyGrid* const> which) {
+std::optional<icd::OccupancyGrid> stitch_grids(std::span<const icd::OccupancyGrid* const> which) {
   const icd::OccupancyGrid& first = *which.front();
   std::optional<Cells> all;
   for (const auto* grid : which) {
     const auto cells = cells_in(first, *grid);
     if (!cells) return {};
-    all = all ? around(*all, *cells) : *cells;
+    all = all ? bounding_box(*all, *cells) : *cells;
   }
   const auto corner = corner_at(first, all->x, all->y);
   if (!corner) return {};

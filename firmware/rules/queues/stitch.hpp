@@ -42,6 +42,6 @@ bool fill(const Cells& all, std::vector<Cells> tiles);
 
 /// The stitched grid without its data: it has the header of the newest one, and its origin on their lattice.
 /// Nothing if the origin cannot be expressed in doubles.
-std::optional<icd::OccupancyGrid> stitched(std::span<const icd::OccupancyGrid* const> which);
+std::optional<icd::OccupancyGrid> stitch_grids(std::span<const icd::OccupancyGrid* const> which);
 
 }  // namespace adit::queues

@@ -126,7 +126,7 @@ constexpr std::string_view kReviews[] = {"off", "duplicates", "all"};  // as dis
 /// The number of the file's layout, which has no member.
 struct Version {
   static Value write(const Settings& /*of*/) { return {std::int64_t{1}}; }
-  static void read(const codec::Field& field, Settings& /*of*/) { field.whole(1, 1); }
+  static void read(const codec::Field& field, Settings& /*of*/) { field.integer(1, 1); }
   static constexpr codec::Schema schema = {.type = "integer"};
 };
 
@@ -436,7 +436,7 @@ bool is_word(std::string_view text, std::size_t longest) {
   });
 }
 
-std::string shown(const codec::Value& value) {
+std::string value_text(const codec::Value& value) {
   static constexpr std::size_t kLongest = 48;
   if (std::holds_alternative<codec::Value::Array>(value.is) ||
       std::holds_alternative<codec::Value::Object>(value.is)) {

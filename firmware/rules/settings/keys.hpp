@@ -28,6 +28,6 @@ std::vector<Key> keys();
 bool is_word(std::string_view text, std::size_t longest);
 
 /// A value for a sentence: short JSON, or its type ("an object").
-std::string shown(const codec::Value& value);
+std::string value_text(const codec::Value& value);
 
 }  // namespace adit::settings

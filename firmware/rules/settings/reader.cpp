@@ -24,7 +24,7 @@ using codec::Value;
 
 /// A member's name in a path: as it is if a plain word, else as a JSON string.
 std::string shown_name(const std::string& name) {
-  return is_word(name, 48) ? name : shown(Value{name});
+  return is_word(name, 48) ? name : value_text(Value{name});
 }
 
 std::string digits(double number) {
@@ -33,7 +33,7 @@ std::string digits(double number) {
 }
 
 /// "team.listen"
-std::string joined(const std::string& path, std::string_view name) {
+std::string join_path(const std::string& path, std::string_view name) {
   return path.empty() ? std::string(name) : path + "." + std::string(name);
 }
 
@@ -48,26 +48,26 @@ std::expected<Value, std::vector<Error>> read_json(std::string_view json) {
 void Reader::read_object(const Value& value, const Row& row, void* into, const std::string& path) {
   const auto* members = std::get_if<Value::Object>(&value.is);
   if (members == nullptr) {
-    errors.push_back({path, "expected an object, got " + shown(value)});
+    errors.push_back({path, "expected an object, got " + value_text(value)});
     return;
   }
   std::vector<std::string_view> seen;
   for (const auto& [name, given] : *members) {
     const auto member = std::ranges::find(row.members, name, &Member::name);
     if (&row == &Robot::kRow && name == "voxel_metres") {  // of earlier versions; 0 was the default
-      if (shown(given) != "0") without_effect.push_back(joined(path, name));
+      if (value_text(given) != "0") without_effect.push_back(join_path(path, name));
     } else if (member == row.members.end()) {
       tell_unknown(name, row, path);
     } else if (std::ranges::find(seen, name) != seen.end()) {
-      errors.push_back({joined(path, name), "given twice"});
+      errors.push_back({join_path(path, name), "given twice"});
     } else {
       seen.push_back(member->name);
-      read_member(given, *member, into, joined(path, name));
+      read_member(given, *member, into, join_path(path, name));
     }
   }
   for (const Member& member : row.members) {
     if (std::ranges::find(seen, member.name) == seen.end())
-      tell_missing(member, into, joined(path, member.name));
+      tell_missing(member, into, join_path(path, member.name));
   }
 }
 
@@ -81,18 +81,18 @@ void Reader::read_member(const Value& value, const Member& member, void* into, c
   const codec::Field field(value, reading);
   codec::read_member(member, field, into);
   const bool is_flag = schema.type == "boolean", is_number = schema.type == "number";
-  if (!reading.refused() && (!is_flag || field.is<bool>())) return;  // 0 and 1 are no flags here
+  if (!reading.has_refusal() && (!is_flag || field.is<bool>())) return;  // 0 and 1 are no flags here
   const std::string_view before = is_number                    ? "a number from "
                                   : member.least < member.most ? "a whole number from "
                                                                : "";
-  errors.push_back({path, icd::sentence("expected ", before, range_of(member), ", got ", shown(value))});
+  errors.push_back({path, icd::sentence("expected ", before, range_of(member), ", got ", value_text(value))});
 }
 
 void Reader::read_list(const Value& value, const Member& member, void* list, const std::string& path) {
   const auto* items = std::get_if<Value::Array>(&value.is);
   const double size = items == nullptr ? -1 : static_cast<double>(items->size());
   if (!(*member.least <= size && size <= *member.most)) {
-    const std::string got = items == nullptr ? shown(value) : std::to_string(items->size());
+    const std::string got = items == nullptr ? value_text(value) : std::to_string(items->size());
     errors.push_back({path, icd::sentence("expected ", range_of(member), ", got ", got)});
     return;
   }
@@ -103,13 +103,13 @@ void Reader::read_list(const Value& value, const Member& member, void* list, con
 }
 
 void Reader::tell_unknown(const std::string& name, const Row& row, const std::string& path) {
-  if (passes_unknown) return passed_over.push_back(joined(path, shown_name(name)));
+  if (passes_unknown) return passed_over.push_back(join_path(path, shown_name(name)));
   std::vector<std::string_view> known;
   known.reserve(row.members.size());
   for (const Member& member : row.members) known.push_back(member.name);
   errors.push_back(
-      {joined(path, shown_name(name)), icd::sentence("no such key", icd::did_you_mean(name, known),
-                                                     " (keys here: ", icd::listed(known), ")")});
+      {join_path(path, shown_name(name)), icd::sentence("no such key", icd::did_you_mean(name, known),
+                                                        " (keys here: ", icd::join_words(known), ")")});
 }
 
 /// Names each required key at once, so that the user can write all of them.
@@ -126,7 +126,7 @@ std::string range_of(const Member& member) {
   const codec::Schema& schema = *member.kind->schema;
   if (member.form != nullptr) return std::string(member.form->range);
   if (schema.type == "boolean") return "true or false";
-  if (!member.words.empty()) return codec::in_turn(member.words, "\"");
+  if (!member.words.empty()) return codec::list_alternatives(member.words, "\"");
   const std::string least = digits(*member.least), most = digits(*member.most);
   if (schema.items == nullptr) return least == most ? least : icd::sentence(least, " to ", most);
   return *member.least == 0 ? icd::sentence("a list of at most ", most, " items")
@@ -249,7 +249,7 @@ void check_courses(const Settings& settings, std::vector<Error>& errors) {
   }
   const std::string& course = settings.command_post.course;
   if (course.empty() || std::ranges::find(courses, course, &Course::name) != courses.end()) return;
-  const std::string known = icd::listed(courses, &Course::name);
+  const std::string known = icd::join_words(courses, &Course::name);
   errors.push_back({"command_post.course",
                     icd::sentence("no course is called ", course,
                                   known.empty() ? "; no courses are set up" : "; the courses are ", known)});

@@ -69,7 +69,7 @@ std::vector<std::string_view> words(std::string_view text) {
   return all;
 }
 
-Settings in_use(Settings settings) {
+Settings effective_settings(Settings settings) {
   const auto course = std::ranges::find(settings.courses, settings.command_post.course, &Course::name);
   if (course != settings.courses.end()) {
     settings.command_post.scoring = course->scoring;

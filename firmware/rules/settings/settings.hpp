@@ -193,7 +193,7 @@ std::expected<Saved, std::vector<Error>> parse_saved(std::string_view json);
 
 /// The settings in effect: the endpoints of the course in use, and the robots' aliases in the rules. Requires
 /// valid robot names (icd::RobotName), which parse() ensures.
-Settings in_use(Settings settings);
+Settings effective_settings(Settings settings);
 
 /// A robot's name for the ICD; parse() accepts no other names.
 icd::RobotName name_of(const Robot& robot);
@@ -220,7 +220,7 @@ struct Restarts {
   friend bool operator==(const Restarts&, const Restarts&) = default;
 };
 
-/// `running`, `next`: from in_use().
+/// `running`, `next`: from effective_settings().
 Restarts restarts_by(const Settings& running, const Settings& next);
 
 }  // namespace adit::settings

@@ -40,7 +40,7 @@ std::expected<Subnet, std::string> parse_subnet(std::string_view text) {
   return Subnet{*address, *prefix};
 }
 
-std::string written(const Subnet& subnet) {
+std::string to_text(const Subnet& subnet) {
   return ipv4_text(subnet.first()) + '/' + std::to_string(subnet.prefix);
 }
 

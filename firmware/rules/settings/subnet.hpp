@@ -28,7 +28,7 @@ struct Subnet {
 /// "10.1.1.0/24"; any address of the subnet is accepted.
 std::expected<Subnet, std::string> parse_subnet(std::string_view text);
 /// The subnet without the host: "10.1.1.0/24".
-std::string written(const Subnet& subnet);
+std::string to_text(const Subnet& subnet);
 
 /// Whether the subnets share an address.
 bool overlaps(const Subnet& a, const Subnet& b);

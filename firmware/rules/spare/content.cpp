@@ -51,24 +51,24 @@ std::optional<Part> take_part(std::string_view& rest) {
   return part;
 }
 
-std::unexpected<std::string> damaged(const std::string& why) {
+std::unexpected<std::string> damage_error(const std::string& why) {
   return std::unexpected("cannot read the export: " + why);
 }
 
 /// Reads each part once.
 class Reading {
  public:
-  std::optional<std::string> take(const Part& part) {
+  std::optional<std::string> read_part(const Part& part) {
     if (!seen_.emplace(std::string(part.name), true).second) return sentence(part, "is given twice");
-    if (part.name == kAbout) return take_about(part);
+    if (part.name == kAbout) return read_about(part);
     if (part.name == kSettings) return keep(content_.settings, part);
     if (part.name == kLedger) return keep(content_.ledger, part);
     if (part.name == kCertificate) return keep(content_.certificate, part);
-    return take_token(part);
+    return read_token(part);
   }
   std::expected<Content, std::string> finish() {
     for (const std::string_view name : {kAbout, kSettings, kLedger}) {
-      if (!seen_.contains(std::string(name))) return damaged(icd::sentence(name, " is missing"));
+      if (!seen_.contains(std::string(name))) return damage_error(icd::sentence(name, " is missing"));
     }
     return std::move(content_);
   }
@@ -81,13 +81,13 @@ class Reading {
     into = part.bytes;
     return std::nullopt;
   }
-  std::optional<std::string> take_about(const Part& part) {
+  std::optional<std::string> read_about(const Part& part) {
     auto about = codec::read_file<About>(part.bytes);
     if (!about) return sentence(part, about.error());
     content_.about = *std::move(about);
     return std::nullopt;
   }
-  std::optional<std::string> take_token(const Part& part) {
+  std::optional<std::string> read_token(const Part& part) {
     auto token = icd::BearerToken::parse(part.bytes);
     if (!part.name.starts_with(kToken) || content_.tokens.size() == kMostTokens)
       return std::string("it has a part that this version of Adit does not know");
@@ -118,8 +118,8 @@ std::expected<Content, std::string> read(std::string_view text) {
   Reading reading;
   while (!text.empty()) {
     const auto part = take_part(text);
-    if (!part) return damaged("the end of a part is missing");
-    if (auto why = reading.take(*part)) return damaged(*why);
+    if (!part) return damage_error("the end of a part is missing");
+    if (auto why = reading.read_part(*part)) return damage_error(*why);
   }
   return reading.finish();
 }

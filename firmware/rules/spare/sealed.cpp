@@ -55,7 +55,7 @@ std::string draw_code(const std::array<std::uint8_t, kCodeDigits>& random) {
   return code;
 }
 
-std::string spoken(std::string_view code) {
+std::string code_text(std::string_view code) {
   std::string text;
   for (std::size_t i = 0; i < code.size(); ++i) {
     if (i != 0 && i % kGroup == 0) text += ' ';

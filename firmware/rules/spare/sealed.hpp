@@ -18,7 +18,7 @@ inline constexpr std::size_t kCodeDigits = 16;
 std::string draw_code(const std::array<std::uint8_t, kCodeDigits>& random);
 
 /// "1234 5678 9012 3456", for people.
-std::string spoken(std::string_view code);
+std::string code_text(std::string_view code);
 
 /// std::nullopt unless the text has 16 digits, with blanks and hyphens anywhere between them.
 std::optional<std::string> code_in(std::string_view typed);

@@ -20,7 +20,7 @@ bool is_plain(char letter) {
   return icd::is_letter_or_digit(letter) || letter == '.';
 }
 
-std::string written(double at) {
+std::string time_text(double at) {
   const auto seconds = static_cast<std::time_t>(at);
   std::tm parts{};
   std::array<char, kTimeLetters + 1> text{};
@@ -34,7 +34,7 @@ std::optional<double> time_in(std::string_view text) {
   const char* const end = strptime(whole.c_str(), kTime, &parts);
   if (whole.size() != kTimeLetters || end == nullptr || *end != '\0') return std::nullopt;
   const auto at = static_cast<double>(timegm(&parts));
-  return written(at) == whole ? std::optional(at) : std::nullopt;
+  return time_text(at) == whole ? std::optional(at) : std::nullopt;
 }
 
 }  // namespace
@@ -42,7 +42,7 @@ std::optional<double> time_in(std::string_view text) {
 std::string file_name(std::string_view box, double at) {
   std::string name(kBegin);
   for (const char each : box.substr(0, kLongestBox)) name += is_plain(each) ? each : '-';
-  return name.append("-").append(written(at)).append(kEnd);
+  return name.append("-").append(time_text(at)).append(kEnd);
 }
 
 bool is_file_name(std::string_view name) {

@@ -124,7 +124,7 @@ void take_slot(const Value& slot, const std::string& booted, const std::string& 
 }
 
 /// RAUC's words, after their meaning if that is known.
-std::string explained(std::string_view fault) {
+std::string explain_fault(std::string_view fault) {
   const std::string said(fault.substr(0, kLongestFault));
   const auto* const meaning = std::ranges::find_if(
       kMeanings, [fault](std::string_view words) { return fault.contains(words); },
@@ -158,7 +158,7 @@ std::expected<Bundle, std::string> read_info(std::string_view json) {
   const Field field(*root, reading);
   const Field compatible = field.member("compatible"), version = field.member("version");
   Bundle bundle{std::string(compatible.text()), std::string(version.text())};
-  if (reading.refused()) return std::unexpected("the bundle: " + reading.outcome(0).error().sentence);
+  if (reading.has_refusal()) return std::unexpected("the bundle: " + reading.outcome(0).error().sentence);
   return bundle;
 }
 
@@ -173,11 +173,11 @@ std::expected<Running, std::string> read_status(std::string_view json) {
   slots.size();
   const Field primary = field.member("boot_primary");  // absent if the boot loader's environment is invalid
   const std::string next(primary.is_absent() ? "" : primary.text());
-  if (reading.refused()) return std::unexpected("RAUC: " + reading.outcome(0).error().sentence);
+  if (reading.has_refusal()) return std::unexpected("RAUC: " + reading.outcome(0).error().sentence);
   for (const Value& slot : std::get<Value::Array>(slots.value()->is))
     take_slot(slot, running.slot, next, running);
   if (running.other.empty())
-    return std::unexpected("RAUC knows no other slot than " + icd::in_quotes(running.slot));
+    return std::unexpected("RAUC knows no other slot than " + icd::quote_text(running.slot));
   return running;
 }
 
@@ -212,17 +212,17 @@ Fault fault_in(std::string_view out, std::string_view err) {
     if (line.starts_with(kLastError)) fault = line.substr(kLastError.size());
   }
   const bool busy = fault.find(kBusy) != std::string_view::npos;
-  return {busy ? Fault::Kind::Busy : Fault::Kind::Other, explained(fault)};
+  return {busy ? Fault::Kind::Busy : Fault::Kind::Other, explain_fault(fault)};
 }
 
 std::string hindrance(const Bundle& bundle, const Running& running, bool again) {
   if (bundle.compatible != running.compatible) {
-    return icd::sentence("the update is for another board: ", icd::in_quotes(bundle.compatible),
-                         ", but this board is ", icd::in_quotes(running.compatible));
+    return icd::sentence("the update is for another board: ", icd::quote_text(bundle.compatible),
+                         ", but this board is ", icd::quote_text(running.compatible));
   }
   const auto offered = Version::parse(bundle.version), present = Version::parse(running.version);
-  if (!offered) return "cannot read the update's version: " + icd::in_quotes(bundle.version);
-  if (!present) return "cannot read the running version: " + icd::in_quotes(running.version);
+  if (!offered) return "cannot read the update's version: " + icd::quote_text(bundle.version);
+  if (!present) return "cannot read the running version: " + icd::quote_text(running.version);
   if (*offered < *present) {
     return icd::sentence("the update is older (", bundle.version, ") than the running version (",
                          running.version, ")");

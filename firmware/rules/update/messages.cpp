@@ -43,7 +43,7 @@ std::string stray_if_unknown(const Running& running, bool trial, std::string_vie
                        ", and may not be the last good one: ", why);
 }
 
-LastUpdate settled(LastUpdate last_update, const Running& running, const std::string& boot) {
+LastUpdate settle_update(LastUpdate last_update, const Running& running, const std::string& boot) {
   if (on_trial(last_update, running, boot) || waits_for_a_restart(last_update, running, boot)) {
     last_update.stage = Stage::Installed;
     last_update.why.clear();

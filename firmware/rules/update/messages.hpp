@@ -64,7 +64,7 @@ struct LastUpdate {
 };
 
 /// Updates the stage at a start of the program, in boot `boot`.
-LastUpdate settled(LastUpdate last_update, const Running& running, const std::string& boot);
+LastUpdate settle_update(LastUpdate last_update, const Running& running, const std::string& boot);
 
 /// Whether the running slot is the last update and has not been healthy yet. The known end of the writing
 /// does not matter, because an incomplete slot does not start. If the slot has another version, the update

@@ -51,14 +51,14 @@ void World::transmit(const Report& report) {
     later(delay, [this, said = std::move(said)] {
       busy_ = false;
       tell_story(icd::sentence("answered ", said.status));
-      reports_->answered(said, time());
+      reports_->on_answered(said, time());
     });
   };
   const auto lose = [this](Seconds delay) {
     later(delay, [this] {
       busy_ = false;
       tell_story("lost");
-      reports_->lost("no answer", time());
+      reports_->on_lost("no answer", time());
     });
   };
   if (!is_anybody_there()) {

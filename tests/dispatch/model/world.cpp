@@ -149,7 +149,7 @@ void World::post(std::size_t who) {
   posted.report.type = "Drill";
   posted.report.position.x = client.key;
   posted.sender = "robot";
-  if (reports_->take(posted, id, may_send, time())) {
+  if (reports_->accept(posted, id, may_send, time())) {
     transmit(*reports_->sending());
   }
 }

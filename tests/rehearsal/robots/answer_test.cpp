@@ -49,12 +49,12 @@ TEST(StatusAnswer, ReadsTheRunClockByEitherName) {
 
 TEST(Tally, IsCleanUntilAMessageIsRejectedExceptBy429) {
   Tally tally;
-  tally.count(Kind::Grid, Fate::Posted);
-  tally.count(Kind::Grid, Fate::Accepted);
-  tally.count(Kind::Cloud, Fate::Throttled);
-  tally.count(Kind::State, Fate::Unanswered, "stopped");
+  tally.count(MessageKind::Grid, Fate::Posted);
+  tally.count(MessageKind::Grid, Fate::Accepted);
+  tally.count(MessageKind::Cloud, Fate::Throttled);
+  tally.count(MessageKind::State, Fate::Unanswered, "stopped");
   EXPECT_TRUE(tally.clean());
-  tally.count(Kind::Markers, Fate::Rejected, "422 markers[0].ns: expected a string");
+  tally.count(MessageKind::Markers, Fate::Rejected, "422 markers[0].ns: expected a string");
   EXPECT_FALSE(tally.clean());
   EXPECT_NE(tally.summary().find("markers: 422 markers[0].ns: expected a string (1 times)"),
             std::string::npos);
@@ -62,13 +62,13 @@ TEST(Tally, IsCleanUntilAMessageIsRejectedExceptBy429) {
 
 TEST(Tally, IsNotCleanAfterAFailure) {
   Tally tally;
-  tally.failed("a.pcd: no points");
+  tally.count_failure("a.pcd: no points");
   EXPECT_FALSE(tally.clean());
 }
 
 TEST(Tally, IsBoundedForAnyAnswers) {
   Tally tally;
-  for (int i = 0; i < 10'000; ++i) tally.count(Kind::Grid, Fate::Rejected, "500 " + std::to_string(i));
+  for (int i = 0; i < 10'000; ++i) tally.count(MessageKind::Grid, Fate::Rejected, "500 " + std::to_string(i));
   EXPECT_LT(tally.summary().size(), 5000u);
   EXPECT_NE(tally.summary().find("(others) (9950 times)"), std::string::npos);
 }

@@ -40,7 +40,7 @@ TEST(Options, AcceptTheContractsCommandLine) {
   EXPECT_EQ(options->post.port, 8080);
   EXPECT_EQ(options->scoring.port, 8080) << "one address for all";
   EXPECT_EQ(options->robots, 5u);
-  EXPECT_EQ(options->style.of(3).name, "ros");
+  EXPECT_EQ(options->style.style_of(3).name, "ros");
   EXPECT_EQ(options->run_for->count(), 30);
   EXPECT_EQ(options->maps, std::vector{std::filesystem::path(maps.path()) / "cave.ply"});
 }
@@ -65,7 +65,7 @@ TEST(Options, DefaultToThreeRobotsOfMixedStyle) {
   ASSERT_TRUE(options) << options.error();
   EXPECT_EQ(options->post.host, "::1");
   EXPECT_EQ(options->robots, 3u);
-  EXPECT_EQ(options->style.of(1).name, "cbor-body-gzip");
+  EXPECT_EQ(options->style.style_of(1).name, "cbor-body-gzip");
   EXPECT_FALSE(options->run_for);
 }
 
@@ -102,11 +102,11 @@ TEST(Options, GiveEachRobotTheNextFormOfMaps) {
   const auto options = parsed({"--post", "http://127.0.0.1:80", "--secrets", "/tmp", "--grids", "tiles,whole",
                                "--grid-hz", "4", "--clouds", "none", "--grid-mb", "5"});
   ASSERT_TRUE(options) << options.error();
-  EXPECT_EQ(options->offers.of(0).grids, GridForm::Tiles);
-  EXPECT_EQ(options->offers.of(1).grids, GridForm::Whole);
-  EXPECT_EQ(options->offers.of(2).grids, GridForm::Tiles);
-  EXPECT_EQ(options->offers.of(2).grid_every.count(), 0.25);
-  EXPECT_EQ(options->offers.of(2).grid_bytes, 5'000'000u);
+  EXPECT_EQ(options->offers.offer_of(0).grids, GridForm::Tiles);
+  EXPECT_EQ(options->offers.offer_of(1).grids, GridForm::Whole);
+  EXPECT_EQ(options->offers.offer_of(2).grids, GridForm::Tiles);
+  EXPECT_EQ(options->offers.offer_of(2).grid_every.count(), 0.25);
+  EXPECT_EQ(options->offers.offer_of(2).grid_bytes, 5'000'000u);
   EXPECT_TRUE(options->offers.has_grids());
   EXPECT_FALSE(options->offers.has_clouds());
 }

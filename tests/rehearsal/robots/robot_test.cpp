@@ -44,7 +44,7 @@ TEST(Robot, StaysOutOfTheRockAndWalksOn) {
       const Vector3 at = robot.pose().position;
       ASSERT_TRUE(cave().is_open(cave().lattice().cell_at(at.x, at.y))) << at.x << " " << at.y;
     }
-    EXPECT_GT(robot.walked(), 180) << index;
+    EXPECT_GT(robot.walked_distance(), 180) << index;
   }
 }
 

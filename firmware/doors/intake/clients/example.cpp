@@ -44,7 +44,7 @@ json some_markers() {
   return {{"markers", json::array({ball})}};
 }
 
-json asked(Client& client, const std::vector<std::string>& words) {
+json ask(Client& client, const std::vector<std::string>& words) {
   const std::string& what = words.at(1);
   if (what == "status") return client.status();
   if (what == "map") return client.update(what, a_map());
@@ -66,7 +66,7 @@ int main(int count, char** given) {
     if (token == nullptr) throw std::invalid_argument("the variable ADIT_TOKEN is not set");
     if (words.size() < 2) throw std::invalid_argument("expected a URL, and what to send");
     Client client(words.at(0), token == nullptr ? "" : token, bare);
-    std::cout << asked(client, words) << "\n";
+    std::cout << ask(client, words) << "\n";
     return 0;
   } catch (const std::logic_error& why) {  // also of a word that is no number
     std::cerr << why.what()

@@ -133,8 +133,8 @@ std::optional<Rotation> read_quaternion(const Field& quaternion) {
   constexpr double kNoise = 2e-6;  // of float32, and of printed digits
   const double length = std::hypot(std::hypot(*x, *y, *z), *w);
   if (!(std::abs(length - 1) <= kNoise)) {
-    quaternion.breaks("expected a quaternion of length 1, got one of length " + std::to_string(length),
-                      Measured::Takes);
+    quaternion.add_violation("expected a quaternion of length 1, got one of length " + std::to_string(length),
+                             Measured::Takes);
   }
   return Rotation{*x, *y, *z, *w};
 }
@@ -181,16 +181,16 @@ std::string Field::path_of(std::string_view name) const {
   return path_.empty() ? std::string(name) : path_ + "." + std::string(name);
 }
 
-std::nullopt_t Field::breaks(std::string_view what, Measured measured) const {
+std::nullopt_t Field::add_violation(std::string_view what, Measured measured) const {
   const std::string where = path_.empty() ? "the body" : path_;
-  findings_->breaks(where + ": " + std::string(what), measured);
+  findings_->add_violation(where + ": " + std::string(what), measured);
   return std::nullopt;
 }
 
-std::nullopt_t Field::expected(std::string_view what) const {
+std::nullopt_t Field::report_mismatch(std::string_view what) const {
   const std::string got =
       value_->is_number() ? line_of(*value_) : std::string("a value of type ") + value_->type_name();
-  return breaks("expected " + std::string(what) + ", got " + got);
+  return add_violation("expected " + std::string(what) + ", got " + got);
 }
 
 std::optional<Field> Field::optional_member(const char* name) const {
@@ -203,12 +203,12 @@ std::optional<Field> Field::optional_member(const char* name) const {
 std::optional<Field> Field::member(const char* name, Measured measured) const {
   if (!is_object()) return std::nullopt;
   auto found = optional_member(name);
-  if (!found) findings_->breaks("Missing field '" + path_of(name) + "'", measured);
+  if (!found) findings_->add_violation("Missing field '" + path_of(name) + "'", measured);
   return found;
 }
 
 std::optional<std::vector<Field>> Field::elements() const {
-  if (!value_->is_array()) return expected("an array");
+  if (!value_->is_array()) return report_mismatch("an array");
   std::vector<Field> all;
   all.reserve(value_->size());
   for (const Json& element : *value_) {
@@ -218,14 +218,15 @@ std::optional<std::vector<Field>> Field::elements() const {
 }
 
 bool Field::is_object() const {
-  if (!value_->is_object()) expected("an object");
+  if (!value_->is_object()) report_mismatch("an object");
   return value_->is_object();
 }
 
 std::optional<double> Field::to_number() const {
-  if (!value_->is_number()) return expected("a number");
+  if (!value_->is_number()) return report_mismatch("a number");
   const auto number = value_->get<double>();
-  if (!std::isfinite(number)) return breaks("expected a finite number");  // CBOR can say so, JSON cannot
+  if (!std::isfinite(number))
+    return add_violation("expected a finite number");  // CBOR can say so, JSON cannot
   return number;
 }
 
@@ -234,16 +235,16 @@ std::optional<std::int64_t> Field::integer(std::int64_t least, std::int64_t most
                     !(value_->is_number_unsigned() && value_->get<std::uint64_t>() > INT64_MAX);
   const std::int64_t integer = fits ? value_->get<std::int64_t>() : 0;
   if (fits && integer >= least && integer <= most) return integer;
-  return expected("an integer from " + std::to_string(least) + " to " + std::to_string(most));
+  return report_mismatch("an integer from " + std::to_string(least) + " to " + std::to_string(most));
 }
 
 std::optional<bool> Field::boolean() const {
-  if (!value_->is_boolean()) return expected("a boolean");
+  if (!value_->is_boolean()) return report_mismatch("a boolean");
   return value_->get<bool>();
 }
 
 std::optional<std::string> Field::to_text() const {
-  if (!value_->is_string()) return expected("a text string");
+  if (!value_->is_string()) return report_mismatch("a text string");
   return value_->get<std::string>();
 }
 
@@ -294,11 +295,11 @@ void read_header(const Field& message, std::vector<Stamp>& stamps) {
   if (const auto frame_id = header->optional_member("frame_id")) {
     const auto text = frame_id->to_text();
     // The measured server writes "darpa" over any other, saying nothing.
-    if (text && *text != "darpa") frame_id->breaks("expected \"darpa\" (ICD 6.1)", Measured::Takes);
+    if (text && *text != "darpa") frame_id->add_violation("expected \"darpa\" (ICD 6.1)", Measured::Takes);
   }
   if (const auto stamp = header->optional_member("stamp")) {
     const auto seconds = stamp->to_number();
-    if (seconds && *seconds < 0) stamp->breaks("expected seconds from 0");
+    if (seconds && *seconds < 0) stamp->add_violation("expected seconds from 0");
     if (seconds && *seconds >= 0) stamps.push_back({*seconds, stamp->path()});
   }
 }

@@ -81,13 +81,15 @@ class Findings {
   static constexpr std::size_t kLongest = 400;
 
   /// The ICD forbids it.
-  void breaks(std::string sentence, Measured measured = Measured::Refuses, int status = 422) {
+  void add_violation(std::string sentence, Measured measured = Measured::Refuses, int status = 422) {
     add({std::move(sentence), status, true, measured});
   }
   /// The ICD forbids it, and either manner takes the message all the same.
-  void tells(std::string sentence) { add({std::move(sentence), 422, true, Measured::Takes, false}); }
+  void add_remark(std::string sentence) { add({std::move(sentence), 422, true, Measured::Takes, false}); }
   /// The ICD allows it, the measured server does not.
-  void displeases(std::string sentence) { add({std::move(sentence), 422, false, Measured::Refuses}); }
+  void add_measured_refusal(std::string sentence) {
+    add({std::move(sentence), 422, false, Measured::Refuses});
+  }
 
   const std::vector<Finding>& all() const { return all_; }
 
@@ -152,12 +154,12 @@ class Field {
   Findings& findings() const { return *findings_; }
 
   /// Writes down "<path>: <what>". The result is empty, so that a reader can return it.
-  std::nullopt_t breaks(std::string_view what, Measured measured = Measured::Refuses) const;
+  std::nullopt_t add_violation(std::string_view what, Measured measured = Measured::Refuses) const;
 
  private:
   std::string path_of(std::string_view name) const;
   /// Writes down "<path>: expected <what>, got <a number, or the type>".
-  std::nullopt_t expected(std::string_view what) const;
+  std::nullopt_t report_mismatch(std::string_view what) const;
 
   const Json* value_;
   std::string path_;

@@ -48,14 +48,14 @@ bool names_one_of(const Request& request, std::span<const Function> functions) {
 void check_entry(const Request& request, std::span<const Function> functions, const std::string& token,
                  Findings& findings) {
   if (!names_one_of(request, functions)) {
-    findings.breaks("URI is not recognized: " + request.method + " " + request.path.substr(0, 200),
-                    Measured::Refuses, 404);
+    findings.add_violation("URI is not recognized: " + request.method + " " + request.path.substr(0, 200),
+                           Measured::Refuses, 404);
   } else if (!request.authorization) {
-    findings.breaks("No authentication token was provided", Measured::Refuses, 401);
+    findings.add_violation("No authentication token was provided", Measured::Refuses, 401);
   } else if (*request.authorization != "Bearer " + token) {
-    findings.breaks(std::string(kWrongToken), Measured::Refuses, 401);
+    findings.add_violation(std::string(kWrongToken), Measured::Refuses, 401);
   } else if (!request.head_fault.empty()) {
-    findings.breaks(request.head_fault, Measured::Takes, 400);
+    findings.add_violation(request.head_fault, Measured::Takes, 400);
   }
 }
 
@@ -65,29 +65,29 @@ bool admit(const Request& request, std::span<const Function> functions, const st
   const Finding* const finding = judgement.findings.decisive(Manner::Strict);
   if (finding == nullptr || finding->status != 404) judgement.uri = request.path;
   if (finding == nullptr && !limit->is_too_soon(request)) return true;
-  judgement.outcome = finding != nullptr ? refused(*finding) : refused(429, kTooManyRequests);
+  judgement.outcome = finding != nullptr ? answer_refusal(*finding) : answer_refusal(429, kTooManyRequests);
   return false;
 }
 
 void check_content(const Request& request, bool cbor_too, Findings& findings) {
   if (request.content_encoding) {
-    findings.breaks("Content-Encoding: the ICD has none for a whole body", Measured::Takes);
+    findings.add_violation("Content-Encoding: the ICD has none for a whole body", Measured::Takes);
   }
   const bool known =
       request.content_type == "application/json" || (cbor_too && request.content_type == "application/cbor");
   if (!known) {
-    findings.breaks(icd::sentence("Content-Type: expected application/json",
-                                  cbor_too ? " or application/cbor" : "", ", without parameters"));
+    findings.add_violation(icd::sentence("Content-Type: expected application/json",
+                                         cbor_too ? " or application/cbor" : "", ", without parameters"));
   }
 }
 
-std::string_view without_slash(std::string_view path) {
+std::string_view strip_slash(std::string_view path) {
   while (path.size() > 1 && path.ends_with('/')) path.remove_suffix(1);
   return path;
 }
 
-Outcome detailed(int status, std::string_view detail) {
-  return answered(status, OrderedJson{{"detail", detail}});
+Outcome answer_with_detail(int status, std::string_view detail) {
+  return answer_with(status, OrderedJson{{"detail", detail}});
 }
 
 Outcome page(int status, std::string_view title) {
@@ -105,7 +105,7 @@ bool lacks_slash(const Request& request) {
          (is(request, kScoringFunctions) || is(request, kMappingFunctions));
 }
 
-Outcome redirected(const Request& request) {
+Outcome redirect(const Request& request) {
   constexpr int kMovedPermanently = 301, kPermanentRedirect = 308;
   const bool is_scoring = request.path.starts_with("/api/");
   Outcome outcome = page(is_scoring ? kMovedPermanently : kPermanentRedirect, "Redirecting");
@@ -114,8 +114,8 @@ Outcome redirected(const Request& request) {
   return outcome;
 }
 
-Outcome refused(int status, std::string_view sentence) {
-  return answered(status, Json(sentence));
+Outcome answer_refusal(int status, std::string_view sentence) {
+  return answer_with(status, Json(sentence));
 }
 
 }  // namespace adit::rehearsal

@@ -143,7 +143,7 @@ class Endpoint {
 
 /// An answer whose body is this JSON.
 template <class AnyJson>
-Outcome answered(int status, const AnyJson& body) {
+Outcome answer_with(int status, const AnyJson& body) {
   return {.answer = {.status = status, .body = line_of(body)}};
 }
 
@@ -172,10 +172,10 @@ inline constexpr std::string_view kThrottled = "Request was throttled. Expected 
 inline constexpr std::string_view kTooManyClouds = "Cloud updates too frequent. Reduce to <1Hz.";
 
 /// The measured scoring server takes a path with and without a trailing slash.
-std::string_view without_slash(std::string_view path);
+std::string_view strip_slash(std::string_view path);
 
 /// An object for a body, as the measured scoring server has it for 400, 401, 405, 415 and 429.
-Outcome detailed(int status, std::string_view detail);
+Outcome answer_with_detail(int status, std::string_view detail);
 
 /// HTML, as it has it for 404 and 500.
 Outcome page(int status, std::string_view title);
@@ -183,12 +183,12 @@ Outcome page(int status, std::string_view title);
 /// Whether a request names a function of the ICD by a path without a slash at its end.
 bool lacks_slash(const Request& request);
 /// To the path with a slash: by 301 and a whole URL for scoring, by 308 and a path for mapping.
-Outcome redirected(const Request& request);
+Outcome redirect(const Request& request);
 
 /// A refusal as a JSON string (ICD 4.1).
-Outcome refused(int status, std::string_view sentence);
-inline Outcome refused(const Finding& finding) {
-  return refused(finding.status, finding.sentence);
+Outcome answer_refusal(int status, std::string_view sentence);
+inline Outcome answer_refusal(const Finding& finding) {
+  return answer_refusal(finding.status, finding.sentence);
 }
 
 /// The scoring endpoint of the ICD's section 5, to the letter, or the public test server as measured: see

@@ -39,7 +39,7 @@ Outcome portal(int status) {
   return outcome;
 }
 
-std::string repeated(std::string_view text, std::size_t bytes) {
+std::string repeat(std::string_view text, std::size_t bytes) {
   std::string all;
   while (all.size() < bytes) all += text;
   return all;
@@ -48,13 +48,14 @@ std::string repeated(std::string_view text, std::size_t bytes) {
 /// 401 and 429, as the endpoint itself says them.
 Outcome refusal(int status, const Spoilt& spoilt) {
   const bool unauthorized = status == 401;
-  if (spoilt.manner == Manner::Strict) return refused(status, unauthorized ? kWrongToken : kTooManyRequests);
+  if (spoilt.manner == Manner::Strict)
+    return answer_refusal(status, unauthorized ? kWrongToken : kTooManyRequests);
   if (spoilt.aim == Aim::Mapping) {
-    Outcome outcome = refused(status, unauthorized ? kWrongToken : kTooManyClouds);
+    Outcome outcome = answer_refusal(status, unauthorized ? kWrongToken : kTooManyClouds);
     outcome.after = After::CloseThoughPromisingNot;
     return outcome;
   }
-  Outcome outcome = detailed(status, unauthorized ? kInvalidToken : kThrottled);
+  Outcome outcome = answer_with_detail(status, unauthorized ? kInvalidToken : kThrottled);
   if (unauthorized) outcome.answer.headers.emplace_back("WWW-Authenticate", "Bearer");
   return outcome;
 }
@@ -101,9 +102,9 @@ constexpr auto kEffects = std::to_array<Effect>({
     {"chunk-huge", true,
      [](In) { return broken(std::string(kOkLine) + "Transfer-Encoding: chunked\r\n\r\n6fc23ac00\r\n{"); }},
     {"header-flood", true,
-     [](In) { return broken(std::string(kOkLine) + repeated("X-Flood: 0123456789\r\n", kMuch)); }},
-    {"endless-body", true, [](In) { return json_with_tail("\r\n[" + repeated("0,", kMuch)); }},
-    {"1xx-flood", true, [](In) { return broken(repeated("HTTP/1.1 100 Continue\r\n\r\n", kMuch)); }},
+     [](In) { return broken(std::string(kOkLine) + repeat("X-Flood: 0123456789\r\n", kMuch)); }},
+    {"endless-body", true, [](In) { return json_with_tail("\r\n[" + repeat("0,", kMuch)); }},
+    {"1xx-flood", true, [](In) { return broken(repeat("HTTP/1.1 100 Continue\r\n\r\n", kMuch)); }},
     {"json-deep", true,
      [](In) {
        return json_with_tail("Connection: close\r\nContent-Length: 15000\r\n\r\n" + std::string(15'000, '['));
@@ -133,24 +134,25 @@ Word word_of(std::string_view text) {
   return {text.substr(0, equals), text.substr(equals + 1)};
 }
 
-std::string quoted(std::string_view text) {
+std::string quote(std::string_view text) {
   constexpr std::size_t longest = 80;
   return sentence("'", text.substr(0, longest), "'");
 }
 
 /// Stores the parsed argument in its place, once. `example`: for the sentence about an invalid one.
 template <class Place>
-Told put(const Word& word, const Place& read, std::string_view what, std::string_view example, Place& place) {
+OrderResult put(const Word& word, const Place& read, std::string_view what, std::string_view example,
+                Place& place) {
   if (!read) {
     return wrong(word.name, ": expected ", what, ", as in ", word.name, "=", example, ", got ",
-                 quoted(word.argument.value_or("")));
+                 quote(word.argument.value_or("")));
   }
-  if (place) return wrong(quoted(word.name), " is given twice");
+  if (place) return wrong(quote(word.name), " is given twice");
   place = read;
   return {};
 }
 
-Told put_seconds(const Word& word, std::optional<Fault::Seconds>& place) {
+OrderResult put_seconds(const Word& word, std::optional<Fault::Seconds>& place) {
   const auto seconds = number_of<double>(word.argument.value_or(""), 0, 3600).transform([](double number) {
     return Fault::Seconds(number);
   });
@@ -165,20 +167,20 @@ std::optional<std::int64_t> offset_in(std::string_view text) {
   return number_of(text, -most, most);
 }
 
-Told put_effect(const Word& word, const Effect& effect, Fault& fault) {
+OrderResult put_effect(const Word& word, const Effect& effect, Fault& fault) {
   if (fault.effect != nullptr) {
-    return wrong(quoted(word.name), " cannot happen to a request together with ", quoted(fault.effect->word));
+    return wrong(quote(word.name), " cannot happen to a request together with ", quote(fault.effect->word));
   }
   fault.effect = &effect;
   if (!word.argument) return {};
-  if (word.name != "429") return wrong(quoted(word.name), " takes no '='");
+  if (word.name != "429") return wrong(quote(word.name), " takes no '='");
   std::optional<int> times;
   ADIT_TRY(put(word, number_of(*word.argument, 1, 10'000), "how many requests, from 1 to 10000", "3", times));
   fault.times = *times;
   return {};
 }
 
-Told put_word(const Word& word, Fault& fault) {
+OrderResult put_word(const Word& word, Fault& fault) {
   constexpr std::size_t longest_name = 100;
   const std::string_view value = word.argument.value_or("");
   if (word.name == "record-after") return put_seconds(word, fault.record_after);
@@ -202,7 +204,8 @@ Told put_word(const Word& word, Fault& fault) {
   }
   const auto* const effect = std::ranges::find(kEffects, word.name, &Effect::word);
   if (effect != kEffects.end()) return put_effect(word, *effect, fault);
-  return wrong("no such fault: ", quoted(word.name), "; there are ok, ", icd::listed(kEffects, &Effect::word),
+  return wrong("no such fault: ", quote(word.name), "; there are ok, ",
+               icd::join_words(kEffects, &Effect::word),
                ", answer-after, record-after, remaining, other-sender, retry-after, for, robot");
 }
 
@@ -225,7 +228,7 @@ bool is_aim(std::string_view name) {
 }
 
 std::unexpected<std::string> no_such_aim(std::string_view name) {
-  return wrong("no such aim: ", quoted(name), "; there are reports, status, mapping, clock");
+  return wrong("no such aim: ", quote(name), "; there are reports, status, mapping, clock");
 }
 
 /// Whether the fault may happen to the request of that body: one of its robot, or of any.
@@ -234,10 +237,11 @@ bool is_of(const Fault& fault, std::string_view body) {
 }
 
 /// Reads the words of a fault of that aim, or of the clock. The error begins with `place`.
-Told read_words(std::string_view aim, std::string_view words, const std::string& place, Orders& orders) {
+OrderResult read_words(std::string_view aim, std::string_view words, const std::string& place,
+                       Orders& orders) {
   if (aim == kClock) {
     if (words != kConstant && words != kRunning)
-      return wrong(place, ": expected constant or running, got ", quoted(words));
+      return wrong(place, ": expected constant or running, got ", quote(words));
     orders.clocks_stand = words == kConstant;
     return {};
   }
@@ -316,7 +320,7 @@ std::string words_of(const Fault& fault) {
   return words.empty() ? std::string(kOk) : words;
 }
 
-Told Faults::obey(const Orders& orders) {
+OrderResult Faults::obey(const Orders& orders) {
   const std::lock_guard lock(mutex_);
   std::size_t waiting = orders.aimed.size();
   for (const auto& queue : queues_) waiting += queue.size();
@@ -326,17 +330,17 @@ Told Faults::obey(const Orders& orders) {
   return {};
 }
 
-Told Faults::tell(std::string_view aim_and_fault) {
+OrderResult Faults::tell(std::string_view aim_and_fault) {
   const Orders orders = ADIT_TRY(read_order(aim_and_fault));
   return obey(orders);
 }
 
-Told Faults::tell_all(const Json& told) {
+OrderResult Faults::tell_all(const Json& told) {
   const Orders orders = ADIT_TRY(read_orders(told));
   return obey(orders);
 }
 
-Told Faults::tell_rate(std::string_view aim_fault_and_rate) {
+OrderResult Faults::tell_rate(std::string_view aim_fault_and_rate) {
   const std::size_t equals = aim_fault_and_rate.rfind('=');
   const auto rate = number_of<double>(aim_fault_and_rate.substr(equals + 1), 0, 1);  // npos + 1 is 0
   if (!rate) {
@@ -414,7 +418,7 @@ Fault Faults::next(Aim aim, std::string_view body, Clock::time_point now) {
   return fault;
 }
 
-OrderedJson Faults::left() const {
+OrderedJson Faults::remaining() const {
   const std::lock_guard lock(mutex_);
   OrderedJson left;
   for (std::size_t i = 0; i < kAims.size(); ++i) {

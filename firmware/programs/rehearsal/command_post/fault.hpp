@@ -57,7 +57,7 @@ struct Orders {
   std::optional<bool> clocks_stand;
 };
 
-using Told = std::expected<void, std::string>;
+using OrderResult = std::expected<void, std::string>;
 
 /// The faults that wait for their requests: a queue for each aim, and random faults if a queue is empty. Also
 /// whether the run's clocks stand, which is given like a fault and applies to all requests. An error is a
@@ -69,12 +69,12 @@ class Faults {
   explicit Faults(std::uint64_t seed) : chance_(seed) {}
 
   /// "reports:record-then-drop": appended to that queue. "clock:constant", "clock:running": from now on.
-  Told tell(std::string_view aim_and_fault);
+  OrderResult tell(std::string_view aim_and_fault);
   /// "reports:record-then-drop=0.1": to one request of ten, on average. "reports:429=3=0.1" begins at one of
   /// ten that find no fault waiting, "mapping:500,robot=ugv1=0.1" happens to one of ten of that robot's.
-  Told tell_rate(std::string_view aim_fault_and_rate);
+  OrderResult tell_rate(std::string_view aim_fault_and_rate);
   /// {"reports": ["record-then-drop", "ok"], "status": ["500"]}: appended, all or not at all.
-  Told tell_all(const Json& told);
+  OrderResult tell_all(const Json& told);
 
   /// From now on every request is answered as it should be.
   void clear();
@@ -86,7 +86,7 @@ class Faults {
   Fault next(Aim aim, std::string_view body, Clock::time_point now);
 
   /// The waiting faults, the random ones, the error of remaining_reports, and whether the clocks run.
-  OrderedJson left() const;
+  OrderedJson remaining() const;
 
  private:
   struct Rate {
@@ -95,7 +95,7 @@ class Faults {
     double rate;
   };
 
-  Told obey(const Orders& orders);
+  OrderResult obey(const Orders& orders);
   std::optional<Fault> from_queue(Aim aim, std::string_view body, Clock::time_point now);
   Fault random_fault(Aim aim, std::string_view body, Clock::time_point now);
   std::deque<Fault>& queue(Aim aim) { return queues_[static_cast<std::size_t>(aim)]; }

@@ -85,7 +85,7 @@ class CommandPost {
   Outcome mapping(const Request& request);
 
   /// The control port (README.md, 'The control port'). POST /posted, of adit-robots, is described at
-  /// Arrivals::told.
+  /// Arrivals::set_expected.
   Outcome control(const Request& request);
 
   Faults& faults() { return faults_; }
@@ -111,7 +111,7 @@ class CommandPost {
   Outcome decide(Side& side, std::optional<Aim> aim, const Fault& fault, const Request& request);
   /// Another sender on the same token submits a report; if `sent` holds nothing, one that no artifact is
   /// near. `sent`: numbers x, y, z and a text type. Gives the report as it was recorded.
-  OrderedJson other_sender(const std::optional<Json>& sent);
+  OrderedJson report_from_another_sender(const std::optional<Json>& sent);
   Outcome show_arrivals() const;
   OrderedJson record() const;
   void keep(OrderedJson report, const char* by, const OrderedJson& request);
@@ -147,16 +147,16 @@ Judgement judge_fault(const HttpFault& fault) {
   constexpr int timeout = 408;
   Judgement judgement;
   if (fault.status != 0 && fault.status != timeout) {
-    judgement.findings.breaks(fault.sentence, Measured::Refuses, fault.status);
+    judgement.findings.add_violation(fault.sentence, Measured::Refuses, fault.status);
   }
-  judgement.outcome = last_answer(refused(fault.status, fault.sentence));
+  judgement.outcome = last_answer(answer_refusal(fault.status, fault.sentence));
   return judgement;
 }
 
 /// The aim of a request to either endpoint, if it has one. As measured, slashes may end the path.
 std::optional<Aim> scoring_aim(const Request& request, Manner manner) {
   std::string_view path = request.path;
-  if (manner == Manner::AsMeasured) path = without_slash(path);
+  if (manner == Manner::AsMeasured) path = strip_slash(path);
   if (request.fault) return std::nullopt;
   if (request.method == "POST" && path == kReportsUri) return Aim::Reports;
   if (request.method == "GET" && path == kStatusUri) return Aim::Status;
@@ -169,9 +169,9 @@ std::optional<Aim> mapping_aim(const Request& request) {
 }
 
 /// Of a request that a fault keeps from its judge. It breaks no rule of the ICD, since nobody looked.
-Judgement unjudged(Aim aim, const Request& request) {
+Judgement skip_judgement(Aim aim, const Request& request) {
   Judgement judgement;
-  judgement.uri = aim == Aim::Mapping ? request.path : without_slash(request.path);
+  judgement.uri = aim == Aim::Mapping ? request.path : strip_slash(request.path);
   if (aim == Aim::Reports) {  // so that the transcript shows which report came to nothing
     if (auto document = read_document(request.body, Format::JsonText)) judgement.message = document->value;
   }
@@ -180,7 +180,7 @@ Judgement unjudged(Aim aim, const Request& request) {
 
 /// Of a request that is answered before anything of it is judged.
 Judgement early_judgement(const Request& request, std::optional<Aim> aim, Outcome outcome) {
-  Judgement judgement = aim ? unjudged(*aim, request) : Judgement{};
+  Judgement judgement = aim ? skip_judgement(*aim, request) : Judgement{};
   judgement.uri = request.path;
   judgement.outcome = std::move(outcome);
   return judgement;
@@ -200,7 +200,7 @@ Judgement judge_safely(Endpoint& endpoint, const Request& request) {
   } catch (const std::exception& error) {
     std::fprintf(stderr, "adit-rehearsal: error while handling a request: %s\n", error.what());
     Judgement judgement;
-    judgement.outcome = last_answer(refused(500, "The request could not be handled"));
+    judgement.outcome = last_answer(answer_refusal(500, "The request could not be handled"));
     return judgement;
   }
 }
@@ -218,8 +218,8 @@ Outcome change_state(Run& run, Run::Change wanted) {
   const auto now = Clock::now();
   const bool done = run.change(wanted, now);
   const std::string state = run.standing(now).state;
-  if (!done) return refused(409, "the run is: " + state);
-  return answered(200, OrderedJson{{"state", state}});
+  if (!done) return answer_refusal(409, "the run is: " + state);
+  return answer_with(200, OrderedJson{{"state", state}});
 }
 
 std::expected<NewRun, std::string> read_new_run(const Json& wanted) {
@@ -243,12 +243,12 @@ std::expected<NewRun, std::string> read_new_run(const Json& wanted) {
 
 Outcome begin_new_run(Run& run, const std::optional<Json>& sent) {
   const auto wanted = sent ? read_new_run(*sent) : NewRun{};
-  if (!wanted) return refused(422, wanted.error());
+  if (!wanted) return answer_refusal(422, wanted.error());
   const auto now = Clock::now();
   run.restart(*wanted, now);
   const Run::Standing standing = run.standing(now);
-  return answered(200,
-                  OrderedJson{{"state", standing.state}, {"run", standing.run}, {"team", standing.team}});
+  return answer_with(200,
+                     OrderedJson{{"state", standing.state}, {"run", standing.run}, {"team", standing.team}});
 }
 
 bool is_report(const Json& sent) {
@@ -291,10 +291,10 @@ void CommandPost::note_names(Judgement& judgement) const {
     const bool is_robot = part.kind != "marker" && part.kind != "report" && !part.robot.empty();
     if (is_robot && !options_.roster.empty() &&
         std::ranges::find(options_.roster, part.robot) == options_.roster.end()) {
-      judgement.findings.tells("name: '" + part.robot + "' is not on the roster (ICD 2)");
+      judgement.findings.add_remark("name: '" + part.robot + "' is not on the roster (ICD 2)");
     }
     if (part.kind == "pose" && !posed.insert(part.robot).second) {
-      judgement.findings.tells("poses: '" + part.robot + "' is given twice");
+      judgement.findings.add_remark("poses: '" + part.robot + "' is given twice");
     }
   }
 }
@@ -308,7 +308,7 @@ void CommandPost::note_order(const Request& request, const Fault& fault, Judgeme
   if (judgement.uri != kStatusUri || hz == 0 || !reported_) return;
   constexpr double kTolerance = 0.95;  // as RateLimit's
   if (request.at - *reported_ < std::chrono::duration<double>(kTolerance / hz))
-    judgement.findings.tells("a status right behind a report that was answered (ICD 5)");
+    judgement.findings.add_remark("a status right behind a report that was answered (ICD 5)");
 }
 
 /// Before there was one: no answer.
@@ -338,11 +338,11 @@ Outcome CommandPost::receive(Side& side, std::optional<Aim> aim, const Request& 
 
 Judgement CommandPost::judge(Side& side, std::optional<Aim> aim, const Fault& fault, const Request& request) {
   if (request.fault) return judge_fault(*request.fault);
-  if (redirects(request)) return early_judgement(request, aim, redirected(request));
+  if (redirects(request)) return early_judgement(request, aim, redirect(request));
   if (is_too_large(request))  // as nginx does by client_max_body_size
     return early_judgement(request, aim, last_answer(page(413, "Request Entity Too Large")));
   const bool judged = !aim || records(fault);
-  Judgement judgement = judged ? judge_safely(*side.endpoint, request) : unjudged(*aim, request);
+  Judgement judgement = judged ? judge_safely(*side.endpoint, request) : skip_judgement(*aim, request);
   note_names(judgement);
   arrivals_.note(judgement.accepted.markers, judgement.findings);
   if (!judged) judgement.outcome = last_answer_to(*aim);
@@ -354,7 +354,7 @@ Judgement CommandPost::judge(Side& side, std::optional<Aim> aim, const Fault& fa
 }
 
 Outcome CommandPost::decide(Side& side, std::optional<Aim> aim, const Fault& fault, const Request& request) {
-  if (fault.other_sender) other_sender(std::nullopt);
+  if (fault.other_sender) report_from_another_sender(std::nullopt);
   std::unique_lock scoring_lock(scoring_mutex_, std::defer_lock);
   if (&side == &scoring_) scoring_lock.lock();
   Judgement judgement = judge(side, aim, fault, request);
@@ -387,7 +387,7 @@ void CommandPost::keep(OrderedJson report, const char* by, const OrderedJson& re
   record_.note_report(report);
 }
 
-OrderedJson CommandPost::other_sender(const std::optional<Json>& sent) {
+OrderedJson CommandPost::report_from_another_sender(const std::optional<Json>& sent) {
   constexpr double far = 100'000;  // metres: no artifact is there, and no two of its reports are alike
   const Json report =
       sent ? *sent : Json{{"x", far}, {"y", far + ++by_others_}, {"z", 0.0}, {"type", "Rope"}};
@@ -416,49 +416,49 @@ void CommandPost::show(std::uint64_t number, const Request& request, const Judge
 Outcome CommandPost::show_arrivals() const {
   OrderedJson arrivals = arrivals_.json();
   arrivals["table"] = arrivals_.table();
-  return answered(200, arrivals);
+  return answer_with(200, arrivals);
 }
 
 Outcome CommandPost::control(const Request& request) {
-  if (request.fault) return last_answer(refused(request.fault->status, request.fault->sentence));
+  if (request.fault) return last_answer(answer_refusal(request.fault->status, request.fault->sentence));
   const std::string wanted = request.method + " " + std::string(path_of(request.target));
   const auto body = body_of(request);
-  if (!body) return refused(400, body.error());
+  if (!body) return answer_refusal(400, body.error());
   const std::optional<Json>& sent = *body;
-  if (wanted == "GET /record") return answered(200, record());
+  if (wanted == "GET /record") return answer_with(200, record());
   if (wanted == "GET /arrivals") return show_arrivals();
   if (wanted == "POST /posted") {
-    const Told told = arrivals_.told(sent.value_or(Json()));
-    return told ? show_arrivals() : refused(422, told.error());
+    const OrderResult told = arrivals_.set_expected(sent.value_or(Json()));
+    return told ? show_arrivals() : answer_refusal(422, told.error());
   }
-  if (wanted == "GET /faults") return answered(200, faults_.left());
+  if (wanted == "GET /faults") return answer_with(200, faults_.remaining());
   if (wanted == "POST /faults") {
-    const Told told = faults_.tell_all(sent.value_or(Json()));
-    return told ? answered(200, faults_.left()) : refused(422, told.error());
+    const OrderResult told = faults_.tell_all(sent.value_or(Json()));
+    return told ? answer_with(200, faults_.remaining()) : answer_refusal(422, told.error());
   }
   if (wanted == "DELETE /faults") {
     faults_.clear();
-    return answered(200, faults_.left());
+    return answer_with(200, faults_.remaining());
   }
   if (wanted == "POST /other-sender") {
-    if (!sent || is_report(*sent)) return answered(201, other_sender(sent));
-    return refused(422, R"(expected a report, as in {"x": 1, "y": 2, "z": 3, "type": "Drill"})");
+    if (!sent || is_report(*sent)) return answer_with(201, report_from_another_sender(sent));
+    return answer_refusal(422, R"(expected a report, as in {"x": 1, "y": 2, "z": 3, "type": "Drill"})");
   }
   if (wanted == "POST /new-run") return begin_new_run(run_, sent);
-  if (wanted == "POST /grant") return answered(200, OrderedJson{{"remaining_reports", run_.grant()}});
-  if (wanted == "POST /rename") return answered(200, OrderedJson{{"run", run_.rename()}});
+  if (wanted == "POST /grant") return answer_with(200, OrderedJson{{"remaining_reports", run_.grant()}});
+  if (wanted == "POST /rename") return answer_with(200, OrderedJson{{"run", run_.rename()}});
   if (wanted == "POST /start") return change_state(run_, Run::Change::Start);
   if (wanted == "POST /stop") return change_state(run_, Run::Change::Stop);
   if (wanted == "POST /resume") return change_state(run_, Run::Change::Resume);
   if (wanted == "POST /end") return change_state(run_, Run::Change::End);
-  return refused(
+  return answer_refusal(
       404,
       "POST /start, /stop, /resume, /end, /new-run, /grant, /rename, /other-sender or /posted, GET "
       "/record or /arrivals, GET, POST or DELETE /faults");
 }
 
 using command_line::number;
-using command_line::take;
+using command_line::set_by;
 using command_line::Wanted;
 using command_line::Wrong;
 
@@ -488,7 +488,7 @@ std::expected<std::vector<std::string>, std::string> roster_of(const std::string
 }
 
 /// The ICD's section 5 can be read so that its rate is of all API requests together.
-Wrong take_rate(Options& options, const std::string& text) {
+Wrong parse_rate(Options& options, const std::string& text) {
   options.one_api_limit = text == "api";
   if (options.one_api_limit) {
     options.rate = 1;
@@ -500,7 +500,7 @@ Wrong take_rate(Options& options, const std::string& text) {
   return fault;
 }
 
-Wrong take_as_measured(Options& options, const std::string&) {
+Wrong parse_as_measured(Options& options, const std::string&) {
   options.manner = Manner::AsMeasured;
   options.run.renames = false;
   return std::nullopt;
@@ -524,7 +524,7 @@ Wrong take_as_measured(Options& options, const std::string&) {
            {"--transcript-mb", "N", "save no more map pictures when the transcript has N MB (2000)",
             number<0UL, UINT32_MAX>(options.transcript_megabytes)},
            {"--as-measured", "", "behave like the public test servers instead of the ICD",
-            take<take_as_measured>(options)},
+            set_by<parse_as_measured>(options)},
            {"--slash", "", "redirect a path without a trailing slash to the path with one", &options.slash},
            {"--serial", "", "serve one connection of each endpoint at a time, until it is closed",
             &options.serial},
@@ -538,7 +538,7 @@ Wrong take_as_measured(Options& options, const std::string&) {
            {"--rate", "HZ|api",
             "answer 429 above this rate, for each URI (1; 0: no limit); api: 1 Hz, with one limit for "
             "statuses and reports together",
-            take<take_rate>(options)},
+            set_by<parse_rate>(options)},
            {"--counts", "WHAT",
             "starts, last-bytes or answers: where --rate measures the interval between two maps, states or "
             "markers messages",
@@ -593,7 +593,7 @@ int complain(const std::string& why) {
   return kWrongUse;
 }
 
-Told tell_faults(const Options& options, Faults& faults) {
+OrderResult tell_faults(const Options& options, Faults& faults) {
   for (const std::string& text : options.faults) {
     if (auto told = faults.tell(text); !told) return std::unexpected("--fault: " + told.error());
   }
@@ -631,7 +631,7 @@ using Servers = std::vector<std::pair<const char*, std::unique_ptr<Server>>>;  /
 std::expected<Servers, std::string> listen(const Options& options, CommandPost& post) {
   Servers servers;
   const auto add = [&](const char* name, const Address& address, const WireManner& manner,
-                       Decide decide) -> Told {
+                       Decide decide) -> OrderResult {
     auto server = Server::listen(address, manner, std::move(decide));
     if (!server) return wrong(name, ": ", server.error());
     servers.emplace_back(name, *std::move(server));
@@ -665,7 +665,7 @@ bool stop_all(const Servers& servers) {
   constexpr std::chrono::milliseconds patience{250};
   for (const auto& [name, server] : servers) server->stop();
   bool drained = true;
-  for (const auto& [name, server] : servers) drained = server->drained(patience) && drained;
+  for (const auto& [name, server] : servers) drained = server->wait_until_drained(patience) && drained;
   return drained;
 }
 

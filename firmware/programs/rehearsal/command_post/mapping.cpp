@@ -31,9 +31,9 @@ class StampOrder {
     for (const Stamp& stamp : stamps) {
       if (stamp.seconds < latest && forward) {
         forward = false;
-        findings.breaks(stamp.path + ": runs backward, " + line_of(Json(stamp.seconds)) + " after " +
-                            line_of(Json(latest)) + " (ICD 6.2)",
-                        Measured::Takes);
+        findings.add_violation(stamp.path + ": runs backward, " + line_of(Json(stamp.seconds)) + " after " +
+                                   line_of(Json(latest)) + " (ICD 6.2)",
+                               Measured::Takes);
       }
       latest = std::max(latest, stamp.seconds);
     }
@@ -70,9 +70,9 @@ class StrictMapping : public Endpoint {
     std::optional<MappingMessage> message;
     if (decisive() == nullptr) message = read_mapping(request.body, format_of(request), judgement);
     if (message && decisive() == nullptr) stamps_.check(judgement.uri, message->stamps, false, findings);
-    judgement.outcome = decisive() != nullptr ? refused(*decisive())
-                        : message             ? answered(200, Json(nullptr))
-                                              : refused(422, kUnreadable);
+    judgement.outcome = decisive() != nullptr ? answer_refusal(*decisive())
+                        : message             ? answer_with(200, Json(nullptr))
+                                              : answer_refusal(422, kUnreadable);
     if (message && decisive() == nullptr) judgement.accepted = *std::move(message);
   }
 
@@ -102,7 +102,7 @@ std::expected<std::string, InflateFault> read_body(const Request& request) {
 }
 
 Outcome outcome_of(const Finding& finding) {
-  Outcome outcome = closing(refused(finding));
+  Outcome outcome = closing(answer_refusal(finding));
   if (finding.measured == Measured::Dies) outcome.kind = Outcome::Kind::Dies;
   if (finding.measured == Measured::Hangs) outcome.kind = Outcome::Kind::Hangs;
   return outcome;
@@ -122,7 +122,7 @@ class MeasuredMapping : public Endpoint {
     if (!known) {
       judgement.outcome = not_implemented();
     } else if (!found.empty()) {  // its match of the whole Authorization header is exact, as ours is
-      judgement.outcome = closing(refused(found.front()));
+      judgement.outcome = closing(answer_refusal(found.front()));
     } else {
       judge_body(request, judgement);
     }
@@ -134,12 +134,12 @@ class MeasuredMapping : public Endpoint {
     Findings& findings = judgement.findings;
     check_content(request, true, findings);
     if (request.content_type != "application/json" && request.content_type != "application/cbor") {
-      judgement.outcome = closing(refused(422, "Unknown Content-Type"));
+      judgement.outcome = closing(answer_refusal(422, "Unknown Content-Type"));
       return;
     }
     const auto body = read_body(request);
     if (!body) {
-      judgement.outcome = closing(refused(400, "The body is not what Content-Encoding says"));
+      judgement.outcome = closing(answer_refusal(400, "The body is not what Content-Encoding says"));
       return;
     }
     auto message = read_mapping(*body, format_of(request), judgement);
@@ -148,14 +148,14 @@ class MeasuredMapping : public Endpoint {
       return;
     }
     if (!message) {
-      judgement.outcome = closing(refused(422, kUnreadable));
+      judgement.outcome = closing(answer_refusal(422, kUnreadable));
       return;
     }
     stamps_.check(judgement.uri, message->stamps, true, findings);
-    judgement.outcome = answered(200, Json(nullptr));
+    judgement.outcome = answer_with(200, Json(nullptr));
     if (message->map && std::holds_alternative<Cloud>(message->map->msg)) {
       // Too many clouds are answered with 429, and accepted: each counts.
-      if (cloud_limit_.is_too_soon(request)) judgement.outcome = closing(refused(429, kTooManyClouds));
+      if (cloud_limit_.is_too_soon(request)) judgement.outcome = closing(answer_refusal(429, kTooManyClouds));
       cloud_limit_.count(request);
     }
     judgement.accepted = *std::move(message);

@@ -31,7 +31,7 @@ std::optional<Grid> read_grid(const Field& msg) {
   const auto rows = info->integer("height", 1, UINT32_MAX);
   const auto pose = info->member("origin").and_then(read_pose);
   if (!metres || !columns || !rows || !pose) return std::nullopt;
-  if (*metres <= 0) info->member("resolution")->breaks("expected more than 0", Measured::Takes);
+  if (*metres <= 0) info->member("resolution")->add_violation("expected more than 0", Measured::Takes);
   return Grid{*metres, static_cast<std::uint32_t>(*columns), static_cast<std::uint32_t>(*rows), *pose};
 }
 
@@ -51,7 +51,7 @@ bool check_ends(const Cloud& cloud, const Field& fields) {
     const CloudField& field = cloud.fields[i];
     const std::uint64_t end = field.offset + std::uint64_t{field.count} * size_of_datatype(field.datatype);
     if (end <= cloud.point_step) continue;
-    fields.findings().breaks(
+    fields.findings().add_violation(
         sentence(fields.path(), "[", i, "]: ends at byte ", end, " of a point of ", cloud.point_step));
     return false;
   }
@@ -65,16 +65,16 @@ bool check_axes(const Cloud& cloud, const Field& fields) {
     const auto named = [axis](const CloudField& field) { return field.name == axis; };
     const auto found = std::ranges::find_if(cloud.fields, named);
     if (found == cloud.fields.end()) {
-      fields.breaks("expected x, y and z, found no " + std::string(axis));
+      fields.add_violation("expected x, y and z, found no " + std::string(axis));
       return false;
     }
     if (std::ranges::count_if(cloud.fields, named) > 1) {
-      fields.breaks("more than one field " + std::string(axis), Measured::Takes);
+      fields.add_violation("more than one field " + std::string(axis), Measured::Takes);
     }
-    if (found->count != 1) fields.breaks("expected count 1 of " + std::string(axis), Measured::Takes);
+    if (found->count != 1) fields.add_violation("expected count 1 of " + std::string(axis), Measured::Takes);
     if ((found->datatype != kFloat32 && found->datatype != kFloat64) ||
         (common != 0 && found->datatype != common)) {
-      fields.breaks("expected x, y and z all of datatype 7 or all of 8");
+      fields.add_violation("expected x, y and z all of datatype 7 or all of 8");
       return false;
     }
     common = found->datatype;
@@ -104,7 +104,7 @@ std::optional<Cloud> read_cloud(const Field& msg) {
     if (!field) return std::nullopt;
     cloud.fields.push_back(std::move(*field));
   }
-  if (*bytes == 0) return step->breaks("expected at least 1, got 0", Measured::Dies);
+  if (*bytes == 0) return step->add_violation("expected at least 1, got 0", Measured::Dies);
   cloud.point_step = static_cast<std::uint32_t>(*bytes);
   if (!check_ends(cloud, *fields) || !check_axes(cloud, *fields)) return std::nullopt;
   return cloud;
@@ -116,8 +116,9 @@ void check_rows(const Field& msg, const Cloud& cloud) {
   if (!width || !row_step || !width->value().is_number_integer()) return;
   const auto expected = width->value().get<std::uint64_t>() * cloud.point_step;
   if (row_step->value() == Json(expected)) return;
-  row_step->breaks(sentence("expected width * point_step = ", expected, ", got ", line_of(row_step->value())),
-                   Measured::Takes);
+  row_step->add_violation(
+      sentence("expected width * point_step = ", expected, ", got ", line_of(row_step->value())),
+      Measured::Takes);
 }
 
 double coordinate(const char* bytes, std::size_t size, bool bigendian) {
@@ -133,14 +134,15 @@ double coordinate(const char* bytes, std::size_t size, bool bigendian) {
 /// ICD 6.3.2: clouds are dense.
 void check_points(const Cloud& cloud, const std::string& data, const Field& msg) {
   if (data.contains(kRowPadding)) {
-    msg.findings().breaks("msg.data: the padding between a robot's rows arrived as points", Measured::Takes);
+    msg.findings().add_violation("msg.data: the padding between a robot's rows arrived as points",
+                                 Measured::Takes);
   }
   for (std::size_t at = 0; at + cloud.point_step <= data.size(); at += cloud.point_step) {
     for (const CloudField& field : cloud.fields) {
       if (field.name != "x" && field.name != "y" && field.name != "z") continue;
       const std::size_t size = size_of_datatype(field.datatype);
       if (std::isfinite(coordinate(data.data() + at + field.offset, size, cloud.is_bigendian))) continue;
-      return msg.findings().breaks(
+      return msg.findings().add_violation(
           sentence("msg.data: point ", at / cloud.point_step, " has no finite ", field.name, " (ICD 6.3.2)"),
           Measured::Takes);
     }
@@ -150,24 +152,24 @@ void check_points(const Cloud& cloud, const std::string& data, const Field& msg)
 /// ICD 6.3 (a) and (b): base64 in JSON, a byte string in CBOR.
 std::optional<std::string> read_bytes(const Field& data, Format format) {
   if (format == Format::CborBytes) {
-    if (!data.value().is_binary()) return data.breaks("expected a byte string (ICD 6.3 b)");
+    if (!data.value().is_binary()) return data.add_violation("expected a byte string (ICD 6.3 b)");
     const auto& binary = data.value().get_binary();
     return std::string(binary.begin(), binary.end());
   }
-  if (!data.value().is_string()) return data.breaks("expected a base64 string (ICD 6.3 a)");
+  if (!data.value().is_string()) return data.add_violation("expected a base64 string (ICD 6.3 a)");
   auto bytes = base64_decoded(data.value().get_ref<const std::string&>());
-  if (!bytes) return data.breaks("expected padded base64 (RFC 4648) without white space");
+  if (!bytes) return data.add_violation("expected padded base64 (RFC 4648) without white space");
   return bytes;
 }
 
-std::optional<std::string> inflated(const Field& data, std::string_view bytes, std::size_t most) {
+std::optional<std::string> inflate_data(const Field& data, std::string_view bytes, std::size_t most) {
   auto whole = gunzip(bytes, most);
   if (whole) return std::move(*whole);
   if (whole.error() == InflateFault::TooLarge)
-    return data.breaks(sentence("inflates to more than ", most, " bytes"));
+    return data.add_violation(sentence("inflates to more than ", most, " bytes"));
   if (whole.error() == InflateFault::Followed)
-    return data.breaks("bytes after the end of the one gzip member", Measured::Hangs);
-  return data.breaks("expected a complete gzip member (RFC 1952)");
+    return data.add_violation("bytes after the end of the one gzip member", Measured::Hangs);
+  return data.add_violation("expected a complete gzip member (RFC 1952)");
 }
 
 /// `data` and `compression`; `most`: how many bytes it may inflate to.
@@ -176,21 +178,22 @@ std::optional<std::string> read_data(const Field& msg, Format format, std::size_
   if (const auto field = msg.optional_member("compression")) {
     const auto text = field->to_text();
     if (!text) return std::nullopt;
-    if (*text != "none" && *text != "gzip") return field->breaks("expected \"none\" or \"gzip\" (ICD 6.3)");
+    if (*text != "none" && *text != "gzip")
+      return field->add_violation("expected \"none\" or \"gzip\" (ICD 6.3)");
     compression = *text;
   }
   const auto data = msg.member("data");
   auto bytes = data ? read_bytes(*data, format) : std::nullopt;
   if (!bytes || compression == "none") return bytes;
-  return inflated(*data, *bytes, most);
+  return inflate_data(*data, *bytes, most);
 }
 
 /// ICD 6.3.1: one byte for each cell, each 0 to 100 or 255.
 bool check_cells(const Grid& grid, const std::string& cells, const Field& msg) {
   const std::uint64_t expected = std::uint64_t{grid.width} * grid.height;
   if (cells.size() != expected) {
-    msg.findings().breaks(sentence("msg.data: expected ", grid.width, " x ", grid.height, " = ", expected,
-                                   " bytes, got ", cells.size()));
+    msg.findings().add_violation(sentence("msg.data: expected ", grid.width, " x ", grid.height, " = ",
+                                          expected, " bytes, got ", cells.size()));
     return false;
   }
   const auto wrong = std::ranges::find_if(cells, [](char c) {
@@ -198,9 +201,10 @@ bool check_cells(const Grid& grid, const std::string& cells, const Field& msg) {
     return cell > 100 && cell < 255;
   });
   if (wrong != cells.end()) {
-    msg.findings().breaks(sentence("msg.data[", wrong - cells.begin(), "]: expected 0 to 100 or 255, got ",
-                                   static_cast<unsigned char>(*wrong)),
-                          Measured::Takes);
+    msg.findings().add_violation(
+        sentence("msg.data[", wrong - cells.begin(), "]: expected 0 to 100 or 255, got ",
+                 static_cast<unsigned char>(*wrong)),
+        Measured::Takes);
   }
   return true;
 }
@@ -208,12 +212,12 @@ bool check_cells(const Grid& grid, const std::string& cells, const Field& msg) {
 std::optional<std::string> read_name(const Field& body) {
   const auto name = body.optional_member("name");
   if (!name) {
-    body.findings().displeases("Missing field 'name'");
+    body.findings().add_measured_refusal("Missing field 'name'");
     return "";
   }
   auto text = name->to_text();
   if (text && !text->empty() && !is_robot_name(*text)) {
-    name->breaks("expected 1 to 10 letters, digits and underscores (ICD 2)", Measured::Takes);
+    name->add_violation("expected 1 to 10 letters, digits and underscores (ICD 2)", Measured::Takes);
   }
   return text;
 }
@@ -223,7 +227,7 @@ std::optional<MapMessage> read_grid_message(const Field& msg, Format format, Map
   if (!grid) return std::nullopt;
   const std::uint64_t cells = std::uint64_t{grid->width} * grid->height;
   if (cells > kMostMapBytes) {
-    msg.findings().breaks(sentence("msg.info: more than ", kMostMapBytes, " cells"));
+    msg.findings().add_violation(sentence("msg.info: more than ", kMostMapBytes, " cells"));
     return std::nullopt;
   }
   auto data = read_data(msg, format, cells);
@@ -239,7 +243,7 @@ std::optional<MapMessage> read_cloud_message(const Field& msg, Format format, Ma
   auto data = read_data(msg, format, kMostMapBytes);
   if (!data) return std::nullopt;
   if (data->size() % cloud->point_step != 0) {
-    msg.findings().breaks(
+    msg.findings().add_violation(
         sentence("msg.data: ", data->size(), " bytes are not a multiple of point_step ", cloud->point_step),
         Measured::Takes);
   }
@@ -283,7 +287,8 @@ bool read_color(const Field& color) {
   for (const char* const name : {"r", "g", "b", "a"}) {
     const auto value = color.number(name);
     if (!value) return false;
-    if (*value < 0 || *value > 1) color.member(name)->breaks("expected 0 to 1 (ICD 6.6)", Measured::Takes);
+    if (*value < 0 || *value > 1)
+      color.member(name)->add_violation("expected 0 to 1 (ICD 6.6)", Measured::Takes);
   }
   return true;
 }
@@ -295,12 +300,12 @@ void check_lifetime(const Field& lifetime) {
     for (const char* const name : {"secs", "nsecs"}) {
       const auto part = lifetime.optional_member(name);
       if (!part || !part->value().is_number_integer() || part->value().get<double>() < 0) {
-        lifetime.breaks("expected integers secs and nsecs", Measured::Takes);
+        lifetime.add_violation("expected integers secs and nsecs", Measured::Takes);
         return;
       }
     }
   } else if (!value.is_number() || !(value.get<double>() >= 0)) {
-    lifetime.breaks("expected seconds from 0", Measured::Takes);
+    lifetime.add_violation("expected seconds from 0", Measured::Takes);
   }
 }
 
@@ -308,8 +313,8 @@ void check_lifetime(const Field& lifetime) {
 std::optional<MarkerChange> read_identity(const Field& marker) {
   const auto ns = marker.optional_member("ns");
   const auto id = marker.optional_member("id");
-  if (!ns) marker.findings().displeases("Missing field '" + marker.path() + ".ns'");
-  if (!id) marker.findings().displeases("Missing field '" + marker.path() + ".id'");
+  if (!ns) marker.findings().add_measured_refusal("Missing field '" + marker.path() + ".ns'");
+  if (!id) marker.findings().add_measured_refusal("Missing field '" + marker.path() + ".id'");
   const auto number = id ? id->integer(INT32_MIN, INT32_MAX) : 0;
   const auto text = ns ? ns->to_text() : std::string();
   if (!number || !text) return std::nullopt;
@@ -327,7 +332,7 @@ void check_colors(const Field& colors, std::size_t points, std::int64_t type) {
   const bool has_use = (type >= kLineStrip && type <= kPoints) || type == kTriangleList;
   const bool for_triangles = type == kTriangleList && elements->size() == points / 3;
   if (has_use && !elements->empty() && elements->size() != points && !for_triangles) {
-    colors.breaks("expected none or one for each point", Measured::Takes);
+    colors.add_violation("expected none or one for each point", Measured::Takes);
   }
 }
 
@@ -370,13 +375,13 @@ void check_alpha(const Field& marker) {
   const bool by_mesh =
       all.contains("mesh_use_embedded_materials") && all["mesh_use_embedded_materials"] == true;
   if (by_color || by_points || by_mesh) return;
-  marker.findings().tells(marker.path() + ".color.a: a marker with 0 is invisible (ICD 6.6)");
+  marker.findings().add_remark(marker.path() + ".color.a: a marker with 0 is invisible (ICD 6.6)");
 }
 
 /// A display cannot show these, or shows them wrongly.
 void check_sense(const Field& marker, std::int64_t type) {
   const Json& all = marker.value();
-  const auto told = [&](const char* sentence) { marker.findings().tells(marker.path() + sentence); };
+  const auto told = [&](const char* sentence) { marker.findings().add_remark(marker.path() + sentence); };
   if (type == kLineList && all.contains("points") && all["points"].size() % 2 != 0)
     told(".points: a line list has two points for each line");
   if (type == kText && (!all.contains("text") || all["text"] == ""))
@@ -395,7 +400,7 @@ bool read_marker(const Field& marker, MappingMessage& message) {
   const auto kind = marker.integer("action", 0, 3);
   const auto place = marker.member("pose").and_then(read_pose);
   if (!change || !shape || !kind || !place) return false;
-  if (*kind == 1) marker.member("action")->breaks("expected 0, 2 or 3 (ICD 6.6)", Measured::Takes);
+  if (*kind == 1) marker.member("action")->add_violation("expected 0, 2 or 3 (ICD 6.6)", Measured::Takes);
   check_looks(marker);
   check_geometry(marker, *shape);
   if (*kind == 0) {
@@ -424,7 +429,7 @@ std::optional<MappingMessage> read_state(Json& document, Format /*format*/, Find
   const Field body(document, "", findings);
   if (!body.is_object()) return std::nullopt;
   MappingMessage message;
-  if (!body.optional_member("header")) findings.displeases("Missing field 'header'");
+  if (!body.optional_member("header")) findings.add_measured_refusal("Missing field 'header'");
   read_header(body, message.stamps);
   const auto elements = body.member("poses").and_then(&Field::elements);
   if (!elements) return std::nullopt;
@@ -433,8 +438,8 @@ std::optional<MappingMessage> read_state(Json& document, Format /*format*/, Find
     const auto place = read_pose(pose);
     if (!name || !place) return std::nullopt;
     if (!is_robot_name(*name)) {
-      pose.member("name")->breaks("expected 1 to 10 letters, digits and underscores (ICD 2)",
-                                  Measured::Takes);
+      pose.member("name")->add_violation("expected 1 to 10 letters, digits and underscores (ICD 2)",
+                                         Measured::Takes);
     }
     message.parts.push_back({"pose", *name});
   }
@@ -465,7 +470,7 @@ std::optional<MapMessage> read_map(const Json& document, Format format, Findings
   read_header(*msg, message.stamps);
   if (*kind == "OccupancyGrid") return read_grid_message(*msg, format, std::move(message));
   if (*kind == "PointCloud2") return read_cloud_message(*msg, format, std::move(message));
-  return type->breaks("expected \"OccupancyGrid\" or \"PointCloud2\" (ICD 6.4)");
+  return type->add_violation("expected \"OccupancyGrid\" or \"PointCloud2\" (ICD 6.4)");
 }
 
 std::optional<MappingMessage> read_mapping(const std::string& body, Format format, Judgement& judgement) {
@@ -473,11 +478,11 @@ std::optional<MappingMessage> read_mapping(const std::string& body, Format forma
   auto read = read_document(body, format);
   if (!read) {
     const std::string name = format == Format::JsonText ? "JSON" : "CBOR";
-    findings.breaks(name + " parsing failed: " + read.error(), Measured::Refuses, 400);
+    findings.add_violation(name + " parsing failed: " + read.error(), Measured::Refuses, 400);
     return std::nullopt;
   }
   if (const auto& repeated = read->repeated) {
-    findings.breaks("'" + *repeated + "' is given twice", Measured::Takes);
+    findings.add_violation("'" + *repeated + "' is given twice", Measured::Takes);
   }
   Json& document = judgement.message.emplace(std::move(read->value));
   if (document.is_object() && document.empty()) return std::nullopt;  // asks if the token is accepted

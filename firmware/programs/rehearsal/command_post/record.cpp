@@ -455,7 +455,7 @@ double seconds(Milliseconds time) {
 }
 
 /// "12.3", or "-" without a value.
-std::string written(const OrderedJson& value, int digits) {
+std::string decimal_text(const OrderedJson& value, int digits) {
   if (value.is_null()) return "-";
   std::array<char, 32> text{};
   (void)std::snprintf(text.data(), text.size(), "%.*f", digits, value.get<double>());
@@ -463,7 +463,7 @@ std::string written(const OrderedJson& value, int digits) {
 }
 
 std::string percent(const OrderedJson& share) {
-  return share.is_null() ? "-" : written(100 * share.get<double>(), 1) + "%";
+  return share.is_null() ? "-" : decimal_text(100 * share.get<double>(), 1) + "%";
 }
 
 }  // namespace
@@ -483,7 +483,7 @@ double Arrivals::Arrived::age(double share) const {
   return 0;
 }
 
-Arrivals::Arrived* Arrivals::arrived(const std::string& robot, const std::string& kind) {
+Arrivals::Arrived* Arrivals::find_arrived(const std::string& robot, const std::string& kind) {
   const Source source{robot, kind};
   if (arrived_.size() >= kMostSources && !arrived_.contains(source)) return nullptr;
   return &arrived_[source];
@@ -494,7 +494,7 @@ void Arrivals::note(const MapMessage& map, Moment now) {
   if (!dates) return;
   const std::lock_guard lock(mutex_);
   const auto* const grid = std::get_if<Grid>(&map.msg);
-  Arrived* const here = arrived(map.name, grid != nullptr ? "grid" : "cloud");
+  Arrived* const here = find_arrived(map.name, grid != nullptr ? "grid" : "cloud");
   if (here == nullptr) return;
   ++here->maps;
   const auto age = std::chrono::floor<Milliseconds>(now - dates->newest);
@@ -525,7 +525,7 @@ void Arrivals::note(const std::vector<MarkerChange>& changes, Findings& findings
   }
   for (std::size_t id = changes.size(); id < before_; ++id) {
     if (standing_.erase({"", static_cast<std::int64_t>(id)}) == 0) continue;
-    findings.tells(
+    findings.add_remark(
         icd::sentence("markers: the organiser's display deletes id ", id,
                       " of an empty ns because this message has fewer markers than the previous one"));
   }
@@ -538,7 +538,7 @@ bool Arrivals::told_maps(const Field& row) {
   const auto told_places = row.optional_member("places");
   const auto places = told_places ? told_places->integer(0, INT64_MAX) : 0;
   if (!robot || !kind || !amount || !newest || !places) return false;
-  if (Arrived* const here = arrived(*robot, *kind)) {
+  if (Arrived* const here = find_arrived(*robot, *kind)) {
     here->posted = {.amount = static_cast<std::uint64_t>(*amount),
                     .places = static_cast<std::uint64_t>(*places),
                     .newest = Moment(Milliseconds(*newest))};
@@ -560,7 +560,7 @@ bool Arrivals::told_markers(const Field& row, const Field& standing) {
   return true;
 }
 
-std::expected<void, std::string> Arrivals::told(const Json& posted) {
+std::expected<void, std::string> Arrivals::set_expected(const Json& posted) {
   Findings findings;
   const auto rows = Field(posted, "", findings).elements().value_or(std::vector<Field>{});
   const std::lock_guard lock(mutex_);
@@ -644,7 +644,7 @@ std::string Arrivals::table() const {
                         static_cast<unsigned long long>(row["maps"].get<std::uint64_t>()));
     text += line.data();
     for (const char* const age : {"p50", "p99", "most", "behind"})
-      text += aligned_right(written(row[age], 2), kColumn);
+      text += aligned_right(decimal_text(row[age], 2), kColumn);
     for (const char* const share : {"share", "places"}) text += aligned_right(percent(row[share]), kColumn);
     text += "\n";
   }

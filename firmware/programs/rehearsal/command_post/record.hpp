@@ -120,7 +120,7 @@ class Arrivals {
   /// date in milliseconds since 1970; and what should stand, of each robot:
   /// {"robot": "r1", "kind": "markers", "standing": [{"ns": "r1/path", "id": 3, "x": METRES}]}. The error is
   /// a sentence that names the field.
-  std::expected<void, std::string> told(const Json& posted);
+  std::expected<void, std::string> set_expected(const Json& posted);
 
   /// "maps", an object for each robot and kind, ages in seconds (README.md, 'How old'); and "markers": how
   /// many stand, how many should, and sentences about the first that differ.
@@ -150,7 +150,7 @@ class Arrivals {
   using Key = std::pair<std::string, std::int64_t>;    // ns, id
   using Places = std::map<Key, double>;                // x of each, metres
 
-  Arrived* arrived(const std::string& robot, const std::string& kind);
+  Arrived* find_arrived(const std::string& robot, const std::string& kind);
   bool told_maps(const Field& row);
   bool told_markers(const Field& row, const Field& standing);
   std::vector<std::string> differences() const;

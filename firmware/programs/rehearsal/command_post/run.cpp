@@ -17,10 +17,10 @@ constexpr double kScoringDistance = 5.0;  // metres, by the competition's rules
 
 std::optional<Artifact> artifact_of(std::string_view line) {
   if (std::ranges::count(line, ',') != 3) return std::nullopt;
-  const std::string type(icd::trimmed(icd::cut(line, ',')));
+  const std::string type(icd::trim(icd::cut(line, ',')));
   const auto metres = [&line] {
     constexpr double most = std::numeric_limits<double>::max();
-    return number_of(icd::trimmed(icd::cut(line, ',')), -most, most);
+    return number_of(icd::trim(icd::cut(line, ',')), -most, most);
   };
   const auto x = metres(), y = metres(), z = metres();
   if (!is_artifact_type(type) || !x || !y || !z) return std::nullopt;
@@ -63,10 +63,10 @@ std::expected<std::vector<Artifact>, std::string> read_artifacts(const std::stri
   std::ifstream file(path);
   std::string line;
   if (!std::getline(file, line)) return std::unexpected(path + ": cannot be read");
-  if (icd::trimmed(line) != "type,x,y,z") return std::unexpected(path + ":1: expected the header type,x,y,z");
+  if (icd::trim(line) != "type,x,y,z") return std::unexpected(path + ":1: expected the header type,x,y,z");
   std::vector<Artifact> artifacts;
   for (int number = 2; std::getline(file, line); ++number) {
-    if (icd::trimmed(line).empty()) continue;
+    if (icd::trim(line).empty()) continue;
     auto artifact = artifact_of(line);
     if (!artifact) {
       return std::unexpected(icd::sentence(

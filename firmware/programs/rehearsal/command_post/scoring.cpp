@@ -22,10 +22,11 @@ std::optional<Artifact> read_report(const Json& document, Findings& findings) {
   const auto type = body.member("type");
   const auto text = type.and_then(&Field::to_text);
   if (text && !is_artifact_type(*text))
-    type->breaks("expected an artifact type of the final event (ICD 5.2)");
+    type->add_violation("expected an artifact type of the final event (ICD 5.2)");
   const auto name = body.optional_member("name");
   const auto robot = name.and_then(&Field::to_text);
-  if (robot && !is_robot_name(*robot)) name->breaks("expected a robot's name (ICD 2)", Measured::Takes);
+  if (robot && !is_robot_name(*robot))
+    name->add_violation("expected a robot's name (ICD 2)", Measured::Takes);
   if (!position || !text) return std::nullopt;
   return Artifact{*text, *position};
 }
@@ -43,9 +44,10 @@ OrderedJson status_body(const Run& run, Clock::time_point now) {
 void answer_report(const Run::Ruling& ruling, const Json& sent, const std::string& authority,
                    Judgement& judgement) {
   if (ruling.repeats != 0)
-    judgement.findings.tells(icd::sentence("the same report as report ", ruling.repeats, " of this run"));
+    judgement.findings.add_remark(
+        icd::sentence("the same report as report ", ruling.repeats, " of this run"));
   judgement.report = report_body(ruling, sent, authority);
-  judgement.outcome = answered(201, *judgement.report);
+  judgement.outcome = answer_with(201, *judgement.report);
   judgement.accepted.parts.push_back({"report", ""});
 }
 
@@ -60,7 +62,7 @@ class StrictScoring : public Endpoint {
     RateLimit* const limit = is_status && !one_limit_ ? &status_limit_ : &report_limit_;
     if (!admit(request, kScoringFunctions, token_, limit, judgement)) return judgement;
     if (is_status) {
-      judgement.outcome = answered(200, status_body(run_, Clock::now()));
+      judgement.outcome = answer_with(200, status_body(run_, Clock::now()));
     } else {
       classify_report(request, judgement);
     }
@@ -75,18 +77,19 @@ class StrictScoring : public Endpoint {
     std::optional<Artifact> sent;
     if (document) {
       judgement.message = document->value;
-      if (const auto& repeated = document->repeated) findings.breaks("'" + *repeated + "' is given twice");
+      if (const auto& repeated = document->repeated)
+        findings.add_violation("'" + *repeated + "' is given twice");
       sent = read_report(document->value, findings);
     } else {
-      findings.breaks("JSON parsing failed: " + document.error(), Measured::Refuses, 400);
+      findings.add_violation("JSON parsing failed: " + document.error(), Measured::Refuses, 400);
     }
     if (const Finding* const finding = findings.decisive(Manner::Strict)) {
-      judgement.outcome = refused(*finding);
+      judgement.outcome = answer_refusal(*finding);
     } else if (sent) {
       answer_report(run_.submit(sent->type, sent->position, Clock::now()), document->value,
                     request.local_address, judgement);
     } else {
-      judgement.outcome = refused(422, "The report could not be read");
+      judgement.outcome = answer_refusal(422, "The report could not be read");
     }
   }
 
@@ -126,7 +129,7 @@ class MeasuredScoring : public Endpoint {
       judgement.outcome = preflight();
     } else {
       check_entry(request, kScoringFunctions, token_, judgement.findings);
-      const std::string_view path = without_slash(request.path);
+      const std::string_view path = strip_slash(request.path);
       if (path == kStatusUri || path == kReportsUri) {
         judgement.uri = path;
         judge_known(request, judgement);
@@ -141,17 +144,17 @@ class MeasuredScoring : public Endpoint {
  private:
   void judge_known(const Request& request, Judgement& judgement) {
     if (!shows(request.authorization, token_)) {
-      judgement.outcome = detailed(
+      judgement.outcome = answer_with_detail(
           401, request.authorization ? kInvalidToken : "Authentication credentials were not provided.");
       judgement.outcome.answer.headers.emplace_back("WWW-Authenticate", "Bearer");
     } else if (limit_.is_too_soon(request)) {
-      judgement.outcome = detailed(429, kThrottled);
+      judgement.outcome = answer_with_detail(429, kThrottled);
     } else if (request.method != (judgement.uri == kStatusUri ? "GET" : "POST")) {
-      judgement.outcome = detailed(405, "Method \"" + request.method + "\" not allowed.");
+      judgement.outcome = answer_with_detail(405, "Method \"" + request.method + "\" not allowed.");
     } else if (judgement.uri == kStatusUri) {
       OrderedJson body = status_body(run_, Clock::now());
       body["run_clock"] = kMeasuredStatusClock;
-      judgement.outcome = answered(200, body);
+      judgement.outcome = answer_with(200, body);
     } else {
       classify_report(request, judgement);
     }
@@ -160,13 +163,13 @@ class MeasuredScoring : public Endpoint {
   void classify_report(const Request& request, Judgement& judgement) {
     check_content(request, false, judgement.findings);
     if (!is_json(request.content_type)) {
-      judgement.outcome = detailed(415, "Unsupported media type in request.");
+      judgement.outcome = answer_with_detail(415, "Unsupported media type in request.");
       return;
     }
     const auto document = read_document(request.body, Format::JsonText);
     if (!document) {
-      judgement.findings.breaks("JSON parsing failed: " + document.error(), Measured::Refuses, 400);
-      judgement.outcome = detailed(400, "JSON parse error - " + document.error());
+      judgement.findings.add_violation("JSON parsing failed: " + document.error(), Measured::Refuses, 400);
+      judgement.outcome = answer_with_detail(400, "JSON parse error - " + document.error());
       return;
     }
     const Json& sent = document->value;
@@ -174,12 +177,12 @@ class MeasuredScoring : public Endpoint {
     for (const char* const name : {"x", "y", "z", "type"}) {
       if (sent.is_object() && sent.contains(name)) continue;
       const std::string sentence = std::string("Missing field: '") + name + "'";
-      judgement.findings.breaks(sentence);
-      judgement.outcome = refused(422, sentence);
+      judgement.findings.add_violation(sentence);
+      judgement.outcome = answer_refusal(422, sentence);
       return;
     }
     if (!sent["type"].is_string()) {  // its handler crashes
-      judgement.findings.breaks("type: expected a text string", Measured::Refuses, 500);
+      judgement.findings.add_violation("type: expected a text string", Measured::Refuses, 500);
       judgement.outcome = page(500, "Server Error (500)");
       return;
     }
@@ -189,11 +192,11 @@ class MeasuredScoring : public Endpoint {
     if (sent["x"].is_number() && sent["y"].is_number() && sent["z"].is_number()) {
       position = Vector3{sent["x"].get<double>(), sent["y"].get<double>(), sent["z"].get<double>()};
     } else {
-      judgement.findings.breaks("x, y, z: expected numbers", Measured::Takes);
+      judgement.findings.add_violation("x, y, z: expected numbers", Measured::Takes);
     }
     if (!is_artifact_type(type)) {
-      judgement.findings.breaks("type: expected an artifact type of the final event (ICD 5.2)",
-                                Measured::Takes);
+      judgement.findings.add_violation("type: expected an artifact type of the final event (ICD 5.2)",
+                                       Measured::Takes);
     }
     Run::Ruling ruling = run_.submit(type, position, Clock::now());
     ruling.clock = kMeasuredReportClock;

@@ -39,7 +39,7 @@ constexpr std::size_t kPiece = std::size_t{64} << 10;
 constexpr Milliseconds kForEver{-1};
 
 /// poll(2), again after a signal. Returns how many are ready, 0 after `patience`.
-int poll_again(std::array<pollfd, 2>& waited, Milliseconds patience) {
+int poll_retrying(std::array<pollfd, 2>& waited, Milliseconds patience) {
   int ready = -1;
   do {
     ready = ::poll(waited.data(), waited.size(), static_cast<int>(patience.count()));
@@ -100,7 +100,7 @@ std::string head_fault_of(const http::request_header<>& head) {
   return "";
 }
 
-void take_header(const Parser& parser, const WireManner& manner, Request& request) {
+void read_request_header(const Parser& parser, const WireManner& manner, Request& request) {
   const auto& message = parser.get();
   request.method = std::string(message.method_string());
   request.target = std::string(message.target());
@@ -181,7 +181,7 @@ class Connection {
   Event wait(short events, Milliseconds patience) const {
     const int socket = events != 0 ? socket_.get() : -1;
     std::array<pollfd, 2> waited = {pollfd{stop_event_, POLLIN, 0}, pollfd{socket, events, 0}};
-    if (poll_again(waited, patience) <= 0) return Event::Late;
+    if (poll_retrying(waited, patience) <= 0) return Event::Late;
     return waited[0].revents != 0 ? Event::Stopped : Event::Ready;
   }
 
@@ -196,7 +196,7 @@ class Connection {
     http::read_header(*this, buffer_, parser, error);
     request.at = Clock::now();
     if (!error) {
-      take_header(parser, manner_, request);
+      read_request_header(parser, manner_, request);
       if (request.expects_continue && manner_.answers_expect && !write("HTTP/1.1 100 Continue\r\n\r\n")) {
         request.fault = HttpFault{0, "The client closed the connection before 100 Continue"};
         return request;
@@ -308,7 +308,7 @@ void Server::stop() {
   ::eventfd_write(stop_event_.get(), 1);
 }
 
-bool Server::drained(std::chrono::milliseconds patience) {
+bool Server::wait_until_drained(std::chrono::milliseconds patience) {
   std::unique_lock lock(mutex_);
   return ended_.wait_for(lock, patience, [this] { return connections_ == 0; });
 }
@@ -316,7 +316,7 @@ bool Server::drained(std::chrono::milliseconds patience) {
 void Server::accept_all() {
   while (true) {
     std::array<pollfd, 2> waited = {pollfd{stop_event_.get(), POLLIN, 0}, pollfd{listener_.get(), POLLIN, 0}};
-    if (poll_again(waited, kForEver) < 0 || waited[0].revents != 0) return;
+    if (poll_retrying(waited, kForEver) < 0 || waited[0].revents != 0) return;
     loop::FileDescriptor socket(::accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC));
     if (!socket) {
       if ((waited[1].revents & (POLLHUP | POLLERR)) != 0) return;
@@ -339,7 +339,7 @@ void Server::begin(loop::FileDescriptor socket) {
     std::thread([this, held = std::move(socket)]() mutable { serve(std::move(held)); }).detach();
   } catch (const std::exception& error) {
     given_up(error.what());
-    over();
+    on_connection_ended();
   }
 }
 
@@ -350,11 +350,11 @@ void Server::serve(loop::FileDescriptor socket) {
   } catch (const std::exception& error) {  // memory that has run out
     given_up(error.what());
   }
-  over();
+  on_connection_ended();
 }
 
 /// A connection's last use of this object: a waiting thread may destroy the object once the lock is free.
-void Server::over() {
+void Server::on_connection_ended() {
   const std::lock_guard lock(mutex_);
   --connections_;
   ended_.notify_all();

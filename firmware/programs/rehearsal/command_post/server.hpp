@@ -79,14 +79,14 @@ class Server {
   void stop();
 
   /// Waits until the last connection has ended; false: not within `patience`.
-  bool drained(std::chrono::milliseconds patience);
+  bool wait_until_drained(std::chrono::milliseconds patience);
 
  private:
   Server(loop::FileDescriptor listener, loop::FileDescriptor stop_event, WireManner manner, Decide decide);
   void accept_all();
   void begin(loop::FileDescriptor socket);
   void serve(loop::FileDescriptor socket);
-  void over();
+  void on_connection_ended();
 
   loop::FileDescriptor listener_;
   loop::FileDescriptor stop_event_;  // readable from stop() on

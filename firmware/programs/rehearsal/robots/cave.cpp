@@ -46,9 +46,9 @@ void carve_disc(Hollow& hollow, double x, double y, double radius) {
 void carve_chamber(Hollow& hollow, const Chamber& chamber, Random& random) {
   carve_disc(hollow, chamber.x, chamber.y, chamber.radius);
   for (int bulge = 0; bulge < 4; ++bulge) {
-    const double angle = random.between(0, 2 * std::numbers::pi);
+    const double angle = random.uniform(0, 2 * std::numbers::pi);
     carve_disc(hollow, chamber.x + chamber.radius * std::cos(angle),
-               chamber.y + chamber.radius * std::sin(angle), chamber.radius * random.between(0.3, 0.6));
+               chamber.y + chamber.radius * std::sin(angle), chamber.radius * random.uniform(0.3, 0.6));
   }
 }
 
@@ -58,8 +58,8 @@ void carve_tunnel(Hollow& hollow, const Chamber& from, const Chamber& to, Random
   constexpr double kWander = std::numbers::pi / 3;
   double x = from.x, y = from.y, off = 0, radius = 1.2;
   while (std::hypot(to.x - x, to.y - y) > 1) {
-    off = std::clamp(off + random.between(-0.25, 0.25), -kWander, kWander);
-    radius = std::clamp(radius + random.between(-0.08, 0.08), 0.9, 1.8);
+    off = std::clamp(off + random.uniform(-0.25, 0.25), -kWander, kWander);
+    radius = std::clamp(radius + random.uniform(-0.08, 0.08), 0.9, 1.8);
     const double heading = std::atan2(to.y - y, to.x - x) + off;
     x += kStep * std::cos(heading);
     y += kStep * std::sin(heading);
@@ -88,12 +88,12 @@ std::vector<std::pair<std::size_t, std::size_t>> tunnels_between(const std::vect
     tunnels.push_back(best);
   }
   for (int extra = 0; extra < 4; ++extra) {
-    tunnels.emplace_back(random.below(chambers.size()), random.below(chambers.size()));
+    tunnels.emplace_back(random.uniform_index(chambers.size()), random.uniform_index(chambers.size()));
   }
   return tunnels;
 }
 
-int open_around(const Hollow& hollow, Cell cell) {
+int open_neighbours(const Hollow& hollow, Cell cell) {
   int open = 0;
   for (int dy = -1; dy <= 1; ++dy) {
     for (int dx = -1; dx <= 1; ++dx) open += hollow[{cell.x + dx, cell.y + dy}];
@@ -110,7 +110,7 @@ void weather(Hollow& hollow, Random& random) {
     for (std::size_t i = 0; i < lattice.size(); ++i) {
       const Cell cell = lattice.cell_at(i);
       if (!inside_rim(lattice, cell)) continue;
-      const int open = open_around(before, cell);
+      const int open = open_neighbours(before, cell);
       if (round < 2) {
         if (open > 0 && open < 9 && before[cell] == 0 && random.chance(0.25)) hollow[cell] = 1;
       } else {
@@ -146,10 +146,10 @@ std::vector<Chamber> spread_chambers(const Lattice& lattice, Random& random) {
   const double right = lattice.left + lattice.width * lattice.resolution;
   const double top = lattice.bottom + lattice.height * lattice.resolution;
   for (int attempt = 0; attempt < 2000 && chambers.size() < kChambers; ++attempt) {
-    const Chamber candidate{.x = random.between(lattice.left + kMargin, right - kMargin),
-                            .y = random.between(lattice.bottom + kMargin, top - kMargin),
-                            .floor = random.between(-6, 4),
-                            .radius = random.between(2.5, 6)};
+    const Chamber candidate{.x = random.uniform(lattice.left + kMargin, right - kMargin),
+                            .y = random.uniform(lattice.bottom + kMargin, top - kMargin),
+                            .floor = random.uniform(-6, 4),
+                            .radius = random.uniform(2.5, 6)};
     bool apart = true;
     for (const Chamber& other : chambers) apart = apart && distance(candidate, other) >= kSpacing;
     if (apart) chambers.push_back(candidate);
@@ -233,9 +233,9 @@ void Cave::place_artifacts(Random& random) {
     }
   }
   constexpr double kNear = 5.5;  // metres: the first is found at once, so that the shortest run reports
-  const std::size_t first_type = random.below(kArtifactTypes.size());
+  const std::size_t first_type = random.uniform_index(kArtifactTypes.size());
   for (int attempt = 0; attempt < 200'000 && artifacts_.size() < kArtifacts; ++attempt) {
-    const Vector3& place = places[random.below(places.size())];
+    const Vector3& place = places[random.uniform_index(places.size())];
     if (artifacts_.empty() && (std::hypot(place.x, place.y) > kNear || !can_see({}, place))) continue;
     const bool apart = std::ranges::all_of(artifacts_, [&](const Artifact& other) {
       return std::hypot(place.x - other.position.x, place.y - other.position.y) >= kApart;

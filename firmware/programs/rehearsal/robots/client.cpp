@@ -56,8 +56,8 @@ void list(std::string& text, std::string_view title, const Counts& counts) {
 constexpr std::chrono::seconds kReportPatience{30};
 constexpr std::chrono::seconds kPatience{5};
 
-bool is_success(Kind kind, int status) {
-  return status == 200 || (kind == Kind::Report && status == 201);
+bool is_success(MessageKind kind, int status) {
+  return status == 200 || (kind == MessageKind::Report && status == 201);
 }
 
 /// Whether Access-Control-Allow-Headers names `header`. By the Fetch standard "*" does not stand for
@@ -184,7 +184,7 @@ std::expected<void, std::string> check_status_answer(std::string_view body) {
   return {};
 }
 
-void Tally::count(Kind kind, Fate fate, const std::string& why) {
+void Tally::count(MessageKind kind, Fate fate, const std::string& why) {
   const std::scoped_lock lock(mutex_);
   ++rows_[static_cast<std::size_t>(kind)][static_cast<std::size_t>(fate)];
   const std::string what = icd::sentence(name_of(kind), ": ", why);
@@ -197,12 +197,12 @@ void Tally::report_came_to(const std::string& outcome) {
   add(reports_, outcome);
 }
 
-void Tally::failed(const std::string& what) {
+void Tally::count_failure(const std::string& what) {
   const std::scoped_lock lock(mutex_);
   add(failures_, what);
 }
 
-std::uint64_t Tally::accepted_of(Kind kind) const {
+std::uint64_t Tally::accepted_of(MessageKind kind) const {
   const std::scoped_lock lock(mutex_);
   return times(rows_[static_cast<std::size_t>(kind)], Fate::Accepted);
 }
@@ -218,7 +218,7 @@ std::string Tally::line() const {
   std::string text;
   for (std::size_t i = 0; i < kKinds; ++i) {
     if (times(rows_[i], Fate::Posted) == 0) continue;
-    text += icd::sentence(text.empty() ? "" : ", ", name_of(static_cast<Kind>(i)), " ",
+    text += icd::sentence(text.empty() ? "" : ", ", name_of(static_cast<MessageKind>(i)), " ",
                           times(rows_[i], Fate::Accepted), "/", times(rows_[i], Fate::Posted));
   }
   return text;
@@ -229,7 +229,7 @@ std::string Tally::summary() const {
   std::string text = "kind         posted  accepted       429  rejected  no answer\n";
   for (std::size_t i = 0; i < kKinds; ++i) {
     if (times(rows_[i], Fate::Posted) == 0) continue;
-    std::string row(name_of(static_cast<Kind>(i)));
+    std::string row(name_of(static_cast<MessageKind>(i)));
     row.resize(9, ' ');
     for (std::size_t fate = 0; fate < kFates; ++fate)
       row += aligned_right(std::to_string(rows_[i][fate]), fate + 1 < kFates ? 10 : 11);
@@ -251,9 +251,9 @@ Client::Client(const Post& post, std::string robot, const Style& style, Tally& t
       mapping_(post.mapping, stop_) {}
 
 std::optional<HttpReply> Client::send(const Message& message) {
-  const Kind kind = kind_of(message);
+  const MessageKind kind = kind_of(message);
   const HttpRequest request = encoder_.encode(message);
-  if (kind == Kind::Report || kind == Kind::Status) {
+  if (kind == MessageKind::Report || kind == MessageKind::Status) {
     // As teams' scripts do: a fresh connection for each call, so that no report is swallowed by an old one.
     Connection scoring(scoring_, stop_);
     return exchange(scoring, kind, request);
@@ -261,9 +261,10 @@ std::optional<HttpReply> Client::send(const Message& message) {
   return exchange(mapping_, kind, request);
 }
 
-std::optional<HttpReply> Client::exchange(Connection& connection, Kind kind, const HttpRequest& request) {
+std::optional<HttpReply> Client::exchange(Connection& connection, MessageKind kind,
+                                          const HttpRequest& request) {
   if (!may_send(connection, request)) return std::nullopt;
-  const bool report = kind == Kind::Report;
+  const bool report = kind == MessageKind::Report;
   tally_.count(kind, Fate::Posted);
   auto reply = connection.exchange(request, report ? kReportPatience : kPatience, report);
   if (!reply) {
@@ -279,16 +280,16 @@ std::optional<HttpReply> Client::exchange(Connection& connection, Kind kind, con
 
 bool Client::may_send(Connection& connection, const HttpRequest& request) {
   if (!style_.browser) return true;
-  tally_.count(Kind::Preflight, Fate::Posted);
+  tally_.count(MessageKind::Preflight, Fate::Posted);
   const auto reply = connection.exchange(Encoder::preflight(request), kPatience);
   if (!reply) {
-    tally_.count(Kind::Preflight, Fate::Unanswered, reply.error());
+    tally_.count(MessageKind::Preflight, Fate::Unanswered, reply.error());
     return false;
   }
   const bool allowed = reply->status >= 200 && reply->status < 300 &&
                        (reply->allowed_origin == "*" || reply->allowed_origin == Encoder::kOrigin) &&
                        allows(reply->allowed_headers, "authorization");
-  tally_.count(Kind::Preflight, allowed ? Fate::Accepted : Fate::Rejected,
+  tally_.count(MessageKind::Preflight, allowed ? Fate::Accepted : Fate::Rejected,
                icd::sentence(reply->status, " for ", request.method, " ", request.target));
   return allowed;
 }
@@ -331,7 +332,7 @@ void OperatorDesk::ask_status(const std::stop_token& abort) {
   const auto reply = client.send(StatusQuery{});
   if (!reply || reply->status != 200) return;  // counted by the client
   if (const auto status = check_status_answer(reply->body); !status)
-    tally_.failed("GET /api/status: " + status.error());
+    tally_.count_failure("GET /api/status: " + status.error());
 }
 
 void OperatorDesk::tell(const Finding& finding, const std::string& outcome) const {
@@ -362,7 +363,7 @@ void OperatorDesk::report(const Finding& finding, const std::stop_token& finish,
     }
     const auto outcome = parse_report_answer(reply->body);
     if (!outcome) {
-      tally_.failed("POST /api/artifact_reports: " + outcome.error());
+      tally_.count_failure("POST /api/artifact_reports: " + outcome.error());
       return tell(finding, outcome.error());
     }
     tally_.report_came_to(*outcome);

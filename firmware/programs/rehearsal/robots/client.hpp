@@ -81,13 +81,13 @@ enum class Fate : std::uint8_t { Posted, Accepted, Throttled, Rejected, Unanswer
 class Tally {
  public:
   /// `why`: the refusal's status and sentence, or why there was no answer.
-  void count(Kind kind, Fate fate, const std::string& why = "");
+  void count(MessageKind kind, Fate fate, const std::string& why = "");
   /// What an answered report came to: "scored +1", "run not started", ...
   void report_came_to(const std::string& outcome);
   /// Something of the team's own that is wrong, such as a map file.
-  void failed(const std::string& what);
+  void count_failure(const std::string& what);
 
-  std::uint64_t accepted_of(Kind kind) const;
+  std::uint64_t accepted_of(MessageKind kind) const;
 
   /// Whether nothing was refused but by 429, and nothing failed.
   bool clean() const;
@@ -130,7 +130,7 @@ class Client {
   std::optional<HttpReply> send(const Message& message);
 
  private:
-  std::optional<HttpReply> exchange(Connection& connection, Kind kind, const HttpRequest& request);
+  std::optional<HttpReply> exchange(Connection& connection, MessageKind kind, const HttpRequest& request);
   bool may_send(Connection& connection, const HttpRequest& request);
 
   Encoder encoder_;

@@ -39,9 +39,9 @@ class Every {
 
 /// Most robots keep the time of day, more or less; every third counts from its boot.
 double clock_of(std::size_t index, Random& random) {
-  if (index % 3 == 2) return random.between(60, 600);
+  if (index % 3 == 2) return random.uniform(60, 600);
   const std::chrono::duration<double> now = std::chrono::system_clock::now().time_since_epoch();
-  return now.count() + random.between(-3, 3);
+  return now.count() + random.uniform(-3, 3);
 }
 
 }  // namespace
@@ -123,7 +123,7 @@ std::vector<Marker> MarkerScene::take_changes() {
   return std::exchange(changes_, {});
 }
 
-void Posted::note(const std::string& robot, Kind kind, const Amount& amount) {
+void Posted::note(const std::string& robot, MessageKind kind, const Amount& amount) {
   const std::scoped_lock lock(mutex_);
   amounts_[{robot, kind}] = amount;
 }
@@ -198,7 +198,7 @@ void Explorer::post_grid(Clock::time_point now) {
   const MapTime time = map_time(now);
   auto grid = maps_.grid(robot_.map(), robot_.pose().position, time);
   if (!grid) return;
-  if (!style_.ros) posted_.note(name_, Kind::Grid, {.amount = maps_.cells(), .newest = time.posted});
+  if (!style_.ros) posted_.note(name_, MessageKind::Grid, {.amount = maps_.cells(), .newest = time.posted});
   client_.send(*std::move(grid));
 }
 
@@ -207,7 +207,7 @@ void Explorer::post_cloud(Clock::time_point now) {
   auto cloud = maps_.cloud(robot_.map(), robot_.pose().position, time);
   if (!cloud) return;
   if (!style_.ros) {
-    posted_.note(name_, Kind::Cloud,
+    posted_.note(name_, MessageKind::Cloud,
                  {.amount = maps_.points(), .places = maps_.places(), .newest = time.posted});
   }
   client_.send(*std::move(cloud));
@@ -226,7 +226,7 @@ void Explorer::report_sightings(double seconds) {
     report.position.z += random_.noise(kReportNoise);
     desk_.submit({name_, &style_, report});
     if (!random_.chance(kWrongReports)) continue;
-    const double direction = random_.between(0, 2 * std::numbers::pi), far = random_.between(20, 30);
+    const double direction = random_.uniform(0, 2 * std::numbers::pi), far = random_.uniform(20, 30);
     report.position.x += far * std::cos(direction);
     report.position.y += far * std::sin(direction);
     desk_.submit({name_, &style_, report});
@@ -245,10 +245,10 @@ void Explorer::work(double metres_per_second, const std::stop_token& finish) {
     // A robot that waited long for an answer does not fly through the cave.
     robot_.advance(metres_per_second * std::min(std::chrono::duration<double>(now - before).count(), 1.0));
     before = now;
-    scene_.pass(robot_.pose().position, robot_.walked(), seconds);
+    scene_.pass(robot_.pose().position, robot_.walked_distance(), seconds);
     report_sightings(seconds);
 
-    if (state.due(now)) client_.send(State{stamp(now), name_, robot_.pose()});
+    if (state.due(now)) client_.send(RobotState{stamp(now), name_, robot_.pose()});
     if (grid.due(now)) post_grid(now);
     if (cloud.due(now)) post_cloud(now);
     if (markers.due(now)) {

@@ -51,7 +51,7 @@ class Posted {
     std::uint64_t places = 0;  // that have points (KnownPlaces); of grids 0
     Moment newest;             // the last map's date
   };
-  void note(const std::string& robot, Kind kind, const Amount& amount);
+  void note(const std::string& robot, MessageKind kind, const Amount& amount);
   /// The robot's markers after its last post.
   void note(const std::string& robot, const std::vector<Marker>& standing);
 
@@ -60,7 +60,7 @@ class Posted {
 
  private:
   mutable std::mutex mutex_;  // guards all below
-  std::map<std::pair<std::string, Kind>, Amount> amounts_;
+  std::map<std::pair<std::string, MessageKind>, Amount> amounts_;
   std::map<std::string, std::vector<Marker>> standing_;  // by robot
 };
 

@@ -51,7 +51,7 @@ class Console {
   }
 
   /// The live line on a terminal, else a line that stays.
-  void live(const std::string& line) {
+  void show_live_line(const std::string& line) {
     if (quiet_) return;
     const std::scoped_lock lock(mutex_);
     print(terminal_ ? kClearLine + line : line + "\n");
@@ -104,7 +104,8 @@ class Team {
         tally_(tally),
         posted_(posted),
         console_(console),
-        desk_(post_, options.style.of(0), tally, [&console](const std::string& line) { console.say(line); }) {
+        desk_(post_, options.style.style_of(0), tally,
+              [&console](const std::string& line) { console.say(line); }) {
     for (std::size_t index = 0; index < options.robots; ++index) run([this, index] { explore(index); });
     if (options.robots > 0) run([this] { desk_.work(finish_.get_token(), abort_.get_token()); });
     run([this] { replay(); });
@@ -133,7 +134,7 @@ class Team {
       try {
         work();
       } catch (const std::exception& error) {  // memory, or a socket that cannot even be made
-        tally_.failed(error.what());
+        tally_.count_failure(error.what());
       }
       --working_;
     });
@@ -142,18 +143,18 @@ class Team {
   void explore(std::size_t index) {
     constexpr double kMetresPerSecond = 2;
     const std::string name = icd::sentence("r", index + 1);
-    const Style& style = options_.style.of(index);
+    const Style& style = options_.style.style_of(index);
     Client client(post_, name, style, tally_, abort_.get_token());
-    Explorer explorer(cave_, options_.seed, index, name, style, options_.offers.of(index), client, desk_,
-                      posted_);
+    Explorer explorer(cave_, options_.seed, index, name, style, options_.offers.offer_of(index), client,
+                      desk_, posted_);
     explorer.work(kMetresPerSecond * options_.speed, finish_.get_token());
   }
 
   void replay() {
     for (std::size_t i = 0; i < options_.maps.size(); ++i) {
-      Client client(post_, "replay", options_.style.of(i), tally_, abort_.get_token());
+      Client client(post_, "replay", options_.style.style_of(i), tally_, abort_.get_token());
       const auto said = replay_file(options_.maps[i], client, finish_.get_token());
-      if (!said) tally_.failed(said.error());
+      if (!said) tally_.count_failure(said.error());
       console_.say(said ? *said : said.error());
     }
     replay_done_ = !finish_.stop_requested();
@@ -191,26 +192,27 @@ bool has_come(const sigset_t& signals) {
   return sigtimedwait(&signals, nullptr, &kWait) > 0;
 }
 
-std::vector<Kind> kinds_to_post(const Options& options) {
-  std::vector<Kind> kinds;
+std::vector<MessageKind> kinds_to_post(const Options& options) {
+  std::vector<MessageKind> kinds;
   if (options.robots == 0) {
     for (const auto& map : options.maps)
-      kinds.push_back(map.extension() == ".pgm" ? Kind::Grid : Kind::Cloud);
+      kinds.push_back(map.extension() == ".pgm" ? MessageKind::Grid : MessageKind::Cloud);
     return kinds;
   }
-  kinds = {Kind::State, Kind::Markers, Kind::Report, Kind::Status};
-  if (options.offers.has_grids()) kinds.push_back(Kind::Grid);
-  if (options.offers.has_clouds()) kinds.push_back(Kind::Cloud);
+  kinds = {MessageKind::State, MessageKind::Markers, MessageKind::Report, MessageKind::Status};
+  if (options.offers.has_grids()) kinds.push_back(MessageKind::Grid);
+  if (options.offers.has_clouds()) kinds.push_back(MessageKind::Cloud);
   return kinds;
 }
 
-bool has_posted_all(const std::vector<Kind>& kinds, const Tally& tally) {
-  return std::ranges::all_of(kinds, [&](Kind kind) { return tally.accepted_of(kind) > 0; });
+bool has_posted_all(const std::vector<MessageKind>& kinds, const Tally& tally) {
+  return std::ranges::all_of(kinds, [&](MessageKind kind) { return tally.accepted_of(kind) > 0; });
 }
 
 /// Until the time is over, all is posted, or a signal comes; and how long then to wait for answers.
-std::chrono::milliseconds watch(const Options& options, const std::vector<Kind>& kinds, const Team& team,
-                                const Tally& tally, Console& console, const sigset_t& signals) {
+std::chrono::milliseconds watch(const Options& options, const std::vector<MessageKind>& kinds,
+                                const Team& team, const Tally& tally, Console& console,
+                                const sigset_t& signals) {
   constexpr std::chrono::milliseconds kGrace{2000};
   const std::chrono::seconds every{console.is_terminal() ? 1 : 5};
   const Clock::time_point start = Clock::now();
@@ -222,7 +224,7 @@ std::chrono::milliseconds watch(const Options& options, const std::vector<Kind>&
     if (now >= next_line) {
       next_line += every;
       const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(now - start).count();
-      console.live(icd::sentence(seconds, " s: ", tally.line()));
+      console.show_live_line(icd::sentence(seconds, " s: ", tally.line()));
     }
   }
   return std::chrono::milliseconds{0};
@@ -232,7 +234,7 @@ int run(const Options& options, const Cave& cave) {
   const sigset_t signals = block_signals({SIGINT, SIGTERM});
   const auto token = read_token(std::filesystem::path(options.secrets) / "team.token");
   if (!token) return complain(token.error());
-  const std::vector<Kind> kinds = kinds_to_post(options);
+  const std::vector<MessageKind> kinds = kinds_to_post(options);
   Tally tally;
   Posted posted;
   Console console(options.quiet);
@@ -240,7 +242,7 @@ int run(const Options& options, const Cave& cave) {
   team.stop(watch(options, kinds, team, tally, console, signals));
   console.finish(tally.summary());
   if (options.control) console.finish(arrivals_of(posted, *options.control));
-  for (const Kind kind : kinds) {
+  for (const MessageKind kind : kinds) {
     if (tally.accepted_of(kind) == 0) console.finish(icd::sentence("no ", name_of(kind), " was accepted\n"));
   }
   return tally.clean() && has_posted_all(kinds, tally) ? kGood : kNotAllPosted;

@@ -15,12 +15,13 @@ Rotation rotation_of(double yaw) {
   return {.x = 0, .y = 0, .z = std::sin(yaw / 2), .w = std::cos(yaw / 2)};
 }
 
-Kind kind_of(const Message& message) {
-  return static_cast<Kind>(message.index());  // the variant's order is the enumeration's
+MessageKind kind_of(const Message& message) {
+  return static_cast<MessageKind>(message.index());  // the variant's order is the enumeration's
 }
 static_assert(std::variant_size_v<Message> == kKinds - 1);  // a preflight is no message
 static_assert(
-    std::is_same_v<std::variant_alternative_t<static_cast<std::size_t>(Kind::Status), Message>, StatusQuery>);
+    std::is_same_v<std::variant_alternative_t<static_cast<std::size_t>(MessageKind::Status), Message>,
+                   StatusQuery>);
 
 namespace {
 
@@ -28,7 +29,7 @@ struct KindRow {
   std::string_view name;
   const char* target;
 };
-/// In the order of Kind.
+/// In the order of MessageKind.
 constexpr KindRow kRows[] = {{"grid", "/map/update"},
                              {"cloud", "/map/update"},
                              {"state", "/state/update"},
@@ -38,13 +39,13 @@ constexpr KindRow kRows[] = {{"grid", "/map/update"},
                              {"preflight", "/api/status"}};
 static_assert(std::size(kRows) == kKinds);
 
-const KindRow& row_of(Kind kind) {
+const KindRow& row_of(MessageKind kind) {
   return kRows[static_cast<std::size_t>(kind)];
 }
 
 }  // namespace
 
-std::string_view name_of(Kind kind) {
+std::string_view name_of(MessageKind kind) {
   return row_of(kind).name;
 }
 
@@ -136,7 +137,7 @@ class Body {
     return map("PointCloud2", std::move(msg));
   }
 
-  Json operator()(const State& state) const {
+  Json operator()(const RobotState& state) const {
     Json pose = placement(state.pose);
     pose["name"] = state.robot;
     // A lazy client of the field: it fills in the position and leaves the orientation as ROS made it.
@@ -263,24 +264,24 @@ Encoder::Encoder(std::string robot, const Style& style, std::string token)
     : robot_(std::move(robot)), style_(style), token_(std::move(token)) {}
 
 HttpRequest Encoder::encode(const Message& message) {
-  const Kind kind = kind_of(message);
+  const MessageKind kind = kind_of(message);
   HttpRequest request{.method = "POST", .target = row_of(kind).target, .fields = {}, .body = {}};
   if (style_.browser) {
     request.target += '/';
     request.fields.emplace_back("Origin", kOrigin);
   }
   request.fields.emplace_back("Authorization", (style_.browser ? "bearer " : "Bearer ") + token_);
-  if (kind == Kind::Status) {
+  if (kind == MessageKind::Status) {
     request.method = "GET";
     return request;
   }
   const Json body = std::visit(Body(robot_, style_, seq_++), message);
-  const bool cbor = style_.cbor && kind != Kind::Report;  // ICD 4: scoring takes JSON alone
+  const bool cbor = style_.cbor && kind != MessageKind::Report;  // ICD 4: scoring takes JSON alone
   request.body = cbor ? text_of(Json::to_cbor(body)) : body.dump();
   std::string type = cbor ? "application/cbor" : "application/json";
   if (style_.browser) type += "; charset=utf-8";
   request.fields.emplace_back("Content-Type", std::move(type));
-  if (style_.gzip_body && kind != Kind::Report) {
+  if (style_.gzip_body && kind != MessageKind::Report) {
     request.body =
         text_of(gzip({reinterpret_cast<const std::uint8_t*>(request.body.data()), request.body.size()}));
     request.fields.emplace_back("Content-Encoding", "gzip");

@@ -39,7 +39,7 @@ struct Cloud {
 };
 
 /// One robot's pose: ICD 6.5 with a single entry, as teams send it.
-struct State {
+struct RobotState {
   double stamp = 0;
   std::string robot;
   Placement pose;
@@ -80,14 +80,14 @@ struct Report {
 /// ICD 5.1, which has no body.
 struct StatusQuery {};
 
-using Message = std::variant<Grid, Cloud, State, Markers, Report, StatusQuery>;
+using Message = std::variant<Grid, Cloud, RobotState, Markers, Report, StatusQuery>;
 
 /// What the summary counts: the messages, and the questions a browser asks before each of them.
-enum class Kind : std::uint8_t { Grid, Cloud, State, Markers, Report, Status, Preflight };
-inline constexpr std::size_t kKinds = static_cast<std::size_t>(Kind::Preflight) + 1;
+enum class MessageKind : std::uint8_t { Grid, Cloud, State, Markers, Report, Status, Preflight };
+inline constexpr std::size_t kKinds = static_cast<std::size_t>(MessageKind::Preflight) + 1;
 
-Kind kind_of(const Message& message);
-std::string_view name_of(Kind kind);
+MessageKind kind_of(const Message& message);
+std::string_view name_of(MessageKind kind);
 
 /// How a map's `data` is written.
 enum class DataForm : std::uint8_t {
@@ -124,7 +124,7 @@ struct TeamStyle {
 
   static std::expected<TeamStyle, std::string> parse(std::string_view name);
 
-  const Style& of(std::size_t robot) const { return styles[robot % styles.size()]; }
+  const Style& style_of(std::size_t robot) const { return styles[robot % styles.size()]; }
 };
 
 /// One gzip member (RFC 1952).

@@ -88,7 +88,7 @@ std::expected<std::vector<Form>, std::string> parse_forms(
     const auto* const known =
         std::ranges::find(names, icd::cut(rest, ','), &std::pair<std::string_view, Form>::first);
     if (known == names.end()) {
-      const std::string all = icd::listed(names, &std::pair<std::string_view, Form>::first);
+      const std::string all = icd::join_words(names, &std::pair<std::string_view, Form>::first);
       return std::unexpected(icd::sentence("expected ", all, ", got '", text, "'"));
     }
     forms.push_back(known->second);
@@ -142,8 +142,8 @@ void RobotMap::see_point(double x, double y, double z, double intensity, Random&
 void RobotMap::see_floor(const Cave& cave, Cell cell, Random& random) {
   if (!is_known(cell)) {
     const double x = lattice().centre_x(cell), y = lattice().centre_y(cell);
-    see_point(x, y, cave.floor_at(cell), 40 + 20 * random.between(0, 1), random);
-    see_point(x, y, cave.ceiling_at(cell), 25 + 10 * random.between(0, 1), random);
+    see_point(x, y, cave.floor_at(cell), 40 + 20 * random.uniform(0, 1), random);
+    see_point(x, y, cave.ceiling_at(cell), 25 + 10 * random.uniform(0, 1), random);
     include(cell);
   }
   cells_[cell] = surer(cells_[cell], false);
@@ -154,7 +154,7 @@ void RobotMap::see_rock(Cell cell, double floor, double ceiling, Random& random)
     const int points = static_cast<int>((ceiling - floor) / lattice().resolution) + 1;
     for (int i = 0; i < points; ++i) {
       const double z = floor + i * lattice().resolution;
-      see_point(lattice().centre_x(cell), lattice().centre_y(cell), z, 80 + 40 * random.between(0, 1),
+      see_point(lattice().centre_x(cell), lattice().centre_y(cell), z, 80 + 40 * random.uniform(0, 1),
                 random);
     }
     include(cell);
@@ -248,7 +248,7 @@ std::vector<Cell> way_to_explore(const RobotMap& map, Cell start, double heading
       goal = cell;
     }
   }
-  if (goal == start) goal = reach.cells[random.below(reach.cells.size())];
+  if (goal == start) goal = reach.cells[random.uniform_index(reach.cells.size())];
   std::vector<Cell> way;
   for (Cell cell = goal; cell != start;) {
     way.push_back(cell);
@@ -343,7 +343,7 @@ void date(Cloud& cloud, Moment posted) {
   cloud.data = std::move(dated);
 }
 
-MapOffer MapOffers::of(std::size_t robot) const {
+MapOffer MapOffers::offer_of(std::size_t robot) const {
   return {.grids = grids[robot % grids.size()],
           .clouds = clouds[robot % clouds.size()],
           .grid_every = Seconds(1 / grid_hz.value_or(1)),
@@ -402,11 +402,11 @@ std::optional<Grid> MapMaker::grid(const RobotMap& map, const Vector3& here, con
 void MapMaker::fill(Cloud& cloud, std::size_t bytes, const Vector3& here) {
   constexpr double range = 12, height = 3;  // metres
   while (cloud.data.size() < bytes) {
-    const double angle = random_.between(0, 2 * std::numbers::pi), far = random_.between(1, range);
+    const double angle = random_.uniform(0, 2 * std::numbers::pi), far = random_.uniform(1, range);
     const std::array<float, 4> point = {static_cast<float>(here.x + far * std::cos(angle)),
                                         static_cast<float>(here.y + far * std::sin(angle)),
-                                        static_cast<float>(here.z + random_.between(0, height)),
-                                        static_cast<float>(random_.below(100))};
+                                        static_cast<float>(here.z + random_.uniform(0, height)),
+                                        static_cast<float>(random_.uniform_index(100))};
     const std::size_t at = cloud.data.size();
     cloud.data.resize(at + sizeof point);
     std::memcpy(&cloud.data[at], point.data(), sizeof point);

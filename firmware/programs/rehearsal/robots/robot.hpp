@@ -81,7 +81,7 @@ class Robot {
   void advance(double metres);
 
   Placement pose() const;
-  double walked() const { return walked_; }  // metres in all
+  double walked_distance() const { return walked_; }  // metres in all
   RobotMap& map() { return map_; }
 
   /// Indices in cave.artifacts() of those seen since the last call, each once in a robot's life.
@@ -133,7 +133,7 @@ struct MapOffers {
   std::optional<double> grid_hz, cloud_hz;  // absent: once a second; every 1, 0.5 or 2 s in turn
   double grid_mb = 0, cloud_mb = 0;         // megabytes
 
-  MapOffer of(std::size_t robot) const;
+  MapOffer offer_of(std::size_t robot) const;
   bool has_grids() const { return std::ranges::count(grids, GridForm::None) < std::ssize(grids); }
   bool has_clouds() const { return std::ranges::count(clouds, CloudForm::None) < std::ssize(clouds); }
 };

@@ -301,8 +301,7 @@ struct PlyHeader {
 
 std::expected<PointFile, std::string> take_ply_header(std::string_view& rest) {
   constexpr std::size_t kMostLines = 1000;
-  if (icd::trimmed(icd::cut(rest, '\n')) != "ply")
-    return wrong("not a PLY file: the first line is not 'ply'");
+  if (icd::trim(icd::cut(rest, '\n')) != "ply") return wrong("not a PLY file: the first line is not 'ply'");
   PlyHeader header;
   header.file.lines = 1;
   for (Words words; words.empty() || words[0] != "end_header";) {
@@ -322,7 +321,7 @@ std::expected<PointFile, std::string> take_ply_header(std::string_view& rest) {
   return wrong("format: expected ascii or binary_little_endian, got '", header.format, "'");
 }
 
-std::string_view unquoted(std::string_view text) {
+std::string_view unquote(std::string_view text) {
   const bool quoted =
       text.size() >= 2 && (text.front() == '"' || text.front() == '\'') && text.back() == text.front();
   return quoted ? text.substr(1, text.size() - 2) : text;
@@ -339,7 +338,7 @@ std::optional<std::vector<double>> read_origin(std::string_view text) {
 
 /// A PGM header's next word: comments may go before it.
 std::string_view take_pgm_word(std::string_view& rest) {
-  while (icd::trimmed(rest).starts_with('#')) {
+  while (icd::trim(rest).starts_with('#')) {
     rest.remove_prefix(rest.find('#'));
     icd::cut(rest, '\n');
   }
@@ -412,8 +411,8 @@ std::expected<MapYaml, std::string> parse_map_yaml(std::string_view text) {
     const std::string_view line = icd::cut(text, '\n');
     std::string_view content = line.starts_with('#') ? "" : line.substr(0, line.find(" #"));
     if (!content.contains(':')) continue;  // blank, "---"
-    const std::string_view name = icd::trimmed(icd::cut(content, ':'));
-    members[name] = unquoted(icd::trimmed(content));
+    const std::string_view name = icd::trim(icd::cut(content, ':'));
+    members[name] = unquote(icd::trim(content));
   }
   std::string fault;  // the first
   const auto complain = [&](const std::string& key, const char* expected) {

@@ -26,13 +26,12 @@ def needs_stunnel():
 
 
 def make_certificate(folder, *names):
-    """`names`: as in "IP:10.0.0.1". Returns the certificate. tls.pem, beside it, also has the key."""
+    """`names`: as in "IP:10.0.0.1". Writes tls.pem, with the key."""
     subprocess.run(["openssl", "req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:P-256", "-nodes", "-days", "3650",
                     "-subj", "/CN=adit.local", "-addext", f"subjectAltName={','.join(('DNS:adit.local', *names))}",
                     "-keyout", folder / "tls.key", "-out", folder / "tls.crt"], check=True, capture_output=True)
     (folder / "tls.pem").write_text((folder / "tls.key").read_text() + (folder / "tls.crt").read_text())
     (folder / "tls.pem").chmod(0o600)
-    return folder / "tls.crt"
 
 
 def listening(address, port, interface, **options):
@@ -51,18 +50,33 @@ class SecureBox(programs.Page):
 
     def __init__(self, network, folder, **overrides):
         self.network, self.folder, self.state = network, folder, folder / "state"
-        self.certificate = make_certificate(folder, f"IP:{network.box_address}")
-        inside = ["ip", "netns", "exec", network.box]
+        make_certificate(folder, f"IP:{network.box_address}")
+        self.inside = ["ip", "netns", "exec", network.box]
         plain = network.made_in(network.box, lambda: listening("127.0.0.1", PLAIN_PORT, "lo"))
         self.team = network.made_in(network.box, lambda: listening("0.0.0.0", PORT, "team0", SO_SNDBUF=SEND_BUFFER))
-        self.manager = activation.ServiceManager(folder, inside=inside, tls=[plain])
+        self.manager = activation.ServiceManager(folder, inside=self.inside, tls=[plain])
         self.manager.ready(self.manager.start(programs.settings(network, overrides)))
-        configuration = (SERVICES / "adit-tls.conf").read_text()
-        configuration = re.sub("(?m)^cert = .*$", f"cert = {folder / 'tls.pem'}", configuration)
-        (folder / "tls.conf").write_text(configuration)
-        limited = ["prlimit", f"--nofile={FILES}", PROGRAM, folder / "tls.conf"]
-        self.stunnel = activation.start_with(limited, [("adit-tls.socket", self.team)], folder / "stunnel.log", inside)
+        self.certificate, self.stunnel = folder / "trusted.crt", None
+        self.serve_tls(folder / "tls.pem")
+
+    def serve_tls(self, pem):
+        """Starts or restarts stunnel with a copy of `pem`, as adit-tls.service does. Clients trust its certificate from now on."""
+        self.stop_stunnel()
+        held = pem.read_text()
+        self.certificate.write_text(held[held.index("-----BEGIN CERTIFICATE"):])
         self.context = ssl.create_default_context(cafile=self.certificate)
+        credential = self.folder / "credential.pem"
+        credential.write_text(held)
+        credential.chmod(0o600)
+        configuration = (SERVICES / "adit-tls.conf").read_text()
+        (self.folder / "tls.conf").write_text(re.sub("(?m)^cert = .*$", f"cert = {credential}", configuration))
+        limited = ["prlimit", f"--nofile={FILES}", PROGRAM, self.folder / "tls.conf"]
+        self.stunnel = activation.start_with(limited, [("adit-tls.socket", self.team)], self.folder / "stunnel.log", self.inside)
+
+    def stop_stunnel(self):
+        if self.stunnel:
+            self.stunnel.kill()
+            self.stunnel.wait()
 
     @property
     def secure_url(self):
@@ -84,9 +98,8 @@ class SecureBox(programs.Page):
     def connect_plain(self, source="", timeout=30):
         return socket.create_connection((self.network.box_address, PORT), programs.patient(timeout), (source, 0))
 
-    def stop(self):
-        self.stunnel.kill()
-        self.stunnel.wait()
+    def stop(self, *_):
+        self.stop_stunnel()
         self.manager.close()
         self.team.close()
 

@@ -1,19 +1,23 @@
 """The page's certificate: adit-certificate makes it on aditd's request, an operator replaces it over TLS, and browsers are sent to
 HTTPS. What is rejected: applier/certificates_test."""
 
+import contextlib
 import hashlib
 import json
 import re
 import ssl
 import subprocess
 import threading
+import time
 import unittest
 
 import requests
 
 import programs
 import stunnel
+import test_spare
 from programs import BIN, wait_until
+from reporting import QUICK, began, submit
 
 BEARER = {"Authorization": f"Bearer {programs.TEAM_TOKEN}"}
 FILE = {**BEARER, "Content-Type": "application/octet-stream"}
@@ -23,29 +27,51 @@ def fingerprint(der):
     return ":".join(re.findall("..", hashlib.sha256(der).hexdigest().upper()))
 
 
+class Unit:
+    """Plays adit-certificate.path and its service for a box."""
+
+    def __init__(self, box):
+        self.box, self.is_over = box, threading.Event()
+        self.run()
+        self.watcher = threading.Thread(target=self.watch)
+        self.watcher.start()
+
+    def run(self):
+        status = self.box.state / "certificate"
+        subprocess.run([BIN / "adit-certificate", "--state", self.box.state, "--status", status], check=True, timeout=60, capture_output=True)
+        if (status / "restart").exists():
+            (status / "restart").unlink()
+            time.sleep(1)  # as the service does, so that an upload over TLS gets its answer
+            self.box.serve_tls(self.box.state / "tls.pem")
+
+    def watch(self):
+        while not self.is_over.wait(0.05):
+            if (self.box.state / "certificate.json").exists():
+                self.run()
+
+    def stop(self):
+        self.is_over.set()
+        self.watcher.join()
+
+
+def shown(box):
+    return box.ask("GET /adit/certificate")[1]
+
+
+def certificate_of(box):
+    """The view of the box's certificate, once it has one and the TLS server uses it."""
+    view = wait_until(lambda: shown(box)["offered"] and shown(box), "the box to have a certificate")
+    wait_until(lambda: fingerprint(ssl.PEM_cert_to_DER_cert(box.certificate.read_text())) == view["fingerprint"], "the TLS server to use it")
+    return view
+
+
 class Certificate(unittest.TestCase):
     def setUp(self):
         stunnel.needs_stunnel()
         self.stage = self.enterContext(stunnel.SecureStage())
-        self.box, self.is_over = self.stage.box, threading.Event()
-        self.run_unit()
-        path_unit = threading.Thread(target=self.watch_requests)
-        path_unit.start()
-        self.addCleanup(path_unit.join)
-        self.addCleanup(self.is_over.set)
-        self.first = wait_until(lambda: self.shown()["offered"] and self.shown(), "the box to have a certificate")
-
-    def run_unit(self):
-        subprocess.run([BIN / "adit-certificate", "--state", self.box.state, "--status", self.box.state / "certificate"], check=True,
-                       timeout=60, capture_output=True)
-
-    def watch_requests(self):
-        while not self.is_over.wait(0.05):
-            if (self.box.state / "certificate.json").exists():
-                self.run_unit()
-
-    def shown(self):
-        return self.box.ask("GET /adit/certificate")[1]
+        self.box = self.stage.box
+        self.addCleanup(Unit(self.box).stop)
+        self.first = certificate_of(self.box)
 
     def upload(self, text):
         return requests.post(f"{self.box.secure_url}/adit/certificate", text, headers=FILE, timeout=60, verify=str(self.box.certificate))
@@ -64,9 +90,10 @@ class Certificate(unittest.TestCase):
         self.assertIn("by HTTPS", by_adit.stderr)
         wrong = self.upload(pem.split("-----BEGIN CERT", 1)[0])
         self.assertEqual((wrong.status_code, "no certificate" in wrong.json()), (422, True), wrong.text)
-        self.assertEqual(self.shown(), self.first)
+        self.assertEqual(shown(self.box), self.first)
         answer = self.upload(pem)
         self.assertEqual(answer.status_code, 200, answer.text)
+        certificate_of(self.box)
         with self.box.connect() as client:
             self.assertEqual(answer.json()["fingerprint"], fingerprint(client.getpeercert(binary_form=True)))
         self.assertNotIn("PRIVATE", self.box.output())
@@ -85,3 +112,36 @@ class Certificate(unittest.TestCase):
         self.assertEqual(self.box.ask("GET /adit/run")[0], 200)
         status = requests.get(self.box.url + "/api/status", timeout=30, headers=BEARER, allow_redirects=False)
         self.assertNotIn(status.status_code, (308, 401), json.dumps(status.text))
+
+
+class Swap(stunnel.SecureStage, test_spare.Swap):
+    """A box with TLS, and its spare."""
+
+
+class Spare(unittest.TestCase):
+    def test_browsers_that_trust_the_first_box_trust_its_spare(self):
+        stunnel.needs_stunnel()
+        stage = began(self.enterContext(Swap(**QUICK)))
+        unit = Unit(stage.box)
+        self.addCleanup(lambda: unit.stop())
+        first, trusting = certificate_of(stage.box), stage.box.context
+        self.assertEqual(submit(stage).status_code, 201)
+        code = stage.exported()
+        unit.stop()
+        stage.unplug()
+        stage.plug_in_spare()
+        unit = Unit(stage.box)
+        self.assertNotEqual(certificate_of(stage.box), first)
+        with self.assertRaises(ssl.SSLCertVerificationError):
+            stage.box.connect(context=trusting)
+        stage.take_over(code)
+
+        def trusts():
+            with contextlib.suppress(OSError):
+                stage.box.connect(context=trusting).close()
+                return True
+            return False
+
+        wait_until(trusts, "the spare's TLS server to have the first box's certificate")
+        self.assertEqual(shown(stage.box)["fingerprint"], first["fingerprint"])
+        self.assertEqual([report["state"] for report in stage.box.reports()], ["answered"])

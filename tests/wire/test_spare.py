@@ -8,7 +8,7 @@ import requests
 
 import programs
 from alarming import WithAlarms
-from programs import Box, Stage, wait_until
+from programs import Stage, wait_until
 from reporting import QUICK, REPORT, another, began, left_unanswered, submit
 
 FINISHED = ("answered", "settled", "withdrawn")
@@ -47,7 +47,7 @@ class Swap(Stage):
         self.box.stop(programs.signal.SIGKILL)
 
     def plug_in_spare(self):
-        self.box = Box(self.network, self.spare_folder, **{**self.overrides, "reports__near_metres": 9})
+        self.box = self.make_box(self.network, self.spare_folder, **{**self.overrides, "reports__near_metres": 9})
 
     def take_over(self, code):
         self.adit("take", self.export, "--code", code, "--yes")

@@ -85,10 +85,12 @@ class Clients(Tls):
 
     def test_older_tls_and_plain_http_are_rejected(self):
         stage = self.stage()
-        said = subprocess.run(["openssl", "s_client", "-connect", f"{stage.network.box_address}:443", "-tls1_1", "-cipher", "ALL@SECLEVEL=0"],
-                              stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False)
-        self.assertNotEqual(said.returncode, 0)
-        self.assertIn("alert protocol version", said.stderr)
+        for options, alert in ((["-tls1_1", "-cipher", "ALL@SECLEVEL=0"], "alert protocol version"),
+                               (["-tls1_2", "-cipher", "ECDHE-ECDSA-AES256-SHA384"], "alert handshake failure")):  # CBC
+            said = subprocess.run(["openssl", "s_client", "-connect", f"{stage.network.box_address}:443", *options],
+                                  stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False)
+            self.assertNotEqual(said.returncode, 0)
+            self.assertIn(alert, said.stderr)
         with stage.box.connect_plain() as client:
             client.sendall(head(stage))
             self.assertNotIn(b"HTTP/1", everything(client))

@@ -204,6 +204,17 @@ TEST_F(ClocksTest, ContinueAfterTheStampsOfTheFirstBox) {
   EXPECT_GE(now(), least);
 }
 
+TEST_F(ClocksTest, LeaveStampsOfTheFirstBoxAsWritten) {
+  restart();
+  const double there = now(), least = there + 165;
+  StampFloor(folder_.path()).write({.floor = least, .wall = 0, .least = least});
+  restart();
+  keep();
+  restart();  // reads what keep() wrote
+  EXPECT_EQ(clocks_->time_of_day(there), there);
+  EXPECT_NEAR(clocks_->time_of_day(now()), loop_.wall_now(), 1) << "a stamp of this box";
+}
+
 TEST_F(ClocksTest, FollowTheHardwareClockAfterABoot) {
   restart();
   keep();

@@ -80,7 +80,10 @@ class Spare(WithAlarms):
     def test_spare_knows_all_reports_of_the_first_box(self):
         stage = self.swap()
         answers = [submit(stage, another(number)) for number in range(1, 4)]
+        at = [row["received"] for row in stage.box.reports()]
         stage.swap()
+        for row, before in zip(stage.box.reports(), at, strict=True):
+            self.assertAlmostEqual(row["received"], before, delta=1)
         began(stage)
         for number, answer in enumerate(answers, 1):
             again = submit(stage, another(number))

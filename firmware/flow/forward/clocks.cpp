@@ -120,6 +120,13 @@ void Clocks::begin_start(const StampFloor::Kept& kept, double newest) {
   off_ = {.seconds = std::max(0.0, std::min(went_by, most)), .since = kept.wall};
 }
 
+double Clocks::time_of_day(double stamp) const {
+  const double now = loop_.stamp_now();
+  const double machine_began = now - std::chrono::duration<double>(loop_.now().time_since_epoch()).count();
+  const bool is_of_this_clock = stamp >= machine_began && (!kept_ || stamp >= kept_->least);
+  return is_of_this_clock ? stamp + loop_.wall_now() - now : stamp;
+}
+
 bool Clocks::hear(double there) {
   if (off_.seconds <= 0) return false;
   const double off_there = there - off_.since - (loop_.stamp_now() - clock_step_.to);
@@ -163,6 +170,7 @@ void Clocks::keep(loop::Writer& writer, const ledger::LedgerFacts& ledger) {
   if (!kept_) return;
   auto due = floor_.due(loop_.stamp_now(), loop_.wall_now(), ledger);
   if (!due) return;
+  due->least = kept_->least;
   due->lead = lead_;
   due->overruled = kept_->overruled;
   writer.submit([floor = floor_, due = *due]() mutable { floor.write(due); }, [] {});

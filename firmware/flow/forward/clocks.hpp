@@ -121,6 +121,10 @@ class Clocks {
   /// True if this box may have sent messages before this process.
   bool ran_before() const { return ran_before_; }
 
+  /// The present time of day of a stamp in the ledger. Stamps of earlier boots and of another box stay as
+  /// written.
+  double time_of_day(double stamp) const;
+
   /// Convert stamps to the stamp clock, and journal the sender's offsets.
   void stamp(icd::MapUpdate& update, const queues::Upload& upload);
   std::vector<queues::PostedPose> stamp_poses(const icd::StateUpdate& update, const queues::Upload& upload);

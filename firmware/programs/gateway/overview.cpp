@@ -221,15 +221,15 @@ std::string Overview::status_line() const {
 
 std::vector<facts::ReportRow> Overview::reports(std::int64_t after, std::size_t most) const {
   auto rows = rows_after(rooms_.flow.reports(), after, most);
-  for (facts::ReportRow& row : rows) tell_time_of_day(row, rooms_.loop);
+  for (facts::ReportRow& row : rows) tell_time_of_day(row, rooms_.flow.clocks());
   return rows;
 }
 
 std::optional<api::ReportDetail> Overview::report(std::int64_t number) const {
   auto detail = detail_of(rooms_.flow.reports(), rooms_.parts.ledger, number);
   if (!detail) return detail;
-  tell_time_of_day(detail->row, rooms_.loop);
-  for (auto& step : detail->history) step.at = time_of_day(step.at, rooms_.loop);
+  tell_time_of_day(detail->row, rooms_.flow.clocks());
+  for (auto& step : detail->history) step.at = rooms_.flow.clocks().time_of_day(step.at);
   return detail;
 }
 
@@ -278,7 +278,7 @@ facts::Reports Overview::reports() const {
                          .elsewhere = all.waiting_elsewhere(),
                          .run_renamed = all.runs().name_trouble(),
                          .rejected = rooms_.flow.rejected_store().rows()};
-  for (facts::ReportRow& row : reports.rows) tell_time_of_day(row, rooms_.loop);
+  for (facts::ReportRow& row : reports.rows) tell_time_of_day(row, rooms_.flow.clocks());
   for (const dispatch::Report* const lost : all.lost_here()) reports.lost_here.insert(lost->number);
   if (const auto& run = rooms_.flow.scoring().run()) reports.left = run->remaining_reports;
   if (all.run().unreliable != dispatch::Run::kCountsStand) reports.run_unreliable = all.run().unreliable;

@@ -1,7 +1,6 @@
 #include "gateway/report_rows.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <functional>
 #include <ranges>
 #include <utility>
@@ -93,16 +92,10 @@ std::vector<facts::ReportRow> latest_rows(const dispatch::Reports& reports, std:
   return rows;
 }
 
-double time_of_day(double at, const loop::Loop& loop) {
-  const double stamp = loop.stamp_now();
-  const double machine_began = stamp - std::chrono::duration<double>(loop.now().time_since_epoch()).count();
-  return at < machine_began ? at : at + (loop.wall_now() - stamp);
-}
-
-void tell_time_of_day(facts::ReportRow& row, const loop::Loop& loop) {
-  row.received = time_of_day(row.received, loop);
-  row.changed = time_of_day(row.changed, loop);
-  if (row.sends_at) row.sends_at = time_of_day(*row.sends_at, loop);
+void tell_time_of_day(facts::ReportRow& row, const forward::Clocks& clocks) {
+  row.received = clocks.time_of_day(row.received);
+  row.changed = clocks.time_of_day(row.changed);
+  if (row.sends_at) row.sends_at = clocks.time_of_day(*row.sends_at);
 }
 
 std::optional<api::ReportDetail> detail_of(const dispatch::Reports& reports, const ledger::Ledger& ledger,

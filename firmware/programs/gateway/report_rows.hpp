@@ -9,9 +9,9 @@
 
 #include "api/run_view.hpp"
 #include "dispatch/reports.hpp"
+#include "forward/clocks.hpp"
 #include "icd/scoring.hpp"
 #include "ledger/ledger.hpp"
-#include "loop/loop.hpp"
 
 namespace adit::gateway {
 
@@ -42,9 +42,7 @@ std::vector<const dispatch::Report*> latest_of(const dispatch::ReportBook& book,
 std::vector<facts::ReportRow> latest_rows(const dispatch::Reports& reports, std::size_t most,
                                           ReadAnswers& answers);
 
-/// The present time of day of a stamp in the ledger. Stamps of earlier boots stay as written.
-double time_of_day(double at, const loop::Loop& loop);
-void tell_time_of_day(facts::ReportRow& row, const loop::Loop& loop);
+void tell_time_of_day(facts::ReportRow& row, const forward::Clocks& clocks);
 
 /// nullopt: no such report.
 std::optional<api::ReportDetail> detail_of(const dispatch::Reports& reports, const ledger::Ledger& ledger,

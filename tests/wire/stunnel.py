@@ -55,9 +55,13 @@ class SecureBox(programs.Page):
         plain = network.made_in(network.box, lambda: listening("127.0.0.1", PLAIN_PORT, "lo"))
         self.team = network.made_in(network.box, lambda: listening("0.0.0.0", PORT, "team0", SO_SNDBUF=SEND_BUFFER))
         self.manager = activation.ServiceManager(folder, inside=self.inside, tls=[plain])
-        self.manager.ready(self.manager.start(programs.settings(network, overrides)))
         self.certificate, self.stunnel = folder / "trusted.crt", None
-        self.serve_tls(folder / "tls.pem")
+        try:
+            self.manager.ready(self.manager.start(programs.settings(network, overrides)))
+            self.serve_tls(folder / "tls.pem")
+        except BaseException:
+            self.stop()
+            raise
 
     def serve_tls(self, pem):
         """Starts or restarts stunnel with a copy of `pem`, as adit-tls.service does. Clients trust its certificate from now on."""

@@ -102,8 +102,8 @@ class MhdServer final : public Server, public Engine {
   std::map<std::uint64_t, std::unique_ptr<Client>> clients_;  // by Client::number(): oldest first
   std::vector<std::uint64_t> to_hold_back_;                   // numbers of clients
   std::shared_ptr<void> accepts_;
-  std::optional<ProxyListener> proxied_;  // in place of libmicrohttpd, which cannot read a PROXY header
-  std::optional<Client::Addresses> proxied_from_;  // of the connection that is being added
+  std::optional<ProxyListener> proxied_;
+  std::map<int, Client::Addresses> proxied_from_;  // by socket; libmicrohttpd 1 begins the connection later
   loop::Instant look_due_ = loop::Instant::max();
   loop::Source readable_, deadline_timer_;
   const std::shared_ptr<MhdServer*> alive_ = std::make_shared<MhdServer*>(this);  // for posted tasks
@@ -113,27 +113,31 @@ std::expected<void, std::string> MhdServer::start(loop::FileDescriptor given) {
   auto socket = ADIT_TRY(given ? std::expected<loop::FileDescriptor, std::string>(std::move(given))
                                : open_listen_socket(listen_));
   port_ = port_of(socket.get());
+  // ProxyListener accepts connections by TLS. libmicrohttpd cannot read a PROXY header.
+  const bool by_tls = listen_.by_tls;
+  const unsigned flags = MHD_USE_EPOLL | MHD_ALLOW_SUSPEND_RESUME | MHD_USE_ERROR_LOG;
   daemon_ = MHD_start_daemon(
-      MHD_USE_EPOLL | MHD_ALLOW_SUSPEND_RESUME | MHD_USE_ERROR_LOG, 0, nullptr, nullptr,
-      &MhdServer::request_came, this, MHD_OPTION_EXTERNAL_LOGGER, &MhdServer::say_nothing, nullptr,
-      MHD_OPTION_LISTEN_SOCKET, socket.get(), MHD_OPTION_CONNECTION_LIMIT,
+      by_tls ? flags | MHD_USE_NO_LISTEN_SOCKET : flags, 0, nullptr, nullptr, &MhdServer::request_came, this,
+      MHD_OPTION_EXTERNAL_LOGGER, &MhdServer::say_nothing, nullptr, MHD_OPTION_CONNECTION_LIMIT,
       shares_.unauthenticated + shares_.known + kOnTheirWayOut, MHD_OPTION_CONNECTION_TIMEOUT, 0u,
       MHD_OPTION_CONNECTION_MEMORY_LIMIT, kConnectionMemory, MHD_OPTION_NOTIFY_CONNECTION,
       &MhdServer::connection_changed, this, MHD_OPTION_NOTIFY_COMPLETED, &MhdServer::request_completed, this,
-      MHD_OPTION_UNESCAPE_CALLBACK, &MhdServer::leave_escaped, nullptr, MHD_OPTION_END);
+      MHD_OPTION_UNESCAPE_CALLBACK, &MhdServer::leave_escaped, nullptr,
+      by_tls ? MHD_OPTION_END : MHD_OPTION_LISTEN_SOCKET, socket.get(), MHD_OPTION_END);
   if (daemon_ == nullptr) return std::unexpected("the HTTP server did not start");
-  accepts_ = accept_instead(socket.get(), [this](int fd, const sockaddr* peer, unsigned size) {
-    MHD_add_connection(daemon_, fd, peer, size);
-    hold_back();
-  });
-  socket.release();  // NOLINT(bugprone-unused-return-value): libmicrohttpd's, until stop_listening()
-  listening_ = true;
-  if (listen_.by_tls) {
-    proxied_.emplace(loop_, loop::FileDescriptor(MHD_quiesce_daemon(daemon_)), listen_.unauthenticated_within,
+  if (by_tls) {
+    proxied_.emplace(loop_, std::move(socket), listen_.unauthenticated_within,
                      [this](loop::FileDescriptor connection, ProxyHeader header) {
                        add(std::move(connection), std::move(header));
                      });
+  } else {
+    accepts_ = accept_instead(socket.get(), [this](int fd, const sockaddr* peer, unsigned size) {
+      MHD_add_connection(daemon_, fd, peer, size);
+      hold_back();
+    });
+    socket.release();  // NOLINT(bugprone-unused-return-value): libmicrohttpd's, until stop_listening()
   }
+  listening_ = true;
 
   const MHD_DaemonInfo* info = MHD_get_daemon_info(daemon_, MHD_DAEMON_INFO_EPOLL_FD);
   if (info == nullptr || info->epoll_fd < 0)
@@ -163,12 +167,13 @@ void MhdServer::stop_listening() {
 }
 
 void MhdServer::add(loop::FileDescriptor connection, ProxyHeader header) {
-  proxied_from_ = {std::move(header.peer), std::move(header.local), header.size};
+  const int fd = connection.get();
+  proxied_from_.insert_or_assign(
+      fd, Client::Addresses{std::move(header.peer), std::move(header.local), header.size});
   sockaddr_storage peer{};  // of stunnel
   socklen_t size = sizeof peer;
-  ::getpeername(connection.get(), reinterpret_cast<sockaddr*>(&peer), &size);
+  ::getpeername(fd, reinterpret_cast<sockaddr*>(&peer), &size);
   MHD_add_connection(daemon_, connection.release(), reinterpret_cast<const sockaddr*>(&peer), size);
-  proxied_from_.reset();
   hold_back();
   schedule_run();
 }
@@ -223,9 +228,11 @@ void MhdServer::on_connected(MHD_Connection* connection, void** client_cls) {
   const sockaddr* const address =
       MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CLIENT_ADDRESS)->client_addr;
   const int socket = MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD)->connect_fd;
-  auto client = std::make_unique<Client>(
-      *this, loop_, connection, socket,
-      proxied_from_.value_or(Client::Addresses{address_text(address), local_address(socket)}));
+  auto proxied = proxied_from_.extract(socket);
+  auto client =
+      std::make_unique<Client>(*this, loop_, connection, socket,
+                               proxied ? std::move(proxied.mapped())
+                                       : Client::Addresses{address_text(address), local_address(socket)});
   Client* const known = client.get();
   clients_.emplace(known->number(), std::move(client));
   *client_cls = known;

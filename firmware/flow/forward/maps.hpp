@@ -48,7 +48,6 @@ class Maps {
 
   /// `ran_before`: this box may have sent maps before.
   void carry_on(const journal::Carried& carried, bool ran_before);
-  /// As if a map had just been sent.
   void hold_back() { pace_.on_sent(loop_.now()); }
   void on_settings_changed();
   /// Requests to another address or token are given up and retried at the new one.

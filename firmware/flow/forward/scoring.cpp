@@ -282,7 +282,7 @@ void Scoring::send(const dispatch::Report& report) {
                 [this](const uplink::Outcome& outcome) { report_answered(outcome); });
 }
 
-/// First, because judging uses the length of the silence.
+/// First, because the rules use the length of the silence.
 void Scoring::hear_time() {
   const auto there = channel_.last().command_post_time();
   if (there && clocks_.hear(*there)) reports_->clock_stepped(clocks_.clock_step());

@@ -82,7 +82,7 @@ class StatusCache {
   /// A report of the same run was answered: corrects the counts, and the clock if the two URIs may have the
   /// same one. `run_clock`: of the answer; 0: none.
   void add_report(const dispatch::Effect& effect, double run_clock, loop::Instant now);
-  /// The status may have changed: still an answer, but not a fresh one.
+  /// The status may have changed. It is still an answer.
   void no_longer_fresh() { fresh_ = false; }
 
   const std::optional<icd::RunStatus>& run() const { return run_; }
@@ -122,7 +122,6 @@ class Scoring {
           std::mt19937_64& random, journal::Journal& journal, Clocks& clocks);
 
   void carry_on(const journal::Carried& carried) { pace_.carry_on(carried, loop_.now()); }
-  /// As if a request had just been sent.
   void hold_back() { pace_.hold_back(loop_.now()); }
   /// For the operator's test.
   UriPace& status_pace() { return pace_.status_pace(); }

@@ -89,7 +89,6 @@ class Telemetry {
 
   /// Restores the messages of earlier processes.
   void carry_on(const journal::Carried& carried);
-  /// As if messages had just been sent.
   void hold_back() {
     states_.pace().on_sent(loop_.now());
     markers_.pace().on_sent(loop_.now());

@@ -146,7 +146,6 @@ class ScoringPace {
   /// By the settings.
   void allow(const settings::Rates& rates, pace::Instant now);
   void link_is_back();
-  /// As if both had just been sent.
   void hold_back(pace::Instant now);
   /// The new Command Post may have two limits.
   void endpoint_turned();

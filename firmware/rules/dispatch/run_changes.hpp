@@ -30,12 +30,12 @@ class WaitingClients {
   void add(ClientId client, std::int64_t number, Instant deadline) { clients_[client] = {number, deadline}; }
   /// Gives the client the report's stored answer, or Adit's sentence about its state.
   void tell(ClientId client, const Report& report);
-  /// Tells and removes the clients of a report.
+  /// Answers and removes the clients of a report.
   void tell_all(std::int64_t number);
   /// `number` repeats `earlier`: its clients wait for `earlier` with their deadlines, or are told if it is
   /// final.
   void hand_over(std::int64_t number, const Report& earlier);
-  /// Tells and removes clients whose time is up.
+  /// Answers and removes clients whose time is up.
   void tick(Instant now);
   /// aditd stops: tells and removes all clients. Without `all`, clients of the report in flight wait on.
   void dismiss(bool all);

@@ -93,7 +93,7 @@ class Findings {
 
   const std::vector<Finding>& all() const { return all_; }
 
-  /// The first that a Command Post of that manner does not take; null: it takes the message.
+  /// The first finding for which a Command Post of that manner rejects the message; null: it accepts it.
   const Finding* decisive(Manner manner) const {
     for (const Finding& finding : all_) {
       if (decides(finding, manner)) return &finding;

@@ -51,7 +51,7 @@ struct Answer {
   std::vector<std::pair<std::string, std::string>> headers = {};
 };
 
-/// What becomes of the connection once the answer, if any, is written.
+/// What happens to the connection after the answer, if any.
 enum class After {
   KeepOpen,
   Close,                    // saying so (Connection: close)
@@ -79,7 +79,7 @@ struct Outcome {
 /// The path of a target in origin form or absolute form (RFC 7230 5.3), without its query.
 std::string_view path_of(std::string_view target);
 
-/// Between which moments of one request and the next a rate limit measures.
+/// The interval between two requests that a rate limit measures.
 enum class Counted : std::uint8_t {
   Starts,     // from header to header
   LastBytes,  // from last byte to last byte

@@ -50,7 +50,6 @@ std::optional<MapMessage> read_map(const Json& document, Format format, Findings
 
 struct Judgement;  // endpoint.hpp
 
-/// A part of a message that was taken, as it is counted.
 struct Accepted {
   std::string kind;   // "grid", "cloud", "pose", "marker", "report"
   std::string robot;  // a map's or a pose's name, a marker's ns; may be ""

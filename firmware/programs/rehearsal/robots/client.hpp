@@ -149,12 +149,11 @@ inline void sleep_until(std::chrono::steady_clock::time_point time, const std::s
   (void)never.wait_until(lock, stop, time, [] { return false; });
 }
 
-/// The operator's desk: takes what robots found, once for each artifact, and submits it, one report after
-/// another, while the robots go on. Also asks for the run's status now and then.
+/// Submits the robots' findings for the operator, each artifact once, one report after another. Also asks for
+/// the run's status now and then.
 class OperatorDesk {
  public:
-  /// `say` prints a line; `style` and `tally` outlive the desk.
-  /// Asks for the status in `style`.
+  /// `say` prints a line. `style`, in which it asks for the status, and `tally` must outlive this object.
   OperatorDesk(Post post, const Style& style, Tally& tally, std::function<void(const std::string&)> say);
 
   struct Finding {
